@@ -1,0 +1,33 @@
+// Two kinds of failure, and nothing else: what the user wrote wrongly, and what the world refused.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace ssrlab {
+
+/// Usage or specification is wrong: the message names file, place, what was expected and what was found. Exit code 2.
+struct SpecError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// The specification is fine but the work failed (device, disk, damaged file). Exit code 1.
+struct Failure : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+template <typename... Args>
+[[noreturn]] void throw_spec_error(fmt::format_string<Args...> format, Args&&... args)
+{
+    throw SpecError(fmt::format(format, std::forward<Args>(args)...));
+}
+
+template <typename... Args>
+[[noreturn]] void throw_failure(fmt::format_string<Args...> format, Args&&... args)
+{
+    throw Failure(fmt::format(format, std::forward<Args>(args)...));
+}
+
+} // namespace ssrlab

@@ -1,0 +1,46 @@
+// What each ray found and why it stopped.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace ssrlab {
+
+/// Why a ray stopped. The values are shared with shaders/shared.h.
+enum class TraceStatus : uint8_t {
+    not_traced        = 0, // background, not reflective, or without a usable normal
+    hit               = 1,
+    left_screen       = 2, // crossed the image border or the near plane
+    past_max_distance = 3, // reached the maximum distance (or infinity) inside the image
+    out_of_steps      = 4, // gave up; never a hit
+    facing_away       = 5, // would be a miss, and touched only surfaces that face away from it (facing rule on)
+};
+inline constexpr std::array<std::string_view, 6> trace_status_names = {
+    "not_traced", "hit", "left_screen", "past_max_distance", "out_of_steps", "facing_away"};
+
+/// One entry per pixel of the image, row-major. The ray of pixel (x, y) is its mirror reflection.
+struct TraceResult {
+    glm::ivec2               size_px{0, 0};
+    std::vector<TraceStatus> status;
+    std::vector<glm::ivec2>  hit_pixel;      // the pixel whose slab was met; undefined unless hit
+    std::vector<glm::dvec3>  hit_px_depth;   // x, y in pixels, depth; on the ray, inside hit_pixel; undefined unless hit
+    std::vector<double>      hit_t;          // 0 at the reflecting pixel, 1 at the end of the clipped screen segment; undefined unless hit
+    std::vector<uint32_t>    steps;          // loop iterations; 0 where not traced
+    std::vector<uint32_t>    depth_fetches;  // empty when the result was not counted
+    std::vector<uint32_t>    pyramid_fetches;
+};
+
+/// The hit contract's settings: they belong to the experiment, never to a technique.
+struct TraceSettings {
+    double thickness_m        = 0.1;   // the slab of a pixel reaches from its distance to distance + thickness
+    bool   thickness_relative = false; // thickness is then a fraction of the distance
+    double max_distance_m     = 1e9;   // length of the ray in view space; may be +inf
+    double ray_offset_m       = 0;     // the ray starts so far along its direction
+    bool   facing             = false; // a hit's surface must face the ray
+};
+
+} // namespace ssrlab
