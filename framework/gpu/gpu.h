@@ -1,0 +1,37 @@
+// One device, one queue. Opened once per program.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ssrlab {
+
+struct GpuOptions {
+    std::string device;             // index, or part of the name; empty: a discrete GPU if present, else the first device
+    bool        validation = false; // load the Khronos validation layer; every message is kept in validation_messages()
+    bool        robust_buffer_access = false;
+};
+
+/// What environment.json says about the device.
+struct GpuInfo {
+    int         index = 0;
+    std::string name, type, driver, api_version;
+    bool        float64      = false;
+    uint32_t    max_image_px = 0;
+};
+
+struct GpuImpl;
+/// Movable handle; everything that needs Vulkan itself includes gpu/vulkan.h.
+struct Gpu {
+    std::shared_ptr<GpuImpl> impl;
+    GpuInfo                  info;
+};
+
+/// Throws SpecError for an unknown device, Failure when there is no Vulkan driver.
+Gpu                  open_gpu(const GpuOptions& options = {});
+std::vector<GpuInfo> list_gpus();
+/// Messages of the validation layer so far (empty = none, or layer not loaded).
+std::vector<std::string> validation_messages(const Gpu& gpu);
+
+} // namespace ssrlab
