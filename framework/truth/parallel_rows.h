@@ -1,0 +1,39 @@
+// Rows of an image over threads: neighbouring rows cost alike, so each thread takes the next one that is free.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace ssrlab {
+
+/// Calls do_row(y) once for every y in [0, row_count). threads = 0: all cores. Rethrows the first exception.
+template <typename DoRow>
+void parallel_rows(int row_count, unsigned threads, const DoRow& do_row)
+{
+    std::atomic<int>   next_row{0};
+    std::exception_ptr error;
+    std::mutex         error_mutex;
+    const auto         work = [&] {
+        try {
+            for (int y = next_row++; y < row_count; y = next_row++) do_row(y);
+        } catch (...) {
+            const std::lock_guard lock(error_mutex);
+            if (!error) error = std::current_exception();
+            next_row = row_count;
+        }
+    };
+    if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
+    threads = std::min(threads, unsigned(std::max(row_count, 1)));
+    {
+        std::vector<std::jthread> helpers;
+        for (unsigned i = 1; i < threads; ++i) helpers.emplace_back(work);
+        work();
+    }
+    if (error) std::rethrow_exception(error);
+}
+
+} // namespace ssrlab

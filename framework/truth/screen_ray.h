@@ -1,0 +1,34 @@
+// Ray set-up in double precision: section "The ray" of docs/hit_contract.md.
+#pragma once
+
+#include "core/gbuffer_image.h"
+#include "core/trace_result.h"
+
+namespace ssrlab {
+
+/// The mirror ray of one pixel, as a straight segment in (x_px, y_px, depth): origin + t * delta, t in [0, 1].
+struct ScreenRay {
+    bool        traced = false;                            // false: nothing below is defined
+    glm::dvec3  origin_px_depth{0};
+    glm::dvec3  delta_px_depth{0};                         // all zero when the ray visits nothing
+    glm::ivec2  start_pixel{0, 0};
+    TraceStatus end_status = TraceStatus::not_traced;      // how the ray ends if it meets no slab
+    double      length_m   = 0;                            // from the reflecting point to the clipped end; may be +inf
+    glm::dvec3  direction_vs{0};                           // unit
+};
+
+/// True for a pixel with finite depth > 0, metallic > 0 and a normal that is finite and not zero.
+bool reflects(const GBufferImage& gbuffer, glm::ivec2 pixel);
+
+/// The view-space point at the pixel's centre and depth.
+glm::dvec3 pixel_point_vs(const GBufferImage& gbuffer, glm::ivec2 pixel);
+
+/// Unit mirror direction at a pixel that reflects.
+glm::dvec3 mirror_direction_vs(const GBufferImage& gbuffer, glm::ivec2 pixel);
+
+ScreenRay make_screen_ray(const GBufferImage& gbuffer, glm::ivec2 pixel, const TraceSettings& settings);
+
+/// Throws Failure unless depth, normal_vs and metallic cover the image.
+void require_complete(const GBufferImage& gbuffer);
+
+} // namespace ssrlab
