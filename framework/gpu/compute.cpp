@@ -1,0 +1,150 @@
+#include "gpu/compute.h"
+
+#include "core/error.h"
+
+#include <set>
+
+namespace ssrlab {
+namespace {
+
+vk::DescriptorType descriptor_type(BindingType type)
+{
+    switch (type) {
+    case BindingType::storage_buffer: return vk::DescriptorType::eStorageBuffer;
+    case BindingType::uniform_buffer: return vk::DescriptorType::eUniformBuffer;
+    case BindingType::storage_image: return vk::DescriptorType::eStorageImage;
+    case BindingType::sampled_image: return vk::DescriptorType::eCombinedImageSampler;
+    }
+    return vk::DescriptorType::eStorageBuffer;
+}
+
+vk::raii::DescriptorSetLayout make_set_layout(Gpu& gpu, const Shader& shader)
+{
+    std::vector<vk::DescriptorSetLayoutBinding> bindings;
+    for (const auto& [name, binding] : shader.bindings)
+        bindings.push_back({.binding         = binding.binding,
+                            .descriptorType  = descriptor_type(binding.type),
+                            .descriptorCount = 1,
+                            .stageFlags      = vk::ShaderStageFlagBits::eCompute});
+    return {gpu.impl->device, vk::DescriptorSetLayoutCreateInfo{.bindingCount = static_cast<uint32_t>(bindings.size()),
+                                                                .pBindings    = bindings.data()}};
+}
+
+vk::raii::DescriptorPool make_pool(Gpu& gpu, const Shader& shader)
+{
+    std::map<vk::DescriptorType, uint32_t> counts;
+    for (const auto& [name, binding] : shader.bindings) ++counts[descriptor_type(binding.type)];
+    std::vector<vk::DescriptorPoolSize> sizes;
+    for (const auto& [type, count] : counts) sizes.push_back({type, count});
+    if (sizes.empty()) sizes.push_back({vk::DescriptorType::eStorageBuffer, 1});
+    return {gpu.impl->device, vk::DescriptorPoolCreateInfo{.flags         = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
+                                                           .maxSets       = 1,
+                                                           .poolSizeCount = static_cast<uint32_t>(sizes.size()),
+                                                           .pPoolSizes    = sizes.data()}};
+}
+
+void write_set(Gpu& gpu, const Shader& shader, const Bindings& bindings, const vk::raii::DescriptorSet& set)
+{
+    for (const auto& [name, binding] : shader.bindings) {
+        const auto bound = bindings.find(name);
+        if (bound == bindings.end()) throw std::logic_error(fmt::format("{}: nothing is bound to '{}'", shader.name, name));
+        const vk::DescriptorBufferInfo buffer{.buffer = bound->second.buffer, .offset = 0, .range = VK_WHOLE_SIZE};
+        const vk::DescriptorImageInfo  image{
+             .sampler = bound->second.sampler, .imageView = bound->second.view, .imageLayout = vk::ImageLayout::eGeneral};
+        vk::WriteDescriptorSet write{.dstSet          = *set,
+                                     .dstBinding      = binding.binding,
+                                     .descriptorCount = 1,
+                                     .descriptorType  = descriptor_type(binding.type)};
+        const bool             is_buffer = binding.type == BindingType::storage_buffer || binding.type == BindingType::uniform_buffer;
+        if (is_buffer != static_cast<bool>(bound->second.buffer))
+            throw std::logic_error(fmt::format("{}: '{}' is bound to the wrong kind of resource", shader.name, name));
+        if (is_buffer)
+            write.pBufferInfo = &buffer;
+        else
+            write.pImageInfo = &image;
+        gpu.impl->device.updateDescriptorSets(write, nullptr);
+    }
+}
+
+} // namespace
+
+ComputePass make_compute_pass(Gpu& gpu, const Shader& shader, const Bindings& bindings, const Constants& constants,
+                              uint32_t push_constant_bytes)
+{
+    const vk::raii::Device& device = gpu.impl->device;
+    ComputePass             pass;
+    try {
+        pass.set_layout = make_set_layout(gpu, shader);
+        const vk::PushConstantRange range{vk::ShaderStageFlagBits::eCompute, 0, push_constant_bytes};
+        pass.layout = {device, vk::PipelineLayoutCreateInfo{.setLayoutCount         = 1,
+                                                            .pSetLayouts            = &*pass.set_layout,
+                                                            .pushConstantRangeCount = push_constant_bytes > 0 ? 1U : 0U,
+                                                            .pPushConstantRanges    = &range}};
+        const vk::raii::ShaderModule module(
+            device, vk::ShaderModuleCreateInfo{.codeSize = shader.spirv.size() * 4, .pCode = shader.spirv.data()});
+        const vk::SpecializationInfo specialization{.mapEntryCount = static_cast<uint32_t>(constants.entries.size()),
+                                                    .pMapEntries   = constants.entries.data(),
+                                                    .dataSize      = constants.bytes.size(),
+                                                    .pData         = constants.bytes.data()};
+        const vk::ComputePipelineCreateInfo info{.stage  = {.stage               = vk::ShaderStageFlagBits::eCompute,
+                                                            .module              = *module,
+                                                            .pName               = "main",
+                                                            .pSpecializationInfo = &specialization},
+                                                 .layout = *pass.layout};
+        pass.pipeline = {device, gpu.impl->pipeline_cache, info};
+        pass.pool     = make_pool(gpu, shader);
+        vk::raii::DescriptorSets sets(
+            device, {.descriptorPool = *pass.pool, .descriptorSetCount = 1, .pSetLayouts = &*pass.set_layout});
+        pass.set = std::move(sets[0]);
+    } catch (const vk::SystemError& error) {
+        throw_failure("{}: the driver refuses the pipeline: {}", shader.name, error.what());
+    }
+    write_set(gpu, shader, bindings, pass.set);
+    return pass;
+}
+
+namespace {
+void bind(const vk::raii::CommandBuffer& commands, const ComputePass& pass)
+{
+    commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pass.pipeline);
+    commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *pass.layout, 0, *pass.set, nullptr);
+}
+} // namespace
+
+void dispatch(const vk::raii::CommandBuffer& commands, const ComputePass& pass, glm::uvec3 groups)
+{
+    bind(commands, pass);
+    commands.dispatch(groups.x, groups.y, groups.z);
+}
+
+void dispatch_indirect(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const Buffer& arguments)
+{
+    bind(commands, pass);
+    commands.dispatchIndirect(*arguments.buffer, 0);
+}
+
+Timestamps make_timestamps(Gpu& gpu, uint32_t count)
+{
+    return {{gpu.impl->device, vk::QueryPoolCreateInfo{.queryType = vk::QueryType::eTimestamp, .queryCount = count}}, count};
+}
+
+void write_timestamp(const vk::raii::CommandBuffer& commands, const Timestamps& timestamps, uint32_t index)
+{
+    if (index == 0) commands.resetQueryPool(*timestamps.pool, 0, timestamps.count);
+    commands.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *timestamps.pool, index);
+}
+
+std::vector<double> read_intervals_ms(Gpu& gpu, const Timestamps& timestamps)
+{
+    const auto [result, ticks] = timestamps.pool.getResults<uint64_t>(0, timestamps.count, timestamps.count * sizeof(uint64_t),
+                                                                      sizeof(uint64_t), vk::QueryResultFlagBits::e64);
+    if (result != vk::Result::eSuccess) throw_failure("GPU timestamps are not available: {}", vk::to_string(result));
+    std::vector<double> intervals;
+    for (uint32_t i = 1; i < timestamps.count; ++i) {
+        const uint64_t delta = (ticks[i] - ticks[i - 1]) & gpu.impl->timestamp_mask;
+        intervals.push_back(static_cast<double>(delta) * gpu.impl->timestamp_period_ns * 1e-6);
+    }
+    return intervals;
+}
+
+} // namespace ssrlab

@@ -1,0 +1,70 @@
+// A compute pass: a shader, its constants, and what is bound to its names.
+#pragma once
+
+#include "gpu/resources.h"
+#include "gpu/shader.h"
+
+namespace ssrlab {
+
+/// Specialization constants by constant_id, as the shader declares their types.
+class Constants {
+public:
+    void add(uint32_t id, int32_t value) { append(id, value); }
+    void add(uint32_t id, float value) { append(id, value); }
+    void add(uint32_t id, double value) { append(id, value); }
+
+    std::vector<vk::SpecializationMapEntry> entries;
+    std::vector<char>                       bytes;
+
+private:
+    template <typename T> void append(uint32_t id, T value)
+    {
+        entries.push_back({.constantID = id, .offset = static_cast<uint32_t>(bytes.size()), .size = sizeof(T)});
+        const char* begin = reinterpret_cast<const char*>(&value);
+        bytes.insert(bytes.end(), begin, begin + sizeof(T));
+    }
+};
+
+/// Something that a shader's name can be bound to.
+struct Bound {
+    vk::Buffer    buffer;
+    vk::ImageView view;
+    vk::Sampler   sampler;
+
+    Bound(const Buffer& b) : buffer(*b.buffer) {}
+    Bound(const GpuImage& image) : view(*image.view) {}
+    Bound(const GpuImage& image, const vk::raii::Sampler& s) : view(*image.view), sampler(*s) {}
+};
+using Bindings = std::map<std::string, Bound>;
+
+struct ComputePass {
+    vk::raii::DescriptorSetLayout set_layout  = nullptr;
+    vk::raii::PipelineLayout      layout      = nullptr;
+    vk::raii::Pipeline            pipeline    = nullptr;
+    vk::raii::DescriptorPool      pool        = nullptr;
+    vk::raii::DescriptorSet       set         = nullptr;
+};
+
+/// Binds by name: a name that the shader uses and `bindings` lacks is a programmer's mistake (std::logic_error); names it does not use are ignored.
+/// push_constant_bytes > 0 adds one push-constant block.
+ComputePass make_compute_pass(Gpu& gpu, const Shader& shader, const Bindings& bindings, const Constants& constants = {},
+                              uint32_t push_constant_bytes = 0);
+
+void dispatch(const vk::raii::CommandBuffer& commands, const ComputePass& pass, glm::uvec3 groups);
+void dispatch_indirect(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const Buffer& arguments);
+template <typename T> void push(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const T& value)
+{
+    commands.pushConstants<T>(*pass.layout, vk::ShaderStageFlagBits::eCompute, 0, value);
+}
+
+/// GPU timestamps between passes.
+struct Timestamps {
+    vk::raii::QueryPool pool  = nullptr;
+    uint32_t            count = 0;
+};
+Timestamps          make_timestamps(Gpu& gpu, uint32_t count);
+void                write_timestamp(const vk::raii::CommandBuffer& commands, const Timestamps& timestamps, uint32_t index);
+/// Milliseconds between neighbouring timestamps; throws Failure when a value is missing.
+std::vector<double> read_intervals_ms(Gpu& gpu, const Timestamps& timestamps);
+
+} // namespace ssrlab

@@ -1,0 +1,213 @@
+#include "gpu/vulkan.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <cstring>
+
+namespace ssrlab {
+namespace {
+
+constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
+
+VKAPI_ATTR VkBool32 VKAPI_CALL keep_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                            const VkDebugUtilsMessengerCallbackDataEXT* data, void* user)
+{
+    auto*            impl = static_cast<GpuImpl*>(user);
+    std::scoped_lock lock(impl->messages_mutex);
+    impl->messages.emplace_back(data->pMessage);
+    return VK_FALSE;
+}
+
+bool has_layer(const vk::raii::Context& context)
+{
+    const auto layers = context.enumerateInstanceLayerProperties();
+    return std::ranges::any_of(layers, [](const vk::LayerProperties& layer) {
+        return std::strcmp(layer.layerName, validation_layer) == 0;
+    });
+}
+
+vk::raii::Instance make_instance(const vk::raii::Context& context, bool validation)
+{
+    if (validation && !has_layer(context))
+        throw_failure("{} is not installed (Debian: vulkan-validationlayers)", validation_layer);
+    const vk::ApplicationInfo application{.pApplicationName = "ssrlab", .apiVersion = VK_API_VERSION_1_3};
+    const char* const         extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+    // Synchronization validation on top of core validation: hazards between passes are errors too.
+    const vk::ValidationFeatureEnableEXT enable = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
+    const vk::ValidationFeaturesEXT      features{.enabledValidationFeatureCount = 1, .pEnabledValidationFeatures = &enable};
+    vk::InstanceCreateInfo               info{.pApplicationInfo = &application};
+    if (validation) {
+        info.pNext                   = &features;
+        info.enabledLayerCount       = 1;
+        info.ppEnabledLayerNames     = &validation_layer;
+        info.enabledExtensionCount   = 1;
+        info.ppEnabledExtensionNames = &extension;
+    }
+    try {
+        return {context, info};
+    } catch (const vk::SystemError& error) {
+        const char* icd = std::getenv("VK_ICD_FILENAMES");
+        throw_failure("no Vulkan driver could be loaded ({}; VK_ICD_FILENAMES={}). Debian: install mesa-vulkan-drivers",
+                      error.what(), icd != nullptr ? icd : "unset");
+    }
+}
+
+GpuInfo describe(const vk::raii::PhysicalDevice& device, int index)
+{
+    const auto chain  = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
+    const auto& core  = chain.get<vk::PhysicalDeviceProperties2>().properties;
+    const auto& drive = chain.get<vk::PhysicalDeviceDriverProperties>();
+    GpuInfo    info;
+    info.index        = index;
+    info.name         = core.deviceName.data();
+    info.type         = vk::to_string(core.deviceType);
+    info.driver       = fmt::format("{} {}", drive.driverName.data(), drive.driverInfo.data());
+    info.api_version  = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(core.apiVersion), VK_API_VERSION_MINOR(core.apiVersion),
+                                    VK_API_VERSION_PATCH(core.apiVersion));
+    info.float64      = device.getFeatures().shaderFloat64 != 0;
+    info.max_image_px = core.limits.maxImageDimension2D;
+    return info;
+}
+
+bool contains_ignoring_case(const std::string& text, const std::string& part)
+{
+    return std::search(text.begin(), text.end(), part.begin(), part.end(), [](char a, char b) {
+               return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+           }) != text.end();
+}
+
+/// An index, a part of the name, or (empty) the first discrete GPU, else the first device.
+int choose_device(const std::vector<GpuInfo>& infos, const std::string& wanted)
+{
+    if (infos.empty()) throw_failure("no Vulkan device found. Debian: install mesa-vulkan-drivers");
+    if (wanted.empty()) {
+        for (const GpuInfo& info : infos)
+            if (info.type == "DiscreteGpu") return info.index;
+        return 0;
+    }
+    std::string names;
+    for (const GpuInfo& info : infos) {
+        if (wanted == std::to_string(info.index) || contains_ignoring_case(info.name, wanted)) return info.index;
+        names += fmt::format("\n  {} {}", info.index, info.name);
+    }
+    throw_spec_error("device '{}' not found; devices are:{}", wanted, names);
+}
+
+uint32_t find_queue_family(const vk::raii::PhysicalDevice& device)
+{
+    const auto families = device.getQueueFamilyProperties();
+    for (uint32_t i = 0; i < families.size(); ++i) {
+        const auto needed = vk::QueueFlagBits::eGraphics | vk::QueueFlagBits::eCompute;
+        if ((families[i].queueFlags & needed) == needed && families[i].timestampValidBits > 0) return i;
+    }
+    throw_failure("the device has no queue with graphics, compute and timestamps");
+}
+
+vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical_device, uint32_t queue_family, bool robust)
+{
+    const vk::PhysicalDeviceFeatures available = physical_device.getFeatures();
+    const float                      priority  = 1.0F;
+    const vk::DeviceQueueCreateInfo  queue{
+         .queueFamilyIndex = queue_family, .queueCount = 1, .pQueuePriorities = &priority};
+    vk::PhysicalDeviceVulkan13Features features13{
+        .synchronization2 = true, .dynamicRendering = true, .maintenance4 = true};
+    vk::PhysicalDeviceVulkan12Features features12{
+        .pNext = &features13, .scalarBlockLayout = true, .hostQueryReset = true};
+    const vk::PhysicalDeviceFeatures2 features{
+        .pNext    = &features12,
+        .features = {.robustBufferAccess = robust,
+                     .samplerAnisotropy  = available.samplerAnisotropy,
+                     .shaderFloat64      = available.shaderFloat64,
+                     .shaderInt64        = available.shaderInt64}};
+    return {physical_device, vk::DeviceCreateInfo{.pNext = &features, .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue}};
+}
+
+std::vector<GpuInfo> describe_all(const vk::raii::Instance& instance)
+{
+    std::vector<GpuInfo> infos;
+    for (const auto& device : vk::raii::PhysicalDevices(instance)) infos.push_back(describe(device, static_cast<int>(infos.size())));
+    return infos;
+}
+
+} // namespace
+
+std::vector<GpuInfo> list_gpus()
+{
+    const vk::raii::Context context;
+    try {
+        return describe_all(make_instance(context, false));
+    } catch (const vk::SystemError& error) {
+        throw_failure("Vulkan devices cannot be listed: {}", error.what());
+    }
+}
+
+Gpu open_gpu(const GpuOptions& options)
+{
+    Gpu gpu{std::make_shared<GpuImpl>(), {}};
+    GpuImpl& impl = *gpu.impl;
+    try {
+        impl.instance = make_instance(impl.context, options.validation);
+        if (options.validation) {
+            using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
+            using Type     = vk::DebugUtilsMessageTypeFlagBitsEXT;
+            impl.messenger = {impl.instance, vk::DebugUtilsMessengerCreateInfoEXT{
+                                                 .messageSeverity = Severity::eWarning | Severity::eError,
+                                                 .messageType     = Type::eValidation | Type::ePerformance,
+                                                 .pfnUserCallback = keep_message,
+                                                 .pUserData       = &impl}};
+        }
+        const auto infos     = describe_all(impl.instance);
+        gpu.info             = infos[static_cast<size_t>(choose_device(infos, options.device))];
+        impl.physical_device = std::move(vk::raii::PhysicalDevices(impl.instance)[static_cast<size_t>(gpu.info.index)]);
+        impl.queue_family    = find_queue_family(impl.physical_device);
+        impl.limits          = impl.physical_device.getProperties().limits;
+        impl.timestamp_period_ns = static_cast<double>(impl.limits.timestampPeriod);
+        const uint32_t bits = impl.physical_device.getQueueFamilyProperties()[impl.queue_family].timestampValidBits;
+        impl.timestamp_mask = bits >= 64 ? ~0ULL : (1ULL << bits) - 1;
+        impl.device         = make_device(impl.physical_device, impl.queue_family, options.robust_buffer_access);
+        impl.queue          = impl.device.getQueue(impl.queue_family, 0);
+        impl.command_pool   = {impl.device, vk::CommandPoolCreateInfo{.queueFamilyIndex = impl.queue_family}};
+        impl.pipeline_cache = {impl.device, vk::PipelineCacheCreateInfo{}};
+    } catch (const vk::SystemError& error) {
+        throw_failure("the Vulkan device cannot be opened: {}", error.what());
+    }
+    return gpu;
+}
+
+std::vector<std::string> validation_messages(const Gpu& gpu)
+{
+    std::scoped_lock lock(gpu.impl->messages_mutex);
+    return gpu.impl->messages;
+}
+
+void submit(Gpu& gpu, const std::function<void(const vk::raii::CommandBuffer&)>& record)
+{
+    constexpr uint64_t five_minutes_ns = 300ULL * 1000 * 1000 * 1000;
+    GpuImpl&           impl            = *gpu.impl;
+    try {
+        vk::raii::CommandBuffers buffers(impl.device, {.commandPool = *impl.command_pool, .commandBufferCount = 1});
+        buffers[0].begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+        record(buffers[0]);
+        buffers[0].end();
+        const vk::raii::Fence fence(impl.device, vk::FenceCreateInfo{});
+        impl.queue.submit(vk::SubmitInfo{.commandBufferCount = 1, .pCommandBuffers = &*buffers[0]}, *fence);
+        if (impl.device.waitForFences(*fence, true, five_minutes_ns) != vk::Result::eSuccess)
+            throw_failure("the device did not finish within five minutes");
+    } catch (const vk::SystemError& error) {
+        throw_failure("the device failed: {}", error.what());
+    }
+}
+
+void barrier(const vk::raii::CommandBuffer& commands)
+{
+    const vk::MemoryBarrier2 everything{.srcStageMask  = vk::PipelineStageFlagBits2::eAllCommands,
+                                        .srcAccessMask = vk::AccessFlagBits2::eMemoryWrite,
+                                        .dstStageMask  = vk::PipelineStageFlagBits2::eAllCommands,
+                                        .dstAccessMask = vk::AccessFlagBits2::eMemoryRead | vk::AccessFlagBits2::eMemoryWrite};
+    commands.pipelineBarrier2(vk::DependencyInfo{.memoryBarrierCount = 1, .pMemoryBarriers = &everything});
+}
+
+} // namespace ssrlab

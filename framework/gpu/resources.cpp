@@ -1,0 +1,157 @@
+#include "gpu/resources.h"
+
+#include "core/error.h"
+
+namespace ssrlab {
+namespace {
+
+uint32_t find_memory_type(const GpuImpl& impl, uint32_t allowed, vk::MemoryPropertyFlags wanted)
+{
+    const auto properties = impl.physical_device.getMemoryProperties();
+    for (uint32_t i = 0; i < properties.memoryTypeCount; ++i)
+        if ((allowed & (1U << i)) != 0 && (properties.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
+    throw_failure("the device has no memory type with {}", vk::to_string(wanted));
+}
+
+vk::raii::DeviceMemory allocate(const GpuImpl& impl, const vk::MemoryRequirements& needs, vk::MemoryPropertyFlags wanted)
+{
+    try {
+        return {impl.device, vk::MemoryAllocateInfo{.allocationSize  = needs.size,
+                                                    .memoryTypeIndex = find_memory_type(impl, needs.memoryTypeBits, wanted)}};
+    } catch (const vk::SystemError& error) {
+        throw_failure("{} MiB of device memory cannot be had: {}", needs.size >> 20, error.what());
+    }
+}
+
+Buffer make(Gpu& gpu, uint64_t bytes, vk::BufferUsageFlags usage, vk::MemoryPropertyFlags wanted)
+{
+    Buffer result;
+    result.bytes  = bytes;
+    result.buffer = {gpu.impl->device, vk::BufferCreateInfo{.size = bytes, .usage = usage}};
+    result.memory = allocate(*gpu.impl, result.buffer.getMemoryRequirements(), wanted);
+    result.buffer.bindMemory(*result.memory, 0);
+    return result;
+}
+
+vk::ImageAspectFlags aspect_of(vk::Format format)
+{
+    return is_depth(format) ? vk::ImageAspectFlagBits::eDepth : vk::ImageAspectFlagBits::eColor;
+}
+
+vk::BufferImageCopy whole_image(const GpuImage& image)
+{
+    return {.imageSubresource = {aspect_of(image.format), 0, 0, 1},
+            .imageExtent      = {static_cast<uint32_t>(image.size_px.x), static_cast<uint32_t>(image.size_px.y), 1}};
+}
+
+} // namespace
+
+Buffer make_buffer(Gpu& gpu, uint64_t bytes)
+{
+    using Usage = vk::BufferUsageFlagBits;
+    return make(gpu, bytes,
+                Usage::eStorageBuffer | Usage::eUniformBuffer | Usage::eIndirectBuffer | Usage::eVertexBuffer |
+                    Usage::eIndexBuffer | Usage::eTransferSrc | Usage::eTransferDst,
+                vk::MemoryPropertyFlagBits::eDeviceLocal);
+}
+
+Buffer make_host_buffer(Gpu& gpu, uint64_t bytes)
+{
+    using Property = vk::MemoryPropertyFlagBits;
+    Buffer buffer  = make(gpu, bytes, vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst,
+                          Property::eHostVisible | Property::eHostCoherent);
+    buffer.mapped  = buffer.memory.mapMemory(0, bytes);
+    return buffer;
+}
+
+void upload(Gpu& gpu, Buffer& target, const void* data, uint64_t bytes)
+{
+    if (bytes == 0) return;
+    const Buffer staging = make_host_buffer(gpu, bytes);
+    std::memcpy(staging.mapped, data, bytes);
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        commands.copyBuffer(*staging.buffer, *target.buffer, vk::BufferCopy{.size = bytes});
+        barrier(commands);
+    });
+}
+
+void download(Gpu& gpu, const Buffer& source, void* data, uint64_t bytes)
+{
+    if (bytes == 0) return;
+    const Buffer staging = make_host_buffer(gpu, bytes);
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        barrier(commands);
+        commands.copyBuffer(*source.buffer, *staging.buffer, vk::BufferCopy{.size = bytes});
+        barrier(commands);
+    });
+    std::memcpy(data, staging.mapped, bytes);
+}
+
+bool is_depth(vk::Format format) { return format == vk::Format::eD32Sfloat || format == vk::Format::eD16Unorm; }
+
+GpuImage make_image(Gpu& gpu, const ImageOptions& options)
+{
+    const auto limit = static_cast<int>(gpu.impl->limits.maxImageDimension2D);
+    if (options.size_px.x < 1 || options.size_px.y < 1 || options.size_px.x > limit || options.size_px.y > limit)
+        throw_spec_error("image size {}x{} is outside what the device '{}' supports: 1x1 to {}x{}", options.size_px.x,
+                         options.size_px.y, gpu.info.name, limit, limit);
+    GpuImage result;
+    result.format  = options.format;
+    result.size_px = options.size_px;
+    result.levels  = options.levels;
+    result.layers  = options.layers;
+    const vk::ImageCreateInfo info{
+        .imageType   = vk::ImageType::e2D,
+        .format      = options.format,
+        .extent      = {static_cast<uint32_t>(options.size_px.x), static_cast<uint32_t>(options.size_px.y), 1},
+        .mipLevels   = options.levels,
+        .arrayLayers = options.layers,
+        .samples     = vk::SampleCountFlagBits::e1,
+        .usage       = options.usage | vk::ImageUsageFlagBits::eTransferSrc | vk::ImageUsageFlagBits::eTransferDst};
+    result.image  = {gpu.impl->device, info};
+    result.memory = allocate(*gpu.impl, result.image.getMemoryRequirements(), vk::MemoryPropertyFlagBits::eDeviceLocal);
+    result.image.bindMemory(*result.memory, 0);
+    const vk::ImageSubresourceRange all{aspect_of(options.format), 0, options.levels, 0, options.layers};
+    result.view = {gpu.impl->device,
+                   vk::ImageViewCreateInfo{.image            = *result.image,
+                                           .viewType         = options.array_view ? vk::ImageViewType::e2DArray : vk::ImageViewType::e2D,
+                                           .format           = options.format,
+                                           .subresourceRange = all}};
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        const vk::ImageMemoryBarrier2 to_general{.srcStageMask     = vk::PipelineStageFlagBits2::eNone,
+                                                 .dstStageMask     = vk::PipelineStageFlagBits2::eAllCommands,
+                                                 .dstAccessMask    = vk::AccessFlagBits2::eMemoryRead | vk::AccessFlagBits2::eMemoryWrite,
+                                                 .oldLayout        = vk::ImageLayout::eUndefined,
+                                                 .newLayout        = vk::ImageLayout::eGeneral,
+                                                 .image            = *result.image,
+                                                 .subresourceRange = all};
+        commands.pipelineBarrier2(vk::DependencyInfo{.imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &to_general});
+    });
+    return result;
+}
+
+void upload(Gpu& gpu, GpuImage& target, const void* data, uint64_t bytes)
+{
+    const Buffer staging = make_host_buffer(gpu, bytes);
+    std::memcpy(staging.mapped, data, bytes);
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        barrier(commands);
+        commands.copyBufferToImage(*staging.buffer, *target.image, vk::ImageLayout::eGeneral, whole_image(target));
+        barrier(commands);
+    });
+}
+
+std::vector<char> download(Gpu& gpu, const GpuImage& source, uint32_t bytes_per_texel)
+{
+    const uint64_t bytes   = static_cast<uint64_t>(source.size_px.x) * static_cast<uint64_t>(source.size_px.y) * bytes_per_texel;
+    const Buffer   staging = make_host_buffer(gpu, bytes);
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        barrier(commands);
+        commands.copyImageToBuffer(*source.image, vk::ImageLayout::eGeneral, *staging.buffer, whole_image(source));
+        barrier(commands);
+    });
+    const char* begin = static_cast<const char*>(staging.mapped);
+    return {begin, begin + bytes};
+}
+
+} // namespace ssrlab

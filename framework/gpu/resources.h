@@ -1,0 +1,75 @@
+// Buffers and images with their own memory, and the ways in and out of them.
+#pragma once
+
+#include "gpu/vulkan.h"
+
+#include <glm/glm.hpp>
+
+#include <cstring>
+#include <span>
+
+namespace ssrlab {
+
+struct Buffer {
+    vk::raii::DeviceMemory memory = nullptr; // freed after the buffer: members die in reverse order
+    vk::raii::Buffer       buffer = nullptr;
+    uint64_t               bytes  = 0;
+    void*                  mapped = nullptr; // host-visible buffers only
+};
+
+/// Device-local storage (also uniform, indirect, vertex, index, copy source and target). Throws Failure when out of memory or over limits.
+Buffer make_buffer(Gpu& gpu, uint64_t bytes);
+/// Host-visible and coherent, mapped.
+Buffer make_host_buffer(Gpu& gpu, uint64_t bytes);
+void   upload(Gpu& gpu, Buffer& target, const void* data, uint64_t bytes);
+void   download(Gpu& gpu, const Buffer& source, void* data, uint64_t bytes);
+
+template <typename T> Buffer make_buffer_with(Gpu& gpu, std::span<const T> values)
+{
+    Buffer buffer = make_buffer(gpu, std::max<uint64_t>(values.size_bytes(), 16));
+    if (!values.empty()) upload(gpu, buffer, values.data(), values.size_bytes());
+    return buffer;
+}
+
+template <typename T> std::vector<T> download_as(Gpu& gpu, const Buffer& source, size_t count)
+{
+    std::vector<T> values(count);
+    if (count > 0) download(gpu, source, values.data(), count * sizeof(T));
+    return values;
+}
+
+struct GpuImage {
+    vk::raii::DeviceMemory memory = nullptr;
+    vk::raii::Image        image  = nullptr;
+    vk::raii::ImageView    view   = nullptr;
+    vk::Format             format = vk::Format::eUndefined;
+    glm::ivec2             size_px{0, 0};
+    uint32_t               levels = 1;
+    uint32_t               layers = 1;
+};
+
+struct ImageOptions {
+    vk::Format           format = vk::Format::eUndefined;
+    glm::ivec2           size_px{0, 0};
+    vk::ImageUsageFlags  usage;
+    uint32_t             levels = 1;
+    uint32_t             layers = 1; // > 1: the view is an array view
+    bool                 array_view = false;
+};
+/// Created in layout GENERAL, and kept there. Throws SpecError when the size exceeds the device's limit.
+GpuImage make_image(Gpu& gpu, const ImageOptions& options);
+bool     is_depth(vk::Format format);
+
+/// Tightly packed texels of level 0, layer 0.
+void              upload(Gpu& gpu, GpuImage& target, const void* data, uint64_t bytes);
+std::vector<char> download(Gpu& gpu, const GpuImage& source, uint32_t bytes_per_texel);
+
+template <typename T> std::vector<T> download_as(Gpu& gpu, const GpuImage& source)
+{
+    const std::vector<char> bytes = download(gpu, source, sizeof(T));
+    std::vector<T>          values(bytes.size() / sizeof(T));
+    std::memcpy(values.data(), bytes.data(), bytes.size());
+    return values;
+}
+
+} // namespace ssrlab

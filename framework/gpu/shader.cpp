@@ -1,0 +1,152 @@
+#include "gpu/shader.h"
+
+#include "core/error.h"
+
+#include <glslang/Public/ResourceLimits.h>
+#include <glslang/Public/ShaderLang.h>
+#include <glslang/SPIRV/GlslangToSpv.h>
+
+#include <fstream>
+#include <list>
+#include <memory>
+#include <regex>
+#include <sstream>
+
+namespace ssrlab {
+namespace {
+
+std::string read_text(const std::filesystem::path& path)
+{
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw_spec_error("{}: cannot be read", path.string());
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+/// Resolves includes: virtual names first, then files of the shader folder.
+class Includer : public glslang::TShader::Includer {
+public:
+    explicit Includer(const ShaderSource& source) : source_(source) {}
+
+    IncludeResult* includeLocal(const char* name, const char*, size_t depth) override
+    {
+        constexpr size_t max_depth = 32;
+        if (depth > max_depth) return nullptr;
+        std::string shown = name;
+        if (const auto text = source_.include_texts.find(name); text != source_.include_texts.end()) {
+            texts_.push_back(text->second);
+        } else {
+            const auto file = source_.include_files.find(name);
+            const auto path = file != source_.include_files.end() ? file->second : shader_folder() / name;
+            if (!std::filesystem::is_regular_file(path)) return nullptr;
+            shown = path.string();
+            texts_.push_back(read_text(path));
+        }
+        results_.push_back(std::make_unique<IncludeResult>(shown, texts_.back().data(), texts_.back().size(), nullptr));
+        return results_.back().get();
+    }
+    IncludeResult* includeSystem(const char* name, const char* from, size_t depth) override
+    {
+        return includeLocal(name, from, depth);
+    }
+    void releaseInclude(IncludeResult*) override {}
+
+private:
+    const ShaderSource&                       source_;
+    std::list<std::string>                    texts_;
+    std::list<std::unique_ptr<IncludeResult>> results_;
+};
+
+EShLanguage language_of(ShaderStage stage)
+{
+    switch (stage) {
+    case ShaderStage::vertex: return EShLangVertex;
+    case ShaderStage::fragment: return EShLangFragment;
+    case ShaderStage::compute: return EShLangCompute;
+    }
+    return EShLangCompute;
+}
+
+/// "ERROR: path:12: 'x' : undeclared identifier" -> "path:12: 'x' : undeclared identifier"
+std::string first_error(const std::string& log)
+{
+    std::istringstream lines(log);
+    for (std::string line; std::getline(lines, line);) {
+        static const std::regex error("^ERROR: (.*)$");
+        std::smatch             match;
+        if (std::regex_match(line, match, error)) return match[1];
+    }
+    return log;
+}
+
+void collect_bindings(const glslang::TProgram& program, Shader& shader)
+{
+    for (int i = 0; i < program.getNumUniformBlocks(); ++i) {
+        const auto& block = program.getUniformBlock(i);
+        if (block.getBinding() >= 0 && !block.getType()->getQualifier().isPushConstant())
+            shader.bindings[block.name] = {static_cast<uint32_t>(block.getBinding()), BindingType::uniform_buffer};
+    }
+    for (int i = 0; i < program.getNumBufferBlocks(); ++i) {
+        const auto& block = program.getBufferBlock(i);
+        shader.bindings[block.name] = {static_cast<uint32_t>(block.getBinding()), BindingType::storage_buffer};
+    }
+    for (int i = 0; i < program.getNumUniformVariables(); ++i) {
+        const auto& variable = program.getUniform(i);
+        if (variable.getType()->getBasicType() != glslang::EbtSampler || variable.getBinding() < 0) continue;
+        if (variable.getType()->getQualifier().hasSet() && variable.getType()->getQualifier().layoutSet != 0) continue;
+        shader.bindings[variable.name] = {static_cast<uint32_t>(variable.getBinding()),
+                                          variable.getType()->getSampler().isImage() ? BindingType::storage_image
+                                                                                     : BindingType::sampled_image};
+    }
+}
+
+struct GlslangProcess {
+    GlslangProcess() { glslang::InitializeProcess(); }
+    ~GlslangProcess() { glslang::FinalizeProcess(); }
+};
+
+} // namespace
+
+std::filesystem::path shader_folder() { return std::filesystem::path(SSRLAB_SOURCE_DIR) / "shaders"; }
+
+Shader compile_shader(const ShaderSource& source)
+{
+    static const GlslangProcess process;
+    const std::filesystem::path path = shader_folder() / source.file;
+    const std::string           text = read_text(path);
+    const std::string           shown = path.string();
+    std::string preamble = "#extension GL_GOOGLE_include_directive : require\n#extension GL_GOOGLE_cpp_style_line_directive : require\n"
+                           "#extension GL_EXT_scalar_block_layout : require\n";
+    for (const auto& [name, value] : source.defines) preamble += fmt::format("#define {} {}\n", name, value);
+
+    const EShLanguage language = language_of(source.stage);
+    glslang::TShader  stage(language);
+    const char*       strings[] = {text.c_str()};
+    const char*       names[]   = {shown.c_str()};
+    const int         lengths[] = {static_cast<int>(text.size())};
+    stage.setStringsWithLengthsAndNames(strings, lengths, names, 1);
+    stage.setPreamble(preamble.c_str());
+    stage.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, 100);
+    stage.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
+    stage.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
+    Includer  includer(source);
+    const auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
+    if (!stage.parse(GetDefaultResources(), 460, ECoreProfile, false, false, messages, includer))
+        throw_spec_error("{}", first_error(stage.getInfoLog()));
+    glslang::TProgram program;
+    program.addShader(&stage);
+    if (!program.link(messages)) throw_spec_error("{}: {}", shown, first_error(program.getInfoLog()));
+    program.buildReflection(EShReflectionSeparateBuffers);
+
+    Shader shader;
+    shader.name  = shown;
+    shader.stage = source.stage;
+    collect_bindings(program, shader);
+    glslang::SpvOptions options;
+    options.disableOptimizer = true;
+    glslang::GlslangToSpv(*program.getIntermediate(language), shader.spirv, &options);
+    return shader;
+}
+
+} // namespace ssrlab

@@ -1,0 +1,41 @@
+// GLSL files to SPIR-V by glslang, with what the shader says about its own interface.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace ssrlab {
+
+enum class ShaderStage { vertex, fragment, compute };
+enum class BindingType { storage_buffer, uniform_buffer, storage_image, sampled_image };
+
+struct ShaderBinding {
+    uint32_t    binding = 0;
+    BindingType type    = BindingType::storage_buffer;
+};
+
+struct Shader {
+    std::string                          name; // file, for messages
+    ShaderStage                          stage = ShaderStage::compute;
+    std::vector<uint32_t>                spirv;
+    std::map<std::string, ShaderBinding> bindings; // set 0, by block or variable name; only what the shader uses
+};
+
+struct ShaderSource {
+    std::filesystem::path              file;     // relative to the shader folder
+    ShaderStage                        stage = ShaderStage::compute;
+    std::map<std::string, std::string> defines;
+    std::map<std::string, std::filesystem::path> include_files; // virtual include name -> file
+    std::map<std::string, std::string>           include_texts; // virtual include name -> text
+};
+
+/// Where the project's shaders lie.
+std::filesystem::path shader_folder();
+
+/// Throws SpecError "FILE:LINE: message" for the first error found.
+Shader compile_shader(const ShaderSource& source);
+
+} // namespace ssrlab

@@ -1,0 +1,38 @@
+// The inside of Gpu: for the folders gpu/ and render/ only.
+#pragma once
+
+#include "gpu/gpu.h"
+
+#include <vulkan/vulkan_raii.hpp>
+
+#include <functional>
+#include <map>
+#include <mutex>
+
+namespace ssrlab {
+
+struct GpuImpl {
+    vk::raii::Context                context;
+    vk::raii::Instance               instance        = nullptr;
+    vk::raii::DebugUtilsMessengerEXT messenger       = nullptr;
+    vk::raii::PhysicalDevice         physical_device = nullptr;
+    vk::raii::Device                 device          = nullptr;
+    vk::raii::Queue                  queue           = nullptr;
+    vk::raii::CommandPool            command_pool    = nullptr;
+    vk::raii::PipelineCache          pipeline_cache  = nullptr;
+    uint32_t                         queue_family    = 0;
+    vk::PhysicalDeviceLimits         limits;
+    double                           timestamp_period_ns = 1;
+    uint64_t                         timestamp_mask      = ~0ULL;
+    std::mutex                       messages_mutex;
+    std::vector<std::string>         messages;
+};
+
+/// Records commands, submits them and waits. Throws Failure when the device is lost or the wait exceeds five minutes.
+void submit(Gpu& gpu, const std::function<void(const vk::raii::CommandBuffer&)>& record);
+
+/// A full barrier between two passes: everything written before is visible to everything after.
+void barrier(const vk::raii::CommandBuffer& commands);
+
+
+} // namespace ssrlab
