@@ -1,0 +1,105 @@
+#include "core/files.h"
+
+#include "core/error.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+namespace ssrlab {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Makes a rename durable; a file system that cannot sync a folder loses nothing that we promised.
+void sync_folder(const fs::path& folder)
+{
+    const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0) return;
+    ::fsync(fd);
+    ::close(fd);
+}
+
+} // namespace
+
+std::string read_file(const fs::path& path)
+{
+    if (fs::is_directory(path)) throw_failure("{}: is a folder, not a file", short_path(path));
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) throw_failure("{}: cannot be read: {}", short_path(path), std::strerror(errno));
+    std::ostringstream bytes;
+    bytes << stream.rdbuf();
+    if (stream.bad()) throw_failure("{}: reading failed: {}", short_path(path), std::strerror(errno));
+    return std::move(bytes).str();
+}
+
+bool write_fully(int fd, std::string_view bytes)
+{
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(fd, bytes.data(), bytes.size());
+        if (written > 0) {
+            bytes.remove_prefix(static_cast<size_t>(written));
+        } else if (written == 0) {
+            errno = EIO;
+            return false;
+        } else if (errno != EINTR) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void write_file_atomically(const fs::path& path, std::string_view bytes)
+{
+    // The name is per process: two writers of the same file must not share the temporary one.
+    const fs::path beside = path.string() + fmt::format(".tmp{}", ::getpid());
+    const int      fd     = ::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (fd < 0) throw_failure("{}: cannot be created: {}", short_path(path), std::strerror(errno));
+    bool      complete = write_fully(fd, bytes) && ::fsync(fd) == 0;
+    const int reason   = errno;
+    complete           = ::close(fd) == 0 && complete;
+    if (!complete || ::rename(beside.c_str(), path.c_str()) != 0) {
+        const int why = complete ? errno : reason;
+        ::unlink(beside.c_str());
+        throw_failure("{}: writing failed: {}", short_path(path), std::strerror(why));
+    }
+    sync_folder(path.has_parent_path() ? path.parent_path() : ".");
+}
+
+std::string content_hash(std::string_view bytes)
+{
+    return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
+}
+
+std::string folder_hash(const fs::path& folder)
+{
+    std::vector<fs::path> files;
+    if (fs::is_directory(folder)) {
+        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+            if (entry.is_regular_file()) files.push_back(entry.path());
+        }
+    }
+    std::ranges::sort(files);
+    std::string listing;
+    for (const fs::path& file : files) {
+        listing += fmt::format("{} {}\n", file.lexically_relative(folder).string(), content_hash(read_file(file)));
+    }
+    return content_hash(listing);
+}
+
+std::string short_path(const fs::path& path)
+{
+    std::error_code error;
+    const fs::path  here     = fs::current_path(error);
+    const fs::path  relative = path.is_absolute() && !error ? path.lexically_relative(here) : path;
+    return relative.empty() || *relative.begin() == ".." ? path.string() : relative.string();
+}
+
+} // namespace ssrlab

@@ -1,0 +1,28 @@
+// Files that are either there completely or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace ssrlab {
+
+/// The whole file; throws Failure with path and reason.
+std::string read_file(const std::filesystem::path& path);
+
+/// Written beside, synced and renamed: the final name never carries a partial file. Throws Failure with path and reason.
+void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
+
+/// Writes everything to `fd`, retrying interrupted and short writes. False with errno set when the rest was refused.
+bool write_fully(int fd, std::string_view bytes);
+
+/// 16 hexadecimal digits that depend on every byte; stable across machines and versions.
+std::string content_hash(std::string_view bytes);
+
+/// One hash of all files below `folder` (names and contents); an absent folder hashes as an empty one.
+std::string folder_hash(const std::filesystem::path& folder);
+
+/// As a person at the current directory would type it.
+std::string short_path(const std::filesystem::path& path);
+
+} // namespace ssrlab

@@ -1,0 +1,115 @@
+// TOML whose mistakes are reported with file and line. Header only: those who include it link toml++.
+#pragma once
+
+#include "core/error.h"
+#include "core/files.h"
+#include "core/names.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace ssrlab {
+
+struct TomlFile {
+    std::string path; // as messages show it
+    std::string text;
+    toml::table root;
+};
+
+inline TomlFile read_toml(const std::filesystem::path& path)
+{
+    TomlFile file{short_path(path), "", {}};
+    if (!std::filesystem::exists(path)) throw_spec_error("{}: no such file", file.path);
+    file.text = read_file(path);
+    try {
+        file.root = toml::parse(file.text);
+    } catch (const toml::parse_error& error) {
+        throw_spec_error("{}:{}: {}", file.path, error.source().begin.line, error.description());
+    }
+    return file;
+}
+
+/// "experiments/steps.toml:7"
+inline std::string toml_place(const TomlFile& file, const toml::node& node)
+{
+    return fmt::format("{}:{}", file.path, node.source().begin.line);
+}
+
+/// What stands there, for "expected …, got …".
+inline std::string toml_found(const toml::node& node)
+{
+    if (const auto* value = node.as_string()) return fmt::format("the string \"{}\"", value->get());
+    if (const auto* value = node.as_integer()) return fmt::format("the integer {}", value->get());
+    if (const auto* value = node.as_floating_point()) return fmt::format("the number {}", value->get());
+    if (const auto* value = node.as_boolean()) return fmt::format("{}", value->get());
+    if (node.is_array()) return "a list";
+    if (node.is_table()) return "a table";
+    return "a date or time";
+}
+
+[[noreturn]] inline void toml_refuse(const TomlFile& file, const toml::node& node, const std::string& name,
+                                     const std::string& expected)
+{
+    throw_spec_error("{}: '{}' must be {}, got {}", toml_place(file, node), name, expected, toml_found(node));
+}
+
+inline void toml_known_keys(const TomlFile& file, const toml::table& table, const std::string& kind,
+                            std::span<const std::string> known)
+{
+    for (const auto& [key, node] : table) {
+        const std::string name(key.str());
+        if (std::ranges::find(known, name) != known.end()) continue;
+        throw_spec_error("{}:{}: {}", file.path, key.source().begin.line, unknown_name(kind, name, known));
+    }
+}
+
+inline std::string toml_text(const TomlFile& file, const toml::node& node, const std::string& name)
+{
+    const auto* value = node.as_string();
+    if (value == nullptr || value->get().empty()) toml_refuse(file, node, name, "a non-empty string");
+    return value->get();
+}
+
+inline bool toml_bool(const TomlFile& file, const toml::node& node, const std::string& name)
+{
+    if (!node.is_boolean()) toml_refuse(file, node, name, "true or false");
+    return node.as_boolean()->get();
+}
+
+/// Integers count as numbers; NaN does not.
+inline double toml_number(const TomlFile& file, const toml::node& node, const std::string& name)
+{
+    const auto* real  = node.as_floating_point();
+    const auto* whole = node.as_integer();
+    if (whole != nullptr) return static_cast<double>(whole->get());
+    if (real == nullptr || std::isnan(real->get())) toml_refuse(file, node, name, "a number");
+    return real->get();
+}
+
+inline int64_t toml_integer(const TomlFile& file, const toml::node& node, const std::string& name)
+{
+    if (!node.is_integer()) toml_refuse(file, node, name, "an integer");
+    return node.as_integer()->get();
+}
+
+inline std::vector<std::string> toml_texts(const TomlFile& file, const toml::node& node, const std::string& name)
+{
+    if (!node.is_array()) toml_refuse(file, node, name, "a list of strings");
+    std::vector<std::string> texts;
+    for (const toml::node& element : *node.as_array()) texts.push_back(toml_text(file, element, name));
+    return texts;
+}
+
+inline const toml::table& toml_table(const TomlFile& file, const toml::node& node, const std::string& name)
+{
+    if (!node.is_table()) toml_refuse(file, node, name, "a table");
+    return *node.as_table();
+}
+
+} // namespace ssrlab

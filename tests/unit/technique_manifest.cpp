@@ -1,0 +1,181 @@
+// technique.toml: what it says, and what a mistake in it is answered with.
+#include "core/error.h"
+#include "core/files.h"
+#include "render/technique.h"
+
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+
+namespace ssrlab {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// A directory of techniques that vanishes with the test.
+struct TechniqueDir {
+    fs::path path;
+    TechniqueDir()
+    {
+        std::string pattern = (fs::temp_directory_path() / "techniques.XXXXXX").string();
+        path                = ::mkdtemp(pattern.data());
+    }
+    ~TechniqueDir() { fs::remove_all(path); }
+    TechniqueDir(const TechniqueDir&)            = delete;
+    TechniqueDir& operator=(const TechniqueDir&) = delete;
+
+    fs::path add(const std::string& id, const std::string& manifest, bool with_trace = true) const
+    {
+        fs::create_directories(path / id);
+        write_file_atomically(path / id / "technique.toml", manifest);
+        if (with_trace) write_file_atomically(path / id / "trace.glsl", "TraceResult trace(Ray ray) {}\n");
+        return path / id;
+    }
+};
+
+template <typename Call>
+std::string spec_error(const Call& call)
+{
+    try {
+        call();
+    } catch (const SpecError& error) {
+        return error.what();
+    }
+    return "(no SpecError)";
+}
+
+const std::string head = "name = \"Walk\"\nsummary = \"Walks.\"\n";
+
+TEST(TechniqueManifest, ReadsEveryField)
+{
+    const TechniqueDir dir;
+    const Technique    technique = load_technique(dir.add("walk", R"(name    = "Walk"
+summary = "Walks the pyramid."
+cite    = ["A 2014", "B 2020"]
+inputs  = ["depth_pyramid"]
+exact   = true
+bounded_by = ["steps", "binary_steps"]
+[parameters]
+steps        = { default = 64, min = 1, max = 50000, doc = "Steps." }
+stride_px    = { default = 1.5, min = 0, max = inf, doc = "Stride." }
+jitter       = { default = false, doc = "Jitter." }
+space        = { default = "screen", choices = ["view", "screen"], doc = "Space." }
+binary_steps = { default = 0, min = 0, max = 32, doc = "Bisections." }
+)"));
+    EXPECT_EQ(technique.id, "walk");
+    EXPECT_THAT(technique.cite, ElementsAre("A 2014", "B 2020"));
+    EXPECT_TRUE(technique.exact);
+    ASSERT_EQ(technique.parameters.size(), 5U);
+    EXPECT_EQ(technique.parameters[0].name, "steps"); // as declared, not sorted
+    EXPECT_EQ(technique.parameters[0].type, ParameterType::integer);
+    EXPECT_EQ(technique.parameters[1].type, ParameterType::real);
+    EXPECT_EQ(technique.parameters[1].max, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(technique.parameters[2].type, ParameterType::boolean);
+    EXPECT_EQ(technique.parameters[3].type, ParameterType::choice);
+    EXPECT_EQ(technique.parameters[3].default_value, 1);
+    EXPECT_EQ(iteration_bound(technique, {{"steps", 100}, {"binary_steps", 10}}), 110);
+    EXPECT_EQ(default_values(technique).at("stride_px"), 1.5);
+}
+
+TEST(TechniqueManifest, MistakesAreNamedWithFileAndLine)
+{
+    struct Mistake {
+        const char* line; // line 4, inside [parameters]
+        const char* message;
+    };
+    const Mistake mistakes[] = {
+        {"steps = { default = 0, min = 1, max = 60000, doc = \"d\" }", ":4: default 0 of 'steps' is outside [1, 60000]"},
+        {"steps = { default = 1, min = 9, max = 2, doc = \"d\" }", ":4: min 9 of 'steps' is above its max 2"},
+        {"steps = { default = 1, min = 1, max = 2 }", ":4: parameter 'steps' has no 'doc'"},
+        {"steps = { default = 1, min = 1, doc = \"d\" }", ":4: parameter 'steps' has no 'max'"},
+        {"steps = { default = 1, min = 0.5, max = 2, doc = \"d\" }", ":4: 'min of steps' must be an integer, got the number 0.5"},
+        {"steps = { default = nan, min = 0, max = 2, doc = \"d\" }", ":4: 'default of steps' must be a number, got the number nan"},
+        {"steps = { default = 1.0, min = nan, max = 2, doc = \"d\" }", ":4: 'min of steps' must be a number"},
+        {"steps = { default = [1], min = 1, max = 2, doc = \"d\" }", ":4: 'default of steps' must be"},
+        {"steps = { defualt = 1, min = 1, max = 2, doc = \"d\" }", ":4: unknown field of parameter 'steps' 'defualt': did you mean 'default'?"},
+        {"steps = 7", ":4: 'steps' must be a table, got the integer 7"},
+        {"mode = { default = \"c\", choices = [\"a\", \"b\"], doc = \"d\" }", ":4: 'mode' must be one of a, b, got 'c'"},
+        {"mode = { default = \"a\", choices = [], doc = \"d\" }", ":4: 'mode' must be one of"},
+        {"mode = { default = \"a\", choices = [\"a\", \"a\"], doc = \"d\" }", ":4: 'choices' of 'mode' names one twice"},
+        {"mode = { default = true, min = 0, doc = \"d\" }", ":4: 'min' belongs to numbers"},
+        {"\"two words\" = { default = true, doc = \"d\" }", ":4: parameter 'two words' is not a name that GLSL accepts"},
+        {"float = { default = true, doc = \"d\" }", ":4: parameter 'float' is not a name that GLSL accepts"},
+        {"steps = { default = 1, min = 1, max = 2, doc = \"d\" ", ":4: "},
+    };
+    const TechniqueDir dir;
+    for (const Mistake& mistake : mistakes) {
+        const fs::path folder = dir.add("walk", head + "[parameters]\n" + mistake.line + "\n");
+        EXPECT_THAT(spec_error([&] { load_technique(folder); }), HasSubstr("walk/technique.toml" + std::string(mistake.message)))
+            << mistake.line;
+    }
+}
+
+TEST(TechniqueManifest, MistakesAboveTheParameters)
+{
+    const TechniqueDir dir;
+    const auto         message = [&](const std::string& manifest) {
+        return spec_error([&] { load_technique(dir.add("walk", manifest)); });
+    };
+    EXPECT_THAT(message("summary = \"Walks.\"\n"), HasSubstr("the technique has no 'name'"));
+    EXPECT_THAT(message("name = 7\nsummary = \"Walks.\"\n"), HasSubstr(":1: 'name' must be a non-empty string, got the integer 7"));
+    EXPECT_THAT(message(head + "inputs = \"depth\"\n"), HasSubstr(":3: 'inputs' must be a list of strings"));
+    EXPECT_THAT(message(head + "exact = 1\n"), HasSubstr(":3: 'exact' must be true or false"));
+    EXPECT_THAT(message(head + "exakt = true\n"), HasSubstr(":3: unknown key 'exakt': did you mean 'exact'?"));
+    EXPECT_THAT(message(head + "bounded_by = [\"steps\"]\n"), HasSubstr(":3: unknown parameter of technique walk 'steps'"));
+}
+
+TEST(TechniqueManifest, ATechniqueNeedsItsTraceFunction)
+{
+    const TechniqueDir dir;
+    const fs::path     folder = dir.add("walk", head, false);
+    EXPECT_THAT(spec_error([&] { load_technique(folder); }), HasSubstr("walk/trace.glsl: missing"));
+    EXPECT_THAT(spec_error([&] { load_technique(dir.path / "absent"); }), HasSubstr("technique.toml: no such file"));
+    EXPECT_THAT(spec_error([&] { load_technique(dir.add("two words", head)); }), HasSubstr("technique's id"));
+}
+
+TEST(TechniqueManifest, DirectoriesAreSearchedAndDuplicatesRefused)
+{
+    const TechniqueDir first, second;
+    first.add("test_walk_a", head);
+    first.add("test_walk_b", head);
+    second.add("test_walk_b", head);
+    const fs::path only_first[] = {first.path};
+    const fs::path twice[]      = {first.path, first.path / "test_walk_a"}; // the same folder again is no conflict
+    const fs::path conflict[]   = {first.path, second.path};
+    const fs::path absent[]     = {first.path / "absent"};
+    EXPECT_EQ(find_technique(list_techniques(only_first), "test_walk_a").summary, "Walks.");
+    EXPECT_EQ(list_techniques(twice).size(), list_techniques(only_first).size());
+    EXPECT_THAT(spec_error([&] { list_techniques(conflict); }), HasSubstr("two techniques are called 'test_walk_b'"));
+    EXPECT_THAT(spec_error([&] { list_techniques(absent); }), HasSubstr("no such directory"));
+    EXPECT_THAT(spec_error([&] { find_technique(list_techniques(only_first), "test_wolk_a"); }),
+                HasSubstr("did you mean 'test_walk_a'?"));
+}
+
+TEST(TechniqueManifest, ValuesAreParsedCheckedAndPrinted)
+{
+    const Parameter steps{"steps", ParameterType::integer, 64, 1, 100, {}, "d"};
+    const Parameter stride{"stride", ParameterType::real, 1, 0, 10, {}, "d"};
+    const Parameter jitter{"jitter", ParameterType::boolean, 0, 0, 1, {}, "d"};
+    const Parameter space{"space", ParameterType::choice, 0, 0, 1, {"view", "screen"}, "d"};
+    for (const auto& [parameter, text] : std::vector<std::pair<Parameter, std::string>>{
+             {steps, "10"}, {stride, "0.5"}, {jitter, "true"}, {space, "screen"}}) {
+        EXPECT_EQ(format_parameter(parameter, parse_parameter(parameter, text, "-p")), text);
+    }
+    for (const char* text : {"", "ten", "1.5", "0", "101", "nan", "inf", "1e400", "7 ", "0x10"}) {
+        EXPECT_THAT(spec_error([&] { parse_parameter(steps, text, "-p"); }),
+                    HasSubstr("-p: 'steps' must be an integer in [1, 100], got"))
+            << text;
+    }
+    EXPECT_THAT(spec_error([&] { parse_parameter(stride, "nan", "-p"); }), HasSubstr("must be a number in [0, 10]"));
+    EXPECT_THAT(spec_error([&] { parse_parameter(jitter, "1", "-p"); }), HasSubstr("must be true or false, got '1'"));
+    EXPECT_THAT(spec_error([&] { parse_parameter(space, "clip", "-p"); }), HasSubstr("must be one of view, screen"));
+    EXPECT_THAT(spec_error([&] { check_parameter(steps, std::numeric_limits<double>::quiet_NaN(), "-p"); }),
+                HasSubstr("got nan"));
+}
+
+} // namespace
+} // namespace ssrlab
