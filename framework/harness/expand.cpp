@@ -1,0 +1,113 @@
+// From lists to runs.
+#include "harness/experiment.h"
+
+#include "core/error.h"
+#include "core/files.h"
+
+#include <set>
+
+namespace ssrlab {
+namespace {
+
+using ValueLists = std::map<std::string, std::vector<double>>;
+
+double combinations(const ValueLists& lists)
+{
+    double count = 1;
+    for (const auto& [name, values] : lists) count *= static_cast<double>(values.size());
+    return count;
+}
+
+/// Every combination of one value per name, the last name running fastest.
+std::vector<ParameterValues> cross_product(const ValueLists& lists)
+{
+    std::vector<ParameterValues> rows(1);
+    for (const auto& [name, values] : lists) {
+        std::vector<ParameterValues> longer;
+        for (const ParameterValues& row : rows) {
+            for (const double value : values) {
+                longer.push_back(row);
+                longer.back()[name] = value;
+            }
+        }
+        rows = std::move(longer);
+    }
+    return rows;
+}
+
+FrameSettings to_settings(const ParameterValues& values)
+{
+    FrameSettings settings;
+    for (const Setting& setting : all_settings()) setting.set(settings, values.at(setting.name));
+    return settings;
+}
+
+std::string run_id(const Run& run)
+{
+    std::string identity = fmt::format("{}\n{}\n{}\n{}\n", run.scene, run.view, size_text(run.size_px), run.technique);
+    for (const Setting& setting : all_settings()) {
+        identity += fmt::format("{}={}\n", setting.name, setting.get(run.settings));
+    }
+    for (const auto& [name, value] : run.values) identity += fmt::format("{}={}\n", name, value);
+    // The letter keeps spreadsheets from reading 12e4… as a number.
+    return "r" + content_hash(identity);
+}
+
+void refuse_cut_loops(const TechniqueSweep& sweep, const Technique& technique, const ParameterValues& values)
+{
+    const double bound = iteration_bound(technique, values);
+    if (bound <= max_iterations) return;
+    throw_spec_error("{}: {} with these values may need {} iterations of one ray; a driver may cut loops above {}",
+                     sweep.place, technique.id, bound, max_iterations);
+}
+
+} // namespace
+
+std::string size_text(glm::ivec2 size_px) { return fmt::format("{}x{}", size_px.x, size_px.y); }
+
+double count_runs(const Experiment& experiment)
+{
+    double sweeps = 0;
+    for (const TechniqueSweep& sweep : experiment.techniques) sweeps += combinations(sweep.values);
+    const double pictures = static_cast<double>(experiment.scenes.size()) * static_cast<double>(experiment.views.size()) *
+                            static_cast<double>(experiment.sizes_px.size());
+    return pictures * combinations(experiment.settings) * sweeps;
+}
+
+std::vector<Run> expand(const Experiment& experiment, std::span<const Technique> techniques, bool many)
+{
+    const double count = count_runs(experiment);
+    if (count > max_runs_unasked && !many) {
+        throw_spec_error("{}: expands to {} runs, more than {}; shorten a list, or confirm with --yes",
+                         short_path(experiment.file), count, max_runs_unasked);
+    }
+    // Settings and values do not depend on the picture: combine them once.
+    std::vector<Run> on_each_picture;
+    for (const ParameterValues& settings : cross_product(experiment.settings)) {
+        for (const TechniqueSweep& sweep : experiment.techniques) {
+            const Technique& technique = find_technique(techniques, sweep.id);
+            for (const ParameterValues& values : cross_product(sweep.values)) {
+                refuse_cut_loops(sweep, technique, values);
+                on_each_picture.push_back({"", "", "", {0, 0}, to_settings(settings), sweep.id, values});
+            }
+        }
+    }
+    std::vector<Run>      runs;
+    std::set<std::string> ids;
+    for (const std::string& scene : experiment.scenes) {
+        for (const std::string& view : experiment.views) {
+            for (const glm::ivec2& size_px : experiment.sizes_px) {
+                for (Run run : on_each_picture) {
+                    run.scene   = scene;
+                    run.view    = view;
+                    run.size_px = size_px;
+                    run.id      = run_id(run);
+                    if (ids.insert(run.id).second) runs.push_back(std::move(run));
+                }
+            }
+        }
+    }
+    return runs;
+}
+
+} // namespace ssrlab

@@ -1,0 +1,250 @@
+#include "harness/experiment.h"
+
+#include "core/toml_reading.h"
+
+#include <algorithm>
+#include <charconv>
+#include <functional>
+#include <limits>
+#include <optional>
+
+namespace ssrlab {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// A value or a list of values. An empty list would silently sweep nothing.
+std::vector<const toml::node*> values_of(const TomlFile& file, const toml::node& node, const std::string& name)
+{
+    std::vector<const toml::node*> values;
+    if (const toml::array* list = node.as_array()) {
+        for (const toml::node& element : *list) values.push_back(&element);
+    } else {
+        values.push_back(&node);
+    }
+    if (values.empty()) throw_spec_error("{}: '{}' is an empty list", toml_place(file, node), name);
+    return values;
+}
+
+double number_within(const TomlFile& file, const toml::node& node, const std::string& name, double min, double max)
+{
+    const double value = toml_number(file, node, name);
+    if (!(value >= min && value <= max)) {
+        toml_refuse(file, node, name, fmt::format("in [{}, {}]", min, max));
+    }
+    return value;
+}
+
+int64_t integer_within(const TomlFile& file, const toml::node& node, const std::string& name, int64_t min, int64_t max)
+{
+    const int64_t value = toml_integer(file, node, name);
+    if (value < min || value > max) toml_refuse(file, node, name, fmt::format("in [{}, {}]", min, max));
+    return value;
+}
+
+std::string read_name(const TomlFile& file, const std::filesystem::path& path)
+{
+    const toml::node* node = file.root.get("name");
+    const std::string name = node == nullptr ? path.stem().string() : toml_text(file, *node, "name");
+    const auto        safe = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.'; };
+    // The name becomes a folder below results/.
+    if (!std::ranges::all_of(name, safe) || name.front() == '.') {
+        throw_spec_error("{}: 'name' must be letters, digits, '_', '-' and '.', got '{}'",
+                         node == nullptr ? file.path + ":1" : toml_place(file, *node), name);
+    }
+    return name;
+}
+
+std::vector<std::string> read_texts(const TomlFile& file, const std::string& name, const std::vector<std::string>& otherwise)
+{
+    const toml::node* node = file.root.get(name);
+    if (node == nullptr) return otherwise;
+    std::vector<std::string> texts;
+    for (const toml::node* value : values_of(file, *node, name)) texts.push_back(toml_text(file, *value, name));
+    return texts;
+}
+
+glm::ivec2 read_size(const TomlFile& file, const toml::node& node)
+{
+    const std::string text  = toml_text(file, node, "sizes");
+    const char*       end   = text.data() + text.size();
+    int               sides[2] = {0, 0};
+    const auto        width = std::from_chars(text.data(), end, sides[0]);
+    const bool        cross = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
+    const auto        height = cross ? std::from_chars(width.ptr + 1, end, sides[1]) : width;
+    if (!cross || height.ec != std::errc() || height.ptr != end) {
+        toml_refuse(file, node, "sizes", "a size like \"1280x720\"");
+    }
+    for (const int side : sides) {
+        if (side < 1 || side > max_size_px) {
+            toml_refuse(file, node, "sizes", fmt::format("from 1x1 to {0}x{0} pixels", max_size_px));
+        }
+    }
+    return {sides[0], sides[1]};
+}
+
+std::vector<glm::ivec2> read_sizes(const TomlFile& file)
+{
+    const toml::node* node = file.root.get("sizes");
+    if (node == nullptr) return {{1280, 720}};
+    std::vector<glm::ivec2> sizes_px;
+    for (const toml::node* value : values_of(file, *node, "sizes")) sizes_px.push_back(read_size(file, *value));
+    return sizes_px;
+}
+
+const toml::table* optional_table(const TomlFile& file, const std::string& name)
+{
+    const toml::node* node = file.root.get(name);
+    return node == nullptr ? nullptr : &toml_table(file, *node, name);
+}
+
+double setting_value(const TomlFile& file, const toml::node& node, const Setting& setting)
+{
+    if (setting.type == ParameterType::boolean) return toml_bool(file, node, setting.name) ? 1 : 0;
+    return number_within(file, node, setting.name, setting.min, setting.max);
+}
+
+std::map<std::string, std::vector<double>> read_settings(const TomlFile& file)
+{
+    std::map<std::string, std::vector<std::string>> known;
+    for (const Setting& setting : all_settings()) known[setting.table].push_back(setting.name);
+    for (const auto& [table_name, names] : known) {
+        const toml::table* table = optional_table(file, table_name);
+        if (table != nullptr) toml_known_keys(file, *table, "setting of [" + table_name + "]", names);
+    }
+    std::map<std::string, std::vector<double>> settings;
+    for (const Setting& setting : all_settings()) {
+        std::vector<double>& values = settings[setting.name];
+        const toml::table*   table  = optional_table(file, setting.table);
+        const toml::node*    node   = table == nullptr ? nullptr : table->get(setting.name);
+        if (node == nullptr) {
+            values = {setting.get(FrameSettings{})};
+            continue;
+        }
+        for (const toml::node* value : values_of(file, *node, setting.name)) {
+            values.push_back(setting_value(file, *value, setting));
+        }
+    }
+    return settings;
+}
+
+double parameter_value(const TomlFile& file, const toml::node& node, const Parameter& parameter)
+{
+    switch (parameter.type) {
+    case ParameterType::choice:
+        return parse_parameter(parameter, toml_text(file, node, parameter.name), toml_place(file, node));
+    case ParameterType::boolean: return toml_bool(file, node, parameter.name) ? 1 : 0;
+    default: break;
+    }
+    const double value = parameter.type == ParameterType::integer
+                             ? static_cast<double>(toml_integer(file, node, parameter.name))
+                             : toml_number(file, node, parameter.name);
+    check_parameter(parameter, value, toml_place(file, node));
+    return value;
+}
+
+TechniqueSweep read_sweep(const TomlFile& file, const toml::table& table, const Technique& technique)
+{
+    TechniqueSweep sweep{technique.id, toml_place(file, table), {}};
+    for (const auto& [key, node] : table) {
+        const std::string name(key.str());
+        const std::string place = fmt::format("{}:{}", file.path, key.source().begin.line);
+        const Parameter&  parameter = find_parameter(technique, name, place);
+        for (const toml::node* value : values_of(file, node, name)) {
+            sweep.values[name].push_back(parameter_value(file, *value, parameter));
+        }
+    }
+    for (const auto& [name, value] : default_values(technique)) sweep.values.try_emplace(name, std::vector{value});
+    return sweep;
+}
+
+std::vector<TechniqueSweep> read_sweeps(const TomlFile& file, std::span<const Technique> techniques)
+{
+    const toml::table* table = optional_table(file, "techniques");
+    if (table == nullptr || table->empty()) {
+        throw_spec_error("{}:1: names no technique: add a table like [techniques.hiz]", file.path);
+    }
+    std::vector<std::pair<toml::source_position, TechniqueSweep>> found;
+    for (const auto& [key, node] : *table) {
+        const Technique* technique = nullptr;
+        try {
+            technique = &find_technique(techniques, std::string(key.str()));
+        } catch (const SpecError& error) {
+            throw_spec_error("{}:{}: {}", file.path, key.source().begin.line, error.what());
+        }
+        for (const toml::node* value : values_of(file, node, "techniques." + technique->id)) {
+            const toml::table& one = toml_table(file, *value, "techniques." + technique->id);
+            found.emplace_back(one.source().begin, read_sweep(file, one, *technique));
+        }
+    }
+    std::ranges::sort(found, [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<TechniqueSweep> sweeps;
+    for (auto& [position, sweep] : found) sweeps.push_back(std::move(sweep));
+    return sweeps;
+}
+
+MeasureSettings read_measure(const TomlFile& file)
+{
+    MeasureSettings    measure;
+    const toml::table* table = optional_table(file, "measure");
+    if (table == nullptr) return measure;
+    std::vector<std::string> known;
+    const auto with = [&](const std::string& name, const auto& read) {
+        known.push_back(name);
+        if (const toml::node* node = table->get(name)) read(*node, name);
+    };
+    const auto integer = [&](const std::string& name, auto& field, int64_t min, int64_t max) {
+        using Field = std::remove_reference_t<decltype(field)>;
+        with(name, [&, min, max](const toml::node& node, const std::string& key) {
+            field = static_cast<Field>(integer_within(file, node, key, min, max));
+        });
+    };
+    const auto number = [&](const std::string& name, double& field, double min, double max) {
+        with(name, [&, min, max](const toml::node& node, const std::string& key) {
+            field = number_within(file, node, key, min, max);
+        });
+    };
+    const auto flag = [&](const std::string& name, bool& field) {
+        with(name, [&](const toml::node& node, const std::string& key) { field = toml_bool(file, node, key); });
+    };
+    integer("seed", measure.seed, 0, std::numeric_limits<int64_t>::max());
+    integer("warmup", measure.warmup, 0, 1000);
+    integer("min_repeats", measure.min_repeats, 1, 100000);
+    integer("max_repeats", measure.max_repeats, 1, 100000);
+    number("interval_percent", measure.interval_percent, 0, 100);
+    number("budget_s", measure.budget_s, 0, infinity);
+    flag("truth", measure.truth);
+    flag("pictures", measure.pictures);
+    toml_known_keys(file, *table, "key of [measure]", known);
+    if (measure.max_repeats < measure.min_repeats) {
+        throw_spec_error("{}: max_repeats {} is below min_repeats {}", toml_place(file, *table), measure.max_repeats,
+                         measure.min_repeats);
+    }
+    return measure;
+}
+
+} // namespace
+
+Experiment load_experiment(const std::filesystem::path& path, std::span<const Technique> techniques)
+{
+    static const std::vector<std::string> known = {"name",  "title", "scenes",     "views",  "sizes",
+                                                   "trace", "shade", "techniques", "measure"};
+    const TomlFile file = read_toml(path);
+    toml_known_keys(file, file.root, "key", known);
+    Experiment experiment;
+    experiment.file  = path;
+    experiment.text  = file.text;
+    experiment.name  = read_name(file, path);
+    experiment.title = experiment.name;
+    if (const toml::node* node = file.root.get("title")) experiment.title = toml_text(file, *node, "title");
+    experiment.scenes = read_texts(file, "scenes", {});
+    if (experiment.scenes.empty()) throw_spec_error("{}:1: names no scene: add scenes = [\"builtin:stairs\"]", file.path);
+    experiment.views      = read_texts(file, "views", {"default"});
+    experiment.sizes_px   = read_sizes(file);
+    experiment.settings   = read_settings(file);
+    experiment.techniques = read_sweeps(file, techniques);
+    experiment.measure    = read_measure(file);
+    return experiment;
+}
+
+} // namespace ssrlab

@@ -1,0 +1,82 @@
+// An experiment is a TOML file in which a list is a sweep; expanded, it is a list of runs.
+#pragma once
+
+#include "render/frame.h"
+#include "render/technique.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace ssrlab {
+
+/// How long and how often is measured.
+struct MeasureSettings {
+    uint64_t seed             = 1;    // of the random order of repeats
+    int      warmup           = 1;    // untimed frames before the first timed one
+    int      min_repeats      = 9;    // below 6 there is no 95 % interval
+    int      max_repeats      = 100;
+    double   interval_percent = 2;    // tight: the 95 % interval of the median of trace_ms lies within ± this
+    double   budget_s         = 5;    // a run stops after min_repeats once its frames took this long
+    bool     truth            = true; // compare with the truths
+    bool     pictures         = true; // write the reflected picture of each run
+};
+
+/// One [techniques.ID] table: every parameter's values, defaults filled in.
+struct TechniqueSweep {
+    std::string                                id;
+    std::string                                place; // file:line
+    std::map<std::string, std::vector<double>> values;
+};
+
+struct Experiment {
+    std::filesystem::path       file;
+    std::string                 text; // the whole file
+    std::string                 name, title;
+    std::vector<std::string>    scenes, views;
+    std::vector<glm::ivec2>     sizes_px;
+    /// Every setting's values by Setting::name, defaults filled in.
+    std::map<std::string, std::vector<double>> settings;
+    std::vector<TechniqueSweep> techniques;
+    MeasureSettings             measure;
+};
+
+/// One technique with one set of values on one picture: everything that decides its outcome.
+struct Run {
+    std::string     id; // short hash of all that follows; the same in every experiment and on every machine
+    std::string     scene, view;
+    glm::ivec2      size_px{0, 0};
+    FrameSettings   settings;
+    std::string     technique;
+    ParameterValues values;
+};
+
+/// A setting of [trace] or [shade]: key in the specification and column of the record, from this one table.
+struct Setting {
+    std::string   name, table, doc;
+    ParameterType type = ParameterType::real; // real or boolean
+    double        min = 0, max = 0;
+    double (*get)(const FrameSettings&);
+    void (*set)(FrameSettings&, double);
+};
+std::span<const Setting> all_settings();
+
+inline constexpr int    max_size_px       = 16384;
+inline constexpr double max_runs_unasked  = 100000;
+
+/// Throws SpecError with file and line for whatever is unknown, missing, of the wrong type or out of range.
+Experiment load_experiment(const std::filesystem::path& file, std::span<const Technique> techniques);
+
+/// The number of runs that expand() makes, without making them.
+double count_runs(const Experiment& experiment);
+
+/// Scene by scene, view by view, size by size; a run listed twice comes once. Throws SpecError for a run whose iterations a
+/// driver may cut, and for more than max_runs_unasked runs unless `many` is set.
+std::vector<Run> expand(const Experiment& experiment, std::span<const Technique> techniques, bool many = false);
+
+std::string size_text(glm::ivec2 size_px); // "1280x720"
+
+} // namespace ssrlab
