@@ -1,0 +1,65 @@
+#include "harness/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ssrlab {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+double sorted_quantile(const std::vector<double>& sorted, double p)
+{
+    if (sorted.empty()) return unknown;
+    const double position = p * static_cast<double>(sorted.size() - 1);
+    const auto   below    = static_cast<size_t>(position);
+    const size_t above    = std::min(below + 1, sorted.size() - 1);
+    return std::lerp(sorted[below], sorted[above], position - static_cast<double>(below));
+}
+
+} // namespace
+
+int interval_rank(int count)
+{
+    // log of C(count, i) / 2^count, so that large counts do not underflow to a sum of zero.
+    const auto log_probability = [&](int i) {
+        return std::lgamma(count + 1) - std::lgamma(i + 1) - std::lgamma(count - i + 1) - count * std::log(2.0);
+    };
+    double below = 0;
+    int    rank  = 0;
+    while (rank < count) {
+        below += std::exp(log_probability(rank));
+        if (2 * below > 0.05) break;
+        ++rank;
+    }
+    return rank;
+}
+
+Summary summarise(std::vector<double> samples)
+{
+    std::ranges::sort(samples);
+    const int count = static_cast<int>(samples.size());
+    Summary   summary{count, sorted_quantile(samples, 0.5), unknown, unknown, unknown};
+    if (const int rank = interval_rank(count); rank > 0) {
+        summary.ci_low  = samples[static_cast<size_t>(rank - 1)];
+        summary.ci_high = samples[static_cast<size_t>(count - rank)];
+    }
+    for (double& sample : samples) sample = std::abs(sample - summary.median);
+    summary.mad = quantile(std::move(samples), 0.5);
+    return summary;
+}
+
+double quantile(std::vector<double> samples, double p)
+{
+    std::ranges::sort(samples);
+    return sorted_quantile(samples, p);
+}
+
+bool is_tight(const Summary& summary, double percent)
+{
+    const double allowed = summary.median * percent / 100;
+    return summary.ci_high - summary.median <= allowed && summary.median - summary.ci_low <= allowed;
+}
+
+} // namespace ssrlab
