@@ -1,0 +1,75 @@
+#include "truth/scene_truth.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace ssrlab {
+namespace {
+
+/// Light arriving at a point from one light, unshadowed.
+struct Arriving {
+    glm::vec3  irradiance{0};    // on a surface that faces the light
+    glm::dvec3 to_light_ws{0};   // unit
+    double     distance_m = std::numeric_limits<double>::infinity();
+};
+
+/// Range and cone as glTF's KHR_lights_punctual defines them.
+Arriving arriving_light(const Light& light, glm::dvec3 point_ws)
+{
+    if (light.type == LightType::directional) {
+        return {light.intensity, -glm::normalize(glm::dvec3(light.direction_ws)), std::numeric_limits<double>::infinity()};
+    }
+    const glm::dvec3 offset     = glm::dvec3(light.position_ws) - point_ws;
+    const double     distance_m = glm::length(offset);
+    if (!(distance_m > 0)) return {};
+    Arriving result{light.intensity, offset / distance_m, distance_m};
+    double   scale = 1 / (distance_m * distance_m);
+    if (light.range_m > 0) scale *= std::clamp(1 - std::pow(distance_m / double(light.range_m), 4.0), 0.0, 1.0);
+    if (light.type == LightType::spot) {
+        const double cos_outer = std::cos(double(light.outer_angle_rad));
+        const double cos_inner = std::cos(double(light.inner_angle_rad));
+        const double cos_angle = glm::dot(-result.to_light_ws, glm::normalize(glm::dvec3(light.direction_ws)));
+        const double cone      = std::clamp((cos_angle - cos_outer) / std::max(cos_inner - cos_outer, 1e-3), 0.0, 1.0);
+        scale *= cone * cone;
+    }
+    result.irradiance *= float(scale);
+    return result;
+}
+
+bool in_shadow(const SceneBvh& bvh, glm::dvec3 point_ws, const Arriving& light, double offset_m)
+{
+    const SceneRay         ray{point_ws, light.to_light_ws, offset_m, light.distance_m - offset_m};
+    std::array<uint8_t, 1> blocked{};
+    bvh.occluded({&ray, 1}, Sides::both, blocked);
+    return blocked[0] != 0;
+}
+
+} // namespace
+
+glm::vec3 shade_point(const SceneBvh& bvh, const Scene& scene, const SceneHit& hit, glm::dvec3 point_ws,
+                      glm::dvec3 direction_ws)
+{
+    const SurfaceMaterial material = surface_material(scene, hit.surface);
+    // The side that the ray sees; the interpolated normal follows the triangle's.
+    const double     side         = glm::dot(hit.normal_ws, direction_ws) > 0 ? -1 : 1;
+    const glm::dvec3 triangle_ws  = side * glm::normalize(hit.normal_ws);
+    const glm::dvec3 normal_ws    = material.normal_ws == glm::dvec3(0) ? triangle_ws : side * material.normal_ws;
+    const double     offset_m     = self_hit_share * std::max(1.0, hit.t);
+    const glm::dvec3 lifted_ws    = point_ws + offset_m * triangle_ws;
+
+    glm::vec3 irradiance(0);
+    for (const Light& light : scene.lights) {
+        const Arriving arriving = arriving_light(light, point_ws);
+        const double   cosine   = glm::dot(normal_ws, arriving.to_light_ws);
+        if (!(cosine > 0) || arriving.irradiance == glm::vec3(0)) continue;
+        if (light.casts_shadow && in_shadow(bvh, lifted_ws, arriving, offset_m)) continue;
+        irradiance += arriving.irradiance * float(cosine);
+    }
+    const glm::vec3 diffuse = material.base_colour * (1 - material.metallic) * (1 / std::numbers::pi_v<float>);
+    return diffuse * irradiance + scene.ambient * material.base_colour + material.emissive;
+}
+
+} // namespace ssrlab

@@ -1,0 +1,93 @@
+#include "truth/scene_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ssrlab {
+namespace {
+
+const Vertex& corner(const Scene& scene, const SurfacePoint& point, int i)
+{
+    return scene.vertices[scene.indices[scene.draws[point.draw].first_index + 3 * point.triangle + uint32_t(i)]];
+}
+
+template <typename T>
+T interpolate(const Scene& scene, const SurfacePoint& point, T Vertex::* attribute)
+{
+    const auto u = float(point.barycentric.x), v = float(point.barycentric.y);
+    return corner(scene, point, 0).*attribute * (1 - u - v) + corner(scene, point, 1).*attribute * u +
+           corner(scene, point, 2).*attribute * v;
+}
+
+int wrap(int i, int size, Wrap mode)
+{
+    if (mode == Wrap::clamp_to_edge) return std::clamp(i, 0, size - 1);
+    const int period = mode == Wrap::repeat ? size : 2 * size;
+    const int inside = (i % period + period) % period;
+    return inside < size ? inside : period - 1 - inside;
+}
+
+float srgb_to_linear(float value)
+{
+    return value <= 0.04045F ? value / 12.92F : std::pow((value + 0.055F) / 1.055F, 2.4F);
+}
+
+glm::vec4 texel(const Texture& texture, int x, int y)
+{
+    const int      column = wrap(x, texture.size_px.x, texture.wrap_u);
+    const int      row    = wrap(y, texture.size_px.y, texture.wrap_v);
+    const uint8_t* bytes  = &texture.rgba[4 * (size_t(row) * size_t(texture.size_px.x) + size_t(column))];
+    glm::vec4      value  = glm::vec4(bytes[0], bytes[1], bytes[2], bytes[3]) / 255.0F;
+    if (texture.srgb) {
+        for (int c : {0, 1, 2}) value[c] = srgb_to_linear(value[c]);
+    }
+    return value;
+}
+
+glm::vec4 sample(const Scene& scene, const TextureUse& use, const SurfacePoint& point)
+{
+    if (use.texture < 0 || size_t(use.texture) >= scene.textures.size()) return glm::vec4(1);
+    const Texture& texture = scene.textures[size_t(use.texture)];
+    if (texture.rgba.empty()) return glm::vec4(1);
+    const glm::vec2 uv    = interpolate(scene, point, use.uv_set == 1 ? &Vertex::uv1 : &Vertex::uv0);
+    const glm::vec2 at_px = glm::vec2(use.uv_transform * glm::vec3(uv, 1)) * glm::vec2(texture.size_px);
+    // Beyond this, int and float lose the texel anyway.
+    if (!(std::abs(at_px.x) < 1e8F && std::abs(at_px.y) < 1e8F)) return texel(texture, 0, 0);
+    if (texture.nearest) return texel(texture, int(std::floor(at_px.x)), int(std::floor(at_px.y)));
+    const glm::vec2 low  = glm::floor(at_px - 0.5F);
+    const glm::vec2 part = at_px - 0.5F - low;
+    const int       x = int(low.x), y = int(low.y);
+    return glm::mix(glm::mix(texel(texture, x, y), texel(texture, x + 1, y), part.x),
+                    glm::mix(texel(texture, x, y + 1), texel(texture, x + 1, y + 1), part.x), part.y);
+}
+
+glm::vec4 base_colour(const Scene& scene, const SurfacePoint& point)
+{
+    const Material& material = scene.materials[scene.draws[point.draw].material];
+    return material.base_colour * interpolate(scene, point, &Vertex::colour) *
+           sample(scene, material.base_colour_texture, point);
+}
+
+} // namespace
+
+glm::dvec3 corner_ws(const Scene& scene, const SurfacePoint& point, int i)
+{
+    return glm::dvec3(corner(scene, point, i).position_ws);
+}
+
+float surface_alpha(const Scene& scene, const SurfacePoint& point) { return base_colour(scene, point).a; }
+
+SurfaceMaterial surface_material(const Scene& scene, const SurfacePoint& point)
+{
+    const Material& material = scene.materials[scene.draws[point.draw].material];
+    SurfaceMaterial result;
+    result.base_colour     = glm::vec3(base_colour(scene, point));
+    result.metallic        = material.metallic * sample(scene, material.metallic_roughness_texture, point).b;
+    result.emissive        = material.emissive * glm::vec3(sample(scene, material.emissive_texture, point));
+    const glm::dvec3 sum   = glm::dvec3(interpolate(scene, point, &Vertex::normal_ws));
+    const double     length = glm::length(sum);
+    if (std::isfinite(length) && length > 0) result.normal_ws = sum / length;
+    return result;
+}
+
+} // namespace ssrlab

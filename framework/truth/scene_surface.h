@@ -1,0 +1,29 @@
+// What a scene's triangle is made of at one point: vertices interpolated, textures at their finest level.
+#pragma once
+
+#include "scene/scene.h"
+
+namespace ssrlab {
+
+/// A point on triangle `triangle` of draw `draw`; barycentric weights of the second and third corner.
+struct SurfacePoint {
+    uint32_t   draw     = 0;
+    uint32_t   triangle = 0;
+    glm::dvec2 barycentric{0};
+};
+
+struct SurfaceMaterial {
+    glm::vec3  base_colour{1}; // linear
+    float      metallic = 0;
+    glm::vec3  emissive{0};    // linear radiance
+    glm::dvec3 normal_ws{0};   // interpolated, without normal map; unit, or 0 when the mesh has none
+};
+
+glm::dvec3 corner_ws(const Scene& scene, const SurfacePoint& point, int corner);
+
+/// Alpha of the base colour: what an alpha mask compares with its cutoff.
+float surface_alpha(const Scene& scene, const SurfacePoint& point);
+
+SurfaceMaterial surface_material(const Scene& scene, const SurfacePoint& point);
+
+} // namespace ssrlab

@@ -1,0 +1,41 @@
+// Scene truth: the true reflected point of every pixel, from the scene's triangles, and whether this frame could show it.
+//
+// The reflected ray starts at the G-buffer's point P (pixel centre, pixel depth) and follows the contract's mirror direction,
+// both in double. Hits nearer than self_hit_share * distance(eye, P) are the reflecting surface itself and do not count: the
+// depth is a rounded float. TraceSettings::ray_offset_m does not matter here, the true point does not depend on it.
+//
+// The class is the first of these that applies:
+//   sky            the ray meets nothing
+//   beyond         the point is farther along the ray than max_distance_m
+//   behind_camera  its distance is less than the near plane's
+//   off_screen     it projects outside the image
+//   facing_away    the frame does not draw the side that the ray sees: the camera looks at the other one, or it is the back
+//                  of a material that is not double-sided
+//   hidden         something lies between the near plane and the point: an occlusion ray from the eye (orthographic: along
+//                  the view axis) is blocked before (1 - visibility_tolerance) of the way by something that the frame draws
+//   visible        everything else: an SSR could find it
+// The reflected ray is stopped by both sides of every triangle, also of materials that are not double-sided.
+#pragma once
+
+#include "core/gbuffer_image.h"
+#include "core/trace_result.h"
+#include "truth/scene_bvh.h"
+#include "truth/truth_class.h"
+
+namespace ssrlab {
+
+inline constexpr double self_hit_share       = 1e-4;
+inline constexpr double visibility_tolerance = 2e-4;
+
+/// Radiance of a visible point is the G-buffer's (the view-independent part) at the pixel it falls into, so that a perfect SSR
+/// reproduces the reference exactly; all other points are shaded by shade_point; sky is Scene::background.
+/// Threads = 0: all cores.
+SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer, const TraceSettings& settings,
+                       unsigned threads = 0);
+
+/// Lambertian, with shadow rays, without bounces:
+/// base (1 - metallic) / pi * sum(irradiance cos shadow) + ambient base + emissive.
+glm::vec3 shade_point(const SceneBvh& bvh, const Scene& scene, const SceneHit& hit, glm::dvec3 point_ws,
+                      glm::dvec3 direction_ws);
+
+} // namespace ssrlab

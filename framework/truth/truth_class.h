@@ -1,0 +1,36 @@
+// What a reflected ray truly meets, pixel by pixel. How each class is decided: truth/scene_truth.h.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace ssrlab {
+
+enum class TruthClass : uint8_t {
+    not_traced    = 0,
+    visible       = 1,
+    hidden        = 2,
+    off_screen    = 3,
+    behind_camera = 4,
+    facing_away   = 5,
+    sky           = 6,
+    beyond        = 7,
+};
+inline constexpr std::array<std::string_view, 8> truth_class_names = {
+    "not_traced", "visible", "hidden", "off_screen", "behind_camera", "facing_away", "sky", "beyond"};
+
+/// One entry per pixel, row-major. Undefined where not traced.
+struct SceneTruth {
+    glm::ivec2              size_px{0, 0};
+    std::vector<TruthClass> cls;
+    std::vector<glm::dvec3> point_vs;   // undefined for sky
+    std::vector<glm::dvec2> point_px;   // undefined for sky and for points that are not in front of the eye
+    std::vector<double>     distance_m; // along the reflected ray; +inf for sky
+    std::vector<glm::vec3>  radiance;   // linear
+};
+
+} // namespace ssrlab
