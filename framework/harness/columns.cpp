@@ -1,0 +1,131 @@
+#include "harness/columns.h"
+
+#include "core/error.h"
+#include "core/files.h"
+#include "core/trace_result.h"
+
+#include <algorithm>
+
+namespace ssrlab {
+namespace {
+
+const std::vector<Column> identity = {
+    {"run_id", "hash of everything that decides the run's outcome"},
+    {"experiment", "name of the specification"},
+    {"scene", ""},
+    {"view", "camera"},
+    {"width", "pixels"},
+    {"height", "pixels"},
+    {"technique", "folder of the technique"},
+};
+
+const std::vector<Column> times = {
+    {"trace_ms_median", "GPU time of the trace pass, median over the repeats"},
+    {"trace_ms_mad", "its median absolute deviation"},
+    {"trace_ms_ci_low", "lower end of the 95 % interval of the median, from order statistics; empty below six repeats"},
+    {"trace_ms_ci_high", "upper end"},
+    {"repeats", "timed frames"},
+    {"gbuffer_ms_median", "rendering the G-buffer, measured once per scene, view and size"},
+    {"rays_ms_median", "making the rays"},
+    {"pyramid_ms_median", "building the technique's derived inputs; 0 without any"},
+    {"shade_ms_median", "turning hits into colour"},
+    {"frame_ms_median", "sum of all passes with the G-buffer's median, per repeat; median over the repeats"},
+    {"frame_ms_mad", "its median absolute deviation"},
+    {"frame_ms_ci_low", "lower end of the 95 % interval of the median"},
+    {"frame_ms_ci_high", "upper end"},
+    {"fps", "1000 / frame_ms_median"},
+    {"inverse_fps_s", "frame_ms_median / 1000"},
+};
+
+const std::vector<Column> counts = {
+    {"rays", "traced rays: pixels that reflect"},
+    {"depth_fetches_mean", "reads of the depth image per traced ray"},
+    {"pyramid_fetches_mean", "reads of the depth pyramid per traced ray"},
+    {"fetches_mean", "both together"},
+    {"fetches_p50", "median over the rays"},
+    {"fetches_p99", "99th percentile over the rays"},
+    {"fetches_max", "of the worst ray"},
+    {"steps_mean", "loop iterations per traced ray"},
+    {"steps_p99", "99th percentile over the rays"},
+};
+
+const std::vector<Column> ending = {
+    {"picture", "the reflected picture, relative to this file"},
+    {"outcome", "ok; no_rays: nothing in the picture reflects; failed: see message"},
+    {"message", "what went wrong"},
+};
+
+void append(std::vector<Column>& columns, const std::vector<Column>& more)
+{
+    columns.insert(columns.end(), more.begin(), more.end());
+}
+
+std::vector<Column> settings()
+{
+    std::vector<Column> columns;
+    for (const Setting& setting : all_settings()) columns.push_back({setting.name, setting.doc});
+    return columns;
+}
+
+/// The union over the techniques: what two of them call alike shares a column.
+std::vector<Column> parameters(const Experiment& experiment, std::span<const Technique> techniques)
+{
+    std::vector<Column> columns;
+    for (const TechniqueSweep& sweep : experiment.techniques) {
+        for (const Parameter& parameter : find_technique(techniques, sweep.id).parameters) {
+            if (std::ranges::find(columns, parameter.name, &Column::name) == columns.end()) {
+                columns.push_back({parameter.name, parameter.doc});
+            }
+        }
+    }
+    return columns;
+}
+
+std::vector<Column> shares()
+{
+    std::vector<Column> columns;
+    for (size_t status = 1; status < trace_status_names.size(); ++status) {
+        columns.push_back({fmt::format("{}_share", trace_status_names[status]),
+                           fmt::format("rays that ended as {}, of the traced ones", trace_status_names[status])});
+    }
+    return columns;
+}
+
+void refuse_same_names(const Experiment& experiment, std::span<const Technique> techniques,
+                       std::span<const Column> built_in)
+{
+    for (const TechniqueSweep& sweep : experiment.techniques) {
+        const Technique& technique = find_technique(techniques, sweep.id);
+        for (const Parameter& parameter : technique.parameters) {
+            if (std::ranges::find(built_in, parameter.name, &Column::name) == built_in.end()) continue;
+            throw_spec_error("{}: parameter '{}' has the name of a column of results.csv; call it otherwise",
+                             short_path(technique.folder / "technique.toml"), parameter.name);
+        }
+    }
+}
+
+} // namespace
+
+std::vector<Column> result_columns(const Experiment& experiment, std::span<const Technique> techniques)
+{
+    std::vector<Column> front = identity;
+    append(front, settings());
+    std::vector<Column> back = times;
+    append(back, counts);
+    append(back, shares());
+    append(back, ending);
+    refuse_same_names(experiment, techniques, front);
+    refuse_same_names(experiment, techniques, back);
+    append(front, parameters(experiment, techniques));
+    append(front, back);
+    return front;
+}
+
+std::vector<std::string> names_of(std::span<const Column> columns)
+{
+    std::vector<std::string> names;
+    for (const Column& column : columns) names.push_back(column.name);
+    return names;
+}
+
+} // namespace ssrlab

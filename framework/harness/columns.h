@@ -1,0 +1,20 @@
+// Every column of results.csv, once: name with unit, and what it means.
+#pragma once
+
+#include "harness/experiment.h"
+
+#include <string>
+#include <vector>
+
+namespace ssrlab {
+
+struct Column {
+    std::string name, meaning;
+};
+
+/// Identity, settings, parameters, measures, outcome, message: known before the first row. Parameters are those of the
+/// experiment's techniques. Throws SpecError when one has the name of another column.
+std::vector<Column>      result_columns(const Experiment& experiment, std::span<const Technique> techniques);
+std::vector<std::string> names_of(std::span<const Column> columns);
+
+} // namespace ssrlab

@@ -1,0 +1,180 @@
+#include "harness/record.h"
+
+#include "core/error.h"
+#include "core/files.h"
+
+#include <nlohmann/json.hpp>
+
+#include <fcntl.h>
+#include <fmt/ranges.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+namespace ssrlab {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string to_json(const Environment& environment)
+{
+    nlohmann::ordered_json json;
+    for (const auto& [key, value] : environment.notes) json[key] = value;
+    json["identity"] = environment.identity;
+    // Text that is not UTF-8 (a file name, say) must not stop a sweep.
+    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+std::map<std::string, std::string> recorded_identity(const fs::path& file)
+{
+    try {
+        return nlohmann::json::parse(read_file(file)).at("identity").get<std::map<std::string, std::string>>();
+    } catch (const nlohmann::json::exception& error) {
+        throw_failure("{}: damaged: {}", short_path(file), error.what());
+    }
+}
+
+/// Names of entries that differ or that only one side has.
+std::vector<std::string> differences(const std::map<std::string, std::string>& a, const std::map<std::string, std::string>& b)
+{
+    std::vector<std::string> names;
+    for (const auto& [name, value] : a) {
+        if (!b.contains(name) || b.at(name) != value) names.push_back(name);
+    }
+    for (const auto& [name, value] : b) {
+        if (!a.contains(name)) names.push_back(name);
+    }
+    return names;
+}
+
+} // namespace
+
+ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> columns, const Environment& environment,
+                           bool resuming)
+    : folder_(std::move(folder)), csv_(folder_ / "results.csv"), columns_(std::move(columns))
+{
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    if (error) throw_failure("{}: cannot be created: {}", short_path(folder_), error.message());
+    try {
+        lock();
+        if (fs::exists(csv_) && !resuming) {
+            throw_failure("{}: already there; continue it with --resume, or choose another folder with -o",
+                          short_path(csv_));
+        }
+        remove_partial_files();
+        if (fs::exists(csv_)) resume(environment);
+        else start(environment);
+    } catch (...) {
+        if (csv_fd_ >= 0) ::close(csv_fd_);
+        if (lock_fd_ >= 0) ::close(lock_fd_);
+        throw;
+    }
+}
+
+ResultFolder::~ResultFolder()
+{
+    ::close(csv_fd_);
+    ::close(lock_fd_); // releases the lock; so does the end of the process, however it ends
+}
+
+void ResultFolder::lock()
+{
+    const fs::path file = folder_ / ".lock";
+    lock_fd_            = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (lock_fd_ < 0) throw_failure("{}: cannot be written: {}", short_path(file), std::strerror(errno));
+    if (::flock(lock_fd_, LOCK_EX | LOCK_NB) != 0) {
+        if (errno != EWOULDBLOCK) throw_failure("{}: cannot be locked: {}", short_path(file), std::strerror(errno));
+        throw_failure("{}: another ssrlab is writing here (process {})", short_path(folder_), read_file(file));
+    }
+    const std::string pid = std::to_string(::getpid());
+    if (::ftruncate(lock_fd_, 0) != 0 || !write_fully(lock_fd_, pid)) {
+        throw_failure("{}: cannot be written: {}", short_path(file), std::strerror(errno));
+    }
+}
+
+void ResultFolder::start(const Environment& environment)
+{
+    write_file_atomically(folder_ / "environment.json", to_json(environment));
+    // Last, because a results.csv promises that everything else is there.
+    write_file_atomically(csv_, csv_line(columns_));
+    csv_fd_ = ::open(csv_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+    if (csv_fd_ < 0) throw_failure("{}: cannot be written: {}", short_path(csv_), std::strerror(errno));
+}
+
+void ResultFolder::resume(const Environment& environment)
+{
+    const auto changed = differences(recorded_identity(folder_ / "environment.json"), environment.identity);
+    if (!changed.empty()) {
+        throw_spec_error("{}: cannot be resumed, since it was started these changed: {}; choose another folder with -o",
+                         short_path(folder_), fmt::join(changed, ", "));
+    }
+    const std::string text = read_file(csv_);
+    std::string_view  rest = text;
+    if (take_csv_record(rest) != columns_) {
+        throw_spec_error("{}: cannot be resumed, its columns are not those of this version; choose another folder with -o",
+                         short_path(csv_));
+    }
+    csv_fd_ = ::open(csv_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+    if (csv_fd_ < 0) throw_failure("{}: cannot be written: {}", short_path(csv_), std::strerror(errno));
+    read_finished(rest);
+}
+
+/// A kill can leave part of the last row; everything before it was synced whole.
+void ResultFolder::read_finished(std::string_view rest)
+{
+    const auto size  = fs::file_size(csv_);
+    auto       whole = size - rest.size();
+    while (const auto record = take_csv_record(rest)) {
+        if (record->size() != columns_.size() || !finished_.insert(record->front()).second) {
+            throw_failure("{}: damaged: the row of run '{}' {}", short_path(csv_), record->front(),
+                          record->size() != columns_.size() ? "has the wrong number of fields" : "is there twice");
+        }
+        whole = size - rest.size();
+    }
+    if (whole < size && ::ftruncate(csv_fd_, static_cast<off_t>(whole)) != 0) {
+        throw_failure("{}: its torn last row cannot be cut off: {}", short_path(csv_), std::strerror(errno));
+    }
+}
+
+void ResultFolder::append(const Row& row)
+{
+    CsvRecord record;
+    for (const std::string& column : columns_) record.push_back(row.contains(column) ? row.at(column) : "");
+    const auto known = [&](const auto& entry) { return std::ranges::find(columns_, entry.first) != columns_.end(); };
+    const auto stray = std::ranges::find_if_not(row, known);
+    if (stray != row.end()) throw_failure("{}: has no column '{}'", short_path(csv_), stray->first);
+
+    struct stat before = {};
+    if (::fstat(csv_fd_, &before) != 0) throw_failure("{}: {}", short_path(csv_), std::strerror(errno));
+    if (write_fully(csv_fd_, csv_line(record)) && ::fdatasync(csv_fd_) == 0) {
+        finished_.insert(record.front());
+        return;
+    }
+    const int  reason = errno;
+    const bool cut    = ::ftruncate(csv_fd_, before.st_size) == 0;
+    throw_failure("{}: writing the row of run {} failed: {}{}", short_path(csv_), record.front(), std::strerror(reason),
+                  cut ? "; the rows before it are intact, continue with --resume" : "");
+}
+
+/// What a killed writer left beside its files; nothing that only looks alike.
+void ResultFolder::remove_partial_files() const
+{
+    std::vector<fs::path> partial;
+    for (const fs::path& folder : {folder_, folder_ / "pictures"}) {
+        if (!fs::is_directory(folder)) continue;
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+            const std::string name    = entry.path().filename().string();
+            const bool        text    = name.starts_with("environment.json.tmp") || name.starts_with("results.csv.tmp");
+            const bool        picture = name.starts_with(".") && name.find(".tmp.") != std::string::npos;
+            if (text || (picture && folder != folder_)) partial.push_back(entry.path());
+        }
+    }
+    for (const fs::path& path : partial) fs::remove(path);
+}
+
+} // namespace ssrlab

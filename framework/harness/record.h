@@ -1,0 +1,56 @@
+// results.csv: one row per run, each written whole or not at all.
+#pragma once
+
+#include "harness/csv.h"
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace ssrlab {
+
+/// Text by column name; a column without an entry stays empty.
+using Row = std::map<std::string, std::string>;
+
+/// What results came from, as written to environment.json.
+struct Environment {
+    std::map<std::string, std::string> identity; // must be the same when a sweep is resumed
+    std::map<std::string, std::string> notes;
+};
+
+/// A results folder that is open for writing: locked against other writers until the object is gone.
+class ResultFolder {
+public:
+    /// Fresh: creates the folder, environment.json and the header; refuses (Failure) a folder that has results.
+    /// Resuming: repairs a torn tail; refuses (SpecError) when columns or identity differ, naming what does.
+    ResultFolder(std::filesystem::path folder, std::vector<std::string> columns, const Environment& environment,
+                 bool resume);
+    ~ResultFolder();
+    ResultFolder(const ResultFolder&)            = delete;
+    ResultFolder& operator=(const ResultFolder&) = delete;
+
+    /// The runs that have a row.
+    const std::set<std::string>& finished() const { return finished_; }
+
+    /// One checked write of the whole row, then a sync. On failure the row's torn bytes are cut off again and a Failure
+    /// names the file: what is on disk is always a correct prefix.
+    void append(const Row& row);
+
+    const std::filesystem::path& path() const { return folder_; }
+
+private:
+    void lock();
+    void start(const Environment& environment);
+    void resume(const Environment& environment);
+    void read_finished(std::string_view text);
+    void remove_partial_files() const;
+
+    std::filesystem::path    folder_, csv_;
+    std::vector<std::string> columns_;
+    std::set<std::string>    finished_;
+    int                      lock_fd_ = -1, csv_fd_ = -1;
+};
+
+} // namespace ssrlab

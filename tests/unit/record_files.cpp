@@ -1,0 +1,232 @@
+// results.csv under attack: odd text, full disks, kills at any moment, two writers.
+#include "core/error.h"
+#include "core/files.h"
+#include "harness/record.h"
+
+#include <gmock/gmock.h>
+
+#include <csignal>
+#include <fcntl.h>
+#include <cstdlib>
+#include <random>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace ssrlab {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+const std::vector<std::string> columns = {"run_id", "value", "message"};
+const Environment              here    = {{{"specification", "a"}, {"shaders", "b"}}, {{"commit", "\xff not UTF-8"}}};
+
+struct RecordFiles : testing::Test {
+    fs::path folder;
+    RecordFiles()
+    {
+        std::string pattern = (fs::temp_directory_path() / "record.XXXXXX").string();
+        folder              = fs::path(::mkdtemp(pattern.data())) / "results, \"ü\" 1";
+    }
+    ~RecordFiles() override { fs::remove_all(folder.parent_path()); }
+
+    std::vector<CsvRecord> rows() const
+    {
+        const std::string      text = read_file(folder / "results.csv");
+        std::string_view       rest = text;
+        std::vector<CsvRecord> records;
+        while (auto record = take_csv_record(rest)) records.push_back(*record);
+        EXPECT_TRUE(rest.empty()) << "torn tail";
+        EXPECT_EQ(records.at(0), columns);
+        records.erase(records.begin());
+        return records;
+    }
+};
+
+template <typename Error, typename Call>
+std::string message_of(const Call& call)
+{
+    try {
+        call();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "(no such error)";
+}
+
+Row row_of(int i) { return {{"run_id", "r" + std::to_string(i)}, {"value", std::string(200, 'x')}, {"message", "a\n\"b\",ü" + std::to_string(i)}}; }
+
+TEST_F(RecordFiles, OddTextComesBackAsItWas)
+{
+    const std::vector<std::string> texts = {"", "plain", "a,b", "\"", "\"\"", "line\nbreak", "crlf\r\n", "Überschrift – 反射", " blank ", ",", "'"};
+    {
+        ResultFolder results(folder, columns, here, false);
+        for (size_t i = 0; i < texts.size(); ++i) results.append({{"run_id", "r" + std::to_string(i)}, {"message", texts[i]}});
+    }
+    const auto records = rows();
+    ASSERT_EQ(records.size(), texts.size());
+    for (size_t i = 0; i < texts.size(); ++i) EXPECT_EQ(records[i], (CsvRecord{"r" + std::to_string(i), "", texts[i]}));
+    EXPECT_THAT(csv_line({"a", "b,c"}), testing::StrEq("a,\"b,c\"\r\n"));
+}
+
+TEST_F(RecordFiles, NothingIsOverwritten)
+{
+    { ResultFolder(folder, columns, here, false).append(row_of(1)); }
+    const std::string before = read_file(folder / "results.csv");
+    EXPECT_THAT(message_of<Failure>([&] { ResultFolder(folder, columns, here, false); }), HasSubstr("results.csv: already there; continue it with --resume"));
+    EXPECT_EQ(read_file(folder / "results.csv"), before);
+}
+
+TEST_F(RecordFiles, ResumeRefusesWhatChangedAndNamesIt)
+{
+    { ResultFolder(folder, columns, here, false).append(row_of(1)); }
+    Environment other        = here;
+    other.identity["shaders"] = "c";
+    other.identity["scene s"] = "d";
+    EXPECT_THAT(message_of<SpecError>([&] { ResultFolder(folder, columns, other, true); }), HasSubstr("these changed: shaders, scene s"));
+    EXPECT_THAT(message_of<SpecError>([&] { ResultFolder(folder, {"run_id", "else"}, here, true); }), HasSubstr("its columns are not those"));
+    EXPECT_TRUE(ResultFolder(folder, columns, here, true).finished().contains("r1"));
+}
+
+TEST_F(RecordFiles, ASecondWriterIsRefusedWhileTheFirstLives)
+{
+    auto first = std::make_unique<ResultFolder>(folder, columns, here, false);
+    EXPECT_THAT(message_of<Failure>([&] { ResultFolder(folder, columns, here, true); }), HasSubstr("process " + std::to_string(::getpid())));
+    first.reset();
+    EXPECT_NO_THROW(ResultFolder(folder, columns, here, true));
+}
+
+TEST_F(RecordFiles, ATornTailIsCutAtEveryByte)
+{
+    { ResultFolder results(folder, columns, here, false); results.append(row_of(1)); results.append(row_of(2)); }
+    const std::string whole = read_file(folder / "results.csv");
+    const size_t      last  = whole.find("r2,");
+    for (size_t length = last; length < whole.size(); ++length) {
+        write_file_atomically(folder / "results.csv", whole.substr(0, length));
+        ResultFolder results(folder, columns, here, true);
+        ASSERT_EQ(results.finished().size(), 1U);
+        results.append(row_of(2));
+        ASSERT_EQ(read_file(folder / "results.csv"), whole) << "torn at " << length;
+    }
+}
+
+TEST_F(RecordFiles, DamageIsReportedNotRepaired)
+{
+    { ResultFolder results(folder, columns, here, false); results.append(row_of(1)); results.append(row_of(2)); }
+    const std::string whole = read_file(folder / "results.csv");
+    write_file_atomically(folder / "results.csv", whole + "r1,x,y\r\n");
+    EXPECT_THAT(message_of<Failure>([&] { ResultFolder(folder, columns, here, true); }), HasSubstr("'r1' is there twice"));
+    write_file_atomically(folder / "results.csv", whole + "r3,x\r\n");
+    EXPECT_THAT(message_of<Failure>([&] { ResultFolder(folder, columns, here, true); }), HasSubstr("wrong number of fields"));
+    EXPECT_EQ(read_file(folder / "results.csv"), whole + "r3,x\r\n");
+}
+
+TEST_F(RecordFiles, UnknownColumnsAreRefused)
+{
+    ResultFolder results(folder, columns, here, false);
+    EXPECT_THAT(message_of<Failure>([&] { results.append({{"run_id", "r"}, {"valeu", "1"}}); }), HasSubstr("has no column 'valeu'"));
+}
+
+/// Runs `child` in a process of its own; returns its wait status.
+template <typename Child>
+int in_child(const Child& child, useconds_t kill_after_us = 0)
+{
+    const pid_t pid = ::fork();
+    if (pid == 0) {
+        try { child(); } catch (...) { ::_exit(99); }
+        ::_exit(0);
+    }
+    if (kill_after_us > 0) {
+        ::usleep(kill_after_us);
+        ::kill(pid, SIGKILL);
+    }
+    int status = 0;
+    ::waitpid(pid, &status, 0);
+    return status;
+}
+
+TEST_F(RecordFiles, KillsLoseDoubleOrTearNoRow)
+{
+    constexpr int   row_count = 120;
+    std::mt19937    random(3);
+    int             kills = 0, sweeps = 0;
+    while (kills < 200) {
+        fs::remove_all(folder);
+        for (bool complete = false; !complete;) {
+            const auto sweep = [&] {
+                ResultFolder results(folder, columns, here, true);
+                for (int i = 0; i < row_count; ++i) {
+                    if (!results.finished().contains("r" + std::to_string(i))) results.append(row_of(i));
+                }
+            };
+            const int status = in_child(sweep, useconds_t(500 + random() % 20000));
+            ASSERT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 0);
+            kills += WIFSIGNALED(status) ? 1 : 0;
+            complete = !WIFSIGNALED(status);
+        }
+        ++sweeps;
+        const auto records = rows();
+        ASSERT_EQ(records.size(), static_cast<size_t>(row_count));
+        for (int i = 0; i < row_count; ++i) {
+            const Row expected = row_of(i);
+            ASSERT_EQ(records[static_cast<size_t>(i)], (CsvRecord{expected.at("run_id"), expected.at("value"), expected.at("message")}));
+        }
+        for (const auto& entry : fs::directory_iterator(folder)) EXPECT_EQ(entry.path().string().find(".tmp"), std::string::npos);
+    }
+    RecordProperty("kills", kills);
+    RecordProperty("sweeps", sweeps);
+}
+
+TEST_F(RecordFiles, AFullDiskLeavesACorrectPrefixAndCanBeContinued)
+{
+    { ResultFolder(folder, columns, here, false).append(row_of(0)); }
+    const auto one_row = fs::file_size(folder / "results.csv");
+    for (rlim_t limit = one_row; limit < one_row + 700; limit += 13) {
+        const int status = in_child([&] {
+            ::signal(SIGXFSZ, SIG_IGN);
+            ResultFolder results(folder, columns, here, true);
+            const rlimit small = {limit, limit};
+            ::setrlimit(RLIMIT_FSIZE, &small);
+            const std::string message = message_of<Failure>([&] { for (int i = 1; i < 9; ++i) if (!results.finished().contains("r" + std::to_string(i))) results.append(row_of(i)); });
+            if (message.find("results.csv: writing the row of run r") == std::string::npos) ::_exit(1);
+            if (message.find("the rows before it are intact") == std::string::npos) ::_exit(2);
+        });
+        ASSERT_EQ(status, 0);
+        const auto records = rows();
+        for (size_t i = 0; i < records.size(); ++i) EXPECT_EQ(records[i][0], "r" + std::to_string(i));
+    }
+    ResultFolder results(folder, columns, here, true);
+    EXPECT_EQ(results.finished().size(), 4U);
+}
+
+TEST_F(RecordFiles, UnwritableFoldersAreNamed)
+{
+    EXPECT_THAT(message_of<Failure>([&] { ResultFolder("/proc/nothing/here", columns, here, false); }), HasSubstr("/proc/nothing/here: cannot be created"));
+    fs::create_directories(folder.parent_path());
+    write_file_atomically(folder, "a file");
+    EXPECT_THROW(ResultFolder(folder, columns, here, false), Failure);
+    EXPECT_EQ(read_file(folder), "a file");
+}
+
+TEST_F(RecordFiles, AtomicFilesAreWholeOrAbsent)
+{
+    EXPECT_THAT(message_of<Failure>([&] { write_file_atomically("/dev/full/x", "y"); }), HasSubstr("/dev/full/x"));
+    const int fd = ::open("/dev/full", O_WRONLY);
+    EXPECT_FALSE(write_fully(fd, "y"));
+    ::close(fd);
+    fs::create_directories(folder);
+    write_file_atomically(folder / "a.txt", "old");
+    const int status = in_child([&] {
+        ::signal(SIGXFSZ, SIG_IGN);
+        const rlimit small = {10, 10};
+        ::setrlimit(RLIMIT_FSIZE, &small);
+        if (message_of<Failure>([&] { write_file_atomically(folder / "a.txt", std::string(100, 'n')); }).find("a.txt: writing failed") == std::string::npos) ::_exit(1);
+    });
+    EXPECT_EQ(status, 0);
+    EXPECT_EQ(read_file(folder / "a.txt"), "old");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
+}
+
+} // namespace
+} // namespace ssrlab
