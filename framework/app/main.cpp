@@ -1,1 +1,69 @@
-int main() { return 0; }
+// The command line: names and help here, the work in commands.cpp and harness/.
+#include "app/commands.h"
+#include "core/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <functional>
+
+namespace {
+
+void add_picture_options(CLI::App& command, ssrlab::PictureOptions& options, bool traces)
+{
+    command.add_option("SCENE", options.scene, "A .glb or .gltf file, a scene recipe, or builtin:NAME (see ssrlab list)")->required();
+    if (traces) {
+        command.add_option("-t,--technique", options.technique, "Technique (see ssrlab list)")->required();
+        command.add_option("-p,--parameter", options.parameters, "name=value: a parameter of the technique (see ssrlab show), or a setting such as thickness_m");
+    }
+    command.add_option("--size", options.size, "WIDTHxHEIGHT in pixels; default: the view's own");
+    command.add_option("--view", options.view, "Name of a view of the scene")->capture_default_str();
+    command.add_option("-o,--output", options.output, "File to write")->required();
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    using namespace ssrlab;
+    CLI::App       app("ssrlab: what does each bit of accuracy of a screen-space reflection tracer cost in time, on your scene?");
+    CommonOptions  common;
+    PictureOptions picture;
+    std::string    technique;
+    app.require_subcommand(1);
+    app.fallthrough();
+    app.set_version_flag("--version", SSRLAB_VERSION);
+    app.add_option("--device", common.device, "Vulkan device by index or part of its name; default: a discrete GPU if present, else the first");
+    app.add_option("--techniques", common.technique_dirs, "Further technique folders, or folders of them (also $SSRLAB_TECHNIQUES)");
+    app.add_flag("--validation", common.validation, "Load the Khronos validation layer; any message fails the command");
+
+    std::function<int()> command;
+    app.add_subcommand("list", "Techniques, scenes and devices")->callback([&] { command = [&] { return list_everything(common); }; });
+    auto* show = app.add_subcommand("show", "A technique's parameters and sources");
+    show->add_option("TECHNIQUE", technique)->required();
+    show->callback([&] { command = [&] { return show_technique(common, technique); }; });
+    auto* render = app.add_subcommand("render", "A picture with reflections (.png or .exr)");
+    add_picture_options(*render, picture, true);
+    render->callback([&] { command = [&] { return render_picture(common, picture); }; });
+    auto* trace = app.add_subcommand("trace", "What each ray found and why it stopped (.exr)");
+    add_picture_options(*trace, picture, true);
+    trace->callback([&] { command = [&] { return trace_hits(common, picture); }; });
+    auto* gbuffer = app.add_subcommand("gbuffer", "What the camera sees (.exr)");
+    add_picture_options(*gbuffer, picture, false);
+    gbuffer->callback([&] { command = [&] { return write_gbuffer(common, picture); }; });
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    try {
+        return command();
+    } catch (const SpecError& error) {
+        std::fprintf(stderr, "ssrlab: %s\n", error.what());
+        return 2;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "ssrlab: %s\n", error.what());
+        return 1;
+    }
+}

@@ -68,7 +68,7 @@ template <typename T> std::vector<T> download_as(Gpu& gpu, const GpuImage& sourc
 {
     const std::vector<char> bytes = download(gpu, source, sizeof(T));
     std::vector<T>          values(bytes.size() / sizeof(T));
-    std::memcpy(values.data(), bytes.data(), bytes.size());
+    std::memcpy(static_cast<void*>(values.data()), bytes.data(), bytes.size());
     return values;
 }
 

@@ -1,0 +1,212 @@
+#include "app/commands.h"
+
+#include "compare/image_io.h"
+#include "core/error.h"
+#include "harness/experiment.h"
+#include "scene/scene.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+
+namespace ssrlab {
+namespace {
+
+glm::ivec2 parse_size(const std::string& text)
+{
+    glm::ivec2        size{0, 0};
+    const char*       end   = text.data() + text.size();
+    const auto        width = std::from_chars(text.data(), end, size.x);
+    const auto        height = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x'
+                                   ? std::from_chars(width.ptr + 1, end, size.y)
+                                   : std::from_chars_result{end, std::errc::invalid_argument};
+    if (height.ec != std::errc() || height.ptr != end || size.x < 1 || size.y < 1)
+        throw_spec_error("--size: expected WIDTHxHEIGHT, both at least 1, got '{}'", text);
+    return size;
+}
+
+/// The scene's picture of one view on the device.
+struct Stage {
+    Scene      scene;
+    View       view;
+    Gpu        gpu;
+    GBufferPtr gbuffer;
+};
+
+Stage prepare_stage(const CommonOptions& common, const PictureOptions& options)
+{
+    Stage         stage;
+    stage.scene          = load_scene(options.scene);
+    const Camera& camera = find_camera(stage.scene, options.view);
+    stage.view           = camera_to_view(camera, options.size.empty() ? camera.size_px : parse_size(options.size));
+    for (const std::string& warning : stage.scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    stage.gpu     = open_gpu({.device = common.device, .validation = common.validation});
+    stage.gbuffer = render_gbuffer(stage.gpu, upload_scene(stage.gpu, stage.scene), stage.view);
+    return stage;
+}
+
+struct Choice {
+    ParameterValues values;
+    FrameSettings   settings;
+};
+
+/// name=value pairs: technique parameters first, then the experiment's settings.
+Choice parse_choice(const Technique& technique, const std::vector<std::string>& pairs)
+{
+    Choice choice{default_values(technique), {}};
+    for (const std::string& pair : pairs) {
+        const auto equals = pair.find('=');
+        if (equals == std::string::npos) throw_spec_error("-p {}: expected name=value", pair);
+        const std::string name = pair.substr(0, equals), text = pair.substr(equals + 1), place = "-p " + pair;
+        const auto        setting = std::ranges::find(all_settings(), name, &Setting::name);
+        if (setting == all_settings().end()) {
+            choice.values[name] = parse_parameter(find_parameter(technique, name, place), text, place);
+            continue;
+        }
+        const Parameter declared{.name = name, .type = setting->type, .default_value = 0, .min = setting->min, .max = setting->max, .choices = {}, .doc = {}};
+        setting->set(choice.settings, parse_parameter(declared, text, place));
+    }
+    return choice;
+}
+
+PreparedFramePtr prepare(const CommonOptions& common, const PictureOptions& options, Stage& stage)
+{
+    const auto       techniques = list_techniques(common.technique_dirs);
+    const Technique& technique  = find_technique(techniques, options.technique);
+    const Choice     choice     = parse_choice(technique, options.parameters);
+    return prepare_frame(stage.gpu, make_frame_buffers(stage.gpu, stage.gbuffer), technique, choice.values, choice.settings);
+}
+
+/// Fails before the work starts rather than after it.
+void check_choice(const CommonOptions& common, const PictureOptions& options)
+{
+    const auto techniques = list_techniques(common.technique_dirs);
+    parse_choice(find_technique(techniques, options.technique), options.parameters);
+    if (!options.size.empty()) parse_size(options.size);
+}
+
+std::string matrix_text(const glm::dmat4& matrix)
+{
+    std::string text;
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) text += fmt::format("{}{:.17g}", text.empty() ? "" : " ", matrix[column][row]);
+    return text;
+}
+
+std::string status_legend()
+{
+    std::string text;
+    for (size_t i = 0; i < trace_status_names.size(); ++i) text += fmt::format("{}{}={}", text.empty() ? "" : " ", i, trace_status_names[i]);
+    return text;
+}
+
+int report_messages(const Stage& stage)
+{
+    const auto messages = validation_messages(stage.gpu);
+    for (const std::string& message : messages) std::fprintf(stderr, "validation: %s\n", message.c_str());
+    return messages.empty() ? 0 : 1;
+}
+
+} // namespace
+
+int list_everything(const CommonOptions& common)
+{
+    std::puts("Techniques");
+    for (const Technique& technique : list_techniques(common.technique_dirs))
+        std::puts(fmt::format("  {:<16} {}{}", technique.id, technique.summary, technique.exact ? " (exact)" : "").c_str());
+    std::puts("\nScenes (besides any .glb, .gltf or recipe .toml by its path)");
+    for (const SceneListing& scene : list_scenes()) std::puts(fmt::format("  {:<26} {}", scene.name, scene.summary).c_str());
+    std::puts("\nDevices");
+    try {
+        for (const GpuInfo& info : list_gpus())
+            std::puts(fmt::format("  {} {} ({}, Vulkan {}, {})", info.index, info.name, info.type, info.api_version, info.driver).c_str());
+    } catch (const Failure& failure) {
+        std::puts(fmt::format("  none: {}", failure.what()).c_str());
+    }
+    return 0;
+}
+
+int show_technique(const CommonOptions& common, const std::string& id)
+{
+    const auto       techniques = list_techniques(common.technique_dirs);
+    const Technique& technique  = find_technique(techniques, id);
+    std::puts(fmt::format("{} ({})\n{}\n", technique.name, technique.id, technique.summary).c_str());
+    std::puts(technique.exact ? "exact: gives the pixel walk's answer on every ray" : "not exact");
+    std::puts(fmt::format("folder: {}", technique.folder.string()).c_str());
+    if (!technique.inputs.empty()) std::puts(fmt::format("inputs: {}", fmt::join(technique.inputs, ", ")).c_str());
+    for (const std::string& citation : technique.cite) std::puts(fmt::format("source: {}", citation).c_str());
+    std::puts("\nParameters");
+    for (const Parameter& parameter : technique.parameters) {
+        const std::string range = parameter.type == ParameterType::choice    ? fmt::format("{}", fmt::join(parameter.choices, " | "))
+                                  : parameter.type == ParameterType::boolean ? "true | false"
+                                                                             : fmt::format("{} … {}", parameter.min, parameter.max);
+        std::puts(fmt::format("  {:<14} {} (default {})\n                 {}", parameter.name, range,
+                              format_parameter(parameter, parameter.default_value), parameter.doc)
+                      .c_str());
+    }
+    return 0;
+}
+
+int render_picture(const CommonOptions& common, const PictureOptions& options)
+{
+    check_choice(common, options);
+    Stage      stage = prepare_stage(common, options);
+    const auto frame = prepare(common, options, stage);
+    run_frame(stage.gpu, *frame);
+    const PassTimes times = run_frame(stage.gpu, *frame);
+    write_image(options.output, read_shaded(stage.gpu, *frame));
+    std::puts(fmt::format("{}: {}x{}, trace {:.2f} ms on {}", options.output, stage.view.size_px.x, stage.view.size_px.y, times.trace_ms, stage.gpu.info.name)
+                  .c_str());
+    return report_messages(stage);
+}
+
+int trace_hits(const CommonOptions& common, const PictureOptions& options)
+{
+    check_choice(common, options);
+    Stage             stage  = prepare_stage(common, options);
+    const auto        frame  = prepare(common, options, stage);
+    const TraceResult result = count_frame(stage.gpu, *frame);
+    Image image{result.size_px, {"hit.x", "hit.y", "hit.t", "hit.z", "status", "steps", "depth_fetches", "pyramid_fetches"}, {}, {}};
+    image.metadata["ssrlab:status_names"] = status_legend();
+    image.metadata["ssrlab:technique"]    = options.technique;
+    image.metadata["ssrlab:parameters"]   = fmt::format("{}", fmt::join(options.parameters, " "));
+    for (size_t i = 0; i < result.status.size(); ++i) {
+        const bool hit = result.status[i] == TraceStatus::hit;
+        // A miss has no hit point: zeros, and the status says so.
+        const glm::dvec3 point = hit ? result.hit_px_depth[i] : glm::dvec3(0);
+        for (const double value : {point.x, point.y, hit ? result.hit_t[i] : 0.0, point.z, static_cast<double>(result.status[i]),
+                                   static_cast<double>(result.steps[i]), static_cast<double>(result.depth_fetches[i]),
+                                   static_cast<double>(result.pyramid_fetches[i])})
+            image.values.push_back(static_cast<float>(value));
+    }
+    write_image(options.output, image);
+    std::puts(options.output.c_str());
+    return report_messages(stage);
+}
+
+int write_gbuffer(const CommonOptions& common, const PictureOptions& options)
+{
+    if (!options.size.empty()) parse_size(options.size);
+    Stage              stage  = prepare_stage(common, options);
+    const GBufferImage source = read_gbuffer(stage.gpu, *stage.gbuffer);
+    Image              image{stage.view.size_px,
+                {"depth", "normal_vs.x", "normal_vs.y", "normal_vs.z", "roughness", "metallic", "base_colour.R", "base_colour.G", "base_colour.B", "R", "G", "B", "object_id"},
+                {},
+                {}};
+    image.metadata["ssrlab:world_to_view"] = matrix_text(stage.view.world_to_view);
+    image.metadata["ssrlab:view_to_clip"]  = matrix_text(view_to_clip(stage.view));
+    image.metadata["ssrlab:depth"]         = stage.view.projection == Projection::perspective ? "near_m / distance_m" : "(far_m - distance_m) / (far_m - near_m)";
+    image.metadata["ssrlab:near_m"]        = fmt::format("{:.17g}", stage.view.near_m);
+    image.metadata["ssrlab:far_m"]         = stage.view.projection == Projection::perspective ? "inf" : fmt::format("{:.17g}", stage.view.far_m);
+    for (size_t i = 0; i < source.depth.size(); ++i) {
+        const glm::vec3 lit = source.radiance[i] + source.highlight[i];
+        for (const float value : {source.depth[i], source.normal_vs[i].x, source.normal_vs[i].y, source.normal_vs[i].z, source.roughness[i], source.metallic[i],
+                                  source.base_colour[i].x, source.base_colour[i].y, source.base_colour[i].z, lit.x, lit.y, lit.z, static_cast<float>(source.object_id[i])})
+            image.values.push_back(value);
+    }
+    write_image(options.output, image);
+    std::puts(options.output.c_str());
+    return report_messages(stage);
+}
+
+} // namespace ssrlab

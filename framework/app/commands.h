@@ -1,0 +1,29 @@
+// What each subcommand of ssrlab does. Each returns the exit code and throws SpecError (2) or Failure (1).
+#pragma once
+
+#include "render/frame.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ssrlab {
+
+struct CommonOptions {
+    std::string                        device;
+    bool                               validation = false;
+    std::vector<std::filesystem::path> technique_dirs;
+};
+
+struct PictureOptions {
+    std::string              scene, technique, view = "default", size, output;
+    std::vector<std::string> parameters; // name=value: the technique's parameters, or settings of [trace] and [shade]
+};
+
+int list_everything(const CommonOptions& common);
+int show_technique(const CommonOptions& common, const std::string& id);
+int render_picture(const CommonOptions& common, const PictureOptions& options);
+int trace_hits(const CommonOptions& common, const PictureOptions& options);
+int write_gbuffer(const CommonOptions& common, const PictureOptions& options);
+
+} // namespace ssrlab

@@ -1,0 +1,244 @@
+#include "render/frame_passes.h"
+
+#include "core/error.h"
+#include "shared.h"
+
+#include <glm/gtc/packing.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ssrlab {
+namespace {
+
+/// shaders/slab.glsl says what the three numbers are.
+struct Slab {
+    double slope = 0, scale = 1, shift = 0;
+};
+
+Slab slab_of(const View& view, const TraceSettings& trace)
+{
+    const double thickness = trace.thickness_m;
+    if (std::isinf(thickness)) return {0, 0, 0};
+    if (view.projection == Projection::perspective)
+        return trace.thickness_relative ? Slab{0, 1 / (1 + thickness), 0} : Slab{thickness / view.near_m, 1, 0};
+    const double range = view.far_m - view.near_m;
+    return trace.thickness_relative ? Slab{0, 1 + thickness, thickness * view.far_m / range} : Slab{0, 1, thickness / range};
+}
+
+template <typename Real> void add_settings(Constants& constants, const View& view, const FrameSettings& settings)
+{
+    const Slab slab = slab_of(view, settings.trace);
+    constants.add(CONSTANT_SLAB_SLOPE, static_cast<Real>(slab.slope));
+    constants.add(CONSTANT_SLAB_SCALE, static_cast<Real>(slab.scale));
+    constants.add(CONSTANT_SLAB_SHIFT, static_cast<Real>(slab.shift));
+    constants.add(CONSTANT_MAX_DISTANCE_M, static_cast<Real>(settings.trace.max_distance_m));
+    constants.add(CONSTANT_RAY_OFFSET_M, static_cast<Real>(settings.trace.ray_offset_m));
+    constants.add(CONSTANT_FACING, static_cast<int32_t>(settings.trace.facing));
+    constants.add(CONSTANT_ORTHOGRAPHIC, static_cast<int32_t>(view.projection == Projection::orthographic));
+}
+
+Constants settings_constants(const PreparedFrame& frame, Precision precision)
+{
+    Constants   constants;
+    const View& view = frame.buffers->gbuffer->view;
+    if (precision == Precision::float64)
+        add_settings<double>(constants, view, frame.settings);
+    else
+        add_settings<float>(constants, view, frame.settings);
+    return constants;
+}
+
+std::map<std::string, std::string> precision_defines(Precision precision)
+{
+    if (precision == Precision::float64) return {{"REAL_IS_DOUBLE", "1"}};
+    return {};
+}
+
+/// One constant per parameter, under its own name, and names for the choices: PARAMETER_CHOICE.
+std::string parameter_declarations(const Technique& technique)
+{
+    std::string text;
+    uint32_t    id = CONSTANT_PARAMETERS;
+    for (const Parameter& parameter : technique.parameters) {
+        const bool real = parameter.type == ParameterType::real;
+        text += fmt::format("layout(constant_id = {}) const {} {} = {};\n", id++, real ? "float" : "int", parameter.name, real ? "0.0" : "0");
+        for (size_t i = 0; i < parameter.choices.size(); ++i)
+            text += fmt::format("const int {}_{} = {};\n", parameter.name, parameter.choices[i], i);
+    }
+    return text;
+}
+
+void add_parameters(Constants& constants, const Technique& technique, const ParameterValues& values)
+{
+    uint32_t id = CONSTANT_PARAMETERS;
+    for (const Parameter& parameter : technique.parameters) {
+        const double value = values.at(parameter.name);
+        if (parameter.type == ParameterType::real)
+            constants.add(id++, static_cast<float>(value));
+        else
+            constants.add(id++, static_cast<int32_t>(value));
+    }
+}
+
+Bindings ray_bindings(const RayBuffers& rays)
+{
+    return {{"RayCount", rays.count},     {"RayOrigins", rays.origins}, {"RayDeltas", rays.deltas},
+            {"RayLengths", rays.lengths}, {"RayPixels", rays.pixels},   {"HitPixels", rays.hit_pixels},
+            {"HitTs", rays.hit_ts},       {"Launch", rays.launch}};
+}
+
+int level_count(glm::ivec2 size_px)
+{
+    int levels = 0;
+    while ((1 << levels) < std::max(size_px.x, size_px.y)) ++levels;
+    return levels;
+}
+
+glm::ivec2 level_size(glm::ivec2 size_px, int level) { return ((size_px - 1) >> level) + 1; }
+
+/// An input reads the technique's parameters of these names, if it has them.
+double parameter_or(const PreparedFrame& frame, const std::string& name, double otherwise)
+{
+    const auto value = frame.values.find(name);
+    return value != frame.values.end() ? value->second : otherwise;
+}
+
+} // namespace
+
+PyramidImages make_pyramid_images(Gpu& gpu, glm::ivec2 size_px)
+{
+    PyramidImages images;
+    images.levels           = level_count(size_px);
+    // A multiple of 2^levels in width; in height level 1 is the tallest.
+    const int        width  = 1 << images.levels;
+    const int        step   = std::max(width, 1);
+    const int        padded = (size_px.x + step - 1) / step * step;
+    images.atlas            = make_image(gpu, {.format  = vk::Format::eR32G32Sfloat,
+                                               .size_px = {std::max(padded, 2), std::max(level_size(size_px, 1).y, 1)},
+                                               .usage   = vk::ImageUsageFlagBits::eStorage});
+    return images;
+}
+
+PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame)
+{
+    const FrameBuffers& buffers   = *frame.buffers;
+    Constants           constants = settings_constants(frame, Precision::float32);
+    constants.add(CONSTANT_PYRAMID_KIND, static_cast<int32_t>(parameter_or(frame, "pyramid", PYRAMID_MINMAX)));
+    PyramidPasses passes;
+    passes.build       = make_compute_pass(gpu, compile_shader({.file = "depth_pyramid.comp"}),
+                                           {{"depth_image", buffers.gbuffer->depth}, {"depth_pyramid", buffers.pyramid.atlas}}, constants,
+                                           sizeof(PyramidPush));
+    const auto  size   = buffers.gbuffer->view.size_px;
+    const int   width  = buffers.pyramid.atlas.size_px.x;
+    const auto  offset = [&](int level) { return glm::ivec2(level < 1 ? 0 : width - (width >> (level - 1)), 0); };
+    const int   top    = std::min(buffers.pyramid.levels, static_cast<int>(parameter_or(frame, "top_level", 31)));
+    for (int level = 1; level <= top; ++level)
+        passes.levels.push_back({level, level_size(size, level - 1), level_size(size, level), offset(level - 1), offset(level)});
+    return passes;
+}
+
+TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view, const Buffer* work)
+{
+    const FrameBuffers& buffers  = *frame.buffers;
+    Bindings            bindings = ray_bindings(rays);
+    bindings.insert({{"View", view},
+                     {"depth_image", buffers.gbuffer->depth},
+                     {"normal_image", buffers.gbuffer->normal},
+                     {"material_image", buffers.gbuffer->material},
+                     {"depth_pyramid", buffers.pyramid.atlas}});
+    ShaderSource trace{.file          = "trace.comp",
+                       .defines       = precision_defines(rays.precision),
+                       .include_files = {{"technique/trace.glsl", frame.technique.folder / "trace.glsl"}},
+                       .include_texts = {{"technique/parameters", parameter_declarations(frame.technique)}}};
+    if (work != nullptr) {
+        trace.defines.emplace("COUNT_WORK", "1");
+        bindings.insert({"Work", *work});
+    }
+    Constants constants = settings_constants(frame, rays.precision);
+    TracePasses passes;
+    passes.rays   = make_compute_pass(gpu, compile_shader({.file = "rays.comp", .defines = precision_defines(rays.precision)}), bindings, constants);
+    passes.launch = make_compute_pass(gpu, compile_shader({.file = "launch.comp"}), bindings);
+    add_parameters(constants, frame.technique, frame.values);
+    passes.trace = make_compute_pass(gpu, compile_shader(trace), bindings, constants);
+    return passes;
+}
+
+ComputePass make_shade_pass(Gpu& gpu, const PreparedFrame& frame)
+{
+    const FrameBuffers& buffers  = *frame.buffers;
+    Bindings            bindings = ray_bindings(buffers.rays);
+    bindings.insert({{"View", buffers.view},
+                     {"material_image", buffers.gbuffer->material},
+                     {"radiance_image", buffers.gbuffer->radiance},
+                     {"shaded_image", buffers.shaded}});
+    Constants constants = settings_constants(frame, Precision::float32);
+    constants.add(CONSTANT_METALLIC_EXPONENT, static_cast<float>(frame.settings.shade.metallic_exponent));
+    constants.add(CONSTANT_FADE_TO_VIEWER, static_cast<int32_t>(frame.settings.shade.fade_to_viewer));
+    constants.add(CONSTANT_FADE_AT_EDGES, static_cast<int32_t>(frame.settings.shade.fade_at_edges));
+    return make_compute_pass(gpu, compile_shader({.file = "shade.comp"}), bindings, constants);
+}
+
+void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const RayBuffers& rays, glm::ivec2 size_px)
+{
+    barrier(commands);
+    commands.fillBuffer(*rays.count.buffer, 0, VK_WHOLE_SIZE, 0);
+    barrier(commands);
+    dispatch(commands, passes.rays, {static_cast<uint32_t>(size_px.x + 7) / 8, static_cast<uint32_t>(size_px.y + 7) / 8, 1});
+    barrier(commands);
+    dispatch(commands, passes.launch, {1, 1, 1});
+    barrier(commands);
+}
+
+void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses& passes)
+{
+    for (const PyramidPush& level : passes.levels) {
+        push(commands, passes.build, level);
+        dispatch(commands, passes.build, {static_cast<uint32_t>(level.size.x + 7) / 8, static_cast<uint32_t>(level.size.y + 7) / 8, 1});
+        barrier(commands);
+    }
+}
+
+template <typename Real> TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, const Buffer* work)
+{
+    using Real3              = glm::vec<3, Real>;
+    const size_t count       = download_as<uint32_t>(gpu, rays.count, 1)[0];
+    const auto   origins     = download_as<Real3>(gpu, rays.origins, count);
+    const auto   deltas      = download_as<Real3>(gpu, rays.deltas, count);
+    const auto   pixels      = download_as<uint32_t>(gpu, rays.pixels, count);
+    const auto   hits        = download_as<uint32_t>(gpu, rays.hit_pixels, count);
+    const auto   ts          = download_as<Real>(gpu, rays.hit_ts, count);
+    const auto   works       = work != nullptr ? download_as<glm::uvec3>(gpu, *work, count) : std::vector<glm::uvec3>{};
+    const auto   unpack      = [](uint32_t p) { return glm::ivec2(p & (MAX_IMAGE_PX - 1), (p >> PIXEL_BITS) & (MAX_IMAGE_PX - 1)); };
+    const auto   pixel_count = static_cast<size_t>(size_px.x) * static_cast<size_t>(size_px.y);
+    TraceResult  result;
+    result.size_px = size_px;
+    result.status.assign(pixel_count, TraceStatus::not_traced);
+    result.hit_pixel.resize(pixel_count);
+    result.hit_px_depth.resize(pixel_count);
+    result.hit_t.resize(pixel_count);
+    result.steps.resize(pixel_count);
+    if (work != nullptr) {
+        result.depth_fetches.resize(pixel_count);
+        result.pyramid_fetches.resize(pixel_count);
+    }
+    for (size_t i = 0; i < count; ++i) {
+        const glm::ivec2 pixel  = unpack(pixels[i]);
+        const size_t     index  = static_cast<size_t>(pixel.y) * static_cast<size_t>(size_px.x) + static_cast<size_t>(pixel.x);
+        result.status[index]    = static_cast<TraceStatus>(hits[i] >> (2 * PIXEL_BITS));
+        result.hit_pixel[index] = unpack(hits[i]);
+        result.hit_t[index]     = static_cast<double>(ts[i]);
+        result.hit_px_depth[index] = glm::dvec3(origins[i]) + result.hit_t[index] * glm::dvec3(deltas[i]);
+        if (work == nullptr) continue;
+        result.steps[index]           = works[i].x;
+        result.depth_fetches[index]   = works[i].y;
+        result.pyramid_fetches[index] = works[i].z;
+    }
+    return result;
+}
+template TraceResult read_result<float>(Gpu&, glm::ivec2, const RayBuffers&, const Buffer*);
+template TraceResult read_result<double>(Gpu&, glm::ivec2, const RayBuffers&, const Buffer*);
+
+float half_to_float(uint16_t half) { return glm::unpackHalf1x16(half); }
+
+} // namespace ssrlab

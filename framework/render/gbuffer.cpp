@@ -1,0 +1,191 @@
+#include "render/gbuffer.h"
+
+#include "core/error.h"
+#include "shared.h"
+
+#include <glm/gtc/packing.hpp>
+
+#include <cmath>
+
+namespace ssrlab {
+namespace {
+
+/// shaders/gbuffer.frag, uniform Frame, scalar layout.
+struct FrameBlock {
+    glm::mat4 world_to_view;
+    glm::vec3 eye_ws;
+    int32_t   orthographic;
+    glm::vec3 view_axis_ws;
+    int32_t   light_count;
+    glm::vec3 ambient;
+    float     pad = 0;
+};
+
+using HalfTexel = std::array<uint16_t, 4>;
+
+HalfTexel to_half(glm::vec4 v)
+{
+    return {glm::packHalf1x16(v.x), glm::packHalf1x16(v.y), glm::packHalf1x16(v.z), glm::packHalf1x16(v.w)};
+}
+
+glm::vec4 from_half(const HalfTexel& h)
+{
+    return {glm::unpackHalf1x16(h[0]), glm::unpackHalf1x16(h[1]), glm::unpackHalf1x16(h[2]), glm::unpackHalf1x16(h[3])};
+}
+
+/// The images of a view, without content.
+GBufferPtr make_gbuffer(Gpu& gpu, const View& view)
+{
+    if (view.size_px.x > MAX_IMAGE_PX || view.size_px.y > MAX_IMAGE_PX)
+        throw_spec_error("image size {}x{} is outside 1x1 to {}x{}", view.size_px.x, view.size_px.y, MAX_IMAGE_PX, MAX_IMAGE_PX);
+    using Usage         = vk::ImageUsageFlagBits;
+    using Format        = vk::Format;
+    auto gbuffer        = std::make_shared<GBuffer>();
+    gbuffer->view       = view;
+    const auto image    = [&](Format format, vk::ImageUsageFlags usage) {
+        return make_image(gpu, {.format = format, .size_px = view.size_px, .usage = usage});
+    };
+    const vk::ImageUsageFlags target = Usage::eColorAttachment | Usage::eStorage;
+    gbuffer->depth     = image(Format::eR32Sfloat, Usage::eStorage);
+    gbuffer->normal    = image(Format::eR32G32B32A32Sfloat, target);
+    gbuffer->material  = image(Format::eR16G16B16A16Sfloat, target);
+    gbuffer->radiance  = image(Format::eR16G16B16A16Sfloat, target);
+    gbuffer->highlight = image(Format::eR16G16B16A16Sfloat, target);
+    gbuffer->object    = image(Format::eR32Uint, target);
+    return gbuffer;
+}
+
+void fill_frame_uniforms(Gpu& gpu, GBuffer& gbuffer)
+{
+    const glm::dmat4 view_to_world = glm::inverse(gbuffer.view.world_to_view);
+    const FrameBlock block{glm::mat4(gbuffer.view.world_to_view),
+                           glm::vec3(view_to_world[3]),
+                           gbuffer.view.projection == Projection::orthographic,
+                           glm::vec3(-view_to_world[2]),
+                           static_cast<int32_t>(gbuffer.scene->light_count),
+                           gbuffer.scene->ambient};
+    gbuffer.frame_uniforms = make_buffer(gpu, sizeof(block));
+    upload(gpu, gbuffer.frame_uniforms, &block, sizeof(block));
+}
+
+vk::RenderingAttachmentInfo attachment(const GpuImage& image, vk::ClearValue clear)
+{
+    return {.imageView   = *image.view,
+            .imageLayout = vk::ImageLayout::eGeneral,
+            .loadOp      = vk::AttachmentLoadOp::eClear,
+            .storeOp     = vk::AttachmentStoreOp::eStore,
+            .clearValue  = clear};
+}
+
+vk::ClearValue colour(glm::vec4 c) { return vk::ClearColorValue{std::array<float, 4>{c.x, c.y, c.z, c.w}}; }
+
+void record_rasterisation(const vk::raii::CommandBuffer& commands, const GBuffer& gbuffer)
+{
+    const vk::RenderingAttachmentInfo colours[] = {
+        attachment(gbuffer.normal, colour(glm::vec4(0))), attachment(gbuffer.material, colour(glm::vec4(0))),
+        attachment(gbuffer.radiance, colour(glm::vec4(gbuffer.scene->background, 1))),
+        attachment(gbuffer.highlight, colour(glm::vec4(0))),
+        attachment(gbuffer.object, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}})};
+    // Reversed depth: background is 0.
+    const auto         depth = attachment(gbuffer.depth_buffer, vk::ClearDepthStencilValue{0.0F, 0});
+    const glm::ivec2   size  = gbuffer.view.size_px;
+    const vk::Rect2D   area{{0, 0}, {static_cast<uint32_t>(size.x), static_cast<uint32_t>(size.y)}};
+    commands.beginRendering({.renderArea           = area,
+                             .layerCount           = 1,
+                             .colorAttachmentCount = std::size(colours),
+                             .pColorAttachments    = colours,
+                             .pDepthAttachment     = &depth});
+    commands.setViewport(0, vk::Viewport{0, 0, static_cast<float>(size.x), static_cast<float>(size.y), 0, 1});
+    commands.setScissor(0, area);
+    draw_scene(commands, *gbuffer.scene, gbuffer.pipeline, *gbuffer.frame_set.set, view_to_clip(gbuffer.view) * gbuffer.view.world_to_view);
+    commands.endRendering();
+}
+
+glm::uvec3 groups_of_8(glm::ivec2 size_px)
+{
+    return {static_cast<uint32_t>(size_px.x + 7) / 8, static_cast<uint32_t>(size_px.y + 7) / 8, 1};
+}
+
+} // namespace
+
+GBufferPtr render_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view)
+{
+    GBufferPtr gbuffer    = make_gbuffer(gpu, view);
+    gbuffer->scene        = scene;
+    gbuffer->depth_buffer = make_image(gpu, {.format  = vk::Format::eD32Sfloat,
+                                             .size_px = view.size_px,
+                                             .usage   = vk::ImageUsageFlagBits::eDepthStencilAttachment | vk::ImageUsageFlagBits::eSampled});
+    fill_frame_uniforms(gpu, *gbuffer);
+    gbuffer->frame_set = make_frame_set(gpu, *scene, gbuffer->frame_uniforms);
+    gbuffer->pipeline  = make_draw_pipeline(
+        gpu, *scene,
+        {.fragment_shader = "gbuffer.frag",
+          .colour_formats  = {gbuffer->normal.format, gbuffer->material.format, gbuffer->radiance.format, gbuffer->highlight.format, gbuffer->object.format}});
+    gbuffer->sampler    = {gpu.impl->device, vk::SamplerCreateInfo{}};
+    gbuffer->sanitise   = make_compute_pass(gpu, compile_shader({.file = "sanitise_depth.comp"}),
+                                            {{"depth_buffer", {gbuffer->depth_buffer, gbuffer->sampler}}, {"depth_image", gbuffer->depth}});
+    gbuffer->timestamps = make_timestamps(gpu, 2);
+    rerender_gbuffer(gpu, *gbuffer);
+    return gbuffer;
+}
+
+double rerender_gbuffer(Gpu& gpu, GBuffer& gbuffer)
+{
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        write_timestamp(commands, gbuffer.timestamps, 0);
+        barrier(commands);
+        record_rasterisation(commands, gbuffer);
+        barrier(commands);
+        dispatch(commands, gbuffer.sanitise, groups_of_8(gbuffer.view.size_px));
+        barrier(commands);
+        write_timestamp(commands, gbuffer.timestamps, 1);
+    });
+    return read_intervals_ms(gpu, gbuffer.timestamps)[0];
+}
+
+GBufferPtr upload_gbuffer(Gpu& gpu, const GBufferImage& image)
+{
+    GBufferPtr   gbuffer = make_gbuffer(gpu, image.view);
+    const size_t count   = image.depth.size();
+    if (count != static_cast<size_t>(image.view.size_px.x) * static_cast<size_t>(image.view.size_px.y))
+        throw std::logic_error("upload_gbuffer: depth does not match the view's size");
+    std::vector<float>     depth(count);
+    std::vector<glm::vec4> normal(count);
+    std::vector<HalfTexel> material(count), radiance(count), highlight(count);
+    for (size_t i = 0; i < count; ++i) {
+        const bool usable = image.depth[i] > 0 && image.depth[i] <= 1;
+        depth[i]          = usable ? image.depth[i] : static_cast<float>(BACKGROUND_DEPTH);
+        normal[i]         = {image.normal_vs[i], image.roughness[i]};
+        material[i]       = to_half({image.base_colour[i], image.metallic[i]});
+        radiance[i]       = to_half({image.radiance[i], 1});
+        highlight[i]      = to_half({image.highlight[i], 1});
+    }
+    upload(gpu, gbuffer->depth, depth.data(), count * sizeof(float));
+    upload(gpu, gbuffer->normal, normal.data(), count * sizeof(glm::vec4));
+    upload(gpu, gbuffer->material, material.data(), count * sizeof(HalfTexel));
+    upload(gpu, gbuffer->radiance, radiance.data(), count * sizeof(HalfTexel));
+    upload(gpu, gbuffer->highlight, highlight.data(), count * sizeof(HalfTexel));
+    upload(gpu, gbuffer->object, image.object_id.data(), count * sizeof(uint32_t));
+    return gbuffer;
+}
+
+GBufferImage read_gbuffer(Gpu& gpu, const GBuffer& gbuffer)
+{
+    GBufferImage image;
+    image.view = gbuffer.view;
+    for (const float depth : download_as<float>(gpu, gbuffer.depth)) image.depth.push_back(depth > 0 ? depth : 0.0F);
+    for (const glm::vec4& texel : download_as<glm::vec4>(gpu, gbuffer.normal)) {
+        image.normal_vs.emplace_back(texel);
+        image.roughness.push_back(texel.w);
+    }
+    for (const HalfTexel& texel : download_as<HalfTexel>(gpu, gbuffer.material)) {
+        image.base_colour.emplace_back(from_half(texel));
+        image.metallic.push_back(from_half(texel).w);
+    }
+    for (const HalfTexel& texel : download_as<HalfTexel>(gpu, gbuffer.radiance)) image.radiance.emplace_back(from_half(texel));
+    for (const HalfTexel& texel : download_as<HalfTexel>(gpu, gbuffer.highlight)) image.highlight.emplace_back(from_half(texel));
+    image.object_id = download_as<uint32_t>(gpu, gbuffer.object);
+    return image;
+}
+
+} // namespace ssrlab

@@ -1,0 +1,336 @@
+#include "render/gpu_scene.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ssrlab {
+namespace {
+
+/// shaders/scene_types.glsl, struct Material, scalar layout.
+struct MaterialBlock {
+    glm::vec4  base_colour;
+    glm::vec3  emissive;
+    float      metallic;
+    float      roughness;
+    float      normal_scale;
+    float      alpha_cutoff;
+    int32_t    double_sided;
+    glm::ivec4 uv_set;
+    glm::mat3  uv_transform[4];
+};
+static_assert(sizeof(MaterialBlock) == 208);
+
+constexpr uint32_t textures_per_material = 4;
+
+std::array<const TextureUse*, textures_per_material> texture_uses(const Material& material)
+{
+    return {&material.base_colour_texture, &material.metallic_roughness_texture, &material.normal_texture,
+            &material.emissive_texture};
+}
+
+MaterialBlock to_block(const Material& material)
+{
+    MaterialBlock block{material.base_colour,  material.emissive,
+                        material.metallic,     material.roughness,
+                        material.normal_scale, material.alpha_mask ? material.alpha_cutoff : -1.0F,
+                        material.double_sided, {},
+                        {}};
+    const auto uses = texture_uses(material);
+    for (int i = 0; i < static_cast<int>(uses.size()); ++i) {
+        block.uv_set[i]       = uses[static_cast<size_t>(i)]->uv_set;
+        block.uv_transform[i] = uses[static_cast<size_t>(i)]->uv_transform;
+    }
+    return block;
+}
+
+vk::SamplerAddressMode address_mode(Wrap wrap)
+{
+    switch (wrap) {
+    case Wrap::repeat: return vk::SamplerAddressMode::eRepeat;
+    case Wrap::mirrored_repeat: return vk::SamplerAddressMode::eMirroredRepeat;
+    case Wrap::clamp_to_edge: return vk::SamplerAddressMode::eClampToEdge;
+    }
+    return vk::SamplerAddressMode::eRepeat;
+}
+
+vk::raii::Sampler make_sampler(Gpu& gpu, const Texture& texture)
+{
+    const auto filter = texture.nearest ? vk::Filter::eNearest : vk::Filter::eLinear;
+    return {gpu.impl->device,
+            vk::SamplerCreateInfo{.magFilter    = filter,
+                                  .minFilter    = filter,
+                                  .mipmapMode   = vk::SamplerMipmapMode::eLinear,
+                                  .addressModeU = address_mode(texture.wrap_u),
+                                  .addressModeV = address_mode(texture.wrap_v),
+                                  .maxLod       = texture.mipmaps ? VK_LOD_CLAMP_NONE : 0.0F}};
+}
+
+/// Each level is the filtered half of the one before.
+void make_mipmaps(Gpu& gpu, GpuImage& image)
+{
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        glm::ivec2 size = image.size_px;
+        for (uint32_t level = 1; level < image.levels; ++level) {
+            const glm::ivec2    half = glm::max(size / 2, glm::ivec2(1));
+            const vk::ImageBlit blit{
+                .srcSubresource = {vk::ImageAspectFlagBits::eColor, level - 1, 0, 1},
+                .srcOffsets     = {{vk::Offset3D{0, 0, 0}, vk::Offset3D{size.x, size.y, 1}}},
+                .dstSubresource = {vk::ImageAspectFlagBits::eColor, level, 0, 1},
+                .dstOffsets     = {{vk::Offset3D{0, 0, 0}, vk::Offset3D{half.x, half.y, 1}}}};
+            barrier(commands);
+            commands.blitImage(*image.image, vk::ImageLayout::eGeneral, *image.image, vk::ImageLayout::eGeneral, blit,
+                               vk::Filter::eLinear);
+            size = half;
+        }
+        barrier(commands);
+    });
+}
+
+GpuImage upload_texture(Gpu& gpu, const Texture& texture)
+{
+    const int      largest = std::max(texture.size_px.x, texture.size_px.y);
+    const uint32_t levels  = texture.mipmaps ? static_cast<uint32_t>(std::log2(largest)) + 1 : 1;
+    GpuImage       image   = make_image(gpu, {.format  = texture.srgb ? vk::Format::eR8G8B8A8Srgb : vk::Format::eR8G8B8A8Unorm,
+                                              .size_px = texture.size_px,
+                                              .usage   = vk::ImageUsageFlagBits::eSampled,
+                                              .levels  = levels});
+    upload(gpu, image, texture.rgba.data(), texture.rgba.size());
+    if (levels > 1) make_mipmaps(gpu, image);
+    return image;
+}
+
+Texture white_texture()
+{
+    Texture texture;
+    texture.size_px = {1, 1};
+    texture.rgba    = {255, 255, 255, 255};
+    texture.mipmaps = false;
+    return texture;
+}
+
+vk::raii::DescriptorSetLayout make_layout(Gpu& gpu, std::vector<vk::DescriptorType> types)
+{
+    std::vector<vk::DescriptorSetLayoutBinding> bindings;
+    for (uint32_t i = 0; i < types.size(); ++i)
+        bindings.push_back({.binding         = i,
+                            .descriptorType  = types[i],
+                            .descriptorCount = 1,
+                            .stageFlags      = vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment});
+    return {gpu.impl->device, vk::DescriptorSetLayoutCreateInfo{.bindingCount = static_cast<uint32_t>(bindings.size()),
+                                                                .pBindings    = bindings.data()}};
+}
+
+void make_material_sets(Gpu& gpu, GpuScene& scene, const Scene& source)
+{
+    const auto                   count = static_cast<uint32_t>(std::max<size_t>(source.materials.size(), 1));
+    const vk::DescriptorPoolSize size{vk::DescriptorType::eCombinedImageSampler, count * textures_per_material};
+    scene.pool = {gpu.impl->device,
+                  vk::DescriptorPoolCreateInfo{.flags         = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
+                                               .maxSets       = count,
+                                               .poolSizeCount = 1,
+                                               .pPoolSizes    = &size}};
+    for (const Material& material : source.materials) {
+        vk::raii::DescriptorSets sets(gpu.impl->device, {.descriptorPool     = *scene.pool,
+                                                         .descriptorSetCount = 1,
+                                                         .pSetLayouts        = &*scene.material_layout});
+        const auto               uses = texture_uses(material);
+        for (uint32_t i = 0; i < textures_per_material; ++i) {
+            const bool   has   = uses[i]->texture >= 0;
+            const size_t index = has ? static_cast<size_t>(uses[i]->texture) : scene.textures.size() - 1;
+            const vk::DescriptorImageInfo image{.sampler     = *scene.samplers[index],
+                                                .imageView   = *scene.textures[index].view,
+                                                .imageLayout = vk::ImageLayout::eGeneral};
+            gpu.impl->device.updateDescriptorSets(
+                vk::WriteDescriptorSet{.dstSet          = *sets[0],
+                                       .dstBinding      = i,
+                                       .descriptorCount = 1,
+                                       .descriptorType  = vk::DescriptorType::eCombinedImageSampler,
+                                       .pImageInfo      = &image},
+                nullptr);
+        }
+        scene.material_sets.push_back(std::move(sets[0]));
+    }
+}
+
+/// Entirely beyond one plane of the clip volume?
+bool outside(const GpuScene::DrawCall& draw, const glm::dmat4& world_to_clip)
+{
+    int beyond[5] = {};
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 p((corner & 1) != 0 ? draw.bounds_max_ws.x : draw.bounds_min_ws.x,
+                           (corner & 2) != 0 ? draw.bounds_max_ws.y : draw.bounds_min_ws.y,
+                           (corner & 4) != 0 ? draw.bounds_max_ws.z : draw.bounds_min_ws.z);
+        const glm::dvec4 clip = world_to_clip * glm::dvec4(p, 1.0);
+        beyond[0] += clip.x < -clip.w;
+        beyond[1] += clip.x > clip.w;
+        beyond[2] += clip.y < -clip.w;
+        beyond[3] += clip.y > clip.w;
+        beyond[4] += clip.w <= 0;
+    }
+    return std::ranges::any_of(beyond, [](int count) { return count == 8; });
+}
+
+vk::raii::ShaderModule make_module(Gpu& gpu, const Shader& shader)
+{
+    return {gpu.impl->device,
+            vk::ShaderModuleCreateInfo{.codeSize = shader.spirv.size() * 4, .pCode = shader.spirv.data()}};
+}
+
+} // namespace
+
+GpuScenePtr upload_scene(Gpu& gpu, const Scene& source)
+{
+    auto scene       = std::make_shared<GpuScene>();
+    scene->vertices  = make_buffer_with<Vertex>(gpu, source.vertices);
+    scene->indices   = make_buffer_with<uint32_t>(gpu, source.indices);
+    std::vector<MaterialBlock> blocks;
+    for (const Material& material : source.materials) blocks.push_back(to_block(material));
+    scene->materials = make_buffer_with<MaterialBlock>(gpu, blocks);
+    for (const Texture& texture : source.textures) {
+        scene->textures.push_back(upload_texture(gpu, texture));
+        scene->samplers.push_back(make_sampler(gpu, texture));
+    }
+    scene->textures.push_back(upload_texture(gpu, white_texture()));
+    scene->samplers.push_back(make_sampler(gpu, white_texture()));
+
+    using Type             = vk::DescriptorType;
+    scene->frame_layout    = make_layout(gpu, {Type::eUniformBuffer, Type::eStorageBuffer, Type::eStorageBuffer,
+                                               Type::eStorageBuffer, Type::eCombinedImageSampler});
+    scene->material_layout = make_layout(gpu, std::vector<Type>(textures_per_material, Type::eCombinedImageSampler));
+    make_material_sets(gpu, *scene, source);
+    for (size_t i = 0; i < source.draws.size(); ++i) {
+        const Draw& draw = source.draws[i];
+        scene->draws.push_back({draw.first_index, draw.index_count, draw.material, static_cast<uint32_t>(i + 1),
+                                source.materials[draw.material].double_sided, draw.bounds_min_ws, draw.bounds_max_ws});
+    }
+    scene->ambient    = source.ambient;
+    scene->background = source.background;
+    render_shadow_maps(gpu, *scene, source);
+    return scene;
+}
+
+DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipelineOptions& options)
+{
+    const Shader vertex   = compile_shader({.file = "gbuffer.vert", .stage = ShaderStage::vertex});
+    const Shader fragment = compile_shader({.file = options.fragment_shader, .stage = ShaderStage::fragment});
+    const auto   vertex_module = make_module(gpu, vertex), fragment_module = make_module(gpu, fragment);
+
+    DrawPipeline                  result;
+    const vk::DescriptorSetLayout layouts[] = {*scene.frame_layout, *scene.material_layout};
+    const vk::PushConstantRange   range{vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0, sizeof(DrawPush)};
+    result.layout = {gpu.impl->device, vk::PipelineLayoutCreateInfo{.setLayoutCount         = 2,
+                                                                    .pSetLayouts            = layouts,
+                                                                    .pushConstantRangeCount = 1,
+                                                                    .pPushConstantRanges    = &range}};
+
+    const vk::PipelineShaderStageCreateInfo stages[] = {
+        {.stage = vk::ShaderStageFlagBits::eVertex, .module = *vertex_module, .pName = "main"},
+        {.stage = vk::ShaderStageFlagBits::eFragment, .module = *fragment_module, .pName = "main"}};
+    const vk::VertexInputBindingDescription   binding{0, sizeof(Vertex), vk::VertexInputRate::eVertex};
+    const vk::VertexInputAttributeDescription attributes[] = {
+        {0, 0, vk::Format::eR32G32B32Sfloat, offsetof(Vertex, position_ws)},
+        {1, 0, vk::Format::eR32G32B32Sfloat, offsetof(Vertex, normal_ws)},
+        {2, 0, vk::Format::eR32G32B32A32Sfloat, offsetof(Vertex, tangent_ws)},
+        {3, 0, vk::Format::eR32G32Sfloat, offsetof(Vertex, uv0)},
+        {4, 0, vk::Format::eR32G32Sfloat, offsetof(Vertex, uv1)},
+        {5, 0, vk::Format::eR32G32B32A32Sfloat, offsetof(Vertex, colour)}};
+    const vk::PipelineVertexInputStateCreateInfo   input{.vertexBindingDescriptionCount   = 1,
+                                                         .pVertexBindingDescriptions      = &binding,
+                                                         .vertexAttributeDescriptionCount = std::size(attributes),
+                                                         .pVertexAttributeDescriptions    = attributes};
+    const vk::PipelineInputAssemblyStateCreateInfo assembly{.topology = vk::PrimitiveTopology::eTriangleList};
+    const vk::PipelineViewportStateCreateInfo      viewport{.viewportCount = 1, .scissorCount = 1};
+    const bool                                     biased = !options.reversed_depth;
+    const vk::PipelineRasterizationStateCreateInfo raster{.frontFace               = vk::FrontFace::eCounterClockwise,
+                                                          .depthBiasEnable         = biased,
+                                                          .depthBiasConstantFactor = 4.0F,
+                                                          .depthBiasSlopeFactor    = 2.0F,
+                                                          .lineWidth               = 1.0F};
+    const vk::PipelineMultisampleStateCreateInfo   samples{.rasterizationSamples = vk::SampleCountFlagBits::e1};
+    const vk::PipelineDepthStencilStateCreateInfo  depth{
+         .depthTestEnable  = true,
+         .depthWriteEnable = true,
+         .depthCompareOp   = options.reversed_depth ? vk::CompareOp::eGreater : vk::CompareOp::eLess};
+    using Component = vk::ColorComponentFlagBits;
+    const std::vector<vk::PipelineColorBlendAttachmentState> blend(
+        options.colour_formats.size(),
+        {.colorWriteMask = Component::eR | Component::eG | Component::eB | Component::eA});
+    const vk::PipelineColorBlendStateCreateInfo blending{.attachmentCount = static_cast<uint32_t>(blend.size()),
+                                                         .pAttachments    = blend.data()};
+    const vk::DynamicState                      dynamic[] = {vk::DynamicState::eViewport, vk::DynamicState::eScissor,
+                                                             vk::DynamicState::eCullMode};
+    const vk::PipelineDynamicStateCreateInfo    dynamics{.dynamicStateCount = std::size(dynamic), .pDynamicStates = dynamic};
+    const vk::PipelineRenderingCreateInfo rendering{.colorAttachmentCount    = static_cast<uint32_t>(options.colour_formats.size()),
+                                                    .pColorAttachmentFormats = options.colour_formats.data(),
+                                                    .depthAttachmentFormat   = vk::Format::eD32Sfloat};
+    const vk::GraphicsPipelineCreateInfo  info{.pNext               = &rendering,
+                                               .stageCount          = std::size(stages),
+                                               .pStages             = stages,
+                                               .pVertexInputState   = &input,
+                                               .pInputAssemblyState = &assembly,
+                                               .pViewportState      = &viewport,
+                                               .pRasterizationState = &raster,
+                                               .pMultisampleState   = &samples,
+                                               .pDepthStencilState  = &depth,
+                                               .pColorBlendState    = &blending,
+                                               .pDynamicState       = &dynamics,
+                                               .layout              = *result.layout};
+    result.pipeline = {gpu.impl->device, gpu.impl->pipeline_cache, info};
+    return result;
+}
+
+void draw_scene(const vk::raii::CommandBuffer& commands, const GpuScene& scene, const DrawPipeline& pipeline,
+                vk::DescriptorSet frame_set, const glm::dmat4& world_to_clip)
+{
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipeline.pipeline);
+    commands.bindVertexBuffers(0, *scene.vertices.buffer, vk::DeviceSize{0});
+    commands.bindIndexBuffer(*scene.indices.buffer, 0, vk::IndexType::eUint32);
+    commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *pipeline.layout, 0, frame_set, nullptr);
+    for (const GpuScene::DrawCall& draw : scene.draws) {
+        if (draw.index_count == 0 || outside(draw, world_to_clip)) continue;
+        const DrawPush push{glm::mat4(world_to_clip), draw.material, draw.object_id};
+        commands.setCullMode(draw.double_sided ? vk::CullModeFlagBits::eNone : vk::CullModeFlagBits::eBack);
+        commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *pipeline.layout, 1, *scene.material_sets[draw.material], nullptr);
+        commands.pushConstants<DrawPush>(*pipeline.layout, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0, push);
+        commands.drawIndexed(draw.index_count, 1, draw.first_index, 0, 0);
+    }
+}
+
+FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms)
+{
+    using Type                           = vk::DescriptorType;
+    const vk::DescriptorPoolSize sizes[] = {{Type::eUniformBuffer, 1}, {Type::eStorageBuffer, 3}, {Type::eCombinedImageSampler, 1}};
+    FrameSet                     result;
+    result.pool = {gpu.impl->device,
+                   vk::DescriptorPoolCreateInfo{.flags         = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
+                                                .maxSets       = 1,
+                                                .poolSizeCount = std::size(sizes),
+                                                .pPoolSizes    = sizes}};
+    vk::raii::DescriptorSets sets(gpu.impl->device, {.descriptorPool     = *result.pool,
+                                                     .descriptorSetCount = 1,
+                                                     .pSetLayouts        = &*scene.frame_layout});
+    result.set                      = std::move(sets[0]);
+    const vk::Buffer     buffers[4] = {*frame_uniforms.buffer, *scene.materials.buffer, *scene.lights.buffer, *scene.shadow_matrices.buffer};
+    for (uint32_t i = 0; i < 4; ++i) {
+        const vk::DescriptorBufferInfo info{buffers[i], 0, VK_WHOLE_SIZE};
+        gpu.impl->device.updateDescriptorSets(
+            vk::WriteDescriptorSet{.dstSet          = *result.set,
+                                   .dstBinding      = i,
+                                   .descriptorCount = 1,
+                                   .descriptorType  = i == 0 ? Type::eUniformBuffer : Type::eStorageBuffer,
+                                   .pBufferInfo     = &info},
+            nullptr);
+    }
+    const vk::DescriptorImageInfo image{*scene.shadow_sampler, *scene.shadow_map.view, vk::ImageLayout::eGeneral};
+    gpu.impl->device.updateDescriptorSets(vk::WriteDescriptorSet{.dstSet          = *result.set,
+                                                                 .dstBinding      = 4,
+                                                                 .descriptorCount = 1,
+                                                                 .descriptorType  = Type::eCombinedImageSampler,
+                                                                 .pImageInfo      = &image},
+                                          nullptr);
+    return result;
+}
+
+} // namespace ssrlab

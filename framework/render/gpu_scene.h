@@ -1,0 +1,62 @@
+// A scene on the device: geometry, materials, textures, lights and shadow maps.
+#pragma once
+
+#include "gpu/compute.h"
+#include "render/frame.h"
+
+namespace ssrlab {
+
+/// Push constants of every pass that draws the scene (shaders/scene_types.glsl).
+struct DrawPush {
+    glm::mat4 world_to_clip;
+    uint32_t  material_index;
+    uint32_t  object_id;
+};
+
+struct GpuScene {
+    struct DrawCall {
+        uint32_t  first_index = 0, index_count = 0, material = 0, object_id = 0;
+        bool      double_sided = false;
+        glm::vec3 bounds_min_ws{0}, bounds_max_ws{0};
+    };
+    Buffer                        vertices, indices, materials, lights, shadow_matrices;
+    std::vector<GpuImage>         textures;
+    std::vector<vk::raii::Sampler> samplers; // one per texture; the last is the default
+    vk::raii::Sampler             shadow_sampler = nullptr;
+    GpuImage                      shadow_map;    // one layer per directional or spot light, six per point light
+    vk::raii::DescriptorSetLayout frame_layout    = nullptr; // set 0
+    vk::raii::DescriptorSetLayout material_layout = nullptr; // set 1
+    vk::raii::DescriptorPool      pool            = nullptr;
+    std::vector<vk::raii::DescriptorSet> material_sets;
+    std::vector<DrawCall>         draws;
+    uint32_t                      light_count = 0;
+    glm::vec3                     ambient{0}, background{0};
+};
+
+struct DrawPipeline {
+    vk::raii::PipelineLayout layout   = nullptr;
+    vk::raii::Pipeline       pipeline = nullptr;
+};
+
+struct DrawPipelineOptions {
+    const char*             fragment_shader = nullptr;
+    std::vector<vk::Format> colour_formats;
+    bool                    reversed_depth = true;  // the G-buffer's convention; shadow maps use standard depth with a bias
+};
+DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipelineOptions& options);
+
+/// Draws everything whose bounds are not entirely outside the clip volume.
+void draw_scene(const vk::raii::CommandBuffer& commands, const GpuScene& scene, const DrawPipeline& pipeline,
+                vk::DescriptorSet frame_set, const glm::dmat4& world_to_clip);
+
+/// A descriptor set for set 0 with frame uniforms; kept by the caller.
+struct FrameSet {
+    vk::raii::DescriptorPool pool = nullptr;
+    vk::raii::DescriptorSet  set  = nullptr;
+};
+FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms);
+
+/// Light matrices and shadow maps; called once by upload_scene.
+void render_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source);
+
+} // namespace ssrlab

@@ -1,0 +1,32 @@
+// Scene data as the G-buffer and shadow passes read it; render/gpu_scene.cpp fills the same layouts.
+struct Material
+{
+    vec4  base_colour;   // linear
+    vec3  emissive;      // linear radiance
+    float metallic;
+    float roughness;
+    float normal_scale;
+    float alpha_cutoff;  // < 0: no alpha mask
+    int   double_sided;
+    ivec4 uv_set;        // base colour, metallic-roughness, normal, emissive
+    mat3  uv_transform[4];
+};
+
+struct Light
+{
+    vec3  position_ws;
+    int   type;          // 0 directional, 1 point, 2 spot
+    vec3  direction_ws;  // from the light into the scene
+    float range_m;       // 0 = unlimited
+    vec3  intensity;     // directional: irradiance; point, spot: radiant intensity
+    int   shadow_layer;  // first layer of the shadow map, -1 = none
+    float cos_inner;
+    float cos_outer;
+};
+
+layout(push_constant, scalar) uniform Draw
+{
+    mat4 world_to_clip;
+    uint material_index;
+    uint object_id;
+};

@@ -1,0 +1,12 @@
+// Depth only; masked texels cast no shadow.
+#include "scene_types.glsl"
+#include "material.glsl"
+
+layout(location = 3) in vec4 uv;
+layout(location = 4) in vec4 vertex_colour;
+
+void main()
+{
+    Material material = materials[material_index];
+    if (material.alpha_cutoff >= 0.0 && base_colour_of(material, uv, vertex_colour).a < material.alpha_cutoff) discard;
+}

@@ -1,0 +1,41 @@
+// Numbers that C++ and GLSL must agree on. Included by both.
+#ifndef SSRLAB_SHARED_H
+#define SSRLAB_SHARED_H
+
+// Why a ray stopped (core/trace_result.h has the same list with its meaning).
+#define TRACE_NOT_TRACED 0
+#define TRACE_HIT 1
+#define TRACE_LEFT_SCREEN 2
+#define TRACE_PAST_MAX_DISTANCE 3
+#define TRACE_OUT_OF_STEPS 4
+#define TRACE_FACING_AWAY 5
+
+// A pixel and a small number in one uint: x in bits 0..13, y in 14..27, the number in 28..31.
+#define PIXEL_BITS 14
+#define MAX_IMAGE_PX (1 << PIXEL_BITS)
+
+// Rays are traced in groups of this many; a launch is a grid no wider than MAX_GROUPS_X groups.
+#define RAYS_PER_GROUP 64
+#define MAX_GROUPS_X 32768
+
+// Specialization constants. Technique parameters start at CONSTANT_PARAMETERS, in the order of technique.toml's names.
+#define CONSTANT_SLAB_SLOPE 0
+#define CONSTANT_SLAB_SCALE 1
+#define CONSTANT_SLAB_SHIFT 2
+#define CONSTANT_MAX_DISTANCE_M 3
+#define CONSTANT_RAY_OFFSET_M 4
+#define CONSTANT_FACING 5
+#define CONSTANT_ORTHOGRAPHIC 6
+#define CONSTANT_METALLIC_EXPONENT 7
+#define CONSTANT_FADE_TO_VIEWER 8
+#define CONSTANT_FADE_AT_EDGES 9
+#define CONSTANT_PYRAMID_KIND 10
+#define CONSTANT_PARAMETERS 32
+
+#define PYRAMID_MINMAX 0
+#define PYRAMID_NEAREST 1
+
+// Background in the depth image that tracers read: nearer than nothing, so that no interval touches it.
+#define BACKGROUND_DEPTH -1.0
+
+#endif

@@ -1,0 +1,182 @@
+// What a technique sees: a ray that is ready, counted fetches, the hit contract, and results that say why they stopped.
+// A technique defines    TraceResult trace(Ray ray)
+#include "view.glsl"
+#include "slab.glsl"
+
+layout(constant_id = CONSTANT_FACING) const int facing_rule = 0;
+layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1;
+
+layout(set = 0, binding = 1, r32f) uniform readonly image2D depth_image;
+layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image;
+layout(set = 0, binding = 3, rg32f) uniform readonly image2D depth_pyramid; // levels 1, 2, … in one atlas
+
+struct Ray
+{
+    real3 origin;      // x_px, y_px, depth at t = 0
+    real3 delta;       // from there to the end of the segment, t = 1; the whole segment lies on the image
+    ivec2 start_pixel; // never counts as a hit
+    real  length_m;    // length of the segment in view space; may be infinite
+    int   end_status;  // how the ray ends if it hits nothing
+};
+
+struct TraceResult
+{
+    int   status; // TRACE_*
+    ivec2 pixel;  // the pixel that was hit; undefined unless TRACE_HIT
+    real  t;      // where the ray first meets the slab inside that pixel; undefined unless TRACE_HIT
+    int   steps;  // loop iterations
+};
+
+// ---- Work counters: compiled out of the pipelines that are timed.
+#ifdef COUNT_WORK
+uint depth_fetches   = 0;
+uint pyramid_fetches = 0;
+#define COUNT(counter) ++counter
+#else
+#define COUNT(counter)
+#endif
+
+// Set when a surface would have been hit but faces away.
+bool met_facing_away = false;
+
+// ---- The ray
+real depth_at(Ray ray, real t)
+{
+    precise real depth = ray.origin.z + t * ray.delta.z; // not mix(): that is not monotone in t
+    return depth;
+}
+
+ivec2 pixel_at(Ray ray, real t)
+{
+    real2 position_px = ray.origin.xy + t * ray.delta.xy;
+    return clamp(ivec2(floor(position_px)), ivec2(0), size_px - 1);
+}
+
+// Screen t of the point at a fraction of the segment's length in view space (1/distance is linear on screen).
+real fraction_to_t(Ray ray, real fraction)
+{
+    if (orthographic != 0) return fraction;
+    real end_depth = ray.origin.z + ray.delta.z;
+    return fraction * ray.origin.z / (end_depth - fraction * ray.delta.z);
+}
+
+// ---- Borders between pixels, in closed form: the same number at every level of the pyramid, monotone along the ray.
+struct Grid
+{
+    real2 inverse_delta; // finite: a component that is zero crosses nothing
+    ivec2 forward;       // 1 where the ray runs toward larger coordinates, else 0
+};
+
+Grid make_grid(Ray ray)
+{
+    const real tiny = real(1e-20);
+    bvec2      flat_axis = lessThan(abs(ray.delta.xy), real2(tiny));
+    Grid       grid;
+    grid.inverse_delta = real2(flat_axis.x ? real(1) / tiny : real(1) / ray.delta.x, flat_axis.y ? real(1) / tiny : real(1) / ray.delta.y);
+    grid.forward       = ivec2(flat_axis.x || ray.delta.x > real(0), flat_axis.y || ray.delta.y > real(0));
+    return grid;
+}
+
+// t at which the ray crosses the borders x = border.x and y = border.y.
+real2 border_t(Ray ray, Grid grid, ivec2 border)
+{
+    precise real2 t = (real2(border) - ray.origin.xy) * grid.inverse_delta;
+    return t;
+}
+
+// Moves to the neighbour cell(s) whose border is crossed at t.
+ivec2 cross_borders(Grid grid, ivec2 cell, real2 t_border, real t)
+{
+    return cell + ivec2(lessThanEqual(t_border, real2(t))) * (2 * grid.forward - 1);
+}
+
+bool on_screen(ivec2 pixel)
+{
+    return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size_px));
+}
+
+// ---- Fetches
+real fetch_depth(ivec2 pixel)
+{
+    COUNT(depth_fetches);
+    return real(imageLoad(depth_image, pixel).x);
+}
+
+// Where level >= 1 begins in the atlas; padded_width is a multiple of 2^levels.
+ivec2 pyramid_offset(int level)
+{
+    int padded_width = imageSize(depth_pyramid).x;
+    return ivec2(padded_width - (padded_width >> (level - 1)), 0);
+}
+
+// Levels above 0 that the pyramid has: 2^levels covers the larger side of the image.
+int pyramid_levels()
+{
+    int largest = max(size_px.x, size_px.y);
+    return largest > 1 ? findMSB(largest - 1) + 1 : 0;
+}
+
+// A cell of level >= 1: x = nearest front, y = farthest slab back of its pixels, rounded outward.
+real2 fetch_pyramid(ivec2 cell, int level)
+{
+    COUNT(pyramid_fetches);
+    return real2(imageLoad(depth_pyramid, pyramid_offset(level) + cell).xy);
+}
+
+// ---- The hit contract
+bool interval_touches(real depth, real z_a, real z_b)
+{
+    return depth >= min(z_a, z_b) && reaches_slab_back(depth, max(z_a, z_b));
+}
+
+// Direction of the ray in view space, not normalised.
+real3 direction_vs(Ray ray)
+{
+    real2 from = px_to_slope(ray.origin.xy), to = px_to_slope(ray.origin.xy + ray.delta.xy);
+    if (orthographic != 0) return real3(to - from, ray.delta.z * (far_m - near_m));
+    // P = slope / depth * near: P1 - P0 times both depths.
+    real from_depth = ray.origin.z, to_depth = ray.origin.z + ray.delta.z;
+    return real3(to * from_depth - from * to_depth, to_depth - from_depth);
+}
+
+bool faces(Ray ray, ivec2 pixel)
+{
+    return facing_rule == 0 || dot(real3(imageLoad(normal_image, pixel).xyz), direction_vs(ray)) < real(0);
+}
+
+// Does the ray, whose depth covers the interval between z_a and z_b, hit the surface seen at this pixel?
+bool touches_surface(Ray ray, ivec2 pixel, real z_a, real z_b)
+{
+    bool touched = interval_touches(fetch_depth(pixel), z_a, z_b);
+    if (facing_rule == 0) return touched;
+    bool accepted   = faces(ray, pixel);
+    met_facing_away = met_facing_away || (touched && !accepted);
+    return touched && accepted;
+}
+
+// ---- Results
+TraceResult hit_at(Ray ray, ivec2 pixel, real t, int steps)
+{
+    return TraceResult(TRACE_HIT, pixel, t, steps);
+}
+
+// A hit somewhere in [t_in, t_out]: the point where the ray first meets the slab.
+TraceResult hit_between(Ray ray, ivec2 pixel, real t_in, real t_out, int steps)
+{
+    real depth = real(imageLoad(depth_image, pixel).x);
+    real z_in  = depth_at(ray, t_in);
+    real face  = z_in > depth ? depth : slab_back(depth);
+    bool inside = z_in <= depth && reaches_slab_back(depth, z_in);
+    real t     = inside || ray.delta.z == real(0) ? t_in : clamp((face - ray.origin.z) / ray.delta.z, t_in, t_out);
+    return TraceResult(TRACE_HIT, pixel, t, steps);
+}
+
+TraceResult miss(Ray ray, int steps)
+{
+    return TraceResult(met_facing_away ? TRACE_FACING_AWAY : ray.end_status, ivec2(0), real(0), steps);
+}
+
+TraceResult out_of_steps(int steps)
+{
+    return TraceResult(TRACE_OUT_OF_STEPS, ivec2(0), real(0), steps);
+}

@@ -1,0 +1,40 @@
+// The camera of the G-buffer (core/view.h) and its mappings between view space and pixels.
+#include "real.glsl"
+#include "shared.h"
+
+layout(constant_id = CONSTANT_ORTHOGRAPHIC) const int orthographic = 0;
+
+layout(set = 0, binding = 0, scalar) uniform View
+{
+    real2 focal_px;  // perspective: pixels per unit of slope; orthographic: pixels per metre
+    real2 centre_px; // where the view axis meets the image
+    real  near_m;
+    real  far_m; // orthographic only
+    ivec2 size_px;
+};
+
+real depth_to_distance(real depth)
+{
+    return orthographic == 0 ? near_m / depth : far_m - depth * (far_m - near_m);
+}
+
+// Slope of the view ray through a pixel position (orthographic: its offset in metres); x right, y up.
+real2 px_to_slope(real2 position_px)
+{
+    return (position_px - centre_px) / focal_px * real2(1, -1);
+}
+
+uint pack_pixel(ivec2 pixel, int number)
+{
+    return uint(pixel.x) | uint(pixel.y) << PIXEL_BITS | uint(number) << (2 * PIXEL_BITS);
+}
+
+ivec2 unpack_pixel(uint packed)
+{
+    return ivec2(packed, packed >> PIXEL_BITS) & (MAX_IMAGE_PX - 1);
+}
+
+int unpack_number(uint packed)
+{
+    return int(packed >> (2 * PIXEL_BITS));
+}

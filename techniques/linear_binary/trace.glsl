@@ -1,0 +1,39 @@
+// Screen t of sample i; > 1 beyond the end of the segment.
+real sample_t(Ray ray, int i)
+{
+    real fraction = real(i) / real(steps);
+    if (space == space_screen) return fraction;
+    real along = max_distance_m * fraction / ray.length_m;
+    return along > real(1) ? real(2) : fraction_to_t(ray, along);
+}
+
+TraceResult trace(Ray ray)
+{
+    real t_free = real(0), t = real(0), z = ray.origin.z;
+    bool found  = false;
+    int  i      = 1;
+    for (; i <= steps; ++i)
+    {
+        t_free = t;
+        t      = sample_t(ray, i);
+        if (t > real(1)) break;
+        real  z_before = z;
+        ivec2 pixel    = pixel_at(ray, t);
+        z              = depth_at(ray, t);
+        found          = pixel != ray.start_pixel && touches_surface(ray, pixel, interval ? z_before : z, z);
+        if (found) break;
+    }
+    i = min(i, steps);
+    if (!found) return miss(ray, i);
+
+    // The bracket: free at t_free, inside a slab (or, with the interval test, beyond its front) at t.
+    for (int k = 0; k < binary_steps; ++k)
+    {
+        real  middle = real(0.5) * (t_free + t);
+        ivec2 pixel  = pixel_at(ray, middle);
+        bool  behind = pixel != ray.start_pixel && depth_at(ray, middle) <= fetch_depth(pixel);
+        t_free       = behind ? t_free : middle;
+        t            = behind ? middle : t;
+    }
+    return hit_at(ray, pixel_at(ray, t), t, i + binary_steps);
+}
