@@ -1,0 +1,194 @@
+// Analytic scenes. Metres, y up; the level camera stands at the origin and looks along -z with a field of view of 90 degrees.
+// Every floor is a perfect mirror in the plane y = -1, so a reflected ray looks as if it came from (0, -2, 0) upside down.
+//
+// Closed forms for the level camera, image height H, h = H / 2, c = row or column of the image centre (continuous pixels):
+//   floor    row py shows the floor at distance d = h / (py - c); a point at height y_m and distance D is reflected at the
+//            row c + h (2 + y_m) / D, and seen itself at row c - h y_m / D. Both lie in the same column.
+//   mirror_floor_wall   wall at D = 10: the floor at row py reflects the wall at row 1.1 H - py (H = 64: 70.4 - py).
+//   sphere_over_mirror  centre (0, 0, -5), radius 1, touching the floor: its mirror image is the sphere about (0, -2, -5).
+//   pole_field          poles of radius 0.02 at x = -6 .. 6 by 0.5, z = -3, -4.5 .. -10.5: each is its own reflection's column.
+//   stairs              step k = 0 .. 7: riser at z = -4 - 0.5 k from y = -1 + 0.25 k to -0.75 + 0.25 k.
+//   corridor            walls x = -2, 2, ceiling y = 2, end wall z = -40, columns every 3 m at x = -1.6, 1.6.
+//   void                nothing at all: every pixel is background.
+#include "scene/builtin_scenes.h"
+
+#include "scene/shapes.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace ssrlab {
+namespace {
+
+constexpr double floor_y_m = -1;
+
+Light sun(glm::vec3 direction_ws, float irradiance)
+{
+    Light light;
+    light.direction_ws = glm::normalize(direction_ws);
+    light.intensity    = glm::vec3(irradiance);
+    return light;
+}
+
+Camera camera(const char* name, glm::dvec3 position_ws, double pitch_down_deg, const char* hard_for)
+{
+    const double pitch = pitch_down_deg * std::numbers::pi / 180;
+    Camera       result;
+    result.name        = name;
+    result.hard_for    = hard_for;
+    result.position_ws = position_ws;
+    result.target_ws   = position_ws + glm::dvec3(0, -std::sin(pitch), -std::cos(pitch));
+    result.fov_y_deg   = 90;
+    return result;
+}
+
+/// Lights, the mirror floor's material (index 0) and the three cameras that all scenes have.
+Model start_scene()
+{
+    Model model;
+    model.materials.push_back(make_material("mirror", glm::vec3(0.95F), 1, 0));
+    model.lights.push_back({sun({-0.5F, -1.0F, -0.7F}, 2.2F), {}});
+    model.cameras = {
+        camera("default", {0, 0, 0}, 0, "level camera: rays along image columns, many towards the horizon"),
+        camera("down", {0, 0, 0}, 25, "pitched down: the floor fills most of the picture"),
+        camera("steep", {0, 0.5, -1}, 55, "looking down steeply: rays come back towards the camera and leave the screen"),
+    };
+    return model;
+}
+
+void add(Model& model, const char* name, uint32_t material, Mesh mesh)
+{
+    mesh.name     = name;
+    mesh.material = material;
+    model.meshes.push_back(std::move(mesh));
+}
+
+uint32_t add_material(Model& model, const char* name, glm::vec3 base_colour)
+{
+    model.materials.push_back(make_material(name, base_colour, 0, 0.7F));
+    return static_cast<uint32_t>(model.materials.size() - 1);
+}
+
+uint32_t add_checker(Model& model, const char* name, glm::vec3 colour_a, glm::vec3 colour_b)
+{
+    const uint32_t material = add_material(model, name, glm::vec3(1));
+    model.materials[material].base_colour_texture.texture = static_cast<int>(model.textures.size());
+    model.textures.push_back(make_checker_texture(colour_a, colour_b));
+    return material;
+}
+
+void add_floor(Model& model, double half_width_m, double near_z_m, double far_z_m)
+{
+    add(model, "floor", 0,
+        make_quad({-half_width_m, floor_y_m, near_z_m}, {2 * half_width_m, 0, 0}, {0, 0, far_z_m - near_z_m}));
+}
+
+/// Facing the camera, from the floor up, with squares of half a metre.
+void add_wall(Model& model, double half_width_m, double z_m, double top_y_m)
+{
+    const uint32_t checker = add_checker(model, "wall", {0.85F, 0.45F, 0.2F}, {0.25F, 0.45F, 0.75F});
+    add(model, "wall", checker,
+        make_quad({-half_width_m, floor_y_m, z_m}, {2 * half_width_m, 0, 0}, {0, top_y_m - floor_y_m, 0}));
+}
+
+Model mirror_floor_wall()
+{
+    Model model = start_scene();
+    add_floor(model, 40, 5, -10);
+    add_wall(model, 40, -10, 20);
+    return model;
+}
+
+Model sphere_over_mirror()
+{
+    Model          model  = start_scene();
+    const uint32_t sphere = add_checker(model, "sphere", {0.9F, 0.75F, 0.2F}, {0.6F, 0.15F, 0.2F});
+    add_floor(model, 30, 5, -30);
+    add(model, "sphere", sphere, make_sphere({0, 0, -5}, 1, 256, 128));
+    return model;
+}
+
+Model pole_field()
+{
+    Model model = start_scene();
+    add_floor(model, 40, 5, -14);
+    add_wall(model, 40, -14, 6);
+    const std::array<uint32_t, 3> colours = {add_material(model, "pole red", {0.8F, 0.15F, 0.1F}),
+                                             add_material(model, "pole green", {0.2F, 0.7F, 0.2F}),
+                                             add_material(model, "pole white", {0.85F, 0.85F, 0.85F})};
+    std::array<Mesh, 3>           poles;
+    for (int row = 0; row < 6; ++row)
+        for (int column = -12; column <= 12; ++column)
+            append(poles[static_cast<size_t>(row + column + 12) % 3],
+                   make_cylinder({0.5 * column, floor_y_m, -3 - 1.5 * row}, 0.02, 2.5, 12));
+    for (size_t i = 0; i < poles.size(); ++i)
+        add(model, model.materials[colours[i]].name.c_str(), colours[i], std::move(poles[i]));
+    return model;
+}
+
+Model stairs()
+{
+    Model          model = start_scene();
+    const uint32_t dark  = add_material(model, "step dark", {0.35F, 0.25F, 0.2F});
+    const uint32_t light = add_material(model, "step light", {0.8F, 0.7F, 0.5F});
+    add_floor(model, 30, 5, -12);
+    add_wall(model, 30, -12, 6);
+    for (int k = 0; k < 8; ++k)
+        add(model, "step", k % 2 == 0 ? dark : light,
+            make_box({-3, floor_y_m, -4 - 0.5 * (k + 1)}, {3, floor_y_m + 0.25 * (k + 1), -4 - 0.5 * k}));
+    return model;
+}
+
+Model corridor()
+{
+    Model model = start_scene();
+    model.lights.clear();
+    for (double z_m : {-3.0, -15.0}) {
+        ModelLight lamp;
+        lamp.position_ws           = {0, 1.95, z_m};
+        lamp.light.type            = LightType::spot;
+        lamp.light.direction_ws    = glm::normalize(glm::vec3(0.0F, -1.0F, -0.6F));
+        lamp.light.intensity       = glm::vec3(12);
+        lamp.light.inner_angle_rad = 0.7F;
+        lamp.light.outer_angle_rad = 1.2F;
+        model.lights.push_back(lamp);
+    }
+    const uint32_t wall    = add_checker(model, "wall", {0.75F, 0.6F, 0.45F}, {0.45F, 0.5F, 0.6F});
+    const uint32_t ceiling = add_material(model, "ceiling", {0.75F, 0.75F, 0.7F});
+    const uint32_t end     = add_material(model, "end wall", {0.8F, 0.2F, 0.15F});
+    const uint32_t column  = add_material(model, "column", {0.2F, 0.55F, 0.45F});
+    add_floor(model, 2, 5, -40);
+    add(model, "left wall", wall, make_quad({-2, floor_y_m, 5}, {0, 0, -45}, {0, 3, 0}));
+    add(model, "right wall", wall, make_quad({2, floor_y_m, -40}, {0, 0, 45}, {0, 3, 0}));
+    add(model, "ceiling", ceiling, make_quad({-2, 2, -40}, {4, 0, 0}, {0, 0, 45}));
+    add(model, "end wall", end, make_quad({-2, floor_y_m, -40}, {4, 0, 0}, {0, 3, 0}));
+    add(model, "back wall", end, make_quad({2, floor_y_m, 5}, {-4, 0, 0}, {0, 3, 0}));
+    Mesh columns;
+    for (int k = 0; k < 13; ++k)
+        for (double x_m : {-1.6, 1.6}) append(columns, make_cylinder({x_m, floor_y_m, -2 - 3.0 * k}, 0.15, 3, 32));
+    add(model, "columns", column, std::move(columns));
+    return model;
+}
+
+Model nothing()
+{
+    Model model;
+    model.cameras = {camera("default", {0, 0, 0}, 0, "no surface at all")};
+    return model;
+}
+
+constexpr std::array<BuiltinScene, 6> scenes = {{
+    {"mirror_floor_wall", "Mirror floor before a checkered wall 10 m away.", mirror_floor_wall},
+    {"sphere_over_mirror", "A sphere that touches a mirror floor.", sphere_over_mirror},
+    {"pole_field", "150 thin poles on a mirror floor before a wall.", pole_field},
+    {"stairs", "Eight steps on a mirror floor before a wall.", stairs},
+    {"corridor", "A corridor of 45 m with a mirror floor and columns.", corridor},
+    {"void", "No triangles: every pixel is background.", nothing},
+}};
+
+} // namespace
+
+std::span<const BuiltinScene> builtin_scenes() { return scenes; }
+
+} // namespace ssrlab

@@ -1,0 +1,60 @@
+// The parts of the glTF loader. Everything that a file says is checked before it is used.
+#pragma once
+
+#include "core/error.h"
+#include "scene/model.h"
+
+#include <tiny_gltf.h>
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace ssrlab::gltf {
+
+/// Stated limits; a file beyond them is refused, whatever its size.
+inline constexpr uint64_t max_file_bytes    = 2ULL << 30;
+inline constexpr size_t   max_objects       = 1'000'000; // of each kind: nodes, accessors, ...
+inline constexpr int      max_json_depth    = 128;
+inline constexpr int      max_node_depth    = 256;
+inline constexpr size_t   max_node_visits   = 1'000'000;
+inline constexpr size_t   max_triangles     = 100'000'000;
+inline constexpr size_t   max_accessor_rows = 300'000'000;
+
+struct Import {
+    std::string     file; // for messages
+    tinygltf::Model json;
+    Model           model;
+    size_t          triangles = 0;
+    std::set<std::string> said; // warnings are said once
+
+    void warn(const std::string& text);
+    template <typename... Args>
+    [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const;
+};
+
+/// Reads and parses the file; refuses what the parser itself would let through or choke on.
+void parse_file(Import& import, const std::filesystem::path& file);
+
+/// The file's folder joined with a relative URI; throws Failure for absolute paths, schemes, and ways out of the folder.
+std::filesystem::path resolve_uri(const std::filesystem::path& folder, const std::string& uri);
+
+/// An accessor as rows of `components` floats (normalised integers become -1..1 or 0..1). Bounds are checked.
+std::vector<float>    read_floats(const Import& import, int accessor, int components, const std::string& where);
+std::vector<uint32_t> read_indices(const Import& import, int accessor, const std::string& where);
+int                   component_count(const Import& import, int accessor, const std::string& where);
+
+/// Adds all textures and materials, and one default material at the end. Returns which materials are left out.
+std::vector<bool> add_materials(Import& import);
+
+/// A mesh's primitives as Meshes in the mesh's own space. Draws that cannot be shown are skipped with a warning.
+std::vector<Mesh> read_mesh(Import& import, int mesh, const std::vector<bool>& material_left_out);
+
+template <typename... Args>
+void Import::fail(fmt::format_string<Args...> format, Args&&... args) const
+{
+    throw_failure("{}: {}", file, fmt::format(format, std::forward<Args>(args)...));
+}
+
+} // namespace ssrlab::gltf

@@ -1,0 +1,189 @@
+#include "scene/gltf.h"
+#include "scene/image_file.h"
+#include "scene/shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace ssrlab::gltf {
+namespace {
+
+/// A texture with its colour space: one glTF texture may be read both ways.
+using TextureKey = std::pair<int, bool>;
+
+struct Textures {
+    std::map<TextureKey, int> numbers;
+    std::map<int, Texture>    decoded; // by image
+};
+
+Wrap to_wrap(int wrap)
+{
+    if (wrap == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::clamp_to_edge;
+    return wrap == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::mirrored_repeat : Wrap::repeat;
+}
+
+void apply_sampler(const Import& import, int sampler_index, Texture& texture)
+{
+    if (sampler_index < 0 || static_cast<size_t>(sampler_index) >= import.json.samplers.size()) return;
+    const tinygltf::Sampler& sampler = import.json.samplers[static_cast<size_t>(sampler_index)];
+    texture.wrap_u  = to_wrap(sampler.wrapS);
+    texture.wrap_v  = to_wrap(sampler.wrapT);
+    texture.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+    texture.mipmaps = sampler.minFilter != TINYGLTF_TEXTURE_FILTER_NEAREST && sampler.minFilter != TINYGLTF_TEXTURE_FILTER_LINEAR;
+}
+
+/// An image that cannot be used leaves its texture out, with a warning: the shape is still worth seeing.
+const Texture& decoded_image(Import& import, Textures& textures, int image_index)
+{
+    const auto [found, added] = textures.decoded.try_emplace(image_index);
+    if (!added) return found->second;
+    const std::string where = fmt::format("/images/{}", image_index);
+    if (image_index < 0 || static_cast<size_t>(image_index) >= import.json.images.size()) {
+        import.warn(fmt::format("{}: there is no such image; texture left out", where));
+        return found->second;
+    }
+    const tinygltf::Image& image = import.json.images[static_cast<size_t>(image_index)];
+    if (image.image.empty()) {
+        import.warn(fmt::format("{} '{}' is missing; texture left out", where, image.uri.substr(0, 100)));
+        return found->second;
+    }
+    try {
+        found->second = decode_image(image.image, fmt::format("{}: {}", import.file, where));
+    } catch (const Failure& failure) {
+        import.warn(fmt::format("texture left out: {}", failure.what()));
+    }
+    return found->second;
+}
+
+/// The number in Model::textures, or -1.
+int texture_number(Import& import, Textures& textures, int texture_index, bool srgb, const std::string& where)
+{
+    if (texture_index < 0) return -1;
+    if (static_cast<size_t>(texture_index) >= import.json.textures.size())
+        import.fail("{}: there is no texture {}", where, texture_index);
+    const auto [found, added] = textures.numbers.try_emplace({texture_index, srgb}, -1);
+    if (!added) return found->second;
+    const tinygltf::Texture& source = import.json.textures[static_cast<size_t>(texture_index)];
+    Texture                  texture = decoded_image(import, textures, source.source);
+    if (texture.rgba.empty()) return -1;
+    texture.srgb = srgb;
+    apply_sampler(import, source.sampler, texture);
+    found->second = static_cast<int>(import.model.textures.size());
+    import.model.textures.push_back(std::move(texture));
+    return found->second;
+}
+
+double number_in(const tinygltf::Value& value, const char* key, double otherwise)
+{
+    return value.IsObject() && value.Has(key) && value.Get(key).IsNumber() ? value.Get(key).GetNumberAsDouble() : otherwise;
+}
+
+glm::dvec2 pair_in(const tinygltf::Value& value, const char* key, glm::dvec2 otherwise)
+{
+    if (!value.IsObject() || !value.Has(key)) return otherwise;
+    const tinygltf::Value& pair = value.Get(key);
+    if (!pair.IsArray() || pair.ArrayLen() != 2 || !pair.Get(0).IsNumber() || !pair.Get(1).IsNumber()) return otherwise;
+    return {pair.Get(0).GetNumberAsDouble(), pair.Get(1).GetNumberAsDouble()};
+}
+
+/// KHR_texture_transform: translation * rotation * scale.
+glm::mat3 uv_transform_of(const tinygltf::Value& extension)
+{
+    const glm::dvec2 offset   = pair_in(extension, "offset", {0, 0});
+    const glm::dvec2 scale    = pair_in(extension, "scale", {1, 1});
+    const double     rotation = number_in(extension, "rotation", 0);
+    const double     c = std::cos(rotation);
+    const double     s = std::sin(rotation);
+    return glm::mat3(glm::dmat3({c * scale.x, -s * scale.x, 0}, {s * scale.y, c * scale.y, 0}, {offset, 1}));
+}
+
+template <typename Info>
+TextureUse texture_use(Import& import, Textures& textures, const Info& info, bool srgb, const std::string& where)
+{
+    TextureUse use;
+    use.texture = texture_number(import, textures, info.index, srgb, where);
+    use.uv_set  = info.texCoord;
+    const auto extension = info.extensions.find("KHR_texture_transform");
+    if (extension != info.extensions.end()) {
+        use.uv_transform = uv_transform_of(extension->second);
+        use.uv_set       = static_cast<int>(number_in(extension->second, "texCoord", use.uv_set));
+    }
+    if (use.texture >= 0 && (use.uv_set < 0 || use.uv_set > 1)) {
+        import.warn(fmt::format("{}: texture coordinate set {} is not supported; texture left out", where, use.uv_set));
+        return {};
+    }
+    return use;
+}
+
+float unit_range(double value, float otherwise) { return std::isfinite(value) ? static_cast<float>(std::clamp(value, 0.0, 1.0)) : otherwise; }
+
+Material convert(Import& import, Textures& textures, const tinygltf::Material& source, const std::string& where)
+{
+    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+    Material material;
+    material.name = source.name;
+    for (int c = 0; c < 4 && pbr.baseColorFactor.size() == 4; ++c)
+        material.base_colour[c] = unit_range(pbr.baseColorFactor[static_cast<size_t>(c)], 1);
+    if (pbr.roughnessFactor < 0 || pbr.roughnessFactor > 1 || pbr.metallicFactor < 0 || pbr.metallicFactor > 1)
+        import.warn(fmt::format("{}: metallic or roughness outside [0, 1] was clamped", where));
+    material.metallic  = unit_range(pbr.metallicFactor, 1);
+    material.roughness = unit_range(pbr.roughnessFactor, 1);
+    for (int c = 0; c < 3 && source.emissiveFactor.size() == 3; ++c)
+        material.emissive[c] = unit_range(source.emissiveFactor[static_cast<size_t>(c)], 0);
+    const auto strength = source.extensions.find("KHR_materials_emissive_strength");
+    if (strength != source.extensions.end())
+        material.emissive *= static_cast<float>(std::clamp(number_in(strength->second, "emissiveStrength", 1), 0.0, 1e6));
+    material.normal_scale = std::isfinite(source.normalTexture.scale) ? static_cast<float>(source.normalTexture.scale) : 1.0F;
+    material.double_sided = source.doubleSided;
+    material.alpha_mask   = source.alphaMode == "MASK";
+    material.alpha_cutoff = unit_range(source.alphaCutoff, 0.5F);
+    material.base_colour_texture        = texture_use(import, textures, pbr.baseColorTexture, true, where);
+    material.metallic_roughness_texture = texture_use(import, textures, pbr.metallicRoughnessTexture, false, where);
+    material.normal_texture             = texture_use(import, textures, source.normalTexture, false, where);
+    material.emissive_texture           = texture_use(import, textures, source.emissiveTexture, true, where);
+    if (source.extensions.contains("KHR_materials_unlit")) {
+        // Unlit shows its base colour whatever the light: that is emission and nothing else.
+        material.emissive         = glm::vec3(material.base_colour);
+        material.emissive_texture = material.base_colour_texture;
+        material.base_colour      = {0, 0, 0, material.base_colour.a};
+        material.metallic         = 0;
+        material.roughness        = 1;
+    }
+    return material;
+}
+
+/// A G-buffer holds opaque surfaces only. On average less than half opaque: left out. Otherwise drawn, where alpha >= 0.5.
+bool transparent(Import& import, const tinygltf::Material& source, Material& material)
+{
+    if (source.extensions.contains("KHR_materials_transmission"))
+        import.warn(fmt::format("material '{}' transmits light: drawn opaque", source.name));
+    if (source.alphaMode != "BLEND") return false;
+    float alpha = material.base_colour.a;
+    if (material.base_colour_texture.texture >= 0)
+        alpha *= mean_alpha(import.model.textures[static_cast<size_t>(material.base_colour_texture.texture)]);
+    material.alpha_mask   = true;
+    material.alpha_cutoff = 0.5F;
+    import.warn(fmt::format("material '{}' is transparent (mean alpha {:.2f}): {}", source.name, alpha,
+                            alpha < 0.5F ? "left out" : "drawn opaque where its alpha is at least 0.5"));
+    return alpha < 0.5F;
+}
+
+} // namespace
+
+std::vector<bool> add_materials(Import& import)
+{
+    Textures          textures;
+    std::vector<bool> left_out;
+    for (size_t i = 0; i < import.json.materials.size(); ++i) {
+        const tinygltf::Material& source   = import.json.materials[i];
+        Material                  material = convert(import, textures, source, fmt::format("/materials/{}", i));
+        left_out.push_back(transparent(import, source, material));
+        import.model.materials.push_back(std::move(material));
+    }
+    import.model.materials.push_back(make_material("default", glm::vec3(1), 1, 1));
+    left_out.push_back(false);
+    return left_out;
+}
+
+} // namespace ssrlab::gltf

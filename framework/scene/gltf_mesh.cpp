@@ -1,0 +1,129 @@
+#include "scene/gltf.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace ssrlab::gltf {
+namespace {
+
+int attribute(const tinygltf::Primitive& primitive, const char* name)
+{
+    const auto found = primitive.attributes.find(name);
+    return found == primitive.attributes.end() ? -1 : found->second;
+}
+
+/// Rows of an attribute, or nothing when it is absent; its count must be that of the positions.
+std::vector<float> rows_of(const Import& import, const tinygltf::Primitive& primitive, const char* name, int components,
+                           size_t vertex_count, const std::string& where)
+{
+    const int accessor = attribute(primitive, name);
+    if (accessor < 0) return {};
+    const std::string  place = fmt::format("{}/attributes/{}", where, name);
+    std::vector<float> rows  = read_floats(import, accessor, components, place);
+    if (rows.size() != vertex_count * static_cast<size_t>(components))
+        import.fail("{}: {} elements for {} positions", place, rows.size() / static_cast<size_t>(components), vertex_count);
+    return rows;
+}
+
+void read_colours(const Import& import, const tinygltf::Primitive& primitive, Mesh& mesh, const std::string& where)
+{
+    const int accessor = attribute(primitive, "COLOR_0");
+    if (accessor < 0) return;
+    const int                components = component_count(import, accessor, where) == 4 ? 4 : 3;
+    const std::vector<float> rows       = rows_of(import, primitive, "COLOR_0", components, mesh.vertices.size(), where);
+    for (size_t i = 0; i < mesh.vertices.size(); ++i)
+        for (int c = 0; c < components; ++c)
+            mesh.vertices[i].colour[c] = rows[i * static_cast<size_t>(components) + static_cast<size_t>(c)];
+}
+
+void read_vertices(const Import& import, const tinygltf::Primitive& primitive, Mesh& mesh, const std::string& where)
+{
+    const std::vector<float> positions =
+        read_floats(import, attribute(primitive, "POSITION"), 3, where + "/attributes/POSITION");
+    const size_t             count    = positions.size() / 3;
+    const std::vector<float> normals  = rows_of(import, primitive, "NORMAL", 3, count, where);
+    const std::vector<float> tangents = rows_of(import, primitive, "TANGENT", 4, count, where);
+    const std::vector<float> uv0      = rows_of(import, primitive, "TEXCOORD_0", 2, count, where);
+    const std::vector<float> uv1      = rows_of(import, primitive, "TEXCOORD_1", 2, count, where);
+    mesh.has_normals  = !normals.empty();
+    mesh.has_tangents = !tangents.empty() && mesh.has_normals;
+    for (size_t i = 0; i < count; ++i) {
+        Vertex vertex{};
+        vertex.normal_ws = {0, 1, 0};
+        vertex.colour    = glm::vec4(1);
+        if (mesh.has_normals) vertex.normal_ws = {normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]};
+        if (mesh.has_tangents) vertex.tangent_ws = {tangents[4 * i], tangents[4 * i + 1], tangents[4 * i + 2], tangents[4 * i + 3]};
+        if (!uv0.empty()) vertex.uv0 = {uv0[2 * i], uv0[2 * i + 1]};
+        if (!uv1.empty()) vertex.uv1 = {uv1[2 * i], uv1[2 * i + 1]};
+        mesh.positions_ws.emplace_back(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
+        mesh.vertices.push_back(vertex);
+    }
+    read_colours(import, primitive, mesh, where);
+}
+
+/// Strips and fans as single triangles, with the winding that glTF defines.
+std::vector<uint32_t> to_triangles(const std::vector<uint32_t>& corners, int mode)
+{
+    std::vector<uint32_t> triangles;
+    if (mode == TINYGLTF_MODE_TRIANGLES) {
+        triangles = corners;
+        triangles.resize(corners.size() / 3 * 3);
+        return triangles;
+    }
+    for (size_t i = 0; i + 2 < corners.size(); ++i) {
+        if (mode == TINYGLTF_MODE_TRIANGLE_FAN)
+            triangles.insert(triangles.end(), {corners[i + 1], corners[i + 2], corners[0]});
+        else
+            triangles.insert(triangles.end(), {corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]});
+    }
+    return triangles;
+}
+
+void read_triangles(const Import& import, const tinygltf::Primitive& primitive, int mode, Mesh& mesh, const std::string& where)
+{
+    std::vector<uint32_t> corners(mesh.vertices.size());
+    if (primitive.indices >= 0)
+        corners = read_indices(import, primitive.indices, where + "/indices");
+    else
+        std::iota(corners.begin(), corners.end(), 0U);
+    const auto beyond = std::ranges::find_if(corners, [&](uint32_t corner) { return corner >= mesh.vertices.size(); });
+    if (beyond != corners.end())
+        import.fail("{}/indices: index {} is out of range, there are {} vertices", where, *beyond, mesh.vertices.size());
+    mesh.indices = to_triangles(corners, mode);
+}
+
+} // namespace
+
+std::vector<Mesh> read_mesh(Import& import, int mesh_index, const std::vector<bool>& material_left_out)
+{
+    const tinygltf::Mesh& source = import.json.meshes[static_cast<size_t>(mesh_index)];
+    std::vector<Mesh>     meshes;
+    for (size_t i = 0; i < source.primitives.size(); ++i) {
+        const tinygltf::Primitive& primitive = source.primitives[i];
+        const std::string          where     = fmt::format("/meshes/{}/primitives/{}", mesh_index, i);
+        const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
+        if (mode > TINYGLTF_MODE_TRIANGLE_FAN) import.fail("{}/mode {} is unknown", where, mode);
+        if (mode < TINYGLTF_MODE_TRIANGLES) {
+            import.warn("points and lines are not drawn");
+            continue;
+        }
+        if (attribute(primitive, "POSITION") < 0) {
+            import.warn(fmt::format("{} has no positions; left out", where));
+            continue;
+        }
+        if (primitive.material >= static_cast<int>(import.json.materials.size()))
+            import.fail("{}/material: there is no material {}", where, primitive.material);
+        if (!primitive.targets.empty()) import.warn("morph targets are not supported: drawn at rest");
+        Mesh mesh;
+        mesh.name     = source.name.empty() ? fmt::format("mesh {}", mesh_index) : source.name;
+        mesh.material = static_cast<uint32_t>(primitive.material >= 0 ? primitive.material
+                                                                      : static_cast<int>(material_left_out.size()) - 1);
+        if (material_left_out[mesh.material]) continue;
+        read_vertices(import, primitive, mesh, where);
+        read_triangles(import, primitive, mode, mesh, where);
+        meshes.push_back(std::move(mesh));
+    }
+    return meshes;
+}
+
+} // namespace ssrlab::gltf

@@ -1,0 +1,280 @@
+// Before the parser: what it would crash on, hang on, or read from outside the asset's folder.
+#include "scene/gltf.h"
+#include "scene/image_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstring>
+
+namespace ssrlab::gltf {
+namespace fs = std::filesystem;
+using nlohmann::json;
+namespace {
+
+uint32_t read_u32(const std::vector<unsigned char>& bytes, size_t at)
+{
+    uint32_t value = 0;
+    std::memcpy(&value, &bytes[at], sizeof value);
+    return value;
+}
+
+bool is_binary(const std::vector<unsigned char>& bytes)
+{
+    return bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
+}
+
+std::string_view json_text(const Import& import, const std::vector<unsigned char>& bytes)
+{
+    const char* text = reinterpret_cast<const char*>(bytes.data());
+    if (!is_binary(bytes)) return {text, bytes.size()};
+    if (bytes.size() < 20) import.fail("truncated: no room for the GLB header");
+    if (read_u32(bytes, 4) != 2) import.fail("GLB version {} is not supported, only 2", read_u32(bytes, 4));
+    if (read_u32(bytes, 8) > bytes.size())
+        import.fail("truncated: the GLB header says {} bytes, the file has {}", read_u32(bytes, 8), bytes.size());
+    const uint64_t length = read_u32(bytes, 12);
+    if (std::memcmp(&bytes[16], "JSON", 4) != 0 || 20 + length > bytes.size())
+        import.fail("the first GLB chunk is no JSON, or longer than the file");
+    return {text + 20, static_cast<size_t>(length)};
+}
+
+/// The parser recurses: some ten thousand brackets overflow its stack.
+void check_json_depth(const Import& import, std::string_view text)
+{
+    int  depth     = 0;
+    bool in_string = false;
+    for (size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (in_string) {
+            if (c == '\\')
+                ++i;
+            else if (c == '"')
+                in_string = false;
+        } else if (c == '"') {
+            in_string = true;
+        } else if (c == '[' || c == '{') {
+            if (++depth > max_json_depth) import.fail("JSON is nested deeper than {} levels", max_json_depth);
+        } else if (c == ']' || c == '}') {
+            --depth;
+        }
+    }
+}
+
+json parse_json(const Import& import, std::string_view text)
+{
+    try {
+        json parsed = json::parse(text);
+        if (!parsed.is_object()) import.fail("the JSON is no object");
+        return parsed;
+    } catch (const json::exception& error) {
+        import.fail("broken JSON: {}", error.what());
+    }
+}
+
+/// The array of that name; empty when there is none.
+const json& array_of(const Import& import, const json& object, const char* name)
+{
+    static const json empty = json::array();
+    const auto        found = object.find(name);
+    if (found == object.end()) return empty;
+    if (!found->is_array()) import.fail("/{} is no array", name);
+    if (found->size() > max_objects) import.fail("/{} has {} items, at most {} can be loaded", name, found->size(), max_objects);
+    for (size_t i = 0; i < found->size(); ++i)
+        if (!(*found)[i].is_object() && std::strncmp(name, "extensions", 10) != 0) import.fail("/{}/{} is no object", name, i);
+    return *found;
+}
+
+uint64_t count_of(const Import& import, const json& object, const char* key, const std::string& where, uint64_t otherwise)
+{
+    const auto found = object.find(key);
+    if (found == object.end()) return otherwise;
+    if (!found->is_number_unsigned()) import.fail("{}/{} must be a whole number >= 0", where, key);
+    return found->get<uint64_t>();
+}
+
+void check_version(const Import& import, const json& root)
+{
+    const auto asset = root.find("asset");
+    if (asset == root.end() || !asset->is_object() || !asset->contains("version") || !(*asset)["version"].is_string())
+        import.fail("/asset/version is missing: no glTF 2.0");
+    const std::string version = (*asset)["version"];
+    if (!version.starts_with("2.")) import.fail("glTF version {} is not supported, only 2.x", version);
+}
+
+struct ExtensionRule {
+    std::string_view name, advice;
+};
+constexpr ExtensionRule fatal_extensions[] = {
+    {"KHR_draco_mesh_compression", "decompress the meshes first, e.g. gltf-transform copy"},
+    {"EXT_meshopt_compression", "decompress the meshes first, e.g. gltf-transform copy"},
+    {"KHR_texture_basisu", "convert the textures to PNG or JPEG first"},
+    {"EXT_texture_webp", "convert the textures to PNG or JPEG first"},
+    {"EXT_texture_avif", "convert the textures to PNG or JPEG first"},
+    {"MSFT_texture_dds", "convert the textures to PNG or JPEG first"},
+};
+constexpr std::string_view supported_extensions[] = {
+    "KHR_lights_punctual", "KHR_texture_transform", "KHR_materials_emissive_strength", "KHR_materials_unlit",
+    "KHR_mesh_quantization"};
+
+void check_extensions(Import& import, const json& root)
+{
+    const auto names = [&](const char* key) {
+        std::vector<std::string> result;
+        for (const json& name : array_of(import, root, key))
+            if (name.is_string()) result.push_back(name);
+        return result;
+    };
+    for (const std::string& name : names("extensionsRequired")) {
+        for (const ExtensionRule& rule : fatal_extensions)
+            if (name == rule.name) import.fail("needs the extension {}, which is not supported: {}", name, rule.advice);
+        if (!name.starts_with("KHR_materials_") && std::ranges::find(supported_extensions, name) == std::end(supported_extensions))
+            import.fail("needs the extension {}, which is not supported", name);
+    }
+    for (const std::string& name : names("extensionsUsed"))
+        if (std::ranges::find(supported_extensions, name) == std::end(supported_extensions))
+            import.warn(fmt::format("extension {} is not supported and was ignored", name));
+}
+
+void check_uris(const Import& import, const json& root, const fs::path& folder)
+{
+    for (const char* kind : {"buffers", "images"}) {
+        const json& items = array_of(import, root, kind);
+        for (size_t i = 0; i < items.size(); ++i) {
+            const auto uri = items[i].find("uri");
+            if (uri == items[i].end()) continue;
+            if (!uri->is_string()) import.fail("/{}/{}/uri is no text", kind, i);
+            const std::string text = *uri;
+            if (text.starts_with("data:")) continue;
+            try {
+                resolve_uri(folder, text);
+            } catch (const Failure& failure) {
+                import.fail("/{}/{}/uri: {}", kind, i, failure.what());
+            }
+        }
+    }
+}
+
+/// The parser reads images through buffer views before anybody could check them.
+void check_buffer_views(const Import& import, const json& root)
+{
+    const json& buffers = array_of(import, root, "buffers");
+    const json& views   = array_of(import, root, "bufferViews");
+    for (size_t i = 0; i < views.size(); ++i) {
+        const std::string where  = fmt::format("/bufferViews/{}", i);
+        const uint64_t    buffer = count_of(import, views[i], "buffer", where, ~0ULL);
+        if (buffer >= buffers.size()) import.fail("{}/buffer: there is no such buffer", where);
+        const uint64_t size   = count_of(import, buffers[buffer], "byteLength", fmt::format("/buffers/{}", buffer), 0);
+        const uint64_t offset = count_of(import, views[i], "byteOffset", where, 0);
+        const uint64_t length = count_of(import, views[i], "byteLength", where, 0);
+        if (length == 0 || offset > size || length > size - offset)
+            import.fail("{} reaches beyond its buffer ({} + {} of {} bytes)", where, offset, length, size);
+    }
+}
+
+bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
+                  int size, void*)
+{
+    image->image.assign(bytes, bytes + std::max(size, 0));
+    return true;
+}
+
+tinygltf::FsCallbacks confined_file_access(fs::path* folder)
+{
+    tinygltf::FsCallbacks callbacks{};
+    callbacks.FileExists = [](const std::string& name, void*) {
+        std::error_code error;
+        return fs::is_regular_file(name, error);
+    };
+    callbacks.ExpandFilePath = [](const std::string& name, void*) { return name; };
+    callbacks.ReadWholeFile  = [](std::vector<unsigned char>* out, std::string* error, const std::string& name, void* data) {
+        try {
+            const fs::path& root = *static_cast<fs::path*>(data);
+            *out = read_regular_file(resolve_uri(root, fs::path(name).lexically_relative(root).string()), max_file_bytes);
+            return true;
+        } catch (const std::exception& exception) {
+            if (error != nullptr) *error += exception.what();
+            return false;
+        }
+    };
+    callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; };
+    callbacks.user_data      = folder;
+    return callbacks;
+}
+
+std::string one_line(std::string text)
+{
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    std::ranges::replace(text, '\n', ' ');
+    return text;
+}
+
+std::string percent_decoded(const std::string& text)
+{
+    std::string result;
+    for (size_t i = 0; i < text.size(); ++i) {
+        unsigned value = 0;
+        if (text[i] == '%' && i + 2 < text.size() && std::sscanf(text.c_str() + i + 1, "%2x", &value) == 1) {
+            result += static_cast<char>(value);
+            i += 2;
+        } else {
+            result += text[i];
+        }
+    }
+    return result;
+}
+
+} // namespace
+
+void Import::warn(const std::string& text)
+{
+    if (said.insert(text).second) model.warnings.push_back(fmt::format("{}: {}", fs::path(file).filename().string(), text));
+}
+
+fs::path resolve_uri(const fs::path& folder, const std::string& uri)
+{
+    const std::string text = percent_decoded(uri);
+    const fs::path    path = text;
+    if (text.empty() || text.find('\0') != std::string::npos || path.is_absolute() || text.find("://") != std::string::npos ||
+        text.starts_with("file:"))
+        throw_failure("'{}' is not a relative path", uri);
+    const fs::path root     = fs::weakly_canonical(folder);
+    const fs::path resolved = fs::weakly_canonical(root / path); // follows links
+    const fs::path inside   = resolved.lexically_relative(root);
+    if (inside.empty() || *inside.begin() == "..") throw_failure("'{}' leads out of the asset's folder", uri);
+    return resolved;
+}
+
+void parse_file(Import& import, const fs::path& file)
+{
+    import.file = file.string();
+    fs::path                         folder = fs::weakly_canonical(file).parent_path();
+    const std::vector<unsigned char> bytes  = read_regular_file(file, max_file_bytes);
+    const std::string_view           text   = json_text(import, bytes);
+    check_json_depth(import, text);
+    {
+        const json root = parse_json(import, text);
+        check_version(import, root);
+        check_extensions(import, root);
+        for (const char* kind : {"nodes", "meshes", "accessors", "materials", "textures", "scenes", "cameras"})
+            array_of(import, root, kind);
+        check_uris(import, root, folder);
+        check_buffer_views(import, root);
+    }
+    tinygltf::TinyGLTF parser;
+    parser.SetImageLoader(keep_encoded, nullptr);
+    parser.SetFsCallbacks(confined_file_access(&folder));
+    std::string error;
+    std::string warning;
+    bool        ok   = false;
+    const auto  size = static_cast<unsigned>(bytes.size());
+    try {
+        ok = is_binary(bytes) ? parser.LoadBinaryFromMemory(&import.json, &error, &warning, bytes.data(), size, folder.string())
+                              : parser.LoadASCIIFromString(&import.json, &error, &warning, text.data(), size, folder.string());
+    } catch (const std::exception& exception) {
+        error += exception.what();
+    }
+    if (!ok) import.fail("{}", one_line(error.empty() ? "cannot be parsed" : error));
+    if (!warning.empty()) import.warn(one_line(warning));
+}
+
+} // namespace ssrlab::gltf

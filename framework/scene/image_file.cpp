@@ -1,0 +1,100 @@
+#include "scene/image_file.h"
+
+#include "core/error.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace ssrlab {
+namespace {
+
+constexpr int max_side_px = 16384;
+
+const char* format_of(std::span<const unsigned char> bytes, const std::string& name)
+{
+    const auto starts_with = [&](std::string_view magic) {
+        return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+    };
+    if (starts_with("\x89PNG")) return "image.png";
+    if (starts_with("\xFF\xD8\xFF")) return "image.jpg";
+    if (starts_with("BM")) return "image.bmp";
+    if (name.ends_with(".tga") || name.ends_with(".TGA")) return "image.tga";
+    throw_failure("{}: neither PNG, JPEG, BMP nor TGA", name);
+}
+
+/// Spreads grey, grey-alpha or RGB to RGBA.
+std::vector<uint8_t> to_rgba(const std::vector<uint8_t>& pixels, size_t channels)
+{
+    const size_t         count = pixels.size() / channels;
+    std::vector<uint8_t> rgba(count * 4, 255);
+    for (size_t i = 0; i < count; ++i) {
+        const uint8_t* from = &pixels[i * channels];
+        uint8_t*       to   = &rgba[i * 4];
+        for (size_t c = 0; c < 3; ++c) to[c] = from[channels >= 3 ? c : 0];
+        if (channels == 2 || channels >= 4) to[3] = from[channels == 2 ? 1 : 3];
+    }
+    return rgba;
+}
+
+} // namespace
+
+Texture decode_image(std::span<const unsigned char> bytes, const std::string& name)
+{
+    OIIO::Filesystem::IOMemReader memory(const_cast<unsigned char*>(bytes.data()), bytes.size());
+    OIIO::ImageSpec               config;
+    config["oiio:UnassociatedAlpha"] = 1; // materials want the colour as it is stored
+    const char*                             format = format_of(bytes, name);
+    const std::unique_ptr<OIIO::ImageInput> input  = OIIO::ImageInput::create(format);
+    OIIO::ImageSpec                         opened;
+    if (!input || !input->set_ioproxy(&memory) || !input->open(format, opened, config))
+        throw_failure("{}: cannot be decoded: {}", name, input ? input->geterror() : OIIO::geterror());
+    const OIIO::ImageSpec& spec = input->spec();
+    if (spec.width < 1 || spec.height < 1 || spec.width > max_side_px || spec.height > max_side_px)
+        throw_failure("{}: {} x {} pixels, but at most {} a side can be used", name, spec.width, spec.height, max_side_px);
+    const auto channels = static_cast<size_t>(spec.nchannels);
+    std::vector<uint8_t> pixels(static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height) * channels);
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, pixels.data()))
+        throw_failure("{}: cannot be decoded: {}", name, input->geterror());
+    Texture texture;
+    texture.size_px = {spec.width, spec.height};
+    texture.rgba    = channels == 4 ? std::move(pixels) : to_rgba(pixels, channels);
+    return texture;
+}
+
+std::vector<unsigned char> read_regular_file(const std::filesystem::path& file, uint64_t limit_bytes)
+{
+    // Without O_NONBLOCK a pipe would wait for a writer that never comes.
+    const int descriptor = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0) throw_failure("{}: cannot be opened: {}", file.string(), std::strerror(errno));
+    struct Closer {
+        int descriptor;
+        ~Closer() { ::close(descriptor); }
+    } closer{descriptor};
+    struct stat info {};
+    if (::fstat(descriptor, &info) != 0 || !S_ISREG(info.st_mode)) throw_failure("{}: not a regular file", file.string());
+    if (static_cast<uint64_t>(info.st_size) > limit_bytes)
+        throw_failure("{}: {} bytes, but at most {} can be loaded", file.string(), info.st_size, limit_bytes);
+    std::vector<unsigned char> bytes(static_cast<size_t>(info.st_size));
+    for (size_t done = 0; done < bytes.size();) {
+        const ssize_t count = ::read(descriptor, bytes.data() + done, bytes.size() - done);
+        if (count <= 0) throw_failure("{}: cannot be read to its end", file.string());
+        done += static_cast<size_t>(count);
+    }
+    return bytes;
+}
+
+float mean_alpha(const Texture& texture)
+{
+    if (texture.rgba.empty()) return 1;
+    uint64_t sum = 0;
+    for (size_t i = 3; i < texture.rgba.size(); i += 4) sum += texture.rgba[i];
+    return static_cast<float>(static_cast<double>(sum) / (255.0 * static_cast<double>(texture.rgba.size() / 4)));
+}
+
+} // namespace ssrlab

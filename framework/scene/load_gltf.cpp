@@ -1,0 +1,182 @@
+#include "scene/gltf.h"
+#include "scene/load_scene.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace ssrlab {
+namespace gltf {
+namespace {
+
+struct Visit {
+    int        node  = 0;
+    int        depth = 0;
+    glm::dmat4 to_world{1};
+};
+
+template <size_t count>
+bool all_finite(const std::vector<double>& values)
+{
+    return values.size() == count && std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+glm::dmat4 local_matrix(const Import& import, int node_index)
+{
+    const tinygltf::Node& node = import.json.nodes[static_cast<size_t>(node_index)];
+    const auto check = [&](const std::vector<double>& values, bool ok, const char* what) {
+        if (!values.empty() && !ok) import.fail("/nodes/{}/{}: wrong length, or not finite", node_index, what);
+        return !values.empty();
+    };
+    if (check(node.matrix, all_finite<16>(node.matrix), "matrix")) {
+        glm::dmat4 matrix(1);
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 3; ++row) matrix[column][row] = node.matrix[static_cast<size_t>(4 * column + row)];
+        return matrix; // the last row is 0 0 0 1 by definition, whatever the file says
+    }
+    glm::dmat4 matrix(1);
+    if (check(node.translation, all_finite<3>(node.translation), "translation"))
+        matrix = glm::translate(matrix, {node.translation[0], node.translation[1], node.translation[2]});
+    if (check(node.rotation, all_finite<4>(node.rotation), "rotation")) {
+        const glm::dquat rotation(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+        if (glm::length(rotation) > 0) matrix *= glm::mat4_cast(glm::normalize(rotation));
+    }
+    if (check(node.scale, all_finite<3>(node.scale), "scale"))
+        matrix = glm::scale(matrix, {node.scale[0], node.scale[1], node.scale[2]});
+    return matrix;
+}
+
+void add_camera(Import& import, int camera_index, const std::string& node_name, const glm::dmat4& to_world)
+{
+    if (static_cast<size_t>(camera_index) >= import.json.cameras.size()) import.fail("there is no camera {}", camera_index);
+    const tinygltf::Camera& source = import.json.cameras[static_cast<size_t>(camera_index)];
+    Camera                  camera;
+    camera.name        = !source.name.empty() ? source.name : node_name;
+    camera.position_ws = glm::dvec3(to_world[3]);
+    camera.target_ws   = camera.position_ws - glm::normalize(glm::dvec3(to_world[2]));
+    camera.up_ws       = glm::normalize(glm::dvec3(to_world[1]));
+    if (source.type == "orthographic") {
+        camera.projection = Projection::orthographic;
+        camera.height_m   = 2 * std::abs(source.orthographic.ymag);
+        camera.near_m     = std::max(source.orthographic.znear, 1e-3);
+        camera.far_m      = source.orthographic.zfar;
+    } else {
+        camera.fov_y_deg = source.perspective.yfov * 180 / std::numbers::pi;
+        camera.near_m    = source.perspective.znear;
+    }
+    try {
+        camera_to_view(camera, camera.size_px);
+        import.model.cameras.push_back(camera);
+    } catch (const SpecError& error) {
+        import.warn(fmt::format("camera {} left out: {}", camera_index, error.what()));
+    }
+}
+
+void add_light(Import& import, int light_index, const glm::dmat4& to_world)
+{
+    if (light_index < 0 || static_cast<size_t>(light_index) >= import.json.lights.size())
+        import.fail("there is no light {}", light_index);
+    const tinygltf::Light& source = import.json.lights[static_cast<size_t>(light_index)];
+    ModelLight             light;
+    if (source.type == "point")
+        light.light.type = LightType::point;
+    else if (source.type == "spot")
+        light.light.type = LightType::spot;
+    else if (source.type != "directional")
+        import.fail("/extensions/KHR_lights_punctual/lights/{}: unknown type '{}'", light_index, source.type);
+    for (int c = 0; c < 3; ++c) {
+        const double colour = source.color.size() == 3 ? source.color[static_cast<size_t>(c)] : 1;
+        light.light.intensity[c] = static_cast<float>(std::clamp(colour * source.intensity, 0.0, 1e9));
+    }
+    const double outer_rad      = std::clamp(source.spot.outerConeAngle, 1e-3, std::numbers::pi / 2);
+    light.light.range_m         = static_cast<float>(std::max(source.range, 0.0));
+    light.light.outer_angle_rad = static_cast<float>(outer_rad);
+    light.light.inner_angle_rad = static_cast<float>(std::clamp(source.spot.innerConeAngle, 0.0, outer_rad));
+    light.position_ws           = glm::dvec3(to_world[3]);
+    const glm::dvec3 direction  = -glm::dvec3(to_world[2]);
+    if (glm::length(direction) > 0) light.light.direction_ws = glm::vec3(glm::normalize(direction));
+    import.model.lights.push_back(light);
+}
+
+/// The nodes that the default scene starts from; without scenes, those that are nobody's children.
+std::vector<int> root_nodes(const Import& import)
+{
+    const auto& json = import.json;
+    if (!json.scenes.empty()) {
+        const int scene = json.defaultScene >= 0 ? json.defaultScene : 0;
+        if (static_cast<size_t>(scene) >= json.scenes.size()) import.fail("/scene: there is no scene {}", scene);
+        return json.scenes[static_cast<size_t>(scene)].nodes;
+    }
+    std::vector<bool> is_child(json.nodes.size(), false);
+    for (const tinygltf::Node& node : json.nodes)
+        for (int child : node.children)
+            if (child >= 0 && static_cast<size_t>(child) < is_child.size()) is_child[static_cast<size_t>(child)] = true;
+    std::vector<int> roots;
+    for (size_t i = 0; i < is_child.size(); ++i)
+        if (!is_child[i]) roots.push_back(static_cast<int>(i));
+    return roots;
+}
+
+struct Walk {
+    std::vector<Visit>               pending;
+    std::map<int, std::vector<Mesh>> meshes; // read once, placed as often as nodes ask
+    std::vector<bool>                material_left_out;
+    size_t                           visits = 0;
+};
+
+void place_mesh(Import& import, Walk& walk, int mesh_index, const glm::dmat4& to_world)
+{
+    if (static_cast<size_t>(mesh_index) >= import.json.meshes.size()) import.fail("there is no mesh {}", mesh_index);
+    if (!walk.meshes.contains(mesh_index))
+        walk.meshes.emplace(mesh_index, read_mesh(import, mesh_index, walk.material_left_out));
+    for (Mesh mesh : walk.meshes.at(mesh_index)) {
+        import.triangles += mesh.indices.size() / 3;
+        if (import.triangles > max_triangles) import.fail("more than {} triangles with all instances", max_triangles);
+        transform(mesh, to_world);
+        import.model.meshes.push_back(std::move(mesh));
+    }
+}
+
+void visit(Import& import, Walk& walk, const Visit& at)
+{
+    if (at.node < 0 || static_cast<size_t>(at.node) >= import.json.nodes.size()) import.fail("there is no node {}", at.node);
+    if (at.depth > max_node_depth)
+        import.fail("/nodes/{}: nodes contain each other, or are nested deeper than {} levels", at.node, max_node_depth);
+    if (++walk.visits > max_node_visits) import.fail("more than {} nodes with all instances", max_node_visits);
+    const tinygltf::Node& node     = import.json.nodes[static_cast<size_t>(at.node)];
+    const glm::dmat4      to_world = at.to_world * local_matrix(import, at.node);
+    if (node.skin >= 0) import.warn("skins are not supported: drawn in the bind pose");
+    if (node.mesh >= 0) place_mesh(import, walk, node.mesh, node.skin >= 0 ? glm::dmat4(1) : to_world);
+    if (node.camera >= 0) add_camera(import, node.camera, node.name, to_world);
+    const auto light = node.extensions.find("KHR_lights_punctual");
+    if (light != node.extensions.end() && light->second.IsObject() && light->second.Has("light"))
+        add_light(import, light->second.Get("light").GetNumberAsInt(), to_world);
+    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
+        walk.pending.push_back({*child, at.depth + 1, to_world});
+}
+
+} // namespace
+} // namespace gltf
+
+Model load_gltf(const std::filesystem::path& file)
+{
+    gltf::Import import;
+    gltf::parse_file(import, file);
+    if (!import.json.animations.empty()) import.warn("animations are not supported: drawn at rest");
+    gltf::Walk walk;
+    walk.material_left_out = gltf::add_materials(import);
+    const std::vector<int> roots = gltf::root_nodes(import);
+    for (auto root = roots.rbegin(); root != roots.rend(); ++root) walk.pending.push_back({*root, 0, glm::dmat4(1)});
+    while (!walk.pending.empty()) {
+        const gltf::Visit next = walk.pending.back();
+        walk.pending.pop_back();
+        gltf::visit(import, walk, next);
+    }
+    return std::move(import.model);
+}
+
+} // namespace ssrlab

@@ -1,0 +1,31 @@
+// The loaders behind load_scene(); each turns one kind of file into a Model.
+#pragma once
+
+#include "scene/model.h"
+
+#include <filesystem>
+
+namespace ssrlab {
+
+/// glTF 2.0, .glb or .gltf. Throws Failure naming file and JSON path for anything damaged or not supported.
+Model load_gltf(const std::filesystem::path& file);
+
+/// Anything that assimp reads (OBJ, 3DS, PLY, ...): triangles and materials; its lights and cameras are left out.
+Model import_model(const std::filesystem::path& file);
+
+/// A recipe; see experiments/scenes/README.md. Throws SpecError with file and line for mistakes in it.
+Model load_recipe(const std::filesystem::path& file);
+
+/// The line after `summary =`; empty when the recipe cannot be read.
+std::string recipe_summary(const std::filesystem::path& file);
+
+/// The [[view]] tables of a file.
+std::vector<Camera> load_views(const std::filesystem::path& file);
+
+/// Folders that are searched for recipes, first match wins.
+std::vector<std::filesystem::path> recipe_folders();
+
+/// Where `reference` of a recipe lies: a path (relative to `folder`), package:PKG/path or sweethome3d:MODEL.
+std::filesystem::path find_data(const std::string& reference, const std::filesystem::path& folder);
+
+} // namespace ssrlab

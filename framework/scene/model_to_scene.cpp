@@ -1,0 +1,127 @@
+#include "core/error.h"
+#include "scene/mesh_repair.h"
+#include "scene/model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+namespace ssrlab {
+namespace {
+
+/// A camera that sees all of the bounds, from the front, above and to the right.
+Camera fit_camera(const Bounds& bounds)
+{
+    Camera camera;
+    if (bounds.empty()) return camera;
+    const double     radius_m   = std::max(0.5 * glm::length(bounds.size_m()), 1e-6);
+    const double     distance_m = 1.05 * radius_m / std::sin(0.5 * camera.fov_y_deg * std::numbers::pi / 180);
+    const glm::dvec3 towards    = glm::normalize(glm::dvec3(0.5, 0.4, 1.0));
+    camera.target_ws            = bounds.centre_ws();
+    camera.position_ws          = camera.target_ws + distance_m * towards;
+    camera.near_m               = 0.01 * distance_m;
+    camera.far_m                = 10 * distance_m;
+    camera.hard_for             = "fitted to the bounds: the file names no view";
+    return camera;
+}
+
+ModelLight default_key_light()
+{
+    ModelLight light;
+    light.light.direction_ws = glm::normalize(glm::vec3(-0.4F, -1.0F, -0.6F));
+    light.light.intensity    = glm::vec3(2.5F);
+    return light;
+}
+
+/// A float resolves 1e-7 of its value: far from the world's origin that is a visible step, so the origin moves there.
+glm::dvec3 choose_origin_ws(const Bounds& bounds)
+{
+    if (bounds.empty()) return {0, 0, 0};
+    const bool far = glm::length(bounds.centre_ws()) > 16 * 0.5 * glm::length(bounds.size_m());
+    return far ? bounds.centre_ws() : glm::dvec3(0);
+}
+
+void repair(Model& model)
+{
+    size_t dropped = 0;
+    for (Mesh& mesh : model.meshes) {
+        dropped += drop_bad_triangles(mesh);
+        if (!mesh.has_normals) make_flat_normals(mesh);
+        clean_attributes(mesh);
+        const TextureUse& normals = model.materials.at(mesh.material).normal_texture;
+        if (normals.texture >= 0 && !mesh.has_tangents) make_tangents(mesh, normals.uv_set);
+    }
+    std::erase_if(model.meshes, [](const Mesh& mesh) { return mesh.indices.empty(); });
+    if (dropped > 0)
+        model.warnings.push_back(
+            fmt::format("{} triangles dropped: without area, or with positions that are not finite", dropped));
+}
+
+void add_draw(Scene& scene, const Mesh& mesh)
+{
+    if (scene.vertices.size() + mesh.vertices.size() > std::numeric_limits<uint32_t>::max() ||
+        scene.indices.size() + mesh.indices.size() > std::numeric_limits<uint32_t>::max())
+        throw_failure("{}: more than 2^32 vertices or indices", scene.name);
+    Draw draw;
+    draw.name               = mesh.name;
+    draw.first_index        = static_cast<uint32_t>(scene.indices.size());
+    draw.index_count        = static_cast<uint32_t>(mesh.indices.size());
+    draw.material           = mesh.material;
+    const auto first_vertex = static_cast<uint32_t>(scene.vertices.size());
+    for (size_t i = 0; i < mesh.vertices.size(); ++i) {
+        Vertex vertex      = mesh.vertices[i];
+        vertex.position_ws = glm::vec3(mesh.positions_ws[i] - scene.origin_ws);
+        draw.bounds_min_ws = glm::min(draw.bounds_min_ws, vertex.position_ws);
+        draw.bounds_max_ws = glm::max(draw.bounds_max_ws, vertex.position_ws);
+        scene.vertices.push_back(vertex);
+    }
+    for (uint32_t index : mesh.indices) scene.indices.push_back(first_vertex + index);
+    scene.draws.push_back(std::move(draw));
+}
+
+void make_camera_names_unique(std::vector<Camera>& cameras)
+{
+    std::set<std::string> used;
+    for (Camera& camera : cameras) {
+        const std::string base = camera.name.empty() ? "camera" : camera.name;
+        camera.name            = base;
+        for (int number = 2; !used.insert(camera.name).second; ++number) camera.name = fmt::format("{}_{}", base, number);
+    }
+}
+
+} // namespace
+
+Scene model_to_scene(Model model, const std::string& name)
+{
+    repair(model);
+    merge_duplicates(model);
+    const Bounds bounds = bounds_of(model);
+
+    Scene scene;
+    scene.name      = name;
+    scene.origin_ws = choose_origin_ws(bounds);
+    for (const Mesh& mesh : model.meshes) add_draw(scene, mesh);
+    scene.materials = std::move(model.materials);
+    scene.textures  = std::move(model.textures);
+    if (model.lights.empty()) model.lights.push_back(default_key_light());
+    for (ModelLight& light : model.lights) {
+        light.light.position_ws = glm::vec3(light.position_ws - scene.origin_ws);
+        scene.lights.push_back(light.light);
+    }
+    if (model.cameras.empty()) model.cameras.push_back(fit_camera(bounds));
+    for (Camera& camera : model.cameras) {
+        camera.position_ws -= scene.origin_ws;
+        camera.target_ws -= scene.origin_ws;
+    }
+    make_camera_names_unique(model.cameras);
+    scene.cameras = std::move(model.cameras);
+    if (model.ambient) scene.ambient = *model.ambient;
+    if (model.background) scene.background = *model.background;
+    std::set<std::string> said;
+    for (std::string& warning : model.warnings)
+        if (said.insert(warning).second) scene.warnings.push_back(std::move(warning));
+    return scene;
+}
+
+} // namespace ssrlab

@@ -1,0 +1,155 @@
+#include "core/error.h"
+#include "scene/load_scene.h"
+#include "scene/recipe.h"
+
+#include <cctype>
+#include <numbers>
+
+namespace ssrlab {
+namespace {
+
+constexpr double sweethome3d_unit_m = 0.01; // its models are in centimetres
+
+float to_rad(double deg) { return static_cast<float>(deg * std::numbers::pi / 180); }
+
+void read_change_values(TomlTable& table, MaterialChange& change)
+{
+    change.place         = table.place();
+    change.metallic      = table.number("metallic", 0, 1);
+    change.roughness     = table.number("roughness", 0, 1);
+    change.base_colour   = table.colour("base_colour");
+    change.emissive      = table.colour("emissive");
+    change.drop_textures = table.flag("drop_textures").value_or(false);
+    change.leave_out     = table.flag("leave_out").value_or(false);
+    change.double_sided  = table.flag("double_sided");
+}
+
+MaterialChange read_change(TomlTable& table)
+{
+    MaterialChange change;
+    change.name = table.text("name").value_or("*");
+    change.part = table.text("part").value_or("*");
+    read_change_values(table, change);
+    table.refuse_unknown_keys();
+    return change;
+}
+
+void read_shape_keys(TomlTable& table, Part& part)
+{
+    part.size_m = table.vector("size_m").value_or(part.size_m);
+    if (part.size_m.x <= 0 || part.size_m.y < 0 || part.size_m.z <= 0)
+        table.fail("size_m", "must be [width, height, depth], greater than 0 (the height of a plane may be 0)");
+    if (part.size_m.y == 0 && part.shape != Shape::plane && part.shape != Shape::checker_floor)
+        table.fail("size_m", "needs a height greater than 0 for this shape");
+    part.tile_m       = table.number("tile_m", 1e-3, 1e6).value_or(part.tile_m);
+    part.tile_colours = table.vectors("tile_colours");
+    if (!part.tile_colours.empty() && part.tile_colours.size() != 2)
+        table.fail("tile_colours", "must be two colours: [[r, g, b], [r, g, b]]");
+}
+
+Part read_part(TomlTable& table)
+{
+    Part part;
+    part.place = table.place();
+    part.file  = table.text("file").value_or("");
+    if (const auto shape = table.choice("shape", {"box", "plane", "checker_floor", "sphere", "cylinder", "teapot"}))
+        part.shape = static_cast<Shape>(*shape);
+    if (part.file.empty() == !part.shape.has_value()) table.fail("needs either 'file' or 'shape'");
+    part.name = table.text("name").value_or(
+        part.shape ? *table.text("shape") : std::filesystem::path(part.file.substr(part.file.find(':') + 1)).stem().string());
+    if (part.file.starts_with("sweethome3d:")) part.unit_m = sweethome3d_unit_m;
+    if (table.has("position")) part.positions_ws = table.vectors("position");
+    part.rotation_deg = table.vector("rotation_deg").value_or(part.rotation_deg);
+    part.z_up         = table.choice("up", {"y", "z"}).value_or(0) == 1;
+    part.unit_m       = table.number("unit_m", 1e-9, 1e9).value_or(part.unit_m);
+    part.height_m     = table.number("height_m", 1e-6, 1e9);
+    if (part.shape) read_shape_keys(table, part);
+    if (auto material = table.table("material")) {
+        read_change_values(*material, part.change);
+        material->refuse_unknown_keys();
+    }
+    table.refuse_unknown_keys();
+    return part;
+}
+
+ModelLight read_light(TomlTable& table)
+{
+    ModelLight light;
+    light.light.type = static_cast<LightType>(table.choice("type", {"directional", "point", "spot"}).value_or(0));
+    const bool directional   = light.light.type == LightType::directional;
+    const auto position      = table.vector("position");
+    const auto target        = table.vector("target");
+    auto       direction     = table.vector("direction");
+    const auto intensity     = table.colour("intensity");
+    const double angle_deg   = table.number("angle_deg", 0.1, 170).value_or(80);
+    light.light.range_m      = static_cast<float>(table.number("range_m", 0, 1e9).value_or(0));
+    light.light.casts_shadow = table.flag("shadow").value_or(true);
+    table.refuse_unknown_keys();
+    if (!intensity) table.fail("'intensity' is needed: W/m2 for directional, W/sr for spot and point lights");
+    if (!directional && !position) table.fail("'position' is needed for spot and point lights");
+    if (position && target) direction = *target - *position;
+    if (light.light.type != LightType::point && (!direction || glm::length(*direction) == 0))
+        table.fail("'direction', or 'position' and 'target', is needed");
+    light.position_ws           = position.value_or(glm::dvec3(0));
+    light.light.intensity       = *intensity;
+    light.light.direction_ws    = direction ? glm::vec3(glm::normalize(*direction)) : light.light.direction_ws;
+    light.light.outer_angle_rad = to_rad(0.5 * angle_deg);
+    light.light.inner_angle_rad = 0.75F * light.light.outer_angle_rad;
+    return light;
+}
+
+} // namespace
+
+bool matches(const std::string& pattern, const std::string& text)
+{
+    size_t p = 0;
+    size_t t = 0;
+    size_t star = std::string::npos;
+    size_t star_text = 0;
+    const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+    while (t < text.size()) {
+        if (p < pattern.size() && pattern[p] == '*') {
+            star      = p++;
+            star_text = t;
+        } else if (p < pattern.size() && (pattern[p] == '?' || lower(pattern[p]) == lower(text[t]))) {
+            ++p;
+            ++t;
+        } else if (star != std::string::npos) {
+            p = star + 1;
+            t = ++star_text;
+        } else {
+            return false;
+        }
+    }
+    while (p < pattern.size() && pattern[p] == '*') ++p;
+    return p == pattern.size();
+}
+
+Recipe read_recipe(const std::filesystem::path& file)
+{
+    const toml::table parsed = parse_toml_file(file);
+    TomlTable         root(parsed, file.string(), "recipe");
+    Recipe            recipe;
+    recipe.file    = file.string();
+    recipe.summary = root.text("summary").value_or("");
+    if (const auto ambient = root.colour("ambient")) recipe.ambient = glm::vec3(*ambient);
+    if (const auto background = root.colour("background")) recipe.background = glm::vec3(*background);
+    for (TomlTable& table : root.tables("part")) recipe.parts.push_back(read_part(table));
+    for (TomlTable& table : root.tables("material")) recipe.changes.push_back(read_change(table));
+    for (TomlTable& table : root.tables("light")) recipe.lights.push_back(read_light(table));
+    for (TomlTable& table : root.tables("view")) recipe.views.push_back(read_view(table));
+    root.refuse_unknown_keys();
+    if (recipe.parts.empty()) root.fail("needs at least one [[part]]");
+    return recipe;
+}
+
+std::string recipe_summary(const std::filesystem::path& file)
+{
+    try {
+        return parse_toml_file(file)["summary"].value_or(std::string());
+    } catch (const std::runtime_error&) {
+        return {};
+    }
+}
+
+} // namespace ssrlab
