@@ -1,5 +1,6 @@
 #include "compare/image_io.h"
 
+#include "compare/image_filter.h"
 #include "core/error.h"
 
 #include <OpenImageIO/imageio.h>
@@ -30,13 +31,6 @@ struct TemporaryFile {
 fs::path temporary_path(const fs::path& path)
 {
     return path.parent_path() / fmt::format(".{}.{}.tmp{}", path.stem().string(), getpid(), path.extension().string());
-}
-
-float linear_to_srgb(float value)
-{
-    if (!(value > 0)) return 0; // also NaN
-    if (value >= 1) return 1;
-    return value <= 0.0031308F ? 12.92F * value : 1.055F * std::pow(value, 1 / 2.4F) - 0.055F;
 }
 
 /// The first three channels as red, green and blue; a missing one repeats the last.

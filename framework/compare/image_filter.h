@@ -1,0 +1,22 @@
+// One channel of a picture, and separable filters over it.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <span>
+#include <vector>
+
+namespace ssrlab {
+
+struct Plane {
+    glm::ivec2         size_px{0, 0};
+    std::vector<float> values; // row-major
+};
+
+/// sum over dx, dy of kernel_x[dx] kernel_y[dy] plane(x + dx, y + dy); odd kernels; the border pixel continues outside.
+Plane filter_separable(const Plane& plane, std::span<const float> kernel_x, std::span<const float> kernel_y);
+
+float srgb_to_linear(float value);
+float linear_to_srgb(float value); // clamps to [0, 1]; NaN gives 0
+
+} // namespace ssrlab

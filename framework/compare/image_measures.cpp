@@ -1,0 +1,117 @@
+// Measures that compare pictures with pictures.
+#include "compare/flip.h"
+#include "compare/measures.h"
+#include "compare/ssim.h"
+#include "core/error.h"
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+
+#include <algorithm>
+
+namespace ssrlab {
+namespace {
+
+using Mask = std::vector<bool>;
+
+struct ImageErrors {
+    std::optional<double> rmse, psnr_db, ssim, flip;
+};
+
+Image to_display(const Image& linear)
+{
+    Image display = linear;
+    for (float& value : display.values) value = linear_to_srgb(value);
+    return display;
+}
+
+Plane to_luma(const Image& display) // Rec. 709
+{
+    Plane luma{display.size_px, {}};
+    for (size_t i = 0; i < display.values.size(); i += 3) {
+        luma.values.push_back(0.2126F * display.values[i] + 0.7152F * display.values[i + 1] + 0.0722F * display.values[i + 2]);
+    }
+    return luma;
+}
+
+double mean_inside(const std::vector<float>& values, const Mask& mask)
+{
+    double sum = 0, count = 0;
+    for (size_t i = 0; i < values.size(); ++i) {
+        if (!mask[i]) continue;
+        sum += double(values[i]);
+        count += 1;
+    }
+    return sum / count;
+}
+
+/// The pixels inside the mask as one long row.
+OIIO::ImageBuf pack(const Image& image, const Mask& mask, int count)
+{
+    OIIO::ImageBuf row(OIIO::ImageSpec(count, 1, 3, OIIO::TypeDesc::FLOAT));
+    int            x = 0;
+    for (size_t i = 0; i < mask.size(); ++i) {
+        if (mask[i]) row.setpixel(x++, 0, &image.values[3 * i], 3);
+    }
+    return row;
+}
+
+ImageErrors compare_inside(const Image& tested, const Image& reference, const Mask& mask)
+{
+    const int count = int(std::count(mask.begin(), mask.end(), true));
+    if (count == 0) return {};
+    const auto  difference = OIIO::ImageBufAlgo::compare(pack(tested, mask, count), pack(reference, mask, count), 1, 1);
+    ImageErrors errors;
+    errors.rmse = difference.rms_error;
+    if (difference.rms_error > 0) errors.psnr_db = difference.PSNR;
+    // The windows of SSIM and FLIP reach outside the mask, where nothing is to be judged: there both show the reference.
+    Image masked = reference;
+    for (size_t i = 0; i < mask.size(); ++i) {
+        if (!mask[i]) continue;
+        for (size_t c = 0; c < 3; ++c) masked.values[3 * i + c] = tested.values[3 * i + c];
+    }
+    errors.ssim = mean_inside(ssim_map(to_luma(masked), to_luma(reference)), mask);
+    errors.flip = mean_inside(flip_error(masked, reference), mask);
+    return errors;
+}
+
+void require_comparable(const Image& image, const SceneTruth& truth)
+{
+    if (image.size_px != truth.size_px || image.values.size() != 3 * truth.cls.size()) {
+        throw_failure("an image of {}x{} with {} values cannot be compared over {}x{} pixels with three channels",
+                      image.size_px.x, image.size_px.y, image.values.size(), truth.size_px.x, truth.size_px.y);
+    }
+}
+
+} // namespace
+
+Image reference_image(const SceneTruth& truth)
+{
+    Image image;
+    image.size_px  = truth.size_px;
+    image.channels = {"R", "G", "B"};
+    for (size_t i = 0; i < truth.cls.size(); ++i) {
+        const glm::vec3 radiance = truth.cls[i] == TruthClass::not_traced ? glm::vec3(0) : truth.radiance[i];
+        image.values.insert(image.values.end(), {radiance.r, radiance.g, radiance.b});
+    }
+    return image;
+}
+
+MeasureValues compare_images(const Image& tested, const Image& reference, const SceneTruth& truth)
+{
+    require_comparable(tested, truth);
+    require_comparable(reference, truth);
+    Mask visible, reflective;
+    for (const TruthClass cls : truth.cls) {
+        visible.push_back(cls == TruthClass::visible);
+        reflective.push_back(cls != TruthClass::not_traced);
+    }
+    const Image       a = to_display(tested), b = to_display(reference);
+    const ImageErrors over_visible = compare_inside(a, b, visible), over_reflective = compare_inside(a, b, reflective);
+    return {{"rmse_visible", over_visible.rmse},       {"psnr_visible_db", over_visible.psnr_db},
+            {"ssim_visible", over_visible.ssim},       {"flip_visible", over_visible.flip},
+            {"rmse_reflective", over_reflective.rmse}, {"psnr_reflective_db", over_reflective.psnr_db},
+            {"ssim_reflective", over_reflective.ssim}, {"flip_reflective", over_reflective.flip}};
+}
+
+} // namespace ssrlab

@@ -1,0 +1,66 @@
+// Every error measure of a record: one table says what each means; the functions below fill in the values.
+#pragma once
+
+#include "core/gbuffer_image.h"
+#include "core/image.h"
+#include "core/trace_result.h"
+#include "truth/truth_class.h"
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ssrlab {
+
+struct Measure {
+    std::string_view name;    // also the CSV column
+    std::string_view unit;    // "share" is 0..1
+    std::string_view formula; // in words, exactly
+    std::string_view source;
+};
+
+/// In the order of the CSV's columns.
+std::span<const Measure> measures();
+
+/// By Measure::name. Empty = has no value here (no ray to count, no truth, identical images …), never NaN.
+using MeasureValues = std::map<std::string_view, std::optional<double>>;
+
+/// Every measure of the table, without value.
+MeasureValues no_measures();
+
+/// Takes over every value that `more` has.
+void merge(MeasureValues& values, const MeasureValues& more);
+
+/// The table, as README text.
+std::string measures_markdown();
+
+/// The names that begin with "screen_", and traced_rays.
+MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResult& screen_truth);
+
+/// recall, precision, false hits and misses by cause, and the share of each class.
+MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth& scene_truth, const TraceResult& screen_truth,
+                                     const GBufferImage& gbuffer);
+
+/// Mean and largest work per ray.
+MeasureValues count_work(const TraceResult& result);
+
+/// Traced rays whose status, or whose pixel when both hit, differ, per million.
+std::optional<double> count_flips(const TraceResult& float_result, const TraceResult& double_result);
+
+/// flips_per_million and the three errors of the split. Pointers may be null: what needs them stays empty.
+MeasureValues split_error(const TraceResult& float_result, const TraceResult* double_result, const TraceResult& screen_truth,
+                          const SceneTruth* scene_truth);
+
+/// "reflective": every traced pixel; "visible": those whose true point is visible. Images are linear radiance, three channels.
+MeasureValues compare_images(const Image& tested, const Image& reference, const SceneTruth& scene_truth);
+
+/// The reference reflection: the scene truth's radiance where traced, black elsewhere; channels R, G, B.
+Image reference_image(const SceneTruth& scene_truth);
+
+/// Largest of |dx| and |dy|: two points of one pixel are never more than 1 apart.
+double screen_distance_px(glm::dvec2 a, glm::dvec2 b);
+
+} // namespace ssrlab

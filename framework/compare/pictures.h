@@ -1,0 +1,23 @@
+// Pictures that show where a technique errs and where it works hard. Colours are linear.
+#pragma once
+
+#include "core/image.h"
+#include "core/trace_result.h"
+#include "truth/truth_class.h"
+
+namespace ssrlab {
+
+/// not traced      black
+/// correct         green    found within 1 px
+/// displaced       yellow   hit farther than 1 px from where it should be
+/// missed          red      no hit where there is one
+/// false           magenta  hit where there is none
+/// not answerable  grey     no hit, and none to be found
+Image agreement_picture(const TraceResult& tested, const TraceResult& screen_truth);
+Image agreement_picture(const TraceResult& tested, const SceneTruth& scene_truth);
+
+/// Depth and pyramid fetches of each ray (steps, if fetches were not counted) on a fixed logarithmic scale:
+/// black 0, dark blue 1, blue 8, cyan 64, yellow 512, red 4096 and more.
+Image fetch_heat_map(const TraceResult& tested);
+
+} // namespace ssrlab

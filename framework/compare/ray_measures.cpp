@@ -1,0 +1,241 @@
+// Measures that compare rays with rays.
+#include "compare/measures.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <array>
+#include <numeric>
+
+namespace ssrlab {
+namespace {
+
+constexpr double self_hit_sine   = 0.01;
+constexpr double behind_share    = 0.001;
+constexpr double within_one_px   = 1;
+constexpr double within_four_px  = 4;
+
+bool traced(const TraceResult& result, size_t i) { return result.status[i] != TraceStatus::not_traced; }
+bool hits(const TraceResult& result, size_t i) { return result.status[i] == TraceStatus::hit; }
+
+void require_same_size(glm::ivec2 a, glm::ivec2 b)
+{
+    if (a != b) throw_failure("compared results have {}x{} and {}x{} pixels", a.x, a.y, b.x, b.y);
+}
+
+std::optional<double> share(size_t part, size_t whole)
+{
+    if (whole == 0) return std::nullopt;
+    return double(part) / double(whole);
+}
+
+/// Nearest rank. Reorders.
+std::optional<double> percentile(std::vector<double>& values, double p)
+{
+    if (values.empty()) return std::nullopt;
+    const auto rank = size_t(std::max(1.0, std::ceil(p / 100 * double(values.size())))) - 1;
+    std::nth_element(values.begin(), values.begin() + ptrdiff_t(rank), values.end());
+    return values[rank];
+}
+
+/// Distance between the hit points of two results that both hit.
+double hit_distance_px(const TraceResult& a, const TraceResult& b, size_t i)
+{
+    return screen_distance_px(glm::dvec2(a.hit_px_depth[i]), glm::dvec2(b.hit_px_depth[i]));
+}
+
+/// Found within 1 px, of the rays that the reference hits.
+std::optional<double> recall_against(const TraceResult& tested, const TraceResult& reference)
+{
+    require_same_size(tested.size_px, reference.size_px);
+    size_t found = 0, whole = 0;
+    for (size_t i = 0; i < reference.status.size(); ++i) {
+        if (!hits(reference, i)) continue;
+        ++whole;
+        if (hits(tested, i) && hit_distance_px(tested, reference, i) <= within_one_px) ++found;
+    }
+    return share(found, whole);
+}
+
+double distance_to_truth_px(const TraceResult& tested, const SceneTruth& truth, size_t i)
+{
+    return screen_distance_px(glm::dvec2(tested.hit_px_depth[i]), truth.point_px[i]);
+}
+
+bool finds(const TraceResult& tested, const SceneTruth& truth, size_t i, double limit_px)
+{
+    return truth.cls[i] == TruthClass::visible && hits(tested, i) && distance_to_truth_px(tested, truth, i) <= limit_px;
+}
+
+std::optional<double> recall_against(const TraceResult& tested, const SceneTruth& truth)
+{
+    require_same_size(tested.size_px, truth.size_px);
+    size_t found = 0, whole = 0;
+    for (size_t i = 0; i < truth.cls.size(); ++i) {
+        if (truth.cls[i] == TruthClass::visible) ++whole;
+        if (finds(tested, truth, i, within_one_px)) ++found;
+    }
+    return share(found, whole);
+}
+
+enum class FalseHit { self, too_thick, wrong_surface };
+
+FalseHit false_hit_cause(const TraceResult& tested, const GBufferImage& gbuffer, size_t i)
+{
+    const View&      view  = gbuffer.view;
+    const size_t     width = size_t(view.size_px.x);
+    const glm::ivec2 pixel(int(i % width), int(i / width));
+    const glm::ivec2 hit_pixel = tested.hit_pixel[i];
+    const size_t     h         = size_t(hit_pixel.y) * width + size_t(hit_pixel.x);
+    const double     surface   = double(gbuffer.depth[h]);
+    if (gbuffer.object_id[h] == gbuffer.object_id[i]) {
+        const glm::dvec3 from_vs = px_to_vs(view, glm::dvec2(pixel) + 0.5, double(gbuffer.depth[i]));
+        const glm::dvec3 to_vs   = px_to_vs(view, glm::dvec2(hit_pixel) + 0.5, surface);
+        const glm::dvec3 normal  = glm::normalize(glm::dvec3(gbuffer.normal_vs[i]));
+        const glm::dvec3 sight   = view.projection == Projection::perspective ? from_vs : glm::dvec3(0, 0, -1);
+        const double     side    = glm::dot(normal, sight) > 0 ? -1 : 1;
+        if (side * glm::dot(normal, to_vs - from_vs) <= self_hit_sine * glm::length(to_vs - from_vs)) return FalseHit::self;
+    }
+    const double surface_m = depth_to_distance(view, surface);
+    const double ray_m     = depth_to_distance(view, tested.hit_px_depth[i].z);
+    return ray_m > surface_m * (1 + behind_share) ? FalseHit::too_thick : FalseHit::wrong_surface;
+}
+
+} // namespace
+
+double screen_distance_px(glm::dvec2 a, glm::dvec2 b)
+{
+    return std::max(std::abs(a.x - b.x), std::abs(a.y - b.y));
+}
+
+MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResult& truth)
+{
+    require_same_size(tested.size_px, truth.size_px);
+    size_t rays = 0, same_pixel = 0, within = 0, displaced = 0, missed = 0, false_hits = 0, out_of_steps = 0;
+    std::vector<double> distances;
+    for (size_t i = 0; i < truth.status.size(); ++i) {
+        if (!traced(truth, i)) continue;
+        ++rays;
+        if (tested.status[i] == TraceStatus::out_of_steps) ++out_of_steps;
+        if (hits(tested, i) && hits(truth, i)) {
+            const double distance_px = hit_distance_px(tested, truth, i);
+            distances.push_back(distance_px);
+            if (tested.hit_pixel[i] == truth.hit_pixel[i]) ++same_pixel;
+            ++(distance_px <= within_one_px ? within : displaced);
+        } else if (hits(truth, i)) {
+            ++missed;
+        } else if (hits(tested, i)) {
+            ++false_hits;
+        } else {
+            ++same_pixel;
+            ++within;
+        }
+    }
+    return {{"traced_rays", double(rays)},
+            {"screen_same_pixel", share(same_pixel, rays)},
+            {"screen_within_1px", share(within, rays)},
+            {"screen_displaced", share(displaced, rays)},
+            {"screen_missed", share(missed, rays)},
+            {"screen_false", share(false_hits, rays)},
+            {"screen_out_of_steps", share(out_of_steps, rays)},
+            {"screen_recall_1px", recall_against(tested, truth)},
+            {"screen_displacement_median_px", percentile(distances, 50)},
+            {"screen_displacement_p95_px", percentile(distances, 95)},
+            {"screen_displacement_p99_px", percentile(distances, 99)}};
+}
+
+MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth& truth, const TraceResult& screen_truth,
+                                     const GBufferImage& gbuffer)
+{
+    require_same_size(tested.size_px, truth.size_px);
+    require_same_size(tested.size_px, screen_truth.size_px);
+    require_same_size(tested.size_px, gbuffer.view.size_px);
+    std::array<size_t, truth_class_names.size()> of_class{};
+    size_t rays = 0, hit_count = 0, found_1px = 0, found_4px = 0, displaced = 0;
+    size_t stepped_over = 0, out_of_steps = 0, facing_rule = 0, not_in_depth = 0;
+    std::array<size_t, 3> false_hits{};
+    for (size_t i = 0; i < truth.cls.size(); ++i) {
+        if (truth.cls[i] == TruthClass::not_traced) continue;
+        ++rays;
+        ++of_class[size_t(truth.cls[i])];
+        const bool visible = truth.cls[i] == TruthClass::visible;
+        const bool found   = finds(tested, truth, i, within_one_px);
+        found_1px += found;
+        found_4px += finds(tested, truth, i, within_four_px);
+        if (hits(tested, i)) {
+            ++hit_count;
+            displaced += visible && !found;
+            if (!found) ++false_hits[size_t(false_hit_cause(tested, gbuffer, i))];
+        } else if (visible) {
+            if (tested.status[i] == TraceStatus::out_of_steps) ++out_of_steps;
+            else if (tested.status[i] == TraceStatus::facing_away) ++facing_rule;
+            else ++(finds(screen_truth, truth, i, within_one_px) ? stepped_over : not_in_depth);
+        }
+    }
+    const size_t  visible = of_class[size_t(TruthClass::visible)];
+    const size_t  wrong   = std::accumulate(false_hits.begin(), false_hits.end(), size_t(0));
+    MeasureValues values{{"traced_rays", double(rays)},
+                         {"recall_1px", share(found_1px, visible)},
+                         {"recall_4px", share(found_4px, visible)},
+                         {"visible_displaced", share(displaced, visible)},
+                         {"missed_stepped_over", share(stepped_over, visible)},
+                         {"missed_out_of_steps", share(out_of_steps, visible)},
+                         {"missed_facing_rule", share(facing_rule, visible)},
+                         {"missed_not_in_depth", share(not_in_depth, visible)},
+                         {"precision_1px", share(found_1px, hit_count)},
+                         {"false_hits", share(wrong, rays)},
+                         {"false_self", share(false_hits[size_t(FalseHit::self)], rays)},
+                         {"false_too_thick", share(false_hits[size_t(FalseHit::too_thick)], rays)},
+                         {"false_wrong_surface", share(false_hits[size_t(FalseHit::wrong_surface)], rays)}};
+    for (const Measure& measure : measures()) {
+        if (!measure.name.starts_with("truth_")) continue;
+        const auto cls = std::find(truth_class_names.begin(), truth_class_names.end(), measure.name.substr(6));
+        values[measure.name] = share(of_class[size_t(cls - truth_class_names.begin())], rays);
+    }
+    return values;
+}
+
+MeasureValues count_work(const TraceResult& result)
+{
+    const size_t rays = result.status.size() - size_t(std::count(result.status.begin(), result.status.end(), TraceStatus::not_traced));
+    MeasureValues values{{"traced_rays", double(rays)}};
+    const auto    mean = [&](const std::vector<uint32_t>& counts) -> std::optional<double> {
+        if (counts.empty() || rays == 0) return std::nullopt;
+        return std::accumulate(counts.begin(), counts.end(), 0.0) / double(rays);
+    };
+    values["steps_mean"]           = mean(result.steps);
+    values["depth_fetches_mean"]   = mean(result.depth_fetches);
+    values["pyramid_fetches_mean"] = mean(result.pyramid_fetches);
+    if (rays > 0 && !result.steps.empty()) values["steps_max"] = *std::max_element(result.steps.begin(), result.steps.end());
+    return values;
+}
+
+std::optional<double> count_flips(const TraceResult& a, const TraceResult& b)
+{
+    require_same_size(a.size_px, b.size_px);
+    size_t rays = 0, flips = 0;
+    for (size_t i = 0; i < a.status.size(); ++i) {
+        if (!traced(a, i) && !traced(b, i)) continue;
+        ++rays;
+        flips += a.status[i] != b.status[i] || (hits(a, i) && a.hit_pixel[i] != b.hit_pixel[i]);
+    }
+    if (rays == 0) return std::nullopt;
+    return 1e6 * double(flips) / double(rays);
+}
+
+MeasureValues split_error(const TraceResult& float_result, const TraceResult* double_result, const TraceResult& screen_truth,
+                          const SceneTruth* scene_truth)
+{
+    const auto error = [](std::optional<double> recall) { return recall ? std::optional(1 - *recall) : std::nullopt; };
+    MeasureValues values;
+    if (scene_truth != nullptr) values["error_scene_to_screen"] = error(recall_against(screen_truth, *scene_truth));
+    if (double_result != nullptr) {
+        values["flips_per_million"]      = count_flips(float_result, *double_result);
+        values["error_screen_to_double"] = error(recall_against(*double_result, screen_truth));
+        values["error_double_to_float"]  = error(recall_against(float_result, *double_result));
+    }
+    return values;
+}
+
+} // namespace ssrlab
