@@ -1,5 +1,6 @@
 #include "harness/columns.h"
 
+#include "compare/measures.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "core/trace_result.h"
@@ -39,14 +40,11 @@ const std::vector<Column> times = {
 
 const std::vector<Column> counts = {
     {"rays", "traced rays: pixels that reflect"},
-    {"depth_fetches_mean", "reads of the depth image per traced ray"},
-    {"pyramid_fetches_mean", "reads of the depth pyramid per traced ray"},
-    {"fetches_mean", "both together"},
+    {"fetches_mean", "reads of the depth image and of derived inputs per traced ray"},
     {"fetches_p50", "median over the rays"},
     {"fetches_p99", "99th percentile over the rays"},
     {"fetches_max", "of the worst ray"},
-    {"steps_mean", "loop iterations per traced ray"},
-    {"steps_p99", "99th percentile over the rays"},
+    {"steps_p99", "loop iterations, 99th percentile over the rays"},
 };
 
 const std::vector<Column> ending = {
@@ -91,6 +89,16 @@ std::vector<Column> shares()
     return columns;
 }
 
+std::vector<Column> quality()
+{
+    std::vector<Column> columns;
+    for (const Measure& measure : measures()) {
+        if (measure.name == "traced_rays") continue; // "rays" above
+        columns.push_back({std::string(measure.name), fmt::format("{} ({})", measure.formula, measure.unit)});
+    }
+    return columns;
+}
+
 void refuse_same_names(const Experiment& experiment, std::span<const Technique> techniques,
                        std::span<const Column> built_in)
 {
@@ -112,6 +120,7 @@ std::vector<Column> result_columns(const Experiment& experiment, std::span<const
     append(front, settings());
     std::vector<Column> back = times;
     append(back, counts);
+    append(back, quality());
     append(back, shares());
     append(back, ending);
     refuse_same_names(experiment, techniques, front);

@@ -214,6 +214,7 @@ MeasureSettings read_measure(const TomlFile& file)
     number("interval_percent", measure.interval_percent, 0, 100);
     number("budget_s", measure.budget_s, 0, infinity);
     flag("truth", measure.truth);
+    flag("double_twin", measure.double_twin);
     flag("pictures", measure.pictures);
     toml_known_keys(file, *table, "key of [measure]", known);
     if (measure.max_repeats < measure.min_repeats) {
@@ -239,6 +240,7 @@ Experiment load_experiment(const std::filesystem::path& path, std::span<const Te
     if (const toml::node* node = file.root.get("title")) experiment.title = toml_text(file, *node, "title");
     experiment.scenes = read_texts(file, "scenes", {});
     if (experiment.scenes.empty()) throw_spec_error("{}:1: names no scene: add scenes = [\"builtin:stairs\"]", file.path);
+    experiment.scenes_place = toml_place(file, *file.root.get("scenes"));
     experiment.views      = read_texts(file, "views", {"default"});
     experiment.sizes_px   = read_sizes(file);
     experiment.settings   = read_settings(file);

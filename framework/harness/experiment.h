@@ -22,6 +22,7 @@ struct MeasureSettings {
     double   interval_percent = 2;    // tight: the 95 % interval of the median of trace_ms lies within ± this
     double   budget_s         = 5;    // a run stops after min_repeats once its frames took this long
     bool     truth            = true; // compare with the truths
+    bool     double_twin      = true; // trace once more in double precision, to tell rounding from the other errors
     bool     pictures         = true; // write the reflected picture of each run
 };
 
@@ -37,6 +38,7 @@ struct Experiment {
     std::string                 text; // the whole file
     std::string                 name, title;
     std::vector<std::string>    scenes, views;
+    std::string                 scenes_place; // file:line
     std::vector<glm::ivec2>     sizes_px;
     /// Every setting's values by Setting::name, defaults filled in.
     std::map<std::string, std::vector<double>> settings;

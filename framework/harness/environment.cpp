@@ -1,0 +1,107 @@
+#include "harness/environment.h"
+
+#include "core/error.h"
+#include "core/files.h"
+#include "scene/load_scene.h"
+
+#include <sys/utsname.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <thread>
+
+namespace ssrlab {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// First line of what a command prints; empty when it does not run.
+std::string first_line_of(const std::string& command)
+{
+    FILE* pipe = ::popen((command + " 2>/dev/null").c_str(), "re");
+    if (pipe == nullptr) return "";
+    std::array<char, 256> buffer{};
+    std::string           line = std::fgets(buffer.data(), buffer.size(), pipe) == nullptr ? "" : buffer.data();
+    ::pclose(pipe);
+    while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.pop_back();
+    return line;
+}
+
+std::string source_commit()
+{
+    const std::string git    = "git -C '" SSRLAB_SOURCE_DIR "' ";
+    const std::string commit = first_line_of(git + "rev-parse HEAD");
+    if (commit.empty()) return "not known";
+    return first_line_of(git + "status --porcelain --untracked-files=no").empty() ? commit : commit + " with changes";
+}
+
+std::string now_utc()
+{
+    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+    std::tm           utc = {};
+    ::gmtime_r(&now, &utc);
+    std::array<char, 32> text{};
+    std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return text.data();
+}
+
+/// The scene's file with its companions of the same stem (views, buffers); empty for what is built in.
+std::string scene_hash(const std::string& name)
+{
+    fs::path file = name;
+    if (!fs::is_regular_file(file)) {
+        for (const fs::path& folder : recipe_folders()) {
+            file = folder / (name + ".toml");
+            if (fs::is_regular_file(file)) return content_hash(read_file(file));
+        }
+        return "built in";
+    }
+    std::map<std::string, std::string> hashes;
+    for (const fs::directory_entry& entry : fs::directory_iterator(file.has_parent_path() ? file.parent_path() : ".")) {
+        if (entry.is_regular_file() && entry.path().stem() == file.stem()) {
+            hashes[entry.path().filename().string()] = content_hash(read_file(entry.path()));
+        }
+    }
+    std::string listing;
+    for (const auto& [companion, hash] : hashes) listing += companion + ' ' + hash + '\n';
+    return content_hash(listing);
+}
+
+} // namespace
+
+Environment describe_environment(const Experiment& experiment, std::span<const Technique> techniques,
+                                 const GpuInfo& device, const std::string& command_line)
+{
+    Environment environment;
+    auto&       identity      = environment.identity;
+    identity["specification"] = content_hash(experiment.text);
+    identity["shaders"]       = folder_hash(fs::path(SSRLAB_SOURCE_DIR) / "shaders");
+    identity["device"]        = device.name;
+    identity["driver"]        = device.driver;
+    for (const TechniqueSweep& sweep : experiment.techniques) {
+        identity["technique " + sweep.id] = folder_hash(find_technique(techniques, sweep.id).folder);
+    }
+    for (const std::string& scene : experiment.scenes) identity["scene " + scene] = scene_hash(scene);
+
+    utsname system = {};
+    ::uname(&system);
+    auto& notes               = environment.notes;
+    notes["title"]            = experiment.title;
+    notes["experiment"]       = experiment.name;
+    notes["specification"]    = experiment.text;
+    notes["command_line"]     = command_line;
+    notes["seed"]             = std::to_string(experiment.measure.seed);
+    notes["started"]          = now_utc();
+    notes["commit"]           = source_commit();
+    notes["version"]          = SSRLAB_VERSION;
+    notes["compiler"]         = __VERSION__;
+    notes["system"]           = fmt::format("{} {} {}", system.sysname, system.release, system.machine);
+    notes["cpu_threads"]      = std::to_string(std::thread::hardware_concurrency());
+    notes["device_type"]      = device.type;
+    notes["vulkan"]           = device.api_version;
+    return environment;
+}
+
+} // namespace ssrlab

@@ -1,0 +1,177 @@
+#include "harness/measure_picture.h"
+
+#include "compare/image_io.h"
+#include "core/error.h"
+#include "harness/statistics.h"
+#include "harness/stop_signal.h"
+
+#include <algorithm>
+
+namespace ssrlab {
+namespace {
+
+// Runs that are timed interleaved: enough that drift meets all alike, few enough that a kill loses little.
+constexpr size_t batch_size      = 16;
+constexpr int    gbuffer_repeats = 5;
+
+struct Picture {
+    GBufferPtr      gbuffer;
+    FrameBuffersPtr buffers;
+    double          gbuffer_ms = 0;
+    std::optional<Truths> truths;
+};
+
+const LoadedScene& scene_of(Bench& bench, const std::string& name)
+{
+    if (bench.scene == nullptr || bench.scene->name != name) {
+        bench.scene.reset(); // before the next one is loaded: one scene in memory at a time
+        auto loaded      = std::make_unique<LoadedScene>();
+        loaded->name     = name;
+        loaded->scene    = load_scene(name);
+        loaded->uploaded = upload_scene(bench.gpu, loaded->scene);
+        if (bench.experiment.measure.truth) loaded->bvh.emplace(loaded->scene);
+        for (const std::string& warning : loaded->scene.warnings) bench.progress.say(name + ": " + warning);
+        bench.scene = std::move(loaded);
+    }
+    return *bench.scene;
+}
+
+Picture make_picture(Bench& bench, const Run& run)
+{
+    const LoadedScene& loaded = scene_of(bench, run.scene);
+    const View         view   = camera_to_view(find_camera(loaded.scene, run.view), run.size_px);
+    Picture            picture;
+    picture.gbuffer = render_gbuffer(bench.gpu, loaded.uploaded, view);
+    std::vector<double> times_ms;
+    for (int i = 0; i < gbuffer_repeats; ++i) times_ms.push_back(rerender_gbuffer(bench.gpu, *picture.gbuffer));
+    picture.gbuffer_ms = quantile(std::move(times_ms), 0.5);
+    picture.buffers    = make_frame_buffers(bench.gpu, picture.gbuffer);
+    if (bench.experiment.measure.truth) {
+        picture.truths.emplace(loaded.scene, *loaded.bvh, read_gbuffer(bench.gpu, *picture.gbuffer),
+                               truth_cache_dir(bench.results.path()));
+    }
+    return picture;
+}
+
+void finish(Bench& bench, const Run& run, const Row& row)
+{
+    bench.results.append(row);
+    ++bench.written;
+    if (row.at("outcome") == "failed") {
+        ++bench.failed;
+        bench.progress.say(fmt::format("run {} failed: {}", run.id, row.at("message")));
+    }
+    bench.progress.finish_run(estimated_seconds(run, find_technique(bench.techniques, run.technique), bench.experiment.measure));
+}
+
+/// Tries a step of one run; when it throws, the run's row says why and the run is over.
+template <typename Step>
+bool try_step(Bench& bench, MeasuredRun& measured, const Step& step)
+{
+    try {
+        step();
+        return true;
+    } catch (const std::exception& error) {
+        finish(bench, *measured.run, failed_row(measured.row, error.what()));
+        measured.run = nullptr;
+        return false;
+    }
+}
+
+void write_picture(Bench& bench, MeasuredRun& measured)
+{
+    const Run&  run  = *measured.run;
+    std::string name = fmt::format("{}_{}_{}_{}_{}", run.scene, run.view, size_text(run.size_px), run.technique, run.id);
+    std::ranges::replace_if(name, [](unsigned char c) { return std::isalnum(c) == 0 && c != '_' && c != '-'; }, '_');
+    std::filesystem::create_directories(bench.results.path() / "pictures");
+    write_image(bench.results.path() / "pictures" / (name + ".png"), read_shaded(bench.gpu, *measured.frame));
+    measured.row["picture"] = "pictures/" + name + ".png";
+}
+
+/// Everything but the timed repeats: pipelines, warm-up, picture, counts, comparison with the truths.
+void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
+{
+    const Run&             run       = *measured.run;
+    const Technique&       technique = find_technique(bench.techniques, run.technique);
+    const MeasureSettings& measure   = bench.experiment.measure;
+    measured.frame = prepare_frame(bench.gpu, picture.buffers, technique, run.values, run.settings);
+    for (int i = 0; i < std::max(1, measure.warmup); ++i) run_frame(bench.gpu, *measured.frame);
+    if (measure.pictures) write_picture(bench, measured);
+    const TraceResult counted = count_frame(bench.gpu, *measured.frame);
+    add_counts(measured.row, counted);
+    if (!picture.truths) return;
+    std::optional<TraceResult> twin;
+    if (measure.double_twin && bench.gpu.info.float64) {
+        twin = count_frame(bench.gpu, *measured.frame, Precision::float64);
+    }
+    add_measures(measured.row, picture.truths->compare(run.settings.trace, counted, twin ? &*twin : nullptr));
+}
+
+/// Timed repeats, every round in another order, until each run is final or a stop was requested.
+void repeat_until_final(Bench& bench, const Picture& picture, std::vector<MeasuredRun>& open)
+{
+    const auto over = [](const MeasuredRun& measured) { return measured.run == nullptr; };
+    while (!open.empty() && stop_requested() == 0) {
+        std::ranges::shuffle(open, bench.random);
+        for (MeasuredRun& measured : open) {
+            if (stop_requested() != 0) break;
+            try_step(bench, measured, [&] { add_repeat(bench.gpu, measured, picture.gbuffer_ms); });
+            if (over(measured) || !is_final(measured, bench.experiment.measure)) continue;
+            add_times(measured, picture.gbuffer_ms);
+            finish(bench, *measured.run, measured.row);
+            measured.run = nullptr;
+        }
+        std::erase_if(open, over);
+        bench.progress.tick();
+    }
+}
+
+/// On a stop, what was measured often enough is kept; the rest is left for --resume.
+void keep_measured(Bench& bench, const Picture& picture, std::vector<MeasuredRun>& open)
+{
+    for (MeasuredRun& measured : open) {
+        if (static_cast<int>(measured.trace_ms.size()) < bench.experiment.measure.min_repeats) continue;
+        add_times(measured, picture.gbuffer_ms);
+        finish(bench, *measured.run, measured.row);
+    }
+}
+
+void measure_batch(Bench& bench, Picture& picture, std::span<const Run> runs)
+{
+    std::vector<MeasuredRun> open;
+    for (const Run& run : runs) {
+        if (stop_requested() != 0) return;
+        bench.progress.tick();
+        MeasuredRun measured;
+        measured.run = &run;
+        measured.row = identity_row(bench.experiment, run, find_technique(bench.techniques, run.technique));
+        if (try_step(bench, measured, [&] { prepare(bench, picture, measured); })) open.push_back(std::move(measured));
+    }
+    repeat_until_final(bench, picture, open);
+    keep_measured(bench, picture, open);
+}
+
+} // namespace
+
+void measure_picture(Bench& bench, std::span<const Run> runs)
+{
+    const Run& first = runs.front();
+    bench.progress.start_picture(fmt::format("{} {} {}", first.scene, first.view, size_text(first.size_px)));
+    Picture picture;
+    try {
+        picture = make_picture(bench, first);
+    } catch (const std::exception& error) {
+        for (const Run& run : runs) {
+            const Technique& technique = find_technique(bench.techniques, run.technique);
+            finish(bench, run, failed_row(identity_row(bench.experiment, run, technique), error.what()));
+        }
+        return;
+    }
+    while (!runs.empty() && stop_requested() == 0) {
+        const auto batch = runs.first(std::min(batch_size, runs.size()));
+        runs             = runs.subspan(batch.size());
+        measure_batch(bench, picture, batch);
+    }
+}
+
+} // namespace ssrlab

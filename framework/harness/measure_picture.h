@@ -1,0 +1,39 @@
+// All runs on one picture: scene, view and size are the same, so the G-buffer is made once and the timings are comparable.
+#pragma once
+
+#include "harness/measured_run.h"
+#include "harness/progress.h"
+#include "harness/quality.h"
+#include "harness/record.h"
+#include "truth/scene_bvh.h"
+
+#include <optional>
+#include <random>
+
+namespace ssrlab {
+
+/// Kept from one picture to the next as long as the scene stays the same.
+struct LoadedScene {
+    std::string name;
+    Scene       scene;
+    GpuScenePtr uploaded;
+    std::optional<SceneBvh> bvh; // only when runs are compared with the truths
+};
+
+/// What all measuring works with.
+struct Bench {
+    const Experiment&            experiment;
+    std::span<const Technique>   techniques;
+    Gpu&                         gpu;
+    ResultFolder&                results;
+    Progress&                    progress;
+    std::mt19937_64              random{experiment.measure.seed};
+    std::unique_ptr<LoadedScene> scene = nullptr;
+    size_t                       written = 0, failed = 0;
+};
+
+/// Appends a row for each run as soon as it is final; a run that fails is a row with the reason. Returns early, with the
+/// rows so far complete, when a stop was requested.
+void measure_picture(Bench& bench, std::span<const Run> runs);
+
+} // namespace ssrlab

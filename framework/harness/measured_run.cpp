@@ -1,0 +1,128 @@
+#include "harness/measured_run.h"
+
+#include "harness/statistics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+namespace ssrlab {
+namespace {
+
+void add_summary(Row& row, const std::string& name, const Summary& summary)
+{
+    row[name + "_median"]  = number_text(summary.median);
+    row[name + "_mad"]     = number_text(summary.mad);
+    row[name + "_ci_low"]  = number_text(summary.ci_low);
+    row[name + "_ci_high"] = number_text(summary.ci_high);
+}
+
+double mean(const std::vector<double>& values)
+{
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+} // namespace
+
+std::string number_text(double value) { return std::isnan(value) ? "" : fmt::format("{:.6g}", value); }
+
+Row identity_row(const Experiment& experiment, const Run& run, const Technique& technique)
+{
+    Row row = {{"run_id", run.id},
+               {"experiment", experiment.name},
+               {"scene", run.scene},
+               {"view", run.view},
+               {"width", std::to_string(run.size_px.x)},
+               {"height", std::to_string(run.size_px.y)},
+               {"technique", run.technique}};
+    for (const Setting& setting : all_settings()) {
+        const double value = setting.get(run.settings);
+        row[setting.name]  = setting.type == ParameterType::boolean ? (value != 0 ? "true" : "false")
+                                                                    : fmt::format("{}", value);
+    }
+    for (const Parameter& parameter : technique.parameters) {
+        row[parameter.name] = format_parameter(parameter, run.values.at(parameter.name));
+    }
+    return row;
+}
+
+void add_counts(Row& row, const TraceResult& counted)
+{
+    std::array<double, trace_status_names.size()> ended{};
+    std::vector<double>                           fetches, steps;
+    for (size_t i = 0; i < counted.status.size(); ++i) {
+        if (counted.status[i] == TraceStatus::not_traced) continue;
+        ended[static_cast<size_t>(counted.status[i])] += 1;
+        steps.push_back(counted.steps[i]);
+        if (!counted.depth_fetches.empty()) fetches.push_back(counted.depth_fetches[i] + counted.pyramid_fetches[i]);
+    }
+    row["rays"]    = std::to_string(steps.size());
+    row["outcome"] = steps.empty() ? "no_rays" : "ok";
+    if (steps.empty()) return;
+    for (size_t status = 1; status < ended.size(); ++status) {
+        const double share = ended[status] / static_cast<double>(steps.size());
+        row[fmt::format("{}_share", trace_status_names[status])] = number_text(share);
+    }
+    row["steps_p99"] = number_text(quantile(steps, 0.99));
+    add_measures(row, count_work(counted));
+    if (fetches.empty()) return;
+    row["fetches_mean"] = number_text(mean(fetches));
+    row["fetches_p50"]  = number_text(quantile(fetches, 0.5));
+    row["fetches_p99"]  = number_text(quantile(fetches, 0.99));
+    row["fetches_max"]  = number_text(std::ranges::max(fetches));
+}
+
+void add_measures(Row& row, const MeasureValues& values)
+{
+    for (const auto& [name, value] : values) {
+        if (value && name != "traced_rays") row[std::string(name)] = number_text(*value);
+    }
+}
+
+void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms)
+{
+    const auto      started = std::chrono::steady_clock::now();
+    const PassTimes times   = run_frame(gpu, *measured.frame);
+    measured.spent_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    measured.rays_ms.push_back(times.rays_ms);
+    measured.inputs_ms.push_back(times.inputs_ms);
+    measured.trace_ms.push_back(times.trace_ms);
+    measured.shade_ms.push_back(times.shade_ms);
+    measured.frame_ms.push_back(gbuffer_ms + times.rays_ms + times.inputs_ms + times.trace_ms + times.shade_ms);
+}
+
+bool is_final(const MeasuredRun& measured, const MeasureSettings& measure)
+{
+    const int repeats = static_cast<int>(measured.trace_ms.size());
+    if (repeats < measure.min_repeats) return false;
+    return repeats >= measure.max_repeats || measured.spent_s >= measure.budget_s ||
+           is_tight(summarise(measured.trace_ms), measure.interval_percent);
+}
+
+void add_times(MeasuredRun& measured, double gbuffer_ms)
+{
+    Row&          row   = measured.row;
+    const Summary frame = summarise(measured.frame_ms);
+    add_summary(row, "trace_ms", summarise(measured.trace_ms));
+    add_summary(row, "frame_ms", frame);
+    row["repeats"]           = std::to_string(measured.trace_ms.size());
+    row["gbuffer_ms_median"] = number_text(gbuffer_ms);
+    row["rays_ms_median"]    = number_text(quantile(measured.rays_ms, 0.5));
+    row["pyramid_ms_median"] = number_text(quantile(measured.inputs_ms, 0.5));
+    row["shade_ms_median"]   = number_text(quantile(measured.shade_ms, 0.5));
+    row["fps"]               = number_text(1000 / frame.median);
+    row["inverse_fps_s"]     = number_text(frame.median / 1000);
+}
+
+Row failed_row(Row row, const std::string& message)
+{
+    row["outcome"] = "failed";
+    row["message"] = message;
+    return row;
+}
+
+} // namespace ssrlab

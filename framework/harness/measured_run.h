@@ -1,0 +1,36 @@
+// One run under measurement: its pipelines, its timings so far, its row so far.
+#pragma once
+
+#include "compare/measures.h"
+#include "harness/experiment.h"
+#include "harness/record.h"
+
+#include <vector>
+
+namespace ssrlab {
+
+struct MeasuredRun {
+    const Run*          run = nullptr;
+    PreparedFramePtr    frame;
+    Row                 row;
+    std::vector<double> rays_ms, inputs_ms, trace_ms, shade_ms, frame_ms;
+    double              spent_s = 0; // wall time of the timed frames
+};
+
+/// Run id, experiment, scene … and every setting and parameter.
+Row  identity_row(const Experiment& experiment, const Run& run, const Technique& technique);
+/// Rays, fetches, steps and how the rays ended, from a counted trace; outcome ok or no_rays.
+void add_counts(Row& row, const TraceResult& counted);
+/// The measures that have a column.
+void add_measures(Row& row, const MeasureValues& values);
+/// One timed frame.
+void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms);
+/// Enough repeats, and the interval is tight or the budget spent.
+bool is_final(const MeasuredRun& measured, const MeasureSettings& measure);
+void add_times(MeasuredRun& measured, double gbuffer_ms);
+Row  failed_row(Row row, const std::string& message);
+
+/// Six significant digits; NaN is an empty field.
+std::string number_text(double value);
+
+} // namespace ssrlab

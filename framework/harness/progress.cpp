@@ -1,0 +1,79 @@
+#include "harness/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace ssrlab {
+namespace {
+
+constexpr double ns_per_pixel_and_step = 1.3;  // lavapipe, two cores
+constexpr double overhead_s            = 0.15; // pipelines, comparison, picture
+
+} // namespace
+
+double estimated_seconds(const Run& run, const Technique& technique, const MeasureSettings& measure)
+{
+    const double pixels = static_cast<double>(run.size_px.x) * run.size_px.y;
+    // A ray rarely visits more pixels than the image is wide, whatever its budget; a pyramid skips most of them.
+    const double walk    = technique.inputs.empty() ? run.size_px.x + run.size_px.y : 0.15 * run.size_px.x;
+    const double bound   = iteration_bound(technique, run.values);
+    const double steps   = technique.exact ? std::min(bound, walk) : bound;
+    const double frame_s = pixels * steps * ns_per_pixel_and_step * 1e-9 + pixels * 20e-9;
+    const double repeats = std::clamp(measure.budget_s / frame_s, static_cast<double>(measure.min_repeats),
+                                      static_cast<double>(measure.max_repeats));
+    const double counting = measure.truth ? 4 : 2;
+    return overhead_s + frame_s * (repeats + measure.warmup + counting);
+}
+
+std::string duration_text(double seconds)
+{
+    const auto whole = static_cast<int64_t>(std::llround(seconds));
+    if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
+    return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+Progress::Progress(size_t total_runs, double total_cost)
+    : total_runs_(total_runs), total_cost_(total_cost), in_place_(::isatty(STDERR_FILENO) != 0)
+{
+}
+
+void Progress::start_picture(const std::string& what)
+{
+    picture_ = what;
+    tick();
+}
+
+void Progress::finish_run(double cost)
+{
+    ++done_runs_;
+    done_cost_ += cost;
+    tick();
+}
+
+void Progress::tick()
+{
+    const double interval_s = in_place_ ? 0.2 : 10;
+    const bool   first      = last_print_ == Clock::time_point{};
+    const bool   complete   = done_runs_ == total_runs_;
+    if (first || complete || std::chrono::duration<double>(Clock::now() - last_print_).count() >= interval_s) print();
+}
+
+void Progress::print()
+{
+    last_print_            = Clock::now();
+    const double elapsed_s = std::chrono::duration<double>(last_print_ - started_).count();
+    const double left_s    = done_cost_ > 0 ? elapsed_s * (total_cost_ - done_cost_) / done_cost_ : total_cost_;
+    const std::string left = left_s < 0.5 ? "" : ", about " + duration_text(left_s) + " left";
+    const std::string line = fmt::format("{} of {} runs, {}, {} so far{}", done_runs_, total_runs_, picture_,
+                                         duration_text(elapsed_s), left);
+    fmt::print(stderr, "{}{}{}", in_place_ ? "\r\033[K" : "", line, in_place_ && done_runs_ < total_runs_ ? "" : "\n");
+    std::fflush(stderr);
+}
+
+void Progress::say(const std::string& line) { fmt::print(stderr, "{}{}\n", in_place_ ? "\r\033[K" : "", line); }
+
+} // namespace ssrlab

@@ -1,0 +1,68 @@
+#include "harness/quality.h"
+
+#include "truth/scene_truth.h"
+#include "truth/screen_truth.h"
+
+#include <cstdlib>
+
+namespace ssrlab {
+namespace {
+
+bool same(const TraceSettings& a, const TraceSettings& b)
+{
+    return a.thickness_m == b.thickness_m && a.thickness_relative == b.thickness_relative &&
+           a.max_distance_m == b.max_distance_m && a.ray_offset_m == b.ray_offset_m && a.facing == b.facing;
+}
+
+} // namespace
+
+std::filesystem::path truth_cache_dir(const std::filesystem::path& results)
+{
+    const char* variable = std::getenv("SSRLAB_CACHE");
+    if (variable != nullptr && *variable != '\0') return variable;
+    return std::filesystem::absolute(results).lexically_normal().parent_path() / ".truth_cache";
+}
+
+Image reflected_image(const TraceResult& result, const GBufferImage& gbuffer, glm::vec3 background)
+{
+    Image image{result.size_px, {"R", "G", "B"}, {}, {}};
+    image.values.reserve(result.status.size() * 3);
+    for (size_t i = 0; i < result.status.size(); ++i) {
+        glm::vec3 colour(0);
+        if (result.status[i] == TraceStatus::hit) {
+            const glm::ivec2 pixel = result.hit_pixel[i];
+            colour = gbuffer.radiance[static_cast<size_t>(pixel.y) * result.size_px.x + pixel.x];
+        } else if (result.status[i] != TraceStatus::not_traced) {
+            colour = background;
+        }
+        image.values.insert(image.values.end(), {colour.r, colour.g, colour.b});
+    }
+    return image;
+}
+
+Truths::Truths(const Scene& scene, const SceneBvh& bvh, GBufferImage gbuffer, std::filesystem::path cache_dir)
+    : scene_(&scene), bvh_(&bvh), gbuffer_(std::move(gbuffer)), cache_dir_(std::move(cache_dir))
+{
+}
+
+void Truths::make(const TraceSettings& settings)
+{
+    if (made_for_ && same(*made_for_, settings)) return;
+    made_for_.reset();
+    screen_truth_ = screen_truth(gbuffer_, settings);
+    scene_truth_  = ssrlab::scene_truth(*bvh_, *scene_, gbuffer_, settings);
+    made_for_     = settings;
+}
+
+MeasureValues Truths::compare(const TraceSettings& settings, const TraceResult& counted, const TraceResult* twin)
+{
+    make(settings);
+    MeasureValues values = compare_to_screen_truth(counted, screen_truth_);
+    merge(values, compare_to_scene_truth(counted, scene_truth_, screen_truth_, gbuffer_));
+    merge(values, split_error(counted, twin, screen_truth_, &scene_truth_));
+    merge(values, compare_images(reflected_image(counted, gbuffer_, scene_->background), reference_image(scene_truth_),
+                                 scene_truth_));
+    return values;
+}
+
+} // namespace ssrlab

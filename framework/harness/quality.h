@@ -1,0 +1,42 @@
+// What the truths say about a run.
+#pragma once
+
+#include "compare/measures.h"
+#include "harness/measured_run.h"
+#include "truth/scene_bvh.h"
+
+#include <filesystem>
+#include <optional>
+
+namespace ssrlab {
+
+/// The truths of one picture. Those of the last trace settings are kept: runs with the same settings stand together.
+class Truths {
+public:
+    /// Keeps references to `scene` and `bvh`. Screen truths are cached in `cache_dir`.
+    Truths(const Scene& scene, const SceneBvh& bvh, GBufferImage gbuffer, std::filesystem::path cache_dir);
+
+    /// Every measure of `counted`; `twin` is the same trace in double, or null.
+    MeasureValues compare(const TraceSettings& settings, const TraceResult& counted, const TraceResult* twin);
+
+    const SceneTruth&  scene_truth() const { return scene_truth_; }
+
+private:
+    void make(const TraceSettings& settings);
+
+    const Scene*                 scene_;
+    const SceneBvh*              bvh_;
+    GBufferImage                 gbuffer_;
+    std::filesystem::path        cache_dir_;
+    std::optional<TraceSettings> made_for_;
+    TraceResult                  screen_truth_;
+    SceneTruth                   scene_truth_;
+};
+
+/// $SSRLAB_CACHE, or .truth_cache beside the results folder.
+std::filesystem::path truth_cache_dir(const std::filesystem::path& results);
+
+/// The reflected radiance that a result finds: the G-buffer's at the hit pixel; the scene's background where nothing is hit.
+Image reflected_image(const TraceResult& result, const GBufferImage& gbuffer, glm::vec3 background);
+
+} // namespace ssrlab

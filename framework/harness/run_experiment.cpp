@@ -1,0 +1,121 @@
+#include "harness/run_experiment.h"
+
+#include "core/error.h"
+#include "core/files.h"
+#include "core/names.h"
+#include "harness/columns.h"
+#include "harness/environment.h"
+#include "harness/measure_picture.h"
+#include "harness/progress.h"
+#include "harness/record.h"
+#include "harness/stop_signal.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace ssrlab {
+namespace {
+
+namespace fs = std::filesystem;
+
+void refuse_unknown_scenes(const Experiment& experiment)
+{
+    std::vector<std::string> known;
+    for (const SceneListing& listing : list_scenes()) known.push_back(listing.name);
+    for (const std::string& scene : experiment.scenes) {
+        const std::string extension = fs::path(scene).extension().string();
+        const bool        is_path   = extension == ".glb" || extension == ".gltf" || extension == ".toml";
+        if (is_path ? fs::exists(scene) : std::ranges::find(known, scene) != known.end()) continue;
+        throw_spec_error("{}: {}", experiment.scenes_place,
+                         is_path ? "scene '" + scene + "': no such file" : unknown_name("scene", scene, known));
+    }
+}
+
+void refuse_large_sizes(const Experiment& experiment, const GpuInfo& device)
+{
+    for (const glm::ivec2& size_px : experiment.sizes_px) {
+        if (static_cast<uint32_t>(std::max(size_px.x, size_px.y)) <= device.max_image_px) continue;
+        throw_spec_error("{}: size {} is more than {} allows ({} pixels a side)", short_path(experiment.file),
+                         size_text(size_px), device.name, device.max_image_px);
+    }
+}
+
+std::vector<Run> choose(std::vector<Run> runs, const std::string& only)
+{
+    if (only.empty()) return runs;
+    std::erase_if(runs, [&](const Run& run) { return run.id != only; });
+    if (runs.empty()) throw_spec_error("no run has the id '{}'; --dry-run lists them", only);
+    return runs;
+}
+
+double total_cost(std::span<const Run> runs, std::span<const Technique> techniques, const MeasureSettings& measure)
+{
+    double seconds = 0;
+    for (const Run& run : runs) seconds += estimated_seconds(run, find_technique(techniques, run.technique), measure);
+    return seconds;
+}
+
+int list_runs(const Experiment& experiment, std::span<const Run> runs, std::span<const Technique> techniques)
+{
+    for (const Run& run : runs) {
+        const Technique& technique = find_technique(techniques, run.technique);
+        std::string      values;
+        for (const Parameter& parameter : technique.parameters) {
+            values += fmt::format(" {}={}", parameter.name, format_parameter(parameter, run.values.at(parameter.name)));
+        }
+        fmt::print("{}  {} {} {}  thickness_m={} max_distance_m={}  {}{}\n", run.id, run.scene, run.view,
+                   size_text(run.size_px), run.settings.trace.thickness_m, run.settings.trace.max_distance_m,
+                   run.technique, values);
+    }
+    fmt::print("{} runs, about {} on two CPU cores without a GPU\n", runs.size(),
+               duration_text(total_cost(runs, techniques, experiment.measure)));
+    return 0;
+}
+
+/// Runs that share scene, view and size stand together; takes the next such group off the front.
+std::span<const Run> take_picture(std::span<const Run>& rest)
+{
+    const Run& first = rest.front();
+    const auto same  = [&](const Run& run) {
+        return run.scene == first.scene && run.view == first.view && run.size_px == first.size_px;
+    };
+    const auto count   = static_cast<size_t>(std::ranges::find_if_not(rest, same) - rest.begin());
+    const auto picture = rest.first(count);
+    rest               = rest.subspan(count);
+    return picture;
+}
+
+} // namespace
+
+int run_experiment(const RunOptions& options)
+{
+    const std::vector<Technique> techniques = list_techniques(options.techniques);
+    const Experiment             experiment = load_experiment(options.specification, techniques);
+    refuse_unknown_scenes(experiment);
+    std::vector<Run> runs = choose(expand(experiment, techniques, options.yes), options.only);
+    const auto       columns = result_columns(experiment, techniques);
+    if (options.dry_run) return list_runs(experiment, runs, techniques);
+
+    Gpu gpu = open_gpu(options.gpu);
+    refuse_large_sizes(experiment, gpu.info);
+    const fs::path folder = options.folder.empty() ? fs::path("results") / experiment.name : options.folder;
+    listen_for_stop();
+    ResultFolder results(folder, names_of(columns),
+                         describe_environment(experiment, techniques, gpu.info, options.command_line), options.resume);
+    std::erase_if(runs, [&](const Run& run) { return results.finished().contains(run.id); });
+
+    Progress progress(runs.size(), total_cost(runs, techniques, experiment.measure));
+    Bench    bench{experiment, techniques, gpu, results, progress};
+    for (std::span<const Run> rest = runs; !rest.empty() && stop_requested() == 0;) {
+        measure_picture(bench, take_picture(rest));
+    }
+    fmt::print("{}: {} rows, {} written now, {} of them failed\n", short_path(results.path() / "results.csv"),
+               results.finished().size(), bench.written, bench.failed);
+    if (stop_requested() != 0) {
+        progress.say("stopped; the same command with --resume does the other runs");
+        return 128 + stop_requested();
+    }
+    return bench.failed > 0 ? 1 : 0;
+}
+
+} // namespace ssrlab

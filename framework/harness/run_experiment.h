@@ -1,0 +1,28 @@
+// The main loop: every run of an experiment becomes a row.
+#pragma once
+
+#include "gpu/gpu.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ssrlab {
+
+struct RunOptions {
+    std::filesystem::path              specification;
+    std::filesystem::path              folder;     // empty: results/NAME
+    std::vector<std::filesystem::path> techniques; // more directories of techniques
+    GpuOptions                         gpu;
+    std::string                        only;       // a run id; empty: all runs
+    bool                               resume  = false;
+    bool                               dry_run = false; // list runs and estimated time, touch nothing
+    bool                               yes     = false; // also more than max_runs_unasked
+    std::string                        command_line;
+};
+
+/// 0 when every row is ok (or had nothing to trace), 1 when a run failed, 130 or 143 after SIGINT or SIGTERM: the rows so far
+/// are complete and --resume does the others. Throws SpecError before anything is written, Failure when writing is refused.
+int run_experiment(const RunOptions& options);
+
+} // namespace ssrlab
