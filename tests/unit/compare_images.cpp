@@ -1,0 +1,162 @@
+// RMSE, PSNR, SSIM and FLIP where the answer is known.
+#include "compare/flip.h"
+#include "compare/measures.h"
+#include "compare/ssim.h"
+#include "core/error.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace ssrlab {
+namespace {
+
+Image uniform(glm::ivec2 size_px, glm::vec3 colour)
+{
+    Image image;
+    image.size_px  = size_px;
+    image.channels = {"R", "G", "B"};
+    for (int i = 0; i < size_px.x * size_px.y; ++i) image.values.insert(image.values.end(), {colour.r, colour.g, colour.b});
+    return image;
+}
+
+Image noise(glm::ivec2 size_px, unsigned seed)
+{
+    Image                                 image = uniform(size_px, {0, 0, 0});
+    std::mt19937                          random(seed);
+    std::uniform_real_distribution<float> unit(0, 1);
+    for (float& value : image.values) value = unit(random);
+    return image;
+}
+
+Plane first_channel(const Image& image)
+{
+    Plane plane{image.size_px, {}};
+    for (size_t i = 0; i < image.values.size(); i += 3) plane.values.push_back(image.values[i]);
+    return plane;
+}
+
+float largest(const std::vector<float>& values) { return *std::max_element(values.begin(), values.end()); }
+float smallest(const std::vector<float>& values) { return *std::min_element(values.begin(), values.end()); }
+
+TEST(Flip, IdenticalIsZero)
+{
+    const Image image = noise({37, 21}, 1);
+    EXPECT_EQ(largest(flip_error(image, image)), 0);
+}
+
+// The largest difference of the paper's metric, by definition: pure green against pure blue.
+TEST(Flip, GreenAgainstBlueIsOne)
+{
+    for (const float error : flip_error(uniform({24, 24}, {0, 1, 0}), uniform({24, 24}, {0, 0, 1}))) EXPECT_NEAR(error, 1, 1e-4);
+}
+
+// Uniform pictures have no features: the error is the colour term alone. Black to white is 100 in L*; with cmax the 0.7th power of the
+// HyAB distance of Hunt-adjusted green (87.74, -75.62, 72.98) and blue (32.30, 25.58, -34.84), 203.3^0.7 = 41.27:
+// 0.95 + 0.05 (100^0.7 - 0.4 * 41.27) / (0.6 * 41.27) = 0.9674.
+TEST(Flip, BlackAgainstWhite)
+{
+    const Image black = uniform({24, 24}, {0, 0, 0}), white = uniform({24, 24}, {1, 1, 1});
+    for (const float error : flip_error(black, white)) EXPECT_NEAR(error, 0.9674F, 5e-4);
+    for (const float error : flip_error(white, black)) EXPECT_NEAR(error, 0.9674F, 5e-4);
+}
+
+TEST(Flip, SymmetricAndBounded)
+{
+    const Image a = noise({41, 33}, 1), b = noise({41, 33}, 2);
+    const auto  forward = flip_error(a, b), backward = flip_error(b, a);
+    EXPECT_EQ(forward, backward);
+    EXPECT_GE(smallest(forward), 0);
+    EXPECT_LE(largest(forward), 1);
+}
+
+TEST(Flip, GrowsWithTheDifferenceAndStaysLocal)
+{
+    const Image grey = uniform({101, 101}, glm::vec3(0.5F));
+    float       last = 0;
+    for (const float step : {0.05F, 0.2F, 0.5F}) {
+        Image dotted = grey;
+        for (size_t c = 0; c < 3; ++c) dotted.values[3 * (50 * 101 + 50) + c] += step;
+        const std::vector<float> error = flip_error(dotted, grey);
+        EXPECT_EQ(largest(error), error[50 * 101 + 50]);
+        EXPECT_GT(largest(error), last);
+        EXPECT_NEAR(error[50 * 101 + 10], 0, 1e-3); // farther than any filter reaches
+        last = largest(error);
+    }
+}
+
+// From far away a fine checkerboard and its mean look alike.
+TEST(Flip, FineDetailVanishesWithDistance)
+{
+    Image a = uniform({64, 64}, glm::vec3(0)), b = a;
+    for (size_t i = 0; i < a.values.size() / 3; ++i) {
+        const bool even = (i % 64 + i / 64) % 2 == 0;
+        for (size_t c = 0; c < 3; ++c) {
+            a.values[3 * i + c] = even ? 0.6F : 0.4F;
+            b.values[3 * i + c] = even ? 0.4F : 0.6F;
+        }
+    }
+    const auto at_centre = [&](float ppd) { return flip_error(a, b, ppd)[32 * 64 + 32]; };
+    EXPECT_LT(at_centre(200), at_centre(20));
+    EXPECT_LT(at_centre(200), 0.05F);
+}
+
+TEST(Flip, DifferentSizesAreRefused)
+{
+    EXPECT_THROW(flip_error(uniform({3, 3}, {}), uniform({4, 3}, {})), Failure);
+}
+
+TEST(Ssim, IdenticalIsOneAndConstantsFollowTheFormula)
+{
+    const Plane a = first_channel(noise({30, 20}, 3));
+    EXPECT_NEAR(smallest(ssim_map(a, a)), 1, 1e-5);
+    // Without variance only the luminance term remains: (2 ab + c1) / (a^2 + b^2 + c1).
+    const Plane x = first_channel(uniform({15, 15}, glm::vec3(0.2F))), y = first_channel(uniform({15, 15}, glm::vec3(0.6F)));
+    for (const float index : ssim_map(x, y)) EXPECT_NEAR(index, (2 * 0.12 + 1e-4) / (0.04 + 0.36 + 1e-4), 2e-3);
+    const Plane b = first_channel(noise({30, 20}, 4));
+    EXPECT_LT(largest(ssim_map(a, b)), 0.9F);
+}
+
+SceneTruth half_visible(glm::ivec2 size_px)
+{
+    SceneTruth truth;
+    truth.size_px = size_px;
+    for (int i = 0; i < size_px.x * size_px.y; ++i) {
+        truth.cls.push_back(i % size_px.x < size_px.x / 2 ? TruthClass::visible : TruthClass::hidden);
+    }
+    return truth;
+}
+
+// Linear 1 against 0 on the right half only: nothing over the visible left half, 1 over half of all pixels.
+TEST(ImageMeasures, MaskDecidesWhatCounts)
+{
+    const Image reference = uniform({40, 20}, glm::vec3(0));
+    Image       tested    = reference;
+    for (size_t i = 0; i < 800; ++i) {
+        if (i % 40 < 20) continue;
+        for (size_t c = 0; c < 3; ++c) tested.values[3 * i + c] = 1;
+    }
+    MeasureValues values = compare_images(tested, reference, half_visible({40, 20}));
+    EXPECT_EQ(values.at("rmse_visible"), 0);
+    EXPECT_FALSE(values.at("psnr_visible_db"));
+    EXPECT_NEAR(values.at("ssim_visible").value(), 1, 1e-6);
+    EXPECT_EQ(values.at("flip_visible"), 0);
+    EXPECT_NEAR(values.at("rmse_reflective").value(), std::sqrt(0.5), 1e-6);
+    EXPECT_NEAR(values.at("psnr_reflective_db").value(), 20 * std::log10(std::sqrt(2)), 1e-5);
+    EXPECT_GT(values.at("flip_reflective").value(), 0.4);
+    EXPECT_LT(values.at("ssim_reflective").value(), 0.7);
+}
+
+TEST(ImageMeasures, OfDisplayValues)
+{
+    // sRGB encodes linear 0.2140 as 0.5; values beyond 1 are clamped.
+    const MeasureValues values =
+        compare_images(uniform({12, 12}, glm::vec3(7)), uniform({12, 12}, glm::vec3(0.2140411F)), half_visible({12, 12}));
+    EXPECT_NEAR(values.at("rmse_visible").value(), 0.5, 1e-5);
+    EXPECT_NEAR(values.at("psnr_visible_db").value(), 20 * std::log10(2), 1e-4);
+}
+
+} // namespace
+} // namespace ssrlab

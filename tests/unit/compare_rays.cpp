@@ -1,0 +1,231 @@
+// Ray measures and pictures on hand-made results of a few pixels, with exact shares.
+#include "compare/measures.h"
+#include "compare/pictures.h"
+#include "core/error.h"
+#include "truth_gbuffers.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace ssrlab {
+namespace {
+
+using namespace test;
+
+TraceResult row_of(int count)
+{
+    TraceResult result;
+    result.size_px = {count, 1};
+    result.status.assign(size_t(count), TraceStatus::left_screen);
+    result.hit_pixel.resize(size_t(count));
+    result.hit_px_depth.resize(size_t(count));
+    result.hit_t.resize(size_t(count));
+    result.steps.assign(size_t(count), 3);
+    return result;
+}
+
+void set_hit(TraceResult& result, size_t i, double x_px, double depth = 0.05)
+{
+    result.status[i]       = TraceStatus::hit;
+    result.hit_pixel[i]    = {int(x_px), 0};
+    result.hit_px_depth[i] = {x_px, 0.5, depth};
+}
+
+TEST(RayMeasures, AgainstScreenTruth)
+{
+    TraceResult truth = row_of(10), tested = row_of(10);
+    truth.status[0] = tested.status[0] = TraceStatus::not_traced;
+    for (const size_t i : {1, 2, 3, 4, 5}) set_hit(truth, i, 20.25);
+    set_hit(tested, 1, 20.75);                       // same pixel, 0.5 px
+    set_hit(tested, 2, 21.25);                       // neighbour, exactly 1 px: within
+    set_hit(tested, 3, 24.25);                       // displaced by 4 px
+    tested.status[4] = TraceStatus::out_of_steps;    // missed
+    set_hit(tested, 6, 5.5);                         // false
+    const MeasureValues values = compare_to_screen_truth(tested, truth);
+    EXPECT_EQ(values.at("traced_rays"), 9);
+    EXPECT_EQ(values.at("screen_same_pixel"), 4 / 9.0);  // 1, and the common misses 7, 8, 9
+    EXPECT_EQ(values.at("screen_within_1px"), 5 / 9.0);
+    EXPECT_EQ(values.at("screen_displaced"), 1 / 9.0);
+    EXPECT_EQ(values.at("screen_missed"), 2 / 9.0);      // 4 and 5
+    EXPECT_EQ(values.at("screen_false"), 1 / 9.0);
+    EXPECT_EQ(values.at("screen_out_of_steps"), 1 / 9.0);
+    EXPECT_EQ(values.at("screen_recall_1px"), 2 / 5.0);
+    EXPECT_EQ(values.at("screen_displacement_median_px"), 1);
+    EXPECT_EQ(values.at("screen_displacement_p95_px"), 4);
+    EXPECT_EQ(values.at("screen_displacement_p99_px"), 4);
+}
+
+TEST(RayMeasures, NothingTracedHasNoValues)
+{
+    TraceResult none = row_of(4);
+    none.status.assign(4, TraceStatus::not_traced);
+    SceneTruth scene;
+    scene.size_px = {4, 1};
+    scene.cls.resize(4);
+    scene.point_px.resize(4);
+    scene.radiance.resize(4);
+    MeasureValues all = no_measures();
+    merge(all, compare_to_screen_truth(none, none));
+    merge(all, compare_to_scene_truth(none, scene, none, empty_gbuffer(bench_view({4, 1}))));
+    merge(all, split_error(none, &none, none, &scene));
+    merge(all, count_work(none));
+    merge(all, compare_images(reference_image(scene), reference_image(scene), scene));
+    for (const auto& [name, value] : all) {
+        if (name == "traced_rays") {
+            EXPECT_EQ(value, 0);
+        } else {
+            EXPECT_FALSE(value) << name;
+        }
+    }
+}
+
+/// Sixteen rays that start from a plane facing the camera at Z = 2, objects 1 (pixels 0..7) and 2 (8..15), except pixel 9 at Z = 1.
+struct SceneCase {
+    GBufferImage gbuffer = empty_gbuffer(bench_view({16, 1}));
+    SceneTruth   truth;
+    TraceResult  tested = row_of(16), screen = row_of(16);
+
+    SceneCase()
+    {
+        for (int x = 0; x < 16; ++x) {
+            set_pixel(gbuffer, x, 0, x == 9 ? 1 : 2, {0, 0, 1}, 1);
+            gbuffer.object_id[size_t(x)] = x < 8 ? 1 : 2;
+        }
+        truth.size_px = {16, 1};
+        truth.cls.assign(16, TruthClass::not_traced);
+        truth.point_px.assign(16, {12.25, 0.5});
+    }
+};
+
+TEST(RayMeasures, AgainstSceneTruth)
+{
+    SceneCase test;
+    auto&     [gbuffer, truth, tested, screen] = test;
+    for (const size_t i : {0, 1, 2, 3, 4, 5}) truth.cls[i] = TruthClass::visible;
+    truth.cls[6] = TruthClass::hidden;
+    truth.cls[7] = TruthClass::sky;
+    set_hit(tested, 0, 12.5);                     // found
+    set_hit(tested, 1, 15.25, 0.05);              // displaced by 3 px; Z = 2 = the surface: a wrong front
+    set_hit(screen, 2, 12.25);                    // stepped over
+    tested.status[3] = TraceStatus::out_of_steps;
+    tested.status[4] = TraceStatus::facing_away;
+    set_hit(tested, 6, 9.5, 0.1 / 1.5);           // ray at Z = 1.5 behind the surface at Z = 1: slab too thick
+    set_hit(tested, 7, 3.5, 0.05);                // object 1, in its own plane: a self-hit
+    const MeasureValues values = compare_to_scene_truth(tested, truth, screen, gbuffer);
+    EXPECT_EQ(values.at("traced_rays"), 8);
+    EXPECT_EQ(values.at("recall_1px"), 1 / 6.0);
+    EXPECT_EQ(values.at("recall_4px"), 2 / 6.0);
+    EXPECT_EQ(values.at("visible_displaced"), 1 / 6.0);
+    EXPECT_EQ(values.at("missed_stepped_over"), 1 / 6.0);
+    EXPECT_EQ(values.at("missed_out_of_steps"), 1 / 6.0);
+    EXPECT_EQ(values.at("missed_facing_rule"), 1 / 6.0);
+    EXPECT_EQ(values.at("missed_not_in_depth"), 1 / 6.0);
+    EXPECT_EQ(values.at("precision_1px"), 1 / 4.0);
+    EXPECT_EQ(values.at("false_hits"), 3 / 8.0);
+    EXPECT_EQ(values.at("false_self"), 1 / 8.0);
+    EXPECT_EQ(values.at("false_too_thick"), 1 / 8.0);
+    EXPECT_EQ(values.at("false_wrong_surface"), 1 / 8.0);
+    EXPECT_EQ(values.at("truth_visible"), 6 / 8.0);
+    EXPECT_EQ(values.at("truth_hidden"), 1 / 8.0);
+    EXPECT_EQ(values.at("truth_sky"), 1 / 8.0);
+    EXPECT_EQ(values.at("truth_off_screen"), 0);
+}
+
+TEST(RayMeasures, SplitAndFlips)
+{
+    SceneCase test;
+    auto&     [gbuffer, truth, tested, screen] = test;
+    for (size_t i = 0; i < 4; ++i) truth.cls[i] = TruthClass::visible;
+    TraceResult twin = row_of(16);
+    for (size_t i = 0; i < 3; ++i) set_hit(screen, i, 12.25); // 3 of 4 visible
+    for (size_t i = 0; i < 2; ++i) set_hit(twin, i, 12.75);   // 2 of 3
+    set_hit(tested, 0, 14.5);                                 // 0 of 2: displaced, missed
+    const MeasureValues values = split_error(tested, &twin, screen, &truth);
+    EXPECT_DOUBLE_EQ(values.at("error_scene_to_screen").value(), 1 / 4.0);
+    EXPECT_DOUBLE_EQ(values.at("error_screen_to_double").value(), 1 / 3.0);
+    EXPECT_DOUBLE_EQ(values.at("error_double_to_float").value(), 1);
+    EXPECT_DOUBLE_EQ(values.at("flips_per_million").value(), 2e6 / 16);
+    EXPECT_EQ(count_flips(twin, twin), 0);
+    EXPECT_TRUE(split_error(tested, nullptr, screen, nullptr).empty());
+}
+
+TEST(RayMeasures, WorkIsCountedPerTracedRay)
+{
+    TraceResult result = row_of(4);
+    result.status[0]   = TraceStatus::not_traced;
+    result.steps       = {0, 1, 2, 6};
+    MeasureValues values = count_work(result);
+    EXPECT_EQ(values.at("steps_mean"), 3);
+    EXPECT_EQ(values.at("steps_max"), 6);
+    EXPECT_FALSE(values.at("depth_fetches_mean"));
+    result.depth_fetches = {0, 0, 3, 3};
+    EXPECT_EQ(count_work(result).at("depth_fetches_mean"), 2);
+}
+
+TEST(RayMeasures, DifferentSizesAreRefused)
+{
+    EXPECT_THROW(compare_to_screen_truth(row_of(3), row_of(4)), Failure);
+    EXPECT_THROW(count_flips(row_of(3), row_of(4)), Failure);
+}
+
+TEST(Measures, TableIsCompleteAndUnique)
+{
+    std::set<std::string_view> names;
+    for (const Measure& measure : measures()) {
+        EXPECT_TRUE(names.insert(measure.name).second) << measure.name;
+        EXPECT_FALSE(measure.unit.empty() || measure.formula.empty() || measure.source.empty()) << measure.name;
+        EXPECT_EQ(measure.formula.find('|'), std::string_view::npos) << measure.name;
+    }
+    // Every value that a function returns has its row, and every row a function.
+    SceneCase     test;
+    MeasureValues all = compare_to_screen_truth(test.tested, test.screen);
+    all.merge(compare_to_scene_truth(test.tested, test.truth, test.screen, test.gbuffer));
+    all.merge(split_error(test.tested, &test.tested, test.screen, &test.truth));
+    all.merge(count_work(test.tested));
+    test.truth.radiance.resize(16);
+    all.merge(compare_images(reference_image(test.truth), reference_image(test.truth), test.truth));
+    std::set<std::string_view> filled;
+    for (const auto& [name, value] : all) filled.insert(name);
+    filled.insert("steps_max"); // only with rays
+    EXPECT_EQ(filled, names);
+    EXPECT_NE(measures_markdown().find("| `recall_1px` | share |"), std::string::npos);
+}
+
+TEST(Pictures, AgreementColours)
+{
+    TraceResult truth = row_of(6), tested = row_of(6);
+    truth.status[0] = TraceStatus::not_traced;
+    for (const size_t i : {1, 2, 3}) set_hit(truth, i, 20.25);
+    set_hit(tested, 1, 20.5);
+    set_hit(tested, 2, 30.5);
+    set_hit(tested, 4, 1.5);
+    const Image image  = agreement_picture(tested, truth);
+    const auto  colour = [&](size_t i) { return glm::vec3(image.values[3 * i], image.values[3 * i + 1], image.values[3 * i + 2]); };
+    EXPECT_EQ(colour(0), glm::vec3(0));
+    EXPECT_TRUE(colour(1).g > colour(1).r && colour(1).g > colour(1).b); // green
+    EXPECT_TRUE(colour(2).r > 0.5F && colour(2).g > 0.5F);               // yellow
+    EXPECT_TRUE(colour(3).r > 0.5F && colour(3).g < 0.1F && colour(3).b < 0.1F); // red
+    EXPECT_TRUE(colour(4).r > 0.5F && colour(4).b > 0.5F);               // magenta
+    EXPECT_TRUE(colour(5).r < 0.2F && colour(5).r > 0);                  // grey
+    SceneTruth scene;
+    scene.size_px = {6, 1};
+    scene.cls = {TruthClass::not_traced, TruthClass::visible, TruthClass::visible, TruthClass::visible, TruthClass::hidden, TruthClass::sky};
+    scene.point_px.assign(6, {20.25, 0.5});
+    EXPECT_EQ(agreement_picture(tested, scene).values, image.values);
+}
+
+TEST(Pictures, HeatMapGrowsWithFetches)
+{
+    TraceResult result = row_of(4);
+    result.depth_fetches   = {0, 1, 4096, 100000};
+    result.pyramid_fetches = {0, 0, 0, 0};
+    const Image image      = fetch_heat_map(result);
+    EXPECT_EQ(image.values[0] + image.values[1] + image.values[2], 0);
+    EXPECT_FLOAT_EQ(image.values[5], 0.1F);
+    EXPECT_FLOAT_EQ(image.values[6], 0.9F);
+    EXPECT_EQ(image.values[9], image.values[6]);
+}
+
+} // namespace
+} // namespace ssrlab
