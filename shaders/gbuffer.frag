@@ -31,14 +31,14 @@ layout(location = 4) out uint object;
 
 const float pi = 3.14159265358979;
 
-vec3 shading_normal(Material material)
+vec3 shading_normal(Material material, Coordinates at)
 {
     vec3 normal = normalize(normal_ws);
     if (dot(tangent_ws.xyz, tangent_ws.xyz) > 0.0)
     {
         vec3 tangent   = normalize(tangent_ws.xyz - normal * dot(normal, tangent_ws.xyz));
         vec3 bitangent = cross(normal, tangent) * tangent_ws.w;
-        vec3 mapped    = texture(normal_texture, texture_uv(material, 2, uv)).xyz * 2.0 - 1.0;
+        vec3 mapped    = sample_texture(normal_texture, material, 2, at).xyz * 2.0 - 1.0;
         mapped.xy *= material.normal_scale;
         normal = normalize(tangent * mapped.x + bitangent * mapped.y + normal * mapped.z);
     }
@@ -98,13 +98,14 @@ vec3 specular(vec3 normal, vec3 to_eye, vec3 to_light, vec3 f0, float roughness)
 
 void main()
 {
-    Material material = materials[material_index];
-    vec4     base     = base_colour_of(material, uv, vertex_colour);
+    Coordinates at       = coordinates_of(uv);
+    Material    material = materials[material_index];
+    vec4        base     = base_colour_of(material, at, vertex_colour);
     if (material.alpha_cutoff >= 0.0 && base.a < material.alpha_cutoff) discard;
-    vec4  metallic_roughness = texture(metallic_roughness_texture, texture_uv(material, 1, uv));
+    vec4  metallic_roughness = sample_texture(metallic_roughness_texture, material, 1, at);
     float metallic  = clamp(material.metallic * metallic_roughness.b, 0.0, 1.0);
     float roughness = clamp(material.roughness * metallic_roughness.g, 0.0, 1.0);
-    vec3  normal    = shading_normal(material);
+    vec3  normal    = shading_normal(material, at);
     vec3  to_eye    = orthographic != 0 ? -view_axis_ws : normalize(eye_ws - position_ws);
     vec3  f0        = mix(vec3(0.04), base.rgb, metallic);
 
@@ -119,7 +120,7 @@ void main()
         diffuse_light += irradiance;
         highlights += irradiance * specular(normal, to_eye, to_light, f0, roughness);
     }
-    vec3 emissive = material.emissive * texture(emissive_texture, texture_uv(material, 3, uv)).rgb;
+    vec3 emissive = material.emissive * sample_texture(emissive_texture, material, 3, at).rgb;
 
     normal_and_roughness = vec4(mat3(world_to_view) * normal, roughness);
     base_and_metallic    = vec4(base.rgb, metallic);

@@ -5,13 +5,29 @@ layout(set = 1, binding = 1) uniform sampler2D metallic_roughness_texture;
 layout(set = 1, binding = 2) uniform sampler2D normal_texture;
 layout(set = 1, binding = 3) uniform sampler2D emissive_texture;
 
-vec2 texture_uv(Material material, int use, vec4 uv)
+// Texture coordinates of both sets with their screen derivatives. Derivatives are taken before anything is read from a buffer:
+// some drivers load zeros in the pixels beside a triangle's edge, and the wrong mip level would show as a dotted line.
+struct Coordinates
 {
-    vec2 chosen = material.uv_set[use] == 0 ? uv.xy : uv.zw;
-    return (material.uv_transform[use] * vec3(chosen, 1.0)).xy;
+    vec4 uv, dx, dy;
+};
+
+Coordinates coordinates_of(vec4 uv)
+{
+    return Coordinates(uv, dFdx(uv), dFdy(uv));
 }
 
-vec4 base_colour_of(Material material, vec4 uv, vec4 vertex_colour)
+vec4 sample_texture(sampler2D image, Material material, int use, Coordinates at)
 {
-    return material.base_colour * vertex_colour * texture(base_colour_texture, texture_uv(material, 0, uv));
+    bool first     = material.uv_set[use] == 0;
+    mat3 transform = material.uv_transform[use];
+    vec2 uv        = (transform * vec3(first ? at.uv.xy : at.uv.zw, 1.0)).xy;
+    vec2 dx        = (transform * vec3(first ? at.dx.xy : at.dx.zw, 0.0)).xy;
+    vec2 dy        = (transform * vec3(first ? at.dy.xy : at.dy.zw, 0.0)).xy;
+    return textureGrad(image, uv, dx, dy);
+}
+
+vec4 base_colour_of(Material material, Coordinates at, vec4 vertex_colour)
+{
+    return material.base_colour * vertex_colour * sample_texture(base_colour_texture, material, 0, at);
 }

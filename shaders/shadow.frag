@@ -7,6 +7,7 @@ layout(location = 4) in vec4 vertex_colour;
 
 void main()
 {
-    Material material = materials[material_index];
-    if (material.alpha_cutoff >= 0.0 && base_colour_of(material, uv, vertex_colour).a < material.alpha_cutoff) discard;
+    Coordinates at       = coordinates_of(uv);
+    Material    material = materials[material_index];
+    if (material.alpha_cutoff >= 0.0 && base_colour_of(material, at, vertex_colour).a < material.alpha_cutoff) discard;
 }

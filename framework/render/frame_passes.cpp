@@ -61,8 +61,10 @@ std::string parameter_declarations(const Technique& technique)
     std::string text;
     uint32_t    id = CONSTANT_PARAMETERS;
     for (const Parameter& parameter : technique.parameters) {
-        const bool real = parameter.type == ParameterType::real;
-        text += fmt::format("layout(constant_id = {}) const {} {} = {};\n", id++, real ? "float" : "int", parameter.name, real ? "0.0" : "0");
+        const char* declaration = parameter.type == ParameterType::real      ? "float {} = 0.0"
+                                  : parameter.type == ParameterType::boolean ? "bool {} = false"
+                                                                             : "int {} = 0";
+        text += fmt::format("layout(constant_id = {}) const {};\n", id++, fmt::format(fmt::runtime(declaration), parameter.name));
         for (size_t i = 0; i < parameter.choices.size(); ++i)
             text += fmt::format("const int {}_{} = {};\n", parameter.name, parameter.choices[i], i);
     }
