@@ -136,6 +136,19 @@ private:
 
 } // namespace
 
+SceneTruth empty_scene_truth(glm::ivec2 size_px)
+{
+    const size_t count = size_t(size_px.x) * size_t(size_px.y);
+    SceneTruth   truth;
+    truth.size_px = size_px;
+    truth.cls.resize(count);
+    truth.point_vs.resize(count);
+    truth.point_px.resize(count);
+    truth.distance_m.resize(count);
+    truth.radiance.resize(count);
+    return truth;
+}
+
 SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer, const TraceSettings& settings,
                        unsigned threads)
 {
@@ -145,13 +158,7 @@ SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferIma
         throw_failure("G-buffer of view '{}': expected {} values of radiance, found {}", gbuffer.view.name, count,
                       gbuffer.radiance.size());
     }
-    SceneTruth truth;
-    truth.size_px = gbuffer.view.size_px;
-    truth.cls.resize(count);
-    truth.point_vs.resize(count);
-    truth.point_px.resize(count);
-    truth.distance_m.resize(count);
-    truth.radiance.resize(count);
+    SceneTruth truth = empty_scene_truth(gbuffer.view.size_px);
     parallel_rows(truth.size_px.y, threads, [&](int y) { Row(bvh, scene, gbuffer, settings, truth).fill(y); });
     return truth;
 }

@@ -27,6 +27,9 @@ namespace ssrlab {
 inline constexpr double self_hit_share       = 1e-4;
 inline constexpr double visibility_tolerance = 2e-4;
 
+/// All pixels not traced.
+SceneTruth empty_scene_truth(glm::ivec2 size_px);
+
 /// Radiance of a visible point is the G-buffer's (the view-independent part) at the pixel it falls into, so that a perfect SSR
 /// reproduces the reference exactly; all other points are shaded by shade_point; sky is Scene::background.
 /// Threads = 0: all cores.

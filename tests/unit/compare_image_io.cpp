@@ -116,7 +116,7 @@ TEST_F(ImageIo, FullDiskLeavesNoPartialFile)
     Image large;
     large.size_px  = {512, 512};
     large.channels = {"R", "G", "B"};
-    for (int i = 0; i < 512 * 512 * 3; ++i) large.values.push_back(float(i * 7919 % 10007));
+    for (int i = 0; i < 512 * 512 * 3; ++i) large.values.push_back(float(i % 10007 * 7919 % 10007));
     write_image(m_folder / "old.exr", sample_image());
     const std::string old = bytes_of(m_folder / "old.exr");
     std::signal(SIGXFSZ, SIG_IGN);
