@@ -9,8 +9,6 @@
 namespace ssrlab {
 namespace {
 
-using ValueLists = std::map<std::string, std::vector<double>>;
-
 double combinations(const ValueLists& lists)
 {
     double count = 1;
@@ -33,6 +31,13 @@ std::vector<ParameterValues> cross_product(const ValueLists& lists)
         rows = std::move(longer);
     }
     return rows;
+}
+
+ValueLists settings_of(const Experiment& experiment, const TechniqueSweep& sweep)
+{
+    ValueLists lists = experiment.settings;
+    for (const auto& [name, values] : sweep.settings) lists[name] = values;
+    return lists;
 }
 
 FrameSettings to_settings(const ParameterValues& values)
@@ -61,6 +66,25 @@ void refuse_cut_loops(const TechniqueSweep& sweep, const Technique& technique, c
                      sweep.place, technique.id, bound, max_iterations);
 }
 
+/// Settings and values do not depend on the picture. Runs with the same settings stand together: they share a truth.
+std::vector<Run> expand_picture(const Experiment& experiment, std::span<const Technique> techniques)
+{
+    std::map<ParameterValues, std::vector<Run>> by_settings;
+    for (const TechniqueSweep& sweep : experiment.techniques) {
+        const Technique& technique = find_technique(techniques, sweep.id);
+        const auto       values    = cross_product(sweep.values);
+        for (const ParameterValues& one : values) refuse_cut_loops(sweep, technique, one);
+        for (const ParameterValues& settings : cross_product(settings_of(experiment, sweep))) {
+            for (const ParameterValues& one : values) {
+                by_settings[settings].push_back({"", "", "", {0, 0}, to_settings(settings), sweep.id, one});
+            }
+        }
+    }
+    std::vector<Run> runs;
+    for (const auto& [settings, some] : by_settings) runs.insert(runs.end(), some.begin(), some.end());
+    return runs;
+}
+
 } // namespace
 
 std::string size_text(glm::ivec2 size_px) { return fmt::format("{}x{}", size_px.x, size_px.y); }
@@ -68,10 +92,12 @@ std::string size_text(glm::ivec2 size_px) { return fmt::format("{}x{}", size_px.
 double count_runs(const Experiment& experiment)
 {
     double sweeps = 0;
-    for (const TechniqueSweep& sweep : experiment.techniques) sweeps += combinations(sweep.values);
+    for (const TechniqueSweep& sweep : experiment.techniques) {
+        sweeps += combinations(settings_of(experiment, sweep)) * combinations(sweep.values);
+    }
     const double pictures = static_cast<double>(experiment.scenes.size()) * static_cast<double>(experiment.views.size()) *
                             static_cast<double>(experiment.sizes_px.size());
-    return pictures * combinations(experiment.settings) * sweeps;
+    return pictures * sweeps;
 }
 
 std::vector<Run> expand(const Experiment& experiment, std::span<const Technique> techniques, bool many)
@@ -81,17 +107,7 @@ std::vector<Run> expand(const Experiment& experiment, std::span<const Technique>
         throw_spec_error("{}: expands to {} runs, more than {}; shorten a list, or confirm with --yes",
                          short_path(experiment.file), count, max_runs_unasked);
     }
-    // Settings and values do not depend on the picture: combine them once.
-    std::vector<Run> on_each_picture;
-    for (const ParameterValues& settings : cross_product(experiment.settings)) {
-        for (const TechniqueSweep& sweep : experiment.techniques) {
-            const Technique& technique = find_technique(techniques, sweep.id);
-            for (const ParameterValues& values : cross_product(sweep.values)) {
-                refuse_cut_loops(sweep, technique, values);
-                on_each_picture.push_back({"", "", "", {0, 0}, to_settings(settings), sweep.id, values});
-            }
-        }
-    }
+    const std::vector<Run> on_each_picture = expand_picture(experiment, techniques);
     std::vector<Run>      runs;
     std::set<std::string> ids;
     for (const std::string& scene : experiment.scenes) {

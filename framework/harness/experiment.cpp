@@ -104,7 +104,7 @@ double setting_value(const TomlFile& file, const toml::node& node, const Setting
     return number_within(file, node, setting.name, setting.min, setting.max);
 }
 
-std::map<std::string, std::vector<double>> read_settings(const TomlFile& file)
+ValueLists read_settings(const TomlFile& file)
 {
     std::map<std::string, std::vector<std::string>> known;
     for (const Setting& setting : all_settings()) known[setting.table].push_back(setting.name);
@@ -112,7 +112,7 @@ std::map<std::string, std::vector<double>> read_settings(const TomlFile& file)
         const toml::table* table = optional_table(file, table_name);
         if (table != nullptr) toml_known_keys(file, *table, "setting of [" + table_name + "]", names);
     }
-    std::map<std::string, std::vector<double>> settings;
+    ValueLists settings;
     for (const Setting& setting : all_settings()) {
         std::vector<double>& values = settings[setting.name];
         const toml::table*   table  = optional_table(file, setting.table);
@@ -145,9 +145,16 @@ double parameter_value(const TomlFile& file, const toml::node& node, const Param
 
 TechniqueSweep read_sweep(const TomlFile& file, const toml::table& table, const Technique& technique)
 {
-    TechniqueSweep sweep{technique.id, toml_place(file, table), {}};
+    TechniqueSweep sweep{technique.id, toml_place(file, table), {}, {}};
     for (const auto& [key, node] : table) {
         const std::string name(key.str());
+        const auto        setting = std::ranges::find(all_settings(), name, &Setting::name);
+        if (setting != all_settings().end()) {
+            for (const toml::node* value : values_of(file, node, name)) {
+                sweep.settings[name].push_back(setting_value(file, *value, *setting));
+            }
+            continue;
+        }
         const std::string place = fmt::format("{}:{}", file.path, key.source().begin.line);
         const Parameter&  parameter = find_parameter(technique, name, place);
         for (const toml::node* value : values_of(file, node, name)) {

@@ -26,11 +26,14 @@ struct MeasureSettings {
     bool     pictures         = true; // write the reflected picture of each run
 };
 
+using ValueLists = std::map<std::string, std::vector<double>>;
+
 /// One [techniques.ID] table: every parameter's values, defaults filled in.
 struct TechniqueSweep {
-    std::string                                id;
-    std::string                                place; // file:line
-    std::map<std::string, std::vector<double>> values;
+    std::string id;
+    std::string place;    // file:line
+    ValueLists  values;
+    ValueLists  settings; // those that the table names itself, in place of the experiment's
 };
 
 struct Experiment {
@@ -41,7 +44,7 @@ struct Experiment {
     std::string                 scenes_place; // file:line
     std::vector<glm::ivec2>     sizes_px;
     /// Every setting's values by Setting::name, defaults filled in.
-    std::map<std::string, std::vector<double>> settings;
+    ValueLists                  settings;
     std::vector<TechniqueSweep> techniques;
     MeasureSettings             measure;
 };

@@ -159,6 +159,16 @@ binary_steps = 10
     EXPECT_EQ(pictures, 2 * 2 * 3);
 }
 
+TEST(Spec, ATechniquesTableMayNameSettingsOfItsOwn)
+{
+    const Experiment experiment = load_text("scenes = \"a\"\n[trace]\nthickness_m = [0.1, 0.2]\n[[techniques.linear]]\n[[techniques.linear]]\nthickness_m = 0.5\nfade_at_edges = false\n");
+    const auto       runs       = expand(experiment, techniques());
+    ASSERT_EQ(runs.size(), 3U);
+    EXPECT_EQ(count_runs(experiment), 3);
+    EXPECT_EQ(std::ranges::count(runs, false, [](const auto& run) { return run.settings.shade.fade_at_edges; }), 1);
+    EXPECT_THAT(error_of("scenes = \"a\"\n[techniques.linear]\nthickness_m = -1\n"), HasSubstr(".toml:3: 'thickness_m' must be in"));
+}
+
 TEST(Spec, IdsAreStableAndARunListedTwiceComesOnce)
 {
     const Experiment experiment = load_text("scenes = [\"a\", \"a\"]\nsizes = \"8x8\"\n[[techniques.linear]]\nsteps = [64, 32, 64]\n[[techniques.linear]]\n");
