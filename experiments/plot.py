@@ -1,0 +1,45 @@
+#!/usr/bin/python3
+"""Plots and report of a results folder: plot.py DIR reads DIR/results.csv and writes DIR/plots, summary.csv and report.*
+
+Each plot is made only if the folder holds the data that it needs.
+"""
+import os
+import sys
+
+try:
+    import matplotlib  # noqa: F401
+    import pandas  # noqa: F401
+except ImportError as error:
+    sys.exit(f"plot.py: {error}; install python3-matplotlib and python3-pandas, and run it with /usr/bin/python3")
+
+import plot_accuracy
+import plot_figures
+import plot_report
+from matplotlib import pyplot as plt
+from plot_data import Results
+
+
+def main(folder):
+    if not os.path.exists(os.path.join(folder, "results.csv")):
+        sys.exit(f"plot.py: {folder}: holds no results.csv; make one with ssrlab run")
+    results = Results(folder)
+    plots_folder = os.path.join(folder, "plots")
+    os.makedirs(plots_folder, exist_ok=True)
+    plots, tables = [], {}
+    for make in plot_figures.ALL + plot_accuracy.ALL:
+        for name, figure in (make(results, tables) if len(results.rows) else ()):
+            for extension in ("png", "svg"):
+                figure.savefig(os.path.join(plots_folder, f"{name}.{extension}"))
+            plt.close(figure)
+            plots.append(name)
+    summary = plot_accuracy.summary(results)
+    if len(summary):
+        summary.to_csv(os.path.join(folder, "summary.csv"), index=False, float_format="%.6g")
+    plot_report.write(results, plots, tables, summary)
+    print(f"{os.path.join(folder, 'report.html')}: {len(plots)} plots, {len(results.rows)} of {len(results.all_rows)} rows ok")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
+        sys.exit(__doc__ if "-h" in "".join(sys.argv[1:]) else "usage: plot.py DIR")
+    main(sys.argv[1])

@@ -1,0 +1,218 @@
+"""Time and work: against steps, thickness, resolution, and between techniques. Each function returns its figures."""
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+from matplotlib.ticker import ScalarFormatter  # noqa: E402
+
+from plot_data import errors, is_number  # noqa: E402
+
+LAW_FROM_STEPS = 50  # the report's frame rate is capped below
+
+plt.rcParams.update({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3, "axes.axisbelow": True,
+                     "figure.constrained_layout.use": True, "savefig.dpi": 140, "legend.frameon": False,
+                     "axes.spines.top": False, "axes.spines.right": False})
+
+
+def fit_line(x, y):
+    """Slope, intercept and R² of the least-squares line; weights are equal."""
+    slope, intercept = np.polyfit(x, y, 1)
+    rest = y - (slope * x + intercept)
+    spread = ((y - y.mean()) ** 2).sum()
+    return slope, intercept, 1 - (rest ** 2).sum() / spread if spread > 0 else float("nan")
+
+
+def plain_ticks(axis, values):
+    """Every measured value labelled as it is written, where there is room."""
+    axis.set_major_formatter(ScalarFormatter())
+    axis.set_ticks(sorted(values))
+    axis.set_minor_locator(matplotlib.ticker.NullLocator())
+
+
+def steps_lines(results, rows):
+    """Lines over steps: per series, at the value of each other swept input that is nearest to the report's 0.1."""
+    others = [name for name in results.swept(rows) if name not in ("steps", "max_steps", "thickness_m")]
+    if "thickness_m" in results.varying(rows):
+        nearest = rows.thickness_m.iloc[(np.log(rows.thickness_m / 0.1)).abs().argmin()]
+        rows = rows[rows.thickness_m == nearest]
+    for series, line in rows[rows.steps.notna()].groupby("series"):
+        for name in others:
+            line = line[line[name].isna() | (line[name] == line[name].dropna().max())]
+        line = line.drop_duplicates("steps").sort_values("steps")
+        if len(line) >= 4:
+            yield series, line
+
+
+def law_of_steps(results, tables):
+    """FPS and 1/FPS against steps, with the fitted line from 50 steps up: figures 11 and 12 of the OpenGL report."""
+    if not results.has("steps", "fps"):
+        return
+    for title, name, rows in results.pictures():
+        lines = list(steps_lines(results, rows))
+        if not lines:
+            continue
+        figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.4))
+        for series, line in lines:
+            style = results.styles[series]
+            left.plot(line.steps, line.fps, label=series, **style)
+            right.errorbar(line.steps, line.inverse_fps_s * 1000, yerr=errors(line, "frame_ms"), capsize=2,
+                           **{**style, "linestyle": "none"})
+            high = line[line.steps >= LAW_FROM_STEPS]
+            if len(high) < 3:
+                continue
+            slope, intercept, r2 = fit_line(high.steps.to_numpy(), high.frame_ms_median.to_numpy())
+            x = np.array([high.steps.min(), high.steps.max()])
+            right.plot(x, slope * x + intercept, color=style["color"], linestyle=style["linestyle"],
+                       label=f"{series}: {slope:.3g} ms/step + {intercept:.3g} ms, R² {r2:.4f}")
+            tables.setdefault("Law of steps: frame time = slope · steps + intercept, from 50 steps up", []).append(
+                {"picture": title, "series": series, "slope, ms per step": f"{slope:.4g}",
+                 "intercept, ms": f"{intercept:.4g}", "R²": f"{r2:.4f}"})
+        left.set(xscale="log", yscale="log", xlabel="steps", ylabel="frames per second", title="FPS")
+        plain_ticks(left.xaxis, {int(s) for _, line in lines for s in line.steps})
+        left.tick_params(axis="x", rotation=45)
+        right.set(xlabel="steps", ylabel="1 / FPS, ms", title="1/FPS", xlim=(0, None), ylim=(0, None))
+        left.legend()
+        right.legend(fontsize=8.5, loc="upper left")
+        figure.suptitle(title)
+        yield f"fps_steps_{name}", figure
+
+
+def heat(axis, grid, title, colours, low, high, text):
+    image = axis.imshow(grid.to_numpy(), cmap=colours, vmin=low, vmax=high, aspect="auto", origin="lower")
+    axis.grid(False)
+    axis.set_xticks(range(len(grid.columns)), [f"{v:g}" for v in grid.columns])
+    axis.set_yticks(range(len(grid.index)), [f"{v:g}" for v in grid.index])
+    axis.set(xlabel="steps", ylabel="thickness, m", title=title)
+    for (y, x), value in np.ndenumerate(grid.to_numpy()):
+        if np.isfinite(value):
+            r, g, b, _ = image.cmap(image.norm(value))
+            axis.text(x, y, text(value), ha="center", va="center", fontsize=8,
+                      color="black" if 0.3 * r + 0.6 * g + 0.1 * b > 0.5 else "white")
+
+
+def thickness_maps(results, _):
+    """Recall, false hits and time over thickness × steps, one row of maps per series."""
+    if not results.has("steps", "recall_1px", "false_hits"):
+        return
+    for title, name, rows in results.pictures():
+        maps = [(series, part) for series, part in rows[rows.steps.notna()].groupby("series")
+                if part.thickness_m.nunique() >= 3 and part.steps.nunique() >= 3]
+        if not maps:
+            continue
+        figure, axes = plt.subplots(len(maps), 3, figsize=(12.5, 3.6 * len(maps)), squeeze=False)
+        for line, (series, part) in zip(axes, maps):
+            grid = {column: part.pivot_table(index="thickness_m", columns="steps", values=column)
+                    for column in ("recall_1px", "false_hits", "trace_ms_median")}
+            heat(line[0], 100 * grid["recall_1px"], f"{series}: found within 1 px, % of visible", "viridis", 0, 100,
+                 lambda v: f"{v:.0f}")
+            top = max(1e-9, 100 * float(rows.false_hits.max()))
+            heat(line[1], 100 * grid["false_hits"], f"{series}: false hits, % of rays", "magma", 0, top,
+                 lambda v: f"{v:.1f}")
+            heat(line[2], grid["trace_ms_median"], f"{series}: trace, ms", "cividis", 0,
+                 float(rows.trace_ms_median.max()), lambda v: f"{v:.3g}")
+        figure.suptitle(title)
+        yield f"thickness_steps_{name}", figure
+
+
+def thickness_curves(results, tables):
+    """What a thicker slab finds and what it invents; the optimum has the fewest wrong rays."""
+    if not results.has("screen_missed", "recall_1px", "false_hits", "truth_visible"):
+        return
+    for title, name, rows in results.pictures():
+        if rows.thickness_m.nunique() < 4:
+            continue
+        figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.4))
+        for series, part in rows.groupby("series"):
+            if part.steps.notna().any():
+                part = part[part.steps == part.steps.max()]
+            part = part.drop_duplicates("thickness_m").sort_values("thickness_m")
+            if len(part) < 4:
+                continue
+            said = f"{series}, {part.steps.max():g} steps" if part.steps.notna().any() else series
+            missed = 100 * (1 - part.recall_1px) * part.truth_visible
+            false = 100 * part.false_hits
+            wrong = missed + false
+            best = wrong.idxmin()
+            style = results.styles[series]
+            left.plot(part.thickness_m, wrong, label=said, **style)
+            left.plot(part.thickness_m[best], wrong[best], "o", ms=13, mfc="none", mec=style["color"], mew=2)
+            right.plot(false, missed, label=said, **style)
+            for thickness, x, y in zip(part.thickness_m, false, missed):
+                right.annotate(f"{thickness:g}", (x, y), textcoords="offset points", xytext=(4, 4), fontsize=7.5,
+                               color=style["color"])
+            tables.setdefault("Best thickness: fewest rays that miss a visible point or hit a false one", []).append(
+                {"picture": title, "series": said, "thickness, m": f"{part.thickness_m[best]:g}",
+                 "missed, % of rays": f"{missed[best]:.2f}", "false, % of rays": f"{false[best]:.2f}"})
+        left.set(xscale="log", xlabel="thickness, m", ylabel="wrong, % of rays (missed + false)",
+                 title="Optimum (circled)", ylim=(0, None))
+        plain_ticks(left.xaxis, set(rows.thickness_m))
+        left.tick_params(axis="x", rotation=45)
+        right.set(xlabel="false hits, % of rays", ylabel="visible points missed, % of rays",
+                  title="The trade, labelled with thickness in m", xlim=(0, None), ylim=(0, None))
+        left.legend(fontsize=8.5)
+        figure.suptitle(title)
+        yield f"thickness_trade_{name}", figure
+
+
+def bars(axis, rows, results, value, spread, ylabel):
+    """Groups of bars, one group per scene and one bar per series."""
+    scenes = list(dict.fromkeys(rows.scene))
+    series = sorted(rows.series.unique())
+    width = 0.8 / len(series)
+    for i, name in enumerate(series):
+        part = rows[rows.series == name].drop_duplicates("scene").set_index("scene").reindex(scenes)
+        at = np.arange(len(scenes)) + (i - (len(series) - 1) / 2) * width
+        style = results.styles[name]
+        axis.bar(at, part[value], width * 0.92, label=name, color=style["color"], alpha=style["alpha"],
+                 yerr=errors(part, spread) if spread else None, error_kw={"lw": 1, "capsize": 2, "ecolor": "#333333"})
+        for x, height in zip(at, part[value]):
+            if np.isfinite(height):
+                axis.annotate(f"{height:.3g}", (x, height), ha="center", va="bottom", fontsize=7, xytext=(0, 3),
+                              textcoords="offset points", rotation=90 if len(scenes) * len(series) > 12 else 0)
+    axis.set_xticks(range(len(scenes)), scenes)
+    axis.set(ylabel=ylabel, yscale="log")
+    axis.margins(y=0.18)
+    axis.grid(axis="x", visible=False)
+
+
+def comparison_bars(results, _):
+    """Time with its interval and fetches of every technique, where each has one setting per picture."""
+    for (view, width, height), rows in results.rows.groupby(["view", "width", "height"], sort=False):
+        single = rows.groupby(["scene", "series"]).size().max() == 1
+        if not single or rows.series.nunique() < 2 or rows.series.nunique() > 8:
+            continue
+        figure, (top, bottom) = plt.subplots(2, 1, figsize=(max(7, 2.3 * rows.scene.nunique()), 7.4))
+        bars(top, rows, results, "cost_ms_median", "cost_ms", "trace + inputs, ms")
+        bars(bottom, rows, results, "fetches_mean", None, "fetches per ray")
+        top.set_title(f"Time, median and 95 % interval ({width}×{height}, view {view})")
+        bottom.set_title("Work: depth and pyramid fetches per traced ray")
+        top.legend(ncol=4, loc="upper center", bbox_to_anchor=(0.5, -0.08))
+        yield f"compare_{view}_{width}x{height}", figure
+
+
+def growth(results, tables):
+    """Time and fetches against the number of pixels, with the exponent of the fitted power law."""
+    for (scene, view), rows in results.rows.groupby(["scene", "view"], sort=False):
+        rows = rows.assign(pixels=rows.width * rows.height / 1e6)
+        numbers = [name for name in results.swept(rows) if is_number(rows[name])]
+        if rows.pixels.nunique() < 3 or any(rows[name].nunique() > 1 for name in numbers):
+            continue
+        figure, axes = plt.subplots(1, 2, figsize=(11, 4.4))
+        for axis, column, label in ((axes[0], "cost_ms_median", "trace + inputs, ms"),
+                                    (axes[1], "fetches_mean", "fetches per ray")):
+            for series, line in rows.groupby("series"):
+                line = line.sort_values("pixels")
+                good = line[line[column] > 0]
+                exponent = fit_line(np.log(good.pixels.to_numpy()), np.log(good[column].to_numpy()))[0]
+                axis.plot(line.pixels, line[column], label=f"{series}: pixels^{exponent:.2f}", **results.styles[series])
+                tables.setdefault("Growth with the number of pixels: fitted exponents", []).append(
+                    {"scene": scene, "series": series, "of": label, "exponent": f"{exponent:.3f}"})
+            axis.set(xscale="log", yscale="log", xlabel="million pixels", ylabel=label)
+            plain_ticks(axis.xaxis, {round(p, 2) for p in rows.pixels})
+            axis.legend(fontsize=9)
+        figure.suptitle(f"{scene}, view {view}")
+        yield f"growth_{''.join(c if c.isalnum() else '_' for c in scene)}_{view}", figure
+
+
+ALL = [law_of_steps, thickness_maps, thickness_curves, comparison_bars, growth]
