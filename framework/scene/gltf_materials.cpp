@@ -49,7 +49,8 @@ const Texture& decoded_image(Import& import, Textures& textures, int image_index
         return found->second;
     }
     try {
-        found->second = decode_image(image.image, fmt::format("{}: {}", import.file, where));
+        const std::string name = image.uri.empty() ? image.name : image.uri.substr(0, 100);
+        found->second          = decode_image(image.image, fmt::format("{} '{}'", where, name));
     } catch (const Failure& failure) {
         import.warn(fmt::format("texture left out: {}", failure.what()));
     }

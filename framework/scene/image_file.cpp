@@ -42,6 +42,8 @@ std::vector<uint8_t> to_rgba(const std::vector<uint8_t>& pixels, size_t channels
     return rgba;
 }
 
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
 } // namespace
 
 Texture decode_image(std::span<const unsigned char> bytes, const std::string& name)
@@ -49,18 +51,18 @@ Texture decode_image(std::span<const unsigned char> bytes, const std::string& na
     OIIO::Filesystem::IOMemReader memory(const_cast<unsigned char*>(bytes.data()), bytes.size());
     OIIO::ImageSpec               config;
     config["oiio:UnassociatedAlpha"] = 1; // materials want the colour as it is stored
-    const char*                             format = format_of(bytes, name);
-    const std::unique_ptr<OIIO::ImageInput> input  = OIIO::ImageInput::create(format);
-    OIIO::ImageSpec                         opened;
-    if (!input || !input->set_ioproxy(&memory) || !input->open(format, opened, config))
-        throw_failure("{}: cannot be decoded: {}", name, input ? input->geterror() : OIIO::geterror());
+    // As an attribute: given as an argument, version 2.4 looks for a file of that name all the same.
+    OIIO::Filesystem::IOProxy* proxy = &memory;
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(format_of(bytes, name), &config);
+    if (!input) throw_failure("{}: cannot be decoded: {}", name, first_line(OIIO::geterror()));
     const OIIO::ImageSpec& spec = input->spec();
     if (spec.width < 1 || spec.height < 1 || spec.width > max_side_px || spec.height > max_side_px)
         throw_failure("{}: {} x {} pixels, but at most {} a side can be used", name, spec.width, spec.height, max_side_px);
     const auto channels = static_cast<size_t>(spec.nchannels);
     std::vector<uint8_t> pixels(static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height) * channels);
     if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, pixels.data()))
-        throw_failure("{}: cannot be decoded: {}", name, input->geterror());
+        throw_failure("{}: cannot be decoded: {}", name, first_line(input->geterror()));
     Texture texture;
     texture.size_px = {spec.width, spec.height};
     texture.rgba    = channels == 4 ? std::move(pixels) : to_rgba(pixels, channels);

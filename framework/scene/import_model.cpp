@@ -71,7 +71,8 @@ Material convert_material(Import& import, const aiMaterial& source)
     source.Get(AI_MATKEY_COLOR_SPECULAR, specular);
     source.Get(AI_MATKEY_COLOR_EMISSIVE, emissive);
     source.Get(AI_MATKEY_SHININESS, exponent);
-    material.name        = name.C_Str();
+    material.name         = name.C_Str();
+    material.double_sided = true; // these formats know no front, and their models are often open sheets
     material.base_colour = {diffuse.r, diffuse.g, diffuse.b, 1};
     material.emissive    = {emissive.r, emissive.g, emissive.b};
     // Many files carry an exponent although the material has no highlight at all.
@@ -147,7 +148,10 @@ void add_nodes(Import& import, const aiScene& scene)
             transform(mesh, to_world);
             import.dropped_triangles += drop_bad_triangles(mesh);
             weld_equal_vertices(mesh);
-            if (!mesh.has_normals) make_smooth_normals(mesh, crease_deg);
+            if (mesh.has_normals)
+                turn_fronts_to_normals(mesh);
+            else
+                make_smooth_normals(mesh, crease_deg);
             append(import.model.meshes.at(source.mMaterialIndex), mesh);
         }
         for (unsigned i = 0; i < node->mNumChildren; ++i) pending.emplace_back(node->mChildren[i], to_world);

@@ -156,6 +156,16 @@ void weld_equal_vertices(Mesh& mesh)
     keep_vertices(mesh, kept);
 }
 
+void turn_fronts_to_normals(Mesh& mesh)
+{
+    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        glm::dvec3 normal(0);
+        for (size_t corner = i; corner < i + 3; ++corner)
+            normal += glm::dvec3(mesh.vertices[mesh.indices[corner]].normal_ws);
+        if (glm::dot(normal, area_vector(corners_of(mesh, i))) < 0) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+    }
+}
+
 void make_flat_normals(Mesh& mesh)
 {
     split_vertices(mesh);

@@ -11,6 +11,9 @@ size_t drop_bad_triangles(Mesh& mesh);
 /// Vertices that are equal in every bit become one.
 void weld_equal_vertices(Mesh& mesh);
 
+/// Flips triangles whose winding contradicts their vertex normals: exporters care for the normals only.
+void turn_fronts_to_normals(Mesh& mesh);
+
 /// One normal per triangle, as glTF asks for when a mesh has none.
 void make_flat_normals(Mesh& mesh);
 

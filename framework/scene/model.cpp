@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <string_view>
 
 namespace ssrlab {
 namespace {
@@ -39,16 +37,17 @@ bool same(const Material& a, const Material& b)
            same(a.normal_texture, b.normal_texture) && same(a.emissive_texture, b.emissive_texture);
 }
 
-/// Keeps the first of equal items; returns where each item went.
+/// Keeps the first of equal items, and none that is unused; returns where each item went.
 template <typename Item>
-std::vector<int> merge_equal(std::vector<Item>& items)
+std::vector<int> keep_first_of_equal(std::vector<Item>& items, const std::vector<bool>& used)
 {
     std::vector<Item> kept;
-    std::vector<int>  target;
-    for (Item& item : items) {
-        const auto found = std::ranges::find_if(kept, [&](const Item& other) { return same(item, other); });
-        target.push_back(static_cast<int>(found - kept.begin()));
-        if (found == kept.end()) kept.push_back(std::move(item));
+    std::vector<int>  target(items.size(), -1);
+    for (size_t i = 0; i < items.size(); ++i) {
+        if (!used[i]) continue;
+        const auto found = std::ranges::find_if(kept, [&](const Item& other) { return same(items[i], other); });
+        target[i]        = static_cast<int>(found - kept.begin());
+        if (found == kept.end()) kept.push_back(std::move(items[i]));
     }
     items = std::move(kept);
     return target;
@@ -146,11 +145,19 @@ void append(Mesh& mesh, const Mesh& part)
 
 void merge_duplicates(Model& model)
 {
-    const std::vector<int> texture_target = merge_equal(model.textures);
+    std::vector<bool> material_used(model.materials.size(), false);
+    for (const Mesh& mesh : model.meshes) material_used.at(mesh.material) = true;
+    std::vector<bool> texture_used(model.textures.size(), false);
+    for (size_t i = 0; i < model.materials.size(); ++i)
+        for_each_texture_use(model.materials[i], [&](const TextureUse& use) {
+            if (material_used[i]) texture_used.at(static_cast<size_t>(use.texture)) = true;
+        });
+
+    const std::vector<int> texture_target = keep_first_of_equal(model.textures, texture_used);
     for (Material& material : model.materials)
         for_each_texture_use(material,
                              [&](TextureUse& use) { use.texture = texture_target[static_cast<size_t>(use.texture)]; });
-    const std::vector<int> material_target = merge_equal(model.materials);
+    const std::vector<int> material_target = keep_first_of_equal(model.materials, material_used);
     for (Mesh& mesh : model.meshes) mesh.material = static_cast<uint32_t>(material_target[mesh.material]);
 }
 

@@ -59,7 +59,8 @@ void append(Model& model, Model part);
 
 void append(Mesh& mesh, const Mesh& part);
 
-/// Materials and textures that are equal become one (parts that appear twice, a wood texture in every cabinet).
+/// Materials and textures that are equal become one (parts that appear twice, a wood texture in every cabinet);
+/// those that no mesh uses are removed.
 void merge_duplicates(Model& model);
 
 /// A position that float can hold with room to spare; anything else is dropped with its triangle.

@@ -1,0 +1,220 @@
+// Files that lie. Each must end in a message that says what is wrong: never a crash, a hang, or bytes from elsewhere.
+#include "scene_files.h"
+
+#include <sys/stat.h>
+
+#include <functional>
+#include <limits>
+
+namespace ssrlab {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using nlohmann::json;
+
+struct BrokenFile {
+    const char*                    name;
+    std::function<void(GltfFile&)> damage;
+    const char*                    message;
+};
+
+class SceneGltfBroken : public ::testing::TestWithParam<BrokenFile> {};
+
+TEST_P(SceneGltfBroken, IsRefusedWithAMessage)
+{
+    TempFolder folder;
+    GltfFile   file = GltfFile::triangle();
+    GetParam().damage(file);
+    const std::string path    = file.write(folder);
+    const std::string message = error_of<Failure>(path);
+    EXPECT_THAT(message, HasSubstr(GetParam().message));
+    EXPECT_THAT(message, HasSubstr(path)) << "every message names the file";
+    EXPECT_EQ(message.find('\n'), std::string::npos) << "one line";
+}
+
+void add_indices(GltfFile& file, std::vector<uint16_t> indices)
+{
+    file.primitive()["indices"] = file.add_accessor<uint16_t>(indices, "SCALAR", 1);
+}
+
+void use_image(GltfFile& file, const json& image)
+{
+    file.root["images"]          = {image};
+    file.root["textures"]        = {{{"source", 0}}};
+    file.root["materials"]       = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    file.primitive()["material"] = 0;
+}
+
+void chain(GltfFile& file, int length)
+{
+    file.root["nodes"] = json::array();
+    for (int i = 0; i < length; ++i) file.root["nodes"].push_back({{"children", {i + 1}}});
+    file.root["nodes"].push_back({{"mesh", 0}});
+}
+
+/// Every level has the next one ten times.
+void bomb(GltfFile& file)
+{
+    file.root["nodes"] = json::array();
+    for (int i = 0; i < 30; ++i) file.root["nodes"].push_back({{"children", std::vector<int>(10, i + 1)}});
+    file.root["nodes"].push_back({{"mesh", 0}});
+}
+
+const std::vector<BrokenFile> broken_files = {
+    {"version_1", [](GltfFile& f) { f.root["asset"]["version"] = "1.0"; }, "version 1.0 is not supported"},
+    {"version_missing", [](GltfFile& f) { f.root.erase("asset"); }, "/asset/version is missing"},
+    {"index_out_of_range", [](GltfFile& f) { add_indices(f, {0, 1, 3}); }, "/meshes/0/primitives/0/indices: index 3 is out of range"},
+    {"accessor_count_4e9", [](GltfFile& f) { f.root["accessors"][0]["count"] = 4'000'000'000; }, "accessor 0"},
+    {"accessor_count_2_62", [](GltfFile& f) { f.root["accessors"][0]["count"] = 1ULL << 62U; }, "accessor 0"},
+    {"accessor_count_too_large", [](GltfFile& f) { f.root["accessors"][0]["count"] = 4; }, "reach beyond buffer view 0"},
+    {"accessor_offset", [](GltfFile& f) { f.root["accessors"][0]["byteOffset"] = 4; }, "reach beyond buffer view 0"},
+    {"accessor_view", [](GltfFile& f) { f.root["accessors"][0]["bufferView"] = 77; }, "there is no buffer view 77"},
+    {"accessor_type", [](GltfFile& f) { f.root["accessors"][0]["type"] = "VEC2"; }, "has 2 components, 3 are expected"},
+    {"accessor_missing", [](GltfFile& f) { f.primitive()["attributes"]["POSITION"] = 9; }, "there is no accessor 9"},
+    {"attribute_counts_differ", [](GltfFile& f) { f.primitive()["attributes"]["NORMAL"] = f.positions({0, 0, 1}); }, "1 elements for 3 positions"},
+    {"no_data", [](GltfFile& f) { f.root["accessors"][0].erase("bufferView"); f.root["accessors"][0]["count"] = 200'000'000; }, "but no data"},
+    {"view_beyond_buffer", [](GltfFile& f) { f.root["bufferViews"][0]["byteOffset"] = 4; }, "/bufferViews/0 reaches beyond its buffer"},
+    {"view_offset_overflows", [](GltfFile& f) { f.root["bufferViews"][0]["byteOffset"] = ~0ULL - 8; }, "/bufferViews/0 reaches beyond its buffer"},
+    {"view_negative", [](GltfFile& f) { f.root["bufferViews"][0]["byteLength"] = -1; }, "must be a whole number >= 0"},
+    {"view_buffer", [](GltfFile& f) { f.root["bufferViews"][0]["buffer"] = 9; }, "there is no such buffer"},
+    {"sparse_beyond",
+     [](GltfFile& f) {
+         const int i = f.add_accessor<uint16_t>({3}, "SCALAR", 1);
+         const int v = f.positions({3, 0, 0});
+         f.root["accessors"][0]["sparse"] = {{"count", 1}, {"indices", {{"bufferView", i}, {"componentType", 5123}}}, {"values", {{"bufferView", v}}}};
+     },
+     "sparse index 3 is out of range"},
+    {"material", [](GltfFile& f) { f.primitive()["material"] = 5; }, "there is no material 5"},
+    {"mesh", [](GltfFile& f) { f.root["nodes"][0]["mesh"] = 5; }, "there is no mesh 5"},
+    {"node", [](GltfFile& f) { f.root["nodes"][0]["children"] = {55}; }, "there is no node 55"},
+    {"scene", [](GltfFile& f) { f.root["scene"] = 42; }, "there is no scene 42"},
+    {"camera", [](GltfFile& f) { f.root["nodes"][0]["camera"] = 4; }, "there is no camera 4"},
+    {"node_is_its_own_child", [](GltfFile& f) { f.root["nodes"][0]["children"] = {0}; }, "nodes contain each other"},
+    {"node_cycle", [](GltfFile& f) { f.root["nodes"] = {{{"children", {1}}}, {{"children", {0}}}}; }, "nodes contain each other"},
+    {"node_chain", [](GltfFile& f) { chain(f, 5000); }, "nested deeper than 256"},
+    {"node_bomb", bomb, "more than"},
+    {"texture", [](GltfFile& f) { use_image(f, {{"uri", "a.png"}}); f.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 3; }, "there is no texture 3"},
+    {"draco", [](GltfFile& f) { f.root["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }, "KHR_draco_mesh_compression"},
+    {"meshopt", [](GltfFile& f) { f.root["extensionsRequired"] = {"EXT_meshopt_compression"}; }, "EXT_meshopt_compression"},
+    {"webp", [](GltfFile& f) { f.root["extensionsRequired"] = {"EXT_texture_webp"}; }, "EXT_texture_webp"},
+    {"ktx2", [](GltfFile& f) { f.root["extensionsRequired"] = {"KHR_texture_basisu"}; }, "KHR_texture_basisu"},
+    {"buffer_outside", [](GltfFile& f) { f.root["buffers"] = {{{"uri", "../secret.bin"}, {"byteLength", 36}}}; }, "/buffers/0/uri: '../secret.bin' leads out"},
+    {"buffer_outside_encoded", [](GltfFile& f) { f.root["buffers"] = {{{"uri", "%2e%2e/secret.bin"}, {"byteLength", 36}}}; }, "leads out"},
+    {"buffer_absolute", [](GltfFile& f) { f.root["buffers"] = {{{"uri", "/etc/passwd"}, {"byteLength", 36}}}; }, "not a relative path"},
+    {"buffer_scheme", [](GltfFile& f) { f.root["buffers"] = {{{"uri", "http://localhost/a.bin"}, {"byteLength", 36}}}; }, "not a relative path"},
+    {"buffer_shell", [](GltfFile& f) { f.root["buffers"] = {{{"uri", "`touch made_by_shell`"}, {"byteLength", 36}}}; }, "touch"},
+    {"buffer_missing", [](GltfFile& f) { f.root["buffers"] = {{{"uri", "none.bin"}, {"byteLength", 36}}}; }, "none.bin"},
+    {"buffer_short", [](GltfFile& f) { f.root["buffers"] = {{{"uri", "data.bin"}, {"byteLength", 1U << 20U}}}; }, "size"},
+    {"image_outside", [](GltfFile& f) { use_image(f, {{"uri", "a/../../secret.png"}}); }, "/images/0/uri: 'a/../../secret.png' leads out"},
+    {"node_matrix", [](GltfFile& f) { f.root["nodes"][0]["translation"] = {1, 2}; }, "/nodes/0/translation"},
+    {"not_objects", [](GltfFile& f) { f.root["nodes"] = {1, 2}; }, "/nodes/0 is no object"},
+    {"not_an_array", [](GltfFile& f) { f.root["accessors"] = "x"; }, "/accessors is no array"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Corpus, SceneGltfBroken, ::testing::ValuesIn(broken_files),
+                         [](const auto& file) { return std::string(file.param.name); });
+
+TEST(SceneGltfHostile, DeepJsonIsRefusedBeforeItIsParsed)
+{
+    TempFolder        folder;
+    const std::string deep(20'000, '[');
+    const std::string path = folder.write("deep.gltf", R"({"asset":{"version":"2.0"},"extras":)" + deep + std::string(20'000, ']') + "}");
+    EXPECT_THAT(error_of<Failure>(path), HasSubstr("nested deeper than 128"));
+}
+
+TEST(SceneGltfHostile, JsonThatIsNone)
+{
+    TempFolder folder;
+    for (const char* text : {"", "{", "[]", "{\"asset\":", "\xFF\xFE", "{\"asset\":{\"version\":\"2.0\"},\"a\":1e400}", "NaN"})
+        EXPECT_THAT(error_of<Failure>(folder.write("broken.gltf", text)), HasSubstr("broken.gltf")) << text;
+}
+
+TEST(SceneGltfHostile, OnlyRegularFilesAreRead)
+{
+    TempFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe.bin").c_str(), 0600), 0);
+    std::filesystem::create_directory(folder / "folder.bin");
+    for (const char* uri : {"pipe.bin", "folder.bin"}) {
+        GltfFile file        = GltfFile::triangle();
+        file.root["buffers"] = {{{"uri", uri}, {"byteLength", 36}}};
+        EXPECT_THAT(error_of<Failure>(file.write(folder)), HasSubstr(uri));
+    }
+    std::filesystem::create_directory(folder / "folder.glb");
+    EXPECT_THAT(error_of<Failure>((folder / "folder.glb").string()), HasSubstr("not a regular file"));
+}
+
+TEST(SceneGltfHostile, LinksOutOfTheFolderAreRefused)
+{
+    TempFolder folder;
+    folder.write("secret.bin", std::string(36, '\0'));
+    std::filesystem::create_directory(folder / "asset");
+    std::filesystem::create_symlink(folder / "secret.bin", folder / "asset/link.bin");
+    GltfFile file        = GltfFile::triangle();
+    file.root["buffers"] = {{{"uri", "link.bin"}, {"byteLength", 36}}};
+    EXPECT_THAT(error_of<Failure>(file.write(folder, "asset/scene.gltf")), HasSubstr("leads out"));
+}
+
+TEST(SceneGltfHostile, BadPositionsAreDroppedAndCounted)
+{
+    TempFolder  folder;
+    const float inf = std::numeric_limits<float>::infinity();
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    GltfFile    file;
+    const int   positions = file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0,     // good
+                                            0, 0, 0, nan, 0, 0, 0, 1, 0,   // not a number
+                                            0, 0, 0, 1, 0, 0, 0, inf, 0,   // infinite
+                                            0, 0, 0, 1, 0, 0, 2, 0, 0,     // without area
+                                            0, 0, 0, 1, 0, 0, 0, 3e38F, 0}); // beyond what can be computed with
+    file.root["nodes"]    = {{{"mesh", 0}}};
+    file.root["meshes"]   = {{{"primitives", {{{"attributes", {{"POSITION", positions}}}}}}}};
+    const Scene scene     = load_scene(file.write(folder));
+    EXPECT_EQ(scene.indices.size(), 3U);
+    EXPECT_EQ(scene.vertices.size(), 3U) << "no bad vertex stays behind";
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("4 triangles dropped")));
+    for (const Vertex& vertex : scene.vertices) EXPECT_LE(glm::length(vertex.position_ws), 1);
+}
+
+TEST(SceneGltfHostile, FlatteningNodesLeaveNothing)
+{
+    TempFolder folder;
+    GltfFile   file    = GltfFile::triangle();
+    file.root["nodes"] = {{{"mesh", 0}, {"scale", {0, 0, 0}}}};
+    const Scene scene  = load_scene(file.write(folder));
+    EXPECT_TRUE(scene.draws.empty());
+    EXPECT_EQ(scene.cameras.size(), 1U);
+}
+
+TEST(SceneGltfHostile, UnusableImagesLeaveTheShape)
+{
+    TempFolder folder;
+    folder.write("broken.png", "\x89PNG not really");
+    // A header that claims 30000 x 30000 pixels: refused by its size, before anything is decoded.
+    folder.write("bomb.png", std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x75\x30\0\0\x75\x30\x08\x06\0\0\0\x66\x27\xf8\xba" "\0\0\0\x04" "IDAT\0\0\0\0", 45));
+    for (const char* uri : {"missing.png", "broken.png", "bomb.png"}) {
+        GltfFile file = GltfFile::triangle();
+        use_image(file, {{"uri", uri}});
+        const Scene scene = load_scene(file.write(folder));
+        EXPECT_EQ(scene.draws.size(), 1U);
+        EXPECT_EQ(scene.textures.size(), 0U);
+        EXPECT_THAT(scene.warnings, Contains(HasSubstr("texture left out")));
+        const char* reason = std::string(uri) == "bomb.png" ? "30000 x 30000" : uri;
+        EXPECT_THAT(scene.warnings, Contains(HasSubstr(reason)));
+    }
+}
+
+TEST(SceneGltfHostile, UnsupportedThingsAreNamedOnce)
+{
+    TempFolder folder;
+    GltfFile   file             = GltfFile::triangle();
+    file.root["extensionsUsed"] = {"KHR_materials_clearcoat", "VENDOR_thing"};
+    file.root["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"mode", 1}});
+    file.root["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"mode", 0}});
+    const Scene scene           = load_scene(file.write(folder));
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("KHR_materials_clearcoat")).Times(1));
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("VENDOR_thing")).Times(1));
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("points and lines are not drawn")).Times(1));
+}
+
+} // namespace
+} // namespace ssrlab

@@ -1,0 +1,296 @@
+#include "scene_files.h"
+
+#include "scene/mesh_repair.h"
+#include "scene/recipe.h"
+#include "scene/shapes.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+namespace ssrlab {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+// A pyramid of 2 x 3 x 2 units, with two materials, quads and no normals.
+constexpr const char* pyramid_obj = R"(mtllib pyramid.mtl
+v -1 0 -1
+v 1 0 -1
+v 1 0 1
+v -1 0 1
+v 0 3 0
+usemtl stone
+f 1 2 3 4
+usemtl gold_leaf
+f 4 3 5
+f 3 2 5
+f 2 1 5
+f 1 4 5
+)";
+constexpr const char* pyramid_mtl = R"(newmtl stone
+Kd 0.5 0.4 0.3
+newmtl gold_leaf
+Kd 0.9 0.7 0.1
+Ks 0.5 0.5 0.5
+Ns 30
+)";
+
+/// Sets a variable for one test.
+class Environment {
+public:
+    Environment(const char* name, const std::string& value) : name_(name) { ::setenv(name, value.c_str(), 1); }
+    ~Environment() { ::unsetenv(name_); }
+    Environment(const Environment&)            = delete;
+    Environment& operator=(const Environment&) = delete;
+
+private:
+    const char* name_;
+};
+
+TempFolder& folder_with_pyramid()
+{
+    static TempFolder folder;
+    folder.write("pyramid.obj", pyramid_obj);
+    folder.write("pyramid.mtl", pyramid_mtl);
+    return folder;
+}
+
+Scene load_text(const std::string& recipe) { return load_scene(folder_with_pyramid().write("recipe.toml", recipe)); }
+
+std::string mistake(const std::string& recipe)
+{
+    return error_of<SpecError>(folder_with_pyramid().write("recipe.toml", recipe));
+}
+
+const Material& material_named(const Scene& scene, const std::string& name)
+{
+    for (const Material& material : scene.materials)
+        if (material.name == name) return material;
+    throw Failure("no material " + name);
+}
+
+TEST(SceneRecipe, TenLinesAreEnough)
+{
+    const Scene scene = load_text("summary = 'A golden pyramid'\n"
+                                  "[[part]]\n"
+                                  "file = 'pyramid.obj'\n"
+                                  "height_m = 1.5\n"
+                                  "[[part]]\n"
+                                  "shape = 'plane'\n"
+                                  "size_m = [8, 0, 8]\n"
+                                  "material = { metallic = 0.9, roughness = 0.1 }\n"
+                                  "[[material]]\n"
+                                  "name = 'gold*'\n"
+                                  "metallic = 1\n");
+    ASSERT_EQ(scene.draws.size(), 3U);
+    EXPECT_EQ(scene.indices.size() / 3, 2U + 4 + 2);
+    EXPECT_FLOAT_EQ(material_named(scene, "gold_leaf").metallic, 1);
+    EXPECT_FLOAT_EQ(material_named(scene, "stone").metallic, 0);
+    EXPECT_FLOAT_EQ(material_named(scene, "plane").metallic, 0.9F);
+    EXPECT_EQ(scene.cameras.size(), 1U) << "a camera is fitted";
+    EXPECT_EQ(scene.lights.size(), 1U) << "a light is added";
+    EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_THAT(scene.draws[0].name, HasSubstr("pyramid/"));
+}
+
+TEST(SceneRecipe, PartsStandWhereTheyAreTold)
+{
+    const Scene scene = load_text("[[part]]\nfile = 'pyramid.obj'\nheight_m = 1.5\n"
+                                  "position = [[3, 0.5, -2], [-3, 0, 0]]\n");
+    glm::vec3 low(1e9F);
+    glm::vec3 high(-1e9F);
+    for (const Draw& draw : scene.draws)
+        if (draw.bounds_min_ws.x > 0) {
+            low  = glm::min(low, draw.bounds_min_ws);
+            high = glm::max(high, draw.bounds_max_ws);
+        }
+    EXPECT_VEC_NEAR(low, glm::vec3(2.5F, 0.5F, -2.5F), 1e-5F);
+    EXPECT_VEC_NEAR(high, glm::vec3(3.5F, 2, -1.5F), 1e-5F);
+    EXPECT_EQ(scene.draws.size(), 4U);
+    EXPECT_EQ(scene.materials.size(), 2U) << "equal materials of repeated parts are one";
+}
+
+TEST(SceneRecipe, UpAxisRotationAndUnits)
+{
+    const Scene scene = load_text("[[part]]\nfile = 'pyramid.obj'\nup = 'z'\nunit_m = 0.1\nrotation_deg = [90, 0, 0]\n");
+    // z up means a quarter turn back about x, which the rotation undoes.
+    glm::vec3 low(1e9F);
+    glm::vec3 high(-1e9F);
+    for (const Vertex& vertex : scene.vertices) {
+        low  = glm::min(low, vertex.position_ws);
+        high = glm::max(high, vertex.position_ws);
+    }
+    EXPECT_VEC_NEAR(high - low, glm::vec3(0.2F, 0.3F, 0.2F), 1e-5F);
+    EXPECT_NEAR(low.y, 0, 1e-6);
+}
+
+TEST(SceneRecipe, ModelsWithoutNormalsGetThemOutwards)
+{
+    const Scene scene = load_text("[[part]]\nfile = 'pyramid.obj'\n");
+    for (size_t i = 0; i < scene.indices.size(); i += 3) {
+        const glm::vec3 normal = geometric_normal(scene, i / 3);
+        for (size_t k = i; k < i + 3; ++k)
+            EXPECT_GT(glm::dot(scene.vertices[scene.indices[k]].normal_ws, normal), 0.99F) << "edges of a pyramid are sharp";
+    }
+}
+
+TEST(SceneRecipe, LightsViewsAndColours)
+{
+    const Scene scene = load_text("ambient = 0.1\nbackground = [0.1, 0.2, 0.3]\n"
+                                  "[[part]]\nshape = 'box'\nsize_m = [1, 2, 3]\n"
+                                  "[[light]]\ntype = 'spot'\nposition = [0, 4, 0]\ntarget = [0, 0, 0]\nangle_deg = 60\nintensity = 5\n"
+                                  "[[light]]\ndirection = [0, -2, 0]\nintensity = [1, 2, 3]\nshadow = false\n"
+                                  "[[view]]\nname = 'a'\nposition = [0, 1, 5]\ntarget = [0, 1, 0]\nsize = '320x200'\n"
+                                  "[[view]]\nname = 'b'\nposition = [0, 9, 0]\ntarget = [0, 0, 0]\nup = [0, 0, -1]\n"
+                                  "projection = 'orthographic'\nheight_m = 4\n");
+    EXPECT_EQ(scene.ambient, glm::vec3(0.1F));
+    EXPECT_EQ(scene.background, glm::vec3(0.1F, 0.2F, 0.3F));
+    ASSERT_EQ(scene.lights.size(), 2U);
+    EXPECT_EQ(scene.lights[0].type, LightType::spot);
+    EXPECT_VEC_NEAR(scene.lights[0].direction_ws, glm::vec3(0, -1, 0), 1e-6F);
+    EXPECT_NEAR(scene.lights[0].outer_angle_rad, 0.5236, 1e-3);
+    EXPECT_EQ(scene.lights[1].intensity, glm::vec3(1, 2, 3));
+    EXPECT_FALSE(scene.lights[1].casts_shadow);
+    EXPECT_EQ(find_camera(scene, "a").size_px, glm::ivec2(320, 200));
+    EXPECT_EQ(find_camera(scene, "b").projection, Projection::orthographic);
+    EXPECT_VEC_NEAR(scene.draws[0].bounds_max_ws - scene.draws[0].bounds_min_ws, glm::vec3(1, 2, 3), 1e-6F);
+}
+
+TEST(SceneRecipe, MistakesNameFileLineAndWhatIsAccepted)
+{
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nhieght_m = 1\n"), HasSubstr("recipe.toml:3: [[part]]: unknown key 'hieght_m'; accepted are "));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nhieght_m = 1\n"), HasSubstr("height_m"));
+    EXPECT_THAT(mistake("sumary = 'x'\n[[part]]\nshape = 'box'\n"), HasSubstr("recipe.toml:1: recipe: unknown key 'sumary'"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'cube'\n"), HasSubstr("recipe.toml:2: [[part]]: 'shape' is 'cube' but must be one of box"));
+    EXPECT_THAT(mistake("[[part]]\nposition = [0, 0, 0]\n"), HasSubstr("recipe.toml:1: [[part]]: needs either 'file' or 'shape'"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nposition = [0, nan, 0]\n"), HasSubstr("recipe.toml:3: [[part]]: 'position' must be"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nheight_m = -1\n"), HasSubstr("recipe.toml:3: [[part]]: 'height_m' must be a number in"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nheight_m = nan\n"), HasSubstr("recipe.toml:3"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nmaterial = { metallic = 2 }\n"), HasSubstr("recipe.toml:3: material: 'metallic' must be a number in [0, 1]"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nmaterial = { colour = 2 }\n"), HasSubstr("unknown key 'colour'"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\n[[material]]\nname = 'wood*'\n"), HasSubstr("matches nothing; the materials are: box"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\n[[light]]\nintensity = 1\n"), HasSubstr("recipe.toml:3: [[light]]: 'direction'"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\n[[view]]\nposition = [0, 0, 0]\ntarget = [0, 0, 0]\n"), HasSubstr("recipe.toml:3: view 'default': target"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\n[[view]]\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\nsize = '0x5'\n"), HasSubstr("recipe.toml:6: [[view]]: 'size'"));
+    EXPECT_THAT(mistake("[[part]\nshape = 'box'\n"), HasSubstr("recipe.toml:1: "));
+    EXPECT_THAT(mistake(""), HasSubstr("needs at least one [[part]]"));
+    EXPECT_THAT(mistake("part = 3\n"), HasSubstr("must be tables: [[part]]"));
+}
+
+TEST(SceneRecipe, MissingDataSaysHowToGetIt)
+{
+    TempFolder& folder = folder_with_pyramid();
+    EXPECT_THAT(error_of<Failure>(folder.write("a.toml", "[[part]]\nfile = 'package:no-such-package/usr/share/a.obj'\n")),
+                HasSubstr("run ./experiments/prepare_scenes"));
+    EXPECT_THAT(error_of<Failure>(folder.write("a.toml", "[[part]]\nfile = 'sweethome3d:noSuchChair'\n")), HasSubstr("run ./experiments/prepare_scenes"));
+    EXPECT_THAT(error_of<Failure>(folder.write("a.toml", "[[part]]\nfile = 'none.obj'\n")), HasSubstr("none.obj"));
+    EXPECT_THAT(error_of<SpecError>(folder.write("a.toml", "[[part]]\nfile = 'package:a/../../b'\n")), HasSubstr("must look like"));
+}
+
+TEST(SceneRecipe, DataAndRecipesAreFoundThroughTheEnvironment)
+{
+    TempFolder folder;
+    folder.write("data/pkg/usr/share/ssrlab-test/pyramid.obj", pyramid_obj);
+    folder.write("data/pkg/usr/share/ssrlab-test/pyramid.mtl", pyramid_mtl);
+    folder.write("data/sweethome3d/stool/stool.obj", "v 0 0 0\nv 10 0 0\nv 0 40 0\nf 1 2 3\n");
+    folder.write("mine/my_scene.toml", "summary = 'Mine'\n[[part]]\nfile = 'package:pkg/usr/share/ssrlab-test/pyramid.obj'\n"
+                                       "[[part]]\nfile = 'sweethome3d:stool'\nposition = [5, 0, 0]\n");
+    const Environment data("SSRLAB_DATA", (folder / "data").string());
+    const Environment scenes("SSRLAB_SCENES", "/nowhere:" + (folder / "mine").string());
+    const Scene       scene = load_scene("my_scene");
+    EXPECT_EQ(scene.name, "my_scene");
+    EXPECT_NEAR(scene.draws.back().bounds_max_ws.y, 0.4, 1e-6) << "furniture is in centimetres";
+    bool listed = false;
+    for (const SceneListing& listing : list_scenes()) listed = listed || (listing.name == "my_scene" && listing.summary == "Mine");
+    EXPECT_TRUE(listed);
+}
+
+TEST(SceneRecipe, ShippedRecipesAreWellFormed)
+{
+    for (const SceneListing& listing : list_scenes()) {
+        if (listing.name.starts_with("builtin:")) continue;
+        const Recipe recipe = read_recipe(std::filesystem::path(SSRLAB_SOURCE_DIR) / "experiments/scenes" / (listing.name + ".toml"));
+        EXPECT_FALSE(listing.summary.empty()) << listing.name;
+        EXPECT_GE(recipe.views.size(), 2U) << listing.name;
+        EXPECT_EQ(recipe.views.at(0).name, "default") << listing.name;
+        for (const Camera& view : recipe.views) EXPECT_FALSE(view.hard_for.empty()) << listing.name;
+    }
+}
+
+TEST(SceneRecipe, TransparentMaterialsFollowTheStatedRule)
+{
+    TempFolder folder;
+    folder.write("glass.obj", "mtllib glass.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl thin\nf 1 2 3\nusemtl thick\nf 3 2 1\n");
+    folder.write("glass.mtl", "newmtl thin\nKd 1 1 1\nd 0.3\nnewmtl thick\nKd 1 1 1\nd 0.7\n");
+    const Scene scene = load_scene(folder.write("glass.toml", "[[part]]\nfile = 'glass.obj'\n"));
+    EXPECT_EQ(scene.indices.size(), 3U);
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("'thin' is 30 % opaque: left out")));
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("'thick' is 70 % opaque: drawn opaque")));
+}
+
+TEST(SceneRecipe, BrokenModelsFailWithTheirName)
+{
+    TempFolder folder;
+    folder.write("broken.obj", "v 0 0 0\nf 1 2 9\n");
+    folder.write("empty.obj", "");
+    for (const char* file : {"broken.obj", "empty.obj"}) {
+        const std::string recipe = folder.write("a.toml", fmt::format("[[part]]\nfile = '{}'\n", file));
+        EXPECT_THAT(error_of<Failure>(recipe), HasSubstr(file));
+    }
+}
+
+TEST(SceneRecipe, PatternsMatch)
+{
+    EXPECT_TRUE(matches("*", ""));
+    EXPECT_TRUE(matches("*chrome*", "Dark_Chrome_2"));
+    EXPECT_TRUE(matches("a?c", "abc"));
+    EXPECT_FALSE(matches("a?c", "ac"));
+    EXPECT_FALSE(matches("chrome", "chrome2"));
+    EXPECT_TRUE(matches("*a*b", "xaxxab"));
+}
+
+TEST(SceneShapes, TheTeapotIsClosedAndFacesOutwards)
+{
+    Model model;
+    model.meshes.push_back(make_teapot(8));
+    const Bounds bounds = bounds_of(model);
+    EXPECT_VEC_NEAR(bounds.size_m(), glm::dvec3(6.43, 3.15, 4.0), 0.05);
+    EXPECT_NEAR(bounds.min_ws.y, 0, 1e-9);
+    const Mesh& mesh  = model.meshes[0];
+    size_t      wrong = 0;
+    double      volume = 0;
+    for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+        const glm::dvec3 a = mesh.positions_ws[mesh.indices[i]];
+        const glm::dvec3 b = mesh.positions_ws[mesh.indices[i + 1]];
+        const glm::dvec3 c = mesh.positions_ws[mesh.indices[i + 2]];
+        volume += glm::dot(a, glm::cross(b, c)) / 6;
+        const glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
+        for (size_t k = i; k < i + 3; ++k)
+            if (glm::dot(normal, glm::dvec3(mesh.vertices[mesh.indices[k]].normal_ws)) < 0.3) ++wrong;
+    }
+    EXPECT_EQ(wrong, 0U);
+    EXPECT_GT(volume, 20) << "fronts face outwards";
+    EXPECT_LT(volume, 32);
+}
+
+TEST(SceneShapes, SmoothNormalsIgnoreHowVerticesAreShared)
+{
+    Mesh sphere = make_sphere({0, 0, 0}, 1, 64, 32);
+    for (Vertex& vertex : sphere.vertices) vertex.normal_ws = {0, 1, 0};
+    sphere.has_normals = false;
+    make_smooth_normals(sphere, 60);
+    for (size_t i = 0; i < sphere.vertices.size(); ++i)
+        ASSERT_VEC_NEAR(glm::dvec3(sphere.vertices[i].normal_ws), glm::normalize(sphere.positions_ws[i]), 0.06);
+
+    Mesh box        = make_box({0, 0, 0}, {1, 1, 1});
+    box.has_normals = false;
+    weld_equal_vertices(box);
+    make_smooth_normals(box, 60);
+    for (const Vertex& vertex : box.vertices)
+        EXPECT_FLOAT_EQ(std::max({std::abs(vertex.normal_ws.x), std::abs(vertex.normal_ws.y), std::abs(vertex.normal_ws.z)}), 1) << "edges stay sharp";
+}
+
+} // namespace
+} // namespace ssrlab
