@@ -183,8 +183,9 @@ TEST(SceneTruth, RearSideFacesAway)
     EXPECT_NEAR(truth.point_vs[i].z, -10, 1e-3);
 }
 
-// Sphere of radius 1 at (0, 0, -5) on the mirror floor, column x = 32 (the figures are for rays in the plane x = 0, hence the view
-// moved by half a pixel): closed forms of hard_cases S5.
+// Sphere of radius 1 at (0, 0, -5) on the mirror floor, rays in the plane x = 0 (hence the view moved by half a pixel). From
+// (-1, -Z0) along (1, -Z0) the nearer root of (-1 + s)^2 + (5 - Z0 - s Z0)^2 = 1 is the point (Y, Z) = (-1 + s, Z0 (1 + s)),
+// seen at py = 32 (1 - Y / Z).
 TEST(SceneTruth, SphereOnMirror)
 {
     Case test = floor_case();
