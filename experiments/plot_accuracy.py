@@ -4,6 +4,7 @@ import pandas as pd
 from matplotlib import pyplot as plt
 
 from plot_data import describe, label_of
+from plot_figures import log_axis
 
 TARGETS = [0.90, 0.95, 0.99, 0.995]
 # (column, what it is measured against)
@@ -30,7 +31,9 @@ def draw_curves(axis, results, rows, cost, error, xlabel):
     front = pareto(rows, cost, error)
     axis.step(front[cost], front[error], where="post", color="#777777", lw=6, alpha=0.3, zorder=0, label="Pareto front",
               solid_capstyle="round")
-    axis.set(xscale="log", yscale="log", xlabel=xlabel)
+    axis.set(xlabel=xlabel)
+    log_axis(axis.xaxis)
+    log_axis(axis.yaxis)
 
 
 def accuracy_curves(results, _):

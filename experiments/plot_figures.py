@@ -4,7 +4,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
-from matplotlib.ticker import ScalarFormatter  # noqa: E402
+from matplotlib.ticker import FuncFormatter, LogLocator  # noqa: E402
 
 from plot_data import errors, is_number  # noqa: E402
 
@@ -24,10 +24,18 @@ def fit_line(x, y):
 
 
 def plain_ticks(axis, values):
-    """Every measured value labelled as it is written, where there is room."""
-    axis.set_major_formatter(ScalarFormatter())
+    """Every measured value labelled as it is written."""
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_ticks(sorted(values))
     axis.set_minor_locator(matplotlib.ticker.NullLocator())
+
+
+def log_axis(axis):
+    """Logarithmic, labelled 1, 2, 5, 10 … in plain numbers."""
+    axis.axes.set(**{f"{axis.axis_name}scale": "log"})
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
 
 def steps_lines(results, rows):
@@ -68,7 +76,8 @@ def law_of_steps(results, tables):
             tables.setdefault("Law of steps: frame time = slope · steps + intercept, from 50 steps up", []).append(
                 {"picture": title, "series": series, "slope, ms per step": f"{slope:.4g}",
                  "intercept, ms": f"{intercept:.4g}", "R²": f"{r2:.4f}"})
-        left.set(xscale="log", yscale="log", xlabel="steps", ylabel="frames per second", title="FPS")
+        left.set(xscale="log", xlabel="steps", ylabel="frames per second", title="FPS")
+        log_axis(left.yaxis)
         plain_ticks(left.xaxis, {int(s) for _, line in lines for s in line.steps})
         left.tick_params(axis="x", rotation=45)
         right.set(xlabel="steps", ylabel="1 / FPS, ms", title="1/FPS", xlim=(0, None), ylim=(0, None))
@@ -149,7 +158,9 @@ def thickness_curves(results, tables):
         plain_ticks(left.xaxis, set(rows.thickness_m))
         left.tick_params(axis="x", rotation=45)
         right.set(xlabel="false hits, % of rays", ylabel="visible points missed, % of rays",
-                  title="The trade, labelled with thickness in m", xlim=(0, None), ylim=(0, None))
+                  title="The trade, labelled with thickness in m")
+        log_axis(right.xaxis)
+        log_axis(right.yaxis)
         left.legend(fontsize=8.5)
         figure.suptitle(title)
         yield f"thickness_trade_{name}", figure
@@ -171,7 +182,8 @@ def bars(axis, rows, results, value, spread, ylabel):
                 axis.annotate(f"{height:.3g}", (x, height), ha="center", va="bottom", fontsize=7, xytext=(0, 3),
                               textcoords="offset points", rotation=90 if len(scenes) * len(series) > 12 else 0)
     axis.set_xticks(range(len(scenes)), scenes)
-    axis.set(ylabel=ylabel, yscale="log")
+    axis.set(ylabel=ylabel)
+    log_axis(axis.yaxis)
     axis.margins(y=0.18)
     axis.grid(axis="x", visible=False)
 
@@ -208,7 +220,8 @@ def growth(results, tables):
                 axis.plot(line.pixels, line[column], label=f"{series}: pixels^{exponent:.2f}", **results.styles[series])
                 tables.setdefault("Growth with the number of pixels: fitted exponents", []).append(
                     {"scene": scene, "series": series, "of": label, "exponent": f"{exponent:.3f}"})
-            axis.set(xscale="log", yscale="log", xlabel="million pixels", ylabel=label)
+            axis.set(xscale="log", xlabel="million pixels", ylabel=label)
+            log_axis(axis.yaxis)
             plain_ticks(axis.xaxis, {round(p, 2) for p in rows.pixels})
             axis.legend(fontsize=9)
         figure.suptitle(f"{scene}, view {view}")

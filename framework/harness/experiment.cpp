@@ -221,6 +221,7 @@ MeasureSettings read_measure(const TomlFile& file)
     number("interval_percent", measure.interval_percent, 0, 100);
     number("budget_s", measure.budget_s, 0, infinity);
     flag("truth", measure.truth);
+    flag("image_errors", measure.image_errors);
     flag("double_twin", measure.double_twin);
     flag("pictures", measure.pictures);
     toml_known_keys(file, *table, "key of [measure]", known);

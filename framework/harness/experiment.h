@@ -22,6 +22,7 @@ struct MeasureSettings {
     double   interval_percent = 2;    // tight: the 95 % interval of the median of trace_ms lies within ± this
     double   budget_s         = 5;    // a run stops after min_repeats once its frames took this long
     bool     truth            = true; // compare with the truths
+    bool     image_errors     = true; // also compare the pictures (SSIM, FLIP …), which takes longer than comparing rays
     bool     double_twin      = true; // trace once more in double precision, to tell rounding from the other errors
     bool     pictures         = true; // write the reflected picture of each run
 };

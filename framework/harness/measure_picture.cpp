@@ -1,6 +1,7 @@
 #include "harness/measure_picture.h"
 
 #include "compare/image_io.h"
+#include "compare/pictures.h"
 #include "core/error.h"
 #include "harness/statistics.h"
 #include "harness/stop_signal.h"
@@ -29,7 +30,6 @@ const LoadedScene& scene_of(Bench& bench, const std::string& name)
         loaded->name     = name;
         loaded->scene    = load_scene(name);
         loaded->uploaded = upload_scene(bench.gpu, loaded->scene);
-        if (bench.experiment.measure.truth) loaded->bvh.emplace(loaded->scene);
         for (const std::string& warning : loaded->scene.warnings) bench.progress.say(name + ": " + warning);
         bench.scene = std::move(loaded);
     }
@@ -47,7 +47,7 @@ Picture make_picture(Bench& bench, const Run& run)
     picture.gbuffer_ms = quantile(std::move(times_ms), 0.5);
     picture.buffers    = make_frame_buffers(bench.gpu, picture.gbuffer);
     if (bench.experiment.measure.truth) {
-        picture.truths.emplace(loaded.scene, *loaded.bvh, read_gbuffer(bench.gpu, *picture.gbuffer),
+        picture.truths.emplace(loaded.scene, read_gbuffer(bench.gpu, *picture.gbuffer),
                                truth_cache_dir(bench.results.path()));
     }
     return picture;
@@ -78,14 +78,26 @@ bool try_step(Bench& bench, MeasuredRun& measured, const Step& step)
     }
 }
 
-void write_picture(Bench& bench, MeasuredRun& measured)
+/// pictures/SCENE_VIEW_SIZE_TECHNIQUE_ID, without the ending.
+std::string picture_name(const Run& run)
 {
-    const Run&  run  = *measured.run;
     std::string name = fmt::format("{}_{}_{}_{}_{}", run.scene, run.view, size_text(run.size_px), run.technique, run.id);
     std::ranges::replace_if(name, [](unsigned char c) { return std::isalnum(c) == 0 && c != '_' && c != '-'; }, '_');
-    std::filesystem::create_directories(bench.results.path() / "pictures");
-    write_image(bench.results.path() / "pictures" / (name + ".png"), read_shaded(bench.gpu, *measured.frame));
-    measured.row["picture"] = "pictures/" + name + ".png";
+    return "pictures/" + name;
+}
+
+/// What was seen, how right it is, and how hard it was.
+void write_pictures(Bench& bench, Picture& picture, MeasuredRun& measured, const Image& shaded, const TraceResult& counted)
+{
+    const std::string           name = picture_name(*measured.run);
+    const std::filesystem::path path = bench.results.path() / name;
+    std::filesystem::create_directories(path.parent_path());
+    write_image(path.string() + ".png", shaded);
+    write_image(path.string() + "_fetches.png", fetch_heat_map(counted));
+    if (picture.truths) {
+        write_image(path.string() + "_agreement.png", picture.truths->agreement(measured.run->settings.trace, counted));
+    }
+    measured.row["picture"] = name + ".png";
 }
 
 /// Everything but the timed repeats: pipelines, warm-up, picture, counts, comparison with the truths.
@@ -96,15 +108,17 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
     const MeasureSettings& measure   = bench.experiment.measure;
     measured.frame = prepare_frame(bench.gpu, picture.buffers, technique, run.values, run.settings);
     for (int i = 0; i < std::max(1, measure.warmup); ++i) run_frame(bench.gpu, *measured.frame);
-    if (measure.pictures) write_picture(bench, measured);
+    const Image       shaded  = measure.pictures ? read_shaded(bench.gpu, *measured.frame) : Image();
     const TraceResult counted = count_frame(bench.gpu, *measured.frame);
+    if (measure.pictures) write_pictures(bench, picture, measured, shaded, counted);
     add_counts(measured.row, counted);
     if (!picture.truths) return;
     std::optional<TraceResult> twin;
     if (measure.double_twin && bench.gpu.info.float64) {
         twin = count_frame(bench.gpu, *measured.frame, Precision::float64);
     }
-    add_measures(measured.row, picture.truths->compare(run.settings.trace, counted, twin ? &*twin : nullptr));
+    add_measures(measured.row, picture.truths->compare(run.settings.trace, counted, twin ? &*twin : nullptr,
+                                                       measure.image_errors));
 }
 
 /// Timed repeats, every round in another order, until each run is final or a stop was requested.

@@ -5,7 +5,6 @@
 #include "harness/progress.h"
 #include "harness/quality.h"
 #include "harness/record.h"
-#include "truth/scene_bvh.h"
 
 #include <optional>
 #include <random>
@@ -17,7 +16,6 @@ struct LoadedScene {
     std::string name;
     Scene       scene;
     GpuScenePtr uploaded;
-    std::optional<SceneBvh> bvh; // only when runs are compared with the truths
 };
 
 /// What all measuring works with.

@@ -1,7 +1,7 @@
 #include "harness/quality.h"
 
-#include "truth/scene_truth.h"
-#include "truth/screen_truth.h"
+#include "compare/pictures.h"
+#include "truth/truth_cache.h"
 
 #include <cstdlib>
 
@@ -40,26 +40,36 @@ Image reflected_image(const TraceResult& result, const GBufferImage& gbuffer, gl
     return image;
 }
 
-Truths::Truths(const Scene& scene, const SceneBvh& bvh, GBufferImage gbuffer, std::filesystem::path cache_dir)
-    : scene_(&scene), bvh_(&bvh), gbuffer_(std::move(gbuffer)), cache_dir_(std::move(cache_dir))
+Truths::Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path cache_dir)
+    : scene_(&scene), gbuffer_(std::move(gbuffer)), cache_dir_(std::move(cache_dir))
 {
 }
 
 void Truths::make(const TraceSettings& settings)
 {
     if (made_for_ && same(*made_for_, settings)) return;
+    // Of all settings, the scene truth depends on the maximum distance alone.
+    const bool same_scene_truth = made_for_ && made_for_->max_distance_m == settings.max_distance_m;
     made_for_.reset();
-    screen_truth_ = screen_truth(gbuffer_, settings);
-    scene_truth_  = ssrlab::scene_truth(*bvh_, *scene_, gbuffer_, settings);
-    made_for_     = settings;
+    screen_truth_ = cached_screen_truth(cache_dir_, gbuffer_, settings);
+    if (!same_scene_truth) scene_truth_ = cached_scene_truth(cache_dir_, *scene_, gbuffer_, settings);
+    made_for_ = settings;
 }
 
-MeasureValues Truths::compare(const TraceSettings& settings, const TraceResult& counted, const TraceResult* twin)
+Image Truths::agreement(const TraceSettings& settings, const TraceResult& counted)
+{
+    make(settings);
+    return agreement_picture(counted, scene_truth_);
+}
+
+MeasureValues Truths::compare(const TraceSettings& settings, const TraceResult& counted, const TraceResult* twin,
+                              bool image_errors)
 {
     make(settings);
     MeasureValues values = compare_to_screen_truth(counted, screen_truth_);
     merge(values, compare_to_scene_truth(counted, scene_truth_, screen_truth_, gbuffer_));
     merge(values, split_error(counted, twin, screen_truth_, &scene_truth_));
+    if (!image_errors) return values;
     merge(values, compare_images(reflected_image(counted, gbuffer_, scene_->background), reference_image(scene_truth_),
                                  scene_truth_));
     return values;

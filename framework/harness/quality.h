@@ -3,7 +3,7 @@
 
 #include "compare/measures.h"
 #include "harness/measured_run.h"
-#include "truth/scene_bvh.h"
+#include "scene/scene.h"
 
 #include <filesystem>
 #include <optional>
@@ -13,19 +13,19 @@ namespace ssrlab {
 /// The truths of one picture. Those of the last trace settings are kept: runs with the same settings stand together.
 class Truths {
 public:
-    /// Keeps references to `scene` and `bvh`. Screen truths are cached in `cache_dir`.
-    Truths(const Scene& scene, const SceneBvh& bvh, GBufferImage gbuffer, std::filesystem::path cache_dir);
+    /// Keeps a reference to `scene`.
+    Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path cache_dir);
 
     /// Every measure of `counted`; `twin` is the same trace in double, or null.
-    MeasureValues compare(const TraceSettings& settings, const TraceResult& counted, const TraceResult* twin);
+    MeasureValues compare(const TraceSettings& settings, const TraceResult& counted, const TraceResult* twin, bool image_errors);
 
-    const SceneTruth&  scene_truth() const { return scene_truth_; }
+    /// The agreement with the scene truth, as a false-colour picture.
+    Image agreement(const TraceSettings& settings, const TraceResult& counted);
 
 private:
     void make(const TraceSettings& settings);
 
     const Scene*                 scene_;
-    const SceneBvh*              bvh_;
     GBufferImage                 gbuffer_;
     std::filesystem::path        cache_dir_;
     std::optional<TraceSettings> made_for_;
