@@ -48,11 +48,14 @@ Model start_scene()
 {
     Model model;
     model.materials.push_back(make_material("mirror", glm::vec3(0.95F), 1, 0));
+    // The same light from everywhere: where the mirror's ray meets nothing, it looks like the sky.
+    model.ambient    = glm::vec3(0.22F, 0.25F, 0.3F);
+    model.background = model.ambient;
     model.lights.push_back({sun({-0.5F, -1.0F, -0.7F}, 2.2F), {}});
     model.cameras = {
         camera("default", {0, 0, 0}, 0, "level camera: rays along image columns, many towards the horizon"),
         camera("down", {0, 0, 0}, 25, "pitched down: the floor fills most of the picture"),
-        camera("steep", {0, 0.5, -1}, 55, "looking down steeply: rays come back towards the camera and leave the screen"),
+        camera("steep", {0, 1.5, -2}, 45, "looking down steeply: rays come back towards the camera and leave the screen"),
     };
     return model;
 }
@@ -84,12 +87,13 @@ void add_floor(Model& model, double half_width_m, double near_z_m, double far_z_
         make_quad({-half_width_m, floor_y_m, near_z_m}, {2 * half_width_m, 0, 0}, {0, 0, far_z_m - near_z_m}));
 }
 
-/// Facing the camera, from the floor up, with squares of half a metre.
+/// Facing the camera, from the floor up, with squares of one metre.
 void add_wall(Model& model, double half_width_m, double z_m, double top_y_m)
 {
     const uint32_t checker = add_checker(model, "wall", {0.85F, 0.45F, 0.2F}, {0.25F, 0.45F, 0.75F});
-    add(model, "wall", checker,
-        make_quad({-half_width_m, floor_y_m, z_m}, {2 * half_width_m, 0, 0}, {0, top_y_m - floor_y_m, 0}));
+    Mesh wall = make_quad({-half_width_m, floor_y_m, z_m}, {2 * half_width_m, 0, 0}, {0, top_y_m - floor_y_m, 0});
+    multiply_uv(wall, 0.5);
+    add(model, "wall", checker, std::move(wall));
 }
 
 Model mirror_floor_wall()
