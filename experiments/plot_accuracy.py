@@ -83,6 +83,8 @@ def target_rows(results, rows, recall, base):
                 row.update(speedup_over_linear=other.cost_ms_median / one.cost_ms_median,
                            speedup_ci_low=other.cost_ms_ci_low / one.cost_ms_ci_high,
                            speedup_ci_high=other.cost_ms_ci_high / one.cost_ms_ci_low)
+                if technique == "linear":  # against itself
+                    row.update(speedup_ci_low=1.0, speedup_ci_high=1.0)
             yield row
 
 

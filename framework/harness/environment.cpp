@@ -71,11 +71,10 @@ std::string scene_hash(const std::string& name)
 
 } // namespace
 
-Environment describe_environment(const Experiment& experiment, std::span<const Technique> techniques,
-                                 const GpuInfo& device, const std::string& command_line)
+std::map<std::string, std::string> describe_identity(const Experiment& experiment, std::span<const Technique> techniques,
+                                                     const GpuInfo& device)
 {
-    Environment environment;
-    auto&       identity      = environment.identity;
+    std::map<std::string, std::string> identity;
     identity["specification"] = content_hash(experiment.text);
     identity["shaders"]       = folder_hash(fs::path(SSRLAB_SOURCE_DIR) / "shaders");
     identity["device"]        = device.name;
@@ -84,9 +83,16 @@ Environment describe_environment(const Experiment& experiment, std::span<const T
         identity["technique " + sweep.id] = folder_hash(find_technique(techniques, sweep.id).folder);
     }
     for (const std::string& scene : experiment.scenes) identity["scene " + scene] = scene_hash(scene);
+    return identity;
+}
 
+Environment describe_environment(const Experiment& experiment, std::span<const Technique> techniques,
+                                 const GpuInfo& device, const std::string& command_line)
+{
     utsname system = {};
     ::uname(&system);
+    Environment environment;
+    environment.identity      = describe_identity(experiment, techniques, device);
     auto& notes               = environment.notes;
     notes["title"]            = experiment.title;
     notes["experiment"]       = experiment.name;

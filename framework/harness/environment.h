@@ -7,7 +7,11 @@
 
 namespace ssrlab {
 
-/// Identity: hashes of specification, shaders, techniques and scene files, and the device. Notes: all that a reader may ask.
+/// Hashes of specification, shaders, techniques and scene files, as they are now, and the device.
+std::map<std::string, std::string> describe_identity(const Experiment& experiment, std::span<const Technique> techniques,
+                                                     const GpuInfo& device);
+
+/// The identity and all else that a reader may ask.
 Environment describe_environment(const Experiment& experiment, std::span<const Technique> techniques,
                                  const GpuInfo& device, const std::string& command_line);
 

@@ -3,8 +3,12 @@
 #include "compare/image_io.h"
 #include "compare/pictures.h"
 #include "core/error.h"
+#include "core/files.h"
+#include "harness/environment.h"
 #include "harness/statistics.h"
 #include "harness/stop_signal.h"
+
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -53,8 +57,18 @@ Picture make_picture(Bench& bench, const Run& run)
     return picture;
 }
 
+/// Shaders are read when a run is prepared: one that is edited under a sweep must not end in the same file.
+void refuse_changed_sources(const Bench& bench)
+{
+    const auto changed = differences(bench.identity, describe_identity(bench.experiment, bench.techniques, bench.gpu.info));
+    if (changed.empty()) return;
+    throw_failure("{}: stopped, because these changed while it was measured: {}; its rows are from before",
+                  short_path(bench.results.path()), fmt::join(changed, ", "));
+}
+
 void finish(Bench& bench, const Run& run, const Row& row)
 {
+    refuse_changed_sources(bench);
     bench.results.append(row);
     ++bench.written;
     if (row.at("outcome") == "failed") {

@@ -25,6 +25,7 @@ struct Bench {
     Gpu&                         gpu;
     ResultFolder&                results;
     Progress&                    progress;
+    std::map<std::string, std::string> identity; // what environment.json says
     std::mt19937_64              random{experiment.measure.seed};
     std::unique_ptr<LoadedScene> scene = nullptr;
     size_t                       written = 0, failed = 0;

@@ -38,8 +38,10 @@ std::map<std::string, std::string> recorded_identity(const fs::path& file)
     }
 }
 
-/// Names of entries that differ or that only one side has.
-std::vector<std::string> differences(const std::map<std::string, std::string>& a, const std::map<std::string, std::string>& b)
+} // namespace
+
+std::vector<std::string> differences(const std::map<std::string, std::string>& a,
+                                     const std::map<std::string, std::string>& b)
 {
     std::vector<std::string> names;
     for (const auto& [name, value] : a) {
@@ -50,8 +52,6 @@ std::vector<std::string> differences(const std::map<std::string, std::string>& a
     }
     return names;
 }
-
-} // namespace
 
 ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> columns, const Environment& environment,
                            bool resuming)

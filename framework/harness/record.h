@@ -20,6 +20,10 @@ struct Environment {
     std::map<std::string, std::string> notes;
 };
 
+/// Names of entries that differ or that only one of the two has.
+std::vector<std::string> differences(const std::map<std::string, std::string>& a,
+                                     const std::map<std::string, std::string>& b);
+
 /// A results folder that is open for writing: locked against other writers until the object is gone.
 class ResultFolder {
 public:

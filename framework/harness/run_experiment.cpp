@@ -100,12 +100,12 @@ int run_experiment(const RunOptions& options)
     refuse_large_sizes(experiment, gpu.info);
     const fs::path folder = options.folder.empty() ? fs::path("results") / experiment.name : options.folder;
     listen_for_stop();
-    ResultFolder results(folder, names_of(columns),
-                         describe_environment(experiment, techniques, gpu.info, options.command_line), options.resume);
+    const Environment environment = describe_environment(experiment, techniques, gpu.info, options.command_line);
+    ResultFolder      results(folder, names_of(columns), environment, options.resume);
     std::erase_if(runs, [&](const Run& run) { return results.finished().contains(run.id); });
 
     Progress progress(runs.size(), total_cost(runs, techniques, experiment.measure));
-    Bench    bench{experiment, techniques, gpu, results, progress};
+    Bench    bench{experiment, techniques, gpu, results, progress, environment.identity};
     for (std::span<const Run> rest = runs; !rest.empty() && stop_requested() == 0;) {
         measure_picture(bench, take_picture(rest));
     }
