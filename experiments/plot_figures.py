@@ -177,9 +177,10 @@ def bars(axis, rows, results, value, spread, ylabel):
         style = results.styles[name]
         axis.bar(at, part[value], width * 0.92, label=name, color=style["color"], alpha=style["alpha"],
                  yerr=errors(part, spread) if spread else None, error_kw={"lw": 1, "capsize": 2, "ecolor": "#333333"})
-        for x, height in zip(at, part[value]):
+        tops = part[f"{spread}_ci_high"].fillna(part[value]) if spread else part[value]
+        for x, height, top in zip(at, part[value], tops):
             if np.isfinite(height):
-                axis.annotate(f"{height:.3g}", (x, height), ha="center", va="bottom", fontsize=7, xytext=(0, 3),
+                axis.annotate(f"{height:.3g}", (x, top), ha="center", va="bottom", fontsize=7, xytext=(0, 3),
                               textcoords="offset points", rotation=90 if len(scenes) * len(series) > 12 else 0)
     axis.set_xticks(range(len(scenes)), scenes)
     axis.set(ylabel=ylabel)
@@ -220,9 +221,12 @@ def growth(results, tables):
                 axis.plot(line.pixels, line[column], label=f"{series}: pixels^{exponent:.2f}", **results.styles[series])
                 tables.setdefault("Growth with the number of pixels: fitted exponents", []).append(
                     {"scene": scene, "series": series, "of": label, "exponent": f"{exponent:.3f}"})
-            axis.set(xscale="log", xlabel="million pixels", ylabel=label)
+            axis.set(xscale="log", ylabel=label)
             log_axis(axis.yaxis)
-            plain_ticks(axis.xaxis, {round(p, 2) for p in rows.pixels})
+            sizes = rows.drop_duplicates("pixels")
+            axis.set_xticks(sizes.pixels, [f"{row.width}×{row.height}" for _, row in sizes.iterrows()], rotation=30,
+                            ha="right")
+            axis.xaxis.set_minor_locator(matplotlib.ticker.NullLocator())
             axis.legend(fontsize=9)
         figure.suptitle(f"{scene}, view {view}")
         yield f"growth_{''.join(c if c.isalnum() else '_' for c in scene)}_{view}", figure

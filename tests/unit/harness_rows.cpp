@@ -1,0 +1,159 @@
+// What a row says about a run, from results whose figures are known.
+#include "core/error.h"
+#include "harness/columns.h"
+#include "harness/measured_run.h"
+#include "harness/progress.h"
+#include "harness/quality.h"
+
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <set>
+
+namespace ssrlab {
+namespace {
+
+const Technique walk = {"walk", "Walk", "s", {}, {}, false, {"steps"},
+                        {{"steps", ParameterType::integer, 64, 1, 60000, {}, "d"},
+                         {"space", ParameterType::choice, 0, 0, 1, {"view", "screen"}, "d"}}, {}};
+
+Experiment one_technique(const std::string& id)
+{
+    Experiment experiment;
+    experiment.name       = "e";
+    experiment.techniques = {{id, "e.toml:1", {}, {}}};
+    return experiment;
+}
+
+TEST(Rows, ColumnsAreUniqueAndIdentityComesFirst)
+{
+    const Technique techniques[] = {walk};
+    const auto      names        = names_of(result_columns(one_technique("walk"), techniques));
+    EXPECT_EQ(std::set(names.begin(), names.end()).size(), names.size());
+    EXPECT_EQ(names.front(), "run_id");
+    EXPECT_EQ(names.back(), "message");
+    for (const char* name : {"steps", "space", "trace_ms_median", "frame_ms_median", "fps", "inverse_fps_s", "rays", "pyramid_ms_median",
+                             "depth_fetches_mean", "fetches_p99", "recall_1px", "out_of_steps_share", "outcome"}) {
+        EXPECT_THAT(names, testing::Contains(name));
+    }
+}
+
+TEST(Rows, AParameterMayNotBeNamedLikeAColumn)
+{
+    for (const char* name : {"rays", "thickness_m", "recall_1px", "outcome"}) {
+        Technique clash          = walk;
+        clash.folder             = "techniques/walk";
+        clash.parameters[0].name = name;
+        try {
+            result_columns(one_technique("walk"), {&clash, 1});
+            FAIL() << name;
+        } catch (const SpecError& error) {
+            EXPECT_THAT(error.what(), testing::HasSubstr("techniques/walk/technique.toml: parameter '" + std::string(name) + "'"));
+        }
+    }
+}
+
+TEST(Rows, EveryEntryOfARowHasAColumn)
+{
+    const Technique techniques[] = {walk};
+    const auto      names        = names_of(result_columns(one_technique("walk"), techniques));
+    ssrlab::Run run{"r1", "a", "default", {2, 3}, {}, "walk", {{"steps", 25}, {"space", 1}}};
+    MeasuredRun measured;
+    measured.run = &run;
+    measured.row = identity_row(one_technique("walk"), run, walk);
+    EXPECT_EQ(measured.row.at("space"), "screen");
+    EXPECT_EQ(measured.row.at("steps"), "25");
+    EXPECT_EQ(measured.row.at("thickness_m"), "0.1");
+    EXPECT_EQ(measured.row.at("max_distance_m"), "1000000000");
+    EXPECT_EQ(measured.row.at("fade_at_edges"), "true");
+    measured.rays_ms = measured.inputs_ms = measured.shade_ms = std::vector<double>(7, 1.0);
+    measured.trace_ms = {1, 2, 3, 4, 5, 6, 7};
+    measured.frame_ms = {11, 12, 13, 14, 15, 16, 17};
+    add_times(measured, 7);
+    add_measures(measured.row, no_measures());
+    measured.row = failed_row(measured.row, "no");
+    EXPECT_EQ(measured.row.at("trace_ms_median"), "4");
+    EXPECT_EQ(measured.row.at("trace_ms_ci_low"), "1");
+    EXPECT_EQ(measured.row.at("inverse_fps_s"), "0.014");
+    for (const auto& [name, value] : measured.row) EXPECT_THAT(names, testing::Contains(name));
+}
+
+TEST(Rows, CountsOfAResultWithKnownFigures)
+{
+    using enum TraceStatus;
+    TraceResult result{{5, 1}, {not_traced, hit, left_screen, out_of_steps, hit}, {}, {}, {}, {0, 10, 20, 30, 40}, {0, 1, 2, 3, 4}, {0, 9, 8, 7, 6}};
+    result.hit_pixel.resize(5);
+    result.hit_px_depth.resize(5);
+    result.hit_t.resize(5);
+    Row row;
+    add_counts(row, result);
+    EXPECT_EQ(row.at("outcome"), "ok");
+    EXPECT_EQ(row.at("rays"), "4");
+    EXPECT_EQ(row.at("hit_share"), "0.5");
+    EXPECT_EQ(row.at("out_of_steps_share"), "0.25");
+    EXPECT_EQ(row.at("facing_away_share"), "0");
+    EXPECT_EQ(row.at("steps_mean"), "25");
+    EXPECT_EQ(row.at("depth_fetches_mean"), "2.5");
+    EXPECT_EQ(row.at("pyramid_fetches_mean"), "7.5");
+    EXPECT_EQ(row.at("fetches_mean"), "10");
+    EXPECT_EQ(row.at("fetches_max"), "10");
+}
+
+TEST(Rows, NothingToTraceIsAnOutcome)
+{
+    Row row;
+    add_counts(row, {{1, 1}, {TraceStatus::not_traced}, {{}}, {{}}, {0}, {0}, {0}, {0}});
+    EXPECT_EQ(row.at("outcome"), "no_rays");
+    EXPECT_EQ(row.at("rays"), "0");
+    EXPECT_FALSE(row.contains("steps_mean"));
+    EXPECT_FALSE(row.contains("hit_share"));
+    EXPECT_EQ(number_text(std::nan("")), "");
+}
+
+TEST(Rows, ARunIsFinalWhenTightOrSpentButNeverTooEarly)
+{
+    MeasureSettings measure;
+    measure.min_repeats      = 6;
+    measure.max_repeats      = 9;
+    measure.interval_percent = 1;
+    measure.budget_s         = 1;
+    MeasuredRun measured;
+    measured.spent_s = 99;
+    measured.trace_ms = std::vector<double>(5, 1.0);
+    EXPECT_FALSE(is_final(measured, measure)); // too few, whatever was spent
+    measured.trace_ms.push_back(1.0);
+    EXPECT_TRUE(is_final(measured, measure));
+    measured.spent_s = 0;
+    EXPECT_TRUE(is_final(measured, measure)); // tight
+    measured.trace_ms = {1, 2, 3, 4, 5, 6};
+    EXPECT_FALSE(is_final(measured, measure));
+    measured.trace_ms = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+    EXPECT_TRUE(is_final(measured, measure)); // often enough
+}
+
+TEST(Rows, ReflectedImageTakesTheHitPixelsRadiance)
+{
+    GBufferImage gbuffer;
+    gbuffer.radiance = {{1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
+    const TraceResult result{{3, 1}, {TraceStatus::hit, TraceStatus::left_screen, TraceStatus::not_traced}, {{2, 0}, {}, {}}, {}, {}, {}, {}, {}};
+    EXPECT_THAT(reflected_image(result, gbuffer, {7, 8, 9}).values, testing::ElementsAre(0, 0, 3, 7, 8, 9, 0, 0, 0));
+}
+
+TEST(Rows, TheTruthCacheLiesBesideTheResults)
+{
+    ::unsetenv("SSRLAB_CACHE");
+    EXPECT_EQ(truth_cache_dir("/a/results/steps"), "/a/results/.truth_cache");
+    ::setenv("SSRLAB_CACHE", "/elsewhere", 1);
+    EXPECT_EQ(truth_cache_dir("/a/results/steps"), "/elsewhere");
+    ::unsetenv("SSRLAB_CACHE");
+}
+
+TEST(Rows, Durations)
+{
+    EXPECT_EQ(duration_text(7), "0:07");
+    EXPECT_EQ(duration_text(187.4), "3:07");
+    EXPECT_EQ(duration_text(3729), "1:02:09");
+}
+
+} // namespace
+} // namespace ssrlab
