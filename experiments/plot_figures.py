@@ -227,7 +227,8 @@ def growth(results, tables):
             axis.set_xticks(sizes.pixels, [f"{row.width}×{row.height}" for _, row in sizes.iterrows()], rotation=30,
                             ha="right")
             axis.xaxis.set_minor_locator(matplotlib.ticker.NullLocator())
-            axis.legend(fontsize=9)
+            axis.set_ylim(top=axis.get_ylim()[1] * 4)  # room for the legend
+            axis.legend(fontsize=9, loc="upper left")
         figure.suptitle(f"{scene}, view {view}")
         yield f"growth_{''.join(c if c.isalnum() else '_' for c in scene)}_{view}", figure
 
