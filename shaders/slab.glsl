@@ -19,5 +19,6 @@ bool reaches_slab_back(real depth, real z_near)
 
 real slab_back(real depth)
 {
-    return (depth * slab_scale - slab_shift) / (real(1) + depth * slab_slope);
+    precise real back = (depth * slab_scale - slab_shift) / (real(1) + depth * slab_slope);
+    return back;
 }

@@ -1,5 +1,8 @@
 // What a technique sees: a ray that is ready, counted fetches, the hit contract, and results that say why they stopped.
 // A technique defines    TraceResult trace(Ray ray)
+//
+// Loops end in their condition, at the top, never by break or return: lavapipe (Mesa 22.3) recomputes values that a loop made and that
+// are used after it, and lanes that left in the middle of the body get another iteration's value.
 #include "view.glsl"
 #include "slab.glsl"
 
@@ -167,7 +170,8 @@ TraceResult hit_between(Ray ray, ivec2 pixel, real t_in, real t_out, int steps)
     real z_in  = depth_at(ray, t_in);
     real face  = z_in > depth ? depth : slab_back(depth);
     bool inside = z_in <= depth && reaches_slab_back(depth, z_in);
-    real t     = inside || ray.delta.z == real(0) ? t_in : clamp((face - ray.origin.z) / ray.delta.z, t_in, t_out);
+    precise real t_face = (face - ray.origin.z) / ray.delta.z;
+    real t     = inside || ray.delta.z == real(0) ? t_in : clamp(t_face, t_in, t_out);
     return TraceResult(TRACE_HIT, pixel, t, steps);
 }
 

@@ -1,23 +1,22 @@
 TraceResult trace(Ray ray)
 {
     Grid  grid     = make_grid(ray);
-    ivec2 pixel    = ray.start_pixel;
-    real2 t_border = border_t(ray, grid, pixel + grid.forward);
+    real2 t_border = border_t(ray, grid, ray.start_pixel + grid.forward);
     real  t_in     = real(0), t_out = min(t_border.x, t_border.y);
-    bool  ended = false, found = false;
+    // The pixel is tracked as an integer: recomputing it from a position would stall on borders.
+    ivec2 pixel = cross_borders(grid, ray.start_pixel, t_border, t_out);
+    bool  ended = t_out >= real(1) || !on_screen(pixel), found = false;
     int   visited = 0;
-    while (true)
+    while (!ended && !found && visited < max_steps)
     {
-        // The pixel is tracked as an integer: recomputing it from a position would stall on borders.
-        pixel = cross_borders(grid, pixel, t_border, t_out);
-        ended = t_out >= real(1) || !on_screen(pixel);
-        if (ended || visited == max_steps) break;
         t_in     = t_out;
         t_border = border_t(ray, grid, pixel + grid.forward);
         t_out    = min(min(t_border.x, t_border.y), real(1));
+        found    = touches_surface(ray, pixel, depth_at(ray, t_in), depth_at(ray, t_out));
+        ivec2 next = cross_borders(grid, pixel, t_border, t_out);
+        ended      = t_out >= real(1) || !on_screen(next);
+        pixel      = found ? pixel : next;
         ++visited;
-        found = touches_surface(ray, pixel, depth_at(ray, t_in), depth_at(ray, t_out));
-        if (found) break;
     }
     if (found) return hit_between(ray, pixel, t_in, t_out, visited);
     return ended ? miss(ray, visited) : out_of_steps(visited);

@@ -23,30 +23,28 @@ TraceResult trace(Ray ray)
     bool  ended = t >= real(1) || !on_screen(cell), found = false;
     int   top   = min(top_level, pyramid_levels()), level = min(start_level, top), visited = 0;
     cell >>= level;
-    while (!ended && visited < max_steps)
+    while (!ended && !found && visited < max_steps)
     {
         t_border = border_t(ray, grid, (cell + grid.forward) << level);
         t_out    = min(min(t_border.x, t_border.y), real(1));
         ++visited;
-        if (cell_touched(ray, cell, level, depth_at(ray, t), depth_at(ray, t_out)))
+        bool touched = cell_touched(ray, cell, level, depth_at(ray, t), depth_at(ray, t_out));
+        found        = touched && level == 0;
+        if (touched && !found)
         {
-            found = level == 0;
-            if (found) break;
             cell = child_at(ray, grid, cell, level, t);
             --level;
         }
-        else
+        if (!touched)
         {
             ivec2 parent = cell >> 1;
             cell         = cross_borders(grid, cell, t_border, t_out);
             t            = t_out;
             ended        = t >= real(1) || !on_screen(cell << level);
             // Climb only where the parent changes: the old parent is known to be worth looking into.
-            if (level < top && (cell >> 1) != parent)
-            {
-                cell >>= 1;
-                ++level;
-            }
+            bool climb = level < top && (cell >> 1) != parent;
+            cell >>= int(climb);
+            level += int(climb);
         }
     }
     if (found) return hit_between(ray, cell, t, t_out, visited);

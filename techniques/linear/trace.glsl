@@ -11,19 +11,18 @@ TraceResult trace(Ray ray)
 {
     real  t = real(0), z = ray.origin.z;
     ivec2 pixel = ray.start_pixel;
-    bool  found = false;
-    int   i     = 1;
-    for (; i <= steps; ++i)
+    bool  ended = false, found = false;
+    int   taken = 0;
+    while (!ended && !found && taken < steps)
     {
-        t = sample_t(ray, i);
-        if (t > real(1)) break;
+        ++taken;
         real z_before = z;
+        t     = sample_t(ray, taken);
+        ended = t > real(1);
         pixel = pixel_at(ray, t);
         z     = depth_at(ray, t);
-        found = pixel != ray.start_pixel && touches_surface(ray, pixel, interval ? z_before : z, z);
-        if (found) break;
+        found = !ended && pixel != ray.start_pixel && touches_surface(ray, pixel, interval ? z_before : z, z);
     }
-    i = min(i, steps);
-    if (found) return hit_at(ray, pixel, t, i);
-    return miss(ray, i);
+    if (found) return hit_at(ray, pixel, t, taken);
+    return miss(ray, taken);
 }

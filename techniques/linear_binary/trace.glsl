@@ -10,21 +10,20 @@ real sample_t(Ray ray, int i)
 TraceResult trace(Ray ray)
 {
     real t_free = real(0), t = real(0), z = ray.origin.z;
-    bool found  = false;
-    int  i      = 1;
-    for (; i <= steps; ++i)
+    bool ended = false, found = false;
+    int  taken = 0;
+    while (!ended && !found && taken < steps)
     {
-        t_free = t;
-        t      = sample_t(ray, i);
-        if (t > real(1)) break;
-        real  z_before = z;
-        ivec2 pixel    = pixel_at(ray, t);
-        z              = depth_at(ray, t);
-        found          = pixel != ray.start_pixel && touches_surface(ray, pixel, interval ? z_before : z, z);
-        if (found) break;
+        ++taken;
+        t_free        = t;
+        real z_before = z;
+        t             = sample_t(ray, taken);
+        ended         = t > real(1);
+        z             = depth_at(ray, t);
+        ivec2 pixel   = pixel_at(ray, t);
+        found         = !ended && pixel != ray.start_pixel && touches_surface(ray, pixel, interval ? z_before : z, z);
     }
-    i = min(i, steps);
-    if (!found) return miss(ray, i);
+    if (!found) return miss(ray, taken);
 
     // The bracket: free at t_free, inside a slab (or, with the interval test, beyond its front) at t.
     for (int k = 0; k < binary_steps; ++k)
@@ -35,5 +34,5 @@ TraceResult trace(Ray ray)
         t_free       = behind ? t_free : middle;
         t            = behind ? middle : t;
     }
-    return hit_at(ray, pixel_at(ray, t), t, i + binary_steps);
+    return hit_at(ray, pixel_at(ray, t), t, taken + binary_steps);
 }
