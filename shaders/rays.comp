@@ -25,10 +25,25 @@ struct Segment
     int   end_status;
 };
 
+// normalize() may be rounded differently from device to device; this may not.
+real3 unit(real3 v)
+{
+    precise real square = v.x * v.x + v.y * v.y + v.z * v.z;
+    precise real3 result = v * (real(1) / sqrt(square));
+    return result;
+}
+
+real3 mirrored(real3 view, real3 normal)
+{
+    precise real  cosine = normal.x * view.x + normal.y * view.y + normal.z * view.z;
+    precise real3 result = view - real(2) * cosine * normal;
+    return unit(result);
+}
+
 // Distance along the ray at which value + s * slope falls to zero, if that is nearer than `limit`.
 void limit_by(real value, real slope, int side, inout real limit, inout int limiting_side)
 {
-    real s = value / -slope;
+    real s = max(value, real(0)) / -slope;
     if (slope < real(0) && s < limit)
     {
         limit         = s;
@@ -55,39 +70,52 @@ real clip_length(real3 position, real3 direction, out int side)
     if (orthographic != 0) limit_by(far_m - distance_m, -rate, SIDE_MAX_DISTANCE, limit, side);
     real w_value = orthographic == 0 ? distance_m : real(1);
     real w_slope = orthographic == 0 ? rate : real(0);
-    real2 to_px  = real2(focal_px.x, -focal_px.y);
-    real2 value  = centre_px * w_value + to_px * position.xy;
-    real2 slope  = centre_px * w_slope + to_px * direction.xy;
-    real2 size   = real2(size_px);
-    limit_by(value.x, slope.x, SIDE_LEFT, limit, side);
-    limit_by(size.x * w_value - value.x, size.x * w_slope - slope.x, SIDE_RIGHT, limit, side);
-    limit_by(value.y, slope.y, SIDE_TOP, limit, side);
-    limit_by(size.y * w_value - value.y, size.y * w_slope - slope.y, SIDE_BOTTOM, limit, side);
+    real2         to_px   = real2(focal_px.x, -focal_px.y);
+    real2         rest_px = real2(size_px) - centre_px;
+    precise real2 value = to_px * position.xy, slope = to_px * direction.xy;
+    precise real2 value_low = centre_px * w_value + value, slope_low = centre_px * w_slope + slope;
+    precise real2 value_high = rest_px * w_value - value, slope_high = rest_px * w_slope - slope;
+    limit_by(value_low.x, slope_low.x, SIDE_LEFT, limit, side);
+    limit_by(value_high.x, slope_high.x, SIDE_RIGHT, limit, side);
+    limit_by(value_low.y, slope_low.y, SIDE_TOP, limit, side);
+    limit_by(value_high.y, slope_high.y, SIDE_BOTTOM, limit, side);
     return limit;
 }
 
-// The screen point at `length_m` along the ray; everything is divided by the length, so that infinity is a number like any other.
-real3 screen_point(real3 position, real3 direction, real length_m)
+// From the projection of `position` to that of position + length_m * direction, with the common terms cancelled by hand: no difference of
+// two projected points is taken, infinity is a length like any other, and mirrored rays have exactly mirrored deltas.
+real3 screen_delta(real3 position, real3 direction, real length_m)
 {
-    real2 to_px = real2(focal_px.x, -focal_px.y);
+    precise real3 delta;
     if (orthographic != 0)
     {
-        real3 end = position + length_m * direction;
-        return real3(centre_px + to_px * end.xy, (far_m + end.z) / (far_m - near_m));
+        delta = length_m * real3(focal_px.x * direction.x, -focal_px.y * direction.y, direction.z / (far_m - near_m));
+        return delta;
     }
-    real  inverse_length = real(1) / length_m;
-    real3 end            = position * inverse_length + direction;
-    return real3(centre_px + to_px * (end.xy / -end.z), near_m * inverse_length / -end.z);
+    real          distance_m = -position.z;
+    precise real  scale      = real(1) / ((distance_m / length_m - direction.z) * distance_m);
+    precise real2 slope      = direction.xy * distance_m + position.xy * direction.z;
+    delta = scale * real3(focal_px.x * slope.x, -focal_px.y * slope.y, near_m * direction.z);
+    return delta;
+}
+
+// Pixel position and depth of a point in front of the camera.
+real3 vs_to_px(real3 position)
+{
+    real  distance_m = -position.z;
+    real2 to_px      = real2(focal_px.x, -focal_px.y);
+    if (orthographic != 0) return real3(centre_px + to_px * position.xy, (far_m - distance_m) / (far_m - near_m));
+    return real3(centre_px + to_px * position.xy * (real(1) / distance_m), near_m / distance_m);
 }
 
 Segment make_segment(ivec2 pixel, real depth, real3 normal)
 {
-    real2 centre    = real2(pixel) + real(0.5);
-    real2 slope     = px_to_slope(centre);
+    real2 centre     = real2(pixel) + real(0.5);
+    real2 slope      = px_to_slope(centre);
     real  distance_m = depth_to_distance(depth);
-    real3 position  = real3(orthographic == 0 ? slope * distance_m : slope, -distance_m);
-    real3 view      = orthographic == 0 ? normalize(real3(slope, -1)) : real3(0, 0, -1);
-    real3 direction = normalize(view - real(2) * dot(normal, view) * normal);
+    real3 position   = real3(orthographic == 0 ? slope * distance_m : slope, -distance_m);
+    real3 view       = orthographic == 0 ? unit(position) : real3(0, 0, -1);
+    real3 direction  = mirrored(view, normal);
 
     int  side;
     real length_m = clip_length(position, direction, side);
@@ -98,18 +126,22 @@ Segment make_segment(ivec2 pixel, real depth, real3 normal)
     segment.end_status = side == SIDE_MAX_DISTANCE ? TRACE_PAST_MAX_DISTANCE : TRACE_LEFT_SCREEN;
     if (length_m <= ray_offset_m || length_m <= real(0)) return segment;
 
-    real3 end = screen_point(position, direction, length_m);
-    end.xy    = clamp(end.xy, real2(0), real2(size_px));
-    if (side == SIDE_LEFT) end.x = real(0);
-    if (side == SIDE_RIGHT) end.x = real(size_px.x);
-    if (side == SIDE_TOP) end.y = real(0);
-    if (side == SIDE_BOTTOM) end.y = real(size_px.y);
     if (ray_offset_m > real(0))
     {
-        segment.origin = screen_point(position, direction, ray_offset_m);
+        position += ray_offset_m * direction;
+        segment.origin    = vs_to_px(position);
+        segment.origin.xy = clamp(segment.origin.xy, real2(0), real2(size_px));
         segment.length_m -= ray_offset_m;
     }
-    segment.delta = end - segment.origin;
+    // The end lies exactly on the border that limits the ray, and inside the image on the other axis.
+    real2 low = -segment.origin.xy, high = real2(size_px) - segment.origin.xy;
+    real3 delta = screen_delta(position, direction, segment.length_m);
+    delta.xy    = clamp(delta.xy, low, high);
+    if (side == SIDE_LEFT) delta.x = low.x;
+    if (side == SIDE_RIGHT) delta.x = high.x;
+    if (side == SIDE_TOP) delta.y = low.y;
+    if (side == SIDE_BOTTOM) delta.y = high.y;
+    segment.delta = delta;
     return segment;
 }
 
@@ -120,7 +152,7 @@ bool reflects(ivec2 pixel, out real depth, out real3 normal)
     float largest = max(max(abs(stored.x), abs(stored.y)), abs(stored.z));
     // Scaled by its largest component first: squares of very small or large numbers leave the range of float.
     real3 scaled = real3(stored) / real(largest > 0.0 ? largest : 1.0);
-    normal       = normalize(scaled);
+    normal       = unit(scaled);
     bool finite  = largest > 0.0 && !any(isnan(stored)) && !any(isinf(stored));
     return depth > real(0) && finite && imageLoad(material_image, pixel).a > 0.0;
 }

@@ -7,7 +7,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace ssrlab {
 namespace {
@@ -207,6 +211,26 @@ int write_gbuffer(const CommonOptions& common, const PictureOptions& options)
     write_image(options.output, image);
     std::puts(options.output.c_str());
     return report_messages(stage);
+}
+
+int plot_results(const std::string& folder)
+{
+    const std::filesystem::path table = std::filesystem::path(folder) / "results.csv";
+    if (!std::filesystem::exists(table)) throw_spec_error("{}: no such file; ssrlab run writes it", table.string());
+    // Debian's python3 has Debian's matplotlib; another one may come first in PATH.
+    const std::string script = (std::filesystem::path(SSRLAB_SOURCE_DIR) / "experiments" / "plot.py").string();
+    std::fflush(nullptr);
+    const pid_t child = ::fork();
+    if (child < 0) throw_failure("the plot script cannot be started: {}", std::strerror(errno));
+    if (child == 0) {
+        ::execl("/usr/bin/python3", "python3", script.c_str(), folder.c_str(), nullptr);
+        ::_exit(127);
+    }
+    int status = 0;
+    if (::waitpid(child, &status, 0) != child) throw_failure("the plot script was lost: {}", std::strerror(errno));
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        throw_failure("{} failed; it needs /usr/bin/python3 with matplotlib and pandas", script);
+    return 0;
 }
 
 } // namespace ssrlab

@@ -25,5 +25,7 @@ int show_technique(const CommonOptions& common, const std::string& id);
 int render_picture(const CommonOptions& common, const PictureOptions& options);
 int trace_hits(const CommonOptions& common, const PictureOptions& options);
 int write_gbuffer(const CommonOptions& common, const PictureOptions& options);
+/// Plots, derived rows and report of a results folder, by the plot script.
+int plot_results(const std::string& folder);
 
 } // namespace ssrlab

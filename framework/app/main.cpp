@@ -1,8 +1,10 @@
 // The command line: names and help here, the work in commands.cpp and harness/.
 #include "app/commands.h"
 #include "core/error.h"
+#include "harness/run_experiment.h"
 
 #include <CLI/CLI.hpp>
+#include <fmt/ranges.h>
 
 #include <cstdio>
 #include <functional>
@@ -29,7 +31,8 @@ int main(int argc, char** argv)
     CLI::App       app("ssrlab: what does each bit of accuracy of a screen-space reflection tracer cost in time, on your scene?");
     CommonOptions  common;
     PictureOptions picture;
-    std::string    technique;
+    RunOptions     run;
+    std::string    technique, results;
     app.require_subcommand(1);
     app.fallthrough();
     app.set_version_flag("--version", SSRLAB_VERSION);
@@ -51,6 +54,25 @@ int main(int argc, char** argv)
     auto* gbuffer = app.add_subcommand("gbuffer", "What the camera sees (.exr)");
     add_picture_options(*gbuffer, picture, false);
     gbuffer->callback([&] { command = [&] { return write_gbuffer(common, picture); }; });
+
+    auto* sweep = app.add_subcommand("run", "An experiment: every combination of its lists becomes a row of results.csv");
+    sweep->add_option("SPEC", run.specification, "Experiment (.toml; see experiments/README.md)")->required();
+    sweep->add_option("-o,--output", run.folder, "Results folder; default: results/NAME");
+    sweep->add_flag("--resume", run.resume, "Complete the sweep that the folder holds; refused when specification, shaders or device changed");
+    sweep->add_option("--only", run.only, "Just the run of this id (first column of results.csv)");
+    sweep->add_flag("--dry-run", run.dry_run, "List the runs and the estimated time; write nothing");
+    sweep->add_flag("--yes", run.yes, "Allow more than 100,000 runs");
+    sweep->callback([&] {
+        command = [&] {
+            run.techniques   = common.technique_dirs;
+            run.gpu          = {.device = common.device, .validation = common.validation};
+            run.command_line = fmt::format("{}", fmt::join(argv, argv + argc, " "));
+            return run_experiment(run);
+        };
+    });
+    auto* plot = app.add_subcommand("plot", "Plots, derived rows and report of a results folder");
+    plot->add_option("DIR", results, "Results folder")->required();
+    plot->callback([&] { command = [&] { return plot_results(results); }; });
 
     try {
         app.parse(argc, argv);

@@ -45,6 +45,7 @@ Clip clip_ray(const View& view, glm::dvec3 point_vs, glm::dvec3 direction_vs, do
         if (s < clip.length_m) clip = {s, limit};
     };
     limit_by(Limit::near_plane, -point_vs.z - view.near_m, -direction_vs.z);
+    if (!perspective) limit_by(Limit::max_distance, view.far_m + point_vs.z, direction_vs.z);
     limit_by(Limit::left, view.centre_px.x * w0 + p0.x, view.centre_px.x * w1 + p1.x);
     limit_by(Limit::right, rest_px.x * w0 - p0.x, rest_px.x * w1 - p1.x);
     limit_by(Limit::top, view.centre_px.y * w0 + p0.y, view.centre_px.y * w1 + p1.y);
