@@ -8,7 +8,8 @@
 //   sphere_over_mirror  centre (0, 0, -5), radius 1, touching the floor: its mirror image is the sphere about (0, -2, -5).
 //   pole_field          poles of radius 0.02 at x = -6 .. 6 by 0.5, z = -3, -4.5 .. -10.5: each is its own reflection's column.
 //   stairs              step k = 0 .. 7: riser at z = -4 - 0.5 k from y = -1 + 0.25 k to -0.75 + 0.25 k.
-//   corridor            walls x = -2, 2, ceiling y = 2, end wall z = -40, columns every 3 m at x = -1.6, 1.6.
+//   corridor            walls x = -2.07, 2.07, ceiling y = 2.03, end wall z = -40, columns every 3 m at x = -1.6, 1.6. No simple
+//                       ratios: with walls at twice the floor's depth every other ray meets its wall exactly on a pixel border.
 //   void                nothing at all: every pixel is background.
 #include "scene/builtin_scenes.h"
 
@@ -146,6 +147,7 @@ Model stairs()
 
 Model corridor()
 {
+    constexpr double side_m = 2.07, height_m = 3.03;
     Model model = start_scene();
     model.lights.clear();
     for (double z_m : {-3.0, -15.0}) {
@@ -162,15 +164,15 @@ Model corridor()
     const uint32_t ceiling = add_material(model, "ceiling", {0.75F, 0.75F, 0.7F});
     const uint32_t end     = add_material(model, "end wall", {0.8F, 0.2F, 0.15F});
     const uint32_t column  = add_material(model, "column", {0.2F, 0.55F, 0.45F});
-    add_floor(model, 2, 5, -40);
-    add(model, "left wall", wall, make_quad({-2, floor_y_m, 5}, {0, 0, -45}, {0, 3, 0}));
-    add(model, "right wall", wall, make_quad({2, floor_y_m, -40}, {0, 0, 45}, {0, 3, 0}));
-    add(model, "ceiling", ceiling, make_quad({-2, 2, -40}, {4, 0, 0}, {0, 0, 45}));
-    add(model, "end wall", end, make_quad({-2, floor_y_m, -40}, {4, 0, 0}, {0, 3, 0}));
-    add(model, "back wall", end, make_quad({2, floor_y_m, 5}, {-4, 0, 0}, {0, 3, 0}));
+    add_floor(model, side_m, 5, -40);
+    add(model, "left wall", wall, make_quad({-side_m, floor_y_m, 5}, {0, 0, -45}, {0, height_m, 0}));
+    add(model, "right wall", wall, make_quad({side_m, floor_y_m, -40}, {0, 0, 45}, {0, height_m, 0}));
+    add(model, "ceiling", ceiling, make_quad({-side_m, floor_y_m + height_m, -40}, {2 * side_m, 0, 0}, {0, 0, 45}));
+    add(model, "end wall", end, make_quad({-side_m, floor_y_m, -40}, {2 * side_m, 0, 0}, {0, height_m, 0}));
+    add(model, "back wall", end, make_quad({side_m, floor_y_m, 5}, {-2 * side_m, 0, 0}, {0, height_m, 0}));
     Mesh columns;
     for (int k = 0; k < 13; ++k)
-        for (double x_m : {-1.6, 1.6}) append(columns, make_cylinder({x_m, floor_y_m, -2 - 3.0 * k}, 0.15, 3, 32));
+        for (double x_m : {-1.6, 1.6}) append(columns, make_cylinder({x_m, floor_y_m, -2 - 3.0 * k}, 0.15, height_m, 32));
     add(model, "columns", column, std::move(columns));
     return model;
 }
