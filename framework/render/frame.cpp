@@ -15,7 +15,7 @@ template <typename Real> struct ViewBlock {
     glm::ivec2        size_px;
 };
 
-template <typename Real> Buffer upload_view(Gpu& gpu, const View& view)
+template <typename Real> Buffer upload_view_as(Gpu& gpu, const View& view)
 {
     const ViewBlock<Real> block{glm::vec<2, Real>(view.focal_px), glm::vec<2, Real>(view.centre_px), static_cast<Real>(view.near_m),
                                 static_cast<Real>(view.far_m), view.size_px};
@@ -36,6 +36,11 @@ glm::uvec3 groups_of_8(glm::ivec2 size_px)
 }
 
 } // namespace
+
+Buffer upload_view(Gpu& gpu, const View& view, Precision precision)
+{
+    return precision == Precision::float64 ? upload_view_as<double>(gpu, view) : upload_view_as<float>(gpu, view);
+}
 
 RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision)
 {
@@ -63,7 +68,7 @@ FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
 {
     auto buffers      = std::make_shared<FrameBuffers>();
     buffers->gbuffer  = gbuffer;
-    buffers->view     = upload_view<float>(gpu, gbuffer->view);
+    buffers->view     = upload_view(gpu, gbuffer->view, Precision::float32);
     buffers->rays     = make_ray_buffers(gpu, count_reflecting(gpu, *gbuffer), Precision::float32);
     buffers->shaded   = make_image(gpu, {.format  = vk::Format::eR16G16B16A16Sfloat,
                                          .size_px = gbuffer->view.size_px,
@@ -77,10 +82,7 @@ FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
 PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const Technique& technique, const ParameterValues& values,
                                const FrameSettings& settings)
 {
-    const double bound = iteration_bound(technique, values);
-    if (bound > max_iterations)
-        throw_spec_error("technique '{}' may need {:.0f} iterations a ray; at most {:.0f} are allowed (drivers cut longer loops silently)",
-                         technique.id, bound, max_iterations);
+    require_bounded(technique, values);
     auto frame        = std::make_shared<PreparedFrame>();
     frame->buffers    = buffers;
     frame->technique  = technique;
@@ -122,7 +124,7 @@ TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision)
     const GBuffer&    gbuffer = *frame.buffers->gbuffer;
     const RayBuffers  rays    = make_ray_buffers(gpu, frame.buffers->rays.capacity, precision);
     const Buffer      work    = make_buffer(gpu, std::max<uint64_t>(rays.capacity, 1) * 12);
-    const Buffer      view    = precision == Precision::float64 ? upload_view<double>(gpu, gbuffer.view) : upload_view<float>(gpu, gbuffer.view);
+    const Buffer      view    = upload_view(gpu, gbuffer.view, precision);
     const TracePasses passes  = make_trace_passes(gpu, frame, rays, view, &work);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         record_rays(commands, passes, rays, gbuffer.view.size_px);

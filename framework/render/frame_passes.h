@@ -11,6 +11,8 @@ struct RayBuffers {
     size_t    capacity  = 0;
     Buffer    count, launch, origins, deltas, lengths, pixels, hit_pixels, hit_ts;
 };
+/// The uniform block of shaders/view.glsl.
+Buffer     upload_view(Gpu& gpu, const View& view, Precision precision);
 RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision);
 
 /// All levels >= 1 of the depth pyramid in one atlas; level L begins at x = width - (width >> (L - 1)).

@@ -143,18 +143,24 @@ double rerender_gbuffer(Gpu& gpu, GBuffer& gbuffer)
     return read_intervals_ms(gpu, gbuffer.timestamps)[0];
 }
 
+std::vector<float> usable_depth(std::span<const float> depth)
+{
+    std::vector<float> clean(depth.begin(), depth.end());
+    for (float& d : clean)
+        if (!(d > 0 && d <= 1)) d = static_cast<float>(BACKGROUND_DEPTH);
+    return clean;
+}
+
 GBufferPtr upload_gbuffer(Gpu& gpu, const GBufferImage& image)
 {
     GBufferPtr   gbuffer = make_gbuffer(gpu, image.view);
     const size_t count   = image.depth.size();
     if (count != static_cast<size_t>(image.view.size_px.x) * static_cast<size_t>(image.view.size_px.y))
         throw std::logic_error("upload_gbuffer: depth does not match the view's size");
-    std::vector<float>     depth(count);
-    std::vector<glm::vec4> normal(count);
+    const std::vector<float> depth = usable_depth(image.depth);
+    std::vector<glm::vec4>   normal(count);
     std::vector<HalfTexel> material(count), radiance(count), highlight(count);
     for (size_t i = 0; i < count; ++i) {
-        const bool usable = image.depth[i] > 0 && image.depth[i] <= 1;
-        depth[i]          = usable ? image.depth[i] : static_cast<float>(BACKGROUND_DEPTH);
         normal[i]         = {image.normal_vs[i], image.roughness[i]};
         material[i]       = to_half({image.base_colour[i], image.metallic[i]});
         radiance[i]       = to_half({image.radiance[i], 1});

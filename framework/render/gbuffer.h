@@ -23,4 +23,7 @@ struct GBuffer {
     Timestamps  timestamps;
 };
 
+/// Depth as tracers read it: what shaders/sanitise_depth.comp makes of a depth buffer.
+std::vector<float> usable_depth(std::span<const float> depth);
+
 } // namespace ssrlab

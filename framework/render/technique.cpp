@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::vector<std::string> manifest_keys  = {"name",  "summary",    "cite",      "inputs",
-                                                 "exact", "bounded_by", "parameters"};
+                                                 "exact", "limits",     "bounded_by", "parameters"};
 const std::vector<std::string> parameter_keys = {"default", "min", "max", "choices", "doc"};
 
 const toml::node& required(const TomlFile& file, const toml::table& table, const std::string& key,
@@ -136,6 +136,17 @@ void check_bounds(const TomlFile& file, const toml::node& node, const Technique&
     }
 }
 
+void read_limits(const TomlFile& file, const toml::node& node, Technique& technique)
+{
+    technique.limits = toml_texts(file, node, "limits");
+    std::vector<std::string> known;
+    std::ranges::transform(known_limits(), std::back_inserter(known), &Limit::name);
+    for (const std::string& limit : technique.limits)
+        if (std::ranges::count(known, limit) == 0) throw_spec_error("{}: {}", toml_place(file, node), unknown_name("limit", limit, known));
+    if (technique.exact && !technique.limits.empty())
+        throw_spec_error("{}: 'limits' contradicts 'exact': an exact technique has none", toml_place(file, node));
+}
+
 void append_from(std::vector<Technique>& techniques, const fs::path& dir)
 {
     if (!fs::is_directory(dir)) throw_spec_error("{}: no such directory of techniques", short_path(dir));
@@ -162,23 +173,15 @@ void append_from(std::vector<Technique>& techniques, const fs::path& dir)
     }
 }
 
-std::string expectation(const Parameter& parameter)
-{
-    switch (parameter.type) {
-    case ParameterType::boolean: return "true or false";
-    case ParameterType::choice: return fmt::format("one of {}", fmt::join(parameter.choices, ", "));
-    case ParameterType::integer: return fmt::format("an integer in [{}, {}]", parameter.min, parameter.max);
-    case ParameterType::real: break;
-    }
-    return fmt::format("a number in [{}, {}]", parameter.min, parameter.max);
-}
-
-[[noreturn]] void refuse_value(const Parameter& parameter, const std::string& text, const std::string& place)
-{
-    throw_spec_error("{}: '{}' must be {}, got {}", place, parameter.name, expectation(parameter), text);
-}
-
 } // namespace
+
+std::span<const Limit> known_limits()
+{
+    static const std::vector<Limit> limits = {
+        {"point_sampled", "sees the depth buffer only at its samples: misses what lies between two of them, and may report a later surface instead"},
+        {"stops_behind_objects", "gives up where it has passed behind an object: misses everything farther along"}};
+    return limits;
+}
 
 Technique load_technique(const fs::path& folder)
 {
@@ -196,6 +199,7 @@ Technique load_technique(const fs::path& folder)
     if (const toml::node* node = file.root.get("cite")) technique.cite = toml_texts(file, *node, "cite");
     if (const toml::node* node = file.root.get("inputs")) technique.inputs = toml_texts(file, *node, "inputs");
     if (const toml::node* node = file.root.get("exact")) technique.exact = toml_bool(file, *node, "exact");
+    if (const toml::node* node = file.root.get("limits")) read_limits(file, *node, technique);
     if (const toml::node* node = file.root.get("parameters")) {
         technique.parameters = read_parameters(file, toml_table(file, *node, "parameters"));
     }
@@ -231,65 +235,6 @@ const Technique& find_technique(std::span<const Technique> techniques, const std
     std::vector<std::string> known;
     std::ranges::transform(techniques, std::back_inserter(known), &Technique::id);
     throw SpecError(unknown_name("technique", id, known));
-}
-
-ParameterValues default_values(const Technique& technique)
-{
-    ParameterValues values;
-    for (const Parameter& parameter : technique.parameters) values[parameter.name] = parameter.default_value;
-    return values;
-}
-
-double parse_parameter(const Parameter& parameter, const std::string& text, const std::string& place)
-{
-    double value = 0;
-    if (parameter.type == ParameterType::choice) {
-        const auto choice = std::ranges::find(parameter.choices, text);
-        if (choice == parameter.choices.end()) refuse_value(parameter, "'" + text + "'", place);
-        return static_cast<double>(choice - parameter.choices.begin());
-    }
-    if (parameter.type == ParameterType::boolean) {
-        if (text != "true" && text != "false") refuse_value(parameter, "'" + text + "'", place);
-        return text == "true" ? 1 : 0;
-    }
-    const char* end    = text.data() + text.size();
-    const auto  parsed = std::from_chars(text.data(), end, value);
-    if (parsed.ec != std::errc() || parsed.ptr != end) refuse_value(parameter, "'" + text + "'", place);
-    check_parameter(parameter, value, place);
-    return value;
-}
-
-void check_parameter(const Parameter& parameter, double value, const std::string& place)
-{
-    const bool whole = parameter.type == ParameterType::real || value == std::floor(value);
-    // Written so that NaN fails.
-    if (!(value >= parameter.min && value <= parameter.max && whole)) {
-        refuse_value(parameter, fmt::format("{}", value), place);
-    }
-}
-
-std::string format_parameter(const Parameter& parameter, double value)
-{
-    switch (parameter.type) {
-    case ParameterType::boolean: return value != 0 ? "true" : "false";
-    case ParameterType::choice: return parameter.choices.at(static_cast<size_t>(value));
-    default: return fmt::format("{}", value);
-    }
-}
-
-const Parameter& find_parameter(const Technique& technique, const std::string& name, const std::string& place)
-{
-    const auto found = std::ranges::find(technique.parameters, name, &Parameter::name);
-    if (found != technique.parameters.end()) return *found;
-    std::vector<std::string> known;
-    std::ranges::transform(technique.parameters, std::back_inserter(known), &Parameter::name);
-    throw_spec_error("{}: {}", place, unknown_name("parameter of technique " + technique.id, name, known));
-}
-
-double iteration_bound(const Technique& technique, const ParameterValues& values)
-{
-    return std::accumulate(technique.bounded_by.begin(), technique.bounded_by.end(), 0.0,
-                           [&](double sum, const std::string& name) { return sum + values.at(name); });
 }
 
 } // namespace ssrlab

@@ -32,10 +32,17 @@ struct Technique {
     std::vector<std::string> cite;
     std::vector<std::string> inputs;            // derived inputs, e.g. "depth_pyramid"
     bool                     exact = false;     // claims the pixel walk's answer on every ray
+    std::vector<std::string> limits;            // names of known_limits(): what it does not claim
     std::vector<std::string> bounded_by;        // parameters whose sum bounds the loop iterations of one ray
     std::vector<Parameter>   parameters;
     std::filesystem::path    folder;
 };
+
+/// What a technique that is not exact may declare that it gets wrong. The check holds it to everything else.
+struct Limit {
+    std::string name, meaning;
+};
+std::span<const Limit> known_limits();
 
 /// Reads folder/technique.toml; throws SpecError with file and line.
 Technique load_technique(const std::filesystem::path& folder);
@@ -58,5 +65,7 @@ const Parameter& find_parameter(const Technique& technique, const std::string& n
 /// Loop iterations of one ray that a launch with these values may need; a driver may cut loops at 65,535.
 double iteration_bound(const Technique& technique, const ParameterValues& values);
 inline constexpr double max_iterations = 60000;
+/// Throws SpecError when the values allow more than max_iterations.
+void require_bounded(const Technique& technique, const ParameterValues& values);
 
 } // namespace ssrlab

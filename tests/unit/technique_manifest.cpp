@@ -50,6 +50,16 @@ std::string spec_error(const Call& call)
 
 const std::string head = "name = \"Walk\"\nsummary = \"Walks.\"\n";
 
+TEST(TechniqueManifest, LimitsAreKnownNamesAndBelongToInexactTechniques)
+{
+    const TechniqueDir dir;
+    EXPECT_THAT(load_technique(dir.add("march", head + "limits = [\"point_sampled\"]\n")).limits, ElementsAre("point_sampled"));
+    EXPECT_THAT(spec_error([&] { load_technique(dir.add("vague", head + "limits = [\"point_sampel\"]\n")); }),
+                HasSubstr("vague/technique.toml:3: unknown limit 'point_sampel': did you mean 'point_sampled'?"));
+    EXPECT_THAT(spec_error([&] { load_technique(dir.add("both", head + "exact = true\nlimits = [\"point_sampled\"]\n")); }),
+                HasSubstr("both/technique.toml:4: 'limits' contradicts 'exact'"));
+}
+
 TEST(TechniqueManifest, ReadsEveryField)
 {
     const TechniqueDir dir;
@@ -69,6 +79,7 @@ binary_steps = { default = 0, min = 0, max = 32, doc = "Bisections." }
     EXPECT_EQ(technique.id, "walk");
     EXPECT_THAT(technique.cite, ElementsAre("A 2014", "B 2020"));
     EXPECT_TRUE(technique.exact);
+    EXPECT_THAT(technique.limits, ElementsAre());
     ASSERT_EQ(technique.parameters.size(), 5U);
     EXPECT_EQ(technique.parameters[0].name, "steps"); // as declared, not sorted
     EXPECT_EQ(technique.parameters[0].type, ParameterType::integer);

@@ -1,0 +1,138 @@
+#include "render/ray_list.h"
+
+#include "core/error.h"
+#include "render/frame_passes.h"
+#include "shared.h"
+
+#include <algorithm>
+
+namespace ssrlab {
+
+struct RayTracer {
+    PreparedFrame frame;
+    RayBuffers    rays;
+    Buffer        view, work;
+    TracePasses   passes;
+};
+
+namespace {
+
+template <typename Real> void upload_rays(Gpu& gpu, RayBuffers& buffers, std::span<const RayInput> rays)
+{
+    std::vector<glm::vec<3, Real>> origins, deltas;
+    std::vector<Real>              lengths;
+    std::vector<uint32_t>          pixels;
+    for (const RayInput& ray : rays) {
+        origins.emplace_back(ray.origin_px_depth);
+        deltas.emplace_back(ray.delta_px_depth);
+        lengths.push_back(static_cast<Real>(ray.length_m));
+        pixels.push_back(static_cast<uint32_t>(ray.pixel.x) | static_cast<uint32_t>(ray.pixel.y) << PIXEL_BITS |
+                         static_cast<uint32_t>(ray.end_status) << (2 * PIXEL_BITS));
+    }
+    const uint32_t count = static_cast<uint32_t>(rays.size());
+    upload(gpu, buffers.count, &count, sizeof(count));
+    upload(gpu, buffers.origins, origins.data(), origins.size() * sizeof(origins[0]));
+    upload(gpu, buffers.deltas, deltas.data(), deltas.size() * sizeof(deltas[0]));
+    upload(gpu, buffers.lengths, lengths.data(), lengths.size() * sizeof(Real));
+    upload(gpu, buffers.pixels, pixels.data(), pixels.size() * sizeof(uint32_t));
+}
+
+glm::ivec2 unpack_pixel(uint32_t packed) { return {packed & (MAX_IMAGE_PX - 1), (packed >> PIXEL_BITS) & (MAX_IMAGE_PX - 1)}; }
+
+template <typename Real> std::vector<RayInput> read_rays(Gpu& gpu, const RayBuffers& buffers)
+{
+    const size_t          count   = download_as<uint32_t>(gpu, buffers.count, 1)[0];
+    const auto            origins = download_as<glm::vec<3, Real>>(gpu, buffers.origins, count);
+    const auto            deltas  = download_as<glm::vec<3, Real>>(gpu, buffers.deltas, count);
+    const auto            lengths = download_as<Real>(gpu, buffers.lengths, count);
+    const auto            pixels  = download_as<uint32_t>(gpu, buffers.pixels, count);
+    std::vector<RayInput> rays;
+    for (size_t i = 0; i < count; ++i)
+        rays.push_back({glm::dvec3(origins[i]), glm::dvec3(deltas[i]), static_cast<double>(lengths[i]),
+                        static_cast<TraceStatus>(pixels[i] >> (2 * PIXEL_BITS)), unpack_pixel(pixels[i])});
+    // The shader appends rays in the order in which its groups happen to run.
+    std::ranges::sort(rays, [](const RayInput& a, const RayInput& b) { return std::pair(a.pixel.y, a.pixel.x) < std::pair(b.pixel.y, b.pixel.x); });
+    return rays;
+}
+
+template <typename Real> std::vector<RayOutcome> read_outcomes(Gpu& gpu, const RayTracer& tracer, size_t count)
+{
+    const auto              hits  = download_as<uint32_t>(gpu, tracer.rays.hit_pixels, count);
+    const auto              ts    = download_as<Real>(gpu, tracer.rays.hit_ts, count);
+    const auto              works = download_as<glm::uvec3>(gpu, tracer.work, count);
+    std::vector<RayOutcome> outcomes(count);
+    for (size_t i = 0; i < count; ++i)
+        outcomes[i] = {static_cast<TraceStatus>(hits[i] >> (2 * PIXEL_BITS)), unpack_pixel(hits[i]), static_cast<double>(ts[i]), works[i].x,
+                       works[i].y, works[i].z};
+    return outcomes;
+}
+
+bool in_double(const RayTracer& tracer) { return tracer.rays.precision == Precision::float64; }
+
+} // namespace
+
+RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Technique& technique, const ParameterValues& values,
+                             const TraceSettings& settings, size_t capacity, Precision precision)
+{
+    if (precision == Precision::float64 && !gpu.info.float64) throw_failure("the device '{}' has no double precision", gpu.info.name);
+    require_bounded(technique, values);
+    auto tracer             = std::make_shared<RayTracer>();
+    auto buffers            = std::make_shared<FrameBuffers>();
+    buffers->gbuffer        = gbuffer;
+    buffers->pyramid        = make_pyramid_images(gpu, gbuffer->view.size_px);
+    PreparedFrame& frame    = tracer->frame;
+    frame.buffers           = buffers;
+    frame.technique         = technique;
+    frame.values            = values;
+    frame.settings.trace    = settings;
+    frame.pyramid           = std::ranges::count(technique.inputs, "depth_pyramid") > 0 ? make_pyramid_passes(gpu, frame) : PyramidPasses{};
+    tracer->rays            = make_ray_buffers(gpu, capacity, precision);
+    tracer->work            = make_buffer(gpu, std::max<uint64_t>(capacity, 1) * sizeof(glm::uvec3));
+    tracer->view            = upload_view(gpu, gbuffer->view, precision);
+    tracer->passes          = make_trace_passes(gpu, frame, tracer->rays, tracer->view, &tracer->work);
+    return tracer;
+}
+
+std::vector<RayInput> set_up_rays(Gpu& gpu, RayTracer& tracer)
+{
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        record_rays(commands, tracer.passes, tracer.rays, tracer.frame.buffers->gbuffer->view.size_px);
+    });
+    return in_double(tracer) ? read_rays<double>(gpu, tracer.rays) : read_rays<float>(gpu, tracer.rays);
+}
+
+std::vector<RayOutcome> trace_rays(Gpu& gpu, RayTracer& tracer, std::span<const RayInput> rays)
+{
+    if (rays.size() > tracer.rays.capacity) throw std::logic_error("trace_rays: more rays than the tracer has room for");
+    if (rays.empty()) return {};
+    if (in_double(tracer))
+        upload_rays<double>(gpu, tracer.rays, rays);
+    else
+        upload_rays<float>(gpu, tracer.rays, rays);
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        barrier(commands);
+        dispatch(commands, tracer.passes.launch, {1, 1, 1});
+        barrier(commands);
+        record_pyramid(commands, tracer.frame.pyramid);
+        dispatch_indirect(commands, tracer.passes.trace, tracer.rays.launch);
+        barrier(commands);
+    });
+    return in_double(tracer) ? read_outcomes<double>(gpu, tracer, rays.size()) : read_outcomes<float>(gpu, tracer, rays.size());
+}
+
+GBufferPtr upload_depth(Gpu& gpu, const View& view, std::span<const float> depth)
+{
+    auto gbuffer  = std::make_shared<GBuffer>();
+    gbuffer->view = view;
+    const auto image = [&](vk::Format format, glm::ivec2 size_px) {
+        return make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
+    };
+    gbuffer->depth    = image(vk::Format::eR32Sfloat, view.size_px);
+    gbuffer->normal   = image(vk::Format::eR32G32B32A32Sfloat, {1, 1});
+    gbuffer->material = image(vk::Format::eR16G16B16A16Sfloat, {1, 1});
+    const std::vector<float> clean = usable_depth(depth);
+    upload(gpu, gbuffer->depth, clean.data(), clean.size() * sizeof(float));
+    return gbuffer;
+}
+
+} // namespace ssrlab
