@@ -27,5 +27,7 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options);
 int write_gbuffer(const CommonOptions& common, const PictureOptions& options);
 /// Plots, derived rows and report of a results folder, by the plot script.
 int plot_results(const std::string& folder);
+/// results/README.md: every column of results.csv.
+int print_measures(const CommonOptions& common);
 
 } // namespace ssrlab

@@ -73,6 +73,7 @@ int main(int argc, char** argv)
     auto* plot = app.add_subcommand("plot", "Plots, derived rows and report of a results folder");
     plot->add_option("DIR", results, "Results folder")->required();
     plot->callback([&] { command = [&] { return plot_results(results); }; });
+    app.add_subcommand("measures", "Every column of results.csv and what it means (results/README.md)")->callback([&] { command = [&] { return print_measures(common); }; });
 
     try {
         app.parse(argc, argv);

@@ -13,7 +13,7 @@ namespace {
 const std::vector<Column> identity = {
     {"run_id", "hash of everything that decides the run's outcome"},
     {"experiment", "name of the specification"},
-    {"scene", ""},
+    {"scene", "file, recipe or builtin:NAME"},
     {"view", "camera"},
     {"width", "pixels"},
     {"height", "pixels"},

@@ -1,0 +1,54 @@
+#include "app/commands.h"
+
+#include "compare/measures.h"
+#include "harness/columns.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace ssrlab {
+namespace {
+
+constexpr const char* introduction = R"(# Results
+
+Written by `ssrlab measures`; do not edit. `ssrlab run` makes one folder per experiment here (git ignores them), and
+`reference/` holds small committed runs to compare with.
+
+| in a results folder | |
+|---|---|
+| `results.csv` | one row per run, in the columns below |
+| `environment.json` | device, driver, commit, command line, seed, the specification, and hashes of everything that decides a result |
+| `pictures/` | what each run reflects, where it is right and wrong, and its work per ray |
+| `report.html`, `report.md`, `summary.csv`, `plots/` | made from the above by `ssrlab plot` |
+
+## Columns
+A field without a value is empty, never NaN. Parameters of techniques (marked) are empty for techniques that lack them.
+)";
+
+std::string code(std::string_view text) { return fmt::format("`{}`", text); }
+
+} // namespace
+
+int print_measures(const CommonOptions& common)
+{
+    const auto techniques = list_techniques(common.technique_dirs);
+    Experiment everything;
+    for (const Technique& technique : techniques) everything.techniques.push_back({technique.id, {}, {}, {}});
+
+    std::vector<std::string> parameters;
+    for (const Technique& technique : techniques)
+        for (const Parameter& parameter : technique.parameters) parameters.push_back(parameter.name);
+
+    std::string text = introduction;
+    text += "\n| column | meaning |\n|---|---|\n";
+    for (const Column& column : result_columns(everything, techniques)) {
+        if (std::ranges::find(measures(), column.name, &Measure::name) != measures().end()) continue;
+        const bool is_parameter = std::ranges::find(parameters, column.name) != parameters.end();
+        text += fmt::format("| {} | {}{} |\n", code(column.name), is_parameter ? "parameter: " : "", column.meaning);
+    }
+    text += "\n## Measures\nAlso columns. A share is between 0 and 1.\n\n" + measures_markdown();
+    std::fputs(text.c_str(), stdout);
+    return 0;
+}
+
+} // namespace ssrlab
