@@ -1,0 +1,101 @@
+"""Runs the built program; a test that fails says how to repeat its last command."""
+import csv
+import os
+import shlex
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+PROGRAM = os.environ.get("SSRLAB", os.path.join(SOURCE, "build", "bin", "ssrlab"))
+
+SWEEP = """
+scenes = ["builtin:stairs", "builtin:sphere_over_mirror", "builtin:corridor"]
+sizes  = ["64x36"]
+[trace]
+max_distance_m = 9
+[techniques.linear]
+steps = [8, 16, 32, 64]
+[techniques.dda]
+[measure]
+min_repeats = 2
+max_repeats = 4
+budget_s    = 0.2
+"""
+SWEEP_ROWS = 15
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp(prefix="ssrlab_cli_")
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.environment = dict(os.environ, SSRLAB_CACHE=self.path("cache"))
+        self.environment.pop("SSRLAB_TECHNIQUES", None)
+        self.last_command = ""
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, text):
+        os.makedirs(os.path.dirname(self.path(name)), exist_ok=True)
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+        return self.path(name)
+
+    def start(self, *arguments, limits=None, **environment):
+        """A running ssrlab."""
+        self.last_command = " ".join([f"{k}={shlex.quote(v)}" for k, v in environment.items()] +
+                                     [shlex.quote(a) for a in (PROGRAM,) + arguments])
+        return subprocess.Popen([PROGRAM, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                env=dict(self.environment, **environment), cwd=self.folder, preexec_fn=limits)
+
+    def ssrlab(self, *arguments, code=0, says=(), limits=None, **environment):
+        """Runs to the end; checks the exit code and that stdout and stderr hold every text of `says`."""
+        process = self.start(*arguments, limits=limits, **environment)
+        out, err = process.communicate(timeout=240)
+        story = f"\nrepeat: {self.last_command}\nstdout: {out}\nstderr: {err}"
+        self.assertEqual(process.returncode, code, "exit code" + story)
+        for text in says:
+            self.assertIn(text, out + err, story)
+        return out + err
+
+    def refused(self, *arguments, code, says, **more):
+        """An error is one line on stderr that begins with the program's name, and it leaves no output behind."""
+        text = self.ssrlab(*arguments, code=code, says=says, **more)
+        errors = [line for line in text.splitlines() if line.startswith("ssrlab: ")]
+        self.assertEqual(len(errors), 1, f"one line of error\nrepeat: {self.last_command}\n{text}")
+        return text
+
+    def rows(self, folder="out"):
+        with open(os.path.join(self.path(folder), "results.csv"), encoding="utf-8", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def whole_rows(self, folder="out"):
+        """Rows in the file so far, 0 before there is one."""
+        path = os.path.join(self.path(folder), "results.csv")
+        if not os.path.exists(path):
+            return 0
+        with open(path, encoding="utf-8") as file:
+            return max(0, file.read().count("\n") - 1)
+
+    def stop_in_the_middle(self, process, which):
+        """Sends the signal once the first row is written; returns the exit code."""
+        until = time.monotonic() + 120
+        while self.whole_rows() == 0 and process.poll() is None and time.monotonic() < until:
+            time.sleep(0.01)
+        self.assertIsNone(process.poll(), f"ended before it was stopped\nrepeat: {self.last_command}")
+        process.send_signal(which)
+        process.communicate(timeout=120)
+        return process.returncode
+
+    def assert_complete(self, rows, count):
+        self.assertEqual([row["outcome"] for row in rows], ["ok"] * count, f"repeat: {self.last_command}\n{rows}")
+        self.assertEqual(len({row["run_id"] for row in rows}), count)
+
+
+def main():
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    unittest.main()

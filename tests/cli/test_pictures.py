@@ -1,0 +1,94 @@
+"""list, show, render, trace, gbuffer, measures."""
+import os
+
+import numpy
+import OpenImageIO as oiio
+from support import PROGRAM, SOURCE, Case, main
+
+SCENE = "builtin:sphere_over_mirror"
+STATUS_NAMES = "0=not_traced 1=hit 2=left_screen 3=past_max_distance 4=out_of_steps 5=facing_away"
+
+
+class Test(Case):
+    def read(self, name):
+        """Channels by name, metadata."""
+        image = oiio.ImageBuf(self.path(name))
+        self.assertFalse(image.has_error, image.geterror())
+        spec = image.spec()
+        pixels = image.get_pixels(oiio.FLOAT)
+        return {channel: pixels[:, :, i] for i, channel in enumerate(spec.channelnames)}, spec
+
+    def test_list_names_techniques_scenes_devices(self):
+        self.ssrlab("list", says=["linear_binary", "hiz", "builtin:stairs", "thin_yard", "Devices"])
+
+    def test_show_gives_ranges_and_sources(self):
+        self.ssrlab("show", "hiz", says=["max_steps", "60000", "minmax | nearest", "Uludag", "exact"])
+
+    def test_help_of_everything(self):
+        self.ssrlab("--help", says=["render", "trace", "gbuffer", "run", "plot", "--device"])
+        for command in ("list", "show", "render", "trace", "gbuffer", "run", "plot", "measures"):
+            self.ssrlab(command, "--help", says=["Usage"])
+
+    def test_usage_errors_are_2(self):
+        self.ssrlab(code=2)
+        self.ssrlab("dance", code=2)
+        self.ssrlab("render", SCENE, code=2)
+        self.ssrlab("list", "--unknown", code=2)
+
+    def test_render_png_shows_something(self):
+        self.ssrlab("render", SCENE, "-t", "hiz", "--size", "161x91", "-o", self.path("a.png"))
+        channels, spec = self.read("a.png")
+        self.assertEqual((spec.width, spec.height), (161, 91))
+        self.assertGreater(channels["R"].std(), 0.02, "the picture is flat")
+
+    def test_render_exr_is_linear_and_finite(self):
+        self.ssrlab("render", SCENE, "-t", "dda", "--size", "64x36", "-o", self.path("a.exr"))
+        channels, _ = self.read("a.exr")
+        for name in ("R", "G", "B"):
+            self.assertTrue(numpy.isfinite(channels[name]).all())
+
+    def test_reflections_change_the_picture(self):
+        for exponent in ("0", "64"):
+            self.ssrlab("render", "builtin:mirror_floor", "-t", "hiz", "-p", f"metallic_exponent={exponent}", "-p",
+                        "max_distance_m=100", "--size", "161x91", "-o", self.path(f"{exponent}.exr"))
+        strong, weak = self.read("0.exr")[0], self.read("64.exr")[0]
+        self.assertFalse(all(numpy.array_equal(strong[name], weak[name]) for name in "RGB"))
+
+    def test_trace_has_every_channel_and_the_legend(self):
+        self.ssrlab("trace", SCENE, "-t", "hiz", "-p", "max_distance_m=9", "--size", "161x91", "-o", self.path("h.exr"))
+        channels, spec = self.read("h.exr")
+        self.assertEqual(set(channels), {"hit.x", "hit.y", "hit.t", "hit.z", "status", "steps", "depth_fetches", "pyramid_fetches"})
+        self.assertEqual(spec.getattribute("ssrlab:status_names"), STATUS_NAMES)
+        hit = channels["status"] == 1
+        self.assertGreater(hit.sum(), 0)
+        self.assertTrue((channels["hit.t"][hit] <= 1).all() and (channels["hit.t"][hit] >= 0).all())
+        self.assertTrue((channels["hit.x"][hit] <= 161).all() and (channels["hit.y"][hit] <= 91).all())
+        self.assertTrue((channels["hit.x"][~hit] == 0).all())
+        self.assertGreater(channels["pyramid_fetches"].sum(), 0)
+
+    def test_too_few_steps_say_so(self):
+        self.ssrlab("trace", SCENE, "-t", "dda", "-p", "max_steps=2", "--size", "64x36", "-o", self.path("h.exr"))
+        self.assertGreater((self.read("h.exr")[0]["status"] == 4).sum(), 0)
+
+    def test_gbuffer_has_every_channel_and_the_camera(self):
+        self.ssrlab("gbuffer", SCENE, "--size", "64x36", "-o", self.path("g.exr"))
+        channels, spec = self.read("g.exr")
+        for name in ("depth", "normal_vs.x", "normal_vs.y", "normal_vs.z", "roughness", "metallic", "base_colour.R", "R", "object_id"):
+            self.assertIn(name, channels)
+        self.assertEqual(len(spec.getattribute("ssrlab:world_to_view").split()), 16)
+        self.assertEqual(len(spec.getattribute("ssrlab:view_to_clip").split()), 16)
+        seen = channels["depth"] > 0
+        length = sum(channels[f"normal_vs.{axis}"] ** 2 for axis in "xyz")
+        self.assertTrue(numpy.allclose(length[seen], 1, atol=1e-4))
+
+    def test_the_validation_layer_is_silent(self):
+        self.ssrlab("--validation", "render", SCENE, "-t", "hiz", "--size", "64x36", "-o", self.path("a.png"))
+
+    def test_results_readme_is_current(self):
+        with open(os.path.join(SOURCE, "results", "README.md"), encoding="utf-8") as file:
+            written = file.read()
+        self.assertEqual(self.ssrlab("measures"), written, f"regenerate: {PROGRAM} measures > results/README.md")
+
+
+if __name__ == "__main__":
+    main()

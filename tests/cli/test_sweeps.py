@@ -1,0 +1,108 @@
+"""run and plot: rows, resuming, interruptions, a full disk."""
+import os
+import resource
+import signal
+import time
+
+from support import SOURCE, SWEEP, SWEEP_ROWS, Case, main
+
+SMOKE = os.path.join(SOURCE, "experiments", "smoke.toml")
+
+
+class Test(Case):
+    def test_smoke_and_its_plots(self):
+        self.ssrlab("run", SMOKE, "-o", "out")
+        rows = self.rows()
+        self.assert_complete(rows, 12)
+        for row in rows:
+            self.assertGreater(float(row["trace_ms_median"]), 0)
+            self.assertLessEqual(float(row["trace_ms_ci_low"]), float(row["trace_ms_ci_high"]))
+            self.assertNotIn("nan", [value.lower() for value in row.values()])
+            self.assertTrue(os.path.exists(self.path("out/" + row["picture"])))
+            if row["technique"] in ("dda", "hiz"):
+                self.assertEqual(float(row["screen_same_pixel"]), 1)
+        self.ssrlab("plot", "out")
+        plots = os.listdir(self.path("out/plots"))
+        self.assertTrue(any(name.endswith(".png") for name in plots) and any(name.endswith(".svg") for name in plots))
+        for name in ("report.html", "report.md", "summary.csv", "environment.json"):
+            self.assertGreater(os.path.getsize(self.path("out/" + name)), 0)
+
+    def test_dry_run_lists_and_writes_nothing(self):
+        self.ssrlab("run", SMOKE, "--dry-run", "-o", "out", says=["12 runs"])
+        self.assertFalse(os.path.exists(self.path("out")))
+
+    def test_only_repeats_one_run(self):
+        spec = self.write("s.toml", SWEEP)
+        listing = self.ssrlab("run", spec, "--dry-run").splitlines()
+        run_id = listing[3].split()[0]
+        self.ssrlab("run", spec, "-o", "out", "--only", run_id)
+        self.assertEqual([row["run_id"] for row in self.rows()], [run_id])
+        self.refused("run", spec, "-o", "other", "--only", "nothing", code=2, says=["nothing", "--dry-run"])
+
+    def test_results_are_not_overwritten(self):
+        spec = self.write("s.toml", SWEEP)
+        self.ssrlab("run", spec, "-o", "out")
+        with open(self.path("out/results.csv"), "rb") as file:
+            before = file.read()
+        self.refused("run", spec, "-o", "out", code=1, says=["already there", "--resume"])
+        self.ssrlab("run", spec, "-o", "out", "--resume", says=["0 written now"])
+        with open(self.path("out/results.csv"), "rb") as file:
+            self.assertEqual(file.read(), before)
+
+    def test_killed_and_resumed(self):
+        spec = self.write("s.toml", SWEEP)
+        self.assertEqual(self.stop_in_the_middle(self.start("run", spec, "-o", "out"), signal.SIGKILL), -signal.SIGKILL)
+        self.assertLess(self.whole_rows(), SWEEP_ROWS)
+        self.ssrlab("run", spec, "-o", "out", "--resume")
+        self.assert_complete(self.rows(), SWEEP_ROWS)
+
+    def test_interrupted_and_resumed(self):
+        spec = self.write("s.toml", SWEEP)
+        self.assertEqual(self.stop_in_the_middle(self.start("run", spec, "-o", "out"), signal.SIGINT), 130)
+        self.assertLess(self.whole_rows(), SWEEP_ROWS)
+        self.ssrlab("run", spec, "-o", "out", "--resume")
+        self.assert_complete(self.rows(), SWEEP_ROWS)
+
+    def test_torn_last_row_is_repaired(self):
+        spec = self.write("s.toml", SWEEP)
+        self.ssrlab("run", spec, "-o", "out")
+        os.truncate(self.path("out/results.csv"), os.path.getsize(self.path("out/results.csv")) - 40)
+        self.ssrlab("run", spec, "-o", "out", "--resume", says=["1 written now"])
+        self.assert_complete(self.rows(), SWEEP_ROWS)
+
+    def test_resume_refuses_another_specification(self):
+        spec = self.write("s.toml", SWEEP)
+        self.ssrlab("run", spec, "-o", "out")
+        self.write("s.toml", SWEEP.replace("64]", "128]"))
+        self.refused("run", spec, "-o", "out", "--resume", code=2, says=["cannot be resumed", "specification"])
+
+    def test_second_writer_is_refused(self):
+        spec = self.write("s.toml", SWEEP)
+        first = self.start("run", spec, "-o", "out")
+        until = time.monotonic() + 60
+        while self.whole_rows() == 0 and time.monotonic() < until:
+            time.sleep(0.01)
+        self.refused("run", spec, "-o", "out", "--resume", code=1, says=["another ssrlab is writing here"])
+        first.communicate(timeout=120)
+        self.assertEqual(first.returncode, 0)
+        self.assert_complete(self.rows(), SWEEP_ROWS)
+
+    def test_full_disk_leaves_whole_rows(self):
+        spec = self.write("s.toml", SWEEP + "truth = false\npictures = false\n")
+
+        def small_files():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (6000, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
+
+        # Mesa's own cache would meet the limit first.
+        self.refused("run", spec, "-o", "out", code=1, says=["rows before it are intact"], limits=small_files,
+                     MESA_SHADER_CACHE_DISABLE="true")
+        written = len(self.rows())
+        self.assertGreater(written, 0)
+        self.assertLess(written, SWEEP_ROWS)
+        self.assertEqual(written, self.whole_rows())
+        self.ssrlab("run", spec, "-o", "out", "--resume")
+        self.assert_complete(self.rows(), SWEEP_ROWS)
+
+
+if __name__ == "__main__":
+    main()
