@@ -34,6 +34,24 @@ struct TraceResult {
     std::vector<uint32_t>    pyramid_fetches;
 };
 
+/// Every pixel not traced; with room for fetch counts if they are to be counted.
+inline TraceResult make_trace_result(glm::ivec2 size_px, bool counted)
+{
+    const auto  count = static_cast<size_t>(size_px.x) * static_cast<size_t>(size_px.y);
+    TraceResult result;
+    result.size_px = size_px;
+    result.status.assign(count, TraceStatus::not_traced);
+    result.hit_pixel.resize(count);
+    result.hit_px_depth.resize(count);
+    result.hit_t.resize(count);
+    result.steps.resize(count);
+    if (counted) {
+        result.depth_fetches.resize(count);
+        result.pyramid_fetches.resize(count);
+    }
+    return result;
+}
+
 /// The hit contract's settings: they belong to the experiment, never to a technique.
 struct TraceSettings {
     double thickness_m        = 0.1;   // the slab of a pixel reaches from its distance to distance + thickness

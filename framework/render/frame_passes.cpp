@@ -212,18 +212,7 @@ template <typename Real> TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, c
     const auto   ts          = download_as<Real>(gpu, rays.hit_ts, count);
     const auto   works       = work != nullptr ? download_as<glm::uvec3>(gpu, *work, count) : std::vector<glm::uvec3>{};
     const auto   unpack      = [](uint32_t p) { return glm::ivec2(p & (MAX_IMAGE_PX - 1), (p >> PIXEL_BITS) & (MAX_IMAGE_PX - 1)); };
-    const auto   pixel_count = static_cast<size_t>(size_px.x) * static_cast<size_t>(size_px.y);
-    TraceResult  result;
-    result.size_px = size_px;
-    result.status.assign(pixel_count, TraceStatus::not_traced);
-    result.hit_pixel.resize(pixel_count);
-    result.hit_px_depth.resize(pixel_count);
-    result.hit_t.resize(pixel_count);
-    result.steps.resize(pixel_count);
-    if (work != nullptr) {
-        result.depth_fetches.resize(pixel_count);
-        result.pyramid_fetches.resize(pixel_count);
-    }
+    TraceResult  result      = make_trace_result(size_px, work != nullptr);
     for (size_t i = 0; i < count; ++i) {
         const glm::ivec2 pixel  = unpack(pixels[i]);
         const size_t     index  = static_cast<size_t>(pixel.y) * static_cast<size_t>(size_px.x) + static_cast<size_t>(pixel.x);

@@ -148,14 +148,7 @@ TraceResult screen_truth(const GBufferImage& gbuffer, const TraceSettings& setti
 {
     const ScreenWalk walk(gbuffer, settings);
     const glm::ivec2 size  = gbuffer.view.size_px;
-    const size_t     count = gbuffer.depth.size();
-    TraceResult      result;
-    result.size_px = size;
-    result.status.resize(count);
-    result.hit_pixel.resize(count);
-    result.hit_px_depth.resize(count);
-    result.hit_t.resize(count);
-    result.steps.resize(count);
+    TraceResult      result = make_trace_result(size, false);
     parallel_rows(size.y, threads, [&](int y) {
         for (int x = 0; x < size.x; ++x) {
             store(walk.walk(make_screen_ray(gbuffer, {x, y}, settings)), size_t(y) * size_t(size.x) + size_t(x), result);

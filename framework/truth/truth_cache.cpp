@@ -146,12 +146,7 @@ std::vector<char> pack(const TraceResult& result)
 bool unpack(const std::vector<char>& payload, glm::ivec2 size_px, TraceResult& result)
 {
     const size_t count = size_t(size_px.x) * size_t(size_px.y);
-    result.size_px     = size_px;
-    result.status.resize(count);
-    result.hit_pixel.resize(count);
-    result.hit_px_depth.resize(count);
-    result.hit_t.resize(count);
-    result.steps.resize(count);
+    result             = make_trace_result(size_px, false);
     Reader reader(payload);
     for (size_t i = 0; i < count; ++i) {
         reader.get(result.status[i]);

@@ -2,9 +2,7 @@
 real sample_t(Ray ray, int i)
 {
     real fraction = real(i) / real(steps);
-    if (space == space_screen) return fraction;
-    real along = max_distance_m * fraction / ray.length_m;
-    return along > real(1) ? real(2) : fraction_to_t(ray, along);
+    return space == space_screen ? fraction : metres_to_t(ray, max_distance_m * fraction);
 }
 
 TraceResult trace(Ray ray)
