@@ -45,22 +45,6 @@ std::vector<Case> all_cases()
     return cases;
 }
 
-/// Rays whose status, hit pixel or hit t differ.
-size_t count_differences(const TraceResult& a, const TraceResult& b, bool compare_t, std::string& first)
-{
-    size_t differences = 0;
-    for (size_t i = 0; i < a.status.size(); ++i) {
-        const bool both_hit = a.status[i] == TraceStatus::hit && b.status[i] == TraceStatus::hit;
-        if (a.status[i] == b.status[i] && (!both_hit || (a.hit_pixel[i] == b.hit_pixel[i] && (!compare_t || a.hit_t[i] == b.hit_t[i])))) continue;
-        if (differences++ == 0)
-            first = fmt::format("ray of pixel ({}, {}): status {} against {}, pixel ({}, {}) against ({}, {}), t {} against {}", i % static_cast<size_t>(a.size_px.x),
-                                i / static_cast<size_t>(a.size_px.x), trace_status_names[static_cast<size_t>(a.status[i])],
-                                trace_status_names[static_cast<size_t>(b.status[i])], a.hit_pixel[i].x, a.hit_pixel[i].y, b.hit_pixel[i].x,
-                                b.hit_pixel[i].y, a.hit_t[i], b.hit_t[i]);
-    }
-    return differences;
-}
-
 /// Every setting of the parameters that may change the way a technique walks, and must not change what it finds.
 std::vector<ParameterValues> variants(const Technique& technique, glm::ivec2 size_px)
 {
@@ -87,11 +71,8 @@ TEST_P(ExactTechniques, EqualThePixelWalkAndTheScreenTruth)
     for (const Technique& t : list_techniques({})) {
         if (!t.exact) continue;
         for (const ParameterValues& values : variants(t, c.size_px)) {
-            std::string text;
-            for (const Parameter& p : t.parameters) text += fmt::format(" -p {}={}", p.name, format_parameter(p, values.at(p.name)));
             EXPECT_EQ(count_differences(trace(picture, t, values, settings), walk, true, first), 0)
-                << first << "\nrepeat: ssrlab trace " << c.scene << " --view " << c.view << " --size " << c.size_px.x << "x" << c.size_px.y << " -t "
-                << t.id << text << " -p thickness_m=0.1 -o hits.exr";
+                << first << "\n" << repeat_command(c.scene, c.view, c.size_px, t, values, settings);
         }
     }
 

@@ -1,5 +1,8 @@
 #include "gpu/device.h"
 
+#include "core/error.h"
+#include "render/gbuffer.h"
+
 #include <map>
 
 namespace ssrlab::test {
@@ -45,22 +48,61 @@ const LoadedScene& load(const std::string& name)
 
 } // namespace
 
-Picture make_picture(const std::string& scene, const std::string& view, glm::ivec2 size_px)
+namespace {
+
+Picture make_picture(GBufferPtr gbuffer)
 {
-    const LoadedScene& loaded = load(scene);
-    Picture            picture;
-    picture.view    = camera_to_view(find_camera(loaded.scene, view), size_px);
-    picture.gbuffer = render_gbuffer(device(), loaded.gpu, picture.view);
+    Picture picture;
+    picture.view    = gbuffer->view;
+    picture.gbuffer = std::move(gbuffer);
     picture.image   = read_gbuffer(device(), *picture.gbuffer);
     picture.buffers = make_frame_buffers(device(), picture.gbuffer);
     return picture;
 }
+
+} // namespace
+
+Picture make_picture(const std::string& scene, const std::string& view, glm::ivec2 size_px)
+{
+    const LoadedScene& loaded = load(scene);
+    return make_picture(render_gbuffer(device(), loaded.gpu, camera_to_view(find_camera(loaded.scene, view), size_px)));
+}
+
+Picture make_picture(const Scene& scene, const Camera& camera, glm::ivec2 size_px)
+{
+    return make_picture(render_gbuffer(device(), upload_scene(device(), scene), camera_to_view(camera, size_px)));
+}
+
+Picture make_picture(const GBufferImage& gbuffer) { return make_picture(upload_gbuffer(device(), gbuffer)); }
 
 TraceResult trace(const Picture& picture, const Technique& technique, const ParameterValues& values, const TraceSettings& settings,
                   Precision precision)
 {
     const auto frame = prepare_frame(device(), picture.buffers, technique, values, {settings, {}});
     return count_frame(device(), *frame, precision);
+}
+
+std::string repeat_command(const std::string& scene, const std::string& view, glm::ivec2 size_px, const Technique& technique,
+                           const ParameterValues& values, const TraceSettings& settings)
+{
+    std::string text = fmt::format("repeat: ssrlab trace {} --view {} --size {}x{} -t {}", scene, view, size_px.x, size_px.y, technique.id);
+    for (const Parameter& p : technique.parameters) text += fmt::format(" -p {}={}", p.name, format_parameter(p, values.at(p.name)));
+    return text + fmt::format(" -p thickness_m={} -p max_distance_m={} -o hits.exr", settings.thickness_m, settings.max_distance_m);
+}
+
+size_t count_differences(const TraceResult& a, const TraceResult& b, bool compare_t, std::string& first)
+{
+    const auto width       = static_cast<size_t>(a.size_px.x);
+    size_t     differences = 0;
+    for (size_t i = 0; i < a.status.size(); ++i) {
+        const bool both_hit = a.status[i] == TraceStatus::hit && b.status[i] == TraceStatus::hit;
+        if (a.status[i] == b.status[i] && (!both_hit || (a.hit_pixel[i] == b.hit_pixel[i] && (!compare_t || a.hit_t[i] == b.hit_t[i])))) continue;
+        if (differences++ > 0) continue;
+        first = fmt::format("ray of pixel ({}, {}): status {} against {}, pixel ({}, {}) against ({}, {}), t {} against {}", i % width, i / width,
+                            trace_status_names[static_cast<size_t>(a.status[i])], trace_status_names[static_cast<size_t>(b.status[i])],
+                            a.hit_pixel[i].x, a.hit_pixel[i].y, b.hit_pixel[i].x, b.hit_pixel[i].y, a.hit_t[i], b.hit_t[i]);
+    }
+    return differences;
 }
 
 } // namespace ssrlab::test

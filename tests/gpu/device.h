@@ -1,6 +1,7 @@
 // The device that all GPU tests share, opened with the validation layer.
 #pragma once
 
+#include "core/error.h"
 #include "render/frame.h"
 
 #include <gtest/gtest.h>
@@ -23,8 +24,18 @@ struct Picture {
     FrameBuffersPtr buffers;
 };
 Picture make_picture(const std::string& scene, const std::string& view, glm::ivec2 size_px);
+Picture make_picture(const Scene& scene, const Camera& camera, glm::ivec2 size_px);
+/// A G-buffer made by hand. Picture::image is what the device holds of it (unusable depth has become background).
+Picture make_picture(const GBufferImage& gbuffer);
 
 TraceResult trace(const Picture& picture, const Technique& technique, const ParameterValues& values, const TraceSettings& settings,
                   Precision precision = Precision::float32);
+
+/// The command that repeats a trace outside the tests.
+std::string repeat_command(const std::string& scene, const std::string& view, glm::ivec2 size_px, const Technique& technique,
+                           const ParameterValues& values, const TraceSettings& settings);
+
+/// Rays whose status, hit pixel or (if asked) hit t differ; `first` describes the first of them.
+size_t count_differences(const TraceResult& a, const TraceResult& b, bool compare_t, std::string& first);
 
 } // namespace ssrlab::test

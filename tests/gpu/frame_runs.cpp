@@ -1,0 +1,74 @@
+// A timed frame: its times are there, its hits are the counting pipeline's, and running again changes nothing.
+#include "gpu/device.h"
+#include "render/frame_passes.h"
+
+#include <map>
+
+namespace ssrlab::test {
+namespace {
+
+class FrameRuns : public testing::TestWithParam<const char*> {};
+
+TEST_P(FrameRuns, TimesAreThereAndResultsAreTheCountedOnes)
+{
+    const Picture       picture = make_picture("builtin:pole_field", "down", {161, 91});
+    const TraceSettings settings{.thickness_m = 0.1, .max_distance_m = 20};
+    const Technique&    t     = technique(GetParam());
+    const auto          frame = prepare_frame(device(), picture.buffers, t, values_of(t), {settings, {}});
+    const TraceResult   first = count_frame(device(), *frame), second = count_frame(device(), *frame);
+    std::string         text;
+    EXPECT_EQ(count_differences(first, second, true, text), 0U) << text;
+    EXPECT_EQ(first.steps, second.steps);
+    EXPECT_EQ(first.depth_fetches, second.depth_fetches);
+    EXPECT_EQ(first.pyramid_fetches, second.pyramid_fetches);
+
+    std::vector<float> shaded;
+    for (int run = 0; run < 3; ++run) {
+        const PassTimes times = run_frame(device(), *frame);
+        for (const double ms : {times.rays_ms, times.trace_ms, times.shade_ms}) {
+            EXPECT_GT(ms, 0);
+            EXPECT_LT(ms, 60000);
+        }
+        EXPECT_GE(times.inputs_ms, 0);
+        if (!t.inputs.empty()) EXPECT_GT(times.inputs_ms, 0);
+        const TraceResult timed = read_result<float>(device(), picture.view.size_px, picture.buffers->rays, nullptr);
+        EXPECT_EQ(count_differences(timed, first, true, text), 0U) << "run " << run << ": " << text;
+        const auto pixels = read_shaded(device(), *frame).values;
+        if (run > 0) EXPECT_EQ(pixels, shaded) << "run " << run;
+        shaded = pixels;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Techniques, FrameRuns, testing::Values("dda", "hiz", "linear", "linear_binary"), [](const auto& param) { return std::string(param.param); });
+
+TEST(GBufferRuns, TheSamePictureEveryTime)
+{
+    const Picture      picture = make_picture("builtin:corridor", "default", {161, 91});
+    EXPECT_GT(rerender_gbuffer(device(), *picture.gbuffer), 0);
+    const GBufferImage again = read_gbuffer(device(), *picture.gbuffer);
+    EXPECT_EQ(again.depth, picture.image.depth);
+    EXPECT_EQ(again.normal_vs, picture.image.normal_vs);
+    EXPECT_EQ(again.radiance, picture.image.radiance);
+    EXPECT_EQ(again.object_id, picture.image.object_id);
+}
+
+// Two techniques share one set of buffers: what one leaves behind must not reach the other.
+TEST(SharedBuffers, KeepNoTraceOfTheRunBefore)
+{
+    const Picture       picture = make_picture("builtin:pole_field", "default", {161, 91});
+    const TraceSettings settings{.thickness_m = 0.1};
+    std::map<std::string, PreparedFramePtr> frames;
+    std::map<std::string, std::vector<float>> shaded;
+    for (const char* id : {"dda", "hiz", "linear"}) frames[id] = prepare_frame(device(), picture.buffers, technique(id), values_of(technique(id)), {settings, {}});
+    for (int round = 0; round < 2; ++round)
+        for (auto& [id, frame] : frames) {
+            run_frame(device(), *frame);
+            const auto pixels = read_shaded(device(), *frame).values;
+            if (round > 0) EXPECT_EQ(pixels, shaded[id]) << id;
+            shaded[id] = pixels;
+        }
+    EXPECT_EQ(shaded["dda"], shaded["hiz"]);
+}
+
+} // namespace
+} // namespace ssrlab::test

@@ -1,0 +1,135 @@
+// Materials and light in the G-buffer against closed forms.
+#include "gpu/device.h"
+#include "scene/model.h"
+#include "scene/shapes.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace ssrlab::test {
+namespace {
+
+constexpr double half_ulp = 1.0 / 1024; // colours are kept in half floats
+
+/// A horizontal plane y = 0, seen from 4 m above.
+Model plane(const Material& material)
+{
+    Model model;
+    model.materials.push_back(material);
+    Mesh mesh     = make_quad({-5, 0, 5}, {10, 0, 0}, {0, 0, -10});
+    mesh.name     = "plane";
+    mesh.material = 0;
+    model.meshes.push_back(std::move(mesh));
+    model.ambient    = glm::vec3(0.1F, 0.2F, 0.3F);
+    model.background = glm::vec3(0);
+    return model;
+}
+
+Camera from_above()
+{
+    Camera camera;
+    camera.position_ws = {0, 4, 0};
+    camera.target_ws   = {0, 0, 0};
+    camera.up_ws       = {0, 0, -1};
+    camera.fov_y_deg   = 60;
+    return camera;
+}
+
+ModelLight sun(glm::vec3 direction_ws, glm::vec3 irradiance, bool casts_shadow)
+{
+    ModelLight light;
+    light.light.type         = LightType::directional;
+    light.light.direction_ws = glm::normalize(direction_ws);
+    light.light.intensity    = irradiance;
+    light.light.casts_shadow = casts_shadow;
+    return light;
+}
+
+void expect_colour(glm::vec3 found, glm::dvec3 expected, const std::string& where)
+{
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(static_cast<double>(found[c]), expected[c], half_ulp * expected[c] + 1e-5) << where << ", channel " << c;
+}
+
+const Material matt = make_material("matt", {0.8F, 0.5F, 0.25F}, 0.25F, 0.625F);
+
+TEST(GBufferMaterial, ValuesArriveAtEveryPixel)
+{
+    const Picture picture = make_picture(model_to_scene(plane(matt), "plane"), from_above(), {31, 19});
+    for (size_t i = 0; i < picture.image.depth.size(); ++i) {
+        const std::string where = fmt::format("pixel {}", i);
+        expect_colour(picture.image.base_colour[i], {0.8, 0.5, 0.25}, where);
+        EXPECT_NEAR(picture.image.metallic[i], 0.25, 1e-3) << where;
+        EXPECT_NEAR(picture.image.roughness[i], 0.625, 1e-6) << where;
+        EXPECT_EQ(picture.image.object_id[i], 1U) << where;
+    }
+}
+
+// Lambert: base colour x ((1 - metallic) / pi x irradiance x cosine + ambient) + emissive.
+TEST(GBufferMaterial, LambertPlaneUnderTheSun)
+{
+    for (const bool shadows : {false, true})
+        for (const double angle_deg : {0.0, 30.0, 75.0, 100.0}) {
+            const double angle    = angle_deg * std::numbers::pi / 180;
+            Material     material = matt;
+            material.emissive     = {0, 0.125F, 2};
+            Model model           = plane(material);
+            model.lights.push_back(sun({static_cast<float>(std::sin(angle)), static_cast<float>(-std::cos(angle)), 0}, {3, 2, 1}, shadows));
+            const Picture    picture = make_picture(model_to_scene(std::move(model), "plane"), from_above(), {17, 11});
+            const glm::dvec3 light   = glm::dvec3(3, 2, 1) * std::max(0.0, std::cos(angle)) * (0.75 / std::numbers::pi);
+            const glm::dvec3 expected = glm::dvec3(0.8, 0.5, 0.25) * (light + glm::dvec3(0.1, 0.2, 0.3)) + glm::dvec3(0, 0.125, 2);
+            for (size_t i = 0; i < picture.image.radiance.size(); ++i)
+                expect_colour(picture.image.radiance[i], expected, fmt::format("pixel {}, sun at {} degrees, shadows {}", i, angle_deg, shadows));
+        }
+}
+
+// A plate of 2 m x 2 m floats 1 m above the plane; the sun comes at 45 degrees along +x, so its shadow lies 1 m further: x in [0, 2].
+TEST(GBufferMaterial, ShadowLiesWhereTheSunPutsIt)
+{
+    for (const bool shadows : {true, false}) {
+        Model model = plane(matt);
+        Mesh  plate = make_box({-1, 1, -1}, {1, 1.02, 1});
+        plate.name  = "plate";
+        plate.material = 0;
+        model.meshes.push_back(std::move(plate));
+        model.lights.push_back(sun({1, -1, 0}, glm::vec3(4), shadows));
+        const Picture    picture = make_picture(model_to_scene(std::move(model), "plate"), from_above(), {64, 64});
+        const glm::dvec3 base(0.8, 0.5, 0.25), ambient(0.1, 0.2, 0.3);
+        const glm::dvec3 dark = base * ambient, lit = base * (ambient + 4 * std::sqrt(0.5) * 0.75 / std::numbers::pi);
+        size_t           dark_pixels = 0;
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 64; ++x) {
+                const auto i = static_cast<size_t>(y * 64 + x);
+                if (picture.image.object_id[i] != 1) continue;
+                const glm::dvec3 p = px_to_vs(picture.view, glm::dvec2(x, y) + 0.5, static_cast<double>(picture.image.depth[i])); // p.x, p.y: the plane's x and -z
+                const double     outside = std::max(std::abs(p.x - 1), std::abs(p.y)) - 1; // metres outside the shadow
+                if (std::abs(outside) < 0.05) continue;
+                const bool in_shadow = shadows && outside < 0;
+                dark_pixels += in_shadow;
+                expect_colour(picture.image.radiance[i], in_shadow ? dark : lit, fmt::format("pixel ({}, {})", x, y));
+            }
+        EXPECT_EQ(dark_pixels > 100, shadows);
+    }
+}
+
+// Inverse square and the two cosines: I x cos / d^2, lamp 2 m above the plane's origin.
+TEST(GBufferMaterial, PointLightFallsOffWithTheSquare)
+{
+    Model      model = plane(matt);
+    ModelLight lamp;
+    lamp.light.type         = LightType::point;
+    lamp.light.intensity    = glm::vec3(10);
+    lamp.light.casts_shadow = false;
+    lamp.position_ws        = {0, 2, 0};
+    model.lights.push_back(lamp);
+    const Picture picture = make_picture(model_to_scene(std::move(model), "lamp"), from_above(), {40, 30});
+    for (int y = 0; y < 30; ++y)
+        for (int x = 0; x < 40; ++x) {
+            const auto       i = static_cast<size_t>(y * 40 + x);
+            const glm::dvec3 p = px_to_vs(picture.view, glm::dvec2(x, y) + 0.5, static_cast<double>(picture.image.depth[i]));
+            const double     d2 = p.x * p.x + p.y * p.y + 4, light = 10 * 2 / std::sqrt(d2) / d2 * 0.75 / std::numbers::pi;
+            expect_colour(picture.image.radiance[i], glm::dvec3(0.8, 0.5, 0.25) * (glm::dvec3(0.1, 0.2, 0.3) + light), fmt::format("pixel ({}, {})", x, y));
+        }
+}
+
+} // namespace
+} // namespace ssrlab::test

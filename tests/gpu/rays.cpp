@@ -1,0 +1,148 @@
+// Rays as the shader sets them up against the host's double precision: also a round trip of everything that both sides share
+// (the view's uniform block, the settings' constants, packed pixels and statuses).
+#include "gpu/device.h"
+#include "render/frame_passes.h"
+#include "shared.h"
+#include "truth/screen_ray.h"
+#include "unit/truth_gbuffers.h"
+
+#include <algorithm>
+
+namespace ssrlab::test {
+namespace {
+
+struct Rays {
+    std::vector<glm::dvec3> origins, deltas;
+    std::vector<double>     lengths_m;
+    std::vector<uint32_t>   pixels;
+};
+
+template <typename Real> Rays make_rays(const Picture& picture, const TraceSettings& settings, Precision precision)
+{
+    const Technique&  dda     = technique("dda");
+    const auto        frame   = prepare_frame(device(), picture.buffers, dda, values_of(dda), {settings, {}});
+    const RayBuffers  buffers = make_ray_buffers(device(), picture.image.depth.size(), precision);
+    const Buffer      view    = upload_view(device(), picture.view, precision);
+    const TracePasses passes  = make_trace_passes(device(), *frame, buffers, view, nullptr);
+    submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, passes, buffers, picture.view.size_px); });
+    const size_t count = download_as<uint32_t>(device(), buffers.count, 1)[0];
+    Rays         rays;
+    for (const auto& v : download_as<glm::vec<3, Real>>(device(), buffers.origins, count)) rays.origins.emplace_back(v);
+    for (const auto& v : download_as<glm::vec<3, Real>>(device(), buffers.deltas, count)) rays.deltas.emplace_back(v);
+    for (const Real v : download_as<Real>(device(), buffers.lengths, count)) rays.lengths_m.push_back(static_cast<double>(v));
+    rays.pixels = download_as<uint32_t>(device(), buffers.pixels, count);
+    return rays;
+}
+
+/// How far two numbers are apart, where equal infinities are not apart at all.
+double gap(double a, double b) { return a == b ? 0 : std::abs(a - b); }
+
+struct Worst {
+    double origin_px = 0, delta_px = 0, depth = 0, length = 0; // depth and length relative
+    size_t other_end = 0;
+    size_t rays = 0;
+};
+
+Worst compare(const Picture& picture, const TraceSettings& settings, const Rays& rays)
+{
+    Worst worst;
+    worst.rays       = rays.pixels.size();
+    size_t reflecting = 0;
+    for (int y = 0; y < picture.view.size_px.y; ++y)
+        for (int x = 0; x < picture.view.size_px.x; ++x) reflecting += reflects(picture.image, {x, y});
+    EXPECT_EQ(rays.pixels.size(), reflecting);
+    std::vector<bool> seen(picture.image.depth.size());
+    for (size_t i = 0; i < rays.pixels.size(); ++i) {
+        const glm::ivec2 pixel(rays.pixels[i] & (MAX_IMAGE_PX - 1), (rays.pixels[i] >> PIXEL_BITS) & (MAX_IMAGE_PX - 1));
+        EXPECT_FALSE(seen.at(at(picture.image, pixel.x, pixel.y))) << "two rays for pixel (" << pixel.x << ", " << pixel.y << ")";
+        seen[at(picture.image, pixel.x, pixel.y)] = true;
+        const ScreenRay ray = make_screen_ray(picture.image, pixel, settings);
+        EXPECT_TRUE(ray.traced);
+        if (static_cast<TraceStatus>(rays.pixels[i] >> (2 * PIXEL_BITS)) != ray.end_status) {
+            ++worst.other_end; // two limits within rounding: then the ends differ by rounding, too
+        }
+        const double nearest = std::max(ray.origin_px_depth.z, std::abs(ray.origin_px_depth.z + ray.delta_px_depth.z));
+        worst.origin_px = std::max(worst.origin_px, glm::length(glm::dvec2(rays.origins[i]) - glm::dvec2(ray.origin_px_depth)));
+        worst.delta_px  = std::max(worst.delta_px, glm::length(glm::dvec2(rays.deltas[i]) - glm::dvec2(ray.delta_px_depth)));
+        worst.depth     = std::max({worst.depth, gap(rays.origins[i].z, ray.origin_px_depth.z) / nearest, gap(rays.deltas[i].z, ray.delta_px_depth.z) / nearest});
+        if (glm::length(ray.delta_px_depth) > 0) worst.length = std::max(worst.length, gap(rays.lengths_m[i], ray.length_m - settings.ray_offset_m) / ray.length_m);
+    }
+    return worst;
+}
+
+View off_centre_view(glm::ivec2 size)
+{
+    View view      = bench_view(size, 0.05);
+    view.centre_px = {0.3 * size.x, 0.8 * size.y};
+    view.focal_px  = {0.7 * size.x, 0.9 * size.x};
+    return view;
+}
+
+View orthographic_view(glm::ivec2 size)
+{
+    View view       = bench_view(size);
+    view.projection = Projection::orthographic;
+    view.focal_px   = glm::dvec2(12);
+    view.far_m      = 30;
+    return view;
+}
+
+struct Case {
+    const char*   name;
+    GBufferImage  image;
+    TraceSettings settings;
+};
+
+std::vector<Case> cases()
+{
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    std::vector<Case> list;
+    for (const glm::ivec2& size : {glm::ivec2(1, 1), glm::ivec2(97, 1), glm::ivec2(1, 61), glm::ivec2(161, 91)})
+        for (const View& view : {bench_view(size), off_centre_view(size), orthographic_view(size)}) {
+            list.push_back({"random", random_gbuffer(view, 5), {.max_distance_m = infinity}});
+            list.push_back({"random, 3 m", random_gbuffer(view, 6), {.max_distance_m = 3}});
+            list.push_back({"random, offset", random_gbuffer(view, 8), {.max_distance_m = 40, .ray_offset_m = 0.25}});
+        }
+    list.push_back({"floor and wall", floor_and_wall(bench_view({161, 91}), 10), {.max_distance_m = 1e9}});
+    list.push_back({"floor alone", floor_and_wall(off_centre_view({161, 91}), infinity), {.max_distance_m = infinity}});
+    return list;
+}
+
+std::string describe(const Case& c)
+{
+    return fmt::format("{}, {}x{}, {}", c.name, c.image.view.size_px.x, c.image.view.size_px.y,
+                       c.image.view.projection == Projection::perspective ? "perspective" : "orthographic");
+}
+
+TEST(Rays, AgreeWithDoublePrecision)
+{
+    for (const Case& c : cases()) {
+        const Picture picture = make_picture(c.image);
+        const Worst   worst   = compare(picture, c.settings, make_rays<float>(picture, c.settings, Precision::float32));
+        // Float: a few units in the last place of the picture's width.
+        const double px = 6e-7 * std::max({picture.view.size_px.x, picture.view.size_px.y, 4});
+        EXPECT_LE(worst.origin_px, c.settings.ray_offset_m > 0 ? px : 0) << describe(c);
+        EXPECT_LE(worst.delta_px, 20 * px) << describe(c);
+        EXPECT_LE(worst.depth, 2e-5) << describe(c);
+        EXPECT_LE(worst.length, 1e-3) << describe(c);
+        EXPECT_LE(worst.other_end, worst.rays / 1000) << describe(c);
+        if (std::getenv("SSRLAB_TEST_PRINT")) fmt::print("{}: {} rays, origin {:.3g} px, delta {:.3g} px, depth {:.3g}, length {:.3g}, other end {}\n", describe(c), worst.rays, worst.origin_px, worst.delta_px, worst.depth, worst.length, worst.other_end);
+    }
+}
+
+TEST(Rays, DoubleTwinIsTheHostsBitForBit)
+{
+    if (!device().info.float64) GTEST_SKIP() << "the device has no double precision";
+    for (const Case& c : cases()) {
+        const Picture picture = make_picture(c.image);
+        const Worst   worst   = compare(picture, c.settings, make_rays<double>(picture, c.settings, Precision::float64));
+        EXPECT_EQ(worst.origin_px, 0) << describe(c);
+        EXPECT_EQ(worst.delta_px, 0) << describe(c);
+        EXPECT_EQ(worst.depth, 0) << describe(c);
+        EXPECT_EQ(worst.length, 0) << describe(c);
+        EXPECT_EQ(worst.other_end, 0U) << describe(c);
+    }
+}
+
+} // namespace
+} // namespace ssrlab::test
