@@ -23,8 +23,9 @@ class Test(Case):
         self.render_refused(scene=self.path("none.glb"), says=["none.glb"])
 
     def test_broken_gltf(self):
-        self.render_refused(scene=self.write("broken.gltf", '{"asset": {"version": "2.0"}, "meshes": ['), says=["broken.gltf"])
-        self.render_refused(scene=self.write("broken.glb", "glTF but not really"), says=["broken.glb"])
+        self.render_refused(scene=self.write("broken.gltf", '{"asset": {"version": "2.0"}, "meshes": ['), code=1,
+                            says=["broken.gltf"])
+        self.render_refused(scene=self.write("broken.glb", "glTF but not really"), code=1, says=["broken.glb"])
 
     def test_unknown_technique(self):
         self.render_refused(technique="linaer", says=["linaer", "linear"])
@@ -91,7 +92,7 @@ class Test(Case):
             self.refused("run", spec, "-o", folder, code=1, says=["out", "cannot be created"])
 
     def test_plot_without_results(self):
-        self.ssrlab("plot", self.path("none"), code=1, says=["none"])
+        self.ssrlab("plot", self.path("none"), code=2, says=["none"])
 
 
 if __name__ == "__main__":

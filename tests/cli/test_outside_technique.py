@@ -16,7 +16,7 @@ TRACE = """TraceResult trace(Ray ray)
     return miss(ray, 1);
 }
 """
-SWEEP = """scenes = ["builtin:mirror_floor"]
+SWEEP = """scenes = ["builtin:mirror_floor_wall"]
 sizes  = ["64x36"]
 [techniques.coin]
 place = [0.25, 0.75]
@@ -37,9 +37,9 @@ class Test(Case):
 
     def test_is_listed_shown_and_rendered(self):
         self.ssrlab("--techniques", "mine", "list", says=["coin", "Looks at one place"])
-        self.ssrlab("--techniques", "mine", "show", "coin", says=["place", "0 … 1", self.path("mine/coin")])
+        self.ssrlab("--techniques", "mine", "show", "coin", says=["place", "0 … 1", "mine/coin"])
         self.ssrlab("list", says=["coin"], SSRLAB_TECHNIQUES=self.path("mine"))
-        self.ssrlab("render", "builtin:mirror_floor", "-t", "coin", "-p", "place=0.3", "--techniques", "mine/coin",
+        self.ssrlab("render", "builtin:mirror_floor_wall", "-t", "coin", "-p", "place=0.3", "--techniques", "mine/coin",
                     "--size", "64x36", "-o", "a.png")
 
     def test_is_swept_and_recorded(self):
@@ -53,7 +53,7 @@ class Test(Case):
 
     def test_error_in_its_shader_names_file_and_line(self):
         self.write("mine/coin/trace.glsl", TRACE.replace("ivec2 pixel = pixel_at", "ivec2 pixel = pixle_at"))
-        self.refused("render", "builtin:mirror_floor", "-t", "coin", "--techniques", "mine", "--size", "64x36", "-o", "a.png",
+        self.refused("render", "builtin:mirror_floor_wall", "-t", "coin", "--techniques", "mine", "--size", "64x36", "-o", "a.png",
                      code=2, says=["mine/coin/trace.glsl:3", "pixle_at"])
 
     def test_error_in_its_shader_is_a_failed_row(self):
