@@ -9,6 +9,7 @@
 #include <fstream>
 #include <list>
 #include <memory>
+#include <mutex>
 #include <regex>
 #include <sstream>
 
@@ -101,6 +102,18 @@ void collect_bindings(const glslang::TProgram& program, Shader& shader)
     }
 }
 
+/// All texts that the compiler may read for this source: equal keys give equal SPIR-V.
+std::string everything_read(const ShaderSource& source)
+{
+    std::string key = source.file.string() + '\0' + std::to_string(static_cast<int>(source.stage));
+    for (const auto& [name, value] : source.defines) key += '\0' + name + '=' + value;
+    for (const auto& [name, text] : source.include_texts) key += '\0' + name + '=' + text;
+    for (const auto& [name, path] : source.include_files) key += '\0' + path.string() + '=' + read_text(path);
+    for (const auto& entry : std::filesystem::directory_iterator(shader_folder()))
+        if (entry.is_regular_file()) key += '\0' + entry.path().string() + '=' + read_text(entry.path());
+    return key;
+}
+
 struct GlslangProcess {
     GlslangProcess() { glslang::InitializeProcess(); }
     ~GlslangProcess() { glslang::FinalizeProcess(); }
@@ -110,7 +123,8 @@ struct GlslangProcess {
 
 std::filesystem::path shader_folder() { return std::filesystem::path(SSRLAB_SOURCE_DIR) / "shaders"; }
 
-Shader compile_shader(const ShaderSource& source)
+namespace {
+Shader compile(const ShaderSource& source)
 {
     static const GlslangProcess process;
     const std::filesystem::path path = shader_folder() / source.file;
@@ -147,6 +161,19 @@ Shader compile_shader(const ShaderSource& source)
     options.disableOptimizer = true;
     glslang::GlslangToSpv(*program.getIntermediate(language), shader.spirv, &options);
     return shader;
+}
+
+} // namespace
+
+Shader compile_shader(const ShaderSource& source)
+{
+    // A sweep and the checks ask for the same shader hundreds of times, with other constants.
+    static std::mutex                    mutex;
+    static std::map<std::string, Shader> compiled;
+    const std::lock_guard                lock(mutex);
+    std::string                          key   = everything_read(source);
+    const auto                           known = compiled.find(key);
+    return known != compiled.end() ? known->second : compiled.emplace(std::move(key), compile(source)).first->second;
 }
 
 } // namespace ssrlab
