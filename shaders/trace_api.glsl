@@ -75,17 +75,8 @@ struct Grid
 {
     real2 inverse_delta; // finite: a component that is zero crosses nothing
     ivec2 forward;       // 1 where the ray runs toward larger coordinates, else 0
+    real  t_end;         // 1, or where rounding lets the ray cross the image border a little before
 };
-
-Grid make_grid(Ray ray)
-{
-    const real tiny = real(1e-20);
-    bvec2      flat_axis = lessThan(abs(ray.delta.xy), real2(tiny));
-    Grid       grid;
-    grid.inverse_delta = real2(flat_axis.x ? real(1) / tiny : real(1) / ray.delta.x, flat_axis.y ? real(1) / tiny : real(1) / ray.delta.y);
-    grid.forward       = ivec2(flat_axis.x || ray.delta.x > real(0), flat_axis.y || ray.delta.y > real(0));
-    return grid;
-}
 
 // t at which the ray crosses the borders x = border.x and y = border.y.
 real2 border_t(Ray ray, Grid grid, ivec2 border)
@@ -94,15 +85,36 @@ real2 border_t(Ray ray, Grid grid, ivec2 border)
     return t;
 }
 
-// Moves to the neighbour cell(s) whose border is crossed at t.
+Grid make_grid(Ray ray)
+{
+    const real tiny = real(1e-20);
+    bvec2      flat_axis = lessThan(abs(ray.delta.xy), real2(tiny));
+    Grid       grid;
+    grid.inverse_delta = real2(flat_axis.x ? real(1) / tiny : real(1) / ray.delta.x, flat_axis.y ? real(1) / tiny : real(1) / ray.delta.y);
+    grid.forward       = ivec2(flat_axis.x || ray.delta.x > real(0), flat_axis.y || ray.delta.y > real(0));
+    real2 t_image      = border_t(ray, grid, grid.forward * size_px);
+    grid.t_end         = min(real(1), min(t_image.x, t_image.y));
+    return grid;
+}
+
+// Where the ray leaves the cell whose borders it crosses at t_border. A select: cheaper than min() on some devices, and no number is NaN.
+real exit_t(Grid grid, real2 t_border)
+{
+    real t = t_border.x < t_border.y ? t_border.x : t_border.y;
+    return t < grid.t_end ? t : grid.t_end;
+}
+
+// The neighbour cell behind the border, or the corner, that is crossed at t.
 ivec2 cross_borders(Grid grid, ivec2 cell, real2 t_border, real t)
 {
     return cell + ivec2(lessThanEqual(t_border, real2(t))) * (2 * grid.forward - 1);
 }
 
-bool on_screen(ivec2 pixel)
+// The quarter of a cell of `level` >= 1 that holds the ray at t.
+ivec2 child_cell(Ray ray, Grid grid, ivec2 cell, int level, real t)
 {
-    return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size_px));
+    real2 t_middle = border_t(ray, grid, (2 * cell + 1) << (level - 1));
+    return 2 * cell + (ivec2(lessThanEqual(t_middle, real2(t))) ^ (1 - grid.forward));
 }
 
 // ---- Fetches
@@ -110,13 +122,6 @@ real fetch_depth(ivec2 pixel)
 {
     COUNT(depth_fetches);
     return real(imageLoad(depth_image, pixel).x);
-}
-
-// Where level >= 1 begins in the atlas; padded_width is a multiple of 2^levels.
-ivec2 pyramid_offset(int level)
-{
-    int padded_width = imageSize(depth_pyramid).x;
-    return ivec2(padded_width - (padded_width >> (level - 1)), 0);
 }
 
 // Levels above 0 that the pyramid has: 2^levels covers the larger side of the image.
@@ -127,10 +132,16 @@ int pyramid_levels()
 }
 
 // A cell of level >= 1: x = nearest front, y = farthest slab back of its pixels, rounded outward.
+real2 load_pyramid(ivec2 cell, int level)
+{
+    int width = imageSize(depth_pyramid).x; // a multiple of 2^levels; level L begins at width - (width >> (L - 1))
+    return real2(imageLoad(depth_pyramid, ivec2(width - (width >> (level - 1)), 0) + cell).xy);
+}
+
 real2 fetch_pyramid(ivec2 cell, int level)
 {
     COUNT(pyramid_fetches);
-    return real2(imageLoad(depth_pyramid, pyramid_offset(level) + cell).xy);
+    return load_pyramid(cell, level);
 }
 
 // ---- The hit contract
@@ -160,6 +171,25 @@ bool touches_surface(Ray ray, ivec2 pixel, real z_a, real z_b)
     bool touched = interval_touches(fetch_depth(pixel), z_a, z_b);
     if (facing_rule == 0) return touched;
     bool accepted   = faces(ray, pixel);
+    met_facing_away = met_facing_away || (touched && !accepted);
+    return touched && accepted;
+}
+
+// May the ray touch a surface inside this cell? At level 0 the answer is touches_surface()'s; above, no means no for all its pixels.
+// Both images are read whatever the level: lanes of one group stand on different levels, and a branch would run both sides anyway.
+bool touches_cell(Ray ray, ivec2 cell, int level, real z_a, real z_b)
+{
+    bool leaf = level == 0;
+#ifdef COUNT_WORK
+    depth_fetches += uint(leaf);
+    pyramid_fetches += uint(!leaf);
+#endif
+    real  depth = real(imageLoad(depth_image, cell).x);
+    real2 node  = load_pyramid(cell, leaf ? 1 : level);
+    real  z_near = z_a > z_b ? z_a : z_b, z_far = z_a > z_b ? z_b : z_a;
+    bool  touched = leaf ? depth >= z_far && reaches_slab_back(depth, z_near) : node.x >= z_far && node.y <= z_near;
+    if (facing_rule == 0) return touched;
+    bool accepted   = !leaf || faces(ray, cell);
     met_facing_away = met_facing_away || (touched && !accepted);
     return touched && accepted;
 }

@@ -1,3 +1,4 @@
+#include "core/error.h"
 #include "app/commands.h"
 
 #include "compare/measures.h"

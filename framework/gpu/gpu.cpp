@@ -79,13 +79,14 @@ bool contains_ignoring_case(const std::string& text, const std::string& part)
            }) != text.end();
 }
 
-/// An index, a part of the name, or (empty) the first discrete GPU, else the first device.
+/// An index, a part of the name, or (empty) a discrete GPU, else lavapipe, else whatever comes first.
 int choose_device(const std::vector<GpuInfo>& infos, const std::string& wanted)
 {
     if (infos.empty()) throw_failure("no Vulkan device found. Debian: install mesa-vulkan-drivers");
     if (wanted.empty()) {
-        for (const GpuInfo& info : infos)
-            if (info.type == "DiscreteGpu") return info.index;
+        for (const char* type : {"DiscreteGpu", "Cpu"})
+            for (const GpuInfo& info : infos)
+                if (info.type == type) return info.index;
         return 0;
     }
     std::string names;

@@ -2,22 +2,21 @@ TraceResult trace(Ray ray)
 {
     Grid  grid     = make_grid(ray);
     real2 t_border = border_t(ray, grid, ray.start_pixel + grid.forward);
-    real  t_in     = real(0), t_out = min(t_border.x, t_border.y);
+    real  t_in     = real(0), t_out = exit_t(grid, t_border);
     // The pixel is tracked as an integer: recomputing it from a position would stall on borders.
-    ivec2 pixel = cross_borders(grid, ray.start_pixel, t_border, t_out);
-    bool  ended = t_out >= real(1) || !on_screen(pixel), found = false;
+    ivec2 pixel   = cross_borders(grid, ray.start_pixel, t_border, t_out);
+    bool  found   = false;
     int   visited = 0;
-    while (!ended && !found && visited < max_steps)
+    while (!found && t_out < grid.t_end && visited < max_steps)
     {
-        t_in     = t_out;
-        t_border = border_t(ray, grid, pixel + grid.forward);
-        t_out    = min(min(t_border.x, t_border.y), real(1));
-        found    = touches_surface(ray, pixel, depth_at(ray, t_in), depth_at(ray, t_out));
+        t_in       = t_out;
+        t_border   = border_t(ray, grid, pixel + grid.forward);
+        t_out      = exit_t(grid, t_border);
+        found      = touches_surface(ray, pixel, depth_at(ray, t_in), depth_at(ray, t_out));
         ivec2 next = cross_borders(grid, pixel, t_border, t_out);
-        ended      = t_out >= real(1) || !on_screen(next);
         pixel      = found ? pixel : next;
         ++visited;
     }
     if (found) return hit_between(ray, pixel, t_in, t_out, visited);
-    return ended ? miss(ray, visited) : out_of_steps(visited);
+    return t_out < grid.t_end ? out_of_steps(visited) : miss(ray, visited);
 }
