@@ -1,0 +1,43 @@
+"""README.md's technique, scene and experiment, as they stand there."""
+import os
+import re
+
+from support import SOURCE, Case, main
+
+STATUE = "v -1 0 -1\nv 1 0 -1\nv 0 0 1\nv 0 2 0\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 3 2\n"
+
+
+class Test(Case):
+    def setUp(self):
+        super().setUp()
+        with open(os.path.join(SOURCE, "README.md"), encoding="utf-8") as file:
+            blocks = re.findall(r"```\w+\n(?:#|//) (\S+\.\w+)\n(.*?)```", file.read(), re.S)
+        self.blocks = dict(blocks)
+        for name, text in blocks:
+            self.write(name, text)
+        self.write("statue.obj", STATUE)
+
+    def test_examples_are_found(self):
+        self.assertEqual(set(self.blocks), {"mine/strides/technique.toml", "mine/strides/trace.glsl", "statue.toml", "mine.toml"})
+
+    def test_scene_renders(self):
+        self.ssrlab("render", "statue.toml", "-t", "hiz", "--size", "64x36", "-o", "a.png")
+
+    def test_experiment_runs_with_the_technique(self):
+        small = self.blocks["mine.toml"].replace("320x180", "48x27").replace("640x360", "64x36").replace("= 1\n", "= 0.1\n")
+        spec = self.write("mine.toml", small)
+        self.ssrlab("run", spec, "-o", "out", "--techniques", "mine")
+        self.assert_complete(self.rows(), 24)
+        self.assertGreater(max(float(row["screen_same_pixel"]) for row in self.rows() if row["technique"] == "strides"), 0.3)
+
+    def test_links_lead_somewhere(self):
+        for page in ["README.md", "experiments/README.md", "experiments/scenes/README.md", "docs/architecture.md",
+                     "docs/writing_a_technique.md", "docs/measuring.md", "docs/reading_the_report.md"]:
+            with open(os.path.join(SOURCE, page), encoding="utf-8") as file:
+                for link in re.findall(r"\]\(([^)#:]+)\)", file.read()):
+                    target = os.path.join(SOURCE, os.path.dirname(page), link)
+                    self.assertTrue(os.path.exists(target), f"{page} links to {link}")
+
+
+if __name__ == "__main__":
+    main()
