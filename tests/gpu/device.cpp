@@ -36,6 +36,7 @@ struct LoadedScene {
 /// Scenes are loaded once per program; the last one used stays.
 const LoadedScene& load(const std::string& name)
 {
+    device(); // opened first, so that it outlives the scenes
     static std::map<std::string, LoadedScene> scenes;
     if (!scenes.contains(name)) {
         scenes.clear();

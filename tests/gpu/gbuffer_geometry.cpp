@@ -82,19 +82,19 @@ struct Slack {
     double normal      = 0;
 };
 
-constexpr glm::dvec2 corners[] = {{-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
+constexpr glm::dvec2 around[] = {{-1, -1}, {1, -1}, {-1, 1}, {1, 1}, {0, 0}};
 
 struct Range {
     double low, high;
     void   add(double value) { low = std::min(low, value), high = std::max(high, value); }
 };
 
-/// Depths that the pixel may have: Vulkan lets a rasteriser move vertices to a grid of 1/256 px, and with them the picture.
+/// Depths that the pixel may have: Vulkan lets a rasteriser move vertices to a grid of 1/256 px, and those that clipping makes once more.
 Range depth_range(const View& view, glm::dvec2 centre, const std::function<std::optional<Seen>(const EyeRay&)>& see, double facet_m)
 {
     Range range{2, 0};
-    for (const glm::dvec2& corner : corners) {
-        const EyeRay ray  = eye_ray(view, centre + corner / 256.0);
+    for (const glm::dvec2& offset : around) {
+        const EyeRay ray  = eye_ray(view, centre + offset / 128.0);
         const auto   seen = see(ray);
         if (!seen) continue;
         const double cosine = std::abs(glm::dot(glm::normalize(ray.direction_ws), seen->normal_ws));
@@ -131,8 +131,8 @@ void expect_seen(const Picture& picture, const std::function<std::optional<Seen>
         const glm::dvec2 centre = glm::dvec2(x, y) + 0.5;
         const auto       seen   = see(eye_ray(view, centre));
         bool             edge   = false;
-        for (const glm::dvec2& corner : corners) {
-            const auto other = see(eye_ray(view, centre + corner / 64.0));
+        for (const glm::dvec2& offset : around) {
+            const auto other = see(eye_ray(view, centre + offset / 64.0));
             edge |= (other ? other->object : 0) != (seen ? seen->object : 0);
         }
         edges += edge;

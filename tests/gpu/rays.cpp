@@ -58,9 +58,7 @@ Worst compare(const Picture& picture, const TraceSettings& settings, const Rays&
         seen[at(picture.image, pixel.x, pixel.y)] = true;
         const ScreenRay ray = make_screen_ray(picture.image, pixel, settings);
         EXPECT_TRUE(ray.traced);
-        if (static_cast<TraceStatus>(rays.pixels[i] >> (2 * PIXEL_BITS)) != ray.end_status) {
-            ++worst.other_end; // two limits within rounding: then the ends differ by rounding, too
-        }
+        worst.other_end += static_cast<TraceStatus>(rays.pixels[i] >> (2 * PIXEL_BITS)) != ray.end_status; // two limits within rounding
         const double nearest = std::max(ray.origin_px_depth.z, std::abs(ray.origin_px_depth.z + ray.delta_px_depth.z));
         worst.origin_px = std::max(worst.origin_px, glm::length(glm::dvec2(rays.origins[i]) - glm::dvec2(ray.origin_px_depth)));
         worst.delta_px  = std::max(worst.delta_px, glm::length(glm::dvec2(rays.deltas[i]) - glm::dvec2(ray.delta_px_depth)));
@@ -119,14 +117,13 @@ TEST(Rays, AgreeWithDoublePrecision)
     for (const Case& c : cases()) {
         const Picture picture = make_picture(c.image);
         const Worst   worst   = compare(picture, c.settings, make_rays<float>(picture, c.settings, Precision::float32));
-        // Float: a few units in the last place of the picture's width.
+        // Float: some units in the last place of the picture's width; a ray that nearly runs along the line of sight loses digits.
         const double px = 6e-7 * std::max({picture.view.size_px.x, picture.view.size_px.y, 4});
         EXPECT_LE(worst.origin_px, c.settings.ray_offset_m > 0 ? px : 0) << describe(c);
         EXPECT_LE(worst.delta_px, 20 * px) << describe(c);
-        EXPECT_LE(worst.depth, 2e-5) << describe(c);
+        EXPECT_LE(worst.depth, 1e-4) << describe(c);
         EXPECT_LE(worst.length, 1e-3) << describe(c);
         EXPECT_LE(worst.other_end, worst.rays / 1000) << describe(c);
-        if (std::getenv("SSRLAB_TEST_PRINT")) fmt::print("{}: {} rays, origin {:.3g} px, delta {:.3g} px, depth {:.3g}, length {:.3g}, other end {}\n", describe(c), worst.rays, worst.origin_px, worst.delta_px, worst.depth, worst.length, worst.other_end);
     }
 }
 

@@ -1,0 +1,79 @@
+#include "contract/disputed_rays.h"
+
+#include "core/error.h"
+#include "truth/screen_truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ssrlab::test {
+namespace {
+
+/// Where the ray is inside a pixel's square; t_in > t_out: it passes outside.
+struct Overlap {
+    double t_in = 0, t_out = 1;
+};
+
+Overlap overlap(const ScreenRay& ray, glm::ivec2 pixel)
+{
+    Overlap inside;
+    for (int axis : {0, 1}) {
+        const double origin = ray.origin_px_depth[axis], delta = ray.delta_px_depth[axis];
+        if (delta == 0) continue;
+        const double a = (pixel[axis] - origin) / delta, b = (pixel[axis] + 1 - origin) / delta;
+        inside.t_in  = std::max(inside.t_in, std::min(a, b));
+        inside.t_out = std::min(inside.t_out, std::max(a, b));
+    }
+    return inside;
+}
+
+/// The last place of a float of this size.
+double ulp(double value)
+{
+    const auto rounded = static_cast<float>(std::abs(value));
+    return static_cast<double>(std::nextafter(rounded, std::numeric_limits<float>::infinity()) - rounded);
+}
+
+bool hit(const TraceResult& result, size_t index) { return result.status[index] == TraceStatus::hit; }
+
+/// The pixel that one of the two takes and the other passes: the first of their hits.
+glm::ivec2 disputed_pixel(const ScreenRay& ray, const TraceResult& truth, const TraceResult& found, size_t index)
+{
+    if (!hit(truth, index)) return found.hit_pixel[index];
+    if (!hit(found, index)) return truth.hit_pixel[index];
+    return overlap(ray, truth.hit_pixel[index]).t_in < overlap(ray, found.hit_pixel[index]).t_in ? truth.hit_pixel[index] : found.hit_pixel[index];
+}
+
+} // namespace
+
+Dispute explain_dispute(const GBufferImage& gbuffer, const TraceSettings& settings, const TraceResult& truth, const TraceResult& found, size_t index)
+{
+    const glm::ivec2 size = gbuffer.view.size_px;
+    const glm::ivec2 start(static_cast<int>(index) % size.x, static_cast<int>(index) / size.x);
+    const ScreenRay  ray       = make_screen_ray(gbuffer, start, settings);
+    const double     length_px = glm::length(glm::dvec2(ray.delta_px_depth));
+    Dispute          dispute;
+    dispute.missed     = hit(truth, index) && !hit(found, index);
+    dispute.allowed_px = 8 * ulp(std::max(size.x, size.y));
+    if (!hit(truth, index) && !hit(found, index)) {
+        // Neither hits: they disagree on which limit ends the ray, so its end must lie on the image's border.
+        const glm::dvec2 end = glm::dvec2(ray.origin_px_depth) + glm::dvec2(ray.delta_px_depth), rest = glm::dvec2(size) - end;
+        dispute.corner_px    = std::min({end.x, end.y, rest.x, rest.y});
+        dispute.face         = std::numeric_limits<double>::infinity();
+    } else {
+        const glm::ivec2 pixel  = disputed_pixel(ray, truth, found, index);
+        const Overlap    inside = overlap(ray, pixel);
+        const double     depth  = static_cast<double>(gbuffer.depth[static_cast<size_t>(pixel.y) * static_cast<size_t>(size.x) + static_cast<size_t>(pixel.x)]);
+        const double     z_in = ray.origin_px_depth.z + inside.t_in * ray.delta_px_depth.z, z_out = ray.origin_px_depth.z + inside.t_out * ray.delta_px_depth.z;
+        dispute.corner_px    = (inside.t_out - inside.t_in) * length_px;
+        dispute.face         = std::min(std::abs(depth - std::min(z_in, z_out)), std::abs(std::max(z_in, z_out) - slab_back(gbuffer.view, depth, settings)));
+        dispute.allowed_face = 8 * ulp(std::max({ray.origin_px_depth.z, z_in, z_out, depth})) + dispute.allowed_px * std::abs(ray.delta_px_depth.z) / length_px;
+    }
+    dispute.text = fmt::format("ray of pixel ({}, {}): {} in double, {} in single precision; {:.3g} px of the disputed pixel (rounding: {:.3g}), {:.3g} from its slab's face (rounding: {:.3g})",
+                               start.x, start.y, trace_status_names[static_cast<size_t>(truth.status[index])], trace_status_names[static_cast<size_t>(found.status[index])],
+                               dispute.corner_px, dispute.allowed_px, dispute.face, dispute.allowed_face);
+    return dispute;
+}
+
+} // namespace ssrlab::test

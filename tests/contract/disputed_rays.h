@@ -1,0 +1,24 @@
+// Rays on which single and double precision disagree: is it rounding, and of what?
+#pragma once
+
+#include "core/gbuffer_image.h"
+#include "core/trace_result.h"
+
+#include <string>
+
+namespace ssrlab::test {
+
+struct Dispute {
+    bool        missed    = false; // double precision hits, single misses
+    double      corner_px = 0;     // length of the ray inside the disputed pixel; negative: by how much it passes outside
+    double      face      = 0;     // gap between the ray's depth there and the nearest face of the slab
+    double      allowed_px = 0, allowed_face = 0;
+    std::string text;
+
+    bool explained() const { return corner_px <= allowed_px || face <= allowed_face; }
+};
+
+/// `index`: the pixel whose ray it is. The results must differ there.
+Dispute explain_dispute(const GBufferImage& gbuffer, const TraceSettings& settings, const TraceResult& truth, const TraceResult& found, size_t index);
+
+} // namespace ssrlab::test
