@@ -15,11 +15,11 @@ template <typename Real> struct ViewBlock {
     glm::ivec2        size_px;
 };
 
-template <typename Real> Buffer upload_view_as(Gpu& gpu, const View& view)
+template <typename Real> void write_view_as(Gpu& gpu, Buffer& target, const View& view)
 {
     const ViewBlock<Real> block{glm::vec<2, Real>(view.focal_px), glm::vec<2, Real>(view.centre_px), static_cast<Real>(view.near_m),
                                 static_cast<Real>(view.far_m), view.size_px};
-    return make_buffer_with<ViewBlock<Real>>(gpu, std::span(&block, 1));
+    upload(gpu, target, &block, sizeof(block));
 }
 
 size_t count_reflecting(Gpu& gpu, const GBuffer& gbuffer)
@@ -37,9 +37,19 @@ glm::uvec3 groups_of_8(glm::ivec2 size_px)
 
 } // namespace
 
+void write_view(Gpu& gpu, Buffer& target, const View& view, Precision precision)
+{
+    if (precision == Precision::float64)
+        write_view_as<double>(gpu, target, view);
+    else
+        write_view_as<float>(gpu, target, view);
+}
+
 Buffer upload_view(Gpu& gpu, const View& view, Precision precision)
 {
-    return precision == Precision::float64 ? upload_view_as<double>(gpu, view) : upload_view_as<float>(gpu, view);
+    Buffer buffer = make_buffer(gpu, sizeof(ViewBlock<double>));
+    write_view(gpu, buffer, view, precision);
+    return buffer;
 }
 
 RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision)

@@ -116,7 +116,7 @@ PyramidImages make_pyramid_images(Gpu& gpu, glm::ivec2 size_px)
     const int        width  = 1 << images.levels;
     const int        step   = std::max(width, 1);
     const int        padded = (size_px.x + step - 1) / step * step;
-    images.atlas            = make_image(gpu, {.format  = vk::Format::eR32G32Sfloat,
+    images.atlas            = make_image(gpu, {.format  = vk::Format::eR32G32Uint,
                                                .size_px = {std::max(padded, 2), std::max(level_size(size_px, 1).y, 1)},
                                                .usage   = vk::ImageUsageFlagBits::eStorage});
     return images;
@@ -126,7 +126,7 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame)
 {
     const FrameBuffers& buffers   = *frame.buffers;
     Constants           constants = settings_constants(frame, Precision::float32);
-    constants.add(CONSTANT_PYRAMID_KIND, static_cast<int32_t>(parameter_or(frame, "pyramid", PYRAMID_MINMAX)));
+    constants.add(CONSTANT_PYRAMID_KIND, static_cast<int32_t>(parameter_or(frame, "pyramid", PYRAMID_OCCUPANCY)));
     PyramidPasses passes;
     passes.build       = make_compute_pass(gpu, compile_shader({.file = "depth_pyramid.comp"}),
                                            {{"depth_image", buffers.gbuffer->depth}, {"depth_pyramid", buffers.pyramid.atlas}}, constants,

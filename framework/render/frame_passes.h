@@ -13,6 +13,7 @@ struct RayBuffers {
 };
 /// The uniform block of shaders/view.glsl.
 Buffer     upload_view(Gpu& gpu, const View& view, Precision precision);
+void       write_view(Gpu& gpu, Buffer& target, const View& view, Precision precision);
 RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision);
 
 /// All levels >= 1 of the depth pyramid in one atlas; level L begins at x = width - (width >> (L - 1)).

@@ -151,24 +151,33 @@ std::vector<float> usable_depth(std::span<const float> depth)
     return clean;
 }
 
-GBufferPtr upload_gbuffer(Gpu& gpu, const GBufferImage& image)
+void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image)
 {
-    GBufferPtr   gbuffer = make_gbuffer(gpu, image.view);
-    const size_t count   = image.depth.size();
+    const size_t count = image.depth.size();
     if (count != static_cast<size_t>(image.view.size_px.x) * static_cast<size_t>(image.view.size_px.y))
-        throw std::logic_error("upload_gbuffer: depth does not match the view's size");
+        throw std::logic_error("upload_surfaces: depth does not match the view's size");
     const std::vector<float> depth = usable_depth(image.depth);
     std::vector<glm::vec4>   normal(count);
-    std::vector<HalfTexel> material(count), radiance(count), highlight(count);
+    std::vector<HalfTexel>   material(count);
     for (size_t i = 0; i < count; ++i) {
-        normal[i]         = {image.normal_vs[i], image.roughness[i]};
-        material[i]       = to_half({image.base_colour[i], image.metallic[i]});
-        radiance[i]       = to_half({image.radiance[i], 1});
-        highlight[i]      = to_half({image.highlight[i], 1});
+        normal[i]   = {image.normal_vs[i], image.roughness[i]};
+        material[i] = to_half({image.base_colour[i], image.metallic[i]});
     }
-    upload(gpu, gbuffer->depth, depth.data(), count * sizeof(float));
-    upload(gpu, gbuffer->normal, normal.data(), count * sizeof(glm::vec4));
-    upload(gpu, gbuffer->material, material.data(), count * sizeof(HalfTexel));
+    upload(gpu, gbuffer.depth, depth.data(), count * sizeof(float));
+    upload(gpu, gbuffer.normal, normal.data(), count * sizeof(glm::vec4));
+    upload(gpu, gbuffer.material, material.data(), count * sizeof(HalfTexel));
+}
+
+GBufferPtr upload_gbuffer(Gpu& gpu, const GBufferImage& image)
+{
+    GBufferPtr gbuffer = make_gbuffer(gpu, image.view);
+    upload_surfaces(gpu, *gbuffer, image);
+    const size_t           count = image.depth.size();
+    std::vector<HalfTexel> radiance(count), highlight(count);
+    for (size_t i = 0; i < count; ++i) {
+        radiance[i]  = to_half({image.radiance[i], 1});
+        highlight[i] = to_half({image.highlight[i], 1});
+    }
     upload(gpu, gbuffer->radiance, radiance.data(), count * sizeof(HalfTexel));
     upload(gpu, gbuffer->highlight, highlight.data(), count * sizeof(HalfTexel));
     upload(gpu, gbuffer->object, image.object_id.data(), count * sizeof(uint32_t));

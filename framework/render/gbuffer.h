@@ -25,5 +25,7 @@ struct GBuffer {
 
 /// Depth as tracers read it: what shaders/sanitise_depth.comp makes of a depth buffer.
 std::vector<float> usable_depth(std::span<const float> depth);
+/// Depth, normal, roughness, base colour and metallic of a picture of the same size.
+void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image);
 
 } // namespace ssrlab

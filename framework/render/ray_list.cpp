@@ -120,6 +120,16 @@ std::vector<RayOutcome> trace_rays(Gpu& gpu, RayTracer& tracer, std::span<const 
     return in_double(tracer) ? read_outcomes<double>(gpu, tracer, rays.size()) : read_outcomes<float>(gpu, tracer, rays.size());
 }
 
+void replace_picture(Gpu& gpu, RayTracer& tracer, const GBufferImage& image)
+{
+    GBuffer& gbuffer = *tracer.frame.buffers->gbuffer;
+    if (image.view.size_px != gbuffer.view.size_px || image.view.projection != gbuffer.view.projection)
+        throw std::logic_error("replace_picture: size or projection differ");
+    gbuffer.view = image.view;
+    upload_surfaces(gpu, gbuffer, image);
+    write_view(gpu, tracer.view, image.view, tracer.rays.precision);
+}
+
 GBufferPtr upload_depth(Gpu& gpu, const View& view, std::span<const float> depth)
 {
     auto gbuffer  = std::make_shared<GBuffer>();

@@ -42,6 +42,9 @@ std::vector<RayInput> set_up_rays(Gpu& gpu, RayTracer& tracer);
 /// Builds the inputs that the technique reads and traces the list. Values are rounded to the tracer's precision.
 std::vector<RayOutcome> trace_rays(Gpu& gpu, RayTracer& tracer, std::span<const RayInput> rays);
 
+/// Puts another picture of the same size and projection in the place of the tracer's G-buffer.
+void replace_picture(Gpu& gpu, RayTracer& tracer, const GBufferImage& image);
+
 /// A G-buffer of nothing but depth, for lists of rays without the facing rule: a twelfth of the memory.
 GBufferPtr upload_depth(Gpu& gpu, const View& view, std::span<const float> depth);
 

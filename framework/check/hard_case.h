@@ -1,0 +1,67 @@
+// The catalogue of hard cases (docs/hard_cases.md): what breaks tracers, the smallest picture and rays that show it, and the answer.
+#pragma once
+
+#include "check/setup.h"
+#include "core/error.h"
+
+namespace ssrlab {
+
+/// What a ray of a case must find, known without tracing it.
+struct Expected {
+    std::optional<TraceStatus> status = TraceStatus::hit; // none: only what follows is known
+    std::optional<glm::ivec2>  pixel  = {};               // of the hit
+    std::optional<double>      t      = {};               // of the hit, within 1e-4
+    std::optional<glm::dvec2>  end_px = {};               // where the ray must end on screen, within 0.001 px
+};
+
+/// Another setup whose answers must be the same, ray by ray, once `back` has mapped them.
+struct Relation {
+    std::string                             name;
+    std::function<Setup(const Setup&)>      change;
+    std::function<RayOutcome(RayOutcome)>   back      = [](RayOutcome outcome) { return outcome; };
+    bool                                    compare_t = true; // bit by bit; else status and pixel only
+};
+
+struct HardCase {
+    std::string                         name;
+    std::string                         breaks; // why tracers fail here
+    std::string                         answer; // the expected answer and where it comes from
+    std::function<std::vector<Setup>()> setups;
+    /// The closed form, if there is one. Every ray is compared with the screen truth besides.
+    std::function<std::optional<Expected>(const Setup&, const RayInput&)> expected = {};
+    /// Hold for exact techniques; others are held to mirror images and repetition alone.
+    std::vector<Relation>               relations = {};
+    /// Changes the technique's parameters for this case; the others keep their defaults.
+    std::function<void(const Technique&, ParameterValues&)> adjust = {};
+    /// The most iterations that an exact technique may need a ray, where that is less than 2 (W + H - 1) + start level.
+    std::function<int(const Setup&)>    most_steps = {};
+};
+
+/// What must be refused, with a message that names the culprit.
+struct RefusedCase {
+    std::string           name;
+    std::function<void()> attempt; // throws SpecError
+    std::string           named;   // a part of its message
+};
+
+struct CaseFamily {
+    std::string              name;
+    std::vector<HardCase>    cases;
+    std::vector<RefusedCase> refused = {};
+};
+
+/// All families, in the order of the table.
+const std::vector<CaseFamily>& hard_cases();
+
+CaseFamily direction_cases();
+CaseFamily border_cases();
+CaseFamily depth_cases();
+CaseFamily size_cases();
+CaseFamily camera_cases();
+CaseFamily scale_cases();
+CaseFamily surface_cases();
+CaseFamily normal_cases();
+CaseFamily parameter_cases();
+CaseFamily motion_cases();
+
+} // namespace ssrlab

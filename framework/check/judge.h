@@ -1,0 +1,69 @@
+// Is what a technique says about one ray right? Judged in double precision, with room for what single precision cannot decide.
+#pragma once
+
+#include "check/setup.h"
+
+#include <limits>
+#include <string>
+
+namespace ssrlab {
+
+/// How far a ray may be inside a pixel that was wrongly skipped or taken before it is a gross error.
+inline constexpr double sliver_px = 0.05;
+
+enum class Verdict {
+    right,
+    sliver, // another pixel than the exact one, but the ray is less than sliver_px inside the pixels in question, or touches their slab's face
+    allowed, // missed what the technique's declared limits let it miss
+    wrong,
+};
+
+struct Judgement {
+    Verdict     verdict      = Verdict::right;
+    double      deviation_px = 0; // between the hit points on screen, if the ray hits in both
+    std::string reason       = {}; // wrong only
+};
+
+/// What the technique claims.
+struct Claim {
+    bool may_miss_between_samples = false; // limit "point_sampled"
+    bool may_miss_behind_objects  = false; // limit "stops_behind_objects"
+};
+Claim claim_of(const Technique& technique);
+
+/// A pixel that a ray visits, in order.
+struct Visit {
+    glm::ivec2 pixel{0, 0};
+    double     t_in = 0, t_out = 0;
+    double     z_in = 0, z_out = 0;
+    double     front = 0, back = 0;   // of its slab; background: front <= 0
+    double     contact   = 0;         // depth by which the ray's interval overlaps the slab; negative: a gap
+    bool       faces     = true;      // or the facing rule is off
+};
+
+/// How deep the ray goes into the pixel: its largest distance to the pixel's borders there.
+double depth_inside_px(const RayInput& ray, const Visit& visit);
+
+class Judge {
+public:
+    /// Keeps a reference to the setup.
+    explicit Judge(const Setup& setup);
+
+    /// All pixels of the walk, the start pixel excluded.
+    std::vector<Visit> walk(const RayInput& ray) const;
+    /// The hit contract in double precision.
+    RayOutcome exact_answer(const RayInput& ray) const;
+    Judgement  judge(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
+    /// Breaks of what holds for every technique: finite numbers, hits on screen, inside the segment and outside the start pixel, a status that
+    /// the ray can have. Empty: none.
+    std::string broken_invariant(const RayInput& ray, const RayOutcome& outcome) const;
+
+private:
+    Visit       visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_out) const;
+    double      depth_rounding(const RayInput& ray, const Visit& visit) const;
+    std::string unsound_hit(const RayInput& ray, const RayOutcome& outcome) const;
+
+    const Setup& setup_;
+};
+
+} // namespace ssrlab
