@@ -32,8 +32,14 @@
 #define CONSTANT_PYRAMID_KIND 10
 #define CONSTANT_PARAMETERS 32
 
-#define PYRAMID_MINMAX 0
-#define PYRAMID_NEAREST 1
+// What a pyramid cell records (hiz's parameter `pyramid`, in this order).
+#define PYRAMID_OCCUPANCY 0
+#define PYRAMID_MINMAX 1
+#define PYRAMID_NEAREST 2
+
+// Depth codes of pyramid cells: 16 bits, from 2^-31 up (exponents are biased by 127).
+#define PYRAMID_MAX_CODE 0xFFFF
+#define PYRAMID_LOWEST_EXPONENT 96
 
 // Background in the depth image that tracers read: nearer than nothing, so that no interval touches it.
 #define BACKGROUND_DEPTH -1.0

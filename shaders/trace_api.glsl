@@ -5,13 +5,14 @@
 // are used after it, and lanes that left in the middle of the body get another iteration's value.
 #include "view.glsl"
 #include "slab.glsl"
+#include "pyramid_cell.glsl"
 
 layout(constant_id = CONSTANT_FACING) const int facing_rule = 0;
 layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1;
 
 layout(set = 0, binding = 1, r32f) uniform readonly image2D depth_image;
 layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image;
-layout(set = 0, binding = 3, rg32f) uniform readonly image2D depth_pyramid; // levels 1, 2, … in one atlas
+layout(set = 0, binding = 3, rg32ui) uniform readonly uimage2D depth_pyramid; // levels 1, 2, … in one atlas
 
 struct Ray
 {
@@ -131,17 +132,11 @@ int pyramid_levels()
     return largest > 1 ? findMSB(largest - 1) + 1 : 0;
 }
 
-// A cell of level >= 1: x = nearest front, y = farthest slab back of its pixels, rounded outward.
-real2 load_pyramid(ivec2 cell, int level)
+// A cell of level >= 1 (pyramid_cell.glsl says what it knows).
+uvec2 load_pyramid(ivec2 cell, int level)
 {
     int width = imageSize(depth_pyramid).x; // a multiple of 2^levels; level L begins at width - (width >> (L - 1))
-    return real2(imageLoad(depth_pyramid, ivec2(width - (width >> (level - 1)), 0) + cell).xy);
-}
-
-real2 fetch_pyramid(ivec2 cell, int level)
-{
-    COUNT(pyramid_fetches);
-    return load_pyramid(cell, level);
+    return imageLoad(depth_pyramid, ivec2(width - (width >> (level - 1)), 0) + cell).xy;
 }
 
 // ---- The hit contract
@@ -185,9 +180,9 @@ bool touches_cell(Ray ray, ivec2 cell, int level, real z_a, real z_b)
     pyramid_fetches += uint(!leaf);
 #endif
     real  depth = real(imageLoad(depth_image, cell).x);
-    real2 node  = load_pyramid(cell, leaf ? 1 : level);
+    uvec2 node  = load_pyramid(cell, leaf ? 1 : level);
     real  z_near = z_a > z_b ? z_a : z_b, z_far = z_a > z_b ? z_b : z_a;
-    bool  touched = leaf ? depth >= z_far && reaches_slab_back(depth, z_near) : node.x >= z_far && node.y <= z_near;
+    bool  touched = leaf ? depth >= z_far && reaches_slab_back(depth, z_near) : cell_may_touch(node, float(z_far), float(z_near));
     if (facing_rule == 0) return touched;
     bool accepted   = !leaf || faces(ray, cell);
     met_facing_away = met_facing_away || (touched && !accepted);

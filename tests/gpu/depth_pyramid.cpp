@@ -6,6 +6,7 @@
 #include "unit/truth_gbuffers.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace ssrlab::test {
 namespace {
@@ -13,10 +14,10 @@ namespace {
 struct Pyramid {
     glm::ivec2             size_px, atlas_size_px;
     int                    levels = 0;
-    std::vector<glm::vec2> atlas;
+    std::vector<glm::uvec2> atlas;
 
     glm::ivec2 size(int level) const { return ((size_px - 1) >> level) + 1; }
-    glm::vec2  at(int level, int x, int y) const
+    glm::uvec2 at(int level, int x, int y) const
     {
         const int left = atlas_size_px.x - (atlas_size_px.x >> (level - 1));
         return atlas.at(static_cast<size_t>(y * atlas_size_px.x + left + x));
@@ -29,7 +30,7 @@ Pyramid build(const Picture& picture, const TraceSettings& settings, double kind
     const auto       frame = prepare_frame(device(), picture.buffers, hiz, values_of(hiz, {{"pyramid", kind}, {"top_level", 14}}), {settings, {}});
     submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_pyramid(commands, frame->pyramid); });
     const PyramidImages& images = picture.buffers->pyramid;
-    return {picture.view.size_px, images.atlas.size_px, images.levels, download_as<glm::vec2>(device(), images.atlas)};
+    return {picture.view.size_px, images.atlas.size_px, images.levels, download_as<glm::uvec2>(device(), images.atlas)};
 }
 
 /// Levels: as many halvings, rounded up, as it takes to reach one cell.
@@ -40,31 +41,60 @@ int expected_levels(glm::ivec2 size)
     return levels;
 }
 
-/// What a cell must hold: the nearest depth, bit for bit; the farthest back, rounded outward by at most 4e-6 of itself.
-void expect_cells(const Pyramid& pyramid, const GBufferImage& image, const TraceSettings& settings, bool nearest_only)
+/// The top bits of the number, from 2^-31 up: 11 bits of mantissa (shaders/pyramid_cell.glsl).
+uint32_t code(double depth)
+{
+    const auto bits = std::bit_cast<int32_t>(static_cast<float>(depth));
+    return static_cast<uint32_t>(std::clamp((bits >> 12) - (PYRAMID_LOWEST_EXPONENT << 11), 0, PYRAMID_MAX_CODE));
+}
+
+/// One bit per eighth of an octave between two codes, modulo 32.
+uint32_t bins(uint32_t low, uint32_t high)
+{
+    uint32_t mask = 0;
+    for (uint32_t bin = low >> 8; bin <= high >> 8; ++bin) mask |= 1U << (bin % 32);
+    return mask;
+}
+
+/// The cell of one level, from all its pixels. The back is rounded outward, by 2^-20 at most: both roundings of its code are right.
+struct Expected {
+    uint32_t nearest = 0, farthest_low = PYRAMID_MAX_CODE, farthest_high = PYRAMID_MAX_CODE, least_bins = 0, most_bins = 0;
+};
+
+Expected expect_cell(const GBufferImage& image, const TraceSettings& settings, int kind, int level, int x, int y)
+{
+    Expected         cell;
+    const glm::ivec2 size = image.view.size_px;
+    for (int py = y << level; py < std::min((y + 1) << level, size.y); ++py)
+        for (int px = x << level; px < std::min((x + 1) << level, size.x); ++px) {
+            const double depth = static_cast<double>(image.depth[at(image, px, py)]);
+            if (depth <= 0) continue;
+            const double   back = kind == PYRAMID_NEAREST ? 0 : slab_back(image.view, depth, settings);
+            const uint32_t front = code(depth), inner = code(back), outer = code(back * (1 - 4e-6));
+            cell.nearest       = std::max(cell.nearest, front);
+            cell.farthest_low  = std::min(cell.farthest_low, outer);
+            cell.farthest_high = std::min(cell.farthest_high, inner);
+            cell.least_bins |= kind == PYRAMID_OCCUPANCY ? bins(inner, front) : ~0U;
+            cell.most_bins |= kind == PYRAMID_OCCUPANCY ? bins(outer, front) : ~0U;
+        }
+    return cell;
+}
+
+void expect_cells(const Pyramid& pyramid, const GBufferImage& image, const TraceSettings& settings, int kind)
 {
     ASSERT_EQ(pyramid.levels, expected_levels(pyramid.size_px));
     size_t wrong = 0;
     for (int level = 1; level <= pyramid.levels; ++level)
         for (int y = 0; y < pyramid.size(level).y; ++y)
             for (int x = 0; x < pyramid.size(level).x; ++x) {
-                float  front = static_cast<float>(BACKGROUND_DEPTH), back_of_cells = 2;
-                double back = 2;
-                for (int py = y << level; py < std::min((y + 1) << level, pyramid.size_px.y); ++py)
-                    for (int px = x << level; px < std::min((x + 1) << level, pyramid.size_px.x); ++px) {
-                        const float depth = image.depth[at(image, px, py)];
-                        if (depth <= 0) continue;
-                        front         = std::max(front, depth);
-                        back          = std::min(back, slab_back(image.view, static_cast<double>(depth), settings));
-                        back_of_cells = std::min(back_of_cells, pyramid.at(1, px >> 1, py >> 1).y);
-                    }
-                const glm::vec2 cell = pyramid.at(level, x, y);
-                const bool      empty = front < 0;
-                const double    stored = cell.y, slack = 4e-6 * std::abs(back) + (back < 0 ? 2e-6 : 0);
-                const bool      back_right = empty ? cell.y == 2 : nearest_only ? cell.y == -1e30F : cell.y == back_of_cells && stored <= back && stored >= back - slack;
-                if (cell.x == front && back_right) continue;
-                if (wrong++ < 3)
-                    ADD_FAILURE() << fmt::format("{}x{}: level {}, cell ({}, {}): ({}, {}), expected ({}, {})", pyramid.size_px.x, pyramid.size_px.y, level, x, y, cell.x, cell.y, front, back);
+                const Expected   expected = expect_cell(image, settings, kind, level, x, y);
+                const glm::uvec2 cell     = pyramid.at(level, x, y);
+                const uint32_t   nearest = cell.x >> 16, farthest = cell.x & PYRAMID_MAX_CODE;
+                const bool       right   = nearest == expected.nearest && farthest >= expected.farthest_low && farthest <= expected.farthest_high &&
+                                   (cell.y & expected.least_bins) == expected.least_bins && (cell.y & ~expected.most_bins) == 0;
+                if (!right && wrong++ < 3)
+                    ADD_FAILURE() << fmt::format("{}x{}, kind {}: level {}, cell ({}, {}): nearest {} farthest {} bins {:08x}, expected {}, {} to {}, {:08x}", pyramid.size_px.x,
+                                                 pyramid.size_px.y, kind, level, x, y, nearest, farthest, cell.y, expected.nearest, expected.farthest_low, expected.farthest_high, expected.least_bins);
             }
     EXPECT_EQ(wrong, 0U);
 }
@@ -74,10 +104,10 @@ class DepthPyramid : public testing::TestWithParam<glm::ivec2> {};
 TEST_P(DepthPyramid, EqualsBruteForceOnRandomDepth)
 {
     const Picture picture = make_picture(random_gbuffer(bench_view(GetParam()), 7));
-    for (const double thickness : {0.1, 0.0, std::numeric_limits<double>::infinity()})
-        expect_cells(build(picture, {.thickness_m = thickness}, PYRAMID_MINMAX), picture.image, {.thickness_m = thickness}, false);
-    expect_cells(build(picture, {.thickness_m = 0.2, .thickness_relative = true}, PYRAMID_MINMAX), picture.image, {.thickness_m = 0.2, .thickness_relative = true}, false);
-    expect_cells(build(picture, {}, PYRAMID_NEAREST), picture.image, {}, true);
+    for (const int kind : {PYRAMID_OCCUPANCY, PYRAMID_MINMAX, PYRAMID_NEAREST})
+        for (const TraceSettings& settings : {TraceSettings{.thickness_m = 0.1}, TraceSettings{.thickness_m = 0}, TraceSettings{.thickness_m = std::numeric_limits<double>::infinity()},
+                                              TraceSettings{.thickness_m = 0.2, .thickness_relative = true}})
+            expect_cells(build(picture, settings, kind), picture.image, settings, kind);
 }
 
 // A last row or column that a level drops would hide the only texel that is near.
@@ -88,12 +118,12 @@ TEST_P(DepthPyramid, SeesTheOnlyNearTexelInEveryCornerAndBorder)
         GBufferImage image = empty_gbuffer(bench_view(size));
         std::ranges::fill(image.depth, 0.01F);
         image.depth[at(image, near.x, near.y)] = 0.75F;
-        const Pyramid pyramid = build(make_picture(image), {}, PYRAMID_MINMAX);
+        const Pyramid pyramid = build(make_picture(image), {}, PYRAMID_OCCUPANCY);
         ASSERT_EQ(pyramid.levels, expected_levels(size));
         for (int level = 1; level <= pyramid.levels; ++level)
             for (int y = 0; y < pyramid.size(level).y; ++y)
                 for (int x = 0; x < pyramid.size(level).x; ++x)
-                    ASSERT_EQ(pyramid.at(level, x, y).x, (near >> level) == glm::ivec2(x, y) ? 0.75F : 0.01F)
+                    ASSERT_EQ(pyramid.at(level, x, y).x >> 16, code((near >> level) == glm::ivec2(x, y) ? 0.75 : 0.01))
                         << size.x << "x" << size.y << ", near texel (" << near.x << ", " << near.y << "), level " << level << ", cell (" << x << ", " << y << ")";
     }
 }
@@ -111,7 +141,7 @@ TEST(DepthPyramidOrthographic, EqualsBruteForce)
     view.far_m      = 20;
     const Picture picture = make_picture(random_gbuffer(view, 3));
     for (const bool relative : {false, true})
-        expect_cells(build(picture, {.thickness_m = 0.1, .thickness_relative = relative}, PYRAMID_MINMAX), picture.image, {.thickness_m = 0.1, .thickness_relative = relative}, false);
+        expect_cells(build(picture, {.thickness_m = 0.1, .thickness_relative = relative}, PYRAMID_OCCUPANCY), picture.image, {.thickness_m = 0.1, .thickness_relative = relative}, PYRAMID_OCCUPANCY);
 }
 
 // NaN, infinities, negative numbers and depths nearer than the near plane are background, and disturb no other pixel.
@@ -128,7 +158,7 @@ TEST(UnusableDepth, IsBackgroundAndChangesNothingElse)
     const Picture       good = make_picture(clean), bad = make_picture(spoilt);
     const TraceSettings settings{.thickness_m = 0.3};
     EXPECT_EQ(good.image.depth, bad.image.depth);
-    expect_cells(build(bad, settings, PYRAMID_MINMAX), clean, settings, false);
+    expect_cells(build(bad, settings, PYRAMID_OCCUPANCY), clean, settings, PYRAMID_OCCUPANCY);
     std::string first;
     for (const char* id : {"dda", "hiz", "linear", "linear_binary"}) {
         const Technique& t = technique(id);
