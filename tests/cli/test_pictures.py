@@ -22,7 +22,7 @@ class Test(Case):
         self.ssrlab("list", says=["linear_binary", "hiz", "builtin:stairs", "thin_yard", "Devices"])
 
     def test_show_gives_ranges_and_sources(self):
-        self.ssrlab("show", "hiz", says=["max_steps", "60000", "minmax | nearest", "Uludag", "exact"])
+        self.ssrlab("show", "hiz", says=["max_steps", "60000", "occupancy | minmax | nearest", "Uludag", "exact"])
 
     def test_help_of_everything(self):
         self.ssrlab("--help", says=["render", "trace", "gbuffer", "run", "plot", "--device"])
