@@ -1,4 +1,5 @@
 // The command line: names and help here, the work in commands.cpp and harness/.
+#include "app/check_command.h"
 #include "app/commands.h"
 #include "core/error.h"
 #include "harness/run_experiment.h"
@@ -74,6 +75,15 @@ int main(int argc, char** argv)
     plot->add_option("DIR", results, "Results folder")->required();
     plot->callback([&] { command = [&] { return plot_results(results); }; });
     app.add_subcommand("measures", "Every column of results.csv and what it means (results/README.md)")->callback([&] { command = [&] { return print_measures(common); }; });
+
+    HardCaseOptions hard_cases;
+    auto* check = app.add_subcommand("check", "Techniques against the catalogue of hard cases (docs/hard_cases.md); fails when one breaks what it claims");
+    check->add_option("TECHNIQUE|DIR", hard_cases.subject, "A technique, or a folder of techniques; default: all");
+    check->add_option("--case", hard_cases.only_case, "Only this case");
+    check->add_option("--ray", hard_cases.ray, "SETUP:RAY of the case: show its way, pixel by pixel");
+    check->add_option("--markdown", hard_cases.markdown, "Write the table to this file");
+    check->add_flag("--quick", hard_cases.quick, "Without double precision and robust buffer access");
+    check->callback([&] { command = [&] { return check_techniques(common, hard_cases); }; });
 
     try {
         app.parse(argc, argv);

@@ -60,6 +60,9 @@ glm::dvec3 direction_vs(const View& view, const RayInput& ray)
 
 double screen_length_px(const RayInput& ray) { return glm::length(glm::dvec2(ray.delta_px_depth)); }
 
+/// A thousandth of a pixel.
+double slack_t(const RayInput& ray) { return 1e-3 / std::max(screen_length_px(ray), 1e-3); }
+
 std::string name(const RayOutcome& outcome)
 {
     if (outcome.status != TraceStatus::hit) return std::string(trace_status_names.at(static_cast<size_t>(outcome.status)));
@@ -165,8 +168,7 @@ std::string Judge::unsound_hit(const RayInput& ray, const RayOutcome& outcome) c
     const Visit v = visit(ray, outcome.hit_pixel, t.from, t.to);
     if (!(v.contact >= -depth_rounding(ray, v)))
         return fmt::format("{}, where the ray's depth {:.9g} … {:.9g} does not meet the slab {:.9g} … {:.9g}", name(outcome), v.z_in, v.z_out, v.front, v.back);
-    const double slack = 1e-3 / std::max(screen_length_px(ray), 1e-3);
-    if (outcome.t < t.from - slack || outcome.t > t.to + slack)
+    if (outcome.t < t.from - slack_t(ray) || outcome.t > t.to + slack_t(ray))
         return fmt::format("{}, but the ray is in that pixel from {:.9g} to {:.9g}", name(outcome), t.from, t.to);
     return {};
 }
@@ -190,7 +192,7 @@ Judgement Judge::judge(const RayInput& ray, const RayOutcome& outcome, const Cla
     result.verdict = Verdict::sliver;
     bool was_behind = false;
     for (const Visit& v : walk(ray)) {
-        if (hit && v.pixel == outcome.hit_pixel) break;
+        if (hit && (v.pixel == outcome.hit_pixel || v.t_in >= outcome.t - slack_t(ray))) break;
         was_behind = was_behind || (v.front > 0 && std::max(v.z_in, v.z_out) < v.back);
         if (!v.faces || !(v.contact > depth_rounding(ray, v)) || depth_inside_px(ray, v) <= sliver_px) continue;
         result.verdict = claim.may_miss_between_samples || (claim.may_miss_behind_objects && was_behind) ? Verdict::allowed : Verdict::wrong;

@@ -41,6 +41,15 @@ std::string text(const RayOutcome& outcome)
     return fmt::format("hit ({}, {}) t {:.9g}", outcome.hit_pixel.x, outcome.hit_pixel.y, outcome.t);
 }
 
+void add_to_digest(uint64_t& digest, const RayOutcome& outcome)
+{
+    const bool hit    = outcome.status == TraceStatus::hit;
+    uint64_t   t_bits = 0;
+    std::memcpy(&t_bits, &outcome.t, sizeof(t_bits));
+    const uint64_t pixel = static_cast<uint64_t>(outcome.hit_pixel.x) << 32 | static_cast<uint64_t>(outcome.hit_pixel.y);
+    for (const uint64_t word : {static_cast<uint64_t>(outcome.status), hit ? pixel : 0, hit ? t_bits : 0, static_cast<uint64_t>(outcome.steps)}) digest = (digest ^ word) * 0x100000001b3ULL;
+}
+
 /// One run of one technique on one case; collects the row.
 class CaseRun {
 public:
@@ -96,7 +105,7 @@ private:
         row_.rays += outcomes.size();
         for (size_t i = 0; i < outcomes.size(); ++i) {
             const RayOutcome& outcome = outcomes[i];
-            add_to_digest(outcome);
+            add_to_digest(row_.digest, outcome);
             row_.non_finite += !std::isfinite(outcome.t);
             row_.out_of_steps += outcome.status == TraceStatus::out_of_steps;
             row_.most_steps = std::max(row_.most_steps, outcome.steps);
@@ -186,18 +195,6 @@ private:
         for (size_t i = 0; i < answers.size(); ++i) row_.precision_changes += !same_answer(answers[i], outcomes[i], false);
     }
 
-    void add_to_digest(const RayOutcome& outcome)
-    {
-        uint64_t t_bits = 0;
-        std::memcpy(&t_bits, &outcome.t, sizeof(t_bits));
-        const bool hit = outcome.status == TraceStatus::hit;
-        for (const uint64_t word : {static_cast<uint64_t>(outcome.status), hit ? static_cast<uint64_t>(outcome.hit_pixel.y * MAX_IMAGE + outcome.hit_pixel.x) : 0,
-                                    hit ? t_bits : 0, static_cast<uint64_t>(outcome.steps)})
-            row_.digest = (row_.digest ^ word) * 0x100000001b3ULL;
-    }
-
-    static constexpr int MAX_IMAGE = 16384;
-
     Gpu&                   gpu_;
     const Technique&       technique_;
     ParameterValues        values_;
@@ -220,6 +217,18 @@ CaseRow run_case(Gpu& gpu, const Technique& technique, const ParameterValues& va
     CaseRun(gpu, technique, values, hard_case, row).run(options);
     row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return row;
+}
+
+uint64_t digest_of(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case)
+{
+    ParameterValues adjusted = values;
+    if (hard_case.adjust) hard_case.adjust(technique, adjusted);
+    uint64_t digest = 0;
+    for (Setup& setup : hard_case.setups()) {
+        const Stage stage = put_on_device(gpu, technique, adjusted, std::move(setup));
+        for (const RayOutcome& outcome : trace_rays(gpu, *stage.tracer, stage.setup.rays)) add_to_digest(digest, outcome);
+    }
+    return digest;
 }
 
 std::string describe_ray(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case, size_t setup_index, size_t ray_index)

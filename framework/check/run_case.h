@@ -28,6 +28,9 @@ struct CheckOptions {
 CaseRow run_case(Gpu& gpu, const Technique& technique, const ParameterValues& values, const std::string& family, const HardCase& hard_case,
                  const CheckOptions& options = {});
 
+/// The digest that run_case would give, and nothing else.
+uint64_t digest_of(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case);
+
 /// A ray in words: its numbers, the pixels it visits, what is there, what the technique said and what is right.
 std::string describe_ray(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case, size_t setup, size_t ray);
 

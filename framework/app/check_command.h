@@ -1,0 +1,19 @@
+// ssrlab check: techniques against the catalogue of hard cases.
+#pragma once
+
+#include "app/commands.h"
+
+namespace ssrlab {
+
+struct HardCaseOptions {
+    std::string subject;    // a technique's id, a folder of techniques, or empty: the tree's
+    std::string only_case;
+    std::string ray;        // "SETUP:RAY" of only_case: show it instead
+    std::string markdown;   // file for the table
+    bool        quick = false;
+};
+
+/// 0, or 1 when a technique breaks what it claims.
+int check_techniques(const CommonOptions& common, const HardCaseOptions& options);
+
+} // namespace ssrlab

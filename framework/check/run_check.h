@@ -1,0 +1,23 @@
+// The whole catalogue, technique by technique.
+#pragma once
+
+#include "check/run_case.h"
+
+namespace ssrlab {
+
+struct CheckRequest {
+    std::vector<Technique> techniques;
+    std::string            only_case; // empty: all
+    CheckOptions           options;
+};
+
+/// Calls `on_row` after each case. With a `robust` device (robust buffer access on), its answers must be the same bits.
+/// Throws SpecError for a case that does not exist.
+std::vector<CaseRow> run_check(Gpu& gpu, Gpu* robust, const CheckRequest& request, const std::function<void(const CaseRow&)>& on_row);
+
+/// Attempts what must be refused; a line for each that was not.
+std::vector<std::string> check_refusals();
+
+const HardCase& find_case(const std::string& name);
+
+} // namespace ssrlab
