@@ -26,7 +26,7 @@ class Test(Case):
 
     def test_help_of_everything(self):
         self.ssrlab("--help", says=["render", "trace", "gbuffer", "run", "plot", "--device"])
-        for command in ("list", "show", "render", "trace", "gbuffer", "run", "plot", "measures"):
+        for command in ("list", "show", "render", "trace", "gbuffer", "run", "plot", "check", "measures"):
             self.ssrlab(command, "--help", says=["Usage"])
 
     def test_usage_errors_are_2(self):
