@@ -180,12 +180,12 @@ def bars(axis, rows, results, value, spread, ylabel):
         tops = part[f"{spread}_ci_high"].fillna(part[value]) if spread else part[value]
         for x, height, top in zip(at, part[value], tops):
             if np.isfinite(height):
-                axis.annotate(f"{height:.3g}", (x, top), ha="center", va="bottom", fontsize=7, xytext=(0, 3),
+                axis.annotate(f"{height:.0f}" if height >= 100 else f"{height:.3g}", (x, top), ha="center", va="bottom", fontsize=7, xytext=(0, 3),
                               textcoords="offset points", rotation=90 if len(scenes) * len(series) > 12 else 0)
     axis.set_xticks(range(len(scenes)), scenes)
     axis.set(ylabel=ylabel)
     log_axis(axis.yaxis)
-    axis.margins(y=0.18)
+    axis.set_ylim(top=axis.get_ylim()[1] * 2)  # room for the numbers above the bars
     axis.grid(axis="x", visible=False)
 
 

@@ -7,12 +7,13 @@ SHOWN = ["scene", "view", "width", "height", "series", "trace_ms_median", "trace
          "flip_visible", "repeats"]
 MANY_ROWS = 60
 MANY_PICTURES = 24
+MANY_PAIRS = 12
 
 STYLE = """body{font:15px/1.5 system-ui,sans-serif;max-width:76em;margin:2em auto;padding:0 1em;color:#222}
 table{border-collapse:collapse;font-size:13px;margin:1em 0;display:block;overflow-x:auto}
 td,th{border:1px solid #ccc;padding:.2em .6em;text-align:right;white-space:nowrap}td:first-child,th:first-child{text-align:left}
 th{background:#f2f2f2}img{max-width:100%}figure{display:inline-block;width:31%;margin:.5%;vertical-align:top}
-figcaption{font-size:12px;color:#555}.plot{width:100%}pre{background:#f6f6f6;padding:1em;overflow-x:auto}"""
+figcaption{font-size:12px;color:#555}.plot{width:100%}.half{width:49.5%;margin-right:.5%}pre{background:#f6f6f6;padding:1em;overflow-x:auto}"""
 
 
 def short(value):
@@ -74,12 +75,38 @@ def blocks(results, plots, tables, summary):
             yield "text", f"The first {MANY_ROWS} of {len(results.rows)}; all of them, with every measure: results.csv."
     pictures = results.rows[results.rows.picture.notna()] if "picture" in results.rows else results.rows.iloc[:0]
     if len(pictures):
+        if len(pictures) <= MANY_PAIRS:
+            yield "heading", "Side by side"
+            yield "text", "Each picture beside the one whose settings differ least from its own."
+            for left, right, caption in pairs(results, pictures):
+                yield "pair", left, right, caption
         yield "heading", "Pictures"
         for _, row in pictures.head(MANY_PICTURES).iterrows():
             yield "picture", row.picture, f"{row.scene}, {row.width}×{row.height}: {setting(results, row)}"
     if environment.get("specification"):
         yield "heading", "Specification"
         yield "code", environment["specification"]
+
+
+def pairs(results, pictures):
+    """(left, right, what differs): every picture with the closest other one of the same scene, each pair once."""
+    names = ["technique"] + results.varying(pictures)
+    rows = [row for _, row in pictures.sort_values(["scene"] + names).iterrows()]
+
+    def differing(a, b):
+        return [name for name in names if a[name] != b[name] and (a[name] == a[name] or b[name] == b[name])]
+
+    seen = set()
+    for row in rows:
+        others = [other for other in rows if other.scene == row.scene and other.run_id != row.run_id]
+        if not others:
+            continue
+        other = min(others, key=lambda candidate: len(differing(row, candidate)))
+        if (other.run_id, row.run_id) in seen:
+            continue
+        seen.add((row.run_id, other.run_id))
+        changes = ", ".join(f"{name} {short(row[name])} → {short(other[name])}" for name in differing(row, other))
+        yield row.picture, other.picture, f"{row.scene}: {changes}"
 
 
 def interval(value, low, high):
@@ -107,6 +134,8 @@ def to_markdown(parts):
                                    ["| " + " | ".join(row) + " |" for row in cells[1:]]))
         elif kind in ("plot", "picture"):
             lines.append(f"![{content[1]}]({content[0]})" + (f"\n*{content[1]}*" if kind == "picture" else ""))
+        elif kind == "pair":
+            lines.append(f"| {content[2]} | |\n|---|---|\n| ![]({content[0]}) | ![]({content[1]}) |")
         elif kind == "code":
             lines.append(f"```toml\n{content[0].rstrip()}\n```")
     return "\n\n".join(lines) + "\n"
@@ -133,6 +162,9 @@ def to_html(parts):
             body.append(f'<p><a href="{vector}"><img class="plot" src="{safe[0]}" alt="{safe[1]}"></a></p>')
         elif kind == "picture":
             body.append(f'<figure><a href="{safe[0]}"><img src="{safe[0]}" alt=""></a><figcaption>{safe[1]}</figcaption></figure>')
+        elif kind == "pair":
+            images = "".join(f'<a href="{path}"><img class="half" src="{path}" alt=""></a>' for path in safe[:2])
+            body.append(f"<p>{images}<br>{safe[2]}</p>")
         elif kind == "code":
             body.append(f"<pre>{safe[0]}</pre>")
     text = "\n".join(body)
