@@ -149,7 +149,9 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
                      {"normal_image", buffers.gbuffer->normal},
                      {"material_image", buffers.gbuffer->material},
                      {"depth_pyramid", buffers.pyramid.atlas}});
-    ShaderSource trace{.file          = "trace.comp",
+    // A folder with a trace.comp of its own replaces the standard one (for techniques that work in tiles, say).
+    const std::filesystem::path own = frame.technique.folder / "trace.comp";
+    ShaderSource trace{.file          = std::filesystem::exists(own) ? own : std::filesystem::path("trace.comp"),
                        .defines       = precision_defines(rays.precision),
                        .include_files = {{"technique/trace.glsl", frame.technique.folder / "trace.glsl"}},
                        .include_texts = {{"technique/parameters", parameter_declarations(frame.technique)}}};
