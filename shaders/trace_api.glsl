@@ -64,11 +64,11 @@ real fraction_to_t(Ray ray, real fraction)
     return fraction * ray.origin.z / (end_depth - fraction * ray.delta.z);
 }
 
-// Screen t of the point so many metres along the ray; > 1 beyond the end of the segment.
+// Screen t of the point so many metres along the ray; > 1 beyond the end of the segment. Infinity is beyond every end, also of a ray without one.
 real metres_to_t(Ray ray, real distance_m)
 {
     real fraction = distance_m / ray.length_m;
-    return fraction > real(1) ? real(2) : fraction_to_t(ray, fraction);
+    return isinf(distance_m) || fraction > real(1) ? real(2) : fraction_to_t(ray, fraction);
 }
 
 // ---- Borders between pixels, in closed form: the same number at every level of the pyramid, monotone along the ray.

@@ -51,7 +51,7 @@ struct Picture {
     GpuImage                                copy;
     ComputePass                             copy_pass;
     Timestamps                              timestamps;
-    std::map<std::string, PreparedFramePtr> frames; // by technique, or hiz's pyramid: "minmax", "nearest"
+    std::map<std::string, PreparedFramePtr> frames; // by technique, or hiz's pyramid: "occupancy", "minmax", "nearest"
     std::map<std::string, Work>             work;   // by technique
 };
 
@@ -74,10 +74,15 @@ public:
         measure(state, p, [&](const auto& commands) { dispatch(commands, p.copy_pass, groups(p)); });
     }
 
+    double pyramid_kind(const std::string& name) const
+    {
+        return parse_parameter(find_parameter(find_technique(techniques_, "hiz"), "pyramid", "benchmark"), name, "benchmark");
+    }
+
     void pyramid(benchmark::State& state, const std::string& scene, const std::string& size, const std::string& kind)
     {
         Picture&       p     = picture(scene, size);
-        PreparedFrame& frame = frame_of(p, kind, "hiz", {{"pyramid", kind == "nearest"}});
+        PreparedFrame& frame = frame_of(p, kind, "hiz", {{"pyramid", pyramid_kind(kind)}});
         measure(state, p, [&](const auto& commands) { record_pyramid(commands, frame.pyramid); });
     }
 
@@ -209,7 +214,7 @@ void add_all(Bench& bench, const std::string& scene)
         const std::string size = entry.first, base = scene + "/" + size + "/";
         add(base + "gbuffer", 1, [&bench, scene, size](auto& state) { bench.gbuffer(state, scene, size); });
         add(base + "copy_depth", 5, [&bench, scene, size](auto& state) { bench.copy(state, scene, size); });
-        for (const std::string kind : {"minmax", "nearest"})
+        for (const std::string kind : {"occupancy", "minmax", "nearest"})
             add(base + "pyramid/" + kind, 5, [&bench, scene, size, kind](auto& state) { bench.pyramid(state, scene, size, kind); });
         add(base + "rays", 5, [&bench, scene, size](auto& state) { bench.rays(state, scene, size); });
         for (const Technique& t : bench.techniques())

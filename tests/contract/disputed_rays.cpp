@@ -28,6 +28,22 @@ Overlap overlap(const ScreenRay& ray, glm::ivec2 pixel)
     return inside;
 }
 
+/// How far the pixel's square may shrink until the ray no longer meets it; negative: how far it must grow to be met.
+double depth_inside_px(const ScreenRay& ray, glm::ivec2 pixel)
+{
+    // The distance to the nearest side is concave along the ray.
+    const auto inside = [&](double t) {
+        const glm::dvec2 p = glm::dvec2(ray.origin_px_depth) + t * glm::dvec2(ray.delta_px_depth) - glm::dvec2(pixel);
+        return std::min({p.x, p.y, 1 - p.x, 1 - p.y});
+    };
+    double low = 0, high = 1;
+    for (int i = 0; i < 200; ++i) {
+        const double a = low + (high - low) / 3, b = high - (high - low) / 3;
+        (inside(a) < inside(b) ? low : high) = inside(a) < inside(b) ? a : b;
+    }
+    return inside(0.5 * (low + high));
+}
+
 /// The last place of a float of this size.
 double ulp(double value)
 {
@@ -37,12 +53,16 @@ double ulp(double value)
 
 bool hit(const TraceResult& result, size_t index) { return result.status[index] == TraceStatus::hit; }
 
-/// The pixel that one of the two takes and the other passes: the first of their hits.
-glm::ivec2 disputed_pixel(const ScreenRay& ray, const TraceResult& truth, const TraceResult& found, size_t index)
+/// The pixel that one of the two takes and the other passes: the first of their hits; where the ray reaches both at a corner, the one that it
+/// barely touches.
+glm::ivec2 disputed_pixel(const ScreenRay& ray, const TraceResult& truth, const TraceResult& found, size_t index, double rounding_px)
 {
     if (!hit(truth, index)) return found.hit_pixel[index];
     if (!hit(found, index)) return truth.hit_pixel[index];
-    return overlap(ray, truth.hit_pixel[index]).t_in < overlap(ray, found.hit_pixel[index]).t_in ? truth.hit_pixel[index] : found.hit_pixel[index];
+    const glm::ivec2 a = truth.hit_pixel[index], b = found.hit_pixel[index];
+    const double     apart = (overlap(ray, a).t_in - overlap(ray, b).t_in) * glm::length(glm::dvec2(ray.delta_px_depth));
+    const bool       at_corner = std::abs(apart) <= rounding_px;
+    return (at_corner ? depth_inside_px(ray, a) < depth_inside_px(ray, b) : apart < 0) ? a : b;
 }
 
 } // namespace
@@ -62,15 +82,15 @@ Dispute explain_dispute(const GBufferImage& gbuffer, const TraceSettings& settin
         dispute.corner_px    = std::min({end.x, end.y, rest.x, rest.y});
         dispute.face         = std::numeric_limits<double>::infinity();
     } else {
-        const glm::ivec2 pixel  = disputed_pixel(ray, truth, found, index);
+        const glm::ivec2 pixel  = disputed_pixel(ray, truth, found, index, dispute.allowed_px);
         const Overlap    inside = overlap(ray, pixel);
         const double     depth  = static_cast<double>(gbuffer.depth[static_cast<size_t>(pixel.y) * static_cast<size_t>(size.x) + static_cast<size_t>(pixel.x)]);
         const double     z_in = ray.origin_px_depth.z + inside.t_in * ray.delta_px_depth.z, z_out = ray.origin_px_depth.z + inside.t_out * ray.delta_px_depth.z;
-        dispute.corner_px    = (inside.t_out - inside.t_in) * length_px;
+        dispute.corner_px    = depth_inside_px(ray, pixel);
         dispute.face         = std::min(std::abs(depth - std::min(z_in, z_out)), std::abs(std::max(z_in, z_out) - slab_back(gbuffer.view, depth, settings)));
         dispute.allowed_face = 8 * ulp(std::max({ray.origin_px_depth.z, z_in, z_out, depth})) + dispute.allowed_px * std::abs(ray.delta_px_depth.z) / length_px;
     }
-    dispute.text = fmt::format("ray of pixel ({}, {}): {} in double, {} in single precision; {:.3g} px of the disputed pixel (rounding: {:.3g}), {:.3g} from its slab's face (rounding: {:.3g})",
+    dispute.text = fmt::format("ray of pixel ({}, {}): {} in double, {} in single precision; {:.3g} px into the disputed pixel (rounding: {:.3g}), {:.3g} from its slab's face (rounding: {:.3g})",
                                start.x, start.y, trace_status_names[static_cast<size_t>(truth.status[index])], trace_status_names[static_cast<size_t>(found.status[index])],
                                dispute.corner_px, dispute.allowed_px, dispute.face, dispute.allowed_face);
     return dispute;

@@ -4,17 +4,20 @@
 #include "core/gbuffer_image.h"
 #include "core/trace_result.h"
 
+#include <cmath>
 #include <string>
 
 namespace ssrlab::test {
 
 struct Dispute {
     bool        missed    = false; // double precision hits, single misses
-    double      corner_px = 0;     // length of the ray inside the disputed pixel; negative: by how much it passes outside
+    double      corner_px = 0;     // how deep the ray goes into the disputed pixel; negative: how far it passes outside
     double      face      = 0;     // gap between the ray's depth there and the nearest face of the slab
     double      allowed_px = 0, allowed_face = 0;
     std::string text;
 
+    /// Through a corner exactly: no rounding of the ray decides it as exact numbers do. Level views send dozens of such rays.
+    bool tie() const { return std::abs(corner_px) < 1e-9; }
     bool explained() const { return corner_px <= allowed_px || face <= allowed_face; }
 };
 

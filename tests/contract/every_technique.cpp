@@ -16,6 +16,8 @@ struct Case {
     glm::ivec2  size_px;
 };
 
+void PrintTo(const Case& c, std::ostream* out) { *out << c.scene << " " << c.size_px.x << "x" << c.size_px.y; }
+
 std::string case_name(const testing::TestParamInfo<Case>& info)
 {
     return fmt::format("{}_{}x{}", info.param.scene.substr(info.param.scene.find(':') + 1), info.param.size_px.x, info.param.size_px.y);

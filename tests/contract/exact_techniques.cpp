@@ -46,20 +46,22 @@ std::vector<Case> all_cases()
 /// Every setting of the parameters that may change the way a technique walks, and must not change what it finds.
 std::vector<ParameterValues> variants(const Technique& technique, const Case& c)
 {
-    std::vector<ParameterValues> list{default_values(technique)};
-    if (technique.id != "hiz") return list;
-    list.push_back(values_of(technique, {{"pyramid", 1}}));
-    // Elsewhere both pyramids at their default levels: what a level may do wrong depends on the borders, and these are the odd ones.
-    if (c.size_px == glm::ivec2(641, 363) || c.size_px == glm::ivec2(97, 1))
-        for (const auto& [start, top] : {std::pair(0, 0), std::pair(0, 14), std::pair(14, 14), std::pair(5, 3), std::pair(1, 5)})
-            for (const double pyramid : {0.0, 1.0}) list.push_back(values_of(technique, {{"pyramid", pyramid}, {"start_level", start}, {"top_level", top}}));
+    if (technique.id != "hiz") return {default_values(technique)};
+    // Every kind of pyramid at its default levels; every level at the sizes with odd borders, which is where a level may go wrong.
+    std::vector<std::pair<int, int>> levels{{0, 7}};
+    if (c.size_px == glm::ivec2(641, 363) || c.size_px == glm::ivec2(97, 1)) levels = {{0, 7}, {0, 0}, {0, 14}, {14, 14}, {5, 3}, {1, 5}};
+    std::vector<ParameterValues> list;
+    const size_t                 kinds = find_parameter(technique, "pyramid", "test").choices.size();
+    for (const auto& [start, top] : levels)
+        for (size_t kind = 0; kind < kinds; ++kind) list.push_back(values_of(technique, {{"pyramid", static_cast<double>(kind)}, {"start_level", start}, {"top_level", top}}));
     return list;
 }
 
-/// Against double precision only rays may differ that pass within rounding of a corner or a slab's face; at most 100 of a million.
+/// Against double precision only rays may differ that pass within rounding of a corner or a slab's face; at most 100 of a million. Exact ties
+/// count, too, except in the views beside the default one.
 void expect_rounding_only(const Picture& picture, const TraceSettings& settings, const TraceResult& truth, const TraceResult& walk)
 {
-    size_t rays = 0, disputed = 0, missed = 0;
+    size_t rays = 0, disputed = 0, missed = 0, ties = 0;
     for (size_t i = 0; i < truth.status.size(); ++i) {
         rays += truth.status[i] != TraceStatus::not_traced;
         const bool both_hit = truth.status[i] == TraceStatus::hit && walk.status[i] == TraceStatus::hit;
@@ -68,12 +70,14 @@ void expect_rounding_only(const Picture& picture, const TraceSettings& settings,
         EXPECT_TRUE(dispute.explained()) << dispute.text;
         ++disputed;
         missed += dispute.missed;
+        ties += dispute.tie();
     }
-    EXPECT_LE(static_cast<double>(disputed), 1e-4 * static_cast<double>(rays));
+    const size_t counted = picture.view.name == "default" ? disputed : disputed - ties;
+    EXPECT_LE(static_cast<double>(counted), 1e-4 * static_cast<double>(rays));
     testing::Test::RecordProperty("rays", static_cast<int>(rays));
     testing::Test::RecordProperty("disputed", static_cast<int>(disputed));
     testing::Test::RecordProperty("missed", static_cast<int>(missed));
-    if (disputed > 0) fmt::print("{} of {} rays differ from double precision by rounding; {} of them miss\n", disputed, rays, missed);
+    if (disputed > 0) fmt::print("{} of {} rays differ from double precision by rounding: {} pass exactly through a corner, {} miss\n", disputed, rays, ties, missed);
 }
 
 class ExactTechniques : public testing::TestWithParam<Case> {};
