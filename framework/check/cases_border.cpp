@@ -179,6 +179,26 @@ HardCase start_on_the_image_border()
             .expected = [](const Setup&, const RayInput&) -> std::optional<Expected> { return Expected{.pixel = glm::ivec2(5, 20)}; }};
 }
 
+HardCase along_the_image_border()
+{
+    return {.name   = "along_the_image_border",
+            .breaks = "on the image's own border every formula for leaving it says: here",
+            .answer = "A component of zero crosses nothing: the rays along y = 64 and x = 64 run in the last row and column and find the poles there; those along 0 in the first.",
+            .setups = [] {
+                Setup setup{{}, picture_of(bench_view(), [](glm::ivec2 p) { return p.x == 40 || p.y == 40 ? 4.0 : 0.0; }), bench, {}};
+                for (const double at : {0.0, 64.0}) {
+                    setup.rays.push_back(level_ray(setup.gbuffer.view, {3.5, at}, {60, 0}, 4.5));
+                    setup.rays.push_back(level_ray(setup.gbuffer.view, {at, 3.5}, {0, 60}, 4.5));
+                }
+                return std::vector{setup};
+            },
+            .expected = [](const Setup&, const RayInput& ray) -> std::optional<Expected> {
+                const glm::dvec2 from(ray.origin_px_depth);
+                const auto       held = [](double at) { return at > 32 ? 63 : 0; };
+                return Expected{.pixel = ray.delta_px_depth.x > 0 ? glm::ivec2(40, held(from.y)) : glm::ivec2(held(from.x), 40)};
+            }};
+}
+
 HardCase shorter_than_a_pixel()
 {
     return {.name   = "shorter_than_a_pixel",
@@ -202,7 +222,7 @@ HardCase shorter_than_a_pixel()
 CaseFamily border_cases()
 {
     return {"border",
-            {signed_zero(), axis_aligned(), exact_diagonal(), rational_slopes(), along_a_border(), within_an_ulp_of_a_corner(), out_at_every_side(), start_on_the_image_border(),
+            {signed_zero(), axis_aligned(), exact_diagonal(), rational_slopes(), along_a_border(), within_an_ulp_of_a_corner(), out_at_every_side(), start_on_the_image_border(), along_the_image_border(),
              shorter_than_a_pixel()}};
 }
 
