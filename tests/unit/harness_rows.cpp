@@ -13,7 +13,7 @@
 namespace ssrlab {
 namespace {
 
-const Technique walk = {"walk", "Walk", "s", {}, {}, false, {"steps"},
+const Technique walk = {"walk", "Walk", "s", {}, {}, false, {}, {"steps"},
                         {{"steps", ParameterType::integer, 64, 1, 60000, {}, "d"},
                          {"space", ParameterType::choice, 0, 0, 1, {"view", "screen"}, "d"}}, {}};
 

@@ -14,14 +14,14 @@ using testing::HasSubstr;
 const std::vector<Technique>& techniques()
 {
     static const std::vector<Technique> both = {
-        {"linear", "Linear", "s", {}, {}, false, {"steps", "binary_steps"},
+        {"linear", "Linear", "s", {}, {}, false, {}, {"steps", "binary_steps"},
          {{"steps", ParameterType::integer, 64, 1, 60000, {}, "d"},
           {"binary_steps", ParameterType::integer, 0, 0, 60000, {}, "d"},
           {"space", ParameterType::choice, 0, 0, 1, {"view", "screen"}, "d"},
           {"jitter", ParameterType::boolean, 0, 0, 1, {}, "d"},
           {"stride", ParameterType::real, 1, 0.5, 8, {}, "d"}},
          {}},
-        {"dda", "DDA", "s", {}, {}, true, {"max_steps"}, {{"max_steps", ParameterType::integer, 60000, 1, 60000, {}, "d"}}, {}}};
+        {"dda", "DDA", "s", {}, {}, true, {}, {"max_steps"}, {{"max_steps", ParameterType::integer, 60000, 1, 60000, {}, "d"}}, {}}};
     return both;
 }
 
