@@ -12,7 +12,8 @@
 namespace ssrlab {
 namespace {
 
-const std::map<std::string, glm::ivec2> sizes = {{"360p", {640, 360}}, {"720p", {1280, 720}}, {"1080p", {1920, 1080}}, {"2160p", {3840, 2160}}};
+const std::map<std::string, glm::ivec2> sizes = {
+    {"360p", {640, 360}}, {"720p", {1280, 720}}, {"1080p", {1920, 1080}}, {"2160p", {3840, 2160}}};
 
 // Every ray sees the whole segment, so that all tracers answer the same question.
 const FrameSettings settings{{.thickness_m = 0.1, .max_distance_m = 1e9}, {}};
@@ -23,7 +24,8 @@ ParameterValues values_for(const Technique& technique)
     ParameterValues values = default_values(technique);
     for (const Parameter& parameter : technique.parameters)
         for (size_t i = 0; i < parameter.choices.size(); ++i)
-            if (parameter.name == "space" && parameter.choices[i] == "screen") values[parameter.name] = static_cast<double>(i);
+            if (parameter.name == "space" && parameter.choices[i] == "screen")
+                values[parameter.name] = static_cast<double>(i);
     return values;
 }
 
@@ -76,7 +78,8 @@ public:
 
     double pyramid_kind(const std::string& name) const
     {
-        return parse_parameter(find_parameter(find_technique(techniques_, "hiz"), "pyramid", "benchmark"), name, "benchmark");
+        return parse_parameter(find_parameter(find_technique(techniques_, "hiz"), "pyramid", "benchmark"), name,
+                               "benchmark");
     }
 
     void pyramid(benchmark::State& state, const std::string& scene, const std::string& size, const std::string& kind)
@@ -90,7 +93,9 @@ public:
     {
         Picture&       p     = picture(scene, size);
         PreparedFrame& frame = frame_of(p, "dda", "dda", {});
-        measure(state, p, [&](const auto& commands) { record_rays(commands, frame.trace, p.buffers->rays, p.gbuffer->view.size_px); });
+        measure(state, p, [&](const auto& commands) {
+            record_rays(commands, frame.trace, p.buffers->rays, p.gbuffer->view.size_px);
+        });
     }
 
     void trace(benchmark::State& state, const std::string& scene, const std::string& size, const std::string& id)
@@ -99,8 +104,10 @@ public:
         PreparedFrame& frame = frame_of(p, id, id, {});
         if (!p.work.contains(id)) p.work[id] = count_work(gpu_, frame);
         prepare_trace(p, frame);
-        const double ms = measure(state, p, [&](const auto& commands) { dispatch_indirect(commands, frame.trace.trace, p.buffers->rays.launch); });
-        const Work&  work = p.work[id];
+        const double ms                   = measure(state, p, [&](const auto& commands) {
+            dispatch_indirect(commands, frame.trace.trace, p.buffers->rays.launch);
+        });
+        const Work&  work                 = p.work[id];
         state.counters["rays"]            = work.rays;
         state.counters["visits_per_ray"]  = work.visits;
         state.counters["fetches_per_ray"] = work.fetches;
@@ -112,7 +119,8 @@ public:
         Picture&       p     = picture(scene, size);
         PreparedFrame& frame = frame_of(p, "hiz", "hiz", {});
         prepare_trace(p, frame);
-        submit(gpu_, [&](const auto& commands) { dispatch_indirect(commands, frame.trace.trace, p.buffers->rays.launch); });
+        submit(gpu_,
+               [&](const auto& commands) { dispatch_indirect(commands, frame.trace.trace, p.buffers->rays.launch); });
         measure(state, p, [&](const auto& commands) {
             dispatch(commands, p.buffers->lit, groups(p));
             barrier(commands);
@@ -130,10 +138,13 @@ private:
             const Scene loaded = load_scene(scene);
             scenes_[scene]     = {upload_scene(gpu_, loaded), find_camera(loaded, "default")};
         }
-        p.gbuffer   = render_gbuffer(gpu_, scenes_[scene].gpu, camera_to_view(scenes_[scene].camera, sizes.at(size)));
-        p.buffers   = make_frame_buffers(gpu_, p.gbuffer);
-        p.copy      = make_image(gpu_, {.format = vk::Format::eR32Sfloat, .size_px = sizes.at(size), .usage = vk::ImageUsageFlagBits::eStorage});
-        p.copy_pass = make_compute_pass(gpu_, compile_shader({.file = "copy_depth.comp"}), {{"depth_image", p.gbuffer->depth}, {"depth_copy", p.copy}});
+        p.gbuffer = render_gbuffer(gpu_, scenes_[scene].gpu, camera_to_view(scenes_[scene].camera, sizes.at(size)));
+        p.buffers = make_frame_buffers(gpu_, p.gbuffer);
+        p.copy    = make_image(
+               gpu_,
+               {.format = vk::Format::eR32Sfloat, .size_px = sizes.at(size), .usage = vk::ImageUsageFlagBits::eStorage});
+        p.copy_pass  = make_compute_pass(gpu_, compile_shader({.file = "copy_depth.comp"}),
+                                         {{"depth_image", p.gbuffer->depth}, {"depth_copy", p.copy}});
         p.timestamps = make_timestamps(gpu_, 2);
         return p;
     }
@@ -205,7 +216,10 @@ private:
 
 template <typename Call> void add(const std::string& name, int iterations, const Call& call)
 {
-    benchmark::RegisterBenchmark(name.c_str(), call)->UseManualTime()->Unit(benchmark::kMillisecond)->Iterations(iterations);
+    benchmark::RegisterBenchmark(name.c_str(), call)
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond)
+        ->Iterations(iterations);
 }
 
 void add_all(Bench& bench, const std::string& scene)
@@ -215,10 +229,12 @@ void add_all(Bench& bench, const std::string& scene)
         add(base + "gbuffer", 1, [&bench, scene, size](auto& state) { bench.gbuffer(state, scene, size); });
         add(base + "copy_depth", 5, [&bench, scene, size](auto& state) { bench.copy(state, scene, size); });
         for (const std::string kind : {"occupancy", "minmax", "nearest"})
-            add(base + "pyramid/" + kind, 5, [&bench, scene, size, kind](auto& state) { bench.pyramid(state, scene, size, kind); });
+            add(base + "pyramid/" + kind, 5,
+                [&bench, scene, size, kind](auto& state) { bench.pyramid(state, scene, size, kind); });
         add(base + "rays", 5, [&bench, scene, size](auto& state) { bench.rays(state, scene, size); });
         for (const Technique& t : bench.techniques())
-            add(base + "trace/" + t.id, 1, [&bench, scene, size, id = t.id](auto& state) { bench.trace(state, scene, size, id); });
+            add(base + "trace/" + t.id, 1,
+                [&bench, scene, size, id = t.id](auto& state) { bench.trace(state, scene, size, id); });
         add(base + "shade", 5, [&bench, scene, size](auto& state) { bench.shade(state, scene, size); });
     }
 }
@@ -238,8 +254,9 @@ std::string take_option(std::vector<char*>& arguments, const std::string& name, 
 
 int run(std::vector<char*> arguments)
 {
-    const std::string device = take_option(arguments, "device", ""), scenes = take_option(arguments, "scene", "thin_yard,interior");
-    std::string       interleave = "--benchmark_enable_random_interleaving=true";
+    const std::string device = take_option(arguments, "device", ""),
+                      scenes = take_option(arguments, "scene", "thin_yard,interior");
+    std::string interleave   = "--benchmark_enable_random_interleaving=true";
     arguments.insert(arguments.begin() + 1, interleave.data()); // first, so that the caller can say otherwise
     auto count = static_cast<int>(arguments.size());
     benchmark::Initialize(&count, arguments.data());

@@ -55,19 +55,21 @@ bool hit(const TraceResult& result, size_t index) { return result.status[index] 
 
 /// The pixel that one of the two takes and the other passes: the first of their hits; where the ray reaches both at a corner, the one that it
 /// barely touches.
-glm::ivec2 disputed_pixel(const ScreenRay& ray, const TraceResult& truth, const TraceResult& found, size_t index, double rounding_px)
+glm::ivec2 disputed_pixel(const ScreenRay& ray, const TraceResult& truth, const TraceResult& found, size_t index,
+                          double rounding_px)
 {
     if (!hit(truth, index)) return found.hit_pixel[index];
     if (!hit(found, index)) return truth.hit_pixel[index];
     const glm::ivec2 a = truth.hit_pixel[index], b = found.hit_pixel[index];
-    const double     apart = (overlap(ray, a).t_in - overlap(ray, b).t_in) * glm::length(glm::dvec2(ray.delta_px_depth));
-    const bool       at_corner = std::abs(apart) <= rounding_px;
+    const double apart = (overlap(ray, a).t_in - overlap(ray, b).t_in) * glm::length(glm::dvec2(ray.delta_px_depth));
+    const bool   at_corner = std::abs(apart) <= rounding_px;
     return (at_corner ? depth_inside_px(ray, a) < depth_inside_px(ray, b) : apart < 0) ? a : b;
 }
 
 } // namespace
 
-Dispute explain_dispute(const GBufferImage& gbuffer, const TraceSettings& settings, const TraceResult& truth, const TraceResult& found, size_t index)
+Dispute explain_dispute(const GBufferImage& gbuffer, const TraceSettings& settings, const TraceResult& truth,
+                        const TraceResult& found, size_t index)
 {
     const glm::ivec2 size = gbuffer.view.size_px;
     const glm::ivec2 start(static_cast<int>(index) % size.x, static_cast<int>(index) / size.x);
@@ -78,21 +80,28 @@ Dispute explain_dispute(const GBufferImage& gbuffer, const TraceSettings& settin
     dispute.allowed_px = 8 * ulp(std::max(size.x, size.y));
     if (!hit(truth, index) && !hit(found, index)) {
         // Neither hits: they disagree on which limit ends the ray, so its end must lie on the image's border.
-        const glm::dvec2 end = glm::dvec2(ray.origin_px_depth) + glm::dvec2(ray.delta_px_depth), rest = glm::dvec2(size) - end;
-        dispute.corner_px    = std::min({end.x, end.y, rest.x, rest.y});
-        dispute.face         = std::numeric_limits<double>::infinity();
+        const glm::dvec2 end  = glm::dvec2(ray.origin_px_depth) + glm::dvec2(ray.delta_px_depth),
+                         rest = glm::dvec2(size) - end;
+        dispute.corner_px     = std::min({end.x, end.y, rest.x, rest.y});
+        dispute.face          = std::numeric_limits<double>::infinity();
     } else {
         const glm::ivec2 pixel  = disputed_pixel(ray, truth, found, index, dispute.allowed_px);
         const Overlap    inside = overlap(ray, pixel);
-        const double     depth  = static_cast<double>(gbuffer.depth[static_cast<size_t>(pixel.y) * static_cast<size_t>(size.x) + static_cast<size_t>(pixel.x)]);
-        const double     z_in = ray.origin_px_depth.z + inside.t_in * ray.delta_px_depth.z, z_out = ray.origin_px_depth.z + inside.t_out * ray.delta_px_depth.z;
+        const double     depth  = static_cast<double>(
+            gbuffer.depth[static_cast<size_t>(pixel.y) * static_cast<size_t>(size.x) + static_cast<size_t>(pixel.x)]);
+        const double z_in    = ray.origin_px_depth.z + inside.t_in * ray.delta_px_depth.z,
+                     z_out   = ray.origin_px_depth.z + inside.t_out * ray.delta_px_depth.z;
         dispute.corner_px    = depth_inside_px(ray, pixel);
-        dispute.face         = std::min(std::abs(depth - std::min(z_in, z_out)), std::abs(std::max(z_in, z_out) - slab_back(gbuffer.view, depth, settings)));
-        dispute.allowed_face = 8 * ulp(std::max({ray.origin_px_depth.z, z_in, z_out, depth})) + dispute.allowed_px * std::abs(ray.delta_px_depth.z) / length_px;
+        dispute.face         = std::min(std::abs(depth - std::min(z_in, z_out)),
+                                        std::abs(std::max(z_in, z_out) - slab_back(gbuffer.view, depth, settings)));
+        dispute.allowed_face = 8 * ulp(std::max({ray.origin_px_depth.z, z_in, z_out, depth})) +
+                               dispute.allowed_px * std::abs(ray.delta_px_depth.z) / length_px;
     }
-    dispute.text = fmt::format("ray of pixel ({}, {}): {} in double, {} in single precision; {:.3g} px into the disputed pixel (rounding: {:.3g}), {:.3g} from its slab's face (rounding: {:.3g})",
-                               start.x, start.y, trace_status_names[static_cast<size_t>(truth.status[index])], trace_status_names[static_cast<size_t>(found.status[index])],
-                               dispute.corner_px, dispute.allowed_px, dispute.face, dispute.allowed_face);
+    dispute.text = fmt::format("ray of pixel ({}, {}): {} in double, {} in single precision; {:.3g} px into the "
+                               "disputed pixel (rounding: {:.3g}), {:.3g} from its slab's face (rounding: {:.3g})",
+                               start.x, start.y, trace_status_names[static_cast<size_t>(truth.status[index])],
+                               trace_status_names[static_cast<size_t>(found.status[index])], dispute.corner_px,
+                               dispute.allowed_px, dispute.face, dispute.allowed_face);
     return dispute;
 }
 

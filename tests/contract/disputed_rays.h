@@ -10,9 +10,9 @@
 namespace ssrlab::test {
 
 struct Dispute {
-    bool        missed    = false; // double precision hits, single misses
-    double      corner_px = 0;     // how deep the ray goes into the disputed pixel; negative: how far it passes outside
-    double      face      = 0;     // gap between the ray's depth there and the nearest face of the slab
+    bool        missed     = false; // double precision hits, single misses
+    double      corner_px  = 0; // how deep the ray goes into the disputed pixel; negative: how far it passes outside
+    double      face       = 0; // gap between the ray's depth there and the nearest face of the slab
     double      allowed_px = 0, allowed_face = 0;
     std::string text;
 
@@ -22,6 +22,7 @@ struct Dispute {
 };
 
 /// `index`: the pixel whose ray it is. The results must differ there.
-Dispute explain_dispute(const GBufferImage& gbuffer, const TraceSettings& settings, const TraceResult& truth, const TraceResult& found, size_t index);
+Dispute explain_dispute(const GBufferImage& gbuffer, const TraceSettings& settings, const TraceResult& truth,
+                        const TraceResult& found, size_t index);
 
 } // namespace ssrlab::test

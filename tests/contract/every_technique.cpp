@@ -20,14 +20,16 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.scene << " " << c.siz
 
 std::string case_name(const testing::TestParamInfo<Case>& info)
 {
-    return fmt::format("{}_{}x{}", info.param.scene.substr(info.param.scene.find(':') + 1), info.param.size_px.x, info.param.size_px.y);
+    return fmt::format("{}_{}x{}", info.param.scene.substr(info.param.scene.find(':') + 1), info.param.size_px.x,
+                       info.param.size_px.y);
 }
 
 std::vector<TraceSettings> settings_for(glm::ivec2 size_px)
 {
     std::vector<TraceSettings> list;
     for (const double thickness : {0.1, infinity, 0.0})
-        for (const double distance : {9.0, infinity}) list.push_back({.thickness_m = thickness, .max_distance_m = distance});
+        for (const double distance : {9.0, infinity})
+            list.push_back({.thickness_m = thickness, .max_distance_m = distance});
     if (size_px != glm::ivec2(161, 91)) return {list[0], list[3]};
     list.push_back({.thickness_m = 0.1, .max_distance_m = 20, .facing = true});
     return list;
@@ -39,7 +41,9 @@ std::vector<ParameterValues> values_for(const Technique& technique, glm::ivec2 s
     std::vector<ParameterValues> list{default_values(technique)};
     if (size_px != glm::ivec2(161, 91)) return list;
     for (const Parameter& parameter : technique.parameters) {
-        const int choices = parameter.type == ParameterType::choice ? static_cast<int>(parameter.choices.size()) : parameter.type == ParameterType::boolean ? 2 : 0;
+        const int choices = parameter.type == ParameterType::choice    ? static_cast<int>(parameter.choices.size())
+                            : parameter.type == ParameterType::boolean ? 2
+                                                                       : 0;
         for (int value = 0; value < choices; ++value)
             if (value != parameter.default_value) list.push_back(values_of(technique, {{parameter.name, value}}));
     }
@@ -47,35 +51,46 @@ std::vector<ParameterValues> values_for(const Technique& technique, glm::ivec2 s
 }
 
 /// What is wrong with the result at one pixel; empty: nothing.
-std::string broken(const Picture& picture, const Technique& technique, const TraceSettings& settings, const TraceResult& result, size_t i, double most_steps)
+std::string broken(const Picture& picture, const Technique& technique, const TraceSettings& settings,
+                   const TraceResult& result, size_t i, double most_steps)
 {
-    const glm::ivec2 size = result.size_px, start(static_cast<int>(i) % size.x, static_cast<int>(i) / size.x), pixel = result.hit_pixel[i];
-    if (static_cast<size_t>(result.status[i]) >= trace_status_names.size()) return fmt::format("status {}", static_cast<int>(result.status[i]));
-    if ((result.status[i] != TraceStatus::not_traced) != reflects(picture.image, start)) return "traced where nothing reflects, or the reverse";
-    if (result.steps[i] > most_steps) return fmt::format("{} steps, at most {} were declared", result.steps[i], most_steps);
+    const glm::ivec2 size  = result.size_px, start(static_cast<int>(i) % size.x, static_cast<int>(i) / size.x),
+                     pixel = result.hit_pixel[i];
+    if (static_cast<size_t>(result.status[i]) >= trace_status_names.size())
+        return fmt::format("status {}", static_cast<int>(result.status[i]));
+    if ((result.status[i] != TraceStatus::not_traced) != reflects(picture.image, start))
+        return "traced where nothing reflects, or the reverse";
+    if (result.steps[i] > most_steps)
+        return fmt::format("{} steps, at most {} were declared", result.steps[i], most_steps);
     if (!settings.facing && result.status[i] == TraceStatus::facing_away) return "facing_away without the facing rule";
     if (!std::isfinite(result.hit_t[i])) return fmt::format("t = {}", result.hit_t[i]);
     if (result.status[i] != TraceStatus::hit) return "";
 
     const glm::dvec3 point = result.hit_px_depth[i];
-    if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) return "the hit point is not finite";
-    if (pixel.x < 0 || pixel.y < 0 || pixel.x >= size.x || pixel.y >= size.y) return fmt::format("hit pixel ({}, {}) is off screen", pixel.x, pixel.y);
+    if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z))
+        return "the hit point is not finite";
+    if (pixel.x < 0 || pixel.y < 0 || pixel.x >= size.x || pixel.y >= size.y)
+        return fmt::format("hit pixel ({}, {}) is off screen", pixel.x, pixel.y);
     if (pixel == start) return "hits its own pixel";
     if (!(result.hit_t[i] > 0 && result.hit_t[i] <= 1)) return fmt::format("t = {}", result.hit_t[i]);
     const double     rounding_px = 5e-7 * std::max({size.x, size.y, 64});
     const glm::dvec2 inside      = glm::dvec2(point) - glm::dvec2(pixel);
     if (std::min(inside.x, inside.y) < -rounding_px || std::max(inside.x, inside.y) > 1 + rounding_px)
         return fmt::format("hit point ({}, {}) is outside its pixel ({}, {})", point.x, point.y, pixel.x, pixel.y);
-    const double depth = static_cast<double>(picture.image.depth[static_cast<size_t>(pixel.y) * static_cast<size_t>(size.x) + static_cast<size_t>(pixel.x)]);
+    const double depth = static_cast<double>(
+        picture.image.depth[static_cast<size_t>(pixel.y) * static_cast<size_t>(size.x) + static_cast<size_t>(pixel.x)]);
     if (depth <= 0) return fmt::format("hits background at ({}, {})", pixel.x, pixel.y);
     if (!technique.exact) return "";
-    const double own_depth = static_cast<double>(picture.image.depth[i]), rounding = 1e-6 * std::max({own_depth, depth, point.z});
+    const double own_depth = static_cast<double>(picture.image.depth[i]),
+                 rounding  = 1e-6 * std::max({own_depth, depth, point.z});
     if (point.z > depth + rounding || point.z < slab_back(picture.view, depth, settings) - rounding)
-        return fmt::format("depth {} of the hit point is outside the slab [{}, {}]", point.z, slab_back(picture.view, depth, settings), depth);
+        return fmt::format("depth {} of the hit point is outside the slab [{}, {}]", point.z,
+                           slab_back(picture.view, depth, settings), depth);
     return "";
 }
 
-void expect_contract(const Case& c, const Picture& picture, const Technique& technique, const ParameterValues& values, const TraceSettings& settings)
+void expect_contract(const Case& c, const Picture& picture, const Technique& technique, const ParameterValues& values,
+                     const TraceSettings& settings)
 {
     const auto        frame  = prepare_frame(device(), picture.buffers, technique, values, {settings, {}});
     const TraceResult result = count_frame(device(), *frame), again = count_frame(device(), *frame);
@@ -84,13 +99,17 @@ void expect_contract(const Case& c, const Picture& picture, const Technique& tec
     for (size_t i = 0; i < result.status.size(); ++i) {
         const std::string text = broken(picture, technique, settings, result, i, iteration_bound(technique, values));
         if (!text.empty() && wrong++ < 3)
-            ADD_FAILURE() << fmt::format("ray of pixel ({}, {}): {}\n{}", i % static_cast<size_t>(c.size_px.x), i / static_cast<size_t>(c.size_px.x), text, repeat);
+            ADD_FAILURE() << fmt::format("ray of pixel ({}, {}): {}\n{}", i % static_cast<size_t>(c.size_px.x),
+                                         i / static_cast<size_t>(c.size_px.x), text, repeat);
     }
     EXPECT_EQ(wrong, 0U) << repeat;
     std::string first;
-    EXPECT_EQ(count_differences(result, again, true, first), 0U) << "the second run differs: " << first << "\n" << repeat;
-    EXPECT_TRUE(result.steps == again.steps && result.depth_fetches == again.depth_fetches && result.pyramid_fetches == again.pyramid_fetches)
-        << "the second run counts other work\n" << repeat;
+    EXPECT_EQ(count_differences(result, again, true, first), 0U) << "the second run differs: " << first << "\n"
+                                                                 << repeat;
+    EXPECT_TRUE(result.steps == again.steps && result.depth_fetches == again.depth_fetches &&
+                result.pyramid_fetches == again.pyramid_fetches)
+        << "the second run counts other work\n"
+        << repeat;
 }
 
 class EveryTechnique : public testing::TestWithParam<Case> {};
@@ -101,7 +120,8 @@ TEST_P(EveryTechnique, HoldsTheContract)
     const Picture picture = make_picture(c.scene, "default", c.size_px);
     for (const Technique& t : list_techniques({}))
         for (const TraceSettings& settings : settings_for(c.size_px))
-            for (const ParameterValues& values : values_for(t, c.size_px)) expect_contract(c, picture, t, values, settings);
+            for (const ParameterValues& values : values_for(t, c.size_px))
+                expect_contract(c, picture, t, values, settings);
 }
 
 // A budget of one step: whoever has more to do says out_of_steps, and nobody finds what needs two.
@@ -113,9 +133,11 @@ TEST_P(EveryTechnique, SaysWhenTheBudgetIsSpent)
     for (const Technique& t : list_techniques({})) {
         if (std::ranges::find(t.parameters, "max_steps", &Parameter::name) == t.parameters.end()) continue;
         const ParameterValues values = values_of(t, {{"max_steps", 1}});
-        const TraceResult     full = trace(picture, t, values_of(t), settings), cut = trace(picture, t, values, settings);
-        size_t                wrong = 0;
-        for (size_t i = 0; i < cut.status.size(); ++i) wrong += cut.status[i] != (full.steps[i] <= 1 ? full.status[i] : TraceStatus::out_of_steps) || cut.steps[i] > 1;
+        const TraceResult full = trace(picture, t, values_of(t), settings), cut = trace(picture, t, values, settings);
+        size_t            wrong = 0;
+        for (size_t i = 0; i < cut.status.size(); ++i)
+            wrong +=
+                cut.status[i] != (full.steps[i] <= 1 ? full.status[i] : TraceStatus::out_of_steps) || cut.steps[i] > 1;
         EXPECT_EQ(wrong, 0U) << repeat_command(c.scene, "default", c.size_px, t, values, settings);
     }
 }
@@ -124,7 +146,8 @@ std::vector<Case> all_cases()
 {
     std::vector<Case> cases;
     for (const char* scene : {"builtin:pole_field", "builtin:corridor", "builtin:sphere_over_mirror"})
-        for (const glm::ivec2& size : {glm::ivec2(1, 1), glm::ivec2(161, 91), glm::ivec2(641, 363)}) cases.push_back({scene, size});
+        for (const glm::ivec2& size : {glm::ivec2(1, 1), glm::ivec2(161, 91), glm::ivec2(641, 363)})
+            cases.push_back({scene, size});
     return cases;
 }
 

@@ -76,19 +76,22 @@ Picture make_picture(const Scene& scene, const Camera& camera, glm::ivec2 size_p
 
 Picture make_picture(const GBufferImage& gbuffer) { return make_picture(upload_gbuffer(device(), gbuffer)); }
 
-TraceResult trace(const Picture& picture, const Technique& technique, const ParameterValues& values, const TraceSettings& settings,
-                  Precision precision)
+TraceResult trace(const Picture& picture, const Technique& technique, const ParameterValues& values,
+                  const TraceSettings& settings, Precision precision)
 {
     const auto frame = prepare_frame(device(), picture.buffers, technique, values, {settings, {}});
     return count_frame(device(), *frame, precision);
 }
 
-std::string repeat_command(const std::string& scene, const std::string& view, glm::ivec2 size_px, const Technique& technique,
-                           const ParameterValues& values, const TraceSettings& settings)
+std::string repeat_command(const std::string& scene, const std::string& view, glm::ivec2 size_px,
+                           const Technique& technique, const ParameterValues& values, const TraceSettings& settings)
 {
-    std::string text = fmt::format("repeat: ssrlab trace {} --view {} --size {}x{} -t {}", scene, view, size_px.x, size_px.y, technique.id);
-    for (const Parameter& p : technique.parameters) text += fmt::format(" -p {}={}", p.name, format_parameter(p, values.at(p.name)));
-    return text + fmt::format(" -p thickness_m={} -p max_distance_m={} -o hits.exr", settings.thickness_m, settings.max_distance_m);
+    std::string text = fmt::format("repeat: ssrlab trace {} --view {} --size {}x{} -t {}", scene, view, size_px.x,
+                                   size_px.y, technique.id);
+    for (const Parameter& p : technique.parameters)
+        text += fmt::format(" -p {}={}", p.name, format_parameter(p, values.at(p.name)));
+    return text + fmt::format(" -p thickness_m={} -p max_distance_m={} -o hits.exr", settings.thickness_m,
+                              settings.max_distance_m);
 }
 
 size_t count_differences(const TraceResult& a, const TraceResult& b, bool compare_t, std::string& first)
@@ -97,11 +100,15 @@ size_t count_differences(const TraceResult& a, const TraceResult& b, bool compar
     size_t     differences = 0;
     for (size_t i = 0; i < a.status.size(); ++i) {
         const bool both_hit = a.status[i] == TraceStatus::hit && b.status[i] == TraceStatus::hit;
-        if (a.status[i] == b.status[i] && (!both_hit || (a.hit_pixel[i] == b.hit_pixel[i] && (!compare_t || a.hit_t[i] == b.hit_t[i])))) continue;
+        if (a.status[i] == b.status[i] &&
+            (!both_hit || (a.hit_pixel[i] == b.hit_pixel[i] && (!compare_t || a.hit_t[i] == b.hit_t[i]))))
+            continue;
         if (differences++ > 0) continue;
-        first = fmt::format("ray of pixel ({}, {}): status {} against {}, pixel ({}, {}) against ({}, {}), t {} against {}", i % width, i / width,
-                            trace_status_names[static_cast<size_t>(a.status[i])], trace_status_names[static_cast<size_t>(b.status[i])],
-                            a.hit_pixel[i].x, a.hit_pixel[i].y, b.hit_pixel[i].x, b.hit_pixel[i].y, a.hit_t[i], b.hit_t[i]);
+        first =
+            fmt::format("ray of pixel ({}, {}): status {} against {}, pixel ({}, {}) against ({}, {}), t {} against {}",
+                        i % width, i / width, trace_status_names[static_cast<size_t>(a.status[i])],
+                        trace_status_names[static_cast<size_t>(b.status[i])], a.hit_pixel[i].x, a.hit_pixel[i].y,
+                        b.hit_pixel[i].x, b.hit_pixel[i].y, a.hit_t[i], b.hit_t[i]);
     }
     return differences;
 }

@@ -28,12 +28,12 @@ Picture make_picture(const Scene& scene, const Camera& camera, glm::ivec2 size_p
 /// A G-buffer made by hand. Picture::image is what the device holds of it (unusable depth has become background).
 Picture make_picture(const GBufferImage& gbuffer);
 
-TraceResult trace(const Picture& picture, const Technique& technique, const ParameterValues& values, const TraceSettings& settings,
-                  Precision precision = Precision::float32);
+TraceResult trace(const Picture& picture, const Technique& technique, const ParameterValues& values,
+                  const TraceSettings& settings, Precision precision = Precision::float32);
 
 /// The command that repeats a trace outside the tests.
-std::string repeat_command(const std::string& scene, const std::string& view, glm::ivec2 size_px, const Technique& technique,
-                           const ParameterValues& values, const TraceSettings& settings);
+std::string repeat_command(const std::string& scene, const std::string& view, glm::ivec2 size_px,
+                           const Technique& technique, const ParameterValues& values, const TraceSettings& settings);
 
 /// Rays whose status, hit pixel or (if asked) hit t differ; `first` describes the first of them.
 size_t count_differences(const TraceResult& a, const TraceResult& b, bool compare_t, std::string& first);

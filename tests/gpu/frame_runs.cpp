@@ -38,11 +38,12 @@ TEST_P(FrameRuns, TimesAreThereAndResultsAreTheCountedOnes)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Techniques, FrameRuns, testing::Values("dda", "hiz", "linear", "linear_binary"), [](const auto& param) { return std::string(param.param); });
+INSTANTIATE_TEST_SUITE_P(Techniques, FrameRuns, testing::Values("dda", "hiz", "linear", "linear_binary"),
+                         [](const auto& param) { return std::string(param.param); });
 
 TEST(GBufferRuns, TheSamePictureEveryTime)
 {
-    const Picture      picture = make_picture("builtin:corridor", "default", {161, 91});
+    const Picture picture = make_picture("builtin:corridor", "default", {161, 91});
     EXPECT_GT(rerender_gbuffer(device(), *picture.gbuffer), 0);
     const GBufferImage again = read_gbuffer(device(), *picture.gbuffer);
     EXPECT_EQ(again.depth, picture.image.depth);
@@ -54,11 +55,12 @@ TEST(GBufferRuns, TheSamePictureEveryTime)
 // Two techniques share one set of buffers: what one leaves behind must not reach the other.
 TEST(SharedBuffers, KeepNoTraceOfTheRunBefore)
 {
-    const Picture       picture = make_picture("builtin:pole_field", "default", {161, 91});
-    const TraceSettings settings{.thickness_m = 0.1};
-    std::map<std::string, PreparedFramePtr> frames;
+    const Picture                             picture = make_picture("builtin:pole_field", "default", {161, 91});
+    const TraceSettings                       settings{.thickness_m = 0.1};
+    std::map<std::string, PreparedFramePtr>   frames;
     std::map<std::string, std::vector<float>> shaded;
-    for (const char* id : {"dda", "hiz", "linear"}) frames[id] = prepare_frame(device(), picture.buffers, technique(id), values_of(technique(id)), {settings, {}});
+    for (const char* id : {"dda", "hiz", "linear"})
+        frames[id] = prepare_frame(device(), picture.buffers, technique(id), values_of(technique(id)), {settings, {}});
     for (int round = 0; round < 2; ++round)
         for (auto& [id, frame] : frames) {
             run_frame(device(), *frame);

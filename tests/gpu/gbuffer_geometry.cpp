@@ -30,7 +30,8 @@ struct Seen {
 };
 
 /// The part of a plane (axis = position) where `inside` holds.
-void see_plane(const EyeRay& ray, int axis, double position, uint32_t object, const std::function<bool(glm::dvec3)>& inside, std::optional<Seen>& nearest)
+void see_plane(const EyeRay& ray, int axis, double position, uint32_t object,
+               const std::function<bool(glm::dvec3)>& inside, std::optional<Seen>& nearest)
 {
     const double s = (position - ray.origin_ws[axis]) / ray.direction_ws[axis];
     if (!(s > 0) || (nearest && nearest->distance_m < s) || !inside(ray.origin_ws + s * ray.direction_ws)) return;
@@ -52,15 +53,18 @@ void see_sphere(const EyeRay& ray, glm::dvec3 centre, double radius, uint32_t ob
 std::optional<Seen> floor_and_wall(const EyeRay& ray)
 {
     std::optional<Seen> nearest;
-    see_plane(ray, 1, -1, 1, [](glm::dvec3 p) { return std::abs(p.x) <= 40 && p.z <= 5 && p.z >= -10; }, nearest);
-    see_plane(ray, 2, -10, 2, [](glm::dvec3 p) { return std::abs(p.x) <= 40 && p.y >= -1 && p.y <= 20; }, nearest);
+    see_plane(
+        ray, 1, -1, 1, [](glm::dvec3 p) { return std::abs(p.x) <= 40 && p.z <= 5 && p.z >= -10; }, nearest);
+    see_plane(
+        ray, 2, -10, 2, [](glm::dvec3 p) { return std::abs(p.x) <= 40 && p.y >= -1 && p.y <= 20; }, nearest);
     return nearest;
 }
 
 std::optional<Seen> floor_and_sphere(const EyeRay& ray)
 {
     std::optional<Seen> nearest;
-    see_plane(ray, 1, -1, 1, [](glm::dvec3 p) { return std::abs(p.x) <= 30 && p.z <= 5 && p.z >= -30; }, nearest);
+    see_plane(
+        ray, 1, -1, 1, [](glm::dvec3 p) { return std::abs(p.x) <= 30 && p.z <= 5 && p.z >= -30; }, nearest);
     see_sphere(ray, {0, 0, -5}, 1, 2, nearest);
     return nearest;
 }
@@ -77,9 +81,9 @@ Camera tilted(double pitch_down_deg, double roll_deg = 0)
 }
 
 struct Slack {
-    double depth       = 0; // relative
-    double facet_m     = 0; // how far facets lie inside the surface that they stand for
-    double normal      = 0;
+    double depth   = 0; // relative
+    double facet_m = 0; // how far facets lie inside the surface that they stand for
+    double normal  = 0;
 };
 
 constexpr glm::dvec2 around[] = {{-1, -1}, {1, -1}, {-1, 1}, {1, 1}, {0, 0}};
@@ -90,7 +94,8 @@ struct Range {
 };
 
 /// Depths that the pixel may have: Vulkan lets a rasteriser move vertices to a grid of 1/256 px, and those that clipping makes once more.
-Range depth_range(const View& view, glm::dvec2 centre, const std::function<std::optional<Seen>(const EyeRay&)>& see, double facet_m)
+Range depth_range(const View& view, glm::dvec2 centre, const std::function<std::optional<Seen>(const EyeRay&)>& see,
+                  double facet_m)
 {
     Range range{2, 0};
     for (const glm::dvec2& offset : around) {
@@ -105,18 +110,25 @@ Range depth_range(const View& view, glm::dvec2 centre, const std::function<std::
 }
 
 /// What is wrong with a pixel; empty: nothing.
-std::string compare_pixel(const Picture& picture, size_t i, glm::dvec2 centre, const std::function<std::optional<Seen>(const EyeRay&)>& see, Slack slack)
+std::string compare_pixel(const Picture& picture, size_t i, glm::dvec2 centre,
+                          const std::function<std::optional<Seen>(const EyeRay&)>& see, Slack slack)
 {
     const GBufferImage& image = picture.image;
     const auto          seen  = see(eye_ray(picture.view, centre));
-    if (image.object_id[i] != (seen ? seen->object : 0)) return fmt::format("shows object {} instead of {}", image.object_id[i], seen ? seen->object : 0);
-    if (!seen) return image.depth[i] == 0 && image.normal_vs[i] == glm::vec3(0) && image.metallic[i] == 0 ? "" : "background is not empty";
-    const double     depth      = static_cast<double>(image.depth[i]);
-    const Range      range      = depth_range(picture.view, centre, see, slack.facet_m);
-    const double     rounding   = picture.view.projection == Projection::perspective ? slack.depth * depth : slack.depth;
-    const glm::dvec3 normal_vs  = glm::dmat3(picture.view.world_to_view) * seen->normal_ws;
-    if (!(depth >= range.low - rounding && depth <= range.high + rounding)) return fmt::format("depth {} is outside [{}, {}]", depth, range.low, range.high);
-    if (!(glm::length(glm::dvec3(image.normal_vs[i]) - normal_vs) <= slack.normal)) return fmt::format("normal is off by {}", glm::length(glm::dvec3(image.normal_vs[i]) - normal_vs));
+    if (image.object_id[i] != (seen ? seen->object : 0))
+        return fmt::format("shows object {} instead of {}", image.object_id[i], seen ? seen->object : 0);
+    if (!seen)
+        return image.depth[i] == 0 && image.normal_vs[i] == glm::vec3(0) && image.metallic[i] == 0
+                   ? ""
+                   : "background is not empty";
+    const double     depth     = static_cast<double>(image.depth[i]);
+    const Range      range     = depth_range(picture.view, centre, see, slack.facet_m);
+    const double     rounding  = picture.view.projection == Projection::perspective ? slack.depth * depth : slack.depth;
+    const glm::dvec3 normal_vs = glm::dmat3(picture.view.world_to_view) * seen->normal_ws;
+    if (!(depth >= range.low - rounding && depth <= range.high + rounding))
+        return fmt::format("depth {} is outside [{}, {}]", depth, range.low, range.high);
+    if (!(glm::length(glm::dvec3(image.normal_vs[i]) - normal_vs) <= slack.normal))
+        return fmt::format("normal is off by {}", glm::length(glm::dvec3(image.normal_vs[i]) - normal_vs));
     return std::abs(glm::length(image.normal_vs[i]) - 1) <= 1e-5F ? "" : "normal is not of unit length";
 }
 
@@ -137,7 +149,8 @@ void expect_seen(const Picture& picture, const std::function<std::optional<Seen>
         }
         edges += edge;
         const std::string mistake = edge ? "" : compare_pixel(picture, i, centre, see, slack);
-        if (!mistake.empty() && wrong++ < 3) ADD_FAILURE() << fmt::format("pixel ({}, {}) of {}x{}: {}", x, y, view.size_px.x, view.size_px.y, mistake);
+        if (!mistake.empty() && wrong++ < 3)
+            ADD_FAILURE() << fmt::format("pixel ({}, {}) of {}x{}: {}", x, y, view.size_px.x, view.size_px.y, mistake);
     }
     EXPECT_EQ(wrong, 0U);
     EXPECT_LE(static_cast<double>(edges), 0.02 * static_cast<double>(count) + 4);
@@ -148,7 +161,8 @@ class GBufferPitches : public testing::TestWithParam<double> {};
 TEST_P(GBufferPitches, FloorAndWallAreWhereTheFormulasSay)
 {
     const Scene scene = load_scene("builtin:mirror_floor_wall");
-    for (const glm::ivec2& size : {glm::ivec2(1, 1), glm::ivec2(97, 1), glm::ivec2(1, 33), glm::ivec2(160, 90), glm::ivec2(321, 203)})
+    for (const glm::ivec2& size :
+         {glm::ivec2(1, 1), glm::ivec2(97, 1), glm::ivec2(1, 33), glm::ivec2(160, 90), glm::ivec2(321, 203)})
         expect_seen(make_picture(scene, tilted(GetParam(), 7), size), floor_and_wall, {1e-6, 0, 1e-6});
 }
 
@@ -159,7 +173,8 @@ TEST_P(GBufferPitches, SphereIsWhereTheFormulaSays)
     const auto  see   = [](const EyeRay& ray) {
         auto seen = floor_and_sphere(ray);
         // Facets and sphere have different outlines: pixels that graze the sphere count as edges.
-        const bool grazing = seen && seen->object == 2 && std::abs(glm::dot(glm::normalize(ray.direction_ws), seen->normal_ws)) < 0.15;
+        const bool grazing =
+            seen && seen->object == 2 && std::abs(glm::dot(glm::normalize(ray.direction_ws), seen->normal_ws)) < 0.15;
         if (grazing) seen->object = 1000 + static_cast<uint32_t>(seen->distance_m * 1e6);
         return seen;
     };
@@ -178,9 +193,12 @@ TEST(GBuffer, OrthographicViewsShowTheSamePlanes)
     camera.far_m      = 50;
     const Scene scene = load_scene("builtin:mirror_floor_wall");
     for (const glm::ivec2& size : {glm::ivec2(1, 1), glm::ivec2(97, 1), glm::ivec2(160, 90)})
-        expect_seen(make_picture(scene, camera, size), [](const EyeRay& ray) {
-            auto seen = floor_and_wall(ray);
-            return seen && seen->distance_m >= 0.1 && seen->distance_m <= 50 ? seen : std::nullopt; }, {3e-7, 0, 1e-6});
+        expect_seen(make_picture(scene, camera, size),
+                    [](const EyeRay& ray) {
+                        auto seen = floor_and_wall(ray);
+                        return seen && seen->distance_m >= 0.1 && seen->distance_m <= 50 ? seen : std::nullopt;
+                    },
+                    {3e-7, 0, 1e-6});
 }
 
 TEST(GBuffer, VoidIsBackgroundEverywhere)
@@ -205,13 +223,15 @@ TEST(GBuffer, OffCentreByWholePixelsMovesThePicture)
     size_t        other_object = 0, compared = 0;
     for (int y = 3; y < size.y; ++y)
         for (int x = 0; x < size.x - 5; ++x) {
-            const auto from = static_cast<size_t>(y * size.x + x), to = static_cast<size_t>((y + shift.y) * size.x + x + shift.x);
+            const auto from = static_cast<size_t>(y * size.x + x),
+                       to   = static_cast<size_t>((y + shift.y) * size.x + x + shift.x);
             ++compared;
             if (still.image.object_id[from] != moved.image.object_id[to]) {
                 ++other_object; // an edge that runs through the pixel's centre
                 continue;
             }
-            EXPECT_NEAR(still.image.depth[from], moved.image.depth[to], 1e-4F * still.image.depth[from] + 1e-9F) << x << ", " << y;
+            EXPECT_NEAR(still.image.depth[from], moved.image.depth[to], 1e-4F * still.image.depth[from] + 1e-9F)
+                << x << ", " << y;
             EXPECT_LE(glm::length(still.image.normal_vs[from] - moved.image.normal_vs[to]), 1e-2F) << x << ", " << y;
         }
     EXPECT_LE(other_object, compared / 1000);

@@ -47,7 +47,9 @@ ModelLight sun(glm::vec3 direction_ws, glm::vec3 irradiance, bool casts_shadow)
 
 void expect_colour(glm::vec3 found, glm::dvec3 expected, const std::string& where)
 {
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(static_cast<double>(found[c]), expected[c], half_ulp * expected[c] + 1e-5) << where << ", channel " << c;
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(static_cast<double>(found[c]), expected[c], half_ulp * expected[c] + 1e-5)
+            << where << ", channel " << c;
 }
 
 const Material matt = make_material("matt", {0.8F, 0.5F, 0.25F}, 0.25F, 0.625F);
@@ -73,12 +75,15 @@ TEST(GBufferMaterial, LambertPlaneUnderTheSun)
             Material     material = matt;
             material.emissive     = {0, 0.125F, 2};
             Model model           = plane(material);
-            model.lights.push_back(sun({static_cast<float>(std::sin(angle)), static_cast<float>(-std::cos(angle)), 0}, {3, 2, 1}, shadows));
+            model.lights.push_back(sun({static_cast<float>(std::sin(angle)), static_cast<float>(-std::cos(angle)), 0},
+                                       {3, 2, 1}, shadows));
             const Picture    picture = make_picture(model_to_scene(std::move(model), "plane"), from_above(), {17, 11});
             const glm::dvec3 light   = glm::dvec3(3, 2, 1) * std::max(0.0, std::cos(angle)) * (0.75 / std::numbers::pi);
-            const glm::dvec3 expected = glm::dvec3(0.8, 0.5, 0.25) * (light + glm::dvec3(0.1, 0.2, 0.3)) + glm::dvec3(0, 0.125, 2);
+            const glm::dvec3 expected =
+                glm::dvec3(0.8, 0.5, 0.25) * (light + glm::dvec3(0.1, 0.2, 0.3)) + glm::dvec3(0, 0.125, 2);
             for (size_t i = 0; i < picture.image.radiance.size(); ++i)
-                expect_colour(picture.image.radiance[i], expected, fmt::format("pixel {}, sun at {} degrees, shadows {}", i, angle_deg, shadows));
+                expect_colour(picture.image.radiance[i], expected,
+                              fmt::format("pixel {}, sun at {} degrees, shadows {}", i, angle_deg, shadows));
         }
 }
 
@@ -86,9 +91,9 @@ TEST(GBufferMaterial, LambertPlaneUnderTheSun)
 TEST(GBufferMaterial, ShadowLiesWhereTheSunPutsIt)
 {
     for (const bool shadows : {true, false}) {
-        Model model = plane(matt);
-        Mesh  plate = make_box({-1, 1, -1}, {1, 1.02, 1});
-        plate.name  = "plate";
+        Model model    = plane(matt);
+        Mesh  plate    = make_box({-1, 1, -1}, {1, 1.02, 1});
+        plate.name     = "plate";
         plate.material = 0;
         model.meshes.push_back(std::move(plate));
         model.lights.push_back(sun({1, -1, 0}, glm::vec3(4), shadows));
@@ -100,8 +105,10 @@ TEST(GBufferMaterial, ShadowLiesWhereTheSunPutsIt)
             for (int x = 0; x < 64; ++x) {
                 const auto i = static_cast<size_t>(y * 64 + x);
                 if (picture.image.object_id[i] != 1) continue;
-                const glm::dvec3 p = px_to_vs(picture.view, glm::dvec2(x, y) + 0.5, static_cast<double>(picture.image.depth[i])); // p.x, p.y: the plane's x and -z
-                const double     outside = std::max(std::abs(p.x - 1), std::abs(p.y)) - 1; // metres outside the shadow
+                const glm::dvec3 p =
+                    px_to_vs(picture.view, glm::dvec2(x, y) + 0.5,
+                             static_cast<double>(picture.image.depth[i]));             // p.x, p.y: the plane's x and -z
+                const double outside = std::max(std::abs(p.x - 1), std::abs(p.y)) - 1; // metres outside the shadow
                 if (std::abs(outside) < 0.05) continue;
                 const bool in_shadow = shadows && outside < 0;
                 dark_pixels += in_shadow;
@@ -125,9 +132,11 @@ TEST(GBufferMaterial, PointLightFallsOffWithTheSquare)
     for (int y = 0; y < 30; ++y)
         for (int x = 0; x < 40; ++x) {
             const auto       i = static_cast<size_t>(y * 40 + x);
-            const glm::dvec3 p = px_to_vs(picture.view, glm::dvec2(x, y) + 0.5, static_cast<double>(picture.image.depth[i]));
-            const double     d2 = p.x * p.x + p.y * p.y + 4, light = 10 * 2 / std::sqrt(d2) / d2 * 0.75 / std::numbers::pi;
-            expect_colour(picture.image.radiance[i], glm::dvec3(0.8, 0.5, 0.25) * (glm::dvec3(0.1, 0.2, 0.3) + light), fmt::format("pixel ({}, {})", x, y));
+            const glm::dvec3 p =
+                px_to_vs(picture.view, glm::dvec2(x, y) + 0.5, static_cast<double>(picture.image.depth[i]));
+            const double d2 = p.x * p.x + p.y * p.y + 4, light = 10 * 2 / std::sqrt(d2) / d2 * 0.75 / std::numbers::pi;
+            expect_colour(picture.image.radiance[i], glm::dvec3(0.8, 0.5, 0.25) * (glm::dvec3(0.1, 0.2, 0.3) + light),
+                          fmt::format("pixel ({}, {})", x, y));
         }
 }
 

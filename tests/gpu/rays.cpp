@@ -24,12 +24,15 @@ template <typename Real> Rays make_rays(const Picture& picture, const TraceSetti
     const RayBuffers  buffers = make_ray_buffers(device(), picture.image.depth.size(), precision);
     const Buffer      view    = upload_view(device(), picture.view, precision);
     const TracePasses passes  = make_trace_passes(device(), *frame, buffers, view, nullptr);
-    submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, passes, buffers, picture.view.size_px); });
+    submit(device(), [&](const vk::raii::CommandBuffer& commands) {
+        record_rays(commands, passes, buffers, picture.view.size_px);
+    });
     const size_t count = download_as<uint32_t>(device(), buffers.count, 1)[0];
     Rays         rays;
     for (const auto& v : download_as<glm::vec<3, Real>>(device(), buffers.origins, count)) rays.origins.emplace_back(v);
     for (const auto& v : download_as<glm::vec<3, Real>>(device(), buffers.deltas, count)) rays.deltas.emplace_back(v);
-    for (const Real v : download_as<Real>(device(), buffers.lengths, count)) rays.lengths_m.push_back(static_cast<double>(v));
+    for (const Real v : download_as<Real>(device(), buffers.lengths, count))
+        rays.lengths_m.push_back(static_cast<double>(v));
     rays.pixels = download_as<uint32_t>(device(), buffers.pixels, count);
     return rays;
 }
@@ -40,30 +43,38 @@ double gap(double a, double b) { return a == b ? 0 : std::abs(a - b); }
 struct Worst {
     double origin_px = 0, delta_px = 0, depth = 0, length = 0; // depth and length relative
     size_t other_end = 0;
-    size_t rays = 0;
+    size_t rays      = 0;
 };
 
 Worst compare(const Picture& picture, const TraceSettings& settings, const Rays& rays)
 {
     Worst worst;
-    worst.rays       = rays.pixels.size();
+    worst.rays        = rays.pixels.size();
     size_t reflecting = 0;
     for (int y = 0; y < picture.view.size_px.y; ++y)
         for (int x = 0; x < picture.view.size_px.x; ++x) reflecting += reflects(picture.image, {x, y});
     EXPECT_EQ(rays.pixels.size(), reflecting);
     std::vector<bool> seen(picture.image.depth.size());
     for (size_t i = 0; i < rays.pixels.size(); ++i) {
-        const glm::ivec2 pixel(rays.pixels[i] & (MAX_IMAGE_PX - 1), (rays.pixels[i] >> PIXEL_BITS) & (MAX_IMAGE_PX - 1));
-        EXPECT_FALSE(seen.at(at(picture.image, pixel.x, pixel.y))) << "two rays for pixel (" << pixel.x << ", " << pixel.y << ")";
+        const glm::ivec2 pixel(rays.pixels[i] & (MAX_IMAGE_PX - 1),
+                               (rays.pixels[i] >> PIXEL_BITS) & (MAX_IMAGE_PX - 1));
+        EXPECT_FALSE(seen.at(at(picture.image, pixel.x, pixel.y)))
+            << "two rays for pixel (" << pixel.x << ", " << pixel.y << ")";
         seen[at(picture.image, pixel.x, pixel.y)] = true;
-        const ScreenRay ray = make_screen_ray(picture.image, pixel, settings);
+        const ScreenRay ray                       = make_screen_ray(picture.image, pixel, settings);
         EXPECT_TRUE(ray.traced);
-        worst.other_end += static_cast<TraceStatus>(rays.pixels[i] >> (2 * PIXEL_BITS)) != ray.end_status; // two limits within rounding
+        worst.other_end += static_cast<TraceStatus>(rays.pixels[i] >> (2 * PIXEL_BITS)) !=
+                           ray.end_status; // two limits within rounding
         const double nearest = std::max(ray.origin_px_depth.z, std::abs(ray.origin_px_depth.z + ray.delta_px_depth.z));
-        worst.origin_px = std::max(worst.origin_px, glm::length(glm::dvec2(rays.origins[i]) - glm::dvec2(ray.origin_px_depth)));
-        worst.delta_px  = std::max(worst.delta_px, glm::length(glm::dvec2(rays.deltas[i]) - glm::dvec2(ray.delta_px_depth)));
-        worst.depth     = std::max({worst.depth, gap(rays.origins[i].z, ray.origin_px_depth.z) / nearest, gap(rays.deltas[i].z, ray.delta_px_depth.z) / nearest});
-        if (glm::length(ray.delta_px_depth) > 0) worst.length = std::max(worst.length, gap(rays.lengths_m[i], ray.length_m - settings.ray_offset_m) / ray.length_m);
+        worst.origin_px =
+            std::max(worst.origin_px, glm::length(glm::dvec2(rays.origins[i]) - glm::dvec2(ray.origin_px_depth)));
+        worst.delta_px =
+            std::max(worst.delta_px, glm::length(glm::dvec2(rays.deltas[i]) - glm::dvec2(ray.delta_px_depth)));
+        worst.depth = std::max({worst.depth, gap(rays.origins[i].z, ray.origin_px_depth.z) / nearest,
+                                gap(rays.deltas[i].z, ray.delta_px_depth.z) / nearest});
+        if (glm::length(ray.delta_px_depth) > 0)
+            worst.length =
+                std::max(worst.length, gap(rays.lengths_m[i], ray.length_m - settings.ray_offset_m) / ray.length_m);
     }
     return worst;
 }
@@ -93,7 +104,7 @@ struct Case {
 
 std::vector<Case> cases()
 {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr double  infinity = std::numeric_limits<double>::infinity();
     std::vector<Case> list;
     for (const glm::ivec2& size : {glm::ivec2(1, 1), glm::ivec2(97, 1), glm::ivec2(1, 61), glm::ivec2(161, 91)})
         for (const View& view : {bench_view(size), off_centre_view(size), orthographic_view(size)}) {
@@ -132,7 +143,7 @@ TEST(Rays, DoubleTwinIsTheHostsBitForBit)
     if (!device().info.float64) GTEST_SKIP() << "the device has no double precision";
     for (const Case& c : cases()) {
         const Picture picture = make_picture(c.image);
-        const Worst   worst   = compare(picture, c.settings, make_rays<double>(picture, c.settings, Precision::float64));
+        const Worst   worst = compare(picture, c.settings, make_rays<double>(picture, c.settings, Precision::float64));
         EXPECT_EQ(worst.origin_px, 0) << describe(c);
         EXPECT_EQ(worst.delta_px, 0) << describe(c);
         EXPECT_EQ(worst.depth, 0) << describe(c);

@@ -24,7 +24,8 @@ GBufferImage coloured()
 double beta(const GBufferImage& image, const TraceResult& result, size_t i, const ShadeSettings& shade)
 {
     const glm::ivec2 pixel(static_cast<int>(i) % 64, static_cast<int>(i) / 64);
-    double           value = shade.metallic_exponent > 0 ? std::pow(static_cast<double>(image.metallic[i]), shade.metallic_exponent) : 1;
+    double           value =
+        shade.metallic_exponent > 0 ? std::pow(static_cast<double>(image.metallic[i]), shade.metallic_exponent) : 1;
     if (shade.fade_to_viewer) value *= std::max(0.0, -mirror_direction_vs(image, pixel).z);
     const glm::dvec2 uv = glm::dvec2(result.hit_px_depth[i]) / 64.0;
     if (shade.fade_at_edges) value *= std::clamp(1 - std::abs(uv.x - 0.5) - std::abs(uv.y - 0.5), 0.0, 1.0);
@@ -37,8 +38,9 @@ TEST_P(Shading, IsTheFormulaAtEveryPixel)
 {
     const Picture       picture = make_picture(coloured());
     const TraceSettings settings{.thickness_m = 0.5, .max_distance_m = 50};
-    const auto          frame   = prepare_frame(device(), picture.buffers, technique("hiz"), values_of(technique("hiz")), {settings, GetParam()});
-    const TraceResult   result  = count_frame(device(), *frame);
+    const auto          frame =
+        prepare_frame(device(), picture.buffers, technique("hiz"), values_of(technique("hiz")), {settings, GetParam()});
+    const TraceResult result = count_frame(device(), *frame);
     run_frame(device(), *frame);
     const Image shaded = read_shaded(device(), *frame);
     size_t      hits   = 0;
@@ -46,31 +48,38 @@ TEST_P(Shading, IsTheFormulaAtEveryPixel)
         glm::dvec3 expected = glm::dvec3(picture.image.radiance[i]) + glm::dvec3(picture.image.highlight[i]);
         if (result.status[i] == TraceStatus::hit) {
             ++hits;
-            const auto       from      = static_cast<size_t>(result.hit_pixel[i].y * 64 + result.hit_pixel[i].x);
-            const glm::dvec3 reflected = picture.image.radiance[from]; // without the highlight: that belongs to the camera's direction
+            const auto       from = static_cast<size_t>(result.hit_pixel[i].y * 64 + result.hit_pixel[i].x);
+            const glm::dvec3 reflected =
+                picture.image.radiance[from]; // without the highlight: that belongs to the camera's direction
             expected += (reflected - expected) * beta(picture.image, result, i, GetParam());
         }
         for (int c = 0; c < 3; ++c)
-            ASSERT_NEAR(static_cast<double>(shaded.values[3 * i + static_cast<size_t>(c)]), expected[c], 2e-3 * expected[c] + 1e-4) << "pixel " << i << ", channel " << c;
+            ASSERT_NEAR(static_cast<double>(shaded.values[3 * i + static_cast<size_t>(c)]), expected[c],
+                        2e-3 * expected[c] + 1e-4)
+                << "pixel " << i << ", channel " << c;
     }
     EXPECT_GT(hits, 300U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Switches, Shading,
-                         testing::Values(ShadeSettings{}, ShadeSettings{0, false, false}, ShadeSettings{3, false, false}, ShadeSettings{1.5, false, false},
-                                         ShadeSettings{0, true, false}, ShadeSettings{0, false, true}, ShadeSettings{2, true, true}));
+                         testing::Values(ShadeSettings{}, ShadeSettings{0, false, false},
+                                         ShadeSettings{3, false, false}, ShadeSettings{1.5, false, false},
+                                         ShadeSettings{0, true, false}, ShadeSettings{0, false, true},
+                                         ShadeSettings{2, true, true}));
 
 // Nothing hit, nothing changed: the lit colour to the last bit, also of pixels that are no surface.
 TEST(ShadingOfMisses, LeavesTheLitColour)
 {
     const Picture       picture = make_picture(coloured());
     const TraceSettings settings{.thickness_m = 0, .max_distance_m = 0.001};
-    const auto          frame   = prepare_frame(device(), picture.buffers, technique("dda"), values_of(technique("dda")), {settings, {}});
+    const auto          frame =
+        prepare_frame(device(), picture.buffers, technique("dda"), values_of(technique("dda")), {settings, {}});
     run_frame(device(), *frame);
     const Image shaded = read_shaded(device(), *frame);
     for (size_t i = 0; i < picture.image.depth.size(); ++i)
         for (int c = 0; c < 3; ++c)
-            ASSERT_NEAR(shaded.values[3 * i + static_cast<size_t>(c)], picture.image.radiance[i][c] + picture.image.highlight[i][c], 1e-3F);
+            ASSERT_NEAR(shaded.values[3 * i + static_cast<size_t>(c)],
+                        picture.image.radiance[i][c] + picture.image.highlight[i][c], 1e-3F);
 }
 
 } // namespace
