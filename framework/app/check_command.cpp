@@ -15,11 +15,14 @@ namespace {
 std::vector<Technique> chosen(const CommonOptions& common, const std::string& subject)
 {
     if (subject.empty()) return list_techniques(common.technique_dirs);
-    if (!std::filesystem::is_directory(subject)) return {find_technique(list_techniques(common.technique_dirs), subject)};
+    if (!std::filesystem::is_directory(subject))
+        return {find_technique(list_techniques(common.technique_dirs), subject)};
     const std::filesystem::path dirs[] = {subject};
-    std::vector<Technique>      all = list_techniques(dirs), below;
-    const auto                  root = std::filesystem::weakly_canonical(subject).string();
-    std::ranges::copy_if(all, std::back_inserter(below), [&](const Technique& technique) { return std::filesystem::weakly_canonical(technique.folder).string().starts_with(root); });
+    std::vector<Technique>      all    = list_techniques(dirs), below;
+    const auto                  root   = std::filesystem::weakly_canonical(subject).string();
+    std::ranges::copy_if(all, std::back_inserter(below), [&](const Technique& technique) {
+        return std::filesystem::weakly_canonical(technique.folder).string().starts_with(root);
+    });
     return below;
 }
 
@@ -27,12 +30,15 @@ int show_ray(Gpu& gpu, const std::vector<Technique>& techniques, const HardCaseO
 {
     const auto  colon = options.ray.find(':');
     size_t      setup = 0, ray = 0;
-    const char* end   = options.ray.data() + options.ray.size();
-    const bool  read  = colon != std::string::npos && std::from_chars(options.ray.data(), end, setup).ptr == options.ray.data() + colon &&
+    const char* end  = options.ray.data() + options.ray.size();
+    const bool  read = colon != std::string::npos &&
+                      std::from_chars(options.ray.data(), end, setup).ptr == options.ray.data() + colon &&
                       std::from_chars(options.ray.data() + colon + 1, end, ray).ptr == end;
-    if (!read || options.only_case.empty()) throw_spec_error("--ray: expected SETUP:RAY together with --case, got '{}'", options.ray);
+    if (!read || options.only_case.empty())
+        throw_spec_error("--ray: expected SETUP:RAY together with --case, got '{}'", options.ray);
     for (const Technique& technique : techniques)
-        std::puts(describe_ray(gpu, technique, default_values(technique), find_case(options.only_case), setup, ray).c_str());
+        std::puts(
+            describe_ray(gpu, technique, default_values(technique), find_case(options.only_case), setup, ray).c_str());
     return 0;
 }
 
@@ -45,14 +51,17 @@ int check_techniques(const CommonOptions& common, const HardCaseOptions& options
     if (!options.ray.empty()) return show_ray(gpu, techniques, options);
 
     Gpu robust;
-    if (!options.quick) robust = open_gpu({.device = common.device, .validation = common.validation, .robust_buffer_access = true});
+    if (!options.quick)
+        robust = open_gpu({.device = common.device, .validation = common.validation, .robust_buffer_access = true});
     size_t broken = 0;
     std::puts(table_head().c_str());
-    const auto rows = run_check(gpu, options.quick ? nullptr : &robust, {techniques, options.only_case, {.double_precision = !options.quick}}, [&](const CaseRow& row) {
-        broken += row.breaks > 0;
-        std::printf("%s\n%s", table_line(row).c_str(), table_findings(row).c_str());
-        std::fflush(stdout);
-    });
+    const auto rows =
+        run_check(gpu, options.quick ? nullptr : &robust,
+                  {techniques, options.only_case, {.double_precision = !options.quick}}, [&](const CaseRow& row) {
+                      broken += row.breaks > 0;
+                      std::printf("%s\n%s", table_line(row).c_str(), table_findings(row).c_str());
+                      std::fflush(stdout);
+                  });
     for (const std::string& line : check_refusals()) {
         ++broken;
         std::puts(line.c_str());
@@ -62,7 +71,9 @@ int check_techniques(const CommonOptions& common, const HardCaseOptions& options
         std::fprintf(stderr, "validation: %s\n", message.c_str());
     }
     if (!options.markdown.empty()) write_file_atomically(options.markdown, markdown_table(rows));
-    std::puts(fmt::format("{} of {} rows hold what the technique claims", std::ranges::count(rows, 0U, &CaseRow::breaks), rows.size()).c_str());
+    std::puts(fmt::format("{} of {} rows hold what the technique claims",
+                          std::ranges::count(rows, 0U, &CaseRow::breaks), rows.size())
+                  .c_str());
     return broken == 0 ? 0 : 1;
 }
 

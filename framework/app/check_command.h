@@ -6,10 +6,10 @@
 namespace ssrlab {
 
 struct HardCaseOptions {
-    std::string subject;    // a technique's id, a folder of techniques, or empty: the tree's
+    std::string subject; // a technique's id, a folder of techniques, or empty: the tree's
     std::string only_case;
-    std::string ray;        // "SETUP:RAY" of only_case: show it instead
-    std::string markdown;   // file for the table
+    std::string ray;      // "SETUP:RAY" of only_case: show it instead
+    std::string markdown; // file for the table
     bool        quick = false;
 };
 

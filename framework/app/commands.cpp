@@ -6,8 +6,8 @@
 #include "scene/scene.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <sys/wait.h>
@@ -18,12 +18,12 @@ namespace {
 
 glm::ivec2 parse_size(const std::string& text)
 {
-    glm::ivec2        size{0, 0};
-    const char*       end   = text.data() + text.size();
-    const auto        width = std::from_chars(text.data(), end, size.x);
-    const auto        height = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x'
-                                   ? std::from_chars(width.ptr + 1, end, size.y)
-                                   : std::from_chars_result{end, std::errc::invalid_argument};
+    glm::ivec2  size{0, 0};
+    const char* end    = text.data() + text.size();
+    const auto  width  = std::from_chars(text.data(), end, size.x);
+    const auto  height = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x'
+                             ? std::from_chars(width.ptr + 1, end, size.y)
+                             : std::from_chars_result{end, std::errc::invalid_argument};
     if (height.ec != std::errc() || height.ptr != end || size.x < 1 || size.y < 1)
         throw_spec_error("--size: expected WIDTHxHEIGHT, both at least 1, got '{}'", text);
     return size;
@@ -39,7 +39,7 @@ struct Stage {
 
 Stage prepare_stage(const CommonOptions& common, const PictureOptions& options)
 {
-    Stage         stage;
+    Stage stage;
     stage.scene          = load_scene(options.scene);
     const Camera& camera = find_camera(stage.scene, options.view);
     stage.view           = camera_to_view(camera, options.size.empty() ? camera.size_px : parse_size(options.size));
@@ -67,7 +67,13 @@ Choice parse_choice(const Technique& technique, const std::vector<std::string>& 
             choice.values[name] = parse_parameter(find_parameter(technique, name, place), text, place);
             continue;
         }
-        const Parameter declared{.name = name, .type = setting->type, .default_value = 0, .min = setting->min, .max = setting->max, .choices = {}, .doc = {}};
+        const Parameter declared{.name          = name,
+                                 .type          = setting->type,
+                                 .default_value = 0,
+                                 .min           = setting->min,
+                                 .max           = setting->max,
+                                 .choices       = {},
+                                 .doc           = {}};
         setting->set(choice.settings, parse_parameter(declared, text, place));
     }
     return choice;
@@ -78,7 +84,8 @@ PreparedFramePtr prepare(const CommonOptions& common, const PictureOptions& opti
     const auto       techniques = list_techniques(common.technique_dirs);
     const Technique& technique  = find_technique(techniques, options.technique);
     const Choice     choice     = parse_choice(technique, options.parameters);
-    return prepare_frame(stage.gpu, make_frame_buffers(stage.gpu, stage.gbuffer), technique, choice.values, choice.settings);
+    return prepare_frame(stage.gpu, make_frame_buffers(stage.gpu, stage.gbuffer), technique, choice.values,
+                         choice.settings);
 }
 
 /// Fails before the work starts rather than after it.
@@ -93,14 +100,16 @@ std::string matrix_text(const glm::dmat4& matrix)
 {
     std::string text;
     for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row) text += fmt::format("{}{:.17g}", text.empty() ? "" : " ", matrix[column][row]);
+        for (int row = 0; row < 4; ++row)
+            text += fmt::format("{}{:.17g}", text.empty() ? "" : " ", matrix[column][row]);
     return text;
 }
 
 std::string status_legend()
 {
     std::string text;
-    for (size_t i = 0; i < trace_status_names.size(); ++i) text += fmt::format("{}{}={}", text.empty() ? "" : " ", i, trace_status_names[i]);
+    for (size_t i = 0; i < trace_status_names.size(); ++i)
+        text += fmt::format("{}{}={}", text.empty() ? "" : " ", i, trace_status_names[i]);
     return text;
 }
 
@@ -117,13 +126,17 @@ int list_everything(const CommonOptions& common)
 {
     std::puts("Techniques");
     for (const Technique& technique : list_techniques(common.technique_dirs))
-        std::puts(fmt::format("  {:<16} {}{}", technique.id, technique.summary, technique.exact ? " (exact)" : "").c_str());
+        std::puts(
+            fmt::format("  {:<16} {}{}", technique.id, technique.summary, technique.exact ? " (exact)" : "").c_str());
     std::puts("\nScenes (besides any .glb, .gltf or recipe .toml by its path)");
-    for (const SceneListing& scene : list_scenes()) std::puts(fmt::format("  {:<26} {}", scene.name, scene.summary).c_str());
+    for (const SceneListing& scene : list_scenes())
+        std::puts(fmt::format("  {:<26} {}", scene.name, scene.summary).c_str());
     std::puts("\nDevices");
     try {
         for (const GpuInfo& info : list_gpus())
-            std::puts(fmt::format("  {} {} ({}, Vulkan {}, {})", info.index, info.name, info.type, info.api_version, info.driver).c_str());
+            std::puts(fmt::format("  {} {} ({}, Vulkan {}, {})", info.index, info.name, info.type, info.api_version,
+                                  info.driver)
+                          .c_str());
     } catch (const Failure& failure) {
         std::puts(fmt::format("  none: {}", failure.what()).c_str());
     }
@@ -141,9 +154,10 @@ int show_technique(const CommonOptions& common, const std::string& id)
     for (const std::string& citation : technique.cite) std::puts(fmt::format("source: {}", citation).c_str());
     std::puts("\nParameters");
     for (const Parameter& parameter : technique.parameters) {
-        const std::string range = parameter.type == ParameterType::choice    ? fmt::format("{}", fmt::join(parameter.choices, " | "))
-                                  : parameter.type == ParameterType::boolean ? "true | false"
-                                                                             : fmt::format("{} … {}", parameter.min, parameter.max);
+        const std::string range =
+            parameter.type == ParameterType::choice    ? fmt::format("{}", fmt::join(parameter.choices, " | "))
+            : parameter.type == ParameterType::boolean ? "true | false"
+                                                       : fmt::format("{} … {}", parameter.min, parameter.max);
         std::puts(fmt::format("  {:<14} {} (default {})\n                 {}", parameter.name, range,
                               format_parameter(parameter, parameter.default_value), parameter.doc)
                       .c_str());
@@ -159,7 +173,8 @@ int render_picture(const CommonOptions& common, const PictureOptions& options)
     run_frame(stage.gpu, *frame);
     const PassTimes times = run_frame(stage.gpu, *frame);
     write_image(options.output, read_shaded(stage.gpu, *frame));
-    std::puts(fmt::format("{}: {}x{}, trace {:.2f} ms on {}", options.output, stage.view.size_px.x, stage.view.size_px.y, times.trace_ms, stage.gpu.info.name)
+    std::puts(fmt::format("{}: {}x{}, trace {:.2f} ms on {}", options.output, stage.view.size_px.x,
+                          stage.view.size_px.y, times.trace_ms, stage.gpu.info.name)
                   .c_str());
     return report_messages(stage);
 }
@@ -170,7 +185,10 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
     Stage             stage  = prepare_stage(common, options);
     const auto        frame  = prepare(common, options, stage);
     const TraceResult result = count_frame(stage.gpu, *frame);
-    Image image{result.size_px, {"hit.x", "hit.y", "hit.t", "hit.z", "status", "steps", "depth_fetches", "pyramid_fetches"}, {}, {}};
+    Image             image{result.size_px,
+                {"hit.x", "hit.y", "hit.t", "hit.z", "status", "steps", "depth_fetches", "pyramid_fetches"},
+                {},
+                {}};
     image.metadata["ssrlab:status_names"] = status_legend();
     image.metadata["ssrlab:technique"]    = options.technique;
     image.metadata["ssrlab:parameters"]   = fmt::format("{}", fmt::join(options.parameters, " "));
@@ -178,9 +196,10 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
         const bool hit = result.status[i] == TraceStatus::hit;
         // A miss has no hit point: zeros, and the status says so.
         const glm::dvec3 point = hit ? result.hit_px_depth[i] : glm::dvec3(0);
-        for (const double value : {point.x, point.y, hit ? result.hit_t[i] : 0.0, point.z, static_cast<double>(result.status[i]),
-                                   static_cast<double>(result.steps[i]), static_cast<double>(result.depth_fetches[i]),
-                                   static_cast<double>(result.pyramid_fetches[i])})
+        for (const double value :
+             {point.x, point.y, hit ? result.hit_t[i] : 0.0, point.z, static_cast<double>(result.status[i]),
+              static_cast<double>(result.steps[i]), static_cast<double>(result.depth_fetches[i]),
+              static_cast<double>(result.pyramid_fetches[i])})
             image.values.push_back(static_cast<float>(value));
     }
     write_image(options.output, image);
@@ -194,18 +213,24 @@ int write_gbuffer(const CommonOptions& common, const PictureOptions& options)
     Stage              stage  = prepare_stage(common, options);
     const GBufferImage source = read_gbuffer(stage.gpu, *stage.gbuffer);
     Image              image{stage.view.size_px,
-                {"depth", "normal_vs.x", "normal_vs.y", "normal_vs.z", "roughness", "metallic", "base_colour.R", "base_colour.G", "base_colour.B", "R", "G", "B", "object_id"},
+                {"depth", "normal_vs.x", "normal_vs.y", "normal_vs.z", "roughness", "metallic", "base_colour.R",
+                              "base_colour.G", "base_colour.B", "R", "G", "B", "object_id"},
                 {},
                 {}};
     image.metadata["ssrlab:world_to_view"] = matrix_text(stage.view.world_to_view);
     image.metadata["ssrlab:view_to_clip"]  = matrix_text(view_to_clip(stage.view));
-    image.metadata["ssrlab:depth"]         = stage.view.projection == Projection::perspective ? "near_m / distance_m" : "(far_m - distance_m) / (far_m - near_m)";
+    image.metadata["ssrlab:depth"]         = stage.view.projection == Projection::perspective
+                                                 ? "near_m / distance_m"
+                                                 : "(far_m - distance_m) / (far_m - near_m)";
     image.metadata["ssrlab:near_m"]        = fmt::format("{:.17g}", stage.view.near_m);
-    image.metadata["ssrlab:far_m"]         = stage.view.projection == Projection::perspective ? "inf" : fmt::format("{:.17g}", stage.view.far_m);
+    image.metadata["ssrlab:far_m"] =
+        stage.view.projection == Projection::perspective ? "inf" : fmt::format("{:.17g}", stage.view.far_m);
     for (size_t i = 0; i < source.depth.size(); ++i) {
         const glm::vec3 lit = source.radiance[i] + source.highlight[i];
-        for (const float value : {source.depth[i], source.normal_vs[i].x, source.normal_vs[i].y, source.normal_vs[i].z, source.roughness[i], source.metallic[i],
-                                  source.base_colour[i].x, source.base_colour[i].y, source.base_colour[i].z, lit.x, lit.y, lit.z, static_cast<float>(source.object_id[i])})
+        for (const float value :
+             {source.depth[i], source.normal_vs[i].x, source.normal_vs[i].y, source.normal_vs[i].z, source.roughness[i],
+              source.metallic[i], source.base_colour[i].x, source.base_colour[i].y, source.base_colour[i].z, lit.x,
+              lit.y, lit.z, static_cast<float>(source.object_id[i])})
             image.values.push_back(value);
     }
     write_image(options.output, image);

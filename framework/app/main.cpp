@@ -14,10 +14,14 @@ namespace {
 
 void add_picture_options(CLI::App& command, ssrlab::PictureOptions& options, bool traces)
 {
-    command.add_option("SCENE", options.scene, "A .glb or .gltf file, a scene recipe, or builtin:NAME (see ssrlab list)")->required();
+    command
+        .add_option("SCENE", options.scene, "A .glb or .gltf file, a scene recipe, or builtin:NAME (see ssrlab list)")
+        ->required();
     if (traces) {
         command.add_option("-t,--technique", options.technique, "Technique (see ssrlab list)")->required();
-        command.add_option("-p,--parameter", options.parameters, "name=value: a parameter of the technique (see ssrlab show), or a setting such as thickness_m");
+        command.add_option(
+            "-p,--parameter", options.parameters,
+            "name=value: a parameter of the technique (see ssrlab show), or a setting such as thickness_m");
     }
     command.add_option("--size", options.size, "WIDTHxHEIGHT in pixels; default: the view's own");
     command.add_option("--view", options.view, "Name of a view of the scene")->capture_default_str();
@@ -29,7 +33,8 @@ void add_picture_options(CLI::App& command, ssrlab::PictureOptions& options, boo
 int main(int argc, char** argv)
 {
     using namespace ssrlab;
-    CLI::App       app("ssrlab: what does each bit of accuracy of a screen-space reflection tracer cost in time, on your scene?");
+    CLI::App app(
+        "ssrlab: what does each bit of accuracy of a screen-space reflection tracer cost in time, on your scene?");
     CommonOptions  common;
     PictureOptions picture;
     RunOptions     run;
@@ -37,12 +42,16 @@ int main(int argc, char** argv)
     app.require_subcommand(1);
     app.fallthrough();
     app.set_version_flag("--version", SSRLAB_VERSION);
-    app.add_option("--device", common.device, "Vulkan device by index or part of its name; default: a discrete GPU if present, else the first");
-    app.add_option("--techniques", common.technique_dirs, "Further technique folders, or folders of them (also $SSRLAB_TECHNIQUES)");
+    app.add_option("--device", common.device,
+                   "Vulkan device by index or part of its name; default: a discrete GPU if present, else the first");
+    app.add_option("--techniques", common.technique_dirs,
+                   "Further technique folders, or folders of them (also $SSRLAB_TECHNIQUES)");
     app.add_flag("--validation", common.validation, "Load the Khronos validation layer; any message fails the command");
 
     std::function<int()> command;
-    app.add_subcommand("list", "Techniques, scenes and devices")->callback([&] { command = [&] { return list_everything(common); }; });
+    app.add_subcommand("list", "Techniques, scenes and devices")->callback([&] {
+        command = [&] { return list_everything(common); };
+    });
     auto* show = app.add_subcommand("show", "A technique's parameters and sources");
     show->add_option("TECHNIQUE", technique)->required();
     show->callback([&] { command = [&] { return show_technique(common, technique); }; });
@@ -56,10 +65,12 @@ int main(int argc, char** argv)
     add_picture_options(*gbuffer, picture, false);
     gbuffer->callback([&] { command = [&] { return write_gbuffer(common, picture); }; });
 
-    auto* sweep = app.add_subcommand("run", "An experiment: every combination of its lists becomes a row of results.csv");
+    auto* sweep =
+        app.add_subcommand("run", "An experiment: every combination of its lists becomes a row of results.csv");
     sweep->add_option("SPEC", run.specification, "Experiment (.toml; see experiments/README.md)")->required();
     sweep->add_option("-o,--output", run.folder, "Results folder; default: results/NAME");
-    sweep->add_flag("--resume", run.resume, "Complete the sweep that the folder holds; refused when specification, shaders or device changed");
+    sweep->add_flag("--resume", run.resume,
+                    "Complete the sweep that the folder holds; refused when specification, shaders or device changed");
     sweep->add_option("--only", run.only, "Just the run of this id (first column of results.csv)");
     sweep->add_flag("--dry-run", run.dry_run, "List the runs and the estimated time; write nothing");
     sweep->add_flag("--yes", run.yes, "Allow more than 100,000 runs");
@@ -74,10 +85,14 @@ int main(int argc, char** argv)
     auto* plot = app.add_subcommand("plot", "Plots, derived rows and report of a results folder");
     plot->add_option("DIR", results, "Results folder")->required();
     plot->callback([&] { command = [&] { return plot_results(results); }; });
-    app.add_subcommand("measures", "Every column of results.csv and what it means (results/README.md)")->callback([&] { command = [&] { return print_measures(common); }; });
+    app.add_subcommand("measures", "Every column of results.csv and what it means (results/README.md)")->callback([&] {
+        command = [&] { return print_measures(common); };
+    });
 
     HardCaseOptions hard_cases;
-    auto* check = app.add_subcommand("check", "Techniques against the catalogue of hard cases (docs/hard_cases.md); fails when one breaks what it claims");
+    auto*           check = app.add_subcommand(
+                  "check",
+                  "Techniques against the catalogue of hard cases (docs/hard_cases.md); fails when one breaks what it claims");
     check->add_option("TECHNIQUE|DIR", hard_cases.subject, "A technique, or a folder of techniques; default: all");
     check->add_option("--case", hard_cases.only_case, "Only this case");
     check->add_option("--ray", hard_cases.ray, "SETUP:RAY of the case: show its way, pixel by pixel");

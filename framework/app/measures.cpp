@@ -1,5 +1,5 @@
-#include "core/error.h"
 #include "app/commands.h"
+#include "core/error.h"
 
 #include "compare/measures.h"
 #include "harness/columns.h"

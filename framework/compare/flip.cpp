@@ -23,7 +23,8 @@ const glm::vec3 white(0.950428545F, 1.0F, 1.088900371F);
 
 glm::vec3 linear_rgb_to_xyz(glm::vec3 c)
 {
-    return {0.41238656F * c.r + 0.35759149F * c.g + 0.18045049F * c.b, 0.21263682F * c.r + 0.71518298F * c.g + 0.0721802F * c.b,
+    return {0.41238656F * c.r + 0.35759149F * c.g + 0.18045049F * c.b,
+            0.21263682F * c.r + 0.71518298F * c.g + 0.0721802F * c.b,
             0.01933062F * c.r + 0.11919716F * c.g + 0.95037259F * c.b};
 }
 
@@ -125,10 +126,10 @@ std::vector<glm::vec3> perceived_lab(const Planes& ycxcz, float pixels_per_degre
     static constexpr std::array<Sensitivity, 1> achromatic{{{1, 0.0047F}}};
     static constexpr std::array<Sensitivity, 1> red_green{{{1, 0.0053F}}};
     static constexpr std::array<Sensitivity, 2> blue_yellow{{{34.1F, 0.04F}, {13.5F, 0.025F}}};
-    const int   radius = int(std::ceil(3 * std::sqrt(0.04F / (2 * pi * pi)) * pixels_per_degree));
-    const Plane y      = blur(ycxcz[0], achromatic, radius, pixels_per_degree);
-    const Plane cx     = blur(ycxcz[1], red_green, radius, pixels_per_degree);
-    const Plane cz     = blur(ycxcz[2], blue_yellow, radius, pixels_per_degree);
+    const int              radius = int(std::ceil(3 * std::sqrt(0.04F / (2 * pi * pi)) * pixels_per_degree));
+    const Plane            y      = blur(ycxcz[0], achromatic, radius, pixels_per_degree);
+    const Plane            cx     = blur(ycxcz[1], red_green, radius, pixels_per_degree);
+    const Plane            cz     = blur(ycxcz[2], blue_yellow, radius, pixels_per_degree);
     std::vector<glm::vec3> lab;
     lab.reserve(y.values.size());
     for (size_t i = 0; i < y.values.size(); ++i) {
@@ -167,7 +168,8 @@ Features detect_features(const Plane& y, float pixels_per_degree)
     const auto response = [&](const std::vector<float>& kernel) {
         const Plane        across = filter_separable(grey, kernel, flat), down = filter_separable(grey, flat, kernel);
         std::vector<float> length;
-        for (size_t i = 0; i < across.values.size(); ++i) length.push_back(std::hypot(across.values[i], down.values[i]));
+        for (size_t i = 0; i < across.values.size(); ++i)
+            length.push_back(std::hypot(across.values[i], down.values[i]));
         return length;
     };
     return {response(edge), response(point)};
@@ -186,8 +188,9 @@ void require_comparable(const Image& a, const Image& b)
 {
     const size_t expected = 3 * size_t(std::max(a.size_px.x, 0)) * size_t(std::max(a.size_px.y, 0));
     if (a.size_px != b.size_px || a.values.size() != expected || b.values.size() != expected) {
-        throw_failure("FLIP compares two images of one size with three channels; got {}x{} ({} values) and {}x{} ({} values)",
-                      a.size_px.x, a.size_px.y, a.values.size(), b.size_px.x, b.size_px.y, b.values.size());
+        throw_failure(
+            "FLIP compares two images of one size with three channels; got {}x{} ({} values) and {}x{} ({} values)",
+            a.size_px.x, a.size_px.y, a.values.size(), b.size_px.x, b.size_px.y, b.values.size());
     }
 }
 
@@ -197,15 +200,18 @@ std::vector<float> flip_error(const Image& tested, const Image& reference, float
 {
     require_comparable(tested, reference);
     const Planes                 a = to_ycxcz(tested), b = to_ycxcz(reference);
-    const std::vector<glm::vec3> a_lab = perceived_lab(a, pixels_per_degree), b_lab = perceived_lab(b, pixels_per_degree);
-    const Features a_features = detect_features(a[0], pixels_per_degree), b_features = detect_features(b[0], pixels_per_degree);
+    const std::vector<glm::vec3> a_lab = perceived_lab(a, pixels_per_degree),
+                                 b_lab = perceived_lab(b, pixels_per_degree);
+    const Features a_features          = detect_features(a[0], pixels_per_degree),
+                   b_features          = detect_features(b[0], pixels_per_degree);
     std::vector<float> error(a_lab.size());
     for (size_t i = 0; i < error.size(); ++i) {
-        const float colour  = colour_error(hyab(a_lab[i], b_lab[i]));
-        const float edges   = std::abs(a_features.edges[i] - b_features.edges[i]);
-        const float points  = std::abs(a_features.points[i] - b_features.points[i]);
-        const float feature = std::pow(std::clamp(std::max(edges, points) / std::numbers::sqrt2_v<float>, 0.0F, 1.0F), qf);
-        error[i]            = std::clamp(std::pow(colour, 1 - feature), 0.0F, 1.0F);
+        const float colour = colour_error(hyab(a_lab[i], b_lab[i]));
+        const float edges  = std::abs(a_features.edges[i] - b_features.edges[i]);
+        const float points = std::abs(a_features.points[i] - b_features.points[i]);
+        const float feature =
+            std::pow(std::clamp(std::max(edges, points) / std::numbers::sqrt2_v<float>, 0.0F, 1.0F), qf);
+        error[i] = std::clamp(std::pow(colour, 1 - feature), 0.0F, 1.0F);
     }
     return error;
 }

@@ -10,6 +10,7 @@ namespace ssrlab {
 inline constexpr float flip_pixels_per_degree = 67.0206433F;
 
 /// One value in [0, 1] per pixel. Both images: channels R, G, B, sRGB-encoded, values in [0, 1].
-std::vector<float> flip_error(const Image& tested, const Image& reference, float pixels_per_degree = flip_pixels_per_degree);
+std::vector<float> flip_error(const Image& tested, const Image& reference,
+                              float pixels_per_degree = flip_pixels_per_degree);
 
 } // namespace ssrlab

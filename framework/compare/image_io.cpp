@@ -65,15 +65,16 @@ OIIO::ImageSpec make_spec(const Image& image, bool png)
 
 void sync_to_disk(const fs::path& path)
 {
-    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    const bool ok  = file >= 0 && fsync(file) == 0;
+    const int  file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    const bool ok   = file >= 0 && fsync(file) == 0;
     if (file >= 0) close(file);
     if (!ok) throw_failure("{}: cannot be flushed to disk", path.string());
 }
 
 void require_consistent(const fs::path& path, const Image& image)
 {
-    const size_t expected = size_t(std::max(image.size_px.x, 0)) * size_t(std::max(image.size_px.y, 0)) * image.channels.size();
+    const size_t expected =
+        size_t(std::max(image.size_px.x, 0)) * size_t(std::max(image.size_px.y, 0)) * image.channels.size();
     if (expected == 0 || image.values.size() != expected) {
         throw_failure("{}: an image of {}x{} with {} channels cannot have {} values", path.string(), image.size_px.x,
                       image.size_px.y, image.channels.size(), image.values.size());
@@ -113,10 +114,11 @@ Image read_image(const fs::path& path)
 {
     const auto input = OIIO::ImageInput::open(path.string());
     if (!input) throw_failure("{}: {}", path.string(), OIIO::geterror());
-    const OIIO::ImageSpec& spec = input->spec();
+    const OIIO::ImageSpec& spec        = input->spec();
     constexpr int          max_side_px = 1 << 16;
     if (spec.depth > 1 || spec.width < 1 || spec.height < 1 || spec.width > max_side_px || spec.height > max_side_px) {
-        throw_failure("{}: an image of {}x{}x{} is not readable here", path.string(), spec.width, spec.height, spec.depth);
+        throw_failure("{}: an image of {}x{}x{} is not readable here", path.string(), spec.width, spec.height,
+                      spec.depth);
     }
     Image image;
     image.size_px  = {spec.width, spec.height};

@@ -29,7 +29,8 @@ Plane to_luma(const Image& display) // Rec. 709
 {
     Plane luma{display.size_px, {}};
     for (size_t i = 0; i < display.values.size(); i += 3) {
-        luma.values.push_back(0.2126F * display.values[i] + 0.7152F * display.values[i + 1] + 0.0722F * display.values[i + 2]);
+        luma.values.push_back(0.2126F * display.values[i] + 0.7152F * display.values[i + 1] +
+                              0.0722F * display.values[i + 2]);
     }
     return luma;
 }

@@ -21,29 +21,46 @@ constexpr auto table = std::to_array<Measure>({
     {"depth_fetches_mean", "fetches", "depth texels read per traced ray", own},
     {"pyramid_fetches_mean", "fetches", "pyramid texels read per traced ray", own},
 
-    {"screen_same_pixel", "share", "rays that hit the same pixel as the screen truth, or miss as it does, of traced rays", contract},
-    {"screen_within_1px", "share", "rays that hit within 1 px of the screen truth's hit point, or miss as it does, of traced rays", contract},
-    {"screen_displaced", "share", "rays that hit, as the screen truth does, but farther than 1 px from it, of traced rays", contract},
+    {"screen_same_pixel", "share",
+     "rays that hit the same pixel as the screen truth, or miss as it does, of traced rays", contract},
+    {"screen_within_1px", "share",
+     "rays that hit within 1 px of the screen truth's hit point, or miss as it does, of traced rays", contract},
+    {"screen_displaced", "share",
+     "rays that hit, as the screen truth does, but farther than 1 px from it, of traced rays", contract},
     {"screen_missed", "share", "rays without hit where the screen truth hits, of traced rays", contract},
     {"screen_false", "share", "rays that hit where the screen truth does not, of traced rays", contract},
     {"screen_out_of_steps", "share", "rays that end as out_of_steps, of traced rays", contract},
     {"screen_recall_1px", "share", "rays found within 1 px, of those that the screen truth hits", contract},
-    {"screen_displacement_median_px", "px", "median distance of hit points over rays where both hit (nearest rank)", own},
+    {"screen_displacement_median_px", "px", "median distance of hit points over rays where both hit (nearest rank)",
+     own},
     {"screen_displacement_p95_px", "px", "95th percentile of the same distances", own},
     {"screen_displacement_p99_px", "px", "99th percentile of the same distances", own},
 
     {"recall_1px", "share", "rays found within 1 px of the true point, of visible rays", truth},
     {"recall_4px", "share", "rays found within 4 px of the true point, of visible rays", truth},
-    {"visible_displaced", "share", "visible rays that hit farther than 1 px from the true point, of visible rays", truth},
-    {"missed_stepped_over", "share", "visible rays without hit that the screen truth finds within 1 px, of visible rays; not counted under the next two", own},
+    {"visible_displaced", "share", "visible rays that hit farther than 1 px from the true point, of visible rays",
+     truth},
+    {"missed_stepped_over", "share",
+     "visible rays without hit that the screen truth finds within 1 px, of visible rays; not counted under the next "
+     "two",
+     own},
     {"missed_out_of_steps", "share", "visible rays that end as out_of_steps, of visible rays", own},
     {"missed_facing_rule", "share", "visible rays that end as facing_away, of visible rays", own},
-    {"missed_not_in_depth", "share", "all other visible rays without hit: the screen truth does not find the point either, of visible rays", own},
+    {"missed_not_in_depth", "share",
+     "all other visible rays without hit: the screen truth does not find the point either, of visible rays", own},
     {"precision_1px", "share", "hits within 1 px of a visible true point, of hits", truth},
-    {"false_hits", "share", "hits farther than 1 px from the true point, or whose true point is not visible, of traced rays", truth},
-    {"false_self", "share", "false hits on the reflecting object at or below the reflecting point's tangent plane (sine of the angle <= 0.01), where its ray cannot be, of traced rays", own},
-    {"false_too_thick", "share", "other false hits where the ray is more than 0.1 % of the distance behind the pixel's surface, so that a thinner slab would let it pass, of traced rays", own},
-    {"false_wrong_surface", "share", "all other false hits: a front that the true ray does not meet, of traced rays", own},
+    {"false_hits", "share",
+     "hits farther than 1 px from the true point, or whose true point is not visible, of traced rays", truth},
+    {"false_self", "share",
+     "false hits on the reflecting object at or below the reflecting point's tangent plane (sine of the angle <= "
+     "0.01), where its ray cannot be, of traced rays",
+     own},
+    {"false_too_thick", "share",
+     "other false hits where the ray is more than 0.1 % of the distance behind the pixel's surface, so that a thinner "
+     "slab would let it pass, of traced rays",
+     own},
+    {"false_wrong_surface", "share", "all other false hits: a front that the true ray does not meet, of traced rays",
+     own},
     {"truth_visible", "share", "rays whose true point this frame shows, of traced rays", truth},
     {"truth_hidden", "share", "rays whose true point lies behind something on screen, of traced rays", truth},
     {"truth_off_screen", "share", "rays whose true point is outside the image, of traced rays", truth},
@@ -52,14 +69,23 @@ constexpr auto table = std::to_array<Measure>({
     {"truth_sky", "share", "rays that meet nothing, of traced rays", truth},
     {"truth_beyond", "share", "rays whose true point is beyond the maximum distance, of traced rays", truth},
 
-    {"flips_per_million", "rays per million", "rays whose status, or pixel if both hit, differs between float and double, of traced rays", own},
-    {"error_scene_to_screen", "share", "1 - recall at 1 px of the screen truth against the scene truth's visible points: what the depth buffer does not know", own},
-    {"error_screen_to_double", "share", "1 - recall at 1 px of the double twin against the screen truth's hits: what the technique skips", own},
-    {"error_double_to_float", "share", "1 - recall at 1 px of the float run against the double twin's hits: rounding", own},
+    {"flips_per_million", "rays per million",
+     "rays whose status, or pixel if both hit, differs between float and double, of traced rays", own},
+    {"error_scene_to_screen", "share",
+     "1 - recall at 1 px of the screen truth against the scene truth's visible points: what the depth buffer does not "
+     "know",
+     own},
+    {"error_screen_to_double", "share",
+     "1 - recall at 1 px of the double twin against the screen truth's hits: what the technique skips", own},
+    {"error_double_to_float", "share", "1 - recall at 1 px of the float run against the double twin's hits: rounding",
+     own},
 
-    {"rmse_visible", "display value", "root mean square difference of sRGB-encoded channels clamped to [0, 1], over visible rays", "OpenImageIO ImageBufAlgo::compare"},
+    {"rmse_visible", "display value",
+     "root mean square difference of sRGB-encoded channels clamped to [0, 1], over visible rays",
+     "OpenImageIO ImageBufAlgo::compare"},
     {"psnr_visible_db", "dB", "20 log10(1 / rmse_visible); empty when identical", "OpenImageIO ImageBufAlgo::compare"},
-    {"ssim_visible", "index", "mean structural similarity of luma, Gaussian window of 11 px, sigma 1.5, over visible rays", "Wang et al. 2004"},
+    {"ssim_visible", "index",
+     "mean structural similarity of luma, Gaussian window of 11 px, sigma 1.5, over visible rays", "Wang et al. 2004"},
     {"flip_visible", "0..1", "mean LDR FLIP at 67 pixels per degree, over visible rays", "Andersson et al. 2020"},
     {"rmse_reflective", "display value", "as rmse_visible, over all traced rays", "OpenImageIO ImageBufAlgo::compare"},
     {"psnr_reflective_db", "dB", "as psnr_visible_db, over all traced rays", "OpenImageIO ImageBufAlgo::compare"},
@@ -88,7 +114,8 @@ void merge(MeasureValues& values, const MeasureValues& more)
 std::string measures_markdown()
 {
     std::string text = "| measure | unit | definition | source |\n|---|---|---|---|\n";
-    for (const Measure& m : table) text += fmt::format("| `{}` | {} | {} | {} |\n", m.name, m.unit, m.formula, m.source);
+    for (const Measure& m : table)
+        text += fmt::format("| `{}` | {} | {} | {} |\n", m.name, m.unit, m.formula, m.source);
     return text;
 }
 

@@ -41,8 +41,8 @@ std::string measures_markdown();
 MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResult& screen_truth);
 
 /// recall, precision, false hits and misses by cause, and the share of each class.
-MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth& scene_truth, const TraceResult& screen_truth,
-                                     const GBufferImage& gbuffer);
+MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth& scene_truth,
+                                     const TraceResult& screen_truth, const GBufferImage& gbuffer);
 
 /// Mean and largest work per ray.
 MeasureValues count_work(const TraceResult& result);
@@ -51,8 +51,8 @@ MeasureValues count_work(const TraceResult& result);
 std::optional<double> count_flips(const TraceResult& float_result, const TraceResult& double_result);
 
 /// flips_per_million and the three errors of the split. Pointers may be null: what needs them stays empty.
-MeasureValues split_error(const TraceResult& float_result, const TraceResult* double_result, const TraceResult& screen_truth,
-                          const SceneTruth* scene_truth);
+MeasureValues split_error(const TraceResult& float_result, const TraceResult* double_result,
+                          const TraceResult& screen_truth, const SceneTruth* scene_truth);
 
 /// "reflective": every traced pixel; "visible": those whose true point is visible. Images are linear radiance, three channels.
 MeasureValues compare_images(const Image& tested, const Image& reference, const SceneTruth& scene_truth);

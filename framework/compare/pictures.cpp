@@ -17,8 +17,7 @@ constexpr glm::vec3 red{0.9F, 0.02F, 0.02F};
 constexpr glm::vec3 magenta{0.9F, 0, 0.9F};
 constexpr glm::vec3 grey{0.15F, 0.15F, 0.18F};
 
-template <typename ColourOf>
-Image paint(glm::ivec2 size_px, size_t count, const ColourOf& colour_of)
+template <typename ColourOf> Image paint(glm::ivec2 size_px, size_t count, const ColourOf& colour_of)
 {
     Image image;
     image.size_px  = size_px;
@@ -46,7 +45,8 @@ void require_same_size(glm::ivec2 a, glm::ivec2 b)
 glm::vec3 heat_colour(uint32_t fetches)
 {
     if (fetches == 0) return black;
-    constexpr std::array<glm::vec3, 5> ramp = {glm::vec3(0, 0, 0.1F), {0, 0.05F, 1}, {0, 0.8F, 0.8F}, {1, 0.8F, 0}, {0.9F, 0, 0}};
+    constexpr std::array<glm::vec3, 5> ramp = {
+        glm::vec3(0, 0, 0.1F), {0, 0.05F, 1}, {0, 0.8F, 0.8F}, {1, 0.8F, 0}, {0.9F, 0, 0}};
     const float place = std::min(std::log2(float(fetches)) / 3, 4.0F);
     const auto  low   = std::min(size_t(place), ramp.size() - 2);
     return glm::mix(ramp[low], ramp[low + 1], place - float(low));

@@ -4,17 +4,17 @@
 #include "core/error.h"
 
 #include <algorithm>
-#include <cmath>
 #include <array>
+#include <cmath>
 #include <numeric>
 
 namespace ssrlab {
 namespace {
 
-constexpr double self_hit_sine   = 0.01;
-constexpr double behind_share    = 0.001;
-constexpr double within_one_px   = 1;
-constexpr double within_four_px  = 4;
+constexpr double self_hit_sine  = 0.01;
+constexpr double behind_share   = 0.001;
+constexpr double within_one_px  = 1;
+constexpr double within_four_px = 4;
 
 bool traced(const TraceResult& result, size_t i) { return result.status[i] != TraceStatus::not_traced; }
 bool hits(const TraceResult& result, size_t i) { return result.status[i] == TraceStatus::hit; }
@@ -95,7 +95,8 @@ FalseHit false_hit_cause(const TraceResult& tested, const GBufferImage& gbuffer,
         const glm::dvec3 normal  = glm::normalize(glm::dvec3(gbuffer.normal_vs[i]));
         const glm::dvec3 sight   = view.projection == Projection::perspective ? from_vs : glm::dvec3(0, 0, -1);
         const double     side    = glm::dot(normal, sight) > 0 ? -1 : 1;
-        if (side * glm::dot(normal, to_vs - from_vs) <= self_hit_sine * glm::length(to_vs - from_vs)) return FalseHit::self;
+        if (side * glm::dot(normal, to_vs - from_vs) <= self_hit_sine * glm::length(to_vs - from_vs))
+            return FalseHit::self;
     }
     const double surface_m = depth_to_distance(view, surface);
     const double ray_m     = depth_to_distance(view, tested.hit_px_depth[i].z);
@@ -104,10 +105,7 @@ FalseHit false_hit_cause(const TraceResult& tested, const GBufferImage& gbuffer,
 
 } // namespace
 
-double screen_distance_px(glm::dvec2 a, glm::dvec2 b)
-{
-    return std::max(std::abs(a.x - b.x), std::abs(a.y - b.y));
-}
+double screen_distance_px(glm::dvec2 a, glm::dvec2 b) { return std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)); }
 
 MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResult& truth)
 {
@@ -145,16 +143,16 @@ MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResu
             {"screen_displacement_p99_px", percentile(distances, 99)}};
 }
 
-MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth& truth, const TraceResult& screen_truth,
-                                     const GBufferImage& gbuffer)
+MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth& truth,
+                                     const TraceResult& screen_truth, const GBufferImage& gbuffer)
 {
     require_same_size(tested.size_px, truth.size_px);
     require_same_size(tested.size_px, screen_truth.size_px);
     require_same_size(tested.size_px, gbuffer.view.size_px);
     std::array<size_t, truth_class_names.size()> of_class{};
-    size_t rays = 0, hit_count = 0, found_1px = 0, found_4px = 0, displaced = 0;
-    size_t stepped_over = 0, out_of_steps = 0, facing_rule = 0, not_in_depth = 0;
-    std::array<size_t, 3> false_hits{};
+    size_t                                       rays = 0, hit_count = 0, found_1px = 0, found_4px = 0, displaced = 0;
+    size_t                                       stepped_over = 0, out_of_steps = 0, facing_rule = 0, not_in_depth = 0;
+    std::array<size_t, 3>                        false_hits{};
     for (size_t i = 0; i < truth.cls.size(); ++i) {
         if (truth.cls[i] == TruthClass::not_traced) continue;
         ++rays;
@@ -168,9 +166,12 @@ MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth
             displaced += visible && !found;
             if (!found) ++false_hits[size_t(false_hit_cause(tested, gbuffer, i))];
         } else if (visible) {
-            if (tested.status[i] == TraceStatus::out_of_steps) ++out_of_steps;
-            else if (tested.status[i] == TraceStatus::facing_away) ++facing_rule;
-            else ++(finds(screen_truth, truth, i, within_one_px) ? stepped_over : not_in_depth);
+            if (tested.status[i] == TraceStatus::out_of_steps)
+                ++out_of_steps;
+            else if (tested.status[i] == TraceStatus::facing_away)
+                ++facing_rule;
+            else
+                ++(finds(screen_truth, truth, i, within_one_px) ? stepped_over : not_in_depth);
         }
     }
     const size_t  visible = of_class[size_t(TruthClass::visible)];
@@ -190,7 +191,7 @@ MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth
                          {"false_wrong_surface", share(false_hits[size_t(FalseHit::wrong_surface)], rays)}};
     for (const Measure& measure : measures()) {
         if (!measure.name.starts_with("truth_")) continue;
-        const auto cls = std::find(truth_class_names.begin(), truth_class_names.end(), measure.name.substr(6));
+        const auto cls       = std::find(truth_class_names.begin(), truth_class_names.end(), measure.name.substr(6));
         values[measure.name] = share(of_class[size_t(cls - truth_class_names.begin())], rays);
     }
     return values;
@@ -198,7 +199,8 @@ MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth
 
 MeasureValues count_work(const TraceResult& result)
 {
-    const size_t rays = result.status.size() - size_t(std::count(result.status.begin(), result.status.end(), TraceStatus::not_traced));
+    const size_t rays =
+        result.status.size() - size_t(std::count(result.status.begin(), result.status.end(), TraceStatus::not_traced));
     MeasureValues values{{"traced_rays", double(rays)}};
     const auto    mean = [&](const std::vector<uint32_t>& counts) -> std::optional<double> {
         if (counts.empty() || rays == 0) return std::nullopt;
@@ -207,7 +209,8 @@ MeasureValues count_work(const TraceResult& result)
     values["steps_mean"]           = mean(result.steps);
     values["depth_fetches_mean"]   = mean(result.depth_fetches);
     values["pyramid_fetches_mean"] = mean(result.pyramid_fetches);
-    if (rays > 0 && !result.steps.empty()) values["steps_max"] = *std::max_element(result.steps.begin(), result.steps.end());
+    if (rays > 0 && !result.steps.empty())
+        values["steps_max"] = *std::max_element(result.steps.begin(), result.steps.end());
     return values;
 }
 
@@ -224,8 +227,8 @@ std::optional<double> count_flips(const TraceResult& a, const TraceResult& b)
     return 1e6 * double(flips) / double(rays);
 }
 
-MeasureValues split_error(const TraceResult& float_result, const TraceResult* double_result, const TraceResult& screen_truth,
-                          const SceneTruth* scene_truth)
+MeasureValues split_error(const TraceResult& float_result, const TraceResult* double_result,
+                          const TraceResult& screen_truth, const SceneTruth* scene_truth)
 {
     const auto error = [](std::optional<double> recall) { return recall ? std::optional(1 - *recall) : std::nullopt; };
     MeasureValues values;

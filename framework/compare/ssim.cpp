@@ -33,13 +33,13 @@ Plane product(const Plane& a, const Plane& b)
 std::vector<float> ssim_map(const Plane& a, const Plane& b)
 {
     const std::vector<float> window = gaussian_window();
-    const auto  mean = [&](const Plane& plane) { return filter_separable(plane, window, window); };
-    const Plane mean_a = mean(a), mean_b = mean(b);
-    const Plane mean_aa = mean(product(a, a)), mean_bb = mean(product(b, b)), mean_ab = mean(product(a, b));
+    const auto               mean   = [&](const Plane& plane) { return filter_separable(plane, window, window); };
+    const Plane              mean_a = mean(a), mean_b = mean(b);
+    const Plane        mean_aa = mean(product(a, a)), mean_bb = mean(product(b, b)), mean_ab = mean(product(a, b));
     std::vector<float> index(a.values.size());
     for (size_t i = 0; i < index.size(); ++i) {
         const float ma = mean_a.values[i], mb = mean_b.values[i];
-        const float variances = mean_aa.values[i] - ma * ma + mean_bb.values[i] - mb * mb;
+        const float variances  = mean_aa.values[i] - ma * ma + mean_bb.values[i] - mb * mb;
         const float covariance = mean_ab.values[i] - ma * mb;
         index[i] = (2 * ma * mb + c1) * (2 * covariance + c2) / ((ma * ma + mb * mb + c1) * (variances + c2));
     }

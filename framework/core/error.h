@@ -18,14 +18,12 @@ struct Failure : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-template <typename... Args>
-[[noreturn]] void throw_spec_error(fmt::format_string<Args...> format, Args&&... args)
+template <typename... Args> [[noreturn]] void throw_spec_error(fmt::format_string<Args...> format, Args&&... args)
 {
     throw SpecError(fmt::format(format, std::forward<Args>(args)...));
 }
 
-template <typename... Args>
-[[noreturn]] void throw_failure(fmt::format_string<Args...> format, Args&&... args)
+template <typename... Args> [[noreturn]] void throw_failure(fmt::format_string<Args...> format, Args&&... args)
 {
     throw Failure(fmt::format(format, std::forward<Args>(args)...));
 }

@@ -11,14 +11,14 @@ namespace ssrlab {
 /// All arrays are row-major, size_px.x * size_px.y long. Background pixels have depth 0 and object_id 0.
 struct GBufferImage {
     View                   view;
-    std::vector<float>     depth;           // as view.h defines it
-    std::vector<glm::vec3> normal_vs;       // shading normal, unit length; 0 on the background
-    std::vector<float>     roughness;       // 0..1
-    std::vector<float>     metallic;        // 0..1; a pixel with metallic > 0 reflects
-    std::vector<glm::vec3> base_colour;     // linear
-    std::vector<glm::vec3> radiance;        // linear; the part of the lit colour that is the same from every direction
-    std::vector<glm::vec3> highlight;       // linear; the part that depends on the view; lit colour = radiance + highlight
-    std::vector<uint32_t>  object_id;       // 1 + index of the draw
+    std::vector<float>     depth;       // as view.h defines it
+    std::vector<glm::vec3> normal_vs;   // shading normal, unit length; 0 on the background
+    std::vector<float>     roughness;   // 0..1
+    std::vector<float>     metallic;    // 0..1; a pixel with metallic > 0 reflects
+    std::vector<glm::vec3> base_colour; // linear
+    std::vector<glm::vec3> radiance;    // linear; the part of the lit colour that is the same from every direction
+    std::vector<glm::vec3> highlight;   // linear; the part that depends on the view; lit colour = radiance + highlight
+    std::vector<uint32_t>  object_id;   // 1 + index of the draw
 };
 
 } // namespace ssrlab

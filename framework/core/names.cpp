@@ -29,11 +29,11 @@ size_t edit_distance(std::string_view a, std::string_view b)
     return row[b.size()];
 }
 
-constexpr auto glsl_keywords = std::to_array<std::string_view>({
-    "bool",   "break",  "buffer", "case",  "centroid", "const",  "continue", "default", "discard",
-    "do",     "double", "else",   "false", "float",    "for",    "if",       "in",      "inout",
-    "input",  "int",    "main",   "out",   "output",   "real",   "return",   "sampler", "shared",
-    "struct", "switch", "trace",  "true",  "uint",     "uniform", "using",   "void",    "while"});
+constexpr auto glsl_keywords = std::to_array<std::string_view>(
+    {"bool",   "break",  "buffer", "case",  "centroid", "const",   "continue", "default", "discard",
+     "do",     "double", "else",   "false", "float",    "for",     "if",       "in",      "inout",
+     "input",  "int",    "main",   "out",   "output",   "real",    "return",   "sampler", "shared",
+     "struct", "switch", "trace",  "true",  "uint",     "uniform", "using",    "void",    "while"});
 
 } // namespace
 
@@ -52,7 +52,7 @@ std::string unknown_name(const std::string& kind, const std::string& name, std::
 
 bool is_glsl_name(const std::string& name)
 {
-    const auto letter = [](unsigned char c) { return c < 128 && (std::isalpha(c) != 0 || c == '_'); };
+    const auto letter  = [](unsigned char c) { return c < 128 && (std::isalpha(c) != 0 || c == '_'); };
     const auto allowed = [&](unsigned char c) { return letter(c) || (c < 128 && std::isdigit(c) != 0); };
     return !name.empty() && letter(static_cast<unsigned char>(name.front())) && std::ranges::all_of(name, allowed) &&
            !name.starts_with("gl_") && name.find("__") == std::string::npos &&

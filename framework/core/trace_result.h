@@ -26,12 +26,13 @@ inline constexpr std::array<std::string_view, 6> trace_status_names = {
 struct TraceResult {
     glm::ivec2               size_px{0, 0};
     std::vector<TraceStatus> status;
-    std::vector<glm::ivec2>  hit_pixel;      // the pixel whose slab was met; undefined unless hit
-    std::vector<glm::dvec3>  hit_px_depth;   // x, y in pixels, depth; on the ray, inside hit_pixel; undefined unless hit
-    std::vector<double>      hit_t;          // 0 at the reflecting pixel, 1 at the end of the clipped screen segment; undefined unless hit
-    std::vector<uint32_t>    steps;          // loop iterations; 0 where not traced
-    std::vector<uint32_t>    depth_fetches;  // empty when the result was not counted
-    std::vector<uint32_t>    pyramid_fetches;
+    std::vector<glm::ivec2>  hit_pixel;    // the pixel whose slab was met; undefined unless hit
+    std::vector<glm::dvec3>  hit_px_depth; // x, y in pixels, depth; on the ray, inside hit_pixel; undefined unless hit
+    std::vector<double>
+        hit_t; // 0 at the reflecting pixel, 1 at the end of the clipped screen segment; undefined unless hit
+    std::vector<uint32_t> steps;         // loop iterations; 0 where not traced
+    std::vector<uint32_t> depth_fetches; // empty when the result was not counted
+    std::vector<uint32_t> pyramid_fetches;
 };
 
 /// Every pixel not traced; with room for fetch counts if they are to be counted.

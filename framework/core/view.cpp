@@ -24,8 +24,8 @@ void check(const Camera& camera, glm::ivec2 size_px)
             "position, target and up", "finite");
     const glm::dvec3 axis = camera.target_ws - camera.position_ws;
     require(glm::length(axis) > 0, camera, "target", "different from position");
-    require(glm::length(glm::cross(glm::normalize(axis), camera.up_ws)) > 1e-9 * glm::length(camera.up_ws), camera, "up",
-            "non-zero and not along the view axis");
+    require(glm::length(glm::cross(glm::normalize(axis), camera.up_ws)) > 1e-9 * glm::length(camera.up_ws), camera,
+            "up", "non-zero and not along the view axis");
     require(std::isfinite(camera.near_m) && camera.near_m > 0, camera, "near_m", "finite and > 0");
     require(std::isfinite(camera.shift_px.x) && std::isfinite(camera.shift_px.y), camera, "shift_px", "finite");
     if (camera.projection == Projection::perspective) {

@@ -37,25 +37,29 @@ vk::raii::DescriptorPool make_pool(Gpu& gpu, const Shader& shader)
     std::vector<vk::DescriptorPoolSize> sizes;
     for (const auto& [type, count] : counts) sizes.push_back({type, count});
     if (sizes.empty()) sizes.push_back({vk::DescriptorType::eStorageBuffer, 1});
-    return {gpu.impl->device, vk::DescriptorPoolCreateInfo{.flags         = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
-                                                           .maxSets       = 1,
-                                                           .poolSizeCount = static_cast<uint32_t>(sizes.size()),
-                                                           .pPoolSizes    = sizes.data()}};
+    return {gpu.impl->device,
+            vk::DescriptorPoolCreateInfo{.flags         = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
+                                         .maxSets       = 1,
+                                         .poolSizeCount = static_cast<uint32_t>(sizes.size()),
+                                         .pPoolSizes    = sizes.data()}};
 }
 
 void write_set(Gpu& gpu, const Shader& shader, const Bindings& bindings, const vk::raii::DescriptorSet& set)
 {
     for (const auto& [name, binding] : shader.bindings) {
         const auto bound = bindings.find(name);
-        if (bound == bindings.end()) throw std::logic_error(fmt::format("{}: nothing is bound to '{}'", shader.name, name));
+        if (bound == bindings.end())
+            throw std::logic_error(fmt::format("{}: nothing is bound to '{}'", shader.name, name));
         const vk::DescriptorBufferInfo buffer{.buffer = bound->second.buffer, .offset = 0, .range = VK_WHOLE_SIZE};
-        const vk::DescriptorImageInfo  image{
-             .sampler = bound->second.sampler, .imageView = bound->second.view, .imageLayout = vk::ImageLayout::eGeneral};
-        vk::WriteDescriptorSet write{.dstSet          = *set,
-                                     .dstBinding      = binding.binding,
-                                     .descriptorCount = 1,
-                                     .descriptorType  = descriptor_type(binding.type)};
-        const bool             is_buffer = binding.type == BindingType::storage_buffer || binding.type == BindingType::uniform_buffer;
+        const vk::DescriptorImageInfo  image{.sampler     = bound->second.sampler,
+                                             .imageView   = bound->second.view,
+                                             .imageLayout = vk::ImageLayout::eGeneral};
+        vk::WriteDescriptorSet         write{.dstSet          = *set,
+                                             .dstBinding      = binding.binding,
+                                             .descriptorCount = 1,
+                                             .descriptorType  = descriptor_type(binding.type)};
+        const bool                     is_buffer =
+            binding.type == BindingType::storage_buffer || binding.type == BindingType::uniform_buffer;
         if (is_buffer != static_cast<bool>(bound->second.buffer))
             throw std::logic_error(fmt::format("{}: '{}' is bound to the wrong kind of resource", shader.name, name));
         if (is_buffer)
@@ -125,7 +129,8 @@ void dispatch_indirect(const vk::raii::CommandBuffer& commands, const ComputePas
 
 Timestamps make_timestamps(Gpu& gpu, uint32_t count)
 {
-    return {{gpu.impl->device, vk::QueryPoolCreateInfo{.queryType = vk::QueryType::eTimestamp, .queryCount = count}}, count};
+    return {{gpu.impl->device, vk::QueryPoolCreateInfo{.queryType = vk::QueryType::eTimestamp, .queryCount = count}},
+            count};
 }
 
 void write_timestamp(const vk::raii::CommandBuffer& commands, const Timestamps& timestamps, uint32_t index)
@@ -136,8 +141,8 @@ void write_timestamp(const vk::raii::CommandBuffer& commands, const Timestamps& 
 
 std::vector<double> read_intervals_ms(Gpu& gpu, const Timestamps& timestamps)
 {
-    const auto [result, ticks] = timestamps.pool.getResults<uint64_t>(0, timestamps.count, timestamps.count * sizeof(uint64_t),
-                                                                      sizeof(uint64_t), vk::QueryResultFlagBits::e64);
+    const auto [result, ticks] = timestamps.pool.getResults<uint64_t>(
+        0, timestamps.count, timestamps.count * sizeof(uint64_t), sizeof(uint64_t), vk::QueryResultFlagBits::e64);
     if (result != vk::Result::eSuccess) throw_failure("GPU timestamps are not available: {}", vk::to_string(result));
     std::vector<double> intervals;
     for (uint32_t i = 1; i < timestamps.count; ++i) {

@@ -38,11 +38,11 @@ struct Bound {
 using Bindings = std::map<std::string, Bound>;
 
 struct ComputePass {
-    vk::raii::DescriptorSetLayout set_layout  = nullptr;
-    vk::raii::PipelineLayout      layout      = nullptr;
-    vk::raii::Pipeline            pipeline    = nullptr;
-    vk::raii::DescriptorPool      pool        = nullptr;
-    vk::raii::DescriptorSet       set         = nullptr;
+    vk::raii::DescriptorSetLayout set_layout = nullptr;
+    vk::raii::PipelineLayout      layout     = nullptr;
+    vk::raii::Pipeline            pipeline   = nullptr;
+    vk::raii::DescriptorPool      pool       = nullptr;
+    vk::raii::DescriptorSet       set        = nullptr;
 };
 
 /// Binds by name: a name that the shader uses and `bindings` lacks is a programmer's mistake (std::logic_error); names it does not use are ignored.
@@ -62,8 +62,8 @@ struct Timestamps {
     vk::raii::QueryPool pool  = nullptr;
     uint32_t            count = 0;
 };
-Timestamps          make_timestamps(Gpu& gpu, uint32_t count);
-void                write_timestamp(const vk::raii::CommandBuffer& commands, const Timestamps& timestamps, uint32_t index);
+Timestamps make_timestamps(Gpu& gpu, uint32_t count);
+void       write_timestamp(const vk::raii::CommandBuffer& commands, const Timestamps& timestamps, uint32_t index);
 /// Milliseconds between neighbouring timestamps; throws Failure when a value is missing.
 std::vector<double> read_intervals_ms(Gpu& gpu, const Timestamps& timestamps);
 

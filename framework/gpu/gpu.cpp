@@ -24,9 +24,8 @@ VKAPI_ATTR VkBool32 VKAPI_CALL keep_message(VkDebugUtilsMessageSeverityFlagBitsE
 bool has_layer(const vk::raii::Context& context)
 {
     const auto layers = context.enumerateInstanceLayerProperties();
-    return std::ranges::any_of(layers, [](const vk::LayerProperties& layer) {
-        return std::strcmp(layer.layerName, validation_layer) == 0;
-    });
+    return std::ranges::any_of(
+        layers, [](const vk::LayerProperties& layer) { return std::strcmp(layer.layerName, validation_layer) == 0; });
 }
 
 vk::raii::Instance make_instance(const vk::raii::Context& context, bool validation)
@@ -37,8 +36,8 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, bool validati
     const char* const         extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
     // Synchronization validation on top of core validation: hazards between passes are errors too.
     const vk::ValidationFeatureEnableEXT enable = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
-    const vk::ValidationFeaturesEXT      features{.enabledValidationFeatureCount = 1, .pEnabledValidationFeatures = &enable};
-    vk::InstanceCreateInfo               info{.pApplicationInfo = &application};
+    const vk::ValidationFeaturesEXT features{.enabledValidationFeatureCount = 1, .pEnabledValidationFeatures = &enable};
+    vk::InstanceCreateInfo          info{.pApplicationInfo = &application};
     if (validation) {
         info.pNext                   = &features;
         info.enabledLayerCount       = 1;
@@ -57,16 +56,16 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, bool validati
 
 GpuInfo describe(const vk::raii::PhysicalDevice& device, int index)
 {
-    const auto chain  = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
+    const auto  chain = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
     const auto& core  = chain.get<vk::PhysicalDeviceProperties2>().properties;
     const auto& drive = chain.get<vk::PhysicalDeviceDriverProperties>();
-    GpuInfo    info;
+    GpuInfo     info;
     info.index        = index;
     info.name         = core.deviceName.data();
     info.type         = vk::to_string(core.deviceType);
     info.driver       = fmt::format("{} {}", drive.driverName.data(), drive.driverInfo.data());
-    info.api_version  = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(core.apiVersion), VK_API_VERSION_MINOR(core.apiVersion),
-                                    VK_API_VERSION_PATCH(core.apiVersion));
+    info.api_version  = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(core.apiVersion),
+                                    VK_API_VERSION_MINOR(core.apiVersion), VK_API_VERSION_PATCH(core.apiVersion));
     info.float64      = device.getFeatures().shaderFloat64 != 0;
     info.max_image_px = core.limits.maxImageDimension2D;
     return info;
@@ -117,19 +116,20 @@ vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical_device, ui
         .synchronization2 = true, .dynamicRendering = true, .maintenance4 = true};
     vk::PhysicalDeviceVulkan12Features features12{
         .pNext = &features13, .scalarBlockLayout = true, .hostQueryReset = true};
-    const vk::PhysicalDeviceFeatures2 features{
-        .pNext    = &features12,
-        .features = {.robustBufferAccess = robust,
-                     .samplerAnisotropy  = available.samplerAnisotropy,
-                     .shaderFloat64      = available.shaderFloat64,
-                     .shaderInt64        = available.shaderInt64}};
-    return {physical_device, vk::DeviceCreateInfo{.pNext = &features, .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue}};
+    const vk::PhysicalDeviceFeatures2 features{.pNext    = &features12,
+                                               .features = {.robustBufferAccess = robust,
+                                                            .samplerAnisotropy  = available.samplerAnisotropy,
+                                                            .shaderFloat64      = available.shaderFloat64,
+                                                            .shaderInt64        = available.shaderInt64}};
+    return {physical_device,
+            vk::DeviceCreateInfo{.pNext = &features, .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue}};
 }
 
 std::vector<GpuInfo> describe_all(const vk::raii::Instance& instance)
 {
     std::vector<GpuInfo> infos;
-    for (const auto& device : vk::raii::PhysicalDevices(instance)) infos.push_back(describe(device, static_cast<int>(infos.size())));
+    for (const auto& device : vk::raii::PhysicalDevices(instance))
+        infos.push_back(describe(device, static_cast<int>(infos.size())));
     return infos;
 }
 
@@ -147,18 +147,21 @@ std::vector<GpuInfo> list_gpus()
 
 Gpu open_gpu(const GpuOptions& options)
 {
-    Gpu gpu{std::make_shared<GpuImpl>(), {}};
+    Gpu      gpu{std::make_shared<GpuImpl>(), {}};
     GpuImpl& impl = *gpu.impl;
     try {
         impl.instance = make_instance(impl.context, options.validation);
         if (options.validation) {
             using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
             using Type     = vk::DebugUtilsMessageTypeFlagBitsEXT;
-            impl.messenger = {impl.instance, vk::DebugUtilsMessengerCreateInfoEXT{
-                                                 .messageSeverity = Severity::eWarning | Severity::eError,
-                                                 .messageType     = Type::eValidation, // not performance: every image stays in GENERAL, one layout for all uses
-                                                 .pfnUserCallback = keep_message,
-                                                 .pUserData       = &impl}};
+            impl.messenger = {
+                impl.instance,
+                vk::DebugUtilsMessengerCreateInfoEXT{
+                    .messageSeverity = Severity::eWarning | Severity::eError,
+                    .messageType =
+                        Type::eValidation, // not performance: every image stays in GENERAL, one layout for all uses
+                    .pfnUserCallback = keep_message,
+                    .pUserData       = &impl}};
         }
         const auto infos     = describe_all(impl.instance);
         gpu.info             = infos[static_cast<size_t>(choose_device(infos, options.device))];
@@ -207,7 +210,8 @@ void barrier(const vk::raii::CommandBuffer& commands)
     const vk::MemoryBarrier2 everything{.srcStageMask  = vk::PipelineStageFlagBits2::eAllCommands,
                                         .srcAccessMask = vk::AccessFlagBits2::eMemoryWrite,
                                         .dstStageMask  = vk::PipelineStageFlagBits2::eAllCommands,
-                                        .dstAccessMask = vk::AccessFlagBits2::eMemoryRead | vk::AccessFlagBits2::eMemoryWrite};
+                                        .dstAccessMask =
+                                            vk::AccessFlagBits2::eMemoryRead | vk::AccessFlagBits2::eMemoryWrite};
     commands.pipelineBarrier2(vk::DependencyInfo{.memoryBarrierCount = 1, .pMemoryBarriers = &everything});
 }
 

@@ -8,7 +8,7 @@
 namespace ssrlab {
 
 struct GpuOptions {
-    std::string device;             // index, or part of the name; empty: a discrete GPU if present, else the first device
+    std::string device; // index, or part of the name; empty: a discrete GPU if present, else the first device
     bool        validation = false; // load the Khronos validation layer; every message is kept in validation_messages()
     bool        robust_buffer_access = false;
 };

@@ -13,11 +13,13 @@ uint32_t find_memory_type(const GpuImpl& impl, uint32_t allowed, vk::MemoryPrope
     throw_failure("the device has no memory type with {}", vk::to_string(wanted));
 }
 
-vk::raii::DeviceMemory allocate(const GpuImpl& impl, const vk::MemoryRequirements& needs, vk::MemoryPropertyFlags wanted)
+vk::raii::DeviceMemory allocate(const GpuImpl& impl, const vk::MemoryRequirements& needs,
+                                vk::MemoryPropertyFlags wanted)
 {
     try {
-        return {impl.device, vk::MemoryAllocateInfo{.allocationSize  = needs.size,
-                                                    .memoryTypeIndex = find_memory_type(impl, needs.memoryTypeBits, wanted)}};
+        return {impl.device,
+                vk::MemoryAllocateInfo{.allocationSize  = needs.size,
+                                       .memoryTypeIndex = find_memory_type(impl, needs.memoryTypeBits, wanted)}};
     } catch (const vk::SystemError& error) {
         throw_failure("{} MiB of device memory cannot be had: {}", needs.size >> 20, error.what());
     }
@@ -112,20 +114,23 @@ GpuImage make_image(Gpu& gpu, const ImageOptions& options)
     result.memory = allocate(*gpu.impl, result.image.getMemoryRequirements(), vk::MemoryPropertyFlagBits::eDeviceLocal);
     result.image.bindMemory(*result.memory, 0);
     const vk::ImageSubresourceRange all{aspect_of(options.format), 0, options.levels, 0, options.layers};
-    result.view = {gpu.impl->device,
-                   vk::ImageViewCreateInfo{.image            = *result.image,
-                                           .viewType         = options.array_view ? vk::ImageViewType::e2DArray : vk::ImageViewType::e2D,
-                                           .format           = options.format,
-                                           .subresourceRange = all}};
+    result.view = {
+        gpu.impl->device,
+        vk::ImageViewCreateInfo{.image    = *result.image,
+                                .viewType = options.array_view ? vk::ImageViewType::e2DArray : vk::ImageViewType::e2D,
+                                .format   = options.format,
+                                .subresourceRange = all}};
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-        const vk::ImageMemoryBarrier2 to_general{.srcStageMask     = vk::PipelineStageFlagBits2::eNone,
-                                                 .dstStageMask     = vk::PipelineStageFlagBits2::eAllCommands,
-                                                 .dstAccessMask    = vk::AccessFlagBits2::eMemoryRead | vk::AccessFlagBits2::eMemoryWrite,
+        const vk::ImageMemoryBarrier2 to_general{.srcStageMask  = vk::PipelineStageFlagBits2::eNone,
+                                                 .dstStageMask  = vk::PipelineStageFlagBits2::eAllCommands,
+                                                 .dstAccessMask = vk::AccessFlagBits2::eMemoryRead |
+                                                                  vk::AccessFlagBits2::eMemoryWrite,
                                                  .oldLayout        = vk::ImageLayout::eUndefined,
                                                  .newLayout        = vk::ImageLayout::eGeneral,
                                                  .image            = *result.image,
                                                  .subresourceRange = all};
-        commands.pipelineBarrier2(vk::DependencyInfo{.imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &to_general});
+        commands.pipelineBarrier2(
+            vk::DependencyInfo{.imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &to_general});
     });
     return result;
 }
@@ -143,8 +148,9 @@ void upload(Gpu& gpu, GpuImage& target, const void* data, uint64_t bytes)
 
 std::vector<char> download(Gpu& gpu, const GpuImage& source, uint32_t bytes_per_texel)
 {
-    const uint64_t bytes   = static_cast<uint64_t>(source.size_px.x) * static_cast<uint64_t>(source.size_px.y) * bytes_per_texel;
-    const Buffer   staging = make_host_buffer(gpu, bytes);
+    const uint64_t bytes =
+        static_cast<uint64_t>(source.size_px.x) * static_cast<uint64_t>(source.size_px.y) * bytes_per_texel;
+    const Buffer staging = make_host_buffer(gpu, bytes);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         barrier(commands);
         commands.copyImageToBuffer(*source.image, vk::ImageLayout::eGeneral, *staging.buffer, whole_image(source));

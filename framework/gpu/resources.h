@@ -49,12 +49,12 @@ struct GpuImage {
 };
 
 struct ImageOptions {
-    vk::Format           format = vk::Format::eUndefined;
-    glm::ivec2           size_px{0, 0};
-    vk::ImageUsageFlags  usage;
-    uint32_t             levels = 1;
-    uint32_t             layers = 1; // > 1: the view is an array view
-    bool                 array_view = false;
+    vk::Format          format = vk::Format::eUndefined;
+    glm::ivec2          size_px{0, 0};
+    vk::ImageUsageFlags usage;
+    uint32_t            levels     = 1;
+    uint32_t            layers     = 1; // > 1: the view is an array view
+    bool                array_view = false;
 };
 /// Created in layout GENERAL, and kept there. Throws SpecError when the size exceeds the device's limit.
 GpuImage make_image(Gpu& gpu, const ImageOptions& options);

@@ -89,7 +89,7 @@ void collect_bindings(const glslang::TProgram& program, Shader& shader)
             shader.bindings[block.name] = {static_cast<uint32_t>(block.getBinding()), BindingType::uniform_buffer};
     }
     for (int i = 0; i < program.getNumBufferBlocks(); ++i) {
-        const auto& block = program.getBufferBlock(i);
+        const auto& block           = program.getBufferBlock(i);
         shader.bindings[block.name] = {static_cast<uint32_t>(block.getBinding()), BindingType::storage_buffer};
     }
     for (int i = 0; i < program.getNumUniformVariables(); ++i) {
@@ -127,11 +127,12 @@ namespace {
 Shader compile(const ShaderSource& source)
 {
     static const GlslangProcess process;
-    const std::filesystem::path path = shader_folder() / source.file;
-    const std::string           text = read_text(path);
+    const std::filesystem::path path  = shader_folder() / source.file;
+    const std::string           text  = read_text(path);
     const std::string           shown = path.string();
-    std::string preamble = "#extension GL_GOOGLE_include_directive : require\n#extension GL_GOOGLE_cpp_style_line_directive : require\n"
-                           "#extension GL_EXT_scalar_block_layout : require\n";
+    std::string                 preamble =
+        "#extension GL_GOOGLE_include_directive : require\n#extension GL_GOOGLE_cpp_style_line_directive : require\n"
+        "#extension GL_EXT_scalar_block_layout : require\n";
     for (const auto& [name, value] : source.defines) preamble += fmt::format("#define {} {}\n", name, value);
 
     const EShLanguage language = language_of(source.stage);
@@ -144,7 +145,7 @@ Shader compile(const ShaderSource& source)
     stage.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, 100);
     stage.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
     stage.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
-    Includer  includer(source);
+    Includer   includer(source);
     const auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
     if (!stage.parse(GetDefaultResources(), 460, ECoreProfile, false, false, messages, includer))
         throw_spec_error("{}", first_error(stage.getInfoLog()));

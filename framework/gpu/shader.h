@@ -25,8 +25,8 @@ struct Shader {
 };
 
 struct ShaderSource {
-    std::filesystem::path              file;     // relative to the shader folder
-    ShaderStage                        stage = ShaderStage::compute;
+    std::filesystem::path                        file; // relative to the shader folder
+    ShaderStage                                  stage         = ShaderStage::compute;
     std::map<std::string, std::string>           defines       = {};
     std::map<std::string, std::filesystem::path> include_files = {}; // virtual include name -> file
     std::map<std::string, std::string>           include_texts = {}; // virtual include name -> text

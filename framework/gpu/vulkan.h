@@ -34,5 +34,4 @@ void submit(Gpu& gpu, const std::function<void(const vk::raii::CommandBuffer&)>&
 /// A full barrier between two passes: everything written before is visible to everything after.
 void barrier(const vk::raii::CommandBuffer& commands);
 
-
 } // namespace ssrlab

@@ -48,7 +48,8 @@ const std::vector<Column> counts = {
 };
 
 const std::vector<Column> ending = {
-    {"picture", "the reflected picture, relative to this file; beside it NAME_agreement.png (right and wrong in false colours) and "
+    {"picture", "the reflected picture, relative to this file; beside it NAME_agreement.png (right and wrong in false "
+                "colours) and "
                 "NAME_fetches.png (work per ray)"},
     {"outcome", "ok; no_rays: nothing in the picture reflects; failed: see message"},
     {"message", "what went wrong"},

@@ -26,8 +26,10 @@ std::optional<CsvRecord> take_csv_record(std::string_view& text)
         const char c = text[i];
         if (c == '"') {
             const bool doubled = quoted && i + 1 < text.size() && text[i + 1] == '"';
-            if (doubled) record.back() += text[++i];
-            else quoted = !quoted;
+            if (doubled)
+                record.back() += text[++i];
+            else
+                quoted = !quoted;
         } else if (quoted) {
             record.back() += c;
         } else if (c == ',') {

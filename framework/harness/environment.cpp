@@ -71,8 +71,8 @@ std::string scene_hash(const std::string& name)
 
 } // namespace
 
-std::map<std::string, std::string> describe_identity(const Experiment& experiment, std::span<const Technique> techniques,
-                                                     const GpuInfo& device)
+std::map<std::string, std::string> describe_identity(const Experiment&          experiment,
+                                                     std::span<const Technique> techniques, const GpuInfo& device)
 {
     std::map<std::string, std::string> identity;
     identity["specification"] = content_hash(experiment.text);
@@ -92,21 +92,21 @@ Environment describe_environment(const Experiment& experiment, std::span<const T
     utsname system = {};
     ::uname(&system);
     Environment environment;
-    environment.identity      = describe_identity(experiment, techniques, device);
-    auto& notes               = environment.notes;
-    notes["title"]            = experiment.title;
-    notes["experiment"]       = experiment.name;
-    notes["specification"]    = experiment.text;
-    notes["command_line"]     = command_line;
-    notes["seed"]             = std::to_string(experiment.measure.seed);
-    notes["started"]          = now_utc();
-    notes["commit"]           = source_commit();
-    notes["version"]          = SSRLAB_VERSION;
-    notes["compiler"]         = __VERSION__;
-    notes["system"]           = fmt::format("{} {} {}", system.sysname, system.release, system.machine);
-    notes["cpu_threads"]      = std::to_string(std::thread::hardware_concurrency());
-    notes["device_type"]      = device.type;
-    notes["vulkan"]           = device.api_version;
+    environment.identity   = describe_identity(experiment, techniques, device);
+    auto& notes            = environment.notes;
+    notes["title"]         = experiment.title;
+    notes["experiment"]    = experiment.name;
+    notes["specification"] = experiment.text;
+    notes["command_line"]  = command_line;
+    notes["seed"]          = std::to_string(experiment.measure.seed);
+    notes["started"]       = now_utc();
+    notes["commit"]        = source_commit();
+    notes["version"]       = SSRLAB_VERSION;
+    notes["compiler"]      = __VERSION__;
+    notes["system"]        = fmt::format("{} {} {}", system.sysname, system.release, system.machine);
+    notes["cpu_threads"]   = std::to_string(std::thread::hardware_concurrency());
+    notes["device_type"]   = device.type;
+    notes["vulkan"]        = device.api_version;
     return environment;
 }
 

@@ -8,8 +8,8 @@
 namespace ssrlab {
 
 /// Hashes of specification, shaders, techniques and scene files, as they are now, and the device.
-std::map<std::string, std::string> describe_identity(const Experiment& experiment, std::span<const Technique> techniques,
-                                                     const GpuInfo& device);
+std::map<std::string, std::string> describe_identity(const Experiment&          experiment,
+                                                     std::span<const Technique> techniques, const GpuInfo& device);
 
 /// The identity and all else that a reader may ask.
 Environment describe_environment(const Experiment& experiment, std::span<const Technique> techniques,

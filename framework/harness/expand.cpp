@@ -95,7 +95,8 @@ double count_runs(const Experiment& experiment)
     for (const TechniqueSweep& sweep : experiment.techniques) {
         sweeps += combinations(settings_of(experiment, sweep)) * combinations(sweep.values);
     }
-    const double pictures = static_cast<double>(experiment.scenes.size()) * static_cast<double>(experiment.views.size()) *
+    const double pictures = static_cast<double>(experiment.scenes.size()) *
+                            static_cast<double>(experiment.views.size()) *
                             static_cast<double>(experiment.sizes_px.size());
     return pictures * sweeps;
 }
@@ -108,8 +109,8 @@ std::vector<Run> expand(const Experiment& experiment, std::span<const Technique>
                          short_path(experiment.file), count, max_runs_unasked);
     }
     const std::vector<Run> on_each_picture = expand_picture(experiment, techniques);
-    std::vector<Run>      runs;
-    std::set<std::string> ids;
+    std::vector<Run>       runs;
+    std::set<std::string>  ids;
     for (const std::string& scene : experiment.scenes) {
         for (const std::string& view : experiment.views) {
             for (const glm::ivec2& size_px : experiment.sizes_px) {

@@ -55,7 +55,8 @@ std::string read_name(const TomlFile& file, const std::filesystem::path& path)
     return name;
 }
 
-std::vector<std::string> read_texts(const TomlFile& file, const std::string& name, const std::vector<std::string>& otherwise)
+std::vector<std::string> read_texts(const TomlFile& file, const std::string& name,
+                                    const std::vector<std::string>& otherwise)
 {
     const toml::node* node = file.root.get(name);
     if (node == nullptr) return otherwise;
@@ -66,12 +67,12 @@ std::vector<std::string> read_texts(const TomlFile& file, const std::string& nam
 
 glm::ivec2 read_size(const TomlFile& file, const toml::node& node)
 {
-    const std::string text  = toml_text(file, node, "sizes");
-    const char*       end   = text.data() + text.size();
+    const std::string text     = toml_text(file, node, "sizes");
+    const char*       end      = text.data() + text.size();
     int               sides[2] = {0, 0};
-    const auto        width = std::from_chars(text.data(), end, sides[0]);
-    const bool        cross = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
-    const auto        height = cross ? std::from_chars(width.ptr + 1, end, sides[1]) : width;
+    const auto        width    = std::from_chars(text.data(), end, sides[0]);
+    const bool        cross    = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
+    const auto        height   = cross ? std::from_chars(width.ptr + 1, end, sides[1]) : width;
     if (!cross || height.ec != std::errc() || height.ptr != end) {
         toml_refuse(file, node, "sizes", "a size like \"1280x720\"");
     }
@@ -155,7 +156,7 @@ TechniqueSweep read_sweep(const TomlFile& file, const toml::table& table, const 
             }
             continue;
         }
-        const std::string place = fmt::format("{}:{}", file.path, key.source().begin.line);
+        const std::string place     = fmt::format("{}:{}", file.path, key.source().begin.line);
         const Parameter&  parameter = find_parameter(technique, name, place);
         for (const toml::node* value : values_of(file, node, name)) {
             sweep.values[name].push_back(parameter_value(file, *value, parameter));
@@ -196,7 +197,7 @@ MeasureSettings read_measure(const TomlFile& file)
     const toml::table* table = optional_table(file, "measure");
     if (table == nullptr) return measure;
     std::vector<std::string> known;
-    const auto with = [&](const std::string& name, const auto& read) {
+    const auto               with = [&](const std::string& name, const auto& read) {
         known.push_back(name);
         if (const toml::node* node = table->get(name)) read(*node, name);
     };
@@ -238,7 +239,7 @@ Experiment load_experiment(const std::filesystem::path& path, std::span<const Te
 {
     static const std::vector<std::string> known = {"name",  "title", "scenes",     "views",  "sizes",
                                                    "trace", "shade", "techniques", "measure"};
-    const TomlFile file = read_toml(path);
+    const TomlFile                        file  = read_toml(path);
     toml_known_keys(file, file.root, "key", known);
     Experiment experiment;
     experiment.file  = path;
@@ -247,13 +248,14 @@ Experiment load_experiment(const std::filesystem::path& path, std::span<const Te
     experiment.title = experiment.name;
     if (const toml::node* node = file.root.get("title")) experiment.title = toml_text(file, *node, "title");
     experiment.scenes = read_texts(file, "scenes", {});
-    if (experiment.scenes.empty()) throw_spec_error("{}:1: names no scene: add scenes = [\"builtin:stairs\"]", file.path);
+    if (experiment.scenes.empty())
+        throw_spec_error("{}:1: names no scene: add scenes = [\"builtin:stairs\"]", file.path);
     experiment.scenes_place = toml_place(file, *file.root.get("scenes"));
-    experiment.views      = read_texts(file, "views", {"default"});
-    experiment.sizes_px   = read_sizes(file);
-    experiment.settings   = read_settings(file);
-    experiment.techniques = read_sweeps(file, techniques);
-    experiment.measure    = read_measure(file);
+    experiment.views        = read_texts(file, "views", {"default"});
+    experiment.sizes_px     = read_sizes(file);
+    experiment.settings     = read_settings(file);
+    experiment.techniques   = read_sweeps(file, techniques);
+    experiment.measure      = read_measure(file);
     return experiment;
 }
 

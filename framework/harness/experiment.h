@@ -15,16 +15,16 @@ namespace ssrlab {
 
 /// How long and how often is measured.
 struct MeasureSettings {
-    uint64_t seed             = 1;    // of the random order of repeats
-    int      warmup           = 1;    // untimed frames before the first timed one
-    int      min_repeats      = 9;    // below 6 there is no 95 % interval
+    uint64_t seed             = 1; // of the random order of repeats
+    int      warmup           = 1; // untimed frames before the first timed one
+    int      min_repeats      = 9; // below 6 there is no 95 % interval
     int      max_repeats      = 100;
     double   interval_percent = 2;    // tight: the 95 % interval of the median of trace_ms lies within ± this
     double   budget_s         = 5;    // a run stops after min_repeats once its frames took this long
     bool     truth            = true; // compare with the truths
-    bool     image_errors     = true; // also compare the pictures (SSIM, FLIP …), which takes longer than comparing rays
-    bool     double_twin      = true; // trace once more in double precision, to tell rounding from the other errors
-    bool     pictures         = true; // write the reflected picture of each run
+    bool     image_errors = true; // also compare the pictures (SSIM, FLIP …), which takes longer than comparing rays
+    bool     double_twin  = true; // trace once more in double precision, to tell rounding from the other errors
+    bool     pictures     = true; // write the reflected picture of each run
 };
 
 using ValueLists = std::map<std::string, std::vector<double>>;
@@ -32,18 +32,18 @@ using ValueLists = std::map<std::string, std::vector<double>>;
 /// One [techniques.ID] table: every parameter's values, defaults filled in.
 struct TechniqueSweep {
     std::string id;
-    std::string place;    // file:line
+    std::string place; // file:line
     ValueLists  values;
     ValueLists  settings; // those that the table names itself, in place of the experiment's
 };
 
 struct Experiment {
-    std::filesystem::path       file;
-    std::string                 text; // the whole file
-    std::string                 name, title;
-    std::vector<std::string>    scenes, views;
-    std::string                 scenes_place; // file:line
-    std::vector<glm::ivec2>     sizes_px;
+    std::filesystem::path    file;
+    std::string              text; // the whole file
+    std::string              name, title;
+    std::vector<std::string> scenes, views;
+    std::string              scenes_place; // file:line
+    std::vector<glm::ivec2>  sizes_px;
     /// Every setting's values by Setting::name, defaults filled in.
     ValueLists                  settings;
     std::vector<TechniqueSweep> techniques;
@@ -70,8 +70,8 @@ struct Setting {
 };
 std::span<const Setting> all_settings();
 
-inline constexpr int    max_size_px       = 16384;
-inline constexpr double max_runs_unasked  = 100000;
+inline constexpr int    max_size_px      = 16384;
+inline constexpr double max_runs_unasked = 100000;
 
 /// Throws SpecError with file and line for whatever is unknown, missing, of the wrong type or out of range.
 Experiment load_experiment(const std::filesystem::path& file, std::span<const Technique> techniques);

@@ -20,9 +20,9 @@ constexpr size_t batch_size      = 16;
 constexpr int    gbuffer_repeats = 5;
 
 struct Picture {
-    GBufferPtr      gbuffer;
-    FrameBuffersPtr buffers;
-    double          gbuffer_ms = 0;
+    GBufferPtr            gbuffer;
+    FrameBuffersPtr       buffers;
+    double                gbuffer_ms = 0;
     std::optional<Truths> truths;
 };
 
@@ -60,7 +60,8 @@ Picture make_picture(Bench& bench, const Run& run)
 /// Shaders are read when a run is prepared: one that is edited under a sweep must not end in the same file.
 void refuse_changed_sources(const Bench& bench)
 {
-    const auto changed = differences(bench.identity, describe_identity(bench.experiment, bench.techniques, bench.gpu.info));
+    const auto changed =
+        differences(bench.identity, describe_identity(bench.experiment, bench.techniques, bench.gpu.info));
     if (changed.empty()) return;
     throw_failure("{}: stopped, because these changed while it was measured: {}; its rows are from before",
                   short_path(bench.results.path()), fmt::join(changed, ", "));
@@ -75,12 +76,12 @@ void finish(Bench& bench, const Run& run, const Row& row)
         ++bench.failed;
         bench.progress.say(fmt::format("run {} failed: {}", run.id, row.at("message")));
     }
-    bench.progress.finish_run(estimated_seconds(run, find_technique(bench.techniques, run.technique), bench.experiment.measure));
+    bench.progress.finish_run(
+        estimated_seconds(run, find_technique(bench.techniques, run.technique), bench.experiment.measure));
 }
 
 /// Tries a step of one run; when it throws, the run's row says why and the run is over.
-template <typename Step>
-bool try_step(Bench& bench, MeasuredRun& measured, const Step& step)
+template <typename Step> bool try_step(Bench& bench, MeasuredRun& measured, const Step& step)
 {
     try {
         step();
@@ -95,13 +96,16 @@ bool try_step(Bench& bench, MeasuredRun& measured, const Step& step)
 /// pictures/SCENE_VIEW_SIZE_TECHNIQUE_ID, without the ending.
 std::string picture_name(const Run& run)
 {
-    std::string name = fmt::format("{}_{}_{}_{}_{}", run.scene, run.view, size_text(run.size_px), run.technique, run.id);
-    std::ranges::replace_if(name, [](unsigned char c) { return std::isalnum(c) == 0 && c != '_' && c != '-'; }, '_');
+    std::string name =
+        fmt::format("{}_{}_{}_{}_{}", run.scene, run.view, size_text(run.size_px), run.technique, run.id);
+    std::ranges::replace_if(
+        name, [](unsigned char c) { return std::isalnum(c) == 0 && c != '_' && c != '-'; }, '_');
     return "pictures/" + name;
 }
 
 /// What was seen, how right it is, and how hard it was.
-void write_pictures(Bench& bench, Picture& picture, MeasuredRun& measured, const Image& shaded, const TraceResult& counted)
+void write_pictures(Bench& bench, Picture& picture, MeasuredRun& measured, const Image& shaded,
+                    const TraceResult& counted)
 {
     const std::string           name = picture_name(*measured.run);
     const std::filesystem::path path = bench.results.path() / name;
@@ -120,7 +124,7 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
     const Run&             run       = *measured.run;
     const Technique&       technique = find_technique(bench.techniques, run.technique);
     const MeasureSettings& measure   = bench.experiment.measure;
-    measured.frame = prepare_frame(bench.gpu, picture.buffers, technique, run.values, run.settings);
+    measured.frame                   = prepare_frame(bench.gpu, picture.buffers, technique, run.values, run.settings);
     for (int i = 0; i < std::max(1, measure.warmup); ++i) run_frame(bench.gpu, *measured.frame);
     const Image       shaded  = measure.pictures ? read_shaded(bench.gpu, *measured.frame) : Image();
     const TraceResult counted = count_frame(bench.gpu, *measured.frame);
@@ -131,8 +135,8 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
     if (measure.double_twin && bench.gpu.info.float64) {
         twin = count_frame(bench.gpu, *measured.frame, Precision::float64);
     }
-    add_measures(measured.row, picture.truths->compare(run.settings.trace, counted, twin ? &*twin : nullptr,
-                                                       measure.image_errors));
+    add_measures(measured.row,
+                 picture.truths->compare(run.settings.trace, counted, twin ? &*twin : nullptr, measure.image_errors));
 }
 
 /// Timed repeats, every round in another order, until each run is final or a stop was requested.

@@ -20,15 +20,15 @@ struct LoadedScene {
 
 /// What all measuring works with.
 struct Bench {
-    const Experiment&            experiment;
-    std::span<const Technique>   techniques;
-    Gpu&                         gpu;
-    ResultFolder&                results;
-    Progress&                    progress;
+    const Experiment&                  experiment;
+    std::span<const Technique>         techniques;
+    Gpu&                               gpu;
+    ResultFolder&                      results;
+    Progress&                          progress;
     std::map<std::string, std::string> identity; // what environment.json says
-    std::mt19937_64              random{experiment.measure.seed};
-    std::unique_ptr<LoadedScene> scene = nullptr;
-    size_t                       written = 0, failed = 0;
+    std::mt19937_64                    random{experiment.measure.seed};
+    std::unique_ptr<LoadedScene>       scene   = nullptr;
+    size_t                             written = 0, failed = 0;
 };
 
 /// Appends a row for each run as soon as it is final; a run that fails is a row with the reason. Returns early, with the

@@ -41,8 +41,8 @@ Row identity_row(const Experiment& experiment, const Run& run, const Technique& 
                {"technique", run.technique}};
     for (const Setting& setting : all_settings()) {
         const double value = setting.get(run.settings);
-        row[setting.name]  = setting.type == ParameterType::boolean ? (value != 0 ? "true" : "false")
-                                                                    : fmt::format("{}", value);
+        row[setting.name] =
+            setting.type == ParameterType::boolean ? (value != 0 ? "true" : "false") : fmt::format("{}", value);
     }
     for (const Parameter& parameter : technique.parameters) {
         row[parameter.name] = format_parameter(parameter, run.values.at(parameter.name));
@@ -64,7 +64,7 @@ void add_counts(Row& row, const TraceResult& counted)
     row["outcome"] = steps.empty() ? "no_rays" : "ok";
     if (steps.empty()) return;
     for (size_t status = 1; status < ended.size(); ++status) {
-        const double share = ended[status] / static_cast<double>(steps.size());
+        const double share                                       = ended[status] / static_cast<double>(steps.size());
         row[fmt::format("{}_share", trace_status_names[status])] = number_text(share);
     }
     row["steps_p99"] = number_text(quantile(steps, 0.99));

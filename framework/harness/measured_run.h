@@ -18,7 +18,7 @@ struct MeasuredRun {
 };
 
 /// Run id, experiment, scene … and every setting and parameter.
-Row  identity_row(const Experiment& experiment, const Run& run, const Technique& technique);
+Row identity_row(const Experiment& experiment, const Run& run, const Technique& technique);
 /// Rays, fetches, steps and how the rays ended, from a counted trace; outcome ok or no_rays.
 void add_counts(Row& row, const TraceResult& counted);
 /// The measures that have a column.

@@ -19,12 +19,12 @@ double estimated_seconds(const Run& run, const Technique& technique, const Measu
 {
     const double pixels = static_cast<double>(run.size_px.x) * run.size_px.y;
     // A ray rarely visits more pixels than the image is wide, whatever its budget; a pyramid skips most of them.
-    const double walk    = technique.inputs.empty() ? run.size_px.x + run.size_px.y : 0.15 * run.size_px.x;
-    const double bound   = iteration_bound(technique, run.values);
-    const double steps   = technique.exact ? std::min(bound, walk) : bound;
-    const double frame_s = pixels * steps * ns_per_pixel_and_step * 1e-9 + pixels * 20e-9;
-    const double repeats = std::clamp(measure.budget_s / frame_s, static_cast<double>(measure.min_repeats),
-                                      static_cast<double>(measure.max_repeats));
+    const double walk     = technique.inputs.empty() ? run.size_px.x + run.size_px.y : 0.15 * run.size_px.x;
+    const double bound    = iteration_bound(technique, run.values);
+    const double steps    = technique.exact ? std::min(bound, walk) : bound;
+    const double frame_s  = pixels * steps * ns_per_pixel_and_step * 1e-9 + pixels * 20e-9;
+    const double repeats  = std::clamp(measure.budget_s / frame_s, static_cast<double>(measure.min_repeats),
+                                       static_cast<double>(measure.max_repeats));
     const double counting = measure.truth ? 4 : 2;
     return overhead_s + frame_s * (repeats + measure.warmup + counting);
 }
@@ -64,12 +64,12 @@ void Progress::tick()
 
 void Progress::print()
 {
-    last_print_            = Clock::now();
-    const double elapsed_s = std::chrono::duration<double>(last_print_ - started_).count();
-    const double left_s    = done_cost_ > 0 ? elapsed_s * (total_cost_ - done_cost_) / done_cost_ : total_cost_;
-    const std::string left = left_s < 0.5 ? "" : ", about " + duration_text(left_s) + " left";
-    const std::string line = fmt::format("{} of {} runs, {}, {} so far{}", done_runs_, total_runs_, picture_,
-                                         duration_text(elapsed_s), left);
+    last_print_                 = Clock::now();
+    const double      elapsed_s = std::chrono::duration<double>(last_print_ - started_).count();
+    const double      left_s    = done_cost_ > 0 ? elapsed_s * (total_cost_ - done_cost_) / done_cost_ : total_cost_;
+    const std::string left      = left_s < 0.5 ? "" : ", about " + duration_text(left_s) + " left";
+    const std::string line      = fmt::format("{} of {} runs, {}, {} so far{}", done_runs_, total_runs_, picture_,
+                                              duration_text(elapsed_s), left);
     fmt::print(stderr, "{}{}{}", in_place_ ? "\r\033[K" : "", line, in_place_ && done_runs_ < total_runs_ ? "" : "\n");
     std::fflush(stderr);
 }

@@ -31,7 +31,7 @@ Image reflected_image(const TraceResult& result, const GBufferImage& gbuffer, gl
         glm::vec3 colour(0);
         if (result.status[i] == TraceStatus::hit) {
             const glm::ivec2 pixel = result.hit_pixel[i];
-            colour = gbuffer.radiance[static_cast<size_t>(pixel.y) * result.size_px.x + pixel.x];
+            colour                 = gbuffer.radiance[static_cast<size_t>(pixel.y) * result.size_px.x + pixel.x];
         } else if (result.status[i] != TraceStatus::not_traced) {
             colour = background;
         }

@@ -17,7 +17,8 @@ public:
     Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path cache_dir);
 
     /// Every measure of `counted`; `twin` is the same trace in double, or null.
-    MeasureValues compare(const TraceSettings& settings, const TraceResult& counted, const TraceResult* twin, bool image_errors);
+    MeasureValues compare(const TraceSettings& settings, const TraceResult& counted, const TraceResult* twin,
+                          bool image_errors);
 
     /// The agreement with the scene truth, as a false-colour picture.
     Image agreement(const TraceSettings& settings, const TraceResult& counted);

@@ -67,8 +67,10 @@ ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> columns, co
                           short_path(csv_));
         }
         remove_partial_files();
-        if (fs::exists(csv_)) resume(environment);
-        else start(environment);
+        if (fs::exists(csv_))
+            resume(environment);
+        else
+            start(environment);
     } catch (...) {
         if (csv_fd_ >= 0) ::close(csv_fd_);
         if (lock_fd_ >= 0) ::close(lock_fd_);
@@ -116,8 +118,9 @@ void ResultFolder::resume(const Environment& environment)
     const std::string text = read_file(csv_);
     std::string_view  rest = text;
     if (take_csv_record(rest) != columns_) {
-        throw_spec_error("{}: cannot be resumed, its columns are not those of this version; choose another folder with -o",
-                         short_path(csv_));
+        throw_spec_error(
+            "{}: cannot be resumed, its columns are not those of this version; choose another folder with -o",
+            short_path(csv_));
     }
     csv_fd_ = ::open(csv_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
     if (csv_fd_ < 0) throw_failure("{}: cannot be written: {}", short_path(csv_), std::strerror(errno));

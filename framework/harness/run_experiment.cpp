@@ -92,7 +92,7 @@ int run_experiment(const RunOptions& options)
     const std::vector<Technique> techniques = list_techniques(options.techniques);
     const Experiment             experiment = load_experiment(options.specification, techniques);
     refuse_unknown_scenes(experiment);
-    std::vector<Run> runs = choose(expand(experiment, techniques, options.yes), options.only);
+    std::vector<Run> runs    = choose(expand(experiment, techniques, options.yes), options.only);
     const auto       columns = result_columns(experiment, techniques);
     if (options.dry_run) return list_runs(experiment, runs, techniques);
 

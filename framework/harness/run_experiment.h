@@ -14,7 +14,7 @@ struct RunOptions {
     std::filesystem::path              folder;     // empty: results/NAME
     std::vector<std::filesystem::path> techniques; // more directories of techniques
     GpuOptions                         gpu;
-    std::string                        only;       // a run id; empty: all runs
+    std::string                        only; // a run id; empty: all runs
     bool                               resume  = false;
     bool                               dry_run = false; // list runs and estimated time, touch nothing
     bool                               yes     = false; // also more than max_runs_unasked

@@ -10,7 +10,7 @@ namespace ssrlab {
 struct Summary {
     int    count  = 0;
     double median = 0;
-    double mad    = 0; // median absolute deviation from the median
+    double mad    = 0;              // median absolute deviation from the median
     double ci_low = 0, ci_high = 0; // 95 % interval of the median, from order statistics: assumes no distribution
 };
 

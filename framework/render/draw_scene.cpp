@@ -34,13 +34,14 @@ vk::raii::ShaderModule make_module(Gpu& gpu, const Shader& shader)
 
 DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipelineOptions& options)
 {
-    const Shader vertex   = compile_shader({.file = "gbuffer.vert", .stage = ShaderStage::vertex});
-    const Shader fragment = compile_shader({.file = options.fragment_shader, .stage = ShaderStage::fragment});
+    const Shader vertex        = compile_shader({.file = "gbuffer.vert", .stage = ShaderStage::vertex});
+    const Shader fragment      = compile_shader({.file = options.fragment_shader, .stage = ShaderStage::fragment});
     const auto   vertex_module = make_module(gpu, vertex), fragment_module = make_module(gpu, fragment);
 
     DrawPipeline                  result;
     const vk::DescriptorSetLayout layouts[] = {*scene.frame_layout, *scene.material_layout};
-    const vk::PushConstantRange   range{vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0, sizeof(DrawPush)};
+    const vk::PushConstantRange   range{vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0,
+                                      sizeof(DrawPush)};
     result.layout = {gpu.impl->device, vk::PipelineLayoutCreateInfo{.setLayoutCount         = 2,
                                                                     .pSetLayouts            = layouts,
                                                                     .pushConstantRangeCount = 1,
@@ -82,22 +83,24 @@ DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipel
                                                          .pAttachments    = blend.data()};
     const vk::DynamicState                      dynamic[] = {vk::DynamicState::eViewport, vk::DynamicState::eScissor,
                                                              vk::DynamicState::eCullMode};
-    const vk::PipelineDynamicStateCreateInfo    dynamics{.dynamicStateCount = std::size(dynamic), .pDynamicStates = dynamic};
-    const vk::PipelineRenderingCreateInfo rendering{.colorAttachmentCount    = static_cast<uint32_t>(options.colour_formats.size()),
-                                                    .pColorAttachmentFormats = options.colour_formats.data(),
-                                                    .depthAttachmentFormat   = vk::Format::eD32Sfloat};
-    const vk::GraphicsPipelineCreateInfo  info{.pNext               = &rendering,
-                                               .stageCount          = std::size(stages),
-                                               .pStages             = stages,
-                                               .pVertexInputState   = &input,
-                                               .pInputAssemblyState = &assembly,
-                                               .pViewportState      = &viewport,
-                                               .pRasterizationState = &raster,
-                                               .pMultisampleState   = &samples,
-                                               .pDepthStencilState  = &depth,
-                                               .pColorBlendState    = &blending,
-                                               .pDynamicState       = &dynamics,
-                                               .layout              = *result.layout};
+    const vk::PipelineDynamicStateCreateInfo    dynamics{.dynamicStateCount = std::size(dynamic),
+                                                         .pDynamicStates    = dynamic};
+    const vk::PipelineRenderingCreateInfo       rendering{.colorAttachmentCount =
+                                                        static_cast<uint32_t>(options.colour_formats.size()),
+                                                          .pColorAttachmentFormats = options.colour_formats.data(),
+                                                          .depthAttachmentFormat   = vk::Format::eD32Sfloat};
+    const vk::GraphicsPipelineCreateInfo        info{.pNext               = &rendering,
+                                                     .stageCount          = std::size(stages),
+                                                     .pStages             = stages,
+                                                     .pVertexInputState   = &input,
+                                                     .pInputAssemblyState = &assembly,
+                                                     .pViewportState      = &viewport,
+                                                     .pRasterizationState = &raster,
+                                                     .pMultisampleState   = &samples,
+                                                     .pDepthStencilState  = &depth,
+                                                     .pColorBlendState    = &blending,
+                                                     .pDynamicState       = &dynamics,
+                                                     .layout              = *result.layout};
     result.pipeline = {gpu.impl->device, gpu.impl->pipeline_cache, info};
     return result;
 }
@@ -113,8 +116,10 @@ void draw_scene(const vk::raii::CommandBuffer& commands, const GpuScene& scene, 
         if (draw.index_count == 0 || outside(draw, world_to_clip)) continue;
         const DrawPush push{glm::mat4(world_to_clip), draw.material, draw.object_id};
         commands.setCullMode(draw.double_sided ? vk::CullModeFlagBits::eNone : vk::CullModeFlagBits::eBack);
-        commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *pipeline.layout, 1, *scene.material_sets[draw.material], nullptr);
-        commands.pushConstants<DrawPush>(*pipeline.layout, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0, push);
+        commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *pipeline.layout, 1,
+                                    *scene.material_sets[draw.material], nullptr);
+        commands.pushConstants<DrawPush>(
+            *pipeline.layout, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0, push);
         commands.drawIndexed(draw.index_count, 1, draw.first_index, 0, 0);
     }
 }

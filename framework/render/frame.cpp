@@ -17,8 +17,8 @@ template <typename Real> struct ViewBlock {
 
 template <typename Real> void write_view_as(Gpu& gpu, Buffer& target, const View& view)
 {
-    const ViewBlock<Real> block{glm::vec<2, Real>(view.focal_px), glm::vec<2, Real>(view.centre_px), static_cast<Real>(view.near_m),
-                                static_cast<Real>(view.far_m), view.size_px};
+    const ViewBlock<Real> block{glm::vec<2, Real>(view.focal_px), glm::vec<2, Real>(view.centre_px),
+                                static_cast<Real>(view.near_m), static_cast<Real>(view.far_m), view.size_px};
     upload(gpu, target, &block, sizeof(block));
 }
 
@@ -61,44 +61,47 @@ RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision)
         throw_failure("{} rays need a buffer of {} MiB; the device allows {} MiB", rays, largest >> 20,
                       gpu.impl->limits.maxStorageBufferRange >> 20);
     RayBuffers buffers;
-    buffers.precision = precision;
-    buffers.capacity  = capacity;
-    buffers.count     = make_buffer(gpu, 16);
-    buffers.launch    = make_buffer(gpu, 16);
-    buffers.origins   = make_buffer(gpu, largest);
-    buffers.deltas    = make_buffer(gpu, largest);
-    buffers.lengths   = make_buffer(gpu, rays * real_bytes);
-    buffers.pixels    = make_buffer(gpu, rays * 4);
+    buffers.precision  = precision;
+    buffers.capacity   = capacity;
+    buffers.count      = make_buffer(gpu, 16);
+    buffers.launch     = make_buffer(gpu, 16);
+    buffers.origins    = make_buffer(gpu, largest);
+    buffers.deltas     = make_buffer(gpu, largest);
+    buffers.lengths    = make_buffer(gpu, rays * real_bytes);
+    buffers.pixels     = make_buffer(gpu, rays * 4);
     buffers.hit_pixels = make_buffer(gpu, rays * 4);
-    buffers.hit_ts    = make_buffer(gpu, rays * real_bytes);
+    buffers.hit_ts     = make_buffer(gpu, rays * real_bytes);
     return buffers;
 }
 
 FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
 {
-    auto buffers      = std::make_shared<FrameBuffers>();
-    buffers->gbuffer  = gbuffer;
-    buffers->view     = upload_view(gpu, gbuffer->view, Precision::float32);
-    buffers->rays     = make_ray_buffers(gpu, count_reflecting(gpu, *gbuffer), Precision::float32);
-    buffers->shaded   = make_image(gpu, {.format  = vk::Format::eR16G16B16A16Sfloat,
-                                         .size_px = gbuffer->view.size_px,
-                                         .usage   = vk::ImageUsageFlagBits::eStorage});
-    buffers->lit      = make_compute_pass(gpu, compile_shader({.file = "lit.comp"}),
-                                          {{"radiance_image", gbuffer->radiance}, {"highlight_image", gbuffer->highlight}, {"shaded_image", buffers->shaded}});
-    buffers->pyramid  = make_pyramid_images(gpu, gbuffer->view.size_px);
+    auto buffers     = std::make_shared<FrameBuffers>();
+    buffers->gbuffer = gbuffer;
+    buffers->view    = upload_view(gpu, gbuffer->view, Precision::float32);
+    buffers->rays    = make_ray_buffers(gpu, count_reflecting(gpu, *gbuffer), Precision::float32);
+    buffers->shaded  = make_image(gpu, {.format  = vk::Format::eR16G16B16A16Sfloat,
+                                        .size_px = gbuffer->view.size_px,
+                                        .usage   = vk::ImageUsageFlagBits::eStorage});
+    buffers->lit     = make_compute_pass(gpu, compile_shader({.file = "lit.comp"}),
+                                         {{"radiance_image", gbuffer->radiance},
+                                          {"highlight_image", gbuffer->highlight},
+                                          {"shaded_image", buffers->shaded}});
+    buffers->pyramid = make_pyramid_images(gpu, gbuffer->view.size_px);
     return buffers;
 }
 
-PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const Technique& technique, const ParameterValues& values,
-                               const FrameSettings& settings)
+PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const Technique& technique,
+                               const ParameterValues& values, const FrameSettings& settings)
 {
     require_bounded(technique, values);
-    auto frame        = std::make_shared<PreparedFrame>();
-    frame->buffers    = buffers;
-    frame->technique  = technique;
-    frame->values     = values;
-    frame->settings   = settings;
-    frame->pyramid    = std::ranges::count(technique.inputs, "depth_pyramid") > 0 ? make_pyramid_passes(gpu, *frame) : PyramidPasses{};
+    auto frame       = std::make_shared<PreparedFrame>();
+    frame->buffers   = buffers;
+    frame->technique = technique;
+    frame->values    = values;
+    frame->settings  = settings;
+    frame->pyramid =
+        std::ranges::count(technique.inputs, "depth_pyramid") > 0 ? make_pyramid_passes(gpu, *frame) : PyramidPasses{};
     frame->trace      = make_trace_passes(gpu, *frame, buffers->rays, buffers->view, nullptr);
     frame->shade      = make_shade_pass(gpu, *frame);
     frame->timestamps = make_timestamps(gpu, 5);

@@ -47,9 +47,9 @@ GpuScenePtr upload_scene(Gpu& gpu, const Scene& scene);
 /// Renders the G-buffer; call again for another timing. Throws SpecError when the size exceeds the device's limit.
 GBufferPtr render_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view);
 /// Renders into the same images again; returns milliseconds.
-double     rerender_gbuffer(Gpu& gpu, GBuffer& gbuffer);
+double rerender_gbuffer(Gpu& gpu, GBuffer& gbuffer);
 /// A G-buffer made elsewhere (another renderer, a test).
-GBufferPtr upload_gbuffer(Gpu& gpu, const GBufferImage& image);
+GBufferPtr   upload_gbuffer(Gpu& gpu, const GBufferImage& image);
 GBufferImage read_gbuffer(Gpu& gpu, const GBuffer& gbuffer);
 
 FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer);
@@ -59,9 +59,9 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
                                const ParameterValues& values, const FrameSettings& settings);
 
 /// Runs all passes once and waits. The first call of a frame includes driver compilation: warm up.
-PassTimes   run_frame(Gpu& gpu, PreparedFrame& frame);
+PassTimes run_frame(Gpu& gpu, PreparedFrame& frame);
 /// The reflected picture that the last run_frame of this frame left in the shared buffers. Linear RGB.
-Image       read_shaded(Gpu& gpu, PreparedFrame& frame);
+Image read_shaded(Gpu& gpu, PreparedFrame& frame);
 /// Traces once with the counting pipeline (work counters on; never timed). Precision float64 gives the double twin.
 TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision = Precision::float32);
 

@@ -23,7 +23,8 @@ Slab slab_of(const View& view, const TraceSettings& trace)
     if (view.projection == Projection::perspective)
         return trace.thickness_relative ? Slab{0, 1 / (1 + thickness), 0} : Slab{thickness / view.near_m, 1, 0};
     const double range = view.far_m - view.near_m;
-    return trace.thickness_relative ? Slab{0, 1 + thickness, thickness * view.far_m / range} : Slab{0, 1, thickness / range};
+    return trace.thickness_relative ? Slab{0, 1 + thickness, thickness * view.far_m / range}
+                                    : Slab{0, 1, thickness / range};
 }
 
 template <typename Real> void add_settings(Constants& constants, const View& view, const FrameSettings& settings)
@@ -64,7 +65,8 @@ std::string parameter_declarations(const Technique& technique)
         const char* declaration = parameter.type == ParameterType::real      ? "float {} = 0.0"
                                   : parameter.type == ParameterType::boolean ? "bool {} = false"
                                                                              : "int {} = 0";
-        text += fmt::format("layout(constant_id = {}) const {};\n", id++, fmt::format(fmt::runtime(declaration), parameter.name));
+        text += fmt::format("layout(constant_id = {}) const {};\n", id++,
+                            fmt::format(fmt::runtime(declaration), parameter.name));
         for (size_t i = 0; i < parameter.choices.size(); ++i)
             text += fmt::format("const int {}_{} = {};\n", parameter.name, parameter.choices[i], i);
     }
@@ -111,14 +113,14 @@ double parameter_or(const PreparedFrame& frame, const std::string& name, double 
 PyramidImages make_pyramid_images(Gpu& gpu, glm::ivec2 size_px)
 {
     PyramidImages images;
-    images.levels           = level_count(size_px);
+    images.levels = level_count(size_px);
     // A multiple of 2^levels in width; in height level 1 is the tallest.
-    const int        width  = 1 << images.levels;
-    const int        step   = std::max(width, 1);
-    const int        padded = (size_px.x + step - 1) / step * step;
-    images.atlas            = make_image(gpu, {.format  = vk::Format::eR32G32Uint,
-                                               .size_px = {std::max(padded, 2), std::max(level_size(size_px, 1).y, 1)},
-                                               .usage   = vk::ImageUsageFlagBits::eStorage});
+    const int width  = 1 << images.levels;
+    const int step   = std::max(width, 1);
+    const int padded = (size_px.x + step - 1) / step * step;
+    images.atlas     = make_image(gpu, {.format  = vk::Format::eR32G32Uint,
+                                        .size_px = {std::max(padded, 2), std::max(level_size(size_px, 1).y, 1)},
+                                        .usage   = vk::ImageUsageFlagBits::eStorage});
     return images;
 }
 
@@ -128,19 +130,22 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame)
     Constants           constants = settings_constants(frame, Precision::float32);
     constants.add(CONSTANT_PYRAMID_KIND, static_cast<int32_t>(parameter_or(frame, "pyramid", PYRAMID_OCCUPANCY)));
     PyramidPasses passes;
-    passes.build       = make_compute_pass(gpu, compile_shader({.file = "depth_pyramid.comp"}),
-                                           {{"depth_image", buffers.gbuffer->depth}, {"depth_pyramid", buffers.pyramid.atlas}}, constants,
-                                           sizeof(PyramidPush));
-    const auto  size   = buffers.gbuffer->view.size_px;
-    const int   width  = buffers.pyramid.atlas.size_px.x;
-    const auto  offset = [&](int level) { return glm::ivec2(level < 1 ? 0 : width - (width >> (level - 1)), 0); };
-    const int   top    = std::min(buffers.pyramid.levels, static_cast<int>(parameter_or(frame, "top_level", 31)));
+    passes.build =
+        make_compute_pass(gpu, compile_shader({.file = "depth_pyramid.comp"}),
+                          {{"depth_image", buffers.gbuffer->depth}, {"depth_pyramid", buffers.pyramid.atlas}},
+                          constants, sizeof(PyramidPush));
+    const auto size   = buffers.gbuffer->view.size_px;
+    const int  width  = buffers.pyramid.atlas.size_px.x;
+    const auto offset = [&](int level) { return glm::ivec2(level < 1 ? 0 : width - (width >> (level - 1)), 0); };
+    const int  top    = std::min(buffers.pyramid.levels, static_cast<int>(parameter_or(frame, "top_level", 31)));
     for (int level = 1; level <= top; ++level)
-        passes.levels.push_back({level, level_size(size, level - 1), level_size(size, level), offset(level - 1), offset(level)});
+        passes.levels.push_back(
+            {level, level_size(size, level - 1), level_size(size, level), offset(level - 1), offset(level)});
     return passes;
 }
 
-TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view, const Buffer* work)
+TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view,
+                              const Buffer* work)
 {
     const FrameBuffers& buffers  = *frame.buffers;
     Bindings            bindings = ray_bindings(rays);
@@ -151,17 +156,18 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
                      {"depth_pyramid", buffers.pyramid.atlas}});
     // A folder with a trace.comp of its own replaces the standard one (for techniques that work in tiles, say).
     const std::filesystem::path own = frame.technique.folder / "trace.comp";
-    ShaderSource trace{.file          = std::filesystem::exists(own) ? own : std::filesystem::path("trace.comp"),
-                       .defines       = precision_defines(rays.precision),
-                       .include_files = {{"technique/trace.glsl", frame.technique.folder / "trace.glsl"}},
-                       .include_texts = {{"technique/parameters", parameter_declarations(frame.technique)}}};
+    ShaderSource                trace{.file = std::filesystem::exists(own) ? own : std::filesystem::path("trace.comp"),
+                                      .defines       = precision_defines(rays.precision),
+                                      .include_files = {{"technique/trace.glsl", frame.technique.folder / "trace.glsl"}},
+                                      .include_texts = {{"technique/parameters", parameter_declarations(frame.technique)}}};
     if (work != nullptr) {
         trace.defines.emplace("COUNT_WORK", "1");
         bindings.insert({"Work", *work});
     }
-    Constants constants = settings_constants(frame, rays.precision);
+    Constants   constants = settings_constants(frame, rays.precision);
     TracePasses passes;
-    passes.rays   = make_compute_pass(gpu, compile_shader({.file = "rays.comp", .defines = precision_defines(rays.precision)}), bindings, constants);
+    passes.rays = make_compute_pass(
+        gpu, compile_shader({.file = "rays.comp", .defines = precision_defines(rays.precision)}), bindings, constants);
     passes.launch = make_compute_pass(gpu, compile_shader({.file = "launch.comp"}), bindings);
     add_parameters(constants, frame.technique, frame.values);
     passes.trace = make_compute_pass(gpu, compile_shader(trace), bindings, constants);
@@ -183,12 +189,14 @@ ComputePass make_shade_pass(Gpu& gpu, const PreparedFrame& frame)
     return make_compute_pass(gpu, compile_shader({.file = "shade.comp"}), bindings, constants);
 }
 
-void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const RayBuffers& rays, glm::ivec2 size_px)
+void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const RayBuffers& rays,
+                 glm::ivec2 size_px)
 {
     barrier(commands);
     commands.fillBuffer(*rays.count.buffer, 0, VK_WHOLE_SIZE, 0);
     barrier(commands);
-    dispatch(commands, passes.rays, {static_cast<uint32_t>(size_px.x + 7) / 8, static_cast<uint32_t>(size_px.y + 7) / 8, 1});
+    dispatch(commands, passes.rays,
+             {static_cast<uint32_t>(size_px.x + 7) / 8, static_cast<uint32_t>(size_px.y + 7) / 8, 1});
     barrier(commands);
     dispatch(commands, passes.launch, {1, 1, 1});
     barrier(commands);
@@ -198,29 +206,34 @@ void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses
 {
     for (const PyramidPush& level : passes.levels) {
         push(commands, passes.build, level);
-        dispatch(commands, passes.build, {static_cast<uint32_t>(level.size.x + 7) / 8, static_cast<uint32_t>(level.size.y + 7) / 8, 1});
+        dispatch(commands, passes.build,
+                 {static_cast<uint32_t>(level.size.x + 7) / 8, static_cast<uint32_t>(level.size.y + 7) / 8, 1});
         barrier(commands);
     }
 }
 
-template <typename Real> TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, const Buffer* work)
+template <typename Real>
+TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, const Buffer* work)
 {
-    using Real3              = glm::vec<3, Real>;
-    const size_t count       = download_as<uint32_t>(gpu, rays.count, 1)[0];
-    const auto   origins     = download_as<Real3>(gpu, rays.origins, count);
-    const auto   deltas      = download_as<Real3>(gpu, rays.deltas, count);
-    const auto   pixels      = download_as<uint32_t>(gpu, rays.pixels, count);
-    const auto   hits        = download_as<uint32_t>(gpu, rays.hit_pixels, count);
-    const auto   ts          = download_as<Real>(gpu, rays.hit_ts, count);
-    const auto   works       = work != nullptr ? download_as<glm::uvec3>(gpu, *work, count) : std::vector<glm::uvec3>{};
-    const auto   unpack      = [](uint32_t p) { return glm::ivec2(p & (MAX_IMAGE_PX - 1), (p >> PIXEL_BITS) & (MAX_IMAGE_PX - 1)); };
-    TraceResult  result      = make_trace_result(size_px, work != nullptr);
+    using Real3          = glm::vec<3, Real>;
+    const size_t count   = download_as<uint32_t>(gpu, rays.count, 1)[0];
+    const auto   origins = download_as<Real3>(gpu, rays.origins, count);
+    const auto   deltas  = download_as<Real3>(gpu, rays.deltas, count);
+    const auto   pixels  = download_as<uint32_t>(gpu, rays.pixels, count);
+    const auto   hits    = download_as<uint32_t>(gpu, rays.hit_pixels, count);
+    const auto   ts      = download_as<Real>(gpu, rays.hit_ts, count);
+    const auto   works   = work != nullptr ? download_as<glm::uvec3>(gpu, *work, count) : std::vector<glm::uvec3>{};
+    const auto   unpack  = [](uint32_t p) {
+        return glm::ivec2(p & (MAX_IMAGE_PX - 1), (p >> PIXEL_BITS) & (MAX_IMAGE_PX - 1));
+    };
+    TraceResult result = make_trace_result(size_px, work != nullptr);
     for (size_t i = 0; i < count; ++i) {
-        const glm::ivec2 pixel  = unpack(pixels[i]);
-        const size_t     index  = static_cast<size_t>(pixel.y) * static_cast<size_t>(size_px.x) + static_cast<size_t>(pixel.x);
-        result.status[index]    = static_cast<TraceStatus>(hits[i] >> (2 * PIXEL_BITS));
-        result.hit_pixel[index] = unpack(hits[i]);
-        result.hit_t[index]     = static_cast<double>(ts[i]);
+        const glm::ivec2 pixel = unpack(pixels[i]);
+        const size_t     index =
+            static_cast<size_t>(pixel.y) * static_cast<size_t>(size_px.x) + static_cast<size_t>(pixel.x);
+        result.status[index]       = static_cast<TraceStatus>(hits[i] >> (2 * PIXEL_BITS));
+        result.hit_pixel[index]    = unpack(hits[i]);
+        result.hit_t[index]        = static_cast<double>(ts[i]);
         result.hit_px_depth[index] = glm::dvec3(origins[i]) + result.hit_t[index] * glm::dvec3(deltas[i]);
         if (work == nullptr) continue;
         result.steps[index]           = works[i].x;

@@ -25,8 +25,8 @@ PyramidImages make_pyramid_images(Gpu& gpu, glm::ivec2 size_px);
 
 struct FrameBuffers {
     GBufferPtr    gbuffer;
-    Buffer        view;   // float
-    RayBuffers    rays;   // float
+    Buffer        view; // float
+    RayBuffers    rays; // float
     PyramidImages pyramid;
     GpuImage      shaded; // RGBA16F
     ComputePass   lit;    // shaded = radiance + highlight
@@ -58,13 +58,16 @@ struct PreparedFrame {
 
 PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame);
 /// work: steps, depth and pyramid fetches per ray, or null for the pipeline that is timed.
-TracePasses   make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view, const Buffer* work);
-ComputePass   make_shade_pass(Gpu& gpu, const PreparedFrame& frame);
+TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view,
+                              const Buffer* work);
+ComputePass make_shade_pass(Gpu& gpu, const PreparedFrame& frame);
 
-void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const RayBuffers& rays, glm::ivec2 size_px);
+void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const RayBuffers& rays,
+                 glm::ivec2 size_px);
 void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses& passes);
 
-template <typename Real> TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, const Buffer* work);
+template <typename Real>
+TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, const Buffer* work);
 
 float half_to_float(uint16_t half);
 

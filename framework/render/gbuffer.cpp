@@ -37,21 +37,22 @@ glm::vec4 from_half(const HalfTexel& h)
 GBufferPtr make_gbuffer(Gpu& gpu, const View& view)
 {
     if (view.size_px.x > MAX_IMAGE_PX || view.size_px.y > MAX_IMAGE_PX)
-        throw_spec_error("image size {}x{} is outside 1x1 to {}x{}", view.size_px.x, view.size_px.y, MAX_IMAGE_PX, MAX_IMAGE_PX);
-    using Usage         = vk::ImageUsageFlagBits;
-    using Format        = vk::Format;
-    auto gbuffer        = std::make_shared<GBuffer>();
-    gbuffer->view       = view;
-    const auto image    = [&](Format format, vk::ImageUsageFlags usage) {
+        throw_spec_error("image size {}x{} is outside 1x1 to {}x{}", view.size_px.x, view.size_px.y, MAX_IMAGE_PX,
+                         MAX_IMAGE_PX);
+    using Usage      = vk::ImageUsageFlagBits;
+    using Format     = vk::Format;
+    auto gbuffer     = std::make_shared<GBuffer>();
+    gbuffer->view    = view;
+    const auto image = [&](Format format, vk::ImageUsageFlags usage) {
         return make_image(gpu, {.format = format, .size_px = view.size_px, .usage = usage});
     };
     const vk::ImageUsageFlags target = Usage::eColorAttachment | Usage::eStorage;
-    gbuffer->depth     = image(Format::eR32Sfloat, Usage::eStorage);
-    gbuffer->normal    = image(Format::eR32G32B32A32Sfloat, target);
-    gbuffer->material  = image(Format::eR16G16B16A16Sfloat, target);
-    gbuffer->radiance  = image(Format::eR16G16B16A16Sfloat, target);
-    gbuffer->highlight = image(Format::eR16G16B16A16Sfloat, target);
-    gbuffer->object    = image(Format::eR32Uint, target);
+    gbuffer->depth                   = image(Format::eR32Sfloat, Usage::eStorage);
+    gbuffer->normal                  = image(Format::eR32G32B32A32Sfloat, target);
+    gbuffer->material                = image(Format::eR16G16B16A16Sfloat, target);
+    gbuffer->radiance                = image(Format::eR16G16B16A16Sfloat, target);
+    gbuffer->highlight               = image(Format::eR16G16B16A16Sfloat, target);
+    gbuffer->object                  = image(Format::eR32Uint, target);
     return gbuffer;
 }
 
@@ -87,9 +88,9 @@ void record_rasterisation(const vk::raii::CommandBuffer& commands, const GBuffer
         attachment(gbuffer.highlight, colour(glm::vec4(0))),
         attachment(gbuffer.object, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}})};
     // Reversed depth: background is 0.
-    const auto         depth = attachment(gbuffer.depth_buffer, vk::ClearDepthStencilValue{0.0F, 0});
-    const glm::ivec2   size  = gbuffer.view.size_px;
-    const vk::Rect2D   area{{0, 0}, {static_cast<uint32_t>(size.x), static_cast<uint32_t>(size.y)}};
+    const auto       depth = attachment(gbuffer.depth_buffer, vk::ClearDepthStencilValue{0.0F, 0});
+    const glm::ivec2 size  = gbuffer.view.size_px;
+    const vk::Rect2D area{{0, 0}, {static_cast<uint32_t>(size.x), static_cast<uint32_t>(size.y)}};
     commands.beginRendering({.renderArea           = area,
                              .layerCount           = 1,
                              .colorAttachmentCount = std::size(colours),
@@ -97,7 +98,8 @@ void record_rasterisation(const vk::raii::CommandBuffer& commands, const GBuffer
                              .pDepthAttachment     = &depth});
     commands.setViewport(0, vk::Viewport{0, 0, static_cast<float>(size.x), static_cast<float>(size.y), 0, 1});
     commands.setScissor(0, area);
-    draw_scene(commands, *gbuffer.scene, gbuffer.pipeline, *gbuffer.frame_set.set, view_to_clip(gbuffer.view) * gbuffer.view.world_to_view);
+    draw_scene(commands, *gbuffer.scene, gbuffer.pipeline, *gbuffer.frame_set.set,
+               view_to_clip(gbuffer.view) * gbuffer.view.world_to_view);
     commands.endRendering();
 }
 
@@ -110,20 +112,23 @@ glm::uvec3 groups_of_8(glm::ivec2 size_px)
 
 GBufferPtr render_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view)
 {
-    GBufferPtr gbuffer    = make_gbuffer(gpu, view);
-    gbuffer->scene        = scene;
-    gbuffer->depth_buffer = make_image(gpu, {.format  = vk::Format::eD32Sfloat,
-                                             .size_px = view.size_px,
-                                             .usage   = vk::ImageUsageFlagBits::eDepthStencilAttachment | vk::ImageUsageFlagBits::eSampled});
+    GBufferPtr gbuffer = make_gbuffer(gpu, view);
+    gbuffer->scene     = scene;
+    gbuffer->depth_buffer =
+        make_image(gpu, {.format  = vk::Format::eD32Sfloat,
+                         .size_px = view.size_px,
+                         .usage = vk::ImageUsageFlagBits::eDepthStencilAttachment | vk::ImageUsageFlagBits::eSampled});
     fill_frame_uniforms(gpu, *gbuffer);
     gbuffer->frame_set = make_frame_set(gpu, *scene, gbuffer->frame_uniforms);
     gbuffer->pipeline  = make_draw_pipeline(
-        gpu, *scene,
-        {.fragment_shader = "gbuffer.frag",
-          .colour_formats  = {gbuffer->normal.format, gbuffer->material.format, gbuffer->radiance.format, gbuffer->highlight.format, gbuffer->object.format}});
-    gbuffer->sampler    = {gpu.impl->device, vk::SamplerCreateInfo{}};
-    gbuffer->sanitise   = make_compute_pass(gpu, compile_shader({.file = "sanitise_depth.comp"}),
-                                            {{"depth_buffer", {gbuffer->depth_buffer, gbuffer->sampler}}, {"depth_image", gbuffer->depth}});
+         gpu, *scene,
+         {.fragment_shader = "gbuffer.frag",
+          .colour_formats  = {gbuffer->normal.format, gbuffer->material.format, gbuffer->radiance.format,
+                              gbuffer->highlight.format, gbuffer->object.format}});
+    gbuffer->sampler  = {gpu.impl->device, vk::SamplerCreateInfo{}};
+    gbuffer->sanitise = make_compute_pass(
+        gpu, compile_shader({.file = "sanitise_depth.comp"}),
+        {{"depth_buffer", {gbuffer->depth_buffer, gbuffer->sampler}}, {"depth_image", gbuffer->depth}});
     gbuffer->timestamps = make_timestamps(gpu, 2);
     rerender_gbuffer(gpu, *gbuffer);
     return gbuffer;
@@ -197,8 +202,10 @@ GBufferImage read_gbuffer(Gpu& gpu, const GBuffer& gbuffer)
         image.base_colour.emplace_back(from_half(texel));
         image.metallic.push_back(from_half(texel).w);
     }
-    for (const HalfTexel& texel : download_as<HalfTexel>(gpu, gbuffer.radiance)) image.radiance.emplace_back(from_half(texel));
-    for (const HalfTexel& texel : download_as<HalfTexel>(gpu, gbuffer.highlight)) image.highlight.emplace_back(from_half(texel));
+    for (const HalfTexel& texel : download_as<HalfTexel>(gpu, gbuffer.radiance))
+        image.radiance.emplace_back(from_half(texel));
+    for (const HalfTexel& texel : download_as<HalfTexel>(gpu, gbuffer.highlight))
+        image.highlight.emplace_back(from_half(texel));
     image.object_id = download_as<uint32_t>(gpu, gbuffer.object);
     return image;
 }

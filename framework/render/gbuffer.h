@@ -6,21 +6,21 @@
 namespace ssrlab {
 
 struct GBuffer {
-    View        view;
-    GpuScenePtr scene; // empty when the G-buffer was made elsewhere
-    GpuImage    depth_buffer; // D32, what the rasteriser wrote
-    GpuImage    depth;        // R32F, what tracers read: background = BACKGROUND_DEPTH
-    GpuImage    normal;       // RGBA32F: view-space normal, roughness
-    GpuImage    material;     // RGBA16F: base colour, metallic
-    GpuImage    radiance;     // RGBA16F: the same from every direction
-    GpuImage    highlight;    // RGBA16F: depends on the view
-    GpuImage    object;       // R32UI
-    Buffer      frame_uniforms;
-    FrameSet    frame_set;
-    DrawPipeline pipeline;
+    View              view;
+    GpuScenePtr       scene;        // empty when the G-buffer was made elsewhere
+    GpuImage          depth_buffer; // D32, what the rasteriser wrote
+    GpuImage          depth;        // R32F, what tracers read: background = BACKGROUND_DEPTH
+    GpuImage          normal;       // RGBA32F: view-space normal, roughness
+    GpuImage          material;     // RGBA16F: base colour, metallic
+    GpuImage          radiance;     // RGBA16F: the same from every direction
+    GpuImage          highlight;    // RGBA16F: depends on the view
+    GpuImage          object;       // R32UI
+    Buffer            frame_uniforms;
+    FrameSet          frame_set;
+    DrawPipeline      pipeline;
     vk::raii::Sampler sampler = nullptr;
-    ComputePass sanitise;
-    Timestamps  timestamps;
+    ComputePass       sanitise;
+    Timestamps        timestamps;
 };
 
 /// Depth as tracers read it: what shaders/sanitise_depth.comp makes of a depth buffer.

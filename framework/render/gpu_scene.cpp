@@ -32,12 +32,16 @@ std::array<const TextureUse*, textures_per_material> texture_uses(const Material
 
 MaterialBlock to_block(const Material& material)
 {
-    MaterialBlock block{material.base_colour,  material.emissive,
-                        material.metallic,     material.roughness,
-                        material.normal_scale, material.alpha_mask ? material.alpha_cutoff : -1.0F,
-                        material.double_sided, {},
+    MaterialBlock block{material.base_colour,
+                        material.emissive,
+                        material.metallic,
+                        material.roughness,
+                        material.normal_scale,
+                        material.alpha_mask ? material.alpha_cutoff : -1.0F,
+                        material.double_sided,
+                        {},
                         {}};
-    const auto uses = texture_uses(material);
+    const auto    uses = texture_uses(material);
     for (int i = 0; i < static_cast<int>(uses.size()); ++i) {
         block.uv_set[i]       = uses[static_cast<size_t>(i)]->uv_set;
         block.uv_transform[i] = uses[static_cast<size_t>(i)]->uv_transform;
@@ -58,13 +62,12 @@ vk::SamplerAddressMode address_mode(Wrap wrap)
 vk::raii::Sampler make_sampler(Gpu& gpu, const Texture& texture)
 {
     const auto filter = texture.nearest ? vk::Filter::eNearest : vk::Filter::eLinear;
-    return {gpu.impl->device,
-            vk::SamplerCreateInfo{.magFilter    = filter,
-                                  .minFilter    = filter,
-                                  .mipmapMode   = vk::SamplerMipmapMode::eLinear,
-                                  .addressModeU = address_mode(texture.wrap_u),
-                                  .addressModeV = address_mode(texture.wrap_v),
-                                  .maxLod       = texture.mipmaps ? VK_LOD_CLAMP_NONE : 0.0F}};
+    return {gpu.impl->device, vk::SamplerCreateInfo{.magFilter    = filter,
+                                                    .minFilter    = filter,
+                                                    .mipmapMode   = vk::SamplerMipmapMode::eLinear,
+                                                    .addressModeU = address_mode(texture.wrap_u),
+                                                    .addressModeV = address_mode(texture.wrap_v),
+                                                    .maxLod       = texture.mipmaps ? VK_LOD_CLAMP_NONE : 0.0F}};
 }
 
 /// Each level is the filtered half of the one before.
@@ -74,11 +77,10 @@ void make_mipmaps(Gpu& gpu, GpuImage& image)
         glm::ivec2 size = image.size_px;
         for (uint32_t level = 1; level < image.levels; ++level) {
             const glm::ivec2    half = glm::max(size / 2, glm::ivec2(1));
-            const vk::ImageBlit blit{
-                .srcSubresource = {vk::ImageAspectFlagBits::eColor, level - 1, 0, 1},
-                .srcOffsets     = {{vk::Offset3D{0, 0, 0}, vk::Offset3D{size.x, size.y, 1}}},
-                .dstSubresource = {vk::ImageAspectFlagBits::eColor, level, 0, 1},
-                .dstOffsets     = {{vk::Offset3D{0, 0, 0}, vk::Offset3D{half.x, half.y, 1}}}};
+            const vk::ImageBlit blit{.srcSubresource = {vk::ImageAspectFlagBits::eColor, level - 1, 0, 1},
+                                     .srcOffsets     = {{vk::Offset3D{0, 0, 0}, vk::Offset3D{size.x, size.y, 1}}},
+                                     .dstSubresource = {vk::ImageAspectFlagBits::eColor, level, 0, 1},
+                                     .dstOffsets     = {{vk::Offset3D{0, 0, 0}, vk::Offset3D{half.x, half.y, 1}}}};
             barrier(commands);
             commands.blitImage(*image.image, vk::ImageLayout::eGeneral, *image.image, vk::ImageLayout::eGeneral, blit,
                                vk::Filter::eLinear);
@@ -92,10 +94,10 @@ GpuImage upload_texture(Gpu& gpu, const Texture& texture)
 {
     const int      largest = std::max(texture.size_px.x, texture.size_px.y);
     const uint32_t levels  = texture.mipmaps ? static_cast<uint32_t>(std::log2(largest)) + 1 : 1;
-    GpuImage       image   = make_image(gpu, {.format  = texture.srgb ? vk::Format::eR8G8B8A8Srgb : vk::Format::eR8G8B8A8Unorm,
-                                              .size_px = texture.size_px,
-                                              .usage   = vk::ImageUsageFlagBits::eSampled,
-                                              .levels  = levels});
+    GpuImage image = make_image(gpu, {.format  = texture.srgb ? vk::Format::eR8G8B8A8Srgb : vk::Format::eR8G8B8A8Unorm,
+                                      .size_px = texture.size_px,
+                                      .usage   = vk::ImageUsageFlagBits::eSampled,
+                                      .levels  = levels});
     upload(gpu, image, texture.rgba.data(), texture.rgba.size());
     if (levels > 1) make_mipmaps(gpu, image);
     return image;
@@ -132,10 +134,10 @@ void make_material_sets(Gpu& gpu, GpuScene& scene, const Scene& source)
                                                .poolSizeCount = 1,
                                                .pPoolSizes    = &size}};
     for (const Material& material : source.materials) {
-        vk::raii::DescriptorSets sets(gpu.impl->device, {.descriptorPool     = *scene.pool,
-                                                         .descriptorSetCount = 1,
-                                                         .pSetLayouts        = &*scene.material_layout});
-        const auto               uses = texture_uses(material);
+        vk::raii::DescriptorSets sets(
+            gpu.impl->device,
+            {.descriptorPool = *scene.pool, .descriptorSetCount = 1, .pSetLayouts = &*scene.material_layout});
+        const auto uses = texture_uses(material);
         for (uint32_t i = 0; i < textures_per_material; ++i) {
             const bool   has   = uses[i]->texture >= 0;
             const size_t index = has ? static_cast<size_t>(uses[i]->texture) : scene.textures.size() - 1;
@@ -158,9 +160,9 @@ void make_material_sets(Gpu& gpu, GpuScene& scene, const Scene& source)
 
 GpuScenePtr upload_scene(Gpu& gpu, const Scene& source)
 {
-    auto scene       = std::make_shared<GpuScene>();
-    scene->vertices  = make_buffer_with<Vertex>(gpu, source.vertices);
-    scene->indices   = make_buffer_with<uint32_t>(gpu, source.indices);
+    auto scene      = std::make_shared<GpuScene>();
+    scene->vertices = make_buffer_with<Vertex>(gpu, source.vertices);
+    scene->indices  = make_buffer_with<uint32_t>(gpu, source.indices);
     std::vector<MaterialBlock> blocks;
     for (const Material& material : source.materials) blocks.push_back(to_block(material));
     scene->materials = make_buffer_with<MaterialBlock>(gpu, blocks);
@@ -190,18 +192,20 @@ GpuScenePtr upload_scene(Gpu& gpu, const Scene& source)
 FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms)
 {
     using Type                           = vk::DescriptorType;
-    const vk::DescriptorPoolSize sizes[] = {{Type::eUniformBuffer, 1}, {Type::eStorageBuffer, 3}, {Type::eCombinedImageSampler, 1}};
-    FrameSet                     result;
+    const vk::DescriptorPoolSize sizes[] = {
+        {Type::eUniformBuffer, 1}, {Type::eStorageBuffer, 3}, {Type::eCombinedImageSampler, 1}};
+    FrameSet result;
     result.pool = {gpu.impl->device,
                    vk::DescriptorPoolCreateInfo{.flags         = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
                                                 .maxSets       = 1,
                                                 .poolSizeCount = std::size(sizes),
                                                 .pPoolSizes    = sizes}};
-    vk::raii::DescriptorSets sets(gpu.impl->device, {.descriptorPool     = *result.pool,
-                                                     .descriptorSetCount = 1,
-                                                     .pSetLayouts        = &*scene.frame_layout});
-    result.set                      = std::move(sets[0]);
-    const vk::Buffer     buffers[4] = {*frame_uniforms.buffer, *scene.materials.buffer, *scene.lights.buffer, *scene.shadow_matrices.buffer};
+    vk::raii::DescriptorSets sets(
+        gpu.impl->device,
+        {.descriptorPool = *result.pool, .descriptorSetCount = 1, .pSetLayouts = &*scene.frame_layout});
+    result.set                  = std::move(sets[0]);
+    const vk::Buffer buffers[4] = {*frame_uniforms.buffer, *scene.materials.buffer, *scene.lights.buffer,
+                                   *scene.shadow_matrices.buffer};
     for (uint32_t i = 0; i < 4; ++i) {
         const vk::DescriptorBufferInfo info{buffers[i], 0, VK_WHOLE_SIZE};
         gpu.impl->device.updateDescriptorSets(

@@ -19,18 +19,18 @@ struct GpuScene {
         bool      double_sided = false;
         glm::vec3 bounds_min_ws{0}, bounds_max_ws{0};
     };
-    Buffer                        vertices, indices, materials, lights, shadow_matrices;
-    std::vector<GpuImage>         textures;
-    std::vector<vk::raii::Sampler> samplers; // one per texture; the last is the default
-    vk::raii::Sampler             shadow_sampler = nullptr;
-    GpuImage                      shadow_map;    // one layer per directional or spot light, six per point light
-    vk::raii::DescriptorSetLayout frame_layout    = nullptr; // set 0
-    vk::raii::DescriptorSetLayout material_layout = nullptr; // set 1
-    vk::raii::DescriptorPool      pool            = nullptr;
+    Buffer                               vertices, indices, materials, lights, shadow_matrices;
+    std::vector<GpuImage>                textures;
+    std::vector<vk::raii::Sampler>       samplers; // one per texture; the last is the default
+    vk::raii::Sampler                    shadow_sampler = nullptr;
+    GpuImage                             shadow_map; // one layer per directional or spot light, six per point light
+    vk::raii::DescriptorSetLayout        frame_layout    = nullptr; // set 0
+    vk::raii::DescriptorSetLayout        material_layout = nullptr; // set 1
+    vk::raii::DescriptorPool             pool            = nullptr;
     std::vector<vk::raii::DescriptorSet> material_sets;
-    std::vector<DrawCall>         draws;
-    uint32_t                      light_count = 0;
-    glm::vec3                     ambient{0}, background{0};
+    std::vector<DrawCall>                draws;
+    uint32_t                             light_count = 0;
+    glm::vec3                            ambient{0}, background{0};
 };
 
 struct DrawPipeline {
@@ -41,7 +41,7 @@ struct DrawPipeline {
 struct DrawPipelineOptions {
     const char*             fragment_shader = nullptr;
     std::vector<vk::Format> colour_formats;
-    bool                    reversed_depth = true;  // the G-buffer's convention; shadow maps use standard depth with a bias
+    bool reversed_depth = true; // the G-buffer's convention; shadow maps use standard depth with a bias
 };
 DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipelineOptions& options);
 

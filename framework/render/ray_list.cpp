@@ -37,7 +37,10 @@ template <typename Real> void upload_rays(Gpu& gpu, RayBuffers& buffers, std::sp
     upload(gpu, buffers.pixels, pixels.data(), pixels.size() * sizeof(uint32_t));
 }
 
-glm::ivec2 unpack_pixel(uint32_t packed) { return {packed & (MAX_IMAGE_PX - 1), (packed >> PIXEL_BITS) & (MAX_IMAGE_PX - 1)}; }
+glm::ivec2 unpack_pixel(uint32_t packed)
+{
+    return {packed & (MAX_IMAGE_PX - 1), (packed >> PIXEL_BITS) & (MAX_IMAGE_PX - 1)};
+}
 
 template <typename Real> std::vector<RayInput> read_rays(Gpu& gpu, const RayBuffers& buffers)
 {
@@ -51,7 +54,9 @@ template <typename Real> std::vector<RayInput> read_rays(Gpu& gpu, const RayBuff
         rays.push_back({glm::dvec3(origins[i]), glm::dvec3(deltas[i]), static_cast<double>(lengths[i]),
                         static_cast<TraceStatus>(pixels[i] >> (2 * PIXEL_BITS)), unpack_pixel(pixels[i])});
     // The shader appends rays in the order in which its groups happen to run.
-    std::ranges::sort(rays, [](const RayInput& a, const RayInput& b) { return std::pair(a.pixel.y, a.pixel.x) < std::pair(b.pixel.y, b.pixel.x); });
+    std::ranges::sort(rays, [](const RayInput& a, const RayInput& b) {
+        return std::pair(a.pixel.y, a.pixel.x) < std::pair(b.pixel.y, b.pixel.x);
+    });
     return rays;
 }
 
@@ -62,8 +67,12 @@ template <typename Real> std::vector<RayOutcome> read_outcomes(Gpu& gpu, const R
     const auto              works = download_as<glm::uvec3>(gpu, tracer.work, count);
     std::vector<RayOutcome> outcomes(count);
     for (size_t i = 0; i < count; ++i)
-        outcomes[i] = {static_cast<TraceStatus>(hits[i] >> (2 * PIXEL_BITS)), unpack_pixel(hits[i]), static_cast<double>(ts[i]), works[i].x,
-                       works[i].y, works[i].z};
+        outcomes[i] = {static_cast<TraceStatus>(hits[i] >> (2 * PIXEL_BITS)),
+                       unpack_pixel(hits[i]),
+                       static_cast<double>(ts[i]),
+                       works[i].x,
+                       works[i].y,
+                       works[i].z};
     return outcomes;
 }
 
@@ -71,25 +80,28 @@ bool in_double(const RayTracer& tracer) { return tracer.rays.precision == Precis
 
 } // namespace
 
-RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Technique& technique, const ParameterValues& values,
-                             const TraceSettings& settings, size_t capacity, Precision precision)
+RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Technique& technique,
+                             const ParameterValues& values, const TraceSettings& settings, size_t capacity,
+                             Precision precision)
 {
-    if (precision == Precision::float64 && !gpu.info.float64) throw_failure("the device '{}' has no double precision", gpu.info.name);
+    if (precision == Precision::float64 && !gpu.info.float64)
+        throw_failure("the device '{}' has no double precision", gpu.info.name);
     require_bounded(technique, values);
-    auto tracer             = std::make_shared<RayTracer>();
-    auto buffers            = std::make_shared<FrameBuffers>();
-    buffers->gbuffer        = gbuffer;
-    buffers->pyramid        = make_pyramid_images(gpu, gbuffer->view.size_px);
-    PreparedFrame& frame    = tracer->frame;
-    frame.buffers           = buffers;
-    frame.technique         = technique;
-    frame.values            = values;
-    frame.settings.trace    = settings;
-    frame.pyramid           = std::ranges::count(technique.inputs, "depth_pyramid") > 0 ? make_pyramid_passes(gpu, frame) : PyramidPasses{};
-    tracer->rays            = make_ray_buffers(gpu, capacity, precision);
-    tracer->work            = make_buffer(gpu, std::max<uint64_t>(capacity, 1) * sizeof(glm::uvec3));
-    tracer->view            = upload_view(gpu, gbuffer->view, precision);
-    tracer->passes          = make_trace_passes(gpu, frame, tracer->rays, tracer->view, &tracer->work);
+    auto tracer          = std::make_shared<RayTracer>();
+    auto buffers         = std::make_shared<FrameBuffers>();
+    buffers->gbuffer     = gbuffer;
+    buffers->pyramid     = make_pyramid_images(gpu, gbuffer->view.size_px);
+    PreparedFrame& frame = tracer->frame;
+    frame.buffers        = buffers;
+    frame.technique      = technique;
+    frame.values         = values;
+    frame.settings.trace = settings;
+    frame.pyramid =
+        std::ranges::count(technique.inputs, "depth_pyramid") > 0 ? make_pyramid_passes(gpu, frame) : PyramidPasses{};
+    tracer->rays   = make_ray_buffers(gpu, capacity, precision);
+    tracer->work   = make_buffer(gpu, std::max<uint64_t>(capacity, 1) * sizeof(glm::uvec3));
+    tracer->view   = upload_view(gpu, gbuffer->view, precision);
+    tracer->passes = make_trace_passes(gpu, frame, tracer->rays, tracer->view, &tracer->work);
     return tracer;
 }
 
@@ -103,7 +115,8 @@ std::vector<RayInput> set_up_rays(Gpu& gpu, RayTracer& tracer)
 
 std::vector<RayOutcome> trace_rays(Gpu& gpu, RayTracer& tracer, std::span<const RayInput> rays)
 {
-    if (rays.size() > tracer.rays.capacity) throw std::logic_error("trace_rays: more rays than the tracer has room for");
+    if (rays.size() > tracer.rays.capacity)
+        throw std::logic_error("trace_rays: more rays than the tracer has room for");
     if (rays.empty()) return {};
     if (in_double(tracer))
         upload_rays<double>(gpu, tracer.rays, rays);
@@ -117,7 +130,8 @@ std::vector<RayOutcome> trace_rays(Gpu& gpu, RayTracer& tracer, std::span<const 
         dispatch_indirect(commands, tracer.passes.trace, tracer.rays.launch);
         barrier(commands);
     });
-    return in_double(tracer) ? read_outcomes<double>(gpu, tracer, rays.size()) : read_outcomes<float>(gpu, tracer, rays.size());
+    return in_double(tracer) ? read_outcomes<double>(gpu, tracer, rays.size())
+                             : read_outcomes<float>(gpu, tracer, rays.size());
 }
 
 void replace_picture(Gpu& gpu, RayTracer& tracer, const GBufferImage& image)
@@ -132,14 +146,14 @@ void replace_picture(Gpu& gpu, RayTracer& tracer, const GBufferImage& image)
 
 GBufferPtr upload_depth(Gpu& gpu, const View& view, std::span<const float> depth)
 {
-    auto gbuffer  = std::make_shared<GBuffer>();
-    gbuffer->view = view;
+    auto gbuffer     = std::make_shared<GBuffer>();
+    gbuffer->view    = view;
     const auto image = [&](vk::Format format, glm::ivec2 size_px) {
         return make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
     };
-    gbuffer->depth    = image(vk::Format::eR32Sfloat, view.size_px);
-    gbuffer->normal   = image(vk::Format::eR32G32B32A32Sfloat, {1, 1});
-    gbuffer->material = image(vk::Format::eR16G16B16A16Sfloat, {1, 1});
+    gbuffer->depth                 = image(vk::Format::eR32Sfloat, view.size_px);
+    gbuffer->normal                = image(vk::Format::eR32G32B32A32Sfloat, {1, 1});
+    gbuffer->material              = image(vk::Format::eR16G16B16A16Sfloat, {1, 1});
     const std::vector<float> clean = usable_depth(depth);
     upload(gpu, gbuffer->depth, clean.data(), clean.size() * sizeof(float));
     return gbuffer;

@@ -33,8 +33,9 @@ struct RayTracer;
 using RayTracerPtr = std::shared_ptr<RayTracer>;
 
 /// Compiles the counting pipeline. capacity: the longest list.
-RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Technique& technique, const ParameterValues& values,
-                             const TraceSettings& settings, size_t capacity, Precision precision = Precision::float32);
+RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Technique& technique,
+                             const ParameterValues& values, const TraceSettings& settings, size_t capacity,
+                             Precision precision = Precision::float32);
 
 /// The mirror rays of all pixels that reflect, as the shader sets them up; row by row.
 std::vector<RayInput> set_up_rays(Gpu& gpu, RayTracer& tracer);

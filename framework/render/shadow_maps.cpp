@@ -41,7 +41,10 @@ Bounds bounds_of(const Scene& scene)
     return bounds;
 }
 
-glm::dvec3 any_up(glm::dvec3 direction) { return std::abs(direction.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0); }
+glm::dvec3 any_up(glm::dvec3 direction)
+{
+    return std::abs(direction.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
+}
 
 glm::dmat4 directional_matrix(const Light& light, const Bounds& bounds)
 {
@@ -56,7 +59,8 @@ glm::dmat4 perspective_matrix(const Light& light, glm::dvec3 direction, double a
 {
     const glm::dvec3 eye = light.position_ws;
     const double     far = std::max(glm::length(eye - bounds.centre()) + bounds.radius(), 0.1);
-    return glm::perspectiveRH_ZO(angle_rad, 1.0, far * 1e-3, far) * glm::lookAtRH(eye, eye + direction, any_up(direction));
+    return glm::perspectiveRH_ZO(angle_rad, 1.0, far * 1e-3, far) *
+           glm::lookAtRH(eye, eye + direction, any_up(direction));
 }
 
 std::vector<glm::dmat4> light_matrices(const Light& light, const Bounds& bounds)
@@ -69,7 +73,7 @@ std::vector<glm::dmat4> light_matrices(const Light& light, const Bounds& bounds)
     std::vector<glm::dmat4> faces;
     // A little more than 90 degrees, so that filtering at a face's border stays inside the map.
     for (const glm::dvec3& axis : {glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, -1, 0),
-                                  glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1)})
+                                   glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1)})
         faces.push_back(perspective_matrix(light, axis, 1.575, bounds));
     return faces;
 }
@@ -77,12 +81,14 @@ std::vector<glm::dmat4> light_matrices(const Light& light, const Bounds& bounds)
 void draw_layer(Gpu& gpu, const GpuScene& scene, const DrawPipeline& pipeline, vk::DescriptorSet set, uint32_t layer,
                 const glm::dmat4& world_to_clip)
 {
-    const vk::raii::ImageView view(gpu.impl->device,
-                                   vk::ImageViewCreateInfo{.image            = *scene.shadow_map.image,
-                                                           .viewType         = vk::ImageViewType::e2D,
-                                                           .format           = vk::Format::eD32Sfloat,
-                                                           .subresourceRange = {vk::ImageAspectFlagBits::eDepth, 0, 1, layer, 1}});
-    const vk::Extent2D extent{static_cast<uint32_t>(scene.shadow_map.size_px.x), static_cast<uint32_t>(scene.shadow_map.size_px.y)};
+    const vk::raii::ImageView view(
+        gpu.impl->device,
+        vk::ImageViewCreateInfo{.image            = *scene.shadow_map.image,
+                                .viewType         = vk::ImageViewType::e2D,
+                                .format           = vk::Format::eD32Sfloat,
+                                .subresourceRange = {vk::ImageAspectFlagBits::eDepth, 0, 1, layer, 1}});
+    const vk::Extent2D extent{static_cast<uint32_t>(scene.shadow_map.size_px.x),
+                              static_cast<uint32_t>(scene.shadow_map.size_px.y)};
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         const vk::RenderingAttachmentInfo depth{.imageView   = *view,
                                                 .imageLayout = vk::ImageLayout::eGeneral,
@@ -91,7 +97,8 @@ void draw_layer(Gpu& gpu, const GpuScene& scene, const DrawPipeline& pipeline, v
                                                 .clearValue  = vk::ClearDepthStencilValue{1.0F, 0}};
         barrier(commands);
         commands.beginRendering({.renderArea = {{0, 0}, extent}, .layerCount = 1, .pDepthAttachment = &depth});
-        commands.setViewport(0, vk::Viewport{0, 0, static_cast<float>(extent.width), static_cast<float>(extent.height), 0, 1});
+        commands.setViewport(
+            0, vk::Viewport{0, 0, static_cast<float>(extent.width), static_cast<float>(extent.height), 0, 1});
         commands.setScissor(0, vk::Rect2D{{0, 0}, extent});
         draw_scene(commands, scene, pipeline, set, world_to_clip);
         commands.endRendering();
@@ -107,8 +114,9 @@ void render_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source)
     std::vector<LightBlock> blocks;
     std::vector<glm::dmat4> matrices;
     for (const Light& light : source.lights) {
-        const auto own   = light.casts_shadow && !source.draws.empty() ? light_matrices(light, bounds) : std::vector<glm::dmat4>{};
-        const int  layer = own.empty() ? -1 : static_cast<int>(matrices.size());
+        const auto own =
+            light.casts_shadow && !source.draws.empty() ? light_matrices(light, bounds) : std::vector<glm::dmat4>{};
+        const int layer = own.empty() ? -1 : static_cast<int>(matrices.size());
         blocks.push_back({light.position_ws, static_cast<int32_t>(light.type), light.direction_ws, light.range_m,
                           light.intensity, layer, std::cos(light.inner_angle_rad), std::cos(light.outer_angle_rad)});
         matrices.insert(matrices.end(), own.begin(), own.end());
@@ -120,22 +128,26 @@ void render_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source)
     scene.light_count     = static_cast<uint32_t>(blocks.size());
     scene.lights          = make_buffer_with<LightBlock>(gpu, blocks);
     scene.shadow_matrices = make_buffer_with<glm::mat4>(gpu, stored);
-    scene.shadow_map      = make_image(gpu, {.format     = vk::Format::eD32Sfloat,
-                                             .size_px    = matrices.empty() ? glm::ivec2(1) : glm::ivec2(shadow_map_px),
-                                             .usage      = vk::ImageUsageFlagBits::eDepthStencilAttachment | vk::ImageUsageFlagBits::eSampled,
-                                             .layers     = static_cast<uint32_t>(std::max<size_t>(matrices.size(), 1)),
-                                             .array_view = true});
-    scene.shadow_sampler  = {gpu.impl->device, vk::SamplerCreateInfo{.magFilter     = vk::Filter::eLinear,
-                                                                    .minFilter     = vk::Filter::eLinear,
-                                                                    .addressModeU  = vk::SamplerAddressMode::eClampToEdge,
-                                                                    .addressModeV  = vk::SamplerAddressMode::eClampToEdge,
-                                                                    .compareEnable = true,
-                                                                    .compareOp     = vk::CompareOp::eLessOrEqual}};
+    scene.shadow_map =
+        make_image(gpu, {.format  = vk::Format::eD32Sfloat,
+                         .size_px = matrices.empty() ? glm::ivec2(1) : glm::ivec2(shadow_map_px),
+                         .usage   = vk::ImageUsageFlagBits::eDepthStencilAttachment | vk::ImageUsageFlagBits::eSampled,
+                         .layers  = static_cast<uint32_t>(std::max<size_t>(matrices.size(), 1)),
+                         .array_view = true});
+    scene.shadow_sampler = {gpu.impl->device,
+                            vk::SamplerCreateInfo{.magFilter     = vk::Filter::eLinear,
+                                                  .minFilter     = vk::Filter::eLinear,
+                                                  .addressModeU  = vk::SamplerAddressMode::eClampToEdge,
+                                                  .addressModeV  = vk::SamplerAddressMode::eClampToEdge,
+                                                  .compareEnable = true,
+                                                  .compareOp     = vk::CompareOp::eLessOrEqual}};
     if (matrices.empty()) return;
-    const DrawPipeline pipeline = make_draw_pipeline(gpu, scene, {.fragment_shader = "shadow.frag", .colour_formats = {}, .reversed_depth = false});
+    const DrawPipeline pipeline = make_draw_pipeline(
+        gpu, scene, {.fragment_shader = "shadow.frag", .colour_formats = {}, .reversed_depth = false});
     // The shadow shaders read nothing of the frame's uniforms; any buffer satisfies the layout.
     const FrameSet set = make_frame_set(gpu, scene, scene.lights);
-    for (uint32_t layer = 0; layer < matrices.size(); ++layer) draw_layer(gpu, scene, pipeline, *set.set, layer, matrices[layer]);
+    for (uint32_t layer = 0; layer < matrices.size(); ++layer)
+        draw_layer(gpu, scene, pipeline, *set.set, layer, matrices[layer]);
 }
 
 } // namespace ssrlab

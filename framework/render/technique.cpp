@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> manifest_keys  = {"name",  "summary",    "cite",      "inputs",
-                                                 "exact", "limits",     "bounded_by", "parameters"};
+const std::vector<std::string> manifest_keys  = {"name",  "summary", "cite",       "inputs",
+                                                 "exact", "limits",  "bounded_by", "parameters"};
 const std::vector<std::string> parameter_keys = {"default", "min", "max", "choices", "doc"};
 
 const toml::node& required(const TomlFile& file, const toml::table& table, const std::string& key,
@@ -68,9 +68,9 @@ void read_choices(const TomlFile& file, const toml::table& table, const toml::no
                              choice, parameter.name);
         }
     }
-    parameter.max           = static_cast<double>(parameter.choices.size()) - 1;
-    parameter.default_value = parse_parameter(parameter, toml_text(file, node, "default of " + parameter.name),
-                                              toml_place(file, node));
+    parameter.max = static_cast<double>(parameter.choices.size()) - 1;
+    parameter.default_value =
+        parse_parameter(parameter, toml_text(file, node, "default of " + parameter.name), toml_place(file, node));
 }
 
 void read_number(const TomlFile& file, const toml::table& table, const toml::node& node, Parameter& parameter)
@@ -94,14 +94,15 @@ Parameter read_parameter(const TomlFile& file, const toml::key& key, const toml:
     parameter.name = key.str();
     if (!is_glsl_name(parameter.name)) {
         throw_spec_error("{}:{}: parameter '{}' is not a name that GLSL accepts (letters, digits, underscores; no "
-                         "keyword)", file.path, key.source().begin.line, parameter.name);
+                         "keyword)",
+                         file.path, key.source().begin.line, parameter.name);
     }
     const toml::table& table = toml_table(file, node, parameter.name);
     toml_known_keys(file, table, "field of parameter '" + parameter.name + "'", parameter_keys);
-    const std::string owner         = "parameter '" + parameter.name + "'";
-    parameter.doc                   = toml_text(file, required(file, table, "doc", owner), "doc of " + parameter.name);
-    const toml::node& default_node  = required(file, table, "default", owner);
-    parameter.type = type_of_default(file, default_node, table.contains("choices"), parameter.name);
+    const std::string owner        = "parameter '" + parameter.name + "'";
+    parameter.doc                  = toml_text(file, required(file, table, "doc", owner), "doc of " + parameter.name);
+    const toml::node& default_node = required(file, table, "default", owner);
+    parameter.type                 = type_of_default(file, default_node, table.contains("choices"), parameter.name);
     switch (parameter.type) {
     case ParameterType::choice: read_choices(file, table, default_node, parameter); break;
     case ParameterType::boolean:
@@ -142,7 +143,8 @@ void read_limits(const TomlFile& file, const toml::node& node, Technique& techni
     std::vector<std::string> known;
     std::ranges::transform(known_limits(), std::back_inserter(known), &Limit::name);
     for (const std::string& limit : technique.limits)
-        if (std::ranges::count(known, limit) == 0) throw_spec_error("{}: {}", toml_place(file, node), unknown_name("limit", limit, known));
+        if (std::ranges::count(known, limit) == 0)
+            throw_spec_error("{}: {}", toml_place(file, node), unknown_name("limit", limit, known));
     if (technique.exact && !technique.limits.empty())
         throw_spec_error("{}: 'limits' contradicts 'exact': an exact technique has none", toml_place(file, node));
 }
@@ -178,7 +180,8 @@ void append_from(std::vector<Technique>& techniques, const fs::path& dir)
 std::span<const Limit> known_limits()
 {
     static const std::vector<Limit> limits = {
-        {"point_sampled", "sees the depth buffer only at its samples: misses what lies between two of them, and may report a later surface instead"},
+        {"point_sampled", "sees the depth buffer only at its samples: misses what lies between two of them, and may "
+                          "report a later surface instead"},
         {"stops_behind_objects", "gives up where it has passed behind an object: misses everything farther along"}};
     return limits;
 }
@@ -190,8 +193,9 @@ Technique load_technique(const fs::path& folder)
     technique.folder = folder;
     technique.id     = fs::weakly_canonical(folder).filename().string();
     if (!is_glsl_name(technique.id)) {
-        throw_spec_error("{}:1: the folder's name '{}' is the technique's id and must be letters, digits and underscores",
-                         file.path, technique.id);
+        throw_spec_error(
+            "{}:1: the folder's name '{}' is the technique's id and must be letters, digits and underscores", file.path,
+            technique.id);
     }
     toml_known_keys(file, file.root, "key", manifest_keys);
     technique.name    = toml_text(file, required(file, file.root, "name", "the technique"), "name");

@@ -93,7 +93,8 @@ void require_bounded(const Technique& technique, const ParameterValues& values)
 {
     const double bound = iteration_bound(technique, values);
     if (bound > max_iterations)
-        throw_spec_error("technique '{}' may need {:.0f} iterations a ray; at most {:.0f} are allowed (drivers cut longer loops silently)",
+        throw_spec_error("technique '{}' may need {:.0f} iterations a ray; at most {:.0f} are allowed (drivers cut "
+                         "longer loops silently)",
                          technique.id, bound, max_iterations);
 }
 

@@ -56,7 +56,8 @@ Model start_scene()
     model.cameras = {
         camera("default", {0, 0, 0}, 0, "level camera: rays along image columns, many towards the horizon"),
         camera("down", {0, 0, 0}, 25, "pitched down: the floor fills most of the picture"),
-        camera("steep", {0, 1.5, -2}, 45, "looking down steeply: rays come back towards the camera and leave the screen"),
+        camera("steep", {0, 1.5, -2}, 45,
+               "looking down steeply: rays come back towards the camera and leave the screen"),
     };
     return model;
 }
@@ -76,7 +77,7 @@ uint32_t add_material(Model& model, const char* name, glm::vec3 base_colour)
 
 uint32_t add_checker(Model& model, const char* name, glm::vec3 colour_a, glm::vec3 colour_b)
 {
-    const uint32_t material = add_material(model, name, glm::vec3(1));
+    const uint32_t material                               = add_material(model, name, glm::vec3(1));
     model.materials[material].base_colour_texture.texture = static_cast<int>(model.textures.size());
     model.textures.push_back(make_checker_texture(colour_a, colour_b));
     return material;
@@ -148,7 +149,7 @@ Model stairs()
 Model corridor()
 {
     constexpr double side_m = 2.07, height_m = 3.03;
-    Model model = start_scene();
+    Model            model = start_scene();
     model.lights.clear();
     for (double z_m : {-3.0, -15.0}) {
         ModelLight lamp;
@@ -172,7 +173,8 @@ Model corridor()
     add(model, "back wall", end, make_quad({side_m, floor_y_m, 5}, {-2 * side_m, 0, 0}, {0, height_m, 0}));
     Mesh columns;
     for (int k = 0; k < 13; ++k)
-        for (double x_m : {-1.6, 1.6}) append(columns, make_cylinder({x_m, floor_y_m, -2 - 3.0 * k}, 0.15, height_m, 32));
+        for (double x_m : {-1.6, 1.6})
+            append(columns, make_cylinder({x_m, floor_y_m, -2 - 3.0 * k}, 0.15, height_m, 32));
     add(model, "columns", column, std::move(columns));
     return model;
 }

@@ -23,15 +23,14 @@ inline constexpr size_t   max_triangles     = 100'000'000;
 inline constexpr size_t   max_accessor_rows = 300'000'000;
 
 struct Import {
-    std::string     file; // for messages
-    tinygltf::Model json;
-    Model           model;
-    size_t          triangles = 0;
+    std::string           file; // for messages
+    tinygltf::Model       json;
+    Model                 model;
+    size_t                triangles = 0;
     std::set<std::string> said; // warnings are said once
 
-    void warn(const std::string& text);
-    template <typename... Args>
-    [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const;
+    void                                          warn(const std::string& text);
+    template <typename... Args> [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const;
 };
 
 /// Reads and parses the file; refuses what the parser itself would let through or choke on.
@@ -51,8 +50,7 @@ std::vector<bool> add_materials(Import& import);
 /// A mesh's primitives as Meshes in the mesh's own space. Draws that cannot be shown are skipped with a warning.
 std::vector<Mesh> read_mesh(Import& import, int mesh, const std::vector<bool>& material_left_out);
 
-template <typename... Args>
-void Import::fail(fmt::format_string<Args...> format, Args&&... args) const
+template <typename... Args> void Import::fail(fmt::format_string<Args...> format, Args&&... args) const
 {
     throw_failure("{}: {}", file, fmt::format(format, std::forward<Args>(args)...));
 }

@@ -27,10 +27,11 @@ void apply_sampler(const Import& import, int sampler_index, Texture& texture)
 {
     if (sampler_index < 0 || static_cast<size_t>(sampler_index) >= import.json.samplers.size()) return;
     const tinygltf::Sampler& sampler = import.json.samplers[static_cast<size_t>(sampler_index)];
-    texture.wrap_u  = to_wrap(sampler.wrapS);
-    texture.wrap_v  = to_wrap(sampler.wrapT);
-    texture.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
-    texture.mipmaps = sampler.minFilter != TINYGLTF_TEXTURE_FILTER_NEAREST && sampler.minFilter != TINYGLTF_TEXTURE_FILTER_LINEAR;
+    texture.wrap_u                   = to_wrap(sampler.wrapS);
+    texture.wrap_v                   = to_wrap(sampler.wrapT);
+    texture.nearest                  = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+    texture.mipmaps =
+        sampler.minFilter != TINYGLTF_TEXTURE_FILTER_NEAREST && sampler.minFilter != TINYGLTF_TEXTURE_FILTER_LINEAR;
 }
 
 /// An image that cannot be used leaves its texture out, with a warning: the shape is still worth seeing.
@@ -65,7 +66,7 @@ int texture_number(Import& import, Textures& textures, int texture_index, bool s
         import.fail("{}: there is no texture {}", where, texture_index);
     const auto [found, added] = textures.numbers.try_emplace({texture_index, srgb}, -1);
     if (!added) return found->second;
-    const tinygltf::Texture& source = import.json.textures[static_cast<size_t>(texture_index)];
+    const tinygltf::Texture& source  = import.json.textures[static_cast<size_t>(texture_index)];
     Texture                  texture = decoded_image(import, textures, source.source);
     if (texture.rgba.empty()) return -1;
     texture.srgb = srgb;
@@ -77,7 +78,8 @@ int texture_number(Import& import, Textures& textures, int texture_index, bool s
 
 double number_in(const tinygltf::Value& value, const char* key, double otherwise)
 {
-    return value.IsObject() && value.Has(key) && value.Get(key).IsNumber() ? value.Get(key).GetNumberAsDouble() : otherwise;
+    return value.IsObject() && value.Has(key) && value.Get(key).IsNumber() ? value.Get(key).GetNumberAsDouble()
+                                                                           : otherwise;
 }
 
 glm::dvec2 pair_in(const tinygltf::Value& value, const char* key, glm::dvec2 otherwise)
@@ -94,8 +96,8 @@ glm::mat3 uv_transform_of(const tinygltf::Value& extension)
     const glm::dvec2 offset   = pair_in(extension, "offset", {0, 0});
     const glm::dvec2 scale    = pair_in(extension, "scale", {1, 1});
     const double     rotation = number_in(extension, "rotation", 0);
-    const double     c = std::cos(rotation);
-    const double     s = std::sin(rotation);
+    const double     c        = std::cos(rotation);
+    const double     s        = std::sin(rotation);
     return glm::mat3(glm::dmat3({c * scale.x, -s * scale.x, 0}, {s * scale.y, c * scale.y, 0}, {offset, 1}));
 }
 
@@ -103,8 +105,8 @@ template <typename Info>
 TextureUse texture_use(Import& import, Textures& textures, const Info& info, bool srgb, const std::string& where)
 {
     TextureUse use;
-    use.texture = texture_number(import, textures, info.index, srgb, where);
-    use.uv_set  = info.texCoord;
+    use.texture          = texture_number(import, textures, info.index, srgb, where);
+    use.uv_set           = info.texCoord;
     const auto extension = info.extensions.find("KHR_texture_transform");
     if (extension != info.extensions.end()) {
         use.uv_transform = uv_transform_of(extension->second);
@@ -117,12 +119,15 @@ TextureUse texture_use(Import& import, Textures& textures, const Info& info, boo
     return use;
 }
 
-float unit_range(double value, float otherwise) { return std::isfinite(value) ? static_cast<float>(std::clamp(value, 0.0, 1.0)) : otherwise; }
+float unit_range(double value, float otherwise)
+{
+    return std::isfinite(value) ? static_cast<float>(std::clamp(value, 0.0, 1.0)) : otherwise;
+}
 
 Material convert(Import& import, Textures& textures, const tinygltf::Material& source, const std::string& where)
 {
     const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-    Material material;
+    Material                              material;
     material.name = source.name;
     for (int c = 0; c < 4 && pbr.baseColorFactor.size() == 4; ++c)
         material.base_colour[c] = unit_range(pbr.baseColorFactor[static_cast<size_t>(c)], 1);
@@ -134,11 +139,13 @@ Material convert(Import& import, Textures& textures, const tinygltf::Material& s
         material.emissive[c] = unit_range(source.emissiveFactor[static_cast<size_t>(c)], 0);
     const auto strength = source.extensions.find("KHR_materials_emissive_strength");
     if (strength != source.extensions.end())
-        material.emissive *= static_cast<float>(std::clamp(number_in(strength->second, "emissiveStrength", 1), 0.0, 1e6));
-    material.normal_scale = std::isfinite(source.normalTexture.scale) ? static_cast<float>(source.normalTexture.scale) : 1.0F;
-    material.double_sided = source.doubleSided;
-    material.alpha_mask   = source.alphaMode == "MASK";
-    material.alpha_cutoff = unit_range(source.alphaCutoff, 0.5F);
+        material.emissive *=
+            static_cast<float>(std::clamp(number_in(strength->second, "emissiveStrength", 1), 0.0, 1e6));
+    material.normal_scale =
+        std::isfinite(source.normalTexture.scale) ? static_cast<float>(source.normalTexture.scale) : 1.0F;
+    material.double_sided               = source.doubleSided;
+    material.alpha_mask                 = source.alphaMode == "MASK";
+    material.alpha_cutoff               = unit_range(source.alphaCutoff, 0.5F);
     material.base_colour_texture        = texture_use(import, textures, pbr.baseColorTexture, true, where);
     material.metallic_roughness_texture = texture_use(import, textures, pbr.metallicRoughnessTexture, false, where);
     material.normal_texture             = texture_use(import, textures, source.normalTexture, false, where);

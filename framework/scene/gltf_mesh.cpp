@@ -21,7 +21,8 @@ std::vector<float> rows_of(const Import& import, const tinygltf::Primitive& prim
     const std::string  place = fmt::format("{}/attributes/{}", where, name);
     std::vector<float> rows  = read_floats(import, accessor, components, place);
     if (rows.size() != vertex_count * static_cast<size_t>(components))
-        import.fail("{}: {} elements for {} positions", place, rows.size() / static_cast<size_t>(components), vertex_count);
+        import.fail("{}: {} elements for {} positions", place, rows.size() / static_cast<size_t>(components),
+                    vertex_count);
     return rows;
 }
 
@@ -30,7 +31,7 @@ void read_colours(const Import& import, const tinygltf::Primitive& primitive, Me
     const int accessor = attribute(primitive, "COLOR_0");
     if (accessor < 0) return;
     const int                components = component_count(import, accessor, where) == 4 ? 4 : 3;
-    const std::vector<float> rows       = rows_of(import, primitive, "COLOR_0", components, mesh.vertices.size(), where);
+    const std::vector<float> rows = rows_of(import, primitive, "COLOR_0", components, mesh.vertices.size(), where);
     for (size_t i = 0; i < mesh.vertices.size(); ++i)
         for (int c = 0; c < components; ++c)
             mesh.vertices[i].colour[c] = rows[i * static_cast<size_t>(components) + static_cast<size_t>(c)];
@@ -45,14 +46,15 @@ void read_vertices(const Import& import, const tinygltf::Primitive& primitive, M
     const std::vector<float> tangents = rows_of(import, primitive, "TANGENT", 4, count, where);
     const std::vector<float> uv0      = rows_of(import, primitive, "TEXCOORD_0", 2, count, where);
     const std::vector<float> uv1      = rows_of(import, primitive, "TEXCOORD_1", 2, count, where);
-    mesh.has_normals  = !normals.empty();
-    mesh.has_tangents = !tangents.empty() && mesh.has_normals;
+    mesh.has_normals                  = !normals.empty();
+    mesh.has_tangents                 = !tangents.empty() && mesh.has_normals;
     for (size_t i = 0; i < count; ++i) {
         Vertex vertex{};
         vertex.normal_ws = {0, 1, 0};
         vertex.colour    = glm::vec4(1);
         if (mesh.has_normals) vertex.normal_ws = {normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]};
-        if (mesh.has_tangents) vertex.tangent_ws = {tangents[4 * i], tangents[4 * i + 1], tangents[4 * i + 2], tangents[4 * i + 3]};
+        if (mesh.has_tangents)
+            vertex.tangent_ws = {tangents[4 * i], tangents[4 * i + 1], tangents[4 * i + 2], tangents[4 * i + 3]};
         if (!uv0.empty()) vertex.uv0 = {uv0[2 * i], uv0[2 * i + 1]};
         if (!uv1.empty()) vertex.uv1 = {uv1[2 * i], uv1[2 * i + 1]};
         mesh.positions_ws.emplace_back(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
@@ -79,7 +81,8 @@ std::vector<uint32_t> to_triangles(const std::vector<uint32_t>& corners, int mod
     return triangles;
 }
 
-void read_triangles(const Import& import, const tinygltf::Primitive& primitive, int mode, Mesh& mesh, const std::string& where)
+void read_triangles(const Import& import, const tinygltf::Primitive& primitive, int mode, Mesh& mesh,
+                    const std::string& where)
 {
     std::vector<uint32_t> corners(mesh.vertices.size());
     if (primitive.indices >= 0)
@@ -88,7 +91,8 @@ void read_triangles(const Import& import, const tinygltf::Primitive& primitive, 
         std::iota(corners.begin(), corners.end(), 0U);
     const auto beyond = std::ranges::find_if(corners, [&](uint32_t corner) { return corner >= mesh.vertices.size(); });
     if (beyond != corners.end())
-        import.fail("{}/indices: index {} is out of range, there are {} vertices", where, *beyond, mesh.vertices.size());
+        import.fail("{}/indices: index {} is out of range, there are {} vertices", where, *beyond,
+                    mesh.vertices.size());
     mesh.indices = to_triangles(corners, mode);
 }
 
@@ -101,7 +105,7 @@ std::vector<Mesh> read_mesh(Import& import, int mesh_index, const std::vector<bo
     for (size_t i = 0; i < source.primitives.size(); ++i) {
         const tinygltf::Primitive& primitive = source.primitives[i];
         const std::string          where     = fmt::format("/meshes/{}/primitives/{}", mesh_index, i);
-        const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
+        const int                  mode      = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
         if (mode > TINYGLTF_MODE_TRIANGLE_FAN) import.fail("{}/mode {} is unknown", where, mode);
         if (mode < TINYGLTF_MODE_TRIANGLES) {
             import.warn("points and lines are not drawn");

@@ -78,13 +78,16 @@ const json& array_of(const Import& import, const json& object, const char* name)
     const auto        found = object.find(name);
     if (found == object.end()) return empty;
     if (!found->is_array()) import.fail("/{} is no array", name);
-    if (found->size() > max_objects) import.fail("/{} has {} items, at most {} can be loaded", name, found->size(), max_objects);
+    if (found->size() > max_objects)
+        import.fail("/{} has {} items, at most {} can be loaded", name, found->size(), max_objects);
     for (size_t i = 0; i < found->size(); ++i)
-        if (!(*found)[i].is_object() && std::strncmp(name, "extensions", 10) != 0) import.fail("/{}/{} is no object", name, i);
+        if (!(*found)[i].is_object() && std::strncmp(name, "extensions", 10) != 0)
+            import.fail("/{}/{} is no object", name, i);
     return *found;
 }
 
-uint64_t count_of(const Import& import, const json& object, const char* key, const std::string& where, uint64_t otherwise)
+uint64_t count_of(const Import& import, const json& object, const char* key, const std::string& where,
+                  uint64_t otherwise)
 {
     const auto found = object.find(key);
     if (found == object.end()) return otherwise;
@@ -112,9 +115,9 @@ constexpr ExtensionRule fatal_extensions[] = {
     {"EXT_texture_avif", "convert the textures to PNG or JPEG first"},
     {"MSFT_texture_dds", "convert the textures to PNG or JPEG first"},
 };
-constexpr std::string_view supported_extensions[] = {
-    "KHR_lights_punctual", "KHR_texture_transform", "KHR_materials_emissive_strength", "KHR_materials_unlit",
-    "KHR_mesh_quantization"};
+constexpr std::string_view supported_extensions[] = {"KHR_lights_punctual", "KHR_texture_transform",
+                                                     "KHR_materials_emissive_strength", "KHR_materials_unlit",
+                                                     "KHR_mesh_quantization"};
 
 void check_extensions(Import& import, const json& root)
 {
@@ -127,7 +130,8 @@ void check_extensions(Import& import, const json& root)
     for (const std::string& name : names("extensionsRequired")) {
         for (const ExtensionRule& rule : fatal_extensions)
             if (name == rule.name) import.fail("needs the extension {}, which is not supported: {}", name, rule.advice);
-        if (!name.starts_with("KHR_materials_") && std::ranges::find(supported_extensions, name) == std::end(supported_extensions))
+        if (!name.starts_with("KHR_materials_") &&
+            std::ranges::find(supported_extensions, name) == std::end(supported_extensions))
             import.fail("needs the extension {}, which is not supported", name);
     }
     for (const std::string& name : names("extensionsUsed"))
@@ -186,18 +190,22 @@ tinygltf::FsCallbacks confined_file_access(fs::path* folder)
         return fs::is_regular_file(name, error);
     };
     callbacks.ExpandFilePath = [](const std::string& name, void*) { return name; };
-    callbacks.ReadWholeFile  = [](std::vector<unsigned char>* out, std::string* error, const std::string& name, void* data) {
+    callbacks.ReadWholeFile  = [](std::vector<unsigned char>* out, std::string* error, const std::string& name,
+                                 void* data) {
         try {
             const fs::path& root = *static_cast<fs::path*>(data);
-            *out = read_regular_file(resolve_uri(root, fs::path(name).lexically_relative(root).string()), max_file_bytes);
+            *out =
+                read_regular_file(resolve_uri(root, fs::path(name).lexically_relative(root).string()), max_file_bytes);
             return true;
         } catch (const std::exception& exception) {
             if (error != nullptr) *error += exception.what();
             return false;
         }
     };
-    callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; };
-    callbacks.user_data      = folder;
+    callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+        return false;
+    };
+    callbacks.user_data = folder;
     return callbacks;
 }
 
@@ -227,15 +235,16 @@ std::string percent_decoded(const std::string& text)
 
 void Import::warn(const std::string& text)
 {
-    if (said.insert(text).second) model.warnings.push_back(fmt::format("{}: {}", fs::path(file).filename().string(), text));
+    if (said.insert(text).second)
+        model.warnings.push_back(fmt::format("{}: {}", fs::path(file).filename().string(), text));
 }
 
 fs::path resolve_uri(const fs::path& folder, const std::string& uri)
 {
     const std::string text = percent_decoded(uri);
     const fs::path    path = text;
-    if (text.empty() || text.find('\0') != std::string::npos || path.is_absolute() || text.find("://") != std::string::npos ||
-        text.starts_with("file:"))
+    if (text.empty() || text.find('\0') != std::string::npos || path.is_absolute() ||
+        text.find("://") != std::string::npos || text.starts_with("file:"))
         throw_failure("'{}' is not a relative path", uri);
     const fs::path root     = fs::weakly_canonical(folder);
     const fs::path resolved = fs::weakly_canonical(root / path); // follows links
@@ -246,7 +255,7 @@ fs::path resolve_uri(const fs::path& folder, const std::string& uri)
 
 void parse_file(Import& import, const fs::path& file)
 {
-    import.file = file.string();
+    import.file                             = file.string();
     fs::path                         folder = fs::weakly_canonical(file).parent_path();
     const std::vector<unsigned char> bytes  = read_regular_file(file, max_file_bytes);
     const std::string_view           text   = json_text(import, bytes);
@@ -268,8 +277,9 @@ void parse_file(Import& import, const fs::path& file)
     bool        ok   = false;
     const auto  size = static_cast<unsigned>(bytes.size());
     try {
-        ok = is_binary(bytes) ? parser.LoadBinaryFromMemory(&import.json, &error, &warning, bytes.data(), size, folder.string())
-                              : parser.LoadASCIIFromString(&import.json, &error, &warning, text.data(), size, folder.string());
+        ok = is_binary(bytes)
+                 ? parser.LoadBinaryFromMemory(&import.json, &error, &warning, bytes.data(), size, folder.string())
+                 : parser.LoadASCIIFromString(&import.json, &error, &warning, text.data(), size, folder.string());
     } catch (const std::exception& exception) {
         error += exception.what();
     }

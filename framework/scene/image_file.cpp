@@ -58,8 +58,9 @@ Texture decode_image(std::span<const unsigned char> bytes, const std::string& na
     if (!input) throw_failure("{}: cannot be decoded: {}", name, first_line(OIIO::geterror()));
     const OIIO::ImageSpec& spec = input->spec();
     if (spec.width < 1 || spec.height < 1 || spec.width > max_side_px || spec.height > max_side_px)
-        throw_failure("{}: {} x {} pixels, but at most {} a side can be used", name, spec.width, spec.height, max_side_px);
-    const auto channels = static_cast<size_t>(spec.nchannels);
+        throw_failure("{}: {} x {} pixels, but at most {} a side can be used", name, spec.width, spec.height,
+                      max_side_px);
+    const auto           channels = static_cast<size_t>(spec.nchannels);
     std::vector<uint8_t> pixels(static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height) * channels);
     if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, pixels.data()))
         throw_failure("{}: cannot be decoded: {}", name, first_line(input->geterror()));
@@ -79,7 +80,8 @@ std::vector<unsigned char> read_regular_file(const std::filesystem::path& file, 
         ~Closer() { ::close(descriptor); }
     } closer{descriptor};
     struct stat info {};
-    if (::fstat(descriptor, &info) != 0 || !S_ISREG(info.st_mode)) throw_failure("{}: not a regular file", file.string());
+    if (::fstat(descriptor, &info) != 0 || !S_ISREG(info.st_mode))
+        throw_failure("{}: not a regular file", file.string());
     if (static_cast<uint64_t>(info.st_size) > limit_bytes)
         throw_failure("{}: {} bytes, but at most {} can be loaded", file.string(), info.st_size, limit_bytes);
     std::vector<unsigned char> bytes(static_cast<size_t>(info.st_size));

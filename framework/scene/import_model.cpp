@@ -5,8 +5,8 @@
 #include "scene/mesh_repair.h"
 #include "scene/shapes.h"
 
-#include <assimp/Importer.hpp>
 #include <assimp/config.h>
+#include <assimp/Importer.hpp>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -73,8 +73,8 @@ Material convert_material(Import& import, const aiMaterial& source)
     source.Get(AI_MATKEY_SHININESS, exponent);
     material.name         = name.C_Str();
     material.double_sided = true; // these formats know no front, and their models are often open sheets
-    material.base_colour = {diffuse.r, diffuse.g, diffuse.b, 1};
-    material.emissive    = {emissive.r, emissive.g, emissive.b};
+    material.base_colour  = {diffuse.r, diffuse.g, diffuse.b, 1};
+    material.emissive     = {emissive.r, emissive.g, emissive.b};
     // Many files carry an exponent although the material has no highlight at all.
     const bool shiny   = std::max({specular.r, specular.g, specular.b}) > 0.01F;
     material.roughness = shiny ? exponent_to_roughness(exponent) : 0.9F;

@@ -19,16 +19,15 @@ struct Visit {
     glm::dmat4 to_world{1};
 };
 
-template <size_t count>
-bool all_finite(const std::vector<double>& values)
+template <size_t count> bool all_finite(const std::vector<double>& values)
 {
     return values.size() == count && std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
 
 glm::dmat4 local_matrix(const Import& import, int node_index)
 {
-    const tinygltf::Node& node = import.json.nodes[static_cast<size_t>(node_index)];
-    const auto check = [&](const std::vector<double>& values, bool ok, const char* what) {
+    const tinygltf::Node& node  = import.json.nodes[static_cast<size_t>(node_index)];
+    const auto            check = [&](const std::vector<double>& values, bool ok, const char* what) {
         if (!values.empty() && !ok) import.fail("/nodes/{}/{}: wrong length, or not finite", node_index, what);
         return !values.empty();
     };
@@ -52,7 +51,8 @@ glm::dmat4 local_matrix(const Import& import, int node_index)
 
 void add_camera(Import& import, int camera_index, const std::string& node_name, const glm::dmat4& to_world)
 {
-    if (static_cast<size_t>(camera_index) >= import.json.cameras.size()) import.fail("there is no camera {}", camera_index);
+    if (static_cast<size_t>(camera_index) >= import.json.cameras.size())
+        import.fail("there is no camera {}", camera_index);
     const tinygltf::Camera& source = import.json.cameras[static_cast<size_t>(camera_index)];
     Camera                  camera;
     camera.name        = !source.name.empty() ? source.name : node_name;
@@ -89,7 +89,7 @@ void add_light(Import& import, int light_index, const glm::dmat4& to_world)
     else if (source.type != "directional")
         import.fail("/extensions/KHR_lights_punctual/lights/{}: unknown type '{}'", light_index, source.type);
     for (int c = 0; c < 3; ++c) {
-        const double colour = source.color.size() == 3 ? source.color[static_cast<size_t>(c)] : 1;
+        const double colour      = source.color.size() == 3 ? source.color[static_cast<size_t>(c)] : 1;
         light.light.intensity[c] = static_cast<float>(std::clamp(colour * source.intensity, 0.0, 1e9));
     }
     const double outer_rad      = std::clamp(source.spot.outerConeAngle, 1e-3, std::numbers::pi / 2);
@@ -143,9 +143,11 @@ void place_mesh(Import& import, Walk& walk, int mesh_index, const glm::dmat4& to
 
 void visit(Import& import, Walk& walk, const Visit& at)
 {
-    if (at.node < 0 || static_cast<size_t>(at.node) >= import.json.nodes.size()) import.fail("there is no node {}", at.node);
+    if (at.node < 0 || static_cast<size_t>(at.node) >= import.json.nodes.size())
+        import.fail("there is no node {}", at.node);
     if (at.depth > max_node_depth)
-        import.fail("/nodes/{}: nodes contain each other, or are nested deeper than {} levels", at.node, max_node_depth);
+        import.fail("/nodes/{}: nodes contain each other, or are nested deeper than {} levels", at.node,
+                    max_node_depth);
     if (++walk.visits > max_node_visits) import.fail("more than {} nodes with all instances", max_node_visits);
     const tinygltf::Node& node     = import.json.nodes[static_cast<size_t>(at.node)];
     const glm::dmat4      to_world = at.to_world * local_matrix(import, at.node);
@@ -168,7 +170,7 @@ Model load_gltf(const std::filesystem::path& file)
     gltf::parse_file(import, file);
     if (!import.json.animations.empty()) import.warn("animations are not supported: drawn at rest");
     gltf::Walk walk;
-    walk.material_left_out = gltf::add_materials(import);
+    walk.material_left_out       = gltf::add_materials(import);
     const std::vector<int> roots = gltf::root_nodes(import);
     for (auto root = roots.rbegin(); root != roots.rend(); ++root) walk.pending.push_back({*root, 0, glm::dmat4(1)});
     while (!walk.pending.empty()) {

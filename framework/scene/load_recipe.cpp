@@ -81,7 +81,8 @@ void normalize_placement(Model& model, const Part& part)
     const Bounds     bounds   = bounds_of(model, rotation);
     if (bounds.empty()) throw_failure("{}: part '{}' has no usable triangle", part.place, part.name);
     const double scale = part.height_m ? *part.height_m / bounds.size_m().y : part.unit_m;
-    if (!std::isfinite(scale)) throw_spec_error("{}: part '{}' is flat: 'height_m' cannot be used", part.place, part.name);
+    if (!std::isfinite(scale))
+        throw_spec_error("{}: part '{}' is flat: 'height_m' cannot be used", part.place, part.name);
     const glm::dvec3 bottom(bounds.centre_ws().x, bounds.min_ws.y, bounds.centre_ws().z);
     const glm::dmat4 scaling = glm::scale(glm::dmat4(1), glm::dvec3(scale));
     transform(model, scaling * glm::translate(glm::dmat4(1), -bottom) * rotation);

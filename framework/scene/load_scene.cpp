@@ -23,13 +23,15 @@ std::string known_names()
 
 [[noreturn]] void throw_unknown(const std::string& name)
 {
-    throw_spec_error("unknown scene '{}': give a .glb or .gltf file, a recipe (.toml), or one of {}", name, known_names());
+    throw_spec_error("unknown scene '{}': give a .glb or .gltf file, a recipe (.toml), or one of {}", name,
+                     known_names());
 }
 
 std::string lower_extension(const fs::path& file)
 {
     std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+    std::ranges::transform(extension, extension.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
     return extension;
 }
 
@@ -91,7 +93,8 @@ std::vector<SceneListing> list_scenes()
                 files.push_back(entry.path());
         std::ranges::sort(files);
         for (const fs::path& file : files)
-            if (seen.insert(file.stem().string()).second) listings.push_back({file.stem().string(), recipe_summary(file)});
+            if (seen.insert(file.stem().string()).second)
+                listings.push_back({file.stem().string(), recipe_summary(file)});
     }
     for (const BuiltinScene& scene : builtin_scenes())
         listings.push_back({std::string(builtin_prefix) + scene.name, scene.summary});

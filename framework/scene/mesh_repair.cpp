@@ -90,7 +90,8 @@ std::vector<uint32_t> weld_positions(const Mesh& mesh, size_t& position_count)
     numbers.reserve(mesh.positions_ws.size());
     std::vector<uint32_t> vertex_number(mesh.positions_ws.size());
     for (size_t i = 0; i < vertex_number.size(); ++i)
-        vertex_number[i] = numbers.try_emplace(mesh.positions_ws[i], static_cast<uint32_t>(numbers.size())).first->second;
+        vertex_number[i] =
+            numbers.try_emplace(mesh.positions_ws[i], static_cast<uint32_t>(numbers.size())).first->second;
     position_count = numbers.size();
     std::vector<uint32_t> corner_number(mesh.indices.size());
     std::ranges::transform(mesh.indices, corner_number.begin(), [&](uint32_t i) { return vertex_number[i]; });
@@ -217,8 +218,8 @@ void make_tangents(Mesh& mesh, int uv_set)
             const Vertex& vertex = mesh.vertices[mesh.indices[corner]];
             return glm::dvec2(uv_set == 0 ? vertex.uv0 : vertex.uv1);
         };
-        const glm::dvec2 du = uv(i + 1) - uv(i);
-        const glm::dvec2 dv = uv(i + 2) - uv(i);
+        const glm::dvec2 du          = uv(i + 1) - uv(i);
+        const glm::dvec2 dv          = uv(i + 2) - uv(i);
         const double     determinant = du.x * dv.y - dv.x * du.y;
         if (determinant == 0 || !std::isfinite(determinant)) continue;
         const double     sign = determinant > 0 ? 1 : -1; // weighted by area in space, not in the texture
@@ -234,7 +235,7 @@ void make_tangents(Mesh& mesh, int uv_set)
         glm::dvec3       tangent = along_u[i] - normal * glm::dot(normal, along_u[i]);
         if (!(glm::length(tangent) > 1e-12 * glm::length(along_u[i])))
             tangent = glm::cross(normal, std::abs(normal.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0));
-        const float handedness = glm::dot(glm::cross(normal, tangent), along_v[i]) < 0 ? -1.0F : 1.0F;
+        const float handedness      = glm::dot(glm::cross(normal, tangent), along_v[i]) < 0 ? -1.0F : 1.0F;
         mesh.vertices[i].tangent_ws = {glm::vec3(glm::normalize(tangent)), handedness};
     }
     mesh.has_tangents = true;
@@ -250,10 +251,10 @@ void clean_attributes(Mesh& mesh)
     for (Vertex& vertex : mesh.vertices) {
         if (!finite(vertex.uv0)) vertex.uv0 = {0, 0};
         if (!finite(vertex.uv1)) vertex.uv1 = {0, 0};
-        vertex.colour = finite(vertex.colour) ? glm::clamp(vertex.colour, 0.0F, 1.0F) : glm::vec4(1);
-        const float normal_length = glm::length(vertex.normal_ws);
-        const bool  has_direction = std::isfinite(normal_length) && normal_length > 1e-6F;
-        vertex.normal_ws          = has_direction ? vertex.normal_ws / normal_length : glm::vec3(0, 1, 0);
+        vertex.colour              = finite(vertex.colour) ? glm::clamp(vertex.colour, 0.0F, 1.0F) : glm::vec4(1);
+        const float normal_length  = glm::length(vertex.normal_ws);
+        const bool  has_direction  = std::isfinite(normal_length) && normal_length > 1e-6F;
+        vertex.normal_ws           = has_direction ? vertex.normal_ws / normal_length : glm::vec3(0, 1, 0);
         const float tangent_length = glm::length(glm::vec3(vertex.tangent_ws));
         if (!std::isfinite(tangent_length) || tangent_length < 1e-6F || vertex.tangent_ws.w == 0)
             vertex.tangent_ws = glm::vec4(0);

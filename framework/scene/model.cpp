@@ -38,8 +38,7 @@ bool same(const Material& a, const Material& b)
 }
 
 /// Keeps the first of equal items, and none that is unused; returns where each item went.
-template <typename Item>
-std::vector<int> keep_first_of_equal(std::vector<Item>& items, const std::vector<bool>& used)
+template <typename Item> std::vector<int> keep_first_of_equal(std::vector<Item>& items, const std::vector<bool>& used)
 {
     std::vector<Item> kept;
     std::vector<int>  target(items.size(), -1);
@@ -53,8 +52,7 @@ std::vector<int> keep_first_of_equal(std::vector<Item>& items, const std::vector
     return target;
 }
 
-template <typename Function>
-void for_each_texture_use(Material& material, Function function)
+template <typename Function> void for_each_texture_use(Material& material, Function function)
 {
     for (TextureUse* use : {&material.base_colour_texture, &material.metallic_roughness_texture,
                             &material.normal_texture, &material.emissive_texture})
@@ -86,8 +84,8 @@ Bounds bounds_of(const Model& model, const glm::dmat4& matrix)
 
 void transform(Mesh& mesh, const glm::dmat4& matrix)
 {
-    const glm::dmat3 linear        = glm::dmat3(matrix);
-    const double     determinant   = glm::determinant(linear);
+    const glm::dmat3 linear      = glm::dmat3(matrix);
+    const double     determinant = glm::determinant(linear);
     // A flattening matrix has no inverse; its triangles are dropped later, so any normal will do.
     const glm::dmat3 normal_matrix = determinant != 0 ? glm::inverseTranspose(linear) : linear;
     for (glm::dvec3& position : mesh.positions_ws) position = point(matrix, position);

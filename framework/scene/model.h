@@ -13,10 +13,10 @@ namespace ssrlab {
 
 struct Mesh {
     std::string             name;
-    uint32_t                material = 0;      // indexes Model::materials
+    uint32_t                material = 0; // indexes Model::materials
     std::vector<glm::dvec3> positions_ws;
-    std::vector<Vertex>     vertices;          // as many as positions_ws; their own position_ws is not used yet
-    std::vector<uint32_t>   indices;           // three per triangle, all below positions_ws.size()
+    std::vector<Vertex>     vertices; // as many as positions_ws; their own position_ws is not used yet
+    std::vector<uint32_t>   indices;  // three per triangle, all below positions_ws.size()
     bool                    has_normals  = true;
     bool                    has_tangents = false;
 };

@@ -86,7 +86,8 @@ void make_camera_names_unique(std::vector<Camera>& cameras)
     for (Camera& camera : cameras) {
         const std::string base = camera.name.empty() ? "camera" : camera.name;
         camera.name            = base;
-        for (int number = 2; !used.insert(camera.name).second; ++number) camera.name = fmt::format("{}_{}", base, number);
+        for (int number = 2; !used.insert(camera.name).second; ++number)
+            camera.name = fmt::format("{}_{}", base, number);
     }
 }
 

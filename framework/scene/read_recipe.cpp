@@ -56,7 +56,8 @@ Part read_part(TomlTable& table)
         part.shape = static_cast<Shape>(*shape);
     if (part.file.empty() == !part.shape.has_value()) table.fail("needs either 'file' or 'shape'");
     part.name = table.text("name").value_or(
-        part.shape ? *table.text("shape") : std::filesystem::path(part.file.substr(part.file.find(':') + 1)).stem().string());
+        part.shape ? *table.text("shape")
+                   : std::filesystem::path(part.file.substr(part.file.find(':') + 1)).stem().string());
     if (part.file.starts_with("sweethome3d:")) part.unit_m = sweethome3d_unit_m;
     if (table.has("position")) part.positions_ws = table.vectors("position");
     part.rotation_deg = table.vector("rotation_deg").value_or(part.rotation_deg);
@@ -76,11 +77,11 @@ ModelLight read_light(TomlTable& table)
 {
     ModelLight light;
     light.light.type = static_cast<LightType>(table.choice("type", {"directional", "point", "spot"}).value_or(0));
-    const bool directional   = light.light.type == LightType::directional;
-    const auto position      = table.vector("position");
-    const auto target        = table.vector("target");
-    auto       direction     = table.vector("direction");
-    const auto intensity     = table.colour("intensity");
+    const bool   directional = light.light.type == LightType::directional;
+    const auto   position    = table.vector("position");
+    const auto   target      = table.vector("target");
+    auto         direction   = table.vector("direction");
+    const auto   intensity   = table.colour("intensity");
     const double angle_deg   = table.number("angle_deg", 0.1, 170).value_or(80);
     light.light.range_m      = static_cast<float>(table.number("range_m", 0, 1e9).value_or(0));
     light.light.casts_shadow = table.flag("shadow").value_or(true);
@@ -102,11 +103,11 @@ ModelLight read_light(TomlTable& table)
 
 bool matches(const std::string& pattern, const std::string& text)
 {
-    size_t p = 0;
-    size_t t = 0;
-    size_t star = std::string::npos;
-    size_t star_text = 0;
-    const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+    size_t     p         = 0;
+    size_t     t         = 0;
+    size_t     star      = std::string::npos;
+    size_t     star_text = 0;
+    const auto lower     = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
     while (t < text.size()) {
         if (p < pattern.size() && pattern[p] == '*') {
             star      = p++;

@@ -13,7 +13,7 @@ namespace ssrlab {
 struct MaterialChange {
     std::string               name = "*"; // a pattern with * and ?
     std::string               part = "*";
-    std::string               place;      // file:line
+    std::string               place; // file:line
     std::optional<double>     metallic, roughness;
     std::optional<glm::dvec3> base_colour, emissive;
     bool                      drop_textures = false;
@@ -26,16 +26,16 @@ enum class Shape : unsigned { box, plane, checker_floor, sphere, cylinder, teapo
 struct Part {
     std::string             name;
     std::string             place;
-    std::string             file;  // or
+    std::string             file; // or
     std::optional<Shape>    shape;
     std::vector<glm::dvec3> positions_ws{{0, 0, 0}}; // of the middle of the bottom; the part is repeated at each
     glm::dvec3              rotation_deg{0, 0, 0};   // about x, then y, then z
-    bool                    z_up = false;
-    double                  unit_m = 1;              // metres per unit of the file
-    std::optional<double>   height_m;                // final height; overrides unit_m
-    glm::dvec3              size_m{1, 1, 1};         // shapes only
+    bool                    z_up   = false;
+    double                  unit_m = 1;      // metres per unit of the file
+    std::optional<double>   height_m;        // final height; overrides unit_m
+    glm::dvec3              size_m{1, 1, 1}; // shapes only
     double                  tile_m = 1;
-    std::vector<glm::dvec3> tile_colours;            // sRGB
+    std::vector<glm::dvec3> tile_colours; // sRGB
     MaterialChange          change;
 };
 

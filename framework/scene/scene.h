@@ -17,37 +17,37 @@ struct Vertex {
     glm::vec4 tangent_ws;  // unit, w = handedness; 0 when no texture needs it
     glm::vec2 uv0;
     glm::vec2 uv1;
-    glm::vec4 colour;      // linear, 1 when the mesh has none
+    glm::vec4 colour; // linear, 1 when the mesh has none
 };
 
 enum class Wrap : uint8_t { repeat, mirrored_repeat, clamp_to_edge };
 
 struct Texture {
     glm::ivec2           size_px{0, 0};
-    std::vector<uint8_t> rgba;              // row 0 on top
-    bool                 srgb = false;
-    bool                 nearest = false;   // magnification filter
+    std::vector<uint8_t> rgba; // row 0 on top
+    bool                 srgb    = false;
+    bool                 nearest = false; // magnification filter
     bool                 mipmaps = true;
-    Wrap                 wrap_u = Wrap::repeat;
-    Wrap                 wrap_v = Wrap::repeat;
+    Wrap                 wrap_u  = Wrap::repeat;
+    Wrap                 wrap_v  = Wrap::repeat;
 };
 
 /// A texture as a material uses it. `texture` indexes Scene::textures, -1 = none.
 struct TextureUse {
-    int        texture = -1;
-    int        uv_set  = 0;
-    glm::mat3  uv_transform{1.0F};          // KHR_texture_transform, applied to (u, v, 1)
+    int       texture = -1;
+    int       uv_set  = 0;
+    glm::mat3 uv_transform{1.0F}; // KHR_texture_transform, applied to (u, v, 1)
 };
 
 struct Material {
     std::string name;
-    glm::vec4   base_colour{1, 1, 1, 1};    // linear
+    glm::vec4   base_colour{1, 1, 1, 1}; // linear
     float       metallic  = 1;
     float       roughness = 1;
-    glm::vec3   emissive{0, 0, 0};          // linear radiance factor
+    glm::vec3   emissive{0, 0, 0}; // linear radiance factor
     float       normal_scale = 1;
     bool        double_sided = false;
-    bool        alpha_mask   = false;       // discard where alpha < alpha_cutoff
+    bool        alpha_mask   = false; // discard where alpha < alpha_cutoff
     float       alpha_cutoff = 0.5F;
     TextureUse  base_colour_texture, metallic_roughness_texture, normal_texture, emissive_texture;
 };
@@ -66,28 +66,29 @@ enum class LightType : uint8_t { directional, point, spot };
 
 struct Light {
     LightType type = LightType::directional;
-    glm::vec3 position_ws{0};               // relative to Scene::origin_ws
-    glm::vec3 direction_ws{0, -1, 0};       // unit, from the light into the scene
-    glm::vec3 intensity{1};                 // linear RGB; lux/pi-free radiometric: irradiance for directional, W/sr for the others
-    float     range_m         = 0;          // 0 = unlimited
+    glm::vec3 position_ws{0};         // relative to Scene::origin_ws
+    glm::vec3 direction_ws{0, -1, 0}; // unit, from the light into the scene
+    glm::vec3 intensity{1}; // linear RGB; lux/pi-free radiometric: irradiance for directional, W/sr for the others
+    float     range_m         = 0; // 0 = unlimited
     float     inner_angle_rad = 0;
     float     outer_angle_rad = 0.785398F;
     bool      casts_shadow    = true;
 };
 
 struct Scene {
-    std::string           name;             // as the user named it
-    glm::dvec3            origin_ws{0, 0, 0}; // subtracted from every position, so that float is enough far from the world's origin
-    std::vector<Vertex>   vertices;
-    std::vector<uint32_t> indices;          // three per triangle, counter-clockwise = front
-    std::vector<Draw>     draws;
-    std::vector<Material> materials;
-    std::vector<Texture>  textures;
-    std::vector<Light>    lights;
-    std::vector<Camera>   cameras;          // at least one; positions relative to origin_ws
-    glm::vec3             ambient{0.25F};   // radiance arriving equally from everywhere
-    glm::vec3             background{0};    // colour of pixels without surface
-    std::vector<std::string> warnings;      // one line each: what was dropped or is not supported
+    std::string              name; // as the user named it
+    glm::dvec3               origin_ws{0, 0,
+                         0}; // subtracted from every position, so that float is enough far from the world's origin
+    std::vector<Vertex>      vertices;
+    std::vector<uint32_t>    indices; // three per triangle, counter-clockwise = front
+    std::vector<Draw>        draws;
+    std::vector<Material>    materials;
+    std::vector<Texture>     textures;
+    std::vector<Light>       lights;
+    std::vector<Camera>      cameras;        // at least one; positions relative to origin_ws
+    glm::vec3                ambient{0.25F}; // radiance arriving equally from everywhere
+    glm::vec3                background{0};  // colour of pixels without surface
+    std::vector<std::string> warnings;       // one line each: what was dropped or is not supported
 };
 
 /// `name`: a .glb/.gltf path, the name of a recipe (experiments/scenes/NAME.toml, or a path to a .toml), or builtin:NAME.

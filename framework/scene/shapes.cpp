@@ -19,7 +19,10 @@ void add_vertex(Mesh& mesh, glm::dvec3 position_ws, glm::dvec3 normal_ws, glm::d
     mesh.vertices.push_back(vertex);
 }
 
-void add_triangle(Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) { mesh.indices.insert(mesh.indices.end(), {a, b, c}); }
+void add_triangle(Mesh& mesh, uint32_t a, uint32_t b, uint32_t c)
+{
+    mesh.indices.insert(mesh.indices.end(), {a, b, c});
+}
 
 /// Triangles between rows of `columns + 1` vertices each.
 void add_grid(Mesh& mesh, uint32_t first, int columns, int rows)
@@ -76,7 +79,8 @@ Mesh make_sphere(glm::dvec3 centre_ws, double radius_m, int slices, int stacks)
             const double     u     = static_cast<double>(slice) / slices;
             const double     polar = (1 - v) * std::numbers::pi; // from the bottom up
             const double     angle = 2 * std::numbers::pi * u;
-            const glm::dvec3 normal{std::sin(polar) * std::sin(angle), std::cos(polar), std::sin(polar) * std::cos(angle)};
+            const glm::dvec3 normal{std::sin(polar) * std::sin(angle), std::cos(polar),
+                                    std::sin(polar) * std::cos(angle)};
             const double     around_m = std::numbers::pi * radius_m;
             add_vertex(mesh, centre_ws + radius_m * normal, normal, {2 * around_m * u, around_m * (1 - v)});
         }

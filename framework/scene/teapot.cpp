@@ -14,12 +14,12 @@ using Patch = std::array<Curve, 4>;      // four curves along u, blended along v
 
 // (radius, height), each from the axis or the mouth outwards and down.
 constexpr std::array<std::array<glm::dvec2, 4>, 6> profiles = {{
-    {{{1.4, 2.4}, {1.3375, 2.53125}, {1.4375, 2.53125}, {1.5, 2.4}}},  // rim
-    {{{1.5, 2.4}, {1.75, 1.875}, {2.0, 1.35}, {2.0, 0.9}}},            // upper body
-    {{{2.0, 0.9}, {2.0, 0.45}, {1.5, 0.225}, {1.5, 0.15}}},            // lower body
-    {{{1.5, 0.15}, {1.5, 0.075}, {1.425, 0.0}, {0.0, 0.0}}},           // bottom
-    {{{0.0, 3.15}, {0.8, 3.15}, {0.0, 2.85}, {0.2, 2.7}}},             // knob
-    {{{0.2, 2.7}, {0.4, 2.55}, {1.3, 2.55}, {1.3, 2.4}}},              // lid
+    {{{1.4, 2.4}, {1.3375, 2.53125}, {1.4375, 2.53125}, {1.5, 2.4}}}, // rim
+    {{{1.5, 2.4}, {1.75, 1.875}, {2.0, 1.35}, {2.0, 0.9}}},           // upper body
+    {{{2.0, 0.9}, {2.0, 0.45}, {1.5, 0.225}, {1.5, 0.15}}},           // lower body
+    {{{1.5, 0.15}, {1.5, 0.075}, {1.425, 0.0}, {0.0, 0.0}}},          // bottom
+    {{{0.0, 3.15}, {0.8, 3.15}, {0.0, 2.85}, {0.2, 2.7}}},            // knob
+    {{{0.2, 2.7}, {0.4, 2.55}, {1.3, 2.55}, {1.3, 2.4}}},             // lid
 }};
 
 // Rows of one half (y <= 0); the other half is the mirror image.
@@ -32,14 +32,14 @@ constexpr std::array<Curve, 7> handle = {{
     {{{-2.5, 0, 1.125}, {-2.5, -0.3, 1.125}, {-2.65, -0.3, 0.9375}, {-2.65, 0, 0.9375}}},
     {{{-2.0, 0, 0.9}, {-2.0, -0.3, 0.9}, {-1.9, -0.3, 0.6}, {-1.9, 0, 0.6}}},
 }};
-constexpr std::array<Curve, 7> spout = {{
-    {{{1.7, 0, 1.425}, {1.7, -0.66, 1.425}, {1.7, -0.66, 0.6}, {1.7, 0, 0.6}}},
-    {{{2.6, 0, 1.425}, {2.6, -0.66, 1.425}, {3.1, -0.66, 0.825}, {3.1, 0, 0.825}}},
-    {{{2.3, 0, 2.1}, {2.3, -0.25, 2.1}, {2.4, -0.25, 2.025}, {2.4, 0, 2.025}}},
-    {{{2.7, 0, 2.4}, {2.7, -0.25, 2.4}, {3.3, -0.25, 2.4}, {3.3, 0, 2.4}}},
-    {{{2.8, 0, 2.475}, {2.8, -0.25, 2.475}, {3.525, -0.25, 2.49375}, {3.525, 0, 2.49375}}},
-    {{{2.9, 0, 2.475}, {2.9, -0.15, 2.475}, {3.45, -0.15, 2.5125}, {3.45, 0, 2.5125}}},
-    {{{2.8, 0, 2.4}, {2.8, -0.15, 2.4}, {3.2, -0.15, 2.4}, {3.2, 0, 2.4}}},
+constexpr std::array<Curve, 7> spout  = {{
+     {{{1.7, 0, 1.425}, {1.7, -0.66, 1.425}, {1.7, -0.66, 0.6}, {1.7, 0, 0.6}}},
+     {{{2.6, 0, 1.425}, {2.6, -0.66, 1.425}, {3.1, -0.66, 0.825}, {3.1, 0, 0.825}}},
+     {{{2.3, 0, 2.1}, {2.3, -0.25, 2.1}, {2.4, -0.25, 2.025}, {2.4, 0, 2.025}}},
+     {{{2.7, 0, 2.4}, {2.7, -0.25, 2.4}, {3.3, -0.25, 2.4}, {3.3, 0, 2.4}}},
+     {{{2.8, 0, 2.475}, {2.8, -0.25, 2.475}, {3.525, -0.25, 2.49375}, {3.525, 0, 2.49375}}},
+     {{{2.9, 0, 2.475}, {2.9, -0.15, 2.475}, {3.45, -0.15, 2.5125}, {3.45, 0, 2.5125}}},
+     {{{2.8, 0, 2.4}, {2.8, -0.15, 2.4}, {3.2, -0.15, 2.4}, {3.2, 0, 2.4}}},
 }};
 
 glm::dvec3 bezier(const Curve& p, double t)
@@ -57,16 +57,16 @@ glm::dvec3 bezier_derivative(const Curve& p, double t)
 /// A quarter of a turn; Newell's circle has its inner control points at 0.56 of the radius.
 Patch quarter_turn(const std::array<glm::dvec2, 4>& profile, int quarter)
 {
-    constexpr double                          k    = 0.56;
-    constexpr std::array<glm::dvec2, 4>       arc  = {{{1, 0}, {1, k}, {k, 1}, {0, 1}}};
+    constexpr double                           k    = 0.56;
+    constexpr std::array<glm::dvec2, 4>        arc  = {{{1, 0}, {1, k}, {k, 1}, {0, 1}}};
     const std::array<std::array<double, 2>, 4> turn = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
     const auto [cosine, sine]                       = turn[static_cast<size_t>(quarter)];
     Patch patch{};
     for (size_t v = 0; v < 4; ++v)
         for (size_t u = 0; u < 4; ++u) {
-            const glm::dvec2 xy = profile[v].x * glm::dvec2(arc[u].x * cosine - arc[u].y * sine,
-                                                            arc[u].x * sine + arc[u].y * cosine);
-            patch[v][u]         = {xy, profile[v].y};
+            const glm::dvec2 xy =
+                profile[v].x * glm::dvec2(arc[u].x * cosine - arc[u].y * sine, arc[u].x * sine + arc[u].y * cosine);
+            patch[v][u] = {xy, profile[v].y};
         }
     return patch;
 }
@@ -100,9 +100,9 @@ void add_patch(Mesh& mesh, const Patch& patch, double outwards, int steps)
     const auto first = static_cast<uint32_t>(mesh.vertices.size());
     for (int row = 0; row <= steps; ++row)
         for (int column = 0; column <= steps; ++column) {
-            const double     u = static_cast<double>(column) / steps;
-            const double     v = static_cast<double>(row) / steps;
-            Surface          s = evaluate(patch, u, v);
+            const double u = static_cast<double>(column) / steps;
+            const double v = static_cast<double>(row) / steps;
+            Surface      s = evaluate(patch, u, v);
             // At the tips of lid and bottom a whole edge is one point: take the normal just beside it.
             if (glm::length(s.normal) < 1e-9) s.normal = evaluate(patch, u, v < 0.5 ? 1e-3 : 1 - 1e-3).normal;
             const glm::dvec3 normal = outwards * glm::normalize(s.normal);

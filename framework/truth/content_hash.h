@@ -20,13 +20,11 @@ public:
 
     /// Numbers, enums and GLM types: nothing with padding.
     template <typename T>
-        requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-    ContentHash& add(T value)
+    requires std::is_arithmetic_v<T> || std::is_enum_v<T> ContentHash& add(T value)
     {
         return add_bytes(&value, sizeof value);
     }
-    template <glm::length_t L, typename T, glm::qualifier Q>
-    ContentHash& add(const glm::vec<L, T, Q>& value)
+    template <glm::length_t L, typename T, glm::qualifier Q> ContentHash& add(const glm::vec<L, T, Q>& value)
     {
         return add_bytes(&value, sizeof value);
     }
@@ -36,7 +34,7 @@ public:
         return add_bytes(&value, sizeof value);
     }
     template <typename T>
-        requires std::is_arithmetic_v<T> || requires { typename T::value_type; }
+    requires std::is_arithmetic_v<T> || requires { typename T::value_type; }
     ContentHash& add(const std::vector<T>& values)
     {
         return add(values.size()).add_bytes(values.data(), values.size() * sizeof(T));

@@ -11,8 +11,7 @@
 namespace ssrlab {
 
 /// Calls do_row(y) once for every y in [0, row_count). threads = 0: all cores. Rethrows the first exception.
-template <typename DoRow>
-void parallel_rows(int row_count, unsigned threads, const DoRow& do_row)
+template <typename DoRow> void parallel_rows(int row_count, unsigned threads, const DoRow& do_row)
 {
     std::atomic<int>   next_row{0};
     std::exception_ptr error;

@@ -47,7 +47,8 @@ void require_valid(const Scene& scene)
     for (const Draw& draw : scene.draws) {
         if (draw.index_count % 3 != 0 || size_t(draw.first_index) + draw.index_count > scene.indices.size() ||
             draw.material >= scene.materials.size()) {
-            throw_failure("scene '{}': draw '{}' reaches outside the scene's indices or materials", scene.name, draw.name);
+            throw_failure("scene '{}': draw '{}' reaches outside the scene's indices or materials", scene.name,
+                          draw.name);
         }
     }
     for (const uint32_t index : scene.indices) {
@@ -62,9 +63,10 @@ bool finite(glm::dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && s
 /// Embree aborts the process on NaN.
 RTCRay to_embree(const SceneRay& ray, Sides sides)
 {
-    RTCRay result{};
-    const bool usable = finite(ray.origin_ws) && finite(ray.direction_ws) && glm::vec3(ray.direction_ws) != glm::vec3(0) &&
-                        finite(glm::dvec3(glm::vec3(ray.origin_ws))) && ray.t_min >= 0 && ray.t_max >= ray.t_min;
+    RTCRay     result{};
+    const bool usable = finite(ray.origin_ws) && finite(ray.direction_ws) &&
+                        glm::vec3(ray.direction_ws) != glm::vec3(0) && finite(glm::dvec3(glm::vec3(ray.origin_ws))) &&
+                        ray.t_min >= 0 && ray.t_max >= ray.t_min;
     result.dir_z = 1;
     result.tnear = 0;
     result.tfar  = -1; // inactive
@@ -86,12 +88,12 @@ SceneHit to_scene_hit(const Scene& scene, const SceneRay& ray, const RTCRayHit& 
 {
     SceneHit hit;
     if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
-    hit.met     = true;
-    hit.surface = {found.hit.geomID, found.hit.primID, {found.hit.u, found.hit.v}};
-    hit.normal_ws         = front_normal_ws(scene, hit.surface);
-    hit.t                 = double(found.ray.tfar);
-    const glm::dvec3 to_a = corner_ws(scene, hit.surface, 0) - ray.origin_ws;
-    const double exact    = glm::dot(hit.normal_ws, to_a) / glm::dot(hit.normal_ws, ray.direction_ws);
+    hit.met                = true;
+    hit.surface            = {found.hit.geomID, found.hit.primID, {found.hit.u, found.hit.v}};
+    hit.normal_ws          = front_normal_ws(scene, hit.surface);
+    hit.t                  = double(found.ray.tfar);
+    const glm::dvec3 to_a  = corner_ws(scene, hit.surface, 0) - ray.origin_ws;
+    const double     exact = glm::dot(hit.normal_ws, to_a) / glm::dot(hit.normal_ws, ray.direction_ws);
     // A degenerate or edge-on triangle has no reliable plane.
     constexpr double plausible = 1e-3;
     if (std::abs(exact - hit.t) <= plausible * hit.t) hit.t = exact;
@@ -101,8 +103,8 @@ SceneHit to_scene_hit(const Scene& scene, const SceneRay& ray, const RTCRayHit& 
 } // namespace
 
 struct SceneBvh::Embree {
-    RTCDevice              device = rtcNewDevice("threads=0,set_affinity=0");
-    RTCScene               scene  = rtcNewScene(device);
+    RTCDevice                device = rtcNewDevice("threads=0,set_affinity=0");
+    RTCScene                 scene  = rtcNewScene(device);
     std::deque<FilteredDraw> filtered; // stable addresses: Embree keeps pointers
 
     Embree()                         = default;
@@ -152,9 +154,9 @@ void SceneBvh::intersect(std::span<const SceneRay> rays, std::span<SceneHit> hit
 {
     std::vector<RTCRayHit> work(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) {
-        work[i].ray        = to_embree(rays[i], Sides::both);
-        work[i].hit        = {};
-        work[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        work[i].ray           = to_embree(rays[i], Sides::both);
+        work[i].hit           = {};
+        work[i].hit.geomID    = RTC_INVALID_GEOMETRY_ID;
         work[i].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     }
     RTCIntersectContext context;

@@ -11,8 +11,8 @@ namespace {
 
 /// Light arriving at a point from one light, unshadowed.
 struct Arriving {
-    glm::vec3  irradiance{0};    // on a surface that faces the light
-    glm::dvec3 to_light_ws{0};   // unit
+    glm::vec3  irradiance{0};  // on a surface that faces the light
+    glm::dvec3 to_light_ws{0}; // unit
     double     distance_m = std::numeric_limits<double>::infinity();
 };
 
@@ -20,7 +20,8 @@ struct Arriving {
 Arriving arriving_light(const Light& light, glm::dvec3 point_ws)
 {
     if (light.type == LightType::directional) {
-        return {light.intensity, -glm::normalize(glm::dvec3(light.direction_ws)), std::numeric_limits<double>::infinity()};
+        return {light.intensity, -glm::normalize(glm::dvec3(light.direction_ws)),
+                std::numeric_limits<double>::infinity()};
     }
     const glm::dvec3 offset     = glm::dvec3(light.position_ws) - point_ws;
     const double     distance_m = glm::length(offset);
@@ -54,11 +55,11 @@ glm::vec3 shade_point(const SceneBvh& bvh, const Scene& scene, const SceneHit& h
 {
     const SurfaceMaterial material = surface_material(scene, hit.surface);
     // The side that the ray sees; the interpolated normal follows the triangle's.
-    const double     side         = glm::dot(hit.normal_ws, direction_ws) > 0 ? -1 : 1;
-    const glm::dvec3 triangle_ws  = side * glm::normalize(hit.normal_ws);
-    const glm::dvec3 normal_ws    = material.normal_ws == glm::dvec3(0) ? triangle_ws : side * material.normal_ws;
-    const double     offset_m     = self_hit_share * std::max(1.0, hit.t);
-    const glm::dvec3 lifted_ws    = point_ws + offset_m * triangle_ws;
+    const double     side        = glm::dot(hit.normal_ws, direction_ws) > 0 ? -1 : 1;
+    const glm::dvec3 triangle_ws = side * glm::normalize(hit.normal_ws);
+    const glm::dvec3 normal_ws   = material.normal_ws == glm::dvec3(0) ? triangle_ws : side * material.normal_ws;
+    const double     offset_m    = self_hit_share * std::max(1.0, hit.t);
+    const glm::dvec3 lifted_ws   = point_ws + offset_m * triangle_ws;
 
     glm::vec3 irradiance(0);
     for (const Light& light : scene.lights) {

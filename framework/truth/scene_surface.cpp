@@ -11,8 +11,7 @@ const Vertex& corner(const Scene& scene, const SurfacePoint& point, int i)
     return scene.vertices[scene.indices[scene.draws[point.draw].first_index + 3 * point.triangle + uint32_t(i)]];
 }
 
-template <typename T>
-T interpolate(const Scene& scene, const SurfacePoint& point, T Vertex::* attribute)
+template <typename T> T interpolate(const Scene& scene, const SurfacePoint& point, T Vertex::*attribute)
 {
     const auto u = float(point.barycentric.x), v = float(point.barycentric.y);
     return corner(scene, point, 0).*attribute * (1 - u - v) + corner(scene, point, 1).*attribute * u +
@@ -81,10 +80,10 @@ SurfaceMaterial surface_material(const Scene& scene, const SurfacePoint& point)
 {
     const Material& material = scene.materials[scene.draws[point.draw].material];
     SurfaceMaterial result;
-    result.base_colour     = glm::vec3(base_colour(scene, point));
-    result.metallic        = material.metallic * sample(scene, material.metallic_roughness_texture, point).b;
-    result.emissive        = material.emissive * glm::vec3(sample(scene, material.emissive_texture, point));
-    const glm::dvec3 sum   = glm::dvec3(interpolate(scene, point, &Vertex::normal_ws));
+    result.base_colour      = glm::vec3(base_colour(scene, point));
+    result.metallic         = material.metallic * sample(scene, material.metallic_roughness_texture, point).b;
+    result.emissive         = material.emissive * glm::vec3(sample(scene, material.emissive_texture, point));
+    const glm::dvec3 sum    = glm::dvec3(interpolate(scene, point, &Vertex::normal_ws));
     const double     length = glm::length(sum);
     if (std::isfinite(length) && length > 0) result.normal_ws = sum / length;
     return result;

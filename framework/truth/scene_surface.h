@@ -15,8 +15,8 @@ struct SurfacePoint {
 struct SurfaceMaterial {
     glm::vec3  base_colour{1}; // linear
     float      metallic = 0;
-    glm::vec3  emissive{0};    // linear radiance
-    glm::dvec3 normal_ws{0};   // interpolated, without normal map; unit, or 0 when the mesh has none
+    glm::vec3  emissive{0};  // linear radiance
+    glm::dvec3 normal_ws{0}; // interpolated, without normal map; unit, or 0 when the mesh has none
 };
 
 glm::dvec3 corner_ws(const Scene& scene, const SurfacePoint& point, int corner);

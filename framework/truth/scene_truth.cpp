@@ -31,7 +31,8 @@ struct Eye {
     SceneRay ray_to(glm::dvec3 point_vs) const
     {
         const glm::dvec3 origin = origin_vs(point_vs);
-        return {point_to_ws(origin), direction_to_ws(point_vs - origin), view.near_m / -point_vs.z, 1 - visibility_tolerance};
+        return {point_to_ws(origin), direction_to_ws(point_vs - origin), view.near_m / -point_vs.z,
+                1 - visibility_tolerance};
     }
 };
 
@@ -43,7 +44,8 @@ bool inside_image(const View& view, glm::dvec2 point_px)
 /// Fills one row of the truth; the vectors live as long as the row.
 class Row {
 public:
-    Row(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer, const TraceSettings& settings, SceneTruth& truth)
+    Row(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer, const TraceSettings& settings,
+        SceneTruth& truth)
         : m_bvh(bvh), m_scene(scene), m_gbuffer(gbuffer), m_settings(settings), m_truth(truth), m_eye(gbuffer.view)
     {
     }
@@ -79,8 +81,8 @@ private:
             if (!reflects(m_gbuffer, {x, y})) continue;
             const glm::dvec3 point_vs = pixel_point_vs(m_gbuffer, {x, y});
             const double     start_m  = self_hit_share * glm::length(point_vs - m_eye.origin_vs(point_vs));
-            m_rays.push_back({m_eye.point_to_ws(point_vs), m_eye.direction_to_ws(mirror_direction_vs(m_gbuffer, {x, y})),
-                              start_m, infinity});
+            m_rays.push_back({m_eye.point_to_ws(point_vs),
+                              m_eye.direction_to_ws(mirror_direction_vs(m_gbuffer, {x, y})), start_m, infinity});
             m_pixels.push_back(size_t(y) * size_t(width) + size_t(x));
         }
     }
@@ -88,17 +90,18 @@ private:
     /// Everything but the occlusion ray, which is sent only for what comes back as visible.
     TruthClass classify(size_t k)
     {
-        const SceneRay& ray = m_rays[k];
-        const SceneHit& hit = m_hits[k];
-        const size_t    i   = m_pixels[k];
-        const auto      set = [&](TruthClass cls) { return m_truth.cls[i] = cls; };
+        const SceneRay& ray   = m_rays[k];
+        const SceneHit& hit   = m_hits[k];
+        const size_t    i     = m_pixels[k];
+        const auto      set   = [&](TruthClass cls) { return m_truth.cls[i] = cls; };
         m_truth.distance_m[i] = hit.met ? hit.t : infinity;
         if (!hit.met) return set(TruthClass::sky);
 
-        const View&      view     = m_gbuffer.view;
-        const glm::dvec3 point_vs = glm::dvec3(view.world_to_view * glm::dvec4(ray.origin_ws + hit.t * ray.direction_ws, 1));
-        const bool       in_front = -point_vs.z >= view.near_m;
-        m_truth.point_vs[i]       = point_vs;
+        const View&      view = m_gbuffer.view;
+        const glm::dvec3 point_vs =
+            glm::dvec3(view.world_to_view * glm::dvec4(ray.origin_ws + hit.t * ray.direction_ws, 1));
+        const bool in_front = -point_vs.z >= view.near_m;
+        m_truth.point_vs[i] = point_vs;
         if (in_front) m_truth.point_px[i] = glm::dvec2(vs_to_px(view, point_vs));
         if (hit.t > m_settings.max_distance_m) return set(TruthClass::beyond);
         if (!in_front) return set(TruthClass::behind_camera);
@@ -149,8 +152,8 @@ SceneTruth empty_scene_truth(glm::ivec2 size_px)
     return truth;
 }
 
-SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer, const TraceSettings& settings,
-                       unsigned threads)
+SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer,
+                       const TraceSettings& settings, unsigned threads)
 {
     require_complete(gbuffer);
     const size_t count = gbuffer.depth.size();

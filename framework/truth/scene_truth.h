@@ -33,8 +33,8 @@ SceneTruth empty_scene_truth(glm::ivec2 size_px);
 /// Radiance of a visible point is the G-buffer's (the view-independent part) at the pixel it falls into, so that a perfect SSR
 /// reproduces the reference exactly; all other points are shaded by shade_point; sky is Scene::background.
 /// Threads = 0: all cores.
-SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer, const TraceSettings& settings,
-                       unsigned threads = 0);
+SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer,
+                       const TraceSettings& settings, unsigned threads = 0);
 
 /// Lambertian, with shadow rays, without bounces:
 /// base (1 - metallic) / pi * sum(irradiance cos shadow) + ambient base + emissive.

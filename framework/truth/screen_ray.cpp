@@ -17,10 +17,7 @@ size_t pixel_index(const GBufferImage& gbuffer, glm::ivec2 pixel)
 }
 
 /// The half space a0 + s * a1 >= 0 along the ray; a0 >= 0 for every point in the view.
-double distance_to_plane_m(double a0, double a1)
-{
-    return a1 < 0 ? std::max(a0, 0.0) / -a1 : infinity;
-}
+double distance_to_plane_m(double a0, double a1) { return a1 < 0 ? std::max(a0, 0.0) / -a1 : infinity; }
 
 enum class Limit { max_distance, near_plane, left, right, top, bottom };
 
@@ -65,8 +62,7 @@ glm::dvec3 screen_delta(const View& view, glm::dvec3 point_vs, glm::dvec3 direct
     }
     const double     distance_m = -point_vs.z;
     const double     scale      = 1.0 / ((distance_m / length_m - direction_vs.z) * distance_m);
-    const glm::dvec2 slope =
-        glm::dvec2(direction_vs) * distance_m + glm::dvec2(point_vs) * direction_vs.z;
+    const glm::dvec2 slope      = glm::dvec2(direction_vs) * distance_m + glm::dvec2(point_vs) * direction_vs.z;
     return scale * glm::dvec3(view.focal_px.x * slope.x, -view.focal_px.y * slope.y, view.near_m * direction_vs.z);
 }
 
@@ -89,7 +85,8 @@ void require_complete(const GBufferImage& gbuffer)
     const size_t     count = size_t(std::max(size.x, 0)) * size_t(std::max(size.y, 0));
     if (gbuffer.depth.size() != count || gbuffer.normal_vs.size() != count || gbuffer.metallic.size() != count) {
         throw_failure("G-buffer of view '{}': expected {} values of depth, normal_vs and metallic, found {}, {} and {}",
-                      gbuffer.view.name, count, gbuffer.depth.size(), gbuffer.normal_vs.size(), gbuffer.metallic.size());
+                      gbuffer.view.name, count, gbuffer.depth.size(), gbuffer.normal_vs.size(),
+                      gbuffer.metallic.size());
     }
 }
 
@@ -131,8 +128,7 @@ ScreenRay make_screen_ray(const GBufferImage& gbuffer, glm::ivec2 pixel, const T
 
     const Clip clip = clip_ray(view, point_vs, ray.direction_vs, std::max(settings.max_distance_m, 0.0));
     ray.length_m    = clip.length_m;
-    ray.end_status =
-        clip.limit == Limit::max_distance ? TraceStatus::past_max_distance : TraceStatus::left_screen;
+    ray.end_status  = clip.limit == Limit::max_distance ? TraceStatus::past_max_distance : TraceStatus::left_screen;
 
     const double offset_m = std::max(settings.ray_offset_m, 0.0);
     if (offset_m >= clip.length_m) return ray;

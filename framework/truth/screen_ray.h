@@ -8,13 +8,13 @@ namespace ssrlab {
 
 /// The mirror ray of one pixel, as a straight segment in (x_px, y_px, depth): origin + t * delta, t in [0, 1].
 struct ScreenRay {
-    bool        traced = false;                            // false: nothing below is defined
+    bool        traced = false; // false: nothing below is defined
     glm::dvec3  origin_px_depth{0};
-    glm::dvec3  delta_px_depth{0};                         // all zero when the ray visits nothing
+    glm::dvec3  delta_px_depth{0}; // all zero when the ray visits nothing
     glm::ivec2  start_pixel{0, 0};
-    TraceStatus end_status = TraceStatus::not_traced;      // how the ray ends if it meets no slab
-    double      length_m   = 0;                            // from the reflecting point to the clipped end; may be +inf
-    glm::dvec3  direction_vs{0};                           // unit
+    TraceStatus end_status = TraceStatus::not_traced; // how the ray ends if it meets no slab
+    double      length_m   = 0;                       // from the reflecting point to the clipped end; may be +inf
+    glm::dvec3  direction_vs{0};                      // unit
 };
 
 /// True for a pixel with finite depth > 0, metallic > 0 and a normal that is finite and not zero.

@@ -97,13 +97,13 @@ WalkResult ScreenWalk::walk(const ScreenRay& ray) const
     if (!ray.traced) return found;
 
     const glm::ivec2 size = m_gbuffer.view.size_px;
-    Axis x(ray.origin_px_depth.x, ray.delta_px_depth.x, ray.start_pixel.x, size.x);
-    Axis y(ray.origin_px_depth.y, ray.delta_px_depth.y, ray.start_pixel.y, size.y);
-    const double    t_end  = std::min({1.0, x.t_exit, y.t_exit});
-    const double    z0     = ray.origin_px_depth.z;
-    const double    dz     = ray.delta_px_depth.z;
-    const ptrdiff_t x_jump = ptrdiff_t(x.step);
-    const ptrdiff_t y_jump = ptrdiff_t(y.step) * size.x;
+    Axis             x(ray.origin_px_depth.x, ray.delta_px_depth.x, ray.start_pixel.x, size.x);
+    Axis             y(ray.origin_px_depth.y, ray.delta_px_depth.y, ray.start_pixel.y, size.y);
+    const double     t_end  = std::min({1.0, x.t_exit, y.t_exit});
+    const double     z0     = ray.origin_px_depth.z;
+    const double     dz     = ray.delta_px_depth.z;
+    const ptrdiff_t  x_jump = ptrdiff_t(x.step);
+    const ptrdiff_t  y_jump = ptrdiff_t(y.step) * size.x;
 
     ptrdiff_t index = ptrdiff_t(ray.start_pixel.y) * size.x + ray.start_pixel.x;
     double    t_in  = std::min(x.t_next, y.t_next);
@@ -147,11 +147,12 @@ WalkResult ScreenWalk::walk(const ScreenRay& ray) const
 TraceResult screen_truth(const GBufferImage& gbuffer, const TraceSettings& settings, unsigned threads)
 {
     const ScreenWalk walk(gbuffer, settings);
-    const glm::ivec2 size  = gbuffer.view.size_px;
+    const glm::ivec2 size   = gbuffer.view.size_px;
     TraceResult      result = make_trace_result(size, false);
     parallel_rows(size.y, threads, [&](int y) {
         for (int x = 0; x < size.x; ++x) {
-            store(walk.walk(make_screen_ray(gbuffer, {x, y}, settings)), size_t(y) * size_t(size.x) + size_t(x), result);
+            store(walk.walk(make_screen_ray(gbuffer, {x, y}, settings)), size_t(y) * size_t(size.x) + size_t(x),
+                  result);
         }
     });
     return result;

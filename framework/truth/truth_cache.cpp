@@ -49,8 +49,14 @@ void add(ContentHash& hash, const Scene& scene)
     hash.add_bytes(scene.vertices.data(), scene.vertices.size() * sizeof(Vertex)).add(scene.indices);
     for (const Draw& draw : scene.draws) hash.add(draw.first_index).add(draw.index_count).add(draw.material);
     for (const Material& m : scene.materials) {
-        hash.add(m.base_colour).add(m.metallic).add(m.emissive).add(m.double_sided).add(m.alpha_mask).add(m.alpha_cutoff);
-        for (const TextureUse* use : {&m.base_colour_texture, &m.metallic_roughness_texture, &m.emissive_texture}) add(hash, *use);
+        hash.add(m.base_colour)
+            .add(m.metallic)
+            .add(m.emissive)
+            .add(m.double_sided)
+            .add(m.alpha_mask)
+            .add(m.alpha_cutoff);
+        for (const TextureUse* use : {&m.base_colour_texture, &m.metallic_roughness_texture, &m.emissive_texture})
+            add(hash, *use);
     }
     for (const Texture& t : scene.textures) {
         hash.add(t.size_px).add(t.rgba).add(t.srgb).add(t.nearest).add(t.wrap_u).add(t.wrap_v);
@@ -64,8 +70,7 @@ void add(ContentHash& hash, const Scene& scene)
 
 class Writer {
 public:
-    template <typename T>
-    void put(const T& value)
+    template <typename T> void put(const T& value)
     {
         const auto* bytes = reinterpret_cast<const char*>(&value);
         m_bytes.insert(m_bytes.end(), bytes, bytes + sizeof value);
@@ -80,8 +85,7 @@ class Reader {
 public:
     explicit Reader(const std::vector<char>& bytes) : m_bytes(bytes) {}
 
-    template <typename T>
-    void get(T& value)
+    template <typename T> void get(T& value)
     {
         if (m_bytes.size() - m_place < sizeof value) {
             m_ok = false;

@@ -18,7 +18,8 @@ Image uniform(glm::ivec2 size_px, glm::vec3 colour)
     Image image;
     image.size_px  = size_px;
     image.channels = {"R", "G", "B"};
-    for (int i = 0; i < size_px.x * size_px.y; ++i) image.values.insert(image.values.end(), {colour.r, colour.g, colour.b});
+    for (int i = 0; i < size_px.x * size_px.y; ++i)
+        image.values.insert(image.values.end(), {colour.r, colour.g, colour.b});
     return image;
 }
 
@@ -50,7 +51,8 @@ TEST(Flip, IdenticalIsZero)
 // The largest difference of the paper's metric, by definition: pure green against pure blue.
 TEST(Flip, GreenAgainstBlueIsOne)
 {
-    for (const float error : flip_error(uniform({24, 24}, {0, 1, 0}), uniform({24, 24}, {0, 0, 1}))) EXPECT_NEAR(error, 1, 1e-4);
+    for (const float error : flip_error(uniform({24, 24}, {0, 1, 0}), uniform({24, 24}, {0, 0, 1})))
+        EXPECT_NEAR(error, 1, 1e-4);
 }
 
 // Uniform pictures have no features: the error is the colour term alone. Black to white is 100 in L*; with cmax the 0.7th power of the
@@ -103,17 +105,15 @@ TEST(Flip, FineDetailVanishesWithDistance)
     EXPECT_LT(at_centre(200), 0.05F);
 }
 
-TEST(Flip, DifferentSizesAreRefused)
-{
-    EXPECT_THROW(flip_error(uniform({3, 3}, {}), uniform({4, 3}, {})), Failure);
-}
+TEST(Flip, DifferentSizesAreRefused) { EXPECT_THROW(flip_error(uniform({3, 3}, {}), uniform({4, 3}, {})), Failure); }
 
 TEST(Ssim, IdenticalIsOneAndConstantsFollowTheFormula)
 {
     const Plane a = first_channel(noise({30, 20}, 3));
     EXPECT_NEAR(smallest(ssim_map(a, a)), 1, 1e-5);
     // Without variance only the luminance term remains: (2 ab + c1) / (a^2 + b^2 + c1).
-    const Plane x = first_channel(uniform({15, 15}, glm::vec3(0.2F))), y = first_channel(uniform({15, 15}, glm::vec3(0.6F)));
+    const Plane x = first_channel(uniform({15, 15}, glm::vec3(0.2F))),
+                y = first_channel(uniform({15, 15}, glm::vec3(0.6F)));
     for (const float index : ssim_map(x, y)) EXPECT_NEAR(index, (2 * 0.12 + 1e-4) / (0.04 + 0.36 + 1e-4), 2e-3);
     const Plane b = first_channel(noise({30, 20}, 4));
     EXPECT_LT(largest(ssim_map(a, b)), 0.9F);
@@ -152,8 +152,8 @@ TEST(ImageMeasures, MaskDecidesWhatCounts)
 TEST(ImageMeasures, OfDisplayValues)
 {
     // sRGB encodes linear 0.2140 as 0.5; values beyond 1 are clamped.
-    const MeasureValues values =
-        compare_images(uniform({12, 12}, glm::vec3(7)), uniform({12, 12}, glm::vec3(0.2140411F)), half_visible({12, 12}));
+    const MeasureValues values = compare_images(uniform({12, 12}, glm::vec3(7)),
+                                                uniform({12, 12}, glm::vec3(0.2140411F)), half_visible({12, 12}));
     EXPECT_NEAR(values.at("rmse_visible").value(), 0.5, 1e-5);
     EXPECT_NEAR(values.at("psnr_visible_db").value(), 20 * std::log10(2), 1e-4);
 }

@@ -37,17 +37,17 @@ TEST(RayMeasures, AgainstScreenTruth)
     TraceResult truth = row_of(10), tested = row_of(10);
     truth.status[0] = tested.status[0] = TraceStatus::not_traced;
     for (const size_t i : {1, 2, 3, 4, 5}) set_hit(truth, i, 20.25);
-    set_hit(tested, 1, 20.75);                       // same pixel, 0.5 px
-    set_hit(tested, 2, 21.25);                       // neighbour, exactly 1 px: within
-    set_hit(tested, 3, 24.25);                       // displaced by 4 px
-    tested.status[4] = TraceStatus::out_of_steps;    // missed
-    set_hit(tested, 6, 5.5);                         // false
+    set_hit(tested, 1, 20.75);                    // same pixel, 0.5 px
+    set_hit(tested, 2, 21.25);                    // neighbour, exactly 1 px: within
+    set_hit(tested, 3, 24.25);                    // displaced by 4 px
+    tested.status[4] = TraceStatus::out_of_steps; // missed
+    set_hit(tested, 6, 5.5);                      // false
     const MeasureValues values = compare_to_screen_truth(tested, truth);
     EXPECT_EQ(values.at("traced_rays"), 9);
-    EXPECT_EQ(values.at("screen_same_pixel"), 4 / 9.0);  // 1, and the common misses 7, 8, 9
+    EXPECT_EQ(values.at("screen_same_pixel"), 4 / 9.0); // 1, and the common misses 7, 8, 9
     EXPECT_EQ(values.at("screen_within_1px"), 5 / 9.0);
     EXPECT_EQ(values.at("screen_displaced"), 1 / 9.0);
-    EXPECT_EQ(values.at("screen_missed"), 2 / 9.0);      // 4 and 5
+    EXPECT_EQ(values.at("screen_missed"), 2 / 9.0); // 4 and 5
     EXPECT_EQ(values.at("screen_false"), 1 / 9.0);
     EXPECT_EQ(values.at("screen_out_of_steps"), 1 / 9.0);
     EXPECT_EQ(values.at("screen_recall_1px"), 2 / 5.0);
@@ -101,17 +101,17 @@ struct SceneCase {
 TEST(RayMeasures, AgainstSceneTruth)
 {
     SceneCase test;
-    auto&     [gbuffer, truth, tested, screen] = test;
+    auto& [gbuffer, truth, tested, screen] = test;
     for (const size_t i : {0, 1, 2, 3, 4, 5}) truth.cls[i] = TruthClass::visible;
     truth.cls[6] = TruthClass::hidden;
     truth.cls[7] = TruthClass::sky;
-    set_hit(tested, 0, 12.5);                     // found
-    set_hit(tested, 1, 15.25, 0.05);              // displaced by 3 px; Z = 2 = the surface: a wrong front
-    set_hit(screen, 2, 12.25);                    // stepped over
+    set_hit(tested, 0, 12.5);        // found
+    set_hit(tested, 1, 15.25, 0.05); // displaced by 3 px; Z = 2 = the surface: a wrong front
+    set_hit(screen, 2, 12.25);       // stepped over
     tested.status[3] = TraceStatus::out_of_steps;
     tested.status[4] = TraceStatus::facing_away;
-    set_hit(tested, 6, 9.5, 0.1 / 1.5);           // ray at Z = 1.5 behind the surface at Z = 1: slab too thick
-    set_hit(tested, 7, 3.5, 0.05);                // object 1, in its own plane: a self-hit
+    set_hit(tested, 6, 9.5, 0.1 / 1.5); // ray at Z = 1.5 behind the surface at Z = 1: slab too thick
+    set_hit(tested, 7, 3.5, 0.05);      // object 1, in its own plane: a self-hit
     const MeasureValues values = compare_to_scene_truth(tested, truth, screen, gbuffer);
     EXPECT_EQ(values.at("traced_rays"), 8);
     EXPECT_EQ(values.at("recall_1px"), 1 / 6.0);
@@ -135,7 +135,7 @@ TEST(RayMeasures, AgainstSceneTruth)
 TEST(RayMeasures, SplitAndFlips)
 {
     SceneCase test;
-    auto&     [gbuffer, truth, tested, screen] = test;
+    auto& [gbuffer, truth, tested, screen] = test;
     for (size_t i = 0; i < 4; ++i) truth.cls[i] = TruthClass::visible;
     TraceResult twin = row_of(16);
     for (size_t i = 0; i < 3; ++i) set_hit(screen, i, 12.25); // 3 of 4 visible
@@ -152,9 +152,9 @@ TEST(RayMeasures, SplitAndFlips)
 
 TEST(RayMeasures, WorkIsCountedPerTracedRay)
 {
-    TraceResult result = row_of(4);
-    result.status[0]   = TraceStatus::not_traced;
-    result.steps       = {0, 1, 2, 6};
+    TraceResult result   = row_of(4);
+    result.status[0]     = TraceStatus::not_traced;
+    result.steps         = {0, 1, 2, 6};
     MeasureValues values = count_work(result);
     EXPECT_EQ(values.at("steps_mean"), 3);
     EXPECT_EQ(values.at("steps_max"), 6);
@@ -201,23 +201,26 @@ TEST(Pictures, AgreementColours)
     set_hit(tested, 2, 30.5);
     set_hit(tested, 4, 1.5);
     const Image image  = agreement_picture(tested, truth);
-    const auto  colour = [&](size_t i) { return glm::vec3(image.values[3 * i], image.values[3 * i + 1], image.values[3 * i + 2]); };
+    const auto  colour = [&](size_t i) {
+        return glm::vec3(image.values[3 * i], image.values[3 * i + 1], image.values[3 * i + 2]);
+    };
     EXPECT_EQ(colour(0), glm::vec3(0));
-    EXPECT_TRUE(colour(1).g > colour(1).r && colour(1).g > colour(1).b); // green
-    EXPECT_TRUE(colour(2).r > 0.5F && colour(2).g > 0.5F);               // yellow
+    EXPECT_TRUE(colour(1).g > colour(1).r && colour(1).g > colour(1).b);         // green
+    EXPECT_TRUE(colour(2).r > 0.5F && colour(2).g > 0.5F);                       // yellow
     EXPECT_TRUE(colour(3).r > 0.5F && colour(3).g < 0.1F && colour(3).b < 0.1F); // red
-    EXPECT_TRUE(colour(4).r > 0.5F && colour(4).b > 0.5F);               // magenta
-    EXPECT_TRUE(colour(5).r < 0.2F && colour(5).r > 0);                  // grey
+    EXPECT_TRUE(colour(4).r > 0.5F && colour(4).b > 0.5F);                       // magenta
+    EXPECT_TRUE(colour(5).r < 0.2F && colour(5).r > 0);                          // grey
     SceneTruth scene;
     scene.size_px = {6, 1};
-    scene.cls = {TruthClass::not_traced, TruthClass::visible, TruthClass::visible, TruthClass::visible, TruthClass::hidden, TruthClass::sky};
+    scene.cls     = {TruthClass::not_traced, TruthClass::visible, TruthClass::visible,
+                     TruthClass::visible,    TruthClass::hidden,  TruthClass::sky};
     scene.point_px.assign(6, {20.25, 0.5});
     EXPECT_EQ(agreement_picture(tested, scene).values, image.values);
 }
 
 TEST(Pictures, HeatMapGrowsWithFetches)
 {
-    TraceResult result = row_of(4);
+    TraceResult result     = row_of(4);
     result.depth_fetches   = {0, 1, 4096, 100000};
     result.pyramid_fetches = {0, 0, 0, 0};
     const Image image      = fetch_heat_map(result);

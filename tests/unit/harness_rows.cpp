@@ -13,9 +13,17 @@
 namespace ssrlab {
 namespace {
 
-const Technique walk = {"walk", "Walk", "s", {}, {}, false, {}, {"steps"},
+const Technique walk = {"walk",
+                        "Walk",
+                        "s",
+                        {},
+                        {},
+                        false,
+                        {},
+                        {"steps"},
                         {{"steps", ParameterType::integer, 64, 1, 60000, {}, "d"},
-                         {"space", ParameterType::choice, 0, 0, 1, {"view", "screen"}, "d"}}, {}};
+                         {"space", ParameterType::choice, 0, 0, 1, {"view", "screen"}, "d"}},
+                        {}};
 
 Experiment one_technique(const std::string& id)
 {
@@ -32,8 +40,9 @@ TEST(Rows, ColumnsAreUniqueAndIdentityComesFirst)
     EXPECT_EQ(std::set(names.begin(), names.end()).size(), names.size());
     EXPECT_EQ(names.front(), "run_id");
     EXPECT_EQ(names.back(), "message");
-    for (const char* name : {"steps", "space", "trace_ms_median", "frame_ms_median", "fps", "inverse_fps_s", "rays", "pyramid_ms_median",
-                             "depth_fetches_mean", "fetches_p99", "recall_1px", "out_of_steps_share", "outcome"}) {
+    for (const char* name :
+         {"steps", "space", "trace_ms_median", "frame_ms_median", "fps", "inverse_fps_s", "rays", "pyramid_ms_median",
+          "depth_fetches_mean", "fetches_p99", "recall_1px", "out_of_steps_share", "outcome"}) {
         EXPECT_THAT(names, testing::Contains(name));
     }
 }
@@ -48,7 +57,8 @@ TEST(Rows, AParameterMayNotBeNamedLikeAColumn)
             result_columns(one_technique("walk"), {&clash, 1});
             FAIL() << name;
         } catch (const SpecError& error) {
-            EXPECT_THAT(error.what(), testing::HasSubstr("techniques/walk/technique.toml: parameter '" + std::string(name) + "'"));
+            EXPECT_THAT(error.what(),
+                        testing::HasSubstr("techniques/walk/technique.toml: parameter '" + std::string(name) + "'"));
         }
     }
 }
@@ -57,8 +67,8 @@ TEST(Rows, EveryEntryOfARowHasAColumn)
 {
     const Technique techniques[] = {walk};
     const auto      names        = names_of(result_columns(one_technique("walk"), techniques));
-    ssrlab::Run run{"r1", "a", "default", {2, 3}, {}, "walk", {{"steps", 25}, {"space", 1}}};
-    MeasuredRun measured;
+    ssrlab::Run     run{"r1", "a", "default", {2, 3}, {}, "walk", {{"steps", 25}, {"space", 1}}};
+    MeasuredRun     measured;
     measured.run = &run;
     measured.row = identity_row(one_technique("walk"), run, walk);
     EXPECT_EQ(measured.row.at("space"), "screen");
@@ -67,8 +77,8 @@ TEST(Rows, EveryEntryOfARowHasAColumn)
     EXPECT_EQ(measured.row.at("max_distance_m"), "1000000000");
     EXPECT_EQ(measured.row.at("fade_at_edges"), "true");
     measured.rays_ms = measured.inputs_ms = measured.shade_ms = std::vector<double>(7, 1.0);
-    measured.trace_ms = {1, 2, 3, 4, 5, 6, 7};
-    measured.frame_ms = {11, 12, 13, 14, 15, 16, 17};
+    measured.trace_ms                                         = {1, 2, 3, 4, 5, 6, 7};
+    measured.frame_ms                                         = {11, 12, 13, 14, 15, 16, 17};
     add_times(measured, 7);
     add_measures(measured.row, no_measures());
     measured.row = failed_row(measured.row, "no");
@@ -81,7 +91,14 @@ TEST(Rows, EveryEntryOfARowHasAColumn)
 TEST(Rows, CountsOfAResultWithKnownFigures)
 {
     using enum TraceStatus;
-    TraceResult result{{5, 1}, {not_traced, hit, left_screen, out_of_steps, hit}, {}, {}, {}, {0, 10, 20, 30, 40}, {0, 1, 2, 3, 4}, {0, 9, 8, 7, 6}};
+    TraceResult result{{5, 1},
+                       {not_traced, hit, left_screen, out_of_steps, hit},
+                       {},
+                       {},
+                       {},
+                       {0, 10, 20, 30, 40},
+                       {0, 1, 2, 3, 4},
+                       {0, 9, 8, 7, 6}};
     result.hit_pixel.resize(5);
     result.hit_px_depth.resize(5);
     result.hit_t.resize(5);
@@ -118,7 +135,7 @@ TEST(Rows, ARunIsFinalWhenTightOrSpentButNeverTooEarly)
     measure.interval_percent = 1;
     measure.budget_s         = 1;
     MeasuredRun measured;
-    measured.spent_s = 99;
+    measured.spent_s  = 99;
     measured.trace_ms = std::vector<double>(5, 1.0);
     EXPECT_FALSE(is_final(measured, measure)); // too few, whatever was spent
     measured.trace_ms.push_back(1.0);
@@ -135,7 +152,9 @@ TEST(Rows, ReflectedImageTakesTheHitPixelsRadiance)
 {
     GBufferImage gbuffer;
     gbuffer.radiance = {{1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
-    const TraceResult result{{3, 1}, {TraceStatus::hit, TraceStatus::left_screen, TraceStatus::not_traced}, {{2, 0}, {}, {}}, {}, {}, {}, {}, {}};
+    const TraceResult result{
+        {3, 1}, {TraceStatus::hit, TraceStatus::left_screen, TraceStatus::not_traced}, {{2, 0}, {}, {}}, {}, {}, {}, {},
+        {}};
     EXPECT_THAT(reflected_image(result, gbuffer, {7, 8, 9}).values, testing::ElementsAre(0, 0, 3, 7, 8, 9, 0, 0, 0));
 }
 

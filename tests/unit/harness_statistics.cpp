@@ -25,7 +25,8 @@ TEST(Statistics, RanksAsInTheSignTestsTable)
 {
     for (int count = 0; count < 6; ++count) EXPECT_EQ(interval_rank(count), 0);
     // Critical values of the two-sided sign test at 5 %, plus one.
-    const int known[][2] = {{6, 1}, {8, 1}, {9, 2}, {11, 2}, {12, 3}, {15, 4}, {17, 5}, {20, 6}, {25, 8}, {30, 10}, {50, 18}, {100, 40}};
+    const int known[][2] = {{6, 1},  {8, 1},  {9, 2},  {11, 2},  {12, 3},  {15, 4},
+                            {17, 5}, {20, 6}, {25, 8}, {30, 10}, {50, 18}, {100, 40}};
     for (const auto& [count, rank] : known) EXPECT_EQ(interval_rank(count), rank) << count;
     EXPECT_NEAR(interval_rank(100000), 50000 - 1.96 * std::sqrt(100000) / 2, 2);
 }
@@ -43,9 +44,9 @@ TEST(Statistics, IntervalIsOrderStatistics)
 
 TEST(Statistics, IntervalsCoverTheMedianAsOftenAsPromised)
 {
-    std::mt19937_64                      random(7);
+    std::mt19937_64                       random(7);
     std::exponential_distribution<double> skewed(1);
-    int                                  covered = 0;
+    int                                   covered = 0;
     for (int trial = 0; trial < 4000; ++trial) {
         std::vector<double> samples(15);
         for (double& sample : samples) sample = skewed(random);

@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 
 #include <csignal>
-#include <fcntl.h>
 #include <cstdlib>
+#include <fcntl.h>
 #include <random>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -44,8 +44,7 @@ struct RecordFiles : testing::Test {
     }
 };
 
-template <typename Error, typename Call>
-std::string message_of(const Call& call)
+template <typename Error, typename Call> std::string message_of(const Call& call)
 {
     try {
         call();
@@ -55,14 +54,21 @@ std::string message_of(const Call& call)
     return "(no such error)";
 }
 
-Row row_of(int i) { return {{"run_id", "r" + std::to_string(i)}, {"value", std::string(200, 'x')}, {"message", "a\n\"b\",ü" + std::to_string(i)}}; }
+Row row_of(int i)
+{
+    return {{"run_id", "r" + std::to_string(i)},
+            {"value", std::string(200, 'x')},
+            {"message", "a\n\"b\",ü" + std::to_string(i)}};
+}
 
 TEST_F(RecordFiles, OddTextComesBackAsItWas)
 {
-    const std::vector<std::string> texts = {"", "plain", "a,b", "\"", "\"\"", "line\nbreak", "crlf\r\n", "Überschrift – 反射", " blank ", ",", "'"};
+    const std::vector<std::string> texts = {
+        "", "plain", "a,b", "\"", "\"\"", "line\nbreak", "crlf\r\n", "Überschrift – 反射", " blank ", ",", "'"};
     {
         ResultFolder results(folder, columns, here, false);
-        for (size_t i = 0; i < texts.size(); ++i) results.append({{"run_id", "r" + std::to_string(i)}, {"message", texts[i]}});
+        for (size_t i = 0; i < texts.size(); ++i)
+            results.append({{"run_id", "r" + std::to_string(i)}, {"message", texts[i]}});
     }
     const auto records = rows();
     ASSERT_EQ(records.size(), texts.size());
@@ -72,34 +78,48 @@ TEST_F(RecordFiles, OddTextComesBackAsItWas)
 
 TEST_F(RecordFiles, NothingIsOverwritten)
 {
-    { ResultFolder(folder, columns, here, false).append(row_of(1)); }
+    {
+        ResultFolder(folder, columns, here, false).append(row_of(1));
+    }
     const std::string before = read_file(folder / "results.csv");
-    EXPECT_THAT(message_of<Failure>([&] { ResultFolder(folder, columns, here, false); }), HasSubstr("results.csv: already there; continue it with --resume"));
+    EXPECT_THAT(message_of<Failure>([&] { ResultFolder(folder, columns, here, false); }),
+                HasSubstr("results.csv: already there; continue it with --resume"));
     EXPECT_EQ(read_file(folder / "results.csv"), before);
 }
 
 TEST_F(RecordFiles, ResumeRefusesWhatChangedAndNamesIt)
 {
-    { ResultFolder(folder, columns, here, false).append(row_of(1)); }
-    Environment other        = here;
+    {
+        ResultFolder(folder, columns, here, false).append(row_of(1));
+    }
+    Environment other         = here;
     other.identity["shaders"] = "c";
     other.identity["scene s"] = "d";
-    EXPECT_THAT(message_of<SpecError>([&] { ResultFolder(folder, columns, other, true); }), HasSubstr("these changed: shaders, scene s"));
-    EXPECT_THAT(message_of<SpecError>([&] { ResultFolder(folder, {"run_id", "else"}, here, true); }), HasSubstr("its columns are not those"));
+    EXPECT_THAT(message_of<SpecError>([&] { ResultFolder(folder, columns, other, true); }),
+                HasSubstr("these changed: shaders, scene s"));
+    EXPECT_THAT(message_of<SpecError>([&] {
+                    ResultFolder(folder, {"run_id", "else"}, here, true);
+                }),
+                HasSubstr("its columns are not those"));
     EXPECT_TRUE(ResultFolder(folder, columns, here, true).finished().contains("r1"));
 }
 
 TEST_F(RecordFiles, ASecondWriterIsRefusedWhileTheFirstLives)
 {
     auto first = std::make_unique<ResultFolder>(folder, columns, here, false);
-    EXPECT_THAT(message_of<Failure>([&] { ResultFolder(folder, columns, here, true); }), HasSubstr("process " + std::to_string(::getpid())));
+    EXPECT_THAT(message_of<Failure>([&] { ResultFolder(folder, columns, here, true); }),
+                HasSubstr("process " + std::to_string(::getpid())));
     first.reset();
     EXPECT_NO_THROW(ResultFolder(folder, columns, here, true));
 }
 
 TEST_F(RecordFiles, ATornTailIsCutAtEveryByte)
 {
-    { ResultFolder results(folder, columns, here, false); results.append(row_of(1)); results.append(row_of(2)); }
+    {
+        ResultFolder results(folder, columns, here, false);
+        results.append(row_of(1));
+        results.append(row_of(2));
+    }
     const std::string whole = read_file(folder / "results.csv");
     const size_t      last  = whole.find("r2,");
     for (size_t length = last; length < whole.size(); ++length) {
@@ -113,28 +133,40 @@ TEST_F(RecordFiles, ATornTailIsCutAtEveryByte)
 
 TEST_F(RecordFiles, DamageIsReportedNotRepaired)
 {
-    { ResultFolder results(folder, columns, here, false); results.append(row_of(1)); results.append(row_of(2)); }
+    {
+        ResultFolder results(folder, columns, here, false);
+        results.append(row_of(1));
+        results.append(row_of(2));
+    }
     const std::string whole = read_file(folder / "results.csv");
     write_file_atomically(folder / "results.csv", whole + "r1,x,y\r\n");
-    EXPECT_THAT(message_of<Failure>([&] { ResultFolder(folder, columns, here, true); }), HasSubstr("'r1' is there twice"));
+    EXPECT_THAT(message_of<Failure>([&] { ResultFolder(folder, columns, here, true); }),
+                HasSubstr("'r1' is there twice"));
     write_file_atomically(folder / "results.csv", whole + "r3,x\r\n");
-    EXPECT_THAT(message_of<Failure>([&] { ResultFolder(folder, columns, here, true); }), HasSubstr("wrong number of fields"));
+    EXPECT_THAT(message_of<Failure>([&] { ResultFolder(folder, columns, here, true); }),
+                HasSubstr("wrong number of fields"));
     EXPECT_EQ(read_file(folder / "results.csv"), whole + "r3,x\r\n");
 }
 
 TEST_F(RecordFiles, UnknownColumnsAreRefused)
 {
     ResultFolder results(folder, columns, here, false);
-    EXPECT_THAT(message_of<Failure>([&] { results.append({{"run_id", "r"}, {"valeu", "1"}}); }), HasSubstr("has no column 'valeu'"));
+    EXPECT_THAT(message_of<Failure>([&] {
+                    results.append({{"run_id", "r"}, {"valeu", "1"}});
+                }),
+                HasSubstr("has no column 'valeu'"));
 }
 
 /// Runs `child` in a process of its own; returns its wait status.
-template <typename Child>
-int in_child(const Child& child, useconds_t kill_after_us = 0)
+template <typename Child> int in_child(const Child& child, useconds_t kill_after_us = 0)
 {
     const pid_t pid = ::fork();
     if (pid == 0) {
-        try { child(); } catch (...) { ::_exit(99); }
+        try {
+            child();
+        } catch (...) {
+            ::_exit(99);
+        }
         ::_exit(0);
     }
     if (kill_after_us > 0) {
@@ -148,9 +180,9 @@ int in_child(const Child& child, useconds_t kill_after_us = 0)
 
 TEST_F(RecordFiles, KillsLoseDoubleOrTearNoRow)
 {
-    constexpr int   row_count = 120;
-    std::mt19937    random(3);
-    int             kills = 0, sweeps = 0;
+    constexpr int row_count = 120;
+    std::mt19937  random(3);
+    int           kills = 0, sweeps = 0;
     while (kills < 200) {
         fs::remove_all(folder);
         for (bool complete = false; !complete;) {
@@ -170,9 +202,11 @@ TEST_F(RecordFiles, KillsLoseDoubleOrTearNoRow)
         ASSERT_EQ(records.size(), static_cast<size_t>(row_count));
         for (int i = 0; i < row_count; ++i) {
             const Row expected = row_of(i);
-            ASSERT_EQ(records[static_cast<size_t>(i)], (CsvRecord{expected.at("run_id"), expected.at("value"), expected.at("message")}));
+            ASSERT_EQ(records[static_cast<size_t>(i)],
+                      (CsvRecord{expected.at("run_id"), expected.at("value"), expected.at("message")}));
         }
-        for (const auto& entry : fs::directory_iterator(folder)) EXPECT_EQ(entry.path().string().find(".tmp"), std::string::npos);
+        for (const auto& entry : fs::directory_iterator(folder))
+            EXPECT_EQ(entry.path().string().find(".tmp"), std::string::npos);
     }
     RecordProperty("kills", kills);
     RecordProperty("sweeps", sweeps);
@@ -180,7 +214,9 @@ TEST_F(RecordFiles, KillsLoseDoubleOrTearNoRow)
 
 TEST_F(RecordFiles, AFullDiskLeavesACorrectPrefixAndCanBeContinued)
 {
-    { ResultFolder(folder, columns, here, false).append(row_of(0)); }
+    {
+        ResultFolder(folder, columns, here, false).append(row_of(0));
+    }
     const auto one_row = fs::file_size(folder / "results.csv");
     for (rlim_t limit = one_row; limit < one_row + 700; limit += 13) {
         const int status = in_child([&] {
@@ -188,7 +224,10 @@ TEST_F(RecordFiles, AFullDiskLeavesACorrectPrefixAndCanBeContinued)
             ResultFolder results(folder, columns, here, true);
             const rlimit small = {limit, limit};
             ::setrlimit(RLIMIT_FSIZE, &small);
-            const std::string message = message_of<Failure>([&] { for (int i = 1; i < 9; ++i) if (!results.finished().contains("r" + std::to_string(i))) results.append(row_of(i)); });
+            const std::string message = message_of<Failure>([&] {
+                for (int i = 1; i < 9; ++i)
+                    if (!results.finished().contains("r" + std::to_string(i))) results.append(row_of(i));
+            });
             if (message.find("results.csv: writing the row of run r") == std::string::npos) ::_exit(1);
             if (message.find("the rows before it are intact") == std::string::npos) ::_exit(2);
         });
@@ -202,7 +241,8 @@ TEST_F(RecordFiles, AFullDiskLeavesACorrectPrefixAndCanBeContinued)
 
 TEST_F(RecordFiles, UnwritableFoldersAreNamed)
 {
-    EXPECT_THAT(message_of<Failure>([&] { ResultFolder("/proc/nothing/here", columns, here, false); }), HasSubstr("/proc/nothing/here: cannot be created"));
+    EXPECT_THAT(message_of<Failure>([&] { ResultFolder("/proc/nothing/here", columns, here, false); }),
+                HasSubstr("/proc/nothing/here: cannot be created"));
     fs::create_directories(folder.parent_path());
     write_file_atomically(folder, "a file");
     EXPECT_THROW(ResultFolder(folder, columns, here, false), Failure);
@@ -221,7 +261,10 @@ TEST_F(RecordFiles, AtomicFilesAreWholeOrAbsent)
         ::signal(SIGXFSZ, SIG_IGN);
         const rlimit small = {10, 10};
         ::setrlimit(RLIMIT_FSIZE, &small);
-        if (message_of<Failure>([&] { write_file_atomically(folder / "a.txt", std::string(100, 'n')); }).find("a.txt: writing failed") == std::string::npos) ::_exit(1);
+        if (message_of<Failure>([&] {
+                write_file_atomically(folder / "a.txt", std::string(100, 'n'));
+            }).find("a.txt: writing failed") == std::string::npos)
+            ::_exit(1);
     });
     EXPECT_EQ(status, 0);
     EXPECT_EQ(read_file(folder / "a.txt"), "old");

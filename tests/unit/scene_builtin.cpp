@@ -47,13 +47,14 @@ TEST(SceneBuiltin, AllLoadWithLightsAndNamedViews)
 
 TEST(SceneBuiltin, FrontsFaceAlongTheirNormals)
 {
-    for (const char* name : {"builtin:mirror_floor_wall", "builtin:sphere_over_mirror", "builtin:pole_field", "builtin:stairs",
-                             "builtin:corridor"}) {
+    for (const char* name : {"builtin:mirror_floor_wall", "builtin:sphere_over_mirror", "builtin:pole_field",
+                             "builtin:stairs", "builtin:corridor"}) {
         const Scene scene = load_scene(name);
         size_t      wrong = 0;
         for (size_t i = 0; i < scene.indices.size(); i += 3)
             for (size_t k = i; k < i + 3; ++k)
-                if (glm::dot(geometric_normal(scene, i / 3), scene.vertices[scene.indices[k]].normal_ws) < 0.9F) ++wrong;
+                if (glm::dot(geometric_normal(scene, i / 3), scene.vertices[scene.indices[k]].normal_ws) < 0.9F)
+                    ++wrong;
         EXPECT_EQ(wrong, 0U) << name;
     }
 }
@@ -65,8 +66,8 @@ TEST(SceneBuiltin, FloorAndWallReflectAsTheClosedFormSays)
     EXPECT_EQ(draw_named(scene, "wall").bounds_min_ws.z, -10);
     EXPECT_EQ(draw_named(scene, "wall").bounds_max_ws.z, -10);
     for (double distance_m : {1.5, 2.0, 5.0, 9.0}) {
-        const double     py     = to_px(view, {0, -1, -distance_m}).y;
-        const glm::dvec3 wall   = {0, -2 + 10 / distance_m, -10}; // straight on from the mirrored camera
+        const double     py   = to_px(view, {0, -1, -distance_m}).y;
+        const glm::dvec3 wall = {0, -2 + 10 / distance_m, -10}; // straight on from the mirrored camera
         EXPECT_NEAR(to_px(view, wall).y, 1.1 * 64 - py, 1e-9);
         EXPECT_LT(wall.y, draw_named(scene, "wall").bounds_max_ws.y);
     }
@@ -93,7 +94,8 @@ TEST(SceneBuiltin, PolesStandWhereTheHeaderSays)
         if (draw.name.starts_with("pole")) poles += draw.index_count;
     EXPECT_EQ(poles, 6U * 25 * 12 * 4 * 3) << "6 rows of 25 poles with 12 sides: 2 triangles a side, 1 + 1 in the caps";
     const View view = camera_to_view(scene.cameras[0], {640, 360});
-    EXPECT_NEAR(to_px(view, {0.5, -1, -3}).x, to_px(view, {0.5, -2.7, -3}).x, 1e-9) << "a pole's reflection has its column";
+    EXPECT_NEAR(to_px(view, {0.5, -1, -3}).x, to_px(view, {0.5, -2.7, -3}).x, 1e-9)
+        << "a pole's reflection has its column";
 }
 
 TEST(SceneBuiltin, VoidIsValidAndEmpty)

@@ -28,7 +28,7 @@ public:
     TempFolder& operator=(const TempFolder&) = delete;
     ~TempFolder() { std::filesystem::remove_all(path_); }
 
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    std::filesystem::path        operator/(const std::string& name) const { return path_ / name; }
     const std::filesystem::path& path() const { return path_; }
 
     std::string write(const std::string& name, const std::string& content) const
@@ -47,11 +47,10 @@ struct GltfFile {
     nlohmann::json root = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", {0}}}}}};
     std::string    binary;
 
-    template <typename T>
-    int add_accessor(const std::vector<T>& values, const char* type, int components)
+    template <typename T> int add_accessor(const std::vector<T>& values, const char* type, int components)
     {
         constexpr int  component_type = sizeof(T) == 2 ? 5123 : std::is_floating_point_v<T> ? 5126 : 5125;
-        nlohmann::json view           = {{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", values.size() * sizeof(T)}};
+        nlohmann::json view = {{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", values.size() * sizeof(T)}};
         binary.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
         binary.resize((binary.size() + 3) / 4 * 4);
         root["bufferViews"].push_back(view);
@@ -67,7 +66,7 @@ struct GltfFile {
     /// One triangle in the plane z = 0 facing +z, as mesh 0 on node 0.
     static GltfFile triangle()
     {
-        GltfFile file;
+        GltfFile  file;
         const int accessor  = file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
         file.root["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", accessor}}}}}}}};
         file.root["nodes"]  = {{{"mesh", 0}}};
@@ -78,15 +77,15 @@ struct GltfFile {
 
     std::string write(const TempFolder& folder, const std::string& name = "scene.gltf")
     {
-        if (!binary.empty() && !root.contains("buffers")) root["buffers"] = {{{"uri", "data.bin"}, {"byteLength", binary.size()}}};
+        if (!binary.empty() && !root.contains("buffers"))
+            root["buffers"] = {{{"uri", "data.bin"}, {"byteLength", binary.size()}}};
         folder.write("data.bin", binary);
         return folder.write(name, root.dump());
     }
 };
 
 /// The message of the Failure or SpecError that loading throws; a test failure when it throws nothing.
-template <typename Error>
-std::string error_of(const std::string& scene)
+template <typename Error> std::string error_of(const std::string& scene)
 {
     try {
         load_scene(scene);

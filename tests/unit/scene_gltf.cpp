@@ -5,23 +5,25 @@
 namespace ssrlab {
 namespace {
 
+using nlohmann::json;
 using ::testing::Contains;
 using ::testing::HasSubstr;
-using nlohmann::json;
 
 constexpr float eps = 1e-6F;
 
 // A grey 1 x 1 PNG.
-constexpr const char* pixel_png = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg==";
+constexpr const char* pixel_png =
+    "data:image/"
+    "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg==";
 
 TEST(SceneGltf, TransformsMultiplyDownTheHierarchy)
 {
-    TempFolder folder;
-    GltfFile   file     = GltfFile::triangle();
-    const float half    = std::numbers::sqrt2_v<float> / 2;
-    file.root["nodes"]  = {{{"children", {1}}, {"translation", {10, 0, 0}}, {"rotation", {0, half, 0, half}}},
-                           {{"mesh", 0}, {"translation", {0, 2, 3}}, {"scale", {2, 2, 2}}}};
-    const Scene scene   = load_scene(file.write(folder));
+    TempFolder  folder;
+    GltfFile    file   = GltfFile::triangle();
+    const float half   = std::numbers::sqrt2_v<float> / 2;
+    file.root["nodes"] = {{{"children", {1}}, {"translation", {10, 0, 0}}, {"rotation", {0, half, 0, half}}},
+                          {{"mesh", 0}, {"translation", {0, 2, 3}}, {"scale", {2, 2, 2}}}};
+    const Scene scene  = load_scene(file.write(folder));
     ASSERT_EQ(scene.indices.size(), 3U);
     // Turning about y by 90 degrees takes x to -z and z to x.
     EXPECT_VEC_NEAR(corner(scene, 0), glm::vec3(13, 2, 0), 1e-5F);
@@ -40,14 +42,14 @@ TEST(SceneGltf, MatricesAreColumnMajor)
 TEST(SceneGltf, IndexedAndUnindexedGiveTheSameTriangles)
 {
     TempFolder  folder;
-    GltfFile    file     = GltfFile::triangle();
-    const Scene plain    = load_scene(file.write(folder, "plain.gltf"));
-    file                 = GltfFile();
-    const int positions  = file.positions({0, 1, 0, 9, 9, 9, 0, 0, 0, 1, 0, 0});
-    const int indices    = file.add_accessor<uint16_t>({2, 3, 0}, "SCALAR", 1);
-    file.root["nodes"]   = {{{"mesh", 0}}};
-    file.root["meshes"]  = {{{"primitives", {{{"attributes", {{"POSITION", positions}}}, {"indices", indices}}}}}};
-    const Scene indexed  = load_scene(file.write(folder, "indexed.gltf"));
+    GltfFile    file    = GltfFile::triangle();
+    const Scene plain   = load_scene(file.write(folder, "plain.gltf"));
+    file                = GltfFile();
+    const int positions = file.positions({0, 1, 0, 9, 9, 9, 0, 0, 0, 1, 0, 0});
+    const int indices   = file.add_accessor<uint16_t>({2, 3, 0}, "SCALAR", 1);
+    file.root["nodes"]  = {{{"mesh", 0}}};
+    file.root["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", positions}}}, {"indices", indices}}}}}};
+    const Scene indexed = load_scene(file.write(folder, "indexed.gltf"));
     ASSERT_EQ(plain.indices.size(), indexed.indices.size());
     EXPECT_EQ(indexed.vertices.size(), 3U) << "unused vertices are dropped";
     for (size_t i = 0; i < 3; ++i) EXPECT_EQ(corner(plain, i), corner(indexed, i));
@@ -70,13 +72,13 @@ TEST(SceneGltf, StripsAndFansKeepTheirFronts)
 
 TEST(SceneGltf, MissingNormalsBecomeFlat)
 {
-    TempFolder  folder;
-    GltfFile    file    = GltfFile();
-    const int positions = file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
-    const int indices   = file.add_accessor<uint16_t>({0, 1, 2, 0, 3, 1}, "SCALAR", 1);
-    file.root["nodes"]  = {{{"mesh", 0}}};
-    file.root["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", positions}}}, {"indices", indices}}}}}};
-    const Scene scene   = load_scene(file.write(folder));
+    TempFolder folder;
+    GltfFile   file      = GltfFile();
+    const int  positions = file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
+    const int  indices   = file.add_accessor<uint16_t>({0, 1, 2, 0, 3, 1}, "SCALAR", 1);
+    file.root["nodes"]   = {{{"mesh", 0}}};
+    file.root["meshes"]  = {{{"primitives", {{{"attributes", {{"POSITION", positions}}}, {"indices", indices}}}}}};
+    const Scene scene    = load_scene(file.write(folder));
     ASSERT_EQ(scene.vertices.size(), 6U);
     for (size_t i = 0; i < 6; ++i)
         EXPECT_VEC_NEAR(scene.vertices[scene.indices[i]].normal_ws, geometric_normal(scene, i / 3), eps);
@@ -85,10 +87,10 @@ TEST(SceneGltf, MissingNormalsBecomeFlat)
 TEST(SceneGltf, MirroringNodesKeepFrontsOutside)
 {
     TempFolder folder;
-    GltfFile   file                        = GltfFile::triangle();
+    GltfFile   file                          = GltfFile::triangle();
     file.primitive()["attributes"]["NORMAL"] = file.add_accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
-    file.root["nodes"]                     = {{{"mesh", 0}, {"scale", {-1, 1, 1}}}};
-    const Scene scene                      = load_scene(file.write(folder));
+    file.root["nodes"]                       = {{{"mesh", 0}, {"scale", {-1, 1, 1}}}};
+    const Scene scene                        = load_scene(file.write(folder));
     EXPECT_VEC_NEAR(geometric_normal(scene, 0), glm::vec3(0, 0, 1), eps);
     EXPECT_VEC_NEAR(scene.vertices[0].normal_ws, glm::vec3(0, 0, 1), eps);
 }
@@ -96,23 +98,24 @@ TEST(SceneGltf, MirroringNodesKeepFrontsOutside)
 TEST(SceneGltf, NonUniformScaleTurnsNormalsByTheInverseTranspose)
 {
     TempFolder folder;
-    GltfFile   file = GltfFile();
+    GltfFile   file      = GltfFile();
     const int  positions = file.positions({0, 0, 0, 1, -1, 0, 0, 0, -1});
-    const int  normals   = file.add_accessor<float>({0.70710678F, 0.70710678F, 0, 0.70710678F, 0.70710678F, 0, 0.70710678F, 0.70710678F, 0}, "VEC3", 3);
-    file.root["nodes"]   = {{{"mesh", 0}, {"scale", {4, 1, 1}}}};
-    file.root["meshes"]  = {{{"primitives", {{{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}}}}}}};
-    const Scene scene    = load_scene(file.write(folder));
+    const int  normals   = file.add_accessor<float>(
+        {0.70710678F, 0.70710678F, 0, 0.70710678F, 0.70710678F, 0, 0.70710678F, 0.70710678F, 0}, "VEC3", 3);
+    file.root["nodes"]  = {{{"mesh", 0}, {"scale", {4, 1, 1}}}};
+    file.root["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}}}}}}};
+    const Scene scene   = load_scene(file.write(folder));
     EXPECT_NEAR(std::abs(glm::dot(scene.vertices[0].normal_ws, geometric_normal(scene, 0))), 1, 1e-5);
 }
 
 TEST(SceneGltf, MaterialsHaveTheSpecifiedDefaults)
 {
     TempFolder folder;
-    GltfFile   file             = GltfFile::triangle();
-    file.root["materials"]      = {{{"name", "bare"}}};
+    GltfFile   file              = GltfFile::triangle();
+    file.root["materials"]       = {{{"name", "bare"}}};
     file.primitive()["material"] = 0;
-    const Scene     scene       = load_scene(file.write(folder));
-    const Material& material    = scene.materials[scene.draws[0].material];
+    const Scene     scene        = load_scene(file.write(folder));
+    const Material& material     = scene.materials[scene.draws[0].material];
     EXPECT_EQ(material.name, "bare");
     EXPECT_EQ(material.metallic, 1);
     EXPECT_EQ(material.roughness, 1);
@@ -124,26 +127,28 @@ TEST(SceneGltf, MaterialsHaveTheSpecifiedDefaults)
 TEST(SceneGltf, MaterialsTexturesAndExtensions)
 {
     TempFolder folder;
-    GltfFile   file           = GltfFile::triangle();
+    GltfFile   file                              = GltfFile::triangle();
     file.primitive()["attributes"]["TEXCOORD_0"] = file.add_accessor<float>({0, 0, 1, 0, 0, 1}, "VEC2", 2);
-    file.primitive()["material"] = 0;
-    file.root["images"]       = {{{"uri", pixel_png}}};
-    file.root["samplers"]     = {{{"magFilter", 9728}, {"minFilter", 9729}, {"wrapS", 33071}, {"wrapT", 33648}}};
-    file.root["textures"]     = {{{"source", 0}, {"sampler", 0}}};
-    const json transform      = {{"KHR_texture_transform", {{"offset", {0.25, 0.5}}, {"rotation", std::numbers::pi / 2}, {"scale", {2, 3}}, {"texCoord", 1}}}};
-    file.root["materials"]    = {{{"pbrMetallicRoughness",
-                                   {{"baseColorTexture", {{"index", 0}, {"extensions", transform}}},
-                                    {"metallicRoughnessTexture", {{"index", 0}}},
-                                    {"metallicFactor", 0.5},
-                                    {"roughnessFactor", -2.5}}},
-                                  {"normalTexture", {{"index", 0}, {"scale", 0.5}}},
-                                  {"emissiveFactor", {1, 0.5, 0}},
-                                  {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}}}},
-                                  {"alphaMode", "MASK"},
-                                  {"alphaCutoff", 0.25},
-                                  {"doubleSided", true}}};
-    const Scene     scene     = load_scene(file.write(folder));
-    const Material& material  = scene.materials[scene.draws[0].material];
+    file.primitive()["material"]                 = 0;
+    file.root["images"]                          = {{{"uri", pixel_png}}};
+    file.root["samplers"] = {{{"magFilter", 9728}, {"minFilter", 9729}, {"wrapS", 33071}, {"wrapT", 33648}}};
+    file.root["textures"] = {{{"source", 0}, {"sampler", 0}}};
+    const json transform  = {
+         {"KHR_texture_transform",
+          {{"offset", {0.25, 0.5}}, {"rotation", std::numbers::pi / 2}, {"scale", {2, 3}}, {"texCoord", 1}}}};
+    file.root["materials"]   = {{{"pbrMetallicRoughness",
+                                  {{"baseColorTexture", {{"index", 0}, {"extensions", transform}}},
+                                   {"metallicRoughnessTexture", {{"index", 0}}},
+                                   {"metallicFactor", 0.5},
+                                   {"roughnessFactor", -2.5}}},
+                                 {"normalTexture", {{"index", 0}, {"scale", 0.5}}},
+                                 {"emissiveFactor", {1, 0.5, 0}},
+                                 {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}}}},
+                                 {"alphaMode", "MASK"},
+                                 {"alphaCutoff", 0.25},
+                                 {"doubleSided", true}}};
+    const Scene     scene    = load_scene(file.write(folder));
+    const Material& material = scene.materials[scene.draws[0].material];
     EXPECT_FLOAT_EQ(material.metallic, 0.5F);
     EXPECT_EQ(material.roughness, 0) << "negative roughness is clamped";
     EXPECT_THAT(scene.warnings, Contains(HasSubstr("clamped")));
@@ -181,7 +186,9 @@ TEST(SceneGltf, TransparencyFollowsTheStatedRule)
     GltfFile   file              = GltfFile::triangle();
     file.primitive()["material"] = 0;
     for (double alpha : {0.4, 0.6}) {
-        file.root["materials"] = {{{"name", "glass"}, {"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, alpha}}}}}};
+        file.root["materials"] = {{{"name", "glass"},
+                                   {"alphaMode", "BLEND"},
+                                   {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, alpha}}}}}};
         const Scene scene      = load_scene(file.write(folder));
         EXPECT_EQ(scene.draws.size(), alpha < 0.5 ? 0U : 1U);
         EXPECT_THAT(scene.warnings, Contains(HasSubstr(alpha < 0.5 ? "left out" : "drawn opaque")));
@@ -191,11 +198,12 @@ TEST(SceneGltf, TransparencyFollowsTheStatedRule)
 TEST(SceneGltf, VertexColoursAndNormalizedIntegers)
 {
     TempFolder folder;
-    GltfFile   file                           = GltfFile::triangle();
-    const int  colours                        = file.add_accessor<uint16_t>({65535, 0, 0, 65535, 0, 65535, 0, 65535, 0, 0, 65535, 0}, "VEC4", 4);
+    GltfFile   file = GltfFile::triangle();
+    const int  colours =
+        file.add_accessor<uint16_t>({65535, 0, 0, 65535, 0, 65535, 0, 65535, 0, 0, 65535, 0}, "VEC4", 4);
     file.root["accessors"][colours]["normalized"] = true;
-    file.primitive()["attributes"]["COLOR_0"] = colours;
-    const Scene scene                         = load_scene(file.write(folder));
+    file.primitive()["attributes"]["COLOR_0"]     = colours;
+    const Scene scene                             = load_scene(file.write(folder));
     EXPECT_EQ(scene.vertices[scene.indices[0]].colour, glm::vec4(1, 0, 0, 1));
     EXPECT_EQ(scene.vertices[scene.indices[2]].colour, glm::vec4(0, 0, 1, 0));
 }
@@ -203,9 +211,9 @@ TEST(SceneGltf, VertexColoursAndNormalizedIntegers)
 TEST(SceneGltf, SparseAccessorsReplaceElements)
 {
     TempFolder folder;
-    GltfFile   file    = GltfFile::triangle();
-    const int  indices = file.add_accessor<uint16_t>({1}, "SCALAR", 1);
-    const int  values  = file.positions({3, 0, 0});
+    GltfFile   file                     = GltfFile::triangle();
+    const int  indices                  = file.add_accessor<uint16_t>({1}, "SCALAR", 1);
+    const int  values                   = file.positions({3, 0, 0});
     file.root["accessors"][0]["sparse"] = {{"count", 1},
                                            {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
                                            {"values", {{"bufferView", values}}}};
@@ -215,17 +223,21 @@ TEST(SceneGltf, SparseAccessorsReplaceElements)
 TEST(SceneGltf, LightsArePlacedByTheirNodes)
 {
     TempFolder folder;
-    GltfFile   file          = GltfFile::triangle();
+    GltfFile   file             = GltfFile::triangle();
     file.root["extensionsUsed"] = {"KHR_lights_punctual"};
-    file.root["extensions"]  = {{"KHR_lights_punctual",
-                                 {{"lights",
-                                   {{{"type", "directional"}, {"intensity", 3}, {"color", {1, 0.5, 0}}},
-                                    {{"type", "spot"}, {"intensity", 7}, {"range", 4}, {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.6}}}}}}}}};
-    const float half         = std::numbers::sqrt2_v<float> / 2;
-    file.root["nodes"]       = {{{"mesh", 0}, {"children", {1, 2}}},
-                                {{"rotation", {-half, 0, 0, half}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}},
-                                {{"translation", {1, 2, 3}}, {"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}}};
-    const Scene scene        = load_scene(file.write(folder));
+    file.root["extensions"]     = {{"KHR_lights_punctual",
+                                    {{"lights",
+                                      {{{"type", "directional"}, {"intensity", 3}, {"color", {1, 0.5, 0}}},
+                                       {{"type", "spot"},
+                                        {"intensity", 7},
+                                        {"range", 4},
+                                        {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.6}}}}}}}}};
+    const float half            = std::numbers::sqrt2_v<float> / 2;
+    file.root["nodes"]          = {
+                 {{"mesh", 0}, {"children", {1, 2}}},
+                 {{"rotation", {-half, 0, 0, half}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}},
+                 {{"translation", {1, 2, 3}}, {"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}}};
+    const Scene scene = load_scene(file.write(folder));
     ASSERT_EQ(scene.lights.size(), 2U);
     EXPECT_EQ(scene.lights[0].type, LightType::directional);
     EXPECT_VEC_NEAR(scene.lights[0].direction_ws, glm::vec3(0, -1, 0), 1e-5F);
@@ -240,11 +252,14 @@ TEST(SceneGltf, Cameras)
 {
     TempFolder folder;
     GltfFile   file      = GltfFile::triangle();
-    file.root["cameras"] = {{{"type", "perspective"}, {"name", "eye"}, {"perspective", {{"yfov", 1}, {"znear", 0.25}}}},
-                            {{"type", "orthographic"}, {"orthographic", {{"xmag", 2}, {"ymag", 3}, {"znear", 0.5}, {"zfar", 50}}}}};
-    file.root["nodes"]   = {{{"mesh", 0}, {"children", {1, 2}}}, {{"camera", 0}, {"translation", {0, 1, 5}}}, {{"camera", 1}, {"name", "plan"}}};
-    const Scene   scene  = load_scene(file.write(folder));
-    const Camera& eye    = find_camera(scene, "eye");
+    file.root["cameras"] = {
+        {{"type", "perspective"}, {"name", "eye"}, {"perspective", {{"yfov", 1}, {"znear", 0.25}}}},
+        {{"type", "orthographic"}, {"orthographic", {{"xmag", 2}, {"ymag", 3}, {"znear", 0.5}, {"zfar", 50}}}}};
+    file.root["nodes"]  = {{{"mesh", 0}, {"children", {1, 2}}},
+                           {{"camera", 0}, {"translation", {0, 1, 5}}},
+                           {{"camera", 1}, {"name", "plan"}}};
+    const Scene   scene = load_scene(file.write(folder));
+    const Camera& eye   = find_camera(scene, "eye");
     EXPECT_VEC_NEAR(eye.position_ws, glm::dvec3(0, 1, 5), 1e-9);
     EXPECT_VEC_NEAR(eye.target_ws, glm::dvec3(0, 1, 4), 1e-9);
     EXPECT_NEAR(eye.fov_y_deg, 180 / std::numbers::pi, 1e-9);
@@ -267,7 +282,8 @@ TEST(SceneGltf, ViewsBesideTheSceneComeFirst)
     EXPECT_EQ(scene.cameras[0].name, "mine");
     EXPECT_EQ(scene.cameras[0].hard_for, "nothing");
     EXPECT_EQ(scene.cameras[0].size_px, glm::ivec2(64, 48));
-    folder.write("scene.gltf.views.toml", "[[view]]\nname = 'mine'\nposition = [0, 0, 3]\ntarget = [0, 0, 0]\nfov = 3\n");
+    folder.write("scene.gltf.views.toml",
+                 "[[view]]\nname = 'mine'\nposition = [0, 0, 3]\ntarget = [0, 0, 0]\nfov = 3\n");
     EXPECT_THAT(error_of<SpecError>(path), HasSubstr("views.toml:5: [[view]]: unknown key 'fov'"));
 }
 
@@ -306,12 +322,12 @@ TEST(SceneGltf, GlbWithItsBinaryChunk)
     file.root["buffers"] = {{{"byteLength", file.binary.size()}}};
     std::string text     = file.root.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
-    const auto word  = [](size_t value) {
+    const auto word = [](size_t value) {
         const auto value32 = static_cast<uint32_t>(value);
         return std::string(reinterpret_cast<const char*>(&value32), 4);
     };
-    std::string glb = "glTF" + word(2) + word(28 + text.size() + file.binary.size()) + word(text.size()) + "JSON" + text +
-                      word(file.binary.size()) + std::string("BIN\0", 4) + file.binary;
+    std::string glb = "glTF" + word(2) + word(28 + text.size() + file.binary.size()) + word(text.size()) + "JSON" +
+                      text + word(file.binary.size()) + std::string("BIN\0", 4) + file.binary;
     EXPECT_EQ(load_scene(folder.write("scene.glb", glb)).indices.size(), 3U);
     EXPECT_THAT(error_of<Failure>(folder.write("cut.glb", glb.substr(0, glb.size() - 8))), HasSubstr("truncated"));
     glb[4] = 1;

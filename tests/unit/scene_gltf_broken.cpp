@@ -9,9 +9,9 @@
 namespace ssrlab {
 namespace {
 
+using nlohmann::json;
 using ::testing::Contains;
 using ::testing::HasSubstr;
-using nlohmann::json;
 
 struct BrokenFile {
     const char*                    name;
@@ -64,25 +64,42 @@ void bomb(GltfFile& file)
 const std::vector<BrokenFile> broken_files = {
     {"version_1", [](GltfFile& f) { f.root["asset"]["version"] = "1.0"; }, "version 1.0 is not supported"},
     {"version_missing", [](GltfFile& f) { f.root.erase("asset"); }, "/asset/version is missing"},
-    {"index_out_of_range", [](GltfFile& f) { add_indices(f, {0, 1, 3}); }, "/meshes/0/primitives/0/indices: index 3 is out of range"},
+    {"index_out_of_range",
+     [](GltfFile& f) {
+         add_indices(f, {0, 1, 3});
+     },
+     "/meshes/0/primitives/0/indices: index 3 is out of range"},
     {"accessor_count_4e9", [](GltfFile& f) { f.root["accessors"][0]["count"] = 4'000'000'000; }, "accessor 0"},
     {"accessor_count_2_62", [](GltfFile& f) { f.root["accessors"][0]["count"] = 1ULL << 62U; }, "accessor 0"},
-    {"accessor_count_too_large", [](GltfFile& f) { f.root["accessors"][0]["count"] = 4; }, "reach beyond buffer view 0"},
+    {"accessor_count_too_large", [](GltfFile& f) { f.root["accessors"][0]["count"] = 4; },
+     "reach beyond buffer view 0"},
     {"accessor_offset", [](GltfFile& f) { f.root["accessors"][0]["byteOffset"] = 4; }, "reach beyond buffer view 0"},
     {"accessor_view", [](GltfFile& f) { f.root["accessors"][0]["bufferView"] = 77; }, "there is no buffer view 77"},
     {"accessor_type", [](GltfFile& f) { f.root["accessors"][0]["type"] = "VEC2"; }, "has 2 components, 3 are expected"},
     {"accessor_missing", [](GltfFile& f) { f.primitive()["attributes"]["POSITION"] = 9; }, "there is no accessor 9"},
-    {"attribute_counts_differ", [](GltfFile& f) { f.primitive()["attributes"]["NORMAL"] = f.positions({0, 0, 1}); }, "1 elements for 3 positions"},
-    {"no_data", [](GltfFile& f) { f.root["accessors"][0].erase("bufferView"); f.root["accessors"][0]["count"] = 200'000'000; }, "but no data"},
-    {"view_beyond_buffer", [](GltfFile& f) { f.root["bufferViews"][0]["byteOffset"] = 4; }, "/bufferViews/0 reaches beyond its buffer"},
-    {"view_offset_overflows", [](GltfFile& f) { f.root["bufferViews"][0]["byteOffset"] = ~0ULL - 8; }, "/bufferViews/0 reaches beyond its buffer"},
+    {"attribute_counts_differ",
+     [](GltfFile& f) {
+         f.primitive()["attributes"]["NORMAL"] = f.positions({0, 0, 1});
+     },
+     "1 elements for 3 positions"},
+    {"no_data",
+     [](GltfFile& f) {
+         f.root["accessors"][0].erase("bufferView");
+         f.root["accessors"][0]["count"] = 200'000'000;
+     },
+     "but no data"},
+    {"view_beyond_buffer", [](GltfFile& f) { f.root["bufferViews"][0]["byteOffset"] = 4; },
+     "/bufferViews/0 reaches beyond its buffer"},
+    {"view_offset_overflows", [](GltfFile& f) { f.root["bufferViews"][0]["byteOffset"] = ~0ULL - 8; },
+     "/bufferViews/0 reaches beyond its buffer"},
     {"view_negative", [](GltfFile& f) { f.root["bufferViews"][0]["byteLength"] = -1; }, "must be a whole number >= 0"},
     {"view_buffer", [](GltfFile& f) { f.root["bufferViews"][0]["buffer"] = 9; }, "there is no such buffer"},
     {"sparse_beyond",
      [](GltfFile& f) {
-         const int i = f.add_accessor<uint16_t>({3}, "SCALAR", 1);
-         const int v = f.positions({3, 0, 0});
-         f.root["accessors"][0]["sparse"] = {{"count", 1}, {"indices", {{"bufferView", i}, {"componentType", 5123}}}, {"values", {{"bufferView", v}}}};
+         const int i                      = f.add_accessor<uint16_t>({3}, "SCALAR", 1);
+         const int v                      = f.positions({3, 0, 0});
+         f.root["accessors"][0]["sparse"] = {
+             {"count", 1}, {"indices", {{"bufferView", i}, {"componentType", 5123}}}, {"values", {{"bufferView", v}}}};
      },
      "sparse index 3 is out of range"},
     {"material", [](GltfFile& f) { f.primitive()["material"] = 5; }, "there is no material 5"},
@@ -91,24 +108,75 @@ const std::vector<BrokenFile> broken_files = {
     {"scene", [](GltfFile& f) { f.root["scene"] = 42; }, "there is no scene 42"},
     {"camera", [](GltfFile& f) { f.root["nodes"][0]["camera"] = 4; }, "there is no camera 4"},
     {"node_is_its_own_child", [](GltfFile& f) { f.root["nodes"][0]["children"] = {0}; }, "nodes contain each other"},
-    {"node_cycle", [](GltfFile& f) { f.root["nodes"] = {{{"children", {1}}}, {{"children", {0}}}}; }, "nodes contain each other"},
+    {"node_cycle",
+     [](GltfFile& f) {
+         f.root["nodes"] = {{{"children", {1}}}, {{"children", {0}}}};
+     },
+     "nodes contain each other"},
     {"node_chain", [](GltfFile& f) { chain(f, 5000); }, "nested deeper than 256"},
     {"node_bomb", bomb, "more than"},
-    {"texture", [](GltfFile& f) { use_image(f, {{"uri", "a.png"}}); f.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 3; }, "there is no texture 3"},
-    {"draco", [](GltfFile& f) { f.root["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }, "KHR_draco_mesh_compression"},
-    {"meshopt", [](GltfFile& f) { f.root["extensionsRequired"] = {"EXT_meshopt_compression"}; }, "EXT_meshopt_compression"},
+    {"texture",
+     [](GltfFile& f) {
+         use_image(f, {{"uri", "a.png"}});
+         f.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 3;
+     },
+     "there is no texture 3"},
+    {"draco", [](GltfFile& f) { f.root["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
+     "KHR_draco_mesh_compression"},
+    {"meshopt", [](GltfFile& f) { f.root["extensionsRequired"] = {"EXT_meshopt_compression"}; },
+     "EXT_meshopt_compression"},
     {"webp", [](GltfFile& f) { f.root["extensionsRequired"] = {"EXT_texture_webp"}; }, "EXT_texture_webp"},
     {"ktx2", [](GltfFile& f) { f.root["extensionsRequired"] = {"KHR_texture_basisu"}; }, "KHR_texture_basisu"},
-    {"buffer_outside", [](GltfFile& f) { f.root["buffers"] = {{{"uri", "../secret.bin"}, {"byteLength", 36}}}; }, "/buffers/0/uri: '../secret.bin' leads out"},
-    {"buffer_outside_encoded", [](GltfFile& f) { f.root["buffers"] = {{{"uri", "%2e%2e/secret.bin"}, {"byteLength", 36}}}; }, "leads out"},
-    {"buffer_absolute", [](GltfFile& f) { f.root["buffers"] = {{{"uri", "/etc/passwd"}, {"byteLength", 36}}}; }, "not a relative path"},
-    {"buffer_scheme", [](GltfFile& f) { f.root["buffers"] = {{{"uri", "http://localhost/a.bin"}, {"byteLength", 36}}}; }, "not a relative path"},
-    {"buffer_shell", [](GltfFile& f) { f.root["buffers"] = {{{"uri", "`touch made_by_shell`"}, {"byteLength", 36}}}; }, "touch"},
-    {"buffer_missing", [](GltfFile& f) { f.root["buffers"] = {{{"uri", "none.bin"}, {"byteLength", 36}}}; }, "none.bin"},
-    {"buffer_short", [](GltfFile& f) { f.root["buffers"] = {{{"uri", "data.bin"}, {"byteLength", 1U << 20U}}}; }, "size"},
-    {"image_outside", [](GltfFile& f) { use_image(f, {{"uri", "a/../../secret.png"}}); }, "/images/0/uri: 'a/../../secret.png' leads out"},
-    {"node_matrix", [](GltfFile& f) { f.root["nodes"][0]["translation"] = {1, 2}; }, "/nodes/0/translation"},
-    {"not_objects", [](GltfFile& f) { f.root["nodes"] = {1, 2}; }, "/nodes/0 is no object"},
+    {"buffer_outside",
+     [](GltfFile& f) {
+         f.root["buffers"] = {{{"uri", "../secret.bin"}, {"byteLength", 36}}};
+     },
+     "/buffers/0/uri: '../secret.bin' leads out"},
+    {"buffer_outside_encoded",
+     [](GltfFile& f) {
+         f.root["buffers"] = {{{"uri", "%2e%2e/secret.bin"}, {"byteLength", 36}}};
+     },
+     "leads out"},
+    {"buffer_absolute",
+     [](GltfFile& f) {
+         f.root["buffers"] = {{{"uri", "/etc/passwd"}, {"byteLength", 36}}};
+     },
+     "not a relative path"},
+    {"buffer_scheme",
+     [](GltfFile& f) {
+         f.root["buffers"] = {{{"uri", "http://localhost/a.bin"}, {"byteLength", 36}}};
+     },
+     "not a relative path"},
+    {"buffer_shell",
+     [](GltfFile& f) {
+         f.root["buffers"] = {{{"uri", "`touch made_by_shell`"}, {"byteLength", 36}}};
+     },
+     "touch"},
+    {"buffer_missing",
+     [](GltfFile& f) {
+         f.root["buffers"] = {{{"uri", "none.bin"}, {"byteLength", 36}}};
+     },
+     "none.bin"},
+    {"buffer_short",
+     [](GltfFile& f) {
+         f.root["buffers"] = {{{"uri", "data.bin"}, {"byteLength", 1U << 20U}}};
+     },
+     "size"},
+    {"image_outside",
+     [](GltfFile& f) {
+         use_image(f, {{"uri", "a/../../secret.png"}});
+     },
+     "/images/0/uri: 'a/../../secret.png' leads out"},
+    {"node_matrix",
+     [](GltfFile& f) {
+         f.root["nodes"][0]["translation"] = {1, 2};
+     },
+     "/nodes/0/translation"},
+    {"not_objects",
+     [](GltfFile& f) {
+         f.root["nodes"] = {1, 2};
+     },
+     "/nodes/0 is no object"},
     {"not_an_array", [](GltfFile& f) { f.root["accessors"] = "x"; }, "/accessors is no array"},
 };
 
@@ -119,14 +187,16 @@ TEST(SceneGltfHostile, DeepJsonIsRefusedBeforeItIsParsed)
 {
     TempFolder        folder;
     const std::string deep(20'000, '[');
-    const std::string path = folder.write("deep.gltf", R"({"asset":{"version":"2.0"},"extras":)" + deep + std::string(20'000, ']') + "}");
+    const std::string path =
+        folder.write("deep.gltf", R"({"asset":{"version":"2.0"},"extras":)" + deep + std::string(20'000, ']') + "}");
     EXPECT_THAT(error_of<Failure>(path), HasSubstr("nested deeper than 128"));
 }
 
 TEST(SceneGltfHostile, JsonThatIsNone)
 {
     TempFolder folder;
-    for (const char* text : {"", "{", "[]", "{\"asset\":", "\xFF\xFE", "{\"asset\":{\"version\":\"2.0\"},\"a\":1e400}", "NaN"})
+    for (const char* text :
+         {"", "{", "[]", "{\"asset\":", "\xFF\xFE", "{\"asset\":{\"version\":\"2.0\"},\"a\":1e400}", "NaN"})
         EXPECT_THAT(error_of<Failure>(folder.write("broken.gltf", text)), HasSubstr("broken.gltf")) << text;
 }
 
@@ -161,11 +231,11 @@ TEST(SceneGltfHostile, BadPositionsAreDroppedAndCounted)
     const float inf = std::numeric_limits<float>::infinity();
     const float nan = std::numeric_limits<float>::quiet_NaN();
     GltfFile    file;
-    const int   positions = file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0,     // good
-                                            0, 0, 0, nan, 0, 0, 0, 1, 0,   // not a number
-                                            0, 0, 0, 1, 0, 0, 0, inf, 0,   // infinite
-                                            0, 0, 0, 1, 0, 0, 2, 0, 0,     // without area
-                                            0, 0, 0, 1, 0, 0, 0, 3e38F, 0}); // beyond what can be computed with
+    const int   positions = file.positions({0, 0, 0, 1,   0, 0, 0, 1,     0,   // good
+                                            0, 0, 0, nan, 0, 0, 0, 1,     0,   // not a number
+                                            0, 0, 0, 1,   0, 0, 0, inf,   0,   // infinite
+                                            0, 0, 0, 1,   0, 0, 2, 0,     0,   // without area
+                                            0, 0, 0, 1,   0, 0, 0, 3e38F, 0}); // beyond what can be computed with
     file.root["nodes"]    = {{{"mesh", 0}}};
     file.root["meshes"]   = {{{"primitives", {{{"attributes", {{"POSITION", positions}}}}}}}};
     const Scene scene     = load_scene(file.write(folder));
@@ -190,7 +260,11 @@ TEST(SceneGltfHostile, UnusableImagesLeaveTheShape)
     TempFolder folder;
     folder.write("broken.png", "\x89PNG not really");
     // A header that claims 30000 x 30000 pixels: refused by its size, before anything is decoded.
-    folder.write("bomb.png", std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x75\x30\0\0\x75\x30\x08\x06\0\0\0\x66\x27\xf8\xba" "\0\0\0\x04" "IDAT\0\0\0\0", 45));
+    folder.write("bomb.png",
+                 std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x75\x30\0\0\x75\x30\x08\x06\0\0\0\x66\x27\xf8\xba"
+                             "\0\0\0\x04"
+                             "IDAT\0\0\0\0",
+                             45));
     for (const char* uri : {"missing.png", "broken.png", "bomb.png"}) {
         GltfFile file = GltfFile::triangle();
         use_image(file, {{"uri", uri}});
@@ -210,7 +284,7 @@ TEST(SceneGltfHostile, UnsupportedThingsAreNamedOnce)
     file.root["extensionsUsed"] = {"KHR_materials_clearcoat", "VENDOR_thing"};
     file.root["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"mode", 1}});
     file.root["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"mode", 0}});
-    const Scene scene           = load_scene(file.write(folder));
+    const Scene scene = load_scene(file.write(folder));
     EXPECT_THAT(scene.warnings, Contains(HasSubstr("KHR_materials_clearcoat")).Times(1));
     EXPECT_THAT(scene.warnings, Contains(HasSubstr("VENDOR_thing")).Times(1));
     EXPECT_THAT(scene.warnings, Contains(HasSubstr("points and lines are not drawn")).Times(1));

@@ -99,8 +99,8 @@ TEST(SceneRecipe, PartsStandWhereTheyAreTold)
 {
     const Scene scene = load_text("[[part]]\nfile = 'pyramid.obj'\nheight_m = 1.5\n"
                                   "position = [[3, 0.5, -2], [-3, 0, 0]]\n");
-    glm::vec3 low(1e9F);
-    glm::vec3 high(-1e9F);
+    glm::vec3   low(1e9F);
+    glm::vec3   high(-1e9F);
     for (const Draw& draw : scene.draws)
         if (draw.bounds_min_ws.x > 0) {
             low  = glm::min(low, draw.bounds_min_ws);
@@ -114,7 +114,8 @@ TEST(SceneRecipe, PartsStandWhereTheyAreTold)
 
 TEST(SceneRecipe, UpAxisRotationAndUnits)
 {
-    const Scene scene = load_text("[[part]]\nfile = 'pyramid.obj'\nup = 'z'\nunit_m = 0.1\nrotation_deg = [90, 0, 0]\n");
+    const Scene scene =
+        load_text("[[part]]\nfile = 'pyramid.obj'\nup = 'z'\nunit_m = 0.1\nrotation_deg = [90, 0, 0]\n");
     // z up means a quarter turn back about x, which the rotation undoes.
     glm::vec3 low(1e9F);
     glm::vec3 high(-1e9F);
@@ -132,19 +133,21 @@ TEST(SceneRecipe, ModelsWithoutNormalsGetThemOutwards)
     for (size_t i = 0; i < scene.indices.size(); i += 3) {
         const glm::vec3 normal = geometric_normal(scene, i / 3);
         for (size_t k = i; k < i + 3; ++k)
-            EXPECT_GT(glm::dot(scene.vertices[scene.indices[k]].normal_ws, normal), 0.99F) << "edges of a pyramid are sharp";
+            EXPECT_GT(glm::dot(scene.vertices[scene.indices[k]].normal_ws, normal), 0.99F)
+                << "edges of a pyramid are sharp";
     }
 }
 
 TEST(SceneRecipe, LightsViewsAndColours)
 {
-    const Scene scene = load_text("ambient = 0.1\nbackground = [0.1, 0.2, 0.3]\n"
-                                  "[[part]]\nshape = 'box'\nsize_m = [1, 2, 3]\n"
-                                  "[[light]]\ntype = 'spot'\nposition = [0, 4, 0]\ntarget = [0, 0, 0]\nangle_deg = 60\nintensity = 5\n"
-                                  "[[light]]\ndirection = [0, -2, 0]\nintensity = [1, 2, 3]\nshadow = false\n"
-                                  "[[view]]\nname = 'a'\nposition = [0, 1, 5]\ntarget = [0, 1, 0]\nsize = '320x200'\n"
-                                  "[[view]]\nname = 'b'\nposition = [0, 9, 0]\ntarget = [0, 0, 0]\nup = [0, 0, -1]\n"
-                                  "projection = 'orthographic'\nheight_m = 4\n");
+    const Scene scene =
+        load_text("ambient = 0.1\nbackground = [0.1, 0.2, 0.3]\n"
+                  "[[part]]\nshape = 'box'\nsize_m = [1, 2, 3]\n"
+                  "[[light]]\ntype = 'spot'\nposition = [0, 4, 0]\ntarget = [0, 0, 0]\nangle_deg = 60\nintensity = 5\n"
+                  "[[light]]\ndirection = [0, -2, 0]\nintensity = [1, 2, 3]\nshadow = false\n"
+                  "[[view]]\nname = 'a'\nposition = [0, 1, 5]\ntarget = [0, 1, 0]\nsize = '320x200'\n"
+                  "[[view]]\nname = 'b'\nposition = [0, 9, 0]\ntarget = [0, 0, 0]\nup = [0, 0, -1]\n"
+                  "projection = 'orthographic'\nheight_m = 4\n");
     EXPECT_EQ(scene.ambient, glm::vec3(0.1F));
     EXPECT_EQ(scene.background, glm::vec3(0.1F, 0.2F, 0.3F));
     ASSERT_EQ(scene.lights.size(), 2U);
@@ -160,20 +163,31 @@ TEST(SceneRecipe, LightsViewsAndColours)
 
 TEST(SceneRecipe, MistakesNameFileLineAndWhatIsAccepted)
 {
-    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nhieght_m = 1\n"), HasSubstr("recipe.toml:3: [[part]]: unknown key 'hieght_m'; accepted are "));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nhieght_m = 1\n"),
+                HasSubstr("recipe.toml:3: [[part]]: unknown key 'hieght_m'; accepted are "));
     EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nhieght_m = 1\n"), HasSubstr("height_m"));
-    EXPECT_THAT(mistake("sumary = 'x'\n[[part]]\nshape = 'box'\n"), HasSubstr("recipe.toml:1: recipe: unknown key 'sumary'"));
-    EXPECT_THAT(mistake("[[part]]\nshape = 'cube'\n"), HasSubstr("recipe.toml:2: [[part]]: 'shape' is 'cube' but must be one of box"));
-    EXPECT_THAT(mistake("[[part]]\nposition = [0, 0, 0]\n"), HasSubstr("recipe.toml:1: [[part]]: needs either 'file' or 'shape'"));
-    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nposition = [0, nan, 0]\n"), HasSubstr("recipe.toml:3: [[part]]: 'position' must be"));
-    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nheight_m = -1\n"), HasSubstr("recipe.toml:3: [[part]]: 'height_m' must be a number in"));
+    EXPECT_THAT(mistake("sumary = 'x'\n[[part]]\nshape = 'box'\n"),
+                HasSubstr("recipe.toml:1: recipe: unknown key 'sumary'"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'cube'\n"),
+                HasSubstr("recipe.toml:2: [[part]]: 'shape' is 'cube' but must be one of box"));
+    EXPECT_THAT(mistake("[[part]]\nposition = [0, 0, 0]\n"),
+                HasSubstr("recipe.toml:1: [[part]]: needs either 'file' or 'shape'"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nposition = [0, nan, 0]\n"),
+                HasSubstr("recipe.toml:3: [[part]]: 'position' must be"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nheight_m = -1\n"),
+                HasSubstr("recipe.toml:3: [[part]]: 'height_m' must be a number in"));
     EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nheight_m = nan\n"), HasSubstr("recipe.toml:3"));
-    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nmaterial = { metallic = 2 }\n"), HasSubstr("recipe.toml:3: material: 'metallic' must be a number in [0, 1]"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nmaterial = { metallic = 2 }\n"),
+                HasSubstr("recipe.toml:3: material: 'metallic' must be a number in [0, 1]"));
     EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nmaterial = { colour = 2 }\n"), HasSubstr("unknown key 'colour'"));
-    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\n[[material]]\nname = 'wood*'\n"), HasSubstr("matches nothing; the materials are: box"));
-    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\n[[light]]\nintensity = 1\n"), HasSubstr("recipe.toml:3: [[light]]: 'direction'"));
-    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\n[[view]]\nposition = [0, 0, 0]\ntarget = [0, 0, 0]\n"), HasSubstr("recipe.toml:3: view 'default': target"));
-    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\n[[view]]\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\nsize = '0x5'\n"), HasSubstr("recipe.toml:6: [[view]]: 'size'"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\n[[material]]\nname = 'wood*'\n"),
+                HasSubstr("matches nothing; the materials are: box"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\n[[light]]\nintensity = 1\n"),
+                HasSubstr("recipe.toml:3: [[light]]: 'direction'"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\n[[view]]\nposition = [0, 0, 0]\ntarget = [0, 0, 0]\n"),
+                HasSubstr("recipe.toml:3: view 'default': target"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\n[[view]]\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\nsize = '0x5'\n"),
+                HasSubstr("recipe.toml:6: [[view]]: 'size'"));
     EXPECT_THAT(mistake("[[part]\nshape = 'box'\n"), HasSubstr("recipe.toml:1: "));
     EXPECT_THAT(mistake(""), HasSubstr("needs at least one [[part]]"));
     EXPECT_THAT(mistake("part = 3\n"), HasSubstr("must be tables: [[part]]"));
@@ -182,11 +196,14 @@ TEST(SceneRecipe, MistakesNameFileLineAndWhatIsAccepted)
 TEST(SceneRecipe, MissingDataSaysHowToGetIt)
 {
     TempFolder& folder = folder_with_pyramid();
-    EXPECT_THAT(error_of<Failure>(folder.write("a.toml", "[[part]]\nfile = 'package:no-such-package/usr/share/a.obj'\n")),
+    EXPECT_THAT(
+        error_of<Failure>(folder.write("a.toml", "[[part]]\nfile = 'package:no-such-package/usr/share/a.obj'\n")),
+        HasSubstr("run ./experiments/prepare_scenes"));
+    EXPECT_THAT(error_of<Failure>(folder.write("a.toml", "[[part]]\nfile = 'sweethome3d:noSuchChair'\n")),
                 HasSubstr("run ./experiments/prepare_scenes"));
-    EXPECT_THAT(error_of<Failure>(folder.write("a.toml", "[[part]]\nfile = 'sweethome3d:noSuchChair'\n")), HasSubstr("run ./experiments/prepare_scenes"));
     EXPECT_THAT(error_of<Failure>(folder.write("a.toml", "[[part]]\nfile = 'none.obj'\n")), HasSubstr("none.obj"));
-    EXPECT_THAT(error_of<SpecError>(folder.write("a.toml", "[[part]]\nfile = 'package:a/../../b'\n")), HasSubstr("must look like"));
+    EXPECT_THAT(error_of<SpecError>(folder.write("a.toml", "[[part]]\nfile = 'package:a/../../b'\n")),
+                HasSubstr("must look like"));
 }
 
 TEST(SceneRecipe, DataAndRecipesAreFoundThroughTheEnvironment)
@@ -195,15 +212,17 @@ TEST(SceneRecipe, DataAndRecipesAreFoundThroughTheEnvironment)
     folder.write("data/pkg/usr/share/ssrlab-test/pyramid.obj", pyramid_obj);
     folder.write("data/pkg/usr/share/ssrlab-test/pyramid.mtl", pyramid_mtl);
     folder.write("data/sweethome3d/stool/stool.obj", "v 0 0 0\nv 10 0 0\nv 0 40 0\nf 1 2 3\n");
-    folder.write("mine/my_scene.toml", "summary = 'Mine'\n[[part]]\nfile = 'package:pkg/usr/share/ssrlab-test/pyramid.obj'\n"
-                                       "[[part]]\nfile = 'sweethome3d:stool'\nposition = [5, 0, 0]\n");
+    folder.write("mine/my_scene.toml",
+                 "summary = 'Mine'\n[[part]]\nfile = 'package:pkg/usr/share/ssrlab-test/pyramid.obj'\n"
+                 "[[part]]\nfile = 'sweethome3d:stool'\nposition = [5, 0, 0]\n");
     const Environment data("SSRLAB_DATA", (folder / "data").string());
     const Environment scenes("SSRLAB_SCENES", "/nowhere:" + (folder / "mine").string());
     const Scene       scene = load_scene("my_scene");
     EXPECT_EQ(scene.name, "my_scene");
     EXPECT_NEAR(scene.draws.back().bounds_max_ws.y, 0.4, 1e-6) << "furniture is in centimetres";
     bool listed = false;
-    for (const SceneListing& listing : list_scenes()) listed = listed || (listing.name == "my_scene" && listing.summary == "Mine");
+    for (const SceneListing& listing : list_scenes())
+        listed = listed || (listing.name == "my_scene" && listing.summary == "Mine");
     EXPECT_TRUE(listed);
 }
 
@@ -211,7 +230,8 @@ TEST(SceneRecipe, ShippedRecipesAreWellFormed)
 {
     for (const SceneListing& listing : list_scenes()) {
         if (listing.name.starts_with("builtin:")) continue;
-        const Recipe recipe = read_recipe(std::filesystem::path(SSRLAB_SOURCE_DIR) / "experiments/scenes" / (listing.name + ".toml"));
+        const Recipe recipe =
+            read_recipe(std::filesystem::path(SSRLAB_SOURCE_DIR) / "experiments/scenes" / (listing.name + ".toml"));
         EXPECT_FALSE(listing.summary.empty()) << listing.name;
         EXPECT_GE(recipe.views.size(), 2U) << listing.name;
         EXPECT_EQ(recipe.views.at(0).name, "default") << listing.name;
@@ -222,7 +242,8 @@ TEST(SceneRecipe, ShippedRecipesAreWellFormed)
 TEST(SceneRecipe, TransparentMaterialsFollowTheStatedRule)
 {
     TempFolder folder;
-    folder.write("glass.obj", "mtllib glass.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl thin\nf 1 2 3\nusemtl thick\nf 3 2 1\n");
+    folder.write("glass.obj",
+                 "mtllib glass.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl thin\nf 1 2 3\nusemtl thick\nf 3 2 1\n");
     folder.write("glass.mtl", "newmtl thin\nKd 1 1 1\nd 0.3\nnewmtl thick\nKd 1 1 1\nd 0.7\n");
     const Scene scene = load_scene(folder.write("glass.toml", "[[part]]\nfile = 'glass.obj'\n"));
     EXPECT_EQ(scene.indices.size(), 3U);
@@ -258,8 +279,8 @@ TEST(SceneShapes, TheTeapotIsClosedAndFacesOutwards)
     const Bounds bounds = bounds_of(model);
     EXPECT_VEC_NEAR(bounds.size_m(), glm::dvec3(6.43, 3.15, 4.0), 0.05);
     EXPECT_NEAR(bounds.min_ws.y, 0, 1e-9);
-    const Mesh& mesh  = model.meshes[0];
-    size_t      wrong = 0;
+    const Mesh& mesh   = model.meshes[0];
+    size_t      wrong  = 0;
     double      volume = 0;
     for (size_t i = 0; i < mesh.indices.size(); i += 3) {
         const glm::dvec3 a = mesh.positions_ws[mesh.indices[i]];
@@ -289,7 +310,9 @@ TEST(SceneShapes, SmoothNormalsIgnoreHowVerticesAreShared)
     weld_equal_vertices(box);
     make_smooth_normals(box, 60);
     for (const Vertex& vertex : box.vertices)
-        EXPECT_FLOAT_EQ(std::max({std::abs(vertex.normal_ws.x), std::abs(vertex.normal_ws.y), std::abs(vertex.normal_ws.z)}), 1) << "edges stay sharp";
+        EXPECT_FLOAT_EQ(
+            std::max({std::abs(vertex.normal_ws.x), std::abs(vertex.normal_ws.y), std::abs(vertex.normal_ws.z)}), 1)
+            << "edges stay sharp";
 }
 
 } // namespace

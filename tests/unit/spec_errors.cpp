@@ -13,15 +13,30 @@ using testing::HasSubstr;
 
 const std::vector<Technique>& techniques()
 {
-    static const std::vector<Technique> both = {
-        {"linear", "Linear", "s", {}, {}, false, {}, {"steps", "binary_steps"},
-         {{"steps", ParameterType::integer, 64, 1, 60000, {}, "d"},
-          {"binary_steps", ParameterType::integer, 0, 0, 60000, {}, "d"},
-          {"space", ParameterType::choice, 0, 0, 1, {"view", "screen"}, "d"},
-          {"jitter", ParameterType::boolean, 0, 0, 1, {}, "d"},
-          {"stride", ParameterType::real, 1, 0.5, 8, {}, "d"}},
-         {}},
-        {"dda", "DDA", "s", {}, {}, true, {}, {"max_steps"}, {{"max_steps", ParameterType::integer, 60000, 1, 60000, {}, "d"}}, {}}};
+    static const std::vector<Technique> both = {{"linear",
+                                                 "Linear",
+                                                 "s",
+                                                 {},
+                                                 {},
+                                                 false,
+                                                 {},
+                                                 {"steps", "binary_steps"},
+                                                 {{"steps", ParameterType::integer, 64, 1, 60000, {}, "d"},
+                                                  {"binary_steps", ParameterType::integer, 0, 0, 60000, {}, "d"},
+                                                  {"space", ParameterType::choice, 0, 0, 1, {"view", "screen"}, "d"},
+                                                  {"jitter", ParameterType::boolean, 0, 0, 1, {}, "d"},
+                                                  {"stride", ParameterType::real, 1, 0.5, 8, {}, "d"}},
+                                                 {}},
+                                                {"dda",
+                                                 "DDA",
+                                                 "s",
+                                                 {},
+                                                 {},
+                                                 true,
+                                                 {},
+                                                 {"max_steps"},
+                                                 {{"max_steps", ParameterType::integer, 60000, 1, 60000, {}, "d"}},
+                                                 {}}};
     return both;
 }
 
@@ -45,16 +60,21 @@ std::string error_of(const std::string& text)
 }
 
 // Line 1 and 2 are right, line 3 is the mistake.
-std::string with_line(const std::string& line) { return "scenes = [\"builtin:stairs\"]\ntechniques.dda = {}\n" + line + "\n"; }
+std::string with_line(const std::string& line)
+{
+    return "scenes = [\"builtin:stairs\"]\ntechniques.dda = {}\n" + line + "\n";
+}
 
 TEST(Spec, MistakesAtTheTop)
 {
     EXPECT_THAT(error_of(with_line("nome = \"x\"")), HasSubstr(".toml:3: unknown key 'nome': did you mean 'name'?"));
-    EXPECT_THAT(error_of(with_line("name = 7")), HasSubstr(".toml:3: 'name' must be a non-empty string, got the integer 7"));
+    EXPECT_THAT(error_of(with_line("name = 7")),
+                HasSubstr(".toml:3: 'name' must be a non-empty string, got the integer 7"));
     EXPECT_THAT(error_of(with_line("name = \"../x\"")), HasSubstr(".toml:3: 'name' must be letters"));
     EXPECT_THAT(error_of(with_line("title = \"\"")), HasSubstr(".toml:3: 'title' must be a non-empty string"));
     EXPECT_THAT(error_of(with_line("views = []")), HasSubstr(".toml:3: 'views' is an empty list"));
-    EXPECT_THAT(error_of(with_line("views = [1]")), HasSubstr(".toml:3: 'views' must be a non-empty string, got the integer 1"));
+    EXPECT_THAT(error_of(with_line("views = [1]")),
+                HasSubstr(".toml:3: 'views' must be a non-empty string, got the integer 1"));
     EXPECT_THAT(error_of(with_line("name = \"a\"\nname = \"b\"")), HasSubstr(".toml:4: "));
     EXPECT_THAT(error_of(with_line("name = ")), HasSubstr(".toml:3: "));
     EXPECT_THAT(error_of("scenes = []\ntechniques.dda = {}\n"), HasSubstr(".toml:1: 'scenes' is an empty list"));
@@ -66,12 +86,15 @@ TEST(Spec, MistakesAtTheTop)
 TEST(Spec, Sizes)
 {
     for (const char* size : {"\"0x720\"", "\"1280x0\"", "\"16385x1\"", "\"-1x5\""}) {
-        EXPECT_THAT(error_of(with_line(fmt::format("sizes = [\"8x8\", {}]", size))), HasSubstr(".toml:3: 'sizes' must be from 1x1"));
+        EXPECT_THAT(error_of(with_line(fmt::format("sizes = [\"8x8\", {}]", size))),
+                    HasSubstr(".toml:3: 'sizes' must be from 1x1"));
     }
     for (const char* size : {"\"1280\"", "\"x\"", "\"1280x720p\"", "\"1280 x 720\"", "\"99999999999x1\""}) {
-        EXPECT_THAT(error_of(with_line(fmt::format("sizes = {}", size))), HasSubstr(".toml:3: 'sizes' must be a size like"));
+        EXPECT_THAT(error_of(with_line(fmt::format("sizes = {}", size))),
+                    HasSubstr(".toml:3: 'sizes' must be a size like"));
     }
-    EXPECT_THAT(error_of(with_line("sizes = 720")), HasSubstr(".toml:3: 'sizes' must be a non-empty string, got the integer 720"));
+    EXPECT_THAT(error_of(with_line("sizes = 720")),
+                HasSubstr(".toml:3: 'sizes' must be a non-empty string, got the integer 720"));
 }
 
 TEST(Spec, EverySettingAgainstEveryMistake)
@@ -88,7 +111,8 @@ TEST(Spec, EverySettingAgainstEveryMistake)
         EXPECT_THAT(mistake("-1"), HasSubstr(place + "must be"));
         EXPECT_THAT(mistake("[true, 7]"), HasSubstr(place + "must be"));
     }
-    EXPECT_THAT(error_of(with_line("[trace]\nthicknes_m = 1")), HasSubstr(".toml:4: unknown setting of [trace] 'thicknes_m': did you mean 'thickness_m'?"));
+    EXPECT_THAT(error_of(with_line("[trace]\nthicknes_m = 1")),
+                HasSubstr(".toml:4: unknown setting of [trace] 'thicknes_m': did you mean 'thickness_m'?"));
     EXPECT_THAT(error_of(with_line("trace = 7")), HasSubstr(".toml:3: 'trace' must be a table"));
     EXPECT_EQ(error_of(with_line("[trace]\nmax_distance_m = [9, inf]")), "(no SpecError)");
 }
@@ -98,12 +122,14 @@ TEST(Spec, EveryParameterAgainstEveryMistake)
     const auto mistake = [](const std::string& line) {
         return error_of("scenes = \"a\"\n[techniques.linear]\n" + line + "\n");
     };
-    EXPECT_THAT(mistake("stebs = 7"), HasSubstr(".toml:3: unknown parameter of technique linear 'stebs': did you mean 'steps'?"));
+    EXPECT_THAT(mistake("stebs = 7"),
+                HasSubstr(".toml:3: unknown parameter of technique linear 'stebs': did you mean 'steps'?"));
     EXPECT_THAT(mistake("steps = [25, 0]"), HasSubstr(".toml:3: 'steps' must be an integer in [1, 60000], got 0"));
     EXPECT_THAT(mistake("steps = 60001"), HasSubstr("got 60001"));
     EXPECT_THAT(mistake("steps = 25.0"), HasSubstr(".toml:3: 'steps' must be an integer, got the number 25"));
     EXPECT_THAT(mistake("steps = nan"), HasSubstr(".toml:3: 'steps' must be an integer, got the number nan"));
-    EXPECT_THAT(mistake("steps = [\n25,\n\"x\"]"), HasSubstr(".toml:5: 'steps' must be an integer, got the string \"x\""));
+    EXPECT_THAT(mistake("steps = [\n25,\n\"x\"]"),
+                HasSubstr(".toml:5: 'steps' must be an integer, got the string \"x\""));
     EXPECT_THAT(mistake("steps = []"), HasSubstr(".toml:3: 'steps' is an empty list"));
     EXPECT_THAT(mistake("steps = 9223372036854775807"), HasSubstr(".toml:3: 'steps' must be"));
     EXPECT_THAT(mistake("stride = 0.1"), HasSubstr(".toml:3: 'stride' must be a number in [0.5, 8], got 0.1"));
@@ -112,20 +138,28 @@ TEST(Spec, EveryParameterAgainstEveryMistake)
     EXPECT_THAT(mistake("space = \"veiw\""), HasSubstr(".toml:3: 'space' must be one of view, screen, got 'veiw'"));
     EXPECT_THAT(mistake("space = 1"), HasSubstr(".toml:3: 'space' must be a non-empty string"));
     EXPECT_THAT(mistake("jitter = 1"), HasSubstr(".toml:3: 'jitter' must be true or false, got the integer 1"));
-    EXPECT_THAT(mistake("steps = 60000\nbinary_steps = 1"), HasSubstr(".toml:2: linear with these values may need 60001 iterations"));
-    EXPECT_THAT(error_of("scenes = \"a\"\n[techniques.lineer]\n"), HasSubstr(".toml:2: unknown technique 'lineer': did you mean 'linear'?"));
-    EXPECT_THAT(error_of("scenes = \"a\"\ntechniques.linear = 7\n"), HasSubstr(".toml:2: 'techniques.linear' must be a table"));
+    EXPECT_THAT(mistake("steps = 60000\nbinary_steps = 1"),
+                HasSubstr(".toml:2: linear with these values may need 60001 iterations"));
+    EXPECT_THAT(error_of("scenes = \"a\"\n[techniques.lineer]\n"),
+                HasSubstr(".toml:2: unknown technique 'lineer': did you mean 'linear'?"));
+    EXPECT_THAT(error_of("scenes = \"a\"\ntechniques.linear = 7\n"),
+                HasSubstr(".toml:2: 'techniques.linear' must be a table"));
 }
 
 TEST(Spec, EveryMeasureFieldAgainstEveryMistake)
 {
-    for (const char* field : {"seed", "warmup", "min_repeats", "max_repeats", "interval_percent", "budget_s", "truth", "image_errors", "double_twin", "pictures"}) {
+    for (const char* field : {"seed", "warmup", "min_repeats", "max_repeats", "interval_percent", "budget_s", "truth",
+                              "image_errors", "double_twin", "pictures"}) {
         for (const char* value : {"\"x\"", "[]", "nan", "-1", "{}"}) {
-            EXPECT_THAT(error_of(with_line(fmt::format("[measure]\n{} = {}", field, value))), HasSubstr(fmt::format(".toml:4: '{}' must be", field))) << value;
+            EXPECT_THAT(error_of(with_line(fmt::format("[measure]\n{} = {}", field, value))),
+                        HasSubstr(fmt::format(".toml:4: '{}' must be", field)))
+                << value;
         }
     }
-    EXPECT_THAT(error_of(with_line("[measure]\nmin_repeats = 9\nmax_repeats = 8")), HasSubstr(".toml:3: max_repeats 8 is below min_repeats 9"));
-    EXPECT_THAT(error_of(with_line("[measure]\nbudget = 9")), HasSubstr(".toml:4: unknown key of [measure] 'budget': did you mean 'budget_s'?"));
+    EXPECT_THAT(error_of(with_line("[measure]\nmin_repeats = 9\nmax_repeats = 8")),
+                HasSubstr(".toml:3: max_repeats 8 is below min_repeats 9"));
+    EXPECT_THAT(error_of(with_line("[measure]\nbudget = 9")),
+                HasSubstr(".toml:4: unknown key of [measure] 'budget': did you mean 'budget_s'?"));
 }
 
 TEST(Spec, AListIsASweep)
@@ -144,7 +178,7 @@ space = ["view", "screen"]
 binary_steps = 10
 [techniques.dda]
 )");
-    const auto runs = expand(experiment, techniques());
+    const auto       runs       = expand(experiment, techniques());
     EXPECT_EQ(runs.size(), 2U * 2 * 3 * 2 * (3 * 2 + 1 + 1));
     EXPECT_EQ(count_runs(experiment), static_cast<double>(runs.size()));
     EXPECT_EQ(runs.front().settings.trace.thickness_m, 0.1);
@@ -153,7 +187,8 @@ binary_steps = 10
     EXPECT_EQ(runs.back().technique, "dda");
     int pictures = 1; // one picture's runs stand together
     for (size_t i = 1; i < runs.size(); ++i) {
-        const bool same = runs[i].scene == runs[i - 1].scene && runs[i].view == runs[i - 1].view && runs[i].size_px == runs[i - 1].size_px;
+        const bool same = runs[i].scene == runs[i - 1].scene && runs[i].view == runs[i - 1].view &&
+                          runs[i].size_px == runs[i - 1].size_px;
         pictures += same ? 0 : 1;
     }
     EXPECT_EQ(pictures, 2 * 2 * 3);
@@ -161,18 +196,22 @@ binary_steps = 10
 
 TEST(Spec, ATechniquesTableMayNameSettingsOfItsOwn)
 {
-    const Experiment experiment = load_text("scenes = \"a\"\n[trace]\nthickness_m = [0.1, 0.2]\n[[techniques.linear]]\n[[techniques.linear]]\nthickness_m = 0.5\nfade_at_edges = false\n");
-    const auto       runs       = expand(experiment, techniques());
+    const Experiment experiment =
+        load_text("scenes = \"a\"\n[trace]\nthickness_m = [0.1, "
+                  "0.2]\n[[techniques.linear]]\n[[techniques.linear]]\nthickness_m = 0.5\nfade_at_edges = false\n");
+    const auto runs = expand(experiment, techniques());
     ASSERT_EQ(runs.size(), 3U);
     EXPECT_EQ(count_runs(experiment), 3);
     EXPECT_EQ(std::ranges::count(runs, false, [](const auto& run) { return run.settings.shade.fade_at_edges; }), 1);
-    EXPECT_THAT(error_of("scenes = \"a\"\n[techniques.linear]\nthickness_m = -1\n"), HasSubstr(".toml:3: 'thickness_m' must be in"));
+    EXPECT_THAT(error_of("scenes = \"a\"\n[techniques.linear]\nthickness_m = -1\n"),
+                HasSubstr(".toml:3: 'thickness_m' must be in"));
 }
 
 TEST(Spec, IdsAreStableAndARunListedTwiceComesOnce)
 {
-    const Experiment experiment = load_text("scenes = [\"a\", \"a\"]\nsizes = \"8x8\"\n[[techniques.linear]]\nsteps = [64, 32, 64]\n[[techniques.linear]]\n");
-    const auto runs = expand(experiment, techniques());
+    const Experiment experiment = load_text("scenes = [\"a\", \"a\"]\nsizes = \"8x8\"\n[[techniques.linear]]\nsteps = "
+                                            "[64, 32, 64]\n[[techniques.linear]]\n");
+    const auto       runs       = expand(experiment, techniques());
     ASSERT_EQ(runs.size(), 2U);
     EXPECT_NE(runs[0].id, runs[1].id);
     // Changing how ids are made would orphan every recorded result.
@@ -183,8 +222,10 @@ TEST(Spec, HugeSweepsAskFirst)
 {
     std::string list;
     for (int i = 1; i <= 500; ++i) list += std::to_string(i) + ",";
-    const std::string text = "scenes = \"a\"\n[techniques.linear]\nsteps = [" + list + "]\nbinary_steps = [" + list + "]\n";
-    EXPECT_THAT(error_of(text), HasSubstr("expands to 250000 runs, more than 100000; shorten a list, or confirm with --yes"));
+    const std::string text =
+        "scenes = \"a\"\n[techniques.linear]\nsteps = [" + list + "]\nbinary_steps = [" + list + "]\n";
+    EXPECT_THAT(error_of(text),
+                HasSubstr("expands to 250000 runs, more than 100000; shorten a list, or confirm with --yes"));
     EXPECT_EQ(expand(load_text(text), techniques(), true).size(), 250000U);
 }
 

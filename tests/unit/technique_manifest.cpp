@@ -37,8 +37,7 @@ struct TechniqueDir {
     }
 };
 
-template <typename Call>
-std::string spec_error(const Call& call)
+template <typename Call> std::string spec_error(const Call& call)
 {
     try {
         call();
@@ -53,11 +52,13 @@ const std::string head = "name = \"Walk\"\nsummary = \"Walks.\"\n";
 TEST(TechniqueManifest, LimitsAreKnownNamesAndBelongToInexactTechniques)
 {
     const TechniqueDir dir;
-    EXPECT_THAT(load_technique(dir.add("march", head + "limits = [\"point_sampled\"]\n")).limits, ElementsAre("point_sampled"));
+    EXPECT_THAT(load_technique(dir.add("march", head + "limits = [\"point_sampled\"]\n")).limits,
+                ElementsAre("point_sampled"));
     EXPECT_THAT(spec_error([&] { load_technique(dir.add("vague", head + "limits = [\"point_sampel\"]\n")); }),
                 HasSubstr("vague/technique.toml:3: unknown limit 'point_sampel': did you mean 'point_sampled'?"));
-    EXPECT_THAT(spec_error([&] { load_technique(dir.add("both", head + "exact = true\nlimits = [\"point_sampled\"]\n")); }),
-                HasSubstr("both/technique.toml:4: 'limits' contradicts 'exact'"));
+    EXPECT_THAT(
+        spec_error([&] { load_technique(dir.add("both", head + "exact = true\nlimits = [\"point_sampled\"]\n")); }),
+        HasSubstr("both/technique.toml:4: 'limits' contradicts 'exact'"));
 }
 
 TEST(TechniqueManifest, ReadsEveryField)
@@ -99,28 +100,36 @@ TEST(TechniqueManifest, MistakesAreNamedWithFileAndLine)
         const char* message;
     };
     const Mistake mistakes[] = {
-        {"steps = { default = 0, min = 1, max = 60000, doc = \"d\" }", ":4: default 0 of 'steps' is outside [1, 60000]"},
+        {"steps = { default = 0, min = 1, max = 60000, doc = \"d\" }",
+         ":4: default 0 of 'steps' is outside [1, 60000]"},
         {"steps = { default = 1, min = 9, max = 2, doc = \"d\" }", ":4: min 9 of 'steps' is above its max 2"},
         {"steps = { default = 1, min = 1, max = 2 }", ":4: parameter 'steps' has no 'doc'"},
         {"steps = { default = 1, min = 1, doc = \"d\" }", ":4: parameter 'steps' has no 'max'"},
-        {"steps = { default = 1, min = 0.5, max = 2, doc = \"d\" }", ":4: 'min of steps' must be an integer, got the number 0.5"},
-        {"steps = { default = nan, min = 0, max = 2, doc = \"d\" }", ":4: 'default of steps' must be a number, got the number nan"},
+        {"steps = { default = 1, min = 0.5, max = 2, doc = \"d\" }",
+         ":4: 'min of steps' must be an integer, got the number 0.5"},
+        {"steps = { default = nan, min = 0, max = 2, doc = \"d\" }",
+         ":4: 'default of steps' must be a number, got the number nan"},
         {"steps = { default = 1.0, min = nan, max = 2, doc = \"d\" }", ":4: 'min of steps' must be a number"},
         {"steps = { default = [1], min = 1, max = 2, doc = \"d\" }", ":4: 'default of steps' must be"},
-        {"steps = { defualt = 1, min = 1, max = 2, doc = \"d\" }", ":4: unknown field of parameter 'steps' 'defualt': did you mean 'default'?"},
+        {"steps = { defualt = 1, min = 1, max = 2, doc = \"d\" }",
+         ":4: unknown field of parameter 'steps' 'defualt': did you mean 'default'?"},
         {"steps = 7", ":4: 'steps' must be a table, got the integer 7"},
-        {"mode = { default = \"c\", choices = [\"a\", \"b\"], doc = \"d\" }", ":4: 'mode' must be one of a, b, got 'c'"},
+        {"mode = { default = \"c\", choices = [\"a\", \"b\"], doc = \"d\" }",
+         ":4: 'mode' must be one of a, b, got 'c'"},
         {"mode = { default = \"a\", choices = [], doc = \"d\" }", ":4: 'mode' must be one of"},
-        {"mode = { default = \"a\", choices = [\"a\", \"a\"], doc = \"d\" }", ":4: 'choices' of 'mode' names one twice"},
+        {"mode = { default = \"a\", choices = [\"a\", \"a\"], doc = \"d\" }",
+         ":4: 'choices' of 'mode' names one twice"},
         {"mode = { default = true, min = 0, doc = \"d\" }", ":4: 'min' belongs to numbers"},
-        {"\"two words\" = { default = true, doc = \"d\" }", ":4: parameter 'two words' is not a name that GLSL accepts"},
+        {"\"two words\" = { default = true, doc = \"d\" }",
+         ":4: parameter 'two words' is not a name that GLSL accepts"},
         {"float = { default = true, doc = \"d\" }", ":4: parameter 'float' is not a name that GLSL accepts"},
         {"steps = { default = 1, min = 1, max = 2, doc = \"d\" ", ":4: "},
     };
     const TechniqueDir dir;
     for (const Mistake& mistake : mistakes) {
         const fs::path folder = dir.add("walk", head + "[parameters]\n" + mistake.line + "\n");
-        EXPECT_THAT(spec_error([&] { load_technique(folder); }), HasSubstr("walk/technique.toml" + std::string(mistake.message)))
+        EXPECT_THAT(spec_error([&] { load_technique(folder); }),
+                    HasSubstr("walk/technique.toml" + std::string(mistake.message)))
             << mistake.line;
     }
 }
@@ -132,11 +141,13 @@ TEST(TechniqueManifest, MistakesAboveTheParameters)
         return spec_error([&] { load_technique(dir.add("walk", manifest)); });
     };
     EXPECT_THAT(message("summary = \"Walks.\"\n"), HasSubstr("the technique has no 'name'"));
-    EXPECT_THAT(message("name = 7\nsummary = \"Walks.\"\n"), HasSubstr(":1: 'name' must be a non-empty string, got the integer 7"));
+    EXPECT_THAT(message("name = 7\nsummary = \"Walks.\"\n"),
+                HasSubstr(":1: 'name' must be a non-empty string, got the integer 7"));
     EXPECT_THAT(message(head + "inputs = \"depth\"\n"), HasSubstr(":3: 'inputs' must be a list of strings"));
     EXPECT_THAT(message(head + "exact = 1\n"), HasSubstr(":3: 'exact' must be true or false"));
     EXPECT_THAT(message(head + "exakt = true\n"), HasSubstr(":3: unknown key 'exakt': did you mean 'exact'?"));
-    EXPECT_THAT(message(head + "bounded_by = [\"steps\"]\n"), HasSubstr(":3: unknown parameter of technique walk 'steps'"));
+    EXPECT_THAT(message(head + "bounded_by = [\"steps\"]\n"),
+                HasSubstr(":3: unknown parameter of technique walk 'steps'"));
 }
 
 TEST(TechniqueManifest, ATechniqueNeedsItsTraceFunction)

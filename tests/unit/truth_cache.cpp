@@ -49,7 +49,7 @@ TEST_F(TruthCache, EveryInputChangesTheName)
 {
     GBufferImage  gbuffer = random_gbuffer(bench_view({9, 7}), 2);
     TraceSettings settings;
-    size_t        expected = 0;
+    size_t        expected        = 0;
     const auto    expect_new_file = [&](auto change) {
         change();
         cached_screen_truth(m_folder, gbuffer, settings);

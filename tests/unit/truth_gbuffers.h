@@ -72,7 +72,7 @@ inline GBufferImage random_gbuffer(const View& view, unsigned seed)
     GBufferImage                           gbuffer = empty_gbuffer(view);
     std::mt19937                           random(seed);
     std::uniform_real_distribution<double> unit(-1, 1);
-    const double                           nearest_m = view.projection == Projection::perspective ? 2 : 0.2 * view.far_m;
+    const double nearest_m = view.projection == Projection::perspective ? 2 : 0.2 * view.far_m;
     for (int y = 0; y < view.size_px.y; ++y) {
         for (int x = 0; x < view.size_px.x; ++x) {
             if (unit(random) < -0.7) continue;

@@ -44,9 +44,9 @@ TEST(SceneTruth, MirrorFloorAndWall)
     const SceneTruth truth = test.truth();
     for (int y = 36; y < 64; ++y) {
         for (int x = 0; x < 64; ++x) {
-            const size_t i       = at(test.gbuffer, x, y);
-            const double py      = 70.4 - (y + 0.5);
-            const double z0      = 32 / (y + 0.5 - 32);
+            const size_t i  = at(test.gbuffer, x, y);
+            const double py = 70.4 - (y + 0.5);
+            const double z0 = 32 / (y + 0.5 - 32);
             ASSERT_EQ(truth.cls[i], TruthClass::visible) << x << ' ' << y;
             EXPECT_NEAR(truth.point_px[i].y, py, tolerance * 64);
             EXPECT_NEAR(truth.point_px[i].x, x + 0.5, tolerance * 64);
@@ -62,9 +62,9 @@ TEST(SceneTruth, MirrorFloorAndWall)
 
 TEST(SceneTruth, FloorAloneReflectsTheSky)
 {
-    Case test             = floor_case();
-    test.gbuffer          = floor_and_wall(bench_view({64, 64}), 100);
-    test.scene.background = {0.25F, 0.5F, 0.75F};
+    Case test              = floor_case();
+    test.gbuffer           = floor_and_wall(bench_view({64, 64}), 100);
+    test.scene.background  = {0.25F, 0.5F, 0.75F};
     const SceneTruth truth = test.truth();
     EXPECT_EQ(count(truth, TruthClass::sky), 64 * 32);
     EXPECT_EQ(truth.radiance[at(test.gbuffer, 3, 63)], test.scene.background);
@@ -101,9 +101,9 @@ TEST(SceneTruth, OccluderHidesTheWall)
     add_quad(test.scene, 1, {-100, 1, -5}, {200, 0, 0}, {0, 0.5, 0});
     const SceneTruth truth = test.truth();
     for (int y = 36; y < 64; ++y) {
-        const double z0     = 32 / (y + 0.5 - 32);
-        const double plate  = 5 / z0 - 2;
-        const double wall_y = 10 / z0 - 2;
+        const double z0       = 32 / (y + 0.5 - 32);
+        const double plate    = 5 / z0 - 2;
+        const double wall_y   = 10 / z0 - 2;
         const bool   on_plate = z0 < 5 && plate > 1 && plate < 1.5;
         const bool   behind   = wall_y > 2 && wall_y < 3;
         const size_t i        = at(test.gbuffer, 20, y);
@@ -128,10 +128,10 @@ TEST(SceneTruth, CulledBackHidesNothing)
 // A wall that looks away shows ray and camera the same back, which the frame draws only if the material is double-sided.
 TEST(SceneTruth, OffScreenAndBackSide)
 {
-    Case test = floor_case();
-    test.gbuffer = floor_and_wall(bench_view({64, 80}), 1e6); // rows to 79.5: Z0 down to 40 / 39.5 ...
-    test.gbuffer.view.centre_px.y = 20;                       // ... and now down to 40 / 59.5
-    test.gbuffer = floor_and_wall(test.gbuffer.view, 50);
+    Case test                     = floor_case();
+    test.gbuffer                  = floor_and_wall(bench_view({64, 80}), 1e6); // rows to 79.5: Z0 down to 40 / 39.5 ...
+    test.gbuffer.view.centre_px.y = 20;                                        // ... and now down to 40 / 59.5
+    test.gbuffer                  = floor_and_wall(test.gbuffer.view, 50);
     add_quad(test.scene, 1, {-1000, 30, -2000}, {2000, 0, 0}, {0, 0, 4000}); // front down
     const SceneTruth truth = test.truth();
     for (int y = 21; y < 80; ++y) {
@@ -153,7 +153,7 @@ TEST(SceneTruth, OffScreenAndBackSide)
 TEST(SceneTruth, BehindTheCamera)
 {
     Case test;
-    test.gbuffer = empty_gbuffer(bench_view({64, 64}));
+    test.gbuffer            = empty_gbuffer(bench_view({64, 64}));
     const uint32_t material = add_material(test.scene, {1, 1, 1}, 0);
     add_quad(test.scene, material, {-100, -100, 7}, {0, 200, 0}, {200, 0, 0}); // behind, facing the scene
     for (int x = 0; x < 64; ++x) set_pixel(test.gbuffer, x, 40, 3, {0, 0, 1}, 1);
@@ -167,14 +167,16 @@ TEST(SceneTruth, BehindTheCamera)
 TEST(SceneTruth, RearSideFacesAway)
 {
     Case test;
-    test.gbuffer = empty_gbuffer(bench_view({64, 64}));
+    test.gbuffer            = empty_gbuffer(bench_view({64, 64}));
     const uint32_t material = add_material(test.scene, {1, 1, 1}, 0);
     add_quad(test.scene, material, {-2, -2, -10}, {4, 0, 0}, {0, 4, 0}); // rows 25.6 .. 38.4 of the image
     // From (X, Y, 20) the ray comes back to X (1 + 1/2) at Z = 10: the plate for |X| < 4/3, |px - 32| < 2.13. There the
     // camera sees the plate itself, so only pixels that look past it can reflect its rear: none. A mirror to the right that is
     // turned towards it does: 45 degrees at (10, 0, -20), normal (-1, 0, 1).
-    set_pixel(test.gbuffer, 47, 32, 20, glm::normalize(glm::dvec3(0, 0, -10) - glm::dvec3(9.6875, -0.3125, -20)) -
-                                            glm::normalize(glm::dvec3(9.6875, -0.3125, -20)), 1);
+    set_pixel(test.gbuffer, 47, 32, 20,
+              glm::normalize(glm::dvec3(0, 0, -10) - glm::dvec3(9.6875, -0.3125, -20)) -
+                  glm::normalize(glm::dvec3(9.6875, -0.3125, -20)),
+              1);
     const SceneTruth truth = test.truth();
     const size_t     i     = at(test.gbuffer, 47, 32);
     EXPECT_EQ(truth.cls[i], TruthClass::facing_away);
@@ -225,8 +227,8 @@ TEST(SceneTruth, AlphaMaskLetsRaysThrough)
     texture.nearest = true;
     texture.rgba    = {255, 255, 255, 255, 255, 255, 255, 0}; // left half opaque, right half not
     test.scene.textures.push_back(texture);
-    const uint32_t masked                                     = add_material(test.scene, {1, 1, 1}, 0);
-    test.scene.materials[masked].alpha_mask                   = true;
+    const uint32_t masked                                    = add_material(test.scene, {1, 1, 1}, 0);
+    test.scene.materials[masked].alpha_mask                  = true;
     test.scene.materials[masked].base_colour_texture.texture = 0;
     add_quad(test.scene, masked, {-50, -50, -8}, {100, 0, 0}, {0, 100, 0});
     const SceneTruth truth = test.truth();
@@ -241,8 +243,8 @@ TEST(SceneTruth, AlphaMaskLetsRaysThrough)
 TEST(SceneTruth, ShadesWithShadows)
 {
     Scene scene;
-    scene.ambient           = glm::vec3(0.1F);
-    const uint32_t material = add_material(scene, {0.5F, 0.5F, 0.5F}, 0);
+    scene.ambient                      = glm::vec3(0.1F);
+    const uint32_t material            = add_material(scene, {0.5F, 0.5F, 0.5F}, 0);
     scene.materials[material].emissive = {0, 0, 3};
     add_quad(scene, material, {-5, 0, 5}, {10, 0, 0}, {0, 0, -10});
     Light light;
@@ -272,10 +274,10 @@ TEST(SceneTruth, HostileInputDoesNotAbort)
 {
     Case test = floor_case();
     add_wall(test.scene, 1, 10);
-    test.scene.vertices[0].position_ws.x = std::numeric_limits<float>::quiet_NaN();
-    test.scene.vertices[1].position_ws.y = std::numeric_limits<float>::infinity();
+    test.scene.vertices[0].position_ws.x            = std::numeric_limits<float>::quiet_NaN();
+    test.scene.vertices[1].position_ws.y            = std::numeric_limits<float>::infinity();
     test.gbuffer.normal_vs[at(test.gbuffer, 3, 50)] = glm::vec3(std::numeric_limits<float>::quiet_NaN());
-    const SceneTruth truth = test.truth();
+    const SceneTruth truth                          = test.truth();
     EXPECT_EQ(truth.cls[at(test.gbuffer, 3, 50)], TruthClass::not_traced);
     EXPECT_EQ(truth.cls[at(test.gbuffer, 4, 50)], TruthClass::visible);
     test.scene.indices[2] = 4711;

@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double infinity  = std::numeric_limits<double>::infinity();
 constexpr double quiet_nan = std::numeric_limits<double>::quiet_NaN();
 
 int count(const TraceResult& result, TraceStatus status)
@@ -50,8 +50,8 @@ TEST(ScreenTruth, FloorAloneIsNeverHit)
     for (const glm::ivec2& size : {glm::ivec2(1, 1), {3, 2}, {1, 16}, {97, 1}, {161, 91}, {641, 363}}) {
         for (const double max_distance_m : {0.5, 100.0, 1e9, infinity}) {
             TraceSettings settings;
-            settings.max_distance_m  = max_distance_m;
-            settings.thickness_m     = infinity;
+            settings.max_distance_m    = max_distance_m;
+            settings.thickness_m       = infinity;
             const GBufferImage gbuffer = floor_and_wall(bench_view(size), infinity);
             const TraceResult  result  = screen_truth(gbuffer, settings);
             EXPECT_EQ(count(result, TraceStatus::hit), 0);
@@ -70,7 +70,7 @@ TEST(ScreenTruth, AllBackgroundIsNotTraced)
 
 TEST(ScreenTruth, UnusablePixelsAreNotTraced)
 {
-    GBufferImage gbuffer = floor_and_wall(bench_view({8, 8}), infinity);
+    GBufferImage gbuffer                 = floor_and_wall(bench_view({8, 8}), infinity);
     gbuffer.normal_vs[at(gbuffer, 0, 7)] = glm::vec3(0);
     gbuffer.normal_vs[at(gbuffer, 1, 7)] = glm::vec3(0, float(quiet_nan), 0);
     gbuffer.normal_vs[at(gbuffer, 2, 7)] = glm::vec3(0, float(infinity), 0);
@@ -78,7 +78,7 @@ TEST(ScreenTruth, UnusablePixelsAreNotTraced)
     gbuffer.depth[at(gbuffer, 4, 7)]     = float(quiet_nan);
     gbuffer.depth[at(gbuffer, 5, 7)]     = float(infinity);
     gbuffer.depth[at(gbuffer, 6, 7)]     = -1;
-    const TraceResult result = screen_truth(gbuffer, {});
+    const TraceResult result             = screen_truth(gbuffer, {});
     for (int x = 0; x < 7; ++x) EXPECT_EQ(result.status[at(gbuffer, x, 7)], TraceStatus::not_traced) << x;
     EXPECT_NE(result.status[at(gbuffer, 7, 7)], TraceStatus::not_traced);
 }
@@ -108,12 +108,12 @@ TEST(ScreenTruth, SidewaysRayEntersSlabFromTheSide)
 {
     const GBufferImage gbuffer = left_columns_nearer(15, 2);
     TraceSettings      settings;
-    settings.thickness_m  = 3;
+    settings.thickness_m = 3;
     const WalkResult hit = ScreenWalk(gbuffer, settings).walk(sideways_ray());
     EXPECT_EQ(hit.status, TraceStatus::hit);
     EXPECT_EQ(hit.hit_pixel, glm::ivec2(15, 20));
     EXPECT_DOUBLE_EQ(hit.hit_t, (48.5 - 16) / 48);
-    settings.thickness_m   = 1;
+    settings.thickness_m  = 1;
     const WalkResult miss = ScreenWalk(gbuffer, settings).walk(sideways_ray());
     EXPECT_EQ(miss.status, TraceStatus::left_screen);
     EXPECT_EQ(miss.pixels, 48U);
@@ -124,7 +124,8 @@ TEST(ScreenTruth, PoleThicknessIsInclusive)
 {
     GBufferImage gbuffer = left_columns_nearer(-1, 0);
     for (int y = 0; y < 64; ++y) set_pixel(gbuffer, 20, y, 4, {0, 0, 1}, 0);
-    for (const auto& [thickness_m, hits] : {std::pair(1.0, true), {1.5, true}, {infinity, true}, {0.999999, false}, {0.0, false}}) {
+    for (const auto& [thickness_m, hits] :
+         {std::pair(1.0, true), {1.5, true}, {infinity, true}, {0.999999, false}, {0.0, false}}) {
         TraceSettings settings;
         settings.thickness_m   = thickness_m;
         const WalkResult found = ScreenWalk(gbuffer, settings).walk(sideways_ray());
@@ -144,14 +145,15 @@ TEST(ScreenTruth, ThicknessZeroHitsOnlyByExactContact)
     settings.thickness_m = 0;
     GBufferImage gbuffer = left_columns_nearer(15, 4);
     EXPECT_EQ(ScreenWalk(gbuffer, settings).walk(sideways_ray()).status, TraceStatus::left_screen);
-    ScreenRay ray          = sideways_ray();
-    ray.origin_px_depth.z  = 0.125 / 4;
+    ScreenRay ray         = sideways_ray();
+    ray.origin_px_depth.z = 0.125 / 4;
     EXPECT_EQ(ScreenWalk(gbuffer, settings).walk(ray).status, TraceStatus::hit);
     // The ray's depth interval in a pixel contains the surface although no thickness helps.
     ray.origin_px_depth.z = 0.125 / 4 + 0.001;
     ray.delta_px_depth.z  = -0.002;
-    EXPECT_EQ(ScreenWalk(gbuffer, settings).walk(ray).status, TraceStatus::left_screen); // passes Z = 4 before column 15
-    ray.delta_px_depth.z = -0.001 * 48 / 40.25;                                          // crosses Z = 4 at px 8.25
+    EXPECT_EQ(ScreenWalk(gbuffer, settings).walk(ray).status,
+              TraceStatus::left_screen);          // passes Z = 4 before column 15
+    ray.delta_px_depth.z   = -0.001 * 48 / 40.25; // crosses Z = 4 at px 8.25
     const WalkResult found = ScreenWalk(gbuffer, settings).walk(ray);
     EXPECT_EQ(found.status, TraceStatus::hit);
     EXPECT_EQ(found.hit_pixel, glm::ivec2(8, 20));
@@ -163,9 +165,9 @@ TEST(ScreenTruth, ComingFromBehindHitsTheBack)
     // Columns up to 15 at Z = 2 with slab to Z = 4 (depth 1/32). The ray rises from Z = 5 and reaches 1/32 at px 8.25.
     const GBufferImage gbuffer = left_columns_nearer(15, 2);
     TraceSettings      settings;
-    settings.thickness_m    = 2;
-    ScreenRay ray           = sideways_ray();
-    ray.delta_px_depth.z    = (1.0 / 32 - 0.025) * 48 / 40.25;
+    settings.thickness_m   = 2;
+    ScreenRay ray          = sideways_ray();
+    ray.delta_px_depth.z   = (1.0 / 32 - 0.025) * 48 / 40.25;
     const WalkResult found = ScreenWalk(gbuffer, settings).walk(ray);
     EXPECT_EQ(found.status, TraceStatus::hit);
     EXPECT_EQ(found.hit_pixel, glm::ivec2(8, 20));
@@ -188,11 +190,11 @@ TEST(ScreenTruth, NegativeZeroAndTinyComponentsBehaveAsZero)
 {
     const GBufferImage gbuffer = left_columns_nearer(-1, 0);
     for (const double tiny : {0.0, -0.0, 1e-310, -1e-310, 1e-30, -1e-30}) {
-        ScreenRay ray = sideways_ray();
+        ScreenRay ray        = sideways_ray();
         ray.delta_px_depth.y = tiny;
         EXPECT_EQ(ScreenWalk(gbuffer, {}).walk(ray).pixels, 48U);
     }
-    ScreenRay still = sideways_ray();
+    ScreenRay still      = sideways_ray();
     still.delta_px_depth = glm::dvec3(0);
     EXPECT_EQ(ScreenWalk(gbuffer, {}).walk(still).pixels, 0U);
 }
@@ -214,12 +216,12 @@ TEST(ScreenTruth, OrthographicClosedForms)
     // Visible height 8 m over 64 rows: 8 px per metre. The mirror at Z = 20 with normal (0, 1, 1) sends rays straight up; a block
     // over rows 0..9 at the same distance is met at its lower border, at Z = 19 only if the slab reaches 20.
     View view;
-    view.size_px    = {64, 64};
-    view.projection = Projection::orthographic;
-    view.focal_px   = {8, 8};
-    view.centre_px  = {32, 32};
-    view.near_m     = 0;
-    view.far_m      = 128;
+    view.size_px         = {64, 64};
+    view.projection      = Projection::orthographic;
+    view.focal_px        = {8, 8};
+    view.centre_px       = {32, 32};
+    view.near_m          = 0;
+    view.far_m           = 128;
     GBufferImage gbuffer = empty_gbuffer(view);
     const double tilt    = std::numbers::pi / 8;
     set_pixel(gbuffer, 5, 60, 20, {0, 1, 1}, 1);

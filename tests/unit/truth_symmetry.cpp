@@ -28,8 +28,8 @@ WalkResult brute_force(const GBufferImage& gbuffer, const ScreenRay& ray, const 
             for (int axis : {0, 1}) {
                 const Real o = ray.origin_px_depth[axis], d = ray.delta_px_depth[axis];
                 const Real a = ((axis == 0 ? x : y) - o) / d, b = ((axis == 0 ? x : y) + 1 - o) / d;
-                low          = std::max(low, std::min(a, b));
-                high         = std::min(high, std::max(a, b));
+                low  = std::max(low, std::min(a, b));
+                high = std::min(high, std::max(a, b));
             }
             if (high - low < 1e-15L) continue;
             const Real za = ray.origin_px_depth.z + low * ray.delta_px_depth.z;
@@ -61,8 +61,8 @@ TEST(ScreenTruth, EqualsBruteForceOverAllPixels)
             int                hits    = 0;
             for (int y = 0; y < 37; ++y) {
                 for (int x = 0; x < 41; ++x) {
-                    const size_t     i        = at(gbuffer, x, y);
-                    const ScreenRay  ray      = make_screen_ray(gbuffer, {x, y}, settings);
+                    const size_t    i   = at(gbuffer, x, y);
+                    const ScreenRay ray = make_screen_ray(gbuffer, {x, y}, settings);
                     if (!ray.traced) continue;
                     const WalkResult expected = brute_force(gbuffer, ray, settings);
                     ASSERT_EQ(result.status[i], expected.status) << x << ' ' << y;
@@ -126,7 +126,7 @@ TEST(ScreenTruth, TransposedImageGivesTransposedResult)
     GBufferImage transposed = empty_gbuffer(view);
     for (int y = 0; y < 39; ++y) {
         for (int x = 0; x < 53; ++x) {
-            const glm::vec3 n = gbuffer.normal_vs[at(gbuffer, x, y)];
+            const glm::vec3 n                          = gbuffer.normal_vs[at(gbuffer, x, y)];
             transposed.depth[at(transposed, y, x)]     = gbuffer.depth[at(gbuffer, x, y)];
             transposed.metallic[at(transposed, y, x)]  = gbuffer.metallic[at(gbuffer, x, y)];
             transposed.normal_vs[at(transposed, y, x)] = {-n.y, -n.x, n.z}; // y points up in view space, down on screen
@@ -153,7 +153,8 @@ TEST(ScreenTruth, ScaledByPowerOfTwoIsBitIdentical)
         GBufferImage  scaled          = gbuffer;
         TraceSettings scaled_settings = settings;
         scaled.view.near_m            = std::ldexp(gbuffer.view.near_m, power);
-        for (double* length : {&scaled_settings.max_distance_m, &scaled_settings.ray_offset_m, &scaled_settings.thickness_m}) {
+        for (double* length :
+             {&scaled_settings.max_distance_m, &scaled_settings.ray_offset_m, &scaled_settings.thickness_m}) {
             *length = std::ldexp(*length, power);
         }
         const TraceResult b = screen_truth(scaled, scaled_settings);
@@ -185,7 +186,8 @@ TEST(ScreenTruth, ThicknessIsMonotone)
         settings.thickness_m     = thickness_m;
         const TraceResult result = screen_truth(gbuffer, settings);
         double            sum    = 0;
-        for (size_t i = 0; i < result.status.size(); ++i) sum += result.status[i] == TraceStatus::hit ? result.hit_t[i] : 1.0;
+        for (size_t i = 0; i < result.status.size(); ++i)
+            sum += result.status[i] == TraceStatus::hit ? result.hit_t[i] : 1.0;
         EXPECT_LE(sum, last_sum);
         last_sum = sum;
     }
