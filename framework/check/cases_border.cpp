@@ -34,10 +34,10 @@ HardCase signed_zero()
                     for (const double zero : {0.0, -0.0})
                         for (const double side : {-1.0, 1.0}) {
                             const double length = side < 0 ? 32.5 : 31.5;
-                            RayInput     ray    = level_ray(setup.gbuffer.view, {32.5, i + 0.5}, {side * length, 0}, 4);
+                            RayInput     ray    = level_ray(setup.gbuffer.view, {32.5, i + 0.5}, {side * length, 0}, 4.5);
                             ray.delta_px_depth.y = zero;
                             setup.rays.push_back(ray);
-                            ray = level_ray(setup.gbuffer.view, {i + 0.5, 32.5}, {0, side * length}, 4);
+                            ray = level_ray(setup.gbuffer.view, {i + 0.5, 32.5}, {0, side * length}, 4.5);
                             ray.delta_px_depth.x = zero;
                             setup.rays.push_back(ray);
                         }

@@ -155,6 +155,26 @@ HardCase equality_counts()
             }};
 }
 
+HardCase level_at_the_surface()
+{
+    return {.name   = "level_at_the_surface",
+            .breaks = "z0 (1 - t) + z1 t is not z0 where z0 = z1: a ray that keeps its depth is said to leave it, and does so back and forth",
+            .answer = "No thickness; a pole in each row at a depth of its own, and a ray that keeps exactly this depth: every row is hit, at the pole's border.",
+            .setups = [] {
+                Setup setup{{}, picture_of(bench_view({131, 64}), [](glm::ivec2) { return 0.0; }), {.thickness_m = 0, .max_distance_m = 100}, {}};
+                for (int y = 0; y < 64; ++y) {
+                    const float depth = 0.1F + 0.013F * static_cast<float>(y);
+                    depth_at(setup, {40 + y, y}) = depth;
+                    setup.rays.push_back(rounded_to_float({{0.5, y + 0.5, static_cast<double>(depth)}, {130, 0, 0}, 1, TraceStatus::left_screen, {0, y}}));
+                }
+                return std::vector{setup};
+            },
+            .expected = [](const Setup&, const RayInput& ray) -> std::optional<Expected> {
+                const int y = ray.pixel.y;
+                return Expected{.pixel = glm::ivec2(40 + y, y), .t = (39.5 + y) / 130};
+            }};
+}
+
 HardCase one_depth_step_apart()
 {
     return {.name   = "one_depth_step_apart",
@@ -178,7 +198,7 @@ HardCase one_depth_step_apart()
 CaseFamily depth_cases()
 {
     return {"depth",
-            {all_sky(), one_object_in_the_sky(), unusable_texels(), tiny_depths(), far_and_infinitely_far(), depth_runs_straight_on_screen(), equality_counts(), one_depth_step_apart()}};
+            {all_sky(), one_object_in_the_sky(), unusable_texels(), tiny_depths(), far_and_infinitely_far(), depth_runs_straight_on_screen(), equality_counts(), level_at_the_surface(), one_depth_step_apart()}};
 }
 
 } // namespace ssrlab

@@ -1,0 +1,88 @@
+// The judge, on rays whose verdict is obvious.
+#include "check/judge.h"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+namespace ssrlab::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Poles at 4 m in columns 20 and 30; a ray at 4.5 m to the right in row 10 from (5.5, 10.5) by 50 px.
+ssrlab::Setup two_poles(double thickness_m = 1)
+{
+    ssrlab::Setup setup{{}, picture_of(bench_view(), [](glm::ivec2 p) { return p.x == 20 || p.x == 30 ? 4.0 : 0.0; }), {.thickness_m = thickness_m, .max_distance_m = 100}, {}};
+    setup.rays = {level_ray(setup.gbuffer.view, {5.5, 10.5}, {50, 0}, 4.5)};
+    return setup;
+}
+
+RayOutcome hit(glm::ivec2 pixel, double t) { return {TraceStatus::hit, pixel, t}; }
+RayOutcome miss() { return {TraceStatus::left_screen}; }
+
+TEST(Judge, TheExactAnswerIsRight)
+{
+    const auto  setup = two_poles();
+    const Judge judge(setup);
+    EXPECT_EQ(judge.exact_answer(setup.rays[0]).hit_pixel, glm::ivec2(20, 10));
+    EXPECT_EQ(judge.walk(setup.rays[0]).size(), 50U);
+    EXPECT_EQ(judge.judge(setup.rays[0], hit({20, 10}, 14.5 / 50), {}).verdict, Verdict::right);
+    EXPECT_NEAR(judge.judge(setup.rays[0], hit({20, 10}, 15.0 / 50), {}).deviation_px, 0.5, 1e-6);
+}
+
+TEST(Judge, ASkippedSurfaceIsWrongUnlessTheLimitsAllowIt)
+{
+    const auto  setup = two_poles();
+    const Judge judge(setup);
+    EXPECT_THAT(judge.judge(setup.rays[0], miss(), {}).reason, HasSubstr("the ray meets the slab in (20, 10), 0.500 px inside"));
+    EXPECT_EQ(judge.judge(setup.rays[0], hit({30, 10}, 24.5 / 50), {}).verdict, Verdict::wrong);
+    EXPECT_EQ(judge.judge(setup.rays[0], hit({30, 10}, 24.5 / 50), {.may_miss_between_samples = true}).verdict, Verdict::allowed);
+    // Nothing was passed behind before the first pole.
+    EXPECT_EQ(judge.judge(setup.rays[0], miss(), {.may_miss_behind_objects = true}).verdict, Verdict::wrong);
+}
+
+TEST(Judge, AHitThatIsNoneIsWrongWhateverTheLimits)
+{
+    const auto  setup = two_poles(0.1); // the ray passes behind both
+    const Judge judge(setup);
+    for (const bool sampled : {false, true}) {
+        const Claim claim{.may_miss_between_samples = sampled, .may_miss_behind_objects = sampled};
+        EXPECT_THAT(judge.judge(setup.rays[0], hit({20, 10}, 14.5 / 50), claim).reason, HasSubstr("does not meet the slab"));
+        EXPECT_THAT(judge.judge(setup.rays[0], hit({20, 12}, 14.5 / 50), claim).reason, HasSubstr("does not cross"));
+        EXPECT_EQ(judge.judge(setup.rays[0], miss(), claim).verdict, Verdict::right);
+    }
+    const auto  thick = two_poles();
+    EXPECT_THAT(Judge(thick).judge(thick.rays[0], hit({20, 10}, 0.9), {}).reason, HasSubstr("but the ray is in that pixel from"));
+}
+
+TEST(Judge, GrazingAPixelByLessThanASliverDecidesNothing)
+{
+    auto setup    = two_poles();
+    setup.gbuffer = picture_of(bench_view(), [](glm::ivec2 p) { return p == glm::ivec2(20, 11) ? 4.0 : 0.0; });
+    // In row 10, falling to 0.03 px below its border with row 11 in column 20.
+    setup.rays = {ray_between(setup.gbuffer.view, {10.5, 10.53, 4.5}, {20.97, 11.03, 4.5})};
+    const Judge judge(setup);
+    EXPECT_EQ(judge.exact_answer(setup.rays[0]).status, TraceStatus::hit);
+    EXPECT_EQ(judge.judge(setup.rays[0], miss(), {}).verdict, Verdict::sliver);
+}
+
+TEST(Judge, InvariantsAreNamed)
+{
+    const auto   setup = two_poles();
+    const Judge  judge(setup);
+    const auto&  ray = setup.rays[0];
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THAT(judge.broken_invariant(ray, hit({20, 10}, 0.29)), IsEmpty());
+    EXPECT_THAT(judge.broken_invariant(ray, hit({20, 10}, nan)), HasSubstr("nan"));
+    EXPECT_THAT(judge.broken_invariant(ray, {TraceStatus::left_screen, {}, nan}), HasSubstr("nan"));
+    EXPECT_THAT(judge.broken_invariant(ray, hit({64, 10}, 0.5)), HasSubstr("off the image"));
+    EXPECT_THAT(judge.broken_invariant(ray, hit({20, 10}, 1.5)), HasSubstr("outside the segment"));
+    EXPECT_THAT(judge.broken_invariant(ray, hit({5, 10}, 0)), HasSubstr("its start pixel"));
+    EXPECT_THAT(judge.broken_invariant(ray, {TraceStatus::not_traced}), HasSubstr("cannot"));
+    EXPECT_THAT(judge.broken_invariant(ray, {TraceStatus::facing_away}), HasSubstr("cannot"));
+}
+
+} // namespace
+} // namespace ssrlab::test
