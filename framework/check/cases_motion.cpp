@@ -6,14 +6,17 @@ namespace {
 
 std::vector<Shape> yard()
 {
-    return {plane({0, -1, 0}, {0, 1, 0}), plane({0, 0, -10}, {0, 0, 1}), sphere({0.7, -0.2, -5}, 0.8), box({-2, -1, -6}, {-1.9, 1.5, -5.9})};
+    return {plane({0, -1, 0}, {0, 1, 0}), plane({0, 0, -10}, {0, 0, 1}), sphere({0.7, -0.2, -5}, 0.8),
+            box({-2, -1, -6}, {-1.9, 1.5, -5.9})};
 }
 
 HardCase sub_pixel_jitter()
 {
     return {.name   = "sub_pixel_jitter",
-            .breaks = "the picture is sampled at other points in every frame: hits flicker where the answer hangs on a fraction of a pixel",
-            .answer = "The screen truth in each of 16 phases (Halton 2, 3). How much answers change between phases is the sampling's doing; a technique may not add to it.",
+            .breaks = "the picture is sampled at other points in every frame: hits flicker where the answer hangs on a "
+                      "fraction of a pixel",
+            .answer = "The screen truth in each of 16 phases (Halton 2, 3). How much answers change between phases is "
+                      "the sampling's doing; a technique may not add to it.",
             .setups = [] {
                 const auto halton = [](int index, int base) {
                     double result = 0, f = 1;
@@ -24,7 +27,10 @@ HardCase sub_pixel_jitter()
                 for (int phase = 1; phase <= 16; ++phase) {
                     View view = bench_view({96, 64});
                     view.centre_px += glm::dvec2(halton(phase, 2), halton(phase, 3)) - 0.5;
-                    setups.push_back({fmt::format("phase {}", phase), picture_of(view, yard()), {.thickness_m = 0.5, .max_distance_m = 100}, {}});
+                    setups.push_back({fmt::format("phase {}", phase),
+                                      picture_of(view, yard()),
+                                      {.thickness_m = 0.5, .max_distance_m = 100},
+                                      {}});
                 }
                 return setups;
             }};
@@ -41,7 +47,9 @@ Setup doubled(const Setup& setup)
     view.focal_px *= 2.0;
     result.gbuffer = picture_of(view, [](glm::ivec2) { return 0.0; });
     for (int y = 0; y < 2 * size.y; ++y)
-        for (int x = 0; x < 2 * size.x; ++x) result.gbuffer.depth[static_cast<size_t>(y * 2 * size.x + x)] = setup.gbuffer.depth[static_cast<size_t>(y / 2 * size.x + x / 2)];
+        for (int x = 0; x < 2 * size.x; ++x)
+            result.gbuffer.depth[static_cast<size_t>(y * 2 * size.x + x)] =
+                setup.gbuffer.depth[static_cast<size_t>(y / 2 * size.x + x / 2)];
     for (RayInput& ray : result.rays)
         for (int axis : {0, 1}) {
             ray.origin_px_depth[axis] *= 2;
@@ -53,38 +61,54 @@ Setup doubled(const Setup& setup)
 
 HardCase resolution_doubling()
 {
-    return {.name   = "resolution_doubling",
-            .breaks = "epsilons and strides in pixels",
-            .answer = "Each pixel split in four, the same rays: the hit lies in the same pixel. The borders that remain are crossed at the same t, bit for bit, and the new ones lie between. "
-                      "(Start pixels are background: three quarters of them would become visitable.)",
-            .setups = [] {
-                Setup setup{{}, picture_of(bench_view({127, 93}), [](glm::ivec2 p) { return p.x < 4 || p.y < 4 ? 0.0 : (p.x * 7 + p.y * 13) % 61 == 0 ? 4.0 : 0.0; }), {.thickness_m = 1, .max_distance_m = 100}, {}};
+    return {
+        .name   = "resolution_doubling",
+        .breaks = "epsilons and strides in pixels",
+        .answer = "Each pixel split in four, the same rays: the hit lies in the same pixel. The borders that remain "
+                  "are crossed at the same t, bit for bit, and the new ones lie between. "
+                  "(Start pixels are background: three quarters of them would become visitable.)",
+        .setups =
+            [] {
+                Setup setup{{},
+                            picture_of(bench_view({127, 93}),
+                                       [](glm::ivec2 p) {
+                                           return p.x < 4 || p.y < 4 ? 0.0 : (p.x * 7 + p.y * 13) % 61 == 0 ? 4.0 : 0.0;
+                                       }),
+                            {.thickness_m = 1, .max_distance_m = 100},
+                            {}};
                 for (int i = 0; i < 500; ++i) {
                     const bool       from_left = i % 2 == 0;
                     const double     a = (i * 37 % 500) / 500.0, b = (i * 211 % 500) / 500.0;
-                    const glm::dvec2 from = from_left ? glm::dvec2(2.25, 1 + 91 * a) : glm::dvec2(1 + 125 * a, 2.75), to = from_left ? glm::dvec2(126, 1 + 91 * b) : glm::dvec2(1 + 125 * b, 92);
+                    const glm::dvec2 from = from_left ? glm::dvec2(2.25, 1 + 91 * a) : glm::dvec2(1 + 125 * a, 2.75),
+                                     to   = from_left ? glm::dvec2(126, 1 + 91 * b) : glm::dvec2(1 + 125 * b, 92);
                     setup.rays.push_back(level_ray(setup.gbuffer.view, from, to - from, 4.5));
                 }
                 return std::vector{setup};
             },
-            .relations = {{.name = "at twice the resolution", .change = doubled,
-                           .back = [](RayOutcome outcome) {
-                               outcome.hit_pixel /= 2;
-                               return outcome;
-                           }}}};
+        .relations = {{.name = "at twice the resolution", .change = doubled, .back = [](RayOutcome outcome) {
+                           outcome.hit_pixel /= 2;
+                           return outcome;
+                       }}}};
 }
 
 HardCase unrelated_pixels()
 {
     return {.name   = "unrelated_pixels",
             .breaks = "a search that looks beside the ray: neighbours, coarse levels, filtered depth",
-            .answer = "What stands in pixels that the ray does not cross changes nothing: the same bits with everything else filled.",
-            .setups = [] {
-                Setup setup{{}, picture_of(bench_view({64, 64}), [](glm::ivec2 p) { return p.x == 50 ? 4.0 : 0.0; }), {.thickness_m = 1, .max_distance_m = 100}, {}};
-                setup.rays = {level_ray(setup.gbuffer.view, {3.5, 20.5}, {60, 0}, 4.5)};
-                return std::vector{setup};
+            .answer = "What stands in pixels that the ray does not cross changes nothing: the same bits with "
+                      "everything else filled.",
+            .setups =
+                [] {
+                    Setup setup{{},
+                                picture_of(bench_view({64, 64}), [](glm::ivec2 p) { return p.x == 50 ? 4.0 : 0.0; }),
+                                {.thickness_m = 1, .max_distance_m = 100},
+                                {}};
+                    setup.rays = {level_ray(setup.gbuffer.view, {3.5, 20.5}, {60, 0}, 4.5)};
+                    return std::vector{setup};
+                },
+            .expected = [](const Setup&, const RayInput&) -> std::optional<Expected> {
+                return Expected{.pixel = glm::ivec2(50, 20)};
             },
-            .expected  = [](const Setup&, const RayInput&) -> std::optional<Expected> { return Expected{.pixel = glm::ivec2(50, 20)}; },
             .relations = {{.name = "with every other row filled", .change = [](Setup setup) {
                                for (size_t i = 0; i < setup.gbuffer.depth.size(); ++i)
                                    if (i / 64 != 20) setup.gbuffer.depth[i] = i % 3 == 0 ? 0.9F : 0.022F;

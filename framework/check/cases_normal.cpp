@@ -11,7 +11,11 @@ const TraceSettings bench{.thickness_m = 1, .max_distance_m = 100};
 
 Setup room()
 {
-    return {{}, picture_of(bench_view(), {plane({0, -1, 0}, {0, 1, 0}), plane({0, 0, -10}, {0, 0, 1}), sphere({0.7, -0.2, -5}, 0.8)}), bench, {}};
+    return {{},
+            picture_of(bench_view(),
+                       {plane({0, -1, 0}, {0, 1, 0}), plane({0, 0, -10}, {0, 0, 1}), sphere({0.7, -0.2, -5}, 0.8)}),
+            bench,
+            {}};
 }
 
 HardCase no_usable_normal()
@@ -19,14 +23,17 @@ HardCase no_usable_normal()
     return {.name   = "no_usable_normal",
             .breaks = "normalize(0) is NaN, and NaN travels",
             .answer = "Such pixels do not reflect: no ray starts in columns 10 to 15; they can be hit like any other.",
-            .setups = [] {
-                constexpr float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-                const glm::vec3 normals[] = {{0, 0, 0}, {nan, 0, 1}, {0, inf, 0}, {0, 0, -inf}, {nan, nan, nan}, {-0.0F, 0, 0}};
-                Setup           setup     = room();
-                for (size_t y = 0; y < 64; ++y)
-                    for (size_t x = 10; x < 16; ++x) setup.gbuffer.normal_vs[y * 64 + x] = normals[x - 10];
-                return std::vector{setup};
-            },
+            .setups =
+                [] {
+                    constexpr float nan       = std::numeric_limits<float>::quiet_NaN(),
+                                    inf       = std::numeric_limits<float>::infinity();
+                    const glm::vec3 normals[] = {{0, 0, 0},    {nan, 0, 1},     {0, inf, 0},
+                                                 {0, 0, -inf}, {nan, nan, nan}, {-0.0F, 0, 0}};
+                    Setup           setup     = room();
+                    for (size_t y = 0; y < 64; ++y)
+                        for (size_t x = 10; x < 16; ++x) setup.gbuffer.normal_vs[y * 64 + x] = normals[x - 10];
+                    return std::vector{setup};
+                },
             .expected = [](const Setup&, const RayInput& ray) -> std::optional<Expected> {
                 if (ray.pixel.x < 10 || ray.pixel.x > 15) return std::nullopt;
                 return Expected{.status = TraceStatus::not_traced}; // no such ray may exist
@@ -43,36 +50,48 @@ Relation scaled_normals(double factor, const std::string& name)
 
 HardCase normals_of_any_length()
 {
-    return {.name   = "normals_of_any_length",
-            .breaks = "squares of small or large components leave the range of float; a length of 1.001 bends every ray",
-            .answer = "Only the direction counts: the same bits for normals times 2^-100 … 2^100.",
+    return {.name = "normals_of_any_length",
+            .breaks =
+                "squares of small or large components leave the range of float; a length of 1.001 bends every ray",
+            .answer    = "Only the direction counts: the same bits for normals times 2^-100 … 2^100.",
             .setups    = [] { return std::vector{room()}; },
-            .relations = {scaled_normals(0.5, "normals halved"), scaled_normals(0x1p-100, "normals times 2^-100"), scaled_normals(0x1p100, "normals times 2^100")}};
+            .relations = {scaled_normals(0.5, "normals halved"), scaled_normals(0x1p-100, "normals times 2^-100"),
+                          scaled_normals(0x1p100, "normals times 2^100")}};
 }
 
 HardCase normals_that_face_away()
 {
-    return {.name   = "normals_that_face_away",
-            .breaks = "smooth normals at silhouettes and two-sided surfaces face away from the eye",
-            .answer = "The mirror direction of -N is that of N: the same bits.",
+    return {.name      = "normals_that_face_away",
+            .breaks    = "smooth normals at silhouettes and two-sided surfaces face away from the eye",
+            .answer    = "The mirror direction of -N is that of N: the same bits.",
             .setups    = [] { return std::vector{room()}; },
             .relations = {scaled_normals(-1, "normals turned around")}};
 }
 
 HardCase facing_rule()
 {
-    return {.name   = "facing_rule",
-            .breaks = "a ray that arrives from behind sees the back of what the camera sees: the picture has no colour for it",
-            .answer = "With the rule on, the screen truth: surfaces that face away are passed, and a ray that met only those says so. A mirror behind a ball sends rays to the ball's far side.",
-            .setups = [] {
-                Setup setup{{}, picture_of(bench_view({97, 64}), {plane({0, 0, -10}, glm::normalize(glm::dvec3(0, 0.4, 1))), sphere({0.5, 0.3, -5}, 1), box({-2, -3, -6}, {-1.8, 3, -5.8})}),
-                            {.thickness_m = 2, .max_distance_m = 100, .facing = true}, {}};
-                return std::vector{setup};
-            }};
+    return {
+        .name = "facing_rule",
+        .breaks =
+            "a ray that arrives from behind sees the back of what the camera sees: the picture has no colour for it",
+        .answer = "With the rule on, the screen truth: surfaces that face away are passed, and a ray that met only "
+                  "those says so. A mirror behind a ball sends rays to the ball's far side.",
+        .setups = [] {
+            Setup setup{
+                {},
+                picture_of(bench_view({97, 64}), {plane({0, 0, -10}, glm::normalize(glm::dvec3(0, 0.4, 1))),
+                                                  sphere({0.5, 0.3, -5}, 1), box({-2, -3, -6}, {-1.8, 3, -5.8})}),
+                {.thickness_m = 2, .max_distance_m = 100, .facing = true},
+                {}};
+            return std::vector{setup};
+        }};
 }
 
 } // namespace
 
-CaseFamily normal_cases() { return {"normal", {no_usable_normal(), normals_of_any_length(), normals_that_face_away(), facing_rule()}}; }
+CaseFamily normal_cases()
+{
+    return {"normal", {no_usable_normal(), normals_of_any_length(), normals_that_face_away(), facing_rule()}};
+}
 
 } // namespace ssrlab

@@ -16,10 +16,10 @@ struct Expected {
 
 /// Another setup whose answers must be the same, ray by ray, once `back` has mapped them.
 struct Relation {
-    std::string                             name;
-    std::function<Setup(const Setup&)>      change;
-    std::function<RayOutcome(RayOutcome)>   back      = [](RayOutcome outcome) { return outcome; };
-    bool                                    compare_t = true; // bit by bit; else status and pixel only
+    std::string                           name;
+    std::function<Setup(const Setup&)>    change;
+    std::function<RayOutcome(RayOutcome)> back      = [](RayOutcome outcome) { return outcome; };
+    bool                                  compare_t = true; // bit by bit; else status and pixel only
 };
 
 struct HardCase {
@@ -30,11 +30,11 @@ struct HardCase {
     /// The closed form, if there is one. Every ray is compared with the screen truth besides.
     std::function<std::optional<Expected>(const Setup&, const RayInput&)> expected = {};
     /// Hold for exact techniques; others are held to mirror images and repetition alone.
-    std::vector<Relation>               relations = {};
+    std::vector<Relation> relations = {};
     /// Changes the technique's parameters for this case; the others keep their defaults.
     std::function<void(const Technique&, ParameterValues&)> adjust = {};
     /// The most iterations that an exact technique may need a ray, where that is less than 2 (W + H - 1) + start level.
-    std::function<int(const Setup&)>    most_steps = {};
+    std::function<int(const Setup&)> most_steps = {};
 };
 
 /// What must be refused, with a message that names the culprit.

@@ -29,7 +29,8 @@ Range part_in_pixel(const RayInput& ray, glm::ivec2 pixel, double margin_px)
 {
     Range t{0, 1};
     for (int axis : {0, 1})
-        t = clip(t, ray.origin_px_depth[axis], ray.delta_px_depth[axis], pixel[axis] - margin_px, pixel[axis] + 1 + margin_px);
+        t = clip(t, ray.origin_px_depth[axis], ray.delta_px_depth[axis], pixel[axis] - margin_px,
+                 pixel[axis] + 1 + margin_px);
     return t;
 }
 
@@ -40,7 +41,8 @@ size_t index_of(const GBufferImage& gbuffer, glm::ivec2 pixel)
 
 bool on_image(const GBufferImage& gbuffer, glm::ivec2 pixel)
 {
-    return glm::all(glm::greaterThanEqual(pixel, glm::ivec2(0))) && glm::all(glm::lessThan(pixel, gbuffer.view.size_px));
+    return glm::all(glm::greaterThanEqual(pixel, glm::ivec2(0))) &&
+           glm::all(glm::lessThan(pixel, gbuffer.view.size_px));
 }
 
 glm::ivec2 start_pixel(const GBufferImage& gbuffer, const RayInput& ray)
@@ -52,8 +54,10 @@ glm::ivec2 start_pixel(const GBufferImage& gbuffer, const RayInput& ray)
 glm::dvec3 direction_vs(const View& view, const RayInput& ray)
 {
     const auto       slope = [&](glm::dvec2 px) { return (px - view.centre_px) / view.focal_px * glm::dvec2(1, -1); };
-    const glm::dvec2 from = slope(glm::dvec2(ray.origin_px_depth)), to = slope(glm::dvec2(ray.origin_px_depth + ray.delta_px_depth));
-    if (view.projection == Projection::orthographic) return {to - from, ray.delta_px_depth.z * (view.far_m - view.near_m)};
+    const glm::dvec2 from  = slope(glm::dvec2(ray.origin_px_depth)),
+                     to    = slope(glm::dvec2(ray.origin_px_depth + ray.delta_px_depth));
+    if (view.projection == Projection::orthographic)
+        return {to - from, ray.delta_px_depth.z * (view.far_m - view.near_m)};
     const double from_depth = ray.origin_px_depth.z, to_depth = from_depth + ray.delta_px_depth.z;
     return {to * from_depth - from * to_depth, to_depth - from_depth};
 }
@@ -65,7 +69,8 @@ double slack_t(const RayInput& ray) { return 1e-3 / std::max(screen_length_px(ra
 
 std::string name(const RayOutcome& outcome)
 {
-    if (outcome.status != TraceStatus::hit) return std::string(trace_status_names.at(static_cast<size_t>(outcome.status)));
+    if (outcome.status != TraceStatus::hit)
+        return std::string(trace_status_names.at(static_cast<size_t>(outcome.status)));
     return fmt::format("hit in ({}, {}) at t {:.9g}", outcome.hit_pixel.x, outcome.hit_pixel.y, outcome.t);
 }
 
@@ -74,7 +79,8 @@ std::string name(const RayOutcome& outcome)
 double depth_inside_px(const RayInput& ray, const Visit& visit)
 {
     const auto inside = [&](double t) {
-        const glm::dvec2 p = glm::dvec2(ray.origin_px_depth) + t * glm::dvec2(ray.delta_px_depth) - glm::dvec2(visit.pixel);
+        const glm::dvec2 p =
+            glm::dvec2(ray.origin_px_depth) + t * glm::dvec2(ray.delta_px_depth) - glm::dvec2(visit.pixel);
         return std::min({p.x, 1 - p.x, p.y, 1 - p.y});
     };
     // Concave in t: ternary search.
@@ -88,7 +94,8 @@ double depth_inside_px(const RayInput& ray, const Visit& visit)
 
 Claim claim_of(const Technique& technique)
 {
-    return {std::ranges::count(technique.limits, "point_sampled") > 0, std::ranges::count(technique.limits, "stops_behind_objects") > 0};
+    return {std::ranges::count(technique.limits, "point_sampled") > 0,
+            std::ranges::count(technique.limits, "stops_behind_objects") > 0};
 }
 
 Judge::Judge(const Setup& setup) : setup_(setup) {}
@@ -96,16 +103,18 @@ Judge::Judge(const Setup& setup) : setup_(setup) {}
 Visit Judge::visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_out) const
 {
     Visit visit{pixel, t_in, t_out};
-    visit.z_in      = ray.origin_px_depth.z + t_in * ray.delta_px_depth.z;
-    visit.z_out     = ray.origin_px_depth.z + t_out * ray.delta_px_depth.z;
+    visit.z_in         = ray.origin_px_depth.z + t_in * ray.delta_px_depth.z;
+    visit.z_out        = ray.origin_px_depth.z + t_out * ray.delta_px_depth.z;
     const double depth = static_cast<double>(setup_.gbuffer.depth[index_of(setup_.gbuffer, pixel)]);
     visit.contact      = -infinity;
     if (!(depth > 0 && depth <= 1)) return visit;
-    visit.front   = depth;
-    visit.back    = slab_back(setup_.gbuffer.view, depth, setup_.settings);
-    visit.contact = std::min(visit.front - std::min(visit.z_in, visit.z_out), std::max(visit.z_in, visit.z_out) - visit.back);
+    visit.front = depth;
+    visit.back  = slab_back(setup_.gbuffer.view, depth, setup_.settings);
+    visit.contact =
+        std::min(visit.front - std::min(visit.z_in, visit.z_out), std::max(visit.z_in, visit.z_out) - visit.back);
     if (setup_.settings.facing)
-        visit.faces = glm::dot(glm::dvec3(setup_.gbuffer.normal_vs[index_of(setup_.gbuffer, pixel)]), direction_vs(setup_.gbuffer.view, ray)) < 0;
+        visit.faces = glm::dot(glm::dvec3(setup_.gbuffer.normal_vs[index_of(setup_.gbuffer, pixel)]),
+                               direction_vs(setup_.gbuffer.view, ray)) < 0;
     return visit;
 }
 
@@ -148,7 +157,7 @@ RayOutcome Judge::exact_answer(const RayInput& ray) const
         const double dz     = ray.delta_px_depth.z;
         answer.status       = TraceStatus::hit;
         answer.hit_pixel    = v.pixel;
-        answer.t            = inside || dz == 0 ? v.t_in : std::clamp((face - ray.origin_px_depth.z) / dz, v.t_in, v.t_out);
+        answer.t = inside || dz == 0 ? v.t_in : std::clamp((face - ray.origin_px_depth.z) / dz, v.t_in, v.t_out);
         break;
     }
     return answer;
@@ -167,7 +176,8 @@ std::string Judge::unsound_hit(const RayInput& ray, const RayOutcome& outcome) c
     if (t.empty()) return fmt::format("{}, a pixel that the ray does not cross", name(outcome));
     const Visit v = visit(ray, outcome.hit_pixel, t.from, t.to);
     if (!(v.contact >= -depth_rounding(ray, v)))
-        return fmt::format("{}, where the ray's depth {:.9g} … {:.9g} does not meet the slab {:.9g} … {:.9g}", name(outcome), v.z_in, v.z_out, v.front, v.back);
+        return fmt::format("{}, where the ray's depth {:.9g} … {:.9g} does not meet the slab {:.9g} … {:.9g}",
+                           name(outcome), v.z_in, v.z_out, v.front, v.back);
     if (outcome.t < t.from - slack_t(ray) || outcome.t > t.to + slack_t(ray))
         return fmt::format("{}, but the ray is in that pixel from {:.9g} to {:.9g}", name(outcome), t.from, t.to);
     return {};
@@ -189,15 +199,18 @@ Judgement Judge::judge(const RayInput& ray, const RayOutcome& outcome, const Cla
     if (outcome.status == exact.status && (!both_hit || outcome.hit_pixel == exact.hit_pixel)) return result;
 
     // Something was skipped. Is there a pixel before the reported one that the ray undoubtedly hits?
-    result.verdict = Verdict::sliver;
+    result.verdict  = Verdict::sliver;
     bool was_behind = false;
     for (const Visit& v : walk(ray)) {
         if (hit && (v.pixel == outcome.hit_pixel || v.t_in >= outcome.t - slack_t(ray))) break;
         was_behind = was_behind || (v.front > 0 && std::max(v.z_in, v.z_out) < v.back);
         if (!v.faces || !(v.contact > depth_rounding(ray, v)) || depth_inside_px(ray, v) <= sliver_px) continue;
-        result.verdict = claim.may_miss_between_samples || (claim.may_miss_behind_objects && was_behind) ? Verdict::allowed : Verdict::wrong;
+        result.verdict = claim.may_miss_between_samples || (claim.may_miss_behind_objects && was_behind)
+                             ? Verdict::allowed
+                             : Verdict::wrong;
         if (result.verdict == Verdict::wrong)
-            result.reason = fmt::format("{}, but the ray meets the slab in ({}, {}), {:.3f} px inside", name(outcome), v.pixel.x, v.pixel.y, depth_inside_px(ray, v));
+            result.reason = fmt::format("{}, but the ray meets the slab in ({}, {}), {:.3f} px inside", name(outcome),
+                                        v.pixel.x, v.pixel.y, depth_inside_px(ray, v));
         return result;
     }
     return result;

@@ -20,7 +20,7 @@ enum class Verdict {
 
 struct Judgement {
     Verdict     verdict      = Verdict::right;
-    double      deviation_px = 0; // between the hit points on screen, if the ray hits in both
+    double      deviation_px = 0;  // between the hit points on screen, if the ray hits in both
     std::string reason       = {}; // wrong only
 };
 
@@ -36,9 +36,9 @@ struct Visit {
     glm::ivec2 pixel{0, 0};
     double     t_in = 0, t_out = 0;
     double     z_in = 0, z_out = 0;
-    double     front = 0, back = 0;   // of its slab; background: front <= 0
-    double     contact   = 0;         // depth by which the ray's interval overlaps the slab; negative: a gap
-    bool       faces     = true;      // or the facing rule is off
+    double     front = 0, back = 0; // of its slab; background: front <= 0
+    double     contact = 0;         // depth by which the ray's interval overlaps the slab; negative: a gap
+    bool       faces   = true;      // or the facing rule is off
 };
 
 /// How deep the ray goes into the pixel: its largest distance to the pixel's borders there.

@@ -18,12 +18,14 @@ struct Stage {
     RayTracerPtr tracer;
 };
 
-Stage put_on_device(Gpu& gpu, const Technique& technique, const ParameterValues& values, Setup setup, Precision precision = Precision::float32)
+Stage put_on_device(Gpu& gpu, const Technique& technique, const ParameterValues& values, Setup setup,
+                    Precision precision = Precision::float32)
 {
     const size_t pixels   = setup.gbuffer.depth.size();
     const size_t capacity = setup.rays.empty() ? pixels : setup.rays.size();
     Stage        stage{std::move(setup), nullptr};
-    stage.tracer = make_ray_tracer(gpu, upload_gbuffer(gpu, stage.setup.gbuffer), technique, values, stage.setup.settings, capacity, precision);
+    stage.tracer = make_ray_tracer(gpu, upload_gbuffer(gpu, stage.setup.gbuffer), technique, values,
+                                   stage.setup.settings, capacity, precision);
     if (stage.setup.rays.empty()) stage.setup.rays = set_up_rays(gpu, *stage.tracer);
     return stage;
 }
@@ -37,7 +39,8 @@ bool same_answer(const RayOutcome& a, const RayOutcome& b, bool compare_t)
 
 std::string text(const RayOutcome& outcome)
 {
-    if (outcome.status != TraceStatus::hit) return std::string(trace_status_names.at(static_cast<size_t>(outcome.status)));
+    if (outcome.status != TraceStatus::hit)
+        return std::string(trace_status_names.at(static_cast<size_t>(outcome.status)));
     return fmt::format("hit ({}, {}) t {:.9g}", outcome.hit_pixel.x, outcome.hit_pixel.y, outcome.t);
 }
 
@@ -46,14 +49,18 @@ void add_to_digest(uint64_t& digest, const RayOutcome& outcome)
     const bool hit    = outcome.status == TraceStatus::hit;
     uint64_t   t_bits = 0;
     std::memcpy(&t_bits, &outcome.t, sizeof(t_bits));
-    const uint64_t pixel = static_cast<uint64_t>(outcome.hit_pixel.x) << 32 | static_cast<uint64_t>(outcome.hit_pixel.y);
-    for (const uint64_t word : {static_cast<uint64_t>(outcome.status), hit ? pixel : 0, hit ? t_bits : 0, static_cast<uint64_t>(outcome.steps)}) digest = (digest ^ word) * 0x100000001b3ULL;
+    const uint64_t pixel =
+        static_cast<uint64_t>(outcome.hit_pixel.x) << 32 | static_cast<uint64_t>(outcome.hit_pixel.y);
+    for (const uint64_t word : {static_cast<uint64_t>(outcome.status), hit ? pixel : 0, hit ? t_bits : 0,
+                                static_cast<uint64_t>(outcome.steps)})
+        digest = (digest ^ word) * 0x100000001b3ULL;
 }
 
 /// One run of one technique on one case; collects the row.
 class CaseRun {
 public:
-    CaseRun(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case, CaseRow& row)
+    CaseRun(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case,
+            CaseRow& row)
         : gpu_(gpu), technique_(technique), values_(values), case_(hard_case), row_(row)
     {
         if (case_.adjust) case_.adjust(technique_, values_);
@@ -63,14 +70,16 @@ public:
     {
         const std::vector<Setup> setups = case_.setups();
         for (setup_index_ = 0; setup_index_ < setups.size(); ++setup_index_) {
-            label_                = setups[setup_index_].label;
-            Stage             stage = put_on_device(gpu_, technique_, values_, setups[setup_index_]);
-            const Outcomes    outcomes = trace_rays(gpu_, *stage.tracer, stage.setup.rays);
+            label_                  = setups[setup_index_].label;
+            Stage          stage    = put_on_device(gpu_, technique_, values_, setups[setup_index_]);
+            const Outcomes outcomes = trace_rays(gpu_, *stage.tracer, stage.setup.rays);
             judge_rays(stage.setup, outcomes);
-            if (trace_rays(gpu_, *stage.tracer, stage.setup.rays) != outcomes) report(0, "a second run gives other bits");
+            if (trace_rays(gpu_, *stage.tracer, stage.setup.rays) != outcomes)
+                report(0, "a second run gives other bits");
             compare_mirrored(stage, outcomes);
             if (technique_.exact)
-                for (const Relation& relation : case_.relations) compare_related(setups[setup_index_], outcomes, relation);
+                for (const Relation& relation : case_.relations)
+                    compare_related(setups[setup_index_], outcomes, relation);
             if (options.double_precision && gpu_.info.float64) compare_precision(stage.setup, outcomes);
         }
     }
@@ -82,17 +91,22 @@ private:
     {
         ++row_.breaks;
         if (row_.findings.size() < most_findings)
-            row_.findings.push_back(fmt::format("{}{}ray {}:{}: {}", label_, label_.empty() ? "" : ", ", setup_index_, ray, what));
+            row_.findings.push_back(
+                fmt::format("{}{}ray {}:{}: {}", label_, label_.empty() ? "" : ", ", setup_index_, ray, what));
     }
 
-    double stated_bound() const { return technique_.bounded_by.empty() ? max_iterations : iteration_bound(technique_, values_); }
+    double stated_bound() const
+    {
+        return technique_.bounded_by.empty() ? max_iterations : iteration_bound(technique_, values_);
+    }
 
     uint32_t step_bound(const Setup& setup) const
     {
         const double stated = stated_bound();
         if (!technique_.exact) return static_cast<uint32_t>(stated);
-        const auto start = values_.find("start_level");
-        double     proven = 2.0 * (setup.gbuffer.view.size_px.x + setup.gbuffer.view.size_px.y - 1) + (start != values_.end() ? start->second : 0);
+        const auto start  = values_.find("start_level");
+        double     proven = 2.0 * (setup.gbuffer.view.size_px.x + setup.gbuffer.view.size_px.y - 1) +
+                        (start != values_.end() ? start->second : 0);
         if (case_.most_steps) proven = std::min(proven, static_cast<double>(case_.most_steps(setup)));
         return static_cast<uint32_t>(std::min(stated, proven));
     }
@@ -114,14 +128,18 @@ private:
                 report(i, broken);
                 continue;
             }
-            if (outcome.steps > bound) report(i, fmt::format("{} iterations, at most {} are proven", outcome.steps, bound));
-            if (outcome.status == TraceStatus::out_of_steps && outcome.steps >= stated_bound()) continue; // a budget that the user chose
-            if (outcome.status == TraceStatus::out_of_steps && technique_.exact) report(i, "out of steps within its budget");
+            if (outcome.steps > bound)
+                report(i, fmt::format("{} iterations, at most {} are proven", outcome.steps, bound));
+            if (outcome.status == TraceStatus::out_of_steps && outcome.steps >= stated_bound())
+                continue; // a budget that the user chose
+            if (outcome.status == TraceStatus::out_of_steps && technique_.exact)
+                report(i, "out of steps within its budget");
             check_expected(setup, i, outcome);
             const Judgement verdict = judge.judge(setup.rays[i], outcome, claim);
             row_.slivers += verdict.verdict == Verdict::sliver;
             row_.allowed += verdict.verdict == Verdict::allowed;
-            if (verdict.verdict != Verdict::sliver) row_.worst_deviation_px = std::max(row_.worst_deviation_px, verdict.deviation_px);
+            if (verdict.verdict != Verdict::sliver)
+                row_.worst_deviation_px = std::max(row_.worst_deviation_px, verdict.deviation_px);
             if (verdict.verdict != Verdict::wrong) continue;
             ++row_.wrong;
             report(i, verdict.reason);
@@ -144,11 +162,13 @@ private:
         if (!expected) return;
         const glm::dvec2 end(setup.rays[i].origin_px_depth + setup.rays[i].delta_px_depth);
         if (expected->end_px && !(glm::distance(end, *expected->end_px) < 1e-3))
-            report(i, fmt::format("set up to end at ({:.6f}, {:.6f}), expected ({:.6f}, {:.6f})", end.x, end.y, expected->end_px->x, expected->end_px->y));
+            report(i, fmt::format("set up to end at ({:.6f}, {:.6f}), expected ({:.6f}, {:.6f})", end.x, end.y,
+                                  expected->end_px->x, expected->end_px->y));
         if (!technique_.exact || !expected->status) return; // the judge allows for a technique's limits
         const bool pixel_right = !expected->pixel || outcome.hit_pixel == *expected->pixel;
         const bool t_right     = !expected->t || std::abs(outcome.t - *expected->t) < 1e-4;
-        if (outcome.status == expected->status && (outcome.status != TraceStatus::hit || (pixel_right && t_right))) return;
+        if (outcome.status == expected->status && (outcome.status != TraceStatus::hit || (pixel_right && t_right)))
+            return;
         RayOutcome wanted{*expected->status, expected->pixel.value_or(glm::ivec2(-1)), expected->t.value_or(-1)};
         report(i, fmt::format("{}, but the closed form says {}", text(outcome), text(wanted)));
     }
@@ -166,9 +186,11 @@ private:
                 const RayOutcome back = mirrored(answers[i], stage.setup.gbuffer.view.size_px, axis);
                 if (same_answer(back, outcomes[i], true)) continue;
                 if (technique_.exact)
-                    report(i, fmt::format("{}, but its mirror image in {} says {}", text(outcomes[i]), axis == 0 ? "x" : "y", text(back)));
+                    report(i, fmt::format("{}, but its mirror image in {} says {}", text(outcomes[i]),
+                                          axis == 0 ? "x" : "y", text(back)));
                 else if (judge.judge(other.rays[i], answers[i], claim_of(technique_)).verdict == Verdict::wrong)
-                    report(i, fmt::format("its mirror image in {} is wrong: {}", axis == 0 ? "x" : "y", text(answers[i])));
+                    report(i,
+                           fmt::format("its mirror image in {} is wrong: {}", axis == 0 ? "x" : "y", text(answers[i])));
             }
         }
     }
@@ -192,27 +214,28 @@ private:
     {
         const Stage    stage   = put_on_device(gpu_, technique_, values_, setup, Precision::float64);
         const Outcomes answers = trace_rays(gpu_, *stage.tracer, stage.setup.rays);
-        for (size_t i = 0; i < answers.size(); ++i) row_.precision_changes += !same_answer(answers[i], outcomes[i], false);
+        for (size_t i = 0; i < answers.size(); ++i)
+            row_.precision_changes += !same_answer(answers[i], outcomes[i], false);
     }
 
-    Gpu&                   gpu_;
-    const Technique&       technique_;
-    ParameterValues        values_;
-    const HardCase&        case_;
-    CaseRow&               row_;
-    std::string            label_;
-    size_t                 setup_index_ = 0;
+    Gpu&             gpu_;
+    const Technique& technique_;
+    ParameterValues  values_;
+    const HardCase&  case_;
+    CaseRow&         row_;
+    std::string      label_;
+    size_t           setup_index_ = 0;
 };
 
 } // namespace
 
-CaseRow run_case(Gpu& gpu, const Technique& technique, const ParameterValues& values, const std::string& family, const HardCase& hard_case,
-                 const CheckOptions& options)
+CaseRow run_case(Gpu& gpu, const Technique& technique, const ParameterValues& values, const std::string& family,
+                 const HardCase& hard_case, const CheckOptions& options)
 {
     CaseRow row;
-    row.family     = family;
-    row.case_name  = hard_case.name;
-    row.technique  = technique.id;
+    row.family       = family;
+    row.case_name    = hard_case.name;
+    row.technique    = technique.id;
     const auto start = std::chrono::steady_clock::now();
     CaseRun(gpu, technique, values, hard_case, row).run(options);
     row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -226,30 +249,41 @@ uint64_t digest_of(Gpu& gpu, const Technique& technique, const ParameterValues& 
     uint64_t digest = 0;
     for (Setup& setup : hard_case.setups()) {
         const Stage stage = put_on_device(gpu, technique, adjusted, std::move(setup));
-        for (const RayOutcome& outcome : trace_rays(gpu, *stage.tracer, stage.setup.rays)) add_to_digest(digest, outcome);
+        for (const RayOutcome& outcome : trace_rays(gpu, *stage.tracer, stage.setup.rays))
+            add_to_digest(digest, outcome);
     }
     return digest;
 }
 
-std::string describe_ray(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case, size_t setup_index, size_t ray_index)
+std::string describe_ray(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case,
+                         size_t setup_index, size_t ray_index)
 {
     std::vector<Setup> setups = hard_case.setups();
-    if (setup_index >= setups.size()) throw_spec_error("case '{}' has {} setups, numbered from 0", hard_case.name, setups.size());
+    if (setup_index >= setups.size())
+        throw_spec_error("case '{}' has {} setups, numbered from 0", hard_case.name, setups.size());
     const Stage stage = put_on_device(gpu, technique, values, setups[setup_index]);
-    if (ray_index >= stage.setup.rays.size()) throw_spec_error("setup {} of '{}' has {} rays, numbered from 0", setup_index, hard_case.name, stage.setup.rays.size());
+    if (ray_index >= stage.setup.rays.size())
+        throw_spec_error("setup {} of '{}' has {} rays, numbered from 0", setup_index, hard_case.name,
+                         stage.setup.rays.size());
     const RayInput   ray     = stage.setup.rays[ray_index];
     const RayOutcome outcome = trace_rays(gpu, *stage.tracer, std::span(&ray, 1))[0];
     const Judge      judge(stage.setup);
-    std::string      out = fmt::format("{} ({})\nray {}:{} of pixel ({}, {}): from ({:.9g}, {:.9g}) depth {:.9g} by ({:.9g}, {:.9g}) depth {:.9g}, {:.9g} m\n", hard_case.name,
-                                       hard_case.breaks, setup_index, ray_index, ray.pixel.x, ray.pixel.y, ray.origin_px_depth.x, ray.origin_px_depth.y,
-                                       ray.origin_px_depth.z, ray.delta_px_depth.x, ray.delta_px_depth.y, ray.delta_px_depth.z, ray.length_m);
+    std::string      out = fmt::format("{} ({})\nray {}:{} of pixel ({}, {}): from ({:.9g}, {:.9g}) depth {:.9g} by "
+                                            "({:.9g}, {:.9g}) depth {:.9g}, {:.9g} m\n",
+                                       hard_case.name, hard_case.breaks, setup_index, ray_index, ray.pixel.x, ray.pixel.y,
+                                       ray.origin_px_depth.x, ray.origin_px_depth.y, ray.origin_px_depth.z,
+                                       ray.delta_px_depth.x, ray.delta_px_depth.y, ray.delta_px_depth.z, ray.length_m);
     for (const Visit& v : judge.walk(ray))
-        out += fmt::format("  ({:5}, {:5})  t {:.9f} … {:.9f}  depth {:.9f} … {:.9f}  slab {:.9f} … {:.9f}  {:.4f} px inside{}\n", v.pixel.x, v.pixel.y, v.t_in, v.t_out, v.z_in,
-                           v.z_out, v.front, v.back, depth_inside_px(ray, v), v.contact >= 0 ? "  touches" : "");
-    out += fmt::format("{}: {} after {} iterations\nexactly: {}\n", technique.id, text(outcome), outcome.steps, text(judge.exact_answer(ray)));
-    const std::string broken = judge.broken_invariant(ray, outcome);
+        out += fmt::format(
+            "  ({:5}, {:5})  t {:.9f} … {:.9f}  depth {:.9f} … {:.9f}  slab {:.9f} … {:.9f}  {:.4f} px inside{}\n",
+            v.pixel.x, v.pixel.y, v.t_in, v.t_out, v.z_in, v.z_out, v.front, v.back, depth_inside_px(ray, v),
+            v.contact >= 0 ? "  touches" : "");
+    out += fmt::format("{}: {} after {} iterations\nexactly: {}\n", technique.id, text(outcome), outcome.steps,
+                       text(judge.exact_answer(ray)));
+    const std::string broken  = judge.broken_invariant(ray, outcome);
     const Judgement   verdict = judge.judge(ray, outcome, claim_of(technique));
-    return out + (broken.empty() ? verdict.reason.empty() ? "right, or within what it claims\n" : verdict.reason + "\n" : broken + "\n");
+    return out + (broken.empty() ? verdict.reason.empty() ? "right, or within what it claims\n" : verdict.reason + "\n"
+                                 : broken + "\n");
 }
 
 } // namespace ssrlab

@@ -8,30 +8,31 @@ namespace ssrlab {
 
 /// A row of the table.
 struct CaseRow {
-    std::string family, case_name, technique;
-    size_t      rays = 0;
-    size_t      wrong = 0, slivers = 0, allowed = 0; // of rays; allowed: missed within the declared limits
-    double      worst_deviation_px = 0;
-    size_t      non_finite = 0, out_of_steps = 0;
-    uint32_t    most_steps = 0;
-    size_t      precision_changes = 0; // rays whose status or pixel differ between float and double
-    double      seconds           = 0;
-    uint64_t    digest            = 0; // of all outcomes, to compare runs
-    size_t      breaks            = 0; // claims broken: wrong rays, invariants, relations
-    std::vector<std::string> findings = {}; // the first few, each naming its setup and ray
+    std::string              family, case_name, technique;
+    size_t                   rays  = 0;
+    size_t                   wrong = 0, slivers = 0, allowed = 0; // of rays; allowed: missed within the declared limits
+    double                   worst_deviation_px = 0;
+    size_t                   non_finite = 0, out_of_steps = 0;
+    uint32_t                 most_steps        = 0;
+    size_t                   precision_changes = 0; // rays whose status or pixel differ between float and double
+    double                   seconds           = 0;
+    uint64_t                 digest            = 0;  // of all outcomes, to compare runs
+    size_t                   breaks            = 0;  // claims broken: wrong rays, invariants, relations
+    std::vector<std::string> findings          = {}; // the first few, each naming its setup and ray
 };
 
 struct CheckOptions {
     bool double_precision = true; // fill precision_changes
 };
 
-CaseRow run_case(Gpu& gpu, const Technique& technique, const ParameterValues& values, const std::string& family, const HardCase& hard_case,
-                 const CheckOptions& options = {});
+CaseRow run_case(Gpu& gpu, const Technique& technique, const ParameterValues& values, const std::string& family,
+                 const HardCase& hard_case, const CheckOptions& options = {});
 
 /// The digest that run_case would give, and nothing else.
 uint64_t digest_of(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case);
 
 /// A ray in words: its numbers, the pixels it visits, what is there, what the technique said and what is right.
-std::string describe_ray(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case, size_t setup, size_t ray);
+std::string describe_ray(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case,
+                         size_t setup, size_t ray);
 
 } // namespace ssrlab

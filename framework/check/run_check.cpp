@@ -16,7 +16,8 @@ const HardCase& find_case(const std::string& name)
     throw SpecError(unknown_name("hard case", name, known));
 }
 
-std::vector<CaseRow> run_check(Gpu& gpu, Gpu* robust, const CheckRequest& request, const std::function<void(const CaseRow&)>& on_row)
+std::vector<CaseRow> run_check(Gpu& gpu, Gpu* robust, const CheckRequest& request,
+                               const std::function<void(const CaseRow&)>& on_row)
 {
     if (!request.only_case.empty()) find_case(request.only_case);
     std::vector<CaseRow> rows;
@@ -25,10 +26,11 @@ std::vector<CaseRow> run_check(Gpu& gpu, Gpu* robust, const CheckRequest& reques
             if (!request.only_case.empty() && hard_case.name != request.only_case) continue;
             for (const Technique& technique : request.techniques) {
                 const ParameterValues values = default_values(technique);
-                CaseRow               row    = run_case(gpu, technique, values, family.name, hard_case, request.options);
+                CaseRow               row = run_case(gpu, technique, values, family.name, hard_case, request.options);
                 if (robust != nullptr && digest_of(*robust, technique, values, hard_case) != row.digest) {
                     ++row.breaks;
-                    row.findings.push_back("robust buffer access changes what rays find: something is read outside its bounds");
+                    row.findings.push_back(
+                        "robust buffer access changes what rays find: something is read outside its bounds");
                 }
                 on_row(row);
                 rows.push_back(row);
@@ -47,7 +49,8 @@ std::vector<std::string> check_refusals()
                 accepted.push_back(fmt::format("{} {}: was accepted", family.name, refused.name));
             } catch (const SpecError& error) {
                 if (std::string(error.what()).find(refused.named) == std::string::npos)
-                    accepted.push_back(fmt::format("{} {}: the message does not name {}: {}", family.name, refused.name, refused.named, error.what()));
+                    accepted.push_back(fmt::format("{} {}: the message does not name {}: {}", family.name, refused.name,
+                                                   refused.named, error.what()));
             }
         }
     return accepted;

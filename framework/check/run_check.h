@@ -13,7 +13,8 @@ struct CheckRequest {
 
 /// Calls `on_row` after each case. With a `robust` device (robust buffer access on), its answers must be the same bits.
 /// Throws SpecError for a case that does not exist.
-std::vector<CaseRow> run_check(Gpu& gpu, Gpu* robust, const CheckRequest& request, const std::function<void(const CaseRow&)>& on_row);
+std::vector<CaseRow> run_check(Gpu& gpu, Gpu* robust, const CheckRequest& request,
+                               const std::function<void(const CaseRow&)>& on_row);
 
 /// Attempts what must be refused; a line for each that was not.
 std::vector<std::string> check_refusals();

@@ -90,7 +90,8 @@ Shape box(glm::dvec3 low, glm::dvec3 high)
         double s_in = 0, s_out = infinity;
         int    side = -1;
         for (int axis = 0; axis < 3; ++axis) {
-            const double a = (low[axis] - origin[axis]) / direction[axis], b = (high[axis] - origin[axis]) / direction[axis];
+            const double a = (low[axis] - origin[axis]) / direction[axis],
+                         b = (high[axis] - origin[axis]) / direction[axis];
             if (direction[axis] == 0 && (origin[axis] < low[axis] || origin[axis] > high[axis])) return std::nullopt;
             if (direction[axis] == 0) continue;
             if (std::min(a, b) > s_in) side = axis;
@@ -109,12 +110,12 @@ GBufferImage picture_of(const View& view, const std::vector<Shape>& shapes)
     GBufferImage image = empty_picture(view);
     for (int y = 0; y < view.size_px.y; ++y)
         for (int x = 0; x < view.size_px.x; ++x) {
-            const auto       i      = static_cast<size_t>(y * view.size_px.x + x);
+            const auto       i        = static_cast<size_t>(y * view.size_px.x + x);
             const bool       from_eye = view.projection == Projection::perspective;
-            const glm::dvec3 point  = px_to_vs(view, glm::dvec2(x, y) + 0.5, distance_to_depth(view, 1.0));
-            const glm::dvec3 origin = from_eye ? glm::dvec3(0) : glm::dvec3(point.x, point.y, 0);
-            const glm::dvec3 along  = from_eye ? point : glm::dvec3(0, 0, -1); // s = distance
-            double           nearest = infinity;
+            const glm::dvec3 point    = px_to_vs(view, glm::dvec2(x, y) + 0.5, distance_to_depth(view, 1.0));
+            const glm::dvec3 origin   = from_eye ? glm::dvec3(0) : glm::dvec3(point.x, point.y, 0);
+            const glm::dvec3 along    = from_eye ? point : glm::dvec3(0, 0, -1); // s = distance
+            double           nearest  = infinity;
             for (const Shape& shape : shapes) {
                 const auto found = shape(origin, along);
                 if (!found || found->s >= nearest || found->s < view.near_m) continue;
@@ -133,7 +134,8 @@ GBufferImage picture_of(const View& view, const DistanceOfPixel& distance_m)
         for (int x = 0; x < view.size_px.x; ++x) {
             const double distance = distance_m({x, y});
             if (distance > 0 && distance < infinity)
-                image.depth[static_cast<size_t>(y * view.size_px.x + x)] = static_cast<float>(distance_to_depth(view, distance));
+                image.depth[static_cast<size_t>(y * view.size_px.x + x)] =
+                    static_cast<float>(distance_to_depth(view, distance));
         }
     return image;
 }
@@ -142,8 +144,9 @@ RayInput ray_between(const View& view, glm::dvec3 from_px_distance, glm::dvec3 t
 {
     const glm::dvec3 from(from_px_distance.x, from_px_distance.y, distance_to_depth(view, from_px_distance.z));
     const glm::dvec3 to(to_px_distance.x, to_px_distance.y, distance_to_depth(view, to_px_distance.z));
-    const double     length = glm::distance(px_to_vs(view, glm::dvec2(from), from.z), px_to_vs(view, glm::dvec2(to), to.z));
-    return rounded_to_float({from, to - from, length, TraceStatus::left_screen, glm::ivec2(glm::floor(glm::dvec2(from)))});
+    const double length = glm::distance(px_to_vs(view, glm::dvec2(from), from.z), px_to_vs(view, glm::dvec2(to), to.z));
+    return rounded_to_float(
+        {from, to - from, length, TraceStatus::left_screen, glm::ivec2(glm::floor(glm::dvec2(from)))});
 }
 
 RayInput level_ray(const View& view, glm::dvec2 from_px, glm::dvec2 delta_px, double distance_m)
@@ -162,9 +165,9 @@ RayInput rounded_to_float(const RayInput& ray)
 
 Setup mirrored(const Setup& setup, int axis)
 {
-    Setup        result = setup;
-    View&        view   = result.gbuffer.view;
-    const double size   = view.size_px[axis];
+    Setup        result  = setup;
+    View&        view    = result.gbuffer.view;
+    const double size    = view.size_px[axis];
     view.centre_px[axis] = size - view.centre_px[axis];
     mirror_pixels(result.gbuffer.depth, view.size_px, axis);
     mirror_pixels(result.gbuffer.normal_vs, view.size_px, axis);
@@ -186,8 +189,8 @@ RayOutcome mirrored(RayOutcome outcome, glm::ivec2 size_px, int axis)
 
 bool mirrors_exactly(const RayInput& ray, glm::ivec2 size_px, int axis)
 {
-    const auto origin   = static_cast<float>(ray.origin_px_depth[axis]);
-    const auto size     = static_cast<float>(size_px[axis]);
+    const auto origin    = static_cast<float>(ray.origin_px_depth[axis]);
+    const auto size      = static_cast<float>(size_px[axis]);
     const bool no_border = std::floor(origin) != origin && origin > 0 && origin < size;
     return no_border && static_cast<double>(size - origin) == static_cast<double>(size) - static_cast<double>(origin);
 }

@@ -54,6 +54,6 @@ RayInput rounded_to_float(const RayInput& ray);
 Setup      mirrored(const Setup& setup, int axis);
 RayOutcome mirrored(RayOutcome outcome, glm::ivec2 size_px, int axis);
 /// False where the mirrored ray is another ray: its origin rounds differently, or lies on a border and so belongs to one side.
-bool       mirrors_exactly(const RayInput& ray, glm::ivec2 size_px, int axis);
+bool mirrors_exactly(const RayInput& ray, glm::ivec2 size_px, int axis);
 
 } // namespace ssrlab

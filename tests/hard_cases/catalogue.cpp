@@ -11,10 +11,7 @@
 namespace ssrlab::test {
 namespace {
 
-const CaseFamily& family(const std::string& name)
-{
-    return *std::ranges::find(hard_cases(), name, &CaseFamily::name);
-}
+const CaseFamily& family(const std::string& name) { return *std::ranges::find(hard_cases(), name, &CaseFamily::name); }
 
 class Catalogue : public testing::TestWithParam<std::string> {};
 
@@ -40,7 +37,8 @@ TEST_P(Catalogue, TechniquesHoldWhatTheyClaim)
         run_check(device(), &robust, {list_techniques({}), hard_case.name, {}}, [&](const CaseRow& row) {
             EXPECT_EQ(row.non_finite, 0U);
             if (known_defect(row)) {
-                EXPECT_GT(row.breaks, 0U) << row.technique << " holds " << row.case_name << " now: take it off the list of known defects";
+                EXPECT_GT(row.breaks, 0U)
+                    << row.technique << " holds " << row.case_name << " now: take it off the list of known defects";
             } else if (row.technique != "linear_binary") {
                 EXPECT_EQ(row.breaks, 0U) << table_line(row) << "\n" << table_findings(row);
             }
@@ -57,7 +55,8 @@ TEST_P(Catalogue, ClosedFormsAgreeWithTheContract)
         size_t answered = 0;
         for (ssrlab::Setup setup : hard_case.setups()) {
             if (setup.rays.empty()) {
-                const auto tracer = make_ray_tracer(device(), upload_gbuffer(device(), setup.gbuffer), walk, default_values(walk), setup.settings, setup.gbuffer.depth.size());
+                const auto tracer = make_ray_tracer(device(), upload_gbuffer(device(), setup.gbuffer), walk,
+                                                    default_values(walk), setup.settings, setup.gbuffer.depth.size());
                 setup.rays        = set_up_rays(device(), *tracer);
             }
             const Judge judge(setup);
@@ -66,8 +65,10 @@ TEST_P(Catalogue, ClosedFormsAgreeWithTheContract)
                 if (!expected || !expected->status) continue;
                 ++answered;
                 const RayOutcome exact = judge.exact_answer(ray);
-                ASSERT_EQ(exact.status, *expected->status) << hard_case.name << " " << setup.label << " ray of (" << ray.pixel.x << ", " << ray.pixel.y << ")";
-                ASSERT_EQ(exact.hit_pixel, expected->pixel.value_or(exact.hit_pixel)) << hard_case.name << " " << setup.label;
+                ASSERT_EQ(exact.status, *expected->status)
+                    << hard_case.name << " " << setup.label << " ray of (" << ray.pixel.x << ", " << ray.pixel.y << ")";
+                ASSERT_EQ(exact.hit_pixel, expected->pixel.value_or(exact.hit_pixel))
+                    << hard_case.name << " " << setup.label;
                 ASSERT_NEAR(exact.t, expected->t.value_or(exact.t), 1e-4) << hard_case.name << " " << setup.label;
             }
         }
@@ -77,7 +78,8 @@ TEST_P(Catalogue, ClosedFormsAgreeWithTheContract)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Families, Catalogue, testing::ValuesIn(family_names()), [](const testing::TestParamInfo<std::string>& family_info) { return family_info.param; });
+INSTANTIATE_TEST_SUITE_P(Families, Catalogue, testing::ValuesIn(family_names()),
+                         [](const testing::TestParamInfo<std::string>& family_info) { return family_info.param; });
 
 TEST(CatalogueEntries, RefusesWhatCannotWork) { EXPECT_THAT(check_refusals(), testing::IsEmpty()); }
 
@@ -90,7 +92,8 @@ TEST(CatalogueEntries, NamesAreUniqueAndEveryEntryExplainsItself)
             EXPECT_GT(c.breaks.size(), 20U) << c.name;
             EXPECT_GT(c.answer.size(), 20U) << c.name;
         }
-    EXPECT_THAT([] { find_case("grasing"); }, testing::ThrowsMessage<SpecError>(testing::HasSubstr("did you mean 'grazing'?")));
+    EXPECT_THAT([] { find_case("grasing"); },
+                testing::ThrowsMessage<SpecError>(testing::HasSubstr("did you mean 'grazing'?")));
 }
 
 } // namespace

@@ -18,7 +18,8 @@ const Technique& fragile(const std::string& id)
 
 CaseRow check(const std::string& id, const std::string& case_name)
 {
-    return run_case(device(), fragile(id), default_values(fragile(id)), "", find_case(case_name), {.double_precision = false});
+    return run_case(device(), fragile(id), default_values(fragile(id)), "", find_case(case_name),
+                    {.double_precision = false});
 }
 
 /// Rays per million whose answer differs from the integers', in one field of the random campaign; corners touched in a point do not count.
@@ -28,9 +29,9 @@ double wrong_per_million(const std::string& id, Field field, glm::ivec2 size_px,
     const auto          gbuffer = upload_depth(device(), setup.gbuffer.view, setup.gbuffer.depth);
     const auto          rays    = random_rays(size_px, 100'000, 11);
     const Technique&    t       = fragile(id);
-    const auto          tracer  = make_ray_tracer(device(), gbuffer, t, values_of(t, changed), campaign_settings, rays.size());
-    const auto          found   = trace_rays(device(), *tracer, rays);
-    size_t              wrong   = 0;
+    const auto tracer = make_ray_tracer(device(), gbuffer, t, values_of(t, changed), campaign_settings, rays.size());
+    const auto found  = trace_rays(device(), *tracer, rays);
+    size_t     wrong  = 0;
     for (size_t i = 0; i < rays.size(); ++i) {
         const OracleAnswer exact = integer_oracle(setup.gbuffer, rays[i]);
         const bool         hit   = found[i].status == TraceStatus::hit;
@@ -38,7 +39,8 @@ double wrong_per_million(const std::string& id, Field field, glm::ivec2 size_px,
         wrong += !(hit && passes_through_a_corner(rays[i], found[i].hit_pixel));
     }
     const double rate = 1e6 * static_cast<double>(wrong) / static_cast<double>(rays.size());
-    fmt::print("{} on field {} at {}x{}: {:.0f} rays a million wrong\n", id, static_cast<int>(field), size_px.x, size_px.y, rate);
+    fmt::print("{} on field {} at {}x{}: {:.0f} rays a million wrong\n", id, static_cast<int>(field), size_px.x,
+               size_px.y, rate);
     return rate;
 }
 
@@ -53,7 +55,8 @@ TEST(Fragile, AnEpsilonOfTheImageLosesAxisAlignedRays)
 TEST(Fragile, AnEpsilonCutsCornersMoreOftenTheLargerTheImage)
 {
     EXPECT_EQ(wrong_per_million("dda", Field::poles, {1920, 1080}), 0);
-    const double pixel = wrong_per_million("epsilon_pixel", Field::poles, {1920, 1080}), uv = wrong_per_million("epsilon_uv", Field::poles, {1920, 1080});
+    const double pixel = wrong_per_million("epsilon_pixel", Field::poles, {1920, 1080}),
+                 uv    = wrong_per_million("epsilon_uv", Field::poles, {1920, 1080});
     EXPECT_GT(pixel, 300);
     EXPECT_GT(uv, 10 * pixel) << "1e-5 of 1920 px is four times 0.005 px, and axis-aligned rays are lost";
     EXPECT_GT(wrong_per_million("epsilon_pixel", Field::sparse_poles, {16384, 64}), 100);

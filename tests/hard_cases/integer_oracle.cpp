@@ -29,7 +29,7 @@ struct Axis {
         const int64_t way = border * px_steps - origin;
         return delta > 0 ? Crossing{way, delta} : Crossing{-way, -delta};
     }
-    int step() const { return delta > 0 ? 1 : delta < 0 ? -1 : 0; }
+    int      step() const { return delta > 0 ? 1 : delta < 0 ? -1 : 0; }
     Crossing leaves(int pixel) const { return of_border(delta > 0 ? pixel + 1 : pixel); }
 };
 
@@ -47,11 +47,13 @@ Wide depth_times_d(int64_t origin, int64_t delta, Crossing at) { return Wide(ori
 
 OracleAnswer integer_oracle(const GBufferImage& gbuffer, const RayInput& ray)
 {
-    const std::array<Axis, 2> axes = {Axis{exact(ray.origin_px_depth.x, px_steps), exact(ray.delta_px_depth.x, px_steps)},
-                                      Axis{exact(ray.origin_px_depth.y, px_steps), exact(ray.delta_px_depth.y, px_steps)}};
-    const int64_t    origin_z = exact(ray.origin_px_depth.z, depth_steps), delta_z = exact(ray.delta_px_depth.z, depth_steps);
-    const glm::ivec2 size     = gbuffer.view.size_px;
-    glm::ivec2       pixel    = glm::min(glm::ivec2(axes[0].origin / px_steps, axes[1].origin / px_steps), size - 1);
+    const std::array<Axis, 2> axes = {
+        Axis{exact(ray.origin_px_depth.x, px_steps), exact(ray.delta_px_depth.x, px_steps)},
+        Axis{exact(ray.origin_px_depth.y, px_steps), exact(ray.delta_px_depth.y, px_steps)}};
+    const int64_t origin_z = exact(ray.origin_px_depth.z, depth_steps),
+                  delta_z  = exact(ray.delta_px_depth.z, depth_steps);
+    const glm::ivec2 size  = gbuffer.view.size_px;
+    glm::ivec2       pixel = glm::min(glm::ivec2(axes[0].origin / px_steps, axes[1].origin / px_steps), size - 1);
 
     Crossing x = axes[0].leaves(pixel.x), y = axes[1].leaves(pixel.y);
     Crossing at = before_or_with(x, y) ? x : y;
@@ -59,11 +61,13 @@ OracleAnswer integer_oracle(const GBufferImage& gbuffer, const RayInput& ray)
         if (before_or_with(x, at)) pixel.x += axes[0].step();
         if (before_or_with(y, at)) pixel.y += axes[1].step();
         if (pixel.x < 0 || pixel.y < 0 || pixel.x >= size.x || pixel.y >= size.y) break;
-        x                 = axes[0].leaves(pixel.x);
-        y                 = axes[1].leaves(pixel.y);
-        Crossing out      = before_or_with(x, y) ? x : y;
+        x            = axes[0].leaves(pixel.x);
+        y            = axes[1].leaves(pixel.y);
+        Crossing out = before_or_with(x, y) ? x : y;
         if (beyond_end(out)) out = {1, 1};
-        const auto front = static_cast<int64_t>(gbuffer.depth[static_cast<size_t>(pixel.y) * static_cast<size_t>(size.x) + static_cast<size_t>(pixel.x)] * depth_steps);
+        const auto front = static_cast<int64_t>(
+            gbuffer.depth[static_cast<size_t>(pixel.y) * static_cast<size_t>(size.x) + static_cast<size_t>(pixel.x)] *
+            depth_steps);
         if (front > 0) {
             const Wide z_in = depth_times_d(origin_z, delta_z, at), z_out = depth_times_d(origin_z, delta_z, out);
             const bool in_front_of_back = 2 * z_in >= Wide(front) * at.d || 2 * z_out >= Wide(front) * out.d;
@@ -77,10 +81,13 @@ OracleAnswer integer_oracle(const GBufferImage& gbuffer, const RayInput& ray)
 
 bool passes_through_a_corner(const RayInput& ray, glm::ivec2 pixel)
 {
-    const Axis x{exact(ray.origin_px_depth.x, px_steps), exact(ray.delta_px_depth.x, px_steps)}, y{exact(ray.origin_px_depth.y, px_steps), exact(ray.delta_px_depth.y, px_steps)};
+    const Axis x{exact(ray.origin_px_depth.x, px_steps), exact(ray.delta_px_depth.x, px_steps)},
+        y{exact(ray.origin_px_depth.y, px_steps), exact(ray.delta_px_depth.y, px_steps)};
     for (const int right : {0, 1})
         for (const int below : {0, 1})
-            if (Wide((pixel.x + right) * int64_t(px_steps) - x.origin) * y.delta == Wide((pixel.y + below) * int64_t(px_steps) - y.origin) * x.delta) return true;
+            if (Wide((pixel.x + right) * int64_t(px_steps) - x.origin) * y.delta ==
+                Wide((pixel.y + below) * int64_t(px_steps) - y.origin) * x.delta)
+                return true;
     return false;
 }
 

@@ -14,7 +14,10 @@ using testing::IsEmpty;
 /// Poles at 4 m in columns 20 and 30; a ray at 4.5 m to the right in row 10 from (5.5, 10.5) by 50 px.
 ssrlab::Setup two_poles(double thickness_m = 1)
 {
-    ssrlab::Setup setup{{}, picture_of(bench_view(), [](glm::ivec2 p) { return p.x == 20 || p.x == 30 ? 4.0 : 0.0; }), {.thickness_m = thickness_m, .max_distance_m = 100}, {}};
+    ssrlab::Setup setup{{},
+                        picture_of(bench_view(), [](glm::ivec2 p) { return p.x == 20 || p.x == 30 ? 4.0 : 0.0; }),
+                        {.thickness_m = thickness_m, .max_distance_m = 100},
+                        {}};
     setup.rays = {level_ray(setup.gbuffer.view, {5.5, 10.5}, {50, 0}, 4.5)};
     return setup;
 }
@@ -36,9 +39,11 @@ TEST(Judge, ASkippedSurfaceIsWrongUnlessTheLimitsAllowIt)
 {
     const auto  setup = two_poles();
     const Judge judge(setup);
-    EXPECT_THAT(judge.judge(setup.rays[0], miss(), {}).reason, HasSubstr("the ray meets the slab in (20, 10), 0.500 px inside"));
+    EXPECT_THAT(judge.judge(setup.rays[0], miss(), {}).reason,
+                HasSubstr("the ray meets the slab in (20, 10), 0.500 px inside"));
     EXPECT_EQ(judge.judge(setup.rays[0], hit({30, 10}, 24.5 / 50), {}).verdict, Verdict::wrong);
-    EXPECT_EQ(judge.judge(setup.rays[0], hit({30, 10}, 24.5 / 50), {.may_miss_between_samples = true}).verdict, Verdict::allowed);
+    EXPECT_EQ(judge.judge(setup.rays[0], hit({30, 10}, 24.5 / 50), {.may_miss_between_samples = true}).verdict,
+              Verdict::allowed);
     // Nothing was passed behind before the first pole.
     EXPECT_EQ(judge.judge(setup.rays[0], miss(), {.may_miss_behind_objects = true}).verdict, Verdict::wrong);
 }
@@ -49,12 +54,14 @@ TEST(Judge, AHitThatIsNoneIsWrongWhateverTheLimits)
     const Judge judge(setup);
     for (const bool sampled : {false, true}) {
         const Claim claim{.may_miss_between_samples = sampled, .may_miss_behind_objects = sampled};
-        EXPECT_THAT(judge.judge(setup.rays[0], hit({20, 10}, 14.5 / 50), claim).reason, HasSubstr("does not meet the slab"));
+        EXPECT_THAT(judge.judge(setup.rays[0], hit({20, 10}, 14.5 / 50), claim).reason,
+                    HasSubstr("does not meet the slab"));
         EXPECT_THAT(judge.judge(setup.rays[0], hit({20, 12}, 14.5 / 50), claim).reason, HasSubstr("does not cross"));
         EXPECT_EQ(judge.judge(setup.rays[0], miss(), claim).verdict, Verdict::right);
     }
-    const auto  thick = two_poles();
-    EXPECT_THAT(Judge(thick).judge(thick.rays[0], hit({20, 10}, 0.9), {}).reason, HasSubstr("but the ray is in that pixel from"));
+    const auto thick = two_poles();
+    EXPECT_THAT(Judge(thick).judge(thick.rays[0], hit({20, 10}, 0.9), {}).reason,
+                HasSubstr("but the ray is in that pixel from"));
 }
 
 TEST(Judge, GrazingAPixelByLessThanASliverDecidesNothing)

@@ -29,8 +29,8 @@ public:
         mutant_ = load_technique(folder_ / "mutant");
     }
     ~Mutant() { fs::remove_all(folder_); }
-    Mutant(const Mutant&)            = delete;
-    Mutant& operator=(const Mutant&) = delete;
+    Mutant(const Mutant&)                     = delete;
+    Mutant&          operator=(const Mutant&) = delete;
     const Technique& operator*() const { return mutant_; }
 
 private:
@@ -49,36 +49,60 @@ void PrintTo(const Mutation& mutation, std::ostream* out) { *out << mutation.nam
 const std::string before_trace = "TraceResult trace(Ray ray)\n{";
 
 /// A function put before trace(), and a name that then stands for it.
-Mutation replaced(const std::string& name, const std::string& function, const std::string& text, const std::string& seen_in = {}, const std::string& id = "hiz")
+Mutation replaced(const std::string& name, const std::string& function, const std::string& text,
+                  const std::string& seen_in = {}, const std::string& id = "hiz")
 {
-    return {name, id, before_trace, text + "\n#define " + function + " mutated_" + function + "\n" + before_trace, seen_in};
+    return {name, id, before_trace, text + "\n#define " + function + " mutated_" + function + "\n" + before_trace,
+            seen_in};
 }
 
 std::vector<Mutation> mutations()
 {
     return {
         replaced("PyramidSizesRoundedDown", "touches_cell",
-                 "bool mutated_touches_cell(Ray ray, ivec2 cell, int level, real a, real b) { return all(lessThan(cell, max(size_px >> level, ivec2(1)))) && touches_cell(ray, cell, level, a, b); }",
+                 "bool mutated_touches_cell(Ray ray, ivec2 cell, int level, real a, real b) { return "
+                 "all(lessThan(cell, max(size_px >> level, ivec2(1)))) && touches_cell(ray, cell, level, a, b); }",
                  "last_row_and_column"),
-        replaced("DepthByMix", "depth_at", "real mutated_depth_at(Ray ray, real t) { real end = ray.origin.z + ray.delta.z; precise real z = ray.origin.z * (real(1) - t) + end * t; return z; }", "level_at_the_surface"),
+        replaced("DepthByMix", "depth_at",
+                 "real mutated_depth_at(Ray ray, real t) { real end = ray.origin.z + ray.delta.z; precise real z = "
+                 "ray.origin.z * (real(1) - t) + end * t; return z; }",
+                 "level_at_the_surface"),
         replaced("BordersMultipliedOut", "border_t",
-                 "real2 mutated_border_t(Ray ray, Grid grid, ivec2 border) { return real2(border) * grid.inverse_delta - ray.origin.xy * grid.inverse_delta; }"),
+                 "real2 mutated_border_t(Ray ray, Grid grid, ivec2 border) { return real2(border) * grid.inverse_delta "
+                 "- ray.origin.xy * grid.inverse_delta; }"),
         replaced("BordersByDivision", "border_t",
-                 "real2 mutated_border_t(Ray ray, Grid grid, ivec2 border) { return (real2(border) - ray.origin.xy) / ray.delta.xy; }", "axis_aligned"),
+                 "real2 mutated_border_t(Ray ray, Grid grid, ivec2 border) { return (real2(border) - ray.origin.xy) / "
+                 "ray.delta.xy; }",
+                 "axis_aligned"),
         replaced("MinusZeroIsInfinite", "make_grid",
-                 "Grid mutated_make_grid(Ray ray) { Grid g = make_grid(ray); g.inverse_delta = real2(1) / ray.delta.xy; g.forward = ivec2(greaterThan(ray.delta.xy, real2(0))); return g; }", "signed_zero"),
+                 "Grid mutated_make_grid(Ray ray) { Grid g = make_grid(ray); g.inverse_delta = real2(1) / "
+                 "ray.delta.xy; g.forward = ivec2(greaterThan(ray.delta.xy, real2(0))); return g; }",
+                 "signed_zero"),
         replaced("LessForLessOrEqualAtCorners", "cross_borders",
-                 "ivec2 mutated_cross_borders(Grid grid, ivec2 cell, real2 t_border, real t) { bool x = t_border.x <= t; return cell + ivec2(x, !x) * (2 * grid.forward - 1); }", "exact_diagonal"),
+                 "ivec2 mutated_cross_borders(Grid grid, ivec2 cell, real2 t_border, real t) { bool x = t_border.x <= "
+                 "t; return cell + ivec2(x, !x) * (2 * grid.forward - 1); }",
+                 "exact_diagonal"),
         replaced("LessForLessOrEqualAtChildren", "child_cell",
-                 "ivec2 mutated_child_cell(Ray ray, Grid grid, ivec2 cell, int level, real t) { real2 m = border_t(ray, grid, (2 * cell + 1) << (level - 1)); return 2 * cell + (ivec2(lessThan(m, real2(t))) ^ (1 - grid.forward)); }"),
+                 "ivec2 mutated_child_cell(Ray ray, Grid grid, ivec2 cell, int level, real t) { real2 m = "
+                 "border_t(ray, grid, (2 * cell + 1) << (level - 1)); return 2 * cell + (ivec2(lessThan(m, real2(t))) "
+                 "^ (1 - grid.forward)); }"),
         replaced("PixelFromThePosition", "cross_borders",
-                 "ivec2 mutated_cross_borders(Grid grid, ivec2 cell, real2 t_border, real t) { return cell; }", {}, "dda"),
-        {"BorderlineDepthIsAMiss", "dda", "found      = touches_surface(ray, pixel, depth_at(ray, t_in), depth_at(ray, t_out));",
-         "found = touches_surface(ray, pixel, depth_at(ray, t_in), depth_at(ray, t_out)) && fetch_depth(pixel) > min(depth_at(ray, t_in), depth_at(ray, t_out));", "equality_counts"},
+                 "ivec2 mutated_cross_borders(Grid grid, ivec2 cell, real2 t_border, real t) { return cell; }", {},
+                 "dda"),
+        {"BorderlineDepthIsAMiss", "dda",
+         "found      = touches_surface(ray, pixel, depth_at(ray, t_in), depth_at(ray, t_out));",
+         "found = touches_surface(ray, pixel, depth_at(ray, t_in), depth_at(ray, t_out)) && fetch_depth(pixel) > "
+         "min(depth_at(ray, t_in), depth_at(ray, t_out));",
+         "equality_counts"},
         {"OutOfStepsIsAMiss", "hiz", "out_of_steps(visited)", "miss(ray, visited)", "seven_steps"},
-        {"StopsBehindTheFirstObject", "dda", "while (!found && t_out < grid.t_end", "while (!found && (t_in == real(0) || depth_at(ray, t_out) >= fetch_depth(pixel)) && t_out < grid.t_end", "floating_beam"},
-        {"HitBeyondTheEnd", "dda", "if (found) return hit_between(ray, pixel, t_in, t_out, visited);", "if (found) return hit_at(ray, pixel, t_in + real(1), visited);", "axis_aligned"},
-        {"NotANumber", "dda", "return t_out < grid.t_end ? out_of_steps(visited) : miss(ray, visited);", "return TraceResult(ray.end_status, ivec2(0), sqrt(ray.delta.z - real(1)), visited);", "one_object_in_the_sky"},
+        {"StopsBehindTheFirstObject", "dda", "while (!found && t_out < grid.t_end",
+         "while (!found && (t_in == real(0) || depth_at(ray, t_out) >= fetch_depth(pixel)) && t_out < grid.t_end",
+         "floating_beam"},
+        {"HitBeyondTheEnd", "dda", "if (found) return hit_between(ray, pixel, t_in, t_out, visited);",
+         "if (found) return hit_at(ray, pixel, t_in + real(1), visited);", "axis_aligned"},
+        {"NotANumber", "dda", "return t_out < grid.t_end ? out_of_steps(visited) : miss(ray, visited);",
+         "return TraceResult(ray.end_status, ivec2(0), sqrt(ray.delta.z - real(1)), visited);",
+         "one_object_in_the_sky"},
     };
 }
 
@@ -91,10 +115,16 @@ size_t campaign_differences(const Technique& mutant)
             const ssrlab::Setup setup   = make_field(field, size, 5);
             const auto          gbuffer = upload_depth(device(), setup.gbuffer.view, setup.gbuffer.depth);
             const auto          rays    = random_rays(size, 50'000, 23);
-            const auto trace = [&](const Technique& t) { return trace_rays(device(), *make_ray_tracer(device(), gbuffer, t, default_values(t), campaign_settings, rays.size()), rays); };
+            const auto          trace   = [&](const Technique& t) {
+                return trace_rays(
+                               device(), *make_ray_tracer(device(), gbuffer, t, default_values(t), campaign_settings, rays.size()),
+                               rays);
+            };
             const auto walk = trace(technique("dda")), found = trace(mutant);
             for (size_t i = 0; i < rays.size(); ++i)
-                differ += found[i].status != walk[i].status || (walk[i].status == TraceStatus::hit && (found[i].hit_pixel != walk[i].hit_pixel || found[i].t != walk[i].t));
+                differ += found[i].status != walk[i].status ||
+                          (walk[i].status == TraceStatus::hit &&
+                           (found[i].hit_pixel != walk[i].hit_pixel || found[i].t != walk[i].t));
         }
     return differ;
 }
@@ -110,13 +140,15 @@ TEST_P(Mutations, AreNoticed)
         fmt::print("{}: {} of 400000 rays differ\n", mutation.name, differ);
         EXPECT_GT(differ, 0U);
     } else {
-        const CaseRow row = run_case(device(), *mutant, default_values(*mutant), "", find_case(mutation.seen_in), {.double_precision = false});
+        const CaseRow row = run_case(device(), *mutant, default_values(*mutant), "", find_case(mutation.seen_in),
+                                     {.double_precision = false});
         fmt::print("{}: {} claims broken in {}\n", mutation.name, row.breaks, mutation.seen_in);
         EXPECT_GT(row.breaks, 0U);
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, Mutations, testing::ValuesIn(mutations()), [](const testing::TestParamInfo<Mutation>& mutation) { return mutation.param.name; });
+INSTANTIATE_TEST_SUITE_P(Each, Mutations, testing::ValuesIn(mutations()),
+                         [](const testing::TestParamInfo<Mutation>& mutation) { return mutation.param.name; });
 
 } // namespace
 } // namespace ssrlab::test

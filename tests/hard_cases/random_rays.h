@@ -7,8 +7,8 @@
 
 namespace ssrlab::test {
 
-inline constexpr int    px_steps    = 256;     // positions are multiples of 1/256 px
-inline constexpr int    depth_steps = 1 << 20; // depths are multiples of 2^-20
+inline constexpr int px_steps    = 256;     // positions are multiples of 1/256 px
+inline constexpr int depth_steps = 1 << 20; // depths are multiples of 2^-20
 
 /// The slab's back lies at half the depth, exactly.
 inline constexpr TraceSettings campaign_settings{.thickness_m = 1, .thickness_relative = true, .max_distance_m = 1e9};
