@@ -27,6 +27,10 @@ void main()
     ray.end_status  = unpack_number(ray_pixel[index]);
     ray.start_pixel = clamp(ivec2(floor(ray.origin.xy)), ivec2(0), size_px - 1);
 
+    // A ray that runs exactly along the right or lower image border runs in the last column or row: off the border, it crosses none.
+    bvec2 along_border = bvec2(ray.delta.x == real(0) && ray.origin.x == real(size_px.x), ray.delta.y == real(0) && ray.origin.y == real(size_px.y));
+    ray.origin.xy -= real2(along_border) * real(0.5);
+
     TraceResult result = trace(ray);
     hit_pixel[index]   = pack_pixel(result.pixel, result.status);
     hit_t[index]       = result.t;

@@ -14,23 +14,23 @@ TraceResult trace(Ray ray)
     {
         ++taken;
         t_free        = t;
-        real z_before = z;
         t             = sample_t(ray, taken);
         ended         = t > real(1);
         z             = depth_at(ray, t);
         ivec2 pixel   = pixel_at(ray, t);
-        found         = !ended && pixel != ray.start_pixel && touches_surface(ray, pixel, interval ? z_before : z, z);
+        found         = !ended && pixel != ray.start_pixel && touches_surface(ray, pixel, z, z);
     }
     if (!found) return miss(ray, taken);
 
-    // The bracket: free at t_free, inside a slab (or, with the interval test, beyond its front) at t.
+    // The bracket: free at t_free, a hit at t. Asking for the slab, not just for its front, never moves t out of one.
     for (int k = 0; k < binary_steps; ++k)
     {
-        real  middle = real(0.5) * (t_free + t);
-        ivec2 pixel  = pixel_at(ray, middle);
-        bool  behind = pixel != ray.start_pixel && depth_at(ray, middle) <= fetch_depth(pixel);
-        t_free       = behind ? t_free : middle;
-        t            = behind ? middle : t;
+        real  middle   = real(0.5) * (t_free + t);
+        real  z_middle = depth_at(ray, middle);
+        ivec2 pixel    = pixel_at(ray, middle);
+        bool  touched  = pixel != ray.start_pixel && touches_surface(ray, pixel, z_middle, z_middle);
+        t_free         = touched ? t_free : middle;
+        t              = touched ? middle : t;
     }
     return hit_at(ray, pixel_at(ray, t), t, taken + binary_steps);
 }

@@ -22,26 +22,13 @@ std::vector<std::string> family_names()
     return names;
 }
 
-/// Broken claims that are known and wait for their repair. One that holds again fails the test, so that the list stays true.
-bool known_defect(const CaseRow& row)
-{
-    if (row.case_name == "along_the_image_border") return row.technique == "dda" || row.technique == "hiz";
-    // Its halving looks at fronts only and may end in a pixel that the ray passes behind: in many cases, so here none is checked one by one.
-    return row.technique == "linear_binary" && row.case_name == "floating_beam";
-}
-
 TEST_P(Catalogue, TechniquesHoldWhatTheyClaim)
 {
     static Gpu robust = open_gpu({.device = {}, .validation = true, .robust_buffer_access = true});
     for (const HardCase& hard_case : family(GetParam()).cases)
         run_check(device(), &robust, {list_techniques({}), hard_case.name, {}}, [&](const CaseRow& row) {
             EXPECT_EQ(row.non_finite, 0U);
-            if (known_defect(row)) {
-                EXPECT_GT(row.breaks, 0U)
-                    << row.technique << " holds " << row.case_name << " now: take it off the list of known defects";
-            } else if (row.technique != "linear_binary") {
-                EXPECT_EQ(row.breaks, 0U) << table_line(row) << "\n" << table_findings(row);
-            }
+            EXPECT_EQ(row.breaks, 0U) << table_line(row) << "\n" << table_findings(row);
         });
     EXPECT_THAT(validation_messages(robust), testing::IsEmpty());
 }
