@@ -2,6 +2,7 @@
 
 #include "check/report.h"
 #include "check/run_check.h"
+#include "check/stability.h"
 #include "core/error.h"
 #include "core/files.h"
 
@@ -42,6 +43,20 @@ int show_ray(Gpu& gpu, const std::vector<Technique>& techniques, const HardCaseO
     return 0;
 }
 
+/// Jitter and depth formats, technique by technique; printed as they are written.
+std::string measure_stability(Gpu& gpu, const std::vector<Technique>& techniques)
+{
+    std::vector<JitterRow> jitter;
+    std::vector<FormatRow> formats;
+    for (const Technique& technique : techniques) {
+        jitter.push_back(measure_jitter(gpu, technique));
+        std::ranges::copy(measure_formats(gpu, technique), std::back_inserter(formats));
+    }
+    std::string text = stability_markdown(jitter, formats);
+    std::puts(text.c_str());
+    return text;
+}
+
 } // namespace
 
 int check_techniques(const CommonOptions& common, const HardCaseOptions& options)
@@ -70,7 +85,9 @@ int check_techniques(const CommonOptions& common, const HardCaseOptions& options
         ++broken;
         std::fprintf(stderr, "validation: %s\n", message.c_str());
     }
-    if (!options.markdown.empty()) write_file_atomically(options.markdown, markdown_table(rows));
+    std::string markdown = markdown_table(rows);
+    if (options.stability) markdown += measure_stability(gpu, techniques);
+    if (!options.markdown.empty()) write_file_atomically(options.markdown, markdown);
     std::puts(fmt::format("{} of {} rows hold what the technique claims",
                           std::ranges::count(rows, 0U, &CaseRow::breaks), rows.size())
                   .c_str());

@@ -10,7 +10,8 @@ struct HardCaseOptions {
     std::string only_case;
     std::string ray;      // "SETUP:RAY" of only_case: show it instead
     std::string markdown; // file for the table
-    bool        quick = false;
+    bool        quick     = false;
+    bool        stability = false; // also measure jitter and depth formats
 };
 
 /// 0, or 1 when a technique breaks what it claims.

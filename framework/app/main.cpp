@@ -98,6 +98,7 @@ int main(int argc, char** argv)
     check->add_option("--ray", hard_cases.ray, "SETUP:RAY of the case: show its way, pixel by pixel");
     check->add_option("--markdown", hard_cases.markdown, "Write the table to this file");
     check->add_flag("--quick", hard_cases.quick, "Without double precision and robust buffer access");
+    check->add_flag("--stability", hard_cases.stability, "Also measure sub-pixel jitter and depth formats");
     check->callback([&] { command = [&] { return check_techniques(common, hard_cases); }; });
 
     try {

@@ -1,0 +1,46 @@
+// What cannot be right or wrong, only measured: how answers move when the picture is sampled elsewhere or its depth is stored in another format.
+#pragma once
+
+#include "render/frame.h"
+#include "render/technique.h"
+
+#include <string>
+#include <vector>
+
+namespace ssrlab {
+
+/// 16 sub-pixel phases (Halton 2, 3) of a still camera before the yard of the catalogue's family "motion".
+struct JitterRow {
+    std::string technique;
+    size_t      pixels        = 0; // that reflect in every phase
+    double      flips_percent = 0; // of all answers: hit where the pixel mostly misses, or the other way round
+    double      median_spread_px =
+        0; // standard deviation of a pixel's hit position over the phases in which it hits; median over pixels
+    double p99_spread_px = 0;
+};
+JitterRow measure_jitter(Gpu& gpu, const Technique& technique);
+
+/// The mirror rays of every perspective case of the catalogue, on depth that was stored in a format and imported again.
+struct FormatRow {
+    std::string format, technique;
+    size_t      rays                = 0; // that start in both pictures
+    double      changed_per_million = 0; // hit instead of miss, or the other way round
+    double      moved_per_million   = 0; // hit another pixel
+    double      median_moved_px     = 0; // of those
+    double      p99_moved_px        = 0;
+};
+std::vector<FormatRow> measure_formats(Gpu& gpu, const Technique& technique);
+
+/// A depth format: what becomes of depth near_m / distance_m when it is stored and imported. far_m: of formats with a finite far plane.
+struct DepthFormat {
+    std::string name;
+    int         bits     = 32;    // 32: float, else unsigned normalised
+    bool        reversed = true;  // 1 at the near plane; else 0 there
+    bool        infinite = false; // no far plane
+};
+const std::vector<DepthFormat>& depth_formats();
+float stored_and_imported(const DepthFormat& format, float depth, double near_m, double far_m);
+
+std::string stability_markdown(const std::vector<JitterRow>& jitter, const std::vector<FormatRow>& formats);
+
+} // namespace ssrlab
