@@ -1,12 +1,13 @@
-// Turns the number of rays into the size of the launch that traces them.
+// Turns a number of items into the size of the launch that works on them.
 #include "shared.h"
 
 layout(local_size_x = 1) in;
-layout(set = 0, binding = 0, scalar) readonly buffer RayCount { uint ray_count; };
+layout(set = 0, binding = 0, scalar) readonly buffer ItemCount { uint item_count; };
 layout(set = 0, binding = 1, scalar) writeonly buffer Launch { uvec3 groups; };
+layout(constant_id = CONSTANT_ITEMS_PER_GROUP) const int items_per_group = 1;
 
 void main()
 {
-    uint count = (ray_count + RAYS_PER_GROUP - 1) / RAYS_PER_GROUP;
+    uint count = (item_count + items_per_group - 1) / items_per_group;
     groups     = uvec3(min(count, MAX_GROUPS_X), (count + MAX_GROUPS_X - 1) / MAX_GROUPS_X, 1);
 }

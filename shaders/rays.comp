@@ -1,21 +1,22 @@
 // One ray per reflecting pixel, ready to trace: the screen-space segment clipped to the near plane, the image and the
 // maximum distance (docs/hit_contract.md). Pixels that do not reflect leave no trace in the list.
 #include "view.glsl"
+#include "reflecting.glsl"
 #extension GL_KHR_shader_subgroup_ballot : require
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1;
 layout(constant_id = CONSTANT_RAY_OFFSET_M) const real ray_offset_m = 0;
+layout(constant_id = CONSTANT_EVERY_SURFACE) const int every_surface = 0; // trace what does not reflect, too
 
-layout(set = 0, binding = 1, r32f) uniform readonly image2D depth_image;
-layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image;   // xyz = view-space normal, w = roughness
-layout(set = 0, binding = 3, rgba16f) uniform readonly image2D material_image; // rgb = base colour, a = metallic
 layout(set = 0, binding = 4, scalar) buffer RayCount { uint ray_count; };
 layout(set = 0, binding = 5, scalar) writeonly buffer RayOrigins { real3 ray_origin[]; };
 layout(set = 0, binding = 6, scalar) writeonly buffer RayDeltas { real3 ray_delta[]; };
 layout(set = 0, binding = 7, scalar) writeonly buffer RayLengths { real ray_length_m[]; };
 layout(set = 0, binding = 8, scalar) writeonly buffer RayPixels { uint ray_pixel[]; }; // number = status of a miss
+layout(set = 0, binding = 9, scalar) readonly buffer TileCount { uint tile_count; };
+layout(set = 0, binding = 10, scalar) readonly buffer Tiles { uint tiles[]; }; // x | y << 16, in tiles
 
 struct Segment
 {
@@ -145,25 +146,21 @@ Segment make_segment(ivec2 pixel, real depth, real3 normal)
     return segment;
 }
 
-bool reflects(ivec2 pixel, out real depth, out real3 normal)
+// Scaled by its largest component first: squares of very small or large numbers leave the range of float.
+real3 normal_at(ivec2 pixel)
 {
-    depth        = real(imageLoad(depth_image, pixel).x);
-    vec3  stored = imageLoad(normal_image, pixel).xyz;
+    vec3  stored  = imageLoad(normal_image, pixel).xyz;
     float largest = max(max(abs(stored.x), abs(stored.y)), abs(stored.z));
-    // Scaled by its largest component first: squares of very small or large numbers leave the range of float.
-    real3 scaled = real3(stored) / real(largest > 0.0 ? largest : 1.0);
-    normal       = unit(scaled);
-    bool finite  = largest > 0.0 && !any(isnan(stored)) && !any(isinf(stored));
-    return depth > real(0) && finite && imageLoad(material_image, pixel).a > 0.0;
+    real3 scaled  = real3(stored) / real(largest);
+    return unit(scaled);
 }
 
 void main()
 {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    real  depth;
-    real3 normal;
-    bool  traced = all(lessThan(pixel, size_px));
-    traced       = traced && reflects(pixel, depth, normal);
+    uint index = gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x;
+    if (index >= tile_count) return;
+    ivec2 pixel  = ivec2(tiles[index] & 0xFFFF, tiles[index] >> 16) * 8 + ivec2(gl_LocalInvocationID.xy);
+    bool  traced = all(lessThan(pixel, size_px)) && (every_surface != 0 ? has_surface(pixel) : reflects(pixel));
 
     uvec4 ballot = subgroupBallot(traced);
     uint  first  = 0;
@@ -171,8 +168,8 @@ void main()
     first = subgroupBroadcastFirst(first);
     if (!traced) return;
 
-    uint    index       = first + subgroupBallotExclusiveBitCount(ballot);
-    Segment segment     = make_segment(pixel, depth, normal);
+    index               = first + subgroupBallotExclusiveBitCount(ballot);
+    Segment segment     = make_segment(pixel, real(imageLoad(depth_image, pixel).x), normal_at(pixel));
     ray_origin[index]   = segment.origin;
     ray_delta[index]    = segment.delta;
     ray_length_m[index] = segment.length_m;

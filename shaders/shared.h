@@ -26,11 +26,14 @@
 #define CONSTANT_RAY_OFFSET_M 4
 #define CONSTANT_FACING 5
 #define CONSTANT_ORTHOGRAPHIC 6
-#define CONSTANT_METALLIC_EXPONENT 7
-#define CONSTANT_FADE_TO_VIEWER 8
-#define CONSTANT_FADE_AT_EDGES 9
+#define CONSTANT_EVERY_SURFACE 7
+#define CONSTANT_ITEMS_PER_GROUP 8
 #define CONSTANT_PYRAMID_KIND 10
 #define CONSTANT_PARAMETERS 32
+#define CONSTANT_EFFECTS 64 // the effects' parameters, in the order of render/effects.cpp
+
+// Roughness histogram of the reflecting pixels: bin 0 holds roughness 0, the others share (0, 1].
+#define ROUGHNESS_BINS 16
 
 // What a pyramid cell records (hiz's parameter `pyramid`, in this order).
 #define PYRAMID_OCCUPANCY 0

@@ -24,6 +24,13 @@ real2 px_to_slope(real2 position_px)
     return (position_px - centre_px) / focal_px * real2(1, -1);
 }
 
+real3 px_to_vs(real3 px_depth)
+{
+    real  distance_m = depth_to_distance(px_depth.z);
+    real2 slope      = px_to_slope(px_depth.xy);
+    return real3(orthographic == 0 ? slope * distance_m : slope, -distance_m);
+}
+
 uint pack_pixel(ivec2 pixel, int number)
 {
     return uint(pixel.x) | uint(pixel.y) << PIXEL_BITS | uint(number) << (2 * PIXEL_BITS);

@@ -1,13 +1,11 @@
 #include "app/commands.h"
 
+#include "app/stage.h"
 #include "compare/image_io.h"
 #include "core/error.h"
-#include "harness/experiment.h"
-#include "scene/scene.h"
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <sys/wait.h>
@@ -15,69 +13,6 @@
 
 namespace ssrlab {
 namespace {
-
-glm::ivec2 parse_size(const std::string& text)
-{
-    glm::ivec2  size{0, 0};
-    const char* end    = text.data() + text.size();
-    const auto  width  = std::from_chars(text.data(), end, size.x);
-    const auto  height = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x'
-                             ? std::from_chars(width.ptr + 1, end, size.y)
-                             : std::from_chars_result{end, std::errc::invalid_argument};
-    if (height.ec != std::errc() || height.ptr != end || size.x < 1 || size.y < 1)
-        throw_spec_error("--size: expected WIDTHxHEIGHT, both at least 1, got '{}'", text);
-    return size;
-}
-
-/// The scene's picture of one view on the device.
-struct Stage {
-    Scene      scene;
-    View       view;
-    Gpu        gpu;
-    GBufferPtr gbuffer;
-};
-
-Stage prepare_stage(const CommonOptions& common, const PictureOptions& options)
-{
-    Stage stage;
-    stage.scene          = load_scene(options.scene);
-    const Camera& camera = find_camera(stage.scene, options.view);
-    stage.view           = camera_to_view(camera, options.size.empty() ? camera.size_px : parse_size(options.size));
-    for (const std::string& warning : stage.scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-    stage.gpu     = open_gpu({.device = common.device, .validation = common.validation});
-    stage.gbuffer = render_gbuffer(stage.gpu, upload_scene(stage.gpu, stage.scene), stage.view);
-    return stage;
-}
-
-struct Choice {
-    ParameterValues values;
-    FrameSettings   settings;
-};
-
-/// name=value pairs: technique parameters first, then the experiment's settings.
-Choice parse_choice(const Technique& technique, const std::vector<std::string>& pairs)
-{
-    Choice choice{default_values(technique), {}};
-    for (const std::string& pair : pairs) {
-        const auto equals = pair.find('=');
-        if (equals == std::string::npos) throw_spec_error("-p {}: expected name=value", pair);
-        const std::string name = pair.substr(0, equals), text = pair.substr(equals + 1), place = "-p " + pair;
-        const auto        setting = std::ranges::find(all_settings(), name, &Setting::name);
-        if (setting == all_settings().end()) {
-            choice.values[name] = parse_parameter(find_parameter(technique, name, place), text, place);
-            continue;
-        }
-        const Parameter declared{.name          = name,
-                                 .type          = setting->type,
-                                 .default_value = 0,
-                                 .min           = setting->min,
-                                 .max           = setting->max,
-                                 .choices       = {},
-                                 .doc           = {}};
-        setting->set(choice.settings, parse_parameter(declared, text, place));
-    }
-    return choice;
-}
 
 PreparedFramePtr prepare(const CommonOptions& common, const PictureOptions& options, Stage& stage)
 {
@@ -111,13 +46,6 @@ std::string status_legend()
     for (size_t i = 0; i < trace_status_names.size(); ++i)
         text += fmt::format("{}{}={}", text.empty() ? "" : " ", i, trace_status_names[i]);
     return text;
-}
-
-int report_messages(const Stage& stage)
-{
-    const auto messages = validation_messages(stage.gpu);
-    for (const std::string& message : messages) std::fprintf(stderr, "validation: %s\n", message.c_str());
-    return messages.empty() ? 0 : 1;
 }
 
 } // namespace
@@ -171,10 +99,10 @@ int render_picture(const CommonOptions& common, const PictureOptions& options)
     Stage      stage = prepare_stage(common, options);
     const auto frame = prepare(common, options, stage);
     run_frame(stage.gpu, *frame);
-    const PassTimes times = run_frame(stage.gpu, *frame);
+    const FrameTimes times = run_frame(stage.gpu, *frame);
     write_image(options.output, read_shaded(stage.gpu, *frame));
     std::puts(fmt::format("{}: {}x{}, trace {:.2f} ms on {}", options.output, stage.view.size_px.x,
-                          stage.view.size_px.y, times.trace_ms, stage.gpu.info.name)
+                          stage.view.size_px.y, times.of("trace"), stage.gpu.info.name)
                   .c_str());
     return report_messages(stage);
 }

@@ -1,6 +1,7 @@
 // The command line: names and help here, the work in commands.cpp and harness/.
 #include "app/check_command.h"
 #include "app/commands.h"
+#include "app/plan_command.h"
 #include "core/error.h"
 #include "harness/run_experiment.h"
 
@@ -64,6 +65,18 @@ int main(int argc, char** argv)
     auto* gbuffer = app.add_subcommand("gbuffer", "What the camera sees (.exr)");
     add_picture_options(*gbuffer, picture, false);
     gbuffer->callback([&] { command = [&] { return write_gbuffer(common, picture); }; });
+
+    PlanOptions plan;
+    auto*       planned = app.add_subcommand("plan", "Which passes a picture needs, why, and what they cost or save");
+    planned->add_option("SCENE", plan.picture.scene, "As for render")->required();
+    planned->add_option("-t,--technique", plan.picture.technique, "Technique (see ssrlab list)")
+        ->default_val("hiz")
+        ->capture_default_str();
+    planned->add_option("-p,--parameter", plan.picture.parameters, "name=value, as for render");
+    planned->add_option("--size", plan.picture.size, "WIDTHxHEIGHT in pixels; default: the view's own");
+    planned->add_option("--view", plan.picture.view, "Name of a view of the scene")->capture_default_str();
+    planned->add_option("--repeats", plan.repeats, "Timed frames")->capture_default_str()->check(CLI::PositiveNumber);
+    planned->callback([&] { command = [&] { return print_plan(common, plan); }; });
 
     auto* sweep =
         app.add_subcommand("run", "An experiment: every combination of its lists becomes a row of results.csv");

@@ -113,15 +113,7 @@ std::function<void()> refused_setting(const std::string& name, double value)
 {
     return [=] {
         for (const Setting& setting : all_settings())
-            if (setting.name == name)
-                check_parameter({.name          = name,
-                                 .type          = setting.type,
-                                 .default_value = 0,
-                                 .min           = setting.min,
-                                 .max           = setting.max,
-                                 .choices       = {},
-                                 .doc           = {}},
-                                value, "hard case");
+            if (setting.name == name) check_parameter(setting, value, "hard case");
     };
 }
 

@@ -99,10 +99,19 @@ const toml::table* optional_table(const TomlFile& file, const std::string& name)
     return node == nullptr ? nullptr : &toml_table(file, *node, name);
 }
 
-double setting_value(const TomlFile& file, const toml::node& node, const Setting& setting)
+double parameter_value(const TomlFile& file, const toml::node& node, const Parameter& parameter)
 {
-    if (setting.type == ParameterType::boolean) return toml_bool(file, node, setting.name) ? 1 : 0;
-    return number_within(file, node, setting.name, setting.min, setting.max);
+    switch (parameter.type) {
+    case ParameterType::choice:
+        return parse_parameter(parameter, toml_text(file, node, parameter.name), toml_place(file, node));
+    case ParameterType::boolean: return toml_bool(file, node, parameter.name) ? 1 : 0;
+    default: break;
+    }
+    const double value = parameter.type == ParameterType::integer
+                             ? static_cast<double>(toml_integer(file, node, parameter.name))
+                             : toml_number(file, node, parameter.name);
+    check_parameter(parameter, value, toml_place(file, node));
+    return value;
 }
 
 ValueLists read_settings(const TomlFile& file)
@@ -119,29 +128,14 @@ ValueLists read_settings(const TomlFile& file)
         const toml::table*   table  = optional_table(file, setting.table);
         const toml::node*    node   = table == nullptr ? nullptr : table->get(setting.name);
         if (node == nullptr) {
-            values = {setting.get(FrameSettings{})};
+            values = {setting.default_value};
             continue;
         }
         for (const toml::node* value : values_of(file, *node, setting.name)) {
-            values.push_back(setting_value(file, *value, setting));
+            values.push_back(parameter_value(file, *value, setting));
         }
     }
     return settings;
-}
-
-double parameter_value(const TomlFile& file, const toml::node& node, const Parameter& parameter)
-{
-    switch (parameter.type) {
-    case ParameterType::choice:
-        return parse_parameter(parameter, toml_text(file, node, parameter.name), toml_place(file, node));
-    case ParameterType::boolean: return toml_bool(file, node, parameter.name) ? 1 : 0;
-    default: break;
-    }
-    const double value = parameter.type == ParameterType::integer
-                             ? static_cast<double>(toml_integer(file, node, parameter.name))
-                             : toml_number(file, node, parameter.name);
-    check_parameter(parameter, value, toml_place(file, node));
-    return value;
 }
 
 TechniqueSweep read_sweep(const TomlFile& file, const toml::table& table, const Technique& technique)
@@ -152,7 +146,7 @@ TechniqueSweep read_sweep(const TomlFile& file, const toml::table& table, const 
         const auto        setting = std::ranges::find(all_settings(), name, &Setting::name);
         if (setting != all_settings().end()) {
             for (const toml::node* value : values_of(file, node, name)) {
-                sweep.settings[name].push_back(setting_value(file, *value, *setting));
+                sweep.settings[name].push_back(parameter_value(file, *value, *setting));
             }
             continue;
         }
@@ -237,8 +231,8 @@ MeasureSettings read_measure(const TomlFile& file)
 
 Experiment load_experiment(const std::filesystem::path& path, std::span<const Technique> techniques)
 {
-    static const std::vector<std::string> known = {"name",  "title", "scenes",     "views",  "sizes",
-                                                   "trace", "shade", "techniques", "measure"};
+    static const std::vector<std::string> known = {"name",  "title",   "scenes",     "views",  "sizes",
+                                                   "trace", "effects", "techniques", "measure"};
     const TomlFile                        file  = read_toml(path);
     toml_known_keys(file, file.root, "key", known);
     Experiment experiment;

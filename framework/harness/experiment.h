@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -60,13 +61,11 @@ struct Run {
     ParameterValues values;
 };
 
-/// A setting of [trace] or [shade]: key in the specification and column of the record, from this one table.
-struct Setting {
-    std::string   name, table, doc;
-    ParameterType type = ParameterType::real; // real or boolean
-    double        min = 0, max = 0;
-    double (*get)(const FrameSettings&);
-    void (*set)(FrameSettings&, double);
+/// A setting of [trace] or [effects]: key in the specification and column of the record, from this one table.
+struct Setting : Parameter {
+    std::string                                 table;
+    std::function<double(const FrameSettings&)> get;
+    std::function<void(FrameSettings&, double)> set;
 };
 std::span<const Setting> all_settings();
 

@@ -125,6 +125,7 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
     const Technique&       technique = find_technique(bench.techniques, run.technique);
     const MeasureSettings& measure   = bench.experiment.measure;
     measured.frame                   = prepare_frame(bench.gpu, picture.buffers, technique, run.values, run.settings);
+    add_plan(measured.row, plan_of(*measured.frame));
     for (int i = 0; i < std::max(1, measure.warmup); ++i) run_frame(bench.gpu, *measured.frame);
     const Image       shaded  = measure.pictures ? read_shaded(bench.gpu, *measured.frame) : Image();
     const TraceResult counted = count_frame(bench.gpu, *measured.frame);

@@ -40,9 +40,7 @@ Row identity_row(const Experiment& experiment, const Run& run, const Technique& 
                {"height", std::to_string(run.size_px.y)},
                {"technique", run.technique}};
     for (const Setting& setting : all_settings()) {
-        const double value = setting.get(run.settings);
-        row[setting.name] =
-            setting.type == ParameterType::boolean ? (value != 0 ? "true" : "false") : fmt::format("{}", value);
+        row[setting.name] = format_parameter(setting, setting.get(run.settings));
     }
     for (const Parameter& parameter : technique.parameters) {
         row[parameter.name] = format_parameter(parameter, run.values.at(parameter.name));
@@ -83,16 +81,22 @@ void add_measures(Row& row, const MeasureValues& values)
     }
 }
 
+void add_plan(Row& row, const std::vector<PlannedEffect>& plan)
+{
+    std::string skipped;
+    for (const PlannedEffect& planned : plan)
+        if (!planned.runs) skipped += (skipped.empty() ? "" : " ") + planned.effect->id;
+    row["effects_skipped"] = skipped;
+}
+
 void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms)
 {
-    const auto      started = std::chrono::steady_clock::now();
-    const PassTimes times   = run_frame(gpu, *measured.frame);
+    const auto       started = std::chrono::steady_clock::now();
+    const FrameTimes times   = run_frame(gpu, *measured.frame);
     measured.spent_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-    measured.rays_ms.push_back(times.rays_ms);
-    measured.inputs_ms.push_back(times.inputs_ms);
-    measured.trace_ms.push_back(times.trace_ms);
-    measured.shade_ms.push_back(times.shade_ms);
-    measured.frame_ms.push_back(gbuffer_ms + times.rays_ms + times.inputs_ms + times.trace_ms + times.shade_ms);
+    for (const auto& [effect, ms] : times.effects_ms) measured.effect_ms[effect].push_back(ms);
+    measured.trace_ms.push_back(times.of("trace"));
+    measured.frame_ms.push_back(gbuffer_ms + times.total_ms());
 }
 
 bool is_final(const MeasuredRun& measured, const MeasureSettings& measure)
@@ -111,11 +115,20 @@ void add_times(MeasuredRun& measured, double gbuffer_ms)
     add_summary(row, "frame_ms", frame);
     row["repeats"]           = std::to_string(measured.trace_ms.size());
     row["gbuffer_ms_median"] = number_text(gbuffer_ms);
-    row["rays_ms_median"]    = number_text(quantile(measured.rays_ms, 0.5));
-    row["pyramid_ms_median"] = number_text(quantile(measured.inputs_ms, 0.5));
-    row["shade_ms_median"]   = number_text(quantile(measured.shade_ms, 0.5));
-    row["fps"]               = number_text(1000 / frame.median);
-    row["inverse_fps_s"]     = number_text(frame.median / 1000);
+    const auto median_ms     = [&](const std::string& effect) {
+        const auto found = measured.effect_ms.find(effect);
+        return found == measured.effect_ms.end() ? 0 : quantile(found->second, 0.5);
+    };
+    row["rays_ms_median"]    = number_text(median_ms("classification") + median_ms("rays"));
+    row["pyramid_ms_median"] = number_text(median_ms("depth_pyramid"));
+    row["shade_ms_median"]   = number_text(median_ms("hit_colour") + median_ms("composite"));
+    std::string effects;
+    for (const Effect& effect : all_effects())
+        if (measured.effect_ms.contains(effect.id))
+            effects += fmt::format("{}{}={}", effects.empty() ? "" : " ", effect.id, number_text(median_ms(effect.id)));
+    row["effects"]       = effects;
+    row["fps"]           = number_text(1000 / frame.median);
+    row["inverse_fps_s"] = number_text(frame.median / 1000);
 }
 
 Row failed_row(Row row, const std::string& message)

@@ -5,16 +5,18 @@
 #include "harness/experiment.h"
 #include "harness/record.h"
 
+#include <map>
 #include <vector>
 
 namespace ssrlab {
 
 struct MeasuredRun {
-    const Run*          run = nullptr;
-    PreparedFramePtr    frame;
-    Row                 row;
-    std::vector<double> rays_ms, inputs_ms, trace_ms, shade_ms, frame_ms;
-    double              spent_s = 0; // wall time of the timed frames
+    const Run*                                 run = nullptr;
+    PreparedFramePtr                           frame;
+    Row                                        row;
+    std::vector<double>                        trace_ms, frame_ms;
+    std::map<std::string, std::vector<double>> effect_ms;   // by effect, of those that ran
+    double                                     spent_s = 0; // wall time of the timed frames
 };
 
 /// Run id, experiment, scene … and every setting and parameter.
@@ -23,6 +25,8 @@ Row identity_row(const Experiment& experiment, const Run& run, const Technique& 
 void add_counts(Row& row, const TraceResult& counted);
 /// The measures that have a column.
 void add_measures(Row& row, const MeasureValues& values);
+/// Which effects were skipped.
+void add_plan(Row& row, const std::vector<PlannedEffect>& plan);
 /// One timed frame.
 void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms);
 /// Enough repeats, and the interval is tight or the budget spent.

@@ -8,32 +8,44 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-#define SSRLAB_SETTING(table, type, field, min, max, doc)                                                        \
-    Setting                                                                                                      \
-    {                                                                                                            \
-#field, #table, doc, ParameterType::type, min, max,                                                            \
-            [](const FrameSettings& settings) { return static_cast<double>(settings.table.field); },                   \
-            [](FrameSettings& settings, double value) {                                                                \
-                settings.table.field = static_cast<decltype(settings.table.field)>(value);                             \
-            } \
+// Trace settings hold for all techniques alike; `field` is a member of TraceSettings.
+template <typename Field>
+Setting trace_setting(const char* name, ParameterType type, Field TraceSettings::*field, double max, const char* doc)
+{
+    return {{name, type, static_cast<double>(TraceSettings{}.*field), 0, max, {}, doc},
+            "trace",
+            [=](const FrameSettings& settings) { return static_cast<double>(settings.trace.*field); },
+            [=](FrameSettings& settings, double value) { settings.trace.*field = static_cast<Field>(value); }};
+}
+
+std::vector<Setting> make_table()
+{
+    using enum ParameterType;
+    std::vector<Setting> table = {
+        trace_setting("thickness_m", real, &TraceSettings::thickness_m, 1e6,
+                      "depth of the slab behind each pixel, in metres; with thickness_relative a fraction of the "
+                      "distance"),
+        trace_setting("thickness_relative", boolean, &TraceSettings::thickness_relative, 1,
+                      "whether thickness_m is a fraction of the distance"),
+        trace_setting("max_distance_m", real, &TraceSettings::max_distance_m, infinity,
+                      "length of the ray in view space"),
+        trace_setting("ray_offset_m", real, &TraceSettings::ray_offset_m, 1e6,
+                      "how far along its direction the ray starts"),
+        trace_setting("facing", boolean, &TraceSettings::facing, 1, "whether a hit's surface must face the ray"),
+    };
+    for (const Parameter& parameter : effect_parameters()) {
+        const std::string& name = parameter.name;
+        table.push_back({parameter, "effects", [=](const FrameSettings& s) { return s.effects.at(name); },
+                         [=](FrameSettings& s, double value) { s.effects.at(name) = value; }});
     }
+    return table;
+}
 
 } // namespace
 
 std::span<const Setting> all_settings()
 {
-    static const Setting table[] = {
-        SSRLAB_SETTING(
-            trace, real, thickness_m, 0, 1e6,
-            "depth of the slab behind each pixel, in metres; with thickness_relative a fraction of the distance"),
-        SSRLAB_SETTING(trace, boolean, thickness_relative, 0, 1, "whether thickness_m is a fraction of the distance"),
-        SSRLAB_SETTING(trace, real, max_distance_m, 0, infinity, "length of the ray in view space"),
-        SSRLAB_SETTING(trace, real, ray_offset_m, 0, 1e6, "how far along its direction the ray starts"),
-        SSRLAB_SETTING(trace, boolean, facing, 0, 1, "whether a hit's surface must face the ray"),
-        SSRLAB_SETTING(shade, real, metallic_exponent, 0, 64, "beta = metallic ^ exponent; 0 switches the factor off"),
-        SSRLAB_SETTING(shade, boolean, fade_to_viewer, 0, 1, "whether reflections toward the viewer fade"),
-        SSRLAB_SETTING(shade, boolean, fade_at_edges, 0, 1, "whether reflections of the image's border fade"),
-    };
+    static const std::vector<Setting> table = make_table();
     return table;
 }
 

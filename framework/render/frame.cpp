@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace ssrlab {
 namespace {
@@ -22,20 +23,24 @@ template <typename Real> void write_view_as(Gpu& gpu, Buffer& target, const View
     upload(gpu, target, &block, sizeof(block));
 }
 
-size_t count_reflecting(Gpu& gpu, const GBuffer& gbuffer)
+} // namespace
+
+double FrameTimes::of(const std::string& effect) const
 {
-    const GBufferImage image = read_gbuffer(gpu, gbuffer);
-    size_t             count = 0;
-    for (size_t i = 0; i < image.depth.size(); ++i) count += image.depth[i] > 0 && image.metallic[i] > 0;
-    return count;
+    const auto found = std::ranges::find(effects_ms, effect, &std::pair<std::string, double>::first);
+    return found == effects_ms.end() ? 0 : found->second;
+}
+
+double FrameTimes::total_ms() const
+{
+    return std::accumulate(effects_ms.begin(), effects_ms.end(), 0.0,
+                           [](double sum, const auto& effect) { return sum + effect.second; });
 }
 
 glm::uvec3 groups_of_8(glm::ivec2 size_px)
 {
     return {static_cast<uint32_t>(size_px.x + 7) / 8, static_cast<uint32_t>(size_px.y + 7) / 8, 1};
 }
-
-} // namespace
 
 void write_view(Gpu& gpu, Buffer& target, const View& view, Precision precision)
 {
@@ -74,20 +79,62 @@ RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision)
     return buffers;
 }
 
+namespace {
+
+/// Counts on the device: which pixels reflect decides how much room the rays need.
+FrameStatistics count_picture(Gpu& gpu, const FrameBuffers& buffers)
+{
+    const glm::ivec2 size_px = buffers.gbuffer->view.size_px;
+    const glm::uvec3 tiles   = groups_of_8(size_px);
+    FrameStatistics  statistics;
+    statistics.pixels = static_cast<uint32_t>(size_px.x) * static_cast<uint32_t>(size_px.y);
+    statistics.tiles  = tiles.x * tiles.y;
+    TracePasses passes;
+    passes.classification = make_compute_pass(gpu, compile_shader({.file = "effects/classification.comp"}),
+                                              {{"depth_image", buffers.gbuffer->depth},
+                                               {"normal_image", buffers.gbuffer->normal},
+                                               {"material_image", buffers.gbuffer->material},
+                                               {"TileCount", buffers.tiles.count},
+                                               {"Tiles", buffers.tiles.tiles},
+                                               {"PictureStatistics", buffers.tiles.statistics}});
+    passes.tile_launch    = make_launch_pass(gpu, buffers.tiles.count, buffers.tiles.launch, 1);
+    submit(gpu, [&](const auto& commands) { record_classification(commands, passes, buffers); });
+    statistics.picture = download_as<PictureCounts>(gpu, buffers.tiles.statistics, 1)[0];
+    return statistics;
+}
+
+std::shared_ptr<RayBuffers> rays_for(Gpu& gpu, FrameBuffers& buffers, const FrameSettings& settings)
+{
+    const PictureCounts& counts   = buffers.statistics.picture;
+    const size_t         capacity = settings.effects.at("plan") == 0 ? counts.surface_pixels : counts.reflecting_pixels;
+    std::shared_ptr<RayBuffers>& rays = buffers.rays[capacity];
+    if (!rays) rays = std::make_shared<RayBuffers>(make_ray_buffers(gpu, capacity, Precision::float32));
+    return rays;
+}
+
+FrameFacts facts_of(const PreparedFrame& frame)
+{
+    const GpuScene* scene = frame.buffers->gbuffer->scene.get();
+    return {.alpha_mask = scene != nullptr && scene->alpha_mask, .inputs = frame.technique.inputs};
+}
+
+} // namespace
+
 FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
 {
-    auto buffers     = std::make_shared<FrameBuffers>();
-    buffers->gbuffer = gbuffer;
-    buffers->view    = upload_view(gpu, gbuffer->view, Precision::float32);
-    buffers->rays    = make_ray_buffers(gpu, count_reflecting(gpu, *gbuffer), Precision::float32);
-    buffers->shaded  = make_image(gpu, {.format  = vk::Format::eR16G16B16A16Sfloat,
-                                        .size_px = gbuffer->view.size_px,
-                                        .usage   = vk::ImageUsageFlagBits::eStorage});
-    buffers->lit     = make_compute_pass(gpu, compile_shader({.file = "lit.comp"}),
-                                         {{"radiance_image", gbuffer->radiance},
-                                          {"highlight_image", gbuffer->highlight},
-                                          {"shaded_image", buffers->shaded}});
-    buffers->pyramid = make_pyramid_images(gpu, gbuffer->view.size_px);
+    auto       buffers = std::make_shared<FrameBuffers>();
+    const auto colours = [&] {
+        return make_image(gpu, {.format  = vk::Format::eR16G16B16A16Sfloat,
+                                .size_px = gbuffer->view.size_px,
+                                .usage   = vk::ImageUsageFlagBits::eStorage});
+    };
+    buffers->gbuffer    = gbuffer;
+    buffers->view       = upload_view(gpu, gbuffer->view, Precision::float32);
+    buffers->tiles      = make_tile_buffers(gpu, gbuffer->view.size_px);
+    buffers->statistics = count_picture(gpu, *buffers);
+    buffers->pyramid    = make_pyramid_images(gpu, gbuffer->view.size_px);
+    buffers->reflection = colours();
+    buffers->shaded     = colours();
     return buffers;
 }
 
@@ -100,34 +147,39 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
     frame->technique = technique;
     frame->values    = values;
     frame->settings  = settings;
+    frame->rays      = rays_for(gpu, *buffers, settings);
     frame->pyramid =
         std::ranges::count(technique.inputs, "depth_pyramid") > 0 ? make_pyramid_passes(gpu, *frame) : PyramidPasses{};
-    frame->trace      = make_trace_passes(gpu, *frame, buffers->rays, buffers->view, nullptr);
-    frame->shade      = make_shade_pass(gpu, *frame);
-    frame->timestamps = make_timestamps(gpu, 5);
+    frame->trace = make_trace_passes(gpu, *frame, *frame->rays, buffers->view, nullptr);
+
+    FrameStatistics statistics = buffers->statistics;
+    if (plan_needs_trace(settings.effects) && statistics.picture.reflecting_pixels > 0)
+        statistics.trace = count_hits(gpu, *frame);
+    frame->plan = plan_frame(facts_of(*frame), statistics, settings.effects);
+    for (const PlannedEffect& planned : frame->plan)
+        if (planned.runs) frame->recordings.push_back(make_recording(gpu, *frame, planned.effect->id));
+    frame->timestamps = make_timestamps(gpu, static_cast<uint32_t>(frame->recordings.size()) + 1);
     return frame;
 }
 
-PassTimes run_frame(Gpu& gpu, PreparedFrame& frame)
+const std::vector<PlannedEffect>& plan_of(const PreparedFrame& frame) { return frame.plan; }
+
+FrameTimes run_frame(Gpu& gpu, PreparedFrame& frame)
 {
-    FrameBuffers& buffers = *frame.buffers;
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-        write_timestamp(commands, frame.timestamps, 0);
-        record_rays(commands, frame.trace, buffers.rays, buffers.gbuffer->view.size_px);
-        write_timestamp(commands, frame.timestamps, 1);
-        record_pyramid(commands, frame.pyramid);
-        write_timestamp(commands, frame.timestamps, 2);
-        dispatch_indirect(commands, frame.trace.trace, buffers.rays.launch);
-        barrier(commands);
-        write_timestamp(commands, frame.timestamps, 3);
-        dispatch(commands, buffers.lit, groups_of_8(buffers.gbuffer->view.size_px));
-        barrier(commands);
-        dispatch_indirect(commands, frame.shade, buffers.rays.launch);
-        barrier(commands);
-        write_timestamp(commands, frame.timestamps, 4);
+        uint32_t timestamp = 0;
+        write_timestamp(commands, frame.timestamps, timestamp++);
+        for (const Recording& record : frame.recordings) {
+            record(commands);
+            barrier(commands);
+            write_timestamp(commands, frame.timestamps, timestamp++);
+        }
     });
-    const auto intervals = read_intervals_ms(gpu, frame.timestamps);
-    return {intervals[0], intervals[1], intervals[2], intervals[3]};
+    const auto intervals_ms = read_intervals_ms(gpu, frame.timestamps);
+    FrameTimes times;
+    for (const PlannedEffect& planned : frame.plan)
+        if (planned.runs) times.effects_ms.emplace_back(planned.effect->id, intervals_ms[times.effects_ms.size()]);
+    return times;
 }
 
 TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision)
@@ -135,12 +187,12 @@ TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision)
     if (precision == Precision::float64 && !gpu.info.float64)
         throw_failure("the device '{}' has no double precision", gpu.info.name);
     const GBuffer&    gbuffer = *frame.buffers->gbuffer;
-    const RayBuffers  rays    = make_ray_buffers(gpu, frame.buffers->rays.capacity, precision);
+    const RayBuffers  rays    = make_ray_buffers(gpu, frame.buffers->statistics.picture.reflecting_pixels, precision);
     const Buffer      work    = make_buffer(gpu, std::max<uint64_t>(rays.capacity, 1) * 12);
     const Buffer      view    = upload_view(gpu, gbuffer.view, precision);
     const TracePasses passes  = make_trace_passes(gpu, frame, rays, view, &work);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-        record_rays(commands, passes, rays, gbuffer.view.size_px);
+        record_rays(commands, passes, *frame.buffers, rays);
         record_pyramid(commands, frame.pyramid);
         dispatch_indirect(commands, passes.trace, rays.launch);
         barrier(commands);

@@ -1,34 +1,32 @@
-// The line's GPU part: G-buffer -> rays -> inputs -> trace -> shade, one technique with one set of values.
+// The line's GPU part: G-buffer -> rays -> inputs -> trace -> effects -> picture, one technique with one set of values.
 #pragma once
 
 #include "core/gbuffer_image.h"
 #include "core/image.h"
 #include "core/trace_result.h"
 #include "gpu/gpu.h"
+#include "render/effects.h"
 #include "render/technique.h"
 #include "scene/scene.h"
 
 #include <memory>
+#include <utility>
 
 namespace ssrlab {
 
-/// How a hit becomes colour: C = C_frag + (C_reflect - C_frag) * beta (the OpenGL report of J. Somerville Roberts).
-struct ShadeSettings {
-    double metallic_exponent = 3;    // beta = metallic ^ exponent; 0 switches the factor off
-    bool   fade_to_viewer    = true; // beta *= max(0, -R.z): reflections toward the viewer show the wrong side
-    bool   fade_at_edges     = true; // beta *= clamp(1 - |u - 0.5| - |v - 0.5|, 0, 1)
-};
-
 struct FrameSettings {
-    TraceSettings trace;
-    ShadeSettings shade;
+    TraceSettings   trace;
+    ParameterValues effects = default_effect_values(); // by the names of effect_parameters()
 };
 
 enum class Precision { float32, float64 };
 
-/// Milliseconds by GPU timestamps; frame is the sum of the passes with the G-buffer's median.
-struct PassTimes {
-    double rays_ms = 0, inputs_ms = 0, trace_ms = 0, shade_ms = 0;
+/// Milliseconds by GPU timestamps, of the effects that ran, in their order.
+struct FrameTimes {
+    std::vector<std::pair<std::string, double>> effects_ms;
+
+    double of(const std::string& effect) const; // 0 when it did not run
+    double total_ms() const;
 };
 
 struct GpuScene;      // a scene's buffers, textures and shadow maps
@@ -54,12 +52,15 @@ GBufferImage read_gbuffer(Gpu& gpu, const GBuffer& gbuffer);
 
 FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer);
 
-/// Compiles what the run needs. Throws SpecError with the technique's file and line when its shader does not compile.
+/// Plans the frame and compiles what it needs; effects that depend on what is hit make it trace once.
+/// Throws SpecError with the technique's file and line when its shader does not compile.
 PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const Technique& technique,
                                const ParameterValues& values, const FrameSettings& settings);
+/// What runs and why. Of a still picture: its statistics are those of the very frame.
+const std::vector<PlannedEffect>& plan_of(const PreparedFrame& frame);
 
-/// Runs all passes once and waits. The first call of a frame includes driver compilation: warm up.
-PassTimes run_frame(Gpu& gpu, PreparedFrame& frame);
+/// Runs what the plan says once and waits. The first call of a frame includes driver compilation: warm up.
+FrameTimes run_frame(Gpu& gpu, PreparedFrame& frame);
 /// The reflected picture that the last run_frame of this frame left in the shared buffers. Linear RGB.
 Image read_shaded(Gpu& gpu, PreparedFrame& frame);
 /// Traces once with the counting pipeline (work counters on; never timed). Precision float64 gives the double twin.

@@ -39,57 +39,10 @@ template <typename Real> void add_settings(Constants& constants, const View& vie
     constants.add(CONSTANT_ORTHOGRAPHIC, static_cast<int32_t>(view.projection == Projection::orthographic));
 }
 
-Constants settings_constants(const PreparedFrame& frame, Precision precision)
-{
-    Constants   constants;
-    const View& view = frame.buffers->gbuffer->view;
-    if (precision == Precision::float64)
-        add_settings<double>(constants, view, frame.settings);
-    else
-        add_settings<float>(constants, view, frame.settings);
-    return constants;
-}
-
 std::map<std::string, std::string> precision_defines(Precision precision)
 {
     if (precision == Precision::float64) return {{"REAL_IS_DOUBLE", "1"}};
     return {};
-}
-
-/// One constant per parameter, under its own name, and names for the choices: PARAMETER_CHOICE.
-std::string parameter_declarations(const Technique& technique)
-{
-    std::string text;
-    uint32_t    id = CONSTANT_PARAMETERS;
-    for (const Parameter& parameter : technique.parameters) {
-        const char* declaration = parameter.type == ParameterType::real      ? "float {} = 0.0"
-                                  : parameter.type == ParameterType::boolean ? "bool {} = false"
-                                                                             : "int {} = 0";
-        text += fmt::format("layout(constant_id = {}) const {};\n", id++,
-                            fmt::format(fmt::runtime(declaration), parameter.name));
-        for (size_t i = 0; i < parameter.choices.size(); ++i)
-            text += fmt::format("const int {}_{} = {};\n", parameter.name, parameter.choices[i], i);
-    }
-    return text;
-}
-
-void add_parameters(Constants& constants, const Technique& technique, const ParameterValues& values)
-{
-    uint32_t id = CONSTANT_PARAMETERS;
-    for (const Parameter& parameter : technique.parameters) {
-        const double value = values.at(parameter.name);
-        if (parameter.type == ParameterType::real)
-            constants.add(id++, static_cast<float>(value));
-        else
-            constants.add(id++, static_cast<int32_t>(value));
-    }
-}
-
-Bindings ray_bindings(const RayBuffers& rays)
-{
-    return {{"RayCount", rays.count},     {"RayOrigins", rays.origins}, {"RayDeltas", rays.deltas},
-            {"RayLengths", rays.lengths}, {"RayPixels", rays.pixels},   {"HitPixels", rays.hit_pixels},
-            {"HitTs", rays.hit_ts},       {"Launch", rays.launch}};
 }
 
 int level_count(glm::ivec2 size_px)
@@ -109,6 +62,44 @@ double parameter_or(const PreparedFrame& frame, const std::string& name, double 
 }
 
 } // namespace
+
+Constants settings_constants(const PreparedFrame& frame, Precision precision)
+{
+    Constants   constants;
+    const View& view = frame.buffers->gbuffer->view;
+    if (precision == Precision::float64)
+        add_settings<double>(constants, view, frame.settings);
+    else
+        add_settings<float>(constants, view, frame.settings);
+    return constants;
+}
+
+std::string parameter_declarations(std::span<const Parameter> parameters, uint32_t id)
+{
+    std::string text;
+    for (const Parameter& parameter : parameters) {
+        const char* declaration = parameter.type == ParameterType::real      ? "float {} = 0.0"
+                                  : parameter.type == ParameterType::boolean ? "bool {} = false"
+                                                                             : "int {} = 0";
+        text += fmt::format("layout(constant_id = {}) const {};\n", id++,
+                            fmt::format(fmt::runtime(declaration), parameter.name));
+        for (size_t i = 0; i < parameter.choices.size(); ++i)
+            text += fmt::format("const int {}_{} = {};\n", parameter.name, parameter.choices[i], i);
+    }
+    return text;
+}
+
+void add_parameters(Constants& constants, std::span<const Parameter> parameters, const ParameterValues& values,
+                    uint32_t id)
+{
+    for (const Parameter& parameter : parameters) {
+        const double value = values.at(parameter.name);
+        if (parameter.type == ParameterType::real)
+            constants.add(id++, static_cast<float>(value));
+        else
+            constants.add(id++, static_cast<int32_t>(value));
+    }
+}
 
 PyramidImages make_pyramid_images(Gpu& gpu, glm::ivec2 size_px)
 {
@@ -144,62 +135,100 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame)
     return passes;
 }
 
+TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
+{
+    const glm::uvec3 tiles = groups_of_8(size_px);
+    return {make_buffer(gpu, 16), make_buffer(gpu, static_cast<uint64_t>(tiles.x) * tiles.y * sizeof(uint32_t)),
+            make_buffer(gpu, 16), make_buffer(gpu, sizeof(PictureCounts))};
+}
+
+Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
+{
+    return {{"RayCount", rays.count},
+            {"RayOrigins", rays.origins},
+            {"RayDeltas", rays.deltas},
+            {"RayLengths", rays.lengths},
+            {"RayPixels", rays.pixels},
+            {"HitPixels", rays.hit_pixels},
+            {"HitTs", rays.hit_ts},
+            {"TileCount", buffers.tiles.count},
+            {"Tiles", buffers.tiles.tiles},
+            {"PictureStatistics", buffers.tiles.statistics},
+            {"depth_image", buffers.gbuffer->depth},
+            {"normal_image", buffers.gbuffer->normal},
+            {"material_image", buffers.gbuffer->material},
+            {"depth_pyramid", buffers.pyramid.atlas}};
+}
+
+ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch, int items_per_group)
+{
+    Constants constants;
+    constants.add(CONSTANT_ITEMS_PER_GROUP, items_per_group);
+    return make_compute_pass(gpu, compile_shader({.file = "launch.comp"}), {{"ItemCount", items}, {"Launch", launch}},
+                             constants);
+}
+
 TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view,
                               const Buffer* work)
 {
     const FrameBuffers& buffers  = *frame.buffers;
-    Bindings            bindings = ray_bindings(rays);
-    bindings.insert({{"View", view},
-                     {"depth_image", buffers.gbuffer->depth},
-                     {"normal_image", buffers.gbuffer->normal},
-                     {"material_image", buffers.gbuffer->material},
-                     {"depth_pyramid", buffers.pyramid.atlas}});
+    Bindings            bindings = bindings_of(buffers, rays);
+    bindings.insert({"View", view});
     // A folder with a trace.comp of its own replaces the standard one (for techniques that work in tiles, say).
     const std::filesystem::path own = frame.technique.folder / "trace.comp";
     ShaderSource                trace{.file = std::filesystem::exists(own) ? own : std::filesystem::path("trace.comp"),
                                       .defines       = precision_defines(rays.precision),
                                       .include_files = {{"technique/trace.glsl", frame.technique.folder / "trace.glsl"}},
-                                      .include_texts = {{"technique/parameters", parameter_declarations(frame.technique)}}};
+                                      .include_texts = {{"technique/parameters",
+                                                         parameter_declarations(frame.technique.parameters, CONSTANT_PARAMETERS)}}};
     if (work != nullptr) {
         trace.defines.emplace("COUNT_WORK", "1");
         bindings.insert({"Work", *work});
     }
-    Constants   constants = settings_constants(frame, rays.precision);
+    Constants constants = settings_constants(frame, rays.precision);
+    // What is counted is the technique's work, which does not depend on the plan.
+    constants.add(CONSTANT_EVERY_SURFACE, work == nullptr && frame.settings.effects.at("plan") == 0 ? 1 : 0);
     TracePasses passes;
-    passes.rays = make_compute_pass(
-        gpu, compile_shader({.file = "rays.comp", .defines = precision_defines(rays.precision)}), bindings, constants);
-    passes.launch = make_compute_pass(gpu, compile_shader({.file = "launch.comp"}), bindings);
-    add_parameters(constants, frame.technique, frame.values);
+    passes.classification =
+        make_compute_pass(gpu, compile_shader({.file = "effects/classification.comp"}), bindings, constants);
+    passes.tile_launch = make_launch_pass(gpu, buffers.tiles.count, buffers.tiles.launch, 1);
+    passes.rays        = make_compute_pass(
+               gpu, compile_shader({.file = "rays.comp", .defines = precision_defines(rays.precision)}), bindings, constants);
+    passes.ray_launch = make_launch_pass(gpu, rays.count, rays.launch, RAYS_PER_GROUP);
+    add_parameters(constants, frame.technique.parameters, frame.values, CONSTANT_PARAMETERS);
     passes.trace = make_compute_pass(gpu, compile_shader(trace), bindings, constants);
     return passes;
 }
 
-ComputePass make_shade_pass(Gpu& gpu, const PreparedFrame& frame)
+void record_classification(const vk::raii::CommandBuffer& commands, const TracePasses& passes,
+                           const FrameBuffers& buffers)
 {
-    const FrameBuffers& buffers  = *frame.buffers;
-    Bindings            bindings = ray_bindings(buffers.rays);
-    bindings.insert({{"View", buffers.view},
-                     {"material_image", buffers.gbuffer->material},
-                     {"radiance_image", buffers.gbuffer->radiance},
-                     {"shaded_image", buffers.shaded}});
-    Constants constants = settings_constants(frame, Precision::float32);
-    constants.add(CONSTANT_METALLIC_EXPONENT, static_cast<float>(frame.settings.shade.metallic_exponent));
-    constants.add(CONSTANT_FADE_TO_VIEWER, static_cast<int32_t>(frame.settings.shade.fade_to_viewer));
-    constants.add(CONSTANT_FADE_AT_EDGES, static_cast<int32_t>(frame.settings.shade.fade_at_edges));
-    return make_compute_pass(gpu, compile_shader({.file = "shade.comp"}), bindings, constants);
+    barrier(commands);
+    commands.fillBuffer(*buffers.tiles.count.buffer, 0, VK_WHOLE_SIZE, 0);
+    commands.fillBuffer(*buffers.tiles.statistics.buffer, 0, VK_WHOLE_SIZE, 0);
+    barrier(commands);
+    dispatch(commands, passes.classification, groups_of_8(buffers.gbuffer->view.size_px));
+    barrier(commands);
+    dispatch(commands, passes.tile_launch, {1, 1, 1});
+    barrier(commands);
 }
 
-void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const RayBuffers& rays,
-                 glm::ivec2 size_px)
+void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers,
+                      const RayBuffers& rays)
 {
-    barrier(commands);
     commands.fillBuffer(*rays.count.buffer, 0, VK_WHOLE_SIZE, 0);
     barrier(commands);
-    dispatch(commands, passes.rays,
-             {static_cast<uint32_t>(size_px.x + 7) / 8, static_cast<uint32_t>(size_px.y + 7) / 8, 1});
+    dispatch_indirect(commands, passes.rays, buffers.tiles.launch);
     barrier(commands);
-    dispatch(commands, passes.launch, {1, 1, 1});
+    dispatch(commands, passes.ray_launch, {1, 1, 1});
     barrier(commands);
+}
+
+void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers,
+                 const RayBuffers& rays)
+{
+    record_classification(commands, passes, buffers);
+    record_ray_setup(commands, passes, buffers, rays);
 }
 
 void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses& passes)

@@ -3,6 +3,9 @@
 
 #include "render/gbuffer.h"
 
+#include <functional>
+#include <map>
+
 namespace ssrlab {
 
 /// The list of rays and what each found (shaders/rays.comp, trace.comp).
@@ -23,13 +26,21 @@ struct PyramidImages {
 };
 PyramidImages make_pyramid_images(Gpu& gpu, glm::ivec2 size_px);
 
+/// The tiles to trace (shaders/effects/classification.comp) and the counts for the plan.
+struct TileBuffers {
+    Buffer count, tiles, launch, statistics;
+};
+TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px);
+
 struct FrameBuffers {
-    GBufferPtr    gbuffer;
-    Buffer        view; // float
-    RayBuffers    rays; // float
-    PyramidImages pyramid;
-    GpuImage      shaded; // RGBA16F
-    ComputePass   lit;    // shaded = radiance + highlight
+    GBufferPtr                                    gbuffer;
+    Buffer                                        view; // float
+    TileBuffers                                   tiles;
+    FrameStatistics                               statistics; // of the picture; nothing is traced yet
+    std::map<size_t, std::shared_ptr<RayBuffers>> rays;       // by capacity; float
+    PyramidImages                                 pyramid;
+    GpuImage reflection; // RGBA16F: colour, weight; weight < 0 where no ray started
+    GpuImage shaded;     // RGBA16F
 };
 
 struct PyramidPush {
@@ -42,29 +53,53 @@ struct PyramidPasses {
 };
 
 struct TracePasses {
-    ComputePass rays, launch, trace;
+    ComputePass classification, tile_launch, rays, ray_launch, trace;
 };
 
+/// Writes an effect's commands.
+using Recording = std::function<void(const vk::raii::CommandBuffer&)>;
+
 struct PreparedFrame {
-    FrameBuffersPtr buffers;
-    Technique       technique;
-    ParameterValues values;
-    FrameSettings   settings;
-    PyramidPasses   pyramid;
-    TracePasses     trace;
-    ComputePass     shade;
-    Timestamps      timestamps;
+    FrameBuffersPtr             buffers;
+    Technique                   technique;
+    ParameterValues             values;
+    FrameSettings               settings;
+    std::shared_ptr<RayBuffers> rays;
+    PyramidPasses               pyramid;
+    TracePasses                 trace;
+    std::vector<PlannedEffect>  plan;
+    std::vector<Recording>      recordings; // of the effects that run
+    Timestamps                  timestamps;
 };
 
 PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame);
 /// work: steps, depth and pyramid fetches per ray, or null for the pipeline that is timed.
 TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view,
                               const Buffer* work);
-ComputePass make_shade_pass(Gpu& gpu, const PreparedFrame& frame);
+ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch, int items_per_group);
+/// Everything that shaders may read and write, by its name; without the view.
+Bindings  bindings_of(const FrameBuffers& buffers, const RayBuffers& rays);
+Constants settings_constants(const PreparedFrame& frame, Precision precision);
+/// One constant per parameter from `id` on, under its own name, and names for the choices: PARAMETER_CHOICE.
+std::string parameter_declarations(std::span<const Parameter> parameters, uint32_t id);
+void        add_parameters(Constants& constants, std::span<const Parameter> parameters, const ParameterValues& values,
+                           uint32_t id);
 
-void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const RayBuffers& rays,
-                 glm::ivec2 size_px);
+/// Pipelines of an effect. The recording refers to the frame, which must outlive it.
+Recording make_recording(Gpu& gpu, PreparedFrame& frame, const std::string& effect);
+/// Traces once and counts how the rays ended.
+TraceCounts count_hits(Gpu& gpu, PreparedFrame& frame);
+
+/// Classification and ray set-up.
+void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers,
+                 const RayBuffers& rays);
+void record_classification(const vk::raii::CommandBuffer& commands, const TracePasses& passes,
+                           const FrameBuffers& buffers);
+void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers,
+                      const RayBuffers& rays);
 void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses& passes);
+
+glm::uvec3 groups_of_8(glm::ivec2 size_px);
 
 template <typename Real>
 TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, const Buffer* work);

@@ -185,6 +185,7 @@ GpuScenePtr upload_scene(Gpu& gpu, const Scene& source)
     }
     scene->ambient    = source.ambient;
     scene->background = source.background;
+    scene->alpha_mask = std::ranges::any_of(source.materials, &Material::alpha_mask);
     render_shadow_maps(gpu, *scene, source);
     return scene;
 }

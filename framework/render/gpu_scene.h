@@ -31,6 +31,7 @@ struct GpuScene {
     std::vector<DrawCall>                draws;
     uint32_t                             light_count = 0;
     glm::vec3                            ambient{0}, background{0};
+    bool                                 alpha_mask = false; // some material has one
 };
 
 struct DrawPipeline {

@@ -90,6 +90,7 @@ RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Techniqu
     auto tracer          = std::make_shared<RayTracer>();
     auto buffers         = std::make_shared<FrameBuffers>();
     buffers->gbuffer     = gbuffer;
+    buffers->tiles       = make_tile_buffers(gpu, gbuffer->view.size_px);
     buffers->pyramid     = make_pyramid_images(gpu, gbuffer->view.size_px);
     PreparedFrame& frame = tracer->frame;
     frame.buffers        = buffers;
@@ -108,7 +109,7 @@ RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Techniqu
 std::vector<RayInput> set_up_rays(Gpu& gpu, RayTracer& tracer)
 {
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-        record_rays(commands, tracer.passes, tracer.rays, tracer.frame.buffers->gbuffer->view.size_px);
+        record_rays(commands, tracer.passes, *tracer.frame.buffers, tracer.rays);
     });
     return in_double(tracer) ? read_rays<double>(gpu, tracer.rays) : read_rays<float>(gpu, tracer.rays);
 }
@@ -124,7 +125,7 @@ std::vector<RayOutcome> trace_rays(Gpu& gpu, RayTracer& tracer, std::span<const 
         upload_rays<float>(gpu, tracer.rays, rays);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         barrier(commands);
-        dispatch(commands, tracer.passes.launch, {1, 1, 1});
+        dispatch(commands, tracer.passes.ray_launch, {1, 1, 1});
         barrier(commands);
         record_pyramid(commands, tracer.frame.pyramid);
         dispatch_indirect(commands, tracer.passes.trace, tracer.rays.launch);

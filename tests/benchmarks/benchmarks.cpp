@@ -16,7 +16,7 @@ const std::map<std::string, glm::ivec2> sizes = {
     {"360p", {640, 360}}, {"720p", {1280, 720}}, {"1080p", {1920, 1080}}, {"2160p", {3840, 2160}}};
 
 // Every ray sees the whole segment, so that all tracers answer the same question.
-const FrameSettings settings{{.thickness_m = 0.1, .max_distance_m = 1e9}, {}};
+const FrameSettings settings{.trace = {.thickness_m = 0.1, .max_distance_m = 1e9}};
 
 /// Marches have no metres to divide an unlimited ray by: they step in pixels.
 ParameterValues values_for(const Technique& technique)
@@ -93,9 +93,7 @@ public:
     {
         Picture&       p     = picture(scene, size);
         PreparedFrame& frame = frame_of(p, "dda", "dda", {});
-        measure(state, p, [&](const auto& commands) {
-            record_rays(commands, frame.trace, p.buffers->rays, p.gbuffer->view.size_px);
-        });
+        measure(state, p, [&](const auto& commands) { record_rays(commands, frame.trace, *p.buffers, *frame.rays); });
     }
 
     void trace(benchmark::State& state, const std::string& scene, const std::string& size, const std::string& id)
@@ -105,7 +103,7 @@ public:
         if (!p.work.contains(id)) p.work[id] = count_work(gpu_, frame);
         prepare_trace(p, frame);
         const double ms                   = measure(state, p, [&](const auto& commands) {
-            dispatch_indirect(commands, frame.trace.trace, p.buffers->rays.launch);
+            dispatch_indirect(commands, frame.trace.trace, frame.rays->launch);
         });
         const Work&  work                 = p.work[id];
         state.counters["rays"]            = work.rays;
@@ -119,12 +117,13 @@ public:
         Picture&       p     = picture(scene, size);
         PreparedFrame& frame = frame_of(p, "hiz", "hiz", {});
         prepare_trace(p, frame);
-        submit(gpu_,
-               [&](const auto& commands) { dispatch_indirect(commands, frame.trace.trace, p.buffers->rays.launch); });
+        submit(gpu_, [&](const auto& commands) { dispatch_indirect(commands, frame.trace.trace, frame.rays->launch); });
+        const Recording hit_colour = make_recording(gpu_, frame, "hit_colour"),
+                        composite  = make_recording(gpu_, frame, "composite");
         measure(state, p, [&](const auto& commands) {
-            dispatch(commands, p.buffers->lit, groups(p));
+            hit_colour(commands);
             barrier(commands);
-            dispatch_indirect(commands, frame.shade, p.buffers->rays.launch);
+            composite(commands);
         });
     }
 
@@ -172,7 +171,7 @@ private:
     void prepare_trace(Picture& p, PreparedFrame& frame)
     {
         submit(gpu_, [&](const auto& commands) {
-            record_rays(commands, frame.trace, p.buffers->rays, p.gbuffer->view.size_px);
+            record_rays(commands, frame.trace, *p.buffers, *frame.rays);
             record_pyramid(commands, frame.pyramid);
         });
     }

@@ -92,7 +92,7 @@ std::string broken(const Picture& picture, const Technique& technique, const Tra
 void expect_contract(const Case& c, const Picture& picture, const Technique& technique, const ParameterValues& values,
                      const TraceSettings& settings)
 {
-    const auto        frame  = prepare_frame(device(), picture.buffers, technique, values, {settings, {}});
+    const auto        frame  = prepare_frame(device(), picture.buffers, technique, values, {settings});
     const TraceResult result = count_frame(device(), *frame), again = count_frame(device(), *frame);
     const std::string repeat = repeat_command(c.scene, "default", c.size_px, technique, values, settings);
     size_t            wrong  = 0;

@@ -28,7 +28,7 @@ Pyramid build(const Picture& picture, const TraceSettings& settings, double kind
 {
     const Technique& hiz   = technique("hiz");
     const auto       frame = prepare_frame(device(), picture.buffers, hiz,
-                                           values_of(hiz, {{"pyramid", kind}, {"top_level", 14}}), {settings, {}});
+                                           values_of(hiz, {{"pyramid", kind}, {"top_level", 14}}), {settings});
     submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_pyramid(commands, frame->pyramid); });
     const PyramidImages& images = picture.buffers->pyramid;
     return {picture.view.size_px, images.atlas.size_px, images.levels, download_as<glm::uvec2>(device(), images.atlas)};

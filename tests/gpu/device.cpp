@@ -79,7 +79,7 @@ Picture make_picture(const GBufferImage& gbuffer) { return make_picture(upload_g
 TraceResult trace(const Picture& picture, const Technique& technique, const ParameterValues& values,
                   const TraceSettings& settings, Precision precision)
 {
-    const auto frame = prepare_frame(device(), picture.buffers, technique, values, {settings, {}});
+    const auto frame = prepare_frame(device(), picture.buffers, technique, values, {settings});
     return count_frame(device(), *frame, precision);
 }
 

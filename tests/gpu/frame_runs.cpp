@@ -14,7 +14,7 @@ TEST_P(FrameRuns, TimesAreThereAndResultsAreTheCountedOnes)
     const Picture       picture = make_picture("builtin:pole_field", "down", {161, 91});
     const TraceSettings settings{.thickness_m = 0.1, .max_distance_m = 20};
     const Technique&    t     = technique(GetParam());
-    const auto          frame = prepare_frame(device(), picture.buffers, t, values_of(t), {settings, {}});
+    const auto          frame = prepare_frame(device(), picture.buffers, t, values_of(t), {settings});
     const TraceResult   first = count_frame(device(), *frame), second = count_frame(device(), *frame);
     std::string         text;
     EXPECT_EQ(count_differences(first, second, true, text), 0U) << text;
@@ -24,13 +24,13 @@ TEST_P(FrameRuns, TimesAreThereAndResultsAreTheCountedOnes)
 
     std::vector<float> shaded;
     for (int run = 0; run < 3; ++run) {
-        const PassTimes times = run_frame(device(), *frame);
-        for (const double ms : {times.rays_ms, times.trace_ms, times.shade_ms}) {
+        const FrameTimes times = run_frame(device(), *frame);
+        for (const double ms : {times.of("rays"), times.of("trace"), times.of("composite")}) {
             EXPECT_GT(ms, 0);
             EXPECT_LT(ms, 60000);
         }
-        EXPECT_GE(times.inputs_ms, t.inputs.empty() ? 0 : 1e-4);
-        const TraceResult timed = read_result<float>(device(), picture.view.size_px, picture.buffers->rays, nullptr);
+        EXPECT_GE(times.of("depth_pyramid"), t.inputs.empty() ? 0 : 1e-4);
+        const TraceResult timed = read_result<float>(device(), picture.view.size_px, *frame->rays, nullptr);
         EXPECT_EQ(count_differences(timed, first, true, text), 0U) << "run " << run << ": " << text;
         const auto pixels = read_shaded(device(), *frame).values;
         if (run == 0) shaded = pixels;
@@ -60,7 +60,7 @@ TEST(SharedBuffers, KeepNoTraceOfTheRunBefore)
     std::map<std::string, PreparedFramePtr>   frames;
     std::map<std::string, std::vector<float>> shaded;
     for (const char* id : {"dda", "hiz", "linear"})
-        frames[id] = prepare_frame(device(), picture.buffers, technique(id), values_of(technique(id)), {settings, {}});
+        frames[id] = prepare_frame(device(), picture.buffers, technique(id), values_of(technique(id)), {settings});
     for (int round = 0; round < 2; ++round)
         for (auto& [id, frame] : frames) {
             run_frame(device(), *frame);

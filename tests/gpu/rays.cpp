@@ -20,13 +20,12 @@ struct Rays {
 template <typename Real> Rays make_rays(const Picture& picture, const TraceSettings& settings, Precision precision)
 {
     const Technique&  dda     = technique("dda");
-    const auto        frame   = prepare_frame(device(), picture.buffers, dda, values_of(dda), {settings, {}});
+    const auto        frame   = prepare_frame(device(), picture.buffers, dda, values_of(dda), {settings});
     const RayBuffers  buffers = make_ray_buffers(device(), picture.image.depth.size(), precision);
     const Buffer      view    = upload_view(device(), picture.view, precision);
     const TracePasses passes  = make_trace_passes(device(), *frame, buffers, view, nullptr);
-    submit(device(), [&](const vk::raii::CommandBuffer& commands) {
-        record_rays(commands, passes, buffers, picture.view.size_px);
-    });
+    submit(device(),
+           [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, passes, *picture.buffers, buffers); });
     const size_t count = download_as<uint32_t>(device(), buffers.count, 1)[0];
     Rays         rays;
     for (const auto& v : download_as<glm::vec<3, Real>>(device(), buffers.origins, count)) rays.origins.emplace_back(v);

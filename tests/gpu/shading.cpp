@@ -21,25 +21,37 @@ GBufferImage coloured()
     return image;
 }
 
-double beta(const GBufferImage& image, const TraceResult& result, size_t i, const ShadeSettings& shade)
+double beta(const GBufferImage& image, const TraceResult& result, size_t i, const ParameterValues& effects)
 {
     const glm::ivec2 pixel(static_cast<int>(i) % 64, static_cast<int>(i) / 64);
-    double           value =
-        shade.metallic_exponent > 0 ? std::pow(static_cast<double>(image.metallic[i]), shade.metallic_exponent) : 1;
-    if (shade.fade_to_viewer) value *= std::max(0.0, -mirror_direction_vs(image, pixel).z);
-    const glm::dvec2 uv = glm::dvec2(result.hit_px_depth[i]) / 64.0;
-    if (shade.fade_at_edges) value *= std::clamp(1 - std::abs(uv.x - 0.5) - std::abs(uv.y - 0.5), 0.0, 1.0);
+    const double     exponent = effects.at("metallic_exponent");
+    double           value    = exponent > 0 ? std::pow(static_cast<double>(image.metallic[i]), exponent) : 1;
+    const double     away     = -mirror_direction_vs(image, pixel).z;
+    const double     start    = effects.at("viewer_fade_start");
+    const glm::dvec2 offset   = glm::dvec2(result.hit_px_depth[i]) / 64.0 - 0.5;
+    const double     radial   = std::clamp(2 * glm::length(offset), 0.0, 1.0);
+    // By the choices' order in render/effects.cpp.
+    const double viewers[] = {1, std::max(0.0, away), away > 0 ? 1.0 : 0.0,
+                              std::clamp((away - start) / (1 - start), 0.0, 1.0)};
+    const double edges[]   = {1, std::clamp(1 - std::abs(offset.x) - std::abs(offset.y), 0.0, 1.0), 1 - radial,
+                              1 - radial * radial};
+    const double viewer    = viewers[static_cast<size_t>(effects.at("viewer_fade"))];
+    const double edge      = edges[static_cast<size_t>(effects.at("edge_fade"))];
+    const double most      = 1 - effects.at("own_share");
+    value *= effects.at("fade_combination") == 0 ? viewer * edge * most : std::min({viewer, edge, most});
     return value;
 }
 
-class Shading : public testing::TestWithParam<ShadeSettings> {};
+class Shading : public testing::TestWithParam<ParameterValues> {};
 
 TEST_P(Shading, IsTheFormulaAtEveryPixel)
 {
     const Picture       picture = make_picture(coloured());
     const TraceSettings settings{.thickness_m = 0.5, .max_distance_m = 50};
-    const auto          frame =
-        prepare_frame(device(), picture.buffers, technique("hiz"), values_of(technique("hiz")), {settings, GetParam()});
+    ParameterValues     effects = default_effect_values();
+    for (const auto& [name, value] : GetParam()) effects.at(name) = value;
+    const auto frame =
+        prepare_frame(device(), picture.buffers, technique("hiz"), values_of(technique("hiz")), {settings, effects});
     const TraceResult result = count_frame(device(), *frame);
     run_frame(device(), *frame);
     const Image shaded = read_shaded(device(), *frame);
@@ -51,7 +63,7 @@ TEST_P(Shading, IsTheFormulaAtEveryPixel)
             const auto       from = static_cast<size_t>(result.hit_pixel[i].y * 64 + result.hit_pixel[i].x);
             const glm::dvec3 reflected =
                 picture.image.radiance[from]; // without the highlight: that belongs to the camera's direction
-            expected += (reflected - expected) * beta(picture.image, result, i, GetParam());
+            expected += (reflected - expected) * beta(picture.image, result, i, effects);
         }
         for (int c = 0; c < 3; ++c)
             ASSERT_NEAR(static_cast<double>(shaded.values[3 * i + static_cast<size_t>(c)]), expected[c],
@@ -61,11 +73,17 @@ TEST_P(Shading, IsTheFormulaAtEveryPixel)
     EXPECT_GT(hits, 300U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Switches, Shading,
-                         testing::Values(ShadeSettings{}, ShadeSettings{0, false, false},
-                                         ShadeSettings{3, false, false}, ShadeSettings{1.5, false, false},
-                                         ShadeSettings{0, true, false}, ShadeSettings{0, false, true},
-                                         ShadeSettings{2, true, true}));
+INSTANTIATE_TEST_SUITE_P(
+    Settings, Shading,
+    testing::Values(ParameterValues{}, ParameterValues{{"metallic_exponent", 0}, {"viewer_fade", 0}, {"edge_fade", 0}},
+                    ParameterValues{{"viewer_fade", 0}, {"edge_fade", 0}},
+                    ParameterValues{{"metallic_exponent", 1.5}, {"viewer_fade", 0}, {"edge_fade", 0}},
+                    ParameterValues{{"metallic_exponent", 0}, {"viewer_fade", 1}, {"edge_fade", 0}},
+                    ParameterValues{{"metallic_exponent", 0}, {"viewer_fade", 2}, {"edge_fade", 1}},
+                    ParameterValues{{"viewer_fade", 3}, {"viewer_fade_start", 0.4}, {"edge_fade", 2}},
+                    // Litheon's blending: the smaller weight, at most 0.4.
+                    ParameterValues{{"viewer_fade", 3}, {"edge_fade", 3}, {"fade_combination", 1}, {"own_share", 0.6}},
+                    ParameterValues{{"plan", 0}, {"metallic_exponent", 2}})));
 
 // Nothing hit, nothing changed: the lit colour to the last bit, also of pixels that are no surface.
 TEST(ShadingOfMisses, LeavesTheLitColour)
@@ -73,7 +91,7 @@ TEST(ShadingOfMisses, LeavesTheLitColour)
     const Picture       picture = make_picture(coloured());
     const TraceSettings settings{.thickness_m = 0, .max_distance_m = 0.001};
     const auto          frame =
-        prepare_frame(device(), picture.buffers, technique("dda"), values_of(technique("dda")), {settings, {}});
+        prepare_frame(device(), picture.buffers, technique("dda"), values_of(technique("dda")), {settings});
     run_frame(device(), *frame);
     const Image shaded = read_shaded(device(), *frame);
     for (size_t i = 0; i < picture.image.depth.size(); ++i)

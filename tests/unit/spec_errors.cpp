@@ -108,7 +108,7 @@ TEST(Spec, EverySettingAgainstEveryMistake)
         EXPECT_THAT(mistake("[]"), HasSubstr(place + "is an empty list"));
         EXPECT_THAT(mistake("{}"), HasSubstr(place + "must be"));
         EXPECT_THAT(mistake("nan"), HasSubstr(place + "must be"));
-        EXPECT_THAT(mistake("-1"), HasSubstr(place + "must be"));
+        EXPECT_THAT(mistake("-2"), HasSubstr(place + "must be"));
         EXPECT_THAT(mistake("[true, 7]"), HasSubstr(place + "must be"));
     }
     EXPECT_THAT(error_of(with_line("[trace]\nthicknes_m = 1")),
@@ -198,11 +198,12 @@ TEST(Spec, ATechniquesTableMayNameSettingsOfItsOwn)
 {
     const Experiment experiment =
         load_text("scenes = \"a\"\n[trace]\nthickness_m = [0.1, "
-                  "0.2]\n[[techniques.linear]]\n[[techniques.linear]]\nthickness_m = 0.5\nfade_at_edges = false\n");
+                  "0.2]\n[[techniques.linear]]\n[[techniques.linear]]\nthickness_m = 0.5\nedge_fade = \"off\"\n");
     const auto runs = expand(experiment, techniques());
     ASSERT_EQ(runs.size(), 3U);
     EXPECT_EQ(count_runs(experiment), 3);
-    EXPECT_EQ(std::ranges::count(runs, false, [](const auto& run) { return run.settings.shade.fade_at_edges; }), 1);
+    EXPECT_EQ(
+        std::ranges::count(runs, false, [](const auto& run) { return run.settings.effects.at("edge_fade") != 0; }), 1);
     EXPECT_THAT(error_of("scenes = \"a\"\n[techniques.linear]\nthickness_m = -1\n"),
                 HasSubstr(".toml:3: 'thickness_m' must be in"));
 }

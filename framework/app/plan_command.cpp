@@ -1,0 +1,83 @@
+#include "app/plan_command.h"
+
+#include "app/stage.h"
+#include "core/error.h"
+#include "harness/statistics.h"
+
+#include <cstdio>
+#include <map>
+
+namespace ssrlab {
+namespace {
+
+struct Timed {
+    PreparedFramePtr                           frame;
+    std::map<std::string, std::vector<double>> effect_ms;
+    std::vector<double>                        total_ms;
+};
+
+void add_repeat(Gpu& gpu, Timed& timed)
+{
+    const FrameTimes times = run_frame(gpu, *timed.frame);
+    for (const auto& [effect, ms] : times.effects_ms) timed.effect_ms[effect].push_back(ms);
+    timed.total_ms.push_back(times.total_ms());
+}
+
+/// "1.23", or "-" for what did not run.
+std::string median_text(const Timed& timed, const std::string& effect)
+{
+    const auto found = timed.effect_ms.find(effect);
+    return found == timed.effect_ms.end() ? "-" : fmt::format("{:.2f}", quantile(found->second, 0.5));
+}
+
+void print_table(const Timed& planned, const Timed& everything)
+{
+    std::puts(
+        fmt::format("{:<18} {:<8} {:>11} {:>14}  {}", "effect", "", "planned ms", "everything ms", "why").c_str());
+    for (const PlannedEffect& row : plan_of(*planned.frame)) {
+        const std::string& id = row.effect->id;
+        std::puts(fmt::format("{:<18} {:<8} {:>11} {:>14}  {}", id, row.runs ? "run" : "skipped",
+                              median_text(planned, id), median_text(everything, id), row.reason)
+                      .c_str());
+    }
+    std::puts(fmt::format("{:<18} {:<8} {:>11.2f} {:>14.2f}", "frame", "", quantile(planned.total_ms, 0.5),
+                          quantile(everything.total_ms, 0.5))
+                  .c_str());
+}
+
+} // namespace
+
+int print_plan(const CommonOptions& common, const PlanOptions& options)
+{
+    const auto       techniques = list_techniques(common.technique_dirs);
+    const Technique& technique  = find_technique(techniques, options.picture.technique);
+    Choice           choice     = parse_choice(technique, options.picture.parameters);
+    Stage            stage      = prepare_stage(common, options.picture);
+    const auto       buffers    = make_frame_buffers(stage.gpu, stage.gbuffer);
+
+    const auto timed = [&](bool plan) {
+        choice.settings.effects.at("plan") = plan ? 1 : 0;
+        Timed result{prepare_frame(stage.gpu, buffers, technique, choice.values, choice.settings), {}, {}};
+        run_frame(stage.gpu, *result.frame); // warm-up
+        return result;
+    };
+    Timed      planned         = timed(true);
+    const auto planned_picture = read_shaded(stage.gpu, *planned.frame);
+    Timed      everything      = timed(false);
+    const bool same            = read_shaded(stage.gpu, *everything.frame).values == planned_picture.values;
+    for (int i = 0; i < options.repeats; ++i) {
+        add_repeat(stage.gpu, planned);
+        add_repeat(stage.gpu, everything);
+    }
+    std::puts(fmt::format("{}, view {}, {}x{}, {} on {}: median of {} frames without the G-buffer\n",
+                          options.picture.scene, options.picture.view, stage.view.size_px.x, stage.view.size_px.y,
+                          technique.id, stage.gpu.info.name, options.repeats)
+                  .c_str());
+    print_table(planned, everything);
+    std::puts(same ? "\nThe picture with everything on is the same to the last bit."
+                   : "\nThe picture with everything on DIFFERS from the planned one.");
+    const int messages = report_messages(stage);
+    return same ? messages : 1;
+}
+
+} // namespace ssrlab

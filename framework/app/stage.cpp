@@ -1,0 +1,61 @@
+#include "app/stage.h"
+
+#include "core/error.h"
+#include "harness/experiment.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+
+namespace ssrlab {
+
+glm::ivec2 parse_size(const std::string& text)
+{
+    glm::ivec2  size{0, 0};
+    const char* end    = text.data() + text.size();
+    const auto  width  = std::from_chars(text.data(), end, size.x);
+    const auto  height = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x'
+                             ? std::from_chars(width.ptr + 1, end, size.y)
+                             : std::from_chars_result{end, std::errc::invalid_argument};
+    if (height.ec != std::errc() || height.ptr != end || size.x < 1 || size.y < 1)
+        throw_spec_error("--size: expected WIDTHxHEIGHT, both at least 1, got '{}'", text);
+    return size;
+}
+
+Stage prepare_stage(const CommonOptions& common, const PictureOptions& options)
+{
+    Stage stage;
+    stage.scene          = load_scene(options.scene);
+    const Camera& camera = find_camera(stage.scene, options.view);
+    stage.view           = camera_to_view(camera, options.size.empty() ? camera.size_px : parse_size(options.size));
+    for (const std::string& warning : stage.scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    stage.gpu     = open_gpu({.device = common.device, .validation = common.validation});
+    stage.gbuffer = render_gbuffer(stage.gpu, upload_scene(stage.gpu, stage.scene), stage.view);
+    return stage;
+}
+
+Choice parse_choice(const Technique& technique, const std::vector<std::string>& pairs)
+{
+    Choice choice{default_values(technique), {}};
+    for (const std::string& pair : pairs) {
+        const auto equals = pair.find('=');
+        if (equals == std::string::npos) throw_spec_error("-p {}: expected name=value", pair);
+        const std::string name = pair.substr(0, equals), text = pair.substr(equals + 1), place = "-p " + pair;
+        const auto        setting = std::ranges::find(all_settings(), name, &Setting::name);
+        if (setting == all_settings().end()) {
+            choice.values[name] = parse_parameter(find_parameter(technique, name, place), text, place);
+            continue;
+        }
+        setting->set(choice.settings, parse_parameter(*setting, text, place));
+    }
+    return choice;
+}
+
+int report_messages(const Stage& stage)
+{
+    const auto messages = validation_messages(stage.gpu);
+    for (const std::string& message : messages) std::fprintf(stderr, "validation: %s\n", message.c_str());
+    return messages.empty() ? 0 : 1;
+}
+
+} // namespace ssrlab

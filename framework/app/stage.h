@@ -1,0 +1,30 @@
+// One picture from the command line: scene, view, device, and name=value pairs.
+#pragma once
+
+#include "app/commands.h"
+#include "scene/scene.h"
+
+namespace ssrlab {
+
+/// The scene's picture of one view on the device.
+struct Stage {
+    Scene      scene;
+    View       view;
+    Gpu        gpu;
+    GBufferPtr gbuffer;
+};
+Stage prepare_stage(const CommonOptions& common, const PictureOptions& options);
+/// Prints the validation layer's messages; 1 when there are any.
+int report_messages(const Stage& stage);
+
+/// "1280x720"; throws SpecError.
+glm::ivec2 parse_size(const std::string& text);
+
+struct Choice {
+    ParameterValues values;
+    FrameSettings   settings;
+};
+/// name=value pairs: settings of [trace] and [effects], or else parameters of the technique. Throws SpecError.
+Choice parse_choice(const Technique& technique, const std::vector<std::string>& pairs);
+
+} // namespace ssrlab

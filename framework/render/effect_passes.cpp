@@ -1,0 +1,110 @@
+// How each row of the table of effects is recorded.
+#include "render/frame_passes.h"
+
+namespace ssrlab {
+namespace {
+
+ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader)
+{
+    const FrameBuffers& buffers   = *frame.buffers;
+    Constants           constants = settings_constants(frame, Precision::float32);
+    add_parameters(constants, effect_parameters(), frame.settings.effects, CONSTANT_EFFECTS);
+    Bindings bindings = bindings_of(buffers, *frame.rays);
+    bindings.insert({{"View", buffers.view},
+                     {"radiance_image", buffers.gbuffer->radiance},
+                     {"highlight_image", buffers.gbuffer->highlight},
+                     {"reflection_image", buffers.reflection},
+                     {"shaded_image", buffers.shaded}});
+    return make_compute_pass(
+        gpu,
+        compile_shader(
+            {.file          = shader,
+             .include_texts = {{"effect/parameters", parameter_declarations(effect_parameters(), CONSTANT_EFFECTS)}}}),
+        bindings, constants);
+}
+
+std::shared_ptr<ComputePass> shared_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader)
+{
+    return std::make_shared<ComputePass>(make_effect_pass(gpu, frame, shader));
+}
+
+/// No ray started anywhere.
+void clear_reflection(const vk::raii::CommandBuffer& commands, const GpuImage& reflection)
+{
+    const vk::ClearColorValue       nothing{std::array<float, 4>{0, 0, 0, -1}};
+    const vk::ImageSubresourceRange all{vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1};
+    barrier(commands);
+    commands.clearColorImage(*reflection.image, vk::ImageLayout::eGeneral, nothing, all);
+    barrier(commands);
+}
+
+Recording classification(Gpu& /*gpu*/, PreparedFrame& frame)
+{
+    return [&](const auto& commands) { record_classification(commands, frame.trace, *frame.buffers); };
+}
+
+Recording rays(Gpu& /*gpu*/, PreparedFrame& frame)
+{
+    return [&](const auto& commands) { record_ray_setup(commands, frame.trace, *frame.buffers, *frame.rays); };
+}
+
+Recording depth_pyramid(Gpu& /*gpu*/, PreparedFrame& frame)
+{
+    return [&](const auto& commands) { record_pyramid(commands, frame.pyramid); };
+}
+
+Recording trace(Gpu& /*gpu*/, PreparedFrame& frame)
+{
+    return [&](const auto& commands) { dispatch_indirect(commands, frame.trace.trace, frame.rays->launch); };
+}
+
+Recording hit_colour(Gpu& gpu, PreparedFrame& frame)
+{
+    return [&frame, pass = shared_effect_pass(gpu, frame, "effects/hit_colour.comp")](const auto& commands) {
+        clear_reflection(commands, frame.buffers->reflection);
+        dispatch_indirect(commands, *pass, frame.rays->launch);
+    };
+}
+
+Recording composite(Gpu& gpu, PreparedFrame& frame)
+{
+    // Without rays there is no pass that says so pixel by pixel.
+    const bool no_rays = frame.buffers->statistics.picture.reflecting_pixels == 0;
+    return [&frame, no_rays, pass = shared_effect_pass(gpu, frame, "effects/composite.comp")](const auto& commands) {
+        if (no_rays) clear_reflection(commands, frame.buffers->reflection);
+        dispatch(commands, *pass, groups_of_8(frame.buffers->gbuffer->view.size_px));
+    };
+}
+
+} // namespace
+
+Recording make_recording(Gpu& gpu, PreparedFrame& frame, const std::string& effect)
+{
+    static const std::map<std::string, Recording (*)(Gpu&, PreparedFrame&)> makers = {
+        {"classification", classification}, {"rays", rays},
+        {"depth_pyramid", depth_pyramid},   {"trace", trace},
+        {"hit_colour", hit_colour},         {"composite", composite},
+    };
+    return makers.at(effect)(gpu, frame);
+}
+
+TraceCounts count_hits(Gpu& gpu, PreparedFrame& frame)
+{
+    const Buffer counts   = make_buffer(gpu, 16);
+    Bindings     bindings = bindings_of(*frame.buffers, *frame.rays);
+    bindings.insert({{"View", frame.buffers->view}, {"TraceStatistics", counts}});
+    const ComputePass count =
+        make_compute_pass(gpu, compile_shader({.file = "effects/trace_statistics.comp"}), bindings);
+    submit(gpu, [&](const auto& commands) {
+        commands.fillBuffer(*counts.buffer, 0, VK_WHOLE_SIZE, 0);
+        record_rays(commands, frame.trace, *frame.buffers, *frame.rays);
+        record_pyramid(commands, frame.pyramid);
+        dispatch_indirect(commands, frame.trace.trace, frame.rays->launch);
+        barrier(commands);
+        dispatch_indirect(commands, count, frame.rays->launch);
+        barrier(commands);
+    });
+    return download_as<TraceCounts>(gpu, counts, 1)[0];
+}
+
+} // namespace ssrlab

@@ -1,0 +1,16 @@
+// Which pixels reflect: those with a surface, a usable normal and some metal.
+layout(set = 0, binding = 1, r32f) uniform readonly image2D depth_image;
+layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image;   // xyz = view-space normal, w = roughness
+layout(set = 0, binding = 3, rgba16f) uniform readonly image2D material_image; // rgb = base colour, a = metallic
+
+bool has_surface(ivec2 pixel)
+{
+    vec3 normal = imageLoad(normal_image, pixel).xyz;
+    bool usable = any(notEqual(normal, vec3(0))) && !any(isnan(normal)) && !any(isinf(normal));
+    return imageLoad(depth_image, pixel).x > 0.0 && usable;
+}
+
+bool reflects(ivec2 pixel)
+{
+    return has_surface(pixel) && imageLoad(material_image, pixel).a > 0.0;
+}
