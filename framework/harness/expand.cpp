@@ -50,8 +50,11 @@ FrameSettings to_settings(const ParameterValues& values)
 std::string run_id(const Run& run)
 {
     std::string identity = fmt::format("{}\n{}\n{}\n{}\n", run.scene, run.view, size_text(run.size_px), run.technique);
+    // An effect's parameter counts when it is not at its default: a new effect leaves the ids of earlier runs alone.
     for (const Setting& setting : all_settings()) {
-        identity += fmt::format("{}={}\n", setting.name, setting.get(run.settings));
+        const double value = setting.get(run.settings);
+        if (setting.table == "trace" || value != setting.default_value)
+            identity += fmt::format("{}={}\n", setting.name, value);
     }
     for (const auto& [name, value] : run.values) identity += fmt::format("{}={}\n", name, value);
     // The letter keeps spreadsheets from reading 12e4… as a number.

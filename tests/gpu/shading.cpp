@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
                     ParameterValues{{"viewer_fade", 3}, {"viewer_fade_start", 0.4}, {"edge_fade", 2}},
                     // Litheon's blending: the smaller weight, at most 0.4.
                     ParameterValues{{"viewer_fade", 3}, {"edge_fade", 3}, {"fade_combination", 1}, {"own_share", 0.6}},
-                    ParameterValues{{"plan", 0}, {"metallic_exponent", 2}})));
+                    ParameterValues{{"plan", 0}, {"metallic_exponent", 2}}));
 
 // Nothing hit, nothing changed: the lit colour to the last bit, also of pixels that are no surface.
 TEST(ShadingOfMisses, LeavesTheLitColour)

@@ -67,8 +67,11 @@ TEST(Rows, EveryEntryOfARowHasAColumn)
 {
     const Technique techniques[] = {walk};
     const auto      names        = names_of(result_columns(one_technique("walk"), techniques));
-    ssrlab::Run     run{"r1", "a", "default", {2, 3}, {}, "walk", {{"steps", 25}, {"space", 1}}};
-    MeasuredRun     measured;
+    ssrlab::Run     run;
+    run.scene     = "a";
+    run.technique = "walk";
+    run.values    = {{"steps", 25}, {"space", 1}};
+    MeasuredRun measured;
     measured.run = &run;
     measured.row = identity_row(one_technique("walk"), run, walk);
     EXPECT_EQ(measured.row.at("space"), "screen");
