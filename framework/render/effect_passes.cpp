@@ -1,10 +1,13 @@
 // How each row of the table of effects is recorded.
+#include "core/error.h"
 #include "render/frame_passes.h"
 
 namespace ssrlab {
 namespace {
 
-ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader)
+using Defines = std::map<std::string, std::string>;
+
+ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader, const Defines& defines)
 {
     const FrameBuffers& buffers   = *frame.buffers;
     Constants           constants = settings_constants(frame, Precision::float32);
@@ -14,18 +17,26 @@ ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::st
                      {"radiance_image", buffers.gbuffer->radiance},
                      {"highlight_image", buffers.gbuffer->highlight},
                      {"reflection_image", buffers.reflection},
+                     {"scratch_image", buffers.scratch},
                      {"shaded_image", buffers.shaded}});
+    if (const GpuScene* scene = buffers.gbuffer->scene.get())
+        bindings.insert({{"Frame", buffers.gbuffer->frame_uniforms},
+                         {"Lights", scene->lights},
+                         {"ShadowMatrices", scene->shadow_matrices},
+                         {"shadow_map", {scene->shadow_map, scene->shadow_sampler}}});
     return make_compute_pass(
         gpu,
         compile_shader(
             {.file          = shader,
+             .defines       = defines,
              .include_texts = {{"effect/parameters", parameter_declarations(effect_parameters(), CONSTANT_EFFECTS)}}}),
         bindings, constants);
 }
 
-std::shared_ptr<ComputePass> shared_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader)
+std::shared_ptr<ComputePass> shared_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader,
+                                                const Defines& defines = {})
 {
-    return std::make_shared<ComputePass>(make_effect_pass(gpu, frame, shader));
+    return std::make_shared<ComputePass>(make_effect_pass(gpu, frame, shader, defines));
 }
 
 /// No ray started anywhere.
@@ -60,9 +71,25 @@ Recording trace(Gpu& /*gpu*/, PreparedFrame& frame)
 
 Recording hit_colour(Gpu& gpu, PreparedFrame& frame)
 {
-    return [&frame, pass = shared_effect_pass(gpu, frame, "effects/hit_colour.comp")](const auto& commands) {
+    constexpr double mirrored = 2;
+    const bool       relight  = frame.settings.effects.at("hit_light") == mirrored;
+    if (relight && !frame.buffers->gbuffer->scene)
+        throw_spec_error("hit_light = mirrored needs the scene's lights; this G-buffer came without a scene");
+    const Defines defines = relight ? Defines{{"MIRRORED_LIGHT", "1"}} : Defines{};
+    return [&frame, pass = shared_effect_pass(gpu, frame, "effects/hit_colour.comp", defines)](const auto& commands) {
         clear_reflection(commands, frame.buffers->reflection);
         dispatch_indirect(commands, *pass, frame.rays->launch);
+    };
+}
+
+Recording blur(Gpu& gpu, PreparedFrame& frame)
+{
+    return [&frame, x = shared_effect_pass(gpu, frame, "effects/blur.comp", {{"ALONG_X", "1"}}),
+            y = shared_effect_pass(gpu, frame, "effects/blur.comp")](const auto& commands) {
+        const glm::uvec3 groups = groups_of_8(frame.buffers->gbuffer->view.size_px);
+        dispatch(commands, *x, groups);
+        barrier(commands);
+        dispatch(commands, *y, groups);
     };
 }
 
@@ -81,9 +108,8 @@ Recording composite(Gpu& gpu, PreparedFrame& frame)
 Recording make_recording(Gpu& gpu, PreparedFrame& frame, const std::string& effect)
 {
     static const std::map<std::string, Recording (*)(Gpu&, PreparedFrame&)> makers = {
-        {"classification", classification}, {"rays", rays},
-        {"depth_pyramid", depth_pyramid},   {"trace", trace},
-        {"hit_colour", hit_colour},         {"composite", composite},
+        {"classification", classification}, {"rays", rays}, {"depth_pyramid", depth_pyramid}, {"trace", trace},
+        {"hit_colour", hit_colour},         {"blur", blur}, {"composite", composite},
     };
     return makers.at(effect)(gpu, frame);
 }

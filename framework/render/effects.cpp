@@ -56,6 +56,24 @@ Need depth_pyramid_need(const FrameFacts& facts, const FrameStatistics& statisti
     return where_something_reflects(facts, statistics, values);
 }
 
+/// The rough ones among the pixels that reflect.
+uint32_t rough_pixels(const FrameStatistics& statistics)
+{
+    return statistics.picture.reflecting_pixels - statistics.picture.roughness_pixels[0];
+}
+
+bool shading_only(const ParameterValues& values) { return values.at("effect_set") != 0; }
+
+Need blur_need(const FrameFacts& /*facts*/, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (shading_only(values) || values.at("gloss") != 1) return {Call::off, "gloss is not done by blur"};
+    const uint32_t rough = rough_pixels(statistics), all = statistics.picture.reflecting_pixels;
+    if (all == 0) return {Call::not_needed, "no pixel reflects"};
+    if (values.at("blur_bias") > 0) return {Call::needed, "blur_bias is above 0"};
+    if (rough == 0) return {Call::not_needed, "every pixel that reflects is smooth"};
+    return {Call::needed, fmt::format("{} of the reflecting pixels are rough", percent(rough, all))};
+}
+
 Need always(const FrameFacts& /*facts*/, const FrameStatistics& /*statistics*/, const ParameterValues& /*values*/)
 {
     return {Call::needed, "every picture"};
@@ -98,8 +116,9 @@ std::vector<Effect> make_table()
                      "normal_image", "material_image", "radiance_image", "highlight_image"},
          .writes  = {"reflection_image"},
          .parameters =
-             {choice("hit_light", {"diffuse", "lit"},
-                     "light of the hit: the part that is the same from every direction, or all that the camera sees"),
+             {choice("hit_light", {"diffuse", "lit", "mirrored"},
+                     "light of the hit: the part that is the same from every direction; with the highlights that the "
+                     "camera sees; or with those that the reflector sees"),
               starting_with(choice("viewer_fade", {"off", "linear", "cut", "smooth"},
                                    "weight of reflections toward the viewer, by a = -R.z: a, none below 0, or (a - "
                                    "viewer_fade_start) / (1 - viewer_fade_start)"),
@@ -119,14 +138,29 @@ std::vector<Effect> make_table()
                    "a hit counts when the direction to its surface and the ray's have at least this cosine; -1: "
                    "always")},
          .need = where_something_reflects},
+        {.id         = "blur",
+         .summary    = "Gloss by a separable Gaussian whose radius follows the roughness",
+         .cite       = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling"},
+         .shader     = "effects/blur.comp",
+         .reads      = {"View", "depth_image", "normal_image", "material_image", "reflection_image"},
+         .writes     = {"scratch_image", "reflection_image"},
+         .parameters = {starting_with(choice("gloss", {"off", "blur"}, "how reflections on rough surfaces widen"),
+                                      "blur"),
+                        real("blur_scale", 0.1, 0, 1, "radius at roughness 1, as a share of the image's height"),
+                        real("blur_bias", 0, -1, 1, "added to the radius, as a share of the image's height"),
+                        real("blur_hole_widening", 2, 1, 16, "how much wider a pixel without a hit looks"),
+                        real("blur_hole_weight", 0.3, 0, 1, "weight of a neighbour without a hit")},
+         .need       = blur_need},
         {.id         = "composite",
          .summary    = "Own and reflected light together: C = C_own + (C_reflected - C_own) * beta",
          .cite       = {"J. Somerville Roberts, Screen Space Reflections"},
          .shader     = "effects/composite.comp",
          .reads      = {"radiance_image", "highlight_image", "material_image", "reflection_image"},
          .writes     = {"shaded_image"},
-         .parameters = {real("metallic_exponent", 3, 0, 64,
-                             "beta = weight * metallic ^ exponent; 0 switches the factor off")},
+         .parameters = {choice(
+                            "reflectance", {"metallic", "ggx"},
+                            "beta = weight * metallic ^ exponent, or weight * the share that a GGX surface reflects"),
+                        real("metallic_exponent", 3, 0, 64, "for reflectance = metallic; 0 switches the factor off")},
          .need       = always},
     };
 }

@@ -134,6 +134,7 @@ FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
     buffers->statistics = count_picture(gpu, *buffers);
     buffers->pyramid    = make_pyramid_images(gpu, gbuffer->view.size_px);
     buffers->reflection = colours();
+    buffers->scratch    = colours();
     buffers->shaded     = colours();
     return buffers;
 }

@@ -40,6 +40,7 @@ struct FrameBuffers {
     std::map<size_t, std::shared_ptr<RayBuffers>> rays;       // by capacity; float
     PyramidImages                                 pyramid;
     GpuImage reflection; // RGBA16F: colour, weight; weight < 0 where no ray started
+    GpuImage scratch;    // RGBA16F, between two passes of one effect
     GpuImage shaded;     // RGBA16F
 };
 

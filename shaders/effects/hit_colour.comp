@@ -15,6 +15,30 @@ layout(set = 0, binding = 11, rgba16f) uniform readonly image2D radiance_image;
 layout(set = 0, binding = 12, rgba16f) uniform readonly image2D highlight_image;
 layout(set = 0, binding = 13, rgba16f) uniform writeonly image2D reflection_image;
 
+#ifdef MIRRORED_LIGHT
+#define LIGHTS_BINDING 14
+#include "lighting.glsl"
+layout(set = 0, binding = 17, scalar) uniform Frame // the beginning of gbuffer.frag's
+{
+    mat4  world_to_view;
+    vec3  eye_ws;
+    int   frame_orthographic;
+    vec3  view_axis_ws;
+    int   light_count;
+};
+
+// The highlight of a surface as the reflector sees it.
+vec3 highlight_along(ivec2 pixel, vec3 position_vs, vec3 direction_vs)
+{
+    mat3 view_to_world = transpose(mat3(world_to_view));
+    vec4 normal        = imageLoad(normal_image, pixel), material = imageLoad(material_image, pixel);
+    vec3 position_ws   = view_to_world * (position_vs - world_to_view[3].xyz), irradiance, highlights;
+    light_surface(Surface(position_ws, view_to_world * normal.xyz, material.rgb, material.a, normal.w), light_count,
+                  view_to_world * -direction_vs, irradiance, highlights);
+    return highlights;
+}
+#endif
+
 // Direction of the ray in view space, from two points of its segment; the end may lie at infinity.
 vec3 ray_direction(vec3 origin, vec3 delta)
 {
@@ -82,6 +106,9 @@ vec4 reflection_of(uint index)
     // A. Biro: a surface that is met elsewhere than where the ray goes is the wrong one.
     if (dot(direction, normalize(surface_vs - origin_vs)) < min_direction_cosine) return vec4(0);
     vec3 colour = imageLoad(radiance_image, hit).rgb;
+#ifdef MIRRORED_LIGHT
+    colour += highlight_along(hit, surface_vs, direction);
+#endif
     if (hit_light == hit_light_lit) colour += imageLoad(highlight_image, hit).rgb;
     colour *= attenuation_at(distance(px_to_vs(point), origin_vs));
     return vec4(colour, weight_of(-direction.z, point.xy / vec2(size_px), hit));
