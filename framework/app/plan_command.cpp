@@ -69,10 +69,12 @@ int print_plan(const CommonOptions& common, const PlanOptions& options)
         add_repeat(stage.gpu, planned);
         add_repeat(stage.gpu, everything);
     }
-    std::puts(fmt::format("{}, view {}, {}x{}, {} on {}: median of {} frames without the G-buffer\n",
+    std::puts(fmt::format("{}, view {}, {}x{}, {} on {}: median of {} frames without the G-buffer",
                           options.picture.scene, options.picture.view, stage.view.size_px.x, stage.view.size_px.y,
                           technique.id, stage.gpu.info.name, options.repeats)
                   .c_str());
+    for (const std::string& fact : facts_of_plan(*planned.frame)) std::puts(fact.c_str());
+    std::puts("");
     print_table(planned, everything);
     std::puts(same ? "\nThe picture with everything on is the same to the last bit."
                    : "\nThe picture with everything on DIFFERS from the planned one.");

@@ -21,6 +21,7 @@ ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::st
                      {"shaded_image", buffers.shaded}});
     if (const GpuScene* scene = buffers.gbuffer->scene.get())
         bindings.insert({{"Frame", buffers.gbuffer->frame_uniforms},
+                         {"environment_map", {scene->environment_map, scene->environment_sampler}},
                          {"Lights", scene->lights},
                          {"ShadowMatrices", scene->shadow_matrices},
                          {"shadow_map", {scene->shadow_map, scene->shadow_sampler}}});
@@ -93,6 +94,13 @@ Recording blur(Gpu& gpu, PreparedFrame& frame)
     };
 }
 
+Recording environment(Gpu& gpu, PreparedFrame& frame)
+{
+    return [&frame, pass = shared_effect_pass(gpu, frame, "effects/environment.comp")](const auto& commands) {
+        dispatch(commands, *pass, groups_of_8(frame.buffers->gbuffer->view.size_px));
+    };
+}
+
 Recording composite(Gpu& gpu, PreparedFrame& frame)
 {
     // Without rays there is no pass that says so pixel by pixel.
@@ -109,7 +117,7 @@ Recording make_recording(Gpu& gpu, PreparedFrame& frame, const std::string& effe
 {
     static const std::map<std::string, Recording (*)(Gpu&, PreparedFrame&)> makers = {
         {"classification", classification}, {"rays", rays}, {"depth_pyramid", depth_pyramid}, {"trace", trace},
-        {"hit_colour", hit_colour},         {"blur", blur}, {"composite", composite},
+        {"hit_colour", hit_colour},         {"blur", blur}, {"environment", environment},     {"composite", composite},
     };
     return makers.at(effect)(gpu, frame);
 }

@@ -74,6 +74,21 @@ Need blur_need(const FrameFacts& /*facts*/, const FrameStatistics& statistics, c
     return {Call::needed, fmt::format("{} of the reflecting pixels are rough", percent(rough, all))};
 }
 
+Need environment_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (shading_only(values) || values.at("environment") == 0) return {Call::off, "the environment is switched off"};
+    if (!facts.scene) return {Call::off, "a picture without a scene has no environment"};
+    const TraceCounts& trace = statistics.trace;
+    if (statistics.picture.reflecting_pixels == 0) return {Call::not_needed, "no pixel reflects"};
+    if (trace.hits < trace.rays)
+        return {Call::needed,
+                fmt::format("{} of the rays found nothing", percent(trace.rays - trace.hits, trace.rays))};
+    for (const char* fade : {"viewer_fade", "edge_fade", "depth_step_fade_m", "own_share"})
+        if (values.at(fade) != 0) return {Call::needed, fmt::format("{} blends into it", fade)};
+    if (values.at("min_direction_cosine") > -1) return {Call::needed, "min_direction_cosine may refuse hits"};
+    return {Call::not_needed, "every ray found something, and nothing fades"};
+}
+
 Need always(const FrameFacts& /*facts*/, const FrameStatistics& /*statistics*/, const ParameterValues& /*values*/)
 {
     return {Call::needed, "every picture"};
@@ -151,6 +166,13 @@ std::vector<Effect> make_table()
                         real("blur_hole_widening", 2, 1, 16, "how much wider a pixel without a hit looks"),
                         real("blur_hole_weight", 0.3, 0, 1, "weight of a neighbour without a hit")},
          .need       = blur_need},
+        {.id         = "environment",
+         .summary    = "Where rays found nothing or fade: what arrives from infinitely far away",
+         .shader     = "effects/environment.comp",
+         .reads      = {"View", "depth_image", "normal_image", "material_image", "environment_map", "reflection_image"},
+         .writes     = {"reflection_image"},
+         .parameters = {boolean("environment", true, "whether the environment stands in for what a ray did not find")},
+         .need       = environment_need},
         {.id         = "composite",
          .summary    = "Own and reflected light together: C = C_own + (C_reflected - C_own) * beta",
          .cite       = {"J. Somerville Roberts, Screen Space Reflections"},
@@ -204,6 +226,32 @@ std::vector<PlannedEffect> plan_frame(const FrameFacts& facts, const FrameStatis
         plan.push_back({&effect, runs, need.reason});
     }
     return plan;
+}
+
+std::vector<std::string> describe_facts(const FrameFacts& facts, const FrameStatistics& statistics)
+{
+    const PictureCounts& picture   = statistics.picture;
+    const auto           present   = [](uint32_t pixels) { return pixels > 0; };
+    const auto           smoothest = std::ranges::find_if(picture.roughness_pixels, present);
+    const auto           bin_of    = [&](auto bin) { return static_cast<double>(bin) / (ROUGHNESS_BINS - 1); };
+    std::string          roughness = "nothing reflects";
+    if (smoothest != picture.roughness_pixels.end()) {
+        const auto roughest =
+            std::ranges::find_if(picture.roughness_pixels.rbegin(), picture.roughness_pixels.rend(), present);
+        const auto first = smoothest - picture.roughness_pixels.begin();
+        const auto last  = picture.roughness_pixels.rend() - roughest - 1;
+        roughness = fmt::format("roughness {:.2f} to {:.2f}", first == 0 ? 0.0 : bin_of(first - 1), bin_of(last));
+    }
+    return {fmt::format("{} of {} pixels reflect ({}), in {} of {} tiles; {}", picture.reflecting_pixels,
+                        statistics.pixels, percent(picture.reflecting_pixels, statistics.pixels),
+                        picture.reflecting_tiles, statistics.tiles, roughness),
+            fmt::format("{} rays: {} found something, {} of these another mirror", statistics.trace.rays,
+                        percent(statistics.trace.hits, statistics.trace.rays),
+                        percent(statistics.trace.mirror_hits, statistics.trace.hits)),
+            !facts.scene
+                ? std::string("no scene: a picture from elsewhere")
+                : fmt::format("environment {}, {} alpha mask, still camera and objects, no jitter",
+                              facts.environment_map ? "map" : "of one colour", facts.alpha_mask ? "an" : "no")};
 }
 
 bool plan_needs_trace(const ParameterValues& values) { return values.at("effect_set") == 0; }

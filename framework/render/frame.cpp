@@ -37,11 +37,6 @@ double FrameTimes::total_ms() const
                            [](double sum, const auto& effect) { return sum + effect.second; });
 }
 
-glm::uvec3 groups_of_8(glm::ivec2 size_px)
-{
-    return {static_cast<uint32_t>(size_px.x + 7) / 8, static_cast<uint32_t>(size_px.y + 7) / 8, 1};
-}
-
 void write_view(Gpu& gpu, Buffer& target, const View& view, Precision precision)
 {
     if (precision == Precision::float64)
@@ -115,7 +110,12 @@ std::shared_ptr<RayBuffers> rays_for(Gpu& gpu, FrameBuffers& buffers, const Fram
 FrameFacts facts_of(const PreparedFrame& frame)
 {
     const GpuScene* scene = frame.buffers->gbuffer->scene.get();
-    return {.alpha_mask = scene != nullptr && scene->alpha_mask, .inputs = frame.technique.inputs};
+    FrameFacts      facts{.inputs = frame.technique.inputs};
+    if (scene == nullptr) return facts;
+    facts.scene           = true;
+    facts.environment_map = scene->has_environment_map;
+    facts.alpha_mask      = scene->alpha_mask;
+    return facts;
 }
 
 } // namespace
@@ -153,10 +153,11 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
         std::ranges::count(technique.inputs, "depth_pyramid") > 0 ? make_pyramid_passes(gpu, *frame) : PyramidPasses{};
     frame->trace = make_trace_passes(gpu, *frame, *frame->rays, buffers->view, nullptr);
 
-    FrameStatistics statistics = buffers->statistics;
-    if (plan_needs_trace(settings.effects) && statistics.picture.reflecting_pixels > 0)
-        statistics.trace = count_hits(gpu, *frame);
-    frame->plan = plan_frame(facts_of(*frame), statistics, settings.effects);
+    frame->facts      = facts_of(*frame);
+    frame->statistics = buffers->statistics;
+    if (plan_needs_trace(settings.effects) && frame->statistics.picture.reflecting_pixels > 0)
+        frame->statistics.trace = count_hits(gpu, *frame);
+    frame->plan = plan_frame(frame->facts, frame->statistics, settings.effects);
     for (const PlannedEffect& planned : frame->plan)
         if (planned.runs) frame->recordings.push_back(make_recording(gpu, *frame, planned.effect->id));
     frame->timestamps = make_timestamps(gpu, static_cast<uint32_t>(frame->recordings.size()) + 1);
@@ -164,6 +165,11 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
 }
 
 const std::vector<PlannedEffect>& plan_of(const PreparedFrame& frame) { return frame.plan; }
+
+std::vector<std::string> facts_of_plan(const PreparedFrame& frame)
+{
+    return describe_facts(frame.facts, frame.statistics);
+}
 
 FrameTimes run_frame(Gpu& gpu, PreparedFrame& frame)
 {

@@ -58,6 +58,8 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
                                const ParameterValues& values, const FrameSettings& settings);
 /// What runs and why. Of a still picture: its statistics are those of the very frame.
 const std::vector<PlannedEffect>& plan_of(const PreparedFrame& frame);
+/// What the plan rests on, a line each.
+std::vector<std::string> facts_of_plan(const PreparedFrame& frame);
 
 /// Runs what the plan says once and waits. The first call of a frame includes driver compilation: warm up.
 FrameTimes run_frame(Gpu& gpu, PreparedFrame& frame);

@@ -68,6 +68,8 @@ struct PreparedFrame {
     std::shared_ptr<RayBuffers> rays;
     PyramidPasses               pyramid;
     TracePasses                 trace;
+    FrameFacts                  facts;
+    FrameStatistics             statistics;
     std::vector<PlannedEffect>  plan;
     std::vector<Recording>      recordings; // of the effects that run
     Timestamps                  timestamps;
@@ -99,8 +101,6 @@ void record_classification(const vk::raii::CommandBuffer& commands, const TraceP
 void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers,
                       const RayBuffers& rays);
 void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses& passes);
-
-glm::uvec3 groups_of_8(glm::ivec2 size_px);
 
 template <typename Real>
 TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, const Buffer* work);
