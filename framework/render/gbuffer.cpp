@@ -103,11 +103,6 @@ void record_rasterisation(const vk::raii::CommandBuffer& commands, const GBuffer
     commands.endRendering();
 }
 
-glm::uvec3 groups_of_8(glm::ivec2 size_px)
-{
-    return {static_cast<uint32_t>(size_px.x + 7) / 8, static_cast<uint32_t>(size_px.y + 7) / 8, 1};
-}
-
 } // namespace
 
 GBufferPtr render_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view)
