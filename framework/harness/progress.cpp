@@ -10,19 +10,27 @@
 namespace ssrlab {
 namespace {
 
-constexpr double ns_per_pixel_and_step = 1.3;  // lavapipe, two cores
+// Fitted to results/reference/lavapipe: two cores, scenes of which half the pixels reflect.
+constexpr double ns_per_pixel_and_step = 2;
+constexpr double walked_share          = 0.2;  // of width + height: the pixels that a ray visits
+constexpr double visits_per_level      = 4;    // of a pyramid
+constexpr double sampled_share         = 0.6;  // of the steps that a sampler may take
 constexpr double overhead_s            = 0.15; // pipelines, comparison, picture
+
+double expected_steps(const Run& run, const Technique& technique)
+{
+    const double bound = iteration_bound(technique, run.values);
+    if (!technique.exact) return sampled_share * bound;
+    const double crossed = run.size_px.x + run.size_px.y;
+    return std::min(bound, technique.inputs.empty() ? walked_share * crossed : visits_per_level * std::log2(crossed));
+}
 
 } // namespace
 
 double estimated_seconds(const Run& run, const Technique& technique, const MeasureSettings& measure)
 {
-    const double pixels = static_cast<double>(run.size_px.x) * run.size_px.y;
-    // A ray rarely visits more pixels than the image is wide, whatever its budget; a pyramid skips most of them.
-    const double walk     = technique.inputs.empty() ? run.size_px.x + run.size_px.y : 0.15 * run.size_px.x;
-    const double bound    = iteration_bound(technique, run.values);
-    const double steps    = technique.exact ? std::min(bound, walk) : bound;
-    const double frame_s  = pixels * steps * ns_per_pixel_and_step * 1e-9 + pixels * 20e-9;
+    const double pixels   = static_cast<double>(run.size_px.x) * run.size_px.y;
+    const double frame_s  = pixels * expected_steps(run, technique) * ns_per_pixel_and_step * 1e-9 + pixels * 20e-9;
     const double repeats  = std::clamp(measure.budget_s / frame_s, static_cast<double>(measure.min_repeats),
                                        static_cast<double>(measure.max_repeats));
     const double counting = measure.truth ? 4 : 2;
