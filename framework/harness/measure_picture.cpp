@@ -67,6 +67,11 @@ void refuse_changed_sources(const Bench& bench)
                   short_path(bench.results.path()), fmt::join(changed, ", "));
 }
 
+double cost_of(const Bench& bench, const Run& run)
+{
+    return estimated_seconds(run, find_technique(bench.techniques, run.technique), bench.experiment.measure);
+}
+
 void finish(Bench& bench, const Run& run, const Row& row)
 {
     refuse_changed_sources(bench);
@@ -76,8 +81,7 @@ void finish(Bench& bench, const Run& run, const Row& row)
         ++bench.failed;
         bench.progress.say(fmt::format("run {} failed: {}", run.id, row.at("message")));
     }
-    bench.progress.finish_run(
-        estimated_seconds(run, find_technique(bench.techniques, run.technique), bench.experiment.measure));
+    bench.progress.finish_run(run.id, cost_of(bench, run));
 }
 
 /// Tries a step of one run; when it throws, the run's row says why and the run is over.
@@ -178,7 +182,9 @@ void measure_batch(Bench& bench, Picture& picture, std::span<const Run> runs)
         MeasuredRun measured;
         measured.run = &run;
         measured.row = identity_row(bench.experiment, run, find_technique(bench.techniques, run.technique));
-        if (try_step(bench, measured, [&] { prepare(bench, picture, measured); })) open.push_back(std::move(measured));
+        if (!try_step(bench, measured, [&] { prepare(bench, picture, measured); })) continue;
+        bench.progress.prepared_run(run.id, cost_of(bench, run));
+        open.push_back(std::move(measured));
     }
     repeat_until_final(bench, picture, open);
     keep_measured(bench, picture, open);
