@@ -28,6 +28,7 @@ struct Judgement {
 struct Claim {
     bool may_miss_between_samples = false; // limit "point_sampled"
     bool may_miss_behind_objects  = false; // limit "stops_behind_objects"
+    bool may_hit_within_a_step    = false; // limit "tests_whole_steps"
 };
 Claim claim_of(const Technique& technique);
 
@@ -61,7 +62,7 @@ public:
 private:
     Visit       visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_out) const;
     double      depth_rounding(const RayInput& ray, const Visit& visit) const;
-    std::string unsound_hit(const RayInput& ray, const RayOutcome& outcome) const;
+    std::string unsound_hit(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
 
     const Setup& setup_;
 };
