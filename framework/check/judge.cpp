@@ -202,7 +202,7 @@ Judgement Judge::judge(const RayInput& ray, const RayOutcome& outcome, const Cla
     if (outcome.status == exact.status && (!both_hit || outcome.hit_pixel == exact.hit_pixel)) return result;
 
     // Something was skipped. Is there a pixel before the reported one that the ray undoubtedly hits?
-    result.verdict  = Verdict::sliver;
+    result.verdict  = hit && !unsound_hit(ray, outcome, {}).empty() ? Verdict::allowed : Verdict::sliver;
     bool was_behind = false;
     for (const Visit& v : walk(ray)) {
         if (hit && (v.pixel == outcome.hit_pixel || v.t_in >= outcome.t - slack_t(ray))) break;

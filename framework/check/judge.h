@@ -14,7 +14,7 @@ inline constexpr double sliver_px = 0.05;
 enum class Verdict {
     right,
     sliver, // another pixel than the exact one, but the ray is less than sliver_px inside the pixels in question, or touches their slab's face
-    allowed, // missed what the technique's declared limits let it miss
+    allowed, // missed, or hit within a step, what the technique's declared limits let it
     wrong,
 };
 

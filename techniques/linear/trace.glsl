@@ -26,8 +26,8 @@ TraceResult trace(Ray ray)
     if (!found) return space == space_pixels && !ended && sample_t(ray, taken + 1) <= real(1) ? out_of_steps(taken) : miss(ray, taken);
     if (!interpolate || ray.delta.z == real(0)) return hit_at(ray, pixel, t, taken);
 
-    real  t_front = clamp((fetch_depth(pixel) - ray.origin.z) / ray.delta.z, t_before, t), z_front = depth_at(ray, t_front);
-    ivec2 front   = pixel_at(ray, t_front);
-    bool  moves   = front != ray.start_pixel && touches_surface(ray, front, z_front, z_front);
-    return hit_at(ray, moves ? front : pixel, moves ? t_front : t, taken);
+    ivec2 front = pixel_at(ray, clamp((fetch_depth(pixel) - ray.origin.z) / ray.delta.z, t_before, t));
+    real2 span  = span_in_pixel(ray, make_grid(ray), front);
+    bool  moves = front != ray.start_pixel && touches_surface(ray, front, depth_at(ray, span.x), depth_at(ray, span.y));
+    return moves ? hit_between(ray, front, span.x, span.y, taken) : hit_at(ray, pixel, t, taken);
 }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-constexpr int              last_floor_row = 63;
+constexpr int              first_floor_row = 44, last_floor_row = 63;
 const TraceSettings        thin{.thickness_m = 0.5, .max_distance_m = 20};
 const TraceSettings        unlimited{.thickness_m = infinity, .max_distance_m = 1e4};
 constexpr std::string_view both[] = {"dda_strided", "strided_direction"};
@@ -27,16 +27,18 @@ TraceResult trace_with(const GBufferImage& image, std::string_view id, const Par
     return trace(make_picture(image), t, values_of(t, changed), settings);
 }
 
-/// How far on screen the hits of the floor's rays lie from where the wall is met; every ray must hit.
-std::vector<double> errors_px(const TraceResult& result, int first_row = 44)
+/// How far on screen the hits of the floor's rays lie from where the wall is met, at least `nearest_px` away; every ray must hit.
+std::vector<double> errors_px(const TraceResult& result, double nearest_px = 0)
 {
     std::vector<double> errors;
-    for (int y = first_row; y <= last_floor_row; ++y)
+    for (int y = first_floor_row; y <= last_floor_row; ++y) {
+        if (y + 0.5 - wall_px(y) < nearest_px) continue;
         for (int x = 0; x < 64; ++x) {
             const auto i = static_cast<size_t>(y * 64 + x);
             EXPECT_EQ(result.status[i], TraceStatus::hit) << x << ", " << y;
             if (result.status[i] == TraceStatus::hit) errors.push_back(std::abs(result.hit_px_depth[i].y - wall_px(y)));
         }
+    }
     return errors;
 }
 
@@ -49,14 +51,14 @@ double mean(const std::vector<double>& values)
     return sum / static_cast<double>(values.size());
 }
 
-// Depth between the samples is linear in 1/z: were it linear in z, the rays would meet the wall many pixels off.
+// Behind the first sample, which is up to two strides away. Depth between the samples is linear in 1/z: were it linear in z, the rays would meet the wall many pixels off.
 TEST(DdaStrided, FindsTheWallWithinHalfAStride)
 {
     for (const double stride : {1.0, 2.0, 4.0, 8.0})
         for (const double jitter : {0.0, 1.0}) {
             const TraceResult result =
                 trace_with(wall_picture(), "dda_strided", {{"stride_px", stride}, {"jitter", jitter}}, thin);
-            EXPECT_LE(largest(errors_px(result)), 0.5 * stride + 1e-3) << stride << ", jitter " << jitter;
+            EXPECT_LE(largest(errors_px(result, 2.5 * stride)), 0.5 * stride + 1e-3) << stride << ", jitter " << jitter;
         }
 }
 
@@ -96,7 +98,7 @@ TEST(Strides, JitterIsTheSameAtEveryRunAndAnotherInEveryPixel)
         const TraceResult still = traced(0), jittered = traced(1);
         std::string       first;
         EXPECT_EQ(count_differences(jittered, traced(1), true, first), 0U) << id << " " << first;
-        EXPECT_GT(count_differences(jittered, still, true, first), 64U * 10) << id;
+        EXPECT_GT(count_differences(jittered, still, true, first), 64U * 5) << id;
         // All columns see the same; only jitter tells them apart.
         size_t other_still = 0, other_jittered = 0;
         for (size_t i = 48 * 64 + 1; i < 49 * 64; ++i) {
@@ -118,23 +120,27 @@ TEST(StridedDirection, EachBinaryStepHalvesTheError)
         const std::vector<double> errors = errors_px(result);
         EXPECT_LE(largest(errors), 16 / std::exp2(steps) + 1) << steps;
         EXPECT_LT(mean(errors), before) << steps;
-        before = 0.75 * mean(errors);
+        before = std::max(0.75 * mean(errors), 1e-3); // the pixel itself is met exactly
     }
 }
 
-TEST(StridedDirection, FindsTheWallWithItsDefaults)
+// A quarter of the default stride in a picture a quarter as wide.
+const ParameterValues strides_of_4{{"stride_px", 4}, {"binary_steps", 2}};
+
+TEST(StridedDirection, FindsTheWall)
 {
-    EXPECT_LE(largest(errors_px(trace_with(wall_picture(), "strided_direction", {}, thin), 48)), 1.5);
-    // The wall is steeper in depth than its slab is thick, 16 px on: without a search nothing is found.
-    const TraceResult coarse = trace_with(wall_picture(), "strided_direction", {{"binary_steps", 0}},
+    // Nearer, a stride that ends behind the wall no longer ends in the ray's direction.
+    EXPECT_LE(largest(errors_px(trace_with(wall_picture(), "strided_direction", strides_of_4, thin), 10)), 1);
+    // Where a stride ends, the ray is already behind a thin wall: without the search, only the rays whose samples fall on the crossing find it.
+    const TraceResult coarse = trace_with(wall_picture(), "strided_direction", {{"stride_px", 4}, {"binary_steps", 0}},
                                           {.thickness_m = 0.01, .max_distance_m = 20});
-    EXPECT_LT(std::ranges::count(coarse.status, TraceStatus::hit), 64 * 4);
+    EXPECT_LE(std::ranges::count(coarse.status, TraceStatus::hit), 64 * 10);
 }
 
 // A bar at 2 m that the rays pass far behind on their way to the wall: with unlimited thickness depth alone takes it for a hit.
 TEST(StridedDirection, RejectsWhatDoesNotLieInTheRaysDirection)
 {
-    GBufferImage image = wall_picture();
+    GBufferImage image = floor_and_wall(bench_view({64, 64}), 10);
     for (int y = 28; y < 36; ++y)
         for (int x = 0; x < 64; ++x) set_pixel(image, x, y, 2, {0, 0, 1}, 0);
     const auto rows_hit = [&](double min_alignment) {
@@ -158,27 +164,29 @@ TEST(StridedDirection, IsMoreTolerantOfSurfacesThatFaceDown)
     for (size_t i = 0; i < down.depth.size(); ++i)
         if (down.metallic[i] == 0) down.normal_vs[i] = {0, -1, 0};
     const auto hits = [](const GBufferImage& image, double alignment_down) {
-        const TraceResult result = trace_with(
-            image, "strided_direction", {{"min_alignment", 1}, {"min_alignment_down", alignment_down}}, unlimited);
+        const TraceResult result =
+            trace_with(image, "strided_direction",
+                       {{"stride_px", 4}, {"min_alignment", 1}, {"min_alignment_down", alignment_down}}, unlimited);
         return std::ranges::count(result.status, TraceStatus::hit);
     };
     EXPECT_LT(hits(wall_picture(), 0.9), 64 * 4) << "an upright wall is not exactly in the ray's direction";
-    EXPECT_GT(hits(down, 0.9), 64 * 20);
+    EXPECT_EQ(hits(down, 0.9), 64 * 20);
     EXPECT_EQ(hits(down, 1), hits(wall_picture(), 0.9));
 }
 
 // The facing test is the experiment's setting.
-TEST(StridedDirection, ObeysTheFacingRule)
+TEST(Strides, ObeyTheFacingRule)
 {
     GBufferImage turned = wall_picture();
     for (size_t i = 0; i < turned.depth.size(); ++i)
         if (turned.metallic[i] == 0) turned.normal_vs[i] = {0, 0, -1};
     for (const std::string_view id : both) {
         const size_t i = 52 * 64 + 20;
-        EXPECT_EQ(trace_with(turned, id, {}, {.thickness_m = 0.5, .max_distance_m = 20, .facing = true}).status[i],
+        EXPECT_EQ(trace_with(turned, id, {{"stride_px", 4}}, {.thickness_m = 0.5, .max_distance_m = 20, .facing = true})
+                      .status[i],
                   TraceStatus::facing_away)
             << id;
-        EXPECT_EQ(trace_with(turned, id, {}, thin).status[i], TraceStatus::hit) << id;
+        EXPECT_EQ(trace_with(turned, id, {{"stride_px", 4}}, thin).status[i], TraceStatus::hit) << id;
     }
 }
 
@@ -205,7 +213,7 @@ TEST(LinearInPixels, InterpolatesWithinTheLastStep)
         return errors_px(trace_with(wall_picture(), "linear",
                                     {{"space", 2}, {"stride_px", 8}, {"interpolate", interpolate}}, unlimited));
     };
-    EXPECT_GT(largest(traced(false)), 7);
+    EXPECT_GT(largest(traced(false)), 6);
     EXPECT_LT(largest(traced(true)), 1e-3);
 }
 

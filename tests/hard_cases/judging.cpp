@@ -75,7 +75,7 @@ TEST(Judge, WholeStepsReachNoFartherThanAStep)
     const Claim whole_steps{.may_hit_within_a_step = true};
     auto        outcome = hit({30, 10}, 24.5 / 50);
     outcome.steps       = 3;
-    EXPECT_EQ(judge.judge(setup.rays[0], outcome, whole_steps).verdict, Verdict::sliver);
+    EXPECT_EQ(judge.judge(setup.rays[0], outcome, whole_steps).verdict, Verdict::allowed);
     EXPECT_EQ(judge.judge(setup.rays[0], outcome, {}).verdict, Verdict::wrong);
     outcome.steps = 4;
     EXPECT_THAT(judge.judge(setup.rays[0], outcome, whole_steps).reason, HasSubstr("does not meet the slab"));
