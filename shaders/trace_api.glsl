@@ -118,11 +118,45 @@ ivec2 child_cell(Ray ray, Grid grid, ivec2 cell, int level, real t)
     return 2 * cell + (ivec2(lessThanEqual(t_middle, real2(t))) ^ (1 - grid.forward));
 }
 
+// Where the ray enters and leaves a pixel that it crosses.
+real2 span_in_pixel(Ray ray, Grid grid, ivec2 pixel)
+{
+    real2 t_entry = border_t(ray, grid, pixel + 1 - grid.forward);
+    real  t_in    = max(real(0), max(t_entry.x, t_entry.y));
+    return real2(t_in, max(t_in, exit_t(grid, border_t(ray, grid, pixel + grid.forward))));
+}
+
+// ---- Strides
+// Screen t of a stride, in pixels along the longer axis; a ray that is shorter makes one stride.
+real stride_to_t(Ray ray, real stride_px)
+{
+    return stride_px / max(stride_px, max(abs(ray.delta.x), abs(ray.delta.y)));
+}
+
+// The same number for the same pixel, in [0, 1), unlike its neighbours' (Jarzynski and Olano 2020, Hash Functions for GPU Rendering: PCG).
+real random_of(ivec2 pixel)
+{
+    uint hash = 0;
+    for (int i = 0; i < 2; ++i)
+    {
+        uint state = (hash + uint(pixel[i])) * 747796405u + 2891336453u;
+        uint word  = ((state >> ((state >> 28) + 4)) ^ state) * 277803737u;
+        hash       = (word >> 22) ^ word;
+    }
+    return real(hash >> 8) / real(1 << 24);
+}
+
 // ---- Fetches
 real fetch_depth(ivec2 pixel)
 {
     COUNT(depth_fetches);
     return real(imageLoad(depth_image, pixel).x);
+}
+
+// Normal of a pixel in view space; the work counters count depths alone.
+real3 fetch_normal(ivec2 pixel)
+{
+    return real3(imageLoad(normal_image, pixel).xyz);
 }
 
 // Levels above 0 that the pyramid has: 2^levels covers the larger side of the image.
@@ -145,19 +179,24 @@ bool interval_touches(real depth, real z_a, real z_b)
     return depth >= min(z_a, z_b) && reaches_slab_back(depth, max(z_a, z_b));
 }
 
-// Direction of the ray in view space, not normalised.
+// Direction in view space from the ray's origin to a position of some depth, not normalised.
+real3 direction_to_vs(Ray ray, real2 position_px, real depth)
+{
+    real2 from = px_to_slope(ray.origin.xy), to = px_to_slope(position_px);
+    real  rise = depth - ray.origin.z;
+    if (orthographic != 0) return real3(to - from, rise * (far_m - near_m));
+    // P = slope / depth * near: P1 - P0 times both depths.
+    return real3(to * ray.origin.z - from * depth, rise);
+}
+
 real3 direction_vs(Ray ray)
 {
-    real2 from = px_to_slope(ray.origin.xy), to = px_to_slope(ray.origin.xy + ray.delta.xy);
-    if (orthographic != 0) return real3(to - from, ray.delta.z * (far_m - near_m));
-    // P = slope / depth * near: P1 - P0 times both depths.
-    real from_depth = ray.origin.z, to_depth = ray.origin.z + ray.delta.z;
-    return real3(to * from_depth - from * to_depth, to_depth - from_depth);
+    return direction_to_vs(ray, ray.origin.xy + ray.delta.xy, ray.origin.z + ray.delta.z);
 }
 
 bool faces(Ray ray, ivec2 pixel)
 {
-    return facing_rule == 0 || dot(real3(imageLoad(normal_image, pixel).xyz), direction_vs(ray)) < real(0);
+    return facing_rule == 0 || dot(fetch_normal(pixel), direction_vs(ray)) < real(0);
 }
 
 // Does the ray, whose depth covers the interval between z_a and z_b, hit the surface seen at this pixel?
