@@ -17,6 +17,11 @@ Parameter real(const char* name, double otherwise, double min, double max, const
     return {name, ParameterType::real, otherwise, min, max, {}, doc};
 }
 
+Parameter integer(const char* name, double otherwise, double min, double max, const char* doc)
+{
+    return {name, ParameterType::integer, otherwise, min, max, {}, doc};
+}
+
 Parameter boolean(const char* name, bool otherwise, const char* doc)
 {
     return {name, ParameterType::boolean, otherwise ? 1.0 : 0.0, 0, 1, {}, doc};
@@ -56,6 +61,30 @@ Need depth_pyramid_need(const FrameFacts& facts, const FrameStatistics& statisti
     return where_something_reflects(facts, statistics, values);
 }
 
+Need at_lower_resolution(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    const int block_px = trace_block_px(values);
+    if (block_px == 1) return {Call::not_needed, "each pixel that reflects has rays of its own"};
+    if (statistics.picture.reflecting_pixels == 0) return where_something_reflects(facts, statistics, values);
+    return {Call::needed, fmt::format("one pixel in {} has rays", block_px * block_px)};
+}
+
+Need colour_downsampling_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (values.at("cross_blur") == 0) return {Call::off, "cross_blur = false"};
+    return at_lower_resolution(facts, statistics, values);
+}
+
+Need kernel_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (values.at("effect_set") != 0) return {Call::off, "effect_set = shading"};
+    if (values.at("kernel") == 0) return {Call::off, "kernel = off"};
+    if (statistics.picture.reflecting_pixels == 0) return where_something_reflects(facts, statistics, values);
+    if (statistics.trace.hits == 0) return {Call::not_needed, "no ray hits anything"};
+    return {Call::needed, fmt::format("{} rays hit ({})", statistics.trace.hits,
+                                      percent(statistics.trace.hits, statistics.trace.rays))};
+}
+
 Need always(const FrameFacts& /*facts*/, const FrameStatistics& /*statistics*/, const ParameterValues& /*values*/)
 {
     return {Call::needed, "every picture"};
@@ -71,11 +100,20 @@ std::vector<Effect> make_table()
          .writes  = {"TileCount", "Tiles", "PictureStatistics"},
          .need    = classification_need},
         {.id      = "rays",
-         .summary = "Sets up one ray for each pixel that reflects",
+         .summary = "Sets up the rays of each pixel that reflects",
+         .cite    = {"J. Somerville Roberts, Screen Space Reflections"},
          .shader  = "rays.comp",
          .reads   = {"View", "TileCount", "Tiles", "depth_image", "normal_image", "material_image"},
          .writes  = {"RayCount", "RayOrigins", "RayDeltas", "RayLengths", "RayPixels"},
-         .need    = where_something_reflects},
+         .parameters =
+             {integer(
+                  "rays_per_pixel", 1, 1, 16,
+                  "rays that start at random places inside the pixel; 1: at its centre. They count as a miss unless "
+                  "more than half of them hit"),
+              choice("trace_resolution", {"full", "half", "quarter"},
+                     "pixels that have rays: all that reflect, or the first one of each block of 2 x 2 or 4 x 4, from "
+                     "its centre outward")},
+         .need = where_something_reflects},
         {.id      = "depth_pyramid",
          .summary = "Reduces the depth image level by level",
          .shader  = "depth_pyramid.comp",
@@ -89,14 +127,24 @@ std::vector<Effect> make_table()
                      "normal_image", "depth_pyramid"},
          .writes  = {"HitPixels", "HitTs"},
          .need    = where_something_reflects},
+        {.id         = "colour_downsampling",
+         .summary    = "The lit colour at the resolution of the rays, blurred in the shape of a cross",
+         .cite       = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling"},
+         .shader     = "effects/colour_downsampling.comp",
+         .reads      = {"radiance_image", "highlight_image"},
+         .writes     = {"small_colour_image"},
+         .parameters = {boolean("cross_blur", true,
+                                "whether rays at half and quarter resolution find colours of that resolution, slightly "
+                                "blurred")},
+         .need       = colour_downsampling_need},
         {.id      = "hit_colour",
          .summary = "Colour and weight of what each ray hit: hit tests, fades, attenuation",
          .cite    = {"J. Somerville Roberts, Screen Space Reflections", "Litheon 2012, Real-Time Local Reflections",
                      "A. Biro 2015, Report on Screen-Space Reflections"},
          .shader  = "effects/hit_colour.comp",
          .reads   = {"View", "RayCount", "RayOrigins", "RayDeltas", "RayPixels", "HitPixels", "HitTs", "depth_image",
-                     "normal_image", "material_image", "radiance_image", "highlight_image"},
-         .writes  = {"reflection_image"},
+                     "normal_image", "material_image", "radiance_image", "highlight_image", "small_colour_image"},
+         .writes  = {"reflection_image", "block_pixel_image"},
          .parameters =
              {choice("hit_light", {"diffuse", "lit"},
                      "light of the hit: the part that is the same from every direction, or all that the camera sees"),
@@ -119,6 +167,34 @@ std::vector<Effect> make_table()
                    "a hit counts when the direction to its surface and the ray's have at least this cosine; -1: "
                    "always")},
          .need = where_something_reflects},
+        {.id      = "upsampling",
+         .summary = "Gives pixels without rays what the 2 x 2 traced pixels about them reflect",
+         .cite    = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling",
+                     "B. Karis 2014, Physically Based Shading on Mobile"},
+         .shader  = "effects/upsampling.comp",
+         .reads   = {"View", "TileCount", "Tiles", "depth_image", "normal_image", "material_image", "block_pixel_image",
+                     "reflection_image"},
+         .writes  = {"reflection_image"},
+         .parameters = {starting_with(
+                            choice(
+                                "upsampling_weights", {"bilinear", "depth", "depth_normal", "reflectivity"},
+                                "by what the four are weighted; each adds to the one before. Reflectivity: specular "
+                                "response by gloss, with Fresnel. Where all weights vanish, the most alike is taken"),
+                            "reflectivity"),
+                        real("upsampling_depth_tolerance", 0.01, 1e-6, 1e6,
+                             "a step between surfaces of this share of the distance has the weight 1/e"),
+                        real("upsampling_reflectivity_tolerance", 0.05, 1e-6, 1e6,
+                             "a difference of reflectivity of this much has the weight 1/e")},
+         .need       = at_lower_resolution},
+        {.id         = "kernel_filter",
+         .summary    = "A 3 x 3 kernel over what neighbouring pixels reflect, against noise",
+         .cite       = {"J. Somerville Roberts, Screen Space Reflections"},
+         .shader     = "effects/kernel.comp",
+         .reads      = {"TileCount", "Tiles", "reflection_image"},
+         .writes     = {"filtered_image", "reflection_image"},
+         .parameters = {choice("kernel", {"off", "box3", "median3"},
+                               "none, the mean, or the neighbour of median brightness")},
+         .need       = kernel_need},
         {.id         = "composite",
          .summary    = "Own and reflected light together: C = C_own + (C_reflected - C_own) * beta",
          .cite       = {"J. Somerville Roberts, Screen Space Reflections"},
@@ -171,6 +247,8 @@ std::vector<PlannedEffect> plan_frame(const FrameFacts& facts, const FrameStatis
     }
     return plan;
 }
+
+int trace_block_px(const ParameterValues& values) { return 1 << static_cast<int>(values.at("trace_resolution")); }
 
 bool plan_needs_trace(const ParameterValues& values) { return values.at("effect_set") == 0; }
 

@@ -69,6 +69,9 @@ struct PlannedEffect {
 std::vector<PlannedEffect> plan_frame(const FrameFacts& facts, const FrameStatistics& statistics,
                                       const ParameterValues& values);
 
+/// Side of the blocks of which one pixel is traced.
+int trace_block_px(const ParameterValues& values);
+
 /// Effects that are needed by what the trace found: whether any of them is switched on.
 bool plan_needs_trace(const ParameterValues& values);
 
