@@ -1,5 +1,6 @@
-// One ray per reflecting pixel, ready to trace: the screen-space segment clipped to the near plane, the image and the
-// maximum distance (docs/hit_contract.md). Pixels that do not reflect leave no trace in the list.
+// Rays ready to trace: for each pixel that reflects the screen-space segment of its mirror ray, clipped to the near plane, the image and
+// the maximum distance (docs/hit_contract.md). Pixels that do not reflect leave no trace in the list.
+// By the effects' parameters there are several rays per pixel, one after the other in the list, or one pixel for each block of pixels.
 #include "view.glsl"
 #include "reflecting.glsl"
 #extension GL_KHR_shader_subgroup_ballot : require
@@ -9,6 +10,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1;
 layout(constant_id = CONSTANT_RAY_OFFSET_M) const real ray_offset_m = 0;
 layout(constant_id = CONSTANT_EVERY_SURFACE) const int every_surface = 0; // trace what does not reflect, too
+layout(constant_id = CONSTANT_RAYS_PER_PIXEL) const int rays_per_pixel = 1;
+layout(constant_id = CONSTANT_TRACE_BLOCK_PX) const int block_px = 1;
 
 layout(set = 0, binding = 4, scalar) buffer RayCount { uint ray_count; };
 layout(set = 0, binding = 5, scalar) writeonly buffer RayOrigins { real3 ray_origin[]; };
@@ -109,10 +112,10 @@ real3 vs_to_px(real3 position)
     return real3(centre_px + to_px * position.xy * (real(1) / distance_m), near_m / distance_m);
 }
 
-Segment make_segment(ivec2 pixel, real depth, real3 normal)
+// A ray starts on the surface seen at start_px.
+Segment make_segment(real2 start_px, real depth, real3 normal)
 {
-    real2 centre     = real2(pixel) + real(0.5);
-    real2 slope      = px_to_slope(centre);
+    real2 slope      = px_to_slope(start_px);
     real  distance_m = depth_to_distance(depth);
     real3 position   = real3(orthographic == 0 ? slope * distance_m : slope, -distance_m);
     real3 view       = orthographic == 0 ? unit(position) : real3(0, 0, -1);
@@ -121,7 +124,7 @@ Segment make_segment(ivec2 pixel, real depth, real3 normal)
     int  side;
     real length_m = clip_length(position, direction, side);
     Segment segment;
-    segment.origin     = real3(centre, depth);
+    segment.origin     = real3(start_px, depth);
     segment.delta      = real3(0);
     segment.length_m   = length_m;
     segment.end_status = side == SIDE_MAX_DISTANCE ? TRACE_PAST_MAX_DISTANCE : TRACE_LEFT_SCREEN;
@@ -155,23 +158,104 @@ real3 normal_at(ivec2 pixel)
     return unit(scaled);
 }
 
+// PCG hash: M. Jarzynski and M. Olano 2020, Hash Functions for GPU Rendering.
+uint pcg(uint value)
+{
+    uint state = value * 747796405u + 2891336453u;
+    uint word  = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
+// A place inside the pixel, exact in float.
+real2 offset_start(ivec2 pixel, int ray)
+{
+    uint  random = pcg(uint(pixel.x) + pcg(uint(pixel.y) + pcg(uint(ray))));
+    uvec2 cell   = uvec2(random, random >> 16) % OFFSET_CELLS;
+    return real2(pixel) + (real2(cell) + real(0.5)) / real(OFFSET_CELLS);
+}
+
+// Depth at start_px of the plane through the pixel's point with its normal; 0 where that is less than half or more than twice as far
+// as the point: the plane is seen edge-on.
+real plane_depth(ivec2 pixel, real depth, real3 normal, real2 start_px)
+{
+    real2 slope = px_to_slope(real2(pixel) + real(0.5)), start_slope = px_to_slope(start_px);
+    real  start_depth;
+    if (orthographic == 0)
+        start_depth = depth * (dot(normal.xy, start_slope) - normal.z) / (dot(normal.xy, slope) - normal.z);
+    else
+        start_depth = depth - dot(normal.xy, start_slope - slope) / normal.z / (far_m - near_m);
+    real farther = depth_to_distance(start_depth) / depth_to_distance(depth);
+    bool usable  = start_depth > real(0) && start_depth <= real(1) && farther >= real(0.5) && farther <= real(2);
+    return usable ? start_depth : real(0);
+}
+
+// The pixels of a block from its centre outward, row by row where equally far.
+int rank_in_block(ivec2 pixel)
+{
+    ivec2 place  = pixel % block_px;
+    ivec2 offset = 2 * place - (block_px - 1);
+    return (offset.x * offset.x + offset.y * offset.y) * 16 + place.y * block_px + place.x;
+}
+
+shared uint tile_reflects[2]; // a bit for each pixel of the tile
+
+// A block is traced from the first of its pixels that reflects.
+bool first_of_block(ivec2 pixel)
+{
+    ivec2 corner = pixel - pixel % block_px;
+    bool  first  = true;
+    for (int i = 0; i < block_px * block_px; ++i)
+    {
+        ivec2 other = corner + ivec2(i % block_px, i / block_px);
+        uint  bit   = uint(other.y % 8 * 8 + other.x % 8);
+        bool  taken = (tile_reflects[bit >> 5] >> (bit & 31) & 1u) != 0;
+        first       = first && !(taken && rank_in_block(other) < rank_in_block(pixel));
+    }
+    return first;
+}
+
 void main()
 {
     uint index = gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x;
     if (index >= tile_count) return;
-    ivec2 pixel  = ivec2(tiles[index] & 0xFFFF, tiles[index] >> 16) * 8 + ivec2(gl_LocalInvocationID.xy);
-    bool  traced = all(lessThan(pixel, size_px)) && (every_surface != 0 ? has_surface(pixel) : reflects(pixel));
+    ivec2 pixel      = ivec2(tiles[index] & 0xFFFF, tiles[index] >> 16) * 8 + ivec2(gl_LocalInvocationID.xy);
+    bool  inside     = all(lessThan(pixel, size_px));
+    bool  reflecting = inside && reflects(pixel);
+    bool  traced     = reflecting || (every_surface != 0 && inside && has_surface(pixel));
+    if (block_px > 1)
+    {
+        if (gl_LocalInvocationIndex < 2) tile_reflects[gl_LocalInvocationIndex] = 0;
+        barrier();
+        uint bit = gl_LocalInvocationIndex;
+        if (reflecting) atomicOr(tile_reflects[bit >> 5], 1u << (bit & 31));
+        barrier();
+        traced = traced && (!reflecting || first_of_block(pixel));
+    }
 
     uvec4 ballot = subgroupBallot(traced);
     uint  first  = 0;
-    if (subgroupElect()) first = atomicAdd(ray_count, subgroupBallotBitCount(ballot));
+    if (subgroupElect()) first = atomicAdd(ray_count, subgroupBallotBitCount(ballot) * rays_per_pixel);
     first = subgroupBroadcastFirst(first);
     if (!traced) return;
 
-    index               = first + subgroupBallotExclusiveBitCount(ballot);
-    Segment segment     = make_segment(pixel, real(imageLoad(depth_image, pixel).x), normal_at(pixel));
-    ray_origin[index]   = segment.origin;
-    ray_delta[index]    = segment.delta;
-    ray_length_m[index] = segment.length_m;
-    ray_pixel[index]    = pack_pixel(pixel, segment.end_status);
+    index        = first + subgroupBallotExclusiveBitCount(ballot) * rays_per_pixel;
+    real  depth  = real(imageLoad(depth_image, pixel).x);
+    real3 normal = normal_at(pixel);
+    for (int ray = 0; ray < rays_per_pixel; ++ray)
+    {
+        real2 start_px    = real2(pixel) + real(0.5);
+        real  start_depth = depth;
+        if (rays_per_pixel > 1)
+        {
+            real2 offset_px    = offset_start(pixel, ray);
+            real  offset_depth = plane_depth(pixel, depth, normal, offset_px);
+            start_px           = offset_depth > real(0) ? offset_px : start_px;
+            start_depth        = offset_depth > real(0) ? offset_depth : depth;
+        }
+        Segment segment           = make_segment(start_px, start_depth, normal);
+        ray_origin[index + ray]   = segment.origin;
+        ray_delta[index + ray]    = segment.delta;
+        ray_length_m[index + ray] = segment.length_m;
+        ray_pixel[index + ray]    = pack_pixel(pixel, segment.end_status);
+    }
 }

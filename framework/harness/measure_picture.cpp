@@ -131,7 +131,7 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
     measured.frame                   = prepare_frame(bench.gpu, picture.buffers, technique, run.values, run.settings);
     add_plan(measured.row, plan_of(*measured.frame));
     for (int i = 0; i < std::max(1, measure.warmup); ++i) run_frame(bench.gpu, *measured.frame);
-    const Image       shaded  = measure.pictures ? read_shaded(bench.gpu, *measured.frame) : Image();
+    const Image       shaded  = read_shaded(bench.gpu, *measured.frame);
     const TraceResult counted = count_frame(bench.gpu, *measured.frame);
     if (measure.pictures) write_pictures(bench, picture, measured, shaded, counted);
     add_counts(measured.row, counted);
@@ -142,6 +142,10 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
     }
     add_measures(measured.row,
                  picture.truths->compare(run.settings.trace, counted, twin ? &*twin : nullptr, measure.image_errors));
+    if (!measure.image_errors) return;
+    const Image reference =
+        composite_reflection(bench.gpu, *measured.frame, picture.truths->true_reflection(run.settings.trace));
+    add_measures(measured.row, picture.truths->compare_picture(run.settings.trace, shaded, reference));
 }
 
 /// Timed repeats, every round in another order, until each run is final or a stop was requested.

@@ -62,6 +62,22 @@ Image Truths::agreement(const TraceSettings& settings, const TraceResult& counte
     return agreement_picture(counted, scene_truth_);
 }
 
+std::vector<glm::vec4> Truths::true_reflection(const TraceSettings& settings)
+{
+    make(settings);
+    std::vector<glm::vec4> reflection;
+    for (size_t i = 0; i < scene_truth_.cls.size(); ++i)
+        reflection.push_back(scene_truth_.cls[i] == TruthClass::not_traced ? glm::vec4(0, 0, 0, -1)
+                                                                           : glm::vec4(scene_truth_.radiance[i], 1));
+    return reflection;
+}
+
+MeasureValues Truths::compare_picture(const TraceSettings& settings, const Image& picture, const Image& reference)
+{
+    make(settings);
+    return compare_pictures(picture, reference, scene_truth_, gbuffer_);
+}
+
 MeasureValues Truths::compare(const TraceSettings& settings, const TraceResult& counted, const TraceResult* twin,
                               bool image_errors)
 {

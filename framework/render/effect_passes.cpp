@@ -2,6 +2,8 @@
 #include "core/error.h"
 #include "render/frame_passes.h"
 
+#include <glm/gtc/packing.hpp>
+
 namespace ssrlab {
 namespace {
 
@@ -17,7 +19,9 @@ ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::st
                      {"radiance_image", buffers.gbuffer->radiance},
                      {"highlight_image", buffers.gbuffer->highlight},
                      {"reflection_image", buffers.reflection},
-                     {"scratch_image", buffers.scratch},
+                     {"filtered_image", buffers.filtered},
+                     {"small_colour_image", buffers.small_colour},
+                     {"block_pixel_image", buffers.block_pixel},
                      {"shaded_image", buffers.shaded}});
     if (const GpuScene* scene = buffers.gbuffer->scene.get())
         bindings.insert({{"Frame", buffers.gbuffer->frame_uniforms},
@@ -40,13 +44,29 @@ std::shared_ptr<ComputePass> shared_effect_pass(Gpu& gpu, const PreparedFrame& f
     return std::make_shared<ComputePass>(make_effect_pass(gpu, frame, shader, defines));
 }
 
+void clear(const vk::raii::CommandBuffer& commands, const GpuImage& image, vk::ClearColorValue value)
+{
+    const vk::ImageSubresourceRange all{vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1};
+    barrier(commands);
+    commands.clearColorImage(*image.image, vk::ImageLayout::eGeneral, value, all);
+    barrier(commands);
+}
+
 /// No ray started anywhere.
 void clear_reflection(const vk::raii::CommandBuffer& commands, const GpuImage& reflection)
 {
-    const vk::ClearColorValue       nothing{std::array<float, 4>{0, 0, 0, -1}};
-    const vk::ImageSubresourceRange all{vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1};
+    clear(commands, reflection, {std::array<float, 4>{0, 0, 0, -1}});
+}
+
+void copy(const vk::raii::CommandBuffer& commands, const GpuImage& source, const GpuImage& target)
+{
+    const vk::ImageSubresourceLayers colour{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
+    const vk::ImageCopy              whole{
+                     .srcSubresource = colour,
+                     .dstSubresource = colour,
+                     .extent = {static_cast<uint32_t>(source.size_px.x), static_cast<uint32_t>(source.size_px.y), 1}};
     barrier(commands);
-    commands.clearColorImage(*reflection.image, vk::ImageLayout::eGeneral, nothing, all);
+    commands.copyImage(*source.image, vk::ImageLayout::eGeneral, *target.image, vk::ImageLayout::eGeneral, whole);
     barrier(commands);
 }
 
@@ -70,6 +90,14 @@ Recording trace(Gpu& /*gpu*/, PreparedFrame& frame)
     return [&](const auto& commands) { dispatch_indirect(commands, frame.trace.trace, frame.rays->launch); };
 }
 
+Recording colour_downsampling(Gpu& gpu, PreparedFrame& frame)
+{
+    const glm::ivec2 blocks = (frame.buffers->gbuffer->view.size_px - 1) / trace_block_px(frame.settings.effects) + 1;
+    return [blocks, pass = shared_effect_pass(gpu, frame, "effects/colour_downsampling.comp")](const auto& commands) {
+        dispatch(commands, *pass, groups_of_8(blocks));
+    };
+}
+
 Recording hit_colour(Gpu& gpu, PreparedFrame& frame)
 {
     constexpr double mirrored = 2;
@@ -79,6 +107,8 @@ Recording hit_colour(Gpu& gpu, PreparedFrame& frame)
     const Defines defines = relight ? Defines{{"MIRRORED_LIGHT", "1"}} : Defines{};
     return [&frame, pass = shared_effect_pass(gpu, frame, "effects/hit_colour.comp", defines)](const auto& commands) {
         clear_reflection(commands, frame.buffers->reflection);
+        if (trace_block_px(frame.settings.effects) > 1)
+            clear(commands, frame.buffers->block_pixel, {std::array<uint32_t, 4>{NO_PIXEL, 0, 0, 0}});
         dispatch_indirect(commands, *pass, frame.rays->launch);
     };
 }
@@ -101,6 +131,22 @@ Recording environment(Gpu& gpu, PreparedFrame& frame)
     };
 }
 
+Recording upsampling(Gpu& gpu, PreparedFrame& frame)
+{
+    return [&frame, pass = shared_effect_pass(gpu, frame, "effects/upsampling.comp")](const auto& commands) {
+        dispatch_indirect(commands, *pass, frame.buffers->tiles.launch);
+    };
+}
+
+Recording kernel_filter(Gpu& gpu, PreparedFrame& frame)
+{
+    return [&frame, pass = shared_effect_pass(gpu, frame, "effects/kernel.comp")](const auto& commands) {
+        clear_reflection(commands, frame.buffers->filtered); // of tiles that are not listed
+        dispatch_indirect(commands, *pass, frame.buffers->tiles.launch);
+        copy(commands, frame.buffers->filtered, frame.buffers->reflection);
+    };
+}
+
 Recording composite(Gpu& gpu, PreparedFrame& frame)
 {
     // Without rays there is no pass that says so pixel by pixel.
@@ -116,10 +162,35 @@ Recording composite(Gpu& gpu, PreparedFrame& frame)
 Recording make_recording(Gpu& gpu, PreparedFrame& frame, const std::string& effect)
 {
     static const std::map<std::string, Recording (*)(Gpu&, PreparedFrame&)> makers = {
-        {"classification", classification}, {"rays", rays}, {"depth_pyramid", depth_pyramid}, {"trace", trace},
-        {"hit_colour", hit_colour},         {"blur", blur}, {"environment", environment},     {"composite", composite},
+        {"classification", classification},
+        {"rays", rays},
+        {"depth_pyramid", depth_pyramid},
+        {"trace", trace},
+        {"colour_downsampling", colour_downsampling},
+        {"hit_colour", hit_colour},
+        {"upsampling", upsampling},
+        {"kernel_filter", kernel_filter},
+        {"blur", blur},
+        {"environment", environment},
+        {"composite", composite},
     };
     return makers.at(effect)(gpu, frame);
+}
+
+Image composite_reflection(Gpu& gpu, const PreparedFrame& frame, std::span<const glm::vec4> reflection)
+{
+    std::vector<uint64_t> texels;
+    texels.reserve(reflection.size());
+    for (const glm::vec4& value : reflection) texels.push_back(glm::packHalf4x16(value));
+    FrameBuffers& buffers = *frame.buffers;
+    upload(gpu, buffers.reflection, texels.data(), texels.size() * sizeof(uint64_t));
+    const ComputePass pass = make_effect_pass(gpu, frame, "effects/composite.comp");
+    submit(gpu, [&](const auto& commands) {
+        barrier(commands);
+        dispatch(commands, pass, groups_of_8(buffers.gbuffer->view.size_px));
+        barrier(commands);
+    });
+    return read_shaded(gpu, frame);
 }
 
 TraceCounts count_hits(Gpu& gpu, PreparedFrame& frame)

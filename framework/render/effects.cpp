@@ -17,6 +17,11 @@ Parameter real(const char* name, double otherwise, double min, double max, const
     return {name, ParameterType::real, otherwise, min, max, {}, doc};
 }
 
+Parameter integer(const char* name, double otherwise, double min, double max, const char* doc)
+{
+    return {name, ParameterType::integer, otherwise, min, max, {}, doc};
+}
+
 Parameter boolean(const char* name, bool otherwise, const char* doc)
 {
     return {name, ParameterType::boolean, otherwise ? 1.0 : 0.0, 0, 1, {}, doc};
@@ -66,7 +71,8 @@ bool shading_only(const ParameterValues& values) { return values.at("effect_set"
 
 Need blur_need(const FrameFacts& /*facts*/, const FrameStatistics& statistics, const ParameterValues& values)
 {
-    if (shading_only(values) || values.at("gloss") != 1) return {Call::off, "gloss is not done by blur"};
+    if (shading_only(values)) return {Call::off, "effect_set = shading"};
+    if (values.at("gloss") != 1) return {Call::off, "gloss is not done by blur"};
     const uint32_t rough = rough_pixels(statistics), all = statistics.picture.reflecting_pixels;
     if (all == 0) return {Call::not_needed, "no pixel reflects"};
     if (values.at("blur_bias") > 0) return {Call::needed, "blur_bias is above 0"};
@@ -76,7 +82,8 @@ Need blur_need(const FrameFacts& /*facts*/, const FrameStatistics& statistics, c
 
 Need environment_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
 {
-    if (shading_only(values) || values.at("environment") == 0) return {Call::off, "the environment is switched off"};
+    if (shading_only(values)) return {Call::off, "effect_set = shading"};
+    if (values.at("environment") == 0) return {Call::off, "environment = false"};
     if (!facts.scene) return {Call::off, "a picture without a scene has no environment"};
     const TraceCounts& trace = statistics.trace;
     if (statistics.picture.reflecting_pixels == 0) return {Call::not_needed, "no pixel reflects"};
@@ -87,6 +94,30 @@ Need environment_need(const FrameFacts& facts, const FrameStatistics& statistics
         if (values.at(fade) != 0) return {Call::needed, fmt::format("{} blends into it", fade)};
     if (values.at("min_direction_cosine") > -1) return {Call::needed, "min_direction_cosine may refuse hits"};
     return {Call::not_needed, "every ray found something, and nothing fades"};
+}
+
+Need at_lower_resolution(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    const int block_px = trace_block_px(values);
+    if (block_px == 1) return {Call::not_needed, "each pixel that reflects has rays of its own"};
+    if (statistics.picture.reflecting_pixels == 0) return where_something_reflects(facts, statistics, values);
+    return {Call::needed, fmt::format("one pixel in {} has rays", block_px * block_px)};
+}
+
+Need colour_downsampling_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (values.at("cross_blur") == 0) return {Call::off, "cross_blur = false"};
+    return at_lower_resolution(facts, statistics, values);
+}
+
+Need kernel_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (shading_only(values)) return {Call::off, "effect_set = shading"};
+    if (values.at("kernel") == 0) return {Call::off, "kernel = off"};
+    if (statistics.picture.reflecting_pixels == 0) return where_something_reflects(facts, statistics, values);
+    if (statistics.trace.hits == 0) return {Call::not_needed, "no ray hits anything"};
+    return {Call::needed, fmt::format("{} rays hit ({})", statistics.trace.hits,
+                                      percent(statistics.trace.hits, statistics.trace.rays))};
 }
 
 Need always(const FrameFacts& /*facts*/, const FrameStatistics& /*statistics*/, const ParameterValues& /*values*/)
@@ -104,11 +135,20 @@ std::vector<Effect> make_table()
          .writes  = {"TileCount", "Tiles", "PictureStatistics"},
          .need    = classification_need},
         {.id      = "rays",
-         .summary = "Sets up one ray for each pixel that reflects",
+         .summary = "Sets up the rays of each pixel that reflects",
+         .cite    = {"J. Somerville Roberts, Screen Space Reflections"},
          .shader  = "rays.comp",
          .reads   = {"View", "TileCount", "Tiles", "depth_image", "normal_image", "material_image"},
          .writes  = {"RayCount", "RayOrigins", "RayDeltas", "RayLengths", "RayPixels"},
-         .need    = where_something_reflects},
+         .parameters =
+             {integer(
+                  "rays_per_pixel", 1, 1, 16,
+                  "rays that start at random places inside the pixel; 1: at its centre. They count as a miss unless "
+                  "more than half of them hit"),
+              choice("trace_resolution", {"full", "half", "quarter"},
+                     "pixels that have rays: all that reflect, or the first one of each block of 2 x 2 or 4 x 4, from "
+                     "its centre outward")},
+         .need = where_something_reflects},
         {.id      = "depth_pyramid",
          .summary = "Reduces the depth image level by level",
          .shader  = "depth_pyramid.comp",
@@ -122,14 +162,24 @@ std::vector<Effect> make_table()
                      "normal_image", "depth_pyramid"},
          .writes  = {"HitPixels", "HitTs"},
          .need    = where_something_reflects},
+        {.id         = "colour_downsampling",
+         .summary    = "The lit colour at the resolution of the rays, blurred in the shape of a cross",
+         .cite       = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling"},
+         .shader     = "effects/colour_downsampling.comp",
+         .reads      = {"radiance_image", "highlight_image"},
+         .writes     = {"small_colour_image"},
+         .parameters = {boolean("cross_blur", true,
+                                "whether rays at half and quarter resolution find colours of that resolution, slightly "
+                                "blurred")},
+         .need       = colour_downsampling_need},
         {.id      = "hit_colour",
          .summary = "Colour and weight of what each ray hit: hit tests, fades, attenuation",
          .cite    = {"J. Somerville Roberts, Screen Space Reflections", "Litheon 2012, Real-Time Local Reflections",
                      "A. Biro 2015, Report on Screen-Space Reflections"},
          .shader  = "effects/hit_colour.comp",
          .reads   = {"View", "RayCount", "RayOrigins", "RayDeltas", "RayPixels", "HitPixels", "HitTs", "depth_image",
-                     "normal_image", "material_image", "radiance_image", "highlight_image"},
-         .writes  = {"reflection_image"},
+                     "normal_image", "material_image", "radiance_image", "highlight_image", "small_colour_image"},
+         .writes  = {"reflection_image", "block_pixel_image"},
          .parameters =
              {choice("hit_light", {"diffuse", "lit", "mirrored"},
                      "light of the hit: the part that is the same from every direction; with the highlights that the "
@@ -153,12 +203,40 @@ std::vector<Effect> make_table()
                    "a hit counts when the direction to its surface and the ray's have at least this cosine; -1: "
                    "always")},
          .need = where_something_reflects},
+        {.id      = "upsampling",
+         .summary = "Gives pixels without rays what the 2 x 2 traced pixels about them reflect",
+         .cite    = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling",
+                     "B. Karis 2014, Physically Based Shading on Mobile"},
+         .shader  = "effects/upsampling.comp",
+         .reads   = {"View", "TileCount", "Tiles", "depth_image", "normal_image", "material_image", "block_pixel_image",
+                     "reflection_image"},
+         .writes  = {"reflection_image"},
+         .parameters = {starting_with(
+                            choice(
+                                "upsampling_weights", {"bilinear", "depth", "depth_normal", "reflectivity"},
+                                "by what the four are weighted; each adds to the one before. Reflectivity: specular "
+                                "response by gloss, with Fresnel. Where all weights vanish, the most alike is taken"),
+                            "reflectivity"),
+                        real("upsampling_depth_tolerance", 0.01, 1e-6, 1e6,
+                             "a step between surfaces of this share of the distance has the weight 1/e"),
+                        real("upsampling_reflectivity_tolerance", 0.05, 1e-6, 1e6,
+                             "a difference of reflectivity of this much has the weight 1/e")},
+         .need       = at_lower_resolution},
+        {.id         = "kernel_filter",
+         .summary    = "A 3 x 3 kernel over what neighbouring pixels reflect, against noise",
+         .cite       = {"J. Somerville Roberts, Screen Space Reflections"},
+         .shader     = "effects/kernel.comp",
+         .reads      = {"TileCount", "Tiles", "reflection_image"},
+         .writes     = {"filtered_image", "reflection_image"},
+         .parameters = {choice("kernel", {"off", "box3", "median3"},
+                               "none, the mean, or the neighbour of median brightness")},
+         .need       = kernel_need},
         {.id         = "blur",
          .summary    = "Gloss by a separable Gaussian whose radius follows the roughness",
          .cite       = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling"},
          .shader     = "effects/blur.comp",
          .reads      = {"View", "depth_image", "normal_image", "material_image", "reflection_image"},
-         .writes     = {"scratch_image", "reflection_image"},
+         .writes     = {"filtered_image", "reflection_image"},
          .parameters = {starting_with(choice("gloss", {"off", "blur"}, "how reflections on rough surfaces widen"),
                                       "blur"),
                         real("blur_scale", 0.1, 0, 1, "radius at roughness 1, as a share of the image's height"),
@@ -253,6 +331,8 @@ std::vector<std::string> describe_facts(const FrameFacts& facts, const FrameStat
                 : fmt::format("environment {}, {} alpha mask, still camera and objects, no jitter",
                               facts.environment_map ? "map" : "of one colour", facts.alpha_mask ? "an" : "no")};
 }
+
+int trace_block_px(const ParameterValues& values) { return 1 << static_cast<int>(values.at("trace_resolution")); }
 
 bool plan_needs_trace(const ParameterValues& values) { return values.at("effect_set") == 0; }
 

@@ -74,6 +74,9 @@ std::vector<PlannedEffect> plan_frame(const FrameFacts& facts, const FrameStatis
 /// What the plan rests on, a line each.
 std::vector<std::string> describe_facts(const FrameFacts& facts, const FrameStatistics& statistics);
 
+/// Side of the blocks of which one pixel is traced.
+int trace_block_px(const ParameterValues& values);
+
 /// Effects that are needed by what the trace found: whether any of them is switched on.
 bool plan_needs_trace(const ParameterValues& values);
 

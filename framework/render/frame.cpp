@@ -101,7 +101,8 @@ FrameStatistics count_picture(Gpu& gpu, const FrameBuffers& buffers)
 std::shared_ptr<RayBuffers> rays_for(Gpu& gpu, FrameBuffers& buffers, const FrameSettings& settings)
 {
     const PictureCounts& counts   = buffers.statistics.picture;
-    const size_t         capacity = settings.effects.at("plan") == 0 ? counts.surface_pixels : counts.reflecting_pixels;
+    const size_t         pixels   = settings.effects.at("plan") == 0 ? counts.surface_pixels : counts.reflecting_pixels;
+    const size_t         capacity = pixels * static_cast<size_t>(settings.effects.at("rays_per_pixel"));
     std::shared_ptr<RayBuffers>& rays = buffers.rays[capacity];
     if (!rays) rays = std::make_shared<RayBuffers>(make_ray_buffers(gpu, capacity, Precision::float32));
     return rays;
@@ -123,19 +124,21 @@ FrameFacts facts_of(const PreparedFrame& frame)
 FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
 {
     auto       buffers = std::make_shared<FrameBuffers>();
-    const auto colours = [&] {
-        return make_image(gpu, {.format  = vk::Format::eR16G16B16A16Sfloat,
-                                .size_px = gbuffer->view.size_px,
-                                .usage   = vk::ImageUsageFlagBits::eStorage});
+    const auto image   = [&](vk::Format format, glm::ivec2 size_px) {
+        return make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
     };
-    buffers->gbuffer    = gbuffer;
-    buffers->view       = upload_view(gpu, gbuffer->view, Precision::float32);
-    buffers->tiles      = make_tile_buffers(gpu, gbuffer->view.size_px);
-    buffers->statistics = count_picture(gpu, *buffers);
-    buffers->pyramid    = make_pyramid_images(gpu, gbuffer->view.size_px);
-    buffers->reflection = colours();
-    buffers->scratch    = colours();
-    buffers->shaded     = colours();
+    const glm::ivec2 size_px = gbuffer->view.size_px, half_size_px = (size_px - 1) / 2 + 1;
+    constexpr auto   colour = vk::Format::eR16G16B16A16Sfloat;
+    buffers->gbuffer        = gbuffer;
+    buffers->view           = upload_view(gpu, gbuffer->view, Precision::float32);
+    buffers->tiles          = make_tile_buffers(gpu, gbuffer->view.size_px);
+    buffers->statistics     = count_picture(gpu, *buffers);
+    buffers->pyramid        = make_pyramid_images(gpu, gbuffer->view.size_px);
+    buffers->reflection     = image(colour, size_px);
+    buffers->filtered       = image(colour, size_px);
+    buffers->small_colour   = image(colour, half_size_px);
+    buffers->block_pixel    = image(vk::Format::eR32Uint, half_size_px);
+    buffers->shaded         = image(colour, size_px);
     return buffers;
 }
 
@@ -208,7 +211,7 @@ TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision)
                                            : read_result<float>(gpu, gbuffer.view.size_px, rays, &work);
 }
 
-Image read_shaded(Gpu& gpu, PreparedFrame& frame)
+Image read_shaded(Gpu& gpu, const PreparedFrame& frame)
 {
     const auto texels = download_as<std::array<uint16_t, 4>>(gpu, frame.buffers->shaded);
     Image      image{frame.buffers->gbuffer->view.size_px, {"R", "G", "B"}, {}, {}};

@@ -10,6 +10,7 @@
 #include "scene/scene.h"
 
 #include <memory>
+#include <span>
 #include <utility>
 
 namespace ssrlab {
@@ -64,7 +65,10 @@ std::vector<std::string> facts_of_plan(const PreparedFrame& frame);
 /// Runs what the plan says once and waits. The first call of a frame includes driver compilation: warm up.
 FrameTimes run_frame(Gpu& gpu, PreparedFrame& frame);
 /// The reflected picture that the last run_frame of this frame left in the shared buffers. Linear RGB.
-Image read_shaded(Gpu& gpu, PreparedFrame& frame);
+Image read_shaded(Gpu& gpu, const PreparedFrame& frame);
+/// The picture with another reflection in the place of the traced one: colour and weight of each pixel, weight < 0 where nothing reflects.
+/// Leaves this reflection in the shared buffers.
+Image composite_reflection(Gpu& gpu, const PreparedFrame& frame, std::span<const glm::vec4> reflection);
 /// Traces once with the counting pipeline (work counters on; never timed). Precision float64 gives the double twin.
 TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision = Precision::float32);
 

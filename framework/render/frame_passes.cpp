@@ -186,8 +186,12 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
         bindings.insert({"Work", *work});
     }
     Constants constants = settings_constants(frame, rays.precision);
-    // What is counted is the technique's work, which does not depend on the plan.
-    constants.add(CONSTANT_EVERY_SURFACE, work == nullptr && frame.settings.effects.at("plan") == 0 ? 1 : 0);
+    // What is counted is the technique's work on one ray from the centre of each pixel that reflects, whatever the effects.
+    const bool counts     = work != nullptr;
+    const auto of_effects = [&](const char* name) { return static_cast<int32_t>(frame.settings.effects.at(name)); };
+    constants.add(CONSTANT_EVERY_SURFACE, !counts && of_effects("plan") == 0 ? 1 : 0);
+    constants.add(CONSTANT_RAYS_PER_PIXEL, counts ? 1 : of_effects("rays_per_pixel"));
+    constants.add(CONSTANT_TRACE_BLOCK_PX, counts ? 1 : trace_block_px(frame.settings.effects));
     TracePasses passes;
     passes.classification =
         make_compute_pass(gpu, compile_shader({.file = "effects/classification.comp"}), bindings, constants);

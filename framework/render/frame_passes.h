@@ -39,9 +39,11 @@ struct FrameBuffers {
     FrameStatistics                               statistics; // of the picture; nothing is traced yet
     std::map<size_t, std::shared_ptr<RayBuffers>> rays;       // by capacity; float
     PyramidImages                                 pyramid;
-    GpuImage reflection; // RGBA16F: colour, weight; weight < 0 where no ray started
-    GpuImage scratch;    // RGBA16F, between two passes of one effect
-    GpuImage shaded;     // RGBA16F
+    GpuImage reflection;   // RGBA16F: colour, weight; weight < 0 where no ray started
+    GpuImage filtered;     // RGBA16F: a reflection that a filter is writing
+    GpuImage small_colour; // RGBA16F, half size or less: lit colour as rays at a lower resolution find it
+    GpuImage block_pixel;  // R32UI, half size or less: which pixel of a block has rays, or NO_PIXEL
+    GpuImage shaded;       // RGBA16F
 };
 
 struct PyramidPush {

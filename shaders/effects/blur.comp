@@ -7,14 +7,14 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 #ifdef ALONG_X
 layout(set = 0, binding = 4, rgba16f) uniform readonly image2D reflection_image;
-layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D scratch_image;
+layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D filtered_image;
 #define SOURCE reflection_image
-#define TARGET scratch_image
+#define TARGET filtered_image
 const ivec2 axis = ivec2(1, 0);
 #else
-layout(set = 0, binding = 4, rgba16f) uniform readonly image2D scratch_image;
+layout(set = 0, binding = 4, rgba16f) uniform readonly image2D filtered_image;
 layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D reflection_image;
-#define SOURCE scratch_image
+#define SOURCE filtered_image
 #define TARGET reflection_image
 const ivec2 axis = ivec2(0, 1);
 #endif

@@ -1,7 +1,8 @@
-// The colour that a ray brings back, and how much it weighs: rgb and weight of a pixel's reflection.
+// The colour that a ray brings back, and how much it weighs: rgb and weight of a pixel's reflection, the mean over the pixel's rays.
 #include "view.glsl"
 #include "reflecting.glsl"
 #include "effect/parameters"
+#include "effects/blocks.glsl"
 
 layout(local_size_x = RAYS_PER_GROUP) in;
 
@@ -14,6 +15,8 @@ layout(set = 0, binding = 10, scalar) readonly buffer HitTs { real hit_t[]; };
 layout(set = 0, binding = 11, rgba16f) uniform readonly image2D radiance_image;
 layout(set = 0, binding = 12, rgba16f) uniform readonly image2D highlight_image;
 layout(set = 0, binding = 13, rgba16f) uniform writeonly image2D reflection_image;
+layout(set = 0, binding = 14, rgba16f) uniform readonly image2D small_colour_image;
+layout(set = 0, binding = 15, r32ui) uniform writeonly uimage2D block_pixel_image;
 
 #ifdef MIRRORED_LIGHT
 #define LIGHTS_BINDING 14
@@ -97,6 +100,24 @@ float attenuation_at(float distance_m)
     return 1.0;
 }
 
+vec3 colour_at(ivec2 hit, vec2 point_px)
+{
+    if (block_px > 1 && cross_blur)
+    {
+        ivec2 size  = (size_px - 1) / block_px + 1;
+        vec2  place = point_px / float(block_px) - 0.5;
+        ivec2 from  = ivec2(floor(place)), to = min(from + 1, size - 1);
+        vec2  share = place - vec2(from);
+        from        = max(from, ivec2(0));
+        vec3 above  = mix(imageLoad(small_colour_image, from).rgb, imageLoad(small_colour_image, ivec2(to.x, from.y)).rgb, share.x);
+        vec3 below  = mix(imageLoad(small_colour_image, ivec2(from.x, to.y)).rgb, imageLoad(small_colour_image, to).rgb, share.x);
+        return mix(above, below, share.y);
+    }
+    vec3 colour = imageLoad(radiance_image, hit).rgb;
+    if (hit_light == hit_light_lit) colour += imageLoad(highlight_image, hit).rgb;
+    return colour;
+}
+
 vec4 reflection_of(uint index)
 {
     ivec2 hit    = unpack_pixel(hit_pixel[index]);
@@ -105,22 +126,45 @@ vec4 reflection_of(uint index)
     vec3  surface_vs = px_to_vs(vec3(vec2(hit) + 0.5, imageLoad(depth_image, hit).x));
     // A. Biro: a surface that is met elsewhere than where the ray goes is the wrong one.
     if (dot(direction, normalize(surface_vs - origin_vs)) < min_direction_cosine) return vec4(0);
-    vec3 colour = imageLoad(radiance_image, hit).rgb;
+    vec3 colour = colour_at(hit, point.xy);
 #ifdef MIRRORED_LIGHT
     colour += highlight_along(hit, surface_vs, direction);
 #endif
-    if (hit_light == hit_light_lit) colour += imageLoad(highlight_image, hit).rgb;
     colour *= attenuation_at(distance(px_to_vs(point), origin_vs));
     return vec4(colour, weight_of(-direction.z, point.xy / vec2(size_px), hit));
+}
+
+// The mean of the pictures that the rays would make one by one, if more than half of them hit.
+// J. Somerville Roberts, "Screen Space Reflections": noise is where few of them do.
+vec4 mean_reflection(uint first)
+{
+    vec4 sum  = vec4(0);
+    int  hits = 0;
+    for (int ray = 0; ray < rays_per_pixel; ++ray)
+    {
+        if (unpack_number(hit_pixel[first + ray]) == TRACE_HIT)
+        {
+            vec4 reflection = reflection_of(first + ray);
+            sum += vec4(reflection.rgb * reflection.a, reflection.a);
+            ++hits;
+        }
+    }
+    if (2 * hits <= rays_per_pixel || sum.a <= 0.0) return vec4(0);
+    return vec4(sum.rgb / sum.a, sum.a / float(rays_per_pixel));
 }
 
 void main()
 {
     uint index = (gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x) * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    if (index >= ray_count) return;
-    ivec2 pixel = unpack_pixel(ray_pixel[index]);
+    uint first = index * rays_per_pixel;
+    if (first >= ray_count) return;
+    ivec2 pixel = unpack_pixel(ray_pixel[first]);
     if (!reflects(pixel)) return;
     vec4 reflection = vec4(0);
-    if (unpack_number(hit_pixel[index]) == TRACE_HIT) reflection = reflection_of(index);
+    if (rays_per_pixel > 1)
+        reflection = mean_reflection(first);
+    else if (unpack_number(hit_pixel[first]) == TRACE_HIT)
+        reflection = reflection_of(first);
     imageStore(reflection_image, pixel, reflection);
+    if (block_px > 1) imageStore(block_pixel_image, pixel / block_px, uvec4(pack_pixel(pixel, 0)));
 }
