@@ -1,5 +1,6 @@
 #include "check/stability.h"
 
+#include "check/depth_format.h"
 #include "check/hard_case.h"
 #include "check/run_check.h"
 #include "core/error.h"
@@ -51,42 +52,7 @@ double standard_deviation(const std::vector<glm::dvec2>& points)
 
 double per_million(size_t n, size_t of) { return of == 0 ? 0 : 1e6 * static_cast<double>(n) / static_cast<double>(of); }
 
-/// The farthest surface of a picture, with room behind it.
-double far_plane_m(const GBufferImage& gbuffer)
-{
-    float farthest = 1;
-    for (const float depth : gbuffer.depth)
-        if (depth > 0 && depth <= 1) farthest = std::min(farthest, depth);
-    return 1.5 * gbuffer.view.near_m / static_cast<double>(farthest);
-}
-
 } // namespace
-
-const std::vector<DepthFormat>& depth_formats()
-{
-    static const std::vector<DepthFormat> formats = {{"D32 float, reversed, infinite", 32, true, true},
-                                                     {"D32 float, reversed", 32, true, false},
-                                                     {"D32 float, standard", 32, false, false},
-                                                     {"D24, reversed", 24, true, false},
-                                                     {"D24, standard", 24, false, false},
-                                                     {"D16, reversed", 16, true, false},
-                                                     {"D16, standard", 16, false, false}};
-    return formats;
-}
-
-float stored_and_imported(const DepthFormat& format, float depth, double near_m, double far_m)
-{
-    if (!(depth > 0 && depth <= 1)) return depth;
-    // depth = n/Z. Finite reversed: (n/Z - n/f) / (1 - n/f); standard: 1 - that.
-    const double n_f    = format.infinite ? 0 : near_m / far_m;
-    const double scaled = (static_cast<double>(depth) - n_f) / (1 - n_f);
-    const double value  = format.reversed ? scaled : 1 - scaled;
-    const double codes  = std::ldexp(1.0, format.bits) - 1;
-    const double stored =
-        format.bits == 32 ? static_cast<double>(static_cast<float>(value)) : std::round(value * codes) / codes;
-    const double back = format.reversed ? stored : 1 - stored;
-    return static_cast<float>(back * (1 - n_f) + n_f);
-}
 
 JitterRow measure_jitter(Gpu& gpu, const Technique& technique)
 {
@@ -132,11 +98,8 @@ std::vector<FormatRow> measure_formats(Gpu& gpu, const Technique& technique)
             for (const Setup& setup : hard_case.setups()) {
                 if (!setup.rays.empty() || setup.gbuffer.view.projection != Projection::perspective) continue;
                 const Answers exact = answers_of(gpu, technique, setup);
-                const double  far_m = far_plane_m(setup.gbuffer);
                 for (size_t f = 0; f < tallies.size(); ++f) {
-                    Setup imported = setup;
-                    for (float& depth : imported.gbuffer.depth)
-                        depth = stored_and_imported(depth_formats()[f], depth, setup.gbuffer.view.near_m, far_m);
+                    const Setup imported = stored_and_imported(setup, depth_formats()[f]);
                     for (const auto& [pixel, answer] : answers_of(gpu, technique, imported)) {
                         const auto before = exact.find(pixel);
                         if (before == exact.end()) continue;

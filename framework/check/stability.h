@@ -31,16 +31,6 @@ struct FormatRow {
 };
 std::vector<FormatRow> measure_formats(Gpu& gpu, const Technique& technique);
 
-/// A depth format: what becomes of depth near_m / distance_m when it is stored and imported. far_m: of formats with a finite far plane.
-struct DepthFormat {
-    std::string name;
-    int         bits     = 32;    // 32: float, else unsigned normalised
-    bool        reversed = true;  // 1 at the near plane; else 0 there
-    bool        infinite = false; // no far plane
-};
-const std::vector<DepthFormat>& depth_formats();
-float stored_and_imported(const DepthFormat& format, float depth, double near_m, double far_m);
-
 std::string stability_markdown(const std::vector<JitterRow>& jitter, const std::vector<FormatRow>& formats);
 
 } // namespace ssrlab
