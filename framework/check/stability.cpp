@@ -86,61 +86,104 @@ JitterRow measure_jitter(Gpu& gpu, const Technique& technique)
     return row;
 }
 
+namespace {
+
+struct Tally {
+    size_t              rays = 0, changed = 0;
+    std::vector<double> moved_px, errors;
+};
+
+void compare(const Answers& exact, const Answers& imported, Tally& tally)
+{
+    for (const auto& [pixel, answer] : imported) {
+        const auto before = exact.find(pixel);
+        if (before == exact.end()) continue;
+        ++tally.rays;
+        const bool both = before->second.hit && answer.hit;
+        if (both && glm::ivec2(before->second.position_px) == glm::ivec2(answer.position_px)) continue;
+        tally.changed += both || before->second.hit != answer.hit;
+        if (both) tally.moved_px.push_back(glm::distance(before->second.position_px, answer.position_px));
+    }
+}
+
+/// Depth is near_m / distance.
+void add_errors(const GBufferImage& exact, const GBufferImage& imported, std::vector<double>& errors)
+{
+    for (size_t i = 0; i < exact.depth.size(); ++i)
+        if (exact.depth[i] > 0 && exact.depth[i] <= 1 && imported.depth[i] > 0)
+            errors.push_back(
+                std::abs(static_cast<double>(exact.depth[i]) / static_cast<double>(imported.depth[i]) - 1));
+}
+
+bool is_deep(const GBufferImage& gbuffer)
+{
+    return std::ranges::any_of(gbuffer.depth,
+                               [](float d) { return d > 0 && static_cast<double>(d) * deep_near_planes < 1; });
+}
+
+} // namespace
+
 std::vector<FormatRow> measure_formats(Gpu& gpu, const Technique& technique)
 {
-    struct Tally {
-        size_t              rays = 0, changed = 0, moved = 0;
-        std::vector<double> distances_px;
-    };
-    std::vector<Tally> tallies(depth_formats().size());
+    std::map<bool, std::vector<Tally>> tallies;
     for (const CaseFamily& family : hard_cases())
         for (const HardCase& hard_case : family.cases)
             for (const Setup& setup : hard_case.setups()) {
                 if (!setup.rays.empty() || setup.gbuffer.view.projection != Projection::perspective) continue;
+                std::vector<Tally>& of_group = tallies[is_deep(setup.gbuffer)];
+                of_group.resize(depth_formats().size());
                 const Answers exact = answers_of(gpu, technique, setup);
-                for (size_t f = 0; f < tallies.size(); ++f) {
+                for (size_t f = 0; f < of_group.size(); ++f) {
                     const Setup imported = stored_and_imported(setup, depth_formats()[f]);
-                    for (const auto& [pixel, answer] : answers_of(gpu, technique, imported)) {
-                        const auto before = exact.find(pixel);
-                        if (before == exact.end()) continue;
-                        ++tallies[f].rays;
-                        tallies[f].changed += before->second.hit != answer.hit;
-                        if (!before->second.hit || !answer.hit) continue;
-                        const double moved = glm::distance(before->second.position_px, answer.position_px);
-                        if (glm::ivec2(before->second.position_px) == glm::ivec2(answer.position_px)) continue;
-                        ++tallies[f].moved;
-                        tallies[f].distances_px.push_back(moved);
-                    }
+                    compare(exact, answers_of(gpu, technique, imported), of_group[f]);
+                    add_errors(setup.gbuffer, imported.gbuffer, of_group[f].errors);
                 }
             }
     std::vector<FormatRow> rows;
-    for (size_t f = 0; f < tallies.size(); ++f)
-        rows.push_back({depth_formats()[f].name, technique.id, tallies[f].rays,
-                        per_million(tallies[f].changed, tallies[f].rays),
-                        per_million(tallies[f].moved, tallies[f].rays), quantile(tallies[f].distances_px, 0.5),
-                        quantile(tallies[f].distances_px, 0.99)});
+    for (const auto& [deep, of_group] : tallies)
+        for (size_t f = 0; f < of_group.size(); ++f)
+            rows.push_back({depth_formats()[f].name, technique.id, deep, quantile(of_group[f].errors, 0.5),
+                            quantile(of_group[f].errors, 0.99), of_group[f].rays,
+                            per_million(of_group[f].changed, of_group[f].rays), quantile(of_group[f].moved_px, 0.5)});
     return rows;
 }
 
 std::string stability_markdown(const std::vector<JitterRow>& jitter, const std::vector<FormatRow>& formats)
 {
     std::string text = "\n## Jitter\n16 sub-pixel phases of a still camera. Flips: answers that differ from what the "
-                       "pixel mostly says. Spread: standard deviation of a "
-                       "pixel's hit position.\n\n| technique | pixels | flips % | spread median px | spread p99 px "
+                       "pixel mostly says. Spread: standard deviation of a pixel's hit position; that of the pixel's "
+                       "own centre is 0.4 px.\n\n| technique | pixels | flips % | spread median px | spread p99 px "
                        "|\n|---|--:|--:|--:|--:|\n";
     for (const JitterRow& row : jitter)
         text += fmt::format("| {} | {} | {:.3f} | {:.3f} | {:.3f} |\n", row.technique, row.pixels, row.flips_percent,
                             row.median_spread_px, row.p99_spread_px);
-    text += "\n## Depth formats\nMirror rays of all perspective cases on depth that was stored in the format and "
-            "imported, against the unrounded depth. "
-            "Far plane: 1.5 times the farthest surface.\n\n| format | technique | rays | hit/miss changed per million "
-            "| hit pixel moved per million | moved median px | moved p99 px |\n"
-            "|---|---|--:|--:|--:|--:|--:|\n";
-    for (const FormatRow& row : formats)
-        text +=
-            fmt::format("| {} | {} | {} | {:.0f} | {:.0f} | {:.3f} | {:.3f} |\n", row.format, row.technique, row.rays,
-                        row.changed_per_million, row.moved_per_million, row.median_moved_px, row.p99_moved_px);
-    return text;
+
+    text += fmt::format(
+        "\n## Depth formats\nMirror rays of the perspective cases on depth that was stored in the format and "
+        "imported, against the same technique on unrounded depth. Far plane: 1.5 times the farthest "
+        "surface. Deep: that lies beyond {:.0f} near planes. Per technique: rays per million with "
+        "another answer, and by how much hits moved (median of those that did).\n\n| depth | format | rays "
+        "| distance error, median % | p99 % |",
+        deep_near_planes);
+    std::map<std::pair<bool, std::string>, const FormatRow*> cells; // by deep and format + technique
+    std::vector<std::string>                                 techniques;
+    for (const FormatRow& row : formats) {
+        cells[{row.deep, row.format + row.technique}] = &row;
+        if (std::ranges::count(techniques, row.technique) == 0) techniques.push_back(row.technique);
+    }
+    for (const std::string& technique : techniques) text += fmt::format(" {} |", technique);
+    text += "\n|---|---|--:|--:|--:|";
+    for (size_t i = 0; i < techniques.size(); ++i) text += "--:|";
+    for (const FormatRow& row : formats) {
+        if (row.technique != techniques[0]) continue;
+        text += fmt::format("\n| {} | {} | {} | {:.2g} | {:.2g} |", row.deep ? "deep" : "ordinary", row.format,
+                            row.rays, 100 * row.median_error, 100 * row.p99_error);
+        for (const std::string& technique : techniques) {
+            const FormatRow& cell = *cells.at({row.deep, row.format + technique});
+            text += fmt::format(" {:.0f}, {:.2f} px |", cell.changed_per_million, cell.median_moved_px);
+        }
+    }
+    return text + "\n";
 }
 
 } // namespace ssrlab
