@@ -14,6 +14,7 @@ namespace {
 
 struct Answer {
     bool       hit = false;
+    glm::ivec2 pixel{0};
     glm::dvec2 position_px{0};
 };
 using Answers = std::map<std::pair<int, int>, Answer>; // by pixel (y, x)
@@ -28,7 +29,7 @@ Answers answers_of(Gpu& gpu, const Technique& technique, const Setup& setup)
     Answers    answers;
     for (size_t i = 0; i < rays.size(); ++i)
         answers[{rays[i].pixel.y, rays[i].pixel.x}] = {
-            found[i].status == TraceStatus::hit,
+            found[i].status == TraceStatus::hit, found[i].hit_pixel,
             glm::dvec2(rays[i].origin_px_depth + found[i].t * rays[i].delta_px_depth)};
     return answers;
 }
@@ -100,7 +101,7 @@ void compare(const Answers& exact, const Answers& imported, Tally& tally)
         if (before == exact.end()) continue;
         ++tally.rays;
         const bool both = before->second.hit && answer.hit;
-        if (both && glm::ivec2(before->second.position_px) == glm::ivec2(answer.position_px)) continue;
+        if (both && before->second.pixel == answer.pixel) continue;
         tally.changed += both || before->second.hit != answer.hit;
         if (both) tally.moved_px.push_back(glm::distance(before->second.position_px, answer.position_px));
     }
@@ -113,6 +114,11 @@ void add_errors(const GBufferImage& exact, const GBufferImage& imported, std::ve
         if (exact.depth[i] > 0 && exact.depth[i] <= 1 && imported.depth[i] > 0)
             errors.push_back(
                 std::abs(static_cast<double>(exact.depth[i]) / static_cast<double>(imported.depth[i]) - 1));
+}
+
+std::string percent(double part)
+{
+    return part < 0.01 ? fmt::format("{:.2g}", 100 * part) : fmt::format("{:.0f}", 100 * part);
 }
 
 bool is_deep(const GBufferImage& gbuffer)
@@ -176,8 +182,8 @@ std::string stability_markdown(const std::vector<JitterRow>& jitter, const std::
     for (size_t i = 0; i < techniques.size(); ++i) text += "--:|";
     for (const FormatRow& row : formats) {
         if (row.technique != techniques[0]) continue;
-        text += fmt::format("\n| {} | {} | {} | {:.2g} | {:.2g} |", row.deep ? "deep" : "ordinary", row.format,
-                            row.rays, 100 * row.median_error, 100 * row.p99_error);
+        text += fmt::format("\n| {} | {} | {} | {} | {} |", row.deep ? "deep" : "ordinary", row.format, row.rays,
+                            percent(row.median_error), percent(row.p99_error));
         for (const std::string& technique : techniques) {
             const FormatRow& cell = *cells.at({row.deep, row.format + technique});
             text += fmt::format(" {:.0f}, {:.2f} px |", cell.changed_per_million, cell.median_moved_px);

@@ -119,9 +119,10 @@ size_t campaign_differences(const Technique& mutant)
             const auto          gbuffer = upload_depth(device(), setup.gbuffer.view, setup.gbuffer.depth);
             const auto          rays    = random_rays(size, 50'000, 23);
             const auto          trace   = [&](const Technique& t) {
-                return trace_rays(
-                               device(), *make_ray_tracer(device(), gbuffer, t, default_values(t), campaign_settings, rays.size()),
-                               rays);
+                // Beyond what any of these rays needs; mutants that never end then end soon.
+                const auto tracer = make_ray_tracer(device(), gbuffer, t, values_of(t, {{"max_steps", 10'000}}),
+                                                               campaign_settings, rays.size());
+                return trace_rays(device(), *tracer, rays);
             };
             const auto walk = trace(technique("dda")), found = trace(mutant);
             for (size_t i = 0; i < rays.size(); ++i)
