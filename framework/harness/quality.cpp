@@ -64,11 +64,12 @@ Image Truths::agreement(const TraceSettings& settings, const TraceResult& counte
 
 std::vector<glm::vec4> Truths::true_reflection(const TraceSettings& settings)
 {
-    make(settings);
+    const GlossyTruth      truth = cached_glossy_truth(cache_dir_, *scene_, gbuffer_, settings, {});
     std::vector<glm::vec4> reflection;
-    for (size_t i = 0; i < scene_truth_.cls.size(); ++i)
-        reflection.push_back(scene_truth_.cls[i] == TruthClass::not_traced ? glm::vec4(0, 0, 0, -1)
-                                                                           : glm::vec4(scene_truth_.radiance[i], 1));
+    for (size_t i = 0; i < truth.rays.size(); ++i)
+        reflection.push_back(truth.rays[i] == 0    ? glm::vec4(0, 0, 0, -1)
+                             : truth.weight[i] > 0 ? glm::vec4(truth.radiance[i] / truth.weight[i], 1)
+                                                   : glm::vec4(0, 0, 0, 1));
     return reflection;
 }
 

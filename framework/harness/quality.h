@@ -20,7 +20,7 @@ public:
     MeasureValues compare(const TraceSettings& settings, const TraceResult& counted, const TraceResult* twin,
                           bool image_errors);
 
-    /// The reflection that the scene truth shows, at full weight; weight -1 where nothing reflects.
+    /// The reflection of the glossy scene truth (many rays where it is rough), at full weight; weight -1 where nothing reflects.
     std::vector<glm::vec4> true_reflection(const TraceSettings& settings);
 
     /// A finished picture against the one with the true reflection.

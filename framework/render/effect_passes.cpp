@@ -184,7 +184,7 @@ Image composite_reflection(Gpu& gpu, const PreparedFrame& frame, std::span<const
     for (const glm::vec4& value : reflection) texels.push_back(glm::packHalf4x16(value));
     FrameBuffers& buffers = *frame.buffers;
     upload(gpu, buffers.reflection, texels.data(), texels.size() * sizeof(uint64_t));
-    const ComputePass pass = make_effect_pass(gpu, frame, "effects/composite.comp");
+    const ComputePass pass = make_effect_pass(gpu, frame, "effects/composite.comp", {});
     submit(gpu, [&](const auto& commands) {
         barrier(commands);
         dispatch(commands, pass, groups_of_8(buffers.gbuffer->view.size_px));

@@ -45,6 +45,20 @@ std::map<std::string, std::string> precision_defines(Precision precision)
     return {};
 }
 
+/// The parameter `arithmetic` chooses what shaders/trace_api.glsl crosses borders in. A define, not a constant: 64-bit integers must not even be
+/// declared on a device without them.
+bool exact_arithmetic(const Gpu& gpu, const PreparedFrame& frame)
+{
+    const auto parameter = std::ranges::find(frame.technique.parameters, "arithmetic", &Parameter::name);
+    if (parameter == frame.technique.parameters.end() || parameter->type != ParameterType::choice ||
+        format_parameter(*parameter, frame.values.at("arithmetic")) != "exact")
+        return false;
+    if (!gpu.info.int64 || !gpu.info.float64)
+        throw_failure("arithmetic = exact needs 64-bit integers and doubles in shaders; the device '{}' has no {}",
+                      gpu.info.name, gpu.info.int64 ? "shaderFloat64" : "shaderInt64");
+    return true;
+}
+
 int level_count(glm::ivec2 size_px)
 {
     int levels = 0;
@@ -181,6 +195,7 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
                                       .include_files = {{"technique/trace.glsl", frame.technique.folder / "trace.glsl"}},
                                       .include_texts = {{"technique/parameters",
                                                          parameter_declarations(frame.technique.parameters, CONSTANT_PARAMETERS)}}};
+    if (exact_arithmetic(gpu, frame)) trace.defines.emplace("EXACT_ARITHMETIC", "1");
     if (work != nullptr) {
         trace.defines.emplace("COUNT_WORK", "1");
         bindings.insert({"Work", *work});
