@@ -1,6 +1,7 @@
 // Techniques that claim to be exact, held to it: the pixel walk's answer on every ray, whatever their parameters.
 #include "contract/disputed_rays.h"
 #include "gpu/device.h"
+#include "scene/scene.h"
 #include "truth/screen_truth.h"
 
 #include <algorithm>
@@ -27,26 +28,28 @@ std::string case_name(const testing::TestParamInfo<Case>& info)
     return name;
 }
 
-constexpr glm::ivec2 sizes[]        = {{640, 360}, {641, 363}, {1, 1}, {3, 2}, {97, 1}};
-const char* const built_in_scenes[] = {"builtin:mirror_floor_wall", "builtin:sphere_over_mirror", "builtin:pole_field",
-                                       "builtin:stairs", "builtin:corridor"};
+constexpr glm::ivec2 sizes[] = {{640, 360}, {641, 363}, {1, 1}, {3, 2}, {97, 1}};
 /// Each with its views besides the default one; a level one is among them.
-const std::pair<const char*, std::vector<const char*>> real_scenes[] = {{"animal_on_metal", {"level", "steep"}},
-                                                                        {"teapot_bunnies", {"level", "close"}},
-                                                                        {"thin_yard", {"level", "close"}},
-                                                                        {"interior", {"mirror", "low"}},
-                                                                        {"engine", {"level", "close"}}};
+const std::pair<const char*, std::vector<std::string>> real_scenes[] = {
+    {"animal_on_metal", {"level", "steep"}}, {"teapot_bunnies", {"level", "close"}},
+    {"thin_yard", {"level", "close"}},       {"interior", {"mirror", "low"}},
+    {"engine", {"level", "close"}},          {"forest_clearing", {"level", "close"}}};
 
 std::vector<Case> all_cases()
 {
     std::vector<Case> cases;
-    const auto        add = [&](const char* scene, std::span<const char* const> other_views) {
+    const auto        add = [&](const std::string& scene, const std::vector<std::string>& other_views) {
         for (const glm::ivec2& size : sizes) cases.push_back({scene, "default", size});
         cases.push_back({scene, "default", {1919, 1079}});
-        for (const char* view : other_views) cases.push_back({scene, view, {641, 363}});
+        for (const std::string& view : other_views) cases.push_back({scene, view, {641, 363}});
     };
-    for (const char* scene : built_in_scenes) add(scene, std::vector{"down", "steep"});
-    add("builtin:void", {});
+    for (const SceneListing& listing : list_scenes()) {
+        if (!listing.name.starts_with("builtin:")) continue;
+        std::vector<std::string> other_views;
+        for (const Camera& camera : load_scene(listing.name).cameras)
+            if (camera.name != "default") other_views.push_back(camera.name);
+        add(listing.name, other_views);
+    }
     for (const auto& [scene, views] : real_scenes) add(scene, views);
     return cases;
 }
