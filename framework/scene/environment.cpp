@@ -38,7 +38,7 @@ double smooth_step(double from, double to, double value)
 
 glm::vec3 sky_colour(glm::dvec3 direction_ws, glm::dvec3 to_sun_ws)
 {
-    const glm::dvec3 zenith(0.1, 0.25, 0.62), horizon(0.62, 0.7, 0.78), haze(0.3, 0.28, 0.26), sun(24, 21, 16);
+    const glm::dvec3 zenith(0.1, 0.25, 0.62), horizon(0.62, 0.7, 0.78), haze(0.3, 0.28, 0.26), sun(7, 6, 4.6);
     const double     height = direction_ws.y;
     const glm::dvec3 above  = glm::mix(horizon, zenith, std::sqrt(std::max(height, 0.0)));
     const glm::dvec3 sky    = glm::mix(haze, above, smooth_step(-0.06, 0.02, height));
