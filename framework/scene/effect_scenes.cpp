@@ -31,7 +31,7 @@ void add_plain_room(Model& model)
 
 std::vector<Camera> room_cameras()
 {
-    return {look("default", {0.07, 0.47, 1.1}, {0.11, -0.35, -3.9}, 60, "few pixels reflect, in one place"),
+    return {look("default", {0.17, 0.47, 1.1}, {-0.36, -0.35, -3.9}, 60, "few pixels reflect, in one place"),
             look("low", {0.13, -0.67, 0.3}, {0.17, -0.71, -4.1}, 60, "low: what reflects is a thin strip"),
             look("above", {0.19, 2.3, -0.7}, {0.07, -1, -3.3}, 60, "from above: rays leave the screen at its top")};
 }
