@@ -158,6 +158,7 @@ TEST(CompareImages, PicturesOverAllThatReflectsAndAtTheBorderOfMaterials)
     SceneTruth       truth;
     truth.size_px = size_px;
     GBufferImage gbuffer;
+    gbuffer.view.size_px = size_px;
     for (int i = 0; i < size_px.x * size_px.y; ++i) {
         const int  x          = i % size_px.x;
         const bool reflecting = x >= 5;
