@@ -166,7 +166,8 @@ uint pcg(uint value)
     return (word >> 22u) ^ word;
 }
 
-// A place inside the pixel, exact in float.
+// A place inside the pixel, exact in float. The depth image is flat inside each pixel: a ray that starts on the far side of its pixel's
+// centre and runs sideways is behind its neighbour's slab face, which ray_offset_m > 0 avoids.
 real2 offset_start(ivec2 pixel, int ray)
 {
     uint  random = pcg(uint(pixel.x) + pcg(uint(pixel.y) + pcg(uint(ray))));
