@@ -166,7 +166,8 @@ uint pcg(uint value)
     return (word >> 22u) ^ word;
 }
 
-// A place inside the pixel, exact in float.
+// A place inside the pixel, exact in float. The depth image is flat inside each pixel: a ray that starts on the far side of its pixel's
+// centre and runs sideways is behind its neighbour's slab face, which ray_offset_m > 0 avoids.
 real2 offset_start(ivec2 pixel, int ray)
 {
     uint  random = pcg(uint(pixel.x) + pcg(uint(pixel.y) + pcg(uint(ray))));
@@ -197,21 +198,18 @@ int rank_in_block(ivec2 pixel)
     return (offset.x * offset.x + offset.y * offset.y) * 16 + place.y * block_px + place.x;
 }
 
-shared uint tile_reflects[2]; // a bit for each pixel of the tile
+shared int first_rank[16]; // of the pixels that reflect, for each block of the tile
 
-// A block is traced from the first of its pixels that reflects.
-bool first_of_block(ivec2 pixel)
+// A block is traced from the first of its pixels that reflects. Called by all invocations.
+bool first_of_block(ivec2 pixel, bool reflecting)
 {
-    ivec2 corner = pixel - pixel % block_px;
-    bool  first  = true;
-    for (int i = 0; i < block_px * block_px; ++i)
-    {
-        ivec2 other = corner + ivec2(i % block_px, i / block_px);
-        uint  bit   = uint(other.y % 8 * 8 + other.x % 8);
-        bool  taken = (tile_reflects[bit >> 5] >> (bit & 31) & 1u) != 0;
-        first       = first && !(taken && rank_in_block(other) < rank_in_block(pixel));
-    }
-    return first;
+    ivec2 block = pixel % 8 / block_px;
+    int   index = block.y * (8 / block_px) + block.x;
+    if (gl_LocalInvocationIndex < 16) first_rank[gl_LocalInvocationIndex] = 1 << 16;
+    barrier();
+    if (reflecting) atomicMin(first_rank[index], rank_in_block(pixel));
+    barrier();
+    return reflecting && first_rank[index] == rank_in_block(pixel);
 }
 
 void main()
@@ -222,15 +220,7 @@ void main()
     bool  inside     = all(lessThan(pixel, size_px));
     bool  reflecting = inside && reflects(pixel);
     bool  traced     = reflecting || (every_surface != 0 && inside && has_surface(pixel));
-    if (block_px > 1)
-    {
-        if (gl_LocalInvocationIndex < 2) tile_reflects[gl_LocalInvocationIndex] = 0;
-        barrier();
-        uint bit = gl_LocalInvocationIndex;
-        if (reflecting) atomicOr(tile_reflects[bit >> 5], 1u << (bit & 31));
-        barrier();
-        traced = traced && (!reflecting || first_of_block(pixel));
-    }
+    if (block_px > 1) traced = first_of_block(pixel, reflecting) || (traced && !reflecting);
 
     uvec4 ballot = subgroupBallot(traced);
     uint  first  = 0;

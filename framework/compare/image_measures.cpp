@@ -146,12 +146,13 @@ MeasureValues compare_pictures(const Image& tested, const Image& reference, cons
 {
     require_comparable(tested, truth);
     require_comparable(reference, truth);
-    Mask reflective, border;
+    Mask reflective, border, visible, visible_border;
     for (size_t i = 0; i < truth.cls.size(); ++i) {
-        const int  width = truth.size_px.x;
-        const bool known = truth.cls[i] != TruthClass::not_traced;
-        reflective.push_back(known);
-        border.push_back(known && at_material_border(gbuffer, {int(i) % width, int(i) / width}));
+        const int width = truth.size_px.x;
+        reflective.push_back(truth.cls[i] != TruthClass::not_traced);
+        border.push_back(reflective[i] && at_material_border(gbuffer, {int(i) % width, int(i) / width}));
+        visible.push_back(truth.cls[i] == TruthClass::visible);
+        visible_border.push_back(visible[i] && border[i]);
     }
     const Image       a = to_display(tested), b = to_display(reference);
     const ImageErrors errors = compare_inside(a, b, reflective);
@@ -159,7 +160,9 @@ MeasureValues compare_pictures(const Image& tested, const Image& reference, cons
             {"picture_psnr_db", errors.psnr_db},
             {"picture_ssim", errors.ssim},
             {"picture_flip", errors.flip},
-            {"picture_border_rmse", rmse_inside(a, b, border)}};
+            {"picture_border_rmse", rmse_inside(a, b, border)},
+            {"picture_visible_rmse", rmse_inside(a, b, visible)},
+            {"picture_visible_border_rmse", rmse_inside(a, b, visible_border)}};
 }
 
 } // namespace ssrlab

@@ -103,6 +103,8 @@ constexpr auto table = std::to_array<Measure>({
      "as picture_rmse, over those within 2 px of a surface whose metallic or roughness differs by more than 0.1; empty "
      "without any",
      own},
+    {"picture_visible_rmse", "display value", "as picture_rmse, over visible rays alone", own},
+    {"picture_visible_border_rmse", "display value", "as picture_border_rmse, over visible rays alone", own},
 });
 
 } // namespace

@@ -144,7 +144,8 @@ std::vector<Effect> make_table()
              {integer(
                   "rays_per_pixel", 1, 1, 16,
                   "rays that start at random places inside the pixel; 1: at its centre. They count as a miss unless "
-                  "more than half of them hit"),
+                  "more than half of them hit. Beside the centre a ray may meet a neighbour of its own surface: "
+                  "ray_offset_m starts it clear of those"),
               choice("trace_resolution", {"full", "half", "quarter"},
                      "pixels that have rays: all that reflect, or the first one of each block of 2 x 2 or 4 x 4, from "
                      "its centre outward")},

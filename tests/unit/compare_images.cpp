@@ -158,10 +158,11 @@ TEST(CompareImages, PicturesOverAllThatReflectsAndAtTheBorderOfMaterials)
     SceneTruth       truth;
     truth.size_px = size_px;
     GBufferImage gbuffer;
+    gbuffer.view.size_px = size_px;
     for (int i = 0; i < size_px.x * size_px.y; ++i) {
         const int  x          = i % size_px.x;
         const bool reflecting = x >= 5;
-        truth.cls.push_back(reflecting ? TruthClass::visible : TruthClass::not_traced);
+        truth.cls.push_back(!reflecting ? TruthClass::not_traced : x < 15 ? TruthClass::visible : TruthClass::sky);
         gbuffer.depth.push_back(x == 0 ? 0.0F : 0.5F);
         gbuffer.metallic.push_back(reflecting ? 1.0F : 0.0F);
         gbuffer.roughness.push_back(x < 12 ? 0.05F : 0.9F);
@@ -172,6 +173,8 @@ TEST(CompareImages, PicturesOverAllThatReflectsAndAtTheBorderOfMaterials)
     EXPECT_NEAR(values.at("picture_rmse").value(), std::sqrt(1.0 / 19), 1e-6);
     // Within 2 px of a change: columns 5, 6 beside what does not reflect, and 10 to 13.
     EXPECT_NEAR(values.at("picture_border_rmse").value(), std::sqrt(1.0 / 6), 1e-6);
+    EXPECT_NEAR(values.at("picture_visible_rmse").value(), std::sqrt(0.1), 1e-6);
+    EXPECT_NEAR(values.at("picture_visible_border_rmse").value(), std::sqrt(1.0 / 6), 1e-6);
     EXPECT_NEAR(values.at("picture_psnr_db").value(), 10 * std::log10(19), 1e-4);
     EXPECT_GT(values.at("picture_flip").value(), 0);
     EXPECT_LT(values.at("picture_ssim").value(), 1);
