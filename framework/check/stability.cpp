@@ -168,7 +168,8 @@ std::string stability_markdown(const std::vector<JitterRow>& jitter, const std::
         "\n## Depth formats\nMirror rays of the perspective cases on depth that was stored in the format and "
         "imported, against the same technique on unrounded depth. Far plane: 1.5 times the farthest "
         "surface. Deep: that lies beyond {:.0f} near planes. Per technique: rays per million with "
-        "another answer, and by how much hits moved (median of those that did).\n\n| depth | format | rays "
+        "another answer, and by how much hits moved on screen (median of those in another pixel; 0 on a border between "
+        "two).\n\n| depth | format | rays "
         "| distance error, median % | p99 % |",
         deep_near_planes);
     std::map<std::pair<bool, std::string>, const FormatRow*> cells; // by deep and format + technique

@@ -39,6 +39,8 @@ std::string percent(uint32_t part, uint32_t whole)
     return fmt::format("{:.3g} %", whole == 0 ? 0.0 : 100.0 * part / whole);
 }
 
+bool shading_only(const ParameterValues& values) { return values.at("effect_set") != 0; }
+
 Need where_something_reflects(const FrameFacts& /*facts*/, const FrameStatistics& statistics,
                               const ParameterValues& /*values*/)
 {
@@ -66,8 +68,6 @@ uint32_t rough_pixels(const FrameStatistics& statistics)
 {
     return statistics.picture.reflecting_pixels - statistics.picture.roughness_pixels[0];
 }
-
-bool shading_only(const ParameterValues& values) { return values.at("effect_set") != 0; }
 
 Need blur_need(const FrameFacts& /*facts*/, const FrameStatistics& statistics, const ParameterValues& values)
 {
@@ -99,7 +99,8 @@ Need environment_need(const FrameFacts& facts, const FrameStatistics& statistics
 Need at_lower_resolution(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
 {
     const int block_px = trace_block_px(values);
-    if (block_px == 1) return {Call::not_needed, "each pixel that reflects has rays of its own"};
+    if (block_px == 1)
+        return {shading_only(values) ? Call::off : Call::not_needed, "each pixel that reflects has rays of its own"};
     if (statistics.picture.reflecting_pixels == 0) return where_something_reflects(facts, statistics, values);
     return {Call::needed, fmt::format("one pixel in {} has rays", block_px * block_px)};
 }

