@@ -6,12 +6,13 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = CONSTANT_PYRAMID_KIND) const int pyramid_kind = PYRAMID_OCCUPANCY;
+// Level 1 is made from pixels, in a pipeline of its own: a branch would run both sides.
+layout(constant_id = CONSTANT_FROM_PIXELS) const int from_pixels = 0;
 layout(set = 0, binding = 0, r32f) uniform readonly image2D depth_image;
 layout(set = 0, binding = 1, rg32ui) uniform uimage2D depth_pyramid;
 layout(push_constant, scalar) uniform Push
 {
-    int   level;
-    ivec2 source_size; // cells of level - 1
+    ivec2 source_size; // cells of the level below
     ivec2 size;        // cells of this level
     ivec2 source_offset;
     ivec2 offset;      // where this level lies in the atlas
@@ -24,19 +25,18 @@ float outer_back(float depth)
     return float(slab_back(real(depth))) * margin;
 }
 
-// A pixel is a cell of one bin.
 uvec2 pixel_cell(ivec2 pixel)
 {
     float depth = imageLoad(depth_image, pixel).x;
     if (!(depth > 0.0)) return empty_cell;
     int front = depth_code(depth), back = pyramid_kind >= PYRAMID_NEAREST ? 0 : depth_code(outer_back(depth));
-    return uvec2(uint(front) << 16 | uint(back), bins_between(back, front, back, bin_shift(front, back)));
+    return uvec2(uint(front) << 16 | uint(back), 1);
 }
 
 uvec2 source_cell(ivec2 cell)
 {
     if (any(greaterThanEqual(cell, source_size))) return empty_cell;
-    return level > 1 ? imageLoad(depth_pyramid, source_offset + cell).xy : pixel_cell(cell);
+    return from_pixels == 0 ? imageLoad(depth_pyramid, source_offset + cell).xy : pixel_cell(cell);
 }
 
 // Neighbouring bits united, in the lower half.
@@ -49,9 +49,10 @@ uint unite_pairs(uint bits)
     return (bits | bits >> 8) & 0x0000FFFFu;
 }
 
-// The bins of a part in terms of the whole cell.
+// The bins of a part in terms of the whole cell. A pixel fills all from its back to its front.
 uint bins_of_part(uvec2 part, int farthest, int shift)
 {
+    if (from_pixels != 0) return part.y == 0u ? 0u : bins_between(cell_farthest(part), cell_nearest(part), farthest, shift);
     int  part_shift = bin_shift(cell_nearest(part), cell_farthest(part)), base = cell_farthest(part) >> part_shift;
     uint bins       = part.y;
     while (bins != 0u && part_shift < shift)
