@@ -10,6 +10,10 @@
 
 namespace ssrlab {
 
+/// Every ray sees the whole segment, so that all tracers answer the same question.
+inline const FrameSettings bench_settings{.trace = {.thickness_m = 0.1, .max_distance_m = 1e9}};
+inline constexpr int       largest_judged_px = 1920; // the truth of a larger picture takes minutes
+
 /// A technique with some values changed, under a name of its own.
 struct Contender {
     std::string                        name, technique;
