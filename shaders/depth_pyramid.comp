@@ -29,7 +29,7 @@ uvec2 pixel_cell(ivec2 pixel)
 {
     float depth = imageLoad(depth_image, pixel).x;
     if (!(depth > 0.0)) return empty_cell;
-    int front = depth_code(depth), back = pyramid_kind >= PYRAMID_NEAREST ? 0 : depth_code(outer_back(depth));
+    int front = depth_code(depth), back = pyramid_kind == PYRAMID_NEAREST ? 0 : depth_code(outer_back(depth));
     return uvec2(uint(front) << 16 | uint(back), 1);
 }
 

@@ -48,7 +48,6 @@
 #define PYRAMID_OCCUPANCY 0
 #define PYRAMID_MINMAX 1
 #define PYRAMID_NEAREST 2
-#define PYRAMID_NEAREST_STOP 3
 
 // Depth codes of pyramid cells: 16 bits, from 2^-31 up (exponents are biased by 127).
 #define PYRAMID_MAX_CODE 0xFFFF

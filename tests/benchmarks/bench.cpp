@@ -24,7 +24,6 @@ std::vector<Contender> all_contenders(std::span<const Technique> techniques)
     }
     list.push_back({"hiz_minmax", "hiz", {{"pyramid", "minmax"}}});
     list.push_back({"hiz_nearest", "hiz", {{"pyramid", "nearest"}}});
-    list.push_back({"hiz_nearest_stop", "hiz", {{"pyramid", "nearest_stop"}, {"max_steps", "128"}}});
     return list;
 }
 

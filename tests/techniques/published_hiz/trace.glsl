@@ -5,6 +5,7 @@
 real surface_of(ivec2 cell, int level)
 {
     if (level == 0) return fetch_depth(cell);
+    COUNT(pyramid_fetches);
     int code = cell_nearest(load_pyramid(cell, level));
     return code == 0 ? real(0) : real(intBitsToFloat((code + 1 + (PYRAMID_LOWEST_EXPONENT << 11)) << 12));
 }
