@@ -19,6 +19,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from matplotlib.ticker import LogLocator, NullLocator
 
 PIXELS = {"360p": 640 * 360, "720p": 1280 * 720, "1080p": 1920 * 1080, "2160p": 3840 * 2160}
 
@@ -57,21 +58,25 @@ def curve(values, scene, name, column):
 
 
 def draw(values, device, scene, output):
-    figure, axes = plt.subplots(1, 2, figsize=(12, 5), layout="constrained")
+    figure, axes = plt.subplots(1, 2, figsize=(15, 5), layout="constrained")
     names = [name for s, name in values if s == scene and name.startswith("trace/")]
     names.sort(key=lambda name: -curve(values, scene, name, "ns_per_ray")[-1][1])
     markers = dict(zip(sorted(names), "osD^v<>PX*hpd"))
     for axis, column, label in zip(axes, ("ns_per_ray", "fetches_per_ray"), ("time per ray, ns", "fetches per ray")):
         for colour, name in enumerate(names):
             points = curve(values, scene, name, column)
-            slope = f"{exponent(points):+.2f}" if len(points) > 1 else "–"
+            slope = f"{round(exponent(points), 2) + 0:+.2f}" if len(points) > 1 else "–"
             axis.plot(*zip(*points), marker=markers[name], markersize=5, color=plt.get_cmap("tab20")(colour % 20),
                       label=f"{name.removeprefix('trace/')}  {slope}")
         axis.set(xscale="log", yscale="log", xlabel="picture", ylabel=label)
-        axis.set_xticks([PIXELS[s] for s in PIXELS], list(PIXELS), minor=False)
-        axis.minorticks_off()
+        measured = [size for size in PIXELS if any(size in values[scene, name] for name in names)]
+        axis.set_xticks([PIXELS[size] for size in measured], measured)
+        axis.xaxis.set_minor_locator(NullLocator())
+        axis.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.yaxis.set_major_formatter("{x:g}")
+        axis.yaxis.set_minor_locator(NullLocator())
         axis.grid(alpha=0.3)
-        axis.legend(title="technique, exponent", fontsize=8)
+        axis.legend(title="technique, exponent", fontsize=8, loc="upper left", bbox_to_anchor=(1, 1))
     figure.suptitle(f"{scene}: growth with resolution on {device}")
     figure.savefig(output, dpi=120)
     print(output)
