@@ -16,9 +16,9 @@ public:
     /// Keeps a reference to `scene`.
     Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path cache_dir);
 
-    /// Every measure of `counted`; `twin` is the same trace in double, or null.
+    /// Every measure of `counted`. `twin` is the same trace in double, `hidden` what was found in the second layer; or null.
     MeasureValues compare(const TraceSettings& settings, const TraceResult& counted, const TraceResult* twin,
-                          bool image_errors);
+                          const TraceResult* hidden, bool image_errors);
 
     /// The agreement with the scene truth, as a false-colour picture.
     Image agreement(const TraceSettings& settings, const TraceResult& counted);

@@ -1,15 +1,16 @@
 // How each row of the table of effects is recorded.
-#include "render/frame_passes.h"
+#include "render/effect_passes.h"
 
 namespace ssrlab {
-namespace {
 
-ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader)
+ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader, const Bindings& more,
+                             const std::map<std::string, std::string>& defines)
 {
     const FrameBuffers& buffers   = *frame.buffers;
     Constants           constants = settings_constants(frame, Precision::float32);
     add_parameters(constants, effect_parameters(), frame.settings.effects, CONSTANT_EFFECTS);
-    Bindings bindings = bindings_of(buffers, *frame.rays);
+    Bindings bindings = more;
+    bindings.merge(bindings_of(buffers, *frame.rays));
     bindings.insert({{"View", buffers.view},
                      {"radiance_image", buffers.gbuffer->radiance},
                      {"highlight_image", buffers.gbuffer->highlight},
@@ -19,9 +20,33 @@ ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::st
         gpu,
         compile_shader(
             {.file          = shader,
+             .defines       = defines,
              .include_texts = {{"effect/parameters", parameter_declarations(effect_parameters(), CONSTANT_EFFECTS)}}}),
         bindings, constants);
 }
+
+std::shared_ptr<DerivedRays> derived_rays(Gpu& gpu, const PreparedFrame& frame, int which)
+{
+    const size_t                  capacity = frame.rays->capacity;
+    std::shared_ptr<DerivedRays>& derived  = frame.buffers->derived_rays[{capacity, which}];
+    if (!derived) {
+        const uint64_t bytes = std::max<uint64_t>(capacity, 1) * 4;
+        derived = std::make_shared<DerivedRays>(DerivedRays{make_ray_buffers(gpu, capacity, Precision::float32),
+                                                            make_buffer(gpu, bytes), make_buffer(gpu, bytes)});
+    }
+    return derived;
+}
+
+Bindings derived_bindings(const DerivedRays& derived)
+{
+    return {{"DerivedCount", derived.rays.count},       {"DerivedOrigins", derived.rays.origins},
+            {"DerivedDeltas", derived.rays.deltas},     {"DerivedLengths", derived.rays.lengths},
+            {"DerivedPixels", derived.rays.pixels},     {"DerivedHitPixels", derived.rays.hit_pixels},
+            {"DerivedHitTs", derived.rays.hit_ts},      {"DerivedSources", derived.sources},
+            {"DerivedThroughputs", derived.throughputs}};
+}
+
+namespace {
 
 std::shared_ptr<ComputePass> shared_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader)
 {
@@ -60,7 +85,17 @@ Recording trace(Gpu& /*gpu*/, PreparedFrame& frame)
 
 Recording hit_colour(Gpu& gpu, PreparedFrame& frame)
 {
-    return [&frame, pass = shared_effect_pass(gpu, frame, "effects/hit_colour.comp")](const auto& commands) {
+    Bindings                           second;
+    std::map<std::string, std::string> defines;
+    if (frame.hidden_layer) {
+        const GBuffer& layer = *frame.buffers->second_layer;
+        defines              = {{"SECOND_LAYER", "1"}};
+        second               = {{"second_depth_image", layer.depth},
+                                {"second_radiance_image", layer.radiance},
+                                {"second_highlight_image", layer.highlight}};
+    }
+    auto pass = std::make_shared<ComputePass>(make_effect_pass(gpu, frame, "effects/hit_colour.comp", second, defines));
+    return [&frame, pass](const auto& commands) {
         clear_reflection(commands, frame.buffers->reflection);
         dispatch_indirect(commands, *pass, frame.rays->launch);
     };
@@ -81,9 +116,14 @@ Recording composite(Gpu& gpu, PreparedFrame& frame)
 Recording make_recording(Gpu& gpu, PreparedFrame& frame, const std::string& effect)
 {
     static const std::map<std::string, Recording (*)(Gpu&, PreparedFrame&)> makers = {
-        {"classification", classification}, {"rays", rays},
-        {"depth_pyramid", depth_pyramid},   {"trace", trace},
-        {"hit_colour", hit_colour},         {"composite", composite},
+        {"classification", classification},
+        {"rays", rays},
+        {"depth_pyramid", depth_pyramid},
+        {"trace", trace},
+        {"hidden_layer", hidden_layer},
+        {"hit_colour", hit_colour},
+        {"bounces", bounces},
+        {"composite", composite},
     };
     return makers.at(effect)(gpu, frame);
 }

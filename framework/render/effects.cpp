@@ -17,6 +17,11 @@ Parameter real(const char* name, double otherwise, double min, double max, const
     return {name, ParameterType::real, otherwise, min, max, {}, doc};
 }
 
+Parameter integer(const char* name, double otherwise, double min, double max, const char* doc)
+{
+    return {name, ParameterType::integer, otherwise, min, max, {}, doc};
+}
+
 Parameter boolean(const char* name, bool otherwise, const char* doc)
 {
     return {name, ParameterType::boolean, otherwise ? 1.0 : 0.0, 0, 1, {}, doc};
@@ -56,6 +61,32 @@ Need depth_pyramid_need(const FrameFacts& facts, const FrameStatistics& statisti
     return where_something_reflects(facts, statistics, values);
 }
 
+bool beyond_shading(const ParameterValues& values) { return values.at("effect_set") == 0; }
+
+Need hidden_layer_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (!beyond_shading(values)) return {Call::off, "effect_set = shading"};
+    if (values.at("hidden_layer") == 0) return {Call::off, "hidden_layer = false"};
+    if (!facts.scene) return {Call::off, "no scene to draw again"};
+    const TraceCounts& trace  = statistics.trace;
+    const uint32_t     misses = trace.rays - trace.hits;
+    if (misses == 0) return {Call::not_needed, fmt::format("none of {} rays missed", trace.rays)};
+    const double      threshold = values.at("hidden_layer_threshold");
+    const std::string reason    = fmt::format("{} of {} rays found nothing", percent(misses, trace.rays), trace.rays);
+    if (misses <= threshold * trace.rays)
+        return {Call::off, fmt::format("{}, the threshold is {:.3g} %", reason, 100 * threshold)};
+    return {Call::needed, reason};
+}
+
+Need bounces_need(const FrameFacts& /*facts*/, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (!beyond_shading(values)) return {Call::off, "effect_set = shading"};
+    if (values.at("bounce_mode") == 0) return {Call::off, "bounce_mode = off"};
+    const TraceCounts& trace = statistics.trace;
+    if (trace.mirror_hits == 0) return {Call::not_needed, fmt::format("none of {} hits reflects", trace.hits)};
+    return {Call::needed, fmt::format("{} of {} hits reflect", percent(trace.mirror_hits, trace.hits), trace.hits)};
+}
+
 Need always(const FrameFacts& /*facts*/, const FrameStatistics& /*statistics*/, const ParameterValues& /*values*/)
 {
     return {Call::needed, "every picture"};
@@ -89,6 +120,22 @@ std::vector<Effect> make_table()
                      "normal_image", "depth_pyramid"},
          .writes  = {"HitPixels", "HitTs"},
          .need    = where_something_reflects},
+        {.id      = "hidden_layer",
+         .summary = "A second depth layer by depth peeling, and the rays that found nothing traced in it",
+         .cite    = {"C. Everitt 2001, Interactive Order-Independent Transparency",
+                     "M. Mara, M. McGuire, D. Nowrouzezahrai, D. Luebke 2016, Deep G-Buffers for Stable Global "
+                        "Illumination Approximation"},
+         .shader  = "effects/gather_misses.comp",
+         .reads   = {"View", "RayCount", "RayOrigins", "RayDeltas", "RayLengths", "RayPixels", "depth_image",
+                     "normal_image", "material_image"},
+         .writes  = {"HitPixels", "HitTs"},
+         .parameters =
+             {boolean("hidden_layer", true, "whether rays that find nothing are traced in a second depth layer"),
+              real("hidden_layer_separation_m", 0.1, 0, 1e6,
+                   "the second layer is the nearest surface more than so far behind the first"),
+              real("hidden_layer_threshold", 0, 0, 1,
+                   "the second layer is left out up to this share of rays without hit; above 0 pictures change")},
+         .need = hidden_layer_need},
         {.id      = "hit_colour",
          .summary = "Colour and weight of what each ray hit: hit tests, fades, attenuation",
          .cite    = {"J. Somerville Roberts, Screen Space Reflections", "Litheon 2012, Real-Time Local Reflections",
@@ -119,6 +166,20 @@ std::vector<Effect> make_table()
                    "a hit counts when the direction to its surface and the ray's have at least this cosine; -1: "
                    "always")},
          .need = where_something_reflects},
+        {.id      = "bounces",
+         .summary = "Mirror in mirror: further bounces where what was hit reflects, too",
+         .cite    = {"J. Somerville Roberts, Screen Space Reflections"},
+         .shader  = "effects/bounce_rays.comp",
+         .reads   = {"View", "RayCount", "RayOrigins", "RayDeltas", "RayPixels", "HitPixels", "HitTs", "depth_image",
+                     "normal_image", "material_image", "radiance_image", "highlight_image", "depth_pyramid"},
+         .writes  = {"reflection_image"},
+         .parameters =
+             {starting_with(choice("bounce_mode", {"off", "history", "direct"},
+                                   "further bounces: none, by the previous frames' reflections as the camera saw them, "
+                                   "or traced in the arriving ray's mirror direction"),
+                            "direct"),
+              integer("bounces", 1, 1, 16, "further bounces, or earlier frames; each adds one level of reflection")},
+         .need = bounces_need},
         {.id         = "composite",
          .summary    = "Own and reflected light together: C = C_own + (C_reflected - C_own) * beta",
          .cite       = {"J. Somerville Roberts, Screen Space Reflections"},

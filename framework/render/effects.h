@@ -14,6 +14,7 @@ namespace ssrlab {
 
 /// What is known of scene and technique before anything is drawn.
 struct FrameFacts {
+    bool                     scene      = false; // the G-buffer was drawn from one that can be drawn again
     bool                     alpha_mask = false;
     std::vector<std::string> inputs; // that the technique reads
 };

@@ -115,26 +115,30 @@ std::shared_ptr<RayBuffers> rays_for(Gpu& gpu, FrameBuffers& buffers, const Fram
 FrameFacts facts_of(const PreparedFrame& frame)
 {
     const GpuScene* scene = frame.buffers->gbuffer->scene.get();
-    return {.alpha_mask = scene != nullptr && scene->alpha_mask, .inputs = frame.technique.inputs};
+    return {.scene      = scene != nullptr,
+            .alpha_mask = scene != nullptr && scene->alpha_mask,
+            .inputs     = frame.technique.inputs};
 }
 
 } // namespace
 
+GpuImage make_colour_image(Gpu& gpu, const FrameBuffers& buffers)
+{
+    return make_image(gpu, {.format  = vk::Format::eR16G16B16A16Sfloat,
+                            .size_px = buffers.gbuffer->view.size_px,
+                            .usage   = vk::ImageUsageFlagBits::eStorage});
+}
+
 FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
 {
-    auto       buffers = std::make_shared<FrameBuffers>();
-    const auto colours = [&] {
-        return make_image(gpu, {.format  = vk::Format::eR16G16B16A16Sfloat,
-                                .size_px = gbuffer->view.size_px,
-                                .usage   = vk::ImageUsageFlagBits::eStorage});
-    };
+    auto buffers        = std::make_shared<FrameBuffers>();
     buffers->gbuffer    = gbuffer;
     buffers->view       = upload_view(gpu, gbuffer->view, Precision::float32);
     buffers->tiles      = make_tile_buffers(gpu, gbuffer->view.size_px);
     buffers->statistics = count_picture(gpu, *buffers);
     buffers->pyramid    = make_pyramid_images(gpu, gbuffer->view.size_px);
-    buffers->reflection = colours();
-    buffers->shaded     = colours();
+    buffers->reflection = make_colour_image(gpu, *buffers);
+    buffers->shaded     = make_colour_image(gpu, *buffers);
     return buffers;
 }
 
@@ -148,9 +152,8 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
     frame->values    = values;
     frame->settings  = settings;
     frame->rays      = rays_for(gpu, *buffers, settings);
-    frame->pyramid =
-        std::ranges::count(technique.inputs, "depth_pyramid") > 0 ? make_pyramid_passes(gpu, *frame) : PyramidPasses{};
-    frame->trace = make_trace_passes(gpu, *frame, *frame->rays, buffers->view, nullptr);
+    frame->pyramid   = make_pyramid_passes(gpu, *frame, buffers->gbuffer->depth, buffers->pyramid);
+    frame->trace     = make_trace_passes(gpu, *frame, *frame->rays, buffers->view, nullptr);
 
     FrameStatistics statistics = buffers->statistics;
     if (plan_needs_trace(settings.effects) && statistics.picture.reflecting_pixels > 0)

@@ -10,6 +10,7 @@
 #include "scene/scene.h"
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace ssrlab {
@@ -63,6 +64,11 @@ const std::vector<PlannedEffect>& plan_of(const PreparedFrame& frame);
 FrameTimes run_frame(Gpu& gpu, PreparedFrame& frame);
 /// The reflected picture that the last run_frame of this frame left in the shared buffers. Linear RGB.
 Image read_shaded(Gpu& gpu, PreparedFrame& frame);
+/// What the last run_frame of this frame found in the second layer: `hit` there, not_traced elsewhere. Empty when the plan
+/// has no hidden layer.
+std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame);
+/// The second layer itself, of a frame whose plan has one.
+GBufferImage read_second_layer(Gpu& gpu, const PreparedFrame& frame);
 /// Traces once with the counting pipeline (work counters on; never timed). Precision float64 gives the double twin.
 TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision = Precision::float32);
 

@@ -115,20 +115,20 @@ PyramidImages make_pyramid_images(Gpu& gpu, glm::ivec2 size_px)
     return images;
 }
 
-PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame)
+PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const GpuImage& depth,
+                                  const PyramidImages& images)
 {
-    const FrameBuffers& buffers   = *frame.buffers;
-    Constants           constants = settings_constants(frame, Precision::float32);
+    if (std::ranges::count(frame.technique.inputs, "depth_pyramid") == 0) return {};
+    Constants constants = settings_constants(frame, Precision::float32);
     constants.add(CONSTANT_PYRAMID_KIND, static_cast<int32_t>(parameter_or(frame, "pyramid", PYRAMID_OCCUPANCY)));
     PyramidPasses passes;
     passes.build =
         make_compute_pass(gpu, compile_shader({.file = "depth_pyramid.comp"}),
-                          {{"depth_image", buffers.gbuffer->depth}, {"depth_pyramid", buffers.pyramid.atlas}},
-                          constants, sizeof(PyramidPush));
-    const auto size   = buffers.gbuffer->view.size_px;
-    const int  width  = buffers.pyramid.atlas.size_px.x;
+                          {{"depth_image", depth}, {"depth_pyramid", images.atlas}}, constants, sizeof(PyramidPush));
+    const auto size   = frame.buffers->gbuffer->view.size_px;
+    const int  width  = images.atlas.size_px.x;
     const auto offset = [&](int level) { return glm::ivec2(level < 1 ? 0 : width - (width >> (level - 1)), 0); };
-    const int  top    = std::min(buffers.pyramid.levels, static_cast<int>(parameter_or(frame, "top_level", 31)));
+    const int  top    = std::min(images.levels, static_cast<int>(parameter_or(frame, "top_level", 31)));
     for (int level = 1; level <= top; ++level)
         passes.levels.push_back(
             {level, level_size(size, level - 1), level_size(size, level), offset(level - 1), offset(level)});
@@ -168,23 +168,28 @@ ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch
                              constants);
 }
 
+ComputePass make_trace_pass(Gpu& gpu, const PreparedFrame& frame, const Bindings& bindings, Precision precision)
+{
+    // A folder with a trace.comp of its own replaces the standard one (for techniques that work in tiles, say).
+    const std::filesystem::path own = frame.technique.folder / "trace.comp";
+    ShaderSource                trace{.file = std::filesystem::exists(own) ? own : std::filesystem::path("trace.comp"),
+                                      .defines       = precision_defines(precision),
+                                      .include_files = {{"technique/trace.glsl", frame.technique.folder / "trace.glsl"}},
+                                      .include_texts = {{"technique/parameters",
+                                                         parameter_declarations(frame.technique.parameters, CONSTANT_PARAMETERS)}}};
+    if (bindings.contains("Work")) trace.defines.emplace("COUNT_WORK", "1");
+    Constants constants = settings_constants(frame, precision);
+    add_parameters(constants, frame.technique.parameters, frame.values, CONSTANT_PARAMETERS);
+    return make_compute_pass(gpu, compile_shader(trace), bindings, constants);
+}
+
 TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view,
                               const Buffer* work)
 {
     const FrameBuffers& buffers  = *frame.buffers;
     Bindings            bindings = bindings_of(buffers, rays);
     bindings.insert({"View", view});
-    // A folder with a trace.comp of its own replaces the standard one (for techniques that work in tiles, say).
-    const std::filesystem::path own = frame.technique.folder / "trace.comp";
-    ShaderSource                trace{.file = std::filesystem::exists(own) ? own : std::filesystem::path("trace.comp"),
-                                      .defines       = precision_defines(rays.precision),
-                                      .include_files = {{"technique/trace.glsl", frame.technique.folder / "trace.glsl"}},
-                                      .include_texts = {{"technique/parameters",
-                                                         parameter_declarations(frame.technique.parameters, CONSTANT_PARAMETERS)}}};
-    if (work != nullptr) {
-        trace.defines.emplace("COUNT_WORK", "1");
-        bindings.insert({"Work", *work});
-    }
+    if (work != nullptr) bindings.insert({"Work", *work});
     Constants constants = settings_constants(frame, rays.precision);
     // What is counted is the technique's work, which does not depend on the plan.
     constants.add(CONSTANT_EVERY_SURFACE, work == nullptr && frame.settings.effects.at("plan") == 0 ? 1 : 0);
@@ -195,8 +200,7 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
     passes.rays        = make_compute_pass(
                gpu, compile_shader({.file = "rays.comp", .defines = precision_defines(rays.precision)}), bindings, constants);
     passes.ray_launch = make_launch_pass(gpu, rays.count, rays.launch, RAYS_PER_GROUP);
-    add_parameters(constants, frame.technique.parameters, frame.values, CONSTANT_PARAMETERS);
-    passes.trace = make_compute_pass(gpu, compile_shader(trace), bindings, constants);
+    passes.trace      = make_trace_pass(gpu, frame, bindings, rays.precision);
     return passes;
 }
 
@@ -260,7 +264,7 @@ TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, co
         const glm::ivec2 pixel = unpack(pixels[i]);
         const size_t     index =
             static_cast<size_t>(pixel.y) * static_cast<size_t>(size_px.x) + static_cast<size_t>(pixel.x);
-        result.status[index]       = static_cast<TraceStatus>(hits[i] >> (2 * PIXEL_BITS));
+        result.status[index]       = static_cast<TraceStatus>((hits[i] >> (2 * PIXEL_BITS)) & (TRACE_SECOND_LAYER - 1));
         result.hit_pixel[index]    = unpack(hits[i]);
         result.hit_t[index]        = static_cast<double>(ts[i]);
         result.hit_px_depth[index] = glm::dvec3(origins[i]) + result.hit_t[index] * glm::dvec3(deltas[i]);

@@ -1,8 +1,8 @@
-// The picture: C = C_own + (C_reflected - C_own) * beta, beta = metallic^exponent * weight of the reflection.
-// J. Somerville Roberts, "Screen Space Reflections".
+// The picture: C = C_own + (C_reflected - C_own) * beta.
 #include "shared.h"
 #include "reflecting.glsl"
 #include "effect/parameters"
+#include "effects/beta.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 4, rgba16f) uniform readonly image2D radiance_image;
@@ -16,11 +16,6 @@ void main()
     if (any(greaterThanEqual(pixel, imageSize(shaded_image)))) return;
     vec3 colour     = imageLoad(radiance_image, pixel).rgb + imageLoad(highlight_image, pixel).rgb;
     vec4 reflection = imageLoad(reflection_image, pixel);
-    if (reflection.a > 0.0)
-    {
-        float metallic = imageLoad(material_image, pixel).a;
-        float beta     = (metallic_exponent > 0.0 ? pow(metallic, metallic_exponent) : 1.0) * reflection.a;
-        colour += (reflection.rgb - colour) * beta;
-    }
+    if (reflection.a > 0.0) colour += (reflection.rgb - colour) * beta_of(pixel, reflection.a);
     imageStore(shaded_image, pixel, vec4(colour, 1));
 }
