@@ -25,8 +25,9 @@ Scene panel_before_wall(bool with_panel = true)
     scene.ambient         = glm::vec3(1); // radiance = base colour
     const uint32_t mirror = add_material(scene, glm::vec3(0.0F), 1), wall = add_material(scene, {0, 1, 0}, 0),
                    panel = add_material(scene, {1, 0, 0}, 0);
-    add_floor(scene, mirror);
-    add_wall(scene, wall, wall_m);
+    // Neither goes on behind the other: the second layer would show it.
+    add_quad(scene, mirror, {-200, -1, 10}, {400, 0, 0}, {0, 0, -10 - wall_m});
+    add_quad(scene, wall, {-200, -1, -wall_m}, {400, 0, 0}, {0, 200, 0});
     if (with_panel) add_quad(scene, panel, {-1, 0, -panel_m}, {2, 0, 0}, {0, 1, 0});
     set_bounds(scene);
     return scene;
@@ -35,10 +36,11 @@ Scene panel_before_wall(bool with_panel = true)
 Camera level_camera(Projection projection = Projection::perspective)
 {
     Camera camera;
-    camera.name       = "default";
-    camera.target_ws  = {0, 0, -1};
-    camera.fov_y_deg  = 90;
-    camera.projection = projection;
+    camera.name        = "default";
+    camera.position_ws = {0, 0, 0};
+    camera.target_ws   = {0, 0, -1};
+    camera.fov_y_deg   = 90;
+    camera.projection  = projection;
     return camera;
 }
 
@@ -115,7 +117,7 @@ class HiddenLayer : public testing::TestWithParam<const char*> {};
 // they would have found it in the first, had the panel not stood there.
 TEST_P(HiddenLayer, RaysThatMissedFindTheWallBehindThePanel)
 {
-    const glm::ivec2  size_px(96, 64);
+    const glm::ivec2  size_px(192, 128);
     const Picture     with      = make_picture(panel_before_wall(), level_camera(), size_px);
     const Picture     bare      = make_picture(panel_before_wall(false), level_camera(), size_px);
     const auto        frame     = prepare(with, GetParam(), thin);
