@@ -131,7 +131,7 @@ std::vector<Effect> make_table()
          .writes  = {"HitPixels", "HitTs"},
          .parameters =
              {boolean("hidden_layer", true, "whether rays that find nothing are traced in a second depth layer"),
-              real("hidden_layer_separation_m", 0.1, 0, 1e6,
+              real("hidden_layer_separation_m", 0.5, 0, 1e6,
                    "the second layer is the nearest surface more than so far behind the first"),
               real("hidden_layer_threshold", 0, 0, 1,
                    "the second layer is left out up to this share of rays without hit; above 0 pictures change")},

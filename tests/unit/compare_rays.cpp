@@ -210,6 +210,7 @@ TEST(Measures, TableIsCompleteAndUnique)
     SceneCase     test;
     MeasureValues all = compare_to_screen_truth(test.tested, test.screen);
     all.merge(compare_to_scene_truth(test.tested, test.truth, test.screen, test.gbuffer));
+    all.merge(compare_hidden_layer(test.tested, test.screen, test.truth));
     all.merge(split_error(test.tested, &test.tested, test.screen, &test.truth));
     all.merge(count_work(test.tested));
     test.truth.radiance.resize(16);
