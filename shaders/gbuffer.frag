@@ -1,5 +1,4 @@
 // What the camera sees: geometry, material, and the lit colour in two parts (same from every direction; depends on the view).
-// Lambert diffuse; GGX specular with Smith visibility and Schlick Fresnel (Walter et al. 2007; Schlick 1994).
 #include "scene_types.glsl"
 #include "material.glsl"
 
@@ -13,9 +12,8 @@ layout(set = 0, binding = 0, scalar) uniform Frame
     vec3  ambient;
     float layer_separation; // second layer: at least so far behind the first; in units of the near distance, or of the depth range
 };
-layout(set = 0, binding = 2, scalar) readonly buffer Lights { Light lights[]; };
-layout(set = 0, binding = 3, scalar) readonly buffer ShadowMatrices { mat4 world_to_shadow[]; };
-layout(set = 0, binding = 4) uniform sampler2DArrayShadow shadow_map;
+#define LIGHTS_BINDING 2
+#include "lighting.glsl"
 #ifdef SECOND_LAYER
 layout(set = 0, binding = 5, r32f) uniform readonly image2D first_depth;
 #endif
@@ -32,8 +30,6 @@ layout(location = 2) out vec4 radiance;             // the same from every direc
 layout(location = 3) out vec4 highlight;            // depends on the view
 layout(location = 4) out uint object;
 
-const float pi = 3.14159265358979;
-
 vec3 shading_normal(Material material, Coordinates at)
 {
     vec3 normal = normalize(normal_ws);
@@ -46,57 +42,6 @@ vec3 shading_normal(Material material, Coordinates at)
         normal = normalize(tangent * mapped.x + bitangent * mapped.y + normal * mapped.z);
     }
     return material.double_sided != 0 && !gl_FrontFacing ? -normal : normal;
-}
-
-// Layer of a point light's cube: +x -x +y -y +z -z.
-int cube_face(vec3 direction)
-{
-    vec3 a = abs(direction);
-    if (a.x >= a.y && a.x >= a.z) return direction.x > 0.0 ? 0 : 1;
-    if (a.y >= a.z) return direction.y > 0.0 ? 2 : 3;
-    return direction.z > 0.0 ? 4 : 5;
-}
-
-float shadow(Light light, vec3 normal)
-{
-    if (light.shadow_layer < 0) return 1.0;
-    int  layer = light.shadow_layer + (light.type == 1 ? cube_face(position_ws - light.position_ws) : 0);
-    vec4 clip  = world_to_shadow[layer] * vec4(position_ws, 1.0);
-    if (clip.w <= 0.0) return 1.0;
-    vec3 ndc = clip.xyz / clip.w;
-    if (any(greaterThan(abs(ndc.xy), vec2(1.0))) || ndc.z > 1.0) return 1.0;
-    return texture(shadow_map, vec4(ndc.xy * 0.5 + 0.5, layer, ndc.z));
-}
-
-// Irradiance on a plane facing the light, and the direction toward the light.
-vec3 arriving(Light light, out vec3 to_light)
-{
-    to_light = -light.direction_ws;
-    if (light.type == 0) return light.intensity;
-    vec3  offset     = light.position_ws - position_ws;
-    float distance_m = length(offset);
-    to_light         = offset / distance_m;
-    float window     = light.range_m > 0.0 ? clamp(1.0 - pow(distance_m / light.range_m, 4.0), 0.0, 1.0) : 1.0;
-    float cone       = 1.0;
-    if (light.type == 2)
-    {
-        float range = max(light.cos_inner - light.cos_outer, 1e-4);
-        cone        = clamp((dot(light.direction_ws, -to_light) - light.cos_outer) / range, 0.0, 1.0);
-        cone *= cone;
-    }
-    return light.intensity * (window * cone / (distance_m * distance_m));
-}
-
-vec3 specular(vec3 normal, vec3 to_eye, vec3 to_light, vec3 f0, float roughness)
-{
-    vec3  halfway = normalize(to_eye + to_light);
-    float alpha2  = pow(max(roughness, 0.05), 4.0);
-    float n_h = max(dot(normal, halfway), 0.0), n_v = max(dot(normal, to_eye), 1e-4), n_l = max(dot(normal, to_light), 0.0);
-    float d   = n_h * n_h * (alpha2 - 1.0) + 1.0;
-    float ggx = alpha2 / (pi * d * d);
-    float visibility = 0.5 / max(n_l * sqrt(n_v * n_v * (1.0 - alpha2) + alpha2) + n_v * sqrt(n_l * n_l * (1.0 - alpha2) + alpha2), 1e-6);
-    vec3  fresnel = f0 + (1.0 - f0) * pow(1.0 - max(dot(to_eye, halfway), 0.0), 5.0);
-    return ggx * visibility * fresnel;
 }
 
 #ifdef SECOND_LAYER
@@ -124,19 +69,8 @@ void main()
     float roughness = clamp(material.roughness * metallic_roughness.g, 0.0, 1.0);
     vec3  normal    = shading_normal(material, at);
     vec3  to_eye    = orthographic != 0 ? -view_axis_ws : normalize(eye_ws - position_ws);
-    vec3  f0        = mix(vec3(0.04), base.rgb, metallic);
-
-    vec3 diffuse_light = vec3(0), highlights = vec3(0);
-    for (int i = 0; i < light_count; ++i)
-    {
-        vec3  to_light;
-        vec3  irradiance = arriving(lights[i], to_light);
-        float cosine     = dot(normal, to_light);
-        if (cosine <= 0.0) continue;
-        irradiance *= cosine * shadow(lights[i], normal);
-        diffuse_light += irradiance;
-        highlights += irradiance * specular(normal, to_eye, to_light, f0, roughness);
-    }
+    vec3  diffuse_light, highlights;
+    light_surface(Surface(position_ws, normal, base.rgb, metallic, roughness), light_count, to_eye, diffuse_light, highlights);
     vec3 emissive = material.emissive * sample_texture(emissive_texture, material, 3, at).rgb;
 
     normal_and_roughness = vec4(mat3(world_to_view) * normal, roughness);

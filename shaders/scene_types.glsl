@@ -12,18 +12,6 @@ struct Material
     mat3  uv_transform[4];
 };
 
-struct Light
-{
-    vec3  position_ws;
-    int   type;          // 0 directional, 1 point, 2 spot
-    vec3  direction_ws;  // from the light into the scene
-    float range_m;       // 0 = unlimited
-    vec3  intensity;     // directional: irradiance; point, spot: radiant intensity
-    int   shadow_layer;  // first layer of the shadow map, -1 = none
-    float cos_inner;
-    float cos_outer;
-};
-
 layout(push_constant, scalar) uniform Draw
 {
     mat4 world_to_clip;

@@ -97,13 +97,13 @@ real3 vs_to_px(real3 position)
     return real3(centre_px + to_px * position.xy * (real(1) / distance_m), near_m / distance_m);
 }
 
-// The ray from the surface that a pixel shows at its centre; position: that point in view space.
-Segment make_segment(real2 centre, real depth, real3 position, real3 direction)
+// The ray from the surface seen at start_px; position: that point in view space.
+Segment make_segment(real2 start_px, real depth, real3 position, real3 direction)
 {
     int  side;
     real length_m = clip_length(position, direction, side);
     Segment segment;
-    segment.origin     = real3(centre, depth);
+    segment.origin     = real3(start_px, depth);
     segment.delta      = real3(0);
     segment.length_m   = length_m;
     segment.end_status = side == SIDE_MAX_DISTANCE ? TRACE_PAST_MAX_DISTANCE : TRACE_LEFT_SCREEN;

@@ -31,9 +31,17 @@
 #define CONSTANT_ORTHOGRAPHIC 6
 #define CONSTANT_EVERY_SURFACE 7
 #define CONSTANT_ITEMS_PER_GROUP 8
+#define CONSTANT_TRACE_BLOCK_PX 9
 #define CONSTANT_PYRAMID_KIND 10
+#define CONSTANT_RAYS_PER_PIXEL 11
 #define CONSTANT_PARAMETERS 32
 #define CONSTANT_EFFECTS 64 // the effects' parameters, in the order of render/effects.cpp
+
+// Sub-pixel offsets are centres of a grid of this many cells per side.
+#define OFFSET_CELLS 256
+
+// A block without a pixel that reflects.
+#define NO_PIXEL 0xFFFFFFFFu
 
 // Roughness histogram of the reflecting pixels: bin 0 holds roughness 0, the others share (0, 1].
 #define ROUGHNESS_BINS 16

@@ -3,6 +3,9 @@
 //
 // Loops end in their condition, at the top, never by break or return: lavapipe (Mesa 22.3) recomputes values that a loop made and that
 // are used after it, and lanes that left in the middle of the body get another iteration's value.
+#ifdef EXACT_ARITHMETIC
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#endif
 #include "view.glsl"
 #include "slab.glsl"
 #include "pyramid_cell.glsl"
@@ -71,51 +74,24 @@ real metres_to_t(Ray ray, real distance_m)
     return isinf(distance_m) || fraction > real(1) ? real(2) : fraction_to_t(ray, fraction);
 }
 
-// ---- Borders between pixels, in closed form: the same number at every level of the pyramid, monotone along the ray.
-struct Grid
+// ---- Strides
+// Screen t of a stride, in pixels along the longer axis; a ray that is shorter makes one stride.
+real stride_to_t(Ray ray, real stride_px)
 {
-    real2 inverse_delta; // finite: a component that is zero crosses nothing
-    ivec2 forward;       // 1 where the ray runs toward larger coordinates, else 0
-    real  t_end;         // 1, or where rounding lets the ray cross the image border a little before
-};
-
-// t at which the ray crosses the borders x = border.x and y = border.y.
-real2 border_t(Ray ray, Grid grid, ivec2 border)
-{
-    precise real2 t = (real2(border) - ray.origin.xy) * grid.inverse_delta;
-    return t;
+    return stride_px / max(stride_px, max(abs(ray.delta.x), abs(ray.delta.y)));
 }
 
-Grid make_grid(Ray ray)
+// The same number for the same pixel, in [0, 1), unlike its neighbours' (Jarzynski and Olano 2020, Hash Functions for GPU Rendering: PCG).
+real random_of(ivec2 pixel)
 {
-    const real tiny = real(1e-20);
-    bvec2      flat_axis = lessThan(abs(ray.delta.xy), real2(tiny));
-    Grid       grid;
-    grid.inverse_delta = real2(flat_axis.x ? real(1) / tiny : real(1) / ray.delta.x, flat_axis.y ? real(1) / tiny : real(1) / ray.delta.y);
-    grid.forward       = ivec2(flat_axis.x || ray.delta.x > real(0), flat_axis.y || ray.delta.y > real(0));
-    real2 t_image      = border_t(ray, grid, grid.forward * size_px);
-    grid.t_end         = min(real(1), min(t_image.x, t_image.y));
-    return grid;
-}
-
-// Where the ray leaves the cell whose borders it crosses at t_border. A select: cheaper than min() on some devices, and no number is NaN.
-real exit_t(Grid grid, real2 t_border)
-{
-    real t = t_border.x < t_border.y ? t_border.x : t_border.y;
-    return t < grid.t_end ? t : grid.t_end;
-}
-
-// The neighbour cell behind the border, or the corner, that is crossed at t.
-ivec2 cross_borders(Grid grid, ivec2 cell, real2 t_border, real t)
-{
-    return cell + ivec2(lessThanEqual(t_border, real2(t))) * (2 * grid.forward - 1);
-}
-
-// The quarter of a cell of `level` >= 1 that holds the ray at t.
-ivec2 child_cell(Ray ray, Grid grid, ivec2 cell, int level, real t)
-{
-    real2 t_middle = border_t(ray, grid, (2 * cell + 1) << (level - 1));
-    return 2 * cell + (ivec2(lessThanEqual(t_middle, real2(t))) ^ (1 - grid.forward));
+    uint hash = 0;
+    for (int i = 0; i < 2; ++i)
+    {
+        uint state = (hash + uint(pixel[i])) * 747796405u + 2891336453u;
+        uint word  = ((state >> ((state >> 28) + 4)) ^ state) * 277803737u;
+        hash       = (word >> 22) ^ word;
+    }
+    return real(hash >> 8) / real(1 << 24);
 }
 
 // ---- Fetches
@@ -123,6 +99,12 @@ real fetch_depth(ivec2 pixel)
 {
     COUNT(depth_fetches);
     return real(imageLoad(depth_image, pixel).x);
+}
+
+// Normal of a pixel in view space; the work counters count depths alone.
+real3 fetch_normal(ivec2 pixel)
+{
+    return real3(imageLoad(normal_image, pixel).xyz);
 }
 
 // Levels above 0 that the pyramid has: 2^levels covers the larger side of the image.
@@ -145,48 +127,68 @@ bool interval_touches(real depth, real z_a, real z_b)
     return depth >= min(z_a, z_b) && reaches_slab_back(depth, max(z_a, z_b));
 }
 
-// Direction of the ray in view space, not normalised.
+// Direction in view space from the ray's origin to a position of some depth, not normalised.
+real3 direction_to_vs(Ray ray, real2 position_px, real depth)
+{
+    real2 from = px_to_slope(ray.origin.xy), to = px_to_slope(position_px);
+    real  rise = depth - ray.origin.z;
+    if (orthographic != 0) return real3(to - from, rise * (far_m - near_m));
+    // P = slope / depth * near: P1 - P0 times both depths.
+    return real3(to * ray.origin.z - from * depth, rise);
+}
+
 real3 direction_vs(Ray ray)
 {
-    real2 from = px_to_slope(ray.origin.xy), to = px_to_slope(ray.origin.xy + ray.delta.xy);
-    if (orthographic != 0) return real3(to - from, ray.delta.z * (far_m - near_m));
-    // P = slope / depth * near: P1 - P0 times both depths.
-    real from_depth = ray.origin.z, to_depth = ray.origin.z + ray.delta.z;
-    return real3(to * from_depth - from * to_depth, to_depth - from_depth);
+    return direction_to_vs(ray, ray.origin.xy + ray.delta.xy, ray.origin.z + ray.delta.z);
 }
 
 bool faces(Ray ray, ivec2 pixel)
 {
-    return facing_rule == 0 || dot(real3(imageLoad(normal_image, pixel).xyz), direction_vs(ray)) < real(0);
+    return facing_rule == 0 || dot(fetch_normal(pixel), direction_vs(ray)) < real(0);
+}
+
+// A surface that the ray touches is hit unless it faces away and that matters.
+bool accepts(Ray ray, ivec2 pixel, bool touched, bool is_pixel)
+{
+    if (facing_rule == 0) return touched;
+    bool accepted   = !is_pixel || faces(ray, pixel);
+    met_facing_away = met_facing_away || (touched && !accepted);
+    return touched && accepted;
 }
 
 // Does the ray, whose depth covers the interval between z_a and z_b, hit the surface seen at this pixel?
 bool touches_surface(Ray ray, ivec2 pixel, real z_a, real z_b)
 {
-    bool touched = interval_touches(fetch_depth(pixel), z_a, z_b);
-    if (facing_rule == 0) return touched;
-    bool accepted   = faces(ray, pixel);
-    met_facing_away = met_facing_away || (touched && !accepted);
-    return touched && accepted;
+    return accepts(ray, pixel, interval_touches(fetch_depth(pixel), z_a, z_b), true);
 }
 
-// May the ray touch a surface inside this cell? At level 0 the answer is touches_surface()'s; above, no means no for all its pixels.
-// Both images are read whatever the level: lanes of one group stand on different levels, and a branch would run both sides anyway.
-bool touches_cell(Ray ray, ivec2 cell, int level, real z_a, real z_b)
+// What a cell of any level holds. Both images are read whatever the level: lanes of one group stand on different levels, and a branch would run
+// both sides anyway.
+struct CellContent
+{
+    real  depth; // level 0
+    uvec2 node;  // level >= 1
+};
+
+CellContent fetch_cell(ivec2 cell, int level)
 {
     bool leaf = level == 0;
 #ifdef COUNT_WORK
     depth_fetches += uint(leaf);
     pyramid_fetches += uint(!leaf);
 #endif
-    real  depth = real(imageLoad(depth_image, cell).x);
-    uvec2 node  = load_pyramid(cell, leaf ? 1 : level);
-    real  z_near = z_a > z_b ? z_a : z_b, z_far = z_a > z_b ? z_b : z_a;
-    bool  touched = leaf ? depth >= z_far && reaches_slab_back(depth, z_near) : cell_may_touch(node, float(z_far), float(z_near));
-    if (facing_rule == 0) return touched;
-    bool accepted   = !leaf || faces(ray, cell);
-    met_facing_away = met_facing_away || (touched && !accepted);
-    return touched && accepted;
+    return CellContent(real(imageLoad(depth_image, cell).x), load_pyramid(cell, leaf ? 1 : level));
+}
+
+// May the ray touch a surface inside this cell? At level 0 the answer is touches_surface()'s; above, no means no for all its pixels.
+bool touches_cell(Ray ray, ivec2 cell, int level, real z_a, real z_b)
+{
+    bool        leaf    = level == 0;
+    CellContent content = fetch_cell(cell, level);
+    real        z_near = z_a > z_b ? z_a : z_b, z_far = z_a > z_b ? z_b : z_a;
+    bool        touched = leaf ? content.depth >= z_far && reaches_slab_back(content.depth, z_near)
+                               : cell_may_touch(content.node, float(z_far), float(z_near));
+    return accepts(ray, cell, touched, leaf);
 }
 
 // ---- Results
@@ -216,3 +218,40 @@ TraceResult out_of_steps(int steps)
 {
     return TraceResult(TRACE_OUT_OF_STEPS, ivec2(0), real(0), steps);
 }
+
+// ---- Walking by borders. `crossing` is the t of one: a number, or a count of exact steps.
+#ifdef EXACT_ARITHMETIC
+#include "grid_exact.glsl"
+#else
+#include "grid_float.glsl"
+#endif
+
+// Where the ray leaves the cell whose borders it crosses at t_border. A select: cheaper than min() on some devices, and no number is NaN.
+crossing exit_t(Grid grid, crossing2 t_border)
+{
+    crossing t = t_border.x < t_border.y ? t_border.x : t_border.y;
+    return t < grid.t_end ? t : grid.t_end;
+}
+
+// The neighbour cell behind the border, or the corner, that is crossed at t.
+ivec2 cross_borders(Grid grid, ivec2 cell, crossing2 t_border, crossing t)
+{
+    return cell + ivec2(lessThanEqual(t_border, crossing2(t))) * (2 * grid.forward - 1);
+}
+
+// The quarter of a cell of `level` >= 1 that holds the ray at t.
+ivec2 child_cell(Ray ray, Grid grid, ivec2 cell, int level, crossing t)
+{
+    crossing2 t_middle = border_t(ray, grid, (2 * cell + 1) << (level - 1));
+    return 2 * cell + (ivec2(lessThanEqual(t_middle, crossing2(t))) ^ (1 - grid.forward));
+}
+
+#ifndef EXACT_ARITHMETIC
+// Where the ray enters and leaves a pixel that it crosses.
+real2 span_in_pixel(Ray ray, Grid grid, ivec2 pixel)
+{
+    real2 t_entry = border_t(ray, grid, pixel + 1 - grid.forward);
+    real  t_in    = max(real(0), max(t_entry.x, t_entry.y));
+    return real2(t_in, max(t_in, exit_t(grid, border_t(ray, grid, pixel + grid.forward))));
+}
+#endif

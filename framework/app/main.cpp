@@ -83,7 +83,8 @@ int main(int argc, char** argv)
     sweep->add_option("SPEC", run.specification, "Experiment (.toml; see experiments/README.md)")->required();
     sweep->add_option("-o,--output", run.folder, "Results folder; default: results/NAME");
     sweep->add_flag("--resume", run.resume,
-                    "Complete the sweep that the folder holds; refused when specification, shaders or device changed");
+                    "Do the runs that the folder lacks or that failed; refused when specification, shaders, scenes or "
+                    "device changed");
     sweep->add_option("--only", run.only, "Just the run of this id (first column of results.csv)");
     sweep->add_flag("--dry-run", run.dry_run, "List the runs and the estimated time; write nothing");
     sweep->add_flag("--yes", run.yes, "Allow more than 100,000 runs");

@@ -33,14 +33,14 @@ std::string median_text(const Timed& timed, const std::string& effect)
 void print_table(const Timed& planned, const Timed& everything)
 {
     std::puts(
-        fmt::format("{:<18} {:<8} {:>11} {:>14}  {}", "effect", "", "planned ms", "everything ms", "why").c_str());
+        fmt::format("{:<20} {:<8} {:>11} {:>14}  {}", "effect", "", "planned ms", "everything ms", "why").c_str());
     for (const PlannedEffect& row : plan_of(*planned.frame)) {
         const std::string& id = row.effect->id;
-        std::puts(fmt::format("{:<18} {:<8} {:>11} {:>14}  {}", id, row.runs ? "run" : "skipped",
+        std::puts(fmt::format("{:<20} {:<8} {:>11} {:>14}  {}", id, row.runs ? "run" : "skipped",
                               median_text(planned, id), median_text(everything, id), row.reason)
                       .c_str());
     }
-    std::puts(fmt::format("{:<18} {:<8} {:>11.2f} {:>14.2f}", "frame", "", quantile(planned.total_ms, 0.5),
+    std::puts(fmt::format("{:<20} {:<8} {:>11.2f} {:>14.2f}", "frame", "", quantile(planned.total_ms, 0.5),
                           quantile(everything.total_ms, 0.5))
                   .c_str());
 }
@@ -69,10 +69,12 @@ int print_plan(const CommonOptions& common, const PlanOptions& options)
         add_repeat(stage.gpu, planned);
         add_repeat(stage.gpu, everything);
     }
-    std::puts(fmt::format("{}, view {}, {}x{}, {} on {}: median of {} frames without the G-buffer\n",
+    std::puts(fmt::format("{}, view {}, {}x{}, {} on {}: median of {} frames without the G-buffer",
                           options.picture.scene, options.picture.view, stage.view.size_px.x, stage.view.size_px.y,
                           technique.id, stage.gpu.info.name, options.repeats)
                   .c_str());
+    for (const std::string& fact : facts_of_plan(*planned.frame)) std::puts(fact.c_str());
+    std::puts("");
     print_table(planned, everything);
     std::puts(same ? "\nThe picture with everything on is the same to the last bit."
                    : "\nThe picture with everything on DIFFERS from the planned one.");

@@ -56,6 +56,7 @@ const std::vector<CaseFamily>& hard_cases();
 CaseFamily direction_cases();
 CaseFamily border_cases();
 CaseFamily depth_cases();
+CaseFamily format_cases();
 CaseFamily size_cases();
 CaseFamily camera_cases();
 CaseFamily scale_cases();

@@ -95,7 +95,8 @@ double depth_inside_px(const RayInput& ray, const Visit& visit)
 Claim claim_of(const Technique& technique)
 {
     return {std::ranges::count(technique.limits, "point_sampled") > 0,
-            std::ranges::count(technique.limits, "stops_behind_objects") > 0};
+            std::ranges::count(technique.limits, "stops_behind_objects") > 0,
+            std::ranges::count(technique.limits, "tests_whole_steps") > 0};
 }
 
 Judge::Judge(const Setup& setup) : setup_(setup) {}
@@ -169,12 +170,14 @@ double Judge::depth_rounding(const RayInput& ray, const Visit& v) const
     return 0x1p-21 * (std::abs(ray.origin_px_depth.z) + std::abs(ray.delta_px_depth.z) + v.front);
 }
 
-/// A hit must lie in a pixel that the ray crosses, where it touches the slab; slivers count as crossing.
-std::string Judge::unsound_hit(const RayInput& ray, const RayOutcome& outcome) const
+/// A hit must lie in a pixel that the ray crosses, where it touches the slab (or, if so claimed, would touch it within a step); slivers count
+/// as crossing.
+std::string Judge::unsound_hit(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const
 {
     const Range t = part_in_pixel(ray, outcome.hit_pixel, sliver_px);
     if (t.empty()) return fmt::format("{}, a pixel that the ray does not cross", name(outcome));
-    const Visit v = visit(ray, outcome.hit_pixel, t.from, t.to);
+    const double step = claim.may_hit_within_a_step && outcome.steps > 0 ? outcome.t / outcome.steps : 0;
+    const Visit  v    = visit(ray, outcome.hit_pixel, std::max(t.from - step, 0.0), std::min(t.to + step, 1.0));
     if (!(v.contact >= -depth_rounding(ray, v)))
         return fmt::format("{}, where the ray's depth {:.9g} … {:.9g} does not meet the slab {:.9g} … {:.9g}",
                            name(outcome), v.z_in, v.z_out, v.front, v.back);
@@ -190,7 +193,7 @@ Judgement Judge::judge(const RayInput& ray, const RayOutcome& outcome, const Cla
     Judgement        result;
     if (both_hit) result.deviation_px = std::abs(outcome.t - exact.t) * screen_length_px(ray);
     if (hit) {
-        result.reason = unsound_hit(ray, outcome);
+        result.reason = unsound_hit(ray, outcome, claim);
         if (!result.reason.empty()) {
             result.verdict = Verdict::wrong;
             return result;
@@ -199,7 +202,7 @@ Judgement Judge::judge(const RayInput& ray, const RayOutcome& outcome, const Cla
     if (outcome.status == exact.status && (!both_hit || outcome.hit_pixel == exact.hit_pixel)) return result;
 
     // Something was skipped. Is there a pixel before the reported one that the ray undoubtedly hits?
-    result.verdict  = Verdict::sliver;
+    result.verdict  = hit && !unsound_hit(ray, outcome, {}).empty() ? Verdict::allowed : Verdict::sliver;
     bool was_behind = false;
     for (const Visit& v : walk(ray)) {
         if (hit && (v.pixel == outcome.hit_pixel || v.t_in >= outcome.t - slack_t(ray))) break;

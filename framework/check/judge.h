@@ -14,7 +14,7 @@ inline constexpr double sliver_px = 0.05;
 enum class Verdict {
     right,
     sliver, // another pixel than the exact one, but the ray is less than sliver_px inside the pixels in question, or touches their slab's face
-    allowed, // missed what the technique's declared limits let it miss
+    allowed, // missed, or hit within a step, what the technique's declared limits let it
     wrong,
 };
 
@@ -28,6 +28,7 @@ struct Judgement {
 struct Claim {
     bool may_miss_between_samples = false; // limit "point_sampled"
     bool may_miss_behind_objects  = false; // limit "stops_behind_objects"
+    bool may_hit_within_a_step    = false; // limit "tests_whole_steps"
 };
 Claim claim_of(const Technique& technique);
 
@@ -61,7 +62,7 @@ public:
 private:
     Visit       visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_out) const;
     double      depth_rounding(const RayInput& ray, const Visit& visit) const;
-    std::string unsound_hit(const RayInput& ray, const RayOutcome& outcome) const;
+    std::string unsound_hit(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
 
     const Setup& setup_;
 };

@@ -31,7 +31,7 @@ std::string table_findings(const CaseRow& row)
 
 std::string markdown_table(const std::vector<CaseRow>& rows)
 {
-    std::string text = "| family | case | technique | rays | wrong | slivers | missed within limits | worst deviation "
+    std::string text = "| family | case | technique | rays | wrong | slivers | within limits | worst deviation "
                        "px | non-finite | out of steps | most steps | float ≠ double | claims |\n"
                        "|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|\n";
     for (const CaseRow& row : rows)

@@ -10,7 +10,7 @@ namespace ssrlab {
 struct CaseRow {
     std::string              family, case_name, technique;
     size_t                   rays  = 0;
-    size_t                   wrong = 0, slivers = 0, allowed = 0; // of rays; allowed: missed within the declared limits
+    size_t                   wrong = 0, slivers = 0, allowed = 0; // of rays; allowed: by the declared limits
     double                   worst_deviation_px = 0;
     size_t                   non_finite = 0, out_of_steps = 0;
     uint32_t                 most_steps        = 0;

@@ -1,5 +1,6 @@
 #include "check/stability.h"
 
+#include "check/depth_format.h"
 #include "check/hard_case.h"
 #include "check/run_check.h"
 #include "core/error.h"
@@ -13,6 +14,7 @@ namespace {
 
 struct Answer {
     bool       hit = false;
+    glm::ivec2 pixel{0};
     glm::dvec2 position_px{0};
 };
 using Answers = std::map<std::pair<int, int>, Answer>; // by pixel (y, x)
@@ -27,7 +29,7 @@ Answers answers_of(Gpu& gpu, const Technique& technique, const Setup& setup)
     Answers    answers;
     for (size_t i = 0; i < rays.size(); ++i)
         answers[{rays[i].pixel.y, rays[i].pixel.x}] = {
-            found[i].status == TraceStatus::hit,
+            found[i].status == TraceStatus::hit, found[i].hit_pixel,
             glm::dvec2(rays[i].origin_px_depth + found[i].t * rays[i].delta_px_depth)};
     return answers;
 }
@@ -51,42 +53,7 @@ double standard_deviation(const std::vector<glm::dvec2>& points)
 
 double per_million(size_t n, size_t of) { return of == 0 ? 0 : 1e6 * static_cast<double>(n) / static_cast<double>(of); }
 
-/// The farthest surface of a picture, with room behind it.
-double far_plane_m(const GBufferImage& gbuffer)
-{
-    float farthest = 1;
-    for (const float depth : gbuffer.depth)
-        if (depth > 0 && depth <= 1) farthest = std::min(farthest, depth);
-    return 1.5 * gbuffer.view.near_m / static_cast<double>(farthest);
-}
-
 } // namespace
-
-const std::vector<DepthFormat>& depth_formats()
-{
-    static const std::vector<DepthFormat> formats = {{"D32 float, reversed, infinite", 32, true, true},
-                                                     {"D32 float, reversed", 32, true, false},
-                                                     {"D32 float, standard", 32, false, false},
-                                                     {"D24, reversed", 24, true, false},
-                                                     {"D24, standard", 24, false, false},
-                                                     {"D16, reversed", 16, true, false},
-                                                     {"D16, standard", 16, false, false}};
-    return formats;
-}
-
-float stored_and_imported(const DepthFormat& format, float depth, double near_m, double far_m)
-{
-    if (!(depth > 0 && depth <= 1)) return depth;
-    // depth = n/Z. Finite reversed: (n/Z - n/f) / (1 - n/f); standard: 1 - that.
-    const double n_f    = format.infinite ? 0 : near_m / far_m;
-    const double scaled = (static_cast<double>(depth) - n_f) / (1 - n_f);
-    const double value  = format.reversed ? scaled : 1 - scaled;
-    const double codes  = std::ldexp(1.0, format.bits) - 1;
-    const double stored =
-        format.bits == 32 ? static_cast<double>(static_cast<float>(value)) : std::round(value * codes) / codes;
-    const double back = format.reversed ? stored : 1 - stored;
-    return static_cast<float>(back * (1 - n_f) + n_f);
-}
 
 JitterRow measure_jitter(Gpu& gpu, const Technique& technique)
 {
@@ -120,64 +87,110 @@ JitterRow measure_jitter(Gpu& gpu, const Technique& technique)
     return row;
 }
 
+namespace {
+
+struct Tally {
+    size_t              rays = 0, changed = 0;
+    std::vector<double> moved_px, errors;
+};
+
+void compare(const Answers& exact, const Answers& imported, Tally& tally)
+{
+    for (const auto& [pixel, answer] : imported) {
+        const auto before = exact.find(pixel);
+        if (before == exact.end()) continue;
+        ++tally.rays;
+        const bool both = before->second.hit && answer.hit;
+        if (both && before->second.pixel == answer.pixel) continue;
+        tally.changed += both || before->second.hit != answer.hit;
+        if (both) tally.moved_px.push_back(glm::distance(before->second.position_px, answer.position_px));
+    }
+}
+
+/// Depth is near_m / distance.
+void add_errors(const GBufferImage& exact, const GBufferImage& imported, std::vector<double>& errors)
+{
+    for (size_t i = 0; i < exact.depth.size(); ++i)
+        if (exact.depth[i] > 0 && exact.depth[i] <= 1 && imported.depth[i] > 0)
+            errors.push_back(
+                std::abs(static_cast<double>(exact.depth[i]) / static_cast<double>(imported.depth[i]) - 1));
+}
+
+std::string percent(double part)
+{
+    return part < 0.01 ? fmt::format("{:.2g}", 100 * part) : fmt::format("{:.0f}", 100 * part);
+}
+
+bool is_deep(const GBufferImage& gbuffer)
+{
+    return std::ranges::any_of(gbuffer.depth,
+                               [](float d) { return d > 0 && static_cast<double>(d) * deep_near_planes < 1; });
+}
+
+} // namespace
+
 std::vector<FormatRow> measure_formats(Gpu& gpu, const Technique& technique)
 {
-    struct Tally {
-        size_t              rays = 0, changed = 0, moved = 0;
-        std::vector<double> distances_px;
-    };
-    std::vector<Tally> tallies(depth_formats().size());
+    std::map<bool, std::vector<Tally>> tallies;
     for (const CaseFamily& family : hard_cases())
         for (const HardCase& hard_case : family.cases)
             for (const Setup& setup : hard_case.setups()) {
                 if (!setup.rays.empty() || setup.gbuffer.view.projection != Projection::perspective) continue;
+                std::vector<Tally>& of_group = tallies[is_deep(setup.gbuffer)];
+                of_group.resize(depth_formats().size());
                 const Answers exact = answers_of(gpu, technique, setup);
-                const double  far_m = far_plane_m(setup.gbuffer);
-                for (size_t f = 0; f < tallies.size(); ++f) {
-                    Setup imported = setup;
-                    for (float& depth : imported.gbuffer.depth)
-                        depth = stored_and_imported(depth_formats()[f], depth, setup.gbuffer.view.near_m, far_m);
-                    for (const auto& [pixel, answer] : answers_of(gpu, technique, imported)) {
-                        const auto before = exact.find(pixel);
-                        if (before == exact.end()) continue;
-                        ++tallies[f].rays;
-                        tallies[f].changed += before->second.hit != answer.hit;
-                        if (!before->second.hit || !answer.hit) continue;
-                        const double moved = glm::distance(before->second.position_px, answer.position_px);
-                        if (glm::ivec2(before->second.position_px) == glm::ivec2(answer.position_px)) continue;
-                        ++tallies[f].moved;
-                        tallies[f].distances_px.push_back(moved);
-                    }
+                for (size_t f = 0; f < of_group.size(); ++f) {
+                    const Setup imported = stored_and_imported(setup, depth_formats()[f]);
+                    compare(exact, answers_of(gpu, technique, imported), of_group[f]);
+                    add_errors(setup.gbuffer, imported.gbuffer, of_group[f].errors);
                 }
             }
     std::vector<FormatRow> rows;
-    for (size_t f = 0; f < tallies.size(); ++f)
-        rows.push_back({depth_formats()[f].name, technique.id, tallies[f].rays,
-                        per_million(tallies[f].changed, tallies[f].rays),
-                        per_million(tallies[f].moved, tallies[f].rays), quantile(tallies[f].distances_px, 0.5),
-                        quantile(tallies[f].distances_px, 0.99)});
+    for (const auto& [deep, of_group] : tallies)
+        for (size_t f = 0; f < of_group.size(); ++f)
+            rows.push_back({depth_formats()[f].name, technique.id, deep, quantile(of_group[f].errors, 0.5),
+                            quantile(of_group[f].errors, 0.99), of_group[f].rays,
+                            per_million(of_group[f].changed, of_group[f].rays), quantile(of_group[f].moved_px, 0.5)});
     return rows;
 }
 
 std::string stability_markdown(const std::vector<JitterRow>& jitter, const std::vector<FormatRow>& formats)
 {
     std::string text = "\n## Jitter\n16 sub-pixel phases of a still camera. Flips: answers that differ from what the "
-                       "pixel mostly says. Spread: standard deviation of a "
-                       "pixel's hit position.\n\n| technique | pixels | flips % | spread median px | spread p99 px "
+                       "pixel mostly says. Spread: standard deviation of a pixel's hit position; that of the pixel's "
+                       "own centre is 0.4 px.\n\n| technique | pixels | flips % | spread median px | spread p99 px "
                        "|\n|---|--:|--:|--:|--:|\n";
     for (const JitterRow& row : jitter)
         text += fmt::format("| {} | {} | {:.3f} | {:.3f} | {:.3f} |\n", row.technique, row.pixels, row.flips_percent,
                             row.median_spread_px, row.p99_spread_px);
-    text += "\n## Depth formats\nMirror rays of all perspective cases on depth that was stored in the format and "
-            "imported, against the unrounded depth. "
-            "Far plane: 1.5 times the farthest surface.\n\n| format | technique | rays | hit/miss changed per million "
-            "| hit pixel moved per million | moved median px | moved p99 px |\n"
-            "|---|---|--:|--:|--:|--:|--:|\n";
-    for (const FormatRow& row : formats)
-        text +=
-            fmt::format("| {} | {} | {} | {:.0f} | {:.0f} | {:.3f} | {:.3f} |\n", row.format, row.technique, row.rays,
-                        row.changed_per_million, row.moved_per_million, row.median_moved_px, row.p99_moved_px);
-    return text;
+
+    text += fmt::format(
+        "\n## Depth formats\nMirror rays of the perspective cases on depth that was stored in the format and "
+        "imported, against the same technique on unrounded depth. Far plane: 1.5 times the farthest "
+        "surface. Deep: that lies beyond {:.0f} near planes. Per technique: rays per million with "
+        "another answer, and by how much hits moved on screen (median of those in another pixel; 0 on a border between "
+        "two).\n\n| depth | format | rays "
+        "| distance error, median % | p99 % |",
+        deep_near_planes);
+    std::map<std::pair<bool, std::string>, const FormatRow*> cells; // by deep and format + technique
+    std::vector<std::string>                                 techniques;
+    for (const FormatRow& row : formats) {
+        cells[{row.deep, row.format + row.technique}] = &row;
+        if (std::ranges::count(techniques, row.technique) == 0) techniques.push_back(row.technique);
+    }
+    for (const std::string& technique : techniques) text += fmt::format(" {} |", technique);
+    text += "\n|---|---|--:|--:|--:|";
+    for (size_t i = 0; i < techniques.size(); ++i) text += "--:|";
+    for (const FormatRow& row : formats) {
+        if (row.technique != techniques[0]) continue;
+        text += fmt::format("\n| {} | {} | {} | {} | {} |", row.deep ? "deep" : "ordinary", row.format, row.rays,
+                            percent(row.median_error), percent(row.p99_error));
+        for (const std::string& technique : techniques) {
+            const FormatRow& cell = *cells.at({row.deep, row.format + technique});
+            text += fmt::format(" {:.0f}, {:.2f} px |", cell.changed_per_million, cell.median_moved_px);
+        }
+    }
+    return text + "\n";
 }
 
 } // namespace ssrlab

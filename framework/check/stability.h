@@ -20,27 +20,21 @@ struct JitterRow {
 };
 JitterRow measure_jitter(Gpu& gpu, const Technique& technique);
 
-/// The mirror rays of every perspective case of the catalogue, on depth that was stored in a format and imported again.
+/// The mirror rays of the catalogue's perspective cases, on depth that was stored in a format and imported again.
 struct FormatRow {
-    std::string format, technique;
+    std::string format;
+    std::string technique;
+    bool        deep = false; // cases whose farthest surface is beyond deep_near_planes near planes, or the others
+    double      median_error        = 0; // of a pixel's distance, as a part of it
+    double      p99_error           = 0;
     size_t      rays                = 0; // that start in both pictures
-    double      changed_per_million = 0; // hit instead of miss, or the other way round
-    double      moved_per_million   = 0; // hit another pixel
-    double      median_moved_px     = 0; // of those
-    double      p99_moved_px        = 0;
+    double      changed_per_million = 0; // hit another pixel, or hit instead of miss, or the other way round
+    double      median_moved_px     = 0; // of the hit, where the pixel changed
 };
-std::vector<FormatRow> measure_formats(Gpu& gpu, const Technique& technique);
+inline constexpr double deep_near_planes = 1e4;
+std::vector<FormatRow>  measure_formats(Gpu& gpu, const Technique& technique);
 
-/// A depth format: what becomes of depth near_m / distance_m when it is stored and imported. far_m: of formats with a finite far plane.
-struct DepthFormat {
-    std::string name;
-    int         bits     = 32;    // 32: float, else unsigned normalised
-    bool        reversed = true;  // 1 at the near plane; else 0 there
-    bool        infinite = false; // no far plane
-};
-const std::vector<DepthFormat>& depth_formats();
-float stored_and_imported(const DepthFormat& format, float depth, double near_m, double far_m);
-
+/// Two tables; in the second a column for each technique.
 std::string stability_markdown(const std::vector<JitterRow>& jitter, const std::vector<FormatRow>& formats);
 
 } // namespace ssrlab

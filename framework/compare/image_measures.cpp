@@ -8,6 +8,7 @@
 #include <OpenImageIO/imagebufalgo.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace ssrlab {
 namespace {
@@ -57,6 +58,13 @@ OIIO::ImageBuf pack(const Image& image, const Mask& mask, int count)
     return row;
 }
 
+std::optional<double> rmse_inside(const Image& tested, const Image& reference, const Mask& mask)
+{
+    const int count = int(std::count(mask.begin(), mask.end(), true));
+    if (count == 0) return std::nullopt;
+    return OIIO::ImageBufAlgo::compare(pack(tested, mask, count), pack(reference, mask, count), 1, 1).rms_error;
+}
+
 ImageErrors compare_inside(const Image& tested, const Image& reference, const Mask& mask)
 {
     const int count = int(std::count(mask.begin(), mask.end(), true));
@@ -82,6 +90,24 @@ void require_comparable(const Image& image, const SceneTruth& truth)
         throw_failure("an image of {}x{} with {} values cannot be compared over {}x{} pixels with three channels",
                       image.size_px.x, image.size_px.y, image.values.size(), truth.size_px.x, truth.size_px.y);
     }
+}
+
+/// Pixels with a surface of another material within 2 px.
+bool at_material_border(const GBufferImage& gbuffer, glm::ivec2 pixel)
+{
+    constexpr int    reach_px = 2;
+    constexpr float  step     = 0.1F;
+    const glm::ivec2 size     = gbuffer.view.size_px;
+    const auto       index    = [&](int x, int y) { return size_t(y) * size_t(size.x) + size_t(x); };
+    const size_t     own      = index(pixel.x, pixel.y);
+    for (int y = std::max(0, pixel.y - reach_px); y <= std::min(size.y - 1, pixel.y + reach_px); ++y)
+        for (int x = std::max(0, pixel.x - reach_px); x <= std::min(size.x - 1, pixel.x + reach_px); ++x) {
+            const size_t other = index(x, y);
+            if (gbuffer.depth[other] > 0 && (std::abs(gbuffer.metallic[other] - gbuffer.metallic[own]) > step ||
+                                             std::abs(gbuffer.roughness[other] - gbuffer.roughness[own]) > step))
+                return true;
+        }
+    return false;
 }
 
 } // namespace
@@ -113,6 +139,30 @@ MeasureValues compare_images(const Image& tested, const Image& reference, const 
             {"ssim_visible", over_visible.ssim},       {"flip_visible", over_visible.flip},
             {"rmse_reflective", over_reflective.rmse}, {"psnr_reflective_db", over_reflective.psnr_db},
             {"ssim_reflective", over_reflective.ssim}, {"flip_reflective", over_reflective.flip}};
+}
+
+MeasureValues compare_pictures(const Image& tested, const Image& reference, const SceneTruth& truth,
+                               const GBufferImage& gbuffer)
+{
+    require_comparable(tested, truth);
+    require_comparable(reference, truth);
+    Mask reflective, border, visible, visible_border;
+    for (size_t i = 0; i < truth.cls.size(); ++i) {
+        const int width = truth.size_px.x;
+        reflective.push_back(truth.cls[i] != TruthClass::not_traced);
+        border.push_back(reflective[i] && at_material_border(gbuffer, {int(i) % width, int(i) / width}));
+        visible.push_back(truth.cls[i] == TruthClass::visible);
+        visible_border.push_back(visible[i] && border[i]);
+    }
+    const Image       a = to_display(tested), b = to_display(reference);
+    const ImageErrors errors = compare_inside(a, b, reflective);
+    return {{"picture_rmse", errors.rmse},
+            {"picture_psnr_db", errors.psnr_db},
+            {"picture_ssim", errors.ssim},
+            {"picture_flip", errors.flip},
+            {"picture_border_rmse", rmse_inside(a, b, border)},
+            {"picture_visible_rmse", rmse_inside(a, b, visible)},
+            {"picture_visible_border_rmse", rmse_inside(a, b, visible_border)}};
 }
 
 } // namespace ssrlab

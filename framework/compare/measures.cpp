@@ -104,6 +104,20 @@ constexpr auto table = std::to_array<Measure>({
     {"psnr_reflective_db", "dB", "as psnr_visible_db, over all traced rays", "OpenImageIO ImageBufAlgo::compare"},
     {"ssim_reflective", "index", "as ssim_visible, over all traced rays", "Wang et al. 2004"},
     {"flip_reflective", "0..1", "as flip_visible, over all traced rays", "Andersson et al. 2020"},
+
+    {"picture_rmse", "display value",
+     "as rmse_visible, of the finished picture against the picture with the scene truth's reflection at full weight, "
+     "over pixels that reflect",
+     own},
+    {"picture_psnr_db", "dB", "20 log10(1 / picture_rmse); empty when identical", own},
+    {"picture_ssim", "index", "as ssim_visible, of the same pictures over the same pixels", "Wang et al. 2004"},
+    {"picture_flip", "0..1", "as flip_visible, of the same pictures over the same pixels", "Andersson et al. 2020"},
+    {"picture_border_rmse", "display value",
+     "as picture_rmse, over those within 2 px of a surface whose metallic or roughness differs by more than 0.1; empty "
+     "without any",
+     own},
+    {"picture_visible_rmse", "display value", "as picture_rmse, over visible rays alone", own},
+    {"picture_visible_border_rmse", "display value", "as picture_border_rmse, over visible rays alone", own},
 });
 
 } // namespace

@@ -60,6 +60,10 @@ MeasureValues split_error(const TraceResult& float_result, const TraceResult* do
 /// "reflective": every traced pixel; "visible": those whose true point is visible. Images are linear radiance, three channels.
 MeasureValues compare_images(const Image& tested, const Image& reference, const SceneTruth& scene_truth);
 
+/// The names that begin with "picture_": a finished picture against the one with the true reflection.
+MeasureValues compare_pictures(const Image& tested, const Image& reference, const SceneTruth& scene_truth,
+                               const GBufferImage& gbuffer);
+
 /// The reference reflection: the scene truth's radiance where traced, black elsewhere; channels R, G, B.
 Image reference_image(const SceneTruth& scene_truth);
 

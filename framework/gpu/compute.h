@@ -50,6 +50,12 @@ struct ComputePass {
 ComputePass make_compute_pass(Gpu& gpu, const Shader& shader, const Bindings& bindings, const Constants& constants = {},
                               uint32_t push_constant_bytes = 0);
 
+/// Workgroups of 8 x 8 that cover an image.
+inline glm::uvec3 groups_of_8(glm::ivec2 size_px)
+{
+    return {static_cast<uint32_t>(size_px.x + 7) / 8, static_cast<uint32_t>(size_px.y + 7) / 8, 1};
+}
+
 void dispatch(const vk::raii::CommandBuffer& commands, const ComputePass& pass, glm::uvec3 groups);
 void dispatch_indirect(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const Buffer& arguments);
 template <typename T> void push(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const T& value)

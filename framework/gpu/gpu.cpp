@@ -68,6 +68,7 @@ GpuInfo describe(const vk::raii::PhysicalDevice& device, int index)
                                     VK_API_VERSION_MINOR(core.apiVersion), VK_API_VERSION_PATCH(core.apiVersion));
     info.float64      = device.getFeatures().shaderFloat64 != 0;
     info.max_image_px = core.limits.maxImageDimension2D;
+    info.int64        = device.getFeatures().shaderInt64 != 0;
     return info;
 }
 

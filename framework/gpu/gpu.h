@@ -19,6 +19,7 @@ struct GpuInfo {
     std::string name, type, driver, api_version;
     bool        float64      = false;
     uint32_t    max_image_px = 0;
+    bool        int64        = false; // 64-bit integers in shaders
 };
 
 struct GpuImpl;

@@ -11,7 +11,8 @@ namespace ssrlab {
 namespace {
 
 const std::vector<Column> identity = {
-    {"run_id", "hash of everything that decides the run's outcome"},
+    {"run_id", "hash of the run: scene, view, size, technique, settings, parameters; what these names stood for: "
+               "environment.json"},
     {"experiment", "name of the specification"},
     {"scene", "file, recipe or builtin:NAME"},
     {"view", "camera"},

@@ -47,25 +47,13 @@ std::string now_utc()
     return text.data();
 }
 
-/// The scene's file with its companions of the same stem (views, buffers); empty for what is built in.
+/// Names and contents of all files of a scene.
 std::string scene_hash(const std::string& name)
 {
-    fs::path file = name;
-    if (!fs::is_regular_file(file)) {
-        for (const fs::path& folder : recipe_folders()) {
-            file = folder / (name + ".toml");
-            if (fs::is_regular_file(file)) return content_hash(read_file(file));
-        }
-        return "built in";
-    }
-    std::map<std::string, std::string> hashes;
-    for (const fs::directory_entry& entry : fs::directory_iterator(file.has_parent_path() ? file.parent_path() : ".")) {
-        if (entry.is_regular_file() && entry.path().stem() == file.stem()) {
-            hashes[entry.path().filename().string()] = content_hash(read_file(entry.path()));
-        }
-    }
     std::string listing;
-    for (const auto& [companion, hash] : hashes) listing += companion + ' ' + hash + '\n';
+    for (const fs::path& file : scene_files(name)) {
+        listing += fmt::format("{} {}\n", file.filename().string(), content_hash(read_file(file)));
+    }
     return content_hash(listing);
 }
 

@@ -67,6 +67,11 @@ void refuse_changed_sources(const Bench& bench)
                   short_path(bench.results.path()), fmt::join(changed, ", "));
 }
 
+double cost_of(const Bench& bench, const Run& run)
+{
+    return estimated_seconds(run, find_technique(bench.techniques, run.technique), bench.experiment.measure);
+}
+
 void finish(Bench& bench, const Run& run, const Row& row)
 {
     refuse_changed_sources(bench);
@@ -76,8 +81,7 @@ void finish(Bench& bench, const Run& run, const Row& row)
         ++bench.failed;
         bench.progress.say(fmt::format("run {} failed: {}", run.id, row.at("message")));
     }
-    bench.progress.finish_run(
-        estimated_seconds(run, find_technique(bench.techniques, run.technique), bench.experiment.measure));
+    bench.progress.finish_run(run.id, cost_of(bench, run));
 }
 
 /// Tries a step of one run; when it throws, the run's row says why and the run is over.
@@ -127,7 +131,7 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
     measured.frame                   = prepare_frame(bench.gpu, picture.buffers, technique, run.values, run.settings);
     add_plan(measured.row, plan_of(*measured.frame));
     for (int i = 0; i < std::max(1, measure.warmup); ++i) run_frame(bench.gpu, *measured.frame);
-    const Image       shaded  = measure.pictures ? read_shaded(bench.gpu, *measured.frame) : Image();
+    const Image       shaded  = read_shaded(bench.gpu, *measured.frame);
     const TraceResult counted = count_frame(bench.gpu, *measured.frame);
     const auto        hidden  = read_hidden_hits(bench.gpu, *measured.frame);
     if (measure.pictures) write_pictures(bench, picture, measured, shaded, counted);
@@ -139,6 +143,10 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
     }
     add_measures(measured.row, picture.truths->compare(run.settings.trace, counted, twin ? &*twin : nullptr,
                                                        hidden ? &*hidden : nullptr, measure.image_errors));
+    if (!measure.image_errors) return;
+    const Image reference =
+        composite_reflection(bench.gpu, *measured.frame, picture.truths->true_reflection(run.settings.trace));
+    add_measures(measured.row, picture.truths->compare_picture(run.settings.trace, shaded, reference));
 }
 
 /// Timed repeats, every round in another order, until each run is final or a stop was requested.
@@ -179,7 +187,9 @@ void measure_batch(Bench& bench, Picture& picture, std::span<const Run> runs)
         MeasuredRun measured;
         measured.run = &run;
         measured.row = identity_row(bench.experiment, run, find_technique(bench.techniques, run.technique));
-        if (try_step(bench, measured, [&] { prepare(bench, picture, measured); })) open.push_back(std::move(measured));
+        if (!try_step(bench, measured, [&] { prepare(bench, picture, measured); })) continue;
+        bench.progress.prepared_run(run.id, cost_of(bench, run));
+        open.push_back(std::move(measured));
     }
     repeat_until_final(bench, picture, open);
     keep_measured(bench, picture, open);

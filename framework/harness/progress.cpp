@@ -10,23 +10,34 @@
 namespace ssrlab {
 namespace {
 
-constexpr double ns_per_pixel_and_step = 1.3;  // lavapipe, two cores
-constexpr double overhead_s            = 0.15; // pipelines, comparison, picture
+// Fitted to results/reference/lavapipe: two cores, scenes of which half the pixels reflect.
+constexpr double ns_per_pixel_and_step = 2;
+constexpr double walked_share          = 0.2;    // of width + height: the pixels that a ray visits
+constexpr double visits_per_level      = 3;      // of a pyramid
+constexpr double sampled_share         = 0.6;    // of the steps that a sampler may take
+constexpr double overhead_s            = 0.15;   // pipelines, rays compared, picture
+constexpr double image_errors_s        = 1.1e-6; // per pixel
+constexpr double prepared_share        = 0.5;    // of a run's cost, before its timed repeats
+
+double expected_steps(const Run& run, const Technique& technique)
+{
+    const double bound = iteration_bound(technique, run.values);
+    if (!technique.exact) return sampled_share * bound;
+    const double crossed = run.size_px.x + run.size_px.y;
+    return std::min(bound, technique.inputs.empty() ? walked_share * crossed : visits_per_level * std::log2(crossed));
+}
 
 } // namespace
 
 double estimated_seconds(const Run& run, const Technique& technique, const MeasureSettings& measure)
 {
-    const double pixels = static_cast<double>(run.size_px.x) * run.size_px.y;
-    // A ray rarely visits more pixels than the image is wide, whatever its budget; a pyramid skips most of them.
-    const double walk     = technique.inputs.empty() ? run.size_px.x + run.size_px.y : 0.15 * run.size_px.x;
-    const double bound    = iteration_bound(technique, run.values);
-    const double steps    = technique.exact ? std::min(bound, walk) : bound;
-    const double frame_s  = pixels * steps * ns_per_pixel_and_step * 1e-9 + pixels * 20e-9;
+    const double pixels   = static_cast<double>(run.size_px.x) * run.size_px.y;
+    const double frame_s  = pixels * expected_steps(run, technique) * ns_per_pixel_and_step * 1e-9 + pixels * 20e-9;
     const double repeats  = std::clamp(measure.budget_s / frame_s, static_cast<double>(measure.min_repeats),
                                        static_cast<double>(measure.max_repeats));
     const double counting = measure.truth ? 4 : 2;
-    return overhead_s + frame_s * (repeats + measure.warmup + counting);
+    const double errors_s = measure.truth && measure.image_errors ? pixels * image_errors_s : 0;
+    return overhead_s + errors_s + frame_s * (repeats + measure.warmup + counting);
 }
 
 std::string duration_text(double seconds)
@@ -47,10 +58,17 @@ void Progress::start_picture(const std::string& what)
     tick();
 }
 
-void Progress::finish_run(double cost)
+void Progress::prepared_run(const std::string& id, double cost)
+{
+    prepared_.insert(id);
+    done_cost_ += prepared_share * cost;
+    tick();
+}
+
+void Progress::finish_run(const std::string& id, double cost)
 {
     ++done_runs_;
-    done_cost_ += cost;
+    done_cost_ += prepared_.erase(id) > 0 ? (1 - prepared_share) * cost : cost;
     tick();
 }
 

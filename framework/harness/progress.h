@@ -4,6 +4,7 @@
 #include "harness/experiment.h"
 
 #include <chrono>
+#include <set>
 #include <string>
 
 namespace ssrlab {
@@ -19,7 +20,9 @@ public:
     Progress(size_t total_runs, double total_cost);
 
     void start_picture(const std::string& what);
-    void finish_run(double cost);
+    /// Everything but the timed repeats is done.
+    void prepared_run(const std::string& id, double cost);
+    void finish_run(const std::string& id, double cost);
     /// Says where we are if the last line is old enough.
     void tick();
     /// A line that is never swallowed.
@@ -29,11 +32,12 @@ private:
     void print();
 
     using Clock = std::chrono::steady_clock;
-    size_t            total_runs_, done_runs_ = 0;
-    double            total_cost_, done_cost_ = 0;
-    std::string       picture_;
-    bool              in_place_;
-    Clock::time_point started_ = Clock::now(), last_print_{};
+    size_t                total_runs_, done_runs_ = 0;
+    double                total_cost_, done_cost_ = 0;
+    std::string           picture_;
+    std::set<std::string> prepared_; // runs that are not finished
+    bool                  in_place_;
+    Clock::time_point     started_ = Clock::now(), last_print_{};
 };
 
 } // namespace ssrlab

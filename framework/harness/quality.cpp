@@ -62,6 +62,23 @@ Image Truths::agreement(const TraceSettings& settings, const TraceResult& counte
     return agreement_picture(counted, scene_truth_);
 }
 
+std::vector<glm::vec4> Truths::true_reflection(const TraceSettings& settings)
+{
+    const GlossyTruth      truth = cached_glossy_truth(cache_dir_, *scene_, gbuffer_, settings, {});
+    std::vector<glm::vec4> reflection;
+    for (size_t i = 0; i < truth.rays.size(); ++i)
+        reflection.push_back(truth.rays[i] == 0    ? glm::vec4(0, 0, 0, -1)
+                             : truth.weight[i] > 0 ? glm::vec4(truth.radiance[i] / truth.weight[i], 1)
+                                                   : glm::vec4(0, 0, 0, 1));
+    return reflection;
+}
+
+MeasureValues Truths::compare_picture(const TraceSettings& settings, const Image& picture, const Image& reference)
+{
+    make(settings);
+    return compare_pictures(picture, reference, scene_truth_, gbuffer_);
+}
+
 MeasureValues Truths::compare(const TraceSettings& settings, const TraceResult& counted, const TraceResult* twin,
                               const TraceResult* hidden, bool image_errors)
 {

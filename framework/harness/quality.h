@@ -20,6 +20,12 @@ public:
     MeasureValues compare(const TraceSettings& settings, const TraceResult& counted, const TraceResult* twin,
                           const TraceResult* hidden, bool image_errors);
 
+    /// The reflection of the glossy scene truth (many rays where it is rough), at full weight; weight -1 where nothing reflects.
+    std::vector<glm::vec4> true_reflection(const TraceSettings& settings);
+
+    /// A finished picture against the one with the true reflection.
+    MeasureValues compare_picture(const TraceSettings& settings, const Image& picture, const Image& reference);
+
     /// The agreement with the scene truth, as a false-colour picture.
     Image agreement(const TraceSettings& settings, const TraceResult& counted);
 

@@ -122,26 +122,30 @@ void ResultFolder::resume(const Environment& environment)
             "{}: cannot be resumed, its columns are not those of this version; choose another folder with -o",
             short_path(csv_));
     }
+    // Replaced as a whole: a kill in between leaves the old file.
+    const std::string kept = finished_rows(rest);
+    if (kept != text) write_file_atomically(csv_, kept);
     csv_fd_ = ::open(csv_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
     if (csv_fd_ < 0) throw_failure("{}: cannot be written: {}", short_path(csv_), std::strerror(errno));
-    read_finished(rest);
 }
 
-/// A kill can leave part of the last row; everything before it was synced whole.
-void ResultFolder::read_finished(std::string_view rest)
+/// Header and rows that stand: not those that failed, which are tried again, and not a last one that a kill tore.
+std::string ResultFolder::finished_rows(std::string_view rows)
 {
-    const auto size  = fs::file_size(csv_);
-    auto       whole = size - rest.size();
-    while (const auto record = take_csv_record(rest)) {
-        if (record->size() != columns_.size() || !finished_.insert(record->front()).second) {
+    const auto            outcome = std::ranges::find(columns_, "outcome") - columns_.begin();
+    std::string           kept    = csv_line(columns_);
+    std::set<std::string> seen;
+    while (const auto record = take_csv_record(rows)) {
+        if (record->size() != columns_.size() || !seen.insert(record->front()).second) {
             throw_failure("{}: damaged: the row of run '{}' {}", short_path(csv_), record->front(),
                           record->size() != columns_.size() ? "has the wrong number of fields" : "is there twice");
         }
-        whole = size - rest.size();
+        const bool failed = outcome < std::ssize(*record) && (*record)[static_cast<size_t>(outcome)] == "failed";
+        if (failed) continue;
+        kept += csv_line(*record);
+        finished_.insert(record->front());
     }
-    if (whole < size && ::ftruncate(csv_fd_, static_cast<off_t>(whole)) != 0) {
-        throw_failure("{}: its torn last row cannot be cut off: {}", short_path(csv_), std::strerror(errno));
-    }
+    return kept;
 }
 
 void ResultFolder::append(const Row& row)

@@ -28,7 +28,8 @@ std::vector<std::string> differences(const std::map<std::string, std::string>& a
 class ResultFolder {
 public:
     /// Fresh: creates the folder, environment.json and the header; refuses (Failure) a folder that has results.
-    /// Resuming: repairs a torn tail; refuses (SpecError) when columns or identity differ, naming what does.
+    /// Resuming: cuts off a torn row and takes out the rows that failed, so that they are tried again; refuses (SpecError) when columns or
+    /// identity differ, naming what does.
     ResultFolder(std::filesystem::path folder, std::vector<std::string> columns, const Environment& environment,
                  bool resume);
     ~ResultFolder();
@@ -45,11 +46,11 @@ public:
     const std::filesystem::path& path() const { return folder_; }
 
 private:
-    void lock();
-    void start(const Environment& environment);
-    void resume(const Environment& environment);
-    void read_finished(std::string_view text);
-    void remove_partial_files() const;
+    void        lock();
+    void        start(const Environment& environment);
+    void        resume(const Environment& environment);
+    std::string finished_rows(std::string_view rows);
+    void        remove_partial_files() const;
 
     std::filesystem::path    folder_, csv_;
     std::vector<std::string> columns_;

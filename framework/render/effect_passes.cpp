@@ -1,10 +1,14 @@
 // How each row of the table of effects is recorded.
 #include "render/effect_passes.h"
 
+#include "core/error.h"
+
+#include <glm/gtc/packing.hpp>
+
 namespace ssrlab {
 
-ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader, const Bindings& more,
-                             const std::map<std::string, std::string>& defines)
+ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader, const Defines& defines,
+                             const Bindings& more)
 {
     const FrameBuffers& buffers   = *frame.buffers;
     Constants           constants = settings_constants(frame, Precision::float32);
@@ -15,7 +19,16 @@ ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::st
                      {"radiance_image", buffers.gbuffer->radiance},
                      {"highlight_image", buffers.gbuffer->highlight},
                      {"reflection_image", buffers.reflection},
+                     {"filtered_image", buffers.filtered},
+                     {"small_colour_image", buffers.small_colour},
+                     {"block_pixel_image", buffers.block_pixel},
                      {"shaded_image", buffers.shaded}});
+    if (const GpuScene* scene = buffers.gbuffer->scene.get())
+        bindings.insert({{"Frame", buffers.gbuffer->frame_uniforms},
+                         {"environment_map", {scene->environment_map, scene->environment_sampler}},
+                         {"Lights", scene->lights},
+                         {"ShadowMatrices", scene->shadow_matrices},
+                         {"shadow_map", {scene->shadow_map, scene->shadow_sampler}}});
     return make_compute_pass(
         gpu,
         compile_shader(
@@ -25,42 +38,59 @@ ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::st
         bindings, constants);
 }
 
-std::shared_ptr<DerivedRays> derived_rays(Gpu& gpu, const PreparedFrame& frame, int which)
+ComputePass make_colour_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader, Defines defines,
+                             Bindings more)
 {
-    const size_t                  capacity = frame.rays->capacity;
-    std::shared_ptr<DerivedRays>& derived  = frame.buffers->derived_rays[{capacity, which}];
-    if (!derived) {
-        const uint64_t bytes = std::max<uint64_t>(capacity, 1) * 4;
-        derived = std::make_shared<DerivedRays>(DerivedRays{make_ray_buffers(gpu, capacity, Precision::float32),
-                                                            make_buffer(gpu, bytes), make_buffer(gpu, bytes)});
+    constexpr double mirrored = 2;
+    if (frame.settings.effects.at("hit_light") == mirrored) {
+        if (!frame.buffers->gbuffer->scene)
+            throw_spec_error("hit_light = mirrored needs the scene's lights; this G-buffer came without a scene");
+        defines.emplace("MIRRORED_LIGHT", "1");
     }
-    return derived;
+    if (frame.hidden_layer) {
+        const GBuffer& layer = *frame.buffers->second_layer;
+        defines.emplace("SECOND_LAYER", "1");
+        more.insert({{"second_depth_image", layer.depth},
+                     {"second_normal_image", layer.normal},
+                     {"second_material_image", layer.material},
+                     {"second_radiance_image", layer.radiance},
+                     {"second_highlight_image", layer.highlight}});
+    }
+    return make_effect_pass(gpu, frame, shader, defines, more);
 }
 
-Bindings derived_bindings(const DerivedRays& derived)
+void record_copy(const vk::raii::CommandBuffer& commands, const GpuImage& source, const GpuImage& target)
 {
-    return {{"DerivedCount", derived.rays.count},       {"DerivedOrigins", derived.rays.origins},
-            {"DerivedDeltas", derived.rays.deltas},     {"DerivedLengths", derived.rays.lengths},
-            {"DerivedPixels", derived.rays.pixels},     {"DerivedHitPixels", derived.rays.hit_pixels},
-            {"DerivedHitTs", derived.rays.hit_ts},      {"DerivedSources", derived.sources},
-            {"DerivedThroughputs", derived.throughputs}};
+    const vk::ImageSubresourceLayers colour{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
+    const vk::ImageCopy              whole{
+                     .srcSubresource = colour,
+                     .dstSubresource = colour,
+                     .extent = {static_cast<uint32_t>(source.size_px.x), static_cast<uint32_t>(source.size_px.y), 1}};
+    barrier(commands);
+    commands.copyImage(*source.image, vk::ImageLayout::eGeneral, *target.image, vk::ImageLayout::eGeneral, whole);
+    barrier(commands);
 }
 
 namespace {
 
-std::shared_ptr<ComputePass> shared_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader)
+std::shared_ptr<ComputePass> shared_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader,
+                                                const Defines& defines = {})
 {
-    return std::make_shared<ComputePass>(make_effect_pass(gpu, frame, shader));
+    return std::make_shared<ComputePass>(make_effect_pass(gpu, frame, shader, defines));
+}
+
+void clear(const vk::raii::CommandBuffer& commands, const GpuImage& image, vk::ClearColorValue value)
+{
+    const vk::ImageSubresourceRange all{vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1};
+    barrier(commands);
+    commands.clearColorImage(*image.image, vk::ImageLayout::eGeneral, value, all);
+    barrier(commands);
 }
 
 /// No ray started anywhere.
 void clear_reflection(const vk::raii::CommandBuffer& commands, const GpuImage& reflection)
 {
-    const vk::ClearColorValue       nothing{std::array<float, 4>{0, 0, 0, -1}};
-    const vk::ImageSubresourceRange all{vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1};
-    barrier(commands);
-    commands.clearColorImage(*reflection.image, vk::ImageLayout::eGeneral, nothing, all);
-    barrier(commands);
+    clear(commands, reflection, {std::array<float, 4>{0, 0, 0, -1}});
 }
 
 Recording classification(Gpu& /*gpu*/, PreparedFrame& frame)
@@ -83,21 +113,56 @@ Recording trace(Gpu& /*gpu*/, PreparedFrame& frame)
     return [&](const auto& commands) { dispatch_indirect(commands, frame.trace.trace, frame.rays->launch); };
 }
 
+Recording colour_downsampling(Gpu& gpu, PreparedFrame& frame)
+{
+    const glm::ivec2 blocks = (frame.buffers->gbuffer->view.size_px - 1) / trace_block_px(frame.settings.effects) + 1;
+    return [blocks, pass = shared_effect_pass(gpu, frame, "effects/colour_downsampling.comp")](const auto& commands) {
+        dispatch(commands, *pass, groups_of_8(blocks));
+    };
+}
+
 Recording hit_colour(Gpu& gpu, PreparedFrame& frame)
 {
-    Bindings                           second;
-    std::map<std::string, std::string> defines;
-    if (frame.hidden_layer) {
-        const GBuffer& layer = *frame.buffers->second_layer;
-        defines              = {{"SECOND_LAYER", "1"}};
-        second               = {{"second_depth_image", layer.depth},
-                                {"second_radiance_image", layer.radiance},
-                                {"second_highlight_image", layer.highlight}};
-    }
-    auto pass = std::make_shared<ComputePass>(make_effect_pass(gpu, frame, "effects/hit_colour.comp", second, defines));
+    auto pass = std::make_shared<ComputePass>(make_colour_pass(gpu, frame, "effects/hit_colour.comp"));
     return [&frame, pass](const auto& commands) {
         clear_reflection(commands, frame.buffers->reflection);
+        if (trace_block_px(frame.settings.effects) > 1)
+            clear(commands, frame.buffers->block_pixel, {std::array<uint32_t, 4>{NO_PIXEL, 0, 0, 0}});
         dispatch_indirect(commands, *pass, frame.rays->launch);
+    };
+}
+
+Recording blur(Gpu& gpu, PreparedFrame& frame)
+{
+    return [&frame, x = shared_effect_pass(gpu, frame, "effects/blur.comp", {{"ALONG_X", "1"}}),
+            y = shared_effect_pass(gpu, frame, "effects/blur.comp")](const auto& commands) {
+        const glm::uvec3 groups = groups_of_8(frame.buffers->gbuffer->view.size_px);
+        dispatch(commands, *x, groups);
+        barrier(commands);
+        dispatch(commands, *y, groups);
+    };
+}
+
+Recording environment(Gpu& gpu, PreparedFrame& frame)
+{
+    return [&frame, pass = shared_effect_pass(gpu, frame, "effects/environment.comp")](const auto& commands) {
+        dispatch(commands, *pass, groups_of_8(frame.buffers->gbuffer->view.size_px));
+    };
+}
+
+Recording upsampling(Gpu& gpu, PreparedFrame& frame)
+{
+    return [&frame, pass = shared_effect_pass(gpu, frame, "effects/upsampling.comp")](const auto& commands) {
+        dispatch_indirect(commands, *pass, frame.buffers->tiles.launch);
+    };
+}
+
+Recording kernel_filter(Gpu& gpu, PreparedFrame& frame)
+{
+    return [&frame, pass = shared_effect_pass(gpu, frame, "effects/kernel.comp")](const auto& commands) {
+        clear_reflection(commands, frame.buffers->filtered); // of tiles that are not listed
+        dispatch_indirect(commands, *pass, frame.buffers->tiles.launch);
+        record_copy(commands, frame.buffers->filtered, frame.buffers->reflection);
     };
 }
 
@@ -121,11 +186,32 @@ Recording make_recording(Gpu& gpu, PreparedFrame& frame, const std::string& effe
         {"depth_pyramid", depth_pyramid},
         {"trace", trace},
         {"hidden_layer", hidden_layer},
+        {"colour_downsampling", colour_downsampling},
         {"hit_colour", hit_colour},
         {"bounces", bounces},
+        {"upsampling", upsampling},
+        {"kernel_filter", kernel_filter},
+        {"blur", blur},
+        {"environment", environment},
         {"composite", composite},
     };
     return makers.at(effect)(gpu, frame);
+}
+
+Image composite_reflection(Gpu& gpu, const PreparedFrame& frame, std::span<const glm::vec4> reflection)
+{
+    std::vector<uint64_t> texels;
+    texels.reserve(reflection.size());
+    for (const glm::vec4& value : reflection) texels.push_back(glm::packHalf4x16(value));
+    FrameBuffers& buffers = *frame.buffers;
+    upload(gpu, buffers.reflection, texels.data(), texels.size() * sizeof(uint64_t));
+    const ComputePass pass = make_effect_pass(gpu, frame, "effects/composite.comp");
+    submit(gpu, [&](const auto& commands) {
+        barrier(commands);
+        dispatch(commands, pass, groups_of_8(buffers.gbuffer->view.size_px));
+        barrier(commands);
+    });
+    return read_shaded(gpu, frame);
 }
 
 TraceCounts count_hits(Gpu& gpu, PreparedFrame& frame)

@@ -5,9 +5,15 @@
 
 namespace ssrlab {
 
+using Defines = std::map<std::string, std::string>;
+
 /// The shader with every parameter of the effects; `more` comes before what the frame binds to the same names.
-ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader, const Bindings& more = {},
-                             const std::map<std::string, std::string>& defines = {});
+ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader,
+                             const Defines& defines = {}, const Bindings& more = {});
+/// One that includes effects/ray_colour.glsl. Throws SpecError when the light that is asked for needs a scene and there is none.
+ComputePass make_colour_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader, Defines defines = {},
+                             Bindings more = {});
+void        record_copy(const vk::raii::CommandBuffer& commands, const GpuImage& source, const GpuImage& target);
 
 /// One of two lists that all frames with as many rays share.
 std::shared_ptr<DerivedRays> derived_rays(Gpu& gpu, const PreparedFrame& frame, int which);

@@ -25,14 +25,13 @@ Bounce make_bounce(Gpu& gpu, const PreparedFrame& frame, const DerivedRays* from
     bounce.rays       = derived_rays(gpu, frame, which);
     Bindings arriving = derived_bindings(*bounce.rays);
     if (from != nullptr) arriving.merge(list_bindings(buffers, *from));
-    const std::map<std::string, std::string> defines =
-        from == nullptr ? std::map<std::string, std::string>{} : std::map<std::string, std::string>{{"FURTHER", "1"}};
-    Bindings traced = list_bindings(buffers, *bounce.rays);
+    const Defines defines = from == nullptr ? Defines{} : Defines{{"FURTHER", "1"}};
+    Bindings      traced  = list_bindings(buffers, *bounce.rays);
     traced.insert({"View", buffers.view});
-    bounce.set_up = make_effect_pass(gpu, frame, "effects/bounce_rays.comp", arriving, defines);
+    bounce.set_up = make_colour_pass(gpu, frame, "effects/bounce_rays.comp", defines, arriving);
     bounce.launch = make_launch_pass(gpu, bounce.rays->rays.count, bounce.rays->rays.launch, RAYS_PER_GROUP);
     bounce.trace  = make_trace_pass(gpu, frame, traced, Precision::float32);
-    bounce.colour = make_effect_pass(gpu, frame, "effects/bounce_colour.comp", traced);
+    bounce.colour = make_colour_pass(gpu, frame, "effects/bounce_colour.comp", {}, traced);
     return bounce;
 }
 
@@ -67,28 +66,14 @@ Recording direct(Gpu& gpu, PreparedFrame& frame, int count)
     };
 }
 
-void record_copy(const vk::raii::CommandBuffer& commands, const GpuImage& from, const GpuImage& to)
-{
-    const vk::ImageSubresourceLayers colour{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
-    const vk::ImageCopy              all{
-                     .srcSubresource = colour,
-                     .dstSubresource = colour,
-                     .extent = {static_cast<uint32_t>(from.size_px.x), static_cast<uint32_t>(from.size_px.y), 1}};
-    commands.copyImage(*from.image, vk::ImageLayout::eGeneral, *to.image, vk::ImageLayout::eGeneral, all);
-}
-
 /// Every pass plays the next frame of a still picture, so that a run depends on nothing that was there before.
 Recording history(Gpu& gpu, PreparedFrame& frame, int count)
 {
-    FrameBuffers& buffers = *frame.buffers;
-    if (buffers.history.size_px != buffers.gbuffer->view.size_px) buffers.history = make_colour_image(gpu, buffers);
     auto pass = std::make_shared<ComputePass>(
-        make_effect_pass(gpu, frame, "effects/bounce_history.comp", {{"history_image", buffers.history}}));
+        make_colour_pass(gpu, frame, "effects/bounce_history.comp", {}, {{"history_image", frame.buffers->filtered}}));
     return [&frame, pass, count](const auto& commands) {
         for (int i = 0; i < count; ++i) {
-            barrier(commands);
-            record_copy(commands, frame.buffers->reflection, frame.buffers->history);
-            barrier(commands);
+            record_copy(commands, frame.buffers->reflection, frame.buffers->filtered);
             dispatch_indirect(commands, *pass, frame.rays->launch);
         }
     };

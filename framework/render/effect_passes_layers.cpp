@@ -42,10 +42,10 @@ Recording hidden_layer(Gpu& gpu, PreparedFrame& frame)
     own->missed             = derived_rays(gpu, frame, 0);
     own->pyramid            = make_pyramid_passes(gpu, frame, own->layer->depth, buffers.second_pyramid);
     const Bindings derived  = derived_bindings(*own->missed);
-    own->gather             = make_effect_pass(gpu, frame, "effects/gather_misses.comp", derived);
+    own->gather             = make_effect_pass(gpu, frame, "effects/gather_misses.comp", {}, derived);
     own->launch             = make_launch_pass(gpu, own->missed->rays.count, own->missed->rays.launch, RAYS_PER_GROUP);
     own->trace              = make_layer_trace_pass(gpu, frame, own->missed->rays);
-    own->merge              = make_effect_pass(gpu, frame, "effects/second_layer_hits.comp", derived);
+    own->merge              = make_effect_pass(gpu, frame, "effects/second_layer_hits.comp", {}, derived);
     const double separation = frame.settings.effects.at("hidden_layer_separation_m");
     return [&frame, own, separation](const auto& commands) {
         const RayBuffers& missed = own->missed->rays;

@@ -39,6 +39,8 @@ std::string percent(uint32_t part, uint32_t whole)
     return fmt::format("{:.3g} %", whole == 0 ? 0.0 : 100.0 * part / whole);
 }
 
+bool shading_only(const ParameterValues& values) { return values.at("effect_set") != 0; }
+
 Need where_something_reflects(const FrameFacts& /*facts*/, const FrameStatistics& statistics,
                               const ParameterValues& /*values*/)
 {
@@ -61,13 +63,18 @@ Need depth_pyramid_need(const FrameFacts& facts, const FrameStatistics& statisti
     return where_something_reflects(facts, statistics, values);
 }
 
-bool beyond_shading(const ParameterValues& values) { return values.at("effect_set") == 0; }
+/// Effects that continue the rays one by one.
+bool one_ray_per_pixel(const ParameterValues& values)
+{
+    return values.at("rays_per_pixel") == 1 && trace_block_px(values) == 1;
+}
 
 Need hidden_layer_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
 {
-    if (!beyond_shading(values)) return {Call::off, "effect_set = shading"};
+    if (shading_only(values)) return {Call::off, "effect_set = shading"};
     if (values.at("hidden_layer") == 0) return {Call::off, "hidden_layer = false"};
     if (!facts.scene) return {Call::off, "no scene to draw again"};
+    if (!one_ray_per_pixel(values)) return {Call::off, "needs one ray per pixel at full resolution"};
     const TraceCounts& trace  = statistics.trace;
     const uint32_t     misses = trace.rays - trace.hits;
     if (misses == 0) return {Call::not_needed, fmt::format("none of {} rays missed", trace.rays)};
@@ -80,11 +87,71 @@ Need hidden_layer_need(const FrameFacts& facts, const FrameStatistics& statistic
 
 Need bounces_need(const FrameFacts& /*facts*/, const FrameStatistics& statistics, const ParameterValues& values)
 {
-    if (!beyond_shading(values)) return {Call::off, "effect_set = shading"};
+    if (shading_only(values)) return {Call::off, "effect_set = shading"};
     if (values.at("bounce_mode") == 0) return {Call::off, "bounce_mode = off"};
+    if (!one_ray_per_pixel(values)) return {Call::off, "needs one ray per pixel at full resolution"};
     const TraceCounts& trace = statistics.trace;
     if (trace.mirror_hits == 0) return {Call::not_needed, fmt::format("none of {} hits reflects", trace.hits)};
     return {Call::needed, fmt::format("{} of {} hits reflect", percent(trace.mirror_hits, trace.hits), trace.hits)};
+}
+
+/// The rough ones among the pixels that reflect.
+uint32_t rough_pixels(const FrameStatistics& statistics)
+{
+    return statistics.picture.reflecting_pixels - statistics.picture.roughness_pixels[0];
+}
+
+Need blur_need(const FrameFacts& /*facts*/, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (shading_only(values)) return {Call::off, "effect_set = shading"};
+    if (values.at("gloss") != 1) return {Call::off, "gloss is not done by blur"};
+    const uint32_t rough = rough_pixels(statistics), all = statistics.picture.reflecting_pixels;
+    if (all == 0) return {Call::not_needed, "no pixel reflects"};
+    if (values.at("blur_bias") > 0) return {Call::needed, "blur_bias is above 0"};
+    if (rough == 0) return {Call::not_needed, "every pixel that reflects is smooth"};
+    return {Call::needed, fmt::format("{} of the reflecting pixels are rough", percent(rough, all))};
+}
+
+Need environment_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (shading_only(values)) return {Call::off, "effect_set = shading"};
+    if (values.at("environment") == 0) return {Call::off, "environment = false"};
+    if (!facts.scene) return {Call::off, "a picture without a scene has no environment"};
+    const TraceCounts& trace = statistics.trace;
+    if (statistics.picture.reflecting_pixels == 0) return {Call::not_needed, "no pixel reflects"};
+    if (trace.hits < trace.rays)
+        return {Call::needed,
+                fmt::format("{} of the rays found nothing", percent(trace.rays - trace.hits, trace.rays))};
+    for (const char* fade : {"viewer_fade", "edge_fade", "depth_step_fade_m", "own_share"})
+        if (values.at(fade) != 0) return {Call::needed, fmt::format("{} blends into it", fade)};
+    if (values.at("min_direction_cosine") > -1) return {Call::needed, "min_direction_cosine may refuse hits"};
+    return {Call::not_needed, "every ray found something, and nothing fades"};
+}
+
+Need at_lower_resolution(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    const int block_px = trace_block_px(values);
+    if (block_px == 1)
+        return {shading_only(values) ? Call::off : Call::not_needed, "each pixel that reflects has rays of its own"};
+    if (statistics.picture.reflecting_pixels == 0) return where_something_reflects(facts, statistics, values);
+    return {Call::needed, fmt::format("one pixel in {} has rays", block_px * block_px)};
+}
+
+Need colour_downsampling_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (values.at("cross_blur") == 0) return {Call::off, "cross_blur = false"};
+    return at_lower_resolution(facts, statistics, values);
+}
+
+Need kernel_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (shading_only(values)) return {Call::off, "effect_set = shading"};
+    if (values.at("kernel") == 0) return {Call::off, "kernel = off"};
+    if (statistics.picture.reflecting_pixels == 0) return where_something_reflects(facts, statistics, values);
+    const bool second_layer = hidden_layer_need(facts, statistics, values).call == Call::needed;
+    if (statistics.trace.hits == 0 && !second_layer) return {Call::not_needed, "no ray hits anything"};
+    return {Call::needed, fmt::format("{} rays hit ({})", statistics.trace.hits,
+                                      percent(statistics.trace.hits, statistics.trace.rays))};
 }
 
 Need always(const FrameFacts& /*facts*/, const FrameStatistics& /*statistics*/, const ParameterValues& /*values*/)
@@ -102,11 +169,21 @@ std::vector<Effect> make_table()
          .writes  = {"TileCount", "Tiles", "PictureStatistics"},
          .need    = classification_need},
         {.id      = "rays",
-         .summary = "Sets up one ray for each pixel that reflects",
+         .summary = "Sets up the rays of each pixel that reflects",
+         .cite    = {"J. Somerville Roberts, Screen Space Reflections"},
          .shader  = "rays.comp",
          .reads   = {"View", "TileCount", "Tiles", "depth_image", "normal_image", "material_image"},
          .writes  = {"RayCount", "RayOrigins", "RayDeltas", "RayLengths", "RayPixels"},
-         .need    = where_something_reflects},
+         .parameters =
+             {integer(
+                  "rays_per_pixel", 1, 1, 16,
+                  "rays that start at random places inside the pixel; 1: at its centre. They count as a miss unless "
+                  "more than half of them hit. Beside the centre a ray may meet a neighbour of its own surface: "
+                  "ray_offset_m starts it clear of those"),
+              choice("trace_resolution", {"full", "half", "quarter"},
+                     "pixels that have rays: all that reflect, or the first one of each block of 2 x 2 or 4 x 4, from "
+                     "its centre outward")},
+         .need = where_something_reflects},
         {.id      = "depth_pyramid",
          .summary = "Reduces the depth image level by level",
          .shader  = "depth_pyramid.comp",
@@ -130,23 +207,34 @@ std::vector<Effect> make_table()
                      "normal_image", "material_image"},
          .writes  = {"HitPixels", "HitTs"},
          .parameters =
-             {boolean("hidden_layer", true, "whether rays that find nothing are traced in a second depth layer"),
+             {boolean("hidden_layer", false, "whether rays that find nothing are traced in a second depth layer"),
               real("hidden_layer_separation_m", 0.5, 0, 1e6,
                    "the second layer is the nearest surface more than so far behind the first"),
               real("hidden_layer_threshold", 0, 0, 1,
                    "the second layer is left out up to this share of rays without hit; above 0 pictures change")},
          .need = hidden_layer_need},
+        {.id         = "colour_downsampling",
+         .summary    = "The lit colour at the resolution of the rays, blurred in the shape of a cross",
+         .cite       = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling"},
+         .shader     = "effects/colour_downsampling.comp",
+         .reads      = {"radiance_image", "highlight_image"},
+         .writes     = {"small_colour_image"},
+         .parameters = {boolean("cross_blur", true,
+                                "whether rays at half and quarter resolution find colours of that resolution, slightly "
+                                "blurred")},
+         .need       = colour_downsampling_need},
         {.id      = "hit_colour",
          .summary = "Colour and weight of what each ray hit: hit tests, fades, attenuation",
          .cite    = {"J. Somerville Roberts, Screen Space Reflections", "Litheon 2012, Real-Time Local Reflections",
                      "A. Biro 2015, Report on Screen-Space Reflections"},
          .shader  = "effects/hit_colour.comp",
          .reads   = {"View", "RayCount", "RayOrigins", "RayDeltas", "RayPixels", "HitPixels", "HitTs", "depth_image",
-                     "normal_image", "material_image", "radiance_image", "highlight_image"},
-         .writes  = {"reflection_image"},
+                     "normal_image", "material_image", "radiance_image", "highlight_image", "small_colour_image"},
+         .writes  = {"reflection_image", "block_pixel_image"},
          .parameters =
-             {choice("hit_light", {"diffuse", "lit"},
-                     "light of the hit: the part that is the same from every direction, or all that the camera sees"),
+             {choice("hit_light", {"diffuse", "lit", "mirrored"},
+                     "light of the hit: the part that is the same from every direction; with the highlights that the "
+                     "camera sees; or with those that the reflector sees"),
               starting_with(choice("viewer_fade", {"off", "linear", "cut", "smooth"},
                                    "weight of reflections toward the viewer, by a = -R.z: a, none below 0, or (a - "
                                    "viewer_fade_start) / (1 - viewer_fade_start)"),
@@ -180,14 +268,64 @@ std::vector<Effect> make_table()
                             "direct"),
               integer("bounces", 1, 1, 16, "further bounces, or earlier frames; each adds one level of reflection")},
          .need = bounces_need},
+        {.id      = "upsampling",
+         .summary = "Gives pixels without rays what the 2 x 2 traced pixels about them reflect",
+         .cite    = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling",
+                     "B. Karis 2014, Physically Based Shading on Mobile"},
+         .shader  = "effects/upsampling.comp",
+         .reads   = {"View", "TileCount", "Tiles", "depth_image", "normal_image", "material_image", "block_pixel_image",
+                     "reflection_image"},
+         .writes  = {"reflection_image"},
+         .parameters = {starting_with(
+                            choice(
+                                "upsampling_weights", {"bilinear", "depth", "depth_normal", "reflectivity"},
+                                "by what the four are weighted; each adds to the one before. Reflectivity: specular "
+                                "response by gloss, with Fresnel. Where all weights vanish, the most alike is taken"),
+                            "reflectivity"),
+                        real("upsampling_depth_tolerance", 0.01, 1e-6, 1e6,
+                             "a step between surfaces of this share of the distance has the weight 1/e"),
+                        real("upsampling_reflectivity_tolerance", 0.05, 1e-6, 1e6,
+                             "a difference of reflectivity of this much has the weight 1/e")},
+         .need       = at_lower_resolution},
+        {.id         = "kernel_filter",
+         .summary    = "A 3 x 3 kernel over what neighbouring pixels reflect, against noise",
+         .cite       = {"J. Somerville Roberts, Screen Space Reflections"},
+         .shader     = "effects/kernel.comp",
+         .reads      = {"TileCount", "Tiles", "reflection_image"},
+         .writes     = {"filtered_image", "reflection_image"},
+         .parameters = {choice("kernel", {"off", "box3", "median3"},
+                               "none, the mean, or the neighbour of median brightness")},
+         .need       = kernel_need},
+        {.id         = "blur",
+         .summary    = "Gloss by a separable Gaussian whose radius follows the roughness",
+         .cite       = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling"},
+         .shader     = "effects/blur.comp",
+         .reads      = {"View", "depth_image", "normal_image", "material_image", "reflection_image"},
+         .writes     = {"filtered_image", "reflection_image"},
+         .parameters = {starting_with(choice("gloss", {"off", "blur"}, "how reflections on rough surfaces widen"),
+                                      "blur"),
+                        real("blur_scale", 0.1, 0, 1, "radius at roughness 1, as a share of the image's height"),
+                        real("blur_bias", 0, -1, 1, "added to the radius, as a share of the image's height"),
+                        real("blur_hole_widening", 2, 1, 16, "how much wider a pixel without a hit looks"),
+                        real("blur_hole_weight", 0.3, 0, 1, "weight of a neighbour without a hit")},
+         .need       = blur_need},
+        {.id         = "environment",
+         .summary    = "Where rays found nothing or fade: what arrives from infinitely far away",
+         .shader     = "effects/environment.comp",
+         .reads      = {"View", "depth_image", "normal_image", "material_image", "environment_map", "reflection_image"},
+         .writes     = {"reflection_image"},
+         .parameters = {boolean("environment", true, "whether the environment stands in for what a ray did not find")},
+         .need       = environment_need},
         {.id         = "composite",
          .summary    = "Own and reflected light together: C = C_own + (C_reflected - C_own) * beta",
          .cite       = {"J. Somerville Roberts, Screen Space Reflections"},
          .shader     = "effects/composite.comp",
          .reads      = {"radiance_image", "highlight_image", "material_image", "reflection_image"},
          .writes     = {"shaded_image"},
-         .parameters = {real("metallic_exponent", 3, 0, 64,
-                             "beta = weight * metallic ^ exponent; 0 switches the factor off")},
+         .parameters = {choice(
+                            "reflectance", {"metallic", "ggx"},
+                            "beta = weight * metallic ^ exponent, or weight * the share that a GGX surface reflects"),
+                        real("metallic_exponent", 3, 0, 64, "for reflectance = metallic; 0 switches the factor off")},
          .need       = always},
     };
 }
@@ -232,6 +370,34 @@ std::vector<PlannedEffect> plan_frame(const FrameFacts& facts, const FrameStatis
     }
     return plan;
 }
+
+std::vector<std::string> describe_facts(const FrameFacts& facts, const FrameStatistics& statistics)
+{
+    const PictureCounts& picture   = statistics.picture;
+    const auto           present   = [](uint32_t pixels) { return pixels > 0; };
+    const auto           smoothest = std::ranges::find_if(picture.roughness_pixels, present);
+    const auto           bin_of    = [&](auto bin) { return static_cast<double>(bin) / (ROUGHNESS_BINS - 1); };
+    std::string          roughness = "nothing reflects";
+    if (smoothest != picture.roughness_pixels.end()) {
+        const auto roughest =
+            std::ranges::find_if(picture.roughness_pixels.rbegin(), picture.roughness_pixels.rend(), present);
+        const auto first = smoothest - picture.roughness_pixels.begin();
+        const auto last  = picture.roughness_pixels.rend() - roughest - 1;
+        roughness = fmt::format("roughness {:.2f} to {:.2f}", first == 0 ? 0.0 : bin_of(first - 1), bin_of(last));
+    }
+    return {fmt::format("{} of {} pixels reflect ({}), in {} of {} tiles; {}", picture.reflecting_pixels,
+                        statistics.pixels, percent(picture.reflecting_pixels, statistics.pixels),
+                        picture.reflecting_tiles, statistics.tiles, roughness),
+            fmt::format("{} rays: {} found something, {} of these another mirror", statistics.trace.rays,
+                        percent(statistics.trace.hits, statistics.trace.rays),
+                        percent(statistics.trace.mirror_hits, statistics.trace.hits)),
+            !facts.scene
+                ? std::string("no scene: a picture from elsewhere")
+                : fmt::format("environment {}, {} alpha mask, still camera and objects, no jitter",
+                              facts.environment_map ? "map" : "of one colour", facts.alpha_mask ? "an" : "no")};
+}
+
+int trace_block_px(const ParameterValues& values) { return 1 << static_cast<int>(values.at("trace_resolution")); }
 
 bool plan_needs_trace(const ParameterValues& values) { return values.at("effect_set") == 0; }
 

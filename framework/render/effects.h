@@ -14,8 +14,9 @@ namespace ssrlab {
 
 /// What is known of scene and technique before anything is drawn.
 struct FrameFacts {
-    bool                     scene      = false; // the G-buffer was drawn from one that can be drawn again
-    bool                     alpha_mask = false;
+    bool                     scene           = false; // the G-buffer was drawn from one
+    bool                     environment_map = false; // otherwise one colour arrives from everywhere
+    bool                     alpha_mask      = false;
     std::vector<std::string> inputs; // that the technique reads
 };
 
@@ -69,6 +70,12 @@ struct PlannedEffect {
 /// What runs. With the parameter `plan` off everything runs that is not switched off.
 std::vector<PlannedEffect> plan_frame(const FrameFacts& facts, const FrameStatistics& statistics,
                                       const ParameterValues& values);
+
+/// What the plan rests on, a line each.
+std::vector<std::string> describe_facts(const FrameFacts& facts, const FrameStatistics& statistics);
+
+/// Side of the blocks of which one pixel is traced.
+int trace_block_px(const ParameterValues& values);
 
 /// Effects that are needed by what the trace found: whether any of them is switched on.
 bool plan_needs_trace(const ParameterValues& values);

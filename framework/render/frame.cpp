@@ -37,11 +37,6 @@ double FrameTimes::total_ms() const
                            [](double sum, const auto& effect) { return sum + effect.second; });
 }
 
-glm::uvec3 groups_of_8(glm::ivec2 size_px)
-{
-    return {static_cast<uint32_t>(size_px.x + 7) / 8, static_cast<uint32_t>(size_px.y + 7) / 8, 1};
-}
-
 void write_view(Gpu& gpu, Buffer& target, const View& view, Precision precision)
 {
     if (precision == Precision::float64)
@@ -106,7 +101,8 @@ FrameStatistics count_picture(Gpu& gpu, const FrameBuffers& buffers)
 std::shared_ptr<RayBuffers> rays_for(Gpu& gpu, FrameBuffers& buffers, const FrameSettings& settings)
 {
     const PictureCounts& counts   = buffers.statistics.picture;
-    const size_t         capacity = settings.effects.at("plan") == 0 ? counts.surface_pixels : counts.reflecting_pixels;
+    const size_t         pixels   = settings.effects.at("plan") == 0 ? counts.surface_pixels : counts.reflecting_pixels;
+    const size_t         capacity = pixels * static_cast<size_t>(settings.effects.at("rays_per_pixel"));
     std::shared_ptr<RayBuffers>& rays = buffers.rays[capacity];
     if (!rays) rays = std::make_shared<RayBuffers>(make_ray_buffers(gpu, capacity, Precision::float32));
     return rays;
@@ -115,30 +111,34 @@ std::shared_ptr<RayBuffers> rays_for(Gpu& gpu, FrameBuffers& buffers, const Fram
 FrameFacts facts_of(const PreparedFrame& frame)
 {
     const GpuScene* scene = frame.buffers->gbuffer->scene.get();
-    return {.scene      = scene != nullptr,
-            .alpha_mask = scene != nullptr && scene->alpha_mask,
-            .inputs     = frame.technique.inputs};
+    FrameFacts      facts{.inputs = frame.technique.inputs};
+    if (scene == nullptr) return facts;
+    facts.scene           = true;
+    facts.environment_map = scene->has_environment_map;
+    facts.alpha_mask      = scene->alpha_mask;
+    return facts;
 }
 
 } // namespace
 
-GpuImage make_colour_image(Gpu& gpu, const FrameBuffers& buffers)
-{
-    return make_image(gpu, {.format  = vk::Format::eR16G16B16A16Sfloat,
-                            .size_px = buffers.gbuffer->view.size_px,
-                            .usage   = vk::ImageUsageFlagBits::eStorage});
-}
-
 FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
 {
-    auto buffers        = std::make_shared<FrameBuffers>();
-    buffers->gbuffer    = gbuffer;
-    buffers->view       = upload_view(gpu, gbuffer->view, Precision::float32);
-    buffers->tiles      = make_tile_buffers(gpu, gbuffer->view.size_px);
-    buffers->statistics = count_picture(gpu, *buffers);
-    buffers->pyramid    = make_pyramid_images(gpu, gbuffer->view.size_px);
-    buffers->reflection = make_colour_image(gpu, *buffers);
-    buffers->shaded     = make_colour_image(gpu, *buffers);
+    auto       buffers = std::make_shared<FrameBuffers>();
+    const auto image   = [&](vk::Format format, glm::ivec2 size_px) {
+        return make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
+    };
+    const glm::ivec2 size_px = gbuffer->view.size_px, half_size_px = (size_px - 1) / 2 + 1;
+    constexpr auto   colour = vk::Format::eR16G16B16A16Sfloat;
+    buffers->gbuffer        = gbuffer;
+    buffers->view           = upload_view(gpu, gbuffer->view, Precision::float32);
+    buffers->tiles          = make_tile_buffers(gpu, gbuffer->view.size_px);
+    buffers->statistics     = count_picture(gpu, *buffers);
+    buffers->pyramid        = make_pyramid_images(gpu, gbuffer->view.size_px);
+    buffers->reflection     = image(colour, size_px);
+    buffers->filtered       = image(colour, size_px);
+    buffers->small_colour   = image(colour, half_size_px);
+    buffers->block_pixel    = image(vk::Format::eR32Uint, half_size_px);
+    buffers->shaded         = image(colour, size_px);
     return buffers;
 }
 
@@ -155,10 +155,11 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
     frame->pyramid   = make_pyramid_passes(gpu, *frame, buffers->gbuffer->depth, buffers->pyramid);
     frame->trace     = make_trace_passes(gpu, *frame, *frame->rays, buffers->view, nullptr);
 
-    FrameStatistics statistics = buffers->statistics;
-    if (plan_needs_trace(settings.effects) && statistics.picture.reflecting_pixels > 0)
-        statistics.trace = count_hits(gpu, *frame);
-    frame->plan = plan_frame(facts_of(*frame), statistics, settings.effects);
+    frame->facts      = facts_of(*frame);
+    frame->statistics = buffers->statistics;
+    if (plan_needs_trace(settings.effects) && frame->statistics.picture.reflecting_pixels > 0)
+        frame->statistics.trace = count_hits(gpu, *frame);
+    frame->plan = plan_frame(frame->facts, frame->statistics, settings.effects);
     for (const PlannedEffect& planned : frame->plan)
         if (planned.runs) frame->recordings.push_back(make_recording(gpu, *frame, planned.effect->id));
     frame->timestamps = make_timestamps(gpu, static_cast<uint32_t>(frame->recordings.size()) + 1);
@@ -166,6 +167,11 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
 }
 
 const std::vector<PlannedEffect>& plan_of(const PreparedFrame& frame) { return frame.plan; }
+
+std::vector<std::string> facts_of_plan(const PreparedFrame& frame)
+{
+    return describe_facts(frame.facts, frame.statistics);
+}
 
 FrameTimes run_frame(Gpu& gpu, PreparedFrame& frame)
 {
@@ -204,7 +210,7 @@ TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision)
                                            : read_result<float>(gpu, gbuffer.view.size_px, rays, &work);
 }
 
-Image read_shaded(Gpu& gpu, PreparedFrame& frame)
+Image read_shaded(Gpu& gpu, const PreparedFrame& frame)
 {
     const auto texels = download_as<std::array<uint16_t, 4>>(gpu, frame.buffers->shaded);
     Image      image{frame.buffers->gbuffer->view.size_px, {"R", "G", "B"}, {}, {}};

@@ -11,6 +11,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace ssrlab {
@@ -59,16 +60,21 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
                                const ParameterValues& values, const FrameSettings& settings);
 /// What runs and why. Of a still picture: its statistics are those of the very frame.
 const std::vector<PlannedEffect>& plan_of(const PreparedFrame& frame);
+/// What the plan rests on, a line each.
+std::vector<std::string> facts_of_plan(const PreparedFrame& frame);
 
 /// Runs what the plan says once and waits. The first call of a frame includes driver compilation: warm up.
 FrameTimes run_frame(Gpu& gpu, PreparedFrame& frame);
 /// The reflected picture that the last run_frame of this frame left in the shared buffers. Linear RGB.
-Image read_shaded(Gpu& gpu, PreparedFrame& frame);
+Image read_shaded(Gpu& gpu, const PreparedFrame& frame);
 /// What the last run_frame of this frame found in the second layer: `hit` there, not_traced elsewhere. Empty when the plan
 /// has no hidden layer.
 std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame);
 /// The second layer itself, of a frame whose plan has one.
 GBufferImage read_second_layer(Gpu& gpu, const PreparedFrame& frame);
+/// The picture with another reflection in the place of the traced one: colour and weight of each pixel, weight < 0 where nothing reflects.
+/// Leaves this reflection in the shared buffers.
+Image composite_reflection(Gpu& gpu, const PreparedFrame& frame, std::span<const glm::vec4> reflection);
 /// Traces once with the counting pipeline (work counters on; never timed). Precision float64 gives the double twin.
 TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision = Precision::float32);
 

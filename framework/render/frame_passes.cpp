@@ -45,6 +45,20 @@ std::map<std::string, std::string> precision_defines(Precision precision)
     return {};
 }
 
+/// The parameter `arithmetic` chooses what shaders/trace_api.glsl crosses borders in. A define, not a constant: 64-bit integers must not even be
+/// declared on a device without them.
+bool exact_arithmetic(const Gpu& gpu, const PreparedFrame& frame)
+{
+    const auto parameter = std::ranges::find(frame.technique.parameters, "arithmetic", &Parameter::name);
+    if (parameter == frame.technique.parameters.end() || parameter->type != ParameterType::choice ||
+        format_parameter(*parameter, frame.values.at("arithmetic")) != "exact")
+        return false;
+    if (!gpu.info.int64 || !gpu.info.float64)
+        throw_failure("arithmetic = exact needs 64-bit integers and doubles in shaders; the device '{}' has no {}",
+                      gpu.info.name, gpu.info.int64 ? "shaderFloat64" : "shaderInt64");
+    return true;
+}
+
 int level_count(glm::ivec2 size_px)
 {
     int levels = 0;
@@ -177,6 +191,7 @@ ComputePass make_trace_pass(Gpu& gpu, const PreparedFrame& frame, const Bindings
                                       .include_files = {{"technique/trace.glsl", frame.technique.folder / "trace.glsl"}},
                                       .include_texts = {{"technique/parameters",
                                                          parameter_declarations(frame.technique.parameters, CONSTANT_PARAMETERS)}}};
+    if (exact_arithmetic(gpu, frame)) trace.defines.emplace("EXACT_ARITHMETIC", "1");
     if (bindings.contains("Work")) trace.defines.emplace("COUNT_WORK", "1");
     Constants constants = settings_constants(frame, precision);
     add_parameters(constants, frame.technique.parameters, frame.values, CONSTANT_PARAMETERS);
@@ -191,8 +206,12 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
     bindings.insert({"View", view});
     if (work != nullptr) bindings.insert({"Work", *work});
     Constants constants = settings_constants(frame, rays.precision);
-    // What is counted is the technique's work, which does not depend on the plan.
-    constants.add(CONSTANT_EVERY_SURFACE, work == nullptr && frame.settings.effects.at("plan") == 0 ? 1 : 0);
+    // What is counted is the technique's work on one ray from the centre of each pixel that reflects, whatever the effects.
+    const bool counts     = work != nullptr;
+    const auto of_effects = [&](const char* name) { return static_cast<int32_t>(frame.settings.effects.at(name)); };
+    constants.add(CONSTANT_EVERY_SURFACE, !counts && of_effects("plan") == 0 ? 1 : 0);
+    constants.add(CONSTANT_RAYS_PER_PIXEL, counts ? 1 : of_effects("rays_per_pixel"));
+    constants.add(CONSTANT_TRACE_BLOCK_PX, counts ? 1 : trace_block_px(frame.settings.effects));
     TracePasses passes;
     passes.classification =
         make_compute_pass(gpu, compile_shader({.file = "effects/classification.comp"}), bindings, constants);

@@ -23,7 +23,7 @@ RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision);
 struct DerivedRays {
     RayBuffers rays;
     Buffer     sources;
-    Buffer     throughputs; // bounces: what a ray's light still weighs in the reflection it belongs to
+    Buffer     throughputs; // bounces: what a ray's light still weighs in the reflection it belongs to, RGB
 };
 
 /// All levels >= 1 of the depth pyramid in one atlas; level L begins at x = width - (width >> (L - 1)).
@@ -49,13 +49,12 @@ struct FrameBuffers {
     GBufferPtr                                                     second_layer; // empty until a frame asks for it
     PyramidImages                                                  second_pyramid;
     std::map<std::pair<size_t, int>, std::shared_ptr<DerivedRays>> derived_rays; // by capacity, and which of two
-    GpuImage reflection; // RGBA16F: colour, weight; weight < 0 where no ray started
-    GpuImage shaded;     // RGBA16F
-    GpuImage history;    // RGBA16F: an earlier reflection; empty until a frame asks for it
+    GpuImage reflection;   // RGBA16F: colour, weight; weight < 0 where no ray started
+    GpuImage filtered;     // RGBA16F: a reflection that a filter is writing, or an earlier one
+    GpuImage small_colour; // RGBA16F, half size or less: lit colour as rays at a lower resolution find it
+    GpuImage block_pixel;  // R32UI, half size or less: which pixel of a block has rays, or NO_PIXEL
+    GpuImage shaded;       // RGBA16F
 };
-
-/// RGBA16F.
-GpuImage make_colour_image(Gpu& gpu, const FrameBuffers& buffers);
 
 struct PyramidPush {
     int32_t    level;
@@ -81,6 +80,8 @@ struct PreparedFrame {
     std::shared_ptr<RayBuffers> rays;
     PyramidPasses               pyramid;
     TracePasses                 trace;
+    FrameFacts                  facts;
+    FrameStatistics             statistics;
     std::vector<PlannedEffect>  plan;
     std::vector<Recording>      recordings;           // of the effects that run
     bool                        hidden_layer = false; // hits may lie in the second layer
@@ -117,8 +118,6 @@ void record_classification(const vk::raii::CommandBuffer& commands, const TraceP
 void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers,
                       const RayBuffers& rays);
 void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses& passes);
-
-glm::uvec3 groups_of_8(glm::ivec2 size_px);
 
 template <typename Real>
 TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, const Buffer* work);

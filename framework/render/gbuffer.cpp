@@ -1,6 +1,7 @@
 #include "render/gbuffer.h"
 
 #include "core/error.h"
+#include "render/frame_passes.h"
 #include "shared.h"
 
 #include <glm/gtc/packing.hpp>
@@ -84,8 +85,7 @@ void record_rasterisation(const vk::raii::CommandBuffer& commands, const GBuffer
 {
     const vk::RenderingAttachmentInfo colours[] = {
         attachment(gbuffer.normal, colour(glm::vec4(0))), attachment(gbuffer.material, colour(glm::vec4(0))),
-        attachment(gbuffer.radiance, colour(glm::vec4(gbuffer.scene->background, 1))),
-        attachment(gbuffer.highlight, colour(glm::vec4(0))),
+        attachment(gbuffer.radiance, colour(glm::vec4(0))), attachment(gbuffer.highlight, colour(glm::vec4(0))),
         attachment(gbuffer.object, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}})};
     // Reversed depth: background is 0.
     const auto       depth = attachment(gbuffer.depth_buffer, vk::ClearDepthStencilValue{0.0F, 0});
@@ -102,15 +102,6 @@ void record_rasterisation(const vk::raii::CommandBuffer& commands, const GBuffer
                view_to_clip(gbuffer.view) * gbuffer.view.world_to_view);
     commands.endRendering();
 }
-
-glm::uvec3 groups_of_8(glm::ivec2 size_px)
-{
-    return {static_cast<uint32_t>(size_px.x + 7) / 8, static_cast<uint32_t>(size_px.y + 7) / 8, 1};
-}
-
-} // namespace
-
-namespace {
 
 /// Ready to be drawn. first: the layer that lies before this one, or null.
 GBufferPtr make_drawn_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view, const GBuffer* first)
@@ -131,10 +122,17 @@ GBufferPtr make_drawn_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& vi
                               gbuffer->highlight.format, gbuffer->object.format},
          .fragment_defines = first == nullptr ? std::map<std::string, std::string>{}
                                               : std::map<std::string, std::string>{{"SECOND_LAYER", "1"}}});
-    gbuffer->sampler  = {gpu.impl->device, vk::SamplerCreateInfo{}};
-    gbuffer->sanitise = make_compute_pass(
-        gpu, compile_shader({.file = "sanitise_depth.comp"}),
-        {{"depth_buffer", {gbuffer->depth_buffer, gbuffer->sampler}}, {"depth_image", gbuffer->depth}});
+    gbuffer->sampler       = {gpu.impl->device, vk::SamplerCreateInfo{}};
+    gbuffer->view_uniforms = upload_view(gpu, view, Precision::float32);
+    Constants constants;
+    constants.add(CONSTANT_ORTHOGRAPHIC, static_cast<int32_t>(view.projection == Projection::orthographic));
+    gbuffer->background = make_compute_pass(gpu, compile_shader({.file = "background.comp"}),
+                                            {{"View", gbuffer->view_uniforms},
+                                             {"depth_buffer", {gbuffer->depth_buffer, gbuffer->sampler}},
+                                             {"environment_map", {scene->environment_map, scene->environment_sampler}},
+                                             {"depth_image", gbuffer->depth},
+                                             {"radiance_image", gbuffer->radiance}},
+                                            constants, sizeof(glm::mat4));
     gbuffer->timestamps = make_timestamps(gpu, 2);
     return gbuffer;
 }
@@ -144,7 +142,8 @@ void record_drawing(const vk::raii::CommandBuffer& commands, const GBuffer& gbuf
     barrier(commands);
     record_rasterisation(commands, gbuffer);
     barrier(commands);
-    dispatch(commands, gbuffer.sanitise, groups_of_8(gbuffer.view.size_px));
+    push(commands, gbuffer.background, glm::mat4(glm::inverse(gbuffer.view.world_to_view)));
+    dispatch(commands, gbuffer.background, groups_of_8(gbuffer.view.size_px));
     barrier(commands);
 }
 

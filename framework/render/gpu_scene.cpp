@@ -103,6 +103,18 @@ GpuImage upload_texture(Gpu& gpu, const Texture& texture)
     return image;
 }
 
+void upload_environment(Gpu& gpu, GpuScene& scene, const Scene& source)
+{
+    const bool             mapped = !source.environment.radiance.empty();
+    std::vector<glm::vec4> texels(mapped ? 0 : 1, glm::vec4(source.background, 1));
+    for (const glm::vec3& radiance : source.environment.radiance) texels.emplace_back(radiance, 1);
+    scene.environment_map     = make_image(gpu, {.format  = vk::Format::eR32G32B32A32Sfloat,
+                                                 .size_px = mapped ? source.environment.size_px : glm::ivec2(1),
+                                                 .usage   = vk::ImageUsageFlagBits::eSampled});
+    scene.environment_sampler = {gpu.impl->device, vk::SamplerCreateInfo{}};
+    upload(gpu, scene.environment_map, texels.data(), texels.size() * sizeof(glm::vec4));
+}
+
 Texture white_texture()
 {
     Texture texture;
@@ -183,9 +195,10 @@ GpuScenePtr upload_scene(Gpu& gpu, const Scene& source)
         scene->draws.push_back({draw.first_index, draw.index_count, draw.material, static_cast<uint32_t>(i + 1),
                                 source.materials[draw.material].double_sided, draw.bounds_min_ws, draw.bounds_max_ws});
     }
-    scene->ambient    = source.ambient;
-    scene->background = source.background;
-    scene->alpha_mask = std::ranges::any_of(source.materials, &Material::alpha_mask);
+    scene->ambient             = source.ambient;
+    scene->alpha_mask          = std::ranges::any_of(source.materials, &Material::alpha_mask);
+    scene->has_environment_map = !source.environment.radiance.empty();
+    upload_environment(gpu, *scene, source);
     render_shadow_maps(gpu, *scene, source);
     return scene;
 }

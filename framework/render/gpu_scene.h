@@ -24,14 +24,17 @@ struct GpuScene {
     std::vector<vk::raii::Sampler>       samplers; // one per texture; the last is the default
     vk::raii::Sampler                    shadow_sampler = nullptr;
     GpuImage                             shadow_map; // one layer per directional or spot light, six per point light
-    vk::raii::DescriptorSetLayout        frame_layout    = nullptr; // set 0
-    vk::raii::DescriptorSetLayout        material_layout = nullptr; // set 1
-    vk::raii::DescriptorPool             pool            = nullptr;
+    GpuImage                             environment_map; // RGBA32F; one texel of Scene::background where there is none
+    vk::raii::Sampler                    environment_sampler = nullptr;
+    vk::raii::DescriptorSetLayout        frame_layout        = nullptr; // set 0
+    vk::raii::DescriptorSetLayout        material_layout     = nullptr; // set 1
+    vk::raii::DescriptorPool             pool                = nullptr;
     std::vector<vk::raii::DescriptorSet> material_sets;
     std::vector<DrawCall>                draws;
     uint32_t                             light_count = 0;
-    glm::vec3                            ambient{0}, background{0};
-    bool                                 alpha_mask = false; // some material has one
+    glm::vec3                            ambient{0};
+    bool                                 alpha_mask          = false; // some material has one
+    bool                                 has_environment_map = false;
 };
 
 struct DrawPipeline {

@@ -182,7 +182,10 @@ std::span<const Limit> known_limits()
     static const std::vector<Limit> limits = {
         {"point_sampled", "sees the depth buffer only at its samples: misses what lies between two of them, and may "
                           "report a later surface instead"},
-        {"stops_behind_objects", "gives up where it has passed behind an object: misses everything farther along"}};
+        {"stops_behind_objects", "gives up where it has passed behind an object: misses everything farther along"},
+        {"tests_whole_steps",
+         "tests a pixel against the ray's depths over a whole step: may hit a surface that the ray "
+         "touches only up to one step (t of the hit / its steps) before or behind that pixel"}};
     return limits;
 }
 

@@ -1,5 +1,6 @@
-// Analytic scenes. Metres, y up; the level camera stands at the origin and looks along -z with a field of view of 90 degrees.
-// Every floor is a perfect mirror in the plane y = -1, so a reflected ray looks as if it came from (0, -2, 0) upside down.
+// The list, and its analytic scenes; scenes for effects are in effect_scenes.cpp and textured_scenes.cpp.
+// Metres, y up; the level camera stands at the origin and looks along -z with a field of view of 90 degrees.
+// Every floor here is a perfect mirror in the plane y = -1, so a reflected ray looks as if it came from (0, -2, 0) upside down.
 //
 // Closed forms for the level camera, image height H, h = H / 2, c = row or column of the image centre (continuous pixels):
 //   floor    row py shows the floor at distance d = h / (py - c); a point at height y_m and distance D is reflected at the
@@ -13,90 +14,13 @@
 //   void                nothing at all: every pixel is background.
 #include "scene/builtin_scenes.h"
 
+#include "scene/builtin_parts.h"
 #include "scene/shapes.h"
 
 #include <array>
-#include <cmath>
-#include <numbers>
 
 namespace ssrlab {
 namespace {
-
-constexpr double floor_y_m = -1;
-
-Light sun(glm::vec3 direction_ws, float irradiance)
-{
-    Light light;
-    light.direction_ws = glm::normalize(direction_ws);
-    light.intensity    = glm::vec3(irradiance);
-    return light;
-}
-
-Camera camera(const char* name, glm::dvec3 position_ws, double pitch_down_deg, const char* hard_for)
-{
-    const double pitch = pitch_down_deg * std::numbers::pi / 180;
-    Camera       result;
-    result.name        = name;
-    result.hard_for    = hard_for;
-    result.position_ws = position_ws;
-    result.target_ws   = position_ws + glm::dvec3(0, -std::sin(pitch), -std::cos(pitch));
-    result.fov_y_deg   = 90;
-    return result;
-}
-
-/// Lights, the mirror floor's material (index 0) and the three cameras that all scenes have.
-Model start_scene()
-{
-    Model model;
-    model.materials.push_back(make_material("mirror", glm::vec3(0.95F), 1, 0));
-    // The same light from everywhere: where the mirror's ray meets nothing, it looks like the sky.
-    model.ambient    = glm::vec3(0.22F, 0.25F, 0.3F);
-    model.background = model.ambient;
-    model.lights.push_back({sun({-0.5F, -1.0F, -0.7F}, 2.2F), {}});
-    model.cameras = {
-        camera("default", {0, 0, 0}, 0, "level camera: rays along image columns, many towards the horizon"),
-        camera("down", {0, 0, 0}, 25, "pitched down: the floor fills most of the picture"),
-        camera("steep", {0, 1.5, -2}, 45,
-               "looking down steeply: rays come back towards the camera and leave the screen"),
-    };
-    return model;
-}
-
-void add(Model& model, const char* name, uint32_t material, Mesh mesh)
-{
-    mesh.name     = name;
-    mesh.material = material;
-    model.meshes.push_back(std::move(mesh));
-}
-
-uint32_t add_material(Model& model, const char* name, glm::vec3 base_colour)
-{
-    model.materials.push_back(make_material(name, base_colour, 0, 0.7F));
-    return static_cast<uint32_t>(model.materials.size() - 1);
-}
-
-uint32_t add_checker(Model& model, const char* name, glm::vec3 colour_a, glm::vec3 colour_b)
-{
-    const uint32_t material                               = add_material(model, name, glm::vec3(1));
-    model.materials[material].base_colour_texture.texture = static_cast<int>(model.textures.size());
-    model.textures.push_back(make_checker_texture(colour_a, colour_b));
-    return material;
-}
-
-void add_floor(Model& model, double half_width_m, double near_z_m, double far_z_m)
-{
-    add(model, "floor", 0,
-        make_quad({-half_width_m, floor_y_m, near_z_m}, {2 * half_width_m, 0, 0}, {0, 0, far_z_m - near_z_m}));
-}
-
-/// Facing the camera, from the floor up, with squares of one metre.
-void add_wall(Model& model, double half_width_m, double z_m, double top_y_m)
-{
-    const uint32_t checker = add_checker(model, "wall", {0.85F, 0.45F, 0.2F}, {0.25F, 0.45F, 0.75F});
-    Mesh wall = make_quad({-half_width_m, floor_y_m, z_m}, {2 * half_width_m, 0, 0}, {0, top_y_m - floor_y_m, 0});
-    multiply_uv(wall, 0.5);
-    add(model, "wall", checker, std::move(wall));
-}
 
 Model mirror_floor_wall()
 {
@@ -186,12 +110,19 @@ Model nothing()
     return model;
 }
 
-constexpr std::array<BuiltinScene, 6> scenes = {{
+constexpr std::array<BuiltinScene, 13> scenes = {{
     {"mirror_floor_wall", "Mirror floor before a checkered wall 10 m away.", mirror_floor_wall},
     {"sphere_over_mirror", "A sphere that touches a mirror floor.", sphere_over_mirror},
     {"pole_field", "150 thin poles on a mirror floor before a wall.", pole_field},
     {"stairs", "Eight steps on a mirror floor before a wall.", stairs},
     {"corridor", "A corridor of 45 m with a mirror floor and columns.", corridor},
+    {"puddle", "Wet puddles with hard borders in rough ground, under a sky.", puddle},
+    {"gloss_steps", "Metal strips of roughness 0, 0.1 … 0.7 before glowing posts.", gloss_steps},
+    {"facing_mirrors", "Two mirrors that see each other, with objects between them.", facing_mirrors},
+    {"hidden_shelf", "A floating board hides a shelf that the mirror floor shows.", hidden_shelf},
+    {"everything", "Rough and smooth metal, facing mirrors, a masked fence and a sky.", everything},
+    {"small_mirror", "A small mirror plate among matte things: a tenth of the picture reflects.", small_mirror},
+    {"matte", "The same without the mirror: nothing reflects.", matte},
     {"void", "No triangles: every pixel is background.", nothing},
 }};
 

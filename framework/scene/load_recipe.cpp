@@ -154,6 +154,9 @@ Model load_recipe(const std::filesystem::path& file)
     scene.cameras    = recipe.views;
     scene.ambient    = recipe.ambient;
     scene.background = recipe.background;
+    if (!recipe.environment.empty())
+        scene.environment = load_environment(find_data(recipe.environment, file.parent_path()),
+                                             recipe.environment_scale, scene.warnings);
     return scene;
 }
 

@@ -27,14 +27,6 @@ std::string known_names()
                      known_names());
 }
 
-std::string lower_extension(const fs::path& file)
-{
-    std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
-    return extension;
-}
-
 Model load_gltf_with_views(const fs::path& file)
 {
     Model          model = load_gltf(file);
@@ -55,19 +47,32 @@ Model load_model(const std::string& name)
             if (name.substr(builtin_prefix.size()) == scene.name) return scene.make();
         throw_unknown(name);
     }
-    const std::string extension = lower_extension(name);
-    const bool        is_gltf   = extension == ".glb" || extension == ".gltf";
-    if (is_gltf || extension == ".toml") {
-        if (!fs::exists(name)) throw_spec_error("scene '{}': no such file", name);
-        return is_gltf ? load_gltf_with_views(name) : load_recipe(name);
-    }
-    if (name.find('/') == std::string::npos)
-        for (const fs::path& folder : recipe_folders())
-            if (fs::exists(folder / (name + ".toml"))) return load_recipe(folder / (name + ".toml"));
-    throw_unknown(name);
+    const fs::path file = find_scene_file(name);
+    if (file.empty()) throw_unknown(name);
+    if (!fs::exists(file)) throw_spec_error("scene '{}': no such file", name);
+    return lower_extension(file) == ".toml" ? load_recipe(file) : load_gltf_with_views(file);
 }
 
 } // namespace
+
+std::string lower_extension(const fs::path& file)
+{
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+    return extension;
+}
+
+fs::path find_scene_file(const std::string& name)
+{
+    if (name.starts_with(builtin_prefix)) return {};
+    const std::string extension = lower_extension(name);
+    if (extension == ".glb" || extension == ".gltf" || extension == ".toml") return name;
+    if (name.find('/') == std::string::npos)
+        for (const fs::path& folder : recipe_folders())
+            if (fs::exists(folder / (name + ".toml"))) return folder / (name + ".toml");
+    return {};
+}
 
 std::vector<fs::path> recipe_folders()
 {

@@ -25,6 +25,15 @@ std::vector<Camera> load_views(const std::filesystem::path& file);
 /// Folders that are searched for recipes, first match wins.
 std::vector<std::filesystem::path> recipe_folders();
 
+/// The file of a scene's name: a path, or a recipe of these folders. Empty when it is built in or unknown.
+std::filesystem::path find_scene_file(const std::string& name);
+
+/// Every file that decides how the scene looks: its own, its views, and all that a recipe, glTF, OBJ or MTL file names.
+std::vector<std::filesystem::path> scene_files(const std::string& name);
+
+/// ".OBJ" is ".obj".
+std::string lower_extension(const std::filesystem::path& file);
+
 /// Where `reference` of a recipe lies: a path (relative to `folder`), package:PKG/path or sweethome3d:MODEL.
 std::filesystem::path find_data(const std::string& reference, const std::filesystem::path& folder);
 

@@ -34,6 +34,7 @@ struct Model {
     std::vector<Camera>      cameras;
     std::optional<glm::vec3> ambient;
     std::optional<glm::vec3> background;
+    EnvironmentMap           environment;
     std::vector<std::string> warnings;
 };
 

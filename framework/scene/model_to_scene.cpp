@@ -119,6 +119,7 @@ Scene model_to_scene(Model model, const std::string& name)
     scene.cameras = std::move(model.cameras);
     if (model.ambient) scene.ambient = *model.ambient;
     if (model.background) scene.background = *model.background;
+    scene.environment = std::move(model.environment);
     std::set<std::string> said;
     for (std::string& warning : model.warnings)
         if (said.insert(warning).second) scene.warnings.push_back(std::move(warning));

@@ -99,6 +99,22 @@ ModelLight read_light(TomlTable& table)
     return light;
 }
 
+void read_environment(TomlTable& root, Recipe& recipe)
+{
+    const auto reference     = root.text("environment");
+    const auto scale         = root.number("environment_scale", 0, 1e6);
+    recipe.environment_scale = scale.value_or(1);
+    if (!reference && scale) root.fail("environment_scale", "needs 'environment', the picture that it scales");
+    if (!reference) return;
+    if (!reference->ends_with(".hdr") && !reference->ends_with(".exr"))
+        root.fail("environment", fmt::format("must be an equirectangular .hdr or .exr picture, not '{}'", *reference));
+    const std::filesystem::path folder = std::filesystem::path(recipe.file).parent_path();
+    if (!reference->starts_with("package:") && !std::filesystem::exists(folder / *reference))
+        root.fail("environment",
+                  fmt::format("must be a picture that is there, not {}", (folder / *reference).string()));
+    recipe.environment = *reference;
+}
+
 } // namespace
 
 bool matches(const std::string& pattern, const std::string& text)
@@ -135,6 +151,7 @@ Recipe read_recipe(const std::filesystem::path& file)
     recipe.summary = root.text("summary").value_or("");
     if (const auto ambient = root.colour("ambient")) recipe.ambient = glm::vec3(*ambient);
     if (const auto background = root.colour("background")) recipe.background = glm::vec3(*background);
+    read_environment(root, recipe);
     for (TomlTable& table : root.tables("part")) recipe.parts.push_back(read_part(table));
     for (TomlTable& table : root.tables("material")) recipe.changes.push_back(read_change(table));
     for (TomlTable& table : root.tables("light")) recipe.lights.push_back(read_light(table));

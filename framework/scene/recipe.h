@@ -47,6 +47,8 @@ struct Recipe {
     std::vector<ModelLight>     lights;
     std::vector<Camera>         views;
     std::optional<glm::vec3>    ambient, background;
+    std::string                 environment; // where its picture lies, as find_data() takes it; empty: none
+    double                      environment_scale = 1;
 };
 
 Recipe read_recipe(const std::filesystem::path& file);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/view.h"
+#include "scene/environment.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -87,7 +88,8 @@ struct Scene {
     std::vector<Light>       lights;
     std::vector<Camera>      cameras;        // at least one; positions relative to origin_ws
     glm::vec3                ambient{0.25F}; // radiance arriving equally from everywhere
-    glm::vec3                background{0};  // colour of pixels without surface
+    glm::vec3                background{0};  // radiance from infinitely far away, where there is no environment map
+    EnvironmentMap           environment;    // what is there instead of `background`, if not empty
     std::vector<std::string> warnings;       // one line each: what was dropped or is not supported
 };
 
@@ -101,6 +103,9 @@ struct SceneListing {
     std::string summary;
 };
 std::vector<SceneListing> list_scenes();
+
+/// What arrives from infinitely far away: the environment map, or the background.
+glm::vec3 sky_radiance(const Scene& scene, glm::dvec3 direction_ws);
 
 /// The camera of that name; throws SpecError listing the known names.
 const Camera& find_camera(const Scene& scene, const std::string& name);

@@ -19,19 +19,17 @@
 
 #include "core/gbuffer_image.h"
 #include "core/trace_result.h"
+#include "truth/reflected_rays.h"
 #include "truth/scene_bvh.h"
 #include "truth/truth_class.h"
 
 namespace ssrlab {
 
-inline constexpr double self_hit_share       = 1e-4;
-inline constexpr double visibility_tolerance = 2e-4;
-
 /// All pixels not traced.
 SceneTruth empty_scene_truth(glm::ivec2 size_px);
 
 /// Radiance of a visible point is the G-buffer's (the view-independent part) at the pixel it falls into, so that a perfect SSR
-/// reproduces the reference exactly; all other points are shaded by shade_point; sky is Scene::background.
+/// reproduces the reference exactly; all other points are shaded by shade_point; sky is sky_radiance in the ray's direction.
 /// Threads = 0: all cores.
 SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer,
                        const TraceSettings& settings, unsigned threads = 0);

@@ -65,7 +65,9 @@ void add(ContentHash& hash, const Scene& scene)
         hash.add(l.type).add(l.position_ws).add(l.direction_ws).add(l.intensity).add(l.range_m);
         hash.add(l.inner_angle_rad).add(l.outer_angle_rad).add(l.casts_shadow);
     }
-    hash.add(scene.ambient).add(scene.background);
+    hash.add(scene.ambient).add(scene.background).add(scene.environment.size_px);
+    const std::vector<glm::vec3>& sky = scene.environment.radiance;
+    hash.add_bytes(sky.data(), sky.size() * sizeof(glm::vec3));
 }
 
 class Writer {
@@ -195,6 +197,33 @@ bool unpack(const std::vector<char>& payload, glm::ivec2 size_px, SceneTruth& tr
     return reader.complete();
 }
 
+std::vector<char> pack(const GlossyTruth& truth)
+{
+    Writer writer;
+    for (size_t i = 0; i < truth.rays.size(); ++i) {
+        writer.put(truth.rays[i]);
+        if (truth.rays[i] == 0) continue;
+        writer.put(truth.radiance[i]);
+        writer.put(truth.standard_error[i]);
+        writer.put(truth.weight[i]);
+    }
+    return writer.take();
+}
+
+bool unpack(const std::vector<char>& payload, glm::ivec2 size_px, GlossyTruth& truth)
+{
+    truth = empty_glossy_truth(size_px);
+    Reader reader(payload);
+    for (size_t i = 0; i < truth.rays.size(); ++i) {
+        reader.get(truth.rays[i]);
+        if (truth.rays[i] == 0) continue;
+        reader.get(truth.radiance[i]);
+        reader.get(truth.standard_error[i]);
+        reader.get(truth.weight[i]);
+    }
+    return reader.complete();
+}
+
 template <typename Truth, typename Compute>
 Truth cached(const fs::path& path, glm::ivec2 size_px, const Compute& compute)
 {
@@ -228,6 +257,19 @@ SceneTruth cached_scene_truth(const fs::path& cache_dir, const Scene& scene, con
     add(hash, scene);
     return cached<SceneTruth>(cache_dir / fmt::format("scene_{}.truth", hash.hex()), gbuffer.view.size_px,
                               [&] { return scene_truth(build_bvh(scene), scene, gbuffer, settings, threads); });
+}
+
+GlossyTruth cached_glossy_truth(const fs::path& cache_dir, const Scene& scene, const GBufferImage& gbuffer,
+                                const TraceSettings& settings, const GlossySettings& glossy, unsigned threads)
+{
+    require_complete(gbuffer);
+    ContentHash hash;
+    add(hash.add(format_version), gbuffer);
+    hash.add(gbuffer.radiance).add(gbuffer.roughness).add(settings.max_distance_m).add(glossy.rays).add(glossy.seed);
+    add(hash, scene);
+    return cached<GlossyTruth>(cache_dir / fmt::format("glossy_{}.truth", hash.hex()), gbuffer.view.size_px, [&] {
+        return glossy_truth(build_bvh(scene), scene, gbuffer, settings, glossy, threads);
+    });
 }
 
 } // namespace ssrlab

@@ -15,7 +15,7 @@ layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[
 layout(set = 0, binding = 10, scalar) readonly buffer HitTs { real hit_t[]; };
 layout(set = 0, binding = 13, rgba16f) uniform image2D reflection_image;
 layout(set = 0, binding = 17, scalar) readonly buffer RaySources { uint ray_source[]; };
-layout(set = 0, binding = 18, scalar) buffer RayThroughputs { float ray_throughput[]; };
+layout(set = 0, binding = 18, scalar) buffer RayThroughputs { vec3 ray_throughput[]; };
 
 void main()
 {
@@ -23,10 +23,18 @@ void main()
     if (index >= ray_count) return;
     Found found = found_by(ray_origin[index], ray_delta[index], hit_pixel[index], hit_t[index]);
     ivec2 reflector = unpack_pixel(ray_pixel[index]), target = unpack_pixel(ray_source[index]);
-    float beta = beta_of(reflector, found.weight), throughput = ray_throughput[index] * beta;
+    if (found.weight <= 0.0)
+    {
+        ray_throughput[index] = vec3(0);
+        return;
+    }
+    vec2 centre     = vec2(reflector) + 0.5;
+    vec3 surface_vs = px_to_vs(vec3(centre, imageLoad(depth_image, reflector).x));
+    vec3 arrived_vs = reflect(ray_direction(ray_origin[index], ray_delta[index]), normalize(imageLoad(normal_image, reflector).xyz));
+    vec3 own        = light_along(reflector, false, centre, surface_vs, arrived_vs);
+    vec3 throughput = ray_throughput[index] * beta_of(reflector, -arrived_vs, found.weight);
     ray_throughput[index] = throughput * found.attenuation;
-    if (throughput <= 0.0) return;
     vec4 reflection = imageLoad(reflection_image, target);
-    reflection.rgb += throughput * (found.light * found.attenuation - light_of(reflector));
+    reflection.rgb += throughput * (found.light * found.attenuation - own);
     imageStore(reflection_image, target, reflection);
 }

@@ -27,6 +27,6 @@ void main()
     Found found = found_by(ray_origin[index], ray_delta[index], record, hit_t[index]);
     if (found.weight <= 0.0) return;
     vec4 history = imageLoad(history_image, hit);
-    vec3 colour  = found.light + (history.rgb - found.light) * beta_of(hit, history.a);
+    vec3 colour  = found.light + (history.rgb - found.light) * beta_of(hit, to_camera_vs(hit), history.a);
     imageStore(reflection_image, pixel, vec4(colour * found.attenuation, found.weight));
 }

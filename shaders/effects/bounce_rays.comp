@@ -13,7 +13,7 @@ layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[
 layout(set = 0, binding = 10, scalar) readonly buffer HitTs { real hit_t[]; };
 #ifdef FURTHER
 layout(set = 0, binding = 17, scalar) readonly buffer RaySources { uint ray_source[]; };
-layout(set = 0, binding = 18, scalar) readonly buffer RayThroughputs { float ray_throughput[]; };
+layout(set = 0, binding = 18, scalar) readonly buffer RayThroughputs { vec3 ray_throughput[]; };
 #endif
 layout(set = 0, binding = 19, scalar) buffer DerivedCount { uint derived_count; };
 layout(set = 0, binding = 20, scalar) writeonly buffer DerivedOrigins { real3 derived_origin[]; };
@@ -21,17 +21,17 @@ layout(set = 0, binding = 21, scalar) writeonly buffer DerivedDeltas { real3 der
 layout(set = 0, binding = 22, scalar) writeonly buffer DerivedLengths { real derived_length_m[]; };
 layout(set = 0, binding = 23, scalar) writeonly buffer DerivedPixels { uint derived_pixel[]; };
 layout(set = 0, binding = 24, scalar) writeonly buffer DerivedSources { uint derived_source[]; }; // pixel whose reflection it belongs to
-layout(set = 0, binding = 25, scalar) writeonly buffer DerivedThroughputs { float derived_throughput[]; };
+layout(set = 0, binding = 25, scalar) writeonly buffer DerivedThroughputs { vec3 derived_throughput[]; };
 
 // What light from the hit still weighs in the reflection; 0: the ray is not followed.
-float throughput_of(uint index)
+vec3 throughput_of(uint index)
 {
 #ifdef FURTHER
     return ray_throughput[index];
 #else
-    if (!reflects(unpack_pixel(ray_pixel[index]))) return 0.0;
+    if (!reflects(unpack_pixel(ray_pixel[index]))) return vec3(0);
     Found found = found_by(ray_origin[index], ray_delta[index], hit_pixel[index], hit_t[index]);
-    return found.weight > 0.0 ? found.attenuation : 0.0;
+    return vec3(found.weight > 0.0 ? found.attenuation : 0.0);
 #endif
 }
 
@@ -42,13 +42,13 @@ void main()
     ivec2 hit     = unpack_pixel(record);
     bool  follows = unpack_status(record) == TRACE_HIT && !in_second_layer(record) && reflects(hit);
     real3 arriving = real3(0), normal = real3(0);
-    float throughput = 0.0;
+    vec3  throughput = vec3(0);
     if (follows)
     {
         arriving   = ray_direction(ray_origin[index], ray_delta[index]);
         normal     = normal_at(hit);
         throughput = throughput_of(index);
-        follows    = throughput > 0.0 && dot(arriving, normal) < real(0);
+        follows    = throughput != vec3(0) && dot(arriving, normal) < real(0);
     }
 
     uvec4 ballot = subgroupBallot(follows);

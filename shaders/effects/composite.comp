@@ -1,5 +1,5 @@
 // The picture: C = C_own + (C_reflected - C_own) * beta.
-#include "shared.h"
+#include "view.glsl"
 #include "reflecting.glsl"
 #include "effect/parameters"
 #include "effects/beta.glsl"
@@ -16,6 +16,6 @@ void main()
     if (any(greaterThanEqual(pixel, imageSize(shaded_image)))) return;
     vec3 colour     = imageLoad(radiance_image, pixel).rgb + imageLoad(highlight_image, pixel).rgb;
     vec4 reflection = imageLoad(reflection_image, pixel);
-    if (reflection.a > 0.0) colour += (reflection.rgb - colour) * beta_of(pixel, reflection.a);
+    if (reflection.a > 0.0) colour += (reflection.rgb - colour) * beta_of(pixel, to_camera_vs(pixel), reflection.a);
     imageStore(shaded_image, pixel, vec4(colour, 1));
 }

@@ -1,4 +1,4 @@
-// The colour that a ray brings back, and how much it weighs: rgb and weight of a pixel's reflection.
+// The colour that a ray brings back, and how much it weighs: rgb and weight of a pixel's reflection, the mean over the pixel's rays.
 #include "view.glsl"
 #include "reflecting.glsl"
 #include "effect/parameters"
@@ -13,13 +13,41 @@ layout(set = 0, binding = 8, scalar) readonly buffer RayPixels { uint ray_pixel[
 layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[]; };
 layout(set = 0, binding = 10, scalar) readonly buffer HitTs { real hit_t[]; };
 layout(set = 0, binding = 13, rgba16f) uniform writeonly image2D reflection_image;
+layout(set = 0, binding = 15, r32ui) uniform writeonly uimage2D block_pixel_image;
+
+// Colour and weight.
+vec4 reflection_of(uint index)
+{
+    Found found = found_by(ray_origin[index], ray_delta[index], hit_pixel[index], hit_t[index]);
+    return vec4(found.light * found.attenuation, found.weight);
+}
+
+// The mean of the pictures that the rays would make one by one, if more than half of them hit.
+// J. Somerville Roberts, "Screen Space Reflections": noise is where few of them do.
+vec4 mean_reflection(uint first)
+{
+    vec4 sum  = vec4(0);
+    int  hits = 0;
+    for (int ray = 0; ray < rays_per_pixel; ++ray)
+    {
+        if (unpack_status(hit_pixel[first + ray]) == TRACE_HIT)
+        {
+            vec4 reflection = reflection_of(first + ray);
+            sum += vec4(reflection.rgb * reflection.a, reflection.a);
+            ++hits;
+        }
+    }
+    if (2 * hits <= rays_per_pixel || sum.a <= 0.0) return vec4(0);
+    return vec4(sum.rgb / sum.a, sum.a / float(rays_per_pixel));
+}
 
 void main()
 {
     uint index = (gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x) * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    if (index >= ray_count) return;
-    ivec2 pixel = unpack_pixel(ray_pixel[index]);
+    uint first = index * rays_per_pixel;
+    if (first >= ray_count) return;
+    ivec2 pixel = unpack_pixel(ray_pixel[first]);
     if (!reflects(pixel)) return;
-    Found found = found_by(ray_origin[index], ray_delta[index], hit_pixel[index], hit_t[index]);
-    imageStore(reflection_image, pixel, vec4(found.light * found.attenuation, found.weight));
+    imageStore(reflection_image, pixel, rays_per_pixel > 1 ? mean_reflection(first) : reflection_of(first));
+    if (block_px > 1) imageStore(block_pixel_image, pixel / block_px, uvec4(pack_pixel(pixel, 0)));
 }

@@ -1,12 +1,19 @@
 // What a ray brings back of the surface that it hit, and how much that weighs. After view.glsl, reflecting.glsl and
 // effect/parameters.
+#include "effects/blocks.glsl"
 
 layout(set = 0, binding = 11, rgba16f) uniform readonly image2D radiance_image;
 layout(set = 0, binding = 12, rgba16f) uniform readonly image2D highlight_image;
+layout(set = 0, binding = 14, rgba16f) uniform readonly image2D small_colour_image;
 #ifdef SECOND_LAYER
-layout(set = 0, binding = 14, r32f) uniform readonly image2D second_depth_image;
-layout(set = 0, binding = 15, rgba16f) uniform readonly image2D second_radiance_image;
-layout(set = 0, binding = 16, rgba16f) uniform readonly image2D second_highlight_image;
+layout(set = 0, binding = 26, r32f) uniform readonly image2D second_depth_image;
+layout(set = 0, binding = 27, rgba32f) uniform readonly image2D second_normal_image;
+layout(set = 0, binding = 28, rgba16f) uniform readonly image2D second_material_image;
+layout(set = 0, binding = 29, rgba16f) uniform readonly image2D second_radiance_image;
+layout(set = 0, binding = 30, rgba16f) uniform readonly image2D second_highlight_image;
+#define LOAD_LAYER(name, pixel, second) ((second) ? imageLoad(second_##name, pixel) : imageLoad(name, pixel))
+#else
+#define LOAD_LAYER(name, pixel, second) imageLoad(name, pixel)
 #endif
 
 struct Found
@@ -16,33 +23,57 @@ struct Found
     float weight;
 };
 
-// The part of the pixel's lit colour that reflections show.
-vec3 light_of(ivec2 pixel)
+#ifdef MIRRORED_LIGHT
+#define LIGHTS_BINDING 31
+#include "lighting.glsl"
+layout(set = 0, binding = 34, scalar) uniform Frame // the beginning of gbuffer.frag's
 {
-    vec3 light = imageLoad(radiance_image, pixel).rgb;
-    if (hit_light == hit_light_lit) light += imageLoad(highlight_image, pixel).rgb;
-    return light;
+    mat4  world_to_view;
+    vec3  eye_ws;
+    int   frame_orthographic;
+    vec3  view_axis_ws;
+    int   light_count;
+};
+
+// The highlight of a surface as the reflector sees it.
+vec3 highlight_along(ivec2 pixel, bool second, vec3 position_vs, vec3 direction_vs)
+{
+    mat3 view_to_world = transpose(mat3(world_to_view));
+    vec4 normal        = LOAD_LAYER(normal_image, pixel, second), material = LOAD_LAYER(material_image, pixel, second);
+    vec3 position_ws   = view_to_world * (position_vs - world_to_view[3].xyz), irradiance, highlights;
+    light_surface(Surface(position_ws, view_to_world * normal.xyz, material.rgb, material.a, normal.w), light_count,
+                  view_to_world * -direction_vs, irradiance, highlights);
+    return highlights;
+}
+#endif
+
+vec3 blurred_light(vec2 point_px)
+{
+    ivec2 size  = (size_px - 1) / block_px + 1;
+    vec2  place = point_px / float(block_px) - 0.5;
+    ivec2 from  = ivec2(floor(place)), to = min(from + 1, size - 1);
+    vec2  share = place - vec2(from);
+    from        = max(from, ivec2(0));
+    vec3 above  = mix(imageLoad(small_colour_image, from).rgb, imageLoad(small_colour_image, ivec2(to.x, from.y)).rgb, share.x);
+    vec3 below  = mix(imageLoad(small_colour_image, ivec2(from.x, to.y)).rgb, imageLoad(small_colour_image, to).rgb, share.x);
+    return mix(above, below, share.y);
 }
 
-vec3 light_of_layer(ivec2 pixel, bool second)
+// The part of a surface's light that a ray in this direction brings back: of the pixel, or about point_px where rays have a lower resolution.
+vec3 light_along(ivec2 pixel, bool second, vec2 point_px, vec3 surface_vs, vec3 direction)
 {
-#ifdef SECOND_LAYER
-    if (second)
+    vec3 light;
+    if (block_px > 1 && cross_blur)
+        light = blurred_light(point_px);
+    else
     {
-        vec3 light = imageLoad(second_radiance_image, pixel).rgb;
-        if (hit_light == hit_light_lit) light += imageLoad(second_highlight_image, pixel).rgb;
-        return light;
+        light = LOAD_LAYER(radiance_image, pixel, second).rgb;
+        if (hit_light == hit_light_lit) light += LOAD_LAYER(highlight_image, pixel, second).rgb;
     }
+#ifdef MIRRORED_LIGHT
+    light += highlight_along(pixel, second, surface_vs, direction);
 #endif
-    return light_of(pixel);
-}
-
-float depth_of_layer(ivec2 pixel, bool second)
-{
-#ifdef SECOND_LAYER
-    if (second) return imageLoad(second_depth_image, pixel).x;
-#endif
-    return imageLoad(depth_image, pixel).x;
+    return light;
 }
 
 // Direction of the ray in view space, from two points of its segment; the end may lie at infinity.
@@ -79,11 +110,11 @@ float edge_weight(vec2 uv)
 float depth_step_weight(ivec2 pixel, bool second)
 {
     if (depth_step_fade_m <= 0.0) return 1.0;
-    float own_m = depth_to_distance(depth_of_layer(pixel, second)), largest_m = 0.0;
+    float own_m = depth_to_distance(LOAD_LAYER(depth_image, pixel, second).x), largest_m = 0.0;
     for (int i = 0; i < 4; ++i)
     {
         ivec2 next  = clamp(pixel + ivec2((i & 1) * (i - 2), (1 - (i & 1)) * (i - 1)), ivec2(0), size_px - 1);
-        float depth = depth_of_layer(next, second);
+        float depth = LOAD_LAYER(depth_image, next, second).x;
         largest_m   = max(largest_m, depth > 0.0 ? abs(depth_to_distance(depth) - own_m) : depth_step_fade_m);
     }
     return 1.0 - clamp(largest_m / depth_step_fade_m, 0.0, 1.0);
@@ -111,9 +142,9 @@ Found found_by(vec3 origin, vec3 delta, uint record, float t)
     bool  second    = in_second_layer(record);
     vec3  point     = origin + delta * t;
     vec3  direction = ray_direction(origin, delta), origin_vs = px_to_vs(origin);
-    vec3  surface_vs = px_to_vs(vec3(vec2(hit) + 0.5, depth_of_layer(hit, second)));
+    vec3  surface_vs = px_to_vs(vec3(vec2(hit) + 0.5, LOAD_LAYER(depth_image, hit, second).x));
     // A. Biro: a surface that is met elsewhere than where the ray goes is the wrong one.
     if (dot(direction, normalize(surface_vs - origin_vs)) < min_direction_cosine) return Found(vec3(0), 0.0, 0.0);
-    return Found(light_of_layer(hit, second), attenuation_at(distance(px_to_vs(point), origin_vs)),
+    return Found(light_along(hit, second, point.xy, surface_vs, direction), attenuation_at(distance(px_to_vs(point), origin_vs)),
                  weight_of(-direction.z, point.xy / vec2(size_px), depth_step_weight(hit, second)));
 }

@@ -2,9 +2,9 @@
 // the child by comparing t with the middle border. So the finest cells passed are exactly the pixels of the walk (docs/exactness.md).
 TraceResult trace(Ray ray)
 {
-    Grid  grid     = make_grid(ray);
-    real2 t_border = border_t(ray, grid, ray.start_pixel + grid.forward);
-    real  t        = exit_t(grid, t_border), t_out = t;
+    Grid      grid     = make_grid(ray);
+    crossing2 t_border = border_t(ray, grid, ray.start_pixel + grid.forward);
+    crossing  t        = exit_t(grid, t_border), t_out = t;
     int   top = min(top_level, pyramid_levels()), level = min(start_level, top), visited = 0;
     ivec2 cell  = cross_borders(grid, ray.start_pixel, t_border, t) >> level;
     bool  found = false;
@@ -12,7 +12,7 @@ TraceResult trace(Ray ray)
     {
         t_border     = border_t(ray, grid, (cell + grid.forward) << level);
         t_out        = exit_t(grid, t_border);
-        bool touched = touches_cell(ray, cell, level, depth_at(ray, t), depth_at(ray, t_out));
+        bool touched = touches_cell(ray, grid, cell, level, t, t_out);
         found        = touched && level == 0;
 
         int   below = max(level - 1, 0);
@@ -25,6 +25,6 @@ TraceResult trace(Ray ray)
         level     = touched ? below : level + climb;
         ++visited;
     }
-    if (found) return hit_between(ray, cell, t, t_out, visited);
+    if (found) return hit_between(ray, cell, crossing_to_t(grid, t), crossing_to_t(grid, t_out), visited);
     return t < grid.t_end ? out_of_steps(visited) : miss(ray, visited);
 }

@@ -1,13 +1,14 @@
 // Screen t of sample i; > 1 beyond the end of the segment.
 real sample_t(Ray ray, int i)
 {
+    if (space == space_pixels) return real(i) * stride_to_t(ray, real(stride_px));
     real fraction = real(i) / real(steps);
     return space == space_screen ? fraction : metres_to_t(ray, max_distance_m * fraction);
 }
 
 TraceResult trace(Ray ray)
 {
-    real  t = real(0), z = ray.origin.z;
+    real  t_before = real(0), t = real(0), z = ray.origin.z;
     ivec2 pixel = ray.start_pixel;
     bool  ended = false, found = false;
     int   taken = 0;
@@ -15,12 +16,18 @@ TraceResult trace(Ray ray)
     {
         ++taken;
         real z_before = z;
-        t     = sample_t(ray, taken);
-        ended = t > real(1);
-        pixel = pixel_at(ray, t);
-        z     = depth_at(ray, t);
-        found = !ended && pixel != ray.start_pixel && touches_surface(ray, pixel, interval ? z_before : z, z);
+        t_before      = t;
+        t             = sample_t(ray, taken);
+        ended         = t > real(1);
+        pixel         = pixel_at(ray, t);
+        z             = depth_at(ray, t);
+        found         = !ended && pixel != ray.start_pixel && touches_surface(ray, pixel, interval ? z_before : z, z);
     }
-    if (found) return hit_at(ray, pixel, t, taken);
-    return miss(ray, taken);
+    if (!found) return space == space_pixels && !ended && sample_t(ray, taken + 1) <= real(1) ? out_of_steps(taken) : miss(ray, taken);
+    if (!interpolate || ray.delta.z == real(0)) return hit_at(ray, pixel, t, taken);
+
+    ivec2 front = pixel_at(ray, clamp((fetch_depth(pixel) - ray.origin.z) / ray.delta.z, t_before, t));
+    real2 span  = span_in_pixel(ray, make_grid(ray), front);
+    bool  moves = front != ray.start_pixel && touches_surface(ray, front, depth_at(ray, span.x), depth_at(ray, span.y));
+    return moves ? hit_between(ray, front, span.x, span.y, taken) : hit_at(ray, pixel, t, taken);
 }

@@ -63,6 +63,56 @@ class Test(Case):
         self.ssrlab("run", spec, "-o", "out", "--resume")
         self.assert_complete(self.rows(), SWEEP_ROWS)
 
+    def test_failed_runs_are_tried_again(self):
+        spec = self.write("s.toml", 'views = ["default", "moon"]\n' + SWEEP)
+        for written in (2 * SWEEP_ROWS, SWEEP_ROWS):
+            resume = ["--resume"] if written == SWEEP_ROWS else []
+            self.ssrlab("run", spec, "-o", "out", *resume, code=1, says=[f"{written} written now", f"{SWEEP_ROWS} of them failed"])
+            rows = self.rows()
+            self.assertEqual(len({row["run_id"] for row in rows}), len(rows))
+            self.assertEqual([len([row for row in rows if row["outcome"] == o]) for o in ("ok", "failed")], [SWEEP_ROWS] * 2)
+            self.assertTrue(all("moon" in row["message"] for row in rows if row["outcome"] == "failed"))
+
+    def test_resume_refuses_another_model(self):
+        """Not the recipe changes but a texture that the material file of a model names."""
+        self.write("models/tile.obj", "mtllib tile.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl tile\nf 1 2 3\n")
+        self.write("models/tile.mtl", "newmtl tile\nmap_Kd tile.png\n")
+        self.write("models/tile.png", "no picture: left out with a warning")
+        recipe = self.write("scene.toml", '[[part]]\nfile = "models/tile.obj"\n[[view]]\nname = "default"\n'
+                            'position = [0, 0, 3]\ntarget = [0, 0, 0]\n')
+        spec = self.write("s.toml", f'scenes = ["{recipe}"]\nsizes = ["16x9"]\n[techniques.dda]\n[measure]\nmin_repeats = 1\n'
+                          'max_repeats = 1\n')
+        self.ssrlab("run", spec, "-o", "out")
+        self.assertEqual([row["outcome"] for row in self.rows()], ["no_rays"])
+        self.ssrlab("run", spec, "-o", "out", "--resume", says=["0 written now"])
+        self.write("models/tile.png", "another")
+        self.refused("run", spec, "-o", "out", "--resume", code=2, says=["cannot be resumed", "scene.toml"])
+
+    def test_empty_and_dull_scenes_are_rows(self):
+        """Nothing on screen, nothing that reflects, nothing to be reflected, normals that are none: stated outcomes, no NaN."""
+        dull = self.write("dull.toml", '[[part]]\nshape = "plane"\nsize_m = [9, 0, 9]\n[[view]]\nname = "default"\n'
+                          'position = [0, 1, 4]\ntarget = [0, 0, 0]\n')
+        alone = self.write("alone.toml", '[[part]]\nshape = "plane"\nsize_m = [9, 0, 9]\nmaterial = { metallic = 1 }\n[[view]]\n'
+                           'name = "default"\nposition = [0, 1, 4]\ntarget = [0, 0, 0]\n')
+        self.write("odd.obj", "".join(f"v {x} 0 {z}\n" for x, z in ((-4, 4), (4, 4), (4, -4), (-4, -4))) +
+                   "vn nan nan nan\nvn 0 0 0\nvn 1e-40 0 0\nf 1//1 2//2 3//3\nf 1//2 3//2 4//2\n")
+        odd = self.write("odd.toml", '[[part]]\nfile = "odd.obj"\nmaterial = { metallic = 1 }\n[[view]]\n'
+                         'name = "default"\nposition = [0, 1, 4]\ntarget = [0, 0, 0]\n')
+        spec = self.write("s.toml", SWEEP.replace('"builtin:stairs", "builtin:sphere_over_mirror", "builtin:corridor"',
+                                                  f'"builtin:void", "{dull}", "{alone}", "{odd}"'))
+        self.ssrlab("run", spec, "-o", "out")
+        rows = self.rows()
+        self.assertEqual(len(rows), 4 * SWEEP_ROWS // 3)
+        for row in rows:
+            reflects = row["scene"] in (alone, odd)
+            self.assertEqual(row["outcome"], "ok" if reflects else "no_rays")
+            self.assertEqual(row["rays"] != "0", reflects)
+            self.assertEqual(row["truth_sky"], "1" if reflects else "")
+            self.assertEqual(row["recall_1px"], "")  # of the visible points: there are none
+            self.assertGreater(float(row["frame_ms_median"]), 0)
+            self.assertFalse({"nan", "-nan", "inf", "-inf"} & {value.lower() for value in row.values()})
+        self.ssrlab("plot", "out")
+
     def test_torn_last_row_is_repaired(self):
         spec = self.write("s.toml", SWEEP)
         self.ssrlab("run", spec, "-o", "out")

@@ -51,16 +51,13 @@ double ulp(double value)
     return static_cast<double>(std::nextafter(rounded, std::numeric_limits<float>::infinity()) - rounded);
 }
 
-bool hit(const TraceResult& result, size_t index) { return result.status[index] == TraceStatus::hit; }
-
 /// The pixel that one of the two takes and the other passes: the first of their hits; where the ray reaches both at a corner, the one that it
 /// barely touches.
-glm::ivec2 disputed_pixel(const ScreenRay& ray, const TraceResult& truth, const TraceResult& found, size_t index,
-                          double rounding_px)
+glm::ivec2 disputed_pixel(const ScreenRay& ray, const Answer& truth, const Answer& found, double rounding_px)
 {
-    if (!hit(truth, index)) return found.hit_pixel[index];
-    if (!hit(found, index)) return truth.hit_pixel[index];
-    const glm::ivec2 a = truth.hit_pixel[index], b = found.hit_pixel[index];
+    if (truth.status != TraceStatus::hit) return found.hit_pixel;
+    if (found.status != TraceStatus::hit) return truth.hit_pixel;
+    const glm::ivec2 a = truth.hit_pixel, b = found.hit_pixel;
     const double apart = (overlap(ray, a).t_in - overlap(ray, b).t_in) * glm::length(glm::dvec2(ray.delta_px_depth));
     const bool   at_corner = std::abs(apart) <= rounding_px;
     return (at_corner ? depth_inside_px(ray, a) < depth_inside_px(ray, b) : apart < 0) ? a : b;
@@ -68,24 +65,23 @@ glm::ivec2 disputed_pixel(const ScreenRay& ray, const TraceResult& truth, const 
 
 } // namespace
 
-Dispute explain_dispute(const GBufferImage& gbuffer, const TraceSettings& settings, const TraceResult& truth,
-                        const TraceResult& found, size_t index)
+Dispute explain_dispute(const GBufferImage& gbuffer, const TraceSettings& settings, const ScreenRay& ray,
+                        const Answer& truth, const Answer& found)
 {
-    const glm::ivec2 size = gbuffer.view.size_px;
-    const glm::ivec2 start(static_cast<int>(index) % size.x, static_cast<int>(index) / size.x);
-    const ScreenRay  ray       = make_screen_ray(gbuffer, start, settings);
+    const glm::ivec2 size      = gbuffer.view.size_px;
     const double     length_px = glm::length(glm::dvec2(ray.delta_px_depth));
     Dispute          dispute;
-    dispute.missed     = hit(truth, index) && !hit(found, index);
+    const bool       truth_hits = truth.status == TraceStatus::hit, found_hits = found.status == TraceStatus::hit;
+    dispute.missed     = truth_hits && !found_hits;
     dispute.allowed_px = 8 * ulp(std::max(size.x, size.y));
-    if (!hit(truth, index) && !hit(found, index)) {
+    if (!truth_hits && !found_hits) {
         // Neither hits: they disagree on which limit ends the ray, so its end must lie on the image's border.
         const glm::dvec2 end  = glm::dvec2(ray.origin_px_depth) + glm::dvec2(ray.delta_px_depth),
                          rest = glm::dvec2(size) - end;
         dispute.corner_px     = std::min({end.x, end.y, rest.x, rest.y});
         dispute.face          = std::numeric_limits<double>::infinity();
     } else {
-        const glm::ivec2 pixel  = disputed_pixel(ray, truth, found, index, dispute.allowed_px);
+        const glm::ivec2 pixel  = disputed_pixel(ray, truth, found, dispute.allowed_px);
         const Overlap    inside = overlap(ray, pixel);
         const double     depth  = static_cast<double>(
             gbuffer.depth[static_cast<size_t>(pixel.y) * static_cast<size_t>(size.x) + static_cast<size_t>(pixel.x)]);
@@ -97,11 +93,12 @@ Dispute explain_dispute(const GBufferImage& gbuffer, const TraceSettings& settin
         dispute.allowed_face = 8 * ulp(std::max({ray.origin_px_depth.z, z_in, z_out, depth})) +
                                dispute.allowed_px * std::abs(ray.delta_px_depth.z) / length_px;
     }
-    dispute.text = fmt::format("ray of pixel ({}, {}): {} in double, {} in single precision; {:.3g} px into the "
-                               "disputed pixel (rounding: {:.3g}), {:.3g} from its slab's face (rounding: {:.3g})",
-                               start.x, start.y, trace_status_names[static_cast<size_t>(truth.status[index])],
-                               trace_status_names[static_cast<size_t>(found.status[index])], dispute.corner_px,
-                               dispute.allowed_px, dispute.face, dispute.allowed_face);
+    dispute.text =
+        fmt::format("ray of pixel ({}, {}): {} in double, {} in single precision; {:.3g} px into the "
+                    "disputed pixel (rounding: {:.3g}), {:.3g} from its slab's face (rounding: {:.3g})",
+                    ray.start_pixel.x, ray.start_pixel.y, trace_status_names[static_cast<size_t>(truth.status)],
+                    trace_status_names[static_cast<size_t>(found.status)], dispute.corner_px, dispute.allowed_px,
+                    dispute.face, dispute.allowed_face);
     return dispute;
 }
 

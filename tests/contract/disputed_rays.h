@@ -3,6 +3,7 @@
 
 #include "core/gbuffer_image.h"
 #include "core/trace_result.h"
+#include "truth/screen_ray.h"
 
 #include <cmath>
 #include <string>
@@ -21,8 +22,13 @@ struct Dispute {
     bool explained() const { return corner_px <= allowed_px || face <= allowed_face; }
 };
 
-/// `index`: the pixel whose ray it is. The results must differ there.
-Dispute explain_dispute(const GBufferImage& gbuffer, const TraceSettings& settings, const TraceResult& truth,
-                        const TraceResult& found, size_t index);
+struct Answer {
+    TraceStatus status;
+    glm::ivec2  hit_pixel; // undefined unless hit
+};
+
+/// The two answers must differ.
+Dispute explain_dispute(const GBufferImage& gbuffer, const TraceSettings& settings, const ScreenRay& ray,
+                        const Answer& truth, const Answer& found);
 
 } // namespace ssrlab::test

@@ -140,5 +140,19 @@ TEST(GBufferMaterial, PointLightFallsOffWithTheSquare)
         }
 }
 
+// What the planned frame skips is measured on these.
+TEST(GBufferMaterial, ATenthOfTheSmallMirrorSceneReflectsAndNothingOfTheMatteOne)
+{
+    for (const auto& [scene, from, to] :
+         {std::tuple("builtin:small_mirror", 0.09, 0.12), {"builtin:matte", 0.0, 0.0}}) {
+        const Picture picture = make_picture(scene, "default", {320, 180});
+        double        share   = 0;
+        for (const float metallic : picture.image.metallic) share += metallic > 0;
+        share /= 320 * 180;
+        EXPECT_GE(share, from) << scene;
+        EXPECT_LE(share, to) << scene;
+    }
+}
+
 } // namespace
 } // namespace ssrlab::test

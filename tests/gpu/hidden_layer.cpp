@@ -46,7 +46,8 @@ Camera level_camera(Projection projection = Projection::perspective)
 
 ParameterValues effects_with(const ParameterValues& changed)
 {
-    ParameterValues effects = default_effect_values();
+    ParameterValues effects    = default_effect_values();
+    effects.at("hidden_layer") = 1;
     for (const auto& [name, value] : changed) effects.at(name) = value;
     return effects;
 }

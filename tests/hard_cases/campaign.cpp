@@ -3,6 +3,7 @@
 #include "gpu/device.h"
 #include "hard_cases/integer_oracle.h"
 #include "hard_cases/random_rays.h"
+#include "truth/parallel_rows.h"
 
 #include <fmt/core.h>
 
@@ -11,128 +12,201 @@
 namespace ssrlab::test {
 namespace {
 
-bool long_run() { return std::getenv("SSRLAB_LONG") != nullptr; }
+/// A million rays over all sizes in every run, a hundred million in the long one. There the integers judge one batch in `judged_every`.
+struct Plan {
+    size_t                  rays = 1'000'000, batch = 31'250, judged_every = 1;
+    std::vector<glm::ivec2> sizes = {{17, 31},   {127, 131},  {641, 359}, {1920, 1080},
+                                     {4099, 33}, {16384, 16}, {3, 8191},  {1, 97}};
+};
+
+Plan plan()
+{
+    if (std::getenv("SSRLAB_LONG") == nullptr) return {};
+    return {100'000'000,
+            250'000,
+            25,
+            {{17, 31}, {641, 359}, {1366, 768}, {1921, 1081}, {3840, 2160}, {16384, 1024}, {16384, 1}, {5, 16383}}};
+}
 
 struct Count {
-    size_t rays = 0, corners = 0, slivers = 0, gross = 0, out_of_steps = 0;
-    size_t hits = 0;
-    double per_million(size_t n) const
+    size_t rays = 0, hits = 0;
+    size_t differ = 0, differ_exact = 0, too_long = 0, stuck = 0; // hiz against dda, float and exact
+    size_t judged = 0, corners = 0, slivers = 0, gross = 0;       // dda against integers
+    size_t exact_wrong = 0;                                       // dda with arithmetic = exact against integers
+    double slivers_per_million() const { return 1e6 * static_cast<double>(slivers) / static_cast<double>(judged); }
+
+    void add(const Count& other)
     {
-        return rays == 0 ? 0 : 1e6 * static_cast<double>(n) / static_cast<double>(rays);
+        for (size_t Count::*n :
+             {&Count::rays, &Count::hits, &Count::differ, &Count::differ_exact, &Count::too_long, &Count::stuck,
+              &Count::judged, &Count::corners, &Count::slivers, &Count::gross, &Count::exact_wrong})
+            this->*n += other.*n;
     }
 };
 
-std::vector<RayOutcome> outcomes_of(const std::string& id, const ParameterValues& changed, const GBufferPtr& gbuffer,
-                                    const std::vector<RayInput>& rays)
+std::string table_row(const std::string& name, const Count& c)
 {
-    const Technique& t = technique(id);
-    const auto tracer  = make_ray_tracer(device(), gbuffer, t, values_of(t, changed), campaign_settings, rays.size());
-    return trace_rays(device(), *tracer, rays);
+    return fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {:.1f} | {} | {} |\n", name, c.rays, c.hits,
+                       c.differ, c.differ_exact, c.stuck, c.too_long, c.judged, c.gross, c.slivers,
+                       c.slivers_per_million(), c.corners, c.exact_wrong);
 }
 
-/// Compares with the oracle; a difference is a sliver or gross as check/judge.h says.
-void judge_against_integers(const Setup& field, const std::vector<RayInput>& rays,
-                            const std::vector<RayOutcome>& outcomes, Count& count, std::string& first)
+constexpr const char* table_head = "| image | rays | hits | hiz ≠ dda | the same, exact | out of steps | beyond the "
+                                   "bound | judged by integers | gross "
+                                   "| slivers | slivers per million | touch at a corner | exact: wrong |\n"
+                                   "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n";
+
+using Outcomes = std::vector<RayOutcome>;
+
+bool same_bits(const RayOutcome& a, const RayOutcome& b)
 {
-    const Judge judge(field);
-    for (size_t i = 0; i < rays.size(); ++i) {
-        const OracleAnswer exact = integer_oracle(field.gbuffer, rays[i]);
-        const RayOutcome&  found = outcomes[i];
-        ++count.rays;
-        count.hits += exact.hit;
-        count.out_of_steps += found.status == TraceStatus::out_of_steps;
-        const bool hit = found.status == TraceStatus::hit;
-        if (hit == exact.hit && (!hit || found.hit_pixel == exact.pixel)) continue;
-        // Where double precision sides with float and the integers with neither, the judge says "right": a sliver all the same.
-        const Judgement judgement = judge.judge(rays[i], found, {});
-        const bool      wrong     = judgement.verdict == Verdict::wrong,
-                   corner         = hit && passes_through_a_corner(rays[i], found.hit_pixel);
-        (wrong ? count.gross : corner ? count.corners : count.slivers)++;
-        if (judgement.verdict == Verdict::wrong && first.empty()) first = judgement.reason;
-    }
+    return a.status == b.status && (a.status != TraceStatus::hit || (a.hit_pixel == b.hit_pixel && a.t == b.t));
 }
 
-constexpr glm::ivec2 quick_sizes[] = {{17, 31},   {127, 131},  {641, 359}, {1920, 1080},
-                                      {4099, 33}, {16384, 16}, {3, 8191},  {1, 97}};
-constexpr glm::ivec2 long_sizes[]  = {{17, 31},     {641, 359},    {1366, 768}, {1921, 1081}, {3840, 2160},
-                                      {7680, 4320}, {16384, 1024}, {16384, 1},  {5, 16383}};
-
-std::vector<glm::ivec2> sizes()
-{
-    if (long_run()) return {std::begin(long_sizes), std::end(long_sizes)};
-    return {std::begin(quick_sizes), std::end(quick_sizes)};
-}
-
-/// 100 million rays in the long run, a million otherwise.
-size_t rays_per_field() { return (long_run() ? 100'000'000 : 1'000'000) / (sizes().size() * std::size(all_fields)); }
-
-TEST(Campaign, HizEqualsThePixelWalkOnEveryRay)
-{
-    constexpr size_t                   batch    = 1'000'000;
-    const std::vector<ParameterValues> variants = {{},
-                                                   {{"pyramid", 1}, {"start_level", 14}, {"top_level", 14}},
-                                                   {{"pyramid", 2}, {"start_level", 5}, {"top_level", 3}}};
-    size_t                             rays = 0, differ = 0, too_long = 0, stuck = 0;
-    for (const glm::ivec2& size : sizes())
-        for (const Field field : all_fields) {
-            const ssrlab::Setup setup   = make_field(field, size, 1);
-            const auto          gbuffer = upload_depth(device(), setup.gbuffer.view, setup.gbuffer.depth);
-            for (size_t done = 0; done < rays_per_field(); done += batch) {
-                const auto list = random_rays(
-                    size, std::min(batch, rays_per_field() - done),
-                    static_cast<uint32_t>(7919 * done + 13 * static_cast<size_t>(field) + static_cast<size_t>(size.x)));
-                const auto walk = outcomes_of("dda", {}, gbuffer, list);
-                // The long run takes one variant a batch, in turn.
-                for (size_t v = 0; v < variants.size(); ++v) {
-                    if (long_run() && v != (done / batch) % variants.size()) continue;
-                    const auto found = outcomes_of("hiz", variants[v], gbuffer, list);
-                    const auto start = values_of(technique("hiz"), variants[v]).at("start_level");
-                    for (size_t i = 0; i < list.size(); ++i) {
-                        const bool same = found[i].status == walk[i].status &&
-                                          (walk[i].status != TraceStatus::hit ||
-                                           (found[i].hit_pixel == walk[i].hit_pixel && found[i].t == walk[i].t));
-                        differ += !same;
-                        too_long += found[i].steps > 2.0 * (size.x + size.y - 1) + start;
-                        stuck +=
-                            found[i].status == TraceStatus::out_of_steps || walk[i].status == TraceStatus::out_of_steps;
-                    }
-                }
-                rays += list.size();
+/// One picture and the tracers on it: dda and some ways to run hiz, each in float and in whole numbers.
+class FieldTracers {
+public:
+    FieldTracers(const ssrlab::Setup& field, size_t batch)
+        : gbuffer_(upload_depth(device(), field.gbuffer.view, field.gbuffer.depth)), batch_(batch),
+          bound_(2.0 * (field.gbuffer.view.size_px.x + field.gbuffer.view.size_px.y - 1))
+    {
+        for (const double exact : {0.0, 1.0}) {
+            walks_.push_back(make("dda", {{"arithmetic", exact}}));
+            for (ParameterValues variant : hiz_variants) {
+                variant["arithmetic"] = exact;
+                (exact == 0 ? hiz_float_ : hiz_exact_).push_back(make("hiz", variant));
             }
         }
-    fmt::print("{} rays: {} differ, {} out of steps, {} beyond 2 (W + H - 1) + start level\n", rays, differ, stuck,
-               too_long);
-    RecordProperty("rays", static_cast<int>(rays));
-    EXPECT_EQ(differ, 0U);
-    EXPECT_EQ(stuck, 0U);
-    EXPECT_EQ(too_long, 0U);
+    }
+
+    Outcomes walk(bool exact, const std::vector<RayInput>& rays) { return trace_rays(device(), *walks_[exact], rays); }
+
+    /// Rays on which hiz in one of its ways differs from the walk; also counts broken bounds.
+    size_t differing(bool exact, size_t variant, const std::vector<RayInput>& rays, const Outcomes& walk, Count& count)
+    {
+        const auto   found  = trace_rays(device(), *(exact ? hiz_exact_ : hiz_float_)[variant], rays);
+        const double start  = values_of(technique("hiz"), hiz_variants[variant]).at("start_level");
+        size_t       differ = 0;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            differ += !same_bits(found[i], walk[i]);
+            count.too_long += found[i].steps > bound_ + start;
+            count.stuck += found[i].status == TraceStatus::out_of_steps || walk[i].status == TraceStatus::out_of_steps;
+        }
+        return differ;
+    }
+
+    static size_t variants() { return hiz_variants.size(); }
+
+private:
+    RayTracerPtr make(const std::string& id, const ParameterValues& changed)
+    {
+        return make_ray_tracer(device(), gbuffer_, technique(id), values_of(technique(id), changed), campaign_settings,
+                               batch_);
+    }
+
+    static inline const std::vector<ParameterValues> hiz_variants = {
+        {},
+        {{"pyramid", 1}, {"start_level", 14}, {"top_level", 14}},
+        {{"pyramid", 2}, {"start_level", 5}, {"top_level", 3}}};
+
+    GBufferPtr                gbuffer_;
+    size_t                    batch_;
+    double                    bound_;
+    std::vector<RayTracerPtr> walks_, hiz_float_, hiz_exact_;
+};
+
+/// Compares with the oracle; a difference of the float walk is a sliver or gross as check/judge.h says, one of the exact walk is wrong.
+void judge_by_integers(const ssrlab::Setup& field, const std::vector<RayInput>& rays, const Outcomes& walk,
+                       const Outcomes& exact_walk, Count& count, std::string& first)
+{
+    const Judge      judge(field);
+    std::mutex       mutex;
+    constexpr size_t chunk  = 1000;
+    const auto       chunks = static_cast<int>((rays.size() + chunk - 1) / chunk);
+    parallel_rows(chunks, 0, [&](int number) {
+        Count        local;
+        std::string  wrong;
+        const size_t from = static_cast<size_t>(number) * chunk;
+        for (size_t i = from; i < std::min(rays.size(), from + chunk); ++i) {
+            const OracleAnswer truth = integer_oracle(field.gbuffer, rays[i]);
+            const auto         right = [&](const RayOutcome& found) {
+                const bool hit = found.status == TraceStatus::hit;
+                return hit == truth.hit && (!hit || found.hit_pixel == truth.pixel);
+            };
+            ++local.judged;
+            local.hits += truth.hit;
+            if (!right(exact_walk[i])) {
+                ++local.exact_wrong;
+                wrong = fmt::format("exact arithmetic: ray from ({}, {}, {}) by ({}, {}, {})",
+                                    rays[i].origin_px_depth.x, rays[i].origin_px_depth.y, rays[i].origin_px_depth.z,
+                                    rays[i].delta_px_depth.x, rays[i].delta_px_depth.y, rays[i].delta_px_depth.z);
+            }
+            if (right(walk[i])) continue;
+            // Where double precision sides with float and the integers with neither, the judge says "right": a sliver all the same.
+            const Judgement judgement = judge.judge(rays[i], walk[i], {});
+            const bool      gross     = judgement.verdict == Verdict::wrong,
+                       corner =
+                           walk[i].status == TraceStatus::hit && passes_through_a_corner(rays[i], walk[i].hit_pixel);
+            (gross ? local.gross : corner ? local.corners : local.slivers)++;
+            if (gross) wrong = judgement.reason;
+        }
+        const std::lock_guard lock(mutex);
+        count.add(local);
+        if (first.empty()) first = wrong;
+    });
 }
 
-TEST(Campaign, TheWalkFindsWhatIntegersFind)
+Count campaign_on(Field field, glm::ivec2 size, const Plan& plan, size_t rays, std::string& first)
 {
-    constexpr size_t batch = 1'000'000;
+    const ssrlab::Setup setup = make_field(field, size, 1);
+    FieldTracers        tracers(setup, plan.batch);
+    Count               count;
+    for (size_t number = 0; count.rays < rays; ++number) {
+        const auto seed  = static_cast<uint32_t>(7919 * number + 13 * static_cast<size_t>(field) +
+                                                104729 * static_cast<size_t>(size.x));
+        const auto list  = random_rays(size, std::min(plan.batch, rays - count.rays), seed);
+        const auto walk  = tracers.walk(false, list);
+        const bool judge = number % plan.judged_every == 0;
+        // Every way to run hiz where the integers judge, else one of them in turn.
+        for (size_t v = 0; v < FieldTracers::variants(); ++v)
+            if (judge || v == number % FieldTracers::variants())
+                count.differ += tracers.differing(false, v, list, walk, count);
+        count.rays += list.size();
+        if (!judge) continue;
+        const auto exact_walk = tracers.walk(true, list);
+        for (size_t v = 0; v < FieldTracers::variants(); ++v)
+            count.differ_exact += tracers.differing(true, v, list, exact_walk, count);
+        judge_by_integers(setup, list, walk, exact_walk, count, first);
+    }
+    return count;
+}
+
+class Campaign : public testing::TestWithParam<glm::ivec2> {};
+
+TEST_P(Campaign, RandomRaysOfAllClasses)
+{
+    const Plan       all  = plan();
+    const glm::ivec2 size = GetParam();
+    const size_t     rays = all.rays / (all.sizes.size() * std::size(all_fields));
     Count            count;
     std::string      first;
-    for (const glm::ivec2& size : sizes())
-        for (const Field field : all_fields) {
-            const ssrlab::Setup setup   = make_field(field, size, 2);
-            const auto          gbuffer = upload_depth(device(), setup.gbuffer.view, setup.gbuffer.depth);
-            for (size_t done = 0; done < rays_per_field(); done += batch) {
-                const auto list = random_rays(size, std::min(batch, rays_per_field() - done),
-                                              static_cast<uint32_t>(104729 * done + 17 * static_cast<size_t>(field) +
-                                                                    static_cast<size_t>(size.y)));
-                judge_against_integers(setup, list, outcomes_of("dda", {}, gbuffer, list), count, first);
-            }
-        }
-    fmt::print("{} rays, {} hits: {} in a pixel touched at its corner, {} slivers ({:.1f} a million), {} gross, {} out "
-               "of steps\n",
-               count.rays, count.hits, count.corners, count.slivers, count.per_million(count.slivers), count.gross,
-               count.out_of_steps);
-    EXPECT_GT(count.hits, count.rays / 10);
+    for (const Field field : all_fields) count.add(campaign_on(field, size, all, rays, first));
+    fmt::print("{}{}", table_head, table_row(fmt::format("{} × {}", size.x, size.y), count));
+    EXPECT_EQ(count.rays, rays * std::size(all_fields));
+    EXPECT_GT(count.hits, count.judged / 100);
+    EXPECT_EQ(count.differ, 0U);
+    EXPECT_EQ(count.differ_exact, 0U);
+    EXPECT_EQ(count.stuck, 0U);
+    EXPECT_EQ(count.too_long, 0U);
     EXPECT_EQ(count.gross, 0U) << first;
-    EXPECT_EQ(count.out_of_steps, 0U);
-    EXPECT_LE(count.per_million(count.slivers), 50);
+    EXPECT_LE(count.slivers_per_million(), 50);
+    EXPECT_EQ(count.exact_wrong, 0U) << first;
 }
+
+INSTANTIATE_TEST_SUITE_P(Sizes, Campaign, testing::ValuesIn(plan().sizes),
+                         [](const testing::TestParamInfo<glm::ivec2>& size) {
+                             return fmt::format("{}x{}", size.param.x, size.param.y);
+                         });
 
 } // namespace
 } // namespace ssrlab::test

@@ -64,6 +64,23 @@ TEST(Judge, AHitThatIsNoneIsWrongWhateverTheLimits)
                 HasSubstr("but the ray is in that pixel from"));
 }
 
+// A ray that goes from 4 m to 6 m deep leaves the slab depths of the pole at 4 m 7.8 px before it: a step of 8.2 px bridges that, one of 6.1 px does not.
+TEST(Judge, WholeStepsReachNoFartherThanAStep)
+{
+    auto setup    = two_poles(0.5);
+    setup.gbuffer = picture_of(bench_view(), [](glm::ivec2 p) { return p.x == 30 ? 4.0 : 0.0; });
+    setup.rays    = {ray_between(setup.gbuffer.view, {5.5, 10.5, 4.0}, {55.5, 10.5, 6.0})};
+    const Judge judge(setup);
+    // Depth is linear in 1/z: at t = 1/3, 7.8 px before column 30, the ray leaves the slab's depths.
+    const Claim whole_steps{.may_hit_within_a_step = true};
+    auto        outcome = hit({30, 10}, 24.5 / 50);
+    outcome.steps       = 3;
+    EXPECT_EQ(judge.judge(setup.rays[0], outcome, whole_steps).verdict, Verdict::allowed);
+    EXPECT_EQ(judge.judge(setup.rays[0], outcome, {}).verdict, Verdict::wrong);
+    outcome.steps = 4;
+    EXPECT_THAT(judge.judge(setup.rays[0], outcome, whole_steps).reason, HasSubstr("does not meet the slab"));
+}
+
 TEST(Judge, GrazingAPixelByLessThanASliverDecidesNothing)
 {
     auto setup    = two_poles();

@@ -59,13 +59,16 @@ Mutation replaced(const std::string& name, const std::string& function, const st
 std::vector<Mutation> mutations()
 {
     return {
-        replaced("PyramidSizesRoundedDown", "touches_cell",
-                 "bool mutated_touches_cell(Ray ray, ivec2 cell, int level, real a, real b) { return "
-                 "all(lessThan(cell, max(size_px >> level, ivec2(1)))) && touches_cell(ray, cell, level, a, b); }",
-                 "last_row_and_column"),
-        replaced("DepthByMix", "depth_at",
-                 "real mutated_depth_at(Ray ray, real t) { real end = ray.origin.z + ray.delta.z; precise real z = "
-                 "ray.origin.z * (real(1) - t) + end * t; return z; }",
+        replaced(
+            "PyramidSizesRoundedDown", "touches_cell",
+            "bool mutated_touches_cell(Ray ray, Grid grid, ivec2 cell, int level, real a, real b) { return "
+            "all(lessThan(cell, max(size_px >> level, ivec2(1)))) && touches_cell(ray, grid, cell, level, a, b); }",
+            "last_row_and_column"),
+        replaced("DepthByMix", "touches_cell",
+                 "real mixed(Ray ray, real t) { real end = ray.origin.z + ray.delta.z; precise real z = "
+                 "ray.origin.z * (real(1) - t) + end * t; return z; }\n"
+                 "bool mutated_touches_cell(Ray ray, Grid grid, ivec2 cell, int level, real a, real b) { return "
+                 "touches_cell(ray, cell, level, mixed(ray, a), mixed(ray, b)); }",
                  "level_at_the_surface"),
         replaced("BordersMultipliedOut", "border_t",
                  "real2 mutated_border_t(Ray ray, Grid grid, ivec2 border) { return real2(border) * grid.inverse_delta "
@@ -89,16 +92,16 @@ std::vector<Mutation> mutations()
         replaced("PixelFromThePosition", "cross_borders",
                  "ivec2 mutated_cross_borders(Grid grid, ivec2 cell, real2 t_border, real t) { return cell; }", {},
                  "dda"),
-        {"BorderlineDepthIsAMiss", "dda",
-         "found      = touches_surface(ray, pixel, depth_at(ray, t_in), depth_at(ray, t_out));",
-         "found = touches_surface(ray, pixel, depth_at(ray, t_in), depth_at(ray, t_out)) && fetch_depth(pixel) > "
+        {"BorderlineDepthIsAMiss", "dda", "found      = touches_surface(ray, grid, pixel, t_in, t_out);",
+         "found = touches_surface(ray, grid, pixel, t_in, t_out) && fetch_depth(pixel) > "
          "min(depth_at(ray, t_in), depth_at(ray, t_out));",
          "equality_counts"},
         {"OutOfStepsIsAMiss", "hiz", "out_of_steps(visited)", "miss(ray, visited)", "seven_steps"},
         {"StopsBehindTheFirstObject", "dda", "while (!found && t_out < grid.t_end",
          "while (!found && (t_in == real(0) || depth_at(ray, t_out) >= fetch_depth(pixel)) && t_out < grid.t_end",
          "floating_beam"},
-        {"HitBeyondTheEnd", "dda", "if (found) return hit_between(ray, pixel, t_in, t_out, visited);",
+        {"HitBeyondTheEnd", "dda",
+         "if (found) return hit_between(ray, pixel, crossing_to_t(grid, t_in), crossing_to_t(grid, t_out), visited);",
          "if (found) return hit_at(ray, pixel, t_in + real(1), visited);", "axis_aligned"},
         {"NotANumber", "dda", "return t_out < grid.t_end ? out_of_steps(visited) : miss(ray, visited);",
          "return TraceResult(ray.end_status, ivec2(0), sqrt(ray.delta.z - real(1)), visited);",
@@ -116,9 +119,10 @@ size_t campaign_differences(const Technique& mutant)
             const auto          gbuffer = upload_depth(device(), setup.gbuffer.view, setup.gbuffer.depth);
             const auto          rays    = random_rays(size, 50'000, 23);
             const auto          trace   = [&](const Technique& t) {
-                return trace_rays(
-                               device(), *make_ray_tracer(device(), gbuffer, t, default_values(t), campaign_settings, rays.size()),
-                               rays);
+                // Beyond what any of these rays needs; mutants that never end then end soon.
+                const auto tracer = make_ray_tracer(device(), gbuffer, t, values_of(t, {{"max_steps", 10'000}}),
+                                                               campaign_settings, rays.size());
+                return trace_rays(device(), *tracer, rays);
             };
             const auto walk = trace(technique("dda")), found = trace(mutant);
             for (size_t i = 0; i < rays.size(); ++i)

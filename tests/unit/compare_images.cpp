@@ -149,6 +149,40 @@ TEST(ImageMeasures, MaskDecidesWhatCounts)
     EXPECT_LT(values.at("ssim_reflective").value(), 0.7);
 }
 
+// Columns 0..4 do not reflect; the rest does, and from column 12 on it is rough. Wrong is what lies about that border.
+TEST(CompareImages, PicturesOverAllThatReflectsAndAtTheBorderOfMaterials)
+{
+    const glm::ivec2 size_px{24, 10};
+    const Image      reference = uniform(size_px, glm::vec3(0));
+    Image            tested    = reference;
+    SceneTruth       truth;
+    truth.size_px = size_px;
+    GBufferImage gbuffer;
+    gbuffer.view.size_px = size_px;
+    for (int i = 0; i < size_px.x * size_px.y; ++i) {
+        const int  x          = i % size_px.x;
+        const bool reflecting = x >= 5;
+        truth.cls.push_back(!reflecting ? TruthClass::not_traced : x < 15 ? TruthClass::visible : TruthClass::sky);
+        gbuffer.depth.push_back(x == 0 ? 0.0F : 0.5F);
+        gbuffer.metallic.push_back(reflecting ? 1.0F : 0.0F);
+        gbuffer.roughness.push_back(x < 12 ? 0.05F : 0.9F);
+        if (x == 11 || x < 5)
+            for (size_t c = 0; c < 3; ++c) tested.values[3 * static_cast<size_t>(i) + c] = 1;
+    }
+    const MeasureValues values = compare_pictures(tested, reference, truth, gbuffer);
+    EXPECT_NEAR(values.at("picture_rmse").value(), std::sqrt(1.0 / 19), 1e-6);
+    // Within 2 px of a change: columns 5, 6 beside what does not reflect, and 10 to 13.
+    EXPECT_NEAR(values.at("picture_border_rmse").value(), std::sqrt(1.0 / 6), 1e-6);
+    EXPECT_NEAR(values.at("picture_visible_rmse").value(), std::sqrt(0.1), 1e-6);
+    EXPECT_NEAR(values.at("picture_visible_border_rmse").value(), std::sqrt(1.0 / 6), 1e-6);
+    EXPECT_NEAR(values.at("picture_psnr_db").value(), 10 * std::log10(19), 1e-4);
+    EXPECT_GT(values.at("picture_flip").value(), 0);
+    EXPECT_LT(values.at("picture_ssim").value(), 1);
+    gbuffer.metallic.assign(gbuffer.metallic.size(), 1);
+    gbuffer.roughness.assign(gbuffer.roughness.size(), 0.3F);
+    EXPECT_FALSE(compare_pictures(tested, reference, truth, gbuffer).at("picture_border_rmse"));
+}
+
 TEST(ImageMeasures, OfDisplayValues)
 {
     // sRGB encodes linear 0.2140 as 0.5; values beyond 1 are clamped.

@@ -215,6 +215,7 @@ TEST(Measures, TableIsCompleteAndUnique)
     all.merge(count_work(test.tested));
     test.truth.radiance.resize(16);
     all.merge(compare_images(reference_image(test.truth), reference_image(test.truth), test.truth));
+    all.merge(compare_pictures(reference_image(test.truth), reference_image(test.truth), test.truth, test.gbuffer));
     std::set<std::string_view> filled;
     for (const auto& [name, value] : all) filled.insert(name);
     filled.insert("steps_max"); // only with rays

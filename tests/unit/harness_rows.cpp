@@ -173,6 +173,34 @@ TEST(Rows, TheTruthCacheLiesBesideTheResults)
     ::unsetenv("SSRLAB_CACHE");
 }
 
+// What two cores took for a frame of thin_yard (results/reference/lavapipe/resolution), within a factor of two.
+TEST(Rows, TheEstimateFollowsSizeAndTechnique)
+{
+    MeasureSettings measure;
+    measure.truth       = false;
+    measure.warmup      = 0;
+    measure.min_repeats = measure.max_repeats = 1;
+    Technique dda                             = walk, hiz;
+    dda.exact                                 = true;
+    dda.bounded_by                            = {"steps"};
+    dda.parameters[0].max                     = 60000;
+    hiz                                       = dda;
+    hiz.inputs                                = {"depth_pyramid"};
+    const auto frame_s                        = [&](const Technique& technique, glm::ivec2 size_px) {
+        ssrlab::Run  run{"r1", "a", "default", size_px, {}, "walk", {{"steps", 60000}, {"space", 1}}};
+        const double one    = estimated_seconds(run, technique, measure);
+        measure.min_repeats = measure.max_repeats = 2;
+        const double two                          = estimated_seconds(run, technique, measure);
+        measure.min_repeats = measure.max_repeats = 1;
+        return two - one;
+    };
+    const auto near = [](double seconds) { return testing::AllOf(testing::Gt(seconds / 2), testing::Lt(seconds * 2)); };
+    EXPECT_THAT(frame_s(dda, {480, 270}), near(0.022));
+    EXPECT_THAT(frame_s(dda, {3840, 2160}), near(15.6));
+    EXPECT_THAT(frame_s(hiz, {480, 270}), near(0.0055));
+    EXPECT_THAT(frame_s(hiz, {3840, 2160}), near(0.93));
+}
+
 TEST(Rows, Durations)
 {
     EXPECT_EQ(duration_text(7), "0:07");

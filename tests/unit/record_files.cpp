@@ -148,6 +148,31 @@ TEST_F(RecordFiles, DamageIsReportedNotRepaired)
     EXPECT_EQ(read_file(folder / "results.csv"), whole + "r3,x\r\n");
 }
 
+TEST_F(RecordFiles, FailedRowsAreTriedAgainOnceAndInNoWayDoubled)
+{
+    const std::vector<std::string> with_outcome = {"run_id", "outcome", "message"};
+    const auto                     append       = [&](ResultFolder& results, const char* id, const char* outcome) {
+        results.append({{"run_id", id}, {"outcome", outcome}, {"message", "a\n\"b\""}});
+    };
+    {
+        ResultFolder results(folder, with_outcome, here, false);
+        append(results, "r1", "ok");
+        append(results, "r2", "failed");
+        append(results, "r3", "no_rays");
+        EXPECT_EQ(results.finished().size(), 3U);
+    }
+    {
+        ResultFolder results(folder, with_outcome, here, true);
+        EXPECT_EQ(results.finished(), (std::set<std::string>{"r1", "r3"}));
+        append(results, "r2", "ok");
+    }
+    const std::string whole = read_file(folder / "results.csv");
+    EXPECT_EQ(whole, csv_line(with_outcome) + csv_line({"r1", "ok", "a\n\"b\""}) +
+                         csv_line({"r3", "no_rays", "a\n\"b\""}) + csv_line({"r2", "ok", "a\n\"b\""}));
+    EXPECT_EQ(ResultFolder(folder, with_outcome, here, true).finished().size(), 3U);
+    EXPECT_EQ(read_file(folder / "results.csv"), whole);
+}
+
 TEST_F(RecordFiles, UnknownColumnsAreRefused)
 {
     ResultFolder results(folder, columns, here, false);

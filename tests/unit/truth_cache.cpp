@@ -121,6 +121,36 @@ TEST_F(TruthCache, SceneTruthReadsWhatItWrote)
     scene.vertices[6].position_ws.x += 0.125F;
     cached_scene_truth(m_folder, scene, gbuffer, {});
     EXPECT_EQ(files().size(), 3U);
+    scene.environment.size_px  = {2, 1};
+    scene.environment.radiance = {glm::vec3(1), glm::vec3(2)};
+    cached_scene_truth(m_folder, scene, gbuffer, {});
+    scene.environment.radiance[1].b = 3;
+    cached_scene_truth(m_folder, scene, gbuffer, {});
+    EXPECT_EQ(files().size(), 5U);
+}
+
+TEST_F(TruthCache, GlossyTruthReadsWhatItWrote)
+{
+    Scene scene;
+    add_floor(scene, add_material(scene, {1, 1, 1}, 1));
+    add_quad(scene, add_material(scene, {0.5F, 0, 0}, 0), {-5, -2, -10}, {10, 0, 0}, {0, 4, 0});
+    GBufferImage gbuffer = floor_and_wall(bench_view({33, 20}), 100);
+    for (size_t i = 0; i < gbuffer.roughness.size(); ++i) gbuffer.roughness[i] = float(i % 3) * 0.2F;
+    const GlossySettings glossy{.rays = 8};
+    const GlossyTruth    computed = glossy_truth(build_bvh(scene), scene, gbuffer, {}, glossy);
+    for (int i = 0; i < 2; ++i) {
+        const GlossyTruth cached = cached_glossy_truth(m_folder, scene, gbuffer, {}, glossy);
+        EXPECT_EQ(cached.rays, computed.rays);
+        EXPECT_EQ(cached.radiance, computed.radiance);
+        EXPECT_EQ(cached.standard_error, computed.standard_error);
+        EXPECT_EQ(cached.weight, computed.weight);
+    }
+    EXPECT_EQ(files().size(), 1U);
+    cached_glossy_truth(m_folder, scene, gbuffer, {}, {.rays = 9});
+    cached_glossy_truth(m_folder, scene, gbuffer, {}, {.rays = 8, .seed = 1});
+    gbuffer.roughness[0] = 0.7F;
+    cached_glossy_truth(m_folder, scene, gbuffer, {}, glossy);
+    EXPECT_EQ(files().size(), 4U);
 }
 
 } // namespace

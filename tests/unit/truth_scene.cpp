@@ -108,7 +108,8 @@ TEST(SceneTruth, OccluderHidesTheWall)
         const bool   behind   = wall_y > 2 && wall_y < 3;
         const size_t i        = at(test.gbuffer, 20, y);
         EXPECT_EQ(truth.cls[i], on_plate || !behind ? TruthClass::visible : TruthClass::hidden) << y;
-        EXPECT_NEAR(truth.point_vs[i].z, on_plate ? -5 : -10, 1e-3) << y;
+        EXPECT_NEAR(truth.point_vs[i].z, on_plate ? -5 : -10, tolerance * 5) << y;
+        EXPECT_NEAR(truth.point_vs[i].y, on_plate ? plate : wall_y, tolerance * 5) << y;
     }
     EXPECT_GT(count(truth, TruthClass::hidden), 0);
 }
@@ -194,20 +195,21 @@ TEST(SceneTruth, SphereOnMirror)
     add_sphere(test.scene, 1, {0, 0, -5}, 1, 400);
     View view        = bench_view({64, 64});
     view.centre_px.x = 32.5;
-    struct Expected {
-        double py, hit_py;
-    };
-    for (const Expected& expected : {Expected{39.5, 38.389}, {41.5, 37.358}, {45.5, 34.325}, {50.5, 29.253}}) {
-        test.gbuffer   = empty_gbuffer(view);
-        const int    y = int(expected.py);
-        const size_t i = at(test.gbuffer, 32, y);
-        set_pixel(test.gbuffer, 32, y, 32 / (expected.py - 32), {0, 1, 0}, 1);
+    for (const double py : {39.5, 41.5, 45.5, 50.5}) {
+        test.gbuffer    = empty_gbuffer(view);
+        const auto   y  = static_cast<int>(py);
+        const size_t i  = at(test.gbuffer, 32, y);
+        const double z0 = 32 / (py - 32);
+        set_pixel(test.gbuffer, 32, y, z0, {0, 1, 0}, 1);
+        const double     half_b = 1 + (5 - z0) * z0, a = 1 + z0 * z0, c = (5 - z0) * (5 - z0);
+        const double     s = (half_b - std::sqrt(half_b * half_b - a * c)) / a, hit_y = -1 + s, hit_z = z0 * (1 + s);
         const SceneTruth truth = test.truth();
-        EXPECT_EQ(truth.cls[i], TruthClass::visible) << expected.py;
-        EXPECT_NEAR(truth.point_px[i].y, expected.hit_py, 2e-3) << expected.py;
-        if (expected.py == 39.5) {
-            EXPECT_NEAR(-truth.point_vs[i].z, 4.6081, 1e-4 * 5);
-        }
+        EXPECT_EQ(truth.cls[i], TruthClass::visible) << py;
+        EXPECT_NEAR(truth.point_vs[i].x, 0, tolerance * hit_z) << py;
+        EXPECT_NEAR(truth.point_vs[i].y, hit_y, tolerance * hit_z) << py;
+        EXPECT_NEAR(truth.point_vs[i].z, -hit_z, tolerance * hit_z) << py;
+        EXPECT_NEAR(truth.point_px[i].y, 32 * (1 - hit_y / hit_z), 2e-3) << py;
+        EXPECT_NEAR(truth.distance_m[i], s * std::sqrt(a), tolerance * s * std::sqrt(a)) << py;
     }
     // One row higher the point lies on the sphere's underside, which the camera cannot see: lost information, not an error.
     test.gbuffer   = empty_gbuffer(view);

@@ -1,0 +1,35 @@
+// Light from infinitely far away: an equirectangular map around the scene, which misses fall back on.
+//
+// World directions: +x right, +y up, -z forwards. The map's middle is forwards, its right half is +x, its top row is up:
+//   u = 0.5 + atan2(x, -z) / (2 pi)    v = 0.5 - atan2(y, sqrt(x^2 + z^2)) / pi    (u = 0.5 at the poles)
+// Texels are blended bilinearly, around in u, clamped in v. shaders/environment.glsl is the same in GLSL.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ssrlab {
+
+struct EnvironmentMap {
+    glm::ivec2             size_px{0, 0};
+    std::vector<glm::vec3> radiance; // linear, finite, row 0 on top; empty: there is no map
+};
+
+/// The direction need not be a unit vector.
+glm::dvec2 direction_to_uv(glm::dvec3 direction_ws);
+glm::dvec3 uv_to_direction(glm::dvec2 uv);
+
+/// `map` must not be empty.
+glm::vec3 environment_radiance(const EnvironmentMap& map, glm::dvec3 direction_ws);
+
+/// An .hdr or .exr picture twice as wide as high, times `scale`. Negative radiance becomes 0; what is not finite or beyond half
+/// precision is clamped and counted in `warnings`. Throws Failure that says what was expected and what was found.
+EnvironmentMap load_environment(const std::filesystem::path& file, double scale, std::vector<std::string>& warnings);
+
+/// A sky that needs no file: a smooth gradient over the horizon, haze below it, and a sun of 4 degrees radius.
+EnvironmentMap make_sky(glm::dvec3 to_sun_ws);
+
+} // namespace ssrlab

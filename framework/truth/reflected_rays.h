@@ -1,0 +1,51 @@
+// Where reflected rays end, and what they see there: scene truth follows one ray a pixel, glossy truth many.
+#pragma once
+
+#include "core/gbuffer_image.h"
+#include "truth/scene_bvh.h"
+#include "truth/truth_class.h"
+
+#include <span>
+#include <vector>
+
+namespace ssrlab {
+
+inline constexpr double self_hit_share       = 1e-4;
+inline constexpr double visibility_tolerance = 2e-4;
+
+struct RayEnd {
+    TruthClass cls        = TruthClass::not_traced;
+    double     distance_m = 0; // infinite for sky
+    glm::dvec3 point_vs{0};    // 0 for sky
+    glm::dvec2 point_px{0};    // 0 where there is none
+    glm::vec3  radiance{0};    // linear
+};
+
+/// Keeps references; scene_truth.h says what the classes and the radiance mean.
+class ReflectedRays {
+public:
+    ReflectedRays(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer, double max_distance_m);
+
+    /// From the pixel's point; `direction_vs` is a unit vector.
+    SceneRay            ray_from(glm::ivec2 pixel, glm::dvec3 direction_vs) const;
+    std::vector<RayEnd> follow(std::span<const SceneRay> rays) const;
+
+private:
+    glm::dvec3 point_to_ws(glm::dvec3 point_vs) const;
+    glm::dvec3 direction_to_ws(glm::dvec3 direction_vs) const;
+    glm::dvec3 eye_vs(glm::dvec3 point_vs) const;
+    SceneRay   sight_ray(glm::dvec3 point_vs) const;
+    RayEnd     classify(const SceneRay& ray, const SceneHit& hit) const;
+    glm::vec3  radiance(const SceneRay& ray, const SceneHit& hit, const RayEnd& end) const;
+
+    const SceneBvh&     m_bvh;
+    const Scene&        m_scene;
+    const GBufferImage& m_gbuffer;
+    double              m_max_distance_m;
+    glm::dmat4          m_view_to_world;
+};
+
+/// Throws Failure unless the G-buffer covers its image with all that the rays need.
+void require_radiance(const GBufferImage& gbuffer);
+
+} // namespace ssrlab

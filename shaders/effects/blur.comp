@@ -1,0 +1,53 @@
+// One direction of a separable Gaussian over the reflection, its radius from the reflector's roughness. B. Wronski 2014, GDC
+// follow-up: Screenspace reflections filtering and up-sampling: holes weigh less, and look farther for what they lack (push-pull).
+#include "view.glsl"
+#include "reflecting.glsl"
+#include "effect/parameters"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+#ifdef ALONG_X
+layout(set = 0, binding = 4, rgba16f) uniform readonly image2D reflection_image;
+layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D filtered_image;
+#define SOURCE reflection_image
+#define TARGET filtered_image
+const ivec2 axis = ivec2(1, 0);
+#else
+layout(set = 0, binding = 4, rgba16f) uniform readonly image2D filtered_image;
+layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D reflection_image;
+#define SOURCE filtered_image
+#define TARGET reflection_image
+const ivec2 axis = ivec2(0, 1);
+#endif
+
+const int taps_a_side = 16;
+
+float radius_px(ivec2 pixel, bool hole)
+{
+    float roughness = imageLoad(normal_image, pixel).w;
+    return max(0.0, blur_bias + blur_scale * roughness) * float(size_px.y) * (hole ? blur_hole_widening : 1.0);
+}
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, size_px))) return;
+    vec4  own    = imageLoad(SOURCE, pixel);
+    float radius = own.a < 0.0 ? 0.0 : radius_px(pixel, own.a == 0.0);
+    vec3  colour = vec3(0);
+    float weight = 0.0, trusted = 0.0;
+    // Half a pixel reaches no neighbour: what is smooth stays as it is, to the last bit.
+    int   taps = radius < 0.5 ? 0 : min(taps_a_side, int(ceil(radius)));
+    float stride_px = radius / float(max(taps, 1));
+    for (int i = -taps; i <= taps; ++i)
+    {
+        ivec2 at     = clamp(pixel + axis * int(round(float(i) * stride_px)), ivec2(0), size_px - 1);
+        vec4  sampled = imageLoad(SOURCE, at);
+        float share  = 2.0 * float(i) / float(max(taps, 1)); // the radius is two standard deviations
+        float gauss  = sampled.a < 0.0 ? 0.0 : exp(-0.5 * share * share) * (sampled.a > 0.0 ? 1.0 : blur_hole_weight);
+        colour += sampled.rgb * (gauss * max(sampled.a, 0.0));
+        trusted += gauss * max(sampled.a, 0.0);
+        weight += gauss;
+    }
+    vec4 blurred = trusted > 0.0 ? vec4(colour / trusted, trusted / weight) : vec4(0);
+    imageStore(TARGET, pixel, taps == 0 ? own : blurred);
+}

@@ -1,0 +1,107 @@
+// Gives a reflection to the pixels that reflect and were not traced, from the 2 x 2 traced pixels about them: bilinear, and by how much
+// those are the same surface. B. Wronski 2014, "GDC follow-up: Screenspace reflections filtering and up-sampling".
+// In place: what is read was traced, what is written was not.
+#include "view.glsl"
+#include "reflecting.glsl"
+#include "effect/parameters"
+#include "effects/blocks.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 0, binding = 4, rgba16f) uniform image2D reflection_image;
+layout(set = 0, binding = 5, r32ui) uniform readonly uimage2D block_pixel_image;
+layout(set = 0, binding = 9, scalar) readonly buffer TileCount { uint tile_count; };
+layout(set = 0, binding = 10, scalar) readonly buffer Tiles { uint tiles[]; }; // x | y << 16, in tiles
+
+const float vanishing = 1e-4;
+
+struct Surface
+{
+    vec3  position_vs, normal_vs;
+    float reflectivity;
+};
+
+vec3 view_direction(vec3 position_vs)
+{
+    return orthographic == 0 ? normalize(position_vs) : vec3(0, 0, -1);
+}
+
+// Specular response by gloss, with Fresnel: B. Karis 2014, Physically Based Shading on Mobile (his fit, for normal incidence f0).
+float specular_response(float f0, float roughness, float cosine)
+{
+    vec4  r    = roughness * vec4(-1, -0.0275, -0.572, 0.022) + vec4(1, 0.0425, 1.04, -0.04);
+    float a004 = min(r.x * r.x, exp2(-9.28 * cosine)) * r.x + r.y;
+    return f0 * (-1.04 * a004 + r.z) + 1.04 * a004 + r.w;
+}
+
+Surface surface_at(ivec2 pixel)
+{
+    vec4 normal   = imageLoad(normal_image, pixel);
+    vec4 material = imageLoad(material_image, pixel);
+    Surface surface;
+    surface.position_vs  = px_to_vs(vec3(vec2(pixel) + 0.5, imageLoad(depth_image, pixel).x));
+    surface.normal_vs    = normalize(normal.xyz);
+    float cosine         = max(0.0, -dot(surface.normal_vs, view_direction(surface.position_vs)));
+    float f0             = mix(0.04, dot(material.rgb, vec3(0.2126, 0.7152, 0.0722)), material.a);
+    surface.reflectivity = specular_response(f0, normal.w, cosine);
+    return surface;
+}
+
+// 1 for the same surface. Depths are compared along the normal: a floor that recedes is one surface.
+float similarity(Surface a, Surface b)
+{
+    float weight = 1.0;
+    if (upsampling_weights >= upsampling_weights_depth)
+    {
+        float step_m = abs(dot(a.normal_vs, b.position_vs - a.position_vs));
+        weight *= exp(-step_m / (upsampling_depth_tolerance * -a.position_vs.z));
+    }
+    if (upsampling_weights >= upsampling_weights_depth_normal) weight *= pow(max(0.0, dot(a.normal_vs, b.normal_vs)), 32.0);
+    if (upsampling_weights >= upsampling_weights_reflectivity)
+        weight *= exp(-abs(a.reflectivity - b.reflectivity) / upsampling_reflectivity_tolerance);
+    return weight;
+}
+
+// A bilinear mean of pictures: colours count by their weight.
+vec4 upsampled(ivec2 pixel)
+{
+    Surface own    = surface_at(pixel);
+    ivec2   centre = ivec2((block_px - 1) / 2); // of a block that reflects everywhere, this pixel is traced
+    ivec2   blocks = imageSize(block_pixel_image);
+    vec2    place  = vec2(pixel - centre) / float(block_px);
+    ivec2   corner = ivec2(floor(place));
+    vec2    share  = place - vec2(corner);
+
+    vec4  sum = vec4(0), closest = vec4(0);
+    float total = 0.0, best = -1.0;
+    for (int i = 0; i < 4; ++i)
+    {
+        ivec2 step  = ivec2(i & 1, i >> 1);
+        ivec2 block = corner + step;
+        bool  known = all(greaterThanEqual(block, ivec2(0))) && all(lessThan(block, blocks));
+        uint  found = known ? imageLoad(block_pixel_image, block).x : NO_PIXEL;
+        if (found != NO_PIXEL)
+        {
+            ivec2 from   = unpack_pixel(found);
+            vec4  traced = imageLoad(reflection_image, from);
+            float alike  = similarity(own, surface_at(from));
+            vec2  near   = mix(1.0 - share, share, vec2(step));
+            float weight = near.x * near.y * alike;
+            sum += weight * vec4(traced.rgb * traced.a, traced.a);
+            total += weight;
+            closest = alike > best ? traced : closest;
+            best    = max(best, alike);
+        }
+    }
+    if (total < vanishing) return closest;
+    return sum.a > 0.0 ? vec4(sum.rgb / sum.a, sum.a / total) : vec4(0);
+}
+
+void main()
+{
+    uint index = gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x;
+    if (index >= tile_count) return;
+    ivec2 pixel = ivec2(tiles[index] & 0xFFFF, tiles[index] >> 16) * 8 + ivec2(gl_LocalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, size_px)) || !reflects(pixel)) return;
+    if (imageLoad(reflection_image, pixel).a >= 0.0) return; // traced
+    imageStore(reflection_image, pixel, upsampled(pixel));
+}

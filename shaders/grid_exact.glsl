@@ -1,0 +1,75 @@
+// The same in whole numbers: both ends of the ray are put on multiples of 1/65536 px, and t is counted in steps of 1 / (|dx| |dy|), where d is the
+// ray's way in those. So every crossing is a whole number below 2^62 at 16384 px, and none is ever rounded.
+#define crossing int64_t
+#define crossing2 i64vec2
+
+const int steps_per_px = 65536;
+
+struct Grid
+{
+    ivec2   origin_steps;
+    i64vec2 inverse_delta; // 1/dx = |dy| / (|dx| |dy|), signed; beyond every end for a component that is zero
+    ivec2   forward;       // 1 where the ray runs toward larger coordinates, else 0
+    int64_t whole;         // the step at the end of the ray, t = 1
+    int64_t t_end;         // the same, or where the ray crosses the image border before
+};
+
+i64vec2 border_t(Ray ray, Grid grid, ivec2 border)
+{
+    return i64vec2(border * steps_per_px - grid.origin_steps) * grid.inverse_delta;
+}
+
+real crossing_to_t(Grid grid, int64_t t) { return real(double(t) / double(grid.whole)); }
+
+Grid make_grid(Ray ray)
+{
+    ivec2 from = ivec2(round(dvec2(ray.origin.xy) * double(steps_per_px)));
+    ivec2 way  = ivec2(round((dvec2(ray.origin.xy) + dvec2(ray.delta.xy)) * double(steps_per_px))) - from;
+    bvec2 flat_axis = equal(way, ivec2(0));
+    // A ray stays in the column or row that it does not leave: from the middle, so that it stands on no border.
+    ivec2 middle  = ray.start_pixel * steps_per_px + steps_per_px / 2;
+    ivec2 lengths = max(abs(way), ivec2(1));
+    Grid  grid;
+    grid.origin_steps    = ivec2(flat_axis.x ? middle.x : from.x, flat_axis.y ? middle.y : from.y);
+    grid.inverse_delta.x = flat_axis.x ? int64_t(1) << 32 : int64_t(sign(way.x)) * int64_t(lengths.y);
+    grid.inverse_delta.y = flat_axis.y ? int64_t(1) << 32 : int64_t(sign(way.y)) * int64_t(lengths.x);
+    grid.forward         = ivec2(greaterThanEqual(way, ivec2(0)));
+    grid.whole           = int64_t(lengths.x) * int64_t(lengths.y);
+    i64vec2 t_image      = border_t(ray, grid, grid.forward * size_px);
+    grid.t_end           = min(grid.whole, min(t_image.x, t_image.y));
+    return grid;
+}
+
+// Depths are compared without a division, times `whole` and counted from the ray's origin: what is equal stays equal in both products.
+double scaled_depth(Ray ray, int64_t t)
+{
+    precise double z = double(t) * double(ray.delta.z);
+    return z;
+}
+
+bool slab_between(Ray ray, Grid grid, real depth, double z_a, double z_b)
+{
+    double         d     = double(depth), origin = double(ray.origin.z), whole = double(grid.whole);
+    precise double back  = (d * double(slab_scale) - double(slab_shift)) / (1.0LF + d * double(slab_slope));
+    precise double low   = (back - origin) * whole;
+    precise double high  = (d - origin) * whole;
+    return high >= min(z_a, z_b) && low <= max(z_a, z_b);
+}
+
+bool touches_surface(Ray ray, Grid grid, ivec2 pixel, int64_t t_in, int64_t t_out)
+{
+    return accepts(ray, pixel, slab_between(ray, grid, fetch_depth(pixel), scaled_depth(ray, t_in), scaled_depth(ray, t_out)), true);
+}
+
+bool touches_cell(Ray ray, Grid grid, ivec2 cell, int level, int64_t t_in, int64_t t_out)
+{
+    bool        leaf    = level == 0;
+    CellContent content = fetch_cell(cell, level);
+    double      z_a = scaled_depth(ray, t_in), z_b = scaled_depth(ray, t_out);
+    // A cell is asked with bounds rounded outward, by more than all roundings of the pixel's own test.
+    double origin = double(ray.origin.z), whole = double(grid.whole);
+    double slack  = 1e-13LF * (abs(origin) + abs(double(ray.delta.z)));
+    double z_far  = origin + min(z_a, z_b) / whole - slack, z_near = origin + max(z_a, z_b) / whole + slack;
+    bool   touched = leaf ? slab_between(ray, grid, content.depth, z_a, z_b) : cell_may_touch(content.node, float(z_far), float(z_near));
+    return accepts(ray, cell, touched, leaf);
+}

@@ -1,0 +1,93 @@
+// Light that arrives at a point and leaves it toward an eye: Lambert diffuse; GGX specular with Smith visibility and Schlick
+// Fresnel (Walter et al. 2007; Schlick 1994). The including shader defines LIGHTS_BINDING, and two more after it.
+struct Light
+{
+    vec3  position_ws;
+    int   type;          // 0 directional, 1 point, 2 spot
+    vec3  direction_ws;  // from the light into the scene
+    float range_m;       // 0 = unlimited
+    vec3  intensity;     // directional: irradiance; point, spot: radiant intensity
+    int   shadow_layer;  // first layer of the shadow map, -1 = none
+    float cos_inner;
+    float cos_outer;
+};
+
+layout(set = 0, binding = LIGHTS_BINDING, scalar) readonly buffer Lights { Light lights[]; };
+layout(set = 0, binding = LIGHTS_BINDING + 1, scalar) readonly buffer ShadowMatrices { mat4 world_to_shadow[]; };
+layout(set = 0, binding = LIGHTS_BINDING + 2) uniform sampler2DArrayShadow shadow_map;
+
+const float pi = 3.14159265358979;
+
+// Layer of a point light's cube: +x -x +y -y +z -z.
+int cube_face(vec3 direction)
+{
+    vec3 a = abs(direction);
+    if (a.x >= a.y && a.x >= a.z) return direction.x > 0.0 ? 0 : 1;
+    if (a.y >= a.z) return direction.y > 0.0 ? 2 : 3;
+    return direction.z > 0.0 ? 4 : 5;
+}
+
+float shadow(Light light, vec3 position_ws)
+{
+    if (light.shadow_layer < 0) return 1.0;
+    int  layer = light.shadow_layer + (light.type == 1 ? cube_face(position_ws - light.position_ws) : 0);
+    vec4 clip  = world_to_shadow[layer] * vec4(position_ws, 1.0);
+    if (clip.w <= 0.0) return 1.0;
+    vec3 ndc = clip.xyz / clip.w;
+    if (any(greaterThan(abs(ndc.xy), vec2(1.0))) || ndc.z > 1.0) return 1.0;
+    return texture(shadow_map, vec4(ndc.xy * 0.5 + 0.5, layer, ndc.z));
+}
+
+// Irradiance on a plane facing the light, and the direction toward the light.
+vec3 arriving(Light light, vec3 position_ws, out vec3 to_light)
+{
+    to_light = -light.direction_ws;
+    if (light.type == 0) return light.intensity;
+    vec3  offset     = light.position_ws - position_ws;
+    float distance_m = length(offset);
+    to_light         = offset / distance_m;
+    float window     = light.range_m > 0.0 ? clamp(1.0 - pow(distance_m / light.range_m, 4.0), 0.0, 1.0) : 1.0;
+    float cone       = 1.0;
+    if (light.type == 2)
+    {
+        float range = max(light.cos_inner - light.cos_outer, 1e-4);
+        cone        = clamp((dot(light.direction_ws, -to_light) - light.cos_outer) / range, 0.0, 1.0);
+        cone *= cone;
+    }
+    return light.intensity * (window * cone / (distance_m * distance_m));
+}
+
+vec3 specular(vec3 normal, vec3 to_eye, vec3 to_light, vec3 f0, float roughness)
+{
+    vec3  halfway = normalize(to_eye + to_light);
+    float alpha2  = pow(max(roughness, 0.05), 4.0);
+    float n_h = max(dot(normal, halfway), 0.0), n_v = max(dot(normal, to_eye), 1e-4), n_l = max(dot(normal, to_light), 0.0);
+    float d   = n_h * n_h * (alpha2 - 1.0) + 1.0;
+    float ggx = alpha2 / (pi * d * d);
+    float visibility = 0.5 / max(n_l * sqrt(n_v * n_v * (1.0 - alpha2) + alpha2) + n_v * sqrt(n_l * n_l * (1.0 - alpha2) + alpha2), 1e-6);
+    vec3  fresnel = f0 + (1.0 - f0) * pow(1.0 - max(dot(to_eye, halfway), 0.0), 5.0);
+    return ggx * visibility * fresnel;
+}
+
+struct Surface
+{
+    vec3  position_ws, normal_ws, base_colour;
+    float metallic, roughness;
+};
+
+// Both parts of the light that leaves a surface: irradiance for the diffuse one, radiance toward the eye for the specular one.
+void light_surface(Surface surface, int light_count, vec3 to_eye_ws, out vec3 irradiance, out vec3 highlights)
+{
+    vec3 f0    = mix(vec3(0.04), surface.base_colour, surface.metallic);
+    irradiance = highlights = vec3(0);
+    for (int i = 0; i < light_count; ++i)
+    {
+        vec3  to_light;
+        vec3  from_light = arriving(lights[i], surface.position_ws, to_light);
+        float cosine     = dot(surface.normal_ws, to_light);
+        if (cosine <= 0.0) continue;
+        from_light *= cosine * shadow(lights[i], surface.position_ws);
+        irradiance += from_light;
+        highlights += from_light * specular(surface.normal_ws, to_eye_ws, to_light, f0, surface.roughness);
+    }
+}

@@ -1,0 +1,225 @@
+// Effects that make one reflection out of several: up-sampling, down-sampling, kernels.
+#include "gpu/passes.h"
+
+#include <algorithm>
+#include <array>
+
+namespace ssrlab::test {
+namespace {
+
+constexpr glm::vec4 red{1, 0, 0, 1}, blue{0, 0, 1, 1};
+constexpr double    half = 1, quarter = 2; // choices of trace_resolution
+constexpr double    bilinear = 0, by_depth = 1, by_normal = 2, by_reflectivity = 3;
+
+/// Traces, so that the blocks name their pixels, then puts `traced` in their place and up-samples.
+template <typename Traced>
+Reflection upsample(const Picture& picture, double resolution, double weights, const Traced& traced)
+{
+    const auto frame = frame_with(picture, {{"trace_resolution", resolution}, {"upsampling_weights", weights}});
+    run_frame(device(), *frame);
+    Reflection reflection(picture.image.depth.size(), nothing_reflects);
+    for (const uint32_t block : download_as<uint32_t>(device(), picture.buffers->block_pixel)) {
+        if (block == NO_PIXEL) continue;
+        const glm::ivec2 pixel(block & (MAX_IMAGE_PX - 1), (block >> PIXEL_BITS) & (MAX_IMAGE_PX - 1));
+        reflection[at(picture.image, pixel.x, pixel.y)] = traced(pixel);
+    }
+    set_reflection(picture, reflection);
+    run_effect(*frame, "upsampling");
+    return read_colours(picture.buffers->reflection);
+}
+
+TEST(Upsampling, KeepsALinearRamp)
+{
+    const Picture picture = make_picture(metal_wall({64, 48}));
+    const auto    ramp    = [](glm::ivec2 p) {
+        return glm::vec4(static_cast<float>(p.x) / 64, static_cast<float>(p.y) / 48, 0.25F, 1);
+    };
+    for (const double resolution : {half, quarter})
+        for (const double weights : {bilinear, by_depth, by_normal}) {
+            const Reflection found = upsample(picture, resolution, weights, ramp);
+            // Outside the first and last traced rows and columns there is nothing to interpolate with.
+            for (int y = 2; y < 44; ++y)
+                for (int x = 2; x < 60; ++x)
+                    for (int c = 0; c < 4; ++c)
+                        ASSERT_NEAR(found[at(picture.image, x, y)][c], ramp({x, y})[c], 1e-3) << x << ", " << y;
+        }
+}
+
+/// Columns left of 31 are one surface, the others another; at half resolution column 31 lies between traced columns 30 and 32.
+template <typename Change> Picture two_surfaces(const Change& change_right)
+{
+    GBufferImage image = metal_wall({64, 16});
+    for (int y = 0; y < 16; ++y)
+        for (int x = 31; x < 64; ++x) change_right(image, x, y);
+    return make_picture(image);
+}
+
+Reflection upsample_two(const Picture& picture, double weights)
+{
+    return upsample(picture, half, weights, [](glm::ivec2 p) { return p.x < 31 ? red : blue; });
+}
+
+TEST(Upsampling, StopsAtTheBorderOfWhatItsWeightsSee)
+{
+    const Picture rough = two_surfaces([](auto& image, int x, int y) { image.roughness[at(image, x, y)] = 0.9F; });
+    const Picture far   = two_surfaces([](auto& image, int x, int y) { set_pixel(image, x, y, 6, {0, 0, 1}, 1); });
+    const Picture bent  = two_surfaces([](auto& image, int x, int y) { set_pixel(image, x, y, 5, {0.8, 0, 0.6}, 1); });
+    const auto    share_of_red = [](const Picture& picture, double weights) {
+        const Reflection found = upsample_two(picture, weights);
+        for (int x = 0; x < 30; ++x) EXPECT_EQ(found[at(picture.image, x, 8)], red);
+        for (int x = 32; x < 64; ++x) EXPECT_EQ(found[at(picture.image, x, 8)], blue);
+        const glm::vec4 mixed = found[at(picture.image, 31, 8)];
+        EXPECT_NEAR(mixed.r + mixed.b, 1, 1e-3);
+        return mixed.r;
+    };
+    for (const Picture& picture : {rough, far, bent}) EXPECT_NEAR(share_of_red(picture, bilinear), 0.5, 1e-3);
+    EXPECT_NEAR(share_of_red(rough, by_normal), 0.5, 1e-3);
+    EXPECT_LT(share_of_red(rough, by_reflectivity), 0.01);
+    EXPECT_LT(share_of_red(bent, by_normal), 0.01);
+    EXPECT_LT(share_of_red(far, by_depth), 0.01);
+}
+
+// Pixel (30, 9) belongs to the right surface; bilinear weights know only the traced pixels above and below it, which don't.
+TEST(Upsampling, TakesTheMostAlikeWhereAllWeightsVanish)
+{
+    GBufferImage image = metal_wall({64, 16});
+    for (int y = 0; y < 16; ++y)
+        for (int x = 31; x < 64; ++x) set_pixel(image, x, y, 7, {0, 0, 1}, 1);
+    set_pixel(image, 30, 9, 7, {0, 0, 1}, 1);
+    const Picture picture = make_picture(image);
+    EXPECT_EQ(upsample_two(picture, bilinear)[at(image, 30, 9)], red);
+    EXPECT_EQ(upsample_two(picture, by_depth)[at(image, 30, 9)], blue);
+}
+
+TEST(Upsampling, HolesAndPixelsThatReflectNothing)
+{
+    GBufferImage image = metal_wall({32, 32});
+    for (int y = 0; y < 32; ++y) image.metallic[at(image, 7, y)] = 0;
+    const Picture    picture = make_picture(image);
+    const Reflection found =
+        upsample(picture, half, bilinear, [](glm::ivec2 p) { return p.x < 16 ? glm::vec4(0) : glm::vec4(3, 2, 1, 1); });
+    EXPECT_EQ(found[at(image, 7, 9)], nothing_reflects);
+    EXPECT_EQ(found[at(image, 5, 9)], glm::vec4(0));
+    EXPECT_EQ(found[at(image, 15, 9)],
+              glm::vec4(3, 2, 1, 0.5F)); // between a hole and a hit: the hit's colour, at half the weight
+    EXPECT_EQ(found[at(image, 17, 9)], glm::vec4(3, 2, 1, 1));
+}
+
+TEST(ColourDownsampling, IsABlockMeanWithACross)
+{
+    GBufferImage image                = metal_wall({64, 64});
+    image.radiance[at(image, 20, 21)] = {64, 0, 0};
+    for (int x = 0; x < 64; ++x) image.radiance[at(image, x, 50)] = {0, 8, 0};
+    for (glm::vec3& radiance : image.radiance) radiance.b = 3;
+    const Picture picture = make_picture(image);
+    for (const double resolution : {half, quarter}) {
+        const auto frame = frame_with(picture, {{"trace_resolution", resolution}});
+        run_effect(*frame, "colour_downsampling");
+        const Reflection small    = read_colours(picture.buffers->small_colour);
+        const int        block_px = resolution == half ? 2 : 4;
+        const auto       texel    = [&](int x, int y) { return small[static_cast<size_t>(y * 32 + x)]; };
+        const glm::ivec2 block    = glm::ivec2(20, 21) / block_px;
+        const float      mean     = 64.0F / static_cast<float>(block_px * block_px);
+        EXPECT_EQ(texel(block.x, block.y), glm::vec4(mean / 2, 0, 3, 1));
+        for (const glm::ivec2& arm : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}})
+            EXPECT_EQ(texel(block.x + arm.x, block.y + arm.y).r, mean / 8);
+        EXPECT_EQ(texel(block.x + 1, block.y + 1).r, 0);
+        EXPECT_EQ(texel(block.x + 2, block.y).r, 0);
+        const float line = 8.0F / static_cast<float>(block_px);
+        EXPECT_EQ(texel(3, 50 / block_px).g, line * 0.75F);
+        EXPECT_NEAR(texel(0, 50 / block_px).g, line * (0.75F - 0.125F) / 0.875F,
+                    1e-2); // without an arm outside the picture
+        EXPECT_EQ(texel(3, 50 / block_px + 1).g, line / 8);
+    }
+}
+
+/// What the kernels are to do, on the host.
+Reflection filtered(const Reflection& source, glm::ivec2 size_px, bool median)
+{
+    Reflection result = source;
+    for (int y = 0; y < size_px.y; ++y)
+        for (int x = 0; x < size_px.x; ++x) {
+            const auto index = [&](int px, int py) { return static_cast<size_t>(py * size_px.x + px); };
+            if (source[index(x, y)].a < 0) continue;
+            std::vector<glm::vec4> near;
+            for (int v = std::max(0, y - 1); v <= std::min(size_px.y - 1, y + 1); ++v)
+                for (int u = std::max(0, x - 1); u <= std::min(size_px.x - 1, x + 1); ++u)
+                    if (source[index(u, v)].a >= 0) near.push_back(source[index(u, v)]);
+            if (median) {
+                const auto luma = [](const glm::vec4& v) {
+                    return v.a * (0.2126F * v.r + 0.7152F * v.g + 0.0722F * v.b);
+                };
+                std::ranges::stable_sort(near, {}, luma);
+                result[index(x, y)] = near[(near.size() - 1) / 2];
+                continue;
+            }
+            glm::vec4 sum(0);
+            for (const glm::vec4& v : near) sum += glm::vec4(glm::vec3(v) * v.a, v.a);
+            result[index(x, y)] =
+                sum.a > 0 ? glm::vec4(glm::vec3(sum) / sum.a, sum.a / static_cast<float>(near.size())) : glm::vec4(0);
+        }
+    return result;
+}
+
+Reflection run_kernel(const Picture& picture, const Reflection& source, double kernel)
+{
+    const auto frame = frame_with(picture, {{"kernel", kernel}});
+    set_reflection(picture, source);
+    run_effect(*frame, "kernel_filter");
+    return read_colours(picture.buffers->reflection);
+}
+
+TEST(Kernel, BoxIsTheMeanAndMedianThrowsOutliersAway)
+{
+    const glm::ivec2 size_px{24, 16};
+    const Picture    picture = make_picture(metal_wall(size_px));
+    Reflection       source(picture.image.depth.size(), glm::vec4(0.5F, 0.25F, 1, 1));
+    const size_t     outlier = at(picture.image, 9, 7), hole = at(picture.image, 15, 9);
+    const Reflection flat = source;
+    source[outlier]       = {5, 0.25F, 1, 1};
+    source[hole]          = glm::vec4(0);
+    EXPECT_EQ(run_kernel(picture, source, 2), flat);
+    const Reflection mean = run_kernel(picture, source, 1);
+    EXPECT_NEAR(mean[outlier].r, 1, 1e-3); // (8 * 0.5 + 5) / 9
+    EXPECT_NEAR(mean[hole].r, 0.5, 1e-3);
+    EXPECT_NEAR(mean[hole].a, 8.0 / 9, 1e-3);
+    EXPECT_EQ(mean[at(picture.image, 3, 3)], flat[0]);
+}
+
+TEST(Kernel, IsTheHostsOnAnyReflection)
+{
+    const glm::ivec2 size_px{61, 35};
+    GBufferImage     image = metal_wall(size_px);
+    std::mt19937     random(3);
+    Reflection       source;
+    for (float& metallic : image.metallic) {
+        const bool reflecting = random() % 4 != 0;
+        metallic              = reflecting ? 1.0F : 0.0F;
+        const auto  value     = [&] { return static_cast<float>(random() % 64) / 32; };
+        const float weight    = static_cast<float>(random() % 3) / 2;
+        source.push_back(reflecting ? glm::vec4(value(), value(), value(), weight) : nothing_reflects);
+    }
+    const Picture picture = make_picture(image);
+    for (const bool median : {false, true}) {
+        const Reflection found    = run_kernel(picture, source, median ? 2 : 1),
+                         expected = filtered(source, size_px, median);
+        for (size_t i = 0; i < found.size(); ++i)
+            for (int c = 0; c < 4; ++c)
+                ASSERT_NEAR(found[i][c], expected[i][c], median ? 0 : 1e-3 * std::abs(expected[i][c])) << i;
+    }
+}
+
+TEST(CompositeReflection, MakesThePictureThatTheFrameMakes)
+{
+    const Picture picture = make_picture("builtin:sphere_over_mirror", "default", {161, 91});
+    const auto    frame   = frame_with(picture, {}, "hiz");
+    run_frame(device(), *frame);
+    const Image      expected = read_shaded(device(), *frame);
+    const Reflection traced   = read_colours(picture.buffers->reflection);
+    EXPECT_EQ(composite_reflection(device(), *frame, traced).values, expected.values);
+    EXPECT_NE(composite_reflection(device(), *frame, Reflection(traced.size(), nothing_reflects)).values,
+              expected.values);
+}
+
+} // namespace
+} // namespace ssrlab::test

@@ -1,0 +1,65 @@
+// Single effects on reflections made by hand.
+#pragma once
+
+#include "gpu/device.h"
+#include "render/frame_passes.h"
+#include "unit/truth_gbuffers.h"
+
+#include <glm/gtc/packing.hpp>
+
+namespace ssrlab::test {
+
+/// A reflection's colour and weight, pixel by pixel.
+using Reflection = std::vector<glm::vec4>;
+inline constexpr glm::vec4 nothing_reflects{0, 0, 0, -1};
+
+inline PreparedFramePtr frame_with(const Picture& picture, const ParameterValues& effects,
+                                   const std::string& technique_id = "dda")
+{
+    FrameSettings settings{.trace = {.thickness_m = 0.5, .max_distance_m = 50}};
+    for (const auto& [name, value] : effects) settings.effects.at(name) = value;
+    const Technique& chosen = technique(technique_id);
+    return prepare_frame(device(), picture.buffers, chosen, values_of(chosen), settings);
+}
+
+inline void set_reflection(const Picture& picture, const Reflection& reflection)
+{
+    std::vector<uint64_t> texels;
+    for (const glm::vec4& value : reflection) texels.push_back(glm::packHalf4x16(value));
+    upload(device(), picture.buffers->reflection, texels.data(), texels.size() * sizeof(uint64_t));
+}
+
+inline Reflection read_colours(const GpuImage& image)
+{
+    Reflection colours;
+    for (const uint64_t texel : download_as<uint64_t>(device(), image)) colours.push_back(glm::unpackHalf4x16(texel));
+    return colours;
+}
+
+/// Lists the tiles, then runs the effect alone.
+inline void run_effect(PreparedFrame& frame, const std::string& id)
+{
+    const Recording tiles  = make_recording(device(), frame, "classification");
+    const Recording effect = make_recording(device(), frame, id);
+    submit(device(), [&](const vk::raii::CommandBuffer& commands) {
+        barrier(commands);
+        tiles(commands);
+        barrier(commands);
+        effect(commands);
+        barrier(commands);
+    });
+}
+
+/// A wall of metal that fills the picture and faces the camera.
+inline GBufferImage metal_wall(glm::ivec2 size_px, double distance_m = 5)
+{
+    GBufferImage image = empty_gbuffer(bench_view(size_px));
+    for (int y = 0; y < size_px.y; ++y)
+        for (int x = 0; x < size_px.x; ++x) {
+            set_pixel(image, x, y, distance_m, {0, 0, 1}, 1);
+            image.base_colour[at(image, x, y)] = glm::vec3(1);
+        }
+    return image;
+}
+
+} // namespace ssrlab::test

@@ -1,0 +1,251 @@
+// Which rays a frame traces: several per pixel, or one for a block of pixels.
+#include "gpu/passes.h"
+#include "truth/screen_ray.h"
+
+#include <algorithm>
+#include <set>
+
+namespace ssrlab::test {
+namespace {
+
+struct Ray {
+    glm::ivec2 pixel;
+    glm::dvec3 origin, delta;
+};
+
+/// The list that the frame's own passes write.
+std::vector<Ray> rays_of(PreparedFrame& frame)
+{
+    submit(device(), [&](const vk::raii::CommandBuffer& commands) {
+        record_rays(commands, frame.trace, *frame.buffers, *frame.rays);
+    });
+    const size_t     count   = download_as<uint32_t>(device(), frame.rays->count, 1)[0];
+    const auto       pixels  = download_as<uint32_t>(device(), frame.rays->pixels, count);
+    const auto       origins = download_as<glm::vec3>(device(), frame.rays->origins, count);
+    const auto       deltas  = download_as<glm::vec3>(device(), frame.rays->deltas, count);
+    std::vector<Ray> rays;
+    for (size_t i = 0; i < count; ++i)
+        rays.push_back({{pixels[i] & (MAX_IMAGE_PX - 1), (pixels[i] >> PIXEL_BITS) & (MAX_IMAGE_PX - 1)},
+                        glm::dvec3(origins[i]),
+                        glm::dvec3(deltas[i])});
+    return rays;
+}
+
+View orthographic_view(glm::ivec2 size_px)
+{
+    View view       = bench_view(size_px);
+    view.projection = Projection::orthographic;
+    view.focal_px   = glm::dvec2(12);
+    view.far_m      = 30;
+    return view;
+}
+
+size_t count_reflecting(const GBufferImage& image)
+{
+    size_t count = 0;
+    for (int y = 0; y < image.view.size_px.y; ++y)
+        for (int x = 0; x < image.view.size_px.x; ++x) count += reflects(image, {x, y});
+    return count;
+}
+
+TEST(SeveralRays, StartOnThePixelsPlaneAndStandTogether)
+{
+    constexpr size_t per_pixel = 8;
+    for (const View& view : {bench_view({161, 91}), orthographic_view({161, 91})}) {
+        const Picture picture = make_picture(random_gbuffer(view, 5));
+        const auto    frame   = frame_with(picture, {{"rays_per_pixel", per_pixel}});
+        const auto    rays    = rays_of(*frame);
+        ASSERT_EQ(rays.size(), per_pixel * count_reflecting(picture.image));
+        size_t at_centre = 0, directions = 0;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            const Ray& ray = rays[i];
+            ASSERT_EQ(ray.pixel, rays[i / per_pixel * per_pixel].pixel) << i;
+            ASSERT_EQ(glm::ivec2(glm::floor(glm::dvec2(ray.origin))), ray.pixel);
+            at_centre += glm::dvec2(ray.origin) == glm::dvec2(ray.pixel) + 0.5;
+            const glm::dvec3 point = pixel_point_vs(picture.image, ray.pixel);
+            const glm::dvec3 start = px_to_vs(view, glm::dvec2(ray.origin), ray.origin.z);
+            const glm::dvec3 normal =
+                glm::normalize(glm::dvec3(picture.image.normal_vs[at(picture.image, ray.pixel.x, ray.pixel.y)]));
+            ASSERT_LE(std::abs(glm::dot(normal, start - point)), 2e-5 * glm::length(point));
+            ASSERT_GE(start.z, 2 * point.z * 1.0001);
+            ASSERT_LE(start.z, 0.5 * point.z * 0.9999);
+            // Mirrored about that plane as seen at the start, not at the centre.
+            const double end_depth = ray.origin.z + ray.delta.z;
+            if (glm::length(glm::dvec2(ray.delta)) < 4 || end_depth < 0.01 * ray.origin.z) continue;
+            ++directions;
+            const glm::dvec3 end = px_to_vs(view, glm::dvec2(ray.origin + ray.delta), end_depth);
+            const glm::dvec3 seen =
+                view.projection == Projection::perspective ? glm::normalize(start) : glm::dvec3(0, 0, -1);
+            EXPECT_NEAR(glm::dot(glm::normalize(end - start), glm::reflect(seen, normal)), 1, 1e-4);
+        }
+        EXPECT_LT(at_centre, rays.size() / 20);
+        EXPECT_GT(directions, rays.size() / 4);
+        // The eight are spread: on average their mean is the centre, and no two pixels share a pattern.
+        glm::dvec2                    mean(0);
+        std::set<std::pair<int, int>> offsets;
+        for (const Ray& ray : rays) {
+            const glm::dvec2 offset = glm::dvec2(ray.origin) - glm::dvec2(ray.pixel);
+            mean += offset / static_cast<double>(rays.size());
+            offsets.insert({static_cast<int>(offset.x * 256), static_cast<int>(offset.y * 256)});
+        }
+        EXPECT_NEAR(mean.x, 0.5, 0.01);
+        EXPECT_NEAR(mean.y, 0.5, 0.01);
+        EXPECT_GT(offsets.size(), rays.size() / 3);
+    }
+}
+
+TEST(SeveralRays, StartAtTheCentreWhereThePlaneIsSeenEdgeOn)
+{
+    GBufferImage image = metal_wall({32, 32});
+    for (glm::vec3& normal : image.normal_vs) normal = glm::normalize(glm::vec3(0, 1, 1e-4));
+    const Picture picture = make_picture(image);
+    const auto    frame   = frame_with(picture, {{"rays_per_pixel", 4}});
+    size_t        centred = 0, edge_on = 0;
+    for (const Ray& ray : rays_of(*frame)) {
+        // Seen under less than 1/70 of a pixel's angle: beside the middle rows every offset doubles or halves the distance.
+        if (std::abs(ray.pixel.y - 15.5) > 1) continue;
+        ++edge_on;
+        centred += glm::dvec2(ray.origin) == glm::dvec2(ray.pixel) + 0.5;
+    }
+    EXPECT_EQ(edge_on, 2U * 32 * 4);
+    EXPECT_GT(centred, edge_on / 4);
+    EXPECT_LT(centred, edge_on);
+}
+
+/// Puts a list of rays and their ends in the place of the traced one.
+void set_list(PreparedFrame& frame, const std::vector<glm::ivec2>& pixels, const std::vector<glm::ivec2>& hits)
+{
+    const auto pack = [](glm::ivec2 p, int number) {
+        return static_cast<uint32_t>(p.x) | static_cast<uint32_t>(p.y) << PIXEL_BITS |
+               static_cast<uint32_t>(number) << (2 * PIXEL_BITS);
+    };
+    std::vector<uint32_t>  starts, ends;
+    std::vector<glm::vec3> origins, deltas;
+    for (size_t i = 0; i < pixels.size(); ++i) {
+        const bool hit = hits[i].x >= 0;
+        starts.push_back(pack(pixels[i], TRACE_LEFT_SCREEN));
+        ends.push_back(hit ? pack(hits[i], TRACE_HIT) : pack({0, 0}, TRACE_LEFT_SCREEN));
+        origins.emplace_back(glm::vec2(pixels[i]) + 0.5F, 0.02F);
+        deltas.emplace_back(10, 10, -0.01F);
+    }
+    const std::vector<float> ts(pixels.size(), 0.5F);
+    const auto               count = static_cast<uint32_t>(pixels.size());
+    RayBuffers&              rays  = *frame.rays;
+    upload(device(), rays.count, &count, sizeof(count));
+    upload(device(), rays.origins, origins.data(), origins.size() * sizeof(origins[0]));
+    upload(device(), rays.deltas, deltas.data(), deltas.size() * sizeof(deltas[0]));
+    upload(device(), rays.pixels, starts.data(), starts.size() * 4);
+    upload(device(), rays.hit_pixels, ends.data(), ends.size() * 4);
+    upload(device(), rays.hit_ts, ts.data(), ts.size() * 4);
+    submit(device(), [&](const vk::raii::CommandBuffer& commands) {
+        barrier(commands);
+        dispatch(commands, frame.trace.ray_launch, {1, 1, 1});
+    });
+}
+
+TEST(SeveralRays, CountWhenMoreThanHalfOfThemHit)
+{
+    GBufferImage image = metal_wall({16, 16});
+    for (int x = 0; x < 16; ++x) image.radiance[at(image, x, 0)] = {static_cast<float>(x), 1, 0};
+    const Picture        picture = make_picture(image);
+    constexpr glm::ivec2 miss{-1, -1};
+    const auto           hit = [](int x) { return glm::ivec2(x, 0); };
+    const auto           run = [&](double per_pixel, const std::vector<std::vector<glm::ivec2>>& ends) {
+        const auto frame = frame_with(picture, {{"rays_per_pixel", per_pixel}, {"viewer_fade", 0}, {"edge_fade", 0}});
+        std::vector<glm::ivec2> pixels, hits;
+        for (size_t i = 0; i < ends.size(); ++i)
+            for (const glm::ivec2& end : ends[i]) {
+                pixels.emplace_back(static_cast<int>(i), 5);
+                hits.push_back(end);
+            }
+        set_list(*frame, pixels, hits);
+        run_effect(*frame, "hit_colour");
+        const Reflection all = read_colours(picture.buffers->reflection);
+        return Reflection(all.begin() + 5 * 16, all.begin() + 5 * 16 + static_cast<ptrdiff_t>(ends.size()));
+    };
+    const Reflection four = run(4, {{miss, miss, miss, miss},
+                                    {hit(3), miss, miss, hit(3)}, // half is not more than half
+                                    {hit(3), hit(6), miss, hit(12)},
+                                    {hit(1), hit(2), hit(3), hit(2)}});
+    EXPECT_EQ(four[0], glm::vec4(0));
+    EXPECT_EQ(four[1], glm::vec4(0));
+    EXPECT_EQ(four[2], glm::vec4(7, 1, 0, 0.75F));
+    EXPECT_EQ(four[3], glm::vec4(2, 1, 0, 1));
+    const Reflection two = run(2, {{hit(3), miss}, {hit(3), hit(5)}});
+    EXPECT_EQ(two[0], glm::vec4(0));
+    EXPECT_EQ(two[1], glm::vec4(4, 1, 0, 1));
+    const Reflection one = run(1, {{hit(9)}, {miss}});
+    EXPECT_EQ(one[0], glm::vec4(9, 1, 0, 1));
+    EXPECT_EQ(one[1], glm::vec4(0));
+}
+
+/// A third of the pixels reflect, at random.
+GBufferImage speckled(glm::ivec2 size_px)
+{
+    GBufferImage image = random_gbuffer(bench_view(size_px), 9);
+    std::mt19937 random(4);
+    for (float& metallic : image.metallic) metallic = random() % 3 == 0 ? 1.0F : 0.0F;
+    return image;
+}
+
+TEST(Blocks, AreTracedFromTheirFirstReflectingPixel)
+{
+    const Picture picture = make_picture(speckled({61, 35}));
+    // From the centre outward, row by row: written down by hand.
+    const std::vector<glm::ivec2> order_2 = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
+    const std::vector<glm::ivec2> order_4 = {{1, 1}, {2, 1}, {1, 2}, {2, 2}, {1, 0}, {2, 0}, {0, 1}, {3, 1},
+                                             {0, 2}, {3, 2}, {1, 3}, {2, 3}, {0, 0}, {3, 0}, {0, 3}, {3, 3}};
+    for (const int block_px : {2, 4}) {
+        std::set<std::pair<int, int>> expected, found;
+        for (int y = 0; y < 35; y += block_px)
+            for (int x = 0; x < 61; x += block_px)
+                for (const glm::ivec2& step : block_px == 2 ? order_2 : order_4) {
+                    const glm::ivec2 pixel = glm::ivec2(x, y) + step;
+                    if (pixel.x >= 61 || pixel.y >= 35 || !reflects(picture.image, pixel)) continue;
+                    expected.insert({pixel.x, pixel.y});
+                    break;
+                }
+        const auto frame = frame_with(picture, {{"trace_resolution", block_px == 2 ? 1 : 2}});
+        const auto rays  = rays_of(*frame);
+        for (const Ray& ray : rays) found.insert({ray.pixel.x, ray.pixel.y});
+        EXPECT_EQ(found, expected);
+        EXPECT_EQ(rays.size(), expected.size());
+        EXPECT_GT(expected.size(), 50U);
+        // The effect that needs it finds it.
+        run_frame(device(), *frame);
+        const auto                    blocks = download_as<uint32_t>(device(), picture.buffers->block_pixel);
+        std::set<std::pair<int, int>> named;
+        for (const uint32_t block : blocks)
+            if (block != NO_PIXEL)
+                named.insert({block & (MAX_IMAGE_PX - 1), (block >> PIXEL_BITS) & (MAX_IMAGE_PX - 1)});
+        EXPECT_EQ(named, expected);
+    }
+}
+
+class Skipping : public testing::TestWithParam<ParameterValues> {};
+
+// What is not needed changes nothing when it runs anyway; what is counted does not depend on the effects.
+TEST_P(Skipping, LeavesEveryBit)
+{
+    const Picture   picture = make_picture("builtin:sphere_over_mirror", "default", {161, 91});
+    ParameterValues all     = GetParam();
+    all["plan"]             = 0;
+    const auto planned = frame_with(picture, GetParam(), "hiz"), everything = frame_with(picture, all, "hiz");
+    run_frame(device(), *planned);
+    const Image expected = read_shaded(device(), *planned);
+    run_frame(device(), *everything);
+    EXPECT_EQ(read_shaded(device(), *everything).values, expected.values);
+    const auto  plain = frame_with(picture, {}, "hiz");
+    std::string first;
+    EXPECT_EQ(count_differences(count_frame(device(), *planned), count_frame(device(), *plain), true, first), 0U)
+        << first;
+}
+
+INSTANTIATE_TEST_SUITE_P(Effects, Skipping,
+                         testing::Values(ParameterValues{}, ParameterValues{{"rays_per_pixel", 4}},
+                                         ParameterValues{{"trace_resolution", 1}},
+                                         ParameterValues{{"trace_resolution", 2}, {"rays_per_pixel", 2}, {"kernel", 1}},
+                                         ParameterValues{{"kernel", 2}}));
+
+} // namespace
+} // namespace ssrlab::test

@@ -1,0 +1,188 @@
+// The glossy truth where its answer is known: white surroundings, mirrors, symmetry; and whether its error bars are honest.
+#include "core/error.h"
+#include "scene/environment.h"
+#include "truth/glossy_truth.h"
+#include "truth_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace ssrlab {
+namespace {
+
+using namespace test;
+
+constexpr double pi = std::numbers::pi;
+
+/// Orthographic: every pixel sees the same plane from the same direction, `angle` off its normal.
+GBufferImage tilted_plane(double angle, float roughness, glm::ivec2 size_px = {64, 64})
+{
+    View view            = bench_view(size_px);
+    view.projection      = Projection::orthographic;
+    GBufferImage gbuffer = empty_gbuffer(view);
+    for (int y = 0; y < size_px.y; ++y)
+        for (int x = 0; x < size_px.x; ++x) set_pixel(gbuffer, x, y, 5, {0, std::sin(angle), std::cos(angle)}, 1);
+    std::ranges::fill(gbuffer.roughness, roughness);
+    return gbuffer;
+}
+
+/// The integral of D G2 / (4 n.v) over the directions l of the hemisphere: GGX as Walter et al. 2007 write it.
+double albedo_by_quadrature(double angle, double alpha)
+{
+    const glm::dvec3 v(std::sin(angle), 0, std::cos(angle));
+    const auto    tan2_term = [&](double cosine) { return std::sqrt(1 + alpha * alpha * (1 / (cosine * cosine) - 1)); };
+    constexpr int rows = 2000, columns = 1000;
+    double        sum = 0;
+    for (int i = 0; i < rows; ++i)
+        for (int j = 0; j < columns; ++j) {
+            const double     theta = 0.5 * pi * (i + 0.5) / rows, phi = pi * (j + 0.5) / columns;
+            const glm::dvec3 l(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+            const double     n_h = glm::normalize(v + l).z, d = n_h * n_h * (alpha * alpha - 1) + 1;
+            const double     ggx = alpha * alpha / (pi * d * d);
+            // G2 = 1 / (1 + Lambda(v) + Lambda(l)), Lambda = (root - 1) / 2.
+            const double g2 = 2 / (tan2_term(v.z) + tan2_term(l.z));
+            sum += ggx * g2 / (4 * v.z) * std::sin(theta);
+        }
+    return 2 * sum * (0.5 * pi / rows) * (pi / columns);
+}
+
+double mean_of(const std::vector<float>& values)
+{
+    double sum = 0;
+    for (const float value : values) sum += double(value);
+    return sum / double(values.size());
+}
+
+// 4096 pixels of 64 rays: the mean's own error is about 0.0004.
+TEST(GlossyTruth, WhiteSurroundingsGiveTheAlbedo)
+{
+    Scene scene;
+    scene.background = glm::vec3(1);
+    for (const float roughness : {0.1F, 0.5F, 0.8F, 1.0F})
+        for (const double angle : {0.0, 0.6, 1.2}) {
+            const GBufferImage gbuffer = tilted_plane(angle, roughness);
+            const GlossyTruth  truth   = glossy_truth(build_bvh(scene), scene, gbuffer, {}, {});
+            const double       alpha   = double(roughness) * double(roughness);
+            EXPECT_NEAR(mean_of(truth.weight), albedo_by_quadrature(angle, alpha), 2e-3) << roughness << ' ' << angle;
+            for (size_t i = 0; i < truth.weight.size(); ++i) ASSERT_NEAR(truth.radiance[i].g, truth.weight[i], 1e-6F);
+        }
+}
+
+// Whatever the lobe, each ray meets the same glow.
+TEST(GlossyTruth, InsideAGlowingBallEverythingGlows)
+{
+    Scene scene;
+    scene.ambient                  = glm::vec3(0);
+    const uint32_t ball            = add_material(scene, {0, 0, 0}, 0);
+    scene.materials[ball].emissive = {0.25F, 0.5F, 2};
+    add_sphere(scene, ball, {0, 0, -5}, 20, 32);
+    const GBufferImage gbuffer = tilted_plane(0.3, 0.6F, {16, 16});
+    const GlossyTruth  truth   = glossy_truth(build_bvh(scene), scene, gbuffer, {}, {});
+    for (size_t i = 0; i < truth.weight.size(); ++i) {
+        ASSERT_GT(truth.weight[i], 0.5F);
+        ASSERT_NEAR(truth.radiance[i].b / truth.weight[i], 2, 1e-5F);
+        ASSERT_NEAR(truth.radiance[i].r / truth.weight[i], 0.25F, 1e-6F);
+    }
+}
+
+/// Mirror floor, wall with posts before it, and light: some of it on screen.
+struct Room {
+    Scene        scene;
+    GBufferImage gbuffer = floor_and_wall(bench_view({64, 64}), 10);
+
+    explicit Room(float roughness)
+    {
+        test::add_floor(scene, add_material(scene, {1, 1, 1}, 1));
+        add_wall(scene, add_material(scene, {0.8F, 0.5F, 0.2F}, 0), 10);
+        const uint32_t post            = add_material(scene, {0, 0, 0}, 0);
+        scene.materials[post].emissive = {4, 1, 0};
+        for (const double x_m : {-3.0, 3.0}) add_quad(scene, post, {x_m - 0.5, -1, -6}, {1, 0, 0}, {0, 3, 0});
+        scene.lights.push_back({});
+        std::ranges::fill(gbuffer.roughness, roughness);
+        for (size_t i = 0; i < gbuffer.radiance.size(); ++i)
+            gbuffer.radiance[i] = glm::vec3(0.2F + 0.01F * float(i / 64), 0.4F, 0.1F);
+    }
+    GlossyTruth truth(const GlossySettings& settings = {}, unsigned threads = 0) const
+    {
+        return glossy_truth(build_bvh(scene), scene, gbuffer, {}, settings, threads);
+    }
+};
+
+TEST(GlossyTruth, SmoothIsTheSceneTruthToTheLastBit)
+{
+    for (const float roughness : {0.0F, 0.0199F}) {
+        const Room        room(roughness);
+        const SceneTruth  mirror = scene_truth(build_bvh(room.scene), room.scene, room.gbuffer, {});
+        const GlossyTruth truth  = room.truth();
+        EXPECT_EQ(truth.radiance, mirror.radiance);
+        for (size_t i = 0; i < truth.rays.size(); ++i)
+            ASSERT_EQ(truth.rays[i], mirror.cls[i] == TruthClass::not_traced ? 0U : 1U);
+    }
+}
+
+// The next lobe is a twentieth of a degree wide: almost the mirror.
+TEST(GlossyTruth, NearlySmoothIsNearlyTheMirror)
+{
+    const Room        room(mirror_roughness);
+    const SceneTruth  mirror = scene_truth(build_bvh(room.scene), room.scene, room.gbuffer, {});
+    const GlossyTruth truth  = room.truth();
+    size_t            far = 0, traced = 0;
+    for (size_t i = 0; i < truth.rays.size(); ++i) {
+        if (truth.rays[i] == 0) continue;
+        ++traced;
+        EXPECT_EQ(truth.rays[i], 64U);
+        far += glm::length(truth.radiance[i] - mirror.radiance[i]) > 0.05F;
+    }
+    EXPECT_GT(traced, 1000U);
+    EXPECT_LT(far, traced / 20) << "only at the posts' and the wall's borders";
+}
+
+TEST(GlossyTruth, ASymmetricSceneHasASymmetricReflection)
+{
+    const Room        room(0.4F);
+    const GlossyTruth truth    = room.truth({.rays = 256});
+    size_t            outliers = 0, pairs = 0;
+    double            chi2 = 0;
+    for (int y = 36; y < 64; ++y)
+        for (int x = 0; x < 32; ++x) {
+            const size_t a = at(room.gbuffer, x, y), b = at(room.gbuffer, 63 - x, y);
+            const double spread = std::hypot(double(truth.standard_error[a].r), double(truth.standard_error[b].r));
+            ASSERT_GT(spread, 0);
+            const double off = (double(truth.radiance[a].r) - double(truth.radiance[b].r)) / spread;
+            outliers += std::abs(off) > 4;
+            chi2 += off * off;
+            ++pairs;
+        }
+    // Differences of that many honest error bars: mean square 1, and next to none beyond 4.
+    EXPECT_NEAR(chi2 / double(pairs), 1, 0.2);
+    EXPECT_LE(outliers, pairs / 100);
+}
+
+TEST(GlossyTruth, FourTimesTheRaysHalveTheError)
+{
+    const Room room(0.5F);
+    double     few = 0, many = 0;
+    for (const glm::vec3& error : room.truth({.rays = 64}).standard_error) few += double(error.r);
+    for (const glm::vec3& error : room.truth({.rays = 256}).standard_error) many += double(error.r);
+    EXPECT_NEAR(few / many, 2, 0.1);
+}
+
+TEST(GlossyTruth, IsTheSameOnEveryNumberOfThreadsAndAnotherWithAnotherSeed)
+{
+    const Room        room(0.5F);
+    const GlossyTruth one = room.truth({}, 1);
+    EXPECT_EQ(one.radiance, room.truth({}, 5).radiance);
+    EXPECT_NE(one.radiance, room.truth({.seed = 1}).radiance);
+}
+
+TEST(GlossyTruth, RefusesWhatItCannotUse)
+{
+    Room room(0.5F);
+    EXPECT_THROW(room.truth({.rays = 1}), Failure);
+    room.gbuffer.roughness.pop_back();
+    EXPECT_THROW(room.truth(), Failure);
+}
+
+} // namespace
+} // namespace ssrlab
