@@ -48,6 +48,8 @@ ParameterValues effects_with(const ParameterValues& changed)
 {
     ParameterValues effects    = default_effect_values();
     effects.at("hidden_layer") = 1;
+    effects.at("gloss")        = 0; // each pixel shows what its own ray found
+    effects.at("environment")  = 0;
     for (const auto& [name, value] : changed) effects.at(name) = value;
     return effects;
 }

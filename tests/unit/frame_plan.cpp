@@ -112,7 +112,7 @@ TEST(Plan, FurtherRaysNeedOneRayPerPixelAtFullResolution)
 // The filter after a trace without a hit has the second layer's hits to work on.
 TEST(Plan, HitsOfTheSecondLayerAreFilteredLikeOthers)
 {
-    const FrameFacts      drawn{.scene = true};
+    const FrameFacts      drawn{.scene = true, .inputs = {}};
     const FrameStatistics misses = picture(400, 0, 0, 0);
     EXPECT_FALSE(running(plan_frame(drawn, misses, values_with({{"kernel", 1}}))).contains("kernel_filter"));
     EXPECT_TRUE(running(plan_frame(drawn, misses, values_with({{"kernel", 1}, {"hidden_layer", 1}})))
