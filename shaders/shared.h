@@ -34,6 +34,7 @@
 #define CONSTANT_TRACE_BLOCK_PX 9
 #define CONSTANT_PYRAMID_KIND 10
 #define CONSTANT_RAYS_PER_PIXEL 11
+#define CONSTANT_FROM_PIXELS 12
 #define CONSTANT_PARAMETERS 32
 #define CONSTANT_EFFECTS 64 // the effects' parameters, in the order of render/effects.cpp
 

@@ -1,6 +1,7 @@
 #include "gpu/vulkan.h"
 
 #include "core/error.h"
+#include "gpu/disk_cache.h"
 
 #include <algorithm>
 #include <array>
@@ -126,6 +127,19 @@ vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical_device, ui
             vk::DeviceCreateInfo{.pNext = &features, .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue}};
 }
 
+/// Pipelines of one device and driver version; of another one, the driver would refuse them.
+void open_pipeline_cache(GpuImpl& impl)
+{
+    const auto properties = impl.physical_device.getProperties();
+    impl.pipeline_cache_name =
+        fmt::format("pipelines-{:x}-{:x}-{:x}-", properties.vendorID, properties.deviceID, properties.driverVersion);
+    for (const uint8_t byte : properties.pipelineCacheUUID) impl.pipeline_cache_name += fmt::format("{:02x}", byte);
+    const std::string kept    = read_cached(impl.pipeline_cache_name).value_or("");
+    impl.pipeline_cache_bytes = kept.size();
+    impl.pipeline_cache       = {impl.device,
+                                 vk::PipelineCacheCreateInfo{.initialDataSize = kept.size(), .pInitialData = kept.data()}};
+}
+
 std::vector<GpuInfo> describe_all(const vk::raii::Instance& instance)
 {
     std::vector<GpuInfo> infos;
@@ -135,6 +149,17 @@ std::vector<GpuInfo> describe_all(const vk::raii::Instance& instance)
 }
 
 } // namespace
+
+GpuImpl::~GpuImpl()
+{
+    try {
+        if (*pipeline_cache == vk::PipelineCache()) return;
+        const std::vector<uint8_t> data = pipeline_cache.getData();
+        if (data.size() > pipeline_cache_bytes)
+            write_cached(pipeline_cache_name, {reinterpret_cast<const char*>(data.data()), data.size()});
+    } catch (const std::exception&) { // compiled again next time
+    }
+}
 
 std::vector<GpuInfo> list_gpus()
 {
@@ -175,7 +200,7 @@ Gpu open_gpu(const GpuOptions& options)
         impl.device         = make_device(impl.physical_device, impl.queue_family, options.robust_buffer_access);
         impl.queue          = impl.device.getQueue(impl.queue_family, 0);
         impl.command_pool   = {impl.device, vk::CommandPoolCreateInfo{.queueFamilyIndex = impl.queue_family}};
-        impl.pipeline_cache = {impl.device, vk::PipelineCacheCreateInfo{}};
+        open_pipeline_cache(impl);
     } catch (const vk::SystemError& error) {
         throw_failure("the Vulkan device cannot be opened: {}", error.what());
     }

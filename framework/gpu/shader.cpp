@@ -1,11 +1,14 @@
 #include "gpu/shader.h"
 
 #include "core/error.h"
+#include "core/files.h"
+#include "gpu/disk_cache.h"
 
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
 
+#include <cstring>
 #include <fstream>
 #include <list>
 #include <memory>
@@ -164,6 +167,45 @@ Shader compile(const ShaderSource& source)
     return shader;
 }
 
+/// "NAME BINDING TYPE\n" for each binding, an empty line, the words.
+std::string to_bytes(const Shader& shader)
+{
+    std::string bytes;
+    for (const auto& [name, binding] : shader.bindings)
+        bytes += fmt::format("{} {} {}\n", name, binding.binding, static_cast<int>(binding.type));
+    bytes += '\n';
+    return bytes.append(reinterpret_cast<const char*>(shader.spirv.data()), shader.spirv.size() * sizeof(uint32_t));
+}
+
+Shader from_bytes(const std::string& bytes, const ShaderSource& source)
+{
+    Shader shader{(shader_folder() / source.file).string(), source.stage, {}, {}};
+    size_t begin = 0;
+    for (size_t end = bytes.find('\n'); end != begin; begin = end + 1, end = bytes.find('\n', begin)) {
+        std::istringstream line(bytes.substr(begin, end - begin));
+        std::string        name;
+        uint32_t           binding = 0;
+        int                type    = 0;
+        line >> name >> binding >> type;
+        shader.bindings[name] = {binding, static_cast<BindingType>(type)};
+    }
+    shader.spirv.resize((bytes.size() - begin - 1) / sizeof(uint32_t));
+    std::memcpy(shader.spirv.data(), bytes.data() + begin + 1, shader.spirv.size() * sizeof(uint32_t));
+    return shader;
+}
+
+/// From the disk if it was compiled before by the same compiler.
+Shader compile_or_read(const ShaderSource& source, const std::string& key)
+{
+    const glslang::Version version = glslang::GetVersion();
+    const std::string      name =
+        fmt::format("shader-{}-{}.{}.{}", content_hash(key), version.major, version.minor, version.patch);
+    if (const auto kept = read_cached(name)) return from_bytes(*kept, source);
+    Shader shader = compile(source);
+    write_cached(name, to_bytes(shader));
+    return shader;
+}
+
 } // namespace
 
 Shader compile_shader(const ShaderSource& source)
@@ -172,9 +214,9 @@ Shader compile_shader(const ShaderSource& source)
     static std::mutex                    mutex;
     static std::map<std::string, Shader> compiled;
     const std::lock_guard                lock(mutex);
-    std::string                          key   = everything_read(source);
+    const std::string                    key   = everything_read(source);
     const auto                           known = compiled.find(key);
-    return known != compiled.end() ? known->second : compiled.emplace(std::move(key), compile(source)).first->second;
+    return known != compiled.end() ? known->second : compiled.emplace(key, compile_or_read(source, key)).first->second;
 }
 
 } // namespace ssrlab

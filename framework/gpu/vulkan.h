@@ -12,6 +12,11 @@
 namespace ssrlab {
 
 struct GpuImpl {
+    GpuImpl() = default;
+    ~GpuImpl(); // keeps the pipelines that were compiled for the next start
+    GpuImpl(const GpuImpl&)            = delete;
+    GpuImpl& operator=(const GpuImpl&) = delete;
+
     vk::raii::Context                context;
     vk::raii::Instance               instance        = nullptr;
     vk::raii::DebugUtilsMessengerEXT messenger       = nullptr;
@@ -20,7 +25,9 @@ struct GpuImpl {
     vk::raii::Queue                  queue           = nullptr;
     vk::raii::CommandPool            command_pool    = nullptr;
     vk::raii::PipelineCache          pipeline_cache  = nullptr;
-    uint32_t                         queue_family    = 0;
+    std::string                      pipeline_cache_name;      // on disk
+    size_t                           pipeline_cache_bytes = 0; // as read from there
+    uint32_t                         queue_family         = 0;
     vk::PhysicalDeviceLimits         limits;
     double                           timestamp_period_ns = 1;
     uint64_t                         timestamp_mask      = ~0ULL;

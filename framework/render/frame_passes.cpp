@@ -133,19 +133,24 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const Gp
                                   const PyramidImages& images)
 {
     if (std::ranges::count(frame.technique.inputs, "depth_pyramid") == 0) return {};
-    Constants constants = settings_constants(frame, Precision::float32);
-    constants.add(CONSTANT_PYRAMID_KIND, static_cast<int32_t>(parameter_or(frame, "pyramid", PYRAMID_OCCUPANCY)));
+    const Shader shader = compile_shader({.file = "depth_pyramid.comp"});
+    const auto   make   = [&](bool from_pixels) {
+        Constants constants = settings_constants(frame, Precision::float32);
+        constants.add(CONSTANT_PYRAMID_KIND, static_cast<int32_t>(parameter_or(frame, "pyramid", PYRAMID_OCCUPANCY)));
+        constants.add(CONSTANT_FROM_PIXELS, static_cast<int32_t>(from_pixels));
+        return make_compute_pass(gpu, shader, {{"depth_image", depth}, {"depth_pyramid", images.atlas}}, constants,
+                                     sizeof(PyramidPush));
+    };
     PyramidPasses passes;
-    passes.build =
-        make_compute_pass(gpu, compile_shader({.file = "depth_pyramid.comp"}),
-                          {{"depth_image", depth}, {"depth_pyramid", images.atlas}}, constants, sizeof(PyramidPush));
-    const auto size   = frame.buffers->gbuffer->view.size_px;
-    const int  width  = images.atlas.size_px.x;
-    const auto offset = [&](int level) { return glm::ivec2(level < 1 ? 0 : width - (width >> (level - 1)), 0); };
-    const int  top    = std::min(images.levels, static_cast<int>(parameter_or(frame, "top_level", 31)));
+    passes.from_pixels = make(true);
+    passes.from_cells  = make(false);
+    const auto size    = frame.buffers->gbuffer->view.size_px;
+    const int  width   = images.atlas.size_px.x;
+    const auto offset  = [&](int level) { return glm::ivec2(level < 1 ? 0 : width - (width >> (level - 1)), 0); };
+    const int  top     = std::min(images.levels, static_cast<int>(parameter_or(frame, "top_level", 31)));
     for (int level = 1; level <= top; ++level)
         passes.levels.push_back(
-            {level, level_size(size, level - 1), level_size(size, level), offset(level - 1), offset(level)});
+            {level_size(size, level - 1), level_size(size, level), offset(level - 1), offset(level)});
     return passes;
 }
 
@@ -257,8 +262,9 @@ void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& pas
 void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses& passes)
 {
     for (const PyramidPush& level : passes.levels) {
-        push(commands, passes.build, level);
-        dispatch(commands, passes.build,
+        const ComputePass& pass = &level == &passes.levels.front() ? passes.from_pixels : passes.from_cells;
+        push(commands, pass, level);
+        dispatch(commands, pass,
                  {static_cast<uint32_t>(level.size.x + 7) / 8, static_cast<uint32_t>(level.size.y + 7) / 8, 1});
         barrier(commands);
     }

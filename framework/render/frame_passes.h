@@ -57,12 +57,11 @@ struct FrameBuffers {
 };
 
 struct PyramidPush {
-    int32_t    level;
     glm::ivec2 source_size, size, source_offset, offset;
 };
 struct PyramidPasses {
-    ComputePass              build;
-    std::vector<PyramidPush> levels; // empty: the technique reads no pyramid
+    ComputePass              from_pixels, from_cells; // level 1; the others
+    std::vector<PyramidPush> levels;                  // empty: the technique reads no pyramid
 };
 
 struct TracePasses {

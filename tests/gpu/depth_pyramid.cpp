@@ -6,6 +6,7 @@
 #include "unit/truth_gbuffers.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 namespace ssrlab::test {
@@ -49,11 +50,12 @@ uint32_t code(double depth)
     return static_cast<uint32_t>(std::clamp((bits >> 12) - (PYRAMID_LOWEST_EXPONENT << 11), 0, PYRAMID_MAX_CODE));
 }
 
-/// One bit per eighth of an octave between two codes, modulo 32.
-uint32_t bins(uint32_t low, uint32_t high)
+/// One bit per bin between two codes, of the narrowest 32 bins (2^shift codes each) that reach from farthest to nearest.
+uint32_t bins(uint32_t low, uint32_t high, uint32_t farthest, uint32_t nearest)
 {
-    uint32_t mask = 0;
-    for (uint32_t bin = low >> 8; bin <= high >> 8; ++bin) mask |= 1U << (bin % 32);
+    uint32_t shift = 0, mask = 0;
+    while ((nearest >> shift) - (farthest >> shift) > 31) ++shift;
+    for (uint32_t bin = low >> shift; bin <= high >> shift; ++bin) mask |= 1U << (bin - (farthest >> shift));
     return mask;
 }
 
@@ -63,10 +65,13 @@ struct Expected {
              most_bins = 0;
 };
 
-Expected expect_cell(const GBufferImage& image, const TraceSettings& settings, int kind, int level, int x, int y)
+/// stored_farthest: the bins begin there, and it may be rounded.
+Expected expect_cell(const GBufferImage& image, const TraceSettings& settings, int kind, int level, int x, int y,
+                     uint32_t stored_farthest)
 {
-    Expected         cell;
-    const glm::ivec2 size = image.view.size_px;
+    Expected                             cell;
+    const glm::ivec2                     size = image.view.size_px;
+    std::vector<std::array<uint32_t, 3>> slabs; // outer and inner back, front
     for (int py = y << level; py < std::min((y + 1) << level, size.y); ++py)
         for (int px = x << level; px < std::min((x + 1) << level, size.x); ++px) {
             const double depth = static_cast<double>(image.depth[at(image, px, py)]);
@@ -76,9 +81,14 @@ Expected expect_cell(const GBufferImage& image, const TraceSettings& settings, i
             cell.nearest       = std::max(cell.nearest, front);
             cell.farthest_low  = std::min(cell.farthest_low, outer);
             cell.farthest_high = std::min(cell.farthest_high, inner);
-            cell.least_bins |= kind == PYRAMID_OCCUPANCY ? bins(inner, front) : ~0U;
-            cell.most_bins |= kind == PYRAMID_OCCUPANCY ? bins(outer, front) : ~0U;
+            slabs.push_back({outer, inner, front});
         }
+    for (const auto& [outer, inner, front] : slabs) {
+        const bool occupancy = kind == PYRAMID_OCCUPANCY;
+        const auto from      = [&](uint32_t back) { return std::max(back, stored_farthest); };
+        cell.least_bins |= occupancy ? bins(from(inner), front, stored_farthest, cell.nearest) : ~0U;
+        cell.most_bins |= occupancy ? bins(from(outer), front, stored_farthest, cell.nearest) : ~0U;
+    }
     return cell;
 }
 
@@ -89,10 +99,10 @@ void expect_cells(const Pyramid& pyramid, const GBufferImage& image, const Trace
     for (int level = 1; level <= pyramid.levels; ++level)
         for (int y = 0; y < pyramid.size(level).y; ++y)
             for (int x = 0; x < pyramid.size(level).x; ++x) {
-                const Expected   expected = expect_cell(image, settings, kind, level, x, y);
-                const glm::uvec2 cell     = pyramid.at(level, x, y);
+                const glm::uvec2 cell    = pyramid.at(level, x, y);
                 const uint32_t   nearest = cell.x >> 16, farthest = cell.x & PYRAMID_MAX_CODE;
-                const bool       right = nearest == expected.nearest && farthest >= expected.farthest_low &&
+                const Expected   expected = expect_cell(image, settings, kind, level, x, y, farthest);
+                const bool       right    = nearest == expected.nearest && farthest >= expected.farthest_low &&
                                    farthest <= expected.farthest_high &&
                                    (cell.y & expected.least_bins) == expected.least_bins &&
                                    (cell.y & ~expected.most_bins) == 0;

@@ -187,7 +187,9 @@ TEST(Rows, TheEstimateFollowsSizeAndTechnique)
     hiz                                       = dda;
     hiz.inputs                                = {"depth_pyramid"};
     const auto frame_s                        = [&](const Technique& technique, glm::ivec2 size_px) {
-        ssrlab::Run  run{"r1", "a", "default", size_px, {}, "walk", {{"steps", 60000}, {"space", 1}}};
+        ssrlab::Run run;
+        run.size_px         = size_px;
+        run.values          = {{"steps", 60000}, {"space", 1}};
         const double one    = estimated_seconds(run, technique, measure);
         measure.min_repeats = measure.max_repeats = 2;
         const double two                          = estimated_seconds(run, technique, measure);

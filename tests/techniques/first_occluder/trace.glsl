@@ -1,4 +1,10 @@
 // Fragile on purpose: the cell's nearest depth is all it looks at, and where the ray has gone behind a surface the search is over.
+uvec2 load_cell(ivec2 cell, int level)
+{
+    COUNT(pyramid_fetches);
+    return load_pyramid(cell, level);
+}
+
 TraceResult trace(Ray ray)
 {
     Grid  grid     = make_grid(ray);
@@ -12,7 +18,7 @@ TraceResult trace(Ray ray)
         t_border    = border_t(ray, grid, (cell + grid.forward) << level);
         t_out       = exit_t(grid, t_border);
         real z_far  = min(depth_at(ray, t), depth_at(ray, t_out));
-        bool reached = level == 0 ? fetch_depth(cell) >= z_far : int(load_pyramid(cell, max(level, 1)).x >> 16) >= depth_code(float(z_far));
+        bool reached = level == 0 ? fetch_depth(cell) >= z_far : cell_nearest(load_cell(cell, level)) >= depth_code(float(z_far));
         behind      = reached && level == 0;
 
         ivec2 child = child_cell(ray, grid, cell, max(level, 1), t);

@@ -1,0 +1,53 @@
+#include "gpu/disk_cache.h"
+
+#include "core/files.h"
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace ssrlab {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file begins with the hash of what follows: 16 digits.
+constexpr size_t hash_bytes = 16;
+
+fs::path cache_folder()
+{
+    const auto variable = [](const char* name) {
+        const char* value = std::getenv(name);
+        return fs::path(value != nullptr ? value : "");
+    };
+    if (const fs::path folder = variable("XDG_CACHE_HOME"); folder.is_absolute()) return folder / "ssrlab";
+    if (const fs::path home = variable("HOME"); home.is_absolute()) return home / ".cache/ssrlab";
+    return {};
+}
+
+} // namespace
+
+std::optional<std::string> read_cached(const std::string& name)
+{
+    const fs::path folder = cache_folder();
+    if (folder.empty() || !fs::is_regular_file(folder / name)) return std::nullopt;
+    try {
+        const std::string file = read_file(folder / name);
+        const std::string rest = file.size() > hash_bytes ? file.substr(hash_bytes) : "";
+        if (!rest.empty() && file.compare(0, hash_bytes, content_hash(rest)) == 0) return rest;
+    } catch (const std::exception&) { // unreadable is as good as absent
+    }
+    return std::nullopt;
+}
+
+void write_cached(const std::string& name, std::string_view bytes) noexcept
+{
+    try {
+        const fs::path folder = cache_folder();
+        if (folder.empty()) return;
+        fs::create_directories(folder);
+        write_file_atomically(folder / name, content_hash(bytes).append(bytes));
+    } catch (const std::exception&) { // made anew next time
+    }
+}
+
+} // namespace ssrlab

@@ -1,0 +1,195 @@
+#include "benchmarks/bench.h"
+
+#include "core/error.h"
+#include "scene/load_scene.h"
+
+#include <algorithm>
+#include <ctime>
+#include <filesystem>
+
+namespace ssrlab {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Every technique as it comes (marches in pixels: they have no metres to divide an unlimited ray by), and what hiz is compared with.
+std::vector<Contender> all_contenders(std::span<const Technique> techniques)
+{
+    std::vector<Contender> list;
+    for (const Technique& technique : techniques) {
+        Contender contender{technique.id, technique.id, {}};
+        for (const Parameter& parameter : technique.parameters)
+            if (parameter.name == "space") contender.values["space"] = "screen";
+        list.push_back(contender);
+    }
+    list.push_back({"hiz_minmax", "hiz", {{"pyramid", "minmax"}}});
+    list.push_back({"hiz_nearest", "hiz", {{"pyramid", "nearest"}}});
+    return list;
+}
+
+double cpu_ms()
+{
+    timespec time{};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
+}
+
+/// The mean of the state's iterations in milliseconds.
+template <typename Call> double measure_calls(benchmark::State& state, const Call& call)
+{
+    double total_ms = 0;
+    call(); // the caches hold what the pass before this one left: one run brings this one's
+    const double cpu_before_ms = cpu_ms();
+    for (auto _ : state) {
+        const double ms = call();
+        total_ms += ms;
+        state.SetIterationTime(ms * 1e-3);
+    }
+    const auto count         = static_cast<double>(state.iterations());
+    state.counters["cpu_ms"] = (cpu_ms() - cpu_before_ms) / count;
+    return total_ms / count;
+}
+
+} // namespace
+
+template <typename Record> double Bench::measure(benchmark::State& state, Picture& p, const Record& record)
+{
+    return measure_calls(state, [&] {
+        submit(gpu_, [&](const vk::raii::CommandBuffer& commands) {
+            write_timestamp(commands, p.timestamps, 0);
+            barrier(commands);
+            record(commands);
+            barrier(commands);
+            write_timestamp(commands, p.timestamps, 1);
+        });
+        return read_intervals_ms(gpu_, p.timestamps)[0];
+    });
+}
+
+Bench::Bench(const std::string& device)
+    : gpu_(open_gpu({.device = device})),
+      techniques_(list_techniques(std::vector<fs::path>{fs::path(SSRLAB_SOURCE_DIR) / "tests/techniques"})),
+      contenders_(all_contenders(techniques_))
+{
+}
+
+void Bench::gbuffer(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
+{
+    Picture& p = picture(scene, size_px);
+    measure_calls(state, [&] { return rerender_gbuffer(gpu_, *p.gbuffer); });
+}
+
+void Bench::copy(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
+{
+    Picture& p = picture(scene, size_px);
+    measure(state, p, [&](const auto& commands) { dispatch(commands, p.copy_pass, groups_of_8(size_px)); });
+}
+
+void Bench::pyramid(benchmark::State& state, const std::string& scene, glm::ivec2 size_px, const std::string& kind)
+{
+    Picture&       p     = picture(scene, size_px);
+    PreparedFrame& frame = frame_of(p, contender(kind == "occupancy" ? "hiz" : "hiz_" + kind));
+    measure(state, p, [&](const auto& commands) { record_pyramid(commands, frame.pyramid); });
+}
+
+void Bench::rays(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
+{
+    Picture&       p     = picture(scene, size_px);
+    PreparedFrame& frame = frame_of(p, contender("dda"));
+    measure(state, p, [&](const auto& commands) { record_rays(commands, frame.trace, *p.buffers, *frame.rays); });
+}
+
+void Bench::trace(benchmark::State& state, const std::string& scene, glm::ivec2 size_px, const Contender& tracer)
+{
+    Picture&       p     = picture(scene, size_px);
+    PreparedFrame& frame = frame_of(p, tracer);
+    Judgement      work  = judgement_of(p, tracer);
+    prepare_trace(*p.buffers, frame);
+    const double ms = measure(
+        state, p, [&](const auto& commands) { dispatch_indirect(commands, frame.trace.trace, frame.rays->launch); });
+    state.counters["rays"]            = work.rays;
+    state.counters["visits_per_ray"]  = work.visits;
+    state.counters["visits_p99"]      = work.visits_p99;
+    state.counters["fetches_per_ray"] = work.fetches;
+    state.counters["ns_per_ray"]      = work.rays > 0 ? ms * 1e6 / work.rays : 0;
+    if (size_px.x <= largest_judged_px) state.counters["recall"] = work.recall;
+}
+
+void Bench::shade(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
+{
+    Picture&       p     = picture(scene, size_px);
+    PreparedFrame& frame = frame_of(p, contender("hiz"));
+    prepare_trace(*p.buffers, frame);
+    submit(gpu_, [&](const auto& commands) { dispatch_indirect(commands, frame.trace.trace, frame.rays->launch); });
+    const Recording hit_colour = make_recording(gpu_, frame, "hit_colour"),
+                    composite  = make_recording(gpu_, frame, "composite");
+    measure(state, p, [&](const auto& commands) {
+        hit_colour(commands);
+        barrier(commands);
+        composite(commands);
+    });
+}
+
+void Bench::scattered(benchmark::State& state, const std::string& scene, glm::ivec2 size_px, bool compacted)
+{
+    Picture& p = picture(scene, size_px);
+    if (!p.scattered) p.scattered = scatter(p);
+    Scattered& s = *p.scattered;
+    prepare_trace(*s.buffers, *s.frame);
+    measure(state, p, [&](const auto& commands) {
+        if (compacted)
+            dispatch_indirect(commands, s.frame->trace.trace, s.frame->rays->launch);
+        else
+            dispatch_indirect(commands, s.over_every_pixel.trace, s.every_pixel.launch);
+    });
+    state.counters["rays"] = static_cast<double>(s.frame->rays->capacity);
+}
+
+Bench::Picture& Bench::picture(const std::string& scene, glm::ivec2 size_px)
+{
+    const auto [place, is_new] = pictures_.try_emplace(fmt::format("{} {}x{}", scene, size_px.x, size_px.y));
+    Picture& p                 = place->second;
+    if (!is_new) return p;
+    if (!scenes_.contains(scene)) {
+        const Scene loaded = load_scene(scene);
+        scenes_[scene]     = {upload_scene(gpu_, loaded), find_camera(loaded, "default")};
+    }
+    p.gbuffer = render_gbuffer(gpu_, scenes_[scene].gpu, camera_to_view(scenes_[scene].camera, size_px));
+    p.buffers = make_frame_buffers(gpu_, p.gbuffer);
+    p.copy    = make_image(
+           gpu_, {.format = vk::Format::eR32Sfloat, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
+    p.copy_pass  = make_compute_pass(gpu_, compile_shader({.file = "copy_depth.comp"}),
+                                     {{"depth_image", p.gbuffer->depth}, {"depth_copy", p.copy}});
+    p.timestamps = make_timestamps(gpu_, 2);
+    return p;
+}
+
+const Contender& Bench::contender(const std::string& name) const
+{
+    return *std::ranges::find(contenders_, name, &Contender::name);
+}
+
+/// Compiled, and run once so that the driver has compiled it, too.
+PreparedFrame& Bench::frame_of(Picture& p, const Contender& c)
+{
+    if (!p.frames.contains(c.name)) {
+        const Technique& technique = find_technique(techniques_, c.technique);
+        ParameterValues  values    = default_values(technique);
+        for (const auto& [name, text] : c.values)
+            values.at(name) = parse_parameter(find_parameter(technique, name, "benchmark"), text, "benchmark");
+        p.frames[c.name] = prepare_frame(gpu_, p.buffers, technique, values, bench_settings);
+        run_frame(gpu_, *p.frames[c.name]);
+    }
+    return *p.frames[c.name];
+}
+
+/// Rays and inputs in place: another benchmark may have used the buffers.
+void Bench::prepare_trace(const FrameBuffers& buffers, PreparedFrame& frame)
+{
+    submit(gpu_, [&](const auto& commands) {
+        record_rays(commands, frame.trace, buffers, *frame.rays);
+        record_pyramid(commands, frame.pyramid);
+    });
+}
+
+} // namespace ssrlab

@@ -1,0 +1,14 @@
+// What a pyramid walk would cost whose cells knew everything: the bound that better cells can approach, and only a better start can pass.
+#pragma once
+
+#include "core/gbuffer_image.h"
+#include "core/trace_result.h"
+
+namespace ssrlab {
+
+/// Cells visited per ray by hiz's own walk (start at level 0, climb one level where the parent changes) if a cell answered "touched"
+/// exactly when the ray's hit lies in it.
+double visits_with_perfect_cells(const GBufferImage& gbuffer, const TraceSettings& settings, const TraceResult& truth,
+                                 int top_level);
+
+} // namespace ssrlab

@@ -1,0 +1,215 @@
+// Blur by roughness, the environment, the share that a surface reflects, and hits lit as their reflector sees them.
+#include "gpu/passes.h"
+#include "scene/scene.h"
+#include "truth/screen_ray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace ssrlab::test {
+namespace {
+
+constexpr glm::vec4 hole{0, 0, 0, 0};
+
+/// A metal wall of 64 x 64 pixels with the given roughness.
+Picture rough_wall(float roughness)
+{
+    GBufferImage image = metal_wall({64, 64});
+    std::ranges::fill(image.roughness, roughness);
+    return make_picture(image);
+}
+
+Reflection blur(const Picture& picture, const Reflection& reflection, const ParameterValues& effects)
+{
+    const auto frame = frame_with(picture, effects);
+    set_reflection(picture, reflection);
+    run_effect(*frame, "blur");
+    return read_colours(picture.buffers->reflection);
+}
+
+TEST(Blur, SpreadsALineByTheGaussianOfItsRoughness)
+{
+    const Picture picture = rough_wall(0.5F);
+    Reflection    line(64 * 64, {0, 0, 0, 1});
+    for (int y = 0; y < 64; ++y) line[at(picture.image, 32, y)] = {1, 1, 1, 1};
+    // 0.25 of the height times roughness 0.5: 8 pixels, two standard deviations.
+    const Reflection found = blur(picture, line, {{"blur_scale", 0.25}});
+    double           sum   = 0;
+    for (int d = -8; d <= 8; ++d) sum += std::exp(-0.5 * d * d / 16.0);
+    for (int x = 0; x < 64; ++x) {
+        const int    d        = x - 32;
+        const double expected = std::abs(d) <= 8 ? std::exp(-0.5 * d * d / 16.0) / sum : 0;
+        EXPECT_NEAR(found[at(picture.image, x, 30)].r, expected, 1e-3) << "column " << x;
+    }
+}
+
+TEST(Blur, LeavesSmoothPixelsToTheLastBit)
+{
+    GBufferImage image = metal_wall({64, 64});
+    for (int y = 0; y < 64; ++y)
+        for (int x = 32; x < 64; ++x) image.roughness[at(image, x, y)] = 0.8F;
+    const Picture picture = make_picture(image);
+    Reflection    noise;
+    for (int i = 0; i < 64 * 64; ++i)
+        noise.emplace_back(static_cast<float>(i * 7919 % 256) / 256, static_cast<float>(i * 104729 % 64) / 64, 0.5F, 1);
+    const Reflection found   = blur(picture, noise, {});
+    size_t           changed = 0;
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) {
+            const size_t i = at(picture.image, x, y);
+            if (x < 32)
+                ASSERT_EQ(found[i], noise[i]) << x << ", " << y;
+            else
+                changed += found[i] != noise[i];
+        }
+    EXPECT_GT(changed, 1800U);
+}
+
+// Push and pull: the hole takes its neighbours' colour, and a weight below theirs.
+TEST(Blur, HolesTakeTheColourAboutThemAndStayLessTrusted)
+{
+    const Picture picture = rough_wall(0.5F);
+    Reflection    wall(64 * 64, {0.25F, 0.5F, 1, 1});
+    wall[at(picture.image, 32, 32)] = hole;
+    const Reflection found          = blur(picture, wall, {{"blur_scale", 0.0625}}); // 2 pixels; 4 for the hole
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[at(picture.image, 32, 32)][c], wall[0][c], 2e-3);
+    for (const int x : {32, 33}) {
+        EXPECT_LT(found[at(picture.image, x, 32)].a, 1);
+        EXPECT_GT(found[at(picture.image, x, 32)].a, 0.9F);
+    }
+    EXPECT_EQ(found[at(picture.image, 10, 10)], wall[0]);
+}
+
+TEST(Blur, NothingComesFromPixelsThatDoNotReflect)
+{
+    const Picture picture = rough_wall(1);
+    Reflection    halves(64 * 64, nothing_reflects);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 32; ++x) halves[at(picture.image, x, y)] = {0.5F, 0.5F, 0.5F, 1};
+    const Reflection found = blur(picture, halves, {});
+    for (size_t i = 0; i < found.size(); ++i)
+        for (int c = 0; c < 4; ++c) ASSERT_NEAR(found[i][c], halves[i][c], 1e-3) << i;
+}
+
+TEST(EnvironmentFallback, IsTheSkyInTheMirrorDirectionBlendedByTheWeight)
+{
+    const Scene   scene   = load_scene("builtin:everything");
+    const Picture picture = make_picture(scene, find_camera(scene, "default"), {161, 91});
+    const auto    frame   = frame_with(picture, {});
+    Reflection    before(picture.image.depth.size(), nothing_reflects);
+    for (size_t i = 0; i < before.size(); ++i)
+        if (picture.image.metallic[i] > 0) before[i] = {2, 1, 0.5F, static_cast<float>(i % 3) / 2};
+    set_reflection(picture, before);
+    run_effect(*frame, "environment");
+    const Reflection after         = read_colours(picture.buffers->reflection);
+    const glm::dmat3 view_to_world = glm::transpose(glm::dmat3(picture.view.world_to_view));
+    size_t           blended       = 0;
+    for (size_t i = 0; i < before.size(); ++i) {
+        if (before[i].a < 0 || before[i].a == 1) {
+            ASSERT_EQ(after[i], before[i]) << i;
+            continue;
+        }
+        const glm::ivec2 pixel(static_cast<int>(i) % 161, static_cast<int>(i) / 161);
+        const glm::vec3  sky(sky_radiance(scene, view_to_world * mirror_direction_vs(picture.image, pixel)));
+        const glm::vec3  expected = sky + (glm::vec3(before[i]) - sky) * before[i].a;
+        for (int c = 0; c < 3; ++c) ASSERT_NEAR(after[i][c], expected[c], 0.01F * expected[c] + 0.01F) << i;
+        ASSERT_EQ(after[i].a, 1);
+        ++blended;
+    }
+    EXPECT_GT(blended, 1000U);
+}
+
+/// The share of light that a GGX surface reflects, by quadrature over its half vectors (B. Karis 2013, Real Shading in Unreal Engine 4).
+double reflected_share(double f0, double roughness, double cosine)
+{
+    const double     alpha = roughness * roughness;
+    const glm::dvec3 v(std::sqrt(1 - cosine * cosine), 0, cosine);
+    double           sum = 0;
+    constexpr int    n   = 128;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            const double     u = (i + 0.5) / n, phi = 2 * std::numbers::pi * (j + 0.5) / n;
+            const double     z = std::sqrt((1 - u) / (1 + (alpha * alpha - 1) * u)), s = std::sqrt(1 - z * z);
+            const glm::dvec3 h(s * std::cos(phi), s * std::sin(phi), z), l             = 2 * glm::dot(v, h) * h - v;
+            if (l.z <= 0) continue;
+            const auto   lambda = [&](double c) { return std::sqrt(alpha * alpha + (1 - alpha * alpha) * c * c); };
+            const double v_h = std::max(glm::dot(v, h), 0.0), fresnel = f0 + (1 - f0) * std::pow(1 - v_h, 5);
+            const double visibility = 0.5 / (l.z * lambda(cosine) + cosine * lambda(l.z));
+            sum += fresnel * visibility * 4 * l.z * v_h / z;
+        }
+    return sum / (n * n);
+}
+
+// The shader's is a published fit; it lies this near to the integral (0.19 at roughness 0.4, where it is worst).
+TEST(Composite, GgxReflectsTheShareThatTheIntegralGives)
+{
+    for (const float roughness : {0.1F, 0.4F, 0.8F})
+        for (const float base : {0.2F, 1.0F}) {
+            GBufferImage image = metal_wall({64, 64});
+            std::ranges::fill(image.roughness, roughness);
+            std::ranges::fill(image.base_colour, glm::vec3(base));
+            const Picture picture = make_picture(image);
+            const auto    frame   = frame_with(picture, {{"reflectance", 1}});
+            set_reflection(picture, Reflection(64 * 64, glm::vec4(1)));
+            run_effect(*frame, "composite");
+            for (const int x : {32, 48, 62}) {
+                const double slope  = (x + 0.5 - 32) / 32,
+                             cosine = 1 / std::sqrt(1 + slope * slope + 0.5 * 0.5 / 32 / 32);
+                EXPECT_NEAR(read_colours(picture.buffers->shaded)[at(picture.image, x, 32)].r,
+                            reflected_share(static_cast<double>(base), static_cast<double>(roughness), cosine), 0.2)
+                    << "roughness " << roughness << ", base " << base << ", column " << x;
+            }
+        }
+}
+
+/// GGX with height-correlated Smith visibility and Schlick's Fresnel factor, times the light's irradiance.
+glm::dvec3 highlight(const Light& light, const GBufferImage& image, size_t i, glm::dvec3 to_eye_ws,
+                     glm::dvec3 normal_ws)
+{
+    const glm::dvec3 to_light = -glm::normalize(glm::dvec3(light.direction_ws)),
+                     half     = glm::normalize(to_eye_ws + to_light);
+    const double n_l = glm::dot(normal_ws, to_light), n_v = std::max(glm::dot(normal_ws, to_eye_ws), 1e-4);
+    if (n_l <= 0) return {0, 0, 0};
+    const double n_h = std::max(glm::dot(normal_ws, half), 0.0), v_h = std::max(glm::dot(to_eye_ws, half), 0.0);
+    const double alpha2 = std::pow(std::max(static_cast<double>(image.roughness[i]), 0.05), 4.0);
+    const double d      = n_h * n_h * (alpha2 - 1) + 1;
+    const double smith =
+        0.5 / (n_l * std::sqrt(n_v * n_v * (1 - alpha2) + alpha2) + n_v * std::sqrt(n_l * n_l * (1 - alpha2) + alpha2));
+    const glm::dvec3 f0 =
+        glm::mix(glm::dvec3(0.04), glm::dvec3(image.base_colour[i]), static_cast<double>(image.metallic[i]));
+    return glm::dvec3(light.intensity) * n_l * (alpha2 / (std::numbers::pi * d * d) * smith) *
+           (f0 + (1.0 - f0) * std::pow(1 - v_h, 5.0));
+}
+
+TEST(HitColour, MirroredLightIsTheHighlightThatTheReflectorSees)
+{
+    Scene scene = load_scene("builtin:stairs");
+    for (Light& light : scene.lights) light.casts_shadow = false;
+    const Picture picture = make_picture(scene, find_camera(scene, "default"), {161, 91});
+    const auto frame = frame_with(picture, {{"hit_light", 2}, {"viewer_fade", 0}, {"edge_fade", 0}, {"effect_set", 1}});
+    const TraceResult traced = count_frame(device(), *frame);
+    run_frame(device(), *frame);
+    const Reflection found         = read_colours(picture.buffers->reflection);
+    const glm::dmat3 view_to_world = glm::transpose(glm::dmat3(picture.view.world_to_view));
+    size_t           hits = 0, lit = 0;
+    for (size_t i = 0; i < found.size(); ++i) {
+        if (traced.status[i] != TraceStatus::hit) continue;
+        const glm::ivec2 pixel(static_cast<int>(i) % 161, static_cast<int>(i) / 161), hit = traced.hit_pixel[i];
+        const size_t     at_hit    = at(picture.image, hit.x, hit.y);
+        const glm::dvec3 direction = view_to_world * glm::normalize(mirror_direction_vs(picture.image, pixel));
+        glm::dvec3       expected(picture.image.radiance[at_hit]);
+        for (const Light& light : scene.lights)
+            expected += highlight(light, picture.image, at_hit, -direction,
+                                  view_to_world * glm::dvec3(picture.image.normal_vs[at_hit]));
+        for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(static_cast<double>(found[i][c]), expected[c], 0.01 * expected[c] + 2e-3) << i;
+        ++hits;
+        lit += glm::length(expected - glm::dvec3(picture.image.radiance[at_hit])) > 1e-3;
+    }
+    EXPECT_GT(hits, 500U);
+    EXPECT_GT(lit, 100U);
+}
+
+} // namespace
+} // namespace ssrlab::test

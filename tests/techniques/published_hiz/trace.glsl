@@ -1,0 +1,50 @@
+// Written from the description, in its own terms: position.xy in uv, a cell's surface is one plane, the ray advances to the nearest of the
+// cell's two borders and that plane. It ends where level 0 is passed downward; a hit if that is within the thickness.
+
+// A plane that lies no farther than any front of the cell's pixels; codes are rounded down.
+real surface_of(ivec2 cell, int level)
+{
+    if (level == 0) return fetch_depth(cell);
+    COUNT(pyramid_fetches);
+    int code = cell_nearest(load_pyramid(cell, level));
+    return code == 0 ? real(0) : real(intBitsToFloat((code + 1 + (PYRAMID_LOWEST_EXPONENT << 11)) << 12));
+}
+
+TraceResult trace(Ray ray)
+{
+    real3 origin    = real3(ray.origin.xy / real2(size_px), ray.origin.z);
+    real3 direction = real3(ray.delta.xy / real2(size_px), ray.delta.z);
+    real3 inverse   = real3(direction.x != real(0) ? real(1) / direction.x : real(1e30), direction.y != real(0) ? real(1) / direction.y : real(1e30),
+                            direction.z != real(0) ? real(1) / direction.z : real(1e30));
+    real2 uv_offset = real2(0.005) / real2(size_px) * real2(direction.x < real(0) ? -1 : 1, direction.y < real(0) ? -1 : 1);
+    real2 floor_offset = real2(direction.x < real(0) ? 0 : 1, direction.y < real(0) ? 0 : 1);
+
+    // Out of the pixel that it starts from.
+    real2 t_axis = ((floor(origin.xy * real2(size_px)) + floor_offset) / real2(size_px) + uv_offset - origin.xy) * inverse.xy;
+    real  t_start = min(t_axis.x, t_axis.y), t = t_start;
+    int   top = min(top_level, pyramid_levels()), level = 0, visited = 0;
+    real3 position = origin + t * direction;
+    ivec2 cell = ray.start_pixel, pixel = cell;
+    while (level >= 0 && t < real(1) && visited < max_steps)
+    {
+        int   on_level  = level;
+        real2 cells     = real2(size_px) / real2(1 << on_level);
+        cell            = clamp(ivec2(floor(position.xy * cells)), ivec2(0), (size_px - 1) >> on_level);
+        real  surface   = surface_of(cell, on_level);
+        real2 border    = (real2(cell) + floor_offset) / cells + uv_offset;
+        real2 t_border  = border * inverse.xy - origin.xy * inverse.xy;
+        real  t_leave   = min(t_border.x, t_border.y);
+        // Depth is larger where it is nearer: a ray that comes nearer never meets the plane from the front.
+        real  t_surface = direction.z < real(0) ? (surface - origin.z) * inverse.z : real(2);
+        bool  in_front  = position.z > surface;
+        bool  skipped   = in_front && t_leave < t_surface;
+        t        = in_front ? min(t_leave, t_surface) : t;
+        position = origin + t * direction;
+        pixel    = on_level == 0 && !skipped ? cell : pixel;
+        level    = skipped ? min(level + 1, top) : level - 1;
+        ++visited;
+    }
+    if (level >= 0) return t < real(1) ? out_of_steps(visited) : miss(ray, visited);
+    bool hit = pixel != ray.start_pixel && touches_surface(ray, pixel, position.z, min(position.z, fetch_depth(pixel)));
+    return hit ? hit_at(ray, pixel, t, visited) : miss(ray, visited);
+}

@@ -1,0 +1,64 @@
+// What is kept in the user's cache folder comes back whole or not at all.
+#include "gpu/disk_cache.h"
+
+#include "core/files.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace ssrlab {
+namespace {
+
+namespace fs = std::filesystem;
+
+class DiskCache : public testing::Test {
+protected:
+    DiskCache()
+    {
+        std::string pattern = (fs::temp_directory_path() / "cache.XXXXXX").string();
+        folder_             = ::mkdtemp(pattern.data());
+        ::setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
+    }
+    ~DiskCache() override { fs::remove_all(folder_); }
+
+    fs::path folder_;
+};
+
+TEST_F(DiskCache, ReturnsWhatWasKept)
+{
+    const std::string bytes("a\0b\n", 4);
+    EXPECT_EQ(read_cached("thing"), std::nullopt);
+    write_cached("thing", bytes);
+    EXPECT_EQ(read_cached("thing"), bytes);
+    EXPECT_EQ(read_cached("other"), std::nullopt);
+}
+
+TEST_F(DiskCache, IgnoresDamagedFiles)
+{
+    write_cached("thing", "some bytes");
+    const fs::path    file  = folder_ / "ssrlab/thing";
+    const std::string whole = read_file(file);
+    for (const std::string& damaged : {std::string(), whole.substr(0, 8), whole.substr(0, whole.size() - 1),
+                                       whole + "x", std::string("garbage that is long enough for a hash")}) {
+        write_file_atomically(file, damaged);
+        EXPECT_EQ(read_cached("thing"), std::nullopt) << damaged;
+    }
+    write_file_atomically(file, whole);
+    EXPECT_EQ(read_cached("thing"), "some bytes");
+}
+
+TEST_F(DiskCache, DoesWithoutAFolder)
+{
+    ::setenv("XDG_CACHE_HOME", "/proc", 1);
+    write_cached("thing", "bytes");
+    EXPECT_EQ(read_cached("thing"), std::nullopt);
+    ::setenv("XDG_CACHE_HOME", "relative", 1);
+    ::unsetenv("HOME");
+    write_cached("thing", "bytes");
+    EXPECT_EQ(read_cached("thing"), std::nullopt);
+}
+
+} // namespace
+} // namespace ssrlab
