@@ -10,10 +10,13 @@ layout(set = 0, binding = 0, scalar) uniform Frame
     vec3  view_axis_ws;    // orthographic: direction of view
     int   light_count;
     vec3  ambient;
-    float pad;
+    float layer_separation; // second layer: at least so far behind the first; in units of the near distance, or of the depth range
 };
 #define LIGHTS_BINDING 2
 #include "lighting.glsl"
+#ifdef SECOND_LAYER
+layout(set = 0, binding = 5, r32f) uniform readonly image2D first_depth;
+#endif
 
 layout(location = 0) in vec3 position_ws;
 layout(location = 1) in vec3 normal_ws;
@@ -41,12 +44,26 @@ vec3 shading_normal(Material material, Coordinates at)
     return material.double_sided != 0 && !gl_FrontFacing ? -normal : normal;
 }
 
+#ifdef SECOND_LAYER
+// Depth peeling: the nearest of all that lies behind what the first layer shows. C. Everitt 2001, Interactive Order-Independent
+// Transparency; with a minimum separation as M. Mara et al. 2016, Deep G-Buffers for Stable Global Illumination Approximation.
+bool is_peeled_off()
+{
+    float first = imageLoad(first_depth, ivec2(gl_FragCoord.xy)).x;
+    float limit = orthographic != 0 ? first - layer_separation : first / (1.0 + layer_separation * first);
+    return first <= 0.0 || gl_FragCoord.z >= limit;
+}
+#endif
+
 void main()
 {
     Coordinates at       = coordinates_of(uv);
     Material    material = materials[material_index];
     vec4        base     = base_colour_of(material, at, vertex_colour);
     if (material.alpha_cutoff >= 0.0 && base.a < material.alpha_cutoff) discard;
+#ifdef SECOND_LAYER
+    if (is_peeled_off()) discard;
+#endif
     vec4  metallic_roughness = sample_texture(metallic_roughness_texture, material, 1, at);
     float metallic  = clamp(material.metallic * metallic_roughness.b, 0.0, 1.0);
     float roughness = clamp(material.roughness * metallic_roughness.g, 0.0, 1.0);

@@ -10,6 +10,9 @@
 #define TRACE_OUT_OF_STEPS 4
 #define TRACE_FACING_AWAY 5
 
+// What a ray found in the second depth layer has this added to its status.
+#define TRACE_SECOND_LAYER 8
+
 // A pixel and a small number in one uint: x in bits 0..13, y in 14..27, the number in 28..31.
 #define PIXEL_BITS 14
 #define MAX_IMAGE_PX (1 << PIXEL_BITS)

@@ -41,7 +41,13 @@ ivec2 unpack_pixel(uint packed)
     return ivec2(packed, packed >> PIXEL_BITS) & (MAX_IMAGE_PX - 1);
 }
 
-int unpack_number(uint packed)
+// How a ray ended, in whichever layer.
+int unpack_status(uint packed)
 {
-    return int(packed >> (2 * PIXEL_BITS));
+    return int(packed >> (2 * PIXEL_BITS)) & (TRACE_SECOND_LAYER - 1);
+}
+
+bool in_second_layer(uint packed)
+{
+    return (int(packed >> (2 * PIXEL_BITS)) & TRACE_SECOND_LAYER) != 0;
 }

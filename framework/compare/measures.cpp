@@ -69,6 +69,19 @@ constexpr auto table = std::to_array<Measure>({
     {"truth_sky", "share", "rays that meet nothing, of traced rays", truth},
     {"truth_beyond", "share", "rays whose true point is beyond the maximum distance, of traced rays", truth},
 
+    {"hidden_recovered_share", "share",
+     "rays that the second depth layer answers within 1 px of the true point, of rays whose true point is hidden; this "
+     "and the next four where the effect hidden_layer ran",
+     truth},
+    {"ghost_share", "share",
+     "rays without hit in the first layer whose true point is visible or hidden (ghost shadows), of traced rays",
+     "J. Somerville Roberts, Screen Space Reflections"},
+    {"ghost_removed_share", "share", "of these, rays that hit something in the second layer", own},
+    {"hidden_layer_hits", "share", "rays that hit in the second layer, of traced rays", own},
+    {"hidden_layer_wrong", "share",
+     "hits in the second layer farther than 1 px from a visible or hidden true point, of hits in the second layer",
+     truth},
+
     {"flips_per_million", "rays per million",
      "rays whose status, or pixel if both hit, differs between float and double, of traced rays", own},
     {"error_scene_to_screen", "share",

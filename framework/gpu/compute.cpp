@@ -137,6 +137,8 @@ void write_timestamp(const vk::raii::CommandBuffer& commands, const Timestamps& 
 {
     if (index == 0) commands.resetQueryPool(*timestamps.pool, 0, timestamps.count);
     commands.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *timestamps.pool, index);
+    // Where something was rasterised before, lavapipe takes the time at the next flush: it must come before the next pass.
+    barrier(commands);
 }
 
 std::vector<double> read_intervals_ms(Gpu& gpu, const Timestamps& timestamps)

@@ -133,6 +133,7 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
     for (int i = 0; i < std::max(1, measure.warmup); ++i) run_frame(bench.gpu, *measured.frame);
     const Image       shaded  = read_shaded(bench.gpu, *measured.frame);
     const TraceResult counted = count_frame(bench.gpu, *measured.frame);
+    const auto        hidden  = read_hidden_hits(bench.gpu, *measured.frame);
     if (measure.pictures) write_pictures(bench, picture, measured, shaded, counted);
     add_counts(measured.row, counted);
     if (!picture.truths) return;
@@ -140,8 +141,8 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
     if (measure.double_twin && bench.gpu.info.float64) {
         twin = count_frame(bench.gpu, *measured.frame, Precision::float64);
     }
-    add_measures(measured.row,
-                 picture.truths->compare(run.settings.trace, counted, twin ? &*twin : nullptr, measure.image_errors));
+    add_measures(measured.row, picture.truths->compare(run.settings.trace, counted, twin ? &*twin : nullptr,
+                                                       hidden ? &*hidden : nullptr, measure.image_errors));
     if (!measure.image_errors) return;
     const Image reference =
         composite_reflection(bench.gpu, *measured.frame, picture.truths->true_reflection(run.settings.trace));

@@ -80,12 +80,13 @@ MeasureValues Truths::compare_picture(const TraceSettings& settings, const Image
 }
 
 MeasureValues Truths::compare(const TraceSettings& settings, const TraceResult& counted, const TraceResult* twin,
-                              bool image_errors)
+                              const TraceResult* hidden, bool image_errors)
 {
     make(settings);
     MeasureValues values = compare_to_screen_truth(counted, screen_truth_);
     merge(values, compare_to_scene_truth(counted, scene_truth_, screen_truth_, gbuffer_));
     merge(values, split_error(counted, twin, screen_truth_, &scene_truth_));
+    if (hidden != nullptr) merge(values, compare_hidden_layer(counted, *hidden, scene_truth_));
     if (!image_errors) return values;
     merge(values, compare_images(reflected_image(counted, gbuffer_, scene_->background), reference_image(scene_truth_),
                                  scene_truth_));

@@ -16,9 +16,9 @@ public:
     /// Keeps a reference to `scene`.
     Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path cache_dir);
 
-    /// Every measure of `counted`; `twin` is the same trace in double, or null.
+    /// Every measure of `counted`. `twin` is the same trace in double, `hidden` what was found in the second layer; or null.
     MeasureValues compare(const TraceSettings& settings, const TraceResult& counted, const TraceResult* twin,
-                          bool image_errors);
+                          const TraceResult* hidden, bool image_errors);
 
     /// The reflection of the glossy scene truth (many rays where it is rough), at full weight; weight -1 where nothing reflects.
     std::vector<glm::vec4> true_reflection(const TraceSettings& settings);

@@ -1,20 +1,20 @@
 // How each row of the table of effects is recorded.
+#include "render/effect_passes.h"
+
 #include "core/error.h"
-#include "render/frame_passes.h"
 
 #include <glm/gtc/packing.hpp>
 
 namespace ssrlab {
-namespace {
 
-using Defines = std::map<std::string, std::string>;
-
-ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader, const Defines& defines)
+ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader, const Defines& defines,
+                             const Bindings& more)
 {
     const FrameBuffers& buffers   = *frame.buffers;
     Constants           constants = settings_constants(frame, Precision::float32);
     add_parameters(constants, effect_parameters(), frame.settings.effects, CONSTANT_EFFECTS);
-    Bindings bindings = bindings_of(buffers, *frame.rays);
+    Bindings bindings = more;
+    bindings.merge(bindings_of(buffers, *frame.rays));
     bindings.insert({{"View", buffers.view},
                      {"radiance_image", buffers.gbuffer->radiance},
                      {"highlight_image", buffers.gbuffer->highlight},
@@ -38,6 +38,41 @@ ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::st
         bindings, constants);
 }
 
+ComputePass make_colour_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader, Defines defines,
+                             Bindings more)
+{
+    constexpr double mirrored = 2;
+    if (frame.settings.effects.at("hit_light") == mirrored) {
+        if (!frame.buffers->gbuffer->scene)
+            throw_spec_error("hit_light = mirrored needs the scene's lights; this G-buffer came without a scene");
+        defines.emplace("MIRRORED_LIGHT", "1");
+    }
+    if (frame.hidden_layer) {
+        const GBuffer& layer = *frame.buffers->second_layer;
+        defines.emplace("SECOND_LAYER", "1");
+        more.insert({{"second_depth_image", layer.depth},
+                     {"second_normal_image", layer.normal},
+                     {"second_material_image", layer.material},
+                     {"second_radiance_image", layer.radiance},
+                     {"second_highlight_image", layer.highlight}});
+    }
+    return make_effect_pass(gpu, frame, shader, defines, more);
+}
+
+void record_copy(const vk::raii::CommandBuffer& commands, const GpuImage& source, const GpuImage& target)
+{
+    const vk::ImageSubresourceLayers colour{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
+    const vk::ImageCopy              whole{
+                     .srcSubresource = colour,
+                     .dstSubresource = colour,
+                     .extent = {static_cast<uint32_t>(source.size_px.x), static_cast<uint32_t>(source.size_px.y), 1}};
+    barrier(commands);
+    commands.copyImage(*source.image, vk::ImageLayout::eGeneral, *target.image, vk::ImageLayout::eGeneral, whole);
+    barrier(commands);
+}
+
+namespace {
+
 std::shared_ptr<ComputePass> shared_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader,
                                                 const Defines& defines = {})
 {
@@ -56,18 +91,6 @@ void clear(const vk::raii::CommandBuffer& commands, const GpuImage& image, vk::C
 void clear_reflection(const vk::raii::CommandBuffer& commands, const GpuImage& reflection)
 {
     clear(commands, reflection, {std::array<float, 4>{0, 0, 0, -1}});
-}
-
-void copy(const vk::raii::CommandBuffer& commands, const GpuImage& source, const GpuImage& target)
-{
-    const vk::ImageSubresourceLayers colour{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
-    const vk::ImageCopy              whole{
-                     .srcSubresource = colour,
-                     .dstSubresource = colour,
-                     .extent = {static_cast<uint32_t>(source.size_px.x), static_cast<uint32_t>(source.size_px.y), 1}};
-    barrier(commands);
-    commands.copyImage(*source.image, vk::ImageLayout::eGeneral, *target.image, vk::ImageLayout::eGeneral, whole);
-    barrier(commands);
 }
 
 Recording classification(Gpu& /*gpu*/, PreparedFrame& frame)
@@ -100,12 +123,8 @@ Recording colour_downsampling(Gpu& gpu, PreparedFrame& frame)
 
 Recording hit_colour(Gpu& gpu, PreparedFrame& frame)
 {
-    constexpr double mirrored = 2;
-    const bool       relight  = frame.settings.effects.at("hit_light") == mirrored;
-    if (relight && !frame.buffers->gbuffer->scene)
-        throw_spec_error("hit_light = mirrored needs the scene's lights; this G-buffer came without a scene");
-    const Defines defines = relight ? Defines{{"MIRRORED_LIGHT", "1"}} : Defines{};
-    return [&frame, pass = shared_effect_pass(gpu, frame, "effects/hit_colour.comp", defines)](const auto& commands) {
+    auto pass = std::make_shared<ComputePass>(make_colour_pass(gpu, frame, "effects/hit_colour.comp"));
+    return [&frame, pass](const auto& commands) {
         clear_reflection(commands, frame.buffers->reflection);
         if (trace_block_px(frame.settings.effects) > 1)
             clear(commands, frame.buffers->block_pixel, {std::array<uint32_t, 4>{NO_PIXEL, 0, 0, 0}});
@@ -143,7 +162,7 @@ Recording kernel_filter(Gpu& gpu, PreparedFrame& frame)
     return [&frame, pass = shared_effect_pass(gpu, frame, "effects/kernel.comp")](const auto& commands) {
         clear_reflection(commands, frame.buffers->filtered); // of tiles that are not listed
         dispatch_indirect(commands, *pass, frame.buffers->tiles.launch);
-        copy(commands, frame.buffers->filtered, frame.buffers->reflection);
+        record_copy(commands, frame.buffers->filtered, frame.buffers->reflection);
     };
 }
 
@@ -166,8 +185,10 @@ Recording make_recording(Gpu& gpu, PreparedFrame& frame, const std::string& effe
         {"rays", rays},
         {"depth_pyramid", depth_pyramid},
         {"trace", trace},
+        {"hidden_layer", hidden_layer},
         {"colour_downsampling", colour_downsampling},
         {"hit_colour", hit_colour},
+        {"bounces", bounces},
         {"upsampling", upsampling},
         {"kernel_filter", kernel_filter},
         {"blur", blur},
@@ -184,7 +205,7 @@ Image composite_reflection(Gpu& gpu, const PreparedFrame& frame, std::span<const
     for (const glm::vec4& value : reflection) texels.push_back(glm::packHalf4x16(value));
     FrameBuffers& buffers = *frame.buffers;
     upload(gpu, buffers.reflection, texels.data(), texels.size() * sizeof(uint64_t));
-    const ComputePass pass = make_effect_pass(gpu, frame, "effects/composite.comp", {});
+    const ComputePass pass = make_effect_pass(gpu, frame, "effects/composite.comp");
     submit(gpu, [&](const auto& commands) {
         barrier(commands);
         dispatch(commands, pass, groups_of_8(buffers.gbuffer->view.size_px));

@@ -63,6 +63,38 @@ Need depth_pyramid_need(const FrameFacts& facts, const FrameStatistics& statisti
     return where_something_reflects(facts, statistics, values);
 }
 
+/// Effects that continue the rays one by one.
+bool one_ray_per_pixel(const ParameterValues& values)
+{
+    return values.at("rays_per_pixel") == 1 && trace_block_px(values) == 1;
+}
+
+Need hidden_layer_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (shading_only(values)) return {Call::off, "effect_set = shading"};
+    if (values.at("hidden_layer") == 0) return {Call::off, "hidden_layer = false"};
+    if (!facts.scene) return {Call::off, "no scene to draw again"};
+    if (!one_ray_per_pixel(values)) return {Call::off, "needs one ray per pixel at full resolution"};
+    const TraceCounts& trace  = statistics.trace;
+    const uint32_t     misses = trace.rays - trace.hits;
+    if (misses == 0) return {Call::not_needed, fmt::format("none of {} rays missed", trace.rays)};
+    const double      threshold = values.at("hidden_layer_threshold");
+    const std::string reason    = fmt::format("{} of {} rays found nothing", percent(misses, trace.rays), trace.rays);
+    if (misses <= threshold * trace.rays)
+        return {Call::off, fmt::format("{}, the threshold is {:.3g} %", reason, 100 * threshold)};
+    return {Call::needed, reason};
+}
+
+Need bounces_need(const FrameFacts& /*facts*/, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (shading_only(values)) return {Call::off, "effect_set = shading"};
+    if (values.at("bounce_mode") == 0) return {Call::off, "bounce_mode = off"};
+    if (!one_ray_per_pixel(values)) return {Call::off, "needs one ray per pixel at full resolution"};
+    const TraceCounts& trace = statistics.trace;
+    if (trace.mirror_hits == 0) return {Call::not_needed, fmt::format("none of {} hits reflects", trace.hits)};
+    return {Call::needed, fmt::format("{} of {} hits reflect", percent(trace.mirror_hits, trace.hits), trace.hits)};
+}
+
 /// The rough ones among the pixels that reflect.
 uint32_t rough_pixels(const FrameStatistics& statistics)
 {
@@ -116,7 +148,8 @@ Need kernel_need(const FrameFacts& facts, const FrameStatistics& statistics, con
     if (shading_only(values)) return {Call::off, "effect_set = shading"};
     if (values.at("kernel") == 0) return {Call::off, "kernel = off"};
     if (statistics.picture.reflecting_pixels == 0) return where_something_reflects(facts, statistics, values);
-    if (statistics.trace.hits == 0) return {Call::not_needed, "no ray hits anything"};
+    const bool second_layer = hidden_layer_need(facts, statistics, values).call == Call::needed;
+    if (statistics.trace.hits == 0 && !second_layer) return {Call::not_needed, "no ray hits anything"};
     return {Call::needed, fmt::format("{} rays hit ({})", statistics.trace.hits,
                                       percent(statistics.trace.hits, statistics.trace.rays))};
 }
@@ -164,6 +197,22 @@ std::vector<Effect> make_table()
                      "normal_image", "depth_pyramid"},
          .writes  = {"HitPixels", "HitTs"},
          .need    = where_something_reflects},
+        {.id      = "hidden_layer",
+         .summary = "A second depth layer by depth peeling, and the rays that found nothing traced in it",
+         .cite    = {"C. Everitt 2001, Interactive Order-Independent Transparency",
+                     "M. Mara, M. McGuire, D. Nowrouzezahrai, D. Luebke 2016, Deep G-Buffers for Stable Global "
+                        "Illumination Approximation"},
+         .shader  = "effects/gather_misses.comp",
+         .reads   = {"View", "RayCount", "RayOrigins", "RayDeltas", "RayLengths", "RayPixels", "depth_image",
+                     "normal_image", "material_image"},
+         .writes  = {"HitPixels", "HitTs"},
+         .parameters =
+             {boolean("hidden_layer", false, "whether rays that find nothing are traced in a second depth layer"),
+              real("hidden_layer_separation_m", 0.5, 0, 1e6,
+                   "the second layer is the nearest surface more than so far behind the first"),
+              real("hidden_layer_threshold", 0, 0, 1,
+                   "the second layer is left out up to this share of rays without hit; above 0 pictures change")},
+         .need = hidden_layer_need},
         {.id         = "colour_downsampling",
          .summary    = "The lit colour at the resolution of the rays, blurred in the shape of a cross",
          .cite       = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling"},
@@ -205,6 +254,20 @@ std::vector<Effect> make_table()
                    "a hit counts when the direction to its surface and the ray's have at least this cosine; -1: "
                    "always")},
          .need = where_something_reflects},
+        {.id      = "bounces",
+         .summary = "Mirror in mirror: further bounces where what was hit reflects, too",
+         .cite    = {"J. Somerville Roberts, Screen Space Reflections"},
+         .shader  = "effects/bounce_rays.comp",
+         .reads   = {"View", "RayCount", "RayOrigins", "RayDeltas", "RayPixels", "HitPixels", "HitTs", "depth_image",
+                     "normal_image", "material_image", "radiance_image", "highlight_image", "depth_pyramid"},
+         .writes  = {"reflection_image"},
+         .parameters =
+             {starting_with(choice("bounce_mode", {"off", "history", "direct"},
+                                   "further bounces: none, by the previous frames' reflections as the camera saw them, "
+                                   "or traced in the arriving ray's mirror direction"),
+                            "direct"),
+              integer("bounces", 1, 1, 16, "further bounces, or earlier frames; each adds one level of reflection")},
+         .need = bounces_need},
         {.id      = "upsampling",
          .summary = "Gives pixels without rays what the 2 x 2 traced pixels about them reflect",
          .cite    = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling",

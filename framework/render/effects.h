@@ -14,7 +14,7 @@ namespace ssrlab {
 
 /// What is known of scene and technique before anything is drawn.
 struct FrameFacts {
-    bool                     scene           = false; // a picture may come without one
+    bool                     scene           = false; // the G-buffer was drawn from one
     bool                     environment_map = false; // otherwise one colour arrives from everywhere
     bool                     alpha_mask      = false;
     std::vector<std::string> inputs; // that the technique reads

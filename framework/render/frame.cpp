@@ -152,9 +152,8 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
     frame->values    = values;
     frame->settings  = settings;
     frame->rays      = rays_for(gpu, *buffers, settings);
-    frame->pyramid =
-        std::ranges::count(technique.inputs, "depth_pyramid") > 0 ? make_pyramid_passes(gpu, *frame) : PyramidPasses{};
-    frame->trace = make_trace_passes(gpu, *frame, *frame->rays, buffers->view, nullptr);
+    frame->pyramid   = make_pyramid_passes(gpu, *frame, buffers->gbuffer->depth, buffers->pyramid);
+    frame->trace     = make_trace_passes(gpu, *frame, *frame->rays, buffers->view, nullptr);
 
     frame->facts      = facts_of(*frame);
     frame->statistics = buffers->statistics;

@@ -10,6 +10,7 @@
 #include "scene/scene.h"
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -66,6 +67,11 @@ std::vector<std::string> facts_of_plan(const PreparedFrame& frame);
 FrameTimes run_frame(Gpu& gpu, PreparedFrame& frame);
 /// The reflected picture that the last run_frame of this frame left in the shared buffers. Linear RGB.
 Image read_shaded(Gpu& gpu, const PreparedFrame& frame);
+/// What the last run_frame of this frame found in the second layer: `hit` there, not_traced elsewhere. Empty when the plan
+/// has no hidden layer.
+std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame);
+/// The second layer itself, of a frame whose plan has one.
+GBufferImage read_second_layer(Gpu& gpu, const PreparedFrame& frame);
 /// The picture with another reflection in the place of the traced one: colour and weight of each pixel, weight < 0 where nothing reflects.
 /// Leaves this reflection in the shared buffers.
 Image composite_reflection(Gpu& gpu, const PreparedFrame& frame, std::span<const glm::vec4> reflection);

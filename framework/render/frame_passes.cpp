@@ -129,25 +129,25 @@ PyramidImages make_pyramid_images(Gpu& gpu, glm::ivec2 size_px)
     return images;
 }
 
-PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame)
+PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const GpuImage& depth,
+                                  const PyramidImages& images)
 {
-    const FrameBuffers& buffers = *frame.buffers;
-    const Shader        shader  = compile_shader({.file = "depth_pyramid.comp"});
-    const auto          make    = [&](bool from_pixels) {
+    if (std::ranges::count(frame.technique.inputs, "depth_pyramid") == 0) return {};
+    const Shader shader = compile_shader({.file = "depth_pyramid.comp"});
+    const auto   make   = [&](bool from_pixels) {
         Constants constants = settings_constants(frame, Precision::float32);
         constants.add(CONSTANT_PYRAMID_KIND, static_cast<int32_t>(parameter_or(frame, "pyramid", PYRAMID_OCCUPANCY)));
         constants.add(CONSTANT_FROM_PIXELS, static_cast<int32_t>(from_pixels));
-        return make_compute_pass(gpu, shader,
-                                             {{"depth_image", buffers.gbuffer->depth}, {"depth_pyramid", buffers.pyramid.atlas}},
-                                             constants, sizeof(PyramidPush));
+        return make_compute_pass(gpu, shader, {{"depth_image", depth}, {"depth_pyramid", images.atlas}}, constants,
+                                     sizeof(PyramidPush));
     };
     PyramidPasses passes;
     passes.from_pixels = make(true);
     passes.from_cells  = make(false);
-    const auto size    = buffers.gbuffer->view.size_px;
-    const int  width   = buffers.pyramid.atlas.size_px.x;
+    const auto size    = frame.buffers->gbuffer->view.size_px;
+    const int  width   = images.atlas.size_px.x;
     const auto offset  = [&](int level) { return glm::ivec2(level < 1 ? 0 : width - (width >> (level - 1)), 0); };
-    const int  top     = std::min(buffers.pyramid.levels, static_cast<int>(parameter_or(frame, "top_level", 31)));
+    const int  top     = std::min(images.levels, static_cast<int>(parameter_or(frame, "top_level", 31)));
     for (int level = 1; level <= top; ++level)
         passes.levels.push_back(
             {level_size(size, level - 1), level_size(size, level), offset(level - 1), offset(level)});
@@ -187,24 +187,29 @@ ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch
                              constants);
 }
 
+ComputePass make_trace_pass(Gpu& gpu, const PreparedFrame& frame, const Bindings& bindings, Precision precision)
+{
+    // A folder with a trace.comp of its own replaces the standard one (for techniques that work in tiles, say).
+    const std::filesystem::path own = frame.technique.folder / "trace.comp";
+    ShaderSource                trace{.file = std::filesystem::exists(own) ? own : std::filesystem::path("trace.comp"),
+                                      .defines       = precision_defines(precision),
+                                      .include_files = {{"technique/trace.glsl", frame.technique.folder / "trace.glsl"}},
+                                      .include_texts = {{"technique/parameters",
+                                                         parameter_declarations(frame.technique.parameters, CONSTANT_PARAMETERS)}}};
+    if (exact_arithmetic(gpu, frame)) trace.defines.emplace("EXACT_ARITHMETIC", "1");
+    if (bindings.contains("Work")) trace.defines.emplace("COUNT_WORK", "1");
+    Constants constants = settings_constants(frame, precision);
+    add_parameters(constants, frame.technique.parameters, frame.values, CONSTANT_PARAMETERS);
+    return make_compute_pass(gpu, compile_shader(trace), bindings, constants);
+}
+
 TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view,
                               const Buffer* work)
 {
     const FrameBuffers& buffers  = *frame.buffers;
     Bindings            bindings = bindings_of(buffers, rays);
     bindings.insert({"View", view});
-    // A folder with a trace.comp of its own replaces the standard one (for techniques that work in tiles, say).
-    const std::filesystem::path own = frame.technique.folder / "trace.comp";
-    ShaderSource                trace{.file = std::filesystem::exists(own) ? own : std::filesystem::path("trace.comp"),
-                                      .defines       = precision_defines(rays.precision),
-                                      .include_files = {{"technique/trace.glsl", frame.technique.folder / "trace.glsl"}},
-                                      .include_texts = {{"technique/parameters",
-                                                         parameter_declarations(frame.technique.parameters, CONSTANT_PARAMETERS)}}};
-    if (exact_arithmetic(gpu, frame)) trace.defines.emplace("EXACT_ARITHMETIC", "1");
-    if (work != nullptr) {
-        trace.defines.emplace("COUNT_WORK", "1");
-        bindings.insert({"Work", *work});
-    }
+    if (work != nullptr) bindings.insert({"Work", *work});
     Constants constants = settings_constants(frame, rays.precision);
     // What is counted is the technique's work on one ray from the centre of each pixel that reflects, whatever the effects.
     const bool counts     = work != nullptr;
@@ -219,8 +224,7 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
     passes.rays        = make_compute_pass(
                gpu, compile_shader({.file = "rays.comp", .defines = precision_defines(rays.precision)}), bindings, constants);
     passes.ray_launch = make_launch_pass(gpu, rays.count, rays.launch, RAYS_PER_GROUP);
-    add_parameters(constants, frame.technique.parameters, frame.values, CONSTANT_PARAMETERS);
-    passes.trace = make_compute_pass(gpu, compile_shader(trace), bindings, constants);
+    passes.trace      = make_trace_pass(gpu, frame, bindings, rays.precision);
     return passes;
 }
 
@@ -285,7 +289,7 @@ TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, co
         const glm::ivec2 pixel = unpack(pixels[i]);
         const size_t     index =
             static_cast<size_t>(pixel.y) * static_cast<size_t>(size_px.x) + static_cast<size_t>(pixel.x);
-        result.status[index]       = static_cast<TraceStatus>(hits[i] >> (2 * PIXEL_BITS));
+        result.status[index]       = static_cast<TraceStatus>((hits[i] >> (2 * PIXEL_BITS)) & (TRACE_SECOND_LAYER - 1));
         result.hit_pixel[index]    = unpack(hits[i]);
         result.hit_t[index]        = static_cast<double>(ts[i]);
         result.hit_px_depth[index] = glm::dvec3(origins[i]) + result.hit_t[index] * glm::dvec3(deltas[i]);

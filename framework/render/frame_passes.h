@@ -19,6 +19,13 @@ Buffer     upload_view(Gpu& gpu, const View& view, Precision precision);
 void       write_view(Gpu& gpu, Buffer& target, const View& view, Precision precision);
 RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision);
 
+/// Rays that come from other rays: a list of their own, and of each the ray or pixel that it belongs to.
+struct DerivedRays {
+    RayBuffers rays;
+    Buffer     sources;
+    Buffer     throughputs; // bounces: what a ray's light still weighs in the reflection it belongs to, RGB
+};
+
 /// All levels >= 1 of the depth pyramid in one atlas; level L begins at x = width - (width >> (L - 1)).
 struct PyramidImages {
     GpuImage atlas;
@@ -33,14 +40,17 @@ struct TileBuffers {
 TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px);
 
 struct FrameBuffers {
-    GBufferPtr                                    gbuffer;
-    Buffer                                        view; // float
-    TileBuffers                                   tiles;
-    FrameStatistics                               statistics; // of the picture; nothing is traced yet
-    std::map<size_t, std::shared_ptr<RayBuffers>> rays;       // by capacity; float
-    PyramidImages                                 pyramid;
+    GBufferPtr                                                     gbuffer;
+    Buffer                                                         view; // float
+    TileBuffers                                                    tiles;
+    FrameStatistics                                                statistics; // of the picture; nothing is traced yet
+    std::map<size_t, std::shared_ptr<RayBuffers>>                  rays;       // by capacity; float
+    PyramidImages                                                  pyramid;
+    GBufferPtr                                                     second_layer; // empty until a frame asks for it
+    PyramidImages                                                  second_pyramid;
+    std::map<std::pair<size_t, int>, std::shared_ptr<DerivedRays>> derived_rays; // by capacity, and which of two
     GpuImage reflection;   // RGBA16F: colour, weight; weight < 0 where no ray started
-    GpuImage filtered;     // RGBA16F: a reflection that a filter is writing
+    GpuImage filtered;     // RGBA16F: a reflection that a filter is writing, or an earlier one
     GpuImage small_colour; // RGBA16F, half size or less: lit colour as rays at a lower resolution find it
     GpuImage block_pixel;  // R32UI, half size or less: which pixel of a block has rays, or NO_PIXEL
     GpuImage shaded;       // RGBA16F
@@ -72,14 +82,19 @@ struct PreparedFrame {
     FrameFacts                  facts;
     FrameStatistics             statistics;
     std::vector<PlannedEffect>  plan;
-    std::vector<Recording>      recordings; // of the effects that run
+    std::vector<Recording>      recordings;           // of the effects that run
+    bool                        hidden_layer = false; // hits may lie in the second layer
     Timestamps                  timestamps;
 };
 
-PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame);
+/// Those of one layer's depth; none when the technique reads no pyramid.
+PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const GpuImage& depth,
+                                  const PyramidImages& images);
 /// work: steps, depth and pyramid fetches per ray, or null for the pipeline that is timed.
 TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view,
                               const Buffer* work);
+/// The technique on the list and the layer that are bound.
+ComputePass make_trace_pass(Gpu& gpu, const PreparedFrame& frame, const Bindings& bindings, Precision precision);
 ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch, int items_per_group);
 /// Everything that shaders may read and write, by its name; without the view.
 Bindings  bindings_of(const FrameBuffers& buffers, const RayBuffers& rays);

@@ -19,7 +19,7 @@ struct FrameBlock {
     glm::vec3 view_axis_ws;
     int32_t   light_count;
     glm::vec3 ambient;
-    float     pad = 0;
+    float     layer_separation = 0;
 };
 
 using HalfTexel = std::array<uint16_t, 4>;
@@ -103,9 +103,8 @@ void record_rasterisation(const vk::raii::CommandBuffer& commands, const GBuffer
     commands.endRendering();
 }
 
-} // namespace
-
-GBufferPtr render_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view)
+/// Ready to be drawn. first: the layer that lies before this one, or null.
+GBufferPtr make_drawn_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view, const GBuffer* first)
 {
     GBufferPtr gbuffer = make_gbuffer(gpu, view);
     gbuffer->scene     = scene;
@@ -114,12 +113,15 @@ GBufferPtr render_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view)
                          .size_px = view.size_px,
                          .usage = vk::ImageUsageFlagBits::eDepthStencilAttachment | vk::ImageUsageFlagBits::eSampled});
     fill_frame_uniforms(gpu, *gbuffer);
-    gbuffer->frame_set = make_frame_set(gpu, *scene, gbuffer->frame_uniforms);
-    gbuffer->pipeline  = make_draw_pipeline(
-         gpu, *scene,
-         {.fragment_shader = "gbuffer.frag",
-          .colour_formats  = {gbuffer->normal.format, gbuffer->material.format, gbuffer->radiance.format,
-                              gbuffer->highlight.format, gbuffer->object.format}});
+    gbuffer->frame_set =
+        make_frame_set(gpu, *scene, gbuffer->frame_uniforms, first == nullptr ? nullptr : &first->depth);
+    gbuffer->pipeline = make_draw_pipeline(
+        gpu, *scene,
+        {.fragment_shader  = "gbuffer.frag",
+         .colour_formats   = {gbuffer->normal.format, gbuffer->material.format, gbuffer->radiance.format,
+                              gbuffer->highlight.format, gbuffer->object.format},
+         .fragment_defines = first == nullptr ? std::map<std::string, std::string>{}
+                                              : std::map<std::string, std::string>{{"SECOND_LAYER", "1"}}});
     gbuffer->sampler       = {gpu.impl->device, vk::SamplerCreateInfo{}};
     gbuffer->view_uniforms = upload_view(gpu, view, Precision::float32);
     Constants constants;
@@ -132,20 +134,48 @@ GBufferPtr render_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view)
                                              {"radiance_image", gbuffer->radiance}},
                                             constants, sizeof(glm::mat4));
     gbuffer->timestamps = make_timestamps(gpu, 2);
+    return gbuffer;
+}
+
+void record_drawing(const vk::raii::CommandBuffer& commands, const GBuffer& gbuffer)
+{
+    barrier(commands);
+    record_rasterisation(commands, gbuffer);
+    barrier(commands);
+    push(commands, gbuffer.background, glm::mat4(glm::inverse(gbuffer.view.world_to_view)));
+    dispatch(commands, gbuffer.background, groups_of_8(gbuffer.view.size_px));
+    barrier(commands);
+}
+
+} // namespace
+
+GBufferPtr render_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view)
+{
+    GBufferPtr gbuffer = make_drawn_gbuffer(gpu, scene, view, nullptr);
     rerender_gbuffer(gpu, *gbuffer);
     return gbuffer;
+}
+
+GBufferPtr make_second_layer(Gpu& gpu, const GBuffer& first)
+{
+    return make_drawn_gbuffer(gpu, first.scene, first.view, &first);
+}
+
+void record_second_layer(const vk::raii::CommandBuffer& commands, const GBuffer& second, double separation_m)
+{
+    const View&  view = second.view;
+    const double unit = view.projection == Projection::perspective ? view.near_m : view.far_m - view.near_m;
+    barrier(commands);
+    commands.updateBuffer<float>(*second.frame_uniforms.buffer, offsetof(FrameBlock, layer_separation),
+                                 static_cast<float>(separation_m / unit));
+    record_drawing(commands, second);
 }
 
 double rerender_gbuffer(Gpu& gpu, GBuffer& gbuffer)
 {
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         write_timestamp(commands, gbuffer.timestamps, 0);
-        barrier(commands);
-        record_rasterisation(commands, gbuffer);
-        barrier(commands);
-        push(commands, gbuffer.background, glm::mat4(glm::inverse(gbuffer.view.world_to_view)));
-        dispatch(commands, gbuffer.background, groups_of_8(gbuffer.view.size_px));
-        barrier(commands);
+        record_drawing(commands, gbuffer);
         write_timestamp(commands, gbuffer.timestamps, 1);
     });
     return read_intervals_ms(gpu, gbuffer.timestamps)[0];

@@ -29,4 +29,9 @@ std::vector<float> usable_depth(std::span<const float> depth);
 /// Depth, normal, roughness, base colour and metallic of a picture of the same size.
 void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image);
 
+/// What a scene's G-buffer hides: the same images again, of the nearest surfaces that lie more than the separation behind it.
+/// `first` must outlive it.
+GBufferPtr make_second_layer(Gpu& gpu, const GBuffer& first);
+void       record_second_layer(const vk::raii::CommandBuffer& commands, const GBuffer& second, double separation_m);
+
 } // namespace ssrlab

@@ -187,7 +187,7 @@ GpuScenePtr upload_scene(Gpu& gpu, const Scene& source)
 
     using Type             = vk::DescriptorType;
     scene->frame_layout    = make_layout(gpu, {Type::eUniformBuffer, Type::eStorageBuffer, Type::eStorageBuffer,
-                                               Type::eStorageBuffer, Type::eCombinedImageSampler});
+                                               Type::eStorageBuffer, Type::eCombinedImageSampler, Type::eStorageImage});
     scene->material_layout = make_layout(gpu, std::vector<Type>(textures_per_material, Type::eCombinedImageSampler));
     make_material_sets(gpu, *scene, source);
     for (size_t i = 0; i < source.draws.size(); ++i) {
@@ -203,12 +203,14 @@ GpuScenePtr upload_scene(Gpu& gpu, const Scene& source)
     return scene;
 }
 
-FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms)
+FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms, const GpuImage* first_depth)
 {
     using Type                           = vk::DescriptorType;
-    const vk::DescriptorPoolSize sizes[] = {
-        {Type::eUniformBuffer, 1}, {Type::eStorageBuffer, 3}, {Type::eCombinedImageSampler, 1}};
-    FrameSet result;
+    const vk::DescriptorPoolSize sizes[] = {{Type::eUniformBuffer, 1},
+                                            {Type::eStorageBuffer, 3},
+                                            {Type::eCombinedImageSampler, 1},
+                                            {Type::eStorageImage, 1}};
+    FrameSet                     result;
     result.pool = {gpu.impl->device,
                    vk::DescriptorPoolCreateInfo{.flags         = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
                                                 .maxSets       = 1,
@@ -236,6 +238,14 @@ FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uni
                                                                  .descriptorCount = 1,
                                                                  .descriptorType  = Type::eCombinedImageSampler,
                                                                  .pImageInfo      = &image},
+                                          nullptr);
+    if (first_depth == nullptr) return result;
+    const vk::DescriptorImageInfo first{{}, *first_depth->view, vk::ImageLayout::eGeneral};
+    gpu.impl->device.updateDescriptorSets(vk::WriteDescriptorSet{.dstSet          = *result.set,
+                                                                 .dstBinding      = 5,
+                                                                 .descriptorCount = 1,
+                                                                 .descriptorType  = Type::eStorageImage,
+                                                                 .pImageInfo      = &first},
                                           nullptr);
     return result;
 }

@@ -46,6 +46,7 @@ struct DrawPipelineOptions {
     const char*             fragment_shader = nullptr;
     std::vector<vk::Format> colour_formats;
     bool reversed_depth = true; // the G-buffer's convention; shadow maps use standard depth with a bias
+    std::map<std::string, std::string> fragment_defines = {};
 };
 DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipelineOptions& options);
 
@@ -53,12 +54,13 @@ DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipel
 void draw_scene(const vk::raii::CommandBuffer& commands, const GpuScene& scene, const DrawPipeline& pipeline,
                 vk::DescriptorSet frame_set, const glm::dmat4& world_to_clip);
 
-/// A descriptor set for set 0 with frame uniforms; kept by the caller.
+/// A descriptor set for set 0 with frame uniforms and, for the second layer, the first one's depth; kept by the caller.
 struct FrameSet {
     vk::raii::DescriptorPool pool = nullptr;
     vk::raii::DescriptorSet  set  = nullptr;
 };
-FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms);
+FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms,
+                        const GpuImage* first_depth = nullptr);
 
 /// Light matrices and shadow maps; called once by upload_scene.
 void render_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source);

@@ -97,12 +97,11 @@ RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Techniqu
     frame.technique      = technique;
     frame.values         = values;
     frame.settings.trace = settings;
-    frame.pyramid =
-        std::ranges::count(technique.inputs, "depth_pyramid") > 0 ? make_pyramid_passes(gpu, frame) : PyramidPasses{};
-    tracer->rays   = make_ray_buffers(gpu, capacity, precision);
-    tracer->work   = make_buffer(gpu, std::max<uint64_t>(capacity, 1) * sizeof(glm::uvec3));
-    tracer->view   = upload_view(gpu, gbuffer->view, precision);
-    tracer->passes = make_trace_passes(gpu, frame, tracer->rays, tracer->view, &tracer->work);
+    frame.pyramid        = make_pyramid_passes(gpu, frame, gbuffer->depth, buffers->pyramid);
+    tracer->rays         = make_ray_buffers(gpu, capacity, precision);
+    tracer->work         = make_buffer(gpu, std::max<uint64_t>(capacity, 1) * sizeof(glm::uvec3));
+    tracer->view         = upload_view(gpu, gbuffer->view, precision);
+    tracer->passes       = make_trace_passes(gpu, frame, tracer->rays, tracer->view, &tracer->work);
     return tracer;
 }
 

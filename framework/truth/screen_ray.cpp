@@ -117,12 +117,18 @@ glm::dvec3 mirror_direction_vs(const GBufferImage& gbuffer, glm::ivec2 pixel)
 
 ScreenRay make_screen_ray(const GBufferImage& gbuffer, glm::ivec2 pixel, const TraceSettings& settings)
 {
-    ScreenRay ray;
-    if (!reflects(gbuffer, pixel)) return ray;
+    if (!reflects(gbuffer, pixel)) return {};
+    return make_screen_ray(gbuffer, pixel, mirror_direction_vs(gbuffer, pixel), settings);
+}
+
+ScreenRay make_screen_ray(const GBufferImage& gbuffer, glm::ivec2 pixel, glm::dvec3 direction_vs,
+                          const TraceSettings& settings)
+{
+    ScreenRay        ray;
     const View&      view     = gbuffer.view;
     const glm::dvec3 point_vs = pixel_point_vs(gbuffer, pixel);
     ray.traced                = true;
-    ray.direction_vs          = mirror_direction_vs(gbuffer, pixel);
+    ray.direction_vs          = direction_vs;
     ray.start_pixel           = pixel;
     ray.origin_px_depth       = {glm::dvec2(pixel) + 0.5, double(gbuffer.depth[pixel_index(gbuffer, pixel)])};
 

@@ -27,6 +27,9 @@ glm::dvec3 pixel_point_vs(const GBufferImage& gbuffer, glm::ivec2 pixel);
 glm::dvec3 mirror_direction_vs(const GBufferImage& gbuffer, glm::ivec2 pixel);
 
 ScreenRay make_screen_ray(const GBufferImage& gbuffer, glm::ivec2 pixel, const TraceSettings& settings);
+/// From a pixel that reflects, in any unit direction.
+ScreenRay make_screen_ray(const GBufferImage& gbuffer, glm::ivec2 pixel, glm::dvec3 direction_vs,
+                          const TraceSettings& settings);
 
 /// Throws Failure unless depth, normal_vs and metallic cover the image.
 void require_complete(const GBufferImage& gbuffer);

@@ -1,10 +1,11 @@
-// How the rays of the frame ended, for its plan.
+// How the rays of the pixels that reflect ended, for the frame's plan.
 #include "view.glsl"
 #include "reflecting.glsl"
 #extension GL_KHR_shader_subgroup_arithmetic : require
 
 layout(local_size_x = RAYS_PER_GROUP) in;
 layout(set = 0, binding = 4, scalar) readonly buffer RayCount { uint ray_count; };
+layout(set = 0, binding = 8, scalar) readonly buffer RayPixels { uint ray_pixel[]; };
 layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[]; };
 layout(set = 0, binding = 10, scalar) buffer TraceStatistics // struct TraceCounts of render/effects.h
 {
@@ -16,9 +17,9 @@ layout(set = 0, binding = 10, scalar) buffer TraceStatistics // struct TraceCoun
 void main()
 {
     uint index  = (gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x) * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    bool traced = index < ray_count;
+    bool traced = index < ray_count && reflects(unpack_pixel(ray_pixel[index]));
     uint found  = traced ? hit_pixel[index] : 0;
-    bool hit    = traced && unpack_number(found) == TRACE_HIT;
+    bool hit    = traced && unpack_status(found) == TRACE_HIT;
     bool mirror = hit && reflects(unpack_pixel(found));
     uint traced_count = subgroupAdd(uint(traced)), hit_count = subgroupAdd(uint(hit)), mirror_count = subgroupAdd(uint(mirror));
     if (!subgroupElect()) return;

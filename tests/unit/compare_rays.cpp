@@ -56,6 +56,34 @@ TEST(RayMeasures, AgainstScreenTruth)
     EXPECT_EQ(values.at("screen_displacement_p99_px"), 4);
 }
 
+TEST(RayMeasures, WhatTheSecondLayerAdds)
+{
+    TraceResult first = row_of(10), second = row_of(10);
+    second.status.assign(10, TraceStatus::not_traced);
+    SceneTruth truth;
+    truth.size_px = {10, 1};
+    truth.cls     = {TruthClass::not_traced, TruthClass::hidden,    TruthClass::hidden,  TruthClass::hidden,
+                     TruthClass::hidden,     TruthClass::hidden,    TruthClass::visible, TruthClass::visible,
+                     TruthClass::sky,        TruthClass::off_screen};
+    truth.point_px.assign(10, {20.25, 0.5});
+    first.status[0] = TraceStatus::not_traced;
+    set_hit(second, 1, 21.25); // exactly 1 px: recovered
+    set_hit(second, 2, 20.5);  // recovered
+    set_hit(second, 3, 25);    // filled with the wrong thing; 4 stays a ghost
+    set_hit(first, 5, 3);      // a hit in the first layer, wrong or not, is no ghost
+    set_hit(second, 6, 20.25); // visible, missed in the first layer: right, but not hidden
+    set_hit(first, 7, 20.25);
+    set_hit(second, 8, 20.25); // there is nothing to be seen
+    const MeasureValues values = compare_hidden_layer(first, second, truth);
+    EXPECT_EQ(values.at("hidden_recovered_share"), 2 / 5.0);
+    EXPECT_EQ(values.at("ghost_share"), 5 / 9.0); // 1, 2, 3, 4 and 6
+    EXPECT_EQ(values.at("ghost_removed_share"), 4 / 5.0);
+    EXPECT_EQ(values.at("hidden_layer_hits"), 5 / 9.0);
+    EXPECT_EQ(values.at("hidden_layer_wrong"), 2 / 5.0);
+    TraceResult other = row_of(9);
+    EXPECT_THROW(compare_hidden_layer(first, other, truth), Failure);
+}
+
 TEST(RayMeasures, NothingTracedHasNoValues)
 {
     TraceResult none = row_of(4);
@@ -68,6 +96,7 @@ TEST(RayMeasures, NothingTracedHasNoValues)
     MeasureValues all = no_measures();
     merge(all, compare_to_screen_truth(none, none));
     merge(all, compare_to_scene_truth(none, scene, none, empty_gbuffer(bench_view({4, 1}))));
+    merge(all, compare_hidden_layer(none, none, scene));
     merge(all, split_error(none, &none, none, &scene));
     merge(all, count_work(none));
     merge(all, compare_images(reference_image(scene), reference_image(scene), scene));
@@ -181,10 +210,12 @@ TEST(Measures, TableIsCompleteAndUnique)
     SceneCase     test;
     MeasureValues all = compare_to_screen_truth(test.tested, test.screen);
     all.merge(compare_to_scene_truth(test.tested, test.truth, test.screen, test.gbuffer));
+    all.merge(compare_hidden_layer(test.tested, test.screen, test.truth));
     all.merge(split_error(test.tested, &test.tested, test.screen, &test.truth));
     all.merge(count_work(test.tested));
     test.truth.radiance.resize(16);
     all.merge(compare_images(reference_image(test.truth), reference_image(test.truth), test.truth));
+    all.merge(compare_pictures(reference_image(test.truth), reference_image(test.truth), test.truth, test.gbuffer));
     std::set<std::string_view> filled;
     for (const auto& [name, value] : all) filled.insert(name);
     filled.insert("steps_max"); // only with rays

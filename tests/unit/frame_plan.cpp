@@ -90,6 +90,35 @@ TEST(Plan, WithoutThePlanEverythingRunsThatIsNotSwitchedOff)
               (std::set<std::string>{"classification", "rays", "depth_pyramid", "trace", "hit_colour", "composite"}));
 }
 
+// A second layer and further bounces continue rays one by one, whether the picture calls for them or not.
+TEST(Plan, FurtherRaysNeedOneRayPerPixelAtFullResolution)
+{
+    const FrameFacts      drawn{.scene = true, .inputs = {"depth_pyramid"}};
+    const FrameStatistics mirrors = picture(400, 0, 300, 10);
+    const auto            plan    = plan_frame(drawn, mirrors, values_with({{"hidden_layer", 1}}));
+    EXPECT_EQ(reason(plan, "hidden_layer"), "25 % of 400 rays found nothing");
+    EXPECT_EQ(reason(plan, "bounces"), "3.33 % of 300 hits reflect");
+    for (const auto& [name, value] : ParameterValues{{"rays_per_pixel", 2}, {"trace_resolution", 1}})
+        for (const double planned : {0.0, 1.0}) {
+            const auto without =
+                plan_frame(drawn, mirrors, values_with({{"hidden_layer", 1}, {name, value}, {"plan", planned}}));
+            for (const char* effect : {"hidden_layer", "bounces"}) {
+                EXPECT_FALSE(running(without).contains(effect)) << name;
+                EXPECT_EQ(reason(without, effect), "needs one ray per pixel at full resolution") << name;
+            }
+        }
+}
+
+// The filter after a trace without a hit has the second layer's hits to work on.
+TEST(Plan, HitsOfTheSecondLayerAreFilteredLikeOthers)
+{
+    const FrameFacts      drawn{.scene = true, .inputs = {}};
+    const FrameStatistics misses = picture(400, 0, 0, 0);
+    EXPECT_FALSE(running(plan_frame(drawn, misses, values_with({{"kernel", 1}}))).contains("kernel_filter"));
+    EXPECT_TRUE(running(plan_frame(drawn, misses, values_with({{"kernel", 1}, {"hidden_layer", 1}})))
+                    .contains("kernel_filter"));
+}
+
 TEST(Plan, EveryReasonIsThereForEverySetting)
 {
     for (const Parameter& parameter : effect_parameters())
@@ -117,14 +146,16 @@ TEST(EffectTable, NamesAreUniqueAndDefaultsInRange)
 // What a row says that it reads and writes is what its shaders bind; every shader file of a row exists.
 TEST(EffectTable, ShadersOfTheEffectsFolderAreAllInTheTable)
 {
-    std::set<std::string> used;
+    // Further passes of a row, and the count that plans rest on.
+    std::set<std::string> used{"effects/second_layer_hits.comp", "effects/bounce_colour.comp",
+                               "effects/bounce_history.comp", "effects/trace_statistics.comp"};
     for (const Effect& effect : all_effects()) {
         EXPECT_TRUE(std::filesystem::exists(shader_folder() / effect.shader)) << effect.shader;
         used.insert(effect.shader);
     }
     for (const auto& file : std::filesystem::directory_iterator(shader_folder() / "effects")) {
         const std::string name = "effects/" + file.path().filename().string();
-        if (file.path().extension() != ".comp" || name == "effects/trace_statistics.comp") continue;
+        if (file.path().extension() != ".comp") continue;
         EXPECT_TRUE(used.contains(name)) << name;
     }
 }

@@ -1,0 +1,46 @@
+// What the second depth layer adds to the first.
+#include "compare/measures.h"
+
+#include "core/error.h"
+
+namespace ssrlab {
+namespace {
+
+std::optional<double> share(size_t part, size_t whole)
+{
+    if (whole == 0) return std::nullopt;
+    return double(part) / double(whole);
+}
+
+} // namespace
+
+MeasureValues compare_hidden_layer(const TraceResult& first, const TraceResult& second, const SceneTruth& truth)
+{
+    if (first.size_px != truth.size_px || second.size_px != truth.size_px)
+        throw_failure("compared results have {}x{}, {}x{} and {}x{} pixels", first.size_px.x, first.size_px.y,
+                      second.size_px.x, second.size_px.y, truth.size_px.x, truth.size_px.y);
+    size_t rays = 0, hidden = 0, recovered = 0, ghosts = 0, filled = 0, found = 0, wrong = 0;
+    for (size_t i = 0; i < truth.cls.size(); ++i) {
+        if (truth.cls[i] == TruthClass::not_traced) continue;
+        const bool is_hidden = truth.cls[i] == TruthClass::hidden;
+        const bool on_screen = is_hidden || truth.cls[i] == TruthClass::visible;
+        const bool is_ghost  = on_screen && first.status[i] != TraceStatus::hit;
+        const bool hits      = second.status[i] == TraceStatus::hit;
+        const bool right =
+            hits && on_screen && screen_distance_px(glm::dvec2(second.hit_px_depth[i]), truth.point_px[i]) <= 1;
+        ++rays;
+        hidden += is_hidden;
+        recovered += is_hidden && right;
+        ghosts += is_ghost;
+        filled += is_ghost && hits;
+        found += hits;
+        wrong += hits && !right;
+    }
+    return {{"hidden_recovered_share", share(recovered, hidden)},
+            {"ghost_share", share(ghosts, rays)},
+            {"ghost_removed_share", share(filled, ghosts)},
+            {"hidden_layer_hits", share(found, rays)},
+            {"hidden_layer_wrong", share(wrong, found)}};
+}
+
+} // namespace ssrlab

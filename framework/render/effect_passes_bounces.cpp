@@ -1,0 +1,93 @@
+// Mirror in mirror: further bounces, traced ray by ray or taken from the previous frame's reflection.
+#include "render/effect_passes.h"
+#include "shared.h"
+
+namespace ssrlab {
+namespace {
+
+struct Bounce {
+    std::shared_ptr<DerivedRays> rays;
+    ComputePass                  set_up, launch, trace, colour;
+};
+
+Bindings list_bindings(const FrameBuffers& buffers, const DerivedRays& derived)
+{
+    Bindings bindings = {{"RaySources", derived.sources}, {"RayThroughputs", derived.throughputs}};
+    bindings.merge(bindings_of(buffers, derived.rays));
+    return bindings;
+}
+
+/// The rays that continue those of `from`, or of the frame where that is null.
+Bounce make_bounce(Gpu& gpu, const PreparedFrame& frame, const DerivedRays* from, int which)
+{
+    const FrameBuffers& buffers = *frame.buffers;
+    Bounce              bounce;
+    bounce.rays       = derived_rays(gpu, frame, which);
+    Bindings arriving = derived_bindings(*bounce.rays);
+    if (from != nullptr) arriving.merge(list_bindings(buffers, *from));
+    const Defines defines = from == nullptr ? Defines{} : Defines{{"FURTHER", "1"}};
+    Bindings      traced  = list_bindings(buffers, *bounce.rays);
+    traced.insert({"View", buffers.view});
+    bounce.set_up = make_colour_pass(gpu, frame, "effects/bounce_rays.comp", defines, arriving);
+    bounce.launch = make_launch_pass(gpu, bounce.rays->rays.count, bounce.rays->rays.launch, RAYS_PER_GROUP);
+    bounce.trace  = make_trace_pass(gpu, frame, traced, Precision::float32);
+    bounce.colour = make_colour_pass(gpu, frame, "effects/bounce_colour.comp", {}, traced);
+    return bounce;
+}
+
+void record_bounce(const vk::raii::CommandBuffer& commands, const Bounce& bounce, const Buffer& arriving_launch)
+{
+    const RayBuffers& rays = bounce.rays->rays;
+    barrier(commands);
+    commands.fillBuffer(*rays.count.buffer, 0, VK_WHOLE_SIZE, 0);
+    barrier(commands);
+    dispatch_indirect(commands, bounce.set_up, arriving_launch);
+    barrier(commands);
+    dispatch(commands, bounce.launch, {1, 1, 1});
+    barrier(commands);
+    dispatch_indirect(commands, bounce.trace, rays.launch);
+    barrier(commands);
+    dispatch_indirect(commands, bounce.colour, rays.launch);
+}
+
+/// The first bounce continues the frame's rays; the others go to and fro between two lists.
+Recording direct(Gpu& gpu, PreparedFrame& frame, int count)
+{
+    auto bounces = std::make_shared<std::vector<Bounce>>();
+    bounces->push_back(make_bounce(gpu, frame, nullptr, 0));
+    if (count > 1) bounces->push_back(make_bounce(gpu, frame, bounces->at(0).rays.get(), 1));
+    if (count > 2) bounces->push_back(make_bounce(gpu, frame, bounces->at(1).rays.get(), 0));
+    return [&frame, bounces, count](const auto& commands) {
+        record_bounce(commands, bounces->at(0), frame.rays->launch);
+        for (int i = 1; i < count; ++i) {
+            const Bounce& bounce = bounces->at(i % 2 == 1 ? 1 : 2);
+            record_bounce(commands, bounce, bounces->at(i % 2 == 1 ? 0 : 1).rays->rays.launch);
+        }
+    };
+}
+
+/// Every pass plays the next frame of a still picture, so that a run depends on nothing that was there before.
+Recording history(Gpu& gpu, PreparedFrame& frame, int count)
+{
+    auto pass = std::make_shared<ComputePass>(
+        make_colour_pass(gpu, frame, "effects/bounce_history.comp", {}, {{"history_image", frame.buffers->filtered}}));
+    return [&frame, pass, count](const auto& commands) {
+        for (int i = 0; i < count; ++i) {
+            record_copy(commands, frame.buffers->reflection, frame.buffers->filtered);
+            dispatch_indirect(commands, *pass, frame.rays->launch);
+        }
+    };
+}
+
+} // namespace
+
+Recording bounces(Gpu& gpu, PreparedFrame& frame)
+{
+    constexpr int history_mode = 1; // of the parameter's choices
+    const auto&   effects      = frame.settings.effects;
+    const int     count        = static_cast<int>(effects.at("bounces"));
+    return static_cast<int>(effects.at("bounce_mode")) == history_mode ? history(gpu, frame, count)
+                                                                       : direct(gpu, frame, count);
+}
+
+} // namespace ssrlab

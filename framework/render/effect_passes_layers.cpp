@@ -1,0 +1,89 @@
+// The hidden layer: the scene once more without what the first layer shows, and the rays that missed, traced in it.
+#include "render/effect_passes.h"
+#include "shared.h"
+
+#include <algorithm>
+
+namespace ssrlab {
+namespace {
+
+struct HiddenLayer {
+    GBufferPtr                   layer;
+    std::shared_ptr<DerivedRays> missed;
+    PyramidPasses                pyramid;
+    ComputePass                  gather, launch, trace, merge;
+};
+
+/// The technique's own trace pass: it does not know which layer it sees.
+ComputePass make_layer_trace_pass(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays)
+{
+    const FrameBuffers& buffers  = *frame.buffers;
+    Bindings            bindings = {{"View", buffers.view},
+                                    {"depth_image", buffers.second_layer->depth},
+                                    {"normal_image", buffers.second_layer->normal},
+                                    {"material_image", buffers.second_layer->material},
+                                    {"depth_pyramid", buffers.second_pyramid.atlas}};
+    bindings.merge(bindings_of(buffers, rays));
+    return make_trace_pass(gpu, frame, bindings, Precision::float32);
+}
+
+} // namespace
+
+Recording hidden_layer(Gpu& gpu, PreparedFrame& frame)
+{
+    FrameBuffers& buffers = *frame.buffers;
+    if (!buffers.second_layer) {
+        buffers.second_layer   = make_second_layer(gpu, *buffers.gbuffer);
+        buffers.second_pyramid = make_pyramid_images(gpu, buffers.gbuffer->view.size_px);
+    }
+    frame.hidden_layer      = true;
+    auto own                = std::make_shared<HiddenLayer>();
+    own->layer              = buffers.second_layer;
+    own->missed             = derived_rays(gpu, frame, 0);
+    own->pyramid            = make_pyramid_passes(gpu, frame, own->layer->depth, buffers.second_pyramid);
+    const Bindings derived  = derived_bindings(*own->missed);
+    own->gather             = make_effect_pass(gpu, frame, "effects/gather_misses.comp", {}, derived);
+    own->launch             = make_launch_pass(gpu, own->missed->rays.count, own->missed->rays.launch, RAYS_PER_GROUP);
+    own->trace              = make_layer_trace_pass(gpu, frame, own->missed->rays);
+    own->merge              = make_effect_pass(gpu, frame, "effects/second_layer_hits.comp", {}, derived);
+    const double separation = frame.settings.effects.at("hidden_layer_separation_m");
+    return [&frame, own, separation](const auto& commands) {
+        const RayBuffers& missed = own->missed->rays;
+        record_second_layer(commands, *own->layer, separation);
+        record_pyramid(commands, own->pyramid);
+        commands.fillBuffer(*missed.count.buffer, 0, VK_WHOLE_SIZE, 0);
+        barrier(commands);
+        dispatch_indirect(commands, own->gather, frame.rays->launch);
+        barrier(commands);
+        dispatch(commands, own->launch, {1, 1, 1});
+        barrier(commands);
+        dispatch_indirect(commands, own->trace, missed.launch);
+        barrier(commands);
+        dispatch_indirect(commands, own->merge, missed.launch);
+    };
+}
+
+std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame)
+{
+    if (!frame.hidden_layer) return std::nullopt;
+    const RayBuffers& rays    = *frame.rays;
+    const glm::ivec2  size_px = frame.buffers->gbuffer->view.size_px;
+    TraceResult       result  = read_result<float>(gpu, size_px, rays, nullptr);
+    const size_t      count   = download_as<uint32_t>(gpu, rays.count, 1)[0];
+    const auto        pixels  = download_as<uint32_t>(gpu, rays.pixels, count);
+    const auto        records = download_as<uint32_t>(gpu, rays.hit_pixels, count);
+    for (size_t i = 0; i < count; ++i) {
+        if ((records[i] >> (2 * PIXEL_BITS) & TRACE_SECOND_LAYER) != 0) continue;
+        const uint32_t x = pixels[i] & (MAX_IMAGE_PX - 1), y = pixels[i] >> PIXEL_BITS & (MAX_IMAGE_PX - 1);
+        result.status[static_cast<size_t>(y) * static_cast<size_t>(size_px.x) + x] = TraceStatus::not_traced;
+    }
+    return result;
+}
+
+GBufferImage read_second_layer(Gpu& gpu, const PreparedFrame& frame)
+{
+    if (!frame.hidden_layer) throw std::logic_error("read_second_layer: the frame has none");
+    return read_gbuffer(gpu, *frame.buffers->second_layer);
+}
+
+} // namespace ssrlab

@@ -1,0 +1,40 @@
+// Mixes what a further bounce found into the reflection that it belongs to: C = C_own + (C_reflected - C_own) * beta at the reflector
+// where the bounce began, times what that still weighs.
+#include "view.glsl"
+#include "reflecting.glsl"
+#include "effect/parameters"
+#include "effects/ray_colour.glsl"
+#include "effects/beta.glsl"
+
+layout(local_size_x = RAYS_PER_GROUP) in;
+layout(set = 0, binding = 4, scalar) readonly buffer RayCount { uint ray_count; };
+layout(set = 0, binding = 5, scalar) readonly buffer RayOrigins { real3 ray_origin[]; };
+layout(set = 0, binding = 6, scalar) readonly buffer RayDeltas { real3 ray_delta[]; };
+layout(set = 0, binding = 8, scalar) readonly buffer RayPixels { uint ray_pixel[]; };
+layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[]; };
+layout(set = 0, binding = 10, scalar) readonly buffer HitTs { real hit_t[]; };
+layout(set = 0, binding = 13, rgba16f) uniform image2D reflection_image;
+layout(set = 0, binding = 17, scalar) readonly buffer RaySources { uint ray_source[]; };
+layout(set = 0, binding = 18, scalar) buffer RayThroughputs { vec3 ray_throughput[]; };
+
+void main()
+{
+    uint index = (gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x) * RAYS_PER_GROUP + gl_LocalInvocationID.x;
+    if (index >= ray_count) return;
+    Found found = found_by(ray_origin[index], ray_delta[index], hit_pixel[index], hit_t[index]);
+    ivec2 reflector = unpack_pixel(ray_pixel[index]), target = unpack_pixel(ray_source[index]);
+    if (found.weight <= 0.0)
+    {
+        ray_throughput[index] = vec3(0);
+        return;
+    }
+    vec2 centre     = vec2(reflector) + 0.5;
+    vec3 surface_vs = px_to_vs(vec3(centre, imageLoad(depth_image, reflector).x));
+    vec3 arrived_vs = reflect(ray_direction(ray_origin[index], ray_delta[index]), normalize(imageLoad(normal_image, reflector).xyz));
+    vec3 own        = light_along(reflector, false, centre, surface_vs, arrived_vs);
+    vec3 throughput = ray_throughput[index] * beta_of(reflector, -arrived_vs, found.weight);
+    ray_throughput[index] = throughput * found.attenuation;
+    vec4 reflection = imageLoad(reflection_image, target);
+    reflection.rgb += throughput * (found.light * found.attenuation - own);
+    imageStore(reflection_image, target, reflection);
+}

@@ -1,0 +1,74 @@
+// From each surface that a ray hit and that reflects, the next ray: in the mirror direction of the ray that arrived.
+#include "segment.glsl"
+#include "effect/parameters"
+#include "effects/ray_colour.glsl"
+#extension GL_KHR_shader_subgroup_ballot : require
+
+layout(local_size_x = RAYS_PER_GROUP) in;
+layout(set = 0, binding = 4, scalar) readonly buffer RayCount { uint ray_count; };
+layout(set = 0, binding = 5, scalar) readonly buffer RayOrigins { real3 ray_origin[]; };
+layout(set = 0, binding = 6, scalar) readonly buffer RayDeltas { real3 ray_delta[]; };
+layout(set = 0, binding = 8, scalar) readonly buffer RayPixels { uint ray_pixel[]; };
+layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[]; };
+layout(set = 0, binding = 10, scalar) readonly buffer HitTs { real hit_t[]; };
+#ifdef FURTHER
+layout(set = 0, binding = 17, scalar) readonly buffer RaySources { uint ray_source[]; };
+layout(set = 0, binding = 18, scalar) readonly buffer RayThroughputs { vec3 ray_throughput[]; };
+#endif
+layout(set = 0, binding = 19, scalar) buffer DerivedCount { uint derived_count; };
+layout(set = 0, binding = 20, scalar) writeonly buffer DerivedOrigins { real3 derived_origin[]; };
+layout(set = 0, binding = 21, scalar) writeonly buffer DerivedDeltas { real3 derived_delta[]; };
+layout(set = 0, binding = 22, scalar) writeonly buffer DerivedLengths { real derived_length_m[]; };
+layout(set = 0, binding = 23, scalar) writeonly buffer DerivedPixels { uint derived_pixel[]; };
+layout(set = 0, binding = 24, scalar) writeonly buffer DerivedSources { uint derived_source[]; }; // pixel whose reflection it belongs to
+layout(set = 0, binding = 25, scalar) writeonly buffer DerivedThroughputs { vec3 derived_throughput[]; };
+
+// What light from the hit still weighs in the reflection; 0: the ray is not followed.
+vec3 throughput_of(uint index)
+{
+#ifdef FURTHER
+    return ray_throughput[index];
+#else
+    if (!reflects(unpack_pixel(ray_pixel[index]))) return vec3(0);
+    Found found = found_by(ray_origin[index], ray_delta[index], hit_pixel[index], hit_t[index]);
+    return vec3(found.weight > 0.0 ? found.attenuation : 0.0);
+#endif
+}
+
+void main()
+{
+    uint  index   = (gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x) * RAYS_PER_GROUP + gl_LocalInvocationID.x;
+    uint  record  = index < ray_count ? hit_pixel[index] : 0;
+    ivec2 hit     = unpack_pixel(record);
+    bool  follows = unpack_status(record) == TRACE_HIT && !in_second_layer(record) && reflects(hit);
+    real3 arriving = real3(0), normal = real3(0);
+    vec3  throughput = vec3(0);
+    if (follows)
+    {
+        arriving   = ray_direction(ray_origin[index], ray_delta[index]);
+        normal     = normal_at(hit);
+        throughput = throughput_of(index);
+        follows    = throughput != vec3(0) && dot(arriving, normal) < real(0);
+    }
+
+    uvec4 ballot = subgroupBallot(follows);
+    uint  first  = 0;
+    if (subgroupElect()) first = atomicAdd(derived_count, subgroupBallotBitCount(ballot));
+    first = subgroupBroadcastFirst(first);
+    if (!follows) return;
+
+    uint    derived  = first + subgroupBallotExclusiveBitCount(ballot);
+    real2   centre   = real2(hit) + real(0.5);
+    real    depth    = imageLoad(depth_image, hit).x;
+    Segment segment  = make_segment(centre, depth, px_to_vs(real3(centre, depth)), mirrored(arriving, normal));
+    derived_origin[derived]     = segment.origin;
+    derived_delta[derived]      = segment.delta;
+    derived_length_m[derived]   = segment.length_m;
+    derived_pixel[derived]      = pack_pixel(hit, segment.end_status);
+    derived_throughput[derived] = throughput;
+#ifdef FURTHER
+    derived_source[derived] = ray_source[index];
+#else
+    derived_source[derived] = pack_pixel(unpack_pixel(ray_pixel[index]), 0);
+#endif
+}

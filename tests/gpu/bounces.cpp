@@ -1,0 +1,240 @@
+// Mirror in mirror: two facing mirrors by unfolding, the traced chain against double precision, and history as a recursion.
+#include "gpu/device.h"
+#include "truth/screen_truth.h"
+#include "unit/truth_gbuffers.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ssrlab::test {
+namespace {
+
+constexpr double        side_m = 2, back_m = 10;
+constexpr TraceSettings settings{.thickness_m = 0.5, .max_distance_m = 100};
+
+/// Between mirrors at x = -2 and x = 2 the camera looks at a dull back wall 10 m away.
+GBufferImage facing_mirrors(glm::ivec2 size_px)
+{
+    GBufferImage image = empty_gbuffer(bench_view(size_px));
+    for (int y = 0; y < size_px.y; ++y)
+        for (int x = 0; x < size_px.x; ++x) {
+            const double slope = (x + 0.5 - image.view.centre_px.x) / image.view.focal_px.x;
+            if (std::abs(slope) * back_m < side_m) {
+                set_pixel(image, x, y, back_m, {0, 0, 1}, 0);
+                image.radiance[at(image, x, y)] = glm::vec3(1);
+            } else {
+                set_pixel(image, x, y, side_m / std::abs(slope), {slope > 0 ? -1 : 1, 0, 0}, 1);
+            }
+        }
+    return image;
+}
+
+/// Every pixel has a colour of its own and some mirrors are duller than others.
+GBufferImage coloured_mirrors(glm::ivec2 size_px)
+{
+    GBufferImage image = facing_mirrors(size_px);
+    for (int y = 0; y < size_px.y; ++y)
+        for (int x = 0; x < size_px.x; ++x) {
+            image.radiance[at(image, x, y)] = {static_cast<float>(x) / 256, static_cast<float>(y) / 128, 0.25F};
+            if (image.metallic[at(image, x, y)] > 0) image.metallic[at(image, x, y)] = x % 2 == 0 ? 0.875F : 1.0F;
+        }
+    return image;
+}
+
+ParameterValues bouncing(const char* mode, int bounces, const ParameterValues& changed = {})
+{
+    ParameterValues effects = default_effect_values();
+    effects.at("bounces")   = bounces;
+    // By the choices' order in render/effects.cpp.
+    effects.at("bounce_mode") = std::string(mode) == "off" ? 0 : std::string(mode) == "history" ? 1 : 2;
+    for (const auto& [name, value] : changed) effects.at(name) = value;
+    return effects;
+}
+
+PreparedFramePtr prepare(const Picture& picture, const ParameterValues& effects, const char* id = "hiz")
+{
+    return prepare_frame(device(), picture.buffers, technique(id), values_of(technique(id)), {settings, effects});
+}
+
+std::vector<float> shaded(PreparedFrame& frame)
+{
+    run_frame(device(), frame);
+    return read_shaded(device(), frame).values;
+}
+
+const PlannedEffect& bounces_of(const PreparedFrame& frame)
+{
+    const auto& plan = plan_of(frame);
+    return *std::ranges::find_if(plan, [](const PlannedEffect& row) { return row.effect->id == "bounces"; });
+}
+
+// The back wall's m-th image lies where the unfolded ray has passed m mirrors: m = floor((|x| + 2) / 4) for a ray that would be at
+// x on the back wall's plane. One reflection shows m = 1; each further bounce one image more.
+TEST(FacingMirrors, ShowOneMoreImagePerBounce)
+{
+    const glm::ivec2      size_px(512, 256);
+    const Picture         picture = make_picture(facing_mirrors(size_px));
+    const ParameterValues no_fades{{"viewer_fade", 0}, {"edge_fade", 0}};
+    for (const int bounces : {0, 1, 2, 3}) {
+        const auto frame  = prepare(picture, bouncing(bounces == 0 ? "off" : "direct", std::max(1, bounces), no_fades));
+        const auto values = shaded(*frame);
+        EXPECT_EQ(bounces_of(*frame).runs, bounces > 0);
+        size_t checked = 0;
+        for (int x = 0; x < size_px.x; ++x) {
+            const double unfolded_m = std::abs(x + 0.5 - 256) / 128 * back_m;
+            const double image      = (unfolded_m + side_m) / (2 * side_m);
+            if (std::abs(image - std::round(image)) < 0.1) continue; // near a border: chains go by whole pixels
+            ++checked;
+            const double expected = std::floor(image) <= bounces + 1 ? 1 : 0;
+            for (const int y : {100, 128, 156})
+                ASSERT_EQ(static_cast<double>(values[3 * at(picture.image, x, y)]), expected)
+                    << "column " << x << ", image " << std::floor(image) << ", " << bounces << " bounces";
+        }
+        EXPECT_GT(checked, 300U);
+    }
+}
+
+struct Chain {
+    glm::dvec3 colour{0};
+    double     weight = 0;
+};
+
+double beta_of(const GBufferImage& image, glm::ivec2 pixel, double weight)
+{
+    return std::pow(static_cast<double>(image.metallic[at(image, pixel.x, pixel.y)]), 3) * weight;
+}
+
+double weight_of(const View& view, const ScreenRay& ray, const WalkResult& found)
+{
+    const glm::dvec2 offset = glm::dvec2(found.hit_px_depth) / glm::dvec2(view.size_px) - 0.5;
+    return std::max(0.0, -ray.direction_vs.z) * std::clamp(1 - std::abs(offset.x) - std::abs(offset.y), 0.0, 1.0);
+}
+
+/// What the ray from `pixel` brings back after `bounces` further ones; by definition, in double precision.
+Chain follow(const GBufferImage& image, const ScreenWalk& walk, glm::ivec2 pixel, glm::dvec3 direction_vs, int bounces)
+{
+    const ScreenRay  ray   = make_screen_ray(image, pixel, direction_vs, settings);
+    const WalkResult found = walk.walk(ray);
+    if (found.status != TraceStatus::hit) return {};
+    const glm::ivec2 hit = found.hit_pixel;
+    Chain            chain{glm::dvec3(image.radiance[at(image, hit.x, hit.y)]), weight_of(image.view, ray, found)};
+    if (bounces == 0 || !reflects(image, hit)) return chain;
+    const glm::dvec3 normal(image.normal_vs[at(image, hit.x, hit.y)]);
+    const double     cosine = glm::dot(normal, direction_vs);
+    if (cosine >= 0) return chain;
+    const Chain next = follow(image, walk, hit, glm::normalize(direction_vs - 2 * cosine * normal), bounces - 1);
+    chain.colour += (next.colour - chain.colour) * beta_of(image, hit, next.weight);
+    return chain;
+}
+
+class Direct : public testing::TestWithParam<const char*> {};
+
+TEST_P(Direct, IsTheChainOfMirrorDirections)
+{
+    const Picture       picture = make_picture(coloured_mirrors({192, 64}));
+    const GBufferImage& image   = picture.image;
+    const ScreenWalk    walk(image, settings);
+    std::vector<float>  before;
+    for (const int bounces : {1, 2, 5}) {
+        const auto values = shaded(*prepare(picture, bouncing("direct", bounces), GetParam()));
+        EXPECT_NE(values, before) << bounces << " bounces show more";
+        before = values;
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 192; ++x) {
+                const glm::ivec2 pixel(x, y);
+                glm::dvec3       expected = image.radiance[at(image, x, y)];
+                if (reflects(image, pixel)) {
+                    const Chain chain = follow(image, walk, pixel, mirror_direction_vs(image, pixel), bounces);
+                    expected += (chain.colour - expected) * beta_of(image, pixel, chain.weight);
+                }
+                for (int c = 0; c < 3; ++c)
+                    ASSERT_NEAR(static_cast<double>(values[3 * at(image, x, y) + static_cast<size_t>(c)]), expected[c],
+                                2e-3 * expected[c] + 5e-4)
+                        << x << ' ' << y << ", channel " << c << ", " << bounces << " bounces";
+            }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Techniques, Direct, testing::Values("dda", "hiz"),
+                         [](const auto& param) { return std::string(param.param); });
+
+// Frame k + 1 shows at a hit that reflects what frame k shows there: the recursion over the pixels that were hit.
+TEST(History, IsTheRecursionAndComesToRest)
+{
+    const Picture       picture = make_picture(coloured_mirrors({192, 64}));
+    const GBufferImage& image   = picture.image;
+    const ScreenWalk    walk(image, settings);
+    std::vector<Chain>  frame(image.depth.size());
+    const auto          next = [&](const std::vector<Chain>* previous) {
+        std::vector<Chain> result(image.depth.size());
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 192; ++x) {
+                if (!reflects(image, {x, y})) continue;
+                const ScreenRay  ray   = make_screen_ray(image, {x, y}, settings);
+                const WalkResult found = walk.walk(ray);
+                if (found.status != TraceStatus::hit) continue;
+                const size_t hit   = at(image, found.hit_pixel.x, found.hit_pixel.y);
+                Chain&       chain = result[at(image, x, y)];
+                chain              = {image.radiance[hit], weight_of(image.view, ray, found)};
+                if (previous == nullptr || !reflects(image, found.hit_pixel)) continue;
+                const Chain& seen = (*previous)[hit];
+                chain.colour += (seen.colour - chain.colour) * beta_of(image, found.hit_pixel, seen.weight);
+            }
+        return result;
+    };
+    frame = next(nullptr);
+    for (int bounces = 1; bounces <= 3; ++bounces) {
+        frame             = next(&frame);
+        const auto values = shaded(*prepare(picture, bouncing("history", bounces)));
+        for (size_t i = 0; i < frame.size(); ++i) {
+            glm::dvec3       own = image.radiance[i];
+            const glm::ivec2 pixel(static_cast<int>(i % 192), static_cast<int>(i / 192));
+            own += (frame[i].colour - own) * beta_of(image, pixel, frame[i].weight);
+            for (int c = 0; c < 3; ++c)
+                ASSERT_NEAR(static_cast<double>(values[3 * i + static_cast<size_t>(c)]), own[c], 2e-3 * own[c] + 5e-4)
+                    << "pixel " << pixel.x << ' ' << pixel.y << ", " << bounces << " frames";
+        }
+    }
+    // Every hit lies farther away than the reflector: the longest chain ends.
+    const auto at_rest = shaded(*prepare(picture, bouncing("history", 8)));
+    EXPECT_EQ(shaded(*prepare(picture, bouncing("history", 9))), at_rest);
+    EXPECT_NE(shaded(*prepare(picture, bouncing("history", 1))), at_rest);
+}
+
+TEST(Bounces, DependOnNothingThatRanBefore)
+{
+    const Picture picture = make_picture(coloured_mirrors({96, 32}));
+    const auto    direct = prepare(picture, bouncing("direct", 3)), history = prepare(picture, bouncing("history", 3)),
+               none         = prepare(picture, bouncing("off", 1));
+    const auto first_direct = shaded(*direct), first_history = shaded(*history), first_none = shaded(*none);
+    EXPECT_NE(first_direct, first_none);
+    EXPECT_NE(first_direct, first_history);
+    for (int round = 0; round < 2; ++round) {
+        EXPECT_EQ(shaded(*history), first_history);
+        EXPECT_EQ(shaded(*direct), first_direct);
+        EXPECT_EQ(shaded(*none), first_none);
+    }
+}
+
+// Without a mirror among the hits further bounces change no bit; with one, they run and say why.
+TEST(Bounces, AreLeftOutWhereNothingThatWasHitReflects)
+{
+    const Picture dull = make_picture(floor_and_wall(bench_view({64, 64}), 10));
+    for (const char* mode : {"history", "direct"}) {
+        const auto frame      = prepare(dull, bouncing(mode, 2)),
+                   everything = prepare(dull, bouncing(mode, 2, {{"plan", 0}}));
+        EXPECT_FALSE(bounces_of(*frame).runs);
+        EXPECT_TRUE(bounces_of(*everything).runs);
+        const std::string& reason = bounces_of(*frame).reason;
+        EXPECT_TRUE(reason.starts_with("none of ") && reason.ends_with(" hits reflects")) << reason;
+        EXPECT_EQ(shaded(*frame), shaded(*everything)) << mode;
+    }
+    const Picture mirrors = make_picture(coloured_mirrors({96, 32}));
+    const auto    frame   = prepare(mirrors, bouncing("direct", 1));
+    EXPECT_TRUE(bounces_of(*frame).runs);
+    EXPECT_NE(bounces_of(*frame).reason.find(" hits reflect"), std::string::npos) << bounces_of(*frame).reason;
+    EXPECT_EQ(shaded(*frame), shaded(*prepare(mirrors, bouncing("direct", 1, {{"plan", 0}}))));
+}
+
+} // namespace
+} // namespace ssrlab::test
