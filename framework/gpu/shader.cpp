@@ -112,7 +112,7 @@ std::string everything_read(const ShaderSource& source)
     for (const auto& [name, value] : source.defines) key += '\0' + name + '=' + value;
     for (const auto& [name, text] : source.include_texts) key += '\0' + name + '=' + text;
     for (const auto& [name, path] : source.include_files) key += '\0' + path.string() + '=' + read_text(path);
-    for (const auto& entry : std::filesystem::directory_iterator(shader_folder()))
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(shader_folder()))
         if (entry.is_regular_file()) key += '\0' + entry.path().string() + '=' + read_text(entry.path());
     return key;
 }
