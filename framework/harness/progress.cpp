@@ -21,9 +21,12 @@ constexpr double prepared_share        = 0.5;    // of a run's cost, before its 
 
 double expected_steps(const Run& run, const Technique& technique)
 {
-    const double bound = iteration_bound(technique, run.values);
-    if (!technique.exact) return sampled_share * bound;
+    const double bound   = iteration_bound(technique, run.values);
     const double crossed = run.size_px.x + run.size_px.y;
+    // Strides end with the ray, far below their bound.
+    if (run.values.contains("stride_px") && run.values.contains("max_steps"))
+        return std::min(bound, walked_share * crossed / run.values.at("stride_px"));
+    if (!technique.exact) return sampled_share * bound;
     return std::min(bound, technique.inputs.empty() ? walked_share * crossed : visits_per_level * std::log2(crossed));
 }
 
