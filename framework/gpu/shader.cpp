@@ -108,7 +108,8 @@ void collect_bindings(const glslang::TProgram& program, Shader& shader)
 /// All texts that the compiler may read for this source: equal keys give equal SPIR-V.
 std::string everything_read(const ShaderSource& source)
 {
-    std::string key = source.file.string() + '\0' + std::to_string(static_cast<int>(source.stage));
+    const std::filesystem::path main = shader_folder() / source.file; // a technique's own lies elsewhere
+    std::string key = main.string() + '=' + read_text(main) + '\0' + std::to_string(static_cast<int>(source.stage));
     for (const auto& [name, value] : source.defines) key += '\0' + name + '=' + value;
     for (const auto& [name, text] : source.include_texts) key += '\0' + name + '=' + text;
     for (const auto& [name, path] : source.include_files) key += '\0' + path.string() + '=' + read_text(path);
