@@ -74,8 +74,9 @@ std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame
     const auto        records = download_as<uint32_t>(gpu, rays.hit_pixels, count);
     for (size_t i = 0; i < count; ++i) {
         if ((records[i] >> (2 * PIXEL_BITS) & TRACE_SECOND_LAYER) != 0) continue;
-        const uint32_t x = pixels[i] & (MAX_IMAGE_PX - 1), y = pixels[i] >> PIXEL_BITS & (MAX_IMAGE_PX - 1);
-        result.status[static_cast<size_t>(y) * static_cast<size_t>(size_px.x) + x] = TraceStatus::not_traced;
+        const glm::ivec2 pixel = unpack_pixel(pixels[i]);
+        result.status[static_cast<size_t>(pixel.y) * static_cast<size_t>(size_px.x) + static_cast<size_t>(pixel.x)] =
+            TraceStatus::not_traced;
     }
     return result;
 }

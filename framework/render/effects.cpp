@@ -71,7 +71,6 @@ bool one_ray_per_pixel(const ParameterValues& values)
 
 Need hidden_layer_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
 {
-    if (shading_only(values)) return {Call::off, "effect_set = shading"};
     if (values.at("hidden_layer") == 0) return {Call::off, "hidden_layer = false"};
     if (!facts.scene) return {Call::off, "no scene to draw again"};
     if (!one_ray_per_pixel(values)) return {Call::off, "needs one ray per pixel at full resolution"};
@@ -87,7 +86,6 @@ Need hidden_layer_need(const FrameFacts& facts, const FrameStatistics& statistic
 
 Need bounces_need(const FrameFacts& /*facts*/, const FrameStatistics& statistics, const ParameterValues& values)
 {
-    if (shading_only(values)) return {Call::off, "effect_set = shading"};
     if (values.at("bounce_mode") == 0) return {Call::off, "bounce_mode = off"};
     if (!one_ray_per_pixel(values)) return {Call::off, "needs one ray per pixel at full resolution"};
     const TraceCounts& trace = statistics.trace;
@@ -103,7 +101,6 @@ uint32_t rough_pixels(const FrameStatistics& statistics)
 
 Need blur_need(const FrameFacts& /*facts*/, const FrameStatistics& statistics, const ParameterValues& values)
 {
-    if (shading_only(values)) return {Call::off, "effect_set = shading"};
     if (values.at("gloss") != 1) return {Call::off, "gloss is not done by blur"};
     const uint32_t rough = rough_pixels(statistics), all = statistics.picture.reflecting_pixels;
     if (all == 0) return {Call::not_needed, "no pixel reflects"};
@@ -114,7 +111,6 @@ Need blur_need(const FrameFacts& /*facts*/, const FrameStatistics& statistics, c
 
 Need environment_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
 {
-    if (shading_only(values)) return {Call::off, "effect_set = shading"};
     if (values.at("environment") == 0) return {Call::off, "environment = false"};
     if (!facts.scene) return {Call::off, "a picture without a scene has no environment"};
     const TraceCounts& trace = statistics.trace;
@@ -145,7 +141,6 @@ Need colour_downsampling_need(const FrameFacts& facts, const FrameStatistics& st
 
 Need kernel_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
 {
-    if (shading_only(values)) return {Call::off, "effect_set = shading"};
     if (values.at("kernel") == 0) return {Call::off, "kernel = off"};
     if (statistics.picture.reflecting_pixels == 0) return where_something_reflects(facts, statistics, values);
     const bool second_layer = hidden_layer_need(facts, statistics, values).call == Call::needed;
@@ -212,7 +207,8 @@ std::vector<Effect> make_table()
                    "the second layer is the nearest surface more than so far behind the first"),
               real("hidden_layer_threshold", 0, 0, 1,
                    "the second layer is left out up to this share of rays without hit; above 0 pictures change")},
-         .need = hidden_layer_need},
+         .need           = hidden_layer_need,
+         .beyond_shading = true},
         {.id         = "colour_downsampling",
          .summary    = "The lit colour at the resolution of the rays, blurred in the shape of a cross",
          .cite       = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling"},
@@ -267,7 +263,8 @@ std::vector<Effect> make_table()
                                    "or traced in the arriving ray's mirror direction"),
                             "direct"),
               integer("bounces", 1, 1, 16, "further bounces, or earlier frames; each adds one level of reflection")},
-         .need = bounces_need},
+         .need           = bounces_need,
+         .beyond_shading = true},
         {.id      = "upsampling",
          .summary = "Gives pixels without rays what the 2 x 2 traced pixels about them reflect",
          .cite    = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling",
@@ -287,40 +284,45 @@ std::vector<Effect> make_table()
                         real("upsampling_reflectivity_tolerance", 0.05, 1e-6, 1e6,
                              "a difference of reflectivity of this much has the weight 1/e")},
          .need       = at_lower_resolution},
-        {.id         = "kernel_filter",
-         .summary    = "A 3 x 3 kernel over what neighbouring pixels reflect, against noise",
-         .cite       = {"J. Somerville Roberts, Screen Space Reflections"},
-         .shader     = "effects/kernel.comp",
-         .reads      = {"TileCount", "Tiles", "reflection_image"},
-         .writes     = {"filtered_image", "reflection_image"},
-         .parameters = {choice("kernel", {"off", "box3", "median3"},
-                               "none, the mean, or the neighbour of median brightness")},
-         .need       = kernel_need},
-        {.id         = "blur",
-         .summary    = "Gloss by a separable Gaussian whose radius follows the roughness",
-         .cite       = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling"},
-         .shader     = "effects/blur.comp",
-         .reads      = {"View", "depth_image", "normal_image", "material_image", "reflection_image"},
-         .writes     = {"filtered_image", "reflection_image"},
-         .parameters = {starting_with(choice("gloss", {"off", "blur"}, "how reflections on rough surfaces widen"),
-                                      "blur"),
-                        real("blur_scale", 0.1, 0, 1, "radius at roughness 1, as a share of the image's height"),
-                        real("blur_bias", 0, -1, 1, "added to the radius, as a share of the image's height"),
-                        real("blur_hole_widening", 2, 1, 16, "how much wider a pixel without a hit looks"),
-                        real("blur_hole_weight", 0.3, 0, 1, "weight of a neighbour without a hit")},
-         .need       = blur_need},
-        {.id         = "environment",
-         .summary    = "Where rays found nothing or fade: what arrives from infinitely far away",
-         .shader     = "effects/environment.comp",
-         .reads      = {"View", "depth_image", "normal_image", "material_image", "environment_map", "reflection_image"},
-         .writes     = {"reflection_image"},
+        {.id             = "kernel_filter",
+         .summary        = "A 3 x 3 kernel over what neighbouring pixels reflect, against noise",
+         .cite           = {"J. Somerville Roberts, Screen Space Reflections"},
+         .shader         = "effects/kernel.comp",
+         .reads          = {"TileCount", "Tiles", "reflection_image"},
+         .writes         = {"filtered_image", "reflection_image"},
+         .parameters     = {choice("kernel", {"off", "box3", "median3"},
+                                   "none, the mean, or the neighbour of median brightness")},
+         .need           = kernel_need,
+         .beyond_shading = true},
+        {.id             = "blur",
+         .summary        = "Gloss by a separable Gaussian whose radius follows the roughness",
+         .cite           = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling"},
+         .shader         = "effects/blur.comp",
+         .reads          = {"View", "depth_image", "normal_image", "material_image", "reflection_image"},
+         .writes         = {"filtered_image", "reflection_image"},
+         .parameters     = {starting_with(choice("gloss", {"off", "blur"}, "how reflections on rough surfaces widen"),
+                                          "blur"),
+                            real("blur_scale", 0.1, 0, 1, "radius at roughness 1, as a share of the image's height"),
+                            real("blur_bias", 0, -1, 1, "added to the radius, as a share of the image's height"),
+                            real("blur_hole_widening", 2, 1, 16, "how much wider a pixel without a hit looks"),
+                            real("blur_hole_weight", 0.3, 0, 1, "weight of a neighbour without a hit")},
+         .need           = blur_need,
+         .beyond_shading = true},
+        {.id      = "environment",
+         .summary = "Where rays found nothing or fade: what arrives from infinitely far away",
+         .shader  = "effects/environment.comp",
+         .reads   = {"View", "TileCount", "Tiles", "depth_image", "normal_image", "material_image", "environment_map",
+                     "reflection_image"},
+         .writes  = {"reflection_image"},
          .parameters = {boolean("environment", true, "whether the environment stands in for what a ray did not find")},
-         .need       = environment_need},
+         .need       = environment_need,
+         .beyond_shading = true},
         {.id         = "composite",
          .summary    = "Own and reflected light together: C = C_own + (C_reflected - C_own) * beta",
          .cite       = {"J. Somerville Roberts, Screen Space Reflections"},
          .shader     = "effects/composite.comp",
-         .reads      = {"radiance_image", "highlight_image", "material_image", "reflection_image"},
+         .reads      = {"View", "depth_image", "normal_image", "material_image", "radiance_image", "highlight_image",
+                        "reflection_image"},
          .writes     = {"shaded_image"},
          .parameters = {choice(
                             "reflectance", {"metallic", "ggx"},
@@ -364,7 +366,8 @@ std::vector<PlannedEffect> plan_frame(const FrameFacts& facts, const FrameStatis
 {
     std::vector<PlannedEffect> plan;
     for (const Effect& effect : all_effects()) {
-        const Need need = effect.need(facts, statistics, values);
+        const Need need = effect.beyond_shading && shading_only(values) ? Need{Call::off, "effect_set = shading"}
+                                                                        : effect.need(facts, statistics, values);
         const bool runs = need.call == Call::needed || (need.call == Call::not_needed && values.at("plan") == 0);
         plan.push_back({&effect, runs, need.reason});
     }
@@ -399,6 +402,6 @@ std::vector<std::string> describe_facts(const FrameFacts& facts, const FrameStat
 
 int trace_block_px(const ParameterValues& values) { return 1 << static_cast<int>(values.at("trace_resolution")); }
 
-bool plan_needs_trace(const ParameterValues& values) { return values.at("effect_set") == 0; }
+bool plan_needs_trace(const ParameterValues& values) { return !shading_only(values); }
 
 } // namespace ssrlab

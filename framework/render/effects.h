@@ -53,6 +53,7 @@ struct Effect {
     std::vector<std::string> reads, writes; // as the shaders name them
     std::vector<Parameter>   parameters = {};
     Need (*need)(const FrameFacts&, const FrameStatistics&, const ParameterValues&);
+    bool beyond_shading = false; // off with effect_set = shading
 };
 
 /// In the order of a frame.

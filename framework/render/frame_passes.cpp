@@ -270,6 +270,11 @@ void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses
     }
 }
 
+glm::ivec2 unpack_pixel(uint32_t packed)
+{
+    return {packed & (MAX_IMAGE_PX - 1), (packed >> PIXEL_BITS) & (MAX_IMAGE_PX - 1)};
+}
+
 template <typename Real>
 TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, const Buffer* work)
 {
@@ -281,16 +286,13 @@ TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, co
     const auto   hits    = download_as<uint32_t>(gpu, rays.hit_pixels, count);
     const auto   ts      = download_as<Real>(gpu, rays.hit_ts, count);
     const auto   works   = work != nullptr ? download_as<glm::uvec3>(gpu, *work, count) : std::vector<glm::uvec3>{};
-    const auto   unpack  = [](uint32_t p) {
-        return glm::ivec2(p & (MAX_IMAGE_PX - 1), (p >> PIXEL_BITS) & (MAX_IMAGE_PX - 1));
-    };
-    TraceResult result = make_trace_result(size_px, work != nullptr);
+    TraceResult  result  = make_trace_result(size_px, work != nullptr);
     for (size_t i = 0; i < count; ++i) {
-        const glm::ivec2 pixel = unpack(pixels[i]);
+        const glm::ivec2 pixel = unpack_pixel(pixels[i]);
         const size_t     index =
             static_cast<size_t>(pixel.y) * static_cast<size_t>(size_px.x) + static_cast<size_t>(pixel.x);
         result.status[index]       = static_cast<TraceStatus>((hits[i] >> (2 * PIXEL_BITS)) & (TRACE_SECOND_LAYER - 1));
-        result.hit_pixel[index]    = unpack(hits[i]);
+        result.hit_pixel[index]    = unpack_pixel(hits[i]);
         result.hit_t[index]        = static_cast<double>(ts[i]);
         result.hit_px_depth[index] = glm::dvec3(origins[i]) + result.hit_t[index] * glm::dvec3(deltas[i]);
         if (work == nullptr) continue;

@@ -118,6 +118,9 @@ void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses
                       const RayBuffers& rays);
 void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses& passes);
 
+/// The pixel of shaders/view.glsl, pack_pixel.
+glm::ivec2 unpack_pixel(uint32_t packed);
+
 template <typename Real>
 TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, const Buffer* work);
 

@@ -37,11 +37,6 @@ template <typename Real> void upload_rays(Gpu& gpu, RayBuffers& buffers, std::sp
     upload(gpu, buffers.pixels, pixels.data(), pixels.size() * sizeof(uint32_t));
 }
 
-glm::ivec2 unpack_pixel(uint32_t packed)
-{
-    return {packed & (MAX_IMAGE_PX - 1), (packed >> PIXEL_BITS) & (MAX_IMAGE_PX - 1)};
-}
-
 template <typename Real> std::vector<RayInput> read_rays(Gpu& gpu, const RayBuffers& buffers)
 {
     const size_t          count   = download_as<uint32_t>(gpu, buffers.count, 1)[0];

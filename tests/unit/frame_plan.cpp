@@ -143,7 +143,7 @@ TEST(EffectTable, NamesAreUniqueAndDefaultsInRange)
     }
 }
 
-// What a row says that it reads and writes is what its shaders bind; every shader file of a row exists.
+// Every shader file of a row exists, and no shader of the folder is left over.
 TEST(EffectTable, ShadersOfTheEffectsFolderAreAllInTheTable)
 {
     // Further passes of a row, and the count that plans rest on.
