@@ -2,6 +2,8 @@
 // the list.
 // By the effects' parameters there are several rays per pixel, one after the other in the list, or one pixel for each block of pixels.
 #include "segment.glsl"
+#include "hash.glsl"
+#include "effects/tiles.glsl"
 #extension GL_KHR_shader_subgroup_ballot : require
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -15,16 +17,6 @@ layout(set = 0, binding = 5, scalar) writeonly buffer RayOrigins { real3 ray_ori
 layout(set = 0, binding = 6, scalar) writeonly buffer RayDeltas { real3 ray_delta[]; };
 layout(set = 0, binding = 7, scalar) writeonly buffer RayLengths { real ray_length_m[]; };
 layout(set = 0, binding = 8, scalar) writeonly buffer RayPixels { uint ray_pixel[]; }; // number = status of a miss
-layout(set = 0, binding = 9, scalar) readonly buffer TileCount { uint tile_count; };
-layout(set = 0, binding = 10, scalar) readonly buffer Tiles { uint tiles[]; }; // x | y << 16, in tiles
-
-// PCG hash: M. Jarzynski and M. Olano 2020, Hash Functions for GPU Rendering.
-uint pcg(uint value)
-{
-    uint state = value * 747796405u + 2891336453u;
-    uint word  = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
-    return (word >> 22u) ^ word;
-}
 
 // A place inside the pixel, exact in float. The depth image is flat inside each pixel: a ray that starts on the far side of its pixel's
 // centre and runs sideways is behind its neighbour's slab face, which ray_offset_m > 0 avoids.
@@ -74,9 +66,8 @@ bool first_of_block(ivec2 pixel, bool reflecting)
 
 void main()
 {
-    uint index = gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x;
-    if (index >= tile_count) return;
-    ivec2 pixel      = ivec2(tiles[index] & 0xFFFF, tiles[index] >> 16) * 8 + ivec2(gl_LocalInvocationID.xy);
+    ivec2 pixel;
+    if (!listed_pixel(pixel)) return;
     bool  inside     = all(lessThan(pixel, size_px));
     bool  reflecting = inside && reflects(pixel);
     bool  traced     = reflecting || (every_surface != 0 && inside && has_surface(pixel));
@@ -88,7 +79,7 @@ void main()
     first = subgroupBroadcastFirst(first);
     if (!traced) return;
 
-    index        = first + subgroupBallotExclusiveBitCount(ballot) * rays_per_pixel;
+    uint  index  = first + subgroupBallotExclusiveBitCount(ballot) * rays_per_pixel;
     real  depth  = real(imageLoad(depth_image, pixel).x);
     real3 normal = normal_at(pixel);
     for (int ray = 0; ray < rays_per_pixel; ++ray)

@@ -9,6 +9,7 @@
 #include "view.glsl"
 #include "slab.glsl"
 #include "pyramid_cell.glsl"
+#include "hash.glsl"
 
 layout(constant_id = CONSTANT_FACING) const int facing_rule = 0;
 layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1;
@@ -81,17 +82,10 @@ real stride_to_t(Ray ray, real stride_px)
     return stride_px / max(stride_px, max(abs(ray.delta.x), abs(ray.delta.y)));
 }
 
-// The same number for the same pixel, in [0, 1), unlike its neighbours' (Jarzynski and Olano 2020, Hash Functions for GPU Rendering: PCG).
+// The same number for the same pixel, in [0, 1), unlike its neighbours'.
 real random_of(ivec2 pixel)
 {
-    uint hash = 0;
-    for (int i = 0; i < 2; ++i)
-    {
-        uint state = (hash + uint(pixel[i])) * 747796405u + 2891336453u;
-        uint word  = ((state >> ((state >> 28) + 4)) ^ state) * 277803737u;
-        hash       = (word >> 22) ^ word;
-    }
-    return real(hash >> 8) / real(1 << 24);
+    return real(pcg(pcg(uint(pixel.x)) + uint(pixel.y)) >> 8) / real(1 << 24);
 }
 
 // ---- Fetches
@@ -132,16 +126,12 @@ bool interval_touches(real depth, real z_a, real z_b)
 // Direction in view space from the ray's origin to a position of some depth, not normalised.
 real3 direction_to_vs(Ray ray, real2 position_px, real depth)
 {
-    real2 from = px_to_slope(ray.origin.xy), to = px_to_slope(position_px);
-    real  rise = depth - ray.origin.z;
-    if (orthographic != 0) return real3(to - from, rise * (far_m - near_m));
-    // P = slope / depth * near: P1 - P0 times both depths.
-    return real3(to * ray.origin.z - from * depth, rise);
+    return px_to_direction_vs(ray.origin, real3(position_px, depth));
 }
 
 real3 direction_vs(Ray ray)
 {
-    return direction_to_vs(ray, ray.origin.xy + ray.delta.xy, ray.origin.z + ray.delta.z);
+    return px_to_direction_vs(ray.origin, ray.origin + ray.delta);
 }
 
 bool faces(Ray ray, ivec2 pixel)

@@ -31,6 +31,16 @@ real3 px_to_vs(real3 px_depth)
     return real3(orthographic == 0 ? slope * distance_m : slope, -distance_m);
 }
 
+// Direction in view space between two points of the screen, not normalised; the second may lie at infinity.
+real3 px_to_direction_vs(real3 from_px_depth, real3 to_px_depth)
+{
+    real2 from = px_to_slope(from_px_depth.xy), to = px_to_slope(to_px_depth.xy);
+    real  rise = to_px_depth.z - from_px_depth.z;
+    if (orthographic != 0) return real3(to - from, rise * (far_m - near_m));
+    // P = slope / depth * near: P1 - P0 times both depths.
+    return real3(to * from_px_depth.z - from * to_px_depth.z, rise);
+}
+
 uint pack_pixel(ivec2 pixel, int number)
 {
     return uint(pixel.x) | uint(pixel.y) << PIXEL_BITS | uint(number) << (2 * PIXEL_BITS);

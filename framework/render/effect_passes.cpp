@@ -136,17 +136,17 @@ Recording blur(Gpu& gpu, PreparedFrame& frame)
 {
     return [&frame, x = shared_effect_pass(gpu, frame, "effects/blur.comp", {{"ALONG_X", "1"}}),
             y = shared_effect_pass(gpu, frame, "effects/blur.comp")](const auto& commands) {
-        const glm::uvec3 groups = groups_of_8(frame.buffers->gbuffer->view.size_px);
-        dispatch(commands, *x, groups);
+        clear_reflection(commands, frame.buffers->filtered); // of tiles that are not listed
+        dispatch_indirect(commands, *x, frame.buffers->tiles.launch);
         barrier(commands);
-        dispatch(commands, *y, groups);
+        dispatch_indirect(commands, *y, frame.buffers->tiles.launch);
     };
 }
 
 Recording environment(Gpu& gpu, PreparedFrame& frame)
 {
     return [&frame, pass = shared_effect_pass(gpu, frame, "effects/environment.comp")](const auto& commands) {
-        dispatch(commands, *pass, groups_of_8(frame.buffers->gbuffer->view.size_px));
+        dispatch_indirect(commands, *pass, frame.buffers->tiles.launch);
     };
 }
 

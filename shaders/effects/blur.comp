@@ -3,6 +3,7 @@
 #include "view.glsl"
 #include "reflecting.glsl"
 #include "effect/parameters"
+#include "effects/tiles.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 #ifdef ALONG_X
@@ -29,8 +30,8 @@ float radius_px(ivec2 pixel, bool hole)
 
 void main()
 {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, size_px))) return;
+    ivec2 pixel;
+    if (!listed_pixel(pixel) || any(greaterThanEqual(pixel, size_px))) return;
     vec4  own    = imageLoad(SOURCE, pixel);
     float radius = own.a < 0.0 ? 0.0 : radius_px(pixel, own.a == 0.0);
     vec3  colour = vec3(0);

@@ -1,6 +1,7 @@
 // What rays without a hit would have seen: the environment in the mirror direction, blended by the weight of the reflection.
 #include "view.glsl"
 #include "reflecting.glsl"
+#include "effects/tiles.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 4, rgba16f) uniform image2D reflection_image;
@@ -10,8 +11,8 @@ layout(set = 0, binding = 6, scalar) uniform Frame { mat4 world_to_view; }; // t
 
 void main()
 {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, size_px))) return;
+    ivec2 pixel;
+    if (!listed_pixel(pixel) || any(greaterThanEqual(pixel, size_px))) return;
     vec4 reflection = imageLoad(reflection_image, pixel);
     if (reflection.a < 0.0 || reflection.a >= 1.0) return;
     vec3 view_vs = orthographic != 0 ? vec3(0, 0, -1) : vec3(px_to_slope(vec2(pixel) + 0.5), -1.0);

@@ -2,12 +2,11 @@
 // recommends against noise. Pixels that do not reflect have no part in it.
 #include "shared.h"
 #include "effect/parameters"
+#include "effects/tiles.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 4, rgba16f) uniform readonly image2D reflection_image; // a < 0: reflects nothing
 layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D filtered_image;
-layout(set = 0, binding = 9, scalar) readonly buffer TileCount { uint tile_count; };
-layout(set = 0, binding = 10, scalar) readonly buffer Tiles { uint tiles[]; }; // x | y << 16, in tiles
 
 vec4 neighbours[9];
 int  count = 0; // of neighbours, the pixel itself included
@@ -59,9 +58,8 @@ vec4 median()
 
 void main()
 {
-    uint index = gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x;
-    if (index >= tile_count) return;
-    ivec2 pixel = ivec2(tiles[index] & 0xFFFF, tiles[index] >> 16) * 8 + ivec2(gl_LocalInvocationID.xy);
+    ivec2 pixel;
+    if (!listed_pixel(pixel)) return;
     if (any(greaterThanEqual(pixel, imageSize(reflection_image)))) return;
     vec4 own = imageLoad(reflection_image, pixel);
     read_neighbours(pixel);

@@ -76,14 +76,9 @@ vec3 light_along(ivec2 pixel, bool second, vec2 point_px, vec3 surface_vs, vec3 
     return light;
 }
 
-// Direction of the ray in view space, from two points of its segment; the end may lie at infinity.
 vec3 ray_direction(vec3 origin, vec3 delta)
 {
-    vec2  from = px_to_slope(origin.xy), to = px_to_slope(origin.xy + delta.xy);
-    float from_depth = origin.z, to_depth = origin.z + delta.z;
-    vec3  direction  = orthographic != 0 ? vec3(to - from, delta.z * (far_m - near_m))
-                                         : vec3(to * from_depth - from * to_depth, to_depth - from_depth);
-    return normalize(direction);
+    return normalize(px_to_direction_vs(origin, origin + delta));
 }
 
 // Reflections toward the viewer show the wrong side of things. 1 = away from the viewer.

@@ -5,12 +5,12 @@
 #include "reflecting.glsl"
 #include "effect/parameters"
 #include "effects/blocks.glsl"
+#include "effects/ggx_share.glsl"
+#include "effects/tiles.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 4, rgba16f) uniform image2D reflection_image;
 layout(set = 0, binding = 5, r32ui) uniform readonly uimage2D block_pixel_image;
-layout(set = 0, binding = 9, scalar) readonly buffer TileCount { uint tile_count; };
-layout(set = 0, binding = 10, scalar) readonly buffer Tiles { uint tiles[]; }; // x | y << 16, in tiles
 
 const float vanishing = 1e-4;
 
@@ -25,14 +25,6 @@ vec3 view_direction(vec3 position_vs)
     return orthographic == 0 ? normalize(position_vs) : vec3(0, 0, -1);
 }
 
-// Specular response by gloss, with Fresnel: B. Karis 2014, Physically Based Shading on Mobile (his fit, for normal incidence f0).
-float specular_response(float f0, float roughness, float cosine)
-{
-    vec4  r    = roughness * vec4(-1, -0.0275, -0.572, 0.022) + vec4(1, 0.0425, 1.04, -0.04);
-    float a004 = min(r.x * r.x, exp2(-9.28 * cosine)) * r.x + r.y;
-    return f0 * (-1.04 * a004 + r.z) + 1.04 * a004 + r.w;
-}
-
 Surface surface_at(ivec2 pixel)
 {
     vec4 normal   = imageLoad(normal_image, pixel);
@@ -42,7 +34,8 @@ Surface surface_at(ivec2 pixel)
     surface.normal_vs    = normalize(normal.xyz);
     float cosine         = max(0.0, -dot(surface.normal_vs, view_direction(surface.position_vs)));
     float f0             = mix(0.04, dot(material.rgb, vec3(0.2126, 0.7152, 0.0722)), material.a);
-    surface.reflectivity = specular_response(f0, normal.w, cosine);
+    vec2 share           = ggx_share(normal.w, cosine);
+    surface.reflectivity = f0 * share.x + share.y;
     return surface;
 }
 
@@ -98,9 +91,8 @@ vec4 upsampled(ivec2 pixel)
 
 void main()
 {
-    uint index = gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x;
-    if (index >= tile_count) return;
-    ivec2 pixel = ivec2(tiles[index] & 0xFFFF, tiles[index] >> 16) * 8 + ivec2(gl_LocalInvocationID.xy);
+    ivec2 pixel;
+    if (!listed_pixel(pixel)) return;
     if (any(greaterThanEqual(pixel, size_px)) || !reflects(pixel)) return;
     if (imageLoad(reflection_image, pixel).a >= 0.0) return; // traced
     imageStore(reflection_image, pixel, upsampled(pixel));
