@@ -93,9 +93,7 @@ void main()
             start_px           = offset_depth > real(0) ? offset_px : start_px;
             start_depth        = offset_depth > real(0) ? offset_depth : depth;
         }
-        real3   position          = px_to_vs(real3(start_px, start_depth));
-        real3   view              = orthographic == 0 ? unit(position) : real3(0, 0, -1);
-        Segment segment           = make_segment(start_px, start_depth, position, mirrored(view, normal));
+        Segment segment           = make_segment(start_px, start_depth, mirrored(view_direction(start_px), normal));
         ray_origin[index + ray]   = segment.origin;
         ray_delta[index + ray]    = segment.delta;
         ray_length_m[index + ray] = segment.length_m;

@@ -1,6 +1,7 @@
 // A ray in screen space: the segment from a pixel's surface, clipped to the near plane, the image and the maximum distance
-// (docs/hit_contract.md).
+// (docs/hit_contract.md). Set up in wide numbers: its ends are the nearest floats to those of exact numbers, nearly always.
 #include "view.glsl"
+#include "wide.glsl"
 #include "reflecting.glsl"
 
 layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1;
@@ -14,125 +15,135 @@ struct Segment
     int   end_status;
 };
 
-// normalize() may be rounded differently from device to device; this may not.
-real3 unit(real3 v)
+// The normal of a pixel in view space, times a power of two that keeps squares within the range of float.
+real3 normal_at(ivec2 pixel)
 {
-    precise real square = v.x * v.x + v.y * v.y + v.z * v.z;
-    precise real3 result = v * (real(1) / sqrt(square));
-    return result;
+    vec3  stored   = imageLoad(normal_image, pixel).xyz;
+    float largest  = max(max(abs(stored.x), abs(stored.y)), abs(stored.z));
+    int   exponent = floatBitsToInt(largest) >> 23;
+    return real3(stored * intBitsToFloat(clamp(254 - exponent, 1, 253) << 23));
 }
 
-real3 mirrored(real3 view, real3 normal)
+// The direction (x, y, -1) of the view ray through a position, or the view axis.
+Wide3 view_direction(real2 position_px)
 {
-    precise real  cosine = normal.x * view.x + normal.y * view.y + normal.z * view.z;
-    precise real3 result = view - real(2) * cosine * normal;
-    return unit(result);
+    if (orthographic != 0) return widen(real3(0, 0, -1));
+    wide x = quotient(sum(widen(position_px.x), -widen(centre_px.x, centre_low_px.x)), widen(focal_px.x, focal_low_px.x));
+    wide y = quotient(sum(widen(position_px.y), -widen(centre_px.y, centre_low_px.y)), widen(focal_px.y, focal_low_px.y));
+    return Wide3(x, -y, widen(real(-1)));
 }
 
-// Distance along the ray at which value + s * slope falls to zero, if that is nearer than `limit`.
-void limit_by(real value, real slope, int side, inout real limit, inout int limiting_side)
+// Mirror direction, |normal|^2 times as long as `view`.
+Wide3 mirrored(Wide3 view, real3 normal)
 {
-    real s = max(value, real(0)) / -slope;
-    if (slope < real(0) && s < limit)
+    Wide3 n      = widen(normal);
+    wide  cosine = inner_product(n, view);
+    return sum(scaled(inner_product(n, n), view), scaled(product(widen(real(-2)), cosine), n));
+}
+
+// ---- On screen a ray of direction r from the point that is seen along the slope s at a depth moves along
+//   D = (focal.x (r.x + s.x r.z), -focal.y (r.y + s.y r.z), depth r.z)    orthographic: (focal.x r.x, -focal.y r.y, r.z / (far - near))
+// and stands after lambda r at O + k D with k = 1 / (distance / lambda - r.z), orthographic: lambda. No difference of two projected points is
+// taken, infinity is a length like any other, and mirrored rays have exactly mirrored segments.
+Wide3 screen_rate(real2 start_px, real depth, Wide3 direction)
+{
+    Wide3 slope = view_direction(start_px);
+    wide  x = direction.x, y = direction.y, z = quotient(direction.z, widen(far_m - near_m));
+    if (orthographic == 0)
     {
-        limit         = s;
-        limiting_side = side;
+        x = sum(x, product(slope.x, direction.z));
+        y = sum(y, product(slope.y, direction.z));
+        z = product(widen(depth), direction.z);
     }
+    return Wide3(product(widen(focal_px.x, focal_low_px.x), x), -product(widen(focal_px.y, focal_low_px.y), y), z);
 }
 
 #define SIDE_MAX_DISTANCE 0
-#define SIDE_NEAR 1
-#define SIDE_LEFT 2
-#define SIDE_RIGHT 3
-#define SIDE_TOP 4
-#define SIDE_BOTTOM 5
+#define SIDE_FAR 1
+#define SIDE_NEAR 2
+#define SIDE_LEFT 3
+#define SIDE_RIGHT 4
+#define SIDE_TOP 5
+#define SIDE_BOTTOM 6
 
-// Length of the ray inside the view volume. The border planes are used in homogeneous form, so nothing is divided
-// by a distance that may vanish.
-real clip_length(real3 position, real3 direction, out int side)
-{
-    real limit = max_distance_m;
-    side       = SIDE_MAX_DISTANCE;
-    real distance_m = -position.z;
-    real rate       = -direction.z;
-    limit_by(distance_m - near_m, rate, SIDE_NEAR, limit, side);
-    if (orthographic != 0) limit_by(far_m - distance_m, -rate, SIDE_MAX_DISTANCE, limit, side);
-    real w_value = orthographic == 0 ? distance_m : real(1);
-    real w_slope = orthographic == 0 ? rate : real(0);
-    real2         to_px   = real2(focal_px.x, -focal_px.y);
-    real2         rest_px = real2(size_px) - centre_px;
-    precise real2 value = to_px * position.xy, slope = to_px * direction.xy;
-    precise real2 value_low = centre_px * w_value + value, slope_low = centre_px * w_slope + slope;
-    precise real2 value_high = rest_px * w_value - value, slope_high = rest_px * w_slope - slope;
-    limit_by(value_low.x, slope_low.x, SIDE_LEFT, limit, side);
-    limit_by(value_high.x, slope_high.x, SIDE_RIGHT, limit, side);
-    limit_by(value_low.y, slope_low.y, SIDE_TOP, limit, side);
-    limit_by(value_high.y, slope_high.y, SIDE_BOTTOM, limit, side);
-    return limit;
-}
-
-// From the projection of `position` to that of position + length_m * direction, with the common terms cancelled by hand: no difference of
-// two projected points is taken, infinity is a length like any other, and mirrored rays have exactly mirrored deltas.
-real3 screen_delta(real3 position, real3 direction, real length_m)
-{
-    precise real3 delta;
-    if (orthographic != 0)
-    {
-        delta = length_m * real3(focal_px.x * direction.x, -focal_px.y * direction.y, direction.z / (far_m - near_m));
-        return delta;
-    }
-    real          distance_m = -position.z;
-    precise real  scale      = real(1) / ((distance_m / length_m - direction.z) * distance_m);
-    precise real2 slope      = direction.xy * distance_m + position.xy * direction.z;
-    delta = scale * real3(focal_px.x * slope.x, -focal_px.y * slope.y, near_m * direction.z);
-    return delta;
-}
-
-// Pixel position and depth of a point in front of the camera.
-real3 vs_to_px(real3 position)
-{
-    real  distance_m = -position.z;
-    real2 to_px      = real2(focal_px.x, -focal_px.y);
-    if (orthographic != 0) return real3(centre_px + to_px * position.xy, (far_m - distance_m) / (far_m - near_m));
-    return real3(centre_px + to_px * position.xy * (real(1) / distance_m), near_m / distance_m);
-}
-
-// The ray from the surface seen at start_px; position: that point in view space.
-Segment make_segment(real2 start_px, real depth, real3 position, real3 direction)
+// k = room / rate. A ray that never gets there has a rate of at most 0.
+struct Limit
 {
     int  side;
-    real length_m = clip_length(position, direction, side);
+    wide room, rate;
+};
+
+real limit_k(Limit limit)
+{
+    return narrow(limit.rate) > real(0) ? max(narrow(limit.room), real(0)) / narrow(limit.rate) : real(uintBitsToFloat(0x7F800000u)); // infinity
+}
+
+Limit nearer(Limit a, Limit b)
+{
+    if (limit_k(b) < limit_k(a)) return b;
+    return a;
+}
+
+real size_of(Wide3 v)
+{
+    real3        a      = narrow(v);
+    precise real square = a.x * a.x + a.y * a.y + a.z * a.z;
+    return sqrt(square);
+}
+
+// After so many metres. A direction's `size` is its length.
+Limit at_distance(real metres, real distance_m, Wide3 direction, real size)
+{
+    if (orthographic != 0) return Limit(SIDE_MAX_DISTANCE, widen(metres), widen(size));
+    // As 1 / metres beyond one metre: infinity is a distance, too.
+    real         room = min(metres, real(1)), scale = metres > real(1) ? real(1) / metres : real(1);
+    precise real rate = distance_m * size * scale;
+    return Limit(SIDE_MAX_DISTANCE, widen(room), sum(widen(rate), -product(widen(room), direction.z)));
+}
+
+Segment make_segment(real2 start_px, real depth, Wide3 direction)
+{
+    Wide3 rate       = screen_rate(start_px, depth, direction);
+    real  distance_m = depth_to_distance(depth), size = size_of(direction);
+    Limit limit      = at_distance(max_distance_m, distance_m, direction, size);
+    limit            = nearer(limit, Limit(SIDE_NEAR, sum(widen(real(1)), -widen(depth)), rate.z));
+    if (orthographic != 0) limit = nearer(limit, Limit(SIDE_FAR, widen(depth), -rate.z));
+    limit = nearer(limit, Limit(SIDE_LEFT, widen(start_px.x), -rate.x));
+    limit = nearer(limit, Limit(SIDE_RIGHT, widen(real(size_px.x) - start_px.x), rate.x));
+    limit = nearer(limit, Limit(SIDE_TOP, widen(start_px.y), -rate.y));
+    limit = nearer(limit, Limit(SIDE_BOTTOM, widen(real(size_px.y) - start_px.y), rate.y));
+
     Segment segment;
     segment.origin     = real3(start_px, depth);
     segment.delta      = real3(0);
-    segment.length_m   = length_m;
-    segment.end_status = side == SIDE_MAX_DISTANCE ? TRACE_PAST_MAX_DISTANCE : TRACE_LEFT_SCREEN;
-    if (length_m <= ray_offset_m || length_m <= real(0)) return segment;
+    segment.length_m   = real(0);
+    segment.end_status = limit.side <= SIDE_FAR ? TRACE_PAST_MAX_DISTANCE : TRACE_LEFT_SCREEN;
+    if (!(limit_k(limit) > real(0)) || isinf(limit_k(limit))) return segment;
+
+    wide          k    = quotient(limit.room, limit.rate);
+    Wide3         way  = scaled(k, rate);
+    precise real  far  = size * narrow(k);
+    if (orthographic == 0) far = far * near_m / narrow(sum(widen(depth), way.z));
+    segment.length_m = limit.side == SIDE_MAX_DISTANCE ? max_distance_m : far;
+    if (segment.length_m <= ray_offset_m) return segment;
 
     if (ray_offset_m > real(0))
     {
-        position += ray_offset_m * direction;
-        segment.origin    = vs_to_px(position);
+        Limit start       = at_distance(ray_offset_m, distance_m, direction, size);
+        wide  start_k     = quotient(start.room, start.rate);
+        segment.origin    = narrow(sum(widen(segment.origin), scaled(start_k, rate)));
         segment.origin.xy = clamp(segment.origin.xy, real2(0), real2(size_px));
         segment.length_m -= ray_offset_m;
+        way = scaled(sum(k, -start_k), rate);
     }
     // The end lies exactly on the border that limits the ray, and inside the image on the other axis.
     real2 low = -segment.origin.xy, high = real2(size_px) - segment.origin.xy;
-    real3 delta = screen_delta(position, direction, segment.length_m);
+    real3 delta = narrow(way);
     delta.xy    = clamp(delta.xy, low, high);
-    if (side == SIDE_LEFT) delta.x = low.x;
-    if (side == SIDE_RIGHT) delta.x = high.x;
-    if (side == SIDE_TOP) delta.y = low.y;
-    if (side == SIDE_BOTTOM) delta.y = high.y;
+    if (limit.side == SIDE_LEFT) delta.x = low.x;
+    if (limit.side == SIDE_RIGHT) delta.x = high.x;
+    if (limit.side == SIDE_TOP) delta.y = low.y;
+    if (limit.side == SIDE_BOTTOM) delta.y = high.y;
     segment.delta = delta;
     return segment;
-}
-
-// Scaled by its largest component first: squares of very small or large numbers leave the range of float.
-real3 normal_at(ivec2 pixel)
-{
-    vec3  stored  = imageLoad(normal_image, pixel).xyz;
-    float largest = max(max(abs(stored.x), abs(stored.y)), abs(stored.z));
-    real3 scaled  = real3(stored) / real(largest);
-    return unit(scaled);
 }

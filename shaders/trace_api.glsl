@@ -118,9 +118,27 @@ uvec2 load_pyramid(ivec2 cell, int level)
 }
 
 // ---- The hit contract
-bool interval_touches(real depth, real z_a, real z_b)
+// How far rounding may move the depth of a ray: the interval that it covers is widened by this, so that rounding finds a hit that barely is
+// none rather than lose one (docs/exactness.md). Nothing in double precision, which is what float is held to.
+real depth_rounding(Ray ray)
 {
-    return depth >= min(z_a, z_b) && reaches_slab_back(depth, max(z_a, z_b));
+#ifdef REAL_IS_DOUBLE
+    return real(0);
+#else
+    return abs(ray.delta.z) * (1.0 / (1 << 24)); // what half of the last place of t = 1 moves it by
+#endif
+}
+
+// Depths that the ray covers between two of its depths: x the farthest, y the nearest.
+real2 depth_interval(Ray ray, real z_a, real z_b)
+{
+    precise real2 interval = (z_a < z_b ? real2(z_a, z_b) : real2(z_b, z_a)) + real2(-1, 1) * depth_rounding(ray);
+    return interval;
+}
+
+bool interval_touches(real depth, real2 interval)
+{
+    return depth >= interval.x && reaches_slab_back(depth, interval.y);
 }
 
 // Direction in view space from the ray's origin to a position of some depth, not normalised.
@@ -151,7 +169,7 @@ bool accepts(Ray ray, ivec2 pixel, bool touched, bool is_pixel)
 // Does the ray, whose depth covers the interval between z_a and z_b, hit the surface seen at this pixel?
 bool touches_surface(Ray ray, ivec2 pixel, real z_a, real z_b)
 {
-    return accepts(ray, pixel, interval_touches(fetch_depth(pixel), z_a, z_b), true);
+    return accepts(ray, pixel, interval_touches(fetch_depth(pixel), depth_interval(ray, z_a, z_b)), true);
 }
 
 // What a cell of any level holds. Both images are read whatever the level: lanes of one group stand on different levels, and a branch would run
@@ -177,9 +195,8 @@ bool touches_cell(Ray ray, ivec2 cell, int level, real z_a, real z_b)
 {
     bool        leaf    = level == 0;
     CellContent content = fetch_cell(cell, level);
-    real        z_near = z_a > z_b ? z_a : z_b, z_far = z_a > z_b ? z_b : z_a;
-    bool        touched = leaf ? content.depth >= z_far && reaches_slab_back(content.depth, z_near)
-                               : cell_may_touch(content.node, float(z_far), float(z_near));
+    real2       interval = depth_interval(ray, z_a, z_b);
+    bool        touched  = leaf ? interval_touches(content.depth, interval) : cell_may_touch(content.node, float(interval.x), float(interval.y));
     return accepts(ray, cell, touched, leaf);
 }
 

@@ -11,15 +11,22 @@ namespace {
 
 /// shaders/view.glsl, uniform View, scalar layout.
 template <typename Real> struct ViewBlock {
-    glm::vec<2, Real> focal_px, centre_px;
+    glm::vec<2, Real> focal_px, centre_px, focal_low_px, centre_low_px;
     Real              near_m, far_m;
     glm::ivec2        size_px;
 };
 
 template <typename Real> void write_view_as(Gpu& gpu, Buffer& target, const View& view)
 {
-    const ViewBlock<Real> block{glm::vec<2, Real>(view.focal_px), glm::vec<2, Real>(view.centre_px),
-                                static_cast<Real>(view.near_m), static_cast<Real>(view.far_m), view.size_px};
+    using Real2 = glm::vec<2, Real>;
+    const Real2           focal_px(view.focal_px), centre_px(view.centre_px);
+    const ViewBlock<Real> block{focal_px,
+                                centre_px,
+                                Real2(view.focal_px - glm::dvec2(focal_px)),
+                                Real2(view.centre_px - glm::dvec2(centre_px)),
+                                static_cast<Real>(view.near_m),
+                                static_cast<Real>(view.far_m),
+                                view.size_px};
     upload(gpu, target, &block, sizeof(block));
 }
 

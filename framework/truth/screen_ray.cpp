@@ -16,54 +16,57 @@ size_t pixel_index(const GBufferImage& gbuffer, glm::ivec2 pixel)
     return size_t(pixel.y) * size_t(gbuffer.view.size_px.x) + size_t(pixel.x);
 }
 
-/// The half space a0 + s * a1 >= 0 along the ray; a0 >= 0 for every point in the view.
-double distance_to_plane_m(double a0, double a1) { return a1 < 0 ? std::max(a0, 0.0) / -a1 : infinity; }
+enum class Limit { max_distance, far_plane, near_plane, left, right, top, bottom };
 
-enum class Limit { max_distance, near_plane, left, right, top, bottom };
-
-struct Clip {
-    double length_m;
-    Limit  limit;
+/// The ray stands at origin + k * rate on screen; the limit that ends it is met at k = room / rate.
+struct End {
+    double k     = infinity;
+    Limit  limit = Limit::max_distance;
 };
 
-/// Border planes are homogeneous: px >= 0 <=> centre.x * w + focal.x * X >= 0 with w = distance, or 1 in an orthographic view.
-Clip clip_ray(const View& view, glm::dvec3 point_vs, glm::dvec3 direction_vs, double max_distance_m)
+/// The direction (x, y, -1) of the view ray through a pixel's centre, or the view axis.
+glm::dvec3 view_direction_vs(const View& view, glm::ivec2 pixel)
 {
-    const bool       perspective = view.projection == Projection::perspective;
-    const double     w0          = perspective ? -point_vs.z : 1.0;
-    const double     w1          = perspective ? -direction_vs.z : 0.0;
-    const glm::dvec2 rest_px     = glm::dvec2(view.size_px) - view.centre_px;
-    const glm::dvec2 p0          = view.focal_px * glm::dvec2(point_vs.x, -point_vs.y);
-    const glm::dvec2 p1          = view.focal_px * glm::dvec2(direction_vs.x, -direction_vs.y);
-
-    Clip       clip{max_distance_m, Limit::max_distance};
-    const auto limit_by = [&](Limit limit, double a0, double a1) {
-        const double s = distance_to_plane_m(a0, a1);
-        if (s < clip.length_m) clip = {s, limit};
-    };
-    limit_by(Limit::near_plane, -point_vs.z - view.near_m, -direction_vs.z);
-    if (!perspective) limit_by(Limit::max_distance, view.far_m + point_vs.z, direction_vs.z);
-    limit_by(Limit::left, view.centre_px.x * w0 + p0.x, view.centre_px.x * w1 + p1.x);
-    limit_by(Limit::right, rest_px.x * w0 - p0.x, rest_px.x * w1 - p1.x);
-    limit_by(Limit::top, view.centre_px.y * w0 + p0.y, view.centre_px.y * w1 + p1.y);
-    limit_by(Limit::bottom, rest_px.y * w0 - p0.y, rest_px.y * w1 - p1.y);
-    return clip;
+    if (view.projection == Projection::orthographic) return {0, 0, -1};
+    const glm::dvec2 slope = (glm::dvec2(pixel) + 0.5 - view.centre_px) / view.focal_px;
+    return {slope.x, -slope.y, -1};
 }
 
-/// project(point + length * direction) - project(point) with the common terms cancelled by hand: no difference of two
-/// projected points is taken, length = +inf needs no special case, and mirrored rays have exactly mirrored deltas.
-glm::dvec3 screen_delta(const View& view, glm::dvec3 point_vs, glm::dvec3 direction_vs, double length_m)
+/// How the point that is seen along `to_point_vs` at a depth moves on screen, in (x_px, y_px, depth) per unit of k, when it moves along `direction_vs`. After
+/// lambda times that direction k is 1 / (distance / lambda - direction.z), in an orthographic view lambda.
+glm::dvec3 screen_rate(const View& view, double depth, glm::dvec3 to_point_vs, glm::dvec3 direction_vs)
 {
-    if (view.projection == Projection::orthographic) {
-        // Only a ray exactly along the axis is unlimited here; it never leaves its start pixel.
-        if (length_m == infinity) return glm::dvec3(0);
-        return length_m * glm::dvec3(view.focal_px.x * direction_vs.x, -view.focal_px.y * direction_vs.y,
-                                     direction_vs.z / (view.far_m - view.near_m));
-    }
-    const double     distance_m = -point_vs.z;
-    const double     scale      = 1.0 / ((distance_m / length_m - direction_vs.z) * distance_m);
-    const glm::dvec2 slope      = glm::dvec2(direction_vs) * distance_m + glm::dvec2(point_vs) * direction_vs.z;
-    return scale * glm::dvec3(view.focal_px.x * slope.x, -view.focal_px.y * slope.y, view.near_m * direction_vs.z);
+    if (view.projection == Projection::orthographic)
+        return {view.focal_px.x * direction_vs.x, -(view.focal_px.y * direction_vs.y),
+                direction_vs.z / (view.far_m - view.near_m)};
+    return {view.focal_px.x * (direction_vs.x + to_point_vs.x * direction_vs.z),
+            -(view.focal_px.y * (direction_vs.y + to_point_vs.y * direction_vs.z)), depth * direction_vs.z};
+}
+
+double k_at_distance(const View& view, double metres, double depth, glm::dvec3 direction_vs)
+{
+    const double size = glm::length(direction_vs);
+    if (view.projection == Projection::orthographic) return metres / size;
+    // As 1 / metres beyond one metre: infinity is a distance, too.
+    const double room = std::min(metres, 1.0), scale = metres > 1 ? 1 / metres : 1;
+    const double rate = depth_to_distance(view, depth) * size * scale - room * direction_vs.z;
+    return rate > 0 ? room / rate : infinity;
+}
+
+End end_of_ray(const View& view, glm::dvec3 origin, glm::dvec3 rate, double max_distance_k)
+{
+    End        end{max_distance_k, Limit::max_distance};
+    const auto limit_by = [&](Limit limit, double room, double speed) {
+        const double k = speed > 0 ? std::max(room, 0.0) / speed : infinity;
+        if (k < end.k) end = {k, limit};
+    };
+    limit_by(Limit::near_plane, 1 - origin.z, rate.z);
+    if (view.projection == Projection::orthographic) limit_by(Limit::far_plane, origin.z, -rate.z);
+    limit_by(Limit::left, origin.x, -rate.x);
+    limit_by(Limit::right, view.size_px.x - origin.x, rate.x);
+    limit_by(Limit::top, origin.y, -rate.y);
+    limit_by(Limit::bottom, view.size_px.y - origin.y, rate.y);
+    return end;
 }
 
 /// Puts the end exactly on the border that limits the ray, and inside the image on the other axis.
@@ -103,53 +106,68 @@ glm::dvec3 pixel_point_vs(const GBufferImage& gbuffer, glm::ivec2 pixel)
     return px_to_vs(gbuffer.view, glm::dvec2(pixel) + 0.5, double(gbuffer.depth[pixel_index(gbuffer, pixel)]));
 }
 
+namespace {
+
+/// |normal|^2 times as long as the direction to the pixel.
+glm::dvec3 mirrored_vs(const GBufferImage& gbuffer, glm::ivec2 pixel)
+{
+    const glm::dvec3 to_point_vs = view_direction_vs(gbuffer.view, pixel);
+    const glm::dvec3 raw(gbuffer.normal_vs[pixel_index(gbuffer, pixel)]);
+    // By a power of two, so that no square over- or underflows.
+    const double     largest   = std::max({std::abs(raw.x), std::abs(raw.y), std::abs(raw.z)});
+    const glm::dvec3 normal_vs = raw * std::ldexp(1.0, -std::ilogb(largest));
+    return glm::dot(normal_vs, normal_vs) * to_point_vs + (-2.0 * glm::dot(normal_vs, to_point_vs)) * normal_vs;
+}
+
+} // namespace
+
 glm::dvec3 mirror_direction_vs(const GBufferImage& gbuffer, glm::ivec2 pixel)
 {
-    const glm::dvec3 to_point_vs = gbuffer.view.projection == Projection::perspective
-                                       ? glm::normalize(pixel_point_vs(gbuffer, pixel))
-                                       : glm::dvec3(0, 0, -1);
-    const glm::dvec3 raw(gbuffer.normal_vs[pixel_index(gbuffer, pixel)]);
-    // Divided by its largest component first, so that no square over- or underflows.
-    const double     largest   = std::max({std::abs(raw.x), std::abs(raw.y), std::abs(raw.z)});
-    const glm::dvec3 normal_vs = glm::normalize(raw / largest);
-    return glm::normalize(to_point_vs - 2.0 * glm::dot(normal_vs, to_point_vs) * normal_vs);
+    return glm::normalize(mirrored_vs(gbuffer, pixel));
 }
 
 ScreenRay make_screen_ray(const GBufferImage& gbuffer, glm::ivec2 pixel, const TraceSettings& settings)
 {
     if (!reflects(gbuffer, pixel)) return {};
-    return make_screen_ray(gbuffer, pixel, mirror_direction_vs(gbuffer, pixel), settings);
+    return make_screen_ray(gbuffer, pixel, mirrored_vs(gbuffer, pixel), settings);
 }
 
 ScreenRay make_screen_ray(const GBufferImage& gbuffer, glm::ivec2 pixel, glm::dvec3 direction_vs,
                           const TraceSettings& settings)
 {
     ScreenRay        ray;
-    const View&      view     = gbuffer.view;
-    const glm::dvec3 point_vs = pixel_point_vs(gbuffer, pixel);
-    ray.traced                = true;
-    ray.direction_vs          = direction_vs;
-    ray.start_pixel           = pixel;
-    ray.origin_px_depth       = {glm::dvec2(pixel) + 0.5, double(gbuffer.depth[pixel_index(gbuffer, pixel)])};
+    const View&      view = gbuffer.view;
+    const double     depth(gbuffer.depth[pixel_index(gbuffer, pixel)]);
+    const glm::dvec3 rate = screen_rate(view, depth, view_direction_vs(view, pixel), direction_vs);
+    ray.traced            = true;
+    ray.direction_vs      = glm::normalize(direction_vs);
+    ray.start_pixel       = pixel;
+    ray.origin_px_depth   = {glm::dvec2(pixel) + 0.5, depth};
 
-    const Clip clip = clip_ray(view, point_vs, ray.direction_vs, std::max(settings.max_distance_m, 0.0));
-    ray.length_m    = clip.length_m;
-    ray.end_status  = clip.limit == Limit::max_distance ? TraceStatus::past_max_distance : TraceStatus::left_screen;
+    const double max_distance_m = std::max(settings.max_distance_m, 0.0);
+    const End    end =
+        end_of_ray(view, ray.origin_px_depth, rate, k_at_distance(view, max_distance_m, depth, direction_vs));
+    ray.end_status = end.limit <= Limit::far_plane ? TraceStatus::past_max_distance : TraceStatus::left_screen;
+    if (end.k <= 0 || end.k == infinity) return ray;
+    glm::dvec3 delta = end.k * rate;
+    double     far_m = glm::length(direction_vs) * end.k;
+    if (view.projection == Projection::perspective) far_m = far_m * view.near_m / (depth + delta.z);
+    ray.length_m = end.limit == Limit::max_distance ? max_distance_m : far_m;
 
     const double offset_m = std::max(settings.ray_offset_m, 0.0);
-    if (offset_m >= clip.length_m) return ray;
-    glm::dvec3 start_vs = point_vs;
+    if (ray.length_m <= offset_m) return ray;
     if (offset_m > 0) {
-        const glm::dvec2 size = view.size_px;
-        start_vs              = point_vs + offset_m * ray.direction_vs;
-        ray.origin_px_depth   = vs_to_px(view, start_vs);
+        const double     start_k = k_at_distance(view, offset_m, depth, direction_vs);
+        const glm::dvec2 size    = view.size_px;
+        ray.origin_px_depth += start_k * rate;
         for (int axis : {0, 1}) {
             ray.origin_px_depth[axis] = std::clamp(ray.origin_px_depth[axis], 0.0, size[axis]);
             ray.start_pixel[axis]     = std::min(int(ray.origin_px_depth[axis]), view.size_px[axis] - 1);
         }
+        delta = (end.k - start_k) * rate;
     }
-    ray.delta_px_depth = screen_delta(view, start_vs, ray.direction_vs, clip.length_m - offset_m);
-    snap_end(view, clip.limit, ray.origin_px_depth, ray.delta_px_depth);
+    ray.delta_px_depth = delta;
+    snap_end(view, end.limit, ray.origin_px_depth, ray.delta_px_depth);
     return ray;
 }
 

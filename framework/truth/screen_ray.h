@@ -27,7 +27,7 @@ glm::dvec3 pixel_point_vs(const GBufferImage& gbuffer, glm::ivec2 pixel);
 glm::dvec3 mirror_direction_vs(const GBufferImage& gbuffer, glm::ivec2 pixel);
 
 ScreenRay make_screen_ray(const GBufferImage& gbuffer, glm::ivec2 pixel, const TraceSettings& settings);
-/// From a pixel that reflects, in any unit direction.
+/// From a pixel that reflects, in any direction; its length does not matter.
 ScreenRay make_screen_ray(const GBufferImage& gbuffer, glm::ivec2 pixel, glm::dvec3 direction_vs,
                           const TraceSettings& settings);
 

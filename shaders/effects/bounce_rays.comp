@@ -60,7 +60,7 @@ void main()
     uint    derived  = first + subgroupBallotExclusiveBitCount(ballot);
     real2   centre   = real2(hit) + real(0.5);
     real    depth    = imageLoad(depth_image, hit).x;
-    Segment segment  = make_segment(centre, depth, px_to_vs(real3(centre, depth)), mirrored(arriving, normal));
+    Segment segment  = make_segment(centre, depth, mirrored(widen(arriving), normal));
     derived_origin[derived]     = segment.origin;
     derived_delta[derived]      = segment.delta;
     derived_length_m[derived]   = segment.length_m;
