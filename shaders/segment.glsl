@@ -38,7 +38,7 @@ Wide3 mirrored(Wide3 view, real3 normal)
 {
     Wide3 n      = widen(normal);
     wide  cosine = inner_product(n, view);
-    return sum(scaled(inner_product(n, n), view), scaled(product(widen(real(-2)), cosine), n));
+    return sum(scaled(inner_product(n, n), view), scaled(-(cosine + cosine), n));
 }
 
 // ---- On screen a ray of direction r from the point that is seen along the slope s at a depth moves along
@@ -95,9 +95,10 @@ real size_of(Wide3 v)
 Limit at_distance(real metres, real distance_m, Wide3 direction, real size)
 {
     if (orthographic != 0) return Limit(SIDE_MAX_DISTANCE, widen(metres), widen(size));
-    // As 1 / metres beyond one metre: infinity is a distance, too.
-    real         room = min(metres, real(1)), scale = metres > real(1) ? real(1) / metres : real(1);
-    precise real rate = distance_m * size * scale;
+    // By the larger of the two lengths, so that 0 and infinity are lengths like any other.
+    bool         far  = metres > distance_m;
+    real         room = far ? real(1) : metres / distance_m;
+    precise real rate = size * (far ? distance_m / metres : real(1));
     return Limit(SIDE_MAX_DISTANCE, widen(room), sum(widen(rate), -product(widen(room), direction.z)));
 }
 

@@ -39,7 +39,15 @@ wide exact_sum(float a, float b)
     precise float whole = a + b;
     precise float of_b  = whole - a;
     precise float rest  = (a - (whole - of_b)) + (b - of_b);
-    return wide(whole, isinf(whole) ? 0.0 : rest);
+    return wide(whole, rest);
+}
+
+// |a| >= |b|
+wide exact_sum_of_ordered(float a, float b)
+{
+    precise float whole = a + b;
+    precise float rest  = b - (whole - a);
+    return wide(whole, rest);
 }
 
 float upper_half(float a) { return uintBitsToFloat(floatBitsToUint(a) & 0xFFFFF000u); }
@@ -49,28 +57,28 @@ wide exact_product(float a, float b)
     precise float whole = a * b;
     precise float a_up = upper_half(a), b_up = upper_half(b), a_down = a - a_up, b_down = b - b_up;
     precise float rest = ((a_up * b_up - whole) + a_up * b_down + a_down * b_up) + a_down * b_down;
-    return wide(whole, isinf(whole) ? 0.0 : rest);
+    return wide(whole, rest);
 }
 
 wide sum(wide a, wide b)
 {
     wide          high = exact_sum(a.x, b.x);
     precise float low  = high.y + (a.y + b.y);
-    return exact_sum(high.x, low);
+    return exact_sum_of_ordered(high.x, low);
 }
 
 wide product(wide a, wide b)
 {
     wide          high = exact_product(a.x, b.x);
     precise float low  = high.y + (a.x * b.y + a.y * b.x);
-    return exact_sum(high.x, low);
+    return exact_sum_of_ordered(high.x, low);
 }
 
 wide quotient(wide a, wide b)
 {
     float high = a.x / b.x;
     wide  rest = sum(a, -product(b, wide(high, 0)));
-    return exact_sum(high, rest.x / b.x);
+    return exact_sum_of_ordered(high, rest.x / b.x);
 }
 #endif
 

@@ -47,9 +47,11 @@ double k_at_distance(const View& view, double metres, double depth, glm::dvec3 d
 {
     const double size = glm::length(direction_vs);
     if (view.projection == Projection::orthographic) return metres / size;
-    // As 1 / metres beyond one metre: infinity is a distance, too.
-    const double room = std::min(metres, 1.0), scale = metres > 1 ? 1 / metres : 1;
-    const double rate = depth_to_distance(view, depth) * size * scale - room * direction_vs.z;
+    // By the larger of the two lengths, so that 0 and infinity are lengths like any other.
+    const double distance_m = depth_to_distance(view, depth);
+    const bool   far        = metres > distance_m;
+    const double room       = far ? 1 : metres / distance_m,
+                 rate       = size * (far ? distance_m / metres : 1) - room * direction_vs.z;
     return rate > 0 ? room / rate : infinity;
 }
 
