@@ -1,5 +1,6 @@
 #include "core/error.h"
 #include "render/frame_passes.h"
+#include "render/ggx_share.h"
 #include "shared.h"
 
 #include <algorithm>
@@ -139,6 +140,7 @@ FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
     buffers->small_colour   = image(colour, half_size_px);
     buffers->block_pixel    = image(vk::Format::eR32Uint, half_size_px);
     buffers->shaded         = image(colour, size_px);
+    buffers->ggx_shares     = make_buffer_with<glm::vec2>(gpu, ggx_share_table());
     return buffers;
 }
 
@@ -157,7 +159,7 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
 
     frame->facts      = facts_of(*frame);
     frame->statistics = buffers->statistics;
-    if (plan_needs_trace(settings.effects) && frame->statistics.picture.reflecting_pixels > 0)
+    if (!shading_only(settings.effects) && frame->statistics.picture.reflecting_pixels > 0)
         frame->statistics.trace = count_hits(gpu, *frame);
     frame->plan = plan_frame(frame->facts, frame->statistics, settings.effects);
     for (const PlannedEffect& planned : frame->plan)
@@ -167,6 +169,17 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
 }
 
 const std::vector<PlannedEffect>& plan_of(const PreparedFrame& frame) { return frame.plan; }
+
+bool plan_leaves_out(const PreparedFrame& frame)
+{
+    ParameterValues everything = frame.settings.effects;
+    if (everything.at("plan") == 0 || shading_only(everything)) return false;
+    everything.at("plan")       = 0;
+    const PictureCounts& counts = frame.statistics.picture;
+    return counts.reflecting_pixels < counts.surface_pixels ||
+           !std::ranges::equal(frame.plan, plan_frame(frame.facts, frame.statistics, everything), {},
+                               &PlannedEffect::runs, &PlannedEffect::runs);
+}
 
 std::vector<std::string> facts_of_plan(const PreparedFrame& frame)
 {

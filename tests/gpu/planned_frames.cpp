@@ -42,13 +42,13 @@ TEST_P(PlannedFrames, AreThoseWithEverythingOn)
 {
     for (const glm::ivec2& size_px : {glm::ivec2(161, 91), glm::ivec2(320, 180)}) {
         const Picture picture = make_picture(GetParam(), "default", size_px);
-        for (const char* id : {"hiz", "linear"}) {
-            const Shown planned = show(picture, id, effects_with({})),
-                        all     = show(picture, id, effects_with({{"plan", 0}}));
+        for (const auto& [id, gloss] : {std::pair("hiz", 1), std::pair("linear", 1), std::pair("hiz", 2)}) {
+            const Shown planned = show(picture, id, effects_with({{"gloss", gloss}})),
+                        all     = show(picture, id, effects_with({{"gloss", gloss}, {"plan", 0}}));
             EXPECT_GE(all.ran.size(), planned.ran.size());
             EXPECT_EQ(different(planned.pixels, all.pixels), 0U)
                 << "ssrlab plan " << GetParam() << " -t " << id << " --size " << size_px.x << "x" << size_px.y
-                << " -p thickness_m=0.1 -p max_distance_m=20";
+                << " -p thickness_m=0.1 -p max_distance_m=20 -p gloss=" << (gloss == 2 ? "cone" : "blur");
         }
     }
 }
