@@ -26,6 +26,7 @@ struct MeasureSettings {
     bool     image_errors = true; // also compare the pictures (SSIM, FLIP …), which takes longer than comparing rays
     bool     double_twin  = true; // trace once more in double precision, to tell rounding from the other errors
     bool     pictures     = true; // write the reflected picture of each run
+    bool     saved_time   = true; // time a few frames with everything on, too; never where effect_set = shading
 };
 
 using ValueLists = std::map<std::string, std::vector<double>>;
