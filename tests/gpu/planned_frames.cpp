@@ -67,6 +67,18 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PlannedFrames, testing::ValuesIn(all_scenes()),
     return name;
 });
 
+TEST(PlannedFrame, LeavesOutWhatThePictureDoesNotNeedUnlessToldOtherwise)
+{
+    const Picture matte  = make_picture("builtin:matte", "default", {161, 91});
+    const auto    leaves = [&](const ParameterValues& changed) {
+        return plan_leaves_out(*prepare_frame(device(), matte.buffers, technique("hiz"), values_of(technique("hiz")),
+                                                 {{}, effects_with(changed)}));
+    };
+    EXPECT_TRUE(leaves({}));
+    EXPECT_FALSE(leaves({{"plan", 0}}));
+    EXPECT_FALSE(leaves({{"effect_set", 1}}));
+}
+
 TEST(PlannedFrame, OfNothingThatReflectsOnlyPutsThePictureTogether)
 {
     const Picture picture = make_picture("builtin:void", "default", {161, 91});
