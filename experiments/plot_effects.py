@@ -32,11 +32,12 @@ def compared(results):
             yield f"{title}, {technique}", f"{name}_{technique}", first, points
 
 
-def spread(wanted, room, low, high):
-    """Places near the wanted ones, in the same order, at least `room` apart and within the bounds as far as they suffice."""
-    order = np.argsort(wanted)
-    room = min(room, (high - low) / max(1, len(wanted) - 1))
-    placed = np.array(wanted, dtype=float)[order]
+def spread(x, y, room, low, high):
+    """Heights for the names of points: near theirs, at least `room` apart and within the bounds as far as they suffice. Of points that
+    are about equally high the one at the right is named first, from below, so that few lines cross."""
+    order = np.lexsort((-x, np.round(y / (0.25 * room))))
+    room = min(room, (high - low) / max(1, len(y) - 1))
+    placed = y[order]
     for i in range(1, len(placed)):
         placed[i] = max(placed[i], placed[i - 1] + room)
     placed = np.minimum(placed, high - room * np.arange(len(placed) - 1, -1, -1))
@@ -64,7 +65,7 @@ def trade(axis, first, points, error, where):
     margin = 0.08 * max(np.ptp(np.append(removed, 0)), 1e-6)
     axis.set_ylim(min(removed.min(), 0) - margin, max(removed.max(), 0) + margin)
     bottom, top = axis.get_ylim()
-    places = spread(np.append(removed, 0), 0.058 * (top - bottom), bottom, top)
+    places = spread(np.append(added, 0), np.append(removed, 0), 0.058 * (top - bottom), bottom, top)
     names = [label for label, _ in points] + ["first run"]
     for label, x, y, place in zip(names, np.append(added, 0), np.append(removed, 0), places):
         axis.annotate(label, (x, y), xytext=(1.03, place), textcoords=axis.get_yaxis_transform(), fontsize=8, va="center",

@@ -23,7 +23,7 @@ ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::st
                      {"small_colour_image", buffers.small_colour},
                      {"block_pixel_image", buffers.block_pixel},
                      {"shaded_image", buffers.shaded},
-                     {"GgxShares", buffers.ggx_shares}});
+                     {"ggx_shares", {buffers.ggx_shares, buffers.ggx_share_sampler}}});
     if (const GpuScene* scene = buffers.gbuffer->scene.get())
         bindings.insert({{"Frame", buffers.gbuffer->frame_uniforms},
                          {"environment_map", {scene->environment_map, scene->environment_sampler}},

@@ -3,6 +3,8 @@
 #include "render/ggx_share.h"
 #include "shared.h"
 
+#include <glm/gtc/packing.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -109,6 +111,21 @@ std::shared_ptr<RayBuffers> rays_for(Gpu& gpu, FrameBuffers& buffers, const Fram
     return rays;
 }
 
+void upload_ggx_shares(Gpu& gpu, FrameBuffers& buffers)
+{
+    std::vector<uint32_t> texels;
+    for (const glm::vec2& share : ggx_share_table()) texels.push_back(glm::packHalf2x16(share));
+    buffers.ggx_shares        = make_image(gpu, {.format  = vk::Format::eR16G16Sfloat,
+                                                 .size_px = glm::ivec2(GGX_SHARE_ENTRIES),
+                                                 .usage   = vk::ImageUsageFlagBits::eSampled});
+    buffers.ggx_share_sampler = {gpu.impl->device,
+                                 vk::SamplerCreateInfo{.magFilter    = vk::Filter::eLinear,
+                                                       .minFilter    = vk::Filter::eLinear,
+                                                       .addressModeU = vk::SamplerAddressMode::eClampToEdge,
+                                                       .addressModeV = vk::SamplerAddressMode::eClampToEdge}};
+    upload(gpu, buffers.ggx_shares, texels.data(), texels.size() * sizeof(uint32_t));
+}
+
 FrameFacts facts_of(const PreparedFrame& frame)
 {
     const GpuScene* scene = frame.buffers->gbuffer->scene.get();
@@ -140,7 +157,7 @@ FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
     buffers->small_colour   = image(colour, half_size_px);
     buffers->block_pixel    = image(vk::Format::eR32Uint, half_size_px);
     buffers->shaded         = image(colour, size_px);
-    buffers->ggx_shares     = make_buffer_with<glm::vec2>(gpu, ggx_share_table());
+    upload_ggx_shares(gpu, *buffers);
     return buffers;
 }
 

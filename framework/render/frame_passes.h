@@ -56,12 +56,13 @@ struct FrameBuffers {
     PyramidImages                                                  second_pyramid;
     std::shared_ptr<ConePyramid>                                   cone;         // empty until a frame asks for it
     std::map<std::pair<size_t, int>, std::shared_ptr<DerivedRays>> derived_rays; // by capacity, and which of two
-    GpuImage reflection;   // RGBA16F: colour, weight; weight < 0 where no ray started
-    GpuImage filtered;     // RGBA16F: a reflection that a filter is writing, or an earlier one
-    GpuImage small_colour; // RGBA16F, half size or less: lit colour as rays at a lower resolution find it
-    GpuImage block_pixel;  // R32UI, half size or less: which pixel of a block has rays, or NO_PIXEL
-    GpuImage shaded;       // RGBA16F
-    Buffer   ggx_shares;   // ggx_share_table()
+    GpuImage          reflection;   // RGBA16F: colour, weight; weight < 0 where no ray started
+    GpuImage          filtered;     // RGBA16F: a reflection that a filter is writing, or an earlier one
+    GpuImage          small_colour; // RGBA16F, half size or less: lit colour as rays at a lower resolution find it
+    GpuImage          block_pixel;  // R32UI, half size or less: which pixel of a block has rays, or NO_PIXEL
+    GpuImage          shaded;       // RGBA16F
+    GpuImage          ggx_shares;   // RG16F: ggx_share_table()
+    vk::raii::Sampler ggx_share_sampler = nullptr;
 };
 
 struct PyramidPush {
