@@ -104,7 +104,7 @@ TEST(Cones, OverTwoColoursMixThemByTheirShareOfTheCone)
     const double radius = height * sine / (1 + sine);
     EXPECT_GT(radius, 5);
     for (int x = 0; x < 128; ++x) {
-        const glm::vec4 pixel = found[at(picture.image, x, row)];
+        const glm::vec4& pixel = found[at(picture.image, x, row)];
         ASSERT_EQ(pixel.a, 1) << x;
         EXPECT_NEAR(pixel.r + pixel.g, 1, 2e-3) << x;
         const double u = std::clamp((x + 0.5 - border) / (2 * radius), -1.0, 1.0);
