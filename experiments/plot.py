@@ -13,6 +13,7 @@ except ImportError as error:
     sys.exit(f"plot.py: {error}; install python3-matplotlib and python3-pandas, and run it with /usr/bin/python3")
 
 import plot_accuracy
+import plot_effects
 import plot_figures
 import plot_report
 from matplotlib import pyplot as plt
@@ -26,7 +27,7 @@ def main(folder):
     plots_folder = os.path.join(folder, "plots")
     os.makedirs(plots_folder, exist_ok=True)
     plots, tables = [], {}
-    for make in plot_figures.ALL + plot_accuracy.ALL:
+    for make in plot_figures.ALL + plot_accuracy.ALL + plot_effects.ALL:
         for name, figure in (make(results, tables) if len(results.rows) else ()):
             for extension in ("png", "svg"):
                 figure.savefig(os.path.join(plots_folder, f"{name}.{extension}"))

@@ -47,6 +47,9 @@
 // Roughness histogram of the reflecting pixels: bin 0 holds roughness 0, the others share (0, 1].
 #define ROUGHNESS_BINS 16
 
+// Of the table of GGX shares, in roughness and in cosine.
+#define GGX_SHARE_ENTRIES 32
+
 // What a pyramid cell records (hiz's parameter `pyramid`, in this order).
 #define PYRAMID_OCCUPANCY 0
 #define PYRAMID_MINMAX 1

@@ -14,6 +14,7 @@ const std::vector<Column> identity = {
     {"run_id", "hash of the run: scene, view, size, technique, settings, parameters; what these names stood for: "
                "environment.json"},
     {"experiment", "name of the specification"},
+    {"place", "among the picture's runs as the specification lists them, from 0: 0 is what others are compared with"},
     {"scene", "file, recipe or builtin:NAME"},
     {"view", "camera"},
     {"width", "pixels"},
@@ -33,6 +34,10 @@ const std::vector<Column> times = {
     {"shade_ms_median", "turning hits into colour and putting the picture together"},
     {"effects", "passes that ran, in their order, each with the median of its GPU time in milliseconds"},
     {"effects_skipped", "passes that the plan left out, because the picture does not need them or they are off"},
+    {"saved_ms",
+     "what the plan saves: a frame with everything on (plan = false) less the planned one, median over five "
+     "pairs; empty where the plan leaves nothing out but what is off, and where it was not measured "
+     "(saved_time = false, effect_set = shading)"},
     {"frame_ms_median", "sum of all passes with the G-buffer's median, per repeat; median over the repeats"},
     {"frame_ms_mad", "its median absolute deviation"},
     {"frame_ms_ci_low", "lower end of the 95 % interval of the median"},

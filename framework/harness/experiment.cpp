@@ -219,6 +219,7 @@ MeasureSettings read_measure(const TomlFile& file)
     flag("image_errors", measure.image_errors);
     flag("double_twin", measure.double_twin);
     flag("pictures", measure.pictures);
+    flag("saved_time", measure.saved_time);
     toml_known_keys(file, *table, "key of [measure]", known);
     if (measure.max_repeats < measure.min_repeats) {
         throw_spec_error("{}: max_repeats {} is below min_repeats {}", toml_place(file, *table), measure.max_repeats,

@@ -26,6 +26,7 @@ struct MeasureSettings {
     bool     image_errors = true; // also compare the pictures (SSIM, FLIP …), which takes longer than comparing rays
     bool     double_twin  = true; // trace once more in double precision, to tell rounding from the other errors
     bool     pictures     = true; // write the reflected picture of each run
+    bool     saved_time   = true; // time a few frames with everything on, too; never where effect_set = shading
 };
 
 using ValueLists = std::map<std::string, std::vector<double>>;
@@ -51,7 +52,7 @@ struct Experiment {
     MeasureSettings             measure;
 };
 
-/// One technique with one set of values on one picture: everything that decides its outcome.
+/// One technique with one set of values on one picture: everything that decides its outcome, and its place.
 struct Run {
     std::string     id; // short hash of all that follows; the same in every experiment and on every machine
     std::string     scene, view;
@@ -59,6 +60,7 @@ struct Run {
     FrameSettings   settings;
     std::string     technique;
     ParameterValues values;
+    int             place = 0; // among the picture's runs as the specification lists them
 };
 
 /// A setting of [trace] or [effects]: key in the specification and column of the record, from this one table.

@@ -149,6 +149,18 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
     add_measures(measured.row, picture.truths->compare_picture(run.settings.trace, shaded, reference));
 }
 
+/// The same frame with everything on, where that is more.
+void prepare_everything(Bench& bench, const Picture& picture, MeasuredRun& measured)
+{
+    const Run& run = *measured.run;
+    if (!bench.experiment.measure.saved_time || !plan_leaves_out(*measured.frame)) return;
+    FrameSettings settings      = run.settings;
+    settings.effects.at("plan") = 0;
+    measured.everything = prepare_frame(bench.gpu, picture.buffers, find_technique(bench.techniques, run.technique),
+                                        run.values, settings);
+    run_frame(bench.gpu, *measured.everything); // warm-up
+}
+
 /// Timed repeats, every round in another order, until each run is final or a stop was requested.
 void repeat_until_final(Bench& bench, const Picture& picture, std::vector<MeasuredRun>& open)
 {
@@ -185,9 +197,13 @@ void measure_batch(Bench& bench, Picture& picture, std::span<const Run> runs)
         if (stop_requested() != 0) return;
         bench.progress.tick();
         MeasuredRun measured;
-        measured.run = &run;
-        measured.row = identity_row(bench.experiment, run, find_technique(bench.techniques, run.technique));
-        if (!try_step(bench, measured, [&] { prepare(bench, picture, measured); })) continue;
+        measured.run            = &run;
+        measured.row            = identity_row(bench.experiment, run, find_technique(bench.techniques, run.technique));
+        const auto prepare_both = [&] {
+            prepare(bench, picture, measured);
+            prepare_everything(bench, picture, measured);
+        };
+        if (!try_step(bench, measured, prepare_both)) continue;
         bench.progress.prepared_run(run.id, cost_of(bench, run));
         open.push_back(std::move(measured));
     }

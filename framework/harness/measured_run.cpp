@@ -34,6 +34,7 @@ Row identity_row(const Experiment& experiment, const Run& run, const Technique& 
 {
     Row row = {{"run_id", run.id},
                {"experiment", experiment.name},
+               {"place", std::to_string(run.place)},
                {"scene", run.scene},
                {"view", run.view},
                {"width", std::to_string(run.size_px.x)},
@@ -97,6 +98,8 @@ void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms)
     for (const auto& [effect, ms] : times.effects_ms) measured.effect_ms[effect].push_back(ms);
     measured.trace_ms.push_back(times.of("trace"));
     measured.frame_ms.push_back(gbuffer_ms + times.total_ms());
+    if (measured.everything && measured.saved_ms.size() < saved_pairs)
+        measured.saved_ms.push_back(run_frame(gpu, *measured.everything).total_ms() - times.total_ms());
 }
 
 bool is_final(const MeasuredRun& measured, const MeasureSettings& measure)
@@ -126,7 +129,8 @@ void add_times(MeasuredRun& measured, double gbuffer_ms)
     for (const Effect& effect : all_effects())
         if (measured.effect_ms.contains(effect.id))
             effects += fmt::format("{}{}={}", effects.empty() ? "" : " ", effect.id, number_text(median_ms(effect.id)));
-    row["effects"]       = effects;
+    row["effects"] = effects;
+    if (!measured.saved_ms.empty()) row["saved_ms"] = number_text(quantile(measured.saved_ms, 0.5));
     row["fps"]           = number_text(1000 / frame.median);
     row["inverse_fps_s"] = number_text(frame.median / 1000);
 }

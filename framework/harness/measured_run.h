@@ -12,9 +12,9 @@ namespace ssrlab {
 
 struct MeasuredRun {
     const Run*                                 run = nullptr;
-    PreparedFramePtr                           frame;
+    PreparedFramePtr                           frame, everything; // the same with everything on, or null
     Row                                        row;
-    std::vector<double>                        trace_ms, frame_ms;
+    std::vector<double>                        trace_ms, frame_ms, saved_ms;
     std::map<std::string, std::vector<double>> effect_ms;   // by effect, of those that ran
     double                                     spent_s = 0; // wall time of the timed frames
 };
@@ -27,7 +27,9 @@ void add_counts(Row& row, const TraceResult& counted);
 void add_measures(Row& row, const MeasureValues& values);
 /// Which effects were skipped.
 void add_plan(Row& row, const std::vector<PlannedEffect>& plan);
-/// One timed frame.
+/// Pairs of a planned frame and one with everything on.
+inline constexpr int saved_pairs = 5;
+/// One timed frame, and the first few times one with everything on.
 void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms);
 /// Enough repeats, and the interval is tight or the budget spent.
 bool is_final(const MeasuredRun& measured, const MeasureSettings& measure);

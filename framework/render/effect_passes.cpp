@@ -8,7 +8,7 @@
 namespace ssrlab {
 
 ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader, const Defines& defines,
-                             const Bindings& more)
+                             const Bindings& more, uint32_t push_constant_bytes)
 {
     const FrameBuffers& buffers   = *frame.buffers;
     Constants           constants = settings_constants(frame, Precision::float32);
@@ -22,7 +22,8 @@ ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::st
                      {"filtered_image", buffers.filtered},
                      {"small_colour_image", buffers.small_colour},
                      {"block_pixel_image", buffers.block_pixel},
-                     {"shaded_image", buffers.shaded}});
+                     {"shaded_image", buffers.shaded},
+                     {"ggx_shares", {buffers.ggx_shares, buffers.ggx_share_sampler}}});
     if (const GpuScene* scene = buffers.gbuffer->scene.get())
         bindings.insert({{"Frame", buffers.gbuffer->frame_uniforms},
                          {"environment_map", {scene->environment_map, scene->environment_sampler}},
@@ -35,7 +36,7 @@ ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::st
             {.file          = shader,
              .defines       = defines,
              .include_texts = {{"effect/parameters", parameter_declarations(effect_parameters(), CONSTANT_EFFECTS)}}}),
-        bindings, constants);
+        bindings, constants, push_constant_bytes);
 }
 
 ComputePass make_colour_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader, Defines defines,
@@ -55,6 +56,10 @@ ComputePass make_colour_pass(Gpu& gpu, const PreparedFrame& frame, const std::st
                      {"second_material_image", layer.material},
                      {"second_radiance_image", layer.radiance},
                      {"second_highlight_image", layer.highlight}});
+    }
+    if (frame.cone) {
+        defines.emplace("CONE", "1");
+        more.insert({"cone_pyramid", frame.buffers->cone->cells.atlas});
     }
     return make_effect_pass(gpu, frame, shader, defines, more);
 }
@@ -187,6 +192,7 @@ Recording make_recording(Gpu& gpu, PreparedFrame& frame, const std::string& effe
         {"trace", trace},
         {"hidden_layer", hidden_layer},
         {"colour_downsampling", colour_downsampling},
+        {"cone_pyramid", cone_pyramid},
         {"hit_colour", hit_colour},
         {"bounces", bounces},
         {"upsampling", upsampling},

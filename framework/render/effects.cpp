@@ -39,8 +39,6 @@ std::string percent(uint32_t part, uint32_t whole)
     return fmt::format("{:.3g} %", whole == 0 ? 0.0 : 100.0 * part / whole);
 }
 
-bool shading_only(const ParameterValues& values) { return values.at("effect_set") != 0; }
-
 Need where_something_reflects(const FrameFacts& /*facts*/, const FrameStatistics& statistics,
                               const ParameterValues& /*values*/)
 {
@@ -93,20 +91,26 @@ Need bounces_need(const FrameFacts& /*facts*/, const FrameStatistics& statistics
     return {Call::needed, fmt::format("{} of {} hits reflect", percent(trace.mirror_hits, trace.hits), trace.hits)};
 }
 
-/// The rough ones among the pixels that reflect.
-uint32_t rough_pixels(const FrameStatistics& statistics)
+Need where_something_is_rough(const FrameStatistics& statistics)
 {
-    return statistics.picture.reflecting_pixels - statistics.picture.roughness_pixels[0];
+    const uint32_t all = statistics.picture.reflecting_pixels, rough = all - statistics.picture.roughness_pixels[0];
+    if (all == 0) return {Call::not_needed, "no pixel reflects"};
+    if (rough == 0) return {Call::not_needed, "every pixel that reflects is smooth"};
+    return {Call::needed, fmt::format("{} of the reflecting pixels are rough", percent(rough, all))};
 }
 
 Need blur_need(const FrameFacts& /*facts*/, const FrameStatistics& statistics, const ParameterValues& values)
 {
     if (values.at("gloss") != 1) return {Call::off, "gloss is not done by blur"};
-    const uint32_t rough = rough_pixels(statistics), all = statistics.picture.reflecting_pixels;
-    if (all == 0) return {Call::not_needed, "no pixel reflects"};
-    if (values.at("blur_bias") > 0) return {Call::needed, "blur_bias is above 0"};
-    if (rough == 0) return {Call::not_needed, "every pixel that reflects is smooth"};
-    return {Call::needed, fmt::format("{} of the reflecting pixels are rough", percent(rough, all))};
+    if (statistics.picture.reflecting_pixels > 0 && values.at("blur_bias") > 0)
+        return {Call::needed, "blur_bias is above 0"};
+    return where_something_is_rough(statistics);
+}
+
+Need cone_pyramid_need(const FrameFacts& /*facts*/, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (values.at("gloss") != 2) return {Call::off, "gloss is not done by cones"};
+    return where_something_is_rough(statistics);
 }
 
 Need environment_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
@@ -219,13 +223,26 @@ std::vector<Effect> make_table()
                                 "whether rays at half and quarter resolution find colours of that resolution, slightly "
                                 "blurred")},
          .need       = colour_downsampling_need},
+        {.id             = "cone_pyramid",
+         .summary        = "Gloss by cones: colours and visibility level by level, for hit_colour to look up",
+         .cite           = {"Y. Uludag 2014, Hi-Z Screen-Space Cone-Traced Reflections (GPU Pro 5)"},
+         .shader         = "effects/cone_pyramid.comp",
+         .reads          = {"View", "depth_image", "radiance_image", "highlight_image"},
+         .writes         = {"cone_pyramid", "cone_ranges"},
+         .parameters     = {real("cone_scale", 0.75, 0, 2,
+                                 "half the angle of a cone, as a share of the angle that the article derives from the "
+                                     "roughness"),
+                            integer("cone_steps", 2, 1, 16, "circles in a cone, from the hit back to the reflector")},
+         .need           = cone_pyramid_need,
+         .beyond_shading = true},
         {.id      = "hit_colour",
          .summary = "Colour and weight of what each ray hit: hit tests, fades, attenuation",
          .cite    = {"J. Somerville Roberts, Screen Space Reflections", "Litheon 2012, Real-Time Local Reflections",
                      "A. Biro 2015, Report on Screen-Space Reflections"},
          .shader  = "effects/hit_colour.comp",
          .reads   = {"View", "RayCount", "RayOrigins", "RayDeltas", "RayPixels", "HitPixels", "HitTs", "depth_image",
-                     "normal_image", "material_image", "radiance_image", "highlight_image", "small_colour_image"},
+                     "normal_image", "material_image", "radiance_image", "highlight_image", "small_colour_image",
+                     "cone_pyramid"},
          .writes  = {"reflection_image", "block_pixel_image"},
          .parameters =
              {choice("hit_light", {"diffuse", "lit", "mirrored"},
@@ -300,7 +317,9 @@ std::vector<Effect> make_table()
          .shader         = "effects/blur.comp",
          .reads          = {"View", "depth_image", "normal_image", "material_image", "reflection_image"},
          .writes         = {"filtered_image", "reflection_image"},
-         .parameters     = {starting_with(choice("gloss", {"off", "blur"}, "how reflections on rough surfaces widen"),
+         .parameters     = {starting_with(choice("gloss", {"off", "blur", "cone"},
+                                                 "how reflections on rough surfaces widen: not, by a blur of the picture "
+                                                     "of reflections, or by colours looked up along a cone"),
                                           "blur"),
                             real("blur_scale", 0.1, 0, 1, "radius at roughness 1, as a share of the image's height"),
                             real("blur_bias", 0, -1, 1, "added to the radius, as a share of the image's height"),
@@ -402,6 +421,6 @@ std::vector<std::string> describe_facts(const FrameFacts& facts, const FrameStat
 
 int trace_block_px(const ParameterValues& values) { return 1 << static_cast<int>(values.at("trace_resolution")); }
 
-bool plan_needs_trace(const ParameterValues& values) { return !shading_only(values); }
+bool shading_only(const ParameterValues& values) { return values.at("effect_set") != 0; }
 
 } // namespace ssrlab

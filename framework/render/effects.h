@@ -78,7 +78,7 @@ std::vector<std::string> describe_facts(const FrameFacts& facts, const FrameStat
 /// Side of the blocks of which one pixel is traced.
 int trace_block_px(const ParameterValues& values);
 
-/// Effects that are needed by what the trace found: whether any of them is switched on.
-bool plan_needs_trace(const ParameterValues& values);
+/// effect_set = shading: nothing is needed by what the trace found.
+bool shading_only(const ParameterValues& values);
 
 } // namespace ssrlab

@@ -1,6 +1,9 @@
 #include "core/error.h"
 #include "render/frame_passes.h"
+#include "render/ggx_share.h"
 #include "shared.h"
+
+#include <glm/gtc/packing.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -115,6 +118,21 @@ std::shared_ptr<RayBuffers> rays_for(Gpu& gpu, FrameBuffers& buffers, const Fram
     return rays;
 }
 
+void upload_ggx_shares(Gpu& gpu, FrameBuffers& buffers)
+{
+    std::vector<uint32_t> texels;
+    for (const glm::vec2& share : ggx_share_table()) texels.push_back(glm::packHalf2x16(share));
+    buffers.ggx_shares        = make_image(gpu, {.format  = vk::Format::eR16G16Sfloat,
+                                                 .size_px = glm::ivec2(GGX_SHARE_ENTRIES),
+                                                 .usage   = vk::ImageUsageFlagBits::eSampled});
+    buffers.ggx_share_sampler = {gpu.impl->device,
+                                 vk::SamplerCreateInfo{.magFilter    = vk::Filter::eLinear,
+                                                       .minFilter    = vk::Filter::eLinear,
+                                                       .addressModeU = vk::SamplerAddressMode::eClampToEdge,
+                                                       .addressModeV = vk::SamplerAddressMode::eClampToEdge}};
+    upload(gpu, buffers.ggx_shares, texels.data(), texels.size() * sizeof(uint32_t));
+}
+
 FrameFacts facts_of(const PreparedFrame& frame)
 {
     const GpuScene* scene = frame.buffers->gbuffer->scene.get();
@@ -146,6 +164,7 @@ FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
     buffers->small_colour   = image(colour, half_size_px);
     buffers->block_pixel    = image(vk::Format::eR32Uint, half_size_px);
     buffers->shaded         = image(colour, size_px);
+    upload_ggx_shares(gpu, *buffers);
     return buffers;
 }
 
@@ -164,7 +183,7 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
 
     frame->facts      = facts_of(*frame);
     frame->statistics = buffers->statistics;
-    if (plan_needs_trace(settings.effects) && frame->statistics.picture.reflecting_pixels > 0)
+    if (!shading_only(settings.effects) && frame->statistics.picture.reflecting_pixels > 0)
         frame->statistics.trace = count_hits(gpu, *frame);
     frame->plan = plan_frame(frame->facts, frame->statistics, settings.effects);
     for (const PlannedEffect& planned : frame->plan)
@@ -174,6 +193,17 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
 }
 
 const std::vector<PlannedEffect>& plan_of(const PreparedFrame& frame) { return frame.plan; }
+
+bool plan_leaves_out(const PreparedFrame& frame)
+{
+    ParameterValues everything = frame.settings.effects;
+    if (everything.at("plan") == 0 || shading_only(everything)) return false;
+    everything.at("plan")       = 0;
+    const PictureCounts& counts = frame.statistics.picture;
+    return counts.reflecting_pixels < counts.surface_pixels ||
+           !std::ranges::equal(frame.plan, plan_frame(frame.facts, frame.statistics, everything), {},
+                               &PlannedEffect::runs, &PlannedEffect::runs);
+}
 
 std::vector<std::string> facts_of_plan(const PreparedFrame& frame)
 {

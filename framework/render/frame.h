@@ -60,6 +60,8 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
                                const ParameterValues& values, const FrameSettings& settings);
 /// What runs and why. Of a still picture: its statistics are those of the very frame.
 const std::vector<PlannedEffect>& plan_of(const PreparedFrame& frame);
+/// Whether a frame with everything on would do more. Of one that only shades this is not asked: false.
+bool plan_leaves_out(const PreparedFrame& frame);
 /// What the plan rests on, a line each.
 std::vector<std::string> facts_of_plan(const PreparedFrame& frame);
 

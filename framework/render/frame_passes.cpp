@@ -115,7 +115,7 @@ void add_parameters(Constants& constants, std::span<const Parameter> parameters,
     }
 }
 
-PyramidImages make_pyramid_images(Gpu& gpu, glm::ivec2 size_px)
+PyramidImages make_pyramid_images(Gpu& gpu, glm::ivec2 size_px, vk::Format format)
 {
     PyramidImages images;
     images.levels = level_count(size_px);
@@ -123,10 +123,21 @@ PyramidImages make_pyramid_images(Gpu& gpu, glm::ivec2 size_px)
     const int width  = 1 << images.levels;
     const int step   = std::max(width, 1);
     const int padded = (size_px.x + step - 1) / step * step;
-    images.atlas     = make_image(gpu, {.format  = vk::Format::eR32G32Uint,
+    images.atlas     = make_image(gpu, {.format  = format,
                                         .size_px = {std::max(padded, 2), std::max(level_size(size_px, 1).y, 1)},
                                         .usage   = vk::ImageUsageFlagBits::eStorage});
     return images;
+}
+
+std::vector<PyramidPush> pyramid_levels(glm::ivec2 size_px, const PyramidImages& images, int top)
+{
+    std::vector<PyramidPush> levels;
+    const int                width = images.atlas.size_px.x;
+    const auto offset = [&](int level) { return glm::ivec2(level < 1 ? 0 : width - (width >> (level - 1)), 0); };
+    for (int level = 1; level <= std::min(images.levels, top); ++level)
+        levels.push_back(
+            {level_size(size_px, level - 1), level_size(size_px, level), offset(level - 1), offset(level)});
+    return levels;
 }
 
 PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const GpuImage& depth,
@@ -144,13 +155,8 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const Gp
     PyramidPasses passes;
     passes.from_pixels = make(true);
     passes.from_cells  = make(false);
-    const auto size    = frame.buffers->gbuffer->view.size_px;
-    const int  width   = images.atlas.size_px.x;
-    const auto offset  = [&](int level) { return glm::ivec2(level < 1 ? 0 : width - (width >> (level - 1)), 0); };
-    const int  top     = std::min(images.levels, static_cast<int>(parameter_or(frame, "top_level", 31)));
-    for (int level = 1; level <= top; ++level)
-        passes.levels.push_back(
-            {level_size(size, level - 1), level_size(size, level), offset(level - 1), offset(level)});
+    passes.levels      = pyramid_levels(frame.buffers->gbuffer->view.size_px, images,
+                                        static_cast<int>(parameter_or(frame, "top_level", 31)));
     return passes;
 }
 

@@ -31,7 +31,13 @@ struct PyramidImages {
     GpuImage atlas;
     int      levels = 0; // above level 0, which is the depth image itself
 };
-PyramidImages make_pyramid_images(Gpu& gpu, glm::ivec2 size_px);
+PyramidImages make_pyramid_images(Gpu& gpu, glm::ivec2 size_px, vk::Format format = vk::Format::eR32G32Uint);
+
+/// What cones look up (shaders/effects/cone_pyramid.comp).
+struct ConePyramid {
+    PyramidImages cells;  // RGBA16F: colour, visibility
+    PyramidImages ranges; // RG32F: nearest and farthest distance in metres
+};
 
 /// The tiles to trace (shaders/effects/classification.comp) and the counts for the plan.
 struct TileBuffers {
@@ -48,12 +54,15 @@ struct FrameBuffers {
     PyramidImages                                                  pyramid;
     GBufferPtr                                                     second_layer; // empty until a frame asks for it
     PyramidImages                                                  second_pyramid;
+    std::shared_ptr<ConePyramid>                                   cone;         // empty until a frame asks for it
     std::map<std::pair<size_t, int>, std::shared_ptr<DerivedRays>> derived_rays; // by capacity, and which of two
-    GpuImage reflection;   // RGBA16F: colour, weight; weight < 0 where no ray started
-    GpuImage filtered;     // RGBA16F: a reflection that a filter is writing, or an earlier one
-    GpuImage small_colour; // RGBA16F, half size or less: lit colour as rays at a lower resolution find it
-    GpuImage block_pixel;  // R32UI, half size or less: which pixel of a block has rays, or NO_PIXEL
-    GpuImage shaded;       // RGBA16F
+    GpuImage          reflection;   // RGBA16F: colour, weight; weight < 0 where no ray started
+    GpuImage          filtered;     // RGBA16F: a reflection that a filter is writing, or an earlier one
+    GpuImage          small_colour; // RGBA16F, half size or less: lit colour as rays at a lower resolution find it
+    GpuImage          block_pixel;  // R32UI, half size or less: which pixel of a block has rays, or NO_PIXEL
+    GpuImage          shaded;       // RGBA16F
+    GpuImage          ggx_shares;   // RG16F: ggx_share_table()
+    vk::raii::Sampler ggx_share_sampler = nullptr;
 };
 
 struct PyramidPush {
@@ -84,9 +93,12 @@ struct PreparedFrame {
     std::vector<PlannedEffect>  plan;
     std::vector<Recording>      recordings;           // of the effects that run
     bool                        hidden_layer = false; // hits may lie in the second layer
+    bool                        cone         = false; // rough surfaces look up cones
     Timestamps                  timestamps;
 };
 
+/// The first levels of a pyramid above level 0, all of them or up to `top`.
+std::vector<PyramidPush> pyramid_levels(glm::ivec2 size_px, const PyramidImages& images, int top = 31);
 /// Those of one layer's depth; none when the technique reads no pyramid.
 PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const GpuImage& depth,
                                   const PyramidImages& images);

@@ -30,7 +30,7 @@ vec3 throughput_of(uint index)
     return ray_throughput[index];
 #else
     if (!reflects(unpack_pixel(ray_pixel[index]))) return vec3(0);
-    Found found = found_by(ray_origin[index], ray_delta[index], hit_pixel[index], hit_t[index]);
+    Found found = found_by(unpack_pixel(ray_pixel[index]), ray_origin[index], ray_delta[index], hit_pixel[index], hit_t[index]);
     return vec3(found.weight > 0.0 ? found.attenuation : 0.0);
 #endif
 }

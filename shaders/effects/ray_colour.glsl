@@ -23,6 +23,10 @@ struct Found
     float weight;
 };
 
+#ifdef CONE
+#include "effects/cone.glsl"
+#endif
+// The highlight of a surface as the reflector sees it, if that is asked for.
 #ifdef MIRRORED_LIGHT
 #define LIGHTS_BINDING 31
 #include "lighting.glsl"
@@ -35,7 +39,6 @@ layout(set = 0, binding = 34, scalar) uniform Frame // the beginning of gbuffer.
     int   light_count;
 };
 
-// The highlight of a surface as the reflector sees it.
 vec3 highlight_along(ivec2 pixel, bool second, vec3 position_vs, vec3 direction_vs)
 {
     mat3 view_to_world = transpose(mat3(world_to_view));
@@ -44,6 +47,11 @@ vec3 highlight_along(ivec2 pixel, bool second, vec3 position_vs, vec3 direction_
     light_surface(Surface(position_ws, view_to_world * normal.xyz, material.rgb, material.a, normal.w), light_count,
                   view_to_world * -direction_vs, irradiance, highlights);
     return highlights;
+}
+#else
+vec3 highlight_along(ivec2 pixel, bool second, vec3 position_vs, vec3 direction_vs)
+{
+    return vec3(0);
 }
 #endif
 
@@ -59,20 +67,13 @@ vec3 blurred_light(vec2 point_px)
     return mix(above, below, share.y);
 }
 
-// The part of a surface's light that a ray in this direction brings back: of the pixel, or about point_px where rays have a lower resolution.
-vec3 light_along(ivec2 pixel, bool second, vec2 point_px, vec3 surface_vs, vec3 direction)
+// The part of a surface's light that rays bring back from wherever they come: of the pixel, or about point_px where rays have a lower
+// resolution.
+vec3 surface_light(ivec2 pixel, bool second, vec2 point_px)
 {
-    vec3 light;
-    if (block_px > 1 && cross_blur)
-        light = blurred_light(point_px);
-    else
-    {
-        light = LOAD_LAYER(radiance_image, pixel, second).rgb;
-        if (hit_light == hit_light_lit) light += LOAD_LAYER(highlight_image, pixel, second).rgb;
-    }
-#ifdef MIRRORED_LIGHT
-    light += highlight_along(pixel, second, surface_vs, direction);
-#endif
+    if (block_px > 1 && cross_blur) return blurred_light(point_px);
+    vec3 light = LOAD_LAYER(radiance_image, pixel, second).rgb;
+    if (hit_light == hit_light_lit) light += LOAD_LAYER(highlight_image, pixel, second).rgb;
     return light;
 }
 
@@ -129,8 +130,8 @@ float attenuation_at(float distance_m)
     return 1.0;
 }
 
-// What the ray with this record of its hit found; nothing if it missed.
-Found found_by(vec3 origin, vec3 delta, uint record, float t)
+// What the ray of this reflector, with this record of its hit, found; nothing if it missed.
+Found found_by(ivec2 reflector, vec3 origin, vec3 delta, uint record, float t)
 {
     if (unpack_status(record) != TRACE_HIT) return Found(vec3(0), 0.0, 0.0);
     ivec2 hit       = unpack_pixel(record);
@@ -140,6 +141,11 @@ Found found_by(vec3 origin, vec3 delta, uint record, float t)
     vec3  surface_vs = px_to_vs(vec3(vec2(hit) + 0.5, LOAD_LAYER(depth_image, hit, second).x));
     // A. Biro: a surface that is met elsewhere than where the ray goes is the wrong one.
     if (dot(direction, normalize(surface_vs - origin_vs)) < min_direction_cosine) return Found(vec3(0), 0.0, 0.0);
-    return Found(light_along(hit, second, point.xy, surface_vs, direction), attenuation_at(distance(px_to_vs(point), origin_vs)),
+    vec3 light = surface_light(hit, second, point.xy);
+#ifdef CONE
+    if (!second) light = cone_light(vec2(reflector) + 0.5, point.xy, imageLoad(normal_image, reflector).w, light);
+#endif
+    light += highlight_along(hit, second, surface_vs, direction);
+    return Found(light, attenuation_at(distance(px_to_vs(point), origin_vs)),
                  weight_of(-direction.z, point.xy / vec2(size_px), depth_step_weight(hit, second)));
 }

@@ -42,13 +42,13 @@ TEST_P(PlannedFrames, AreThoseWithEverythingOn)
 {
     for (const glm::ivec2& size_px : {glm::ivec2(161, 91), glm::ivec2(320, 180)}) {
         const Picture picture = make_picture(GetParam(), "default", size_px);
-        for (const char* id : {"hiz", "linear"}) {
-            const Shown planned = show(picture, id, effects_with({})),
-                        all     = show(picture, id, effects_with({{"plan", 0}}));
+        for (const auto& [id, gloss] : {std::pair("hiz", 1), std::pair("linear", 1), std::pair("hiz", 2)}) {
+            const Shown planned = show(picture, id, effects_with({{"gloss", gloss}})),
+                        all     = show(picture, id, effects_with({{"gloss", gloss}, {"plan", 0}}));
             EXPECT_GE(all.ran.size(), planned.ran.size());
             EXPECT_EQ(different(planned.pixels, all.pixels), 0U)
                 << "ssrlab plan " << GetParam() << " -t " << id << " --size " << size_px.x << "x" << size_px.y
-                << " -p thickness_m=0.1 -p max_distance_m=20";
+                << " -p thickness_m=0.1 -p max_distance_m=20 -p gloss=" << (gloss == 2 ? "cone" : "blur");
         }
     }
 }
@@ -66,6 +66,18 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PlannedFrames, testing::ValuesIn(all_scenes()),
         name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
     return name;
 });
+
+TEST(PlannedFrame, LeavesOutWhatThePictureDoesNotNeedUnlessToldOtherwise)
+{
+    const Picture matte  = make_picture("builtin:matte", "default", {161, 91});
+    const auto    leaves = [&](const ParameterValues& changed) {
+        return plan_leaves_out(*prepare_frame(device(), matte.buffers, technique("hiz"), values_of(technique("hiz")),
+                                                 {{}, effects_with(changed)}));
+    };
+    EXPECT_TRUE(leaves({}));
+    EXPECT_FALSE(leaves({{"plan", 0}}));
+    EXPECT_FALSE(leaves({{"effect_set", 1}}));
+}
 
 TEST(PlannedFrame, OfNothingThatReflectsOnlyPutsThePictureTogether)
 {

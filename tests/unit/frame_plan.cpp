@@ -72,6 +72,17 @@ TEST(Plan, TheNumberThatDecidedIsInTheReason)
     EXPECT_THAT(reason(plan, "blur"), HasSubstr("25 %"));
 }
 
+TEST(Plan, GlossIsDoneOneWay)
+{
+    const auto rough = picture(400, 100, 350, 10), smooth = picture(400, 0, 350, 10);
+    const auto cones = plan_frame(with_pyramid, rough, values_with({{"gloss", 2}}));
+    EXPECT_TRUE(running(cones).contains("cone_pyramid"));
+    EXPECT_FALSE(running(cones).contains("blur"));
+    EXPECT_THAT(reason(cones, "cone_pyramid"), HasSubstr("25 %"));
+    EXPECT_FALSE(running(plan_frame(with_pyramid, rough, default_effect_values())).contains("cone_pyramid"));
+    EXPECT_FALSE(running(plan_frame(with_pyramid, smooth, values_with({{"gloss", 2}}))).contains("cone_pyramid"));
+}
+
 TEST(Plan, TechniquesWithoutAPyramidBuildNone)
 {
     const auto plan = plan_frame({}, picture(400, 0, 400, 0), values_with({{"plan", 0}}));

@@ -154,6 +154,17 @@ TEST(Rows, ARunIsFinalWhenTightOrSpentButNeverTooEarly)
     EXPECT_TRUE(is_final(measured, measure)); // often enough
 }
 
+TEST(Rows, SavedTimeIsTheMedianOfItsPairsAndEmptyWithoutAny)
+{
+    MeasuredRun measured;
+    measured.trace_ms = measured.frame_ms = {1, 2, 3};
+    add_times(measured, 0);
+    EXPECT_FALSE(measured.row.contains("saved_ms"));
+    measured.saved_ms = {4, 9, -1};
+    add_times(measured, 0);
+    EXPECT_EQ(measured.row.at("saved_ms"), "4");
+}
+
 TEST(Rows, ReflectedImageTakesTheHitPixelsRadiance)
 {
     GBufferImage gbuffer;
