@@ -40,6 +40,16 @@ Grid make_grid(Ray ray)
     return grid;
 }
 
+// As in grid_float.glsl.
+ivec2 run_forward(inout Ray ray, inout Grid grid)
+{
+    ivec2 mirror       = grid.forward - 1;
+    grid.origin_steps  = (grid.origin_steps ^ mirror) - mirror; // its sign changed where the mirror is -1
+    grid.inverse_delta = abs(grid.inverse_delta);
+    grid.forward       = ivec2(1);
+    return mirror;
+}
+
 // Depths are compared without a division, times `whole` and counted from the ray's origin: what is equal stays equal in both products.
 double scaled_depth(Ray ray, int64_t t)
 {

@@ -30,6 +30,18 @@ Grid make_grid(Ray ray)
     return grid;
 }
 
+// Mirrors the picture so that the ray runs toward larger coordinates on both axes: pixel p becomes p ^ the result. Crossings keep
+// their bits, as only signs change.
+ivec2 run_forward(inout Ray ray, inout Grid grid)
+{
+    ivec2 mirror       = grid.forward - 1;
+    ray.origin.xy      = mix(ray.origin.xy, -ray.origin.xy, notEqual(mirror, ivec2(0)));
+    ray.delta.xy       = abs(ray.delta.xy);
+    grid.inverse_delta = abs(grid.inverse_delta);
+    grid.forward       = ivec2(1);
+    return mirror;
+}
+
 // Does the ray hit the surface seen at this pixel between two crossings? And may it touch one inside this cell?
 bool touches_surface(Ray ray, Grid grid, ivec2 pixel, real t_in, real t_out)
 {

@@ -42,5 +42,6 @@ bool cell_may_touch(uvec2 cell, float z_far, float z_near)
 {
     int nearest = cell_nearest(cell), farthest = cell_farthest(cell);
     int low = max(depth_code(z_far), farthest), high = min(depth_code(z_near), nearest);
-    return low <= high && (cell.y & bins_between(low, high, farthest, bin_shift(nearest, farthest))) != 0u;
+    bool meets = (cell.y & bins_between(low, high, farthest, bin_shift(nearest, farthest))) != 0u;
+    return low <= high && meets;
 }

@@ -1,9 +1,13 @@
-// Traces the list of rays with the technique that the framework composes in: its parameters, then its trace().
+// Traces the list of rays with the technique that the framework composes in: its parameters, then its trace() or trace_pair().
 #include "trace_api.glsl"
 #include "technique/parameters"
 #include "technique/trace.glsl"
 
+#ifdef TRACES_PAIRS
+layout(local_size_x = RAYS_PER_GROUP / 2) in;
+#else
 layout(local_size_x = RAYS_PER_GROUP) in;
+#endif
 
 layout(set = 0, binding = 4, scalar) readonly buffer RayCount { uint ray_count; };
 layout(set = 0, binding = 5, scalar) readonly buffer RayOrigins { real3 ray_origin[]; };
@@ -16,10 +20,8 @@ layout(set = 0, binding = 10, scalar) writeonly buffer HitTs { real hit_t[]; };
 layout(set = 0, binding = 11, scalar) writeonly buffer Work { uvec3 work[]; }; // steps, depth fetches, pyramid fetches
 #endif
 
-void main()
+Ray load_ray(uint index)
 {
-    uint index = (gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x) * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    if (index >= ray_count) return;
     Ray ray;
     ray.origin      = ray_origin[index];
     ray.delta       = ray_delta[index];
@@ -30,11 +32,34 @@ void main()
     // A ray that runs exactly along the right or lower image border runs in the last column or row: off the border, it crosses none.
     bvec2 along_border = bvec2(ray.delta.x == real(0) && ray.origin.x == real(size_px.x), ray.delta.y == real(0) && ray.origin.y == real(size_px.y));
     ray.origin.xy -= real2(along_border) * real(0.5);
+    return ray;
+}
 
-    TraceResult result = trace(ray);
-    hit_pixel[index]   = pack_pixel(result.pixel, result.status);
-    hit_t[index]       = result.t;
+// number: the ray's current_ray.
+void store_result(uint index, TraceResult result, int number)
+{
+    hit_pixel[index] = pack_pixel(result.pixel, result.status);
+    hit_t[index]     = result.t;
 #ifdef COUNT_WORK
-    work[index] = uvec3(result.steps, depth_fetches, pyramid_fetches);
+    work[index] = uvec3(result.steps, depth_fetches[number], pyramid_fetches[number]);
+#endif
+}
+
+void main()
+{
+    uint first = (gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x) * RAYS_PER_GROUP, place = gl_LocalInvocationID.x;
+#ifdef TRACES_PAIRS
+    // Eight neighbouring invocations take 16 rays that follow each other: the first eight, and the eight after those.
+    uint index = first + (place & ~7) + place, second = index + 8;
+    if (index >= ray_count) return;
+    bool        is_pair = second < ray_count;
+    TraceResult result, second_result;
+    trace_pair(load_ray(index), load_ray(is_pair ? second : index), result, second_result);
+    store_result(index, result, 0);
+    if (is_pair) store_result(second, second_result, 1);
+#else
+    uint index = first + place;
+    if (index >= ray_count) return;
+    store_result(index, trace(load_ray(index)), 0);
 #endif
 }

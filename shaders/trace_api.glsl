@@ -1,5 +1,6 @@
 // What a technique sees: a ray that is ready, counted fetches, the hit contract, and results that say why they stopped.
 // A technique defines    TraceResult trace(Ray ray)
+// or, with #define TRACES_PAIRS,    void trace_pair(Ray a, Ray b, out TraceResult result_a, out TraceResult result_b)
 //
 // Loops end in their condition, at the top, never by break or return: lavapipe (Mesa 22.3) recomputes values that a loop made and that
 // are used after it, and lanes that left in the middle of the body get another iteration's value.
@@ -35,17 +36,21 @@ struct TraceResult
     int   steps;  // loop iterations
 };
 
+// The ray that is worked on: 0, of a pair also 1; 2 counts for none.
+int current_ray = 0;
+
 // ---- Work counters: compiled out of the pipelines that are timed.
 #ifdef COUNT_WORK
-uint depth_fetches   = 0;
-uint pyramid_fetches = 0;
-#define COUNT(counter) ++counter
+uint depth_fetches[3]   = uint[3](0, 0, 0);
+uint pyramid_fetches[3] = uint[3](0, 0, 0);
+#define COUNT_IF(counter, condition) counter[current_ray] += uint(condition)
 #else
-#define COUNT(counter)
+#define COUNT_IF(counter, condition)
 #endif
+#define COUNT(counter) COUNT_IF(counter, true)
 
 // Set when a surface would have been hit but faces away.
-bool met_facing_away = false;
+bool met_facing_away[3] = bool[3](false, false, false);
 
 // ---- The ray
 real depth_at(Ray ray, real t)
@@ -161,8 +166,8 @@ bool faces(Ray ray, ivec2 pixel)
 bool accepts(Ray ray, ivec2 pixel, bool touched, bool is_pixel)
 {
     if (facing_rule == 0) return touched;
-    bool accepted   = !is_pixel || faces(ray, pixel);
-    met_facing_away = met_facing_away || (touched && !accepted);
+    bool accepted = !is_pixel || faces(ray, pixel);
+    if (touched && !accepted) met_facing_away[current_ray] = true;
     return touched && accepted;
 }
 
@@ -183,10 +188,8 @@ struct CellContent
 CellContent fetch_cell(ivec2 cell, int level)
 {
     bool leaf = level == 0;
-#ifdef COUNT_WORK
-    depth_fetches += uint(leaf);
-    pyramid_fetches += uint(!leaf);
-#endif
+    COUNT_IF(depth_fetches, leaf);
+    COUNT_IF(pyramid_fetches, !leaf);
     return CellContent(real(imageLoad(depth_image, cell).x), load_pyramid(cell, leaf ? 1 : level));
 }
 
@@ -196,8 +199,10 @@ bool touches_cell(Ray ray, ivec2 cell, int level, real z_a, real z_b)
     bool        leaf    = level == 0;
     CellContent content = fetch_cell(cell, level);
     real2       interval = depth_interval(ray, z_a, z_b);
-    bool        touched  = leaf ? interval_touches(content.depth, interval) : cell_may_touch(content.node, float(interval.x), float(interval.y));
-    return accepts(ray, cell, touched, leaf);
+    // Both answers, then a choice: a condition would become a branch, whose both sides run with more bookkeeping.
+    bool in_front = content.depth >= interval.x, reached = reaches_slab_back(content.depth, interval.y);
+    bool pixel_touched = in_front && reached, cell_touched = cell_may_touch(content.node, float(interval.x), float(interval.y));
+    return accepts(ray, cell, leaf ? pixel_touched : cell_touched, leaf);
 }
 
 // ---- Results
@@ -220,7 +225,7 @@ TraceResult hit_between(Ray ray, ivec2 pixel, real t_in, real t_out, int steps)
 
 TraceResult miss(Ray ray, int steps)
 {
-    return TraceResult(met_facing_away ? TRACE_FACING_AWAY : ray.end_status, ivec2(0), real(0), steps);
+    return TraceResult(met_facing_away[current_ray] ? TRACE_FACING_AWAY : ray.end_status, ivec2(0), real(0), steps);
 }
 
 TraceResult out_of_steps(int steps)
@@ -248,11 +253,19 @@ ivec2 cross_borders(Grid grid, ivec2 cell, crossing2 t_border, crossing t)
     return cell + ivec2(lessThanEqual(t_border, crossing2(t))) * (2 * grid.forward - 1);
 }
 
-// The quarter of a cell of `level` >= 1 that holds the ray at t.
-ivec2 child_cell(Ray ray, Grid grid, ivec2 cell, int level, crossing t)
+// ---- Cells of any size, for a ray that runs forward on both axes (run_forward). A cell is named by its exit corner: the borders where the
+// ray leaves it, x and y multiples of its size in pixels.
+// The corner of the neighbour behind the border, or the corner, that is crossed at t.
+ivec2 next_corner(ivec2 corner, int size, crossing2 t_border, crossing t)
 {
-    crossing2 t_middle = border_t(ray, grid, (2 * cell + 1) << (level - 1));
-    return 2 * cell + (ivec2(lessThanEqual(t_middle, crossing2(t))) ^ (1 - grid.forward));
+    return mix(corner, corner + size, lessThanEqual(t_border, crossing2(t)));
+}
+
+// The corner of the quarter of the cell that holds the ray at t.
+ivec2 child_corner(Ray ray, Grid grid, ivec2 corner, int size, crossing t)
+{
+    ivec2 middle = corner - (size >> 1);
+    return mix(middle, corner, lessThanEqual(border_t(ray, grid, middle), crossing2(t)));
 }
 
 #ifndef EXACT_ARITHMETIC

@@ -105,16 +105,35 @@ void collect_bindings(const glslang::TProgram& program, Shader& shader)
     }
 }
 
+/// The file's text, read again only when it was written since. Not for two threads at once.
+const std::string& known_text(const std::filesystem::path& path)
+{
+    struct Known {
+        std::filesystem::file_time_type written;
+        uintmax_t                       bytes = 0;
+        std::string                     text;
+    };
+    static std::map<std::filesystem::path, Known> known;
+
+    std::error_code error;
+    const auto      written = std::filesystem::last_write_time(path, error);
+    const auto      bytes   = error ? 0 : std::filesystem::file_size(path, error);
+    const auto      entry   = known.find(path);
+    if (!error && entry != known.end() && entry->second.written == written && entry->second.bytes == bytes)
+        return entry->second.text;
+    return known.insert_or_assign(path, Known{written, bytes, read_text(path)}).first->second.text;
+}
+
 /// All texts that the compiler may read for this source: equal keys give equal SPIR-V.
 std::string everything_read(const ShaderSource& source)
 {
     const std::filesystem::path main = shader_folder() / source.file; // a technique's own lies elsewhere
-    std::string key = main.string() + '=' + read_text(main) + '\0' + std::to_string(static_cast<int>(source.stage));
+    std::string key = main.string() + '=' + known_text(main) + '\0' + std::to_string(static_cast<int>(source.stage));
     for (const auto& [name, value] : source.defines) key += '\0' + name + '=' + value;
     for (const auto& [name, text] : source.include_texts) key += '\0' + name + '=' + text;
-    for (const auto& [name, path] : source.include_files) key += '\0' + path.string() + '=' + read_text(path);
+    for (const auto& [name, path] : source.include_files) key += '\0' + path.string() + '=' + known_text(path);
     for (const auto& entry : std::filesystem::recursive_directory_iterator(shader_folder()))
-        if (entry.is_regular_file()) key += '\0' + entry.path().string() + '=' + read_text(entry.path());
+        if (entry.is_regular_file()) key += '\0' + entry.path().string() + '=' + known_text(entry.path());
     return key;
 }
 

@@ -1,30 +1,34 @@
-// The state is (cell, level, entry t). A cell is left where the ray crosses its border, at the same t on every level; going down chooses
-// the child by comparing t with the middle border. So the finest cells passed are exactly the pixels of the walk (docs/exactness.md).
-TraceResult trace(Ray ray)
-{
-    Grid      grid     = make_grid(ray);
-    crossing2 t_border = border_t(ray, grid, ray.start_pixel + grid.forward);
-    crossing  t        = exit_t(grid, t_border), t_out = t;
-    int   top = min(top_level, pyramid_levels()), level = min(start_level, top), visited = 0;
-    ivec2 cell  = cross_borders(grid, ray.start_pixel, t_border, t) >> level;
-    bool  found = false;
-    while (!found && t < grid.t_end && visited < max_steps)
-    {
-        t_border     = border_t(ray, grid, (cell + grid.forward) << level);
-        t_out        = exit_t(grid, t_border);
-        bool touched = touches_cell(ray, grid, cell, level, t, t_out);
-        found        = touched && level == 0;
+// Two rays at a time: what one visit waits for, the other ray's visit can use (docs/performance.md).
+#define TRACES_PAIRS
+#include "cell_walk.glsl"
 
-        int   below = max(level - 1, 0);
-        ivec2 child = child_cell(ray, grid, cell, below + 1, t);
-        ivec2 next  = cross_borders(grid, cell, t_border, t_out);
-        // Climb only where the parent changes: the old parent is known to be worth looking into.
-        int climb = int(level < top && (next >> 1) != (cell >> 1));
-        t         = touched ? t : t_out;
-        cell      = found ? cell : touched ? child : next >> climb;
-        level     = touched ? below : level + climb;
-        ++visited;
+int top = min(top_level, pyramid_levels());
+
+// number: the ray's current_ray.
+void visit(Ray ray, inout CellWalk walk, int number)
+{
+    current_ray  = goes_on(walk) ? number : 2;
+    bool touched = touches_cell(ray, walk.grid, cell_of(walk), walk.level, walk.t, t_exit(walk));
+    move(walk, touched, top);
+}
+
+TraceResult finish(Ray ray, CellWalk walk, int number)
+{
+    current_ray = number;
+    if (walk.level >= 0) return walk.t < walk.grid.t_end ? out_of_steps(walk.visited) : miss(ray, walk.visited);
+    ivec2 pixel = (walk.corner - 1) ^ walk.mirror;
+    return hit_between(ray, pixel, crossing_to_t(walk.grid, walk.t), crossing_to_t(walk.grid, t_exit(walk)), walk.visited);
+}
+
+void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult result_b)
+{
+    int      level = min(start_level, top);
+    CellWalk a = start_walk(ray_a, level), b = start_walk(ray_b, level);
+    while (goes_on(a) || goes_on(b))
+    {
+        visit(ray_a, a, 0);
+        visit(ray_b, b, 1);
     }
-    if (found) return hit_between(ray, cell, crossing_to_t(grid, t), crossing_to_t(grid, t_out), visited);
-    return t < grid.t_end ? out_of_steps(visited) : miss(ray, visited);
+    result_a = finish(ray_a, a, 0);
+    result_b = finish(ray_b, b, 1);
 }

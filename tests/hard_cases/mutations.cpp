@@ -46,14 +46,11 @@ struct Mutation {
 
 void PrintTo(const Mutation& mutation, std::ostream* out) { *out << mutation.name; }
 
-const std::string before_trace = "TraceResult trace(Ray ray)\n{";
-
-/// A function put before trace(), and a name that then stands for it.
+/// A function put before all others, and a name that then stands for it.
 Mutation replaced(const std::string& name, const std::string& function, const std::string& text,
                   const std::string& seen_in = {}, const std::string& id = "hiz")
 {
-    return {name, id, before_trace, text + "\n#define " + function + " mutated_" + function + "\n" + before_trace,
-            seen_in};
+    return {name, id, "", text + "\n#define " + function + " mutated_" + function + "\n", seen_in};
 }
 
 std::vector<Mutation> mutations()
@@ -73,22 +70,22 @@ std::vector<Mutation> mutations()
         replaced("BordersMultipliedOut", "border_t",
                  "real2 mutated_border_t(Ray ray, Grid grid, ivec2 border) { return real2(border) * grid.inverse_delta "
                  "- ray.origin.xy * grid.inverse_delta; }"),
+        // In the mirrored picture no way is negative, and signs of zeros do not matter: these two concern the pixel walk.
         replaced("BordersByDivision", "border_t",
                  "real2 mutated_border_t(Ray ray, Grid grid, ivec2 border) { return (real2(border) - ray.origin.xy) / "
                  "ray.delta.xy; }",
-                 "axis_aligned"),
+                 "axis_aligned", "dda"),
         replaced("MinusZeroIsInfinite", "make_grid",
                  "Grid mutated_make_grid(Ray ray) { Grid g = make_grid(ray); g.inverse_delta = real2(1) / "
                  "ray.delta.xy; g.forward = ivec2(greaterThan(ray.delta.xy, real2(0))); return g; }",
-                 "signed_zero"),
-        replaced("LessForLessOrEqualAtCorners", "cross_borders",
-                 "ivec2 mutated_cross_borders(Grid grid, ivec2 cell, real2 t_border, real t) { bool x = t_border.x <= "
-                 "t; return cell + ivec2(x, !x) * (2 * grid.forward - 1); }",
+                 "signed_zero", "dda"),
+        replaced("LessForLessOrEqualAtCorners", "next_corner",
+                 "ivec2 mutated_next_corner(ivec2 corner, int size, real2 t_border, real t) { bool x = t_border.x <= "
+                 "t; return corner + size * ivec2(x, !x); }",
                  "exact_diagonal"),
-        replaced("LessForLessOrEqualAtChildren", "child_cell",
-                 "ivec2 mutated_child_cell(Ray ray, Grid grid, ivec2 cell, int level, real t) { real2 m = "
-                 "border_t(ray, grid, (2 * cell + 1) << (level - 1)); return 2 * cell + (ivec2(lessThan(m, real2(t))) "
-                 "^ (1 - grid.forward)); }"),
+        replaced("LessForLessOrEqualAtChildren", "child_corner",
+                 "ivec2 mutated_child_corner(Ray ray, Grid grid, ivec2 corner, int size, real t) { ivec2 m = corner - "
+                 "(size >> 1); return mix(m, corner, lessThan(border_t(ray, grid, m), real2(t))); }"),
         replaced("PixelFromThePosition", "cross_borders",
                  "ivec2 mutated_cross_borders(Grid grid, ivec2 cell, real2 t_border, real t) { return cell; }", {},
                  "dda"),
@@ -96,7 +93,7 @@ std::vector<Mutation> mutations()
          "found = touches_surface(ray, grid, pixel, t_in, t_out) && fetch_depth(pixel) > "
          "min(depth_at(ray, t_in), depth_at(ray, t_out));",
          "equality_counts"},
-        {"OutOfStepsIsAMiss", "hiz", "out_of_steps(visited)", "miss(ray, visited)", "seven_steps"},
+        {"OutOfStepsIsAMiss", "hiz", "out_of_steps(walk.visited)", "miss(ray, walk.visited)", "seven_steps"},
         {"StopsBehindTheFirstObject", "dda", "while (!found && t_out < grid.t_end",
          "while (!found && (t_in == real(0) || depth_at(ray, t_out) >= fetch_depth(pixel)) && t_out < grid.t_end",
          "floating_beam"},

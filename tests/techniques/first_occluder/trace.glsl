@@ -1,35 +1,46 @@
 // Fragile on purpose: the cell's nearest depth is all it looks at, and where the ray has gone behind a surface the search is over.
-uvec2 load_cell(ivec2 cell, int level)
+// Walks as techniques/hiz does, two rays at a time.
+#define TRACES_PAIRS
+#include "cell_walk.glsl"
+
+int top = min(top_level, pyramid_levels());
+
+// Is the ray, where it leaves the cell or enters it, behind the cell's nearest depth?
+bool gets_behind(Ray ray, CellWalk walk)
 {
-    COUNT(pyramid_fetches);
-    return load_pyramid(cell, level);
+    bool  leaf  = walk.level == 0;
+    ivec2 cell  = cell_of(walk);
+    COUNT_IF(depth_fetches, leaf);
+    COUNT_IF(pyramid_fetches, !leaf);
+    real  depth = real(imageLoad(depth_image, cell).x), z_far = min(depth_at(ray, walk.t), depth_at(ray, t_exit(walk)));
+    bool  pixel_behind = depth >= z_far, cell_behind = cell_nearest(load_pyramid(cell, leaf ? 1 : walk.level)) >= depth_code(float(z_far));
+    return leaf ? pixel_behind : cell_behind;
 }
 
-TraceResult trace(Ray ray)
+void visit(Ray ray, inout CellWalk walk, int number)
 {
-    Grid  grid     = make_grid(ray);
-    real2 t_border = border_t(ray, grid, ray.start_pixel + grid.forward);
-    real  t        = exit_t(grid, t_border), t_out = t;
-    ivec2 cell     = cross_borders(grid, ray.start_pixel, t_border, t);
-    int   top = min(top_level, pyramid_levels()), level = 0, visited = 0;
-    bool  behind = false;
-    while (!behind && t < grid.t_end && visited < max_steps)
-    {
-        t_border    = border_t(ray, grid, (cell + grid.forward) << level);
-        t_out       = exit_t(grid, t_border);
-        real z_far  = min(depth_at(ray, t), depth_at(ray, t_out));
-        bool reached = level == 0 ? fetch_depth(cell) >= z_far : cell_nearest(load_cell(cell, level)) >= depth_code(float(z_far));
-        behind      = reached && level == 0;
+    current_ray = goes_on(walk) ? number : 2;
+    move(walk, gets_behind(ray, walk), top);
+}
 
-        ivec2 child = child_cell(ray, grid, cell, max(level, 1), t);
-        ivec2 next  = cross_borders(grid, cell, t_border, t_out);
-        int   climb = int(level < top && (next >> 1) != (cell >> 1));
-        t           = reached ? t : t_out;
-        cell        = behind ? cell : reached ? child : next >> climb;
-        level       = reached ? max(level - 1, 0) : level + climb;
-        ++visited;
+TraceResult finish(Ray ray, CellWalk walk, int number)
+{
+    current_ray = number;
+    if (walk.level >= 0) return walk.t < walk.grid.t_end ? out_of_steps(walk.visited) : miss(ray, walk.visited);
+    ivec2    pixel = (walk.corner - 1) ^ walk.mirror;
+    crossing t_out = t_exit(walk);
+    if (touches_surface(ray, pixel, depth_at(ray, walk.t), depth_at(ray, t_out))) return hit_between(ray, pixel, walk.t, t_out, walk.visited);
+    return miss(ray, walk.visited);
+}
+
+void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult result_b)
+{
+    CellWalk a = start_walk(ray_a, 0), b = start_walk(ray_b, 0);
+    while (goes_on(a) || goes_on(b))
+    {
+        visit(ray_a, a, 0);
+        visit(ray_b, b, 1);
     }
-    if (!behind) return t < grid.t_end ? out_of_steps(visited) : miss(ray, visited);
-    if (touches_surface(ray, cell, depth_at(ray, t), depth_at(ray, t_out))) return hit_between(ray, cell, t, t_out, visited);
-    return miss(ray, visited);
+    result_a = finish(ray_a, a, 0);
+    result_b = finish(ray_b, b, 1);
 }
