@@ -16,11 +16,11 @@ def told(name, value):
 def compared(results):
     """(title, file-name part, first row, [(label, row)]) for each picture and technique whose runs differ in effects."""
     effects = [name for name in results.environment.get("effect_parameters", "").split() if name in results.rows]
-    if not effects or "place" not in results.rows or not results.has("picture_rmse", "frame_ms_median"):
+    if not effects or "run_number" not in results.rows or not results.has("picture_rmse", "frame_ms_median"):
         return
     for title, name, rows in results.pictures():
         for technique, part in rows.groupby("technique", sort=False):
-            part = part.sort_values("place")
+            part = part.sort_values("run_number")
             first = part.iloc[0]
             inputs = [column for column in results.varying(part) if pd.notna(first[column])]
             if len(part) < 2 or not any(column in effects for column in inputs):

@@ -73,14 +73,14 @@ void refuse_cut_loops(const TechniqueSweep& sweep, const Technique& technique, c
 std::vector<Run> expand_picture(const Experiment& experiment, std::span<const Technique> techniques)
 {
     std::map<ParameterValues, std::vector<Run>> by_settings;
-    int                                         place = 0;
+    int                                         number = 0;
     for (const TechniqueSweep& sweep : experiment.techniques) {
         const Technique& technique = find_technique(techniques, sweep.id);
         const auto       values    = cross_product(sweep.values);
         for (const ParameterValues& one : values) refuse_cut_loops(sweep, technique, one);
         for (const ParameterValues& settings : cross_product(settings_of(experiment, sweep))) {
             for (const ParameterValues& one : values) {
-                by_settings[settings].push_back({"", "", "", {0, 0}, to_settings(settings), sweep.id, one, place++});
+                by_settings[settings].push_back({"", "", "", {0, 0}, to_settings(settings), sweep.id, one, number++});
             }
         }
     }

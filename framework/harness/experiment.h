@@ -52,7 +52,7 @@ struct Experiment {
     MeasureSettings             measure;
 };
 
-/// One technique with one set of values on one picture: everything that decides its outcome, and its place.
+/// One technique with one set of values on one picture: everything that decides its outcome, and its number.
 struct Run {
     std::string     id; // short hash of all that follows; the same in every experiment and on every machine
     std::string     scene, view;
@@ -60,7 +60,7 @@ struct Run {
     FrameSettings   settings;
     std::string     technique;
     ParameterValues values;
-    int             place = 0; // among the picture's runs as the specification lists them
+    int             number = 0; // among the picture's runs as the specification lists them
 };
 
 /// A setting of [trace] or [effects]: key in the specification and column of the record, from this one table.

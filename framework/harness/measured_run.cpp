@@ -34,7 +34,7 @@ Row identity_row(const Experiment& experiment, const Run& run, const Technique& 
 {
     Row row = {{"run_id", run.id},
                {"experiment", experiment.name},
-               {"place", std::to_string(run.place)},
+               {"run_number", std::to_string(run.number)},
                {"scene", run.scene},
                {"view", run.view},
                {"width", std::to_string(run.size_px.x)},
