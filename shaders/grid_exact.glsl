@@ -60,7 +60,7 @@ double scaled_depth(Ray ray, int64_t t)
 bool slab_between(Ray ray, Grid grid, real depth, double z_a, double z_b)
 {
     double         d     = double(depth), origin = double(ray.origin.z), whole = double(grid.whole);
-    precise double back  = (d * double(slab_scale) - double(slab_shift)) / (1.0LF + d * double(slab_slope));
+    precise double back  = (d * slab_scale - slab_shift) / (1.0LF + d * slab_slope);
     precise double low   = (back - origin) * whole;
     precise double high  = (d - origin) * whole;
     return high >= min(z_a, z_b) && low <= max(z_a, z_b);

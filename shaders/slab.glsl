@@ -4,21 +4,26 @@
 //   orthographic  absolute: shift = thickness / (far - near)  relative: scale = 1 + thickness, shift = thickness * far / (far - near)
 //   infinite thickness: scale = 0
 #include "shared.h"
-layout(constant_id = CONSTANT_SLAB_SLOPE) const real slab_slope = 0;
-layout(constant_id = CONSTANT_SLAB_SCALE) const real slab_scale = 1;
-layout(constant_id = CONSTANT_SLAB_SHIFT) const real slab_shift = 0;
+#ifdef EXACT_ARITHMETIC
+#define slab_real double // the same slab whatever the number type of the trace
+#else
+#define slab_real real
+#endif
+layout(constant_id = CONSTANT_SLAB_SLOPE) const slab_real slab_slope = 0;
+layout(constant_id = CONSTANT_SLAB_SCALE) const slab_real slab_scale = 1;
+layout(constant_id = CONSTANT_SLAB_SHIFT) const slab_real slab_shift = 0;
 
 // Does the depth interval that ends at z_near (its nearest depth) reach the slab's back? Multiplied out: a division is not correctly
 // rounded on every device, and it is slower.
 bool reaches_slab_back(real depth, real z_near)
 {
-    precise real left  = z_near + (z_near * depth) * slab_slope;
-    precise real right = depth * slab_scale - slab_shift;
+    precise real left  = z_near + (z_near * depth) * real(slab_slope);
+    precise real right = depth * real(slab_scale) - real(slab_shift);
     return left >= right;
 }
 
 real slab_back(real depth)
 {
-    precise real back = (depth * slab_scale - slab_shift) / (real(1) + depth * slab_slope);
+    precise real back = (depth * real(slab_scale) - real(slab_shift)) / (real(1) + depth * real(slab_slope));
     return back;
 }

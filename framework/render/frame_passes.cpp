@@ -27,12 +27,16 @@ Slab slab_of(const View& view, const TraceSettings& trace)
                                     : Slab{0, 1, thickness / range};
 }
 
-template <typename Real> void add_settings(Constants& constants, const View& view, const FrameSettings& settings)
+template <typename Real> void add_slab(Constants& constants, const View& view, const FrameSettings& settings)
 {
     const Slab slab = slab_of(view, settings.trace);
     constants.add(CONSTANT_SLAB_SLOPE, static_cast<Real>(slab.slope));
     constants.add(CONSTANT_SLAB_SCALE, static_cast<Real>(slab.scale));
     constants.add(CONSTANT_SLAB_SHIFT, static_cast<Real>(slab.shift));
+}
+
+template <typename Real> void add_settings(Constants& constants, const View& view, const FrameSettings& settings)
+{
     constants.add(CONSTANT_MAX_DISTANCE_M, static_cast<Real>(settings.trace.max_distance_m));
     constants.add(CONSTANT_RAY_OFFSET_M, static_cast<Real>(settings.trace.ray_offset_m));
     constants.add(CONSTANT_FACING, static_cast<int32_t>(settings.trace.facing));
@@ -77,7 +81,7 @@ double parameter_or(const PreparedFrame& frame, const std::string& name, double 
 
 } // namespace
 
-Constants settings_constants(const PreparedFrame& frame, Precision precision)
+Constants settings_constants(const PreparedFrame& frame, Precision precision, bool exact)
 {
     Constants   constants;
     const View& view = frame.buffers->gbuffer->view;
@@ -85,6 +89,10 @@ Constants settings_constants(const PreparedFrame& frame, Precision precision)
         add_settings<double>(constants, view, frame.settings);
     else
         add_settings<float>(constants, view, frame.settings);
+    if (precision == Precision::float64 || exact)
+        add_slab<double>(constants, view, frame.settings);
+    else
+        add_slab<float>(constants, view, frame.settings);
     return constants;
 }
 
@@ -202,9 +210,10 @@ ComputePass make_trace_pass(Gpu& gpu, const PreparedFrame& frame, const Bindings
                                       .include_files = {{"technique/trace.glsl", frame.technique.folder / "trace.glsl"}},
                                       .include_texts = {{"technique/parameters",
                                                          parameter_declarations(frame.technique.parameters, CONSTANT_PARAMETERS)}}};
-    if (exact_arithmetic(gpu, frame)) trace.defines.emplace("EXACT_ARITHMETIC", "1");
+    const bool                  exact = exact_arithmetic(gpu, frame);
+    if (exact) trace.defines.emplace("EXACT_ARITHMETIC", "1");
     if (bindings.contains("Work")) trace.defines.emplace("COUNT_WORK", "1");
-    Constants constants = settings_constants(frame, precision);
+    Constants constants = settings_constants(frame, precision, exact);
     add_parameters(constants, frame.technique.parameters, frame.values, CONSTANT_PARAMETERS);
     return make_compute_pass(gpu, compile_shader(trace), bindings, constants);
 }

@@ -110,7 +110,8 @@ ComputePass make_trace_pass(Gpu& gpu, const PreparedFrame& frame, const Bindings
 ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch, int items_per_group);
 /// Everything that shaders may read and write, by its name; without the view.
 Bindings  bindings_of(const FrameBuffers& buffers, const RayBuffers& rays);
-Constants settings_constants(const PreparedFrame& frame, Precision precision);
+/// exact: for a shader that is compiled with EXACT_ARITHMETIC, whose slab is in double precision.
+Constants settings_constants(const PreparedFrame& frame, Precision precision, bool exact = false);
 /// One constant per parameter from `id` on, under its own name, and names for the choices: PARAMETER_CHOICE.
 std::string parameter_declarations(std::span<const Parameter> parameters, uint32_t id);
 void        add_parameters(Constants& constants, std::span<const Parameter> parameters, const ParameterValues& values,

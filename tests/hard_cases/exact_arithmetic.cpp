@@ -1,6 +1,8 @@
 // arithmetic = exact beyond the campaign: on every hard case, and on a device that cannot.
 #include "check/run_check.h"
 #include "gpu/device.h"
+#include "render/ray_list.h"
+#include "scene/scene.h"
 
 #include <gmock/gmock.h>
 
@@ -19,6 +21,31 @@ TEST(ExactArithmetic, HoldsOnEveryHardCase)
                 if (hard_case.name == "resolution_doubling") continue;
                 EXPECT_EQ(row.breaks, 0U) << hard_case.name << " " << (row.findings.empty() ? "" : row.findings[0]);
             }
+}
+
+// On the rays of the float shader: made by it, they are exact in double precision, too.
+TEST(ExactArithmetic, IsTheSameInFloatAndDouble)
+{
+    const TraceSettings settings{.thickness_m = 0.1, .max_distance_m = 1e9};
+    for (const SceneListing& scene : list_scenes()) {
+        const Picture picture = make_picture(scene.name, "default", {640, 360});
+        const size_t  pixels  = picture.image.depth.size();
+        for (const std::string id : {"dda", "hiz"}) {
+            const Technique&      t      = technique(id);
+            const ParameterValues values = values_of(t, {{"arithmetic", 1}});
+            const auto            single = make_ray_tracer(device(), picture.gbuffer, t, values, settings, pixels);
+            const auto            twin =
+                make_ray_tracer(device(), picture.gbuffer, t, values, settings, pixels, Precision::float64);
+            const std::vector<RayInput>   rays  = set_up_rays(device(), *single);
+            const std::vector<RayOutcome> found = trace_rays(device(), *single, rays),
+                                          exact = trace_rays(device(), *twin, rays);
+            size_t differ                       = 0;
+            for (size_t i = 0; i < rays.size(); ++i)
+                differ += found[i].status != exact[i].status ||
+                          (found[i].status == TraceStatus::hit && found[i].hit_pixel != exact[i].hit_pixel);
+            EXPECT_EQ(differ, 0U) << scene.name << ", " << id << ": of " << rays.size() << " rays";
+        }
+    }
 }
 
 TEST(ExactArithmetic, IsRefusedWhereTheDeviceHasNoIntegersForIt)
