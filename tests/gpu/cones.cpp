@@ -10,22 +10,34 @@ namespace {
 
 constexpr double cone_gloss = 2; // of the parameter's choices
 
+/// The visibility of cells after the pass ran on 4 x 4 pixels at these distances in metres; 0: background. x, y in the atlas.
+class Visibility {
+public:
+    explicit Visibility(const std::array<double, 16>& distances_m)
+    {
+        GBufferImage image = empty_gbuffer(bench_view({4, 4}));
+        for (int i = 0; i < 16; ++i)
+            if (distances_m.at(i) > 0) set_pixel(image, i % 4, i / 4, distances_m.at(i), {0, 0, 1}, 1);
+        const Picture picture = make_picture(image);
+        const auto    frame   = frame_with(picture, {{"gloss", cone_gloss}, {"plan", 0}});
+        run_effect(*frame, "cone_pyramid");
+        const GpuImage& atlas = picture.buffers->cone->cells.atlas;
+        cells_                = read_colours(atlas);
+        width_                = atlas.size_px.x;
+    }
+    float operator()(int x, int y) const { return cells_[size_t(y) * size_t(width_) + size_t(x)].a; }
+
+private:
+    Reflection cells_;
+    int        width_;
+};
+
 TEST(Cones, VisibilityIsTheEmptyShareOfEachCellsRange)
 {
-    // Distances in metres; 0: background.
-    constexpr std::array<double, 16> distances_m = {1, 2, 2, 2, //
-                                                    3, 3, 2, 2, //
-                                                    4, 4, 5, 0, //
-                                                    8, 6, 0, 0};
-    GBufferImage                     image       = empty_gbuffer(bench_view({4, 4}));
-    for (int i = 0; i < 16; ++i)
-        if (distances_m.at(i) > 0) set_pixel(image, i % 4, i / 4, distances_m.at(i), {0, 0, 1}, 1);
-    const Picture picture = make_picture(image);
-    const auto    frame   = frame_with(picture, {{"gloss", cone_gloss}, {"plan", 0}});
-    run_effect(*frame, "cone_pyramid");
-    const GpuImage&  atlas = picture.buffers->cone->cells.atlas;
-    const Reflection cells = read_colours(atlas);
-    const auto       cell  = [&](int x, int y) { return cells[size_t(y) * size_t(atlas.size_px.x) + size_t(x)].a; };
+    const Visibility cell({1, 2, 2, 2, //
+                           3, 3, 2, 2, //
+                           4, 4, 5, 0, //
+                           8, 6, 0, 0});
     // Level 1. From 1 to 3 m: 0, 1/2, 1 and 1 are empty in front of the four pixels.
     EXPECT_NEAR(cell(0, 0), 0.625, 1e-3);
     EXPECT_NEAR(cell(1, 0), 1, 1e-3);     // flat
@@ -37,18 +49,12 @@ TEST(Cones, VisibilityIsTheEmptyShareOfEachCellsRange)
 
 TEST(Cones, VisibilityOfHigherLevelsIsTheProductOverTheLevels)
 {
-    constexpr std::array<double, 16> distances_m = {1, 2, 2, 2, //
-                                                    3, 3, 2, 2, //
-                                                    4, 4, 5, 5, //
-                                                    8, 6, 9, 9};
-    GBufferImage                     image       = empty_gbuffer(bench_view({4, 4}));
-    for (int i = 0; i < 16; ++i) set_pixel(image, i % 4, i / 4, distances_m.at(i), {0, 0, 1}, 1);
-    const Picture picture = make_picture(image);
-    const auto    frame   = frame_with(picture, {{"gloss", cone_gloss}, {"plan", 0}});
-    run_effect(*frame, "cone_pyramid");
+    const Visibility cell({1, 2, 2, 2, //
+                           3, 3, 2, 2, //
+                           4, 4, 5, 5, //
+                           8, 6, 9, 9});
     // Level 1: 0.625, 1, 0.375, 0.5. Level 2, from 1 to 9 m: 0, 1/8, 3/8 and 1/2 are empty in front of them.
-    const Reflection cells = read_colours(picture.buffers->cone->cells.atlas);
-    EXPECT_NEAR(cells[2].a, (0 * 0.625 + 0.125 * 1 + 0.375 * 0.375 + 0.5 * 0.5) / 4, 1e-3);
+    EXPECT_NEAR(cell(2, 0), (0 * 0.625 + 0.125 * 1 + 0.375 * 0.375 + 0.5 * 0.5) / 4, 1e-3);
 }
 
 /// A floor of the given roughness before a wall, where every column has the colour that `colour` says.
