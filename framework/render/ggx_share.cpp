@@ -33,8 +33,8 @@ glm::dvec2 share_of(double roughness, double cosine)
             const glm::dvec3 half = glm::normalize(glm::dvec3(alpha * cap.x, alpha * cap.y, std::max(cap.z, 0.0)));
             const double     v_h = glm::dot(to_eye, half), n_l = 2 * v_h * half.z - cosine;
             if (n_l <= 0) continue;
-            const double seen    = (1 + lambda_v) / (1 + lambda_v + smith_lambda(alpha, n_l));
-            const double fresnel = std::pow(1 - std::min(v_h, 1.0), 5);
+            const double seen   = (1 + lambda_v) / (1 + lambda_v + smith_lambda(alpha, n_l));
+            const double beside = 1 - std::min(v_h, 1.0), fresnel = beside * beside * beside * beside * beside;
             share += seen * glm::dvec2(1 - fresnel, fresnel);
         }
     return share / static_cast<double>(heights * turns);
