@@ -80,6 +80,8 @@ def trades(results, tables):
     for title, name, first, points in compared(results) or ():
         shown = [(error, where) for error, where in ERRORS
                  if error in first and pd.notna(first[error]) and all(pd.notna(row[error]) for _, row in points)]
+        if not shown:
+            continue
         figure, axes = plt.subplots(1, len(shown), figsize=(8.4 * len(shown), max(4.4, 0.27 * len(points) + 1.6)), squeeze=False)
         for axis, (error, where) in zip(axes[0], shown):
             trade(axis, first, points, error, where)
