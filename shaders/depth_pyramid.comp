@@ -25,18 +25,52 @@ float outer_back(float depth)
     return float(slab_back(real(depth))) * margin;
 }
 
-uvec2 pixel_cell(ivec2 pixel)
+// The bits of a pixel's front and back, or of a cell's; nearest < farthest where there is nothing to hit.
+struct Range
 {
-    float depth = imageLoad(depth_image, pixel).x;
-    if (!(depth > 0.0)) return empty_cell;
-    int front = depth_code(depth), back = pyramid_kind == PYRAMID_NEAREST ? 0 : depth_code(outer_back(depth));
-    return uvec2(uint(front) << 16 | uint(back), 1);
+    int nearest, farthest;
+};
+const Range nothing = Range(0, 0x7FFFFFFF);
+
+Range pixel_range(ivec2 pixel)
+{
+    float depth = any(greaterThanEqual(pixel, source_size)) ? 0.0 : imageLoad(depth_image, pixel).x;
+    if (!(depth > 0.0)) return nothing;
+    return Range(floatBitsToInt(depth), pyramid_kind == PYRAMID_NEAREST ? 0 : max(floatBitsToInt(outer_back(depth)), 0));
 }
 
 uvec2 source_cell(ivec2 cell)
 {
-    if (any(greaterThanEqual(cell, source_size))) return empty_cell;
-    return from_pixels == 0 ? imageLoad(depth_pyramid, source_offset + cell).xy : pixel_cell(cell);
+    return any(greaterThanEqual(cell, source_size)) ? empty_cell : imageLoad(depth_pyramid, source_offset + cell).xy;
+}
+
+Range cell_range(uvec2 cell)
+{
+    if (cell.y == 0u) return nothing;
+    return Range(int(cell.x) & ~31, (nearest_bin(cell) - findMSB(cell.y)) << bin_shift(cell));
+}
+
+Range unite(Range a, Range b)
+{
+    return Range(max(a.nearest, b.nearest), min(a.farthest, b.farthest));
+}
+
+// A cell of this range, without bins yet.
+uvec2 cell_of_range(Range range)
+{
+    int front = (range.nearest + 31) & ~31;
+    // 32 or 33 bins if they begin at a multiple of 2^shift; never more than 32 with one bit more.
+    int shift = max(findMSB(front - range.farthest) - 4, FINEST_BIN_SHIFT);
+    shift += ((front >> shift) - (range.farthest >> shift)) >> 5;
+    return uvec2(front | shift, 0);
+}
+
+// A pixel fills all bins from its front to its back.
+uint bins_of_pixel(uvec2 cell, Range pixel)
+{
+    if (pixel.nearest < pixel.farthest) return 0u;
+    int shift = bin_shift(cell), nearest = nearest_bin(cell);
+    return bins_between(nearest - (pixel.nearest >> shift), nearest - (pixel.farthest >> shift));
 }
 
 // Neighbouring bits united, in the lower half.
@@ -49,39 +83,42 @@ uint unite_pairs(uint bits)
     return (bits | bits >> 8) & 0x0000FFFFu;
 }
 
-// The bins of a part in terms of the whole cell. A pixel fills all from its back to its front.
-uint bins_of_part(uvec2 part, int farthest, int shift)
+// The bins of a quarter in terms of the whole cell.
+uint bins_of_quarter(uvec2 cell, uvec2 quarter)
 {
-    if (from_pixels != 0) return part.y == 0u ? 0u : bins_between(cell_farthest(part), cell_nearest(part), farthest, shift);
-    int  part_shift = bin_shift(cell_nearest(part), cell_farthest(part)), base = cell_farthest(part) >> part_shift;
-    uint bins       = part.y;
-    while (bins != 0u && part_shift < shift)
+    int  shift = bin_shift(quarter), nearest = nearest_bin(quarter);
+    uint bins  = quarter.y;
+    while (bins != 0u && shift < bin_shift(cell))
     {
-        // Pairs begin at even bins; the last one may stand alone behind them.
-        int  odd  = base & 1;
-        uint last = odd == 1 ? bins >> 31 << 16 : 0u;
-        bins = unite_pairs(bins << odd) | last;
-        base >>= 1;
-        ++part_shift;
+        // Pairs end at odd bins; the last one may stand alone behind them.
+        int  even = ~nearest & 1;
+        uint last = even == 1 ? bins >> 31 << 16 : 0u;
+        bins = unite_pairs(bins << even) | last;
+        nearest >>= 1;
+        ++shift;
     }
-    return bins == 0u ? 0u : bins << (base - (farthest >> shift));
+    return bins == 0u ? 0u : bins << (nearest_bin(cell) - nearest);
 }
 
 void main()
 {
-    ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(cell, size))) return;
-    uvec2 a = source_cell(2 * cell), b = source_cell(2 * cell + ivec2(1, 0));
-    uvec2 c = source_cell(2 * cell + ivec2(0, 1)), d = source_cell(2 * cell + ivec2(1, 1));
-
-    int  nearest  = max(max(cell_nearest(a), cell_nearest(b)), max(cell_nearest(c), cell_nearest(d)));
-    int  farthest = min(min(cell_farthest(a), cell_farthest(b)), min(cell_farthest(c), cell_farthest(d)));
-    uint bins     = a.y | b.y | c.y | d.y;
-    if (pyramid_kind == PYRAMID_OCCUPANCY)
+    ivec2 position = ivec2(gl_GlobalInvocationID.xy), first = 2 * position;
+    if (any(greaterThanEqual(position, size))) return;
+    const ivec2 right = ivec2(1, 0), below = ivec2(0, 1);
+    uvec2 cell;
+    if (from_pixels != 0)
     {
-        int shift = bin_shift(nearest, farthest);
-        bins = bins_of_part(a, farthest, shift) | bins_of_part(b, farthest, shift) | bins_of_part(c, farthest, shift) | bins_of_part(d, farthest, shift);
+        Range a = pixel_range(first), b = pixel_range(first + right), c = pixel_range(first + below), d = pixel_range(first + right + below);
+        cell    = cell_of_range(unite(unite(a, b), unite(c, d)));
+        cell.y  = bins_of_pixel(cell, a) | bins_of_pixel(cell, b) | bins_of_pixel(cell, c) | bins_of_pixel(cell, d);
     }
-    else bins = bins != 0u ? 0xFFFFFFFFu : 0u;
-    imageStore(depth_pyramid, offset + cell, uvec4(uint(nearest) << 16 | uint(farthest), bins, 0, 0));
+    else
+    {
+        uvec2 a = source_cell(first), b = source_cell(first + right), c = source_cell(first + below), d = source_cell(first + right + below);
+        cell    = cell_of_range(unite(unite(cell_range(a), cell_range(b)), unite(cell_range(c), cell_range(d))));
+        cell.y  = bins_of_quarter(cell, a) | bins_of_quarter(cell, b) | bins_of_quarter(cell, c) | bins_of_quarter(cell, d);
+    }
+    // Without occupancy everything behind the nearest front counts as full, as far as the farthest back.
+    if (pyramid_kind != PYRAMID_OCCUPANCY && cell.y != 0u) cell.y = bins_between(0, findMSB(cell.y));
+    imageStore(depth_pyramid, offset + position, uvec4(cell.y != 0u ? cell : empty_cell, 0, 0));
 }

@@ -1,47 +1,41 @@
 // What a cell of the depth pyramid knows, in two words:
-//   x = code of the nearest front << 16 | code of the farthest slab back of its pixels
-//   y = 32 bins of depth between the two, set where any of its pixels' slabs lies
-// A depth code is the top of the number's own bits: monotone, exact to 2^-11, no logarithm needed. A bin is 2^bin_shift codes, as narrow as
-// 32 bins allow, and begins at a multiple of its width: so the bins of a wider cell are unions of those of its quarters.
+//   x = the nearest front of its pixels, as the bits of a float rounded up to a multiple of 32; bin_shift in the low 5 bits
+//   y = 32 bins of depth from there away from the camera, set where any of its pixels' slabs lies; 0: nothing to hit
+// Bits of positive floats order like the floats. A bin is 2^bin_shift of them, begins at a multiple of its width, and is as narrow as 32
+// bins allow: so the bins of a wider cell are unions of those of its quarters.
 #include "shared.h"
 
-const uvec2 empty_cell = uvec2(PYRAMID_MAX_CODE, 0); // nearest 0, farthest beyond everything, no bin
+#define FINEST_BIN_SHIFT 5
+const uvec2 empty_cell = uvec2(0);
 
-// Monotone in depth; depths below 2^-31, zero and negative numbers are all 0. NaN does not occur.
-int depth_code(float depth)
+int bin_shift(uvec2 cell)
 {
-    return max((floatBitsToInt(depth) >> 12) - (PYRAMID_LOWEST_EXPONENT << 11), 0);
+    return int(cell.x & 31u);
 }
 
-int cell_nearest(uvec2 cell)
+// The nearest bin: bits of depth >> bin_shift.
+int nearest_bin(uvec2 cell)
 {
-    return int(cell.x >> 16);
+    return int(cell.x) >> bin_shift(cell);
 }
 
-int cell_farthest(uvec2 cell)
+// No pixel of the cell is nearer.
+float cell_nearest(uvec2 cell)
 {
-    return int(cell.x & PYRAMID_MAX_CODE);
+    return uintBitsToFloat(cell.x);
 }
 
-// The smallest shift for which (nearest >> shift) - (farthest >> shift) <= 31.
-int bin_shift(int nearest, int farthest)
+// Bins first to last, counted from the nearest; 0 <= first <= last <= 31, else any bits.
+uint bins_between(int first, int last)
 {
-    // floor(log2(span)) from the float's exponent.
-    int shift = max((floatBitsToInt(float(abs(nearest - farthest))) >> 23) - (127 + 4), 0);
-    return shift + (((nearest >> shift) - (farthest >> shift)) >> 5);
-}
-
-// The bins that the codes low … high pass through; low <= high, both within the cell.
-uint bins_between(int low, int high, int farthest, int shift)
-{
-    int base = farthest >> shift, first = (low >> shift) - base, count = (high >> shift) - base - first;
-    return ((2u << count) - 1u) << first;
+    return (~0u << first) & ~(~1u << last);
 }
 
 bool cell_may_touch(uvec2 cell, float z_far, float z_near)
 {
-    int nearest = cell_nearest(cell), farthest = cell_farthest(cell);
-    int low = max(depth_code(z_far), farthest), high = min(depth_code(z_near), nearest);
-    bool meets = (cell.y & bins_between(low, high, farthest, bin_shift(nearest, farthest))) != 0u;
-    return low <= high && meets;
+    // Bits of negative numbers are farther than those of any cell.
+    int far = floatBitsToInt(z_far), near = floatBitsToInt(z_near), shift = bin_shift(cell);
+    int first = max(nearest_bin(cell) - (near >> shift), 0), last = min(nearest_bin(cell) - (far >> shift), 31);
+    bool meets = (cell.y & bins_between(first, last)) != 0u;
+    return far <= int(cell.x) && first <= last && meets;
 }

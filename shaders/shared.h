@@ -55,10 +55,6 @@
 #define PYRAMID_MINMAX 1
 #define PYRAMID_NEAREST 2
 
-// Depth codes of pyramid cells: 16 bits, from 2^-31 up (exponents are biased by 127).
-#define PYRAMID_MAX_CODE 0xFFFF
-#define PYRAMID_LOWEST_EXPONENT 96
-
 // Background in the depth image that tracers read: nearer than nothing, so that no interval touches it.
 #define BACKGROUND_DEPTH -1.0
 

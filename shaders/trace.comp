@@ -27,6 +27,7 @@ Ray load_ray(uint index)
     ray.delta       = ray_delta[index];
     ray.length_m    = ray_length_m[index];
     ray.end_status  = unpack_status(ray_pixel[index]);
+    ray.rounding    = depth_rounding(ray.delta);
     ray.start_pixel = clamp(ivec2(floor(ray.origin.xy)), ivec2(0), size_px - 1);
 
     // A ray that runs exactly along the right or lower image border runs in the last column or row: off the border, it crosses none.

@@ -26,6 +26,7 @@ struct Ray
     ivec2 start_pixel; // never counts as a hit
     real  length_m;    // length of the segment in view space; may be infinite
     int   end_status;  // how the ray ends if it hits nothing
+    real  rounding;    // how far rounding may move its depth
 };
 
 struct TraceResult
@@ -123,21 +124,21 @@ uvec2 load_pyramid(ivec2 cell, int level)
 }
 
 // ---- The hit contract
-// How far rounding may move the depth of a ray: the interval that it covers is widened by this, so that rounding finds a hit that barely is
-// none rather than lose one (docs/exactness.md). Nothing in double precision, which is what float is held to.
-real depth_rounding(Ray ray)
+// How far rounding may move the depth of a ray. Nothing in double precision, which is what float is held to.
+real depth_rounding(real3 delta)
 {
 #ifdef REAL_IS_DOUBLE
     return real(0);
 #else
-    return abs(ray.delta.z) * (1.0 / (1 << 24)); // what half of the last place of t = 1 moves it by
+    return abs(delta.z) * (1.0 / (1 << 24)); // what half of the last place of t = 1 moves it by
 #endif
 }
 
-// Depths that the ray covers between two of its depths: x the farthest, y the nearest.
+// Depths that the ray covers between two of its depths: x the farthest, y the nearest. Wider by what rounding may move them, so that
+// rounding finds a hit that barely is none rather than lose one (docs/exactness.md).
 real2 depth_interval(Ray ray, real z_a, real z_b)
 {
-    precise real2 interval = (z_a < z_b ? real2(z_a, z_b) : real2(z_b, z_a)) + real2(-1, 1) * depth_rounding(ray);
+    precise real2 interval = (z_a < z_b ? real2(z_a, z_b) : real2(z_b, z_a)) + real2(-1, 1) * ray.rounding;
     return interval;
 }
 
@@ -178,7 +179,7 @@ bool touches_surface(Ray ray, ivec2 pixel, real z_a, real z_b)
 }
 
 // What a cell of any level holds. Both images are read whatever the level: lanes of one group stand on different levels, and a branch would run
-// both sides anyway.
+// both sides anyway. The read that is in vain goes to the same place for all.
 struct CellContent
 {
     real  depth; // level 0
@@ -190,7 +191,7 @@ CellContent fetch_cell(ivec2 cell, int level)
     bool leaf = level == 0;
     COUNT_IF(depth_fetches, leaf);
     COUNT_IF(pyramid_fetches, !leaf);
-    return CellContent(real(imageLoad(depth_image, cell).x), load_pyramid(cell, leaf ? 1 : level));
+    return CellContent(real(imageLoad(depth_image, leaf ? cell : ivec2(0)).x), load_pyramid(leaf ? ivec2(0) : cell, leaf ? 1 : level));
 }
 
 // May the ray touch a surface inside this cell? At level 0 the answer is touches_surface()'s; above, no means no for all its pixels.

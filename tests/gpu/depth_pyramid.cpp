@@ -6,7 +6,6 @@
 #include "unit/truth_gbuffers.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 
 namespace ssrlab::test {
@@ -43,53 +42,57 @@ int expected_levels(glm::ivec2 size)
     return levels;
 }
 
-/// The top bits of the number, from 2^-31 up: 11 bits of mantissa (shaders/pyramid_cell.glsl).
-uint32_t code(double depth)
+uint32_t bits(double depth) { return std::bit_cast<uint32_t>(static_cast<float>(depth)); }
+
+/// The nearest front as a cell keeps it: rounded up to a multiple of 32.
+uint32_t rounded_front(double depth) { return (bits(depth) + 31) & ~31U; }
+
+/// The narrowest bins, at least 2^5 wide, of which 32 reach from front to back (bits of depth).
+uint32_t narrowest_shift(uint32_t front, uint32_t back)
 {
-    const auto bits = std::bit_cast<int32_t>(static_cast<float>(depth));
-    return static_cast<uint32_t>(std::clamp((bits >> 12) - (PYRAMID_LOWEST_EXPONENT << 11), 0, PYRAMID_MAX_CODE));
+    uint32_t shift = 5;
+    while ((front >> shift) - (back >> shift) > 31) ++shift;
+    return shift;
 }
 
-/// One bit per bin between two codes, of the narrowest 32 bins (2^shift codes each) that reach from farthest to nearest.
-uint32_t bins(uint32_t low, uint32_t high, uint32_t farthest, uint32_t nearest)
+/// One bit per bin between a front and a back, counted from the cell's nearest.
+uint32_t bins(uint32_t nearest, uint32_t front, uint32_t back, uint32_t shift)
 {
-    uint32_t shift = 0, mask = 0;
-    while ((nearest >> shift) - (farthest >> shift) > 31) ++shift;
-    for (uint32_t bin = low >> shift; bin <= high >> shift; ++bin) mask |= 1U << (bin - (farthest >> shift));
+    uint32_t mask = 0;
+    for (uint32_t bin = back >> shift; bin <= front >> shift; ++bin) mask |= 1U << ((nearest >> shift) - bin);
     return mask;
 }
 
-/// The cell of one level, from all its pixels. The back is rounded outward, by 2^-20 at most: both roundings of its code are right.
-struct Expected {
-    uint32_t nearest = 0, farthest_low = PYRAMID_MAX_CODE, farthest_high = PYRAMID_MAX_CODE, least_bins = 0,
-             most_bins = 0;
-};
-
-/// stored_farthest: the bins begin there, and it may be rounded.
-Expected expect_cell(const GBufferImage& image, const TraceSettings& settings, int kind, int level, int x, int y,
-                     uint32_t stored_farthest)
+/// Is this the cell of its pixels? Their backs are rounded outward, by 2^-20 at most: both roundings are right.
+bool is_right(glm::uvec2 cell, const GBufferImage& image, const TraceSettings& settings, int kind, int level, int x,
+              int y)
 {
-    Expected                             cell;
-    const glm::ivec2                     size = image.view.size_px;
-    std::vector<std::array<uint32_t, 3>> slabs; // outer and inner back, front
+    struct Slab {
+        uint32_t front, inner_back, outer_back; // bits of depth
+    };
+    const glm::ivec2  size = image.view.size_px;
+    std::vector<Slab> slabs;
+    Slab              all{0, ~0U, ~0U};
     for (int py = y << level; py < std::min((y + 1) << level, size.y); ++py)
         for (int px = x << level; px < std::min((x + 1) << level, size.x); ++px) {
             const double depth = static_cast<double>(image.depth[at(image, px, py)]);
             if (depth <= 0) continue;
-            const double   back  = kind == PYRAMID_NEAREST ? 0 : slab_back(image.view, depth, settings);
-            const uint32_t front = code(depth), inner = code(back), outer = code(back * (1 - 4e-6));
-            cell.nearest       = std::max(cell.nearest, front);
-            cell.farthest_low  = std::min(cell.farthest_low, outer);
-            cell.farthest_high = std::min(cell.farthest_high, inner);
-            slabs.push_back({outer, inner, front});
+            const double back = kind == PYRAMID_NEAREST ? 0 : std::max(slab_back(image.view, depth, settings), 0.0);
+            const Slab&  slab = slabs.emplace_back(bits(depth), bits(back), bits(back * (1 - 4e-6)));
+            all               = {std::max(all.front, rounded_front(depth)), std::min(all.inner_back, slab.inner_back),
+                                 std::min(all.outer_back, slab.outer_back)};
         }
-    for (const auto& [outer, inner, front] : slabs) {
-        const bool occupancy = kind == PYRAMID_OCCUPANCY;
-        const auto from      = [&](uint32_t back) { return std::max(back, stored_farthest); };
-        cell.least_bins |= occupancy ? bins(from(inner), front, stored_farthest, cell.nearest) : ~0U;
-        cell.most_bins |= occupancy ? bins(from(outer), front, stored_farthest, cell.nearest) : ~0U;
+    if (slabs.empty()) return cell == glm::uvec2(0);
+    const uint32_t shift = cell.x & 31;
+    uint32_t       least = 0, most = 0;
+    for (const Slab& slab : slabs) {
+        // Without occupancy everything from the nearest front to the farthest back is full.
+        const uint32_t front = kind == PYRAMID_OCCUPANCY ? slab.front : all.front;
+        least |= bins(all.front, front, slab.inner_back, shift);
+        most |= bins(all.front, front, slab.outer_back, shift);
     }
-    return cell;
+    return (cell.x & ~31U) == all.front && shift >= narrowest_shift(all.front, all.inner_back) &&
+           shift <= narrowest_shift(all.front, all.outer_back) && (cell.y & least) == least && (cell.y & ~most) == 0;
 }
 
 void expect_cells(const Pyramid& pyramid, const GBufferImage& image, const TraceSettings& settings, int kind)
@@ -99,19 +102,13 @@ void expect_cells(const Pyramid& pyramid, const GBufferImage& image, const Trace
     for (int level = 1; level <= pyramid.levels; ++level)
         for (int y = 0; y < pyramid.size(level).y; ++y)
             for (int x = 0; x < pyramid.size(level).x; ++x) {
-                const glm::uvec2 cell    = pyramid.at(level, x, y);
-                const uint32_t   nearest = cell.x >> 16, farthest = cell.x & PYRAMID_MAX_CODE;
-                const Expected   expected = expect_cell(image, settings, kind, level, x, y, farthest);
-                const bool       right    = nearest == expected.nearest && farthest >= expected.farthest_low &&
-                                   farthest <= expected.farthest_high &&
-                                   (cell.y & expected.least_bins) == expected.least_bins &&
-                                   (cell.y & ~expected.most_bins) == 0;
-                if (!right && wrong++ < 3)
-                    ADD_FAILURE() << fmt::format("{}x{}, kind {}: level {}, cell ({}, {}): nearest {} farthest {} bins "
-                                                 "{:08x}, expected {}, {} to {}, {:08x}",
-                                                 pyramid.size_px.x, pyramid.size_px.y, kind, level, x, y, nearest,
-                                                 farthest, cell.y, expected.nearest, expected.farthest_low,
-                                                 expected.farthest_high, expected.least_bins);
+                const glm::uvec2 cell = pyramid.at(level, x, y);
+                if (!is_right(cell, image, settings, kind, level, x, y) && wrong++ < 3)
+                    ADD_FAILURE() << fmt::format(
+                        "{}x{}, kind {}: level {}, cell ({}, {}): nearest {} ({:08x}), bins of "
+                        "2^{}: {:08x}",
+                        pyramid.size_px.x, pyramid.size_px.y, kind, level, x, y, std::bit_cast<float>(cell.x), cell.x,
+                        cell.x & 31, cell.y);
             }
     EXPECT_EQ(wrong, 0U);
 }
@@ -142,7 +139,8 @@ TEST_P(DepthPyramid, SeesTheOnlyNearTexelInEveryCornerAndBorder)
         for (int level = 1; level <= pyramid.levels; ++level)
             for (int y = 0; y < pyramid.size(level).y; ++y)
                 for (int x = 0; x < pyramid.size(level).x; ++x)
-                    ASSERT_EQ(pyramid.at(level, x, y).x >> 16, code((near >> level) == glm::ivec2(x, y) ? 0.75 : 0.01))
+                    ASSERT_EQ(pyramid.at(level, x, y).x & ~31U,
+                              rounded_front((near >> level) == glm::ivec2(x, y) ? 0.75 : static_cast<double>(0.01F)))
                         << size.x << "x" << size.y << ", near texel (" << near.x << ", " << near.y << "), level "
                         << level << ", cell (" << x << ", " << y << ")";
     }

@@ -8,13 +8,10 @@ int top = min(top_level, pyramid_levels());
 // Is the ray, where it leaves the cell or enters it, behind the cell's nearest depth?
 bool gets_behind(Ray ray, CellWalk walk)
 {
-    bool  leaf  = walk.level == 0;
-    ivec2 cell  = cell_of(walk);
-    COUNT_IF(depth_fetches, leaf);
-    COUNT_IF(pyramid_fetches, !leaf);
-    real  depth = real(imageLoad(depth_image, cell).x), z_far = min(depth_at(ray, walk.t), depth_at(ray, t_exit(walk)));
-    bool  pixel_behind = depth >= z_far, cell_behind = cell_nearest(load_pyramid(cell, leaf ? 1 : walk.level)) >= depth_code(float(z_far));
-    return leaf ? pixel_behind : cell_behind;
+    CellContent content = fetch_cell(cell_of(walk), walk.level);
+    real        z_far   = min(depth_at(ray, walk.t), depth_at(ray, t_exit(walk)));
+    bool pixel_behind = content.depth >= z_far, cell_behind = cell_nearest(content.node) >= float(z_far);
+    return walk.level == 0 ? pixel_behind : cell_behind;
 }
 
 void visit(Ray ray, inout CellWalk walk, int number)

@@ -1,13 +1,12 @@
 // Written from the description, in its own terms: position.xy in uv, a cell's surface is one plane, the ray advances to the nearest of the
 // cell's two borders and that plane. It ends where level 0 is passed downward; a hit if that is within the thickness.
 
-// A plane that lies no farther than any front of the cell's pixels; codes are rounded down.
+// A plane that lies no farther than any front of the cell's pixels.
 real surface_of(ivec2 cell, int level)
 {
     if (level == 0) return fetch_depth(cell);
     COUNT(pyramid_fetches);
-    int code = cell_nearest(load_pyramid(cell, level));
-    return code == 0 ? real(0) : real(intBitsToFloat((code + 1 + (PYRAMID_LOWEST_EXPONENT << 11)) << 12));
+    return real(cell_nearest(load_pyramid(cell, level)));
 }
 
 TraceResult trace(Ray ray)
