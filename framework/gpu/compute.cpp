@@ -1,8 +1,9 @@
 #include "gpu/compute.h"
 
 #include "core/error.h"
+#include "core/files.h"
 
-#include <set>
+#include <algorithm>
 
 namespace ssrlab {
 namespace {
@@ -70,35 +71,67 @@ void write_set(Gpu& gpu, const Shader& shader, const Bindings& bindings, const v
     }
 }
 
+ComputePipeline make_pipeline(Gpu& gpu, const Shader& shader, const Constants& constants, uint32_t push_constant_bytes)
+{
+    const vk::raii::Device& device = gpu.impl->device;
+    ComputePipeline         result;
+    result.set_layout = make_set_layout(gpu, shader);
+    const vk::PushConstantRange range{vk::ShaderStageFlagBits::eCompute, 0, push_constant_bytes};
+    result.layout = {device, vk::PipelineLayoutCreateInfo{.setLayoutCount         = 1,
+                                                          .pSetLayouts            = &*result.set_layout,
+                                                          .pushConstantRangeCount = push_constant_bytes > 0 ? 1U : 0U,
+                                                          .pPushConstantRanges    = &range}};
+    const vk::raii::ShaderModule module(
+        device, vk::ShaderModuleCreateInfo{.codeSize = shader.spirv.size() * 4, .pCode = shader.spirv.data()});
+    const vk::SpecializationInfo        specialization{.mapEntryCount = static_cast<uint32_t>(constants.entries.size()),
+                                                       .pMapEntries   = constants.entries.data(),
+                                                       .dataSize      = constants.bytes.size(),
+                                                       .pData         = constants.bytes.data()};
+    const vk::ComputePipelineCreateInfo info{.stage  = {.stage               = vk::ShaderStageFlagBits::eCompute,
+                                                        .module              = *module,
+                                                        .pName               = "main",
+                                                        .pSpecializationInfo = &specialization},
+                                             .layout = *result.layout};
+    result.pipeline = {device, gpu.impl->pipeline_cache, info};
+    return result;
+}
+
+/// Made once for equal shaders and constants: runs of a sweep differ in few of their passes, and drivers compile slowly.
+std::shared_ptr<const ComputePipeline> find_pipeline(Gpu& gpu, const Shader& shader, const Constants& constants,
+                                                     uint32_t push_constant_bytes)
+{
+    constexpr size_t most = 256;
+    std::string      key =
+        fmt::format("{} {} {} ", shader.name,
+                    content_hash({reinterpret_cast<const char*>(shader.spirv.data()), shader.spirv.size() * 4}),
+                    push_constant_bytes);
+    for (const vk::SpecializationMapEntry& entry : constants.entries) key += fmt::format("{} ", entry.constantID);
+    key.append(constants.bytes.data(), constants.bytes.size());
+
+    auto& known = gpu.impl->known_pipelines;
+    auto  entry = known.find(key);
+    if (entry == known.end()) {
+        if (known.size() >= most)
+            known.erase(std::ranges::min_element(known, {}, [](const auto& item) { return item.second.last_use; }));
+        auto made = std::make_shared<const ComputePipeline>(make_pipeline(gpu, shader, constants, push_constant_bytes));
+        entry     = known.emplace(std::move(key), GpuImpl::KnownPipeline{std::move(made)}).first;
+    }
+    entry->second.last_use = ++gpu.impl->pipeline_uses;
+    return entry->second.pipeline;
+}
+
 } // namespace
 
 ComputePass make_compute_pass(Gpu& gpu, const Shader& shader, const Bindings& bindings, const Constants& constants,
                               uint32_t push_constant_bytes)
 {
-    const vk::raii::Device& device = gpu.impl->device;
-    ComputePass             pass;
+    ComputePass pass;
     try {
-        pass.set_layout = make_set_layout(gpu, shader);
-        const vk::PushConstantRange range{vk::ShaderStageFlagBits::eCompute, 0, push_constant_bytes};
-        pass.layout = {device, vk::PipelineLayoutCreateInfo{.setLayoutCount         = 1,
-                                                            .pSetLayouts            = &*pass.set_layout,
-                                                            .pushConstantRangeCount = push_constant_bytes > 0 ? 1U : 0U,
-                                                            .pPushConstantRanges    = &range}};
-        const vk::raii::ShaderModule module(
-            device, vk::ShaderModuleCreateInfo{.codeSize = shader.spirv.size() * 4, .pCode = shader.spirv.data()});
-        const vk::SpecializationInfo specialization{.mapEntryCount = static_cast<uint32_t>(constants.entries.size()),
-                                                    .pMapEntries   = constants.entries.data(),
-                                                    .dataSize      = constants.bytes.size(),
-                                                    .pData         = constants.bytes.data()};
-        const vk::ComputePipelineCreateInfo info{.stage  = {.stage               = vk::ShaderStageFlagBits::eCompute,
-                                                            .module              = *module,
-                                                            .pName               = "main",
-                                                            .pSpecializationInfo = &specialization},
-                                                 .layout = *pass.layout};
-        pass.pipeline = {device, gpu.impl->pipeline_cache, info};
-        pass.pool     = make_pool(gpu, shader);
+        pass.compute = find_pipeline(gpu, shader, constants, push_constant_bytes);
+        pass.pool    = make_pool(gpu, shader);
         vk::raii::DescriptorSets sets(
-            device, {.descriptorPool = *pass.pool, .descriptorSetCount = 1, .pSetLayouts = &*pass.set_layout});
+            gpu.impl->device,
+            {.descriptorPool = *pass.pool, .descriptorSetCount = 1, .pSetLayouts = &*pass.compute->set_layout});
         pass.set = std::move(sets[0]);
     } catch (const vk::SystemError& error) {
         throw_failure("{}: the driver refuses the pipeline: {}", shader.name, error.what());
@@ -110,8 +143,8 @@ ComputePass make_compute_pass(Gpu& gpu, const Shader& shader, const Bindings& bi
 namespace {
 void bind(const vk::raii::CommandBuffer& commands, const ComputePass& pass)
 {
-    commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pass.pipeline);
-    commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *pass.layout, 0, *pass.set, nullptr);
+    commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pass.compute->pipeline);
+    commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *pass.compute->layout, 0, *pass.set, nullptr);
 }
 } // namespace
 

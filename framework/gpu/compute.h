@@ -38,11 +38,9 @@ struct Bound {
 using Bindings = std::map<std::string, Bound>;
 
 struct ComputePass {
-    vk::raii::DescriptorSetLayout set_layout = nullptr;
-    vk::raii::PipelineLayout      layout     = nullptr;
-    vk::raii::Pipeline            pipeline   = nullptr;
-    vk::raii::DescriptorPool      pool       = nullptr;
-    vk::raii::DescriptorSet       set        = nullptr;
+    std::shared_ptr<const ComputePipeline> compute; // shared by all passes of the same shader and constants
+    vk::raii::DescriptorPool               pool = nullptr;
+    vk::raii::DescriptorSet                set  = nullptr;
 };
 
 /// Binds by name: a name that the shader uses and `bindings` lacks is a programmer's mistake (std::logic_error); names it does not use are ignored.
@@ -60,7 +58,7 @@ void dispatch(const vk::raii::CommandBuffer& commands, const ComputePass& pass, 
 void dispatch_indirect(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const Buffer& arguments);
 template <typename T> void push(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const T& value)
 {
-    commands.pushConstants<T>(*pass.layout, vk::ShaderStageFlagBits::eCompute, 0, value);
+    commands.pushConstants<T>(*pass.compute->layout, vk::ShaderStageFlagBits::eCompute, 0, value);
 }
 
 /// GPU timestamps between passes.

@@ -11,6 +11,13 @@
 
 namespace ssrlab {
 
+/// A compute shader with its constants, ready to run with anything bound to it.
+struct ComputePipeline {
+    vk::raii::DescriptorSetLayout set_layout = nullptr;
+    vk::raii::PipelineLayout      layout     = nullptr;
+    vk::raii::Pipeline            pipeline   = nullptr;
+};
+
 struct GpuImpl {
     GpuImpl() = default;
     ~GpuImpl(); // keeps the pipelines that were compiled for the next start
@@ -33,6 +40,14 @@ struct GpuImpl {
     uint64_t                         timestamp_mask      = ~0ULL;
     std::mutex                       messages_mutex;
     std::vector<std::string>         messages;
+
+    /// Made before, by shader and constants; the one used longest ago goes when there are too many.
+    struct KnownPipeline {
+        std::shared_ptr<const ComputePipeline> pipeline;
+        uint64_t                               last_use = 0;
+    };
+    std::map<std::string, KnownPipeline> known_pipelines;
+    uint64_t                             pipeline_uses = 0;
 };
 
 /// Records commands, submits them and waits. Throws Failure when the device is lost or the wait exceeds five minutes.

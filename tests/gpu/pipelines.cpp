@@ -1,0 +1,54 @@
+// Compute pipelines are made once for equal shaders and constants, and the store of them stays small.
+#include "gpu/compute.h"
+#include "gpu/device.h"
+#include "shared.h"
+
+namespace ssrlab::test {
+namespace {
+
+struct Launch {
+    Buffer items  = make_buffer_with<uint32_t>(device(), std::vector<uint32_t>{1000});
+    Buffer groups = make_buffer(device(), sizeof(glm::uvec3));
+
+    ComputePass pass(int items_per_group)
+    {
+        Constants constants;
+        constants.add(CONSTANT_ITEMS_PER_GROUP, items_per_group);
+        return make_compute_pass(device(), compile_shader({.file = "launch.comp"}),
+                                 {{"ItemCount", items}, {"Launch", groups}}, constants);
+    }
+
+    /// Workgroups that the pass computes.
+    uint32_t run(const ComputePass& pass)
+    {
+        submit(device(), [&](const vk::raii::CommandBuffer& commands) {
+            dispatch(commands, pass, {1, 1, 1});
+            barrier(commands);
+        });
+        return download_as<uint32_t>(device(), groups, 3)[0];
+    }
+};
+
+TEST(Pipelines, AreSharedByEqualConstantsOnly)
+{
+    Launch            a, b;
+    const ComputePass first = a.pass(10), again = b.pass(10), other = a.pass(25);
+    EXPECT_EQ(first.compute, again.compute);
+    EXPECT_NE(first.compute, other.compute);
+    EXPECT_EQ(a.run(first), 100U);
+    EXPECT_EQ(a.run(other), 40U);
+    EXPECT_EQ(b.run(again), 100U); // with its own buffers
+}
+
+TEST(Pipelines, ThatWereForgottenGoOnForThoseWhoHoldThem)
+{
+    Launch            launch;
+    const ComputePass first = launch.pass(10);
+    for (int i = 1; i <= 300; ++i) launch.pass(100 + i);
+    EXPECT_LE(device().impl->known_pipelines.size(), 256U);
+    EXPECT_NE(launch.pass(10).compute, first.compute);
+    EXPECT_EQ(launch.run(first), 100U);
+}
+
+} // namespace
+} // namespace ssrlab::test
