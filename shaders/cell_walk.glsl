@@ -9,6 +9,7 @@ struct CellWalk
     ivec2    corner; // exit corner of the cell
     int      level;  // below 0: found, the pixel at this corner
     crossing t;      // where the ray enters the cell
+    crossing t_stop; // the walk goes no farther than the cell in which the ray is there
     int      visited;
 };
 
@@ -24,13 +25,20 @@ CellWalk start_walk(Ray ray, int level)
     walk.t             = exit_t(walk.grid, t_border);
     walk.corner        = (next_corner(walk.corner, 1, t_border, walk.t) + (1 << level) - 1) & -(1 << level);
     walk.level         = level;
+    walk.t_stop        = walk.grid.t_end;
     walk.visited       = 0;
     return walk;
 }
 
-bool goes_on(CellWalk walk)
+// Neither found anything yet nor ended.
+bool is_open(CellWalk walk)
 {
     return walk.level >= 0 && walk.t < walk.grid.t_end && walk.visited < max_steps;
+}
+
+bool goes_on(CellWalk walk)
+{
+    return walk.level >= 0 && walk.t < walk.t_stop && walk.visited < max_steps;
 }
 
 ivec2 cell_of(CellWalk walk)
@@ -61,3 +69,36 @@ void move(inout CellWalk walk, bool touched, int top)
     walk.level    = goes ? level : walk.level;
     walk.visited += int(goes);
 }
+
+#ifdef EXACT_ARITHMETIC
+// A walk by exact crossings passes over nothing.
+void stop_at(inout CellWalk walk, real t) {}
+void leap(inout CellWalk walk, int level, real t) {}
+#else
+void stop_at(inout CellWalk walk, real t)
+{
+    walk.t_stop = t < walk.grid.t_end ? t : walk.grid.t_end;
+}
+
+// The exit corner of the cell of some level in which the ray is at t. The position names it but for rounding, which the borders then settle.
+ivec2 corner_at(CellWalk walk, int level, real t)
+{
+    int   size   = 1 << level;
+    ivec2 corner = ((ivec2(floor(walk.forward.origin.xy + t * walk.forward.delta.xy)) >> level) + 1) << level;
+    corner += ivec2(lessThanEqual(border_t(walk.forward, walk.grid, corner), real2(t))) * size;
+    return corner - ivec2(greaterThan(border_t(walk.forward, walk.grid, corner - size), real2(t))) * size;
+}
+
+// Passes over a stretch without surfaces, up to the cell of this level in which the ray is at t: there it stands as if it had walked.
+void leap(inout CellWalk walk, int level, real t)
+{
+    real2 way_px   = (t - walk.t) * walk.forward.delta.xy;
+    bool  goes     = is_open(walk) && max(way_px.x, way_px.y) > real(2 << level);
+    ivec2 corner   = corner_at(walk, level, t);
+    real2 t_border = border_t(walk.forward, walk.grid, corner - (1 << level));
+    real  t_entry  = max(walk.t, max(t_border.x, t_border.y));
+    walk.t         = !goes ? walk.t : t < walk.grid.t_end ? t_entry : walk.grid.t_end;
+    walk.corner    = goes ? corner : walk.corner;
+    walk.level     = goes ? level : walk.level;
+}
+#endif

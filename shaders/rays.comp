@@ -1,22 +1,19 @@
-// Rays ready to trace: for each pixel that reflects the screen-space segment of its mirror ray. Pixels that do not reflect leave no trace in
-// the list.
-// By the effects' parameters there are several rays per pixel, one after the other in the list, or one pixel for each block of pixels.
+// Rays ready to trace: for each pixel that is marked in a listed tile the screen-space segment of its mirror ray. Other pixels leave no trace in
+// the list. By the effects' parameters there may be several rays per pixel, one after the other in the list.
 #include "segment.glsl"
 #include "hash.glsl"
 #include "effects/tiles.glsl"
-#extension GL_KHR_shader_subgroup_ballot : require
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(constant_id = CONSTANT_EVERY_SURFACE) const int every_surface = 0; // trace what does not reflect, too
 layout(constant_id = CONSTANT_RAYS_PER_PIXEL) const int rays_per_pixel = 1;
-layout(constant_id = CONSTANT_TRACE_BLOCK_PX) const int block_px = 1;
 
-layout(set = 0, binding = 4, scalar) buffer RayCount { uint ray_count; };
+layout(set = 0, binding = 4, scalar) writeonly buffer RayCount { uint ray_count; };
 layout(set = 0, binding = 5, scalar) writeonly buffer RayOrigins { real3 ray_origin[]; };
 layout(set = 0, binding = 6, scalar) writeonly buffer RayDeltas { real3 ray_delta[]; };
 layout(set = 0, binding = 7, scalar) writeonly buffer RayLengths { real ray_length_m[]; };
 layout(set = 0, binding = 8, scalar) writeonly buffer RayPixels { uint ray_pixel[]; }; // number = status of a miss
+layout(set = 0, binding = 11, scalar) readonly buffer TileMasks { uvec2 tile_masks[]; };
 
 // A place inside the pixel, exact in float. The depth image is flat inside each pixel: a ray that starts on the far side of its pixel's
 // centre and runs sideways is behind its neighbour's slab face, which ray_offset_m > 0 avoids.
@@ -42,44 +39,19 @@ real plane_depth(ivec2 pixel, real depth, real3 normal, real2 start_px)
     return usable ? start_depth : real(0);
 }
 
-// The pixels of a block from its centre outward, row by row where equally far.
-int rank_in_block(ivec2 pixel)
-{
-    ivec2 place  = pixel % block_px;
-    ivec2 offset = 2 * place - (block_px - 1);
-    return (offset.x * offset.x + offset.y * offset.y) * 16 + place.y * block_px + place.x;
-}
-
-shared int first_rank[16]; // of the pixels that reflect, for each block of the tile
-
-// A block is traced from the first of its pixels that reflects. Called by all invocations.
-bool first_of_block(ivec2 pixel, bool reflecting)
-{
-    ivec2 block = pixel % 8 / block_px;
-    int   index = block.y * (8 / block_px) + block.x;
-    if (gl_LocalInvocationIndex < 16) first_rank[gl_LocalInvocationIndex] = 1 << 16;
-    barrier();
-    if (reflecting) atomicMin(first_rank[index], rank_in_block(pixel));
-    barrier();
-    return reflecting && first_rank[index] == rank_in_block(pixel);
-}
-
 void main()
 {
     ivec2 pixel;
     if (!listed_pixel(pixel)) return;
-    bool  inside     = all(lessThan(pixel, size_px));
-    bool  reflecting = inside && reflects(pixel);
-    bool  traced     = reflecting || (every_surface != 0 && inside && has_surface(pixel));
-    if (block_px > 1) traced = first_of_block(pixel, reflecting) || (traced && !reflecting);
+    if (listed_index() == 0 && gl_LocalInvocationIndex == 0) ray_count = traced_pixels * rays_per_pixel;
+    ivec2 tile  = listed_tile();
+    uvec2 mask  = tile_masks[tile.y * ((size_px.x + 7) / 8) + tile.x];
+    uint  place = gl_LocalInvocationIndex, bit = 1u << place % 32;
+    bool  upper = place >= 32;
+    if (((upper ? mask.y : mask.x) & bit) == 0) return;
 
-    uvec4 ballot = subgroupBallot(traced);
-    uint  first  = 0;
-    if (subgroupElect()) first = atomicAdd(ray_count, subgroupBallotBitCount(ballot) * rays_per_pixel);
-    first = subgroupBroadcastFirst(first);
-    if (!traced) return;
-
-    uint  index  = first + subgroupBallotExclusiveBitCount(ballot) * rays_per_pixel;
+    uint  before = bitCount((upper ? mask.y : mask.x) & (bit - 1)) + (upper ? bitCount(mask.x) : 0);
+    uint  index  = (tiles[listed_index()].y + before) * rays_per_pixel;
     real  depth  = real(imageLoad(depth_image, pixel).x);
     real3 normal = normal_at(pixel);
     for (int ray = 0; ray < rays_per_pixel; ++ray)

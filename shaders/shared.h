@@ -21,6 +21,13 @@
 #define RAYS_PER_GROUP 64
 #define MAX_GROUPS_X 32768
 
+// The one workgroup that lists the tiles (shaders/tile_list.comp).
+#define TILE_LIST_INVOCATIONS 128
+
+// Of the beam that a group's rays form (shaders/ray_beams.comp): how many clear stretches are kept, and beams per workgroup.
+#define BEAM_STRETCHES 4
+#define BEAMS_PER_GROUP 64
+
 // Specialization constants. Technique parameters start at CONSTANT_PARAMETERS, in the order of technique.toml's names.
 #define CONSTANT_SLAB_SLOPE 0
 #define CONSTANT_SLAB_SCALE 1
@@ -35,6 +42,7 @@
 #define CONSTANT_PYRAMID_KIND 10
 #define CONSTANT_RAYS_PER_PIXEL 11
 #define CONSTANT_FROM_PIXELS 12
+#define CONSTANT_TOP_LEVEL 13
 #define CONSTANT_PARAMETERS 32
 #define CONSTANT_EFFECTS 64 // the effects' parameters, in the order of render/effects.cpp
 

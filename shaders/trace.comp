@@ -17,7 +17,7 @@ layout(set = 0, binding = 8, scalar) readonly buffer RayPixels { uint ray_pixel[
 layout(set = 0, binding = 9, scalar) writeonly buffer HitPixels { uint hit_pixel[]; }; // number = status
 layout(set = 0, binding = 10, scalar) writeonly buffer HitTs { real hit_t[]; };
 #ifdef COUNT_WORK
-layout(set = 0, binding = 11, scalar) writeonly buffer Work { uvec3 work[]; }; // steps, depth fetches, pyramid fetches
+layout(set = 0, binding = 11, scalar) buffer Work { uvec3 work[]; }; // steps, depth fetches, pyramid fetches
 #endif
 
 Ray load_ray(uint index)
@@ -43,6 +43,9 @@ void store_result(uint index, TraceResult result, int number)
     hit_t[index]     = result.t;
 #ifdef COUNT_WORK
     work[index] = uvec3(result.steps, depth_fetches[number], pyramid_fetches[number]);
+#ifdef RAY_BEAMS
+    if (index % RAYS_PER_GROUP == 0) work[index].z += beam_fetches[ray_group()]; // the whole group's, counted once
+#endif
 #endif
 }
 

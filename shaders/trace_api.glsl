@@ -123,6 +123,29 @@ uvec2 load_pyramid(ivec2 cell, int level)
     return imageLoad(depth_pyramid, ivec2(pyramid_width - (pyramid_width >> (level - 1)), 0) + cell).xy;
 }
 
+// ---- Beams
+#ifdef RAY_BEAMS
+layout(set = 0, binding = 12, scalar) readonly buffer Beams { real2 clear_stretches[]; };
+#ifdef COUNT_WORK
+layout(set = 0, binding = 13, scalar) readonly buffer BeamWork { uint beam_fetches[]; };
+#endif
+
+uint ray_group()
+{
+    return gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x;
+}
+#endif
+
+// Two t between which no ray of this group touches anything (shaders/ray_beams.comp): stretch 0, the next one … Where there is none, or the
+// technique's inputs do not name "ray_beams", it begins beyond every end.
+real2 clear_stretch(int number)
+{
+#ifdef RAY_BEAMS
+    if (number < BEAM_STRETCHES) return clear_stretches[ray_group() * BEAM_STRETCHES + number];
+#endif
+    return real2(2);
+}
+
 // ---- The hit contract
 // How far rounding may move the depth of a ray. Nothing in double precision, which is what float is held to.
 real depth_rounding(real3 delta)

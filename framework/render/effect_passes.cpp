@@ -115,7 +115,7 @@ Recording depth_pyramid(Gpu& /*gpu*/, PreparedFrame& frame)
 
 Recording trace(Gpu& /*gpu*/, PreparedFrame& frame)
 {
-    return [&](const auto& commands) { dispatch_indirect(commands, frame.trace.trace, frame.rays->launch); };
+    return [&](const auto& commands) { record_technique(commands, frame.trace.technique, *frame.rays); };
 }
 
 Recording colour_downsampling(Gpu& gpu, PreparedFrame& frame)
@@ -231,7 +231,7 @@ TraceCounts count_hits(Gpu& gpu, PreparedFrame& frame)
         commands.fillBuffer(*counts.buffer, 0, VK_WHOLE_SIZE, 0);
         record_rays(commands, frame.trace, *frame.buffers, *frame.rays);
         record_pyramid(commands, frame.pyramid);
-        dispatch_indirect(commands, frame.trace.trace, frame.rays->launch);
+        record_technique(commands, frame.trace.technique, *frame.rays);
         barrier(commands);
         dispatch_indirect(commands, count, frame.rays->launch);
         barrier(commands);

@@ -7,7 +7,8 @@ namespace {
 
 struct Bounce {
     std::shared_ptr<DerivedRays> rays;
-    ComputePass                  set_up, launch, trace, colour;
+    ComputePass                  set_up, launch, colour;
+    TechniquePasses              technique;
 };
 
 Bindings list_bindings(const FrameBuffers& buffers, const DerivedRays& derived)
@@ -28,10 +29,10 @@ Bounce make_bounce(Gpu& gpu, const PreparedFrame& frame, const DerivedRays* from
     const Defines defines = from == nullptr ? Defines{} : Defines{{"FURTHER", "1"}};
     Bindings      traced  = list_bindings(buffers, *bounce.rays);
     traced.insert({"View", buffers.view});
-    bounce.set_up = make_colour_pass(gpu, frame, "effects/bounce_rays.comp", defines, arriving);
-    bounce.launch = make_launch_pass(gpu, bounce.rays->rays.count, bounce.rays->rays.launch, RAYS_PER_GROUP);
-    bounce.trace  = make_trace_pass(gpu, frame, traced, Precision::float32);
-    bounce.colour = make_colour_pass(gpu, frame, "effects/bounce_colour.comp", {}, traced);
+    bounce.set_up    = make_colour_pass(gpu, frame, "effects/bounce_rays.comp", defines, arriving);
+    bounce.launch    = make_launch_pass(gpu, bounce.rays->rays.count, bounce.rays->rays.launch, RAYS_PER_GROUP);
+    bounce.technique = make_technique_passes(gpu, frame, bounce.rays->rays, traced);
+    bounce.colour    = make_colour_pass(gpu, frame, "effects/bounce_colour.comp", {}, traced);
     return bounce;
 }
 
@@ -45,7 +46,7 @@ void record_bounce(const vk::raii::CommandBuffer& commands, const Bounce& bounce
     barrier(commands);
     dispatch(commands, bounce.launch, {1, 1, 1});
     barrier(commands);
-    dispatch_indirect(commands, bounce.trace, rays.launch);
+    record_technique(commands, bounce.technique, rays);
     barrier(commands);
     dispatch_indirect(commands, bounce.colour, rays.launch);
 }

@@ -11,11 +11,12 @@ struct HiddenLayer {
     GBufferPtr                   layer;
     std::shared_ptr<DerivedRays> missed;
     PyramidPasses                pyramid;
-    ComputePass                  gather, launch, trace, merge;
+    ComputePass                  gather, launch, merge;
+    TechniquePasses              technique;
 };
 
-/// The technique's own trace pass: it does not know which layer it sees.
-ComputePass make_layer_trace_pass(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays)
+/// The technique's own passes: it does not know which layer it sees.
+TechniquePasses make_layer_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays)
 {
     const FrameBuffers& buffers  = *frame.buffers;
     Bindings            bindings = {{"View", buffers.view},
@@ -24,7 +25,7 @@ ComputePass make_layer_trace_pass(Gpu& gpu, const PreparedFrame& frame, const Ra
                                     {"material_image", buffers.second_layer->material},
                                     {"depth_pyramid", buffers.second_pyramid.atlas}};
     bindings.merge(bindings_of(buffers, rays));
-    return make_trace_pass(gpu, frame, bindings, Precision::float32);
+    return make_technique_passes(gpu, frame, rays, bindings);
 }
 
 } // namespace
@@ -44,7 +45,7 @@ Recording hidden_layer(Gpu& gpu, PreparedFrame& frame)
     const Bindings derived  = derived_bindings(*own->missed);
     own->gather             = make_effect_pass(gpu, frame, "effects/gather_misses.comp", {}, derived);
     own->launch             = make_launch_pass(gpu, own->missed->rays.count, own->missed->rays.launch, RAYS_PER_GROUP);
-    own->trace              = make_layer_trace_pass(gpu, frame, own->missed->rays);
+    own->technique          = make_layer_passes(gpu, frame, own->missed->rays);
     own->merge              = make_effect_pass(gpu, frame, "effects/second_layer_hits.comp", {}, derived);
     const double separation = frame.settings.effects.at("hidden_layer_separation_m");
     return [&frame, own, separation](const auto& commands) {
@@ -57,7 +58,7 @@ Recording hidden_layer(Gpu& gpu, PreparedFrame& frame)
         barrier(commands);
         dispatch(commands, own->launch, {1, 1, 1});
         barrier(commands);
-        dispatch_indirect(commands, own->trace, missed.launch);
+        record_technique(commands, own->technique, missed);
         barrier(commands);
         dispatch_indirect(commands, own->merge, missed.launch);
     };

@@ -81,6 +81,11 @@ RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision)
     buffers.pixels     = make_buffer(gpu, rays * 4);
     buffers.hit_pixels = make_buffer(gpu, rays * 4);
     buffers.hit_ts     = make_buffer(gpu, rays * real_bytes);
+
+    const uint64_t groups = (rays - 1) / RAYS_PER_GROUP + 1;
+    buffers.beams         = make_buffer(gpu, groups * BEAM_STRETCHES * 2 * real_bytes);
+    buffers.beam_work     = make_buffer(gpu, groups * sizeof(uint32_t));
+    buffers.beam_launch   = make_buffer(gpu, 16);
     return buffers;
 }
 
@@ -92,18 +97,20 @@ FrameStatistics count_picture(Gpu& gpu, const FrameBuffers& buffers)
     const glm::ivec2 size_px = buffers.gbuffer->view.size_px;
     const glm::uvec3 tiles   = groups_of_8(size_px);
     FrameStatistics  statistics;
-    statistics.pixels = static_cast<uint32_t>(size_px.x) * static_cast<uint32_t>(size_px.y);
-    statistics.tiles  = tiles.x * tiles.y;
-    TracePasses passes;
-    passes.classification = make_compute_pass(gpu, compile_shader({.file = "effects/classification.comp"}),
-                                              {{"depth_image", buffers.gbuffer->depth},
-                                               {"normal_image", buffers.gbuffer->normal},
-                                               {"material_image", buffers.gbuffer->material},
-                                               {"TileCount", buffers.tiles.count},
-                                               {"Tiles", buffers.tiles.tiles},
-                                               {"PictureStatistics", buffers.tiles.statistics}});
-    passes.tile_launch    = make_launch_pass(gpu, buffers.tiles.count, buffers.tiles.launch, 1);
-    submit(gpu, [&](const auto& commands) { record_classification(commands, passes, buffers); });
+    statistics.pixels                = static_cast<uint32_t>(size_px.x) * static_cast<uint32_t>(size_px.y);
+    statistics.tiles                 = tiles.x * tiles.y;
+    const ComputePass classification = make_compute_pass(gpu, compile_shader({.file = "effects/classification.comp"}),
+                                                         {{"depth_image", buffers.gbuffer->depth},
+                                                          {"normal_image", buffers.gbuffer->normal},
+                                                          {"material_image", buffers.gbuffer->material},
+                                                          {"TileMasks", buffers.tiles.masks},
+                                                          {"PictureStatistics", buffers.tiles.statistics}});
+    submit(gpu, [&](const auto& commands) {
+        commands.fillBuffer(*buffers.tiles.statistics.buffer, 0, VK_WHOLE_SIZE, 0);
+        barrier(commands);
+        dispatch(commands, classification, tiles);
+        barrier(commands);
+    });
     statistics.picture = download_as<PictureCounts>(gpu, buffers.tiles.statistics, 1)[0];
     return statistics;
 }
@@ -240,7 +247,7 @@ TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision)
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         record_rays(commands, passes, *frame.buffers, rays);
         record_pyramid(commands, frame.pyramid);
-        dispatch_indirect(commands, passes.trace, rays.launch);
+        record_technique(commands, passes.technique, rays);
         barrier(commands);
     });
     return precision == Precision::float64 ? read_result<double>(gpu, gbuffer.view.size_px, rays, &work)

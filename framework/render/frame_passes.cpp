@@ -171,8 +171,9 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const Gp
 TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
 {
     const glm::uvec3 tiles = groups_of_8(size_px);
-    return {make_buffer(gpu, 16), make_buffer(gpu, static_cast<uint64_t>(tiles.x) * tiles.y * sizeof(uint32_t)),
-            make_buffer(gpu, 16), make_buffer(gpu, sizeof(PictureCounts))};
+    const uint64_t   bytes = static_cast<uint64_t>(tiles.x) * tiles.y * sizeof(glm::uvec2);
+    return {make_buffer(gpu, bytes), make_buffer(gpu, 16), make_buffer(gpu, bytes), make_buffer(gpu, 16),
+            make_buffer(gpu, sizeof(PictureCounts))};
 }
 
 Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
@@ -184,6 +185,9 @@ Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
             {"RayPixels", rays.pixels},
             {"HitPixels", rays.hit_pixels},
             {"HitTs", rays.hit_ts},
+            {"Beams", rays.beams},
+            {"BeamWork", rays.beam_work},
+            {"TileMasks", buffers.tiles.masks},
             {"TileCount", buffers.tiles.count},
             {"Tiles", buffers.tiles.tiles},
             {"PictureStatistics", buffers.tiles.statistics},
@@ -201,8 +205,10 @@ ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch
                              constants);
 }
 
-ComputePass make_trace_pass(Gpu& gpu, const PreparedFrame& frame, const Bindings& bindings, Precision precision)
+TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays,
+                                      const Bindings& bindings)
 {
+    const Precision precision = rays.precision;
     // A folder with a trace.comp of its own replaces the standard one (for techniques that work in tiles, say).
     const std::filesystem::path own = frame.technique.folder / "trace.comp";
     ShaderSource                trace{.file = std::filesystem::exists(own) ? own : std::filesystem::path("trace.comp"),
@@ -215,7 +221,33 @@ ComputePass make_trace_pass(Gpu& gpu, const PreparedFrame& frame, const Bindings
     if (bindings.contains("Work")) trace.defines.emplace("COUNT_WORK", "1");
     Constants constants = settings_constants(frame, precision, exact);
     add_parameters(constants, frame.technique.parameters, frame.values, CONSTANT_PARAMETERS);
-    return make_compute_pass(gpu, compile_shader(trace), bindings, constants);
+
+    TechniquePasses passes;
+    // Walks by exact crossings pass over nothing.
+    passes.reads_beams =
+        std::ranges::count(frame.technique.inputs, "ray_beams") > 0 && !exact && parameter_or(frame, "beams", 1) != 0;
+    if (passes.reads_beams) {
+        trace.defines.emplace("RAY_BEAMS", "1");
+        ShaderSource beams{.file = "ray_beams.comp", .defines = precision_defines(precision)};
+        if (bindings.contains("Work")) beams.defines.emplace("COUNT_WORK", "1");
+        Constants top_level;
+        top_level.add(CONSTANT_TOP_LEVEL, static_cast<int32_t>(parameter_or(frame, "top_level", 31)));
+        passes.beam_launch = make_launch_pass(gpu, rays.count, rays.beam_launch, RAYS_PER_GROUP * BEAMS_PER_GROUP);
+        passes.beams       = make_compute_pass(gpu, compile_shader(beams), bindings, top_level);
+    }
+    passes.trace = make_compute_pass(gpu, compile_shader(trace), bindings, constants);
+    return passes;
+}
+
+void record_technique(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes, const RayBuffers& rays)
+{
+    if (passes.reads_beams) {
+        dispatch(commands, passes.beam_launch, {1, 1, 1});
+        barrier(commands);
+        dispatch_indirect(commands, passes.beams, rays.beam_launch);
+        barrier(commands);
+    }
+    dispatch_indirect(commands, passes.trace, rays.launch);
 }
 
 TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view,
@@ -235,22 +267,27 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
     TracePasses passes;
     passes.classification =
         make_compute_pass(gpu, compile_shader({.file = "effects/classification.comp"}), bindings, constants);
+    passes.tile_list =
+        make_compute_pass(gpu, compile_shader({.file = "tile_list.comp"}), bindings, {}, sizeof(glm::ivec2));
     passes.tile_launch = make_launch_pass(gpu, buffers.tiles.count, buffers.tiles.launch, 1);
     passes.rays        = make_compute_pass(
                gpu, compile_shader({.file = "rays.comp", .defines = precision_defines(rays.precision)}), bindings, constants);
     passes.ray_launch = make_launch_pass(gpu, rays.count, rays.launch, RAYS_PER_GROUP);
-    passes.trace      = make_trace_pass(gpu, frame, bindings, rays.precision);
+    passes.technique  = make_technique_passes(gpu, frame, rays, bindings);
     return passes;
 }
 
 void record_classification(const vk::raii::CommandBuffer& commands, const TracePasses& passes,
                            const FrameBuffers& buffers)
 {
+    const glm::uvec3 tiles = groups_of_8(buffers.gbuffer->view.size_px);
     barrier(commands);
-    commands.fillBuffer(*buffers.tiles.count.buffer, 0, VK_WHOLE_SIZE, 0);
     commands.fillBuffer(*buffers.tiles.statistics.buffer, 0, VK_WHOLE_SIZE, 0);
     barrier(commands);
-    dispatch(commands, passes.classification, groups_of_8(buffers.gbuffer->view.size_px));
+    dispatch(commands, passes.classification, tiles);
+    barrier(commands);
+    push(commands, passes.tile_list, glm::ivec2(tiles));
+    dispatch(commands, passes.tile_list, {1, 1, 1});
     barrier(commands);
     dispatch(commands, passes.tile_launch, {1, 1, 1});
     barrier(commands);
@@ -259,7 +296,7 @@ void record_classification(const vk::raii::CommandBuffer& commands, const TraceP
 void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers,
                       const RayBuffers& rays)
 {
-    commands.fillBuffer(*rays.count.buffer, 0, VK_WHOLE_SIZE, 0);
+    commands.fillBuffer(*rays.count.buffer, 0, VK_WHOLE_SIZE, 0); // nothing runs where no tile is listed
     barrier(commands);
     dispatch_indirect(commands, passes.rays, buffers.tiles.launch);
     barrier(commands);

@@ -13,6 +13,7 @@ struct RayBuffers {
     Precision precision = Precision::float32;
     size_t    capacity  = 0;
     Buffer    count, launch, origins, deltas, lengths, pixels, hit_pixels, hit_ts;
+    Buffer    beams, beam_work, beam_launch; // of each group of rays (shaders/ray_beams.comp)
 };
 /// The uniform block of shaders/view.glsl.
 Buffer     upload_view(Gpu& gpu, const View& view, Precision precision);
@@ -41,7 +42,7 @@ struct ConePyramid {
 
 /// The tiles to trace (shaders/effects/classification.comp) and the counts for the plan.
 struct TileBuffers {
-    Buffer count, tiles, launch, statistics;
+    Buffer masks, count, tiles, launch, statistics;
 };
 TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px);
 
@@ -73,8 +74,15 @@ struct PyramidPasses {
     std::vector<PyramidPush> levels;                  // empty: the technique reads no pyramid
 };
 
+/// The technique on one list of rays.
+struct TechniquePasses {
+    bool        reads_beams = false;
+    ComputePass beam_launch, beams, trace;
+};
+
 struct TracePasses {
-    ComputePass classification, tile_launch, rays, ray_launch, trace;
+    ComputePass     classification, tile_list, tile_launch, rays, ray_launch;
+    TechniquePasses technique;
 };
 
 /// Writes an effect's commands.
@@ -105,11 +113,13 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const Gp
 /// work: steps, depth and pyramid fetches per ray, or null for the pipeline that is timed.
 TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view,
                               const Buffer* work);
-/// The technique on the list and the layer that are bound.
-ComputePass make_trace_pass(Gpu& gpu, const PreparedFrame& frame, const Bindings& bindings, Precision precision);
+/// The technique on a list and the layer that is bound.
+TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays,
+                                      const Bindings& bindings);
+void record_technique(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes, const RayBuffers& rays);
 ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch, int items_per_group);
 /// Everything that shaders may read and write, by its name; without the view.
-Bindings  bindings_of(const FrameBuffers& buffers, const RayBuffers& rays);
+Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays);
 /// exact: for a shader that is compiled with EXACT_ARITHMETIC, whose slab is in double precision.
 Constants settings_constants(const PreparedFrame& frame, Precision precision, bool exact = false);
 /// One constant per parameter from `id` on, under its own name, and names for the choices: PARAMETER_CHOICE.

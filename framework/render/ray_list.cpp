@@ -48,10 +48,6 @@ template <typename Real> std::vector<RayInput> read_rays(Gpu& gpu, const RayBuff
     for (size_t i = 0; i < count; ++i)
         rays.push_back({glm::dvec3(origins[i]), glm::dvec3(deltas[i]), static_cast<double>(lengths[i]),
                         static_cast<TraceStatus>(pixels[i] >> (2 * PIXEL_BITS)), unpack_pixel(pixels[i])});
-    // The shader appends rays in the order in which its groups happen to run.
-    std::ranges::sort(rays, [](const RayInput& a, const RayInput& b) {
-        return std::pair(a.pixel.y, a.pixel.x) < std::pair(b.pixel.y, b.pixel.x);
-    });
     return rays;
 }
 
@@ -122,7 +118,7 @@ std::vector<RayOutcome> trace_rays(Gpu& gpu, RayTracer& tracer, std::span<const 
         dispatch(commands, tracer.passes.ray_launch, {1, 1, 1});
         barrier(commands);
         record_pyramid(commands, tracer.frame.pyramid);
-        dispatch_indirect(commands, tracer.passes.trace, tracer.rays.launch);
+        record_technique(commands, tracer.passes.technique, tracer.rays);
         barrier(commands);
     });
     return in_double(tracer) ? read_outcomes<double>(gpu, tracer, rays.size())

@@ -37,7 +37,8 @@ RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Techniqu
                              const ParameterValues& values, const TraceSettings& settings, size_t capacity,
                              Precision precision = Precision::float32);
 
-/// The mirror rays of all pixels that reflect, as the shader sets them up; row by row.
+/// The mirror rays of all pixels that reflect, as the shader sets them up, in the order of its list: tiles of 8 x 8 that
+/// reflect as a whole, row by row, then the others.
 std::vector<RayInput> set_up_rays(Gpu& gpu, RayTracer& tracer);
 
 /// Builds the inputs that the technique reads and traces the list. Values are rounded to the tracer's precision.

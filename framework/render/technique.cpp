@@ -16,6 +16,7 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string> manifest_keys  = {"name",  "summary", "cite",       "inputs",
                                                  "exact", "limits",  "bounded_by", "parameters"};
+const std::vector<std::string> known_inputs   = {"depth_pyramid", "ray_beams"};
 const std::vector<std::string> parameter_keys = {"default", "min", "max", "choices", "doc"};
 
 const toml::node& required(const TomlFile& file, const toml::table& table, const std::string& key,
@@ -137,6 +138,14 @@ void check_bounds(const TomlFile& file, const toml::node& node, const Technique&
     }
 }
 
+void read_inputs(const TomlFile& file, const toml::node& node, Technique& technique)
+{
+    technique.inputs = toml_texts(file, node, "inputs");
+    for (const std::string& input : technique.inputs)
+        if (std::ranges::count(known_inputs, input) == 0)
+            throw_spec_error("{}: {}", toml_place(file, node), unknown_name("input", input, known_inputs));
+}
+
 void read_limits(const TomlFile& file, const toml::node& node, Technique& technique)
 {
     technique.limits = toml_texts(file, node, "limits");
@@ -204,7 +213,7 @@ Technique load_technique(const fs::path& folder)
     technique.name    = toml_text(file, required(file, file.root, "name", "the technique"), "name");
     technique.summary = toml_text(file, required(file, file.root, "summary", "the technique"), "summary");
     if (const toml::node* node = file.root.get("cite")) technique.cite = toml_texts(file, *node, "cite");
-    if (const toml::node* node = file.root.get("inputs")) technique.inputs = toml_texts(file, *node, "inputs");
+    if (const toml::node* node = file.root.get("inputs")) read_inputs(file, *node, technique);
     if (const toml::node* node = file.root.get("exact")) technique.exact = toml_bool(file, *node, "exact");
     if (const toml::node* node = file.root.get("limits")) read_limits(file, *node, technique);
     if (const toml::node* node = file.root.get("parameters")) {

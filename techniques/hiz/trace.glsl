@@ -2,6 +2,9 @@
 #define TRACES_PAIRS
 #include "cell_walk.glsl"
 
+// Where nothing is known of what follows a clear stretch.
+#define LEAP_LEVEL 3
+
 int top = min(top_level, pyramid_levels());
 
 // number: the ray's current_ray.
@@ -24,10 +27,18 @@ void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult 
 {
     int      level = min(start_level, top);
     CellWalk a = start_walk(ray_a, level), b = start_walk(ray_b, level);
-    while (goes_on(a) || goes_on(b))
+    for (int stretch = 0; stretch <= BEAM_STRETCHES && (is_open(a) || is_open(b)); ++stretch)
     {
-        visit(ray_a, a, 0);
-        visit(ray_b, b, 1);
+        real2 clear = clear_stretch(stretch);
+        stop_at(a, clear.x);
+        stop_at(b, clear.x);
+        while (goes_on(a) || goes_on(b))
+        {
+            visit(ray_a, a, 0);
+            visit(ray_b, b, 1);
+        }
+        leap(a, min(LEAP_LEVEL, top), clear.y);
+        leap(b, min(LEAP_LEVEL, top), clear.y);
     }
     result_a = finish(ray_a, a, 0);
     result_b = finish(ray_b, b, 1);

@@ -22,6 +22,7 @@ std::vector<Contender> all_contenders(std::span<const Technique> techniques)
             if (parameter.name == "space") contender.values["space"] = "screen";
         list.push_back(contender);
     }
+    list.push_back({"hiz_without_beams", "hiz", {{"beams", "false"}}});
     list.push_back({"hiz_minmax", "hiz", {{"pyramid", "minmax"}}});
     list.push_back({"hiz_nearest", "hiz", {{"pyramid", "nearest"}}});
     return list;
@@ -106,7 +107,7 @@ void Bench::trace(benchmark::State& state, const std::string& scene, glm::ivec2 
     Judgement      work  = judgement_of(p, tracer);
     prepare_trace(*p.buffers, frame);
     const double ms = measure(
-        state, p, [&](const auto& commands) { dispatch_indirect(commands, frame.trace.trace, frame.rays->launch); });
+        state, p, [&](const auto& commands) { record_technique(commands, frame.trace.technique, *frame.rays); });
     state.counters["rays"]            = work.rays;
     state.counters["visits_per_ray"]  = work.visits;
     state.counters["visits_p99"]      = work.visits_p99;
@@ -120,7 +121,7 @@ void Bench::shade(benchmark::State& state, const std::string& scene, glm::ivec2 
     Picture&       p     = picture(scene, size_px);
     PreparedFrame& frame = frame_of(p, contender("hiz"));
     prepare_trace(*p.buffers, frame);
-    submit(gpu_, [&](const auto& commands) { dispatch_indirect(commands, frame.trace.trace, frame.rays->launch); });
+    submit(gpu_, [&](const auto& commands) { record_technique(commands, frame.trace.technique, *frame.rays); });
     const Recording hit_colour = make_recording(gpu_, frame, "hit_colour"),
                     composite  = make_recording(gpu_, frame, "composite");
     measure(state, p, [&](const auto& commands) {
@@ -138,9 +139,9 @@ void Bench::scattered(benchmark::State& state, const std::string& scene, glm::iv
     prepare_trace(*s.buffers, *s.frame);
     measure(state, p, [&](const auto& commands) {
         if (compacted)
-            dispatch_indirect(commands, s.frame->trace.trace, s.frame->rays->launch);
+            record_technique(commands, s.frame->trace.technique, *s.frame->rays);
         else
-            dispatch_indirect(commands, s.over_every_pixel.trace, s.every_pixel.launch);
+            record_technique(commands, s.over_every_pixel.technique, s.every_pixel);
     });
     state.counters["rays"] = static_cast<double>(s.frame->rays->capacity);
 }

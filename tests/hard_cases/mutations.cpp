@@ -93,6 +93,12 @@ std::vector<Mutation> mutations()
          "found = touches_surface(ray, grid, pixel, t_in, t_out) && fetch_depth(pixel) > "
          "min(depth_at(ray, t_in), depth_at(ray, t_out));",
          "equality_counts"},
+        replaced("ClearStretchesEndTooLate", "clear_stretch",
+                 "real2 mutated_clear_stretch(int number) { real2 t = clear_stretch(number); return real2(t.x, t.y + "
+                 "real(0.02)); }"),
+        replaced("ClearStretchesBeginTooEarly", "clear_stretch",
+                 "real2 mutated_clear_stretch(int number) { real2 t = clear_stretch(number); return real2(t.x < "
+                 "real(1) ? real(0) : t.x, t.y); }"),
         {"OutOfStepsIsAMiss", "hiz", "out_of_steps(walk.visited)", "miss(ray, walk.visited)", "seven_steps"},
         {"StopsBehindTheFirstObject", "dda", "while (!found && t_out < grid.t_end",
          "while (!found && (t_in == real(0) || depth_at(ray, t_out) >= fetch_depth(pixel)) && t_out < grid.t_end",

@@ -1,5 +1,7 @@
 #include "hard_cases/random_rays.h"
 
+#include "shared.h"
+
 #include <algorithm>
 #include <random>
 
@@ -90,6 +92,22 @@ Span make_span(int kind, glm::ivec2 size_px, Random& random)
     }
 }
 
+RayInput make_ray(Span span, int from_z, int to_z, glm::ivec2 size_px, Random& random)
+{
+    // Along the image's own far border: a case of its own (along_the_image_border).
+    for (int axis : {0, 1})
+        if (span.from[axis] == span.to[axis])
+            span.from[axis] = span.to[axis] = std::min(span.from[axis], size_px[axis] * px_steps - 1);
+    RayInput ray;
+    ray.origin_px_depth = glm::dvec3(glm::dvec2(span.from) / double(px_steps), double(from_z) / depth_steps);
+    ray.delta_px_depth =
+        glm::dvec3(glm::dvec2(span.to - span.from) / double(px_steps), double(to_z - from_z) / depth_steps);
+    for (int axis : {0, 1})
+        if (ray.delta_px_depth[axis] == 0 && random.between(0, 1) != 0) ray.delta_px_depth[axis] = -0.0;
+    ray.pixel = glm::clamp(span.from / px_steps, glm::ivec2(0), size_px - 1);
+    return ray;
+}
+
 } // namespace
 
 Setup make_field(Field field, glm::ivec2 size_px, uint32_t seed)
@@ -106,30 +124,38 @@ Setup make_field(Field field, glm::ivec2 size_px, uint32_t seed)
 
 std::vector<RayInput> random_rays(glm::ivec2 size_px, size_t count, uint32_t seed)
 {
-    constexpr int         kinds = 8;
+    constexpr size_t      kinds = 8, bundle = RAYS_PER_GROUP;
     Random                random(seed);
+    const glm::ivec2      extent = size_px * px_steps;
     std::vector<RayInput> rays;
     rays.reserve(count);
+    Span base{};
+    int  base_from_z = 0, base_to_z = 0;
     for (size_t i = 0; i < count; ++i) {
-        Span span = make_span(static_cast<int>(i % kinds), size_px, random);
-        // Along the image's own far border: a case of its own (along_the_image_border).
-        for (int axis : {0, 1})
-            if (span.from[axis] == span.to[axis])
-                span.from[axis] = span.to[axis] = std::min(span.from[axis], size_px[axis] * px_steps - 1);
-        // Any two depths, level, or a drift of a few steps.
-        const int from_z = random.between(1, depth_steps - 1);
-        const int kind_z = random.between(0, 3);
-        const int to_z   = kind_z == 0   ? from_z
-                           : kind_z == 1 ? std::clamp(from_z + random.between(-40, 40), 0, depth_steps)
-                                         : random.between(0, depth_steps);
-        RayInput  ray;
-        ray.origin_px_depth = glm::dvec3(glm::dvec2(span.from) / double(px_steps), double(from_z) / depth_steps);
-        ray.delta_px_depth =
-            glm::dvec3(glm::dvec2(span.to - span.from) / double(px_steps), double(to_z - from_z) / depth_steps);
-        for (int axis : {0, 1})
-            if (ray.delta_px_depth[axis] == 0 && random.between(0, 1) != 0) ray.delta_px_depth[axis] = -0.0;
-        ray.pixel = glm::clamp(span.from / px_steps, glm::ivec2(0), size_px - 1);
-        rays.push_back(ray);
+        // Every other group keeps together, as the rays of a mirror do: what holds for all of its rays may be asked once.
+        const bool bundled = i / bundle % 2 == 1;
+        if (!bundled || i % bundle == 0) {
+            base = make_span(static_cast<int>((bundled ? i / bundle / 2 : i) % kinds), size_px, random);
+            // Any two depths, level, or a drift of a few steps.
+            base_from_z      = random.between(1, depth_steps - 1);
+            const int kind_z = random.between(0, 3);
+            base_to_z        = kind_z == 0   ? base_from_z
+                               : kind_z == 1 ? std::clamp(base_from_z + random.between(-40, 40), 0, depth_steps)
+                                             : random.between(0, depth_steps);
+        }
+        Span span   = base;
+        int  from_z = base_from_z, to_z = base_to_z;
+        if (bundled) {
+            const int  spread = px_steps * 8;
+            const auto near   = [&](glm::ivec2 point) {
+                return glm::clamp(point + glm::ivec2(random.between(0, spread), random.between(0, spread)),
+                                    glm::ivec2(0), extent);
+            };
+            span   = {near(span.from), near(span.to)};
+            from_z = std::clamp(from_z + random.between(-4, 4), 1, depth_steps - 1);
+            to_z   = std::clamp(to_z + random.between(-4, 4), 0, depth_steps);
+        }
+        rays.push_back(make_ray(span, from_z, to_z, size_px, random));
     }
     return rays;
 }

@@ -144,6 +144,8 @@ TEST(TechniqueManifest, MistakesAboveTheParameters)
     EXPECT_THAT(message("name = 7\nsummary = \"Walks.\"\n"),
                 HasSubstr(":1: 'name' must be a non-empty string, got the integer 7"));
     EXPECT_THAT(message(head + "inputs = \"depth\"\n"), HasSubstr(":3: 'inputs' must be a list of strings"));
+    EXPECT_THAT(message(head + "inputs = [\"depth_pyramyd\"]\n"),
+                HasSubstr(":3: unknown input 'depth_pyramyd': did you mean 'depth_pyramid'?"));
     EXPECT_THAT(message(head + "exact = 1\n"), HasSubstr(":3: 'exact' must be true or false"));
     EXPECT_THAT(message(head + "exakt = true\n"), HasSubstr(":3: unknown key 'exakt': did you mean 'exact'?"));
     EXPECT_THAT(message(head + "bounded_by = [\"steps\"]\n"),

@@ -1,0 +1,112 @@
+// Follows the rays of a group as one beam through the depth pyramid, before they are traced: between two t it covers a box on screen and an
+// interval of depth that hold all its rays; where no cell under the box has a surface in that interval, none of the rays touches anything.
+#include "trace_api.glsl"
+
+layout(local_size_x = BEAMS_PER_GROUP) in;
+
+layout(constant_id = CONSTANT_TOP_LEVEL) const int top_level = 0;
+
+layout(set = 0, binding = 4, scalar) readonly buffer RayCount { uint ray_count; };
+layout(set = 0, binding = 5, scalar) readonly buffer RayOrigins { real3 ray_origin[]; };
+layout(set = 0, binding = 6, scalar) readonly buffer RayDeltas { real3 ray_delta[]; };
+layout(set = 0, binding = 12, scalar) writeonly buffer Beams { real2 clear_stretches[]; };
+#ifdef COUNT_WORK
+layout(set = 0, binding = 13, scalar) writeonly buffer BeamWork { uint beam_fetches[]; };
+#endif
+
+const real first_px = 8, finest_step_px = 8, shortest_stretch_px = 24; // on screen, along the beam's longest way
+const real widest_px = 32;                                             // where rays of different tiles meet in one group
+const int  most_tests = 96;
+// What rounding moves a position by, at the largest image, and a depth, as a share of the beam's nearest: many times more than it can.
+const real rounding_px = 1.0 / 16, rounding_depth = 1.0 / (1 << 20);
+
+int top = min(top_level, pyramid_levels());
+
+// x_px, y_px, depth
+struct Box
+{
+    real3 low, high;
+};
+
+Box unite(Box a, Box b)
+{
+    return Box(min(a.low, b.low), max(a.high, b.high));
+}
+
+// Of all points between the two boxes, at the same t of each ray.
+Box box_at(Box start, Box end, real t)
+{
+    return Box(start.low + t * (end.low - start.low), start.high + t * (end.high - start.high));
+}
+
+// The finest level of which a few cells hold the box.
+int level_of(Box box)
+{
+    real2 extent = box.high.xy - box.low.xy;
+    return clamp(findMSB(max(int(max(extent.x, extent.y)), 1)), 1, top);
+}
+
+bool touches(Box box, int level)
+{
+    ivec2 first = clamp(ivec2(floor(box.low.xy)), ivec2(0), size_px - 1) >> level;
+    ivec2 last  = clamp(ivec2(floor(box.high.xy)), ivec2(0), size_px - 1) >> level;
+    ivec2 cell  = first;
+    bool  found = false;
+    while (!found && cell.y <= last.y)
+    {
+        COUNT(pyramid_fetches);
+        found     = cell_may_touch(load_pyramid(cell, level), float(box.low.z), float(box.high.z));
+        bool wrap = cell.x == last.x;
+        cell      = wrap ? ivec2(first.x, cell.y + 1) : ivec2(cell.x + 1, cell.y);
+    }
+    return found;
+}
+
+void main()
+{
+    uint beam  = (gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x) * BEAMS_PER_GROUP + gl_LocalInvocationID.x;
+    uint first = beam * RAYS_PER_GROUP;
+    if (first >= ray_count) return;
+
+    uint count = min(ray_count - first, RAYS_PER_GROUP);
+    Box  start = Box(ray_origin[first], ray_origin[first]), end = Box(start.low + ray_delta[first], start.low + ray_delta[first]);
+    for (uint i = 1; i < count; ++i)
+    {
+        real3 from = ray_origin[first + i], to = from + ray_delta[first + i];
+        start = unite(start, Box(from, from));
+        end   = unite(end, Box(to, to));
+    }
+    real  nearest  = max(start.high.z, end.high.z);
+    real3 rounding = real3(rounding_px, rounding_px, nearest * rounding_depth);
+    start = Box(start.low - rounding, start.high + rounding);
+    end   = Box(end.low - rounding, end.high + rounding);
+
+    real2 way       = max(abs(end.low.xy - start.low.xy), abs(end.high.xy - start.high.xy)), extent = start.high.xy - start.low.xy;
+    real  length_px = max(way.x, way.y);
+    bool  usable    = length_px >= first_px + shortest_stretch_px && max(extent.x, extent.y) <= widest_px && top >= 1;
+
+    real finest = finest_step_px / length_px, step_t = 2 * finest;
+    real t      = usable ? first_px / length_px : real(1), begin = t;
+    int  kept = 0, tests = 0;
+    while (t < real(1) && kept < BEAM_STRETCHES && tests < most_tests)
+    {
+        real t_next  = min(real(1), t + step_t);
+        Box  box     = unite(box_at(start, end, t), box_at(start, end, t_next));
+        int  level   = level_of(box);
+        bool touched = touches(box, level), ends = touched && step_t <= finest;
+        bool keeps   = ends && (t - begin) * length_px >= shortest_stretch_px;
+        if (keeps) clear_stretches[beam * BEAM_STRETCHES + kept] = real2(begin, t);
+        kept += int(keeps);
+        t      = touched && !ends ? t : t_next;
+        begin  = ends ? t_next : begin;
+        step_t = !touched ? step_t * 2 : ends ? step_t : step_t / 2;
+        ++tests;
+    }
+    bool keeps = kept < BEAM_STRETCHES && (t - begin) * length_px >= shortest_stretch_px;
+    if (keeps) clear_stretches[beam * BEAM_STRETCHES + kept] = real2(begin, t);
+    kept += int(keeps);
+    for (int i = kept; i < BEAM_STRETCHES; ++i) clear_stretches[beam * BEAM_STRETCHES + i] = real2(2);
+#ifdef COUNT_WORK
+    beam_fetches[beam] = pyramid_fetches[0];
+#endif
+}
