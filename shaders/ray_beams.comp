@@ -83,7 +83,8 @@ void main()
 
     real2 way       = max(abs(end.low.xy - start.low.xy), abs(end.high.xy - start.high.xy)), extent = start.high.xy - start.low.xy;
     real  length_px = max(way.x, way.y);
-    bool  usable    = length_px >= first_px + shortest_stretch_px && max(extent.x, extent.y) <= widest_px && top >= 1;
+    bool  numbers   = all(lessThanEqual(start.low, start.high)) && all(lessThanEqual(end.low, end.high)); // not with NaN
+    bool  usable    = numbers && length_px >= first_px + shortest_stretch_px && max(extent.x, extent.y) <= widest_px && top >= 1;
 
     real finest = finest_step_px / length_px, step_t = 2 * finest;
     real t      = usable ? first_px / length_px : real(1), begin = t;
