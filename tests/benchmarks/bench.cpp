@@ -24,7 +24,7 @@ std::vector<Contender> all_contenders(std::span<const Technique> techniques)
     }
     list.push_back({"hiz_without_beams", "hiz", {{"beams", "false"}}});
     list.push_back({"hiz_minmax", "hiz", {{"pyramid", "minmax"}}});
-    list.push_back({"hiz_nearest", "hiz", {{"pyramid", "nearest"}}});
+    list.push_back({"hiz_nearest", "hiz", {{"pyramid", "nearest"}, {"beams", "false"}}});
     return list;
 }
 
