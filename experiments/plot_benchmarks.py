@@ -32,7 +32,7 @@ def read(files):
         device = report["context"]["device"]
         time = "cpu_ms" if report["context"].get("device_type") == "Cpu" else "real_time"
         for row in report["benchmarks"]:
-            if row["run_type"] != "iteration" or "error_occurred" in row:
+            if row["run_type"] != "iteration" or "error_occurred" in row or time not in row:
                 continue
             scene, size, name = row["name"].split("/iterations:")[0].split("/", 2)
             place = values[scene, name][size]
