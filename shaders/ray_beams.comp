@@ -62,9 +62,17 @@ bool touches(Box box, int level)
     return found;
 }
 
+// One more stretch, if it is long enough to be worth a leap.
+void keep(uint beam, inout int kept, real begin, real end, real length_px)
+{
+    bool keeps = kept < BEAM_STRETCHES && (end - begin) * length_px >= shortest_stretch_px;
+    if (keeps) clear_stretches[beam * BEAM_STRETCHES + kept] = real2(begin, end);
+    kept += int(keeps);
+}
+
 void main()
 {
-    uint beam  = (gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x) * BEAMS_PER_GROUP + gl_LocalInvocationID.x;
+    uint beam  = work_group() * BEAMS_PER_GROUP + gl_LocalInvocationID.x;
     uint first = beam * RAYS_PER_GROUP;
     if (first >= ray_count) return;
 
@@ -95,17 +103,13 @@ void main()
         Box  box     = unite(box_at(start, end, t), box_at(start, end, t_next));
         int  level   = level_of(box);
         bool touched = touches(box, level), ends = touched && step_t <= finest;
-        bool keeps   = ends && (t - begin) * length_px >= shortest_stretch_px;
-        if (keeps) clear_stretches[beam * BEAM_STRETCHES + kept] = real2(begin, t);
-        kept += int(keeps);
+        if (ends) keep(beam, kept, begin, t, length_px);
         t      = touched && !ends ? t : t_next;
         begin  = ends ? t_next : begin;
         step_t = !touched ? step_t * 2 : ends ? step_t : step_t / 2;
         ++tests;
     }
-    bool keeps = kept < BEAM_STRETCHES && (t - begin) * length_px >= shortest_stretch_px;
-    if (keeps) clear_stretches[beam * BEAM_STRETCHES + kept] = real2(begin, t);
-    kept += int(keeps);
+    keep(beam, kept, begin, t, length_px);
     for (int i = kept; i < BEAM_STRETCHES; ++i) clear_stretches[beam * BEAM_STRETCHES + i] = real2(2);
 #ifdef COUNT_WORK
     beam_fetches[beam] = pyramid_fetches[0];

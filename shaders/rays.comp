@@ -43,7 +43,7 @@ void main()
 {
     ivec2 pixel;
     if (!listed_pixel(pixel)) return;
-    if (listed_index() == 0 && gl_LocalInvocationIndex == 0) ray_count = traced_pixels * rays_per_pixel;
+    if (work_group() == 0 && gl_LocalInvocationIndex == 0) ray_count = traced_pixels * rays_per_pixel;
     ivec2 tile  = listed_tile();
     uvec2 mask  = tile_masks[tile.y * ((size_px.x + 7) / 8) + tile.x];
     uint  place = gl_LocalInvocationIndex, bit = 1u << place % 32;
@@ -51,7 +51,7 @@ void main()
     if (((upper ? mask.y : mask.x) & bit) == 0) return;
 
     uint  before = bitCount((upper ? mask.y : mask.x) & (bit - 1)) + (upper ? bitCount(mask.x) : 0);
-    uint  index  = (tiles[listed_index()].y + before) * rays_per_pixel;
+    uint  index  = (tiles[work_group()].y + before) * rays_per_pixel;
     real  depth  = real(imageLoad(depth_image, pixel).x);
     real3 normal = normal_at(pixel);
     for (int ray = 0; ray < rays_per_pixel; ++ray)

@@ -44,14 +44,14 @@ void store_result(uint index, TraceResult result, int number)
 #ifdef COUNT_WORK
     work[index] = uvec3(result.steps, depth_fetches[number], pyramid_fetches[number]);
 #ifdef RAY_BEAMS
-    if (index % RAYS_PER_GROUP == 0) work[index].z += beam_fetches[ray_group()]; // the whole group's, counted once
+    if (index % RAYS_PER_GROUP == 0) work[index].z += beam_fetches[work_group()]; // the whole group's, counted once
 #endif
 #endif
 }
 
 void main()
 {
-    uint first = (gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x) * RAYS_PER_GROUP, place = gl_LocalInvocationID.x;
+    uint first = work_group() * RAYS_PER_GROUP, place = gl_LocalInvocationID.x;
 #ifdef TRACES_PAIRS
     // Eight neighbouring invocations take 16 rays that follow each other: the first eight, and the eight after those.
     uint index = first + (place & ~7) + place, second = index + 8;

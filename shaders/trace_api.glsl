@@ -11,6 +11,7 @@
 #include "slab.glsl"
 #include "pyramid_cell.glsl"
 #include "hash.glsl"
+#include "work_group.glsl"
 
 layout(constant_id = CONSTANT_FACING) const int facing_rule = 0;
 layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1;
@@ -129,11 +130,6 @@ layout(set = 0, binding = 12, scalar) readonly buffer Beams { real2 clear_stretc
 #ifdef COUNT_WORK
 layout(set = 0, binding = 13, scalar) readonly buffer BeamWork { uint beam_fetches[]; };
 #endif
-
-uint ray_group()
-{
-    return gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x;
-}
 #endif
 
 // Two t between which no ray of this group touches anything (shaders/ray_beams.comp): stretch 0, the next one … Where there is none, or the
@@ -141,7 +137,7 @@ uint ray_group()
 real2 clear_stretch(int number)
 {
 #ifdef RAY_BEAMS
-    if (number < BEAM_STRETCHES) return clear_stretches[ray_group() * BEAM_STRETCHES + number];
+    if (number < BEAM_STRETCHES) return clear_stretches[work_group() * BEAM_STRETCHES + number];
 #endif
     return real2(2);
 }

@@ -105,12 +105,7 @@ FrameStatistics count_picture(Gpu& gpu, const FrameBuffers& buffers)
                                                           {"material_image", buffers.gbuffer->material},
                                                           {"TileMasks", buffers.tiles.masks},
                                                           {"PictureStatistics", buffers.tiles.statistics}});
-    submit(gpu, [&](const auto& commands) {
-        commands.fillBuffer(*buffers.tiles.statistics.buffer, 0, VK_WHOLE_SIZE, 0);
-        barrier(commands);
-        dispatch(commands, classification, tiles);
-        barrier(commands);
-    });
+    submit(gpu, [&](const auto& commands) { record_marking(commands, classification, buffers); });
     statistics.picture = download_as<PictureCounts>(gpu, buffers.tiles.statistics, 1)[0];
     return statistics;
 }

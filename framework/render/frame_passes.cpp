@@ -277,16 +277,21 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
     return passes;
 }
 
-void record_classification(const vk::raii::CommandBuffer& commands, const TracePasses& passes,
-                           const FrameBuffers& buffers)
+void record_marking(const vk::raii::CommandBuffer& commands, const ComputePass& classification,
+                    const FrameBuffers& buffers)
 {
-    const glm::uvec3 tiles = groups_of_8(buffers.gbuffer->view.size_px);
     barrier(commands);
     commands.fillBuffer(*buffers.tiles.statistics.buffer, 0, VK_WHOLE_SIZE, 0);
     barrier(commands);
-    dispatch(commands, passes.classification, tiles);
+    dispatch(commands, classification, groups_of_8(buffers.gbuffer->view.size_px));
     barrier(commands);
-    push(commands, passes.tile_list, glm::ivec2(tiles));
+}
+
+void record_classification(const vk::raii::CommandBuffer& commands, const TracePasses& passes,
+                           const FrameBuffers& buffers)
+{
+    record_marking(commands, passes.classification, buffers);
+    push(commands, passes.tile_list, glm::ivec2(groups_of_8(buffers.gbuffer->view.size_px)));
     dispatch(commands, passes.tile_list, {1, 1, 1});
     barrier(commands);
     dispatch(commands, passes.tile_launch, {1, 1, 1});

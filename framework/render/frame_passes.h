@@ -135,6 +135,9 @@ TraceCounts count_hits(Gpu& gpu, PreparedFrame& frame);
 /// Classification and ray set-up.
 void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers,
                  const RayBuffers& rays);
+/// Marks and counts alone, without a list.
+void record_marking(const vk::raii::CommandBuffer& commands, const ComputePass& classification,
+                    const FrameBuffers& buffers);
 void record_classification(const vk::raii::CommandBuffer& commands, const TracePasses& passes,
                            const FrameBuffers& buffers);
 void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers,

@@ -138,22 +138,22 @@ void check_bounds(const TomlFile& file, const toml::node& node, const Technique&
     }
 }
 
-void read_inputs(const TomlFile& file, const toml::node& node, Technique& technique)
+/// A list of which every text must be known.
+std::vector<std::string> read_known(const TomlFile& file, const toml::node& node, const std::string& key,
+                                    const std::string& kind, std::span<const std::string> known)
 {
-    technique.inputs = toml_texts(file, node, "inputs");
-    for (const std::string& input : technique.inputs)
-        if (std::ranges::count(known_inputs, input) == 0)
-            throw_spec_error("{}: {}", toml_place(file, node), unknown_name("input", input, known_inputs));
+    std::vector<std::string> names = toml_texts(file, node, key);
+    for (const std::string& name : names)
+        if (std::ranges::count(known, name) == 0)
+            throw_spec_error("{}: {}", toml_place(file, node), unknown_name(kind, name, known));
+    return names;
 }
 
 void read_limits(const TomlFile& file, const toml::node& node, Technique& technique)
 {
-    technique.limits = toml_texts(file, node, "limits");
     std::vector<std::string> known;
     std::ranges::transform(known_limits(), std::back_inserter(known), &Limit::name);
-    for (const std::string& limit : technique.limits)
-        if (std::ranges::count(known, limit) == 0)
-            throw_spec_error("{}: {}", toml_place(file, node), unknown_name("limit", limit, known));
+    technique.limits = read_known(file, node, "limits", "limit", known);
     if (technique.exact && !technique.limits.empty())
         throw_spec_error("{}: 'limits' contradicts 'exact': an exact technique has none", toml_place(file, node));
 }
@@ -213,7 +213,8 @@ Technique load_technique(const fs::path& folder)
     technique.name    = toml_text(file, required(file, file.root, "name", "the technique"), "name");
     technique.summary = toml_text(file, required(file, file.root, "summary", "the technique"), "summary");
     if (const toml::node* node = file.root.get("cite")) technique.cite = toml_texts(file, *node, "cite");
-    if (const toml::node* node = file.root.get("inputs")) read_inputs(file, *node, technique);
+    if (const toml::node* node = file.root.get("inputs"))
+        technique.inputs = read_known(file, *node, "inputs", "input", known_inputs);
     if (const toml::node* node = file.root.get("exact")) technique.exact = toml_bool(file, *node, "exact");
     if (const toml::node* node = file.root.get("limits")) read_limits(file, *node, technique);
     if (const toml::node* node = file.root.get("parameters")) {

@@ -1,5 +1,6 @@
 // Mixes what a further bounce found into the reflection that it belongs to: C = C_own + (C_reflected - C_own) * beta at the reflector
 // where the bounce began, times what that still weighs.
+#include "work_group.glsl"
 #include "view.glsl"
 #include "reflecting.glsl"
 #include "effect/parameters"
@@ -19,7 +20,7 @@ layout(set = 0, binding = 18, scalar) buffer RayThroughputs { vec3 ray_throughpu
 
 void main()
 {
-    uint index = (gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x) * RAYS_PER_GROUP + gl_LocalInvocationID.x;
+    uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     if (index >= ray_count) return;
     ivec2 reflector = unpack_pixel(ray_pixel[index]), target = unpack_pixel(ray_source[index]);
     Found found = found_by(reflector, ray_origin[index], ray_delta[index], hit_pixel[index], hit_t[index]);

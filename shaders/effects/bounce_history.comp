@@ -1,4 +1,5 @@
 // Where a ray hit a surface that reflects, the colour is that surface's own with its reflection of the previous frame, as the camera saw it.
+#include "work_group.glsl"
 #include "view.glsl"
 #include "reflecting.glsl"
 #include "effect/parameters"
@@ -17,7 +18,7 @@ layout(set = 0, binding = 17, rgba16f) uniform readonly image2D history_image; /
 
 void main()
 {
-    uint index = (gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x) * RAYS_PER_GROUP + gl_LocalInvocationID.x;
+    uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     if (index >= ray_count) return;
     ivec2 pixel  = unpack_pixel(ray_pixel[index]);
     uint  record = hit_pixel[index];

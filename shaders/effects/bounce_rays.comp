@@ -1,4 +1,5 @@
 // From each surface that a ray hit and that reflects, the next ray: in the mirror direction of the ray that arrived.
+#include "work_group.glsl"
 #include "segment.glsl"
 #include "effect/parameters"
 #include "effects/ray_colour.glsl"
@@ -37,7 +38,7 @@ vec3 throughput_of(uint index)
 
 void main()
 {
-    uint  index   = (gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x) * RAYS_PER_GROUP + gl_LocalInvocationID.x;
+    uint  index   = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     uint  record  = index < ray_count ? hit_pixel[index] : 0;
     ivec2 hit     = unpack_pixel(record);
     bool  follows = unpack_status(record) == TRACE_HIT && !in_second_layer(record) && reflects(hit);

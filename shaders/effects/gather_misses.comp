@@ -1,4 +1,5 @@
 // Lists the rays of reflecting pixels that found nothing, as they are, to be traced in the second layer.
+#include "work_group.glsl"
 #include "view.glsl"
 #include "reflecting.glsl"
 #extension GL_KHR_shader_subgroup_ballot : require
@@ -19,7 +20,7 @@ layout(set = 0, binding = 15, scalar) writeonly buffer DerivedSources { uint der
 
 void main()
 {
-    uint index  = (gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x) * RAYS_PER_GROUP + gl_LocalInvocationID.x;
+    uint index  = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     bool missed = index < ray_count && unpack_status(hit_pixel[index]) != TRACE_HIT && reflects(unpack_pixel(ray_pixel[index]));
 
     uvec4 ballot = subgroupBallot(missed);

@@ -1,4 +1,5 @@
 // The colour that a ray brings back, and how much it weighs: rgb and weight of a pixel's reflection, the mean over the pixel's rays.
+#include "work_group.glsl"
 #include "view.glsl"
 #include "reflecting.glsl"
 #include "effect/parameters"
@@ -43,7 +44,7 @@ vec4 mean_reflection(uint first)
 
 void main()
 {
-    uint index = (gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x) * RAYS_PER_GROUP + gl_LocalInvocationID.x;
+    uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     uint first = index * rays_per_pixel;
     if (first >= ray_count) return;
     ivec2 pixel = unpack_pixel(ray_pixel[first]);

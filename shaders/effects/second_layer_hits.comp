@@ -1,4 +1,5 @@
 // Writes what rays found in the second layer over their misses in the first.
+#include "work_group.glsl"
 #include "view.glsl"
 
 layout(local_size_x = RAYS_PER_GROUP) in;
@@ -11,7 +12,7 @@ layout(set = 0, binding = 14, scalar) readonly buffer DerivedHitTs { real derive
 
 void main()
 {
-    uint index = (gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x) * RAYS_PER_GROUP + gl_LocalInvocationID.x;
+    uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     if (index >= derived_count) return;
     uint found = derived_hit_pixel[index];
     if (unpack_status(found) != TRACE_HIT) return;

@@ -1,4 +1,5 @@
 // How the rays of the pixels that reflect ended, for the frame's plan.
+#include "work_group.glsl"
 #include "view.glsl"
 #include "reflecting.glsl"
 #extension GL_KHR_shader_subgroup_arithmetic : require
@@ -16,7 +17,7 @@ layout(set = 0, binding = 10, scalar) buffer TraceStatistics // struct TraceCoun
 
 void main()
 {
-    uint index  = (gl_WorkGroupID.y * MAX_GROUPS_X + gl_WorkGroupID.x) * RAYS_PER_GROUP + gl_LocalInvocationID.x;
+    uint index  = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     bool traced = index < ray_count && reflects(unpack_pixel(ray_pixel[index]));
     uint found  = traced ? hit_pixel[index] : 0;
     bool hit    = traced && unpack_status(found) == TRACE_HIT;
