@@ -1,14 +1,12 @@
 // Follows the rays of a group as one beam through the depth pyramid, before they are traced: between two t it covers a box on screen and an
 // interval of depth that hold all its rays; where no cell under the box has a surface in that interval, none of the rays touches anything.
 #include "trace_api.glsl"
+#include "ray_list.glsl"
 
 layout(local_size_x = BEAMS_PER_GROUP) in;
 
 layout(constant_id = CONSTANT_TOP_LEVEL) const int top_level = 0;
 
-layout(set = 0, binding = 4, scalar) readonly buffer RayCount { uint ray_count; };
-layout(set = 0, binding = 5, scalar) readonly buffer RayOrigins { real3 ray_origin[]; };
-layout(set = 0, binding = 6, scalar) readonly buffer RayDeltas { real3 ray_delta[]; };
 layout(set = 0, binding = 12, scalar) writeonly buffer Beams { real2 clear_stretches[]; };
 #ifdef COUNT_WORK
 layout(set = 0, binding = 13, scalar) writeonly buffer BeamWork { uint beam_fetches[]; };
@@ -77,10 +75,10 @@ void main()
     if (first >= ray_count) return;
 
     uint count = min(ray_count - first, RAYS_PER_GROUP);
-    Box  start = Box(ray_origin[first], ray_origin[first]), end = Box(start.low + ray_delta[first], start.low + ray_delta[first]);
+    Box  start = Box(ray_origin(first), ray_origin(first)), end = Box(start.low + ray_delta(first), start.low + ray_delta(first));
     for (uint i = 1; i < count; ++i)
     {
-        real3 from = ray_origin[first + i], to = from + ray_delta[first + i];
+        real3 from = ray_origin(first + i), to = from + ray_delta(first + i);
         start = unite(start, Box(from, from));
         end   = unite(end, Box(to, to));
     }

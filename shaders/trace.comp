@@ -1,5 +1,6 @@
 // Traces the list of rays with the technique that the framework composes in: its parameters, then its trace() or trace_pair().
 #include "trace_api.glsl"
+#include "ray_list.glsl"
 #include "technique/parameters"
 #include "technique/trace.glsl"
 
@@ -9,11 +10,6 @@ layout(local_size_x = RAYS_PER_GROUP / 2) in;
 layout(local_size_x = RAYS_PER_GROUP) in;
 #endif
 
-layout(set = 0, binding = 4, scalar) readonly buffer RayCount { uint ray_count; };
-layout(set = 0, binding = 5, scalar) readonly buffer RayOrigins { real3 ray_origin[]; };
-layout(set = 0, binding = 6, scalar) readonly buffer RayDeltas { real3 ray_delta[]; };
-layout(set = 0, binding = 7, scalar) readonly buffer RayLengths { real ray_length_m[]; };
-layout(set = 0, binding = 8, scalar) readonly buffer RayPixels { uint ray_pixel[]; };
 layout(set = 0, binding = 9, scalar) writeonly buffer HitPixels { uint hit_pixel[]; }; // number = status
 layout(set = 0, binding = 10, scalar) writeonly buffer HitTs { real hit_t[]; };
 #ifdef COUNT_WORK
@@ -23,10 +19,10 @@ layout(set = 0, binding = 11, scalar) buffer Work { uvec3 work[]; }; // steps, d
 Ray load_ray(uint index)
 {
     Ray ray;
-    ray.origin      = ray_origin[index];
-    ray.delta       = ray_delta[index];
-    ray.length_m    = ray_length_m[index];
-    ray.end_status  = unpack_status(ray_pixel[index]);
+    ray.origin      = ray_origin(index);
+    ray.delta       = ray_delta(index);
+    ray.length_m    = ray_length_m(index);
+    ray.end_status  = unpack_status(ray_pixel(index));
     ray.rounding    = depth_rounding(ray.delta);
     ray.start_pixel = clamp(ivec2(floor(ray.origin.xy)), ivec2(0), size_px - 1);
 

@@ -126,7 +126,11 @@ uvec2 load_pyramid(ivec2 cell, int level)
 
 // ---- Beams
 #ifdef RAY_BEAMS
+#ifdef REAL_IS_DOUBLE
 layout(set = 0, binding = 12, scalar) readonly buffer Beams { real2 clear_stretches[]; };
+#else
+layout(set = 0, binding = 12, r32f) uniform readonly imageBuffer Beams; // as texels: ray_list.glsl says why
+#endif
 #ifdef COUNT_WORK
 layout(set = 0, binding = 13, scalar) readonly buffer BeamWork { uint beam_fetches[]; };
 #endif
@@ -137,7 +141,12 @@ layout(set = 0, binding = 13, scalar) readonly buffer BeamWork { uint beam_fetch
 real2 clear_stretch(int number)
 {
 #ifdef RAY_BEAMS
-    if (number < BEAM_STRETCHES) return clear_stretches[work_group() * BEAM_STRETCHES + number];
+    int stretch = int(work_group()) * BEAM_STRETCHES + number;
+#ifdef REAL_IS_DOUBLE
+    if (number < BEAM_STRETCHES) return clear_stretches[stretch];
+#else
+    if (number < BEAM_STRETCHES) return real2(imageLoad(Beams, 2 * stretch).x, imageLoad(Beams, 2 * stretch + 1).x);
+#endif
 #endif
     return real2(2);
 }

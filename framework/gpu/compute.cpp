@@ -15,6 +15,7 @@ vk::DescriptorType descriptor_type(BindingType type)
     case BindingType::uniform_buffer: return vk::DescriptorType::eUniformBuffer;
     case BindingType::storage_image: return vk::DescriptorType::eStorageImage;
     case BindingType::sampled_image: return vk::DescriptorType::eCombinedImageSampler;
+    case BindingType::texel_buffer: return vk::DescriptorType::eStorageTexelBuffer;
     }
     return vk::DescriptorType::eStorageBuffer;
 }
@@ -59,11 +60,14 @@ void write_set(Gpu& gpu, const Shader& shader, const Bindings& bindings, const v
                                              .dstBinding      = binding.binding,
                                              .descriptorCount = 1,
                                              .descriptorType  = descriptor_type(binding.type)};
+        const bool                     is_texels = binding.type == BindingType::texel_buffer;
         const bool                     is_buffer =
             binding.type == BindingType::storage_buffer || binding.type == BindingType::uniform_buffer;
-        if (is_buffer != static_cast<bool>(bound->second.buffer))
+        if (is_texels ? !bound->second.texels : is_buffer != static_cast<bool>(bound->second.buffer))
             throw std::logic_error(fmt::format("{}: '{}' is bound to the wrong kind of resource", shader.name, name));
-        if (is_buffer)
+        if (is_texels)
+            write.pTexelBufferView = &bound->second.texels;
+        else if (is_buffer)
             write.pBufferInfo = &buffer;
         else
             write.pImageInfo = &image;

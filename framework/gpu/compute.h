@@ -27,11 +27,12 @@ private:
 
 /// Something that a shader's name can be bound to.
 struct Bound {
-    vk::Buffer    buffer;
-    vk::ImageView view;
-    vk::Sampler   sampler;
+    vk::Buffer     buffer;
+    vk::BufferView texels;
+    vk::ImageView  view;
+    vk::Sampler    sampler;
 
-    Bound(const Buffer& b) : buffer(*b.buffer) {}
+    Bound(const Buffer& b) : buffer(*b.buffer), texels(*b.texels) {}
     Bound(const GpuImage& image) : view(*image.view) {}
     Bound(const GpuImage& image, const vk::raii::Sampler& s) : view(*image.view), sampler(*s) {}
 };

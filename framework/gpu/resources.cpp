@@ -2,6 +2,8 @@
 
 #include "core/error.h"
 
+#include <vulkan/vulkan_format_traits.hpp>
+
 namespace ssrlab {
 namespace {
 
@@ -35,6 +37,11 @@ Buffer make(Gpu& gpu, uint64_t bytes, vk::BufferUsageFlags usage, vk::MemoryProp
     return result;
 }
 
+using Usage                            = vk::BufferUsageFlagBits;
+constexpr vk::BufferUsageFlags any_use = Usage::eStorageBuffer | Usage::eUniformBuffer | Usage::eIndirectBuffer |
+                                         Usage::eVertexBuffer | Usage::eIndexBuffer | Usage::eTransferSrc |
+                                         Usage::eTransferDst;
+
 vk::ImageAspectFlags aspect_of(vk::Format format)
 {
     return is_depth(format) ? vk::ImageAspectFlagBits::eDepth : vk::ImageAspectFlagBits::eColor;
@@ -50,11 +57,18 @@ vk::BufferImageCopy whole_image(const GpuImage& image)
 
 Buffer make_buffer(Gpu& gpu, uint64_t bytes)
 {
-    using Usage = vk::BufferUsageFlagBits;
-    return make(gpu, bytes,
-                Usage::eStorageBuffer | Usage::eUniformBuffer | Usage::eIndirectBuffer | Usage::eVertexBuffer |
-                    Usage::eIndexBuffer | Usage::eTransferSrc | Usage::eTransferDst,
-                vk::MemoryPropertyFlagBits::eDeviceLocal);
+    return make(gpu, bytes, any_use, vk::MemoryPropertyFlagBits::eDeviceLocal);
+}
+
+Buffer make_texel_buffer(Gpu& gpu, uint64_t bytes, vk::Format format)
+{
+    const uint64_t texels = bytes / vk::blockSize(format), most = gpu.impl->limits.maxTexelBufferElements;
+    if (texels > most) throw_failure("a buffer of {} texels is needed; the device allows {}", texels, most);
+    Buffer buffer = make(gpu, bytes, any_use | vk::BufferUsageFlagBits::eStorageTexelBuffer,
+                         vk::MemoryPropertyFlagBits::eDeviceLocal);
+    buffer.texels = {gpu.impl->device,
+                     vk::BufferViewCreateInfo{.buffer = *buffer.buffer, .format = format, .range = VK_WHOLE_SIZE}};
+    return buffer;
 }
 
 Buffer make_host_buffer(Gpu& gpu, uint64_t bytes)

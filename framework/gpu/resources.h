@@ -13,12 +13,15 @@ namespace ssrlab {
 struct Buffer {
     vk::raii::DeviceMemory memory = nullptr; // freed after the buffer: members die in reverse order
     vk::raii::Buffer       buffer = nullptr;
+    vk::raii::BufferView   texels = nullptr; // make_texel_buffer() only
     uint64_t               bytes  = 0;
     void*                  mapped = nullptr; // host-visible buffers only
 };
 
 /// Device-local storage (also uniform, indirect, vertex, index, copy source and target). Throws Failure when out of memory or over limits.
 Buffer make_buffer(Gpu& gpu, uint64_t bytes);
+/// The same, which shaders may also read as texels of this format. Throws Failure likewise.
+Buffer make_texel_buffer(Gpu& gpu, uint64_t bytes, vk::Format format);
 /// Host-visible and coherent, mapped.
 Buffer make_host_buffer(Gpu& gpu, uint64_t bytes);
 void   upload(Gpu& gpu, Buffer& target, const void* data, uint64_t bytes);

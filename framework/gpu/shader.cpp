@@ -99,9 +99,11 @@ void collect_bindings(const glslang::TProgram& program, Shader& shader)
         const auto& variable = program.getUniform(i);
         if (variable.getType()->getBasicType() != glslang::EbtSampler || variable.getBinding() < 0) continue;
         if (variable.getType()->getQualifier().hasSet() && variable.getType()->getQualifier().layoutSet != 0) continue;
-        shader.bindings[variable.name] = {static_cast<uint32_t>(variable.getBinding()),
-                                          variable.getType()->getSampler().isImage() ? BindingType::storage_image
-                                                                                     : BindingType::sampled_image};
+        const glslang::TSampler& sampler = variable.getType()->getSampler();
+        shader.bindings[variable.name]   = {static_cast<uint32_t>(variable.getBinding()),
+                                          sampler.isBuffer()  ? BindingType::texel_buffer
+                                            : sampler.isImage() ? BindingType::storage_image
+                                                                : BindingType::sampled_image};
     }
 }
 

@@ -10,7 +10,7 @@
 namespace ssrlab {
 
 enum class ShaderStage { vertex, fragment, compute };
-enum class BindingType { storage_buffer, uniform_buffer, storage_image, sampled_image };
+enum class BindingType { storage_buffer, uniform_buffer, storage_image, sampled_image, texel_buffer };
 
 struct ShaderBinding {
     uint32_t    binding = 0;

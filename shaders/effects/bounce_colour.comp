@@ -1,6 +1,7 @@
 // Mixes what a further bounce found into the reflection that it belongs to: C = C_own + (C_reflected - C_own) * beta at the reflector
 // where the bounce began, times what that still weighs.
 #include "work_group.glsl"
+#include "ray_list.glsl"
 #include "view.glsl"
 #include "reflecting.glsl"
 #include "effect/parameters"
@@ -8,10 +9,6 @@
 #include "effects/beta.glsl"
 
 layout(local_size_x = RAYS_PER_GROUP) in;
-layout(set = 0, binding = 4, scalar) readonly buffer RayCount { uint ray_count; };
-layout(set = 0, binding = 5, scalar) readonly buffer RayOrigins { real3 ray_origin[]; };
-layout(set = 0, binding = 6, scalar) readonly buffer RayDeltas { real3 ray_delta[]; };
-layout(set = 0, binding = 8, scalar) readonly buffer RayPixels { uint ray_pixel[]; };
 layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[]; };
 layout(set = 0, binding = 10, scalar) readonly buffer HitTs { real hit_t[]; };
 layout(set = 0, binding = 13, rgba16f) uniform image2D reflection_image;
@@ -22,8 +19,8 @@ void main()
 {
     uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     if (index >= ray_count) return;
-    ivec2 reflector = unpack_pixel(ray_pixel[index]), target = unpack_pixel(ray_source[index]);
-    Found found = found_by(reflector, ray_origin[index], ray_delta[index], hit_pixel[index], hit_t[index]);
+    ivec2 reflector = unpack_pixel(ray_pixel(index)), target = unpack_pixel(ray_source[index]);
+    Found found = found_by(reflector, ray_origin(index), ray_delta(index), hit_pixel[index], hit_t[index]);
     if (found.weight <= 0.0)
     {
         ray_throughput[index] = vec3(0);
@@ -31,7 +28,7 @@ void main()
     }
     vec2 centre     = vec2(reflector) + 0.5;
     vec3 surface_vs = px_to_vs(vec3(centre, imageLoad(depth_image, reflector).x));
-    vec3 arrived_vs = reflect(ray_direction(ray_origin[index], ray_delta[index]), normalize(imageLoad(normal_image, reflector).xyz));
+    vec3 arrived_vs = reflect(ray_direction(ray_origin(index), ray_delta(index)), normalize(imageLoad(normal_image, reflector).xyz));
     vec3 own        = surface_light(reflector, false, centre) + highlight_along(reflector, false, surface_vs, arrived_vs);
     vec3 throughput = ray_throughput[index] * beta_of(reflector, -arrived_vs, found.weight);
     ray_throughput[index] = throughput * found.attenuation;

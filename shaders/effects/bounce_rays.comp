@@ -1,15 +1,12 @@
 // From each surface that a ray hit and that reflects, the next ray: in the mirror direction of the ray that arrived.
 #include "work_group.glsl"
+#include "ray_list.glsl"
 #include "segment.glsl"
 #include "effect/parameters"
 #include "effects/ray_colour.glsl"
 #extension GL_KHR_shader_subgroup_ballot : require
 
 layout(local_size_x = RAYS_PER_GROUP) in;
-layout(set = 0, binding = 4, scalar) readonly buffer RayCount { uint ray_count; };
-layout(set = 0, binding = 5, scalar) readonly buffer RayOrigins { real3 ray_origin[]; };
-layout(set = 0, binding = 6, scalar) readonly buffer RayDeltas { real3 ray_delta[]; };
-layout(set = 0, binding = 8, scalar) readonly buffer RayPixels { uint ray_pixel[]; };
 layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[]; };
 layout(set = 0, binding = 10, scalar) readonly buffer HitTs { real hit_t[]; };
 #ifdef FURTHER
@@ -30,8 +27,8 @@ vec3 throughput_of(uint index)
 #ifdef FURTHER
     return ray_throughput[index];
 #else
-    if (!reflects(unpack_pixel(ray_pixel[index]))) return vec3(0);
-    Found found = found_by(unpack_pixel(ray_pixel[index]), ray_origin[index], ray_delta[index], hit_pixel[index], hit_t[index]);
+    if (!reflects(unpack_pixel(ray_pixel(index)))) return vec3(0);
+    Found found = found_by(unpack_pixel(ray_pixel(index)), ray_origin(index), ray_delta(index), hit_pixel[index], hit_t[index]);
     return vec3(found.weight > 0.0 ? found.attenuation : 0.0);
 #endif
 }
@@ -46,7 +43,7 @@ void main()
     vec3  throughput = vec3(0);
     if (follows)
     {
-        arriving   = ray_direction(ray_origin[index], ray_delta[index]);
+        arriving   = ray_direction(ray_origin(index), ray_delta(index));
         normal     = normal_at(hit);
         throughput = throughput_of(index);
         follows    = throughput != vec3(0) && dot(arriving, normal) < real(0);
@@ -70,6 +67,6 @@ void main()
 #ifdef FURTHER
     derived_source[derived] = ray_source[index];
 #else
-    derived_source[derived] = pack_pixel(unpack_pixel(ray_pixel[index]), 0);
+    derived_source[derived] = pack_pixel(unpack_pixel(ray_pixel(index)), 0);
 #endif
 }

@@ -1,15 +1,11 @@
 // Lists the rays of reflecting pixels that found nothing, as they are, to be traced in the second layer.
 #include "work_group.glsl"
+#include "ray_list.glsl"
 #include "view.glsl"
 #include "reflecting.glsl"
 #extension GL_KHR_shader_subgroup_ballot : require
 
 layout(local_size_x = RAYS_PER_GROUP) in;
-layout(set = 0, binding = 4, scalar) readonly buffer RayCount { uint ray_count; };
-layout(set = 0, binding = 5, scalar) readonly buffer RayOrigins { real3 ray_origin[]; };
-layout(set = 0, binding = 6, scalar) readonly buffer RayDeltas { real3 ray_delta[]; };
-layout(set = 0, binding = 7, scalar) readonly buffer RayLengths { real ray_length_m[]; };
-layout(set = 0, binding = 8, scalar) readonly buffer RayPixels { uint ray_pixel[]; };
 layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[]; };
 layout(set = 0, binding = 10, scalar) buffer DerivedCount { uint derived_count; };
 layout(set = 0, binding = 11, scalar) writeonly buffer DerivedOrigins { real3 derived_origin[]; };
@@ -21,7 +17,7 @@ layout(set = 0, binding = 15, scalar) writeonly buffer DerivedSources { uint der
 void main()
 {
     uint index  = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    bool missed = index < ray_count && unpack_status(hit_pixel[index]) != TRACE_HIT && reflects(unpack_pixel(ray_pixel[index]));
+    bool missed = index < ray_count && unpack_status(hit_pixel[index]) != TRACE_HIT && reflects(unpack_pixel(ray_pixel(index)));
 
     uvec4 ballot = subgroupBallot(missed);
     uint  first  = 0;
@@ -30,9 +26,9 @@ void main()
     if (!missed) return;
 
     uint derived              = first + subgroupBallotExclusiveBitCount(ballot);
-    derived_origin[derived]   = ray_origin[index];
-    derived_delta[derived]    = ray_delta[index];
-    derived_length_m[derived] = ray_length_m[index];
-    derived_pixel[derived]    = ray_pixel[index];
+    derived_origin[derived]   = ray_origin(index);
+    derived_delta[derived]    = ray_delta(index);
+    derived_length_m[derived] = ray_length_m(index);
+    derived_pixel[derived]    = ray_pixel(index);
     derived_source[derived]   = index;
 }

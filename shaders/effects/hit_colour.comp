@@ -1,5 +1,6 @@
 // The colour that a ray brings back, and how much it weighs: rgb and weight of a pixel's reflection, the mean over the pixel's rays.
 #include "work_group.glsl"
+#include "ray_list.glsl"
 #include "view.glsl"
 #include "reflecting.glsl"
 #include "effect/parameters"
@@ -7,10 +8,6 @@
 
 layout(local_size_x = RAYS_PER_GROUP) in;
 
-layout(set = 0, binding = 4, scalar) readonly buffer RayCount { uint ray_count; };
-layout(set = 0, binding = 5, scalar) readonly buffer RayOrigins { real3 ray_origin[]; };
-layout(set = 0, binding = 6, scalar) readonly buffer RayDeltas { real3 ray_delta[]; };
-layout(set = 0, binding = 8, scalar) readonly buffer RayPixels { uint ray_pixel[]; };
 layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[]; };
 layout(set = 0, binding = 10, scalar) readonly buffer HitTs { real hit_t[]; };
 layout(set = 0, binding = 13, rgba16f) uniform writeonly image2D reflection_image;
@@ -19,7 +16,7 @@ layout(set = 0, binding = 15, r32ui) uniform writeonly uimage2D block_pixel_imag
 // Colour and weight.
 vec4 reflection_of(uint index)
 {
-    Found found = found_by(unpack_pixel(ray_pixel[index]), ray_origin[index], ray_delta[index], hit_pixel[index], hit_t[index]);
+    Found found = found_by(unpack_pixel(ray_pixel(index)), ray_origin(index), ray_delta(index), hit_pixel[index], hit_t[index]);
     return vec4(found.light * found.attenuation, found.weight);
 }
 
@@ -47,7 +44,7 @@ void main()
     uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     uint first = index * rays_per_pixel;
     if (first >= ray_count) return;
-    ivec2 pixel = unpack_pixel(ray_pixel[first]);
+    ivec2 pixel = unpack_pixel(ray_pixel(first));
     if (!reflects(pixel)) return;
     imageStore(reflection_image, pixel, rays_per_pixel > 1 ? mean_reflection(first) : reflection_of(first));
     if (block_px > 1) imageStore(block_pixel_image, pixel / block_px, uvec4(pack_pixel(pixel, 0)));

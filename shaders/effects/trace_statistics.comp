@@ -1,12 +1,11 @@
 // How the rays of the pixels that reflect ended, for the frame's plan.
 #include "work_group.glsl"
+#include "ray_list.glsl"
 #include "view.glsl"
 #include "reflecting.glsl"
 #extension GL_KHR_shader_subgroup_arithmetic : require
 
 layout(local_size_x = RAYS_PER_GROUP) in;
-layout(set = 0, binding = 4, scalar) readonly buffer RayCount { uint ray_count; };
-layout(set = 0, binding = 8, scalar) readonly buffer RayPixels { uint ray_pixel[]; };
 layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[]; };
 layout(set = 0, binding = 10, scalar) buffer TraceStatistics // struct TraceCounts of render/effects.h
 {
@@ -18,7 +17,7 @@ layout(set = 0, binding = 10, scalar) buffer TraceStatistics // struct TraceCoun
 void main()
 {
     uint index  = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    bool traced = index < ray_count && reflects(unpack_pixel(ray_pixel[index]));
+    bool traced = index < ray_count && reflects(unpack_pixel(ray_pixel(index)));
     uint found  = traced ? hit_pixel[index] : 0;
     bool hit    = traced && unpack_status(found) == TRACE_HIT;
     bool mirror = hit && reflects(unpack_pixel(found));
