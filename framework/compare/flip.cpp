@@ -2,6 +2,7 @@
 
 #include "compare/image_filter.h"
 #include "core/error.h"
+#include "core/parallel_rows.h"
 
 #include <algorithm>
 #include <array>
@@ -73,12 +74,12 @@ Planes to_ycxcz(const Image& image)
 {
     Planes planes;
     for (Plane& plane : planes) plane = {image.size_px, std::vector<float>(image.values.size() / 3)};
-    for (size_t i = 0; i < planes[0].values.size(); ++i) {
+    parallel_pixels(image.size_px.x, image.size_px.y, [&](size_t i) {
         glm::vec3 linear;
         for (int c : {0, 1, 2}) linear[c] = srgb_to_linear(std::clamp(image.values[3 * i + size_t(c)], 0.0F, 1.0F));
         const glm::vec3 ycxcz = xyz_to_ycxcz(linear_rgb_to_xyz(linear));
         for (int c : {0, 1, 2}) planes[size_t(c)].values[i] = ycxcz[c];
-    }
+    });
     return planes;
 }
 
@@ -130,12 +131,11 @@ std::vector<glm::vec3> perceived_lab(const Planes& ycxcz, float pixels_per_degre
     const Plane            y      = blur(ycxcz[0], achromatic, radius, pixels_per_degree);
     const Plane            cx     = blur(ycxcz[1], red_green, radius, pixels_per_degree);
     const Plane            cz     = blur(ycxcz[2], blue_yellow, radius, pixels_per_degree);
-    std::vector<glm::vec3> lab;
-    lab.reserve(y.values.size());
-    for (size_t i = 0; i < y.values.size(); ++i) {
+    std::vector<glm::vec3> lab(y.values.size());
+    parallel_pixels(y.size_px.x, y.size_px.y, [&](size_t i) {
         const glm::vec3 rgb = xyz_to_linear_rgb(ycxcz_to_xyz({y.values[i], cx.values[i], cz.values[i]}));
-        lab.push_back(hunt_lab(glm::clamp(rgb, 0.0F, 1.0F)));
-    }
+        lab[i]              = hunt_lab(glm::clamp(rgb, 0.0F, 1.0F));
+    });
     return lab;
 }
 
@@ -167,9 +167,9 @@ Features detect_features(const Plane& y, float pixels_per_degree)
     for (float& value : grey.values) value = (value + 16) / 116;
     const auto response = [&](const std::vector<float>& kernel) {
         const Plane        across = filter_separable(grey, kernel, flat), down = filter_separable(grey, flat, kernel);
-        std::vector<float> length;
-        for (size_t i = 0; i < across.values.size(); ++i)
-            length.push_back(std::hypot(across.values[i], down.values[i]));
+        std::vector<float> length(across.values.size());
+        parallel_pixels(y.size_px.x, y.size_px.y,
+                        [&](size_t i) { length[i] = std::hypot(across.values[i], down.values[i]); });
         return length;
     };
     return {response(edge), response(point)};
@@ -205,14 +205,14 @@ std::vector<float> flip_error(const Image& tested, const Image& reference, float
     const Features a_features          = detect_features(a[0], pixels_per_degree),
                    b_features          = detect_features(b[0], pixels_per_degree);
     std::vector<float> error(a_lab.size());
-    for (size_t i = 0; i < error.size(); ++i) {
+    parallel_pixels(tested.size_px.x, tested.size_px.y, [&](size_t i) {
         const float colour = colour_error(hyab(a_lab[i], b_lab[i]));
         const float edges  = std::abs(a_features.edges[i] - b_features.edges[i]);
         const float points = std::abs(a_features.points[i] - b_features.points[i]);
         const float feature =
             std::pow(std::clamp(std::max(edges, points) / std::numbers::sqrt2_v<float>, 0.0F, 1.0F), qf);
         error[i] = std::clamp(std::pow(colour, 1 - feature), 0.0F, 1.0F);
-    }
+    });
     return error;
 }
 

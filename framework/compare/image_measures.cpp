@@ -3,6 +3,7 @@
 #include "compare/measures.h"
 #include "compare/ssim.h"
 #include "core/error.h"
+#include "core/parallel_rows.h"
 
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
@@ -22,7 +23,8 @@ struct ImageErrors {
 Image to_display(const Image& linear)
 {
     Image display = linear;
-    for (float& value : display.values) value = linear_to_srgb(value);
+    parallel_pixels(linear.size_px.x * static_cast<int>(linear.channels.size()), linear.size_px.y,
+                    [&](size_t i) { display.values[i] = linear_to_srgb(linear.values[i]); });
     return display;
 }
 

@@ -51,6 +51,7 @@ void Truths::make(const TraceSettings& settings)
     // Of all settings, the scene truth depends on the maximum distance alone.
     const bool same_scene_truth = made_for_ && made_for_->max_distance_m == settings.max_distance_m;
     made_for_.reset();
+    true_reflection_.reset();
     screen_truth_ = cached_screen_truth(cache_dir_, gbuffer_, settings);
     if (!same_scene_truth) scene_truth_ = cached_scene_truth(cache_dir_, *scene_, gbuffer_, settings);
     made_for_ = settings;
@@ -62,10 +63,12 @@ Image Truths::agreement(const TraceSettings& settings, const TraceResult& counte
     return agreement_picture(counted, scene_truth_);
 }
 
-std::vector<glm::vec4> Truths::true_reflection(const TraceSettings& settings)
+const std::vector<glm::vec4>& Truths::true_reflection(const TraceSettings& settings)
 {
-    const GlossyTruth      truth = cached_glossy_truth(cache_dir_, *scene_, gbuffer_, settings, {});
-    std::vector<glm::vec4> reflection;
+    make(settings);
+    if (true_reflection_) return *true_reflection_;
+    const GlossyTruth       truth      = cached_glossy_truth(cache_dir_, *scene_, gbuffer_, settings, {});
+    std::vector<glm::vec4>& reflection = true_reflection_.emplace();
     for (size_t i = 0; i < truth.rays.size(); ++i)
         reflection.push_back(truth.rays[i] == 0    ? glm::vec4(0, 0, 0, -1)
                              : truth.weight[i] > 0 ? glm::vec4(truth.radiance[i] / truth.weight[i], 1)

@@ -21,7 +21,7 @@ public:
                           const TraceResult* hidden, bool image_errors);
 
     /// The reflection of the glossy scene truth (many rays where it is rough), at full weight; weight -1 where nothing reflects.
-    std::vector<glm::vec4> true_reflection(const TraceSettings& settings);
+    const std::vector<glm::vec4>& true_reflection(const TraceSettings& settings);
 
     /// A finished picture against the one with the true reflection.
     MeasureValues compare_picture(const TraceSettings& settings, const Image& picture, const Image& reference);
@@ -32,12 +32,13 @@ public:
 private:
     void make(const TraceSettings& settings);
 
-    const Scene*                 scene_;
-    GBufferImage                 gbuffer_;
-    std::filesystem::path        cache_dir_;
-    std::optional<TraceSettings> made_for_;
-    TraceResult                  screen_truth_;
-    SceneTruth                   scene_truth_;
+    const Scene*                          scene_;
+    GBufferImage                          gbuffer_;
+    std::filesystem::path                 cache_dir_;
+    std::optional<TraceSettings>          made_for_;
+    TraceResult                           screen_truth_;
+    SceneTruth                            scene_truth_;
+    std::optional<std::vector<glm::vec4>> true_reflection_; // when asked for
 };
 
 /// $SSRLAB_CACHE, or .truth_cache beside the results folder.

@@ -1,7 +1,7 @@
 #include "truth/glossy_truth.h"
 
 #include "core/error.h"
-#include "truth/parallel_rows.h"
+#include "core/parallel_rows.h"
 #include "truth/screen_ray.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "truth/scene_truth.h"
 
-#include "truth/parallel_rows.h"
+#include "core/parallel_rows.h"
 #include "truth/screen_ray.h"
 
 namespace ssrlab {

@@ -1,6 +1,6 @@
 #include "truth/screen_truth.h"
 
-#include "truth/parallel_rows.h"
+#include "core/parallel_rows.h"
 
 #include <algorithm>
 #include <cmath>

@@ -152,8 +152,11 @@ Bench::Picture& Bench::picture(const std::string& scene, glm::ivec2 size_px)
     Picture& p                 = place->second;
     if (!is_new) return p;
     if (!scenes_.contains(scene)) {
-        const Scene loaded = load_scene(scene);
-        scenes_[scene]     = {upload_scene(gpu_, loaded), find_camera(loaded, "default")};
+        const size_t colon  = scene.find_last_of(':');
+        const bool   viewed = colon != std::string::npos && !scene.starts_with("builtin:");
+        const Scene  loaded = load_scene(viewed ? scene.substr(0, colon) : scene);
+        scenes_[scene]      = {upload_scene(gpu_, loaded),
+                               find_camera(loaded, viewed ? scene.substr(colon + 1) : "default")};
     }
     p.gbuffer = render_gbuffer(gpu_, scenes_[scene].gpu, camera_to_view(scenes_[scene].camera, size_px));
     p.buffers = make_frame_buffers(gpu_, p.gbuffer);

@@ -1,4 +1,5 @@
-// Single passes by GPU timestamps. Names: SCENE/SIZE/PASS, e.g. thin_yard/1080p/trace/hiz; choose with --benchmark_filter.
+// Single passes by GPU timestamps. Names: SCENE/SIZE/PASS or SCENE:VIEW/SIZE/PASS, e.g. thin_yard/1080p/trace/hiz; choose with
+// --benchmark_filter.
 //   build/bin/benchmarks --scene=thin_yard --benchmark_filter=1080p
 #include "benchmarks/bench.h"
 #include "core/error.h"
@@ -66,7 +67,7 @@ int run(std::vector<char*> arguments)
     auto count = static_cast<int>(arguments.size());
     benchmark::Initialize(&count, arguments.data());
     if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) {
-        std::fputs("also: --device=NAME_OR_INDEX --scene=SCENE[,SCENE…]\n", stderr);
+        std::fputs("also: --device=NAME_OR_INDEX --scene=SCENE[:VIEW][,SCENE[:VIEW]…]\n", stderr);
         return 2;
     }
     Bench bench(device);

@@ -1,6 +1,6 @@
 #include "benchmarks/visits_bound.h"
 
-#include "truth/parallel_rows.h"
+#include "core/parallel_rows.h"
 #include "truth/screen_ray.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // Exact techniques in a random campaign: hiz finds what dda finds, bit for bit, and both find what integers find.
 #include "check/judge.h"
+#include "core/parallel_rows.h"
 #include "gpu/device.h"
 #include "hard_cases/integer_oracle.h"
 #include "hard_cases/random_rays.h"
-#include "truth/parallel_rows.h"
 
 #include <fmt/core.h>
 

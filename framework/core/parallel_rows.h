@@ -35,4 +35,13 @@ template <typename DoRow> void parallel_rows(int row_count, unsigned threads, co
     if (error) std::rethrow_exception(error);
 }
 
+/// Calls do_pixel(index) once for every pixel of an image, index = y * width + x, on all cores.
+template <typename DoPixel> void parallel_pixels(int width, int height, const DoPixel& do_pixel)
+{
+    parallel_rows(height, 0, [&](int y) {
+        const size_t first = static_cast<size_t>(y) * static_cast<size_t>(width);
+        for (size_t i = first; i < first + static_cast<size_t>(width); ++i) do_pixel(i);
+    });
+}
+
 } // namespace ssrlab
