@@ -3,11 +3,14 @@ layout(set = 0, binding = 1, r32f) uniform readonly image2D depth_image;
 layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image;   // xyz = view-space normal, w = roughness
 layout(set = 0, binding = 3, rgba16f) uniform readonly image2D material_image; // rgb = base colour, a = metallic
 
+bool is_surface(float depth, vec3 normal)
+{
+    return depth > 0.0 && any(notEqual(normal, vec3(0))) && !any(isnan(normal)) && !any(isinf(normal));
+}
+
 bool has_surface(ivec2 pixel)
 {
-    vec3 normal = imageLoad(normal_image, pixel).xyz;
-    bool usable = any(notEqual(normal, vec3(0))) && !any(isnan(normal)) && !any(isinf(normal));
-    return imageLoad(depth_image, pixel).x > 0.0 && usable;
+    return is_surface(imageLoad(depth_image, pixel).x, imageLoad(normal_image, pixel).xyz);
 }
 
 bool reflects(ivec2 pixel)

@@ -21,6 +21,9 @@
 #define RAYS_PER_GROUP 64
 #define MAX_GROUPS_X 32768
 
+// Tiles that a workgroup classifies, side by side (shaders/effects/classification.comp).
+#define CLASSIFIED_TILES 32
+
 // The one workgroup that lists the tiles (shaders/tile_list.comp).
 #define TILE_LIST_INVOCATIONS 128
 

@@ -283,7 +283,8 @@ void record_marking(const vk::raii::CommandBuffer& commands, const ComputePass& 
     barrier(commands);
     commands.fillBuffer(*buffers.tiles.statistics.buffer, 0, VK_WHOLE_SIZE, 0);
     barrier(commands);
-    dispatch(commands, classification, groups_of_8(buffers.gbuffer->view.size_px));
+    const glm::uvec3 tiles = groups_of_8(buffers.gbuffer->view.size_px);
+    dispatch(commands, classification, {(tiles.x + CLASSIFIED_TILES - 1) / CLASSIFIED_TILES, tiles.y, 1});
     barrier(commands);
 }
 
