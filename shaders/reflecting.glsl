@@ -13,7 +13,12 @@ bool has_surface(ivec2 pixel)
     return is_surface(imageLoad(depth_image, pixel).x, imageLoad(normal_image, pixel).xyz);
 }
 
+bool is_metallic(ivec2 pixel)
+{
+    return imageLoad(material_image, pixel).a > 0.0;
+}
+
 bool reflects(ivec2 pixel)
 {
-    return has_surface(pixel) && imageLoad(material_image, pixel).a > 0.0;
+    return has_surface(pixel) && is_metallic(pixel);
 }

@@ -128,8 +128,10 @@ uvec2 load_pyramid(ivec2 cell, int level)
 #ifdef RAY_BEAMS
 #ifdef REAL_IS_DOUBLE
 layout(set = 0, binding = 12, scalar) readonly buffer Beams { real2 clear_stretches[]; };
+real2 load_stretch(int stretch) { return clear_stretches[stretch]; }
 #else
 layout(set = 0, binding = 12, r32f) uniform readonly imageBuffer Beams; // as texels: ray_list.glsl says why
+real2 load_stretch(int stretch) { return real2(imageLoad(Beams, 2 * stretch).x, imageLoad(Beams, 2 * stretch + 1).x); }
 #endif
 #ifdef COUNT_WORK
 layout(set = 0, binding = 13, scalar) readonly buffer BeamWork { uint beam_fetches[]; };
@@ -141,12 +143,7 @@ layout(set = 0, binding = 13, scalar) readonly buffer BeamWork { uint beam_fetch
 real2 clear_stretch(int number)
 {
 #ifdef RAY_BEAMS
-    int stretch = int(work_group()) * BEAM_STRETCHES + number;
-#ifdef REAL_IS_DOUBLE
-    if (number < BEAM_STRETCHES) return clear_stretches[stretch];
-#else
-    if (number < BEAM_STRETCHES) return real2(imageLoad(Beams, 2 * stretch).x, imageLoad(Beams, 2 * stretch + 1).x);
-#endif
+    if (number < BEAM_STRETCHES) return load_stretch(int(work_group()) * BEAM_STRETCHES + number);
 #endif
     return real2(2);
 }

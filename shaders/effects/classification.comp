@@ -2,6 +2,9 @@
 // share needs neither shared memory nor an atomic per pixel, which lavapipe runs lane by lane.
 #include "shared.h"
 #include "reflecting.glsl"
+#if ROUGHNESS_BINS != 16
+#error four bins in each of four words
+#endif
 
 layout(local_size_x = CLASSIFIED_TILES) in;
 layout(constant_id = CONSTANT_EVERY_SURFACE) const int every_surface = 0; // trace what does not reflect, too
@@ -47,7 +50,7 @@ void main()
         vec4  normal  = imageLoad(normal_image, pixel);
         bool  inside  = all(lessThan(pixel, size_px));
         bool  surface = inside && is_surface(imageLoad(depth_image, pixel).x, normal.xyz);
-        bool  mirror  = surface && imageLoad(material_image, pixel).a > 0.0;
+        bool  mirror  = surface && is_metallic(pixel);
         surfaces += uint(surface);
         mirrors += uint(mirror);
         int bin = roughness_bin(normal.w);
