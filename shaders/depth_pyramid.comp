@@ -9,13 +9,14 @@ layout(constant_id = CONSTANT_PYRAMID_KIND) const int pyramid_kind = PYRAMID_OCC
 // Level 1 is made from pixels, in a pipeline of its own: a branch would run both sides.
 layout(constant_id = CONSTANT_FROM_PIXELS) const int from_pixels = 0;
 layout(set = 0, binding = 0, r32f) uniform readonly image2D depth_image;
-layout(set = 0, binding = 1, rg32ui) uniform uimage2D depth_pyramid;
+layout(set = 0, binding = 1, rg32ui) uniform uimageBuffer depth_pyramid;
 layout(push_constant, scalar) uniform Push
 {
     ivec2 source_size; // cells of the level below
     ivec2 size;        // cells of this level
     ivec2 source_offset;
     ivec2 offset;      // where this level lies in the atlas
+    int   atlas_width; // cells
 };
 
 // The slab's back, rounded outward: wider than any rounding of the test on the pixel itself.
@@ -39,9 +40,15 @@ Range pixel_range(ivec2 pixel)
     return Range(floatBitsToInt(depth), pyramid_kind == PYRAMID_NEAREST ? 0 : max(floatBitsToInt(outer_back(depth)), 0));
 }
 
+// Row by row, and a row is as wide as the whole atlas.
+int index_of(ivec2 place)
+{
+    return place.y * atlas_width + place.x;
+}
+
 uvec2 source_cell(ivec2 cell)
 {
-    return any(greaterThanEqual(cell, source_size)) ? empty_cell : imageLoad(depth_pyramid, source_offset + cell).xy;
+    return any(greaterThanEqual(cell, source_size)) ? empty_cell : imageLoad(depth_pyramid, index_of(source_offset + cell)).xy;
 }
 
 Range cell_range(uvec2 cell)
@@ -120,5 +127,5 @@ void main()
     }
     // Without occupancy everything behind the nearest front counts as full, as far as the farthest back.
     if (pyramid_kind != PYRAMID_OCCUPANCY && cell.y != 0u) cell.y = bins_between(0, findMSB(cell.y));
-    imageStore(depth_pyramid, offset + position, uvec4(cell.y != 0u ? cell : empty_cell, 0, 0));
+    imageStore(depth_pyramid, index_of(offset + position), uvec4(cell.y != 0u ? cell : empty_cell, 0, 0));
 }

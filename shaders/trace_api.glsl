@@ -18,7 +18,7 @@ layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1;
 
 layout(set = 0, binding = 1, r32f) uniform readonly image2D depth_image;
 layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image;
-layout(set = 0, binding = 3, rg32ui) uniform readonly uimage2D depth_pyramid; // levels 1, 2, … in one atlas
+layout(set = 0, binding = 3, r32ui) uniform readonly uimageBuffer depth_pyramid; // levels 1, 2, … in one atlas, two words a cell
 
 struct Ray
 {
@@ -115,13 +115,23 @@ int pyramid_levels()
     return largest > 1 ? findMSB(largest - 1) + 1 : 0;
 }
 
-// Level L begins at width - (width >> (L - 1)). Computed once: asking the image for its size at every visit costs 4 %.
-int pyramid_width = 1 << pyramid_levels();
+// Where a cell of level >= 1 lies in the atlas, whose rows are 2^pyramid_levels() cells; level L begins at width - (width >> (L - 1)).
+int pyramid_index(ivec2 cell, int level)
+{
+    int width = 1 << pyramid_levels();
+    return (cell.y << pyramid_levels()) + width - (width >> (level - 1)) + cell.x;
+}
+
+// Word by word: lavapipe reads 32 bits for all lanes at once, 64 bits lane by lane; and who looks at one word reads one.
+uvec2 load_pyramid(int index)
+{
+    return uvec2(imageLoad(depth_pyramid, 2 * index).x, imageLoad(depth_pyramid, 2 * index + 1).x);
+}
 
 // A cell of level >= 1 (pyramid_cell.glsl says what it knows).
 uvec2 load_pyramid(ivec2 cell, int level)
 {
-    return imageLoad(depth_pyramid, ivec2(pyramid_width - (pyramid_width >> (level - 1)), 0) + cell).xy;
+    return load_pyramid(pyramid_index(cell, level));
 }
 
 // ---- Beams
@@ -216,7 +226,7 @@ CellContent fetch_cell(ivec2 cell, int level)
     bool leaf = level == 0;
     COUNT_IF(depth_fetches, leaf);
     COUNT_IF(pyramid_fetches, !leaf);
-    return CellContent(real(imageLoad(depth_image, leaf ? cell : ivec2(0)).x), load_pyramid(leaf ? ivec2(0) : cell, leaf ? 1 : level));
+    return CellContent(real(imageLoad(depth_image, leaf ? cell : ivec2(0)).x), load_pyramid(leaf ? 0 : pyramid_index(cell, level)));
 }
 
 // May the ray touch a surface inside this cell? At level 0 the answer is touches_surface()'s; above, no means no for all its pixels.

@@ -62,13 +62,18 @@ Buffer make_buffer(Gpu& gpu, uint64_t bytes)
 
 Buffer make_texel_buffer(Gpu& gpu, uint64_t bytes, vk::Format format)
 {
-    const uint64_t texels = bytes / vk::blockSize(format), most = gpu.impl->limits.maxTexelBufferElements;
-    if (texels > most) throw_failure("a buffer of {} texels is needed; the device allows {}", texels, most);
     Buffer buffer = make(gpu, bytes, any_use | vk::BufferUsageFlagBits::eStorageTexelBuffer,
                          vk::MemoryPropertyFlagBits::eDeviceLocal);
-    buffer.texels = {gpu.impl->device,
-                     vk::BufferViewCreateInfo{.buffer = *buffer.buffer, .format = format, .range = VK_WHOLE_SIZE}};
+    buffer.texels = make_texel_view(gpu, buffer, format);
     return buffer;
+}
+
+vk::raii::BufferView make_texel_view(Gpu& gpu, const Buffer& buffer, vk::Format format)
+{
+    const uint64_t texels = buffer.bytes / vk::blockSize(format), most = gpu.impl->limits.maxTexelBufferElements;
+    if (texels > most) throw_failure("a buffer of {} texels is needed; the device allows {}", texels, most);
+    return {gpu.impl->device,
+            vk::BufferViewCreateInfo{.buffer = *buffer.buffer, .format = format, .range = VK_WHOLE_SIZE}};
 }
 
 Buffer make_host_buffer(Gpu& gpu, uint64_t bytes)

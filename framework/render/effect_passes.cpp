@@ -59,7 +59,7 @@ ComputePass make_colour_pass(Gpu& gpu, const PreparedFrame& frame, const std::st
     }
     if (frame.cone) {
         defines.emplace("CONE", "1");
-        more.insert({"cone_pyramid", frame.buffers->cone->cells.atlas});
+        more.insert({"cone_pyramid", frame.buffers->cone->cells});
     }
     return make_effect_pass(gpu, frame, shader, defines, more);
 }

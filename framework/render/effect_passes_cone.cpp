@@ -8,8 +8,8 @@ ConePyramid& cone_pyramid_of(Gpu& gpu, FrameBuffers& buffers)
     if (!buffers.cone) {
         const glm::ivec2 size_px = buffers.gbuffer->view.size_px;
         buffers.cone             = std::make_shared<ConePyramid>();
-        buffers.cone->cells      = make_pyramid_images(gpu, size_px, vk::Format::eR16G16B16A16Sfloat);
-        buffers.cone->ranges     = make_pyramid_images(gpu, size_px, vk::Format::eR32G32Sfloat);
+        buffers.cone->cells      = make_pyramid_image(gpu, size_px, vk::Format::eR16G16B16A16Sfloat);
+        buffers.cone->ranges     = make_pyramid_image(gpu, size_px, vk::Format::eR32G32Sfloat);
     }
     return *buffers.cone;
 }
@@ -17,13 +17,13 @@ ConePyramid& cone_pyramid_of(Gpu& gpu, FrameBuffers& buffers)
 Recording cone_pyramid(Gpu& gpu, PreparedFrame& frame)
 {
     const ConePyramid& cone = cone_pyramid_of(gpu, *frame.buffers);
-    const Bindings     own  = {{"cone_pyramid", cone.cells.atlas}, {"cone_ranges", cone.ranges.atlas}};
+    const Bindings     own  = {{"cone_pyramid", cone.cells}, {"cone_ranges", cone.ranges}};
     const auto         make = [&](const Defines& defines) {
         return make_effect_pass(gpu, frame, "effects/cone_pyramid.comp", defines, own, sizeof(PyramidPush));
     };
     frame.cone  = true;
-    auto passes = std::make_shared<PyramidPasses>(PyramidPasses{
-        make({{"FROM_PIXELS", "1"}}), make({}), pyramid_levels(frame.buffers->gbuffer->view.size_px, cone.cells)});
+    auto passes = std::make_shared<PyramidPasses>(
+        PyramidPasses{make({{"FROM_PIXELS", "1"}}), make({}), pyramid_levels(frame.buffers->gbuffer->view.size_px)});
     return [passes](const auto& commands) { record_pyramid(commands, *passes); };
 }
 

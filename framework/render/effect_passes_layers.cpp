@@ -23,7 +23,7 @@ TechniquePasses make_layer_passes(Gpu& gpu, const PreparedFrame& frame, const Ra
                                     {"depth_image", buffers.second_layer->depth},
                                     {"normal_image", buffers.second_layer->normal},
                                     {"material_image", buffers.second_layer->material},
-                                    {"depth_pyramid", buffers.second_pyramid.atlas}};
+                                    {"depth_pyramid", buffers.second_pyramid.words}};
     bindings.merge(bindings_of(buffers, rays));
     return make_technique_passes(gpu, frame, rays, bindings);
 }
@@ -35,7 +35,7 @@ Recording hidden_layer(Gpu& gpu, PreparedFrame& frame)
     FrameBuffers& buffers = *frame.buffers;
     if (!buffers.second_layer) {
         buffers.second_layer   = make_second_layer(gpu, *buffers.gbuffer);
-        buffers.second_pyramid = make_pyramid_images(gpu, buffers.gbuffer->view.size_px);
+        buffers.second_pyramid = make_depth_pyramid(gpu, buffers.gbuffer->view.size_px);
     }
     frame.hidden_layer      = true;
     auto own                = std::make_shared<HiddenLayer>();

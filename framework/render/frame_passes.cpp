@@ -123,33 +123,42 @@ void add_parameters(Constants& constants, std::span<const Parameter> parameters,
     }
 }
 
-PyramidImages make_pyramid_images(Gpu& gpu, glm::ivec2 size_px, vk::Format format)
+PyramidAtlas pyramid_atlas(glm::ivec2 size_px)
 {
-    PyramidImages images;
-    images.levels = level_count(size_px);
-    // A multiple of 2^levels in width; in height level 1 is the tallest.
-    const int width  = 1 << images.levels;
-    const int step   = std::max(width, 1);
-    const int padded = (size_px.x + step - 1) / step * step;
-    images.atlas     = make_image(gpu, {.format  = format,
-                                        .size_px = {std::max(padded, 2), std::max(level_size(size_px, 1).y, 1)},
-                                        .usage   = vk::ImageUsageFlagBits::eStorage});
-    return images;
+    const int levels = level_count(size_px); // 2^levels covers the larger side; level 1 is the tallest
+    return {{1 << levels, level_size(size_px, 1).y}, levels};
 }
 
-std::vector<PyramidPush> pyramid_levels(glm::ivec2 size_px, const PyramidImages& images, int top)
+GpuImage make_pyramid_image(Gpu& gpu, glm::ivec2 size_px, vk::Format format)
+{
+    return make_image(
+        gpu, {.format = format, .size_px = pyramid_atlas(size_px).size, .usage = vk::ImageUsageFlagBits::eStorage});
+}
+
+DepthPyramid make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px)
+{
+    const glm::ivec2 size = pyramid_atlas(size_px).size;
+    DepthPyramid     pyramid;
+    pyramid.cells = make_texel_buffer(gpu, static_cast<uint64_t>(size.x) * static_cast<uint64_t>(size.y) * 8,
+                                      vk::Format::eR32G32Uint);
+    pyramid.words = make_texel_view(gpu, pyramid.cells, vk::Format::eR32Uint);
+    return pyramid;
+}
+
+std::vector<PyramidPush> pyramid_levels(glm::ivec2 size_px, int top)
 {
     std::vector<PyramidPush> levels;
-    const int                width = images.atlas.size_px.x;
+    const PyramidAtlas       atlas = pyramid_atlas(size_px);
+    const int                width = atlas.size.x;
     const auto offset = [&](int level) { return glm::ivec2(level < 1 ? 0 : width - (width >> (level - 1)), 0); };
-    for (int level = 1; level <= std::min(images.levels, top); ++level)
+    for (int level = 1; level <= std::min(atlas.levels, top); ++level)
         levels.push_back(
-            {level_size(size_px, level - 1), level_size(size_px, level), offset(level - 1), offset(level)});
+            {level_size(size_px, level - 1), level_size(size_px, level), offset(level - 1), offset(level), width});
     return levels;
 }
 
 PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const GpuImage& depth,
-                                  const PyramidImages& images)
+                                  const DepthPyramid& pyramid)
 {
     if (std::ranges::count(frame.technique.inputs, "depth_pyramid") == 0) return {};
     const Shader shader = compile_shader({.file = "depth_pyramid.comp"});
@@ -157,14 +166,14 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const Gp
         Constants constants = settings_constants(frame, Precision::float32);
         constants.add(CONSTANT_PYRAMID_KIND, static_cast<int32_t>(parameter_or(frame, "pyramid", PYRAMID_OCCUPANCY)));
         constants.add(CONSTANT_FROM_PIXELS, static_cast<int32_t>(from_pixels));
-        return make_compute_pass(gpu, shader, {{"depth_image", depth}, {"depth_pyramid", images.atlas}}, constants,
+        return make_compute_pass(gpu, shader, {{"depth_image", depth}, {"depth_pyramid", pyramid.cells}}, constants,
                                      sizeof(PyramidPush));
     };
     PyramidPasses passes;
     passes.from_pixels = make(true);
     passes.from_cells  = make(false);
-    passes.levels      = pyramid_levels(frame.buffers->gbuffer->view.size_px, images,
-                                        static_cast<int>(parameter_or(frame, "top_level", 31)));
+    passes.levels =
+        pyramid_levels(frame.buffers->gbuffer->view.size_px, static_cast<int>(parameter_or(frame, "top_level", 31)));
     return passes;
 }
 
@@ -194,7 +203,7 @@ Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
             {"depth_image", buffers.gbuffer->depth},
             {"normal_image", buffers.gbuffer->normal},
             {"material_image", buffers.gbuffer->material},
-            {"depth_pyramid", buffers.pyramid.atlas}};
+            {"depth_pyramid", buffers.pyramid.words}};
 }
 
 ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch, int items_per_group)

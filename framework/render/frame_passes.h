@@ -27,17 +27,25 @@ struct DerivedRays {
     Buffer     throughputs; // bounces: what a ray's light still weighs in the reflection it belongs to, RGB
 };
 
-/// All levels >= 1 of the depth pyramid in one atlas; level L begins at x = width - (width >> (L - 1)).
-struct PyramidImages {
-    GpuImage atlas;
-    int      levels = 0; // above level 0, which is the depth image itself
+/// Where the levels >= 1 of a pyramid lie in one atlas: side by side, level L from x = width - (width >> (L - 1)) on.
+struct PyramidAtlas {
+    glm::ivec2 size{0, 0}; // cells
+    int        levels = 0; // above level 0, which is the picture itself
 };
-PyramidImages make_pyramid_images(Gpu& gpu, glm::ivec2 size_px, vk::Format format = vk::Format::eR32G32Uint);
+PyramidAtlas pyramid_atlas(glm::ivec2 size_px);
+GpuImage     make_pyramid_image(Gpu& gpu, glm::ivec2 size_px, vk::Format format);
+
+/// The depth pyramid, row by row of its atlas.
+struct DepthPyramid {
+    Buffer               cells;           // as texels: both words of a cell (shaders/pyramid_cell.glsl)
+    vk::raii::BufferView words = nullptr; // as texels: each word
+};
+DepthPyramid make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px);
 
 /// What cones look up (shaders/effects/cone_pyramid.comp).
 struct ConePyramid {
-    PyramidImages cells;  // RGBA16F: colour, visibility
-    PyramidImages ranges; // RG32F: nearest and farthest distance in metres
+    GpuImage cells;  // RGBA16F: colour, visibility
+    GpuImage ranges; // RG32F: nearest and farthest distance in metres
 };
 
 /// The tiles to trace (shaders/effects/classification.comp) and the counts for the plan.
@@ -52,9 +60,9 @@ struct FrameBuffers {
     TileBuffers                                                    tiles;
     FrameStatistics                                                statistics; // of the picture; nothing is traced yet
     std::map<size_t, std::shared_ptr<RayBuffers>>                  rays;       // by capacity; float
-    PyramidImages                                                  pyramid;
+    DepthPyramid                                                   pyramid;
     GBufferPtr                                                     second_layer; // empty until a frame asks for it
-    PyramidImages                                                  second_pyramid;
+    DepthPyramid                                                   second_pyramid;
     std::shared_ptr<ConePyramid>                                   cone;         // empty until a frame asks for it
     std::map<std::pair<size_t, int>, std::shared_ptr<DerivedRays>> derived_rays; // by capacity, and which of two
     GpuImage          reflection;   // RGBA16F: colour, weight; weight < 0 where no ray started
@@ -68,6 +76,7 @@ struct FrameBuffers {
 
 struct PyramidPush {
     glm::ivec2 source_size, size, source_offset, offset;
+    int        atlas_width = 0;
 };
 struct PyramidPasses {
     ComputePass              from_pixels, from_cells; // level 1; the others
@@ -106,10 +115,10 @@ struct PreparedFrame {
 };
 
 /// The first levels of a pyramid above level 0, all of them or up to `top`.
-std::vector<PyramidPush> pyramid_levels(glm::ivec2 size_px, const PyramidImages& images, int top = 31);
+std::vector<PyramidPush> pyramid_levels(glm::ivec2 size_px, int top = 31);
 /// Those of one layer's depth; none when the technique reads no pyramid.
 PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const GpuImage& depth,
-                                  const PyramidImages& images);
+                                  const DepthPyramid& pyramid);
 /// work: steps, depth and pyramid fetches per ray, or null for the pipeline that is timed.
 TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view,
                               const Buffer* work);

@@ -82,7 +82,7 @@ RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Techniqu
     auto buffers         = std::make_shared<FrameBuffers>();
     buffers->gbuffer     = gbuffer;
     buffers->tiles       = make_tile_buffers(gpu, gbuffer->view.size_px);
-    buffers->pyramid     = make_pyramid_images(gpu, gbuffer->view.size_px);
+    buffers->pyramid     = make_depth_pyramid(gpu, gbuffer->view.size_px);
     PreparedFrame& frame = tracer->frame;
     frame.buffers        = buffers;
     frame.technique      = technique;

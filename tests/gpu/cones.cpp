@@ -21,7 +21,7 @@ public:
         const Picture picture = make_picture(image);
         const auto    frame   = frame_with(picture, {{"gloss", cone_gloss}, {"plan", 0}});
         run_effect(*frame, "cone_pyramid");
-        const GpuImage& atlas = picture.buffers->cone->cells.atlas;
+        const GpuImage& atlas = picture.buffers->cone->cells;
         cells_                = read_colours(atlas);
         width_                = atlas.size_px.x;
     }

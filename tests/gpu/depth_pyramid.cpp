@@ -30,8 +30,10 @@ Pyramid build(const Picture& picture, const TraceSettings& settings, double kind
     const auto       frame = prepare_frame(device(), picture.buffers, hiz,
                                            values_of(hiz, {{"pyramid", kind}, {"top_level", 14}}), {settings});
     submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_pyramid(commands, frame->pyramid); });
-    const PyramidImages& images = picture.buffers->pyramid;
-    return {picture.view.size_px, images.atlas.size_px, images.levels, download_as<glm::uvec2>(device(), images.atlas)};
+    const PyramidAtlas atlas = pyramid_atlas(picture.view.size_px);
+    const auto         count = static_cast<size_t>(atlas.size.x) * static_cast<size_t>(atlas.size.y);
+    return {picture.view.size_px, atlas.size, atlas.levels,
+            download_as<glm::uvec2>(device(), picture.buffers->pyramid.cells, count)};
 }
 
 /// Levels: as many halvings, rounded up, as it takes to reach one cell.
