@@ -55,15 +55,14 @@ int print_plan(const CommonOptions& common, const PlanOptions& options)
     Stage            stage      = prepare_stage(common, options.picture);
     const auto       buffers    = make_frame_buffers(stage.gpu, stage.gbuffer);
 
-    const auto timed = [&](bool plan) {
-        choice.settings.effects.at("plan") = plan ? 1 : 0;
-        Timed result{prepare_frame(stage.gpu, buffers, technique, choice.values, choice.settings), {}, {}};
-        run_frame(stage.gpu, *result.frame); // warm-up
-        return result;
+    choice.settings.effects.at("plan") = 1;
+    const auto timed                   = [&](PreparedFramePtr frame) {
+        run_frame(stage.gpu, *frame); // warm-up
+        return Timed{std::move(frame), {}, {}};
     };
-    Timed      planned         = timed(true);
+    Timed      planned         = timed(prepare_frame(stage.gpu, buffers, technique, choice.values, choice.settings));
     const auto planned_picture = read_shaded(stage.gpu, *planned.frame);
-    Timed      everything      = timed(false);
+    Timed      everything      = timed(prepare_everything(stage.gpu, *planned.frame));
     const bool same            = read_shaded(stage.gpu, *everything.frame).values == planned_picture.values;
     for (int i = 0; i < options.repeats; ++i) {
         add_repeat(stage.gpu, planned);

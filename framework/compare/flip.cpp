@@ -147,11 +147,8 @@ void normalise_signed(std::vector<float>& kernel)
     for (float& weight : kernel) weight /= weight > 0 ? positive : std::max(negative, 1e-30F);
 }
 
-struct Features {
-    std::vector<float> edges, points; // lengths of the two-dimensional responses
-};
-
-Features detect_features(const Plane& y, float pixels_per_degree)
+/// Sets edges and points: lengths of the two-dimensional responses.
+void detect_features(FlipView& view, const Plane& y, float pixels_per_degree)
 {
     const float        sigma  = 0.5F * feature_width_deg * pixels_per_degree;
     const int          radius = int(std::ceil(3 * sigma));
@@ -172,7 +169,8 @@ Features detect_features(const Plane& y, float pixels_per_degree)
                         [&](size_t i) { length[i] = std::hypot(across.values[i], down.values[i]); });
         return length;
     };
-    return {response(edge), response(point)};
+    view.edges  = response(edge);
+    view.points = response(point);
 }
 
 /// Compresses the colour difference so that large ones take only the last twentieth of [0, 1].
@@ -184,31 +182,31 @@ float colour_error(float difference)
     return power < knee ? pt / knee * power : pt + (power - knee) / (largest - knee) * (1 - pt);
 }
 
-void require_comparable(const Image& a, const Image& b)
-{
-    const size_t expected = 3 * size_t(std::max(a.size_px.x, 0)) * size_t(std::max(a.size_px.y, 0));
-    if (a.size_px != b.size_px || a.values.size() != expected || b.values.size() != expected) {
-        throw_failure(
-            "FLIP compares two images of one size with three channels; got {}x{} ({} values) and {}x{} ({} values)",
-            a.size_px.x, a.size_px.y, a.values.size(), b.size_px.x, b.size_px.y, b.values.size());
-    }
-}
-
 } // namespace
 
-std::vector<float> flip_error(const Image& tested, const Image& reference, float pixels_per_degree)
+FlipView flip_view(const Image& image, float pixels_per_degree)
 {
-    require_comparable(tested, reference);
-    const Planes                 a = to_ycxcz(tested), b = to_ycxcz(reference);
-    const std::vector<glm::vec3> a_lab = perceived_lab(a, pixels_per_degree),
-                                 b_lab = perceived_lab(b, pixels_per_degree);
-    const Features a_features          = detect_features(a[0], pixels_per_degree),
-                   b_features          = detect_features(b[0], pixels_per_degree);
-    std::vector<float> error(a_lab.size());
-    parallel_pixels(tested.size_px.x, tested.size_px.y, [&](size_t i) {
-        const float colour = colour_error(hyab(a_lab[i], b_lab[i]));
-        const float edges  = std::abs(a_features.edges[i] - b_features.edges[i]);
-        const float points = std::abs(a_features.points[i] - b_features.points[i]);
+    const size_t expected = 3 * size_t(std::max(image.size_px.x, 0)) * size_t(std::max(image.size_px.y, 0));
+    if (image.values.size() != expected)
+        throw_failure("FLIP wants three channels: an image of {}x{} has {} values", image.size_px.x, image.size_px.y,
+                      image.values.size());
+    const Planes ycxcz = to_ycxcz(image);
+    FlipView     view{image.size_px, perceived_lab(ycxcz, pixels_per_degree), {}, {}};
+    detect_features(view, ycxcz[0], pixels_per_degree);
+    return view;
+}
+
+std::vector<float> flip_error(const FlipView& tested, const FlipView& reference)
+{
+    const FlipView &a = tested, &b = reference;
+    if (a.size_px != b.size_px)
+        throw_failure("FLIP compares two images of one size; got {}x{} and {}x{}", a.size_px.x, a.size_px.y,
+                      b.size_px.x, b.size_px.y);
+    std::vector<float> error(a.lab.size());
+    parallel_pixels(a.size_px.x, a.size_px.y, [&](size_t i) {
+        const float colour = colour_error(hyab(a.lab[i], b.lab[i]));
+        const float edges  = std::abs(a.edges[i] - b.edges[i]);
+        const float points = std::abs(a.points[i] - b.points[i]);
         const float feature =
             std::pow(std::clamp(std::max(edges, points) / std::numbers::sqrt2_v<float>, 0.0F, 1.0F), qf);
         error[i] = std::clamp(std::pow(colour, 1 - feature), 0.0F, 1.0F);

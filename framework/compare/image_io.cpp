@@ -2,6 +2,7 @@
 
 #include "compare/image_filter.h"
 #include "core/error.h"
+#include "core/parallel_rows.h"
 
 #include <OpenImageIO/imageio.h>
 
@@ -39,12 +40,12 @@ std::vector<uint8_t> to_srgb8(const Image& image)
     const size_t         channels = image.channels.size();
     const size_t         pixels   = image.values.size() / channels;
     std::vector<uint8_t> bytes(pixels * 3);
-    for (size_t i = 0; i < pixels; ++i) {
+    parallel_pixels(image.size_px.x, image.size_px.y, [&](size_t i) {
         for (size_t c = 0; c < 3; ++c) {
             const float value = image.values[i * channels + std::min(c, channels - 1)];
             bytes[i * 3 + c]  = uint8_t(std::lround(255 * linear_to_srgb(value)));
         }
-    }
+    });
     return bytes;
 }
 

@@ -67,22 +67,23 @@ std::optional<double> rmse_inside(const Image& tested, const Image& reference, c
     return OIIO::ImageBufAlgo::compare(pack(tested, mask, count), pack(reference, mask, count), 1, 1).rms_error;
 }
 
-ImageErrors compare_inside(const Image& tested, const Image& reference, const Mask& mask)
+ImageErrors compare_inside(const Image& tested, const Reference& reference, const Mask& mask)
 {
     const int count = int(std::count(mask.begin(), mask.end(), true));
     if (count == 0) return {};
-    const auto  difference = OIIO::ImageBufAlgo::compare(pack(tested, mask, count), pack(reference, mask, count), 1, 1);
+    const auto difference =
+        OIIO::ImageBufAlgo::compare(pack(tested, mask, count), pack(reference.display, mask, count), 1, 1);
     ImageErrors errors;
     errors.rmse = difference.rms_error;
     if (difference.rms_error > 0) errors.psnr_db = difference.PSNR;
     // The windows of SSIM and FLIP reach outside the mask, where nothing is to be judged: there both show the reference.
-    Image masked = reference;
+    Image masked = reference.display;
     for (size_t i = 0; i < mask.size(); ++i) {
         if (!mask[i]) continue;
         for (size_t c = 0; c < 3; ++c) masked.values[3 * i + c] = tested.values[3 * i + c];
     }
-    errors.ssim = mean_inside(ssim_map(to_luma(masked), to_luma(reference)), mask);
-    errors.flip = mean_inside(flip_error(masked, reference), mask);
+    errors.ssim = mean_inside(ssim_map(to_luma(masked), reference.luma), mask);
+    errors.flip = mean_inside(flip_error(flip_view(masked), reference.flip), mask);
     return errors;
 }
 
@@ -114,6 +115,11 @@ bool at_material_border(const GBufferImage& gbuffer, glm::ivec2 pixel)
 
 } // namespace
 
+Reference::Reference(const Image& linear_radiance)
+    : display(to_display(linear_radiance)), luma(to_luma(display)), flip(flip_view(display))
+{
+}
+
 Image reference_image(const SceneTruth& truth)
 {
     Image image;
@@ -126,28 +132,29 @@ Image reference_image(const SceneTruth& truth)
     return image;
 }
 
-MeasureValues compare_images(const Image& tested, const Image& reference, const SceneTruth& truth)
+MeasureValues compare_images(const Image& tested, const Reference& reference, const SceneTruth& truth)
 {
     require_comparable(tested, truth);
-    require_comparable(reference, truth);
+    require_comparable(reference.display, truth);
     Mask visible, reflective;
     for (const TruthClass cls : truth.cls) {
         visible.push_back(cls == TruthClass::visible);
         reflective.push_back(cls != TruthClass::not_traced);
     }
-    const Image       a = to_display(tested), b = to_display(reference);
-    const ImageErrors over_visible = compare_inside(a, b, visible), over_reflective = compare_inside(a, b, reflective);
+    const Image       display         = to_display(tested);
+    const ImageErrors over_visible    = compare_inside(display, reference, visible);
+    const ImageErrors over_reflective = compare_inside(display, reference, reflective);
     return {{"rmse_visible", over_visible.rmse},       {"psnr_visible_db", over_visible.psnr_db},
             {"ssim_visible", over_visible.ssim},       {"flip_visible", over_visible.flip},
             {"rmse_reflective", over_reflective.rmse}, {"psnr_reflective_db", over_reflective.psnr_db},
             {"ssim_reflective", over_reflective.ssim}, {"flip_reflective", over_reflective.flip}};
 }
 
-MeasureValues compare_pictures(const Image& tested, const Image& reference, const SceneTruth& truth,
+MeasureValues compare_pictures(const Image& tested, const Reference& reference, const SceneTruth& truth,
                                const GBufferImage& gbuffer)
 {
     require_comparable(tested, truth);
-    require_comparable(reference, truth);
+    require_comparable(reference.display, truth);
     Mask reflective, border, visible, visible_border;
     for (size_t i = 0; i < truth.cls.size(); ++i) {
         const int width = truth.size_px.x;
@@ -156,15 +163,16 @@ MeasureValues compare_pictures(const Image& tested, const Image& reference, cons
         visible.push_back(truth.cls[i] == TruthClass::visible);
         visible_border.push_back(visible[i] && border[i]);
     }
-    const Image       a = to_display(tested), b = to_display(reference);
-    const ImageErrors errors = compare_inside(a, b, reflective);
+    const Image       display = to_display(tested);
+    const ImageErrors errors  = compare_inside(display, reference, reflective);
+    const auto        rmse    = [&](const Mask& mask) { return rmse_inside(display, reference.display, mask); };
     return {{"picture_rmse", errors.rmse},
             {"picture_psnr_db", errors.psnr_db},
             {"picture_ssim", errors.ssim},
             {"picture_flip", errors.flip},
-            {"picture_border_rmse", rmse_inside(a, b, border)},
-            {"picture_visible_rmse", rmse_inside(a, b, visible)},
-            {"picture_visible_border_rmse", rmse_inside(a, b, visible_border)}};
+            {"picture_border_rmse", rmse(border)},
+            {"picture_visible_rmse", rmse(visible)},
+            {"picture_visible_border_rmse", rmse(visible_border)}};
 }
 
 } // namespace ssrlab

@@ -1,6 +1,8 @@
 // Every error measure of a record: one table says what each means; the functions below fill in the values.
 #pragma once
 
+#include "compare/flip.h"
+#include "compare/image_filter.h"
 #include "core/gbuffer_image.h"
 #include "core/image.h"
 #include "core/trace_result.h"
@@ -57,11 +59,20 @@ std::optional<double> count_flips(const TraceResult& float_result, const TraceRe
 MeasureValues split_error(const TraceResult& float_result, const TraceResult* double_result,
                           const TraceResult& screen_truth, const SceneTruth* scene_truth);
 
+/// What pictures are judged by, with all that the measures need of it: it may judge many. Throws Failure unless it has three channels.
+struct Reference {
+    explicit Reference(const Image& linear_radiance);
+
+    Image    display; // sRGB-encoded
+    Plane    luma;
+    FlipView flip;
+};
+
 /// "reflective": every traced pixel; "visible": those whose true point is visible. Images are linear radiance, three channels.
-MeasureValues compare_images(const Image& tested, const Image& reference, const SceneTruth& scene_truth);
+MeasureValues compare_images(const Image& tested, const Reference& reference, const SceneTruth& scene_truth);
 
 /// The names that begin with "picture_": a finished picture against the one with the true reflection.
-MeasureValues compare_pictures(const Image& tested, const Image& reference, const SceneTruth& scene_truth,
+MeasureValues compare_pictures(const Image& tested, const Reference& reference, const SceneTruth& scene_truth,
                                const GBufferImage& gbuffer);
 
 /// The reference reflection: the scene truth's radiance where traced, black elsewhere; channels R, G, B.

@@ -60,6 +60,8 @@ struct TraceSettings {
     double max_distance_m     = 1e9;   // length of the ray in view space; may be +inf
     double ray_offset_m       = 0;     // the ray starts so far along its direction
     bool   facing             = false; // a hit's surface must face the ray
+
+    bool operator==(const TraceSettings&) const = default;
 };
 
 } // namespace ssrlab

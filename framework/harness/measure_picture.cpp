@@ -24,6 +24,10 @@ struct Picture {
     FrameBuffersPtr       buffers;
     double                gbuffer_ms = 0;
     std::optional<Truths> truths;
+
+    // The picture with the true reflection under the settings of the last run: no technique is in it.
+    std::optional<Reference> reference;
+    FrameSettings            reference_for;
 };
 
 const LoadedScene& scene_of(Bench& bench, const std::string& name)
@@ -57,7 +61,8 @@ Picture make_picture(Bench& bench, const Run& run)
     return picture;
 }
 
-/// Shaders are read when a run is prepared: one that is edited under a sweep must not end in the same file.
+/// Shaders are read when a run is prepared: one that was edited under a sweep must not end in the same file. Asked after preparing,
+/// before anything of it is written.
 void refuse_changed_sources(const Bench& bench)
 {
     const auto changed =
@@ -74,7 +79,6 @@ double cost_of(const Bench& bench, const Run& run)
 
 void finish(Bench& bench, const Run& run, const Row& row)
 {
-    refuse_changed_sources(bench);
     bench.results.append(row);
     ++bench.written;
     if (row.at("outcome") == "failed") {
@@ -91,6 +95,7 @@ template <typename Step> bool try_step(Bench& bench, MeasuredRun& measured, cons
         step();
         return true;
     } catch (const std::exception& error) {
+        refuse_changed_sources(bench);
         finish(bench, *measured.run, failed_row(measured.row, error.what()));
         measured.run = nullptr;
         return false;
@@ -144,20 +149,19 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
     add_measures(measured.row, picture.truths->compare(run.settings.trace, counted, twin ? &*twin : nullptr,
                                                        hidden ? &*hidden : nullptr, measure.image_errors));
     if (!measure.image_errors) return;
-    const Image reference =
-        composite_reflection(bench.gpu, *measured.frame, picture.truths->true_reflection(run.settings.trace));
-    add_measures(measured.row, picture.truths->compare_picture(run.settings.trace, shaded, reference));
+    if (!picture.reference || picture.reference_for != run.settings) {
+        picture.reference.emplace(
+            composite_reflection(bench.gpu, *measured.frame, picture.truths->true_reflection(run.settings.trace)));
+        picture.reference_for = run.settings;
+    }
+    add_measures(measured.row, picture.truths->compare_picture(run.settings.trace, shaded, *picture.reference));
 }
 
 /// The same frame with everything on, where that is more.
-void prepare_everything(Bench& bench, const Picture& picture, MeasuredRun& measured)
+void prepare_comparison(Bench& bench, MeasuredRun& measured)
 {
-    const Run& run = *measured.run;
     if (!bench.experiment.measure.saved_time || !plan_leaves_out(*measured.frame)) return;
-    FrameSettings settings      = run.settings;
-    settings.effects.at("plan") = 0;
-    measured.everything = prepare_frame(bench.gpu, picture.buffers, find_technique(bench.techniques, run.technique),
-                                        run.values, settings);
+    measured.everything = prepare_everything(bench.gpu, *measured.frame);
     run_frame(bench.gpu, *measured.everything); // warm-up
 }
 
@@ -201,12 +205,13 @@ void measure_batch(Bench& bench, Picture& picture, std::span<const Run> runs)
         measured.row            = identity_row(bench.experiment, run, find_technique(bench.techniques, run.technique));
         const auto prepare_both = [&] {
             prepare(bench, picture, measured);
-            prepare_everything(bench, picture, measured);
+            prepare_comparison(bench, measured);
         };
         if (!try_step(bench, measured, prepare_both)) continue;
         bench.progress.prepared_run(run.id, cost_of(bench, run));
         open.push_back(std::move(measured));
     }
+    refuse_changed_sources(bench);
     repeat_until_final(bench, picture, open);
     keep_measured(bench, picture, open);
 }
@@ -221,6 +226,7 @@ void measure_picture(Bench& bench, std::span<const Run> runs)
     try {
         picture = make_picture(bench, first);
     } catch (const std::exception& error) {
+        refuse_changed_sources(bench);
         for (const Run& run : runs) {
             const Technique& technique = find_technique(bench.techniques, run.technique);
             finish(bench, run, failed_row(identity_row(bench.experiment, run, technique), error.what()));

@@ -6,16 +6,6 @@
 #include <cstdlib>
 
 namespace ssrlab {
-namespace {
-
-bool same(const TraceSettings& a, const TraceSettings& b)
-{
-    return a.thickness_m == b.thickness_m && a.thickness_relative == b.thickness_relative &&
-           a.max_distance_m == b.max_distance_m && a.ray_offset_m == b.ray_offset_m && a.facing == b.facing;
-}
-
-} // namespace
-
 std::filesystem::path truth_cache_dir(const std::filesystem::path& results)
 {
     const char* variable = std::getenv("SSRLAB_CACHE");
@@ -47,10 +37,11 @@ Truths::Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path c
 
 void Truths::make(const TraceSettings& settings)
 {
-    if (made_for_ && same(*made_for_, settings)) return;
+    if (made_for_ == settings) return;
     // Of all settings, the scene truth depends on the maximum distance alone.
     const bool same_scene_truth = made_for_ && made_for_->max_distance_m == settings.max_distance_m;
     made_for_.reset();
+    reference_.reset();
     true_reflection_.reset();
     screen_truth_ = cached_screen_truth(cache_dir_, gbuffer_, settings);
     if (!same_scene_truth) scene_truth_ = cached_scene_truth(cache_dir_, *scene_, gbuffer_, settings);
@@ -76,7 +67,7 @@ const std::vector<glm::vec4>& Truths::true_reflection(const TraceSettings& setti
     return reflection;
 }
 
-MeasureValues Truths::compare_picture(const TraceSettings& settings, const Image& picture, const Image& reference)
+MeasureValues Truths::compare_picture(const TraceSettings& settings, const Image& picture, const Reference& reference)
 {
     make(settings);
     return compare_pictures(picture, reference, scene_truth_, gbuffer_);
@@ -91,8 +82,8 @@ MeasureValues Truths::compare(const TraceSettings& settings, const TraceResult& 
     merge(values, split_error(counted, twin, screen_truth_, &scene_truth_));
     if (hidden != nullptr) merge(values, compare_hidden_layer(counted, *hidden, scene_truth_));
     if (!image_errors) return values;
-    merge(values, compare_images(reflected_image(counted, gbuffer_, scene_->background), reference_image(scene_truth_),
-                                 scene_truth_));
+    if (!reference_) reference_.emplace(reference_image(scene_truth_));
+    merge(values, compare_images(reflected_image(counted, gbuffer_, scene_->background), *reference_, scene_truth_));
     return values;
 }
 

@@ -24,7 +24,7 @@ public:
     const std::vector<glm::vec4>& true_reflection(const TraceSettings& settings);
 
     /// A finished picture against the one with the true reflection.
-    MeasureValues compare_picture(const TraceSettings& settings, const Image& picture, const Image& reference);
+    MeasureValues compare_picture(const TraceSettings& settings, const Image& picture, const Reference& reference);
 
     /// The agreement with the scene truth, as a false-colour picture.
     Image agreement(const TraceSettings& settings, const TraceResult& counted);
@@ -38,6 +38,7 @@ private:
     std::optional<TraceSettings>          made_for_;
     TraceResult                           screen_truth_;
     SceneTruth                            scene_truth_;
+    std::optional<Reference>              reference_;       // when asked for: the scene truth's reflection
     std::optional<std::vector<glm::vec4>> true_reflection_; // when asked for
 };
 

@@ -151,6 +151,33 @@ FrameFacts facts_of(const PreparedFrame& frame)
     return facts;
 }
 
+/// counts: what the rays hit, null: to be counted.
+PreparedFramePtr prepare(Gpu& gpu, const FrameBuffersPtr& buffers, const Technique& technique,
+                         const ParameterValues& values, const FrameSettings& settings, const TraceCounts* counts)
+{
+    require_bounded(technique, values);
+    auto frame       = std::make_shared<PreparedFrame>();
+    frame->buffers   = buffers;
+    frame->technique = technique;
+    frame->values    = values;
+    frame->settings  = settings;
+    frame->rays      = rays_for(gpu, *buffers, settings);
+    frame->pyramid   = make_pyramid_passes(gpu, *frame, buffers->gbuffer->depth, buffers->pyramid);
+    frame->trace     = make_trace_passes(gpu, *frame, *frame->rays, buffers->view, nullptr);
+
+    frame->facts      = facts_of(*frame);
+    frame->statistics = buffers->statistics;
+    if (counts != nullptr)
+        frame->statistics.trace = *counts;
+    else if (!shading_only(settings.effects) && frame->statistics.picture.reflecting_pixels > 0)
+        frame->statistics.trace = count_hits(gpu, *frame);
+    frame->plan = plan_frame(frame->facts, frame->statistics, settings.effects);
+    for (const PlannedEffect& planned : frame->plan)
+        if (planned.runs) frame->recordings.push_back(make_recording(gpu, *frame, planned.effect->id));
+    frame->timestamps = make_timestamps(gpu, static_cast<uint32_t>(frame->recordings.size()) + 1);
+    return frame;
+}
+
 } // namespace
 
 FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
@@ -178,25 +205,14 @@ FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
 PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const Technique& technique,
                                const ParameterValues& values, const FrameSettings& settings)
 {
-    require_bounded(technique, values);
-    auto frame       = std::make_shared<PreparedFrame>();
-    frame->buffers   = buffers;
-    frame->technique = technique;
-    frame->values    = values;
-    frame->settings  = settings;
-    frame->rays      = rays_for(gpu, *buffers, settings);
-    frame->pyramid   = make_pyramid_passes(gpu, *frame, buffers->gbuffer->depth, buffers->pyramid);
-    frame->trace     = make_trace_passes(gpu, *frame, *frame->rays, buffers->view, nullptr);
+    return prepare(gpu, buffers, technique, values, settings, nullptr);
+}
 
-    frame->facts      = facts_of(*frame);
-    frame->statistics = buffers->statistics;
-    if (!shading_only(settings.effects) && frame->statistics.picture.reflecting_pixels > 0)
-        frame->statistics.trace = count_hits(gpu, *frame);
-    frame->plan = plan_frame(frame->facts, frame->statistics, settings.effects);
-    for (const PlannedEffect& planned : frame->plan)
-        if (planned.runs) frame->recordings.push_back(make_recording(gpu, *frame, planned.effect->id));
-    frame->timestamps = make_timestamps(gpu, static_cast<uint32_t>(frame->recordings.size()) + 1);
-    return frame;
+PreparedFramePtr prepare_everything(Gpu& gpu, const PreparedFrame& planned)
+{
+    FrameSettings settings      = planned.settings;
+    settings.effects.at("plan") = 0;
+    return prepare(gpu, planned.buffers, planned.technique, planned.values, settings, &planned.statistics.trace);
 }
 
 const std::vector<PlannedEffect>& plan_of(const PreparedFrame& frame) { return frame.plan; }

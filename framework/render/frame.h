@@ -19,6 +19,8 @@ namespace ssrlab {
 struct FrameSettings {
     TraceSettings   trace;
     ParameterValues effects = default_effect_values(); // by the names of effect_parameters()
+
+    bool operator==(const FrameSettings&) const = default;
 };
 
 enum class Precision { float32, float64 };
@@ -58,6 +60,8 @@ FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer);
 /// Throws SpecError with the technique's file and line when its shader does not compile.
 PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const Technique& technique,
                                const ParameterValues& values, const FrameSettings& settings);
+/// The same frame with its plan off: every effect that is asked for runs, on every surface. What rays hit is not counted again.
+PreparedFramePtr prepare_everything(Gpu& gpu, const PreparedFrame& planned);
 /// What runs and why. Of a still picture: its statistics are those of the very frame.
 const std::vector<PlannedEffect>& plan_of(const PreparedFrame& frame);
 /// Whether a frame with everything on would do more. Of one that only shades this is not asked: false.

@@ -42,16 +42,21 @@ Plane first_channel(const Image& image)
 float largest(const std::vector<float>& values) { return *std::max_element(values.begin(), values.end()); }
 float smallest(const std::vector<float>& values) { return *std::min_element(values.begin(), values.end()); }
 
+std::vector<float> flip_of(const Image& a, const Image& b, float pixels_per_degree = flip_pixels_per_degree)
+{
+    return flip_error(flip_view(a, pixels_per_degree), flip_view(b, pixels_per_degree));
+}
+
 TEST(Flip, IdenticalIsZero)
 {
     const Image image = noise({37, 21}, 1);
-    EXPECT_EQ(largest(flip_error(image, image)), 0);
+    EXPECT_EQ(largest(flip_of(image, image)), 0);
 }
 
 // The largest difference of the paper's metric, by definition: pure green against pure blue.
 TEST(Flip, GreenAgainstBlueIsOne)
 {
-    for (const float error : flip_error(uniform({24, 24}, {0, 1, 0}), uniform({24, 24}, {0, 0, 1})))
+    for (const float error : flip_of(uniform({24, 24}, {0, 1, 0}), uniform({24, 24}, {0, 0, 1})))
         EXPECT_NEAR(error, 1, 1e-4);
 }
 
@@ -61,14 +66,14 @@ TEST(Flip, GreenAgainstBlueIsOne)
 TEST(Flip, BlackAgainstWhite)
 {
     const Image black = uniform({24, 24}, {0, 0, 0}), white = uniform({24, 24}, {1, 1, 1});
-    for (const float error : flip_error(black, white)) EXPECT_NEAR(error, 0.9674F, 5e-4);
-    for (const float error : flip_error(white, black)) EXPECT_NEAR(error, 0.9674F, 5e-4);
+    for (const float error : flip_of(black, white)) EXPECT_NEAR(error, 0.9674F, 5e-4);
+    for (const float error : flip_of(white, black)) EXPECT_NEAR(error, 0.9674F, 5e-4);
 }
 
 TEST(Flip, SymmetricAndBounded)
 {
     const Image a = noise({41, 33}, 1), b = noise({41, 33}, 2);
-    const auto  forward = flip_error(a, b), backward = flip_error(b, a);
+    const auto  forward = flip_of(a, b), backward = flip_of(b, a);
     EXPECT_EQ(forward, backward);
     EXPECT_GE(smallest(forward), 0);
     EXPECT_LE(largest(forward), 1);
@@ -81,7 +86,7 @@ TEST(Flip, GrowsWithTheDifferenceAndStaysLocal)
     for (const float step : {0.05F, 0.2F, 0.5F}) {
         Image dotted = grey;
         for (size_t c = 0; c < 3; ++c) dotted.values[3 * (50 * 101 + 50) + c] += step;
-        const std::vector<float> error = flip_error(dotted, grey);
+        const std::vector<float> error = flip_of(dotted, grey);
         EXPECT_EQ(largest(error), error[50 * 101 + 50]);
         EXPECT_GT(largest(error), last);
         EXPECT_NEAR(error[50 * 101 + 10], 0, 1e-3); // farther than any filter reaches
@@ -100,12 +105,16 @@ TEST(Flip, FineDetailVanishesWithDistance)
             b.values[3 * i + c] = even ? 0.4F : 0.6F;
         }
     }
-    const auto at_centre = [&](float ppd) { return flip_error(a, b, ppd)[32 * 64 + 32]; };
+    const auto at_centre = [&](float ppd) { return flip_of(a, b, ppd)[32 * 64 + 32]; };
     EXPECT_LT(at_centre(200), at_centre(20));
     EXPECT_LT(at_centre(200), 0.05F);
 }
 
-TEST(Flip, DifferentSizesAreRefused) { EXPECT_THROW(flip_error(uniform({3, 3}, {}), uniform({4, 3}, {})), Failure); }
+TEST(Flip, DifferentSizesAreRefused) { EXPECT_THROW(flip_of(uniform({3, 3}, {}), uniform({4, 3}, {})), Failure); }
+TEST(Flip, AnImageWithoutThreeChannelsIsRefused)
+{
+    EXPECT_THROW(flip_view({{2, 1}, {"Y"}, {0.5F, 0.5F}, {}}), Failure);
+}
 
 TEST(Ssim, IdenticalIsOneAndConstantsFollowTheFormula)
 {
@@ -138,7 +147,7 @@ TEST(ImageMeasures, MaskDecidesWhatCounts)
         if (i % 40 < 20) continue;
         for (size_t c = 0; c < 3; ++c) tested.values[3 * i + c] = 1;
     }
-    MeasureValues values = compare_images(tested, reference, half_visible({40, 20}));
+    MeasureValues values = compare_images(tested, Reference(reference), half_visible({40, 20}));
     EXPECT_EQ(values.at("rmse_visible"), 0);
     EXPECT_FALSE(values.at("psnr_visible_db"));
     EXPECT_NEAR(values.at("ssim_visible").value(), 1, 1e-6);
@@ -169,7 +178,7 @@ TEST(CompareImages, PicturesOverAllThatReflectsAndAtTheBorderOfMaterials)
         if (x == 11 || x < 5)
             for (size_t c = 0; c < 3; ++c) tested.values[3 * static_cast<size_t>(i) + c] = 1;
     }
-    const MeasureValues values = compare_pictures(tested, reference, truth, gbuffer);
+    const MeasureValues values = compare_pictures(tested, Reference(reference), truth, gbuffer);
     EXPECT_NEAR(values.at("picture_rmse").value(), std::sqrt(1.0 / 19), 1e-6);
     // Within 2 px of a change: columns 5, 6 beside what does not reflect, and 10 to 13.
     EXPECT_NEAR(values.at("picture_border_rmse").value(), std::sqrt(1.0 / 6), 1e-6);
@@ -180,14 +189,14 @@ TEST(CompareImages, PicturesOverAllThatReflectsAndAtTheBorderOfMaterials)
     EXPECT_LT(values.at("picture_ssim").value(), 1);
     gbuffer.metallic.assign(gbuffer.metallic.size(), 1);
     gbuffer.roughness.assign(gbuffer.roughness.size(), 0.3F);
-    EXPECT_FALSE(compare_pictures(tested, reference, truth, gbuffer).at("picture_border_rmse"));
+    EXPECT_FALSE(compare_pictures(tested, Reference(reference), truth, gbuffer).at("picture_border_rmse"));
 }
 
 TEST(ImageMeasures, OfDisplayValues)
 {
     // sRGB encodes linear 0.2140 as 0.5; values beyond 1 are clamped.
-    const MeasureValues values = compare_images(uniform({12, 12}, glm::vec3(7)),
-                                                uniform({12, 12}, glm::vec3(0.2140411F)), half_visible({12, 12}));
+    const MeasureValues values = compare_images(
+        uniform({12, 12}, glm::vec3(7)), Reference(uniform({12, 12}, glm::vec3(0.2140411F))), half_visible({12, 12}));
     EXPECT_NEAR(values.at("rmse_visible").value(), 0.5, 1e-5);
     EXPECT_NEAR(values.at("psnr_visible_db").value(), 20 * std::log10(2), 1e-4);
 }

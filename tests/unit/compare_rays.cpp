@@ -99,7 +99,7 @@ TEST(RayMeasures, NothingTracedHasNoValues)
     merge(all, compare_hidden_layer(none, none, scene));
     merge(all, split_error(none, &none, none, &scene));
     merge(all, count_work(none));
-    merge(all, compare_images(reference_image(scene), reference_image(scene), scene));
+    merge(all, compare_images(reference_image(scene), Reference(reference_image(scene)), scene));
     for (const auto& [name, value] : all) {
         if (name == "traced_rays") {
             EXPECT_EQ(value, 0);
@@ -214,8 +214,9 @@ TEST(Measures, TableIsCompleteAndUnique)
     all.merge(split_error(test.tested, &test.tested, test.screen, &test.truth));
     all.merge(count_work(test.tested));
     test.truth.radiance.resize(16);
-    all.merge(compare_images(reference_image(test.truth), reference_image(test.truth), test.truth));
-    all.merge(compare_pictures(reference_image(test.truth), reference_image(test.truth), test.truth, test.gbuffer));
+    const Reference reference(reference_image(test.truth));
+    all.merge(compare_images(reference_image(test.truth), reference, test.truth));
+    all.merge(compare_pictures(reference_image(test.truth), reference, test.truth, test.gbuffer));
     std::set<std::string_view> filled;
     for (const auto& [name, value] : all) filled.insert(name);
     filled.insert("steps_max"); // only with rays
