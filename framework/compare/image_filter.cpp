@@ -20,7 +20,7 @@ std::vector<float> filter_rows(const std::vector<float>& source, int width, int 
     std::vector<float> result(source.size());
     parallel_rows(height, 0, [&](int y) {
         const float*       row = &source[size_t(y) * size_t(width)];
-        std::vector<float> padded(size_t(width + 2 * radius));
+        std::vector<float> padded(size_t(width) + 2 * size_t(radius));
         for (int x = -radius; x < width + radius; ++x) padded[size_t(x + radius)] = row[std::clamp(x, 0, width - 1)];
         for (size_t k = 0; k < kernel.size(); ++k)
             add_weighted(&result[size_t(y) * size_t(width)], &padded[k], kernel[k], size_t(width));

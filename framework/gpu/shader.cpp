@@ -130,12 +130,17 @@ const std::string& known_text(const std::filesystem::path& path)
 std::string everything_read(const ShaderSource& source)
 {
     const std::filesystem::path main = shader_folder() / source.file; // a technique's own lies elsewhere
-    std::string key = main.string() + '=' + known_text(main) + '\0' + std::to_string(static_cast<int>(source.stage));
-    for (const auto& [name, value] : source.defines) key += '\0' + name + '=' + value;
-    for (const auto& [name, text] : source.include_texts) key += '\0' + name + '=' + text;
-    for (const auto& [name, path] : source.include_files) key += '\0' + path.string() + '=' + known_text(path);
+    std::string                 key;
+    const auto                  add = [&](const std::string& name, const std::string& text) {
+        key.append(name).append(1, '=').append(text).append(1, '\0');
+    };
+    add(main.string(), known_text(main));
+    add("stage", std::to_string(static_cast<int>(source.stage)));
+    for (const auto& [name, value] : source.defines) add(name, value);
+    for (const auto& [name, text] : source.include_texts) add(name, text);
+    for (const auto& [name, path] : source.include_files) add(path.string(), known_text(path));
     for (const auto& entry : std::filesystem::recursive_directory_iterator(shader_folder()))
-        if (entry.is_regular_file()) key += '\0' + entry.path().string() + '=' + known_text(entry.path());
+        if (entry.is_regular_file()) add(entry.path().string(), known_text(entry.path()));
     return key;
 }
 

@@ -38,7 +38,8 @@ const LoadedScene& scene_of(Bench& bench, const std::string& name)
         loaded->name     = name;
         loaded->scene    = load_scene(name);
         loaded->uploaded = upload_scene(bench.gpu, loaded->scene);
-        for (const std::string& warning : loaded->scene.warnings) bench.progress.say(name + ": " + warning);
+        for (const std::string& warning : loaded->scene.warnings)
+            bench.progress.say(fmt::format("{}: {}", name, warning));
         bench.scene = std::move(loaded);
     }
     return *bench.scene;
