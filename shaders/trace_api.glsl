@@ -108,18 +108,28 @@ real3 fetch_normal(ivec2 pixel)
     return real3(imageLoad(normal_image, pixel).xyz);
 }
 
+// 2^bits covers the number.
+int bits_of(int number)
+{
+    return number > 1 ? findMSB(number - 1) + 1 : 0;
+}
+
 // Levels above 0 that the pyramid has: 2^levels covers the larger side of the image.
 int pyramid_levels()
 {
-    int largest = max(size_px.x, size_px.y);
-    return largest > 1 ? findMSB(largest - 1) + 1 : 0;
+    return bits_of(max(size_px.x, size_px.y));
 }
 
-// Where a cell of level >= 1 lies in the atlas, whose rows are 2^pyramid_levels() cells; level L begins at width - (width >> (L - 1)).
+// The atlas row by row, 2^pyramid_row_bits cells each; level L begins at pyramid_end - (pyramid_end >> (L - 1)). Levels lie side by side; in
+// a picture that is taller than wide one above the other (framework/render/frame_passes.h).
+bool levels_stacked   = size_px.y > size_px.x;
+int  pyramid_row_bits = levels_stacked ? bits_of((size_px.x + 1) / 2) : pyramid_levels();
+int  pyramid_end      = 1 << (pyramid_levels() + (levels_stacked ? pyramid_row_bits : 0));
+
+// Where a cell of level >= 1 lies in the atlas.
 int pyramid_index(ivec2 cell, int level)
 {
-    int width = 1 << pyramid_levels();
-    return (cell.y << pyramid_levels()) + width - (width >> (level - 1)) + cell.x;
+    return (cell.y << pyramid_row_bits) + pyramid_end - (pyramid_end >> (level - 1)) + cell.x;
 }
 
 // Word by word: lavapipe reads 32 bits for all lanes at once, 64 bits lane by lane; and who looks at one word reads one.

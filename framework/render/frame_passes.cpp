@@ -63,11 +63,12 @@ bool exact_arithmetic(const Gpu& gpu, const PreparedFrame& frame)
     return true;
 }
 
-int level_count(glm::ivec2 size_px)
+/// 2^bits covers the number.
+int bits_of(int number)
 {
-    int levels = 0;
-    while ((1 << levels) < std::max(size_px.x, size_px.y)) ++levels;
-    return levels;
+    int bits = 0;
+    while ((1 << bits) < number) ++bits;
+    return bits;
 }
 
 glm::ivec2 level_size(glm::ivec2 size_px, int level) { return ((size_px - 1) >> level) + 1; }
@@ -125,8 +126,19 @@ void add_parameters(Constants& constants, std::span<const Parameter> parameters,
 
 PyramidAtlas pyramid_atlas(glm::ivec2 size_px)
 {
-    const int levels = level_count(size_px); // 2^levels covers the larger side; level 1 is the tallest
-    return {{1 << levels, level_size(size_px, 1).y}, levels};
+    const glm::ivec2 largest = level_size(size_px, 1);
+    PyramidAtlas     atlas;
+    atlas.levels  = bits_of(std::max(size_px.x, size_px.y));
+    atlas.stacked = size_px.y > size_px.x;
+    atlas.size    = atlas.stacked ? glm::ivec2(1 << bits_of(largest.x), 1 << atlas.levels)
+                                  : glm::ivec2(1 << atlas.levels, largest.y);
+    return atlas;
+}
+
+glm::ivec2 PyramidAtlas::first_cell(int level) const
+{
+    const int side = stacked ? size.y : size.x, first = side - (side >> (level - 1));
+    return stacked ? glm::ivec2(0, first) : glm::ivec2(first, 0);
 }
 
 GpuImage make_pyramid_image(Gpu& gpu, glm::ivec2 size_px, vk::Format format)
@@ -149,11 +161,10 @@ std::vector<PyramidPush> pyramid_levels(glm::ivec2 size_px, int top)
 {
     std::vector<PyramidPush> levels;
     const PyramidAtlas       atlas = pyramid_atlas(size_px);
-    const int                width = atlas.size.x;
-    const auto offset = [&](int level) { return glm::ivec2(level < 1 ? 0 : width - (width >> (level - 1)), 0); };
     for (int level = 1; level <= std::min(atlas.levels, top); ++level)
-        levels.push_back(
-            {level_size(size_px, level - 1), level_size(size_px, level), offset(level - 1), offset(level), width});
+        levels.push_back({level_size(size_px, level - 1), level_size(size_px, level),
+                          level > 1 ? atlas.first_cell(level - 1) : glm::ivec2(0), atlas.first_cell(level),
+                          atlas.size.x});
     return levels;
 }
 

@@ -27,10 +27,14 @@ struct DerivedRays {
     Buffer     throughputs; // bounces: what a ray's light still weighs in the reflection it belongs to, RGB
 };
 
-/// Where the levels >= 1 of a pyramid lie in one atlas: side by side, level L from x = width - (width >> (L - 1)) on.
+/// Where the levels >= 1 of a pyramid lie in one atlas: side by side, or one above the other where the picture is taller than wide.
+/// Level L begins at side - (side >> (L - 1)), side being the atlas's width or height. Its width is a power of two.
 struct PyramidAtlas {
-    glm::ivec2 size{0, 0}; // cells
-    int        levels = 0; // above level 0, which is the picture itself
+    glm::ivec2 size{0, 0};      // cells
+    int        levels  = 0;     // above level 0, which is the picture itself
+    bool       stacked = false; // one above the other
+
+    glm::ivec2 first_cell(int level) const;
 };
 PyramidAtlas pyramid_atlas(glm::ivec2 size_px);
 GpuImage     make_pyramid_image(Gpu& gpu, glm::ivec2 size_px, vk::Format format);

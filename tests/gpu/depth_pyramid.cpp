@@ -12,15 +12,15 @@ namespace ssrlab::test {
 namespace {
 
 struct Pyramid {
-    glm::ivec2              size_px, atlas_size_px;
-    int                     levels = 0;
-    std::vector<glm::uvec2> atlas;
+    glm::ivec2              size_px;
+    PyramidAtlas            atlas;
+    std::vector<glm::uvec2> cells;
 
     glm::ivec2 size(int level) const { return ((size_px - 1) >> level) + 1; }
     glm::uvec2 at(int level, int x, int y) const
     {
-        const int left = atlas_size_px.x - (atlas_size_px.x >> (level - 1));
-        return atlas.at(static_cast<size_t>(y * atlas_size_px.x + left + x));
+        const glm::ivec2 place = atlas.first_cell(level) + glm::ivec2(x, y);
+        return cells.at(static_cast<size_t>(place.y * atlas.size.x + place.x));
     }
 };
 
@@ -32,8 +32,7 @@ Pyramid build(const Picture& picture, const TraceSettings& settings, double kind
     submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_pyramid(commands, frame->pyramid); });
     const PyramidAtlas atlas = pyramid_atlas(picture.view.size_px);
     const auto         count = static_cast<size_t>(atlas.size.x) * static_cast<size_t>(atlas.size.y);
-    return {picture.view.size_px, atlas.size, atlas.levels,
-            download_as<glm::uvec2>(device(), picture.buffers->pyramid.cells, count)};
+    return {picture.view.size_px, atlas, download_as<glm::uvec2>(device(), picture.buffers->pyramid.cells, count)};
 }
 
 /// Levels: as many halvings, rounded up, as it takes to reach one cell.
@@ -99,9 +98,9 @@ bool is_right(glm::uvec2 cell, const GBufferImage& image, const TraceSettings& s
 
 void expect_cells(const Pyramid& pyramid, const GBufferImage& image, const TraceSettings& settings, int kind)
 {
-    ASSERT_EQ(pyramid.levels, expected_levels(pyramid.size_px));
+    ASSERT_EQ(pyramid.atlas.levels, expected_levels(pyramid.size_px));
     size_t wrong = 0;
-    for (int level = 1; level <= pyramid.levels; ++level)
+    for (int level = 1; level <= pyramid.atlas.levels; ++level)
         for (int y = 0; y < pyramid.size(level).y; ++y)
             for (int x = 0; x < pyramid.size(level).x; ++x) {
                 const glm::uvec2 cell = pyramid.at(level, x, y);
@@ -137,8 +136,8 @@ TEST_P(DepthPyramid, SeesTheOnlyNearTexelInEveryCornerAndBorder)
         std::ranges::fill(image.depth, 0.01F);
         image.depth[at(image, near.x, near.y)] = 0.75F;
         const Pyramid pyramid                  = build(make_picture(image), {}, PYRAMID_OCCUPANCY);
-        ASSERT_EQ(pyramid.levels, expected_levels(size));
-        for (int level = 1; level <= pyramid.levels; ++level)
+        ASSERT_EQ(pyramid.atlas.levels, expected_levels(size));
+        for (int level = 1; level <= pyramid.atlas.levels; ++level)
             for (int y = 0; y < pyramid.size(level).y; ++y)
                 for (int x = 0; x < pyramid.size(level).x; ++x)
                     ASSERT_EQ(pyramid.at(level, x, y).x & ~31U,
