@@ -89,30 +89,30 @@ HardCase near_plane_near_and_far()
 
 HardCase orthographic()
 {
-    return {
-        .name   = "orthographic",
-        .breaks = "w is 1 everywhere, depth is linear in distance: formulas with 1 / distance are wrong",
-        .answer = "A mirror at 45 degrees in the rows from 40 on sends its rays straight up, at constant distance; "
-                  "above row 20 stands a wall whose slab holds that distance: row 19, same column, t = (y - 20) / y.",
-        .setups =
-            [] {
-                Setup setup{{},
-                            picture_of(orthographic_view({48, 64}, 4, 0.5, 20),
-                                       [](glm::ivec2 p) { return p.y < 20   ? 4.0
-                                                                 : p.y < 40 ? 0.0
-                                                                            : 6.0 - p.y / 64.0; }),
-                            {.thickness_m = 3, .max_distance_m = 100},
-                            {}};
-                for (size_t i = 0; i < setup.gbuffer.normal_vs.size(); ++i) {
-                    setup.gbuffer.normal_vs[i] = {0, 1, 1};
-                    setup.gbuffer.metallic[i]  = i >= 40 * 48 ? 1.0F : 0.0F;
-                }
-                return std::vector{setup};
-            },
-        .expected = [](const Setup&, const RayInput& ray) -> std::optional<Expected> {
-            const double y = ray.pixel.y + 0.5;
-            return Expected{.pixel = glm::ivec2(ray.pixel.x, 19), .t = (y - 20) / y};
-        }};
+    return {.name   = "orthographic",
+            .breaks = "w is 1 everywhere, depth is linear in distance: formulas with 1 / distance are wrong",
+            .answer =
+                "A mirror at 45 degrees in the rows from 40 on sends its rays straight up, at constant distance; "
+                "above row 20 stands a wall whose slab holds that distance: row 19, same column, t = (y - 20) / y.",
+            .setups =
+                [] {
+                    Setup setup{{},
+                                picture_of(orthographic_view({48, 64}, 4, 0.5, 20),
+                                           [](glm::ivec2 p) {
+                                               return p.y < 20 ? 4.0 : p.y < 40 ? 0.0 : 6.0 - p.y / 64.0;
+                                           }),
+                                {.thickness_m = 3, .max_distance_m = 100},
+                                {}};
+                    for (size_t i = 0; i < setup.gbuffer.normal_vs.size(); ++i) {
+                        setup.gbuffer.normal_vs[i] = {0, 1, 1};
+                        setup.gbuffer.metallic[i]  = i >= 40 * 48 ? 1.0F : 0.0F;
+                    }
+                    return std::vector{setup};
+                },
+            .expected = [](const Setup&, const RayInput& ray) -> std::optional<Expected> {
+                const double y = ray.pixel.y + 0.5;
+                return Expected{.pixel = glm::ivec2(ray.pixel.x, 19), .t = (y - 20) / y};
+            }};
 }
 
 HardCase orthographic_along_the_axis()

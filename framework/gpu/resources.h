@@ -22,7 +22,7 @@ struct Buffer {
 Buffer make_buffer(Gpu& gpu, uint64_t bytes);
 /// The same, which shaders may also read as texels of this format. Throws Failure likewise.
 Buffer make_texel_buffer(Gpu& gpu, uint64_t bytes, vk::Format format);
-/// Another way to read its texels. It must not outlive the buffer.
+/// Another way to read its texels. It must not outlive the buffer. Throws Failure over limits.
 vk::raii::BufferView make_texel_view(Gpu& gpu, const Buffer& buffer, vk::Format format);
 /// Host-visible and coherent, mapped.
 Buffer make_host_buffer(Gpu& gpu, uint64_t bytes);

@@ -14,7 +14,8 @@ const std::vector<Column> identity = {
     {"run_id", "hash of the run: scene, view, size, technique, settings, parameters; what these names stood for: "
                "environment.json"},
     {"experiment", "name of the specification"},
-    {"run_number", "among the picture's runs as the specification lists them, from 0: 0 is what others are compared with"},
+    {"run_number",
+     "among the picture's runs as the specification lists them, from 0: 0 is what others are compared with"},
     {"scene", "file, recipe or builtin:NAME"},
     {"view", "camera"},
     {"width", "pixels"},

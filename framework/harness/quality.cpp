@@ -41,10 +41,12 @@ void Truths::make(const TraceSettings& settings)
     // Of all settings, the scene truth depends on the maximum distance alone.
     const bool same_scene_truth = made_for_ && made_for_->max_distance_m == settings.max_distance_m;
     made_for_.reset();
-    reference_.reset();
     true_reflection_.reset();
     screen_truth_ = cached_screen_truth(cache_dir_, gbuffer_, settings);
-    if (!same_scene_truth) scene_truth_ = cached_scene_truth(cache_dir_, *scene_, gbuffer_, settings);
+    if (!same_scene_truth) {
+        reference_.reset();
+        scene_truth_ = cached_scene_truth(cache_dir_, *scene_, gbuffer_, settings);
+    }
     made_for_ = settings;
 }
 

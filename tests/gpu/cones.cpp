@@ -58,11 +58,12 @@ TEST(Cones, VisibilityOfHigherLevelsIsTheProductOverTheLevels)
 }
 
 /// A floor of the given roughness before a wall, where every column has the colour that `colour` says.
-template <typename Colour> Picture floor_before_wall(float roughness, const Colour& colour)
+template <typename Colour>
+Picture floor_before_wall(float roughness, const Colour& colour, glm::ivec2 size_px = {128, 128})
 {
-    GBufferImage image = floor_and_wall(bench_view({128, 128}), 4);
+    GBufferImage image = floor_and_wall(bench_view(size_px), 4);
     std::ranges::fill(image.roughness, roughness);
-    for (size_t i = 0; i < image.radiance.size(); ++i) image.radiance[i] = colour(static_cast<int>(i % 128));
+    for (size_t i = 0; i < image.radiance.size(); ++i) image.radiance[i] = colour(static_cast<int>(i) % size_px.x);
     return make_picture(image);
 }
 
@@ -86,12 +87,20 @@ TEST(Cones, LeaveSmoothSurfacesToTheLastBit)
 
 TEST(Cones, OfOneColourSeeThatColour)
 {
-    const Picture picture = floor_before_wall(0.6F, [](int /*x*/) { return glm::vec3(0.25F, 0.5F, 0.75F); });
-    for (const double steps : {1, 7})
-        for (const glm::vec4& pixel : reflection_of(picture, {{"gloss", cone_gloss}, {"cone_steps", steps}})) {
-            if (pixel.a <= 0) continue;
-            for (int c = 0; c < 3; ++c) ASSERT_NEAR(pixel[c], 0.25F * static_cast<float>(c + 1), 1e-3F);
+    const auto one_colour = [](int /*x*/) { return glm::vec3(0.25F, 0.5F, 0.75F); };
+    // In a picture taller than wide the levels that cones look up lie one above the other.
+    for (const glm::ivec2& size_px : {glm::ivec2(128, 128), glm::ivec2(75, 131)}) {
+        const Picture picture = floor_before_wall(0.6F, one_colour, size_px);
+        for (const double steps : {1, 7}) {
+            int seen = 0;
+            for (const glm::vec4& pixel : reflection_of(picture, {{"gloss", cone_gloss}, {"cone_steps", steps}})) {
+                if (pixel.a <= 0) continue;
+                ++seen;
+                for (int c = 0; c < 3; ++c) ASSERT_NEAR(pixel[c], 0.25F * static_cast<float>(c + 1), 1e-3F);
+            }
+            EXPECT_GT(seen, 1000);
         }
+    }
 }
 
 // Across the border of two colours a circle holds of each what lies on its side. Interpolated cells as wide as the circle in the cone cover
