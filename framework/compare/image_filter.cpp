@@ -3,15 +3,31 @@
 #include "core/parallel_rows.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ssrlab {
 namespace {
 
-/// sums[i] += weight * values[i]: weight by weight over a whole row, each sum keeps its order, and several are made at once.
-void add_weighted(float* sums, const float* values, float weight, size_t count)
+/// result[x] = sum over k of kernel[k] * rows[k][x]. Each sum keeps its order; a block of them stays in registers.
+void weigh_rows(float* result, std::span<const float* const> rows, std::span<const float> kernel, size_t width)
 {
-    for (size_t i = 0; i < count; ++i) sums[i] += weight * values[i];
+    constexpr size_t block = 16;
+    size_t           x     = 0;
+    for (; x + block <= width; x += block) {
+        std::array<float, block> sums{};
+        for (size_t k = 0; k < kernel.size(); ++k) {
+            const float* values = rows[k] + x;
+            const float  weight = kernel[k];
+            for (size_t i = 0; i < block; ++i) sums[i] += weight * values[i];
+        }
+        std::ranges::copy(sums, result + x);
+    }
+    for (; x < width; ++x) {
+        float sum = 0;
+        for (size_t k = 0; k < kernel.size(); ++k) sum += kernel[k] * rows[k][x];
+        result[x] = sum;
+    }
 }
 
 std::vector<float> filter_rows(const std::vector<float>& source, int width, int height, std::span<const float> kernel)
@@ -22,8 +38,9 @@ std::vector<float> filter_rows(const std::vector<float>& source, int width, int 
         const float*       row = &source[size_t(y) * size_t(width)];
         std::vector<float> padded(size_t(width) + 2 * size_t(radius));
         for (int x = -radius; x < width + radius; ++x) padded[size_t(x + radius)] = row[std::clamp(x, 0, width - 1)];
-        for (size_t k = 0; k < kernel.size(); ++k)
-            add_weighted(&result[size_t(y) * size_t(width)], &padded[k], kernel[k], size_t(width));
+        std::vector<const float*> shifted;
+        for (size_t k = 0; k < kernel.size(); ++k) shifted.push_back(&padded[k]);
+        weigh_rows(&result[size_t(y) * size_t(width)], shifted, kernel, size_t(width));
     });
     return result;
 }
@@ -34,11 +51,10 @@ std::vector<float> filter_columns(const std::vector<float>& source, int width, i
     const int          radius = int(kernel.size() / 2);
     std::vector<float> result(source.size());
     parallel_rows(height, 0, [&](int y) {
-        for (int k = 0; k < int(kernel.size()); ++k) {
-            const int row = std::clamp(y + k - radius, 0, height - 1);
-            add_weighted(&result[size_t(y) * size_t(width)], &source[size_t(row) * size_t(width)], kernel[size_t(k)],
-                         size_t(width));
-        }
+        std::vector<const float*> rows;
+        for (int k = 0; k < int(kernel.size()); ++k)
+            rows.push_back(&source[size_t(std::clamp(y + k - radius, 0, height - 1)) * size_t(width)]);
+        weigh_rows(&result[size_t(y) * size_t(width)], rows, kernel, size_t(width));
     });
     return result;
 }

@@ -5,16 +5,22 @@
 #include "core/error.h"
 #include "core/parallel_rows.h"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-
 #include <algorithm>
 #include <cmath>
 
 namespace ssrlab {
 namespace {
 
-using Mask = std::vector<bool>;
+/// One byte a pixel, not 0 inside.
+using Mask = std::vector<uint8_t>;
+
+/// Where is_inside(index) holds.
+template <typename IsInside> Mask make_mask(glm::ivec2 size_px, const IsInside& is_inside)
+{
+    Mask mask(size_t(size_px.x) * size_t(size_px.y));
+    parallel_pixels(size_px.x, size_px.y, [&](size_t i) { mask[i] = is_inside(i) ? 1 : 0; });
+    return mask;
+}
 
 struct ImageErrors {
     std::optional<double> rmse, psnr_db, ssim, flip;
@@ -30,11 +36,11 @@ Image to_display(const Image& linear)
 
 Plane to_luma(const Image& display) // Rec. 709
 {
-    Plane luma{display.size_px, {}};
-    for (size_t i = 0; i < display.values.size(); i += 3) {
-        luma.values.push_back(0.2126F * display.values[i] + 0.7152F * display.values[i + 1] +
-                              0.0722F * display.values[i + 2]);
-    }
+    Plane luma{display.size_px, std::vector<float>(display.values.size() / 3)};
+    parallel_pixels(display.size_px.x, display.size_px.y, [&](size_t i) {
+        const float* rgb = &display.values[3 * i];
+        luma.values[i]   = 0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2];
+    });
     return luma;
 }
 
@@ -42,46 +48,41 @@ double mean_inside(const std::vector<float>& values, const Mask& mask)
 {
     double sum = 0, count = 0;
     for (size_t i = 0; i < values.size(); ++i) {
-        if (!mask[i]) continue;
+        if (mask[i] == 0) continue;
         sum += double(values[i]);
         count += 1;
     }
     return sum / count;
 }
 
-/// The pixels inside the mask as one long row.
-OIIO::ImageBuf pack(const Image& image, const Mask& mask, int count)
-{
-    OIIO::ImageBuf row(OIIO::ImageSpec(count, 1, 3, OIIO::TypeDesc::FLOAT));
-    int            x = 0;
-    for (size_t i = 0; i < mask.size(); ++i) {
-        if (mask[i]) row.setpixel(x++, 0, &image.values[3 * i], 3);
-    }
-    return row;
-}
-
+/// Over all three channels.
 std::optional<double> rmse_inside(const Image& tested, const Image& reference, const Mask& mask)
 {
-    const int count = int(std::count(mask.begin(), mask.end(), true));
+    double sum = 0, count = 0;
+    for (size_t i = 0; i < mask.size(); ++i) {
+        if (mask[i] == 0) continue;
+        for (size_t c = 0; c < 3; ++c) {
+            const double difference = double(tested.values[3 * i + c]) - double(reference.values[3 * i + c]);
+            sum += difference * difference;
+        }
+        count += 3;
+    }
     if (count == 0) return std::nullopt;
-    return OIIO::ImageBufAlgo::compare(pack(tested, mask, count), pack(reference, mask, count), 1, 1).rms_error;
+    return std::sqrt(sum / count);
 }
 
 ImageErrors compare_inside(const Image& tested, const Reference& reference, const Mask& mask)
 {
-    const int count = int(std::count(mask.begin(), mask.end(), true));
-    if (count == 0) return {};
-    const auto difference =
-        OIIO::ImageBufAlgo::compare(pack(tested, mask, count), pack(reference.display, mask, count), 1, 1);
     ImageErrors errors;
-    errors.rmse = difference.rms_error;
-    if (difference.rms_error > 0) errors.psnr_db = difference.PSNR;
+    errors.rmse = rmse_inside(tested, reference.display, mask);
+    if (!errors.rmse) return errors;
+    if (*errors.rmse > 0) errors.psnr_db = -20 * std::log10(*errors.rmse);
     // The windows of SSIM and FLIP reach outside the mask, where nothing is to be judged: there both show the reference.
-    Image masked = reference.display;
-    for (size_t i = 0; i < mask.size(); ++i) {
-        if (!mask[i]) continue;
-        for (size_t c = 0; c < 3; ++c) masked.values[3 * i + c] = tested.values[3 * i + c];
-    }
+    Image masked = tested;
+    parallel_pixels(tested.size_px.x, tested.size_px.y, [&](size_t i) {
+        if (mask[i] != 0) return;
+        for (size_t c = 0; c < 3; ++c) masked.values[3 * i + c] = reference.display.values[3 * i + c];
+    });
     errors.ssim = mean_inside(ssim_map(to_luma(masked), reference.luma), mask);
     errors.flip = mean_inside(flip_error(flip_view(masked), reference.flip), mask);
     return errors;
@@ -93,6 +94,16 @@ void require_comparable(const Image& image, const SceneTruth& truth)
         throw_failure("an image of {}x{} with {} values cannot be compared over {}x{} pixels with three channels",
                       image.size_px.x, image.size_px.y, image.values.size(), truth.size_px.x, truth.size_px.y);
     }
+}
+
+Mask visible_pixels(const SceneTruth& truth)
+{
+    return make_mask(truth.size_px, [&](size_t i) { return truth.cls[i] == TruthClass::visible; });
+}
+
+Mask reflective_pixels(const SceneTruth& truth)
+{
+    return make_mask(truth.size_px, [&](size_t i) { return truth.cls[i] != TruthClass::not_traced; });
 }
 
 /// Pixels with a surface of another material within 2 px.
@@ -136,14 +147,9 @@ MeasureValues compare_images(const Image& tested, const Reference& reference, co
 {
     require_comparable(tested, truth);
     require_comparable(reference.display, truth);
-    Mask visible, reflective;
-    for (const TruthClass cls : truth.cls) {
-        visible.push_back(cls == TruthClass::visible);
-        reflective.push_back(cls != TruthClass::not_traced);
-    }
     const Image       display         = to_display(tested);
-    const ImageErrors over_visible    = compare_inside(display, reference, visible);
-    const ImageErrors over_reflective = compare_inside(display, reference, reflective);
+    const ImageErrors over_visible    = compare_inside(display, reference, visible_pixels(truth));
+    const ImageErrors over_reflective = compare_inside(display, reference, reflective_pixels(truth));
     return {{"rmse_visible", over_visible.rmse},       {"psnr_visible_db", over_visible.psnr_db},
             {"ssim_visible", over_visible.ssim},       {"flip_visible", over_visible.flip},
             {"rmse_reflective", over_reflective.rmse}, {"psnr_reflective_db", over_reflective.psnr_db},
@@ -155,17 +161,15 @@ MeasureValues compare_pictures(const Image& tested, const Reference& reference, 
 {
     require_comparable(tested, truth);
     require_comparable(reference.display, truth);
-    Mask reflective, border, visible, visible_border;
-    for (size_t i = 0; i < truth.cls.size(); ++i) {
-        const int width = truth.size_px.x;
-        reflective.push_back(truth.cls[i] != TruthClass::not_traced);
-        border.push_back(reflective[i] && at_material_border(gbuffer, {int(i) % width, int(i) / width}));
-        visible.push_back(truth.cls[i] == TruthClass::visible);
-        visible_border.push_back(visible[i] && border[i]);
-    }
-    const Image       display = to_display(tested);
-    const ImageErrors errors  = compare_inside(display, reference, reflective);
-    const auto        rmse    = [&](const Mask& mask) { return rmse_inside(display, reference.display, mask); };
+    const int   width      = truth.size_px.x;
+    const Mask  reflective = reflective_pixels(truth), visible = visible_pixels(truth);
+    const Mask  border         = make_mask(truth.size_px, [&](size_t i) {
+        return reflective[i] != 0 && at_material_border(gbuffer, {int(i) % width, int(i) / width});
+    });
+    const Mask  visible_border = make_mask(truth.size_px, [&](size_t i) { return visible[i] != 0 && border[i] != 0; });
+    const Image display        = to_display(tested);
+    const ImageErrors errors   = compare_inside(display, reference, reflective);
+    const auto        rmse     = [&](const Mask& mask) { return rmse_inside(display, reference.display, mask); };
     return {{"picture_rmse", errors.rmse},
             {"picture_psnr_db", errors.psnr_db},
             {"picture_ssim", errors.ssim},

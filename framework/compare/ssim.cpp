@@ -1,5 +1,7 @@
 #include "compare/ssim.h"
 
+#include "core/parallel_rows.h"
+
 #include <cmath>
 
 namespace ssrlab {
@@ -24,7 +26,7 @@ std::vector<float> gaussian_window()
 Plane product(const Plane& a, const Plane& b)
 {
     Plane result = a;
-    for (size_t i = 0; i < result.values.size(); ++i) result.values[i] *= b.values[i];
+    parallel_pixels(a.size_px.x, a.size_px.y, [&](size_t i) { result.values[i] *= b.values[i]; });
     return result;
 }
 
@@ -37,12 +39,12 @@ std::vector<float> ssim_map(const Plane& a, const Plane& b)
     const Plane              mean_a = mean(a), mean_b = mean(b);
     const Plane        mean_aa = mean(product(a, a)), mean_bb = mean(product(b, b)), mean_ab = mean(product(a, b));
     std::vector<float> index(a.values.size());
-    for (size_t i = 0; i < index.size(); ++i) {
+    parallel_pixels(a.size_px.x, a.size_px.y, [&](size_t i) {
         const float ma = mean_a.values[i], mb = mean_b.values[i];
         const float variances  = mean_aa.values[i] - ma * ma + mean_bb.values[i] - mb * mb;
         const float covariance = mean_ab.values[i] - ma * mb;
         index[i] = (2 * ma * mb + c1) * (2 * covariance + c2) / ((ma * ma + mb * mb + c1) * (variances + c2));
-    }
+    });
     return index;
 }
 

@@ -119,6 +119,7 @@ std::shared_ptr<const ComputePipeline> find_pipeline(Gpu& gpu, const Shader& sha
             known.erase(std::ranges::min_element(known, {}, [](const auto& item) { return item.second.last_use; }));
         auto made = std::make_shared<const ComputePipeline>(make_pipeline(gpu, shader, constants, push_constant_bytes));
         entry     = known.emplace(std::move(key), GpuImpl::KnownPipeline{std::move(made)}).first;
+        ++gpu.impl->pipelines_made;
     }
     entry->second.last_use = ++gpu.impl->pipeline_uses;
     return entry->second.pipeline;

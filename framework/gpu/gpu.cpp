@@ -207,6 +207,8 @@ Gpu open_gpu(const GpuOptions& options)
     return gpu;
 }
 
+size_t pipelines_made(const Gpu& gpu) { return gpu.impl->pipelines_made; }
+
 std::vector<std::string> validation_messages(const Gpu& gpu)
 {
     std::scoped_lock lock(gpu.impl->messages_mutex);

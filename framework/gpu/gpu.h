@@ -34,5 +34,7 @@ Gpu                  open_gpu(const GpuOptions& options = {});
 std::vector<GpuInfo> list_gpus();
 /// Messages of the validation layer so far (empty = none, or layer not loaded).
 std::vector<std::string> validation_messages(const Gpu& gpu);
+/// Compute pipelines that were made so far: where the number has not changed, all were known.
+size_t pipelines_made(const Gpu& gpu);
 
 } // namespace ssrlab

@@ -47,7 +47,8 @@ struct GpuImpl {
         uint64_t                               last_use = 0;
     };
     std::map<std::string, KnownPipeline> known_pipelines;
-    uint64_t                             pipeline_uses = 0;
+    uint64_t                             pipeline_uses  = 0;
+    size_t                               pipelines_made = 0;
 };
 
 /// Records commands, submits them and waits. Throws Failure when the device is lost or the wait exceeds five minutes.

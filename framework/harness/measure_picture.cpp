@@ -4,6 +4,7 @@
 #include "compare/pictures.h"
 #include "core/error.h"
 #include "core/files.h"
+#include "core/parallel_rows.h"
 #include "harness/environment.h"
 #include "harness/statistics.h"
 #include "harness/stop_signal.h"
@@ -11,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <chrono>
 
 namespace ssrlab {
 namespace {
@@ -45,6 +47,14 @@ const LoadedScene& scene_of(Bench& bench, const std::string& name)
     return *bench.scene;
 }
 
+/// Runs a step that times frames.
+template <typename Step> void timed(Bench& bench, const Step& step)
+{
+    const auto started = std::chrono::steady_clock::now();
+    step();
+    bench.timed_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+}
+
 Picture make_picture(Bench& bench, const Run& run)
 {
     const LoadedScene& loaded = scene_of(bench, run.scene);
@@ -52,7 +62,9 @@ Picture make_picture(Bench& bench, const Run& run)
     Picture            picture;
     picture.gbuffer = render_gbuffer(bench.gpu, loaded.uploaded, view);
     std::vector<double> times_ms;
-    for (int i = 0; i < gbuffer_repeats; ++i) times_ms.push_back(rerender_gbuffer(bench.gpu, *picture.gbuffer));
+    timed(bench, [&] {
+        for (int i = 0; i < gbuffer_repeats; ++i) times_ms.push_back(rerender_gbuffer(bench.gpu, *picture.gbuffer));
+    });
     picture.gbuffer_ms = quantile(std::move(times_ms), 0.5);
     picture.buffers    = make_frame_buffers(bench.gpu, picture.gbuffer);
     if (bench.experiment.measure.truth) {
@@ -120,11 +132,13 @@ void write_pictures(Bench& bench, Picture& picture, MeasuredRun& measured, const
     const std::string           name = picture_name(*measured.run);
     const std::filesystem::path path = bench.results.path() / name;
     std::filesystem::create_directories(path.parent_path());
-    write_image(path.string() + ".png", shaded);
-    write_image(path.string() + "_fetches.png", fetch_heat_map(counted));
-    if (picture.truths) {
-        write_image(path.string() + "_agreement.png", picture.truths->agreement(measured.run->settings.trace, counted));
-    }
+    std::vector<std::pair<std::string, Image>> pictures = {{".png", shaded}, {"_fetches.png", fetch_heat_map(counted)}};
+    if (picture.truths)
+        pictures.emplace_back("_agreement.png", picture.truths->agreement(measured.run->settings.trace, counted));
+    parallel_rows(static_cast<int>(pictures.size()), 0, [&](int i) {
+        const auto& [ending, image] = pictures[static_cast<size_t>(i)];
+        write_image(path.string() + ending, image);
+    });
     measured.row["picture"] = name + ".png";
 }
 
@@ -162,8 +176,10 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
 void prepare_comparison(Bench& bench, MeasuredRun& measured)
 {
     if (!bench.experiment.measure.saved_time || !plan_leaves_out(*measured.frame)) return;
+    const size_t known  = pipelines_made(bench.gpu);
     measured.everything = prepare_everything(bench.gpu, *measured.frame);
-    run_frame(bench.gpu, *measured.everything); // warm-up
+    // A driver may compile a pipeline when it first runs.
+    if (pipelines_made(bench.gpu) != known) run_frame(bench.gpu, *measured.everything);
 }
 
 /// Timed repeats, every round in another order, until each run is final or a stop was requested.
@@ -174,7 +190,8 @@ void repeat_until_final(Bench& bench, const Picture& picture, std::vector<Measur
         std::ranges::shuffle(open, bench.random);
         for (MeasuredRun& measured : open) {
             if (stop_requested() != 0) break;
-            try_step(bench, measured, [&] { add_repeat(bench.gpu, measured, picture.gbuffer_ms); });
+            try_step(bench, measured,
+                     [&] { timed(bench, [&] { add_repeat(bench.gpu, measured, picture.gbuffer_ms); }); });
             if (over(measured) || !is_final(measured, bench.experiment.measure)) continue;
             add_times(measured, picture.gbuffer_ms);
             finish(bench, *measured.run, measured.row);

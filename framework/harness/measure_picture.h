@@ -29,6 +29,7 @@ struct Bench {
     std::mt19937_64                    random{experiment.measure.seed};
     std::unique_ptr<LoadedScene>       scene   = nullptr;
     size_t                             written = 0, failed = 0;
+    double                             timed_s = 0; // wall time of all frames that were timed
 };
 
 /// Appends a row for each run as soon as it is final; a run that fails is a row with the reason. Returns early, with the

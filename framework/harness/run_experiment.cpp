@@ -11,6 +11,7 @@
 #include "harness/stop_signal.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 
 namespace ssrlab {
@@ -96,7 +97,8 @@ int run_experiment(const RunOptions& options)
     const auto       columns = result_columns(experiment, techniques);
     if (options.dry_run) return list_runs(experiment, runs, techniques);
 
-    Gpu gpu = open_gpu(options.gpu);
+    const auto started = std::chrono::steady_clock::now();
+    Gpu        gpu     = open_gpu(options.gpu);
     refuse_large_sizes(experiment, gpu.info);
     const fs::path folder = options.folder.empty() ? fs::path("results") / experiment.name : options.folder;
     listen_for_stop();
@@ -109,8 +111,10 @@ int run_experiment(const RunOptions& options)
     for (std::span<const Run> rest = runs; !rest.empty() && stop_requested() == 0;) {
         measure_picture(bench, take_picture(rest));
     }
-    fmt::print("{}: {} rows, {} written now, {} of them failed\n", short_path(results.path() / "results.csv"),
-               results.finished().size(), bench.written, bench.failed);
+    const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    fmt::print("{}: {} rows, {} written now, {} of them failed; {:.0f} % of {} went to frames that were timed\n",
+               short_path(results.path() / "results.csv"), results.finished().size(), bench.written, bench.failed,
+               100 * bench.timed_s / took_s, duration_text(took_s));
     if (stop_requested() != 0) {
         progress.say("stopped; the same command with --resume does the other runs");
         return 128 + stop_requested();

@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "core/parallel_rows.h"
 #include "scene/load_scene.h"
 #include "scene/recipe.h"
 #include "scene/shapes.h"
@@ -54,14 +55,27 @@ Model shape_to_model(const Part& part)
     return model;
 }
 
-Model file_to_model(const Part& part, const std::filesystem::path& folder)
+Model file_to_model(const std::string& name, const std::filesystem::path& folder)
 {
-    const std::filesystem::path file      = find_data(part.file, folder);
+    const std::filesystem::path file      = find_data(name, folder);
     const std::string           extension = file.extension().string();
     Model model = extension == ".glb" || extension == ".gltf" ? load_gltf(file) : import_model(file);
     model.lights.clear(); // a recipe names its own
     model.cameras.clear();
     return model;
+}
+
+/// The models of the parts: one that is used twice is read once, and several at a time.
+std::map<std::string, Model> read_files(const Recipe& recipe, const std::filesystem::path& folder)
+{
+    std::map<std::string, Model> models;
+    for (const Part& part : recipe.parts)
+        if (!part.shape) models[part.file] = {};
+    std::vector<std::map<std::string, Model>::iterator> places;
+    for (auto place = models.begin(); place != models.end(); ++place) places.push_back(place);
+    parallel_rows(int(places.size()), 0,
+                  [&](int i) { places[size_t(i)]->second = file_to_model(places[size_t(i)]->first, folder); });
+    return models;
 }
 
 glm::dmat4 rotation_of(const Part& part)
@@ -130,13 +144,11 @@ void refuse_unmatched(const Recipe& recipe, const std::vector<bool>& matched, co
 
 Model load_recipe(const std::filesystem::path& file)
 {
-    const Recipe                 recipe = read_recipe(file);
-    std::vector<bool>            matched(recipe.changes.size(), false);
-    std::map<std::string, Model> files; // a model that is used twice is read once
-    Model                        scene;
+    const Recipe                       recipe = read_recipe(file);
+    const std::map<std::string, Model> files  = read_files(recipe, file.parent_path());
+    std::vector<bool>                  matched(recipe.changes.size(), false);
+    Model                              scene;
     for (const Part& part : recipe.parts) {
-        if (!part.shape && !files.contains(part.file))
-            files.emplace(part.file, file_to_model(part, file.parent_path()));
         Model model = part.shape ? shape_to_model(part) : files.at(part.file);
         normalize_placement(model, part);
         apply(part.change, part, model);
