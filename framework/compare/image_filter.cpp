@@ -37,7 +37,7 @@ std::vector<float> filter_rows(const std::vector<float>& source, int width, int 
     parallel_rows(height, 0, [&](int y) {
         const float*       row = &source[size_t(y) * size_t(width)];
         std::vector<float> padded(size_t(width) + 2 * size_t(radius));
-        for (int x = -radius; x < width + radius; ++x) padded[size_t(x + radius)] = row[std::clamp(x, 0, width - 1)];
+        for (size_t i = 0; i < padded.size(); ++i) padded[i] = row[std::clamp(int(i) - radius, 0, width - 1)];
         std::vector<const float*> shifted;
         for (size_t k = 0; k < kernel.size(); ++k) shifted.push_back(&padded[k]);
         weigh_rows(&result[size_t(y) * size_t(width)], shifted, kernel, size_t(width));

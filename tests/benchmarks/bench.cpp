@@ -17,14 +17,14 @@ std::vector<Contender> all_contenders(std::span<const Technique> techniques)
 {
     std::vector<Contender> list;
     for (const Technique& technique : techniques) {
-        Contender contender{technique.id, technique.id, {}};
+        Contender contender{technique.id, technique.id, {}, std::ranges::count(technique.inputs, "depth_pyramid") > 0};
         for (const Parameter& parameter : technique.parameters)
             if (parameter.name == "space") contender.values["space"] = "screen";
         list.push_back(contender);
     }
-    list.push_back({"hiz_without_beams", "hiz", {{"beams", "false"}}});
-    list.push_back({"hiz_minmax", "hiz", {{"pyramid", "minmax"}}});
-    list.push_back({"hiz_nearest", "hiz", {{"pyramid", "nearest"}, {"beams", "false"}}});
+    list.push_back({"hiz_without_beams", "hiz", {{"beams", "false"}}, true});
+    list.push_back({"hiz_minmax", "hiz", {{"pyramid", "minmax"}}, true});
+    list.push_back({"hiz_nearest", "hiz", {{"pyramid", "nearest"}, {"beams", "false"}}, true});
     return list;
 }
 

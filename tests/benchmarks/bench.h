@@ -18,6 +18,7 @@ inline constexpr int       largest_judged_px = 1920; // the truth of a larger pi
 struct Contender {
     std::string                        name, technique;
     std::map<std::string, std::string> values;
+    bool                               reads_pyramid = false; // else it passes pixel by pixel
 };
 
 /// How a contender compares with the screen truth and with the pixel walk, and its work per ray.

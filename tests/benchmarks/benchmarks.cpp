@@ -9,8 +9,13 @@
 namespace ssrlab {
 namespace {
 
-const std::map<std::string, glm::ivec2> sizes = {
-    {"360p", {640, 360}}, {"720p", {1280, 720}}, {"1080p", {1920, 1080}}, {"2160p", {3840, 2160}}};
+struct PictureSize {
+    std::string name;
+    glm::ivec2  size_px;
+    int         calls; // of a short pass: their mean is one repetition, so that noise meets it as it meets a long one
+};
+const std::vector<PictureSize> sizes = {
+    {"360p", {640, 360}, 20}, {"720p", {1280, 720}, 10}, {"1080p", {1920, 1080}, 5}, {"2160p", {3840, 2160}, 2}};
 
 template <typename Call> void add(const std::string& name, int iterations, const Call& call)
 {
@@ -22,24 +27,24 @@ template <typename Call> void add(const std::string& name, int iterations, const
 
 void add_all(Bench& bench, const std::string& scene)
 {
-    for (const auto& [size, size_px] : sizes) {
-        const std::string base = scene + "/" + size + "/";
-        const auto        pass = [&](const std::string& name, int iterations, auto run) {
-            add(base + name, iterations,
-                       [&bench, scene, size_px = size_px, run](auto& state) { run(bench, state, scene, size_px); });
+    for (const PictureSize& size : sizes) {
+        const int  calls = size.calls;
+        const auto pass  = [&](const std::string& name, int iterations, auto run) {
+            add(fmt::format("{}/{}/{}", scene, size.name, name), iterations,
+                 [&bench, scene, size_px = size.size_px, run](auto& state) { run(bench, state, scene, size_px); });
         };
         pass("gbuffer", 1, [](auto& b, auto& state, auto&... picture) { b.gbuffer(state, picture...); });
-        pass("copy_depth", 5, [](auto& b, auto& state, auto&... picture) { b.copy(state, picture...); });
+        pass("copy_depth", calls, [](auto& b, auto& state, auto&... picture) { b.copy(state, picture...); });
         for (const std::string kind : {"occupancy", "minmax", "nearest"})
-            pass("pyramid/" + kind, 5,
+            pass("pyramid/" + kind, calls,
                  [kind](auto& b, auto& state, auto&... picture) { b.pyramid(state, picture..., kind); });
-        pass("rays", 5, [](auto& b, auto& state, auto&... picture) { b.rays(state, picture...); });
+        pass("rays", calls, [](auto& b, auto& state, auto&... picture) { b.rays(state, picture...); });
         for (const Contender& contender : bench.contenders())
-            pass("trace/" + contender.name, 1,
+            pass("trace/" + contender.name, contender.reads_pyramid ? calls : 1,
                  [contender](auto& b, auto& state, auto&... picture) { b.trace(state, picture..., contender); });
-        pass("shade", 5, [](auto& b, auto& state, auto&... picture) { b.shade(state, picture...); });
+        pass("shade", calls, [](auto& b, auto& state, auto&... picture) { b.shade(state, picture...); });
         for (const bool compacted : {true, false})
-            pass(compacted ? "scattered/list" : "scattered/every_pixel", 5,
+            pass(compacted ? "scattered/list" : "scattered/every_pixel", calls,
                  [compacted](auto& b, auto& state, auto&... picture) { b.scattered(state, picture..., compacted); });
         pass("judge", 1, [](auto& b, auto& state, auto&... picture) { b.judge(state, picture...); });
     }
