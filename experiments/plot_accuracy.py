@@ -23,13 +23,20 @@ def pareto(rows, cost, error):
 
 
 def draw_curves(axis, results, rows, cost, error, xlabel):
+    front = pareto(rows, cost, error)
     for series, line in rows.groupby("series"):
-        line = line.sort_values(cost)
-        axis.plot(line[cost], line[error], label=series, ms=5, lw=1.3, **results.styles[series])
-        for _, row in line.iterrows():
+        varying = [name for name in results.swept(rows) if line[name].nunique() > 1]
+        line = line.sort_values(varying or cost)
+        style = dict(results.styles[series])
+        named = line
+        if len(varying) > 1:
+            # Several numbers vary: a cloud, of which the front is what counts.
+            style["linestyle"] = "none"
+            named = line[line.index.isin(front.index)]
+        axis.plot(line[cost], line[error], label=series, ms=5, lw=1.3, **style)
+        for _, row in named.iterrows():
             axis.annotate(label_of(results, row, rows), (row[cost], row[error]), textcoords="offset points", xytext=(4, 3),
                           fontsize=6.5, color=results.styles[series]["color"])
-    front = pareto(rows, cost, error)
     axis.step(front[cost], front[error], where="post", color="#777777", lw=6, alpha=0.3, zorder=0, label="Pareto front",
               solid_capstyle="round")
     axis.set(xlabel=xlabel)

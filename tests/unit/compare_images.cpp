@@ -116,6 +116,27 @@ TEST(Flip, AnImageWithoutThreeChannelsIsRefused)
     EXPECT_THROW(flip_view({{2, 1}, {"Y"}, {0.5F, 0.5F}, {}}), Failure);
 }
 
+TEST(Filter, EveryWidthGivesThePlainSums)
+{
+    const std::vector<float> across = {0.1F, -0.4F, 0.7F, 0.2F, 0.3F}, down = {0.5F, 0.25F, -0.125F};
+    for (const int width : {1, 3, 15, 16, 17, 32, 45}) {
+        const glm::ivec2 size     = {width, 4};
+        const Plane      plane    = first_channel(noise(size, unsigned(width)));
+        const Plane      filtered = filter_separable(plane, across, down);
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x) {
+                double sum = 0;
+                for (int j = -1; j <= 1; ++j)
+                    for (int i = -2; i <= 2; ++i) {
+                        const int from_x = std::clamp(x + i, 0, size.x - 1), from_y = std::clamp(y + j, 0, size.y - 1);
+                        sum += double(across[size_t(i + 2)]) * double(down[size_t(j + 1)]) *
+                               double(plane.values[size_t(from_y * size.x + from_x)]);
+                    }
+                EXPECT_NEAR(filtered.values[size_t(y * size.x + x)], sum, 1e-6) << width << ": " << x << ", " << y;
+            }
+    }
+}
+
 TEST(Ssim, IdenticalIsOneAndConstantsFollowTheFormula)
 {
     const Plane a = first_channel(noise({30, 20}, 3));
