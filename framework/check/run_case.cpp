@@ -1,9 +1,9 @@
 #include "check/run_case.h"
 
 #include "core/error.h"
+#include "core/stopwatch.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 
@@ -233,12 +233,12 @@ CaseRow run_case(Gpu& gpu, const Technique& technique, const ParameterValues& va
                  const HardCase& hard_case, const CheckOptions& options)
 {
     CaseRow row;
-    row.family       = family;
-    row.case_name    = hard_case.name;
-    row.technique    = technique.id;
-    const auto start = std::chrono::steady_clock::now();
+    row.family    = family;
+    row.case_name = hard_case.name;
+    row.technique = technique.id;
+    const Stopwatch stopwatch;
     CaseRun(gpu, technique, values, hard_case, row).run(options);
-    row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    row.seconds = stopwatch.seconds();
     return row;
 }
 

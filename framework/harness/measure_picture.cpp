@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/parallel_rows.h"
+#include "core/stopwatch.h"
 #include "harness/environment.h"
 #include "harness/statistics.h"
 #include "harness/stop_signal.h"
@@ -12,7 +13,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 
 namespace ssrlab {
 namespace {
@@ -50,9 +50,9 @@ const LoadedScene& scene_of(Bench& bench, const std::string& name)
 /// Runs a step that times frames.
 template <typename Step> void timed(Bench& bench, const Step& step)
 {
-    const auto started = std::chrono::steady_clock::now();
+    const Stopwatch stopwatch;
     step();
-    bench.timed_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    bench.timed_s += stopwatch.seconds();
 }
 
 Picture make_picture(Bench& bench, const Run& run)

@@ -1,12 +1,12 @@
 #include "harness/measured_run.h"
 
+#include "core/stopwatch.h"
 #include "harness/statistics.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
@@ -92,9 +92,9 @@ void add_plan(Row& row, const std::vector<PlannedEffect>& plan)
 
 void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms)
 {
-    const auto       started = std::chrono::steady_clock::now();
-    const FrameTimes times   = run_frame(gpu, *measured.frame);
-    measured.spent_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    const Stopwatch  stopwatch;
+    const FrameTimes times = run_frame(gpu, *measured.frame);
+    measured.spent_s += stopwatch.seconds();
     for (const auto& [effect, ms] : times.effects_ms) measured.effect_ms[effect].push_back(ms);
     measured.trace_ms.push_back(times.of("trace"));
     measured.frame_ms.push_back(gbuffer_ms + times.total_ms());

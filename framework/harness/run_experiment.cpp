@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/names.h"
+#include "core/stopwatch.h"
 #include "harness/columns.h"
 #include "harness/environment.h"
 #include "harness/measure_picture.h"
@@ -11,7 +12,6 @@
 #include "harness/stop_signal.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 
 namespace ssrlab {
@@ -97,8 +97,8 @@ int run_experiment(const RunOptions& options)
     const auto       columns = result_columns(experiment, techniques);
     if (options.dry_run) return list_runs(experiment, runs, techniques);
 
-    const auto started = std::chrono::steady_clock::now();
-    Gpu        gpu     = open_gpu(options.gpu);
+    const Stopwatch stopwatch;
+    Gpu             gpu = open_gpu(options.gpu);
     refuse_large_sizes(experiment, gpu.info);
     const fs::path folder = options.folder.empty() ? fs::path("results") / experiment.name : options.folder;
     listen_for_stop();
@@ -111,7 +111,7 @@ int run_experiment(const RunOptions& options)
     for (std::span<const Run> rest = runs; !rest.empty() && stop_requested() == 0;) {
         measure_picture(bench, take_picture(rest));
     }
-    const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    const double took_s = stopwatch.seconds();
     fmt::print("{}: {} rows, {} written now, {} of them failed; {:.0f} % of {} went to frames that were timed\n",
                short_path(results.path() / "results.csv"), results.finished().size(), bench.written, bench.failed,
                100 * bench.timed_s / took_s, duration_text(took_s));

@@ -17,14 +17,14 @@ std::vector<Contender> all_contenders(std::span<const Technique> techniques)
 {
     std::vector<Contender> list;
     for (const Technique& technique : techniques) {
-        Contender contender{technique.id, technique.id, {}, std::ranges::count(technique.inputs, "depth_pyramid") > 0};
+        Contender contender{technique.id, technique.id, {}};
         for (const Parameter& parameter : technique.parameters)
             if (parameter.name == "space") contender.values["space"] = "screen";
         list.push_back(contender);
     }
-    list.push_back({"hiz_without_beams", "hiz", {{"beams", "false"}}, true});
-    list.push_back({"hiz_minmax", "hiz", {{"pyramid", "minmax"}}, true});
-    list.push_back({"hiz_nearest", "hiz", {{"pyramid", "nearest"}, {"beams", "false"}}, true});
+    list.push_back({"hiz_without_beams", "hiz", {{"beams", "false"}}});
+    list.push_back({"hiz_minmax", "hiz", {{"pyramid", "minmax"}}});
+    list.push_back({"hiz_nearest", "hiz", {{"pyramid", "nearest"}, {"beams", "false"}}});
     return list;
 }
 
@@ -72,6 +72,11 @@ Bench::Bench(const std::string& device)
       techniques_(list_techniques(std::vector<fs::path>{fs::path(SSRLAB_SOURCE_DIR) / "tests/techniques"})),
       contenders_(all_contenders(techniques_))
 {
+}
+
+bool Bench::reads_pyramid(const Contender& contender) const
+{
+    return std::ranges::count(find_technique(techniques_, contender.technique).inputs, "depth_pyramid") > 0;
 }
 
 void Bench::gbuffer(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)

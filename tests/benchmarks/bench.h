@@ -18,7 +18,6 @@ inline constexpr int       largest_judged_px = 1920; // the truth of a larger pi
 struct Contender {
     std::string                        name, technique;
     std::map<std::string, std::string> values;
-    bool                               reads_pyramid = false; // else it passes pixel by pixel
 };
 
 /// How a contender compares with the screen truth and with the pixel walk, and its work per ray.
@@ -34,6 +33,8 @@ public:
 
     const GpuInfo&                info() const { return gpu_.info; }
     const std::vector<Contender>& contenders() const { return contenders_; }
+    /// Else it passes pixel by pixel.
+    bool reads_pyramid(const Contender& contender) const;
 
     void gbuffer(benchmark::State& state, const std::string& scene, glm::ivec2 size_px);
     void copy(benchmark::State& state, const std::string& scene, glm::ivec2 size_px);

@@ -40,7 +40,7 @@ void add_all(Bench& bench, const std::string& scene)
                  [kind](auto& b, auto& state, auto&... picture) { b.pyramid(state, picture..., kind); });
         pass("rays", calls, [](auto& b, auto& state, auto&... picture) { b.rays(state, picture...); });
         for (const Contender& contender : bench.contenders())
-            pass("trace/" + contender.name, contender.reads_pyramid ? calls : 1,
+            pass("trace/" + contender.name, bench.reads_pyramid(contender) ? calls : 1,
                  [contender](auto& b, auto& state, auto&... picture) { b.trace(state, picture..., contender); });
         pass("shade", calls, [](auto& b, auto& state, auto&... picture) { b.shade(state, picture...); });
         for (const bool compacted : {true, false})
