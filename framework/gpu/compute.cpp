@@ -4,6 +4,7 @@
 #include "core/files.h"
 
 #include <algorithm>
+#include <span>
 
 namespace ssrlab {
 namespace {
@@ -127,12 +128,25 @@ std::shared_ptr<const ComputePipeline> find_pipeline(Gpu& gpu, const Shader& sha
 
 } // namespace
 
+Constants Constants::only(const std::set<uint32_t>& ids) const
+{
+    Constants result;
+    for (vk::SpecializationMapEntry entry : entries) {
+        if (!ids.contains(entry.constantID)) continue;
+        const auto value = std::span(bytes).subspan(entry.offset, entry.size);
+        entry.offset     = static_cast<uint32_t>(result.bytes.size());
+        result.entries.push_back(entry);
+        result.bytes.insert(result.bytes.end(), value.begin(), value.end());
+    }
+    return result;
+}
+
 ComputePass make_compute_pass(Gpu& gpu, const Shader& shader, const Bindings& bindings, const Constants& constants,
                               uint32_t push_constant_bytes)
 {
     ComputePass pass;
     try {
-        pass.compute = find_pipeline(gpu, shader, constants, push_constant_bytes);
+        pass.compute = find_pipeline(gpu, shader, constants.only(shader.constants), push_constant_bytes);
         pass.pool    = make_pool(gpu, shader);
         vk::raii::DescriptorSets sets(
             gpu.impl->device,

@@ -13,6 +13,9 @@ public:
     void add(uint32_t id, float value) { append(id, value); }
     void add(uint32_t id, double value) { append(id, value); }
 
+    /// Those of some ids.
+    Constants only(const std::set<uint32_t>& ids) const;
+
     std::vector<vk::SpecializationMapEntry> entries;
     std::vector<char>                       bytes;
 
@@ -46,6 +49,7 @@ struct ComputePass {
 };
 
 /// Binds by name: a name that the shader uses and `bindings` lacks is a programmer's mistake (std::logic_error); names it does not use are ignored.
+/// The same holds for constants: passes that differ in none that the shader uses share a pipeline.
 /// push_constant_bytes > 0 adds one push-constant block.
 ComputePass make_compute_pass(Gpu& gpu, const Shader& shader, const Bindings& bindings, const Constants& constants = {},
                               uint32_t push_constant_bytes = 0);

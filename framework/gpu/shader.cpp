@@ -8,12 +8,15 @@
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
 
+#include <sys/stat.h>
+
 #include <cstring>
 #include <fstream>
 #include <list>
 #include <memory>
 #include <mutex>
 #include <regex>
+#include <span>
 #include <sstream>
 
 namespace ssrlab {
@@ -107,41 +110,56 @@ void collect_bindings(const glslang::TProgram& program, Shader& shader)
     }
 }
 
-/// The file's text, read again only when it was written since. Not for two threads at once.
-const std::string& known_text(const std::filesystem::path& path)
+/// All files that the compiler may read for this source.
+std::vector<std::filesystem::path> files_read(const ShaderSource& source)
 {
-    struct Known {
-        std::filesystem::file_time_type written;
-        uintmax_t                       bytes = 0;
-        std::string                     text;
-    };
-    static std::map<std::filesystem::path, Known> known;
-
-    std::error_code error;
-    const auto      written = std::filesystem::last_write_time(path, error);
-    const auto      bytes   = error ? 0 : std::filesystem::file_size(path, error);
-    const auto      entry   = known.find(path);
-    if (!error && entry != known.end() && entry->second.written == written && entry->second.bytes == bytes)
-        return entry->second.text;
-    return known.insert_or_assign(path, Known{written, bytes, read_text(path)}).first->second.text;
+    std::vector<std::filesystem::path> files = {shader_folder() / source.file}; // a technique's own lies elsewhere
+    for (const auto& [name, path] : source.include_files) files.push_back(path);
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(shader_folder()))
+        if (entry.is_regular_file()) files.push_back(entry.path());
+    return files;
 }
 
-/// All texts that the compiler may read for this source: equal keys give equal SPIR-V.
-std::string everything_read(const ShaderSource& source)
+/// What is in a source and, of each file that the compiler may read for it, its name and `of_file` of it.
+template <typename OfFile>
+std::string key_of(const ShaderSource& source, std::span<const std::filesystem::path> files, const OfFile& of_file)
 {
-    const std::filesystem::path main = shader_folder() / source.file; // a technique's own lies elsewhere
-    std::string                 key;
-    const auto                  add = [&](const std::string& name, const std::string& text) {
+    std::string key = std::to_string(static_cast<int>(source.stage));
+    const auto  add = [&](std::string_view name, std::string_view text) {
         key.append(name).append(1, '=').append(text).append(1, '\0');
     };
-    add(main.string(), known_text(main));
-    add("stage", std::to_string(static_cast<int>(source.stage)));
     for (const auto& [name, value] : source.defines) add(name, value);
     for (const auto& [name, text] : source.include_texts) add(name, text);
-    for (const auto& [name, path] : source.include_files) add(path.string(), known_text(path));
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(shader_folder()))
-        if (entry.is_regular_file()) add(entry.path().string(), known_text(entry.path()));
+    for (const std::filesystem::path& path : files) add(path.native(), of_file(path));
     return key;
+}
+
+/// When a file was written, and its bytes: asked for each pass of each frame, without opening it.
+std::string state_of(const std::filesystem::path& path)
+{
+    struct stat state = {};
+    if (stat(path.c_str(), &state) != 0) throw_spec_error("{}: cannot be read", path.string());
+    return fmt::format("{} {} {}", state.st_mtim.tv_sec, state.st_mtim.tv_nsec, state.st_size);
+}
+
+/// The compiler declares every specialization constant that it read, used or not. A number that happens to equal a constant's id
+/// counts as a use, too.
+std::set<uint32_t> constants_used(std::span<const uint32_t> spirv)
+{
+    constexpr size_t             header_words = 5; // of the module; of an instruction one: words << 16 | opcode
+    constexpr uint32_t           name = 5, decorate = 71, decoration_spec_id = 1; // SPIR-V 1.6, section 3
+    std::map<uint32_t, uint32_t> constant_of;                                     // result id -> constant_id
+    std::set<uint32_t>           used;
+    for (size_t first = header_words; first < spirv.size(); first += spirv[first] >> 16) {
+        const auto     words  = spirv.subspan(first, spirv[first] >> 16);
+        const uint32_t opcode = words[0] & 0xFFFF;
+        if (opcode == decorate && words[2] == decoration_spec_id) constant_of[words[1]] = words[3];
+        const bool defines = opcode >= 48 && opcode <= 50; // OpSpecConstantTrue, OpSpecConstantFalse, OpSpecConstant
+        if (opcode == name || opcode == decorate || defines) continue;
+        for (const uint32_t word : words.subspan(1))
+            if (const auto found = constant_of.find(word); found != constant_of.end()) used.insert(found->second);
+    }
+    return used;
 }
 
 struct GlslangProcess {
@@ -191,6 +209,7 @@ Shader compile(const ShaderSource& source)
     glslang::SpvOptions options;
     options.disableOptimizer = true;
     glslang::GlslangToSpv(*program.getIntermediate(language), shader.spirv, &options);
+    shader.constants = constants_used(shader.spirv);
     return shader;
 }
 
@@ -206,7 +225,7 @@ std::string to_bytes(const Shader& shader)
 
 Shader from_bytes(const std::string& bytes, const ShaderSource& source)
 {
-    Shader shader{(shader_folder() / source.file).string(), source.stage, {}, {}};
+    Shader shader{(shader_folder() / source.file).string(), source.stage, {}, {}, {}};
     size_t begin = 0;
     for (size_t end = bytes.find('\n'); end != begin; begin = end + 1, end = bytes.find('\n', begin)) {
         std::istringstream line(bytes.substr(begin, end - begin));
@@ -218,15 +237,16 @@ Shader from_bytes(const std::string& bytes, const ShaderSource& source)
     }
     shader.spirv.resize((bytes.size() - begin - 1) / sizeof(uint32_t));
     std::memcpy(shader.spirv.data(), bytes.data() + begin + 1, shader.spirv.size() * sizeof(uint32_t));
+    shader.constants = constants_used(shader.spirv);
     return shader;
 }
 
 /// From the disk if it was compiled before by the same compiler.
-Shader compile_or_read(const ShaderSource& source, const std::string& key)
+Shader compile_or_read(const ShaderSource& source, std::span<const std::filesystem::path> files)
 {
     const glslang::Version version = glslang::GetVersion();
-    const std::string      name =
-        fmt::format("shader-{}-{}.{}.{}", content_hash(key), version.major, version.minor, version.patch);
+    const std::string      name    = fmt::format("shader-{}-{}.{}.{}", content_hash(key_of(source, files, read_text)),
+                                                 version.major, version.minor, version.patch);
     if (const auto kept = read_cached(name)) return from_bytes(*kept, source);
     Shader shader = compile(source);
     write_cached(name, to_bytes(shader));
@@ -241,9 +261,11 @@ Shader compile_shader(const ShaderSource& source)
     static std::mutex                    mutex;
     static std::map<std::string, Shader> compiled;
     const std::lock_guard                lock(mutex);
-    const std::string                    key   = everything_read(source);
+    const auto                           files = files_read(source);
+    const std::string                    key   = key_of(source, files, state_of);
     const auto                           known = compiled.find(key);
-    return known != compiled.end() ? known->second : compiled.emplace(key, compile_or_read(source, key)).first->second;
+    return known != compiled.end() ? known->second
+                                   : compiled.emplace(key, compile_or_read(source, files)).first->second;
 }
 
 } // namespace ssrlab

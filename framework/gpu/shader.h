@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,8 @@ struct Shader {
     std::string                          name; // file, for messages
     ShaderStage                          stage = ShaderStage::compute;
     std::vector<uint32_t>                spirv;
-    std::map<std::string, ShaderBinding> bindings; // set 0, by block or variable name; only what the shader uses
+    std::map<std::string, ShaderBinding> bindings;  // set 0, by block or variable name; only what the shader uses
+    std::set<uint32_t>                   constants; // constant_id of each specialization constant that its code uses
 };
 
 struct ShaderSource {

@@ -3,6 +3,9 @@
 #include "gpu/device.h"
 #include "shared.h"
 
+#include <optional>
+#include <set>
+
 namespace ssrlab::test {
 namespace {
 
@@ -10,9 +13,10 @@ struct Launch {
     Buffer items  = make_buffer_with<uint32_t>(device(), std::vector<uint32_t>{1000});
     Buffer groups = make_buffer(device(), sizeof(glm::uvec3));
 
-    ComputePass pass(int items_per_group)
+    ComputePass pass(int items_per_group, std::optional<float> of_no_use = {})
     {
         Constants constants;
+        if (of_no_use) constants.add(CONSTANT_SLAB_SCALE, *of_no_use);
         constants.add(CONSTANT_ITEMS_PER_GROUP, items_per_group);
         return make_compute_pass(device(), compile_shader({.file = "launch.comp"}),
                                  {{"ItemCount", items}, {"Launch", groups}}, constants);
@@ -38,6 +42,24 @@ TEST(Pipelines, AreSharedByEqualConstantsOnly)
     EXPECT_EQ(a.run(first), 100U);
     EXPECT_EQ(a.run(other), 40U);
     EXPECT_EQ(b.run(again), 100U); // with its own buffers
+}
+
+TEST(Pipelines, AreSharedWhereNoConstantThatTheShaderUsesDiffers)
+{
+    Launch            launch;
+    const ComputePass first = launch.pass(10, 0.5F), again = launch.pass(10, 0.25F), other = launch.pass(25, 0.5F);
+    EXPECT_EQ(first.compute, again.compute);
+    EXPECT_NE(first.compute, other.compute);
+    EXPECT_EQ(launch.run(again), 100U);
+    EXPECT_EQ(launch.run(other), 40U);
+}
+
+TEST(Pipelines, KnowTheConstantsThatAShaderUses)
+{
+    EXPECT_EQ(compile_shader({.file = "launch.comp"}).constants, std::set<uint32_t>{CONSTANT_ITEMS_PER_GROUP});
+    const auto of_rays = compile_shader({.file = "rays.comp"}).constants;
+    EXPECT_TRUE(of_rays.contains(CONSTANT_MAX_DISTANCE_M));
+    EXPECT_FALSE(of_rays.contains(CONSTANT_SLAB_SLOPE));
 }
 
 TEST(Pipelines, ThatWereForgottenGoOnForThoseWhoHoldThem)
