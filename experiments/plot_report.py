@@ -38,7 +38,8 @@ def blocks(results, plots, tables, summary):
     device_type = environment.get("device_type", "").lower()
     if device_type == "cpu":
         yield "text", "Times are those of a software device: compare them with each other, not with a GPU's."
-    about = {"device": identity.get("device"), "driver": identity.get("driver"), "commit": environment.get("commit"),
+    about = {"device": identity.get("device"), "driver": identity.get("driver"),
+             "processor": identity.get("processor"), "commit": environment.get("commit"),
              "command": environment.get("command_line"), "started": environment.get("started"),
              "seed": environment.get("seed"), "system": environment.get("system")}
     yield table([{"environment": name, "": value} for name, value in about.items() if value])

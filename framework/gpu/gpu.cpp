@@ -7,6 +7,8 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <map>
 
 namespace ssrlab {
 namespace {
@@ -55,6 +57,23 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, bool validati
     }
 }
 
+/// A virtual machine may hide the name, "AMD EPYC": family and model tell generations apart.
+std::string processor_name()
+{
+    std::map<std::string, std::string> of_first_core;
+    std::ifstream                      cores("/proc/cpuinfo");
+    for (std::string line; std::getline(cores, line) && !line.empty();) {
+        const size_t colon = line.find(':'), end = line.find_last_not_of(" \t", colon - 1);
+        if (colon != std::string::npos && colon + 2 <= line.size())
+            of_first_core[line.substr(0, end + 1)] = line.substr(colon + 2);
+    }
+    std::string text;
+    for (const auto& [field, before] :
+         {std::pair("model name", ""), {"cpu family", ", family "}, {"model", ", model "}})
+        if (of_first_core.contains(field)) text += before + of_first_core[field];
+    return text.empty() ? "not known" : text;
+}
+
 GpuInfo describe(const vk::raii::PhysicalDevice& device, int index)
 {
     const auto  chain = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
@@ -70,6 +89,7 @@ GpuInfo describe(const vk::raii::PhysicalDevice& device, int index)
     info.float64      = device.getFeatures().shaderFloat64 != 0;
     info.max_image_px = core.limits.maxImageDimension2D;
     info.int64        = device.getFeatures().shaderInt64 != 0;
+    if (core.deviceType == vk::PhysicalDeviceType::eCpu) info.processor = processor_name();
     return info;
 }
 

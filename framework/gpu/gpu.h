@@ -17,6 +17,7 @@ struct GpuOptions {
 struct GpuInfo {
     int         index = 0;
     std::string name, type, driver, api_version;
+    std::string processor; // that a software device runs on, "NAME, family F, model M"; of other devices empty
     bool        float64      = false;
     uint32_t    max_image_px = 0;
     bool        int64        = false; // 64-bit integers in shaders

@@ -67,6 +67,7 @@ std::map<std::string, std::string> describe_identity(const Experiment&          
     identity["shaders"]       = folder_hash(fs::path(SSRLAB_SOURCE_DIR) / "shaders");
     identity["device"]        = device.name;
     identity["driver"]        = device.driver;
+    if (!device.processor.empty()) identity["processor"] = device.processor;
     for (const TechniqueSweep& sweep : experiment.techniques) {
         identity["technique " + sweep.id] = folder_hash(find_technique(techniques, sweep.id).folder);
     }

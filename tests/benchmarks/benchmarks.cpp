@@ -79,6 +79,7 @@ int run(std::vector<char*> arguments)
     benchmark::AddCustomContext("device", bench.info().name);
     benchmark::AddCustomContext("device_type", bench.info().type);
     benchmark::AddCustomContext("driver", bench.info().driver);
+    benchmark::AddCustomContext("processor", bench.info().processor);
     for (size_t begin = 0; begin <= scenes.size();) {
         const size_t end = std::min(scenes.find(',', begin), scenes.size());
         add_all(bench, scenes.substr(begin, end - begin));

@@ -1,4 +1,5 @@
 """run and plot: rows, resuming, interruptions, a full disk."""
+import json
 import os
 import resource
 import signal
@@ -26,6 +27,10 @@ class Test(Case):
         self.assertTrue(any(name.endswith(".png") for name in plots) and any(name.endswith(".svg") for name in plots))
         for name in ("report.html", "report.md", "summary.csv", "environment.json"):
             self.assertGreater(os.path.getsize(self.path("out/" + name)), 0)
+        with open(self.path("out/environment.json"), encoding="utf-8") as file:
+            environment = json.load(file)
+        # Times of a software device are those of a processor.
+        self.assertEqual("processor" in environment["identity"], environment["device_type"] == "Cpu")
 
     def test_dry_run_lists_and_writes_nothing(self):
         self.ssrlab("run", SMOKE, "--dry-run", "-o", "out", says=["12 runs"])
