@@ -22,8 +22,19 @@ def pareto(rows, cost, error):
     return rows.loc[front]
 
 
+def drop_overlapping(labels):
+    """Of labels that would cover each other the first stays."""
+    kept = []
+    for label in labels:
+        box = label.get_window_extent()
+        if any(box.overlaps(other) for other in kept):
+            label.remove()
+        else:
+            kept.append(box)
+
+
 def draw_curves(axis, results, rows, cost, error, xlabel):
-    front = pareto(rows, cost, error)
+    front, labels = pareto(rows, cost, error), []
     for series, line in rows.groupby("series"):
         varying = [name for name in results.swept(rows) if line[name].nunique() > 1]
         line = line.sort_values(varying or cost)
@@ -35,13 +46,14 @@ def draw_curves(axis, results, rows, cost, error, xlabel):
             named = line[line.index.isin(front.index)]
         axis.plot(line[cost], line[error], label=series, ms=5, lw=1.3, **style)
         for _, row in named.iterrows():
-            axis.annotate(label_of(results, row, rows), (row[cost], row[error]), textcoords="offset points", xytext=(4, 3),
-                          fontsize=6.5, color=results.styles[series]["color"])
+            labels.append(axis.annotate(label_of(results, row, rows), (row[cost], row[error]), textcoords="offset points", xytext=(4, 3),
+                                        fontsize=6.5, color=results.styles[series]["color"]))
     axis.step(front[cost], front[error], where="post", color="#777777", lw=6, alpha=0.3, zorder=0, label="Pareto front",
               solid_capstyle="round")
     axis.set(xlabel=xlabel)
     log_axis(axis.xaxis)
     log_axis(axis.yaxis)
+    drop_overlapping(labels)
 
 
 def accuracy_curves(results, _):
