@@ -209,7 +209,6 @@ Shader compile(const ShaderSource& source)
     glslang::SpvOptions options;
     options.disableOptimizer = true;
     glslang::GlslangToSpv(*program.getIntermediate(language), shader.spirv, &options);
-    shader.constants = constants_used(shader.spirv);
     return shader;
 }
 
@@ -237,7 +236,6 @@ Shader from_bytes(const std::string& bytes, const ShaderSource& source)
     }
     shader.spirv.resize((bytes.size() - begin - 1) / sizeof(uint32_t));
     std::memcpy(shader.spirv.data(), bytes.data() + begin + 1, shader.spirv.size() * sizeof(uint32_t));
-    shader.constants = constants_used(shader.spirv);
     return shader;
 }
 
@@ -247,9 +245,10 @@ Shader compile_or_read(const ShaderSource& source, std::span<const std::filesyst
     const glslang::Version version = glslang::GetVersion();
     const std::string      name    = fmt::format("shader-{}-{}.{}.{}", content_hash(key_of(source, files, read_text)),
                                                  version.major, version.minor, version.patch);
-    if (const auto kept = read_cached(name)) return from_bytes(*kept, source);
-    Shader shader = compile(source);
-    write_cached(name, to_bytes(shader));
+    const auto             kept    = read_cached(name);
+    Shader                 shader  = kept ? from_bytes(*kept, source) : compile(source);
+    if (!kept) write_cached(name, to_bytes(shader));
+    shader.constants = constants_used(shader.spirv);
     return shader;
 }
 

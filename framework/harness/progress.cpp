@@ -81,15 +81,14 @@ void Progress::finish_run(const std::string& id, double cost)
 void Progress::tick()
 {
     const double interval_s = in_place_ ? 0.2 : 10;
-    const bool   first      = last_print_ == Clock::time_point{};
     const bool   complete   = done_runs_ == total_runs_;
-    if (first || complete || std::chrono::duration<double>(Clock::now() - last_print_).count() >= interval_s) print();
+    if (!since_print_ || complete || since_print_->seconds() >= interval_s) print();
 }
 
 void Progress::print()
 {
-    last_print_                 = Clock::now();
-    const double      elapsed_s = std::chrono::duration<double>(last_print_ - started_).count();
+    since_print_.emplace();
+    const double      elapsed_s = since_start_.seconds();
     const double      left_s    = done_cost_ > 0 ? elapsed_s * (total_cost_ - done_cost_) / done_cost_ : total_cost_;
     const std::string left      = left_s < 0.5 ? "" : ", about " + duration_text(left_s) + " left";
     const std::string line      = fmt::format("{} of {} runs, {}, {} so far{}", done_runs_, total_runs_, picture_,

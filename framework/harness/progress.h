@@ -1,9 +1,10 @@
 // "12 of 84 runs, yard default 1280x720, 0:42 so far, about 3:10 left" on stderr, seldom enough to read.
 #pragma once
 
+#include "core/stopwatch.h"
 #include "harness/experiment.h"
 
-#include <chrono>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -31,13 +32,13 @@ public:
 private:
     void print();
 
-    using Clock = std::chrono::steady_clock;
-    size_t                total_runs_, done_runs_ = 0;
-    double                total_cost_, done_cost_ = 0;
-    std::string           picture_;
-    std::set<std::string> prepared_; // runs that are not finished
-    bool                  in_place_;
-    Clock::time_point     started_ = Clock::now(), last_print_{};
+    size_t                   total_runs_, done_runs_ = 0;
+    double                   total_cost_, done_cost_ = 0;
+    std::string              picture_;
+    std::set<std::string>    prepared_; // runs that are not finished
+    bool                     in_place_;
+    Stopwatch                since_start_;
+    std::optional<Stopwatch> since_print_; // empty before the first line
 };
 
 } // namespace ssrlab
