@@ -1,6 +1,5 @@
 #include "compare/flip.h"
 
-#include "compare/image_filter.h"
 #include "core/error.h"
 #include "core/parallel_rows.h"
 
@@ -70,11 +69,11 @@ glm::vec3 hunt_lab(glm::vec3 linear_rgb)
 
 float hyab(glm::vec3 a, glm::vec3 b) { return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z); }
 
-Planes to_ycxcz(const Image& image)
+/// Outside the mask `planes` stay as they are.
+Planes to_ycxcz(const Image& image, Planes planes, const Mask& mask)
 {
-    Planes planes;
-    for (Plane& plane : planes) plane = {image.size_px, std::vector<float>(image.values.size() / 3)};
     parallel_pixels(image.size_px.x, image.size_px.y, [&](size_t i) {
+        if (!is_inside(mask, i)) return;
         glm::vec3 linear;
         for (int c : {0, 1, 2}) linear[c] = srgb_to_linear(std::clamp(image.values[3 * i + size_t(c)], 0.0F, 1.0F));
         const glm::vec3 ycxcz = xyz_to_ycxcz(linear_rgb_to_xyz(linear));
@@ -114,15 +113,16 @@ Plane blur(const Plane& plane, std::span<const Sensitivity> terms, int radius, f
         const std::vector<float> kernel = gaussian(term.b, radius, pixels_per_degree);
         const float              weight = term.a * std::sqrt(pi / term.b);
         const Plane              part   = filter_separable(plane, kernel, kernel);
-        for (size_t i = 0; i < part.values.size(); ++i) result.values[i] += weight * part.values[i];
+        parallel_pixels(plane.size_px.x, plane.size_px.y,
+                        [&](size_t i) { result.values[i] += weight * part.values[i]; });
         total += weight * sum(kernel) * sum(kernel);
     }
-    for (float& value : result.values) value /= total;
+    parallel_pixels(plane.size_px.x, plane.size_px.y, [&](size_t i) { result.values[i] /= total; });
     return result;
 }
 
 /// What the eye resolves: achromatic, red-green and blue-yellow channels blurred by their sensitivities.
-std::vector<glm::vec3> perceived_lab(const Planes& ycxcz, float pixels_per_degree)
+std::vector<glm::vec3> perceived_lab(const Planes& ycxcz, float pixels_per_degree, const Mask& mask)
 {
     static constexpr std::array<Sensitivity, 1> achromatic{{{1, 0.0047F}}};
     static constexpr std::array<Sensitivity, 1> red_green{{{1, 0.0053F}}};
@@ -133,6 +133,7 @@ std::vector<glm::vec3> perceived_lab(const Planes& ycxcz, float pixels_per_degre
     const Plane            cz     = blur(ycxcz[2], blue_yellow, radius, pixels_per_degree);
     std::vector<glm::vec3> lab(y.values.size());
     parallel_pixels(y.size_px.x, y.size_px.y, [&](size_t i) {
+        if (!is_inside(mask, i)) return;
         const glm::vec3 rgb = xyz_to_linear_rgb(ycxcz_to_xyz({y.values[i], cx.values[i], cz.values[i]}));
         lab[i]              = hunt_lab(glm::clamp(rgb, 0.0F, 1.0F));
     });
@@ -148,9 +149,10 @@ void normalise_signed(std::vector<float>& kernel)
 }
 
 /// Sets edges and points: lengths of the two-dimensional responses.
-void detect_features(FlipView& view, const Plane& y, float pixels_per_degree)
+void detect_features(FlipView& view, const Mask& mask)
 {
-    const float        sigma  = 0.5F * feature_width_deg * pixels_per_degree;
+    const Plane&       y      = view.ycxcz[0];
+    const float        sigma  = 0.5F * feature_width_deg * view.pixels_per_degree;
     const int          radius = int(std::ceil(3 * sigma));
     std::vector<float> flat, edge, point;
     for (int i = -radius; i <= radius; ++i) {
@@ -161,12 +163,13 @@ void detect_features(FlipView& view, const Plane& y, float pixels_per_degree)
     }
     for (auto* kernel : {&flat, &edge, &point}) normalise_signed(*kernel);
     Plane grey = y;
-    for (float& value : grey.values) value = (value + 16) / 116;
+    parallel_pixels(y.size_px.x, y.size_px.y, [&](size_t i) { grey.values[i] = (y.values[i] + 16) / 116; });
     const auto response = [&](const std::vector<float>& kernel) {
         const Plane        across = filter_separable(grey, kernel, flat), down = filter_separable(grey, flat, kernel);
         std::vector<float> length(across.values.size());
-        parallel_pixels(y.size_px.x, y.size_px.y,
-                        [&](size_t i) { length[i] = std::hypot(across.values[i], down.values[i]); });
+        parallel_pixels(y.size_px.x, y.size_px.y, [&](size_t i) {
+            if (is_inside(mask, i)) length[i] = std::hypot(across.values[i], down.values[i]);
+        });
         return length;
     };
     view.edges  = response(edge);
@@ -182,28 +185,51 @@ float colour_error(float difference)
     return power < knee ? pt / knee * power : pt + (power - knee) / (largest - knee) * (1 - pt);
 }
 
-} // namespace
-
-FlipView flip_view(const Image& image, float pixels_per_degree)
+void require_three_channels(const Image& image)
 {
     const size_t expected = 3 * size_t(std::max(image.size_px.x, 0)) * size_t(std::max(image.size_px.y, 0));
     if (image.values.size() != expected)
         throw_failure("FLIP wants three channels: an image of {}x{} has {} values", image.size_px.x, image.size_px.y,
                       image.values.size());
-    const Planes ycxcz = to_ycxcz(image);
-    FlipView     view{image.size_px, perceived_lab(ycxcz, pixels_per_degree), {}, {}};
-    detect_features(view, ycxcz[0], pixels_per_degree);
+}
+
+void require_same_size(glm::ivec2 a, glm::ivec2 b)
+{
+    if (a != b) throw_failure("FLIP compares two images of one size; got {}x{} and {}x{}", a.x, a.y, b.x, b.y);
+}
+
+FlipView make_view(Planes ycxcz, float pixels_per_degree, const Mask& mask)
+{
+    FlipView view{ycxcz[0].size_px, pixels_per_degree, std::move(ycxcz), {}, {}, {}};
+    view.lab = perceived_lab(view.ycxcz, pixels_per_degree, mask);
+    detect_features(view, mask);
     return view;
 }
 
-std::vector<float> flip_error(const FlipView& tested, const FlipView& reference)
+} // namespace
+
+FlipView flip_view(const Image& image, float pixels_per_degree)
+{
+    require_three_channels(image);
+    Planes planes;
+    for (Plane& plane : planes) plane = {image.size_px, std::vector<float>(image.values.size() / 3)};
+    return make_view(to_ycxcz(image, std::move(planes), {}), pixels_per_degree, {});
+}
+
+FlipView flip_view_inside(const Image& image, const FlipView& reference, const Mask& mask)
+{
+    require_three_channels(image);
+    require_same_size(image.size_px, reference.size_px);
+    return make_view(to_ycxcz(image, reference.ycxcz, mask), reference.pixels_per_degree, mask);
+}
+
+std::vector<float> flip_error(const FlipView& tested, const FlipView& reference, const Mask& mask)
 {
     const FlipView &a = tested, &b = reference;
-    if (a.size_px != b.size_px)
-        throw_failure("FLIP compares two images of one size; got {}x{} and {}x{}", a.size_px.x, a.size_px.y,
-                      b.size_px.x, b.size_px.y);
+    require_same_size(a.size_px, b.size_px);
     std::vector<float> error(a.lab.size());
     parallel_pixels(a.size_px.x, a.size_px.y, [&](size_t i) {
+        if (!is_inside(mask, i)) return;
         const float colour = colour_error(hyab(a.lab[i], b.lab[i]));
         const float edges  = std::abs(a.edges[i] - b.edges[i]);
         const float points = std::abs(a.points[i] - b.points[i]);

@@ -2,7 +2,10 @@
 // Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild 2020: FLIP: A Difference Evaluator for Alternating Images.
 #pragma once
 
+#include "compare/image_filter.h"
 #include "core/image.h"
+
+#include <array>
 
 namespace ssrlab {
 
@@ -12,13 +15,19 @@ inline constexpr float flip_pixels_per_degree = 67.0206433F;
 /// What a viewer sees of an image, per pixel: the perceived colour, and how strongly edges and points stand out.
 struct FlipView {
     glm::ivec2             size_px{0, 0};
-    std::vector<glm::vec3> lab; // with the Hunt effect
+    float                  pixels_per_degree = flip_pixels_per_degree;
+    std::array<Plane, 3>   ycxcz; // the image itself
+    std::vector<glm::vec3> lab;   // with the Hunt effect
     std::vector<float>     edges, points;
 };
 /// Channels R, G, B, sRGB-encoded, values in [0, 1]. Throws Failure unless there are three values a pixel.
 FlipView flip_view(const Image& image, float pixels_per_degree = flip_pixels_per_degree);
 
-/// One value in [0, 1] per pixel. Throws Failure when the sizes differ.
-std::vector<float> flip_error(const FlipView& tested, const FlipView& reference);
+/// Of a picture that shows `image` inside the mask and outside what the reference shows; there, what a viewer sees is left at 0. Throws
+/// Failure as above, and when the sizes differ.
+FlipView flip_view_inside(const Image& image, const FlipView& reference, const Mask& mask);
+
+/// One value in [0, 1] per pixel, 0 outside the mask. Throws Failure when the sizes differ.
+std::vector<float> flip_error(const FlipView& tested, const FlipView& reference, const Mask& mask = {});
 
 } // namespace ssrlab

@@ -3,6 +3,7 @@
 
 #include <glm/glm.hpp>
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,10 @@ struct Plane {
     glm::ivec2         size_px{0, 0};
     std::vector<float> values; // row-major
 };
+
+/// One byte a pixel, not 0 inside. Empty: all pixels are inside.
+using Mask = std::vector<uint8_t>;
+inline bool is_inside(const Mask& mask, size_t pixel) { return mask.empty() || mask[pixel] != 0; }
 
 /// sum over dx, dy of kernel_x[dx] kernel_y[dy] plane(x + dx, y + dy); odd kernels; the border pixel continues outside.
 Plane filter_separable(const Plane& plane, std::span<const float> kernel_x, std::span<const float> kernel_y);

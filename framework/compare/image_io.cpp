@@ -53,7 +53,10 @@ OIIO::ImageSpec make_spec(const Image& image, bool png)
 {
     OIIO::ImageSpec spec(image.size_px.x, image.size_px.y, png ? 3 : int(image.channels.size()),
                          png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
-    if (!png) {
+    if (png) {
+        spec.attribute("png:compressionLevel",
+                       4); // of 9: a tenth larger than with the default of 6, in two thirds of the time
+    } else {
         spec.channelnames = image.channels;
         spec.attribute("compression", "zip");
     }

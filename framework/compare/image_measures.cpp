@@ -1,7 +1,5 @@
 // Measures that compare pictures with pictures.
-#include "compare/flip.h"
 #include "compare/measures.h"
-#include "compare/ssim.h"
 #include "core/error.h"
 #include "core/parallel_rows.h"
 
@@ -11,14 +9,11 @@
 namespace ssrlab {
 namespace {
 
-/// One byte a pixel, not 0 inside.
-using Mask = std::vector<uint8_t>;
-
-/// Where is_inside(index) holds.
-template <typename IsInside> Mask make_mask(glm::ivec2 size_px, const IsInside& is_inside)
+/// Where belongs(index) holds.
+template <typename Belongs> Mask make_mask(glm::ivec2 size_px, const Belongs& belongs)
 {
     Mask mask(size_t(size_px.x) * size_t(size_px.y));
-    parallel_pixels(size_px.x, size_px.y, [&](size_t i) { mask[i] = is_inside(i) ? 1 : 0; });
+    parallel_pixels(size_px.x, size_px.y, [&](size_t i) { mask[i] = belongs(i) ? 1 : 0; });
     return mask;
 }
 
@@ -26,18 +21,26 @@ struct ImageErrors {
     std::optional<double> rmse, psnr_db, ssim, flip;
 };
 
-Image to_display(const Image& linear)
+/// Outside the mask it stays linear.
+Image to_display(const Image& linear, const Mask& mask)
 {
+    const size_t expected = 3 * size_t(std::max(linear.size_px.x, 0)) * size_t(std::max(linear.size_px.y, 0));
+    if (linear.values.size() != expected)
+        throw_failure("an image of {}x{} with {} values is not judged: it needs three channels", linear.size_px.x,
+                      linear.size_px.y, linear.values.size());
     Image display = linear;
-    parallel_pixels(linear.size_px.x * static_cast<int>(linear.channels.size()), linear.size_px.y,
-                    [&](size_t i) { display.values[i] = linear_to_srgb(linear.values[i]); });
+    parallel_pixels(linear.size_px.x, linear.size_px.y, [&](size_t i) {
+        if (!is_inside(mask, i)) return;
+        for (size_t c = 0; c < 3; ++c) display.values[3 * i + c] = linear_to_srgb(linear.values[3 * i + c]);
+    });
     return display;
 }
 
-Plane to_luma(const Image& display) // Rec. 709
+/// Rec. 709. Outside the mask `luma` stays as it is.
+Plane to_luma(const Image& display, Plane luma, const Mask& mask)
 {
-    Plane luma{display.size_px, std::vector<float>(display.values.size() / 3)};
     parallel_pixels(display.size_px.x, display.size_px.y, [&](size_t i) {
+        if (!is_inside(mask, i)) return;
         const float* rgb = &display.values[3 * i];
         luma.values[i]   = 0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2];
     });
@@ -78,13 +81,10 @@ ImageErrors compare_inside(const Image& tested, const Reference& reference, cons
     if (!errors.rmse) return errors;
     if (*errors.rmse > 0) errors.psnr_db = -20 * std::log10(*errors.rmse);
     // The windows of SSIM and FLIP reach outside the mask, where nothing is to be judged: there both show the reference.
-    Image masked = tested;
-    parallel_pixels(tested.size_px.x, tested.size_px.y, [&](size_t i) {
-        if (mask[i] != 0) return;
-        for (size_t c = 0; c < 3; ++c) masked.values[3 * i + c] = reference.display.values[3 * i + c];
-    });
-    errors.ssim = mean_inside(ssim_map(to_luma(masked), reference.luma), mask);
-    errors.flip = mean_inside(flip_error(flip_view(masked), reference.flip), mask);
+    const SsimView ssim = ssim_view(to_luma(tested, reference.ssim.luma, mask));
+    const FlipView flip = flip_view_inside(tested, reference.flip, mask);
+    errors.ssim         = mean_inside(ssim_map(ssim, reference.ssim, mask), mask);
+    errors.flip         = mean_inside(flip_error(flip, reference.flip, mask), mask);
     return errors;
 }
 
@@ -127,7 +127,9 @@ bool at_material_border(const GBufferImage& gbuffer, glm::ivec2 pixel)
 } // namespace
 
 Reference::Reference(const Image& linear_radiance)
-    : display(to_display(linear_radiance)), luma(to_luma(display)), flip(flip_view(display))
+    : display(to_display(linear_radiance, {})),
+      ssim(ssim_view(to_luma(display, {display.size_px, std::vector<float>(display.values.size() / 3)}, {}))),
+      flip(flip_view(display))
 {
 }
 
@@ -147,9 +149,10 @@ MeasureValues compare_images(const Image& tested, const Reference& reference, co
 {
     require_comparable(tested, truth);
     require_comparable(reference.display, truth);
-    const Image       display         = to_display(tested);
+    const Mask        reflective      = reflective_pixels(truth);
+    const Image       display         = to_display(tested, reflective);
     const ImageErrors over_visible    = compare_inside(display, reference, visible_pixels(truth));
-    const ImageErrors over_reflective = compare_inside(display, reference, reflective_pixels(truth));
+    const ImageErrors over_reflective = compare_inside(display, reference, reflective);
     return {{"rmse_visible", over_visible.rmse},       {"psnr_visible_db", over_visible.psnr_db},
             {"ssim_visible", over_visible.ssim},       {"flip_visible", over_visible.flip},
             {"rmse_reflective", over_reflective.rmse}, {"psnr_reflective_db", over_reflective.psnr_db},
@@ -167,7 +170,7 @@ MeasureValues compare_pictures(const Image& tested, const Reference& reference, 
         return reflective[i] != 0 && at_material_border(gbuffer, {int(i) % width, int(i) / width});
     });
     const Mask  visible_border = make_mask(truth.size_px, [&](size_t i) { return visible[i] != 0 && border[i] != 0; });
-    const Image display        = to_display(tested);
+    const Image display        = to_display(tested, reflective);
     const ImageErrors errors   = compare_inside(display, reference, reflective);
     const auto        rmse     = [&](const Mask& mask) { return rmse_inside(display, reference.display, mask); };
     return {{"picture_rmse", errors.rmse},

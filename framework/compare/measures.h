@@ -2,7 +2,7 @@
 #pragma once
 
 #include "compare/flip.h"
-#include "compare/image_filter.h"
+#include "compare/ssim.h"
 #include "core/gbuffer_image.h"
 #include "core/image.h"
 #include "core/trace_result.h"
@@ -64,7 +64,7 @@ struct Reference {
     explicit Reference(const Image& linear_radiance);
 
     Image    display; // sRGB-encoded
-    Plane    luma;
+    SsimView ssim;
     FlipView flip;
 };
 

@@ -2,6 +2,7 @@
 
 #include "compare/measures.h"
 #include "core/error.h"
+#include "core/parallel_rows.h"
 
 #include <algorithm>
 #include <array>
@@ -22,11 +23,11 @@ template <typename ColourOf> Image paint(glm::ivec2 size_px, size_t count, const
     Image image;
     image.size_px  = size_px;
     image.channels = {"R", "G", "B"};
-    image.values.reserve(3 * count);
-    for (size_t i = 0; i < count; ++i) {
+    image.values.resize(3 * count);
+    parallel_pixels(size_px.x, size_px.y, [&](size_t i) {
         const glm::vec3 colour = colour_of(i);
-        image.values.insert(image.values.end(), {colour.r, colour.g, colour.b});
-    }
+        for (int c : {0, 1, 2}) image.values[3 * i + static_cast<size_t>(c)] = colour[c];
+    });
     return image;
 }
 

@@ -3,6 +3,7 @@
 #include "core/parallel_rows.h"
 
 #include <cmath>
+#include <utility>
 
 namespace ssrlab {
 namespace {
@@ -30,18 +31,30 @@ Plane product(const Plane& a, const Plane& b)
     return result;
 }
 
+Plane mean_around(const Plane& plane)
+{
+    static const std::vector<float> window = gaussian_window();
+    return filter_separable(plane, window, window);
+}
+
 } // namespace
 
-std::vector<float> ssim_map(const Plane& a, const Plane& b)
+SsimView ssim_view(Plane luma)
 {
-    const std::vector<float> window = gaussian_window();
-    const auto               mean   = [&](const Plane& plane) { return filter_separable(plane, window, window); };
-    const Plane              mean_a = mean(a), mean_b = mean(b);
-    const Plane        mean_aa = mean(product(a, a)), mean_bb = mean(product(b, b)), mean_ab = mean(product(a, b));
-    std::vector<float> index(a.values.size());
-    parallel_pixels(a.size_px.x, a.size_px.y, [&](size_t i) {
-        const float ma = mean_a.values[i], mb = mean_b.values[i];
-        const float variances  = mean_aa.values[i] - ma * ma + mean_bb.values[i] - mb * mb;
+    SsimView view{std::move(luma), {}, {}};
+    view.mean        = mean_around(view.luma);
+    view.mean_square = mean_around(product(view.luma, view.luma));
+    return view;
+}
+
+std::vector<float> ssim_map(const SsimView& a, const SsimView& b, const Mask& mask)
+{
+    const Plane        mean_ab = mean_around(product(a.luma, b.luma));
+    std::vector<float> index(a.luma.values.size());
+    parallel_pixels(a.luma.size_px.x, a.luma.size_px.y, [&](size_t i) {
+        if (!is_inside(mask, i)) return;
+        const float ma = a.mean.values[i], mb = b.mean.values[i];
+        const float variances  = a.mean_square.values[i] - ma * ma + b.mean_square.values[i] - mb * mb;
         const float covariance = mean_ab.values[i] - ma * mb;
         index[i] = (2 * ma * mb + c1) * (2 * covariance + c2) / ((ma * ma + mb * mb + c1) * (variances + c2));
     });

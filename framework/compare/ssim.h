@@ -6,7 +6,14 @@
 
 namespace ssrlab {
 
-/// The index in [-1, 1] around each pixel. Unlike the paper, windows at the border are kept; the border pixel continues outside.
-std::vector<float> ssim_map(const Plane& a, const Plane& b);
+/// What is compared of one picture: its luma, and in the window around each pixel the mean of it and of its square.
+struct SsimView {
+    Plane luma, mean, mean_square;
+};
+SsimView ssim_view(Plane luma);
+
+/// The index in [-1, 1] around each pixel, 0 outside the mask. Unlike the paper, windows at the border are kept; the border pixel continues
+/// outside. Sizes must be the same.
+std::vector<float> ssim_map(const SsimView& a, const SsimView& b, const Mask& mask = {});
 
 } // namespace ssrlab

@@ -47,12 +47,15 @@ const LoadedScene& scene_of(Bench& bench, const std::string& name)
     return *bench.scene;
 }
 
-/// Runs a step that times frames.
-template <typename Step> void timed(Bench& bench, const Step& step)
+/// Runs a step and adds how long it took.
+template <typename Step> decltype(auto) clocked(double& seconds, const Step& step)
 {
-    const Stopwatch stopwatch;
-    step();
-    bench.timed_s += stopwatch.seconds();
+    struct Adding {
+        double&   seconds;
+        Stopwatch stopwatch;
+        ~Adding() { seconds += stopwatch.seconds(); }
+    } adding{seconds, {}};
+    return step();
 }
 
 Picture make_picture(Bench& bench, const Run& run)
@@ -62,7 +65,7 @@ Picture make_picture(Bench& bench, const Run& run)
     Picture            picture;
     picture.gbuffer = render_gbuffer(bench.gpu, loaded.uploaded, view);
     std::vector<double> times_ms;
-    timed(bench, [&] {
+    clocked(bench.timed_s, [&] {
         for (int i = 0; i < gbuffer_repeats; ++i) times_ms.push_back(rerender_gbuffer(bench.gpu, *picture.gbuffer));
     });
     picture.gbuffer_ms = quantile(std::move(times_ms), 0.5);
@@ -125,51 +128,82 @@ std::string picture_name(const Run& run)
     return "pictures/" + name;
 }
 
-/// What was seen, how right it is, and how hard it was.
-void write_pictures(Bench& bench, Picture& picture, MeasuredRun& measured, const Image& shaded,
-                    const TraceResult& counted)
+/// What a run's frames gave, before anything is said about it.
+struct Observed {
+    Image                      shaded;
+    TraceResult                counted;
+    std::optional<TraceResult> hidden, twin; // the second layer's hits; the same trace in double
+};
+
+/// Everything on the device but the timed repeats: pipelines, warm-up, picture, counts.
+Observed observe(Bench& bench, const FrameBuffersPtr& buffers, MeasuredRun& measured)
 {
-    const std::string           name = picture_name(*measured.run);
-    const std::filesystem::path path = bench.results.path() / name;
-    std::filesystem::create_directories(path.parent_path());
-    std::vector<std::pair<std::string, Image>> pictures = {{".png", shaded}, {"_fetches.png", fetch_heat_map(counted)}};
-    if (picture.truths)
-        pictures.emplace_back("_agreement.png", picture.truths->agreement(measured.run->settings.trace, counted));
-    parallel_rows(static_cast<int>(pictures.size()), 0, [&](int i) {
-        const auto& [ending, image] = pictures[static_cast<size_t>(i)];
-        write_image(path.string() + ending, image);
+    const Run&             run     = *measured.run;
+    const MeasureSettings& measure = bench.experiment.measure;
+    measured.frame =
+        prepare_frame(bench.gpu, buffers, find_technique(bench.techniques, run.technique), run.values, run.settings);
+    add_plan(measured.row, plan_of(*measured.frame));
+    return clocked(bench.counted_s, [&] {
+        for (int i = 0; i < std::max(1, measure.warmup); ++i) run_frame(bench.gpu, *measured.frame);
+        Observed observed{read_shaded(bench.gpu, *measured.frame),
+                          count_frame(bench.gpu, *measured.frame),
+                          read_hidden_hits(bench.gpu, *measured.frame),
+                          {}};
+        if (measure.truth && measure.double_twin && bench.gpu.info.float64)
+            observed.twin = count_frame(bench.gpu, *measured.frame, Precision::float64);
+        return observed;
     });
-    measured.row["picture"] = name + ".png";
 }
 
-/// Everything but the timed repeats: pipelines, warm-up, picture, counts, comparison with the truths.
+/// Makes what judging the run needs, unless the last run had the same settings.
+void make_references(Bench& bench, Picture& picture, const MeasuredRun& measured)
+{
+    const FrameSettings& settings = measured.run->settings;
+    if (!picture.truths) return;
+    clocked(bench.truths_s, [&] { picture.truths->make(settings.trace); });
+    if (!bench.experiment.measure.image_errors || (picture.reference && picture.reference_for == settings)) return;
+    const auto& reflection =
+        clocked(bench.truths_s, [&]() -> const std::vector<glm::vec4>& { return picture.truths->true_reflection(); });
+    picture.reference.emplace(composite_reflection(bench.gpu, *measured.frame, reflection));
+    picture.reference_for = settings;
+}
+
+/// What was seen, how right it is, and how hard it was; the path without the ending.
+void write_pictures(const std::filesystem::path& path, const Picture& picture, const Observed& observed)
+{
+    std::filesystem::create_directories(path.parent_path());
+    const auto write = [&](const char* ending, const Image& image) { write_image(path.string() + ending, image); };
+    parallel_rows(picture.truths ? 3 : 2, 0, [&](int i) {
+        if (i == 0) write(".png", observed.shaded);
+        if (i == 1) write("_fetches.png", fetch_heat_map(observed.counted));
+        if (i == 2) write("_agreement.png", picture.truths->agreement(observed.counted));
+    });
+}
+
+/// Pictures, counts and comparisons with the truths.
+void judge(const Bench& bench, Picture& picture, MeasuredRun& measured, const Observed& observed)
+{
+    const MeasureSettings& measure = bench.experiment.measure;
+    if (measure.pictures) {
+        const std::string name = picture_name(*measured.run);
+        write_pictures(bench.results.path() / name, picture, observed);
+        measured.row["picture"] = name + ".png";
+    }
+    add_counts(measured.row, observed.counted);
+    if (!picture.truths) return;
+    const auto pointer = [](const std::optional<TraceResult>& result) { return result ? &*result : nullptr; };
+    add_measures(measured.row, picture.truths->compare(observed.counted, pointer(observed.twin),
+                                                       pointer(observed.hidden), measure.image_errors));
+    if (measure.image_errors)
+        add_measures(measured.row, picture.truths->compare_picture(observed.shaded, *picture.reference));
+}
+
+/// Everything but the timed repeats.
 void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
 {
-    const Run&             run       = *measured.run;
-    const Technique&       technique = find_technique(bench.techniques, run.technique);
-    const MeasureSettings& measure   = bench.experiment.measure;
-    measured.frame                   = prepare_frame(bench.gpu, picture.buffers, technique, run.values, run.settings);
-    add_plan(measured.row, plan_of(*measured.frame));
-    for (int i = 0; i < std::max(1, measure.warmup); ++i) run_frame(bench.gpu, *measured.frame);
-    const Image       shaded  = read_shaded(bench.gpu, *measured.frame);
-    const TraceResult counted = count_frame(bench.gpu, *measured.frame);
-    const auto        hidden  = read_hidden_hits(bench.gpu, *measured.frame);
-    if (measure.pictures) write_pictures(bench, picture, measured, shaded, counted);
-    add_counts(measured.row, counted);
-    if (!picture.truths) return;
-    std::optional<TraceResult> twin;
-    if (measure.double_twin && bench.gpu.info.float64) {
-        twin = count_frame(bench.gpu, *measured.frame, Precision::float64);
-    }
-    add_measures(measured.row, picture.truths->compare(run.settings.trace, counted, twin ? &*twin : nullptr,
-                                                       hidden ? &*hidden : nullptr, measure.image_errors));
-    if (!measure.image_errors) return;
-    if (!picture.reference || picture.reference_for != run.settings) {
-        picture.reference.emplace(
-            composite_reflection(bench.gpu, *measured.frame, picture.truths->true_reflection(run.settings.trace)));
-        picture.reference_for = run.settings;
-    }
-    add_measures(measured.row, picture.truths->compare_picture(run.settings.trace, shaded, *picture.reference));
+    const Observed observed = observe(bench, picture.buffers, measured);
+    make_references(bench, picture, measured);
+    judge(bench, picture, measured, observed);
 }
 
 /// The same frame with everything on, where that is more.
@@ -191,7 +225,7 @@ void repeat_until_final(Bench& bench, const Picture& picture, std::vector<Measur
         for (MeasuredRun& measured : open) {
             if (stop_requested() != 0) break;
             try_step(bench, measured,
-                     [&] { timed(bench, [&] { add_repeat(bench.gpu, measured, picture.gbuffer_ms); }); });
+                     [&] { clocked(bench.timed_s, [&] { add_repeat(bench.gpu, measured, picture.gbuffer_ms); }); });
             if (over(measured) || !is_final(measured, bench.experiment.measure)) continue;
             add_times(measured, picture.gbuffer_ms);
             finish(bench, *measured.run, measured.row);
@@ -212,21 +246,32 @@ void keep_measured(Bench& bench, const Picture& picture, std::vector<MeasuredRun
     }
 }
 
+/// Those with the same settings one after another: truths and true pictures depend on them.
+std::vector<const Run*> by_settings(std::span<const Run> runs)
+{
+    std::vector<const Run*> grouped;
+    for (const Run& run : runs) grouped.push_back(&run);
+    for (auto rest = grouped.begin(); rest != grouped.end();)
+        rest = std::stable_partition(
+            rest, grouped.end(), [&settings = (*rest)->settings](const Run* run) { return run->settings == settings; });
+    return grouped;
+}
+
 void measure_batch(Bench& bench, Picture& picture, std::span<const Run> runs)
 {
     std::vector<MeasuredRun> open;
-    for (const Run& run : runs) {
+    for (const Run* run : by_settings(runs)) {
         if (stop_requested() != 0) return;
         bench.progress.tick();
         MeasuredRun measured;
-        measured.run            = &run;
-        measured.row            = identity_row(bench.experiment, run, find_technique(bench.techniques, run.technique));
+        measured.run = run;
+        measured.row = identity_row(bench.experiment, *run, find_technique(bench.techniques, run->technique));
         const auto prepare_both = [&] {
             prepare(bench, picture, measured);
             prepare_comparison(bench, measured);
         };
         if (!try_step(bench, measured, prepare_both)) continue;
-        bench.progress.prepared_run(run.id, cost_of(bench, run));
+        bench.progress.prepared_run(run->id, cost_of(bench, *run));
         open.push_back(std::move(measured));
     }
     refuse_changed_sources(bench);

@@ -29,7 +29,8 @@ struct Bench {
     std::mt19937_64                    random{experiment.measure.seed};
     std::unique_ptr<LoadedScene>       scene   = nullptr;
     size_t                             written = 0, failed = 0;
-    double                             timed_s = 0; // wall time of all frames that were timed
+    // Wall time of frames that were timed, of those that were judged and counted instead, and of making or reading truths.
+    double timed_s = 0, counted_s = 0, truths_s = 0;
 };
 
 /// Appends a row for each run as soon as it is final; a run that fails is a row with the reason. Returns early, with the

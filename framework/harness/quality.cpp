@@ -1,6 +1,8 @@
 #include "harness/quality.h"
 
 #include "compare/pictures.h"
+#include "core/error.h"
+#include "core/parallel_rows.h"
 #include "truth/truth_cache.h"
 
 #include <cstdlib>
@@ -15,9 +17,8 @@ std::filesystem::path truth_cache_dir(const std::filesystem::path& results)
 
 Image reflected_image(const TraceResult& result, const GBufferImage& gbuffer, glm::vec3 background)
 {
-    Image image{result.size_px, {"R", "G", "B"}, {}, {}};
-    image.values.reserve(result.status.size() * 3);
-    for (size_t i = 0; i < result.status.size(); ++i) {
+    Image image{result.size_px, {"R", "G", "B"}, std::vector<float>(result.status.size() * 3), {}};
+    parallel_pixels(result.size_px.x, result.size_px.y, [&](size_t i) {
         glm::vec3 colour(0);
         if (result.status[i] == TraceStatus::hit) {
             const glm::ivec2 pixel = result.hit_pixel[i];
@@ -25,8 +26,8 @@ Image reflected_image(const TraceResult& result, const GBufferImage& gbuffer, gl
         } else if (result.status[i] != TraceStatus::not_traced) {
             colour = background;
         }
-        image.values.insert(image.values.end(), {colour.r, colour.g, colour.b});
-    }
+        for (int c : {0, 1, 2}) image.values[3 * i + static_cast<size_t>(c)] = colour[c];
+    });
     return image;
 }
 
@@ -50,15 +51,21 @@ void Truths::make(const TraceSettings& settings)
     made_for_ = settings;
 }
 
-Image Truths::agreement(const TraceSettings& settings, const TraceResult& counted)
+const TraceSettings& Truths::made_for() const
 {
-    make(settings);
+    if (!made_for_) throw_failure("truths were asked for before they were made");
+    return *made_for_;
+}
+
+Image Truths::agreement(const TraceResult& counted) const
+{
+    made_for();
     return agreement_picture(counted, scene_truth_);
 }
 
-const std::vector<glm::vec4>& Truths::true_reflection(const TraceSettings& settings)
+const std::vector<glm::vec4>& Truths::true_reflection()
 {
-    make(settings);
+    const TraceSettings& settings = made_for();
     if (true_reflection_) return *true_reflection_;
     const GlossyTruth       truth      = cached_glossy_truth(cache_dir_, *scene_, gbuffer_, settings, {});
     std::vector<glm::vec4>& reflection = true_reflection_.emplace();
@@ -69,16 +76,16 @@ const std::vector<glm::vec4>& Truths::true_reflection(const TraceSettings& setti
     return reflection;
 }
 
-MeasureValues Truths::compare_picture(const TraceSettings& settings, const Image& picture, const Reference& reference)
+MeasureValues Truths::compare_picture(const Image& picture, const Reference& reference) const
 {
-    make(settings);
+    made_for();
     return compare_pictures(picture, reference, scene_truth_, gbuffer_);
 }
 
-MeasureValues Truths::compare(const TraceSettings& settings, const TraceResult& counted, const TraceResult* twin,
-                              const TraceResult* hidden, bool image_errors)
+MeasureValues Truths::compare(const TraceResult& counted, const TraceResult* twin, const TraceResult* hidden,
+                              bool image_errors)
 {
-    make(settings);
+    made_for();
     MeasureValues values = compare_to_screen_truth(counted, screen_truth_);
     merge(values, compare_to_scene_truth(counted, scene_truth_, screen_truth_, gbuffer_));
     merge(values, split_error(counted, twin, screen_truth_, &scene_truth_));

@@ -10,27 +10,30 @@
 
 namespace ssrlab {
 
-/// The truths of one picture. Those of the last trace settings are kept: runs with the same settings stand together.
+/// The truths of one picture, for one trace settings at a time. All but make() throw Failure before it was called.
 class Truths {
 public:
     /// Keeps a reference to `scene`.
     Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path cache_dir);
 
+    /// Makes the truths for these settings, or reads them from the cache, unless they are those of the last call.
+    void make(const TraceSettings& settings);
+
     /// Every measure of `counted`. `twin` is the same trace in double, `hidden` what was found in the second layer; or null.
-    MeasureValues compare(const TraceSettings& settings, const TraceResult& counted, const TraceResult* twin,
-                          const TraceResult* hidden, bool image_errors);
+    MeasureValues compare(const TraceResult& counted, const TraceResult* twin, const TraceResult* hidden,
+                          bool image_errors);
 
     /// The reflection of the glossy scene truth (many rays where it is rough), at full weight; weight -1 where nothing reflects.
-    const std::vector<glm::vec4>& true_reflection(const TraceSettings& settings);
+    const std::vector<glm::vec4>& true_reflection();
 
     /// A finished picture against the one with the true reflection.
-    MeasureValues compare_picture(const TraceSettings& settings, const Image& picture, const Reference& reference);
+    MeasureValues compare_picture(const Image& picture, const Reference& reference) const;
 
     /// The agreement with the scene truth, as a false-colour picture.
-    Image agreement(const TraceSettings& settings, const TraceResult& counted);
+    Image agreement(const TraceResult& counted) const;
 
 private:
-    void make(const TraceSettings& settings);
+    const TraceSettings& made_for() const;
 
     const Scene*                          scene_;
     GBufferImage                          gbuffer_;

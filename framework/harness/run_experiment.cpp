@@ -112,9 +112,12 @@ int run_experiment(const RunOptions& options)
         measure_picture(bench, take_picture(rest));
     }
     const double took_s = stopwatch.seconds();
-    fmt::print("{}: {} rows, {} written now, {} of them failed; {:.0f} % of {} went to frames that were timed\n",
-               short_path(results.path() / "results.csv"), results.finished().size(), bench.written, bench.failed,
-               100 * bench.timed_s / took_s, duration_text(took_s));
+    fmt::print(
+        "{}: {} rows, {} written now, {} of them failed; of {}, {:.0f} % went to frames that were timed, {:.0f} % "
+        "to frames that were counted, {:.0f} % to truths\n",
+        short_path(results.path() / "results.csv"), results.finished().size(), bench.written, bench.failed,
+        duration_text(took_s), 100 * bench.timed_s / took_s, 100 * bench.counted_s / took_s,
+        100 * bench.truths_s / took_s);
     if (stop_requested() != 0) {
         progress.say("stopped; the same command with --resume does the other runs");
         return 128 + stop_requested();

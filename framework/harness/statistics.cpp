@@ -2,21 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace ssrlab {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
-double sorted_quantile(const std::vector<double>& sorted, double p)
-{
-    if (sorted.empty()) return unknown;
-    const double position = p * static_cast<double>(sorted.size() - 1);
-    const auto   below    = static_cast<size_t>(position);
-    const size_t above    = std::min(below + 1, sorted.size() - 1);
-    return std::lerp(sorted[below], sorted[above], position - static_cast<double>(below));
-}
 
 } // namespace
 
@@ -40,7 +32,7 @@ Summary summarise(std::vector<double> samples)
 {
     std::ranges::sort(samples);
     const int count = static_cast<int>(samples.size());
-    Summary   summary{count, sorted_quantile(samples, 0.5), unknown, unknown, unknown};
+    Summary   summary{count, quantile(samples, 0.5), unknown, unknown, unknown};
     if (const int rank = interval_rank(count); rank > 0) {
         summary.ci_low  = samples[static_cast<size_t>(rank - 1)];
         summary.ci_high = samples[static_cast<size_t>(count - rank)];
@@ -52,8 +44,12 @@ Summary summarise(std::vector<double> samples)
 
 double quantile(std::vector<double> samples, double p)
 {
-    std::ranges::sort(samples);
-    return sorted_quantile(samples, p);
+    if (samples.empty()) return unknown;
+    const double position = p * static_cast<double>(samples.size() - 1);
+    const auto   below    = samples.begin() + static_cast<std::ptrdiff_t>(position);
+    std::ranges::nth_element(samples, below);
+    const auto above = below + 1 == samples.end() ? below : std::min_element(below + 1, samples.end());
+    return std::lerp(*below, *above, position - std::floor(position));
 }
 
 bool is_tight(const Summary& summary, double percent)

@@ -116,6 +116,31 @@ TEST(Flip, AnImageWithoutThreeChannelsIsRefused)
     EXPECT_THROW(flip_view({{2, 1}, {"Y"}, {0.5F, 0.5F}, {}}), Failure);
 }
 
+// What is left out outside a mask changes nothing inside: the same numbers as of the whole picture with the reference pasted in there.
+TEST(Masks, ChangeNothingInside)
+{
+    const glm::ivec2 size   = {53, 31};
+    const Image      tested = noise(size, 8), shown = noise(size, 9);
+    Image            pasted = tested;
+    Mask             mask(size_t(size.x) * size_t(size.y));
+    for (size_t i = 0; i < mask.size(); ++i) {
+        mask[i] = (i / 7) % 3 == 0 ? 1 : 0;
+        for (size_t c = 0; c < 3 && mask[i] == 0; ++c) pasted.values[3 * i + c] = shown.values[3 * i + c];
+    }
+    const FlipView           reference = flip_view(shown);
+    const std::vector<float> whole     = flip_error(flip_view(pasted), reference);
+    const std::vector<float> inside    = flip_error(flip_view_inside(tested, reference, mask), reference, mask);
+    const SsimView           a = ssim_view(first_channel(pasted)), b = ssim_view(first_channel(shown));
+    const std::vector<float> ssim = ssim_map(a, b), ssim_inside = ssim_map(a, b, mask);
+    for (size_t i = 0; i < mask.size(); ++i) {
+        EXPECT_EQ(inside[i], mask[i] != 0 ? whole[i] : 0) << i;
+        EXPECT_EQ(ssim_inside[i], mask[i] != 0 ? ssim[i] : 0) << i;
+    }
+    EXPECT_GT(largest(inside), 0.1F);
+    EXPECT_THROW(flip_view_inside(noise({5, 5}, 1), reference, mask), Failure);
+    EXPECT_THROW(Reference({{2, 1}, {"Y"}, {0.5F, 0.5F}, {}}), Failure);
+}
+
 TEST(Filter, EveryWidthGivesThePlainSums)
 {
     const std::vector<float> across = {0.1F, -0.4F, 0.7F, 0.2F, 0.3F}, down = {0.5F, 0.25F, -0.125F};
@@ -139,13 +164,13 @@ TEST(Filter, EveryWidthGivesThePlainSums)
 
 TEST(Ssim, IdenticalIsOneAndConstantsFollowTheFormula)
 {
-    const Plane a = first_channel(noise({30, 20}, 3));
+    const SsimView a = ssim_view(first_channel(noise({30, 20}, 3)));
     EXPECT_NEAR(smallest(ssim_map(a, a)), 1, 1e-5);
     // Without variance only the luminance term remains: (2 ab + c1) / (a^2 + b^2 + c1).
-    const Plane x = first_channel(uniform({15, 15}, glm::vec3(0.2F))),
-                y = first_channel(uniform({15, 15}, glm::vec3(0.6F)));
+    const SsimView x = ssim_view(first_channel(uniform({15, 15}, glm::vec3(0.2F)))),
+                   y = ssim_view(first_channel(uniform({15, 15}, glm::vec3(0.6F))));
     for (const float index : ssim_map(x, y)) EXPECT_NEAR(index, (2 * 0.12 + 1e-4) / (0.04 + 0.36 + 1e-4), 2e-3);
-    const Plane b = first_channel(noise({30, 20}, 4));
+    const SsimView b = ssim_view(first_channel(noise({30, 20}, 4)));
     EXPECT_LT(largest(ssim_map(a, b)), 0.9F);
 }
 
