@@ -11,7 +11,6 @@
 #include <sys/stat.h>
 
 #include <cstring>
-#include <fstream>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -21,15 +20,6 @@
 
 namespace ssrlab {
 namespace {
-
-std::string read_text(const std::filesystem::path& path)
-{
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw_spec_error("{}: cannot be read", path.string());
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
 
 /// Resolves includes: virtual names first, then files of the shader folder.
 class Includer : public glslang::TShader::Includer {
@@ -48,7 +38,7 @@ public:
             const auto path = file != source_.include_files.end() ? file->second : shader_folder() / name;
             if (!std::filesystem::is_regular_file(path)) return nullptr;
             shown = path.string();
-            texts_.push_back(read_text(path));
+            texts_.push_back(read_file(path));
         }
         results_.push_back(std::make_unique<IncludeResult>(shown, texts_.back().data(), texts_.back().size(), nullptr));
         return results_.back().get();
@@ -176,7 +166,7 @@ Shader compile(const ShaderSource& source)
 {
     static const GlslangProcess process;
     const std::filesystem::path path  = shader_folder() / source.file;
-    const std::string           text  = read_text(path);
+    const std::string           text  = read_file(path);
     const std::string           shown = path.string();
     std::string                 preamble =
         "#extension GL_GOOGLE_include_directive : require\n#extension GL_GOOGLE_cpp_style_line_directive : require\n"
@@ -243,7 +233,7 @@ Shader from_bytes(const std::string& bytes, const ShaderSource& source)
 Shader compile_or_read(const ShaderSource& source, std::span<const std::filesystem::path> files)
 {
     const glslang::Version version = glslang::GetVersion();
-    const std::string      name    = fmt::format("shader-{}-{}.{}.{}", content_hash(key_of(source, files, read_text)),
+    const std::string      name    = fmt::format("shader-{}-{}.{}.{}", content_hash(key_of(source, files, read_file)),
                                                  version.major, version.minor, version.patch);
     const auto             kept    = read_cached(name);
     Shader                 shader  = kept ? from_bytes(*kept, source) : compile(source);

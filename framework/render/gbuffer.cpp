@@ -98,9 +98,23 @@ void record_rasterisation(const vk::raii::CommandBuffer& commands, const GBuffer
                              .pDepthAttachment     = &depth});
     commands.setViewport(0, vk::Viewport{0, 0, static_cast<float>(size.x), static_cast<float>(size.y), 0, 1});
     commands.setScissor(0, area);
-    draw_scene(commands, *gbuffer.scene, gbuffer.pipeline, *gbuffer.frame_set.set,
+    draw_scene(commands, *gbuffer.scene, *gbuffer.pipeline, *gbuffer.frame_set.set,
                view_to_clip(gbuffer.view) * gbuffer.view.world_to_view);
     commands.endRendering();
+}
+
+std::shared_ptr<const DrawPipeline> layer_pipeline(Gpu& gpu, GpuScene& scene, const GBuffer& gbuffer, bool second)
+{
+    std::shared_ptr<const DrawPipeline>& pipeline = second ? scene.second_layer_pipeline : scene.first_layer_pipeline;
+    if (!pipeline) {
+        DrawPipelineOptions options{.fragment_shader = "gbuffer.frag",
+                                    .colour_formats  = {gbuffer.normal.format, gbuffer.material.format,
+                                                        gbuffer.radiance.format, gbuffer.highlight.format,
+                                                        gbuffer.object.format}};
+        if (second) options.fragment_defines = {{"SECOND_LAYER", "1"}};
+        pipeline = std::make_shared<const DrawPipeline>(make_draw_pipeline(gpu, scene, options));
+    }
+    return pipeline;
 }
 
 /// Ready to be drawn. first: the layer that lies before this one, or null.
@@ -115,13 +129,7 @@ GBufferPtr make_drawn_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& vi
     fill_frame_uniforms(gpu, *gbuffer);
     gbuffer->frame_set =
         make_frame_set(gpu, *scene, gbuffer->frame_uniforms, first == nullptr ? nullptr : &first->depth);
-    gbuffer->pipeline = make_draw_pipeline(
-        gpu, *scene,
-        {.fragment_shader  = "gbuffer.frag",
-         .colour_formats   = {gbuffer->normal.format, gbuffer->material.format, gbuffer->radiance.format,
-                              gbuffer->highlight.format, gbuffer->object.format},
-         .fragment_defines = first == nullptr ? std::map<std::string, std::string>{}
-                                              : std::map<std::string, std::string>{{"SECOND_LAYER", "1"}}});
+    gbuffer->pipeline      = layer_pipeline(gpu, *scene, *gbuffer, first != nullptr);
     gbuffer->sampler       = {gpu.impl->device, vk::SamplerCreateInfo{}};
     gbuffer->view_uniforms = upload_view(gpu, view, Precision::float32);
     Constants constants;

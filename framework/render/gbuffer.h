@@ -6,22 +6,22 @@
 namespace ssrlab {
 
 struct GBuffer {
-    View              view;
-    GpuScenePtr       scene;        // empty when the G-buffer was made elsewhere
-    GpuImage          depth_buffer; // D32, what the rasteriser wrote
-    GpuImage          depth;        // R32F, what tracers read: background = BACKGROUND_DEPTH
-    GpuImage          normal;       // RGBA32F: view-space normal, roughness
-    GpuImage          material;     // RGBA16F: base colour, metallic
-    GpuImage          radiance;     // RGBA16F: the same from every direction
-    GpuImage          highlight;    // RGBA16F: depends on the view
-    GpuImage          object;       // R32UI
-    Buffer            frame_uniforms;
-    FrameSet          frame_set;
-    DrawPipeline      pipeline;
-    vk::raii::Sampler sampler = nullptr;
-    Buffer            view_uniforms;
-    ComputePass       background;
-    Timestamps        timestamps;
+    View                                view;
+    GpuScenePtr                         scene;        // empty when the G-buffer was made elsewhere
+    GpuImage                            depth_buffer; // D32, what the rasteriser wrote
+    GpuImage                            depth;        // R32F, what tracers read: background = BACKGROUND_DEPTH
+    GpuImage                            normal;       // RGBA32F: view-space normal, roughness
+    GpuImage                            material;     // RGBA16F: base colour, metallic
+    GpuImage                            radiance;     // RGBA16F: the same from every direction
+    GpuImage                            highlight;    // RGBA16F: depends on the view
+    GpuImage                            object;       // R32UI
+    Buffer                              frame_uniforms;
+    FrameSet                            frame_set;
+    std::shared_ptr<const DrawPipeline> pipeline;
+    vk::raii::Sampler                   sampler = nullptr;
+    Buffer                              view_uniforms;
+    ComputePass                         background;
+    Timestamps                          timestamps;
 };
 
 /// Depth as tracers read it: what shaders/background.comp makes of a depth buffer.

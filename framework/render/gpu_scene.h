@@ -13,6 +13,11 @@ struct DrawPush {
     uint32_t  object_id;
 };
 
+struct DrawPipeline {
+    vk::raii::PipelineLayout layout   = nullptr;
+    vk::raii::Pipeline       pipeline = nullptr;
+};
+
 struct GpuScene {
     struct DrawCall {
         uint32_t  first_index = 0, index_count = 0, material = 0, object_id = 0;
@@ -31,15 +36,12 @@ struct GpuScene {
     vk::raii::DescriptorPool             pool                = nullptr;
     std::vector<vk::raii::DescriptorSet> material_sets;
     std::vector<DrawCall>                draws;
-    uint32_t                             light_count = 0;
-    glm::vec3                            ambient{0};
-    bool                                 alpha_mask          = false; // some material has one
-    bool                                 has_environment_map = false;
-};
-
-struct DrawPipeline {
-    vk::raii::PipelineLayout layout   = nullptr;
-    vk::raii::Pipeline       pipeline = nullptr;
+    // Of the G-buffer and its second layer, made when one is first drawn: lavapipe keeps memory for every graphics pipeline that it ever made.
+    std::shared_ptr<const DrawPipeline> first_layer_pipeline, second_layer_pipeline;
+    uint32_t                            light_count = 0;
+    glm::vec3                           ambient{0};
+    bool                                alpha_mask          = false; // some material has one
+    bool                                has_environment_map = false;
 };
 
 struct DrawPipelineOptions {

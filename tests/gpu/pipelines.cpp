@@ -1,6 +1,7 @@
-// Compute pipelines are made once for equal shaders and constants, and the store of them stays small.
+// Pipelines are made once: for equal shaders and constants, with a store that stays small, and for all pictures of a scene.
 #include "gpu/compute.h"
 #include "gpu/device.h"
+#include "render/gbuffer.h"
 #include "shared.h"
 
 #include <optional>
@@ -70,6 +71,17 @@ TEST(Pipelines, ThatWereForgottenGoOnForThoseWhoHoldThem)
     EXPECT_LE(device().impl->known_pipelines.size(), 256U);
     EXPECT_NE(launch.pass(10).compute, first.compute);
     EXPECT_EQ(launch.run(first), 100U);
+}
+
+TEST(Pipelines, OfAGBufferAreSharedByThePicturesOfAScene)
+{
+    const Picture    a        = make_picture("builtin:sphere_over_mirror", "default", {31, 17});
+    const Picture    b        = make_picture("builtin:sphere_over_mirror", "default", {40, 24});
+    const GBufferPtr second_a = make_second_layer(device(), *a.gbuffer),
+                     second_b = make_second_layer(device(), *b.gbuffer);
+    EXPECT_EQ(a.gbuffer->pipeline, b.gbuffer->pipeline);
+    EXPECT_EQ(second_a->pipeline, second_b->pipeline);
+    EXPECT_NE(a.gbuffer->pipeline, second_a->pipeline);
 }
 
 } // namespace
