@@ -1,6 +1,7 @@
 """run and plot: rows, resuming, interruptions, a full disk."""
 import json
 import os
+import re
 import resource
 import signal
 import time
@@ -12,7 +13,11 @@ SMOKE = os.path.join(SOURCE, "experiments", "smoke.toml")
 
 class Test(Case):
     def test_smoke_and_its_plots(self):
-        self.ssrlab("run", SMOKE, "-o", "out")
+        last_line = self.ssrlab("run", SMOKE, "-o", "out").splitlines()[-1]
+        timed, counted, truths = (int(share) for share in re.findall(r"(\d+) %", last_line))
+        self.assertGreater(timed, 0)
+        self.assertGreater(counted, 0)
+        self.assertLessEqual(timed + counted + truths, 101)
         rows = self.rows()
         self.assert_complete(rows, 12)
         for row in rows:

@@ -155,9 +155,10 @@ TEST(Filter, EveryWidthGivesThePlainSums)
                     for (int i = -2; i <= 2; ++i) {
                         const int from_x = std::clamp(x + i, 0, size.x - 1), from_y = std::clamp(y + j, 0, size.y - 1);
                         sum += double(across[size_t(i + 2)]) * double(down[size_t(j + 1)]) *
-                               double(plane.values[size_t(from_y * size.x + from_x)]);
+                               double(plane.values[size_t(from_y) * size_t(size.x) + size_t(from_x)]);
                     }
-                EXPECT_NEAR(filtered.values[size_t(y * size.x + x)], sum, 1e-6) << width << ": " << x << ", " << y;
+                EXPECT_NEAR(filtered.values[size_t(y) * size_t(size.x) + size_t(x)], sum, 1e-6)
+                    << width << ": " << x << ", " << y;
             }
     }
 }
