@@ -37,6 +37,12 @@ Buffer make(Gpu& gpu, uint64_t bytes, vk::BufferUsageFlags usage, vk::MemoryProp
     return result;
 }
 
+void refuse_too_many_texels(const Gpu& gpu, uint64_t bytes, vk::Format format)
+{
+    const uint64_t texels = bytes / vk::blockSize(format), most = gpu.impl->limits.maxTexelBufferElements;
+    if (texels > most) throw_failure("a buffer of {} texels is needed; the device allows {}", texels, most);
+}
+
 using Usage                            = vk::BufferUsageFlagBits;
 constexpr vk::BufferUsageFlags any_use = Usage::eStorageBuffer | Usage::eUniformBuffer | Usage::eIndirectBuffer |
                                          Usage::eVertexBuffer | Usage::eIndexBuffer | Usage::eTransferSrc |
@@ -62,6 +68,7 @@ Buffer make_buffer(Gpu& gpu, uint64_t bytes)
 
 Buffer make_texel_buffer(Gpu& gpu, uint64_t bytes, vk::Format format)
 {
+    refuse_too_many_texels(gpu, bytes, format); // before its memory is asked for
     Buffer buffer = make(gpu, bytes, any_use | vk::BufferUsageFlagBits::eStorageTexelBuffer,
                          vk::MemoryPropertyFlagBits::eDeviceLocal);
     buffer.texels = make_texel_view(gpu, buffer, format);
@@ -70,8 +77,7 @@ Buffer make_texel_buffer(Gpu& gpu, uint64_t bytes, vk::Format format)
 
 vk::raii::BufferView make_texel_view(Gpu& gpu, const Buffer& buffer, vk::Format format)
 {
-    const uint64_t texels = buffer.bytes / vk::blockSize(format), most = gpu.impl->limits.maxTexelBufferElements;
-    if (texels > most) throw_failure("a buffer of {} texels is needed; the device allows {}", texels, most);
+    refuse_too_many_texels(gpu, buffer.bytes, format);
     return {gpu.impl->device,
             vk::BufferViewCreateInfo{.buffer = *buffer.buffer, .format = format, .range = VK_WHOLE_SIZE}};
 }

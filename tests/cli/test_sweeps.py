@@ -13,8 +13,9 @@ SMOKE = os.path.join(SOURCE, "experiments", "smoke.toml")
 
 class Test(Case):
     def test_smoke_and_its_plots(self):
-        last_line = self.ssrlab("run", SMOKE, "-o", "out").splitlines()[-1]
-        timed, counted, truths = (int(share) for share in re.findall(r"(\d+) %", last_line))
+        text = self.ssrlab("run", SMOKE, "-o", "out")
+        shares = re.search(r"(\d+) % went to frames that were timed, (\d+) % .* counted, (\d+) % to truths", text)
+        timed, counted, truths = (int(share) for share in shares.groups())
         self.assertGreater(timed, 0)
         self.assertGreater(counted, 0)
         self.assertLessEqual(timed + counted + truths, 101)
