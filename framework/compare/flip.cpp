@@ -185,14 +185,6 @@ float colour_error(float difference)
     return power < knee ? pt / knee * power : pt + (power - knee) / (largest - knee) * (1 - pt);
 }
 
-void require_three_channels(const Image& image)
-{
-    const size_t expected = 3 * size_t(std::max(image.size_px.x, 0)) * size_t(std::max(image.size_px.y, 0));
-    if (image.values.size() != expected)
-        throw_failure("FLIP wants three channels: an image of {}x{} has {} values", image.size_px.x, image.size_px.y,
-                      image.values.size());
-}
-
 void require_same_size(glm::ivec2 a, glm::ivec2 b)
 {
     if (a != b) throw_failure("FLIP compares two images of one size; got {}x{} and {}x{}", a.x, a.y, b.x, b.y);
@@ -200,13 +192,21 @@ void require_same_size(glm::ivec2 a, glm::ivec2 b)
 
 FlipView make_view(Planes ycxcz, float pixels_per_degree, const Mask& mask)
 {
-    FlipView view{ycxcz[0].size_px, pixels_per_degree, std::move(ycxcz), {}, {}, {}};
+    FlipView view{pixels_per_degree, std::move(ycxcz), {}, {}, {}};
     view.lab = perceived_lab(view.ycxcz, pixels_per_degree, mask);
     detect_features(view, mask);
     return view;
 }
 
 } // namespace
+
+void require_three_channels(const Image& image)
+{
+    const size_t expected = 3 * size_t(std::max(image.size_px.x, 0)) * size_t(std::max(image.size_px.y, 0));
+    if (image.values.size() != expected)
+        throw_failure("three channels are needed: an image of {}x{} has {} values", image.size_px.x, image.size_px.y,
+                      image.values.size());
+}
 
 FlipView flip_view(const Image& image, float pixels_per_degree)
 {
@@ -219,16 +219,17 @@ FlipView flip_view(const Image& image, float pixels_per_degree)
 FlipView flip_view_inside(const Image& image, const FlipView& reference, const Mask& mask)
 {
     require_three_channels(image);
-    require_same_size(image.size_px, reference.size_px);
+    require_same_size(image.size_px, reference.ycxcz[0].size_px);
     return make_view(to_ycxcz(image, reference.ycxcz, mask), reference.pixels_per_degree, mask);
 }
 
 std::vector<float> flip_error(const FlipView& tested, const FlipView& reference, const Mask& mask)
 {
-    const FlipView &a = tested, &b = reference;
-    require_same_size(a.size_px, b.size_px);
+    const FlipView & a = tested, &b = reference;
+    const glm::ivec2 size_px = a.ycxcz[0].size_px;
+    require_same_size(size_px, b.ycxcz[0].size_px);
     std::vector<float> error(a.lab.size());
-    parallel_pixels(a.size_px.x, a.size_px.y, [&](size_t i) {
+    parallel_pixels(size_px.x, size_px.y, [&](size_t i) {
         if (!is_inside(mask, i)) return;
         const float colour = colour_error(hyab(a.lab[i], b.lab[i]));
         const float edges  = std::abs(a.edges[i] - b.edges[i]);

@@ -14,12 +14,14 @@ inline constexpr float flip_pixels_per_degree = 67.0206433F;
 
 /// What a viewer sees of an image, per pixel: the perceived colour, and how strongly edges and points stand out.
 struct FlipView {
-    glm::ivec2             size_px{0, 0};
     float                  pixels_per_degree = flip_pixels_per_degree;
     std::array<Plane, 3>   ycxcz; // the image itself
     std::vector<glm::vec3> lab;   // with the Hunt effect
     std::vector<float>     edges, points;
 };
+/// Throws Failure unless there are three values a pixel.
+void require_three_channels(const Image& image);
+
 /// Channels R, G, B, sRGB-encoded, values in [0, 1]. Throws Failure unless there are three values a pixel.
 FlipView flip_view(const Image& image, float pixels_per_degree = flip_pixels_per_degree);
 

@@ -24,10 +24,7 @@ struct ImageErrors {
 /// Outside the mask it stays linear.
 Image to_display(const Image& linear, const Mask& mask)
 {
-    const size_t expected = 3 * size_t(std::max(linear.size_px.x, 0)) * size_t(std::max(linear.size_px.y, 0));
-    if (linear.values.size() != expected)
-        throw_failure("an image of {}x{} with {} values is not judged: it needs three channels", linear.size_px.x,
-                      linear.size_px.y, linear.values.size());
+    require_three_channels(linear);
     Image display = linear;
     parallel_pixels(linear.size_px.x, linear.size_px.y, [&](size_t i) {
         if (!is_inside(mask, i)) return;

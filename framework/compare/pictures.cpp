@@ -18,12 +18,12 @@ constexpr glm::vec3 red{0.9F, 0.02F, 0.02F};
 constexpr glm::vec3 magenta{0.9F, 0, 0.9F};
 constexpr glm::vec3 grey{0.15F, 0.15F, 0.18F};
 
-template <typename ColourOf> Image paint(glm::ivec2 size_px, size_t count, const ColourOf& colour_of)
+template <typename ColourOf> Image paint(glm::ivec2 size_px, const ColourOf& colour_of)
 {
     Image image;
     image.size_px  = size_px;
     image.channels = {"R", "G", "B"};
-    image.values.resize(3 * count);
+    image.values.resize(3 * static_cast<size_t>(size_px.x) * static_cast<size_t>(size_px.y));
     parallel_pixels(size_px.x, size_px.y, [&](size_t i) {
         const glm::vec3 colour = colour_of(i);
         for (int c : {0, 1, 2}) image.values[3 * i + static_cast<size_t>(c)] = colour[c];
@@ -58,7 +58,7 @@ glm::vec3 heat_colour(uint32_t fetches)
 Image agreement_picture(const TraceResult& tested, const TraceResult& truth)
 {
     require_same_size(tested.size_px, truth.size_px);
-    return paint(tested.size_px, tested.status.size(), [&](size_t i) {
+    return paint(tested.size_px, [&](size_t i) {
         if (truth.status[i] == TraceStatus::not_traced) return black;
         return agreement_colour(tested.status[i] == TraceStatus::hit, truth.status[i] == TraceStatus::hit,
                                 glm::dvec2(tested.hit_px_depth[i]), glm::dvec2(truth.hit_px_depth[i]));
@@ -68,7 +68,7 @@ Image agreement_picture(const TraceResult& tested, const TraceResult& truth)
 Image agreement_picture(const TraceResult& tested, const SceneTruth& truth)
 {
     require_same_size(tested.size_px, truth.size_px);
-    return paint(tested.size_px, tested.status.size(), [&](size_t i) {
+    return paint(tested.size_px, [&](size_t i) {
         if (truth.cls[i] == TruthClass::not_traced) return black;
         return agreement_colour(tested.status[i] == TraceStatus::hit, truth.cls[i] == TruthClass::visible,
                                 glm::dvec2(tested.hit_px_depth[i]), truth.point_px[i]);
@@ -77,7 +77,7 @@ Image agreement_picture(const TraceResult& tested, const SceneTruth& truth)
 
 Image fetch_heat_map(const TraceResult& tested)
 {
-    return paint(tested.size_px, tested.status.size(), [&](size_t i) {
+    return paint(tested.size_px, [&](size_t i) {
         if (tested.depth_fetches.empty() && tested.pyramid_fetches.empty()) return heat_colour(tested.steps[i]);
         return heat_colour((tested.depth_fetches.empty() ? 0 : tested.depth_fetches[i]) +
                            (tested.pyramid_fetches.empty() ? 0 : tested.pyramid_fetches[i]));
