@@ -8,12 +8,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = CONSTANT_RAYS_PER_PIXEL) const int rays_per_pixel = 1;
 
-layout(set = 0, binding = 4, scalar) writeonly buffer RayCount { uint ray_count; };
 layout(set = 0, binding = 5, scalar) writeonly buffer RayOrigins { real3 ray_origin[]; };
 layout(set = 0, binding = 6, scalar) writeonly buffer RayDeltas { real3 ray_delta[]; };
 layout(set = 0, binding = 7, scalar) writeonly buffer RayLengths { real ray_length_m[]; };
 layout(set = 0, binding = 8, scalar) writeonly buffer RayPixels { uint ray_pixel[]; }; // number = status of a miss
-layout(set = 0, binding = 11, scalar) readonly buffer TileMasks { uvec2 tile_masks[]; };
+layout(set = 0, binding = 11, r32ui) uniform readonly uimageBuffer TileMasks; // two words a tile: bit x + 8 y
 
 // A place inside the pixel, exact in float. The depth image is flat inside each pixel: a ray that starts on the far side of its pixel's
 // centre and runs sideways is behind its neighbour's slab face, which ray_offset_m > 0 avoids.
@@ -43,15 +42,15 @@ void main()
 {
     ivec2 pixel;
     if (!listed_pixel(pixel)) return;
-    if (work_group() == 0 && gl_LocalInvocationIndex == 0) ray_count = traced_pixels * rays_per_pixel;
     ivec2 tile  = listed_tile();
-    uvec2 mask  = tile_masks[tile.y * ((size_px.x + 7) / 8) + tile.x];
+    int   own   = 2 * (tile.y * ((size_px.x + 7) / 8) + tile.x);
+    uvec2 mask  = uvec2(imageLoad(TileMasks, own).x, imageLoad(TileMasks, own + 1).x);
     uint  place = gl_LocalInvocationIndex, bit = 1u << place % 32;
     bool  upper = place >= 32;
     if (((upper ? mask.y : mask.x) & bit) == 0) return;
 
     uint  before = bitCount((upper ? mask.y : mask.x) & (bit - 1)) + (upper ? bitCount(mask.x) : 0);
-    uint  index  = (tiles[work_group()].y + before) * rays_per_pixel;
+    uint  index  = (pixels_before_tile() + before) * rays_per_pixel;
     real  depth  = real(imageLoad(depth_image, pixel).x);
     real3 normal = normal_at(pixel);
     for (int ray = 0; ray < rays_per_pixel; ++ray)

@@ -1,10 +1,13 @@
-// From the masks of all tiles: which tiles are listed, and how many pixels are traced in those before each. Tiles traced as a whole come first,
+// From the masks of all tiles: which tiles are listed, how many pixels are traced in those before each, and how many rays there will be. Tiles traced as a whole come first,
 // so that their rays fill groups of RAYS_PER_GROUP; both parts row by row. The same picture gives the same list.
 #include "shared.h"
 
 layout(local_size_x = TILE_LIST_INVOCATIONS) in;
 
-layout(set = 0, binding = 9, scalar) writeonly buffer TileCount { uint tile_count, traced_pixels; };
+layout(constant_id = CONSTANT_RAYS_PER_PIXEL) const int rays_per_pixel = 1;
+
+layout(set = 0, binding = 4, scalar) writeonly buffer RayCount { uint ray_count; };
+layout(set = 0, binding = 9, scalar) writeonly buffer TileCount { uint tile_count; };
 layout(set = 0, binding = 10, scalar) writeonly buffer Tiles { uvec2 tiles[]; };
 layout(set = 0, binding = 11, scalar) readonly buffer TileMasks { uvec2 tile_masks[]; };
 layout(push_constant, scalar) uniform Size { ivec2 size_tiles; };
@@ -49,7 +52,7 @@ void main()
     }
     if (own == 0)
     {
-        tile_count    = total.x + total.y;
-        traced_pixels = 64 * total.x + total.z;
+        tile_count = total.x + total.y;
+        ray_count  = (64 * total.x + total.z) * rays_per_pixel;
     }
 }

@@ -1,14 +1,14 @@
 // Numbers of twice the precision, for the ray set-up: the sum x + y of two floats, y at most half of x's last place (T. J. Dekker 1971, A
-// Floating-Point Technique for Extending the Available Precision; D. E. Knuth, The Art of Computer Programming 2, 4.2.2). The double twin,
-// which is what float is held to, has doubles.
+// Floating-Point Technique for Extending the Available Precision; D. E. Knuth, The Art of Computer Programming 2, 4.2.2), or a double where
+// those are cheap (-D WIDE_IS_DOUBLE) and in the double twin, which is what float is held to.
 #include "real.glsl"
 
-#ifdef REAL_IS_DOUBLE
+#if defined(REAL_IS_DOUBLE) || defined(WIDE_IS_DOUBLE)
 #define wide double
 
-wide widen(real high, real low) { return high; }
+wide widen(real high, real low) { return wide(high) + wide(low); }
 
-real narrow(wide a) { return a; }
+real narrow(wide a) { return real(a); }
 
 wide sum(wide a, wide b)
 {

@@ -80,16 +80,18 @@ GpuInfo describe(const vk::raii::PhysicalDevice& device, int index)
     const auto& core  = chain.get<vk::PhysicalDeviceProperties2>().properties;
     const auto& drive = chain.get<vk::PhysicalDeviceDriverProperties>();
     GpuInfo     info;
-    info.index        = index;
-    info.name         = core.deviceName.data();
-    info.type         = vk::to_string(core.deviceType);
-    info.driver       = fmt::format("{} {}", drive.driverName.data(), drive.driverInfo.data());
-    info.api_version  = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(core.apiVersion),
-                                    VK_API_VERSION_MINOR(core.apiVersion), VK_API_VERSION_PATCH(core.apiVersion));
-    info.float64      = device.getFeatures().shaderFloat64 != 0;
-    info.max_image_px = core.limits.maxImageDimension2D;
-    info.int64        = device.getFeatures().shaderInt64 != 0;
-    if (core.deviceType == vk::PhysicalDeviceType::eCpu) info.processor = processor_name();
+    info.index          = index;
+    info.name           = core.deviceName.data();
+    info.type           = vk::to_string(core.deviceType);
+    info.driver         = fmt::format("{} {}", drive.driverName.data(), drive.driverInfo.data());
+    info.api_version    = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(core.apiVersion),
+                                      VK_API_VERSION_MINOR(core.apiVersion), VK_API_VERSION_PATCH(core.apiVersion));
+    info.float64        = device.getFeatures().shaderFloat64 != 0;
+    info.max_image_px   = core.limits.maxImageDimension2D;
+    info.int64          = device.getFeatures().shaderInt64 != 0;
+    const bool software = core.deviceType == vk::PhysicalDeviceType::eCpu;
+    if (software) info.processor = processor_name();
+    info.cheap_doubles = software && info.float64;
     return info;
 }
 

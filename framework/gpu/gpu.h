@@ -18,9 +18,10 @@ struct GpuInfo {
     int         index = 0;
     std::string name, type, driver, api_version;
     std::string processor; // that a software device runs on, "NAME, family F, model M"; of other devices empty
-    bool        float64      = false;
-    uint32_t    max_image_px = 0;
-    bool        int64        = false; // 64-bit integers in shaders
+    bool        float64       = false;
+    bool        cheap_doubles = false; // they cost little more than floats
+    uint32_t    max_image_px  = 0;
+    bool        int64         = false; // 64-bit integers in shaders
 };
 
 struct GpuImpl;

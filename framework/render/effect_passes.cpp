@@ -105,7 +105,7 @@ Recording classification(Gpu& /*gpu*/, PreparedFrame& frame)
 
 Recording rays(Gpu& /*gpu*/, PreparedFrame& frame)
 {
-    return [&](const auto& commands) { record_ray_setup(commands, frame.trace, *frame.buffers, *frame.rays); };
+    return [&](const auto& commands) { record_ray_setup(commands, frame.trace, *frame.buffers); };
 }
 
 Recording depth_pyramid(Gpu& /*gpu*/, PreparedFrame& frame)
@@ -229,7 +229,7 @@ TraceCounts count_hits(Gpu& gpu, PreparedFrame& frame)
         make_compute_pass(gpu, compile_shader({.file = "effects/trace_statistics.comp"}), bindings);
     submit(gpu, [&](const auto& commands) {
         commands.fillBuffer(*counts.buffer, 0, VK_WHOLE_SIZE, 0);
-        record_rays(commands, frame.trace, *frame.buffers, *frame.rays);
+        record_rays(commands, frame.trace, *frame.buffers);
         record_pyramid(commands, frame.pyramid);
         record_technique(commands, frame.trace.technique, *frame.rays);
         barrier(commands);

@@ -5,8 +5,6 @@
 
 namespace ssrlab {
 
-using Defines = std::map<std::string, std::string>;
-
 /// The shader with every parameter of the effects; `more` comes before what the frame binds to the same names.
 ComputePass make_effect_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader,
                              const Defines& defines = {}, const Bindings& more = {}, uint32_t push_constant_bytes = 0);

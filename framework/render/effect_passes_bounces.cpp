@@ -26,8 +26,9 @@ Bounce make_bounce(Gpu& gpu, const PreparedFrame& frame, const DerivedRays* from
     bounce.rays       = derived_rays(gpu, frame, which);
     Bindings arriving = derived_bindings(*bounce.rays);
     if (from != nullptr) arriving.merge(list_bindings(buffers, *from));
-    const Defines defines = from == nullptr ? Defines{} : Defines{{"FURTHER", "1"}};
-    Bindings      traced  = list_bindings(buffers, *bounce.rays);
+    Defines defines = precision_defines(gpu, Precision::float32);
+    if (from != nullptr) defines.emplace("FURTHER", "1");
+    Bindings traced = list_bindings(buffers, *bounce.rays);
     traced.insert({"View", buffers.view});
     bounce.set_up    = make_colour_pass(gpu, frame, "effects/bounce_rays.comp", defines, arriving);
     bounce.launch    = make_launch_pass(gpu, bounce.rays->rays.count, bounce.rays->rays.launch, RAYS_PER_GROUP);

@@ -165,14 +165,14 @@ std::vector<Effect> make_table()
          .summary = "Lists the 8 x 8 tiles that reflect; all later passes up to the compositing work on these alone",
          .shader  = "effects/classification.comp",
          .reads   = {"depth_image", "normal_image", "material_image"},
-         .writes  = {"TileMasks", "TileCount", "Tiles", "PictureStatistics"},
+         .writes  = {"TileMasks", "TileCount", "Tiles", "RayCount", "PictureStatistics"},
          .need    = classification_need},
         {.id      = "rays",
          .summary = "Sets up the rays of each pixel that reflects",
          .cite    = {"J. Somerville Roberts, Screen Space Reflections"},
          .shader  = "rays.comp",
          .reads   = {"View", "TileMasks", "TileCount", "Tiles", "depth_image", "normal_image", "material_image"},
-         .writes  = {"RayCount", "RayOrigins", "RayDeltas", "RayLengths", "RayPixels"},
+         .writes  = {"RayOrigins", "RayDeltas", "RayLengths", "RayPixels"},
          .parameters =
              {integer(
                   "rays_per_pixel", 1, 1, 16,

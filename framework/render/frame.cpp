@@ -261,7 +261,7 @@ TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision)
     const Buffer      view    = upload_view(gpu, gbuffer.view, precision);
     const TracePasses passes  = make_trace_passes(gpu, frame, rays, view, &work);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-        record_rays(commands, passes, *frame.buffers, rays);
+        record_rays(commands, passes, *frame.buffers);
         record_pyramid(commands, frame.pyramid);
         record_technique(commands, passes.technique, rays);
         barrier(commands);

@@ -43,12 +43,6 @@ template <typename Real> void add_settings(Constants& constants, const View& vie
     constants.add(CONSTANT_ORTHOGRAPHIC, static_cast<int32_t>(view.projection == Projection::orthographic));
 }
 
-std::map<std::string, std::string> precision_defines(Precision precision)
-{
-    if (precision == Precision::float64) return {{"REAL_IS_DOUBLE", "1"}};
-    return {};
-}
-
 /// The parameter `arithmetic` chooses what shaders/trace_api.glsl crosses borders in. A define, not a constant: 64-bit integers must not even be
 /// declared on a device without them.
 bool exact_arithmetic(const Gpu& gpu, const PreparedFrame& frame)
@@ -81,6 +75,13 @@ double parameter_or(const PreparedFrame& frame, const std::string& name, double 
 }
 
 } // namespace
+
+Defines precision_defines(const Gpu& gpu, Precision precision)
+{
+    if (precision == Precision::float64) return {{"REAL_IS_DOUBLE", "1"}};
+    if (gpu.info.cheap_doubles) return {{"WIDE_IS_DOUBLE", "1"}};
+    return {};
+}
 
 Constants settings_constants(const PreparedFrame& frame, Precision precision, bool exact)
 {
@@ -190,9 +191,12 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const Gp
 
 TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
 {
-    const glm::uvec3 tiles = groups_of_8(size_px);
-    const uint64_t   bytes = static_cast<uint64_t>(tiles.x) * tiles.y * sizeof(glm::uvec2);
-    return {make_buffer(gpu, bytes), make_buffer(gpu, 16), make_buffer(gpu, bytes), make_buffer(gpu, 16),
+    const glm::uvec3 tiles     = groups_of_8(size_px);
+    const auto       two_words = [&] {
+        return make_texel_buffer(gpu, static_cast<uint64_t>(tiles.x) * tiles.y * sizeof(glm::uvec2),
+                                       vk::Format::eR32Uint);
+    };
+    return {two_words(), make_buffer(gpu, 16), two_words(), make_buffer(gpu, 16),
             make_buffer(gpu, sizeof(PictureCounts))};
 }
 
@@ -232,7 +236,7 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
     // A folder with a trace.comp of its own replaces the standard one (for techniques that work in tiles, say).
     const std::filesystem::path own = frame.technique.folder / "trace.comp";
     ShaderSource                trace{.file = std::filesystem::exists(own) ? own : std::filesystem::path("trace.comp"),
-                                      .defines       = precision_defines(precision),
+                                      .defines       = precision_defines(gpu, precision),
                                       .include_files = {{"technique/trace.glsl", frame.technique.folder / "trace.glsl"}},
                                       .include_texts = {{"technique/parameters",
                                                          parameter_declarations(frame.technique.parameters, CONSTANT_PARAMETERS)}}};
@@ -248,7 +252,7 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
         std::ranges::count(frame.technique.inputs, "ray_beams") > 0 && !exact && parameter_or(frame, "beams", 1) != 0;
     if (passes.reads_beams) {
         trace.defines.emplace("RAY_BEAMS", "1");
-        ShaderSource beams{.file = "ray_beams.comp", .defines = precision_defines(precision)};
+        ShaderSource beams{.file = "ray_beams.comp", .defines = precision_defines(gpu, precision)};
         if (bindings.contains("Work")) beams.defines.emplace("COUNT_WORK", "1");
         Constants top_level;
         top_level.add(CONSTANT_TOP_LEVEL, static_cast<int32_t>(parameter_or(frame, "top_level", 31)));
@@ -288,10 +292,11 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
     passes.classification =
         make_compute_pass(gpu, compile_shader({.file = "effects/classification.comp"}), bindings, constants);
     passes.tile_list =
-        make_compute_pass(gpu, compile_shader({.file = "tile_list.comp"}), bindings, {}, sizeof(glm::ivec2));
+        make_compute_pass(gpu, compile_shader({.file = "tile_list.comp"}), bindings, constants, sizeof(glm::ivec2));
     passes.tile_launch = make_launch_pass(gpu, buffers.tiles.count, buffers.tiles.launch, 1);
-    passes.rays        = make_compute_pass(
-               gpu, compile_shader({.file = "rays.comp", .defines = precision_defines(rays.precision)}), bindings, constants);
+    passes.rays =
+        make_compute_pass(gpu, compile_shader({.file = "rays.comp", .defines = precision_defines(gpu, rays.precision)}),
+                          bindings, constants);
     passes.ray_launch = make_launch_pass(gpu, rays.count, rays.launch, RAYS_PER_GROUP);
     passes.technique  = make_technique_passes(gpu, frame, rays, bindings);
     return passes;
@@ -316,25 +321,20 @@ void record_classification(const vk::raii::CommandBuffer& commands, const TraceP
     dispatch(commands, passes.tile_list, {1, 1, 1});
     barrier(commands);
     dispatch(commands, passes.tile_launch, {1, 1, 1});
-    barrier(commands);
-}
-
-void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers,
-                      const RayBuffers& rays)
-{
-    commands.fillBuffer(*rays.count.buffer, 0, VK_WHOLE_SIZE, 0); // nothing runs where no tile is listed
-    barrier(commands);
-    dispatch_indirect(commands, passes.rays, buffers.tiles.launch);
-    barrier(commands);
     dispatch(commands, passes.ray_launch, {1, 1, 1});
     barrier(commands);
 }
 
-void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers,
-                 const RayBuffers& rays)
+void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers)
+{
+    dispatch_indirect(commands, passes.rays, buffers.tiles.launch);
+    barrier(commands);
+}
+
+void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers)
 {
     record_classification(commands, passes, buffers);
-    record_ray_setup(commands, passes, buffers, rays);
+    record_ray_setup(commands, passes, buffers);
 }
 
 void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses& passes)

@@ -98,6 +98,8 @@ struct TracePasses {
     TechniquePasses technique;
 };
 
+using Defines = std::map<std::string, std::string>;
+
 /// Writes an effect's commands.
 using Recording = std::function<void(const vk::raii::CommandBuffer&)>;
 
@@ -133,6 +135,8 @@ void record_technique(const vk::raii::CommandBuffer& commands, const TechniquePa
 ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch, int items_per_group);
 /// Everything that shaders may read and write, by its name; without the view.
 Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays);
+/// The number types that shaders/real.glsl and wide.glsl stand for.
+Defines precision_defines(const Gpu& gpu, Precision precision);
 /// exact: for a shader that is compiled with EXACT_ARITHMETIC, whose slab is in double precision.
 Constants settings_constants(const PreparedFrame& frame, Precision precision, bool exact = false);
 /// One constant per parameter from `id` on, under its own name, and names for the choices: PARAMETER_CHOICE.
@@ -146,15 +150,13 @@ Recording make_recording(Gpu& gpu, PreparedFrame& frame, const std::string& effe
 TraceCounts count_hits(Gpu& gpu, PreparedFrame& frame);
 
 /// Classification and ray set-up.
-void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers,
-                 const RayBuffers& rays);
+void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers);
 /// Marks and counts alone, without a list.
 void record_marking(const vk::raii::CommandBuffer& commands, const ComputePass& classification,
                     const FrameBuffers& buffers);
 void record_classification(const vk::raii::CommandBuffer& commands, const TracePasses& passes,
                            const FrameBuffers& buffers);
-void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers,
-                      const RayBuffers& rays);
+void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers);
 void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses& passes);
 
 /// The pixel of shaders/view.glsl, pack_pixel.

@@ -99,7 +99,7 @@ RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Techniqu
 std::vector<RayInput> set_up_rays(Gpu& gpu, RayTracer& tracer)
 {
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-        record_rays(commands, tracer.passes, *tracer.frame.buffers, tracer.rays);
+        record_rays(commands, tracer.passes, *tracer.frame.buffers);
     });
     return in_double(tracer) ? read_rays<double>(gpu, tracer.rays) : read_rays<float>(gpu, tracer.rays);
 }

@@ -102,7 +102,7 @@ void Bench::rays(benchmark::State& state, const std::string& scene, glm::ivec2 s
 {
     Picture&       p     = picture(scene, size_px);
     PreparedFrame& frame = frame_of(p, contender("dda"));
-    measure(state, p, [&](const auto& commands) { record_rays(commands, frame.trace, *p.buffers, *frame.rays); });
+    measure(state, p, [&](const auto& commands) { record_rays(commands, frame.trace, *p.buffers); });
 }
 
 void Bench::trace(benchmark::State& state, const std::string& scene, glm::ivec2 size_px, const Contender& tracer)
@@ -196,7 +196,7 @@ PreparedFrame& Bench::frame_of(Picture& p, const Contender& c)
 void Bench::prepare_trace(const FrameBuffers& buffers, PreparedFrame& frame)
 {
     submit(gpu_, [&](const auto& commands) {
-        record_rays(commands, frame.trace, buffers, *frame.rays);
+        record_rays(commands, frame.trace, buffers);
         record_pyramid(commands, frame.pyramid);
     });
 }

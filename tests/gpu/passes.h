@@ -36,19 +36,22 @@ inline Reflection read_colours(const GpuImage& image)
     return colours;
 }
 
-/// Lists the tiles, then runs the effect alone.
-inline void run_effect(PreparedFrame& frame, const std::string& id)
+/// Runs effects and nothing else.
+inline void run_effects(PreparedFrame& frame, const std::vector<std::string>& ids)
 {
-    const Recording tiles  = make_recording(device(), frame, "classification");
-    const Recording effect = make_recording(device(), frame, id);
+    std::vector<Recording> effects;
+    for (const std::string& id : ids) effects.push_back(make_recording(device(), frame, id));
     submit(device(), [&](const vk::raii::CommandBuffer& commands) {
         barrier(commands);
-        tiles(commands);
-        barrier(commands);
-        effect(commands);
-        barrier(commands);
+        for (const Recording& effect : effects) {
+            effect(commands);
+            barrier(commands);
+        }
     });
 }
+
+/// Lists the tiles, then runs the effect.
+inline void run_effect(PreparedFrame& frame, const std::string& id) { run_effects(frame, {"classification", id}); }
 
 /// A wall of metal that fills the picture and faces the camera.
 inline GBufferImage metal_wall(glm::ivec2 size_px, double distance_m = 5)

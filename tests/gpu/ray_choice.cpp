@@ -16,9 +16,8 @@ struct Ray {
 /// The list that the frame's own passes write.
 std::vector<Ray> rays_of(PreparedFrame& frame)
 {
-    submit(device(), [&](const vk::raii::CommandBuffer& commands) {
-        record_rays(commands, frame.trace, *frame.buffers, *frame.rays);
-    });
+    submit(device(),
+           [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, frame.trace, *frame.buffers); });
     const size_t     count   = download_as<uint32_t>(device(), frame.rays->count, 1)[0];
     const auto       pixels  = download_as<uint32_t>(device(), frame.rays->pixels, count);
     const auto       origins = download_as<glm::vec3>(device(), frame.rays->origins, count);
@@ -159,7 +158,7 @@ TEST(SeveralRays, CountWhenMoreThanHalfOfThemHit)
                 hits.push_back(end);
             }
         set_list(*frame, pixels, hits);
-        run_effect(*frame, "hit_colour");
+        run_effects(*frame, {"hit_colour"}); // classification would start a list of its own
         const Reflection all = read_colours(picture.buffers->reflection);
         return Reflection(all.begin() + 5 * 16, all.begin() + 5 * 16 + static_cast<ptrdiff_t>(ends.size()));
     };

@@ -24,8 +24,7 @@ template <typename Real> Rays make_rays(const Picture& picture, const TraceSetti
     const RayBuffers  buffers = make_ray_buffers(device(), picture.image.depth.size(), precision);
     const Buffer      view    = upload_view(device(), picture.view, precision);
     const TracePasses passes  = make_trace_passes(device(), *frame, buffers, view, nullptr);
-    submit(device(),
-           [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, passes, *picture.buffers, buffers); });
+    submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, passes, *picture.buffers); });
     const size_t count = download_as<uint32_t>(device(), buffers.count, 1)[0];
     Rays         rays;
     for (const auto& v : download_as<glm::vec<3, Real>>(device(), buffers.origins, count)) rays.origins.emplace_back(v);
@@ -122,7 +121,23 @@ std::string describe(const Case& c)
                        c.image.view.projection == Projection::perspective ? "perspective" : "orthographic");
 }
 
-TEST(Rays, AgreeWithDoublePrecision)
+/// Whether wide numbers are doubles, in turn.
+class WideNumbers : public testing::TestWithParam<bool> {
+protected:
+    void SetUp() override
+    {
+        if (GetParam() && !device().info.float64) GTEST_SKIP() << "the device has no double precision";
+        device().info.cheap_doubles = GetParam();
+    }
+    void TearDown() override { device().info.cheap_doubles = before_; }
+
+private:
+    bool before_ = device().info.cheap_doubles;
+};
+INSTANTIATE_TEST_SUITE_P(Rays, WideNumbers, testing::Values(false, true),
+                         [](const auto& doubles) { return doubles.param ? "doubles" : "pairs_of_floats"; });
+
+TEST_P(WideNumbers, AgreeWithDoublePrecision)
 {
     for (const Case& c : cases()) {
         const Picture picture = make_picture(c.image);
