@@ -28,27 +28,43 @@ float radius_px(ivec2 pixel, bool hole)
     return max(0.0, blur_bias + blur_scale * roughness) * float(size_px.y) * (hole ? blur_hole_widening : 1.0);
 }
 
+struct Sum
+{
+    vec3  colour;
+    float weight, trusted;
+};
+
+void add(inout Sum sum, ivec2 pixel, float gauss)
+{
+    vec4  sampled = imageLoad(SOURCE, clamp(pixel, ivec2(0), size_px - 1));
+    float weight  = sampled.a < 0.0 ? 0.0 : sampled.a > 0.0 ? gauss : gauss * blur_hole_weight;
+    float trusted = weight * max(sampled.a, 0.0);
+    sum.colour += sampled.rgb * trusted;
+    sum.trusted += trusted;
+    sum.weight += weight;
+}
+
 void main()
 {
     ivec2 pixel;
     if (!listed_pixel(pixel) || any(greaterThanEqual(pixel, size_px))) return;
     vec4  own    = imageLoad(SOURCE, pixel);
     float radius = own.a < 0.0 ? 0.0 : radius_px(pixel, own.a == 0.0);
-    vec3  colour = vec3(0);
-    float weight = 0.0, trusted = 0.0;
     // Half a pixel reaches no neighbour: what is smooth stays as it is, to the last bit.
     int   taps = radius < 0.5 ? 0 : min(taps_a_side, int(ceil(radius)));
     float stride_px = radius / float(max(taps, 1));
-    for (int i = -taps; i <= taps; ++i)
+    // exp(-(2 i / taps)^2 / 2), as the radius is two standard deviations, by products: K. Turkowski 2007, GPU Gems 3, chapter 40.
+    float gauss = 1.0, factor = exp(-2.0 / float(max(taps * taps, 1))), ratio = factor * factor;
+    Sum   sum = Sum(vec3(0), 0.0, 0.0);
+    add(sum, pixel, gauss);
+    for (int i = 1; i <= taps; ++i)
     {
-        ivec2 at     = clamp(pixel + axis * int(round(float(i) * stride_px)), ivec2(0), size_px - 1);
-        vec4  sampled = imageLoad(SOURCE, at);
-        float share  = 2.0 * float(i) / float(max(taps, 1)); // the radius is two standard deviations
-        float gauss  = sampled.a < 0.0 ? 0.0 : exp(-0.5 * share * share) * (sampled.a > 0.0 ? 1.0 : blur_hole_weight);
-        colour += sampled.rgb * (gauss * max(sampled.a, 0.0));
-        trusted += gauss * max(sampled.a, 0.0);
-        weight += gauss;
+        gauss *= factor;
+        factor *= ratio;
+        ivec2 offset = axis * int(round(float(i) * stride_px));
+        add(sum, pixel - offset, gauss);
+        add(sum, pixel + offset, gauss);
     }
-    vec4 blurred = trusted > 0.0 ? vec4(colour / trusted, trusted / weight) : vec4(0);
+    vec4 blurred = sum.trusted > 0.0 ? vec4(sum.colour / sum.trusted, sum.trusted / sum.weight) : vec4(0);
     imageStore(TARGET, pixel, taps == 0 ? own : blurred);
 }
