@@ -185,11 +185,6 @@ float colour_error(float difference)
     return power < knee ? pt / knee * power : pt + (power - knee) / (largest - knee) * (1 - pt);
 }
 
-void require_same_size(glm::ivec2 a, glm::ivec2 b)
-{
-    if (a != b) throw_failure("FLIP compares two images of one size; got {}x{} and {}x{}", a.x, a.y, b.x, b.y);
-}
-
 FlipView make_view(Planes ycxcz, float pixels_per_degree, const Mask& mask)
 {
     FlipView view{pixels_per_degree, std::move(ycxcz), {}, {}, {}};
@@ -206,6 +201,11 @@ void require_three_channels(const Image& image)
     if (image.values.size() != expected)
         throw_failure("three channels are needed: an image of {}x{} has {} values", image.size_px.x, image.size_px.y,
                       image.values.size());
+}
+
+void require_same_size(glm::ivec2 a_px, glm::ivec2 b_px)
+{
+    if (a_px != b_px) throw_failure("what is compared has {}x{} and {}x{} pixels", a_px.x, a_px.y, b_px.x, b_px.y);
 }
 
 FlipView flip_view(const Image& image, float pixels_per_degree)

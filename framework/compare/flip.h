@@ -21,6 +21,8 @@ struct FlipView {
 };
 /// Throws Failure unless there are three values a pixel.
 void require_three_channels(const Image& image);
+/// Throws Failure where they differ.
+void require_same_size(glm::ivec2 a_px, glm::ivec2 b_px);
 
 /// Channels R, G, B, sRGB-encoded, values in [0, 1]. Throws Failure unless there are three values a pixel.
 FlipView flip_view(const Image& image, float pixels_per_degree = flip_pixels_per_degree);

@@ -1,24 +1,12 @@
 // What the second depth layer adds to the first.
 #include "compare/measures.h"
 
-#include "core/error.h"
-
 namespace ssrlab {
-namespace {
-
-std::optional<double> share(size_t part, size_t whole)
-{
-    if (whole == 0) return std::nullopt;
-    return double(part) / double(whole);
-}
-
-} // namespace
 
 MeasureValues compare_hidden_layer(const TraceResult& first, const TraceResult& second, const SceneTruth& truth)
 {
-    if (first.size_px != truth.size_px || second.size_px != truth.size_px)
-        throw_failure("compared results have {}x{}, {}x{} and {}x{} pixels", first.size_px.x, first.size_px.y,
-                      second.size_px.x, second.size_px.y, truth.size_px.x, truth.size_px.y);
+    require_same_size(first.size_px, truth.size_px);
+    require_same_size(second.size_px, truth.size_px);
     size_t rays = 0, hidden = 0, recovered = 0, ghosts = 0, filled = 0, found = 0, wrong = 0;
     for (size_t i = 0; i < truth.cls.size(); ++i) {
         if (truth.cls[i] == TruthClass::not_traced) continue;

@@ -124,6 +124,12 @@ constexpr auto table = std::to_array<Measure>({
 
 std::span<const Measure> measures() { return table; }
 
+std::optional<double> share(size_t part, size_t whole)
+{
+    if (whole == 0) return std::nullopt;
+    return double(part) / double(whole);
+}
+
 MeasureValues no_measures()
 {
     MeasureValues values;

@@ -30,6 +30,9 @@ std::span<const Measure> measures();
 /// By Measure::name. Empty = has no value here (no ray to count, no truth, identical images …), never NaN.
 using MeasureValues = std::map<std::string_view, std::optional<double>>;
 
+/// Of nothing there is no share.
+std::optional<double> share(size_t part, size_t whole);
+
 /// Every measure of the table, without value.
 MeasureValues no_measures();
 

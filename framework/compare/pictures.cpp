@@ -1,7 +1,6 @@
 #include "compare/pictures.h"
 
 #include "compare/measures.h"
-#include "core/error.h"
 #include "core/parallel_rows.h"
 
 #include <algorithm>
@@ -36,11 +35,6 @@ glm::vec3 agreement_colour(bool hit, bool findable, glm::dvec2 hit_px, glm::dvec
     if (hit && findable) return screen_distance_px(hit_px, true_px) <= 1 ? green : yellow;
     if (findable) return red;
     return hit ? magenta : grey;
-}
-
-void require_same_size(glm::ivec2 a, glm::ivec2 b)
-{
-    if (a != b) throw_failure("compared results have {}x{} and {}x{} pixels", a.x, a.y, b.x, b.y);
 }
 
 glm::vec3 heat_colour(uint32_t fetches)

@@ -1,8 +1,6 @@
 // Measures that compare rays with rays.
 #include "compare/measures.h"
 
-#include "core/error.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,17 +16,6 @@ constexpr double within_four_px = 4;
 
 bool traced(const TraceResult& result, size_t i) { return result.status[i] != TraceStatus::not_traced; }
 bool hits(const TraceResult& result, size_t i) { return result.status[i] == TraceStatus::hit; }
-
-void require_same_size(glm::ivec2 a, glm::ivec2 b)
-{
-    if (a != b) throw_failure("compared results have {}x{} and {}x{} pixels", a.x, a.y, b.x, b.y);
-}
-
-std::optional<double> share(size_t part, size_t whole)
-{
-    if (whole == 0) return std::nullopt;
-    return double(part) / double(whole);
-}
 
 /// Nearest rank. Reorders.
 std::optional<double> percentile(std::vector<double>& values, double p)

@@ -33,8 +33,8 @@ Camera read_view(TomlTable& table)
 
 std::vector<Camera> load_views(const std::filesystem::path& file)
 {
-    const toml::table   parsed = parse_toml_file(file);
-    TomlTable           root(parsed, file.string(), "views");
+    const TomlFile      parsed = read_toml(file);
+    TomlTable           root(parsed, parsed.root, "views");
     std::vector<Camera> cameras;
     for (TomlTable& view : root.tables("view")) cameras.push_back(read_view(view));
     root.refuse_unknown_keys();

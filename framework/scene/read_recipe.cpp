@@ -144,9 +144,9 @@ bool matches(const std::string& pattern, const std::string& text)
 
 Recipe read_recipe(const std::filesystem::path& file)
 {
-    const toml::table parsed = parse_toml_file(file);
-    TomlTable         root(parsed, file.string(), "recipe");
-    Recipe            recipe;
+    const TomlFile parsed = read_toml(file);
+    TomlTable      root(parsed, parsed.root, "recipe");
+    Recipe         recipe;
     recipe.file    = file.string();
     recipe.summary = root.text("summary").value_or("");
     if (const auto ambient = root.colour("ambient")) recipe.ambient = glm::vec3(*ambient);
@@ -164,7 +164,7 @@ Recipe read_recipe(const std::filesystem::path& file)
 std::string recipe_summary(const std::filesystem::path& file)
 {
     try {
-        return parse_toml_file(file)["summary"].value_or(std::string());
+        return read_toml(file).root["summary"].value_or(std::string());
     } catch (const std::runtime_error&) {
         return {};
     }

@@ -1,10 +1,10 @@
-// Reading TOML strictly: every mistake is a SpecError that names file and line.
+// Tables of scene files, key by key: every mistake is a SpecError that names file and line.
 #pragma once
 
-#include <glm/glm.hpp>
-#include <toml++/toml.h>
+#include "core/toml_reading.h"
 
-#include <filesystem>
+#include <glm/glm.hpp>
+
 #include <optional>
 #include <set>
 #include <string>
@@ -12,13 +12,10 @@
 
 namespace ssrlab {
 
-/// Parses a file; throws SpecError with file:line for a syntax error, Failure when it cannot be read.
-toml::table parse_toml_file(const std::filesystem::path& file);
-
-/// One table. Asking for a key declares it; refuse_unknown_keys() then rejects all others.
+/// One table of a file, which must outlive it. Asking for a key declares it; refuse_unknown_keys() then rejects all others.
 class TomlTable {
 public:
-    TomlTable(const toml::table& table, std::string file, std::string what);
+    TomlTable(const TomlFile& file, const toml::table& table, std::string what);
 
     bool                       has(const char* key) const;
     std::optional<std::string> text(const char* key);
@@ -32,18 +29,18 @@ public:
     std::optional<TomlTable>   table(const char* key);
     std::vector<TomlTable>     tables(const char* key); // [[key]]
 
-    void               refuse_unknown_keys() const;
-    [[noreturn]] void  fail(const std::string& message) const;                  // at the table
-    [[noreturn]] void  fail(const char* key, const std::string& message) const; // at the key
-    const std::string& file() const { return file_; }
-    std::string        place() const; // file:line
+    void              refuse_unknown_keys() const;
+    [[noreturn]] void fail(const std::string& message) const;                  // at the table
+    [[noreturn]] void fail(const char* key, const std::string& message) const; // at the key
+    std::string       place() const;                                           // file:line
 
 private:
-    const toml::node*         find(const char* key);
-    std::optional<glm::dvec3> to_vector(const toml::node& node) const;
+    const toml::node* find(const char* key);
+    [[noreturn]] void refuse(const char*        key,
+                             const std::string& expected) const; // must be what is expected, got what stands there
 
+    const TomlFile*       file_;
     const toml::table*    table_;
-    std::string           file_;
     std::string           what_;
     std::set<std::string> known_;
 };

@@ -284,7 +284,8 @@ TEST(SceneGltf, ViewsBesideTheSceneComeFirst)
     EXPECT_EQ(scene.cameras[0].size_px, glm::ivec2(64, 48));
     folder.write("scene.gltf.views.toml",
                  "[[view]]\nname = 'mine'\nposition = [0, 0, 3]\ntarget = [0, 0, 0]\nfov = 3\n");
-    EXPECT_THAT(error_of<SpecError>(path), HasSubstr("views.toml:5: [[view]]: unknown key 'fov'"));
+    EXPECT_THAT(error_of<SpecError>(path),
+                HasSubstr("views.toml:5: unknown key of [[view]] 'fov' (known: far_m, fov_y_deg, "));
 }
 
 TEST(SceneGltf, AFittedCameraSeesTheBounds)
