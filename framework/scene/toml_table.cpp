@@ -84,7 +84,7 @@ std::optional<glm::dvec3> TomlTable::vector(const char* key)
 {
     const toml::node* node = find(key);
     if (node == nullptr) return std::nullopt;
-    const std::optional<glm::dvec3> value = to_vector(*node);
+    std::optional<glm::dvec3> value = to_vector(*node);
     if (!value) refuse(key, "three finite numbers, [x, y, z]");
     return value;
 }

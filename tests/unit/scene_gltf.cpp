@@ -294,7 +294,7 @@ TEST(SceneGltf, AFittedCameraSeesTheBounds)
     GltfFile   file    = GltfFile::triangle();
     file.root["nodes"] = {{{"mesh", 0}, {"scale", {30, 2, 1}}, {"translation", {-7, 3, 2}}}};
     const Scene scene  = load_scene(file.write(folder));
-    for (glm::ivec2 size_px : {glm::ivec2(1280, 720), glm::ivec2(512, 512)}) {
+    for (const glm::ivec2& size_px : {glm::ivec2(1280, 720), glm::ivec2(512, 512)}) {
         const View view = camera_to_view(scene.cameras.at(0), size_px);
         for (const Vertex& vertex : scene.vertices) {
             const glm::dvec3 px = vs_to_px(view, glm::dvec3(view.world_to_view * glm::dvec4(vertex.position_ws, 1)));
