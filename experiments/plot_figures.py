@@ -82,7 +82,7 @@ def law_of_steps(results, tables):
         left.tick_params(axis="x", rotation=45)
         right.set(xlabel="steps", ylabel="1 / FPS, ms", title="1/FPS", xlim=(0, None), ylim=(0, None))
         left.legend()
-        right.legend(fontsize=8.5, loc="upper left")
+        right.legend(fontsize=8.5, loc="upper center", bbox_to_anchor=(0.5, -0.16))
         figure.suptitle(title)
         yield f"fps_steps_{name}", figure
 
