@@ -3,6 +3,7 @@
 #include "core/error.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <xxhash.h>
 
@@ -11,7 +12,6 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
-#include <vector>
 
 namespace ssrlab {
 namespace {
@@ -38,6 +38,29 @@ std::string read_file(const fs::path& path)
     bytes << stream.rdbuf();
     if (stream.bad()) throw_failure("{}: reading failed: {}", short_path(path), std::strerror(errno));
     return std::move(bytes).str();
+}
+
+std::vector<unsigned char> read_regular_file(const fs::path& file, uint64_t limit_bytes)
+{
+    // Without O_NONBLOCK a pipe would wait for a writer that never comes.
+    const int descriptor = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0) throw_failure("{}: cannot be opened: {}", file.string(), std::strerror(errno));
+    struct Closer {
+        int descriptor;
+        ~Closer() { ::close(descriptor); }
+    } closer{descriptor};
+    struct stat info {};
+    if (::fstat(descriptor, &info) != 0 || !S_ISREG(info.st_mode))
+        throw_failure("{}: not a regular file", file.string());
+    if (static_cast<uint64_t>(info.st_size) > limit_bytes)
+        throw_failure("{}: {} bytes, but at most {} can be loaded", file.string(), info.st_size, limit_bytes);
+    std::vector<unsigned char> bytes(static_cast<size_t>(info.st_size));
+    for (size_t done = 0; done < bytes.size();) {
+        const ssize_t count = ::read(descriptor, bytes.data() + done, bytes.size() - done);
+        if (count <= 0) throw_failure("{}: cannot be read to its end", file.string());
+        done += static_cast<size_t>(count);
+    }
+    return bytes;
 }
 
 bool write_fully(int fd, std::string_view bytes)

@@ -26,7 +26,8 @@ inline TomlFile read_toml(const std::filesystem::path& path)
 {
     TomlFile file{short_path(path), "", {}};
     if (!std::filesystem::exists(path)) throw_spec_error("{}: no such file", file.path);
-    file.text = read_file(path);
+    const std::vector<unsigned char> bytes = read_regular_file(path, 16U << 20U);
+    file.text.assign(bytes.begin(), bytes.end());
     try {
         file.root = toml::parse(file.text);
     } catch (const toml::parse_error& error) {

@@ -1,4 +1,5 @@
 // Before the parser: what it would crash on, hang on, or read from outside the asset's folder.
+#include "core/files.h"
 #include "scene/gltf.h"
 #include "scene/image_file.h"
 

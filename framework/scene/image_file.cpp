@@ -5,11 +5,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include <cerrno>
 #include <cstring>
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace ssrlab {
 namespace {
@@ -68,29 +64,6 @@ Texture decode_image(std::span<const unsigned char> bytes, const std::string& na
     texture.size_px = {spec.width, spec.height};
     texture.rgba    = channels == 4 ? std::move(pixels) : to_rgba(pixels, channels);
     return texture;
-}
-
-std::vector<unsigned char> read_regular_file(const std::filesystem::path& file, uint64_t limit_bytes)
-{
-    // Without O_NONBLOCK a pipe would wait for a writer that never comes.
-    const int descriptor = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (descriptor < 0) throw_failure("{}: cannot be opened: {}", file.string(), std::strerror(errno));
-    struct Closer {
-        int descriptor;
-        ~Closer() { ::close(descriptor); }
-    } closer{descriptor};
-    struct stat info {};
-    if (::fstat(descriptor, &info) != 0 || !S_ISREG(info.st_mode))
-        throw_failure("{}: not a regular file", file.string());
-    if (static_cast<uint64_t>(info.st_size) > limit_bytes)
-        throw_failure("{}: {} bytes, but at most {} can be loaded", file.string(), info.st_size, limit_bytes);
-    std::vector<unsigned char> bytes(static_cast<size_t>(info.st_size));
-    for (size_t done = 0; done < bytes.size();) {
-        const ssize_t count = ::read(descriptor, bytes.data() + done, bytes.size() - done);
-        if (count <= 0) throw_failure("{}: cannot be read to its end", file.string());
-        done += static_cast<size_t>(count);
-    }
-    return bytes;
 }
 
 float mean_alpha(const Texture& texture)

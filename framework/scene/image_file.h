@@ -12,9 +12,6 @@ namespace ssrlab {
 /// Throws Failure when it cannot be decoded or is larger than 16384 pixels a side.
 Texture decode_image(std::span<const unsigned char> bytes, const std::string& name);
 
-/// A regular file's content; throws Failure (missing, a folder, a pipe, larger than `limit_bytes`).
-std::vector<unsigned char> read_regular_file(const std::filesystem::path& file, uint64_t limit_bytes);
-
 /// Mean of the alpha channel, 0..1.
 float mean_alpha(const Texture& texture);
 

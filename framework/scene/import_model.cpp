@@ -1,5 +1,6 @@
 // Models in any format that assimp reads; for OBJ and MTL above all.
 #include "core/error.h"
+#include "core/files.h"
 #include "scene/image_file.h"
 #include "scene/load_scene.h"
 #include "scene/mesh_repair.h"

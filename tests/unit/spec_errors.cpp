@@ -81,6 +81,7 @@ TEST(Spec, MistakesAtTheTop)
     EXPECT_THAT(error_of("techniques.dda = {}\n"), HasSubstr("names no scene"));
     EXPECT_THAT(error_of("scenes = [\"a\"]\n"), HasSubstr("names no technique"));
     EXPECT_THROW(load_experiment("/nonexistent/a.toml", techniques()), SpecError);
+    EXPECT_THROW(load_experiment("/dev/zero", techniques()), Failure); // which never ends
 }
 
 TEST(Spec, Sizes)
