@@ -40,24 +40,24 @@ std::string read_file(const fs::path& path)
     return std::move(bytes).str();
 }
 
-std::vector<unsigned char> read_regular_file(const fs::path& file, uint64_t limit_bytes)
+std::vector<unsigned char> read_regular_file(const fs::path& path, uint64_t limit_bytes)
 {
     // Without O_NONBLOCK a pipe would wait for a writer that never comes.
-    const int descriptor = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (descriptor < 0) throw_failure("{}: cannot be opened: {}", file.string(), std::strerror(errno));
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0) throw_failure("{}: cannot be opened: {}", short_path(path), std::strerror(errno));
     struct Closer {
         int descriptor;
         ~Closer() { ::close(descriptor); }
     } closer{descriptor};
     struct stat info {};
     if (::fstat(descriptor, &info) != 0 || !S_ISREG(info.st_mode))
-        throw_failure("{}: not a regular file", file.string());
+        throw_failure("{}: not a regular file", short_path(path));
     if (static_cast<uint64_t>(info.st_size) > limit_bytes)
-        throw_failure("{}: {} bytes, but at most {} can be loaded", file.string(), info.st_size, limit_bytes);
+        throw_failure("{}: {} bytes, but at most {} can be loaded", short_path(path), info.st_size, limit_bytes);
     std::vector<unsigned char> bytes(static_cast<size_t>(info.st_size));
     for (size_t done = 0; done < bytes.size();) {
         const ssize_t count = ::read(descriptor, bytes.data() + done, bytes.size() - done);
-        if (count <= 0) throw_failure("{}: cannot be read to its end", file.string());
+        if (count <= 0) throw_failure("{}: cannot be read to its end", short_path(path));
         done += static_cast<size_t>(count);
     }
     return bytes;

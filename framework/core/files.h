@@ -13,7 +13,7 @@ namespace ssrlab {
 std::string read_file(const std::filesystem::path& path);
 
 /// The same of a regular file of limited size, for what a person names; throws Failure (missing, a folder, a pipe, larger than `limit_bytes`).
-std::vector<unsigned char> read_regular_file(const std::filesystem::path& file, uint64_t limit_bytes);
+std::vector<unsigned char> read_regular_file(const std::filesystem::path& path, uint64_t limit_bytes);
 
 /// Written beside, synced and renamed: the final name never carries a partial file. Throws Failure with path and reason.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);

@@ -1,7 +1,6 @@
 // Before the parser: what it would crash on, hang on, or read from outside the asset's folder.
 #include "core/files.h"
 #include "scene/gltf.h"
-#include "scene/image_file.h"
 
 #include <nlohmann/json.hpp>
 
@@ -248,7 +247,7 @@ fs::path resolve_uri(const fs::path& folder, const std::string& uri)
         text.find("://") != std::string::npos || text.starts_with("file:"))
         throw_failure("'{}' is not a relative path", uri);
     const fs::path root     = fs::weakly_canonical(folder);
-    const fs::path resolved = fs::weakly_canonical(root / path); // follows links
+    fs::path       resolved = fs::weakly_canonical(root / path); // follows links
     const fs::path inside   = resolved.lexically_relative(root);
     if (inside.empty() || *inside.begin() == "..") throw_failure("'{}' leads out of the asset's folder", uri);
     return resolved;

@@ -36,8 +36,8 @@ public:
 
 private:
     const toml::node* find(const char* key);
-    [[noreturn]] void refuse(const char*        key,
-                             const std::string& expected) const; // must be what is expected, got what stands there
+    /// "must be EXPECTED, got" what stands there.
+    [[noreturn]] void refuse(const char* key, const std::string& expected) const;
 
     const TomlFile*       file_;
     const toml::table*    table_;

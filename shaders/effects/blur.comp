@@ -34,9 +34,13 @@ struct Sum
     float weight, trusted;
 };
 
-void add(inout Sum sum, ivec2 pixel, float gauss)
+vec4 reflection_at(ivec2 pixel)
 {
-    vec4  sampled = imageLoad(SOURCE, clamp(pixel, ivec2(0), size_px - 1));
+    return imageLoad(SOURCE, clamp(pixel, ivec2(0), size_px - 1));
+}
+
+void add(inout Sum sum, vec4 sampled, float gauss)
+{
     float weight  = sampled.a < 0.0 ? 0.0 : sampled.a > 0.0 ? gauss : gauss * blur_hole_weight;
     float trusted = weight * max(sampled.a, 0.0);
     sum.colour += sampled.rgb * trusted;
@@ -56,14 +60,14 @@ void main()
     // exp(-(2 i / taps)^2 / 2), as the radius is two standard deviations, by products: K. Turkowski 2007, GPU Gems 3, chapter 40.
     float gauss = 1.0, factor = exp(-2.0 / float(max(taps * taps, 1))), ratio = factor * factor;
     Sum   sum = Sum(vec3(0), 0.0, 0.0);
-    add(sum, pixel, gauss);
+    add(sum, own, gauss);
     for (int i = 1; i <= taps; ++i)
     {
         gauss *= factor;
         factor *= ratio;
         ivec2 offset = axis * int(round(float(i) * stride_px));
-        add(sum, pixel - offset, gauss);
-        add(sum, pixel + offset, gauss);
+        add(sum, reflection_at(pixel - offset), gauss);
+        add(sum, reflection_at(pixel + offset), gauss);
     }
     vec4 blurred = sum.trusted > 0.0 ? vec4(sum.colour / sum.trusted, sum.trusted / sum.weight) : vec4(0);
     imageStore(TARGET, pixel, taps == 0 ? own : blurred);
