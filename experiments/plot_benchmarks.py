@@ -1,10 +1,11 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws how passes grow with the picture, from JSON files of the benchmark program (or of ./experiments/bench -o FOLDER).
 
     build/bin/benchmarks --scene=thin_yard --benchmark_filter=trace/ --benchmark_out=growth.json
     experiments/plot_benchmarks.py growth.json -o growth.png
 Left the time per traced ray, right the fetches per ray, against pixels; the legend gives each fitted exponent: 0 does not grow, 0.5
-grows with the width of the picture. With --reference, prints each pass's time relative to copy_depth in both files instead.
+grows with the width of the picture. With --reference, prints each pass's time relative to copy_depth and to the pixel walk in both
+files instead.
 """
 
 import argparse
@@ -83,15 +84,25 @@ def draw(values, device, scene, output):
 
 
 def compare(values, reference):
-    """Relative to the copy of the depth of the same picture and run, so that machines compare."""
-    print(f"{'pass':48} {'/ copy now':>11} {'reference':>11} {'change':>8}")
+    """Relative to the copy of the depth and to the pixel walk of the same picture and run, so that machines compare: the one says how
+    fast memory is, the other how fast arithmetic."""
+    yardsticks = {"copy": "copy_depth", "dda": "trace/dda"}
+    print(f"{'pass':48} " + " ".join(f"{f'/ {short} now':>11} {'reference':>11} {'change':>8}" for short in yardsticks))
+
+    def ms(run, scene, name, size):
+        return run.get((scene, name), {}).get(size, {}).get("ms", 0)
+
+    def change(scene, name, size, yardstick):
+        if not ms(values, scene, yardstick, size) or not ms(reference, scene, yardstick, size):
+            return f"{'–':>11} {'–':>11} {'–':>8}"
+        now, then = (ms(run, scene, name, size) / ms(run, scene, yardstick, size) for run in (values, reference))
+        return f"{now:11.3g} {then:11.3g} {now / then:8.2f}"
+
     for (scene, name), sizes in sorted(values.items()):
-        for size, place in sizes.items():
-            copies = [v.get((scene, "copy_depth"), {}).get(size, {}).get("ms", 0) for v in (values, reference)]
-            before = reference.get((scene, name), {}).get(size, {}).get("ms", 0)
-            if min(copies) > 0 and before > 0 and name != "copy_depth":
-                now, then = place["ms"] / copies[0], before / copies[1]
-                print(f"{f'{scene}/{size}/{name}':48} {now:11.3g} {then:11.3g} {now / then:8.2f}")
+        for size in sizes:
+            columns = [change(scene, name, size, yardstick) for yardstick in yardsticks.values()]
+            if ms(reference, scene, name, size) and name not in yardsticks.values() and any("–" not in column for column in columns):
+                print(f"{f'{scene}/{size}/{name}':48} " + " ".join(columns))
 
 
 def main():

@@ -47,6 +47,4 @@ private:
     std::unique_ptr<Embree> m_embree;
 };
 
-inline SceneBvh build_bvh(const Scene& scene) { return SceneBvh(scene); }
-
 } // namespace ssrlab

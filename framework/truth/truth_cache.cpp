@@ -256,7 +256,7 @@ SceneTruth cached_scene_truth(const fs::path& cache_dir, const Scene& scene, con
     hash.add(gbuffer.radiance).add(settings.max_distance_m); // of the settings, only this one matters
     add(hash, scene);
     return cached<SceneTruth>(cache_dir / fmt::format("scene_{}.truth", hash.hex()), gbuffer.view.size_px,
-                              [&] { return scene_truth(build_bvh(scene), scene, gbuffer, settings, threads); });
+                              [&] { return scene_truth(SceneBvh(scene), scene, gbuffer, settings, threads); });
 }
 
 GlossyTruth cached_glossy_truth(const fs::path& cache_dir, const Scene& scene, const GBufferImage& gbuffer,
@@ -268,7 +268,7 @@ GlossyTruth cached_glossy_truth(const fs::path& cache_dir, const Scene& scene, c
     hash.add(gbuffer.radiance).add(gbuffer.roughness).add(settings.max_distance_m).add(glossy.rays).add(glossy.seed);
     add(hash, scene);
     return cached<GlossyTruth>(cache_dir / fmt::format("glossy_{}.truth", hash.hex()), gbuffer.view.size_px, [&] {
-        return glossy_truth(build_bvh(scene), scene, gbuffer, settings, glossy, threads);
+        return glossy_truth(SceneBvh(scene), scene, gbuffer, settings, glossy, threads);
     });
 }
 

@@ -1,11 +1,15 @@
 #include "benchmarks/bench.h"
 
 #include "core/error.h"
+#include "core/stopwatch.h"
 #include "scene/load_scene.h"
+#include "truth/scene_truth.h"
+#include "truth/screen_truth.h"
 
 #include <algorithm>
 #include <ctime>
 #include <filesystem>
+#include <numeric>
 
 namespace ssrlab {
 namespace {
@@ -49,6 +53,21 @@ template <typename Call> double measure_calls(benchmark::State& state, const Cal
     const auto count         = static_cast<double>(state.iterations());
     state.counters["cpu_ms"] = (cpu_ms() - cpu_before_ms) / count;
     return total_ms / count;
+}
+
+/// On all cores; no caches to warm. `steps`: what a truth counts.
+template <typename Make> void measure_truth(benchmark::State& state, const std::string& steps, const Make& make)
+{
+    double       count         = 0;
+    const double cpu_before_ms = cpu_ms();
+    for (auto _ : state) {
+        const Stopwatch stopwatch;
+        count += make();
+        state.SetIterationTime(stopwatch.seconds());
+    }
+    const double cpu                        = cpu_ms() - cpu_before_ms;
+    state.counters["cpu_ms"]                = cpu / static_cast<double>(state.iterations());
+    state.counters[steps + "_per_s_a_core"] = count / (cpu * 1e-3);
 }
 
 } // namespace
@@ -151,6 +170,27 @@ void Bench::scattered(benchmark::State& state, const std::string& scene, glm::iv
     state.counters["rays"] = static_cast<double>(s.frame->rays->capacity);
 }
 
+void Bench::screen_truth(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
+{
+    const GBufferImage gbuffer = read_gbuffer(gpu_, *picture(scene, size_px).gbuffer);
+    measure_truth(state, "cells", [&] {
+        const TraceResult truth = ssrlab::screen_truth(gbuffer, bench_settings.trace);
+        return std::accumulate(truth.steps.begin(), truth.steps.end(), 0.0);
+    });
+}
+
+void Bench::scene_truth(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
+{
+    const GBufferImage gbuffer = read_gbuffer(gpu_, *picture(scene, size_px).gbuffer);
+    const Scene&       loaded  = scenes_[scene].scene;
+    const SceneBvh     bvh(loaded);
+    measure_truth(state, "rays", [&] {
+        const SceneTruth truth = ssrlab::scene_truth(bvh, loaded, gbuffer, bench_settings.trace);
+        return static_cast<double>(
+            std::ranges::count_if(truth.cls, [](TruthClass c) { return c != TruthClass::not_traced; }));
+    });
+}
+
 Bench::Picture& Bench::picture(const std::string& scene, glm::ivec2 size_px)
 {
     const auto [place, is_new] = pictures_.try_emplace(fmt::format("{} {}x{}", scene, size_px.x, size_px.y));
@@ -159,9 +199,10 @@ Bench::Picture& Bench::picture(const std::string& scene, glm::ivec2 size_px)
     if (!scenes_.contains(scene)) {
         const size_t colon  = scene.find_last_of(':');
         const bool   viewed = colon != std::string::npos && !scene.starts_with("builtin:");
-        const Scene  loaded = load_scene(viewed ? scene.substr(0, colon) : scene);
-        scenes_[scene]      = {upload_scene(gpu_, loaded),
-                               find_camera(loaded, viewed ? scene.substr(colon + 1) : "default")};
+        LoadedScene& loaded = scenes_[scene];
+        loaded.scene        = load_scene(viewed ? scene.substr(0, colon) : scene);
+        loaded.gpu          = upload_scene(gpu_, loaded.scene);
+        loaded.camera       = find_camera(loaded.scene, viewed ? scene.substr(colon + 1) : "default");
     }
     p.gbuffer = render_gbuffer(gpu_, scenes_[scene].gpu, camera_to_view(scenes_[scene].camera, size_px));
     p.buffers = make_frame_buffers(gpu_, p.gbuffer);

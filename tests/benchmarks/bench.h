@@ -44,6 +44,9 @@ public:
     void shade(benchmark::State& state, const std::string& scene, glm::ivec2 size_px);
     /// hiz where one pixel of 16 reflects, here and there: the list of these rays, or one invocation for every pixel.
     void scattered(benchmark::State& state, const std::string& scene, glm::ivec2 size_px, bool compacted);
+    /// The truths on the CPU, made anew each time: pixels and rays a second and core.
+    void screen_truth(benchmark::State& state, const std::string& scene, glm::ivec2 size_px);
+    void scene_truth(benchmark::State& state, const std::string& scene, glm::ivec2 size_px);
     /// No time: how hiz compares with the truths, and the visits of perfect cells.
     void judge(benchmark::State& state, const std::string& scene, glm::ivec2 size_px);
 
@@ -67,6 +70,7 @@ private:
         std::optional<Scattered>                scattered;
     };
     struct LoadedScene {
+        Scene       scene;
         GpuScenePtr gpu;
         Camera      camera;
     };

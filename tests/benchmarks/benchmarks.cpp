@@ -46,6 +46,8 @@ void add_all(Bench& bench, const std::string& scene)
         for (const bool compacted : {true, false})
             pass(compacted ? "scattered/list" : "scattered/every_pixel", calls,
                  [compacted](auto& b, auto& state, auto&... picture) { b.scattered(state, picture..., compacted); });
+        pass("screen_truth", 1, [](auto& b, auto& state, auto&... picture) { b.screen_truth(state, picture...); });
+        pass("scene_truth", 1, [](auto& b, auto& state, auto&... picture) { b.scene_truth(state, picture...); });
         pass("judge", 1, [](auto& b, auto& state, auto&... picture) { b.judge(state, picture...); });
     }
 }

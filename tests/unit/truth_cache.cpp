@@ -106,7 +106,7 @@ TEST_F(TruthCache, SceneTruthReadsWhatItWrote)
     add_floor(scene, add_material(scene, {1, 1, 1}, 1));
     add_quad(scene, add_material(scene, {0.5F, 0, 0}, 0), {-5, -2, -10}, {10, 0, 0}, {0, 4, 0});
     const GBufferImage gbuffer  = floor_and_wall(bench_view({33, 20}), 100);
-    const SceneTruth   computed = scene_truth(build_bvh(scene), scene, gbuffer, {});
+    const SceneTruth   computed = scene_truth(SceneBvh(scene), scene, gbuffer, {});
     for (int i = 0; i < 2; ++i) {
         const SceneTruth cached = cached_scene_truth(m_folder, scene, gbuffer, {});
         EXPECT_EQ(cached.cls, computed.cls);
@@ -137,7 +137,7 @@ TEST_F(TruthCache, GlossyTruthReadsWhatItWrote)
     GBufferImage gbuffer = floor_and_wall(bench_view({33, 20}), 100);
     for (size_t i = 0; i < gbuffer.roughness.size(); ++i) gbuffer.roughness[i] = float(i % 3) * 0.2F;
     const GlossySettings glossy{.rays = 8};
-    const GlossyTruth    computed = glossy_truth(build_bvh(scene), scene, gbuffer, {}, glossy);
+    const GlossyTruth    computed = glossy_truth(SceneBvh(scene), scene, gbuffer, {}, glossy);
     for (int i = 0; i < 2; ++i) {
         const GlossyTruth cached = cached_glossy_truth(m_folder, scene, gbuffer, {}, glossy);
         EXPECT_EQ(cached.rays, computed.rays);

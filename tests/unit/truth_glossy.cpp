@@ -62,7 +62,7 @@ TEST(GlossyTruth, WhiteSurroundingsGiveTheAlbedo)
     for (const float roughness : {0.1F, 0.5F, 0.8F, 1.0F})
         for (const double angle : {0.0, 0.6, 1.2}) {
             const GBufferImage gbuffer = tilted_plane(angle, roughness);
-            const GlossyTruth  truth   = glossy_truth(build_bvh(scene), scene, gbuffer, {}, {});
+            const GlossyTruth  truth   = glossy_truth(SceneBvh(scene), scene, gbuffer, {}, {});
             const double       alpha   = double(roughness) * double(roughness);
             EXPECT_NEAR(mean_of(truth.weight), albedo_by_quadrature(angle, alpha), 2e-3) << roughness << ' ' << angle;
             for (size_t i = 0; i < truth.weight.size(); ++i) ASSERT_NEAR(truth.radiance[i].g, truth.weight[i], 1e-6F);
@@ -78,7 +78,7 @@ TEST(GlossyTruth, InsideAGlowingBallEverythingGlows)
     scene.materials[ball].emissive = {0.25F, 0.5F, 2};
     add_sphere(scene, ball, {0, 0, -5}, 20, 32);
     const GBufferImage gbuffer = tilted_plane(0.3, 0.6F, {16, 16});
-    const GlossyTruth  truth   = glossy_truth(build_bvh(scene), scene, gbuffer, {}, {});
+    const GlossyTruth  truth   = glossy_truth(SceneBvh(scene), scene, gbuffer, {}, {});
     for (size_t i = 0; i < truth.weight.size(); ++i) {
         ASSERT_GT(truth.weight[i], 0.5F);
         ASSERT_NEAR(truth.radiance[i].b / truth.weight[i], 2, 1e-5F);
@@ -105,7 +105,7 @@ struct Room {
     }
     GlossyTruth truth(const GlossySettings& settings = {}, unsigned threads = 0) const
     {
-        return glossy_truth(build_bvh(scene), scene, gbuffer, {}, settings, threads);
+        return glossy_truth(SceneBvh(scene), scene, gbuffer, {}, settings, threads);
     }
 };
 
@@ -113,7 +113,7 @@ TEST(GlossyTruth, SmoothIsTheSceneTruthToTheLastBit)
 {
     for (const float roughness : {0.0F, 0.0199F}) {
         const Room        room(roughness);
-        const SceneTruth  mirror = scene_truth(build_bvh(room.scene), room.scene, room.gbuffer, {});
+        const SceneTruth  mirror = scene_truth(SceneBvh(room.scene), room.scene, room.gbuffer, {});
         const GlossyTruth truth  = room.truth();
         EXPECT_EQ(truth.radiance, mirror.radiance);
         for (size_t i = 0; i < truth.rays.size(); ++i)
@@ -125,7 +125,7 @@ TEST(GlossyTruth, SmoothIsTheSceneTruthToTheLastBit)
 TEST(GlossyTruth, NearlySmoothIsNearlyTheMirror)
 {
     const Room        room(mirror_roughness);
-    const SceneTruth  mirror = scene_truth(build_bvh(room.scene), room.scene, room.gbuffer, {});
+    const SceneTruth  mirror = scene_truth(SceneBvh(room.scene), room.scene, room.gbuffer, {});
     const GlossyTruth truth  = room.truth();
     size_t            far = 0, traced = 0;
     for (size_t i = 0; i < truth.rays.size(); ++i) {

@@ -20,7 +20,7 @@ struct Case {
 
     SceneTruth truth(const TraceSettings& settings = {}) const
     {
-        return scene_truth(build_bvh(scene), scene, gbuffer, settings);
+        return scene_truth(SceneBvh(scene), scene, gbuffer, settings);
     }
 };
 
@@ -256,7 +256,7 @@ TEST(SceneTruth, ShadesWithShadows)
     const SceneRay ray{{0, 1, 0}, {0, -1, 0}, 0, 10};
     SceneHit       hit;
     const auto     shade = [&] {
-        const SceneBvh bvh = build_bvh(scene);
+        const SceneBvh bvh = SceneBvh(scene);
         bvh.intersect({&ray, 1}, {&hit, 1});
         EXPECT_TRUE(hit.met);
         return shade_point(bvh, scene, hit, {0, 0, 0}, ray.direction_ws);
@@ -283,12 +283,12 @@ TEST(SceneTruth, HostileInputDoesNotAbort)
     EXPECT_EQ(truth.cls[at(test.gbuffer, 3, 50)], TruthClass::not_traced);
     EXPECT_EQ(truth.cls[at(test.gbuffer, 4, 50)], TruthClass::visible);
     test.scene.indices[2] = 4711;
-    EXPECT_THROW(build_bvh(test.scene), Failure);
+    EXPECT_THROW(SceneBvh(test.scene), Failure);
     const double   nan = std::numeric_limits<double>::quiet_NaN();
     const Scene    empty;
     const SceneRay ray{{nan, 0, 0}, {0, 0, 1}, 0, 1};
     SceneHit       hit;
-    build_bvh(empty).intersect({&ray, 1}, {&hit, 1});
+    SceneBvh(empty).intersect({&ray, 1}, {&hit, 1});
     EXPECT_FALSE(hit.met);
 }
 
