@@ -1,5 +1,6 @@
 // Hard cases, family "depth": what stands in the depth buffer.
 #include "check/hard_case.h"
+#include "core/pixel_index.h"
 
 #include <cmath>
 #include <limits>
@@ -19,10 +20,7 @@ void add_rows(Setup& setup, double distance_m)
         setup.rays.push_back(level_ray(setup.gbuffer.view, {0.5, y + 0.5}, {size.x - 0.5, 0}, distance_m));
 }
 
-float& depth_at(Setup& setup, glm::ivec2 p)
-{
-    return setup.gbuffer.depth[static_cast<size_t>(p.y * setup.gbuffer.view.size_px.x + p.x)];
-}
+float& depth_at(Setup& setup, glm::ivec2 p) { return setup.gbuffer.depth[pixel_index(p, setup.gbuffer.view.size_px)]; }
 
 HardCase all_sky()
 {

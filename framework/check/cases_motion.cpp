@@ -1,5 +1,6 @@
 // Hard cases, family "motion": the same scene a fraction of a pixel on, doubled, turned over.
 #include "check/hard_case.h"
+#include "core/pixel_index.h"
 
 namespace ssrlab {
 namespace {
@@ -48,8 +49,8 @@ Setup doubled(const Setup& setup)
     result.gbuffer = picture_of(view, [](glm::ivec2) { return 0.0; });
     for (int y = 0; y < 2 * size.y; ++y)
         for (int x = 0; x < 2 * size.x; ++x)
-            result.gbuffer.depth[static_cast<size_t>(y * 2 * size.x + x)] =
-                setup.gbuffer.depth[static_cast<size_t>(y / 2 * size.x + x / 2)];
+            result.gbuffer.depth[pixel_index({x, y}, 2 * size)] =
+                setup.gbuffer.depth[pixel_index({x / 2, y / 2}, size)];
     for (RayInput& ray : result.rays)
         for (int axis : {0, 1}) {
             ray.origin_px_depth[axis] *= 2;

@@ -134,7 +134,7 @@ std::vector<RefusedCase> refused()
                           .doc           = {}};
     for (const auto& [name, value] :
          {std::pair("steps_huge", 2147483647.0), {"steps_negative", -1.0}, {"steps_half", 2.5}, {"steps_nan", nan}})
-        cases.push_back({name, [=] { check_parameter(steps, value, "hard case"); }, "steps"});
+        cases.push_back({name, [steps, value = value] { check_parameter(steps, value, "hard case"); }, "steps"});
     cases.push_back({"more_iterations_than_a_driver_allows",
                      [] {
                          Technique technique;

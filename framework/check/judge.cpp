@@ -1,6 +1,7 @@
 #include "check/judge.h"
 
 #include "core/error.h"
+#include "core/pixel_index.h"
 #include "truth/screen_truth.h"
 
 #include <algorithm>
@@ -32,11 +33,6 @@ Range part_in_pixel(const RayInput& ray, glm::ivec2 pixel, double margin_px)
         t = clip(t, ray.origin_px_depth[axis], ray.delta_px_depth[axis], pixel[axis] - margin_px,
                  pixel[axis] + 1 + margin_px);
     return t;
-}
-
-size_t index_of(const GBufferImage& gbuffer, glm::ivec2 pixel)
-{
-    return static_cast<size_t>(pixel.y) * static_cast<size_t>(gbuffer.view.size_px.x) + static_cast<size_t>(pixel.x);
 }
 
 bool on_image(const GBufferImage& gbuffer, glm::ivec2 pixel)
@@ -106,7 +102,7 @@ Visit Judge::visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_
     Visit visit{pixel, t_in, t_out};
     visit.z_in         = ray.origin_px_depth.z + t_in * ray.delta_px_depth.z;
     visit.z_out        = ray.origin_px_depth.z + t_out * ray.delta_px_depth.z;
-    const double depth = static_cast<double>(setup_.gbuffer.depth[index_of(setup_.gbuffer, pixel)]);
+    const double depth = static_cast<double>(setup_.gbuffer.depth[pixel_index(pixel, setup_.gbuffer.view.size_px)]);
     visit.contact      = -infinity;
     if (!(depth > 0 && depth <= 1)) return visit;
     visit.front = depth;
@@ -114,7 +110,7 @@ Visit Judge::visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_
     visit.contact =
         std::min(visit.front - std::min(visit.z_in, visit.z_out), std::max(visit.z_in, visit.z_out) - visit.back);
     if (setup_.settings.facing)
-        visit.faces = glm::dot(glm::dvec3(setup_.gbuffer.normal_vs[index_of(setup_.gbuffer, pixel)]),
+        visit.faces = glm::dot(glm::dvec3(setup_.gbuffer.normal_vs[pixel_index(pixel, setup_.gbuffer.view.size_px)]),
                                direction_vs(setup_.gbuffer.view, ray)) < 0;
     return visit;
 }

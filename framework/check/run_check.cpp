@@ -29,7 +29,7 @@ std::vector<CaseRow> run_check(Gpu& gpu, Gpu* robust, const CheckRequest& reques
                 CaseRow               row = run_case(gpu, technique, values, family.name, hard_case, request.options);
                 if (robust != nullptr && digest_of(*robust, technique, values, hard_case) != row.digest) {
                     ++row.breaks;
-                    row.findings.push_back(
+                    row.findings.emplace_back(
                         "robust buffer access changes what rays find: something is read outside its bounds");
                 }
                 on_row(row);

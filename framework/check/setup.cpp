@@ -1,5 +1,7 @@
 #include "check/setup.h"
 
+#include "core/pixel_index.h"
+
 #include <cmath>
 #include <limits>
 
@@ -10,7 +12,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 GBufferImage empty_picture(const View& view)
 {
-    const auto   count = static_cast<size_t>(view.size_px.x) * static_cast<size_t>(view.size_px.y);
+    const auto   count = pixel_count(view.size_px);
     GBufferImage image;
     image.view = view;
     image.depth.assign(count, 0.0F);
@@ -30,7 +32,7 @@ template <typename T> void mirror_pixels(std::vector<T>& values, glm::ivec2 size
     for (int y = 0; y < size_px.y; ++y)
         for (int x = 0; x < size_px.x; ++x) {
             const int from_x = axis == 0 ? size_px.x - 1 - x : x, from_y = axis == 1 ? size_px.y - 1 - y : y;
-            values[static_cast<size_t>(y * size_px.x + x)] = source[static_cast<size_t>(from_y * size_px.x + from_x)];
+            values[pixel_index({x, y}, size_px)] = source[pixel_index({from_x, from_y}, size_px)];
         }
 }
 
@@ -110,7 +112,7 @@ GBufferImage picture_of(const View& view, const std::vector<Shape>& shapes)
     GBufferImage image = empty_picture(view);
     for (int y = 0; y < view.size_px.y; ++y)
         for (int x = 0; x < view.size_px.x; ++x) {
-            const auto       i        = static_cast<size_t>(y * view.size_px.x + x);
+            const auto       i        = pixel_index({x, y}, view.size_px);
             const bool       from_eye = view.projection == Projection::perspective;
             const glm::dvec3 point    = px_to_vs(view, glm::dvec2(x, y) + 0.5, distance_to_depth(view, 1.0));
             const glm::dvec3 origin   = from_eye ? glm::dvec3(0) : glm::dvec3(point.x, point.y, 0);
@@ -134,8 +136,7 @@ GBufferImage picture_of(const View& view, const DistanceOfPixel& distance_m)
         for (int x = 0; x < view.size_px.x; ++x) {
             const double distance = distance_m({x, y});
             if (distance > 0 && distance < infinity)
-                image.depth[static_cast<size_t>(y * view.size_px.x + x)] =
-                    static_cast<float>(distance_to_depth(view, distance));
+                image.depth[pixel_index({x, y}, view.size_px)] = static_cast<float>(distance_to_depth(view, distance));
         }
     return image;
 }

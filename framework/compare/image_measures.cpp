@@ -2,6 +2,7 @@
 #include "compare/measures.h"
 #include "core/error.h"
 #include "core/parallel_rows.h"
+#include "core/pixel_index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,7 @@ namespace {
 /// Where belongs(index) holds.
 template <typename Belongs> Mask make_mask(glm::ivec2 size_px, const Belongs& belongs)
 {
-    Mask mask(size_t(size_px.x) * size_t(size_px.y));
+    Mask mask(pixel_count(size_px));
     parallel_pixels(size_px.x, size_px.y, [&](size_t i) { mask[i] = belongs(i) ? 1 : 0; });
     return mask;
 }
@@ -109,7 +110,7 @@ bool at_material_border(const GBufferImage& gbuffer, glm::ivec2 pixel)
     constexpr int    reach_px = 2;
     constexpr float  step     = 0.1F;
     const glm::ivec2 size     = gbuffer.view.size_px;
-    const auto       index    = [&](int x, int y) { return size_t(y) * size_t(size.x) + size_t(x); };
+    const auto       index    = [&](int x, int y) { return pixel_index({x, y}, size); };
     const size_t     own      = index(pixel.x, pixel.y);
     for (int y = std::max(0, pixel.y - reach_px); y <= std::min(size.y - 1, pixel.y + reach_px); ++y)
         for (int x = std::max(0, pixel.x - reach_px); x <= std::min(size.x - 1, pixel.x + reach_px); ++x) {
@@ -161,10 +162,9 @@ MeasureValues compare_pictures(const Image& tested, const Reference& reference, 
 {
     require_comparable(tested, truth);
     require_comparable(reference.display, truth);
-    const int   width      = truth.size_px.x;
     const Mask  reflective = reflective_pixels(truth), visible = visible_pixels(truth);
     const Mask  border         = make_mask(truth.size_px, [&](size_t i) {
-        return reflective[i] != 0 && at_material_border(gbuffer, {int(i) % width, int(i) / width});
+        return reflective[i] != 0 && at_material_border(gbuffer, pixel_at(i, truth.size_px));
     });
     const Mask  visible_border = make_mask(truth.size_px, [&](size_t i) { return visible[i] != 0 && border[i] != 0; });
     const Image display        = to_display(tested, reflective);

@@ -2,6 +2,7 @@
 
 #include "compare/measures.h"
 #include "core/parallel_rows.h"
+#include "core/pixel_index.h"
 
 #include <algorithm>
 #include <array>
@@ -22,7 +23,7 @@ template <typename ColourOf> Image paint(glm::ivec2 size_px, const ColourOf& col
     Image image;
     image.size_px  = size_px;
     image.channels = {"R", "G", "B"};
-    image.values.resize(3 * static_cast<size_t>(size_px.x) * static_cast<size_t>(size_px.y));
+    image.values.resize(3 * pixel_count(size_px));
     parallel_pixels(size_px.x, size_px.y, [&](size_t i) {
         const glm::vec3 colour = colour_of(i);
         for (int c : {0, 1, 2}) image.values[3 * i + static_cast<size_t>(c)] = colour[c];

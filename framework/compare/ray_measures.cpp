@@ -1,5 +1,6 @@
 // Measures that compare rays with rays.
 #include "compare/measures.h"
+#include "core/pixel_index.h"
 
 #include <algorithm>
 #include <array>
@@ -70,11 +71,10 @@ enum class FalseHit { self, too_thick, wrong_surface };
 
 FalseHit false_hit_cause(const TraceResult& tested, const GBufferImage& gbuffer, size_t i)
 {
-    const View&      view  = gbuffer.view;
-    const size_t     width = size_t(view.size_px.x);
-    const glm::ivec2 pixel(int(i % width), int(i / width));
+    const View&      view      = gbuffer.view;
+    const glm::ivec2 pixel     = pixel_at(i, view.size_px);
     const glm::ivec2 hit_pixel = tested.hit_pixel[i];
-    const size_t     h         = size_t(hit_pixel.y) * width + size_t(hit_pixel.x);
+    const size_t     h         = pixel_index(hit_pixel, view.size_px);
     const double     surface   = double(gbuffer.depth[h]);
     if (gbuffer.object_id[h] == gbuffer.object_id[i]) {
         const glm::dvec3 from_vs = px_to_vs(view, glm::dvec2(pixel) + 0.5, double(gbuffer.depth[i]));

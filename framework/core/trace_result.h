@@ -1,6 +1,8 @@
 // What each ray found and why it stopped.
 #pragma once
 
+#include "core/pixel_index.h"
+
 #include <glm/glm.hpp>
 
 #include <array>
@@ -38,7 +40,7 @@ struct TraceResult {
 /// Every pixel not traced; with room for fetch counts if they are to be counted.
 inline TraceResult make_trace_result(glm::ivec2 size_px, bool counted)
 {
-    const auto  count = static_cast<size_t>(size_px.x) * static_cast<size_t>(size_px.y);
+    const auto  count = pixel_count(size_px);
     TraceResult result;
     result.size_px = size_px;
     result.status.assign(count, TraceStatus::not_traced);

@@ -1,6 +1,7 @@
 #include "gpu/resources.h"
 
 #include "core/error.h"
+#include "core/pixel_index.h"
 
 #include <vulkan/vulkan_format_traits.hpp>
 
@@ -173,9 +174,8 @@ void upload(Gpu& gpu, GpuImage& target, const void* data, uint64_t bytes)
 
 std::vector<char> download(Gpu& gpu, const GpuImage& source, uint32_t bytes_per_texel)
 {
-    const uint64_t bytes =
-        static_cast<uint64_t>(source.size_px.x) * static_cast<uint64_t>(source.size_px.y) * bytes_per_texel;
-    const Buffer staging = make_host_buffer(gpu, bytes);
+    const uint64_t bytes   = pixel_count(source.size_px) * bytes_per_texel;
+    const Buffer   staging = make_host_buffer(gpu, bytes);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         barrier(commands);
         commands.copyImageToBuffer(*source.image, vk::ImageLayout::eGeneral, *staging.buffer, whole_image(source));

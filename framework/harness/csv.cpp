@@ -30,14 +30,12 @@ std::optional<CsvRecord> take_csv_record(std::string_view& text)
                 record.back() += text[++i];
             else
                 quoted = !quoted;
-        } else if (quoted) {
-            record.back() += c;
-        } else if (c == ',') {
+        } else if (!quoted && c == ',') {
             record.emplace_back();
-        } else if (c == '\n') {
+        } else if (!quoted && c == '\n') {
             text.remove_prefix(i + 1);
             return record;
-        } else if (c != '\r') {
+        } else if (quoted || c != '\r') {
             record.back() += c;
         }
     }

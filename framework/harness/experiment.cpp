@@ -45,7 +45,7 @@ int64_t integer_within(const TomlFile& file, const toml::node& node, const std::
 std::string read_name(const TomlFile& file, const std::filesystem::path& path)
 {
     const toml::node* node = file.root.get("name");
-    const std::string name = node == nullptr ? path.stem().string() : toml_text(file, *node, "name");
+    std::string       name = node == nullptr ? path.stem().string() : toml_text(file, *node, "name");
     const auto        safe = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.'; };
     // The name becomes a folder below results/.
     if (!std::ranges::all_of(name, safe) || name.front() == '.') {

@@ -1,4 +1,5 @@
 // The hidden layer: the scene once more without what the first layer shows, and the rays that missed, traced in it.
+#include "core/pixel_index.h"
 #include "render/effect_passes.h"
 #include "shared.h"
 
@@ -75,9 +76,8 @@ std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame
     const auto        records = download_as<uint32_t>(gpu, rays.hit_pixels, count);
     for (size_t i = 0; i < count; ++i) {
         if ((records[i] >> (2 * PIXEL_BITS) & TRACE_SECOND_LAYER) != 0) continue;
-        const glm::ivec2 pixel = unpack_pixel(pixels[i]);
-        result.status[static_cast<size_t>(pixel.y) * static_cast<size_t>(size_px.x) + static_cast<size_t>(pixel.x)] =
-            TraceStatus::not_traced;
+        const glm::ivec2 pixel                     = unpack_pixel(pixels[i]);
+        result.status[pixel_index(pixel, size_px)] = TraceStatus::not_traced;
     }
     return result;
 }

@@ -1,6 +1,7 @@
 #include "render/frame_passes.h"
 
 #include "core/error.h"
+#include "core/pixel_index.h"
 #include "shared.h"
 
 #include <glm/gtc/packing.hpp>
@@ -152,8 +153,7 @@ DepthPyramid make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px)
 {
     const glm::ivec2 size = pyramid_atlas(size_px).size;
     DepthPyramid     pyramid;
-    pyramid.cells = make_texel_buffer(gpu, static_cast<uint64_t>(size.x) * static_cast<uint64_t>(size.y) * 8,
-                                      vk::Format::eR32G32Uint);
+    pyramid.cells = make_texel_buffer(gpu, pixel_count(size) * 8, vk::Format::eR32G32Uint);
     pyramid.words = make_texel_view(gpu, pyramid.cells, vk::Format::eR32Uint);
     return pyramid;
 }
@@ -366,9 +366,8 @@ TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, co
     const auto   works   = work != nullptr ? download_as<glm::uvec3>(gpu, *work, count) : std::vector<glm::uvec3>{};
     TraceResult  result  = make_trace_result(size_px, work != nullptr);
     for (size_t i = 0; i < count; ++i) {
-        const glm::ivec2 pixel = unpack_pixel(pixels[i]);
-        const size_t     index =
-            static_cast<size_t>(pixel.y) * static_cast<size_t>(size_px.x) + static_cast<size_t>(pixel.x);
+        const glm::ivec2 pixel     = unpack_pixel(pixels[i]);
+        const size_t     index     = pixel_index(pixel, size_px);
         result.status[index]       = static_cast<TraceStatus>((hits[i] >> (2 * PIXEL_BITS)) & (TRACE_SECOND_LAYER - 1));
         result.hit_pixel[index]    = unpack_pixel(hits[i]);
         result.hit_t[index]        = static_cast<double>(ts[i]);

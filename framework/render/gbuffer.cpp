@@ -1,6 +1,7 @@
 #include "render/gbuffer.h"
 
 #include "core/error.h"
+#include "core/pixel_index.h"
 #include "render/frame_passes.h"
 #include "shared.h"
 
@@ -200,7 +201,7 @@ std::vector<float> usable_depth(std::span<const float> depth)
 void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image)
 {
     const size_t count = image.depth.size();
-    if (count != static_cast<size_t>(image.view.size_px.x) * static_cast<size_t>(image.view.size_px.y))
+    if (count != pixel_count(image.view.size_px))
         throw std::logic_error("upload_surfaces: depth does not match the view's size");
     const std::vector<float> depth = usable_depth(image.depth);
     std::vector<glm::vec4>   normal(count);

@@ -1,6 +1,7 @@
 #include "scene/environment.h"
 
 #include "core/error.h"
+#include "core/pixel_index.h"
 #include "scene/scene.h"
 
 #include <OpenImageIO/imageio.h>
@@ -24,7 +25,7 @@ glm::vec3 texel(const EnvironmentMap& map, int column, int row)
 {
     const int x = (column % map.size_px.x + map.size_px.x) % map.size_px.x;
     const int y = std::clamp(row, 0, map.size_px.y - 1);
-    return map.radiance[size_t(y) * size_t(map.size_px.x) + size_t(x)];
+    return map.radiance[pixel_index({x, y}, map.size_px)];
 }
 
 /// Not glm::mix: between equal values the result is that value, to the last bit.

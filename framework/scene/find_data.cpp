@@ -58,7 +58,7 @@ fs::path find_data(const std::string& reference, const fs::path& folder)
 {
     if (reference.starts_with(package_prefix)) return find_in_package(reference);
     if (reference.starts_with(sweethome3d_prefix)) return find_sweethome3d(reference);
-    const fs::path file = fs::path(reference).is_absolute() ? fs::path(reference) : folder / reference;
+    fs::path file = fs::path(reference).is_absolute() ? fs::path(reference) : folder / reference;
     if (!fs::exists(file)) throw_failure("{}: no such file", file.string());
     return file;
 }

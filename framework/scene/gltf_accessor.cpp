@@ -96,7 +96,7 @@ void apply_sparse(const Import& import, int index, const Layout& layout, std::ve
     if (index_size <= 0 || sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0)
         import.fail("{}: accessor {} has a broken sparse part", where, index);
     const auto  count   = static_cast<uint64_t>(sparse.count);
-    const auto  element = static_cast<uint64_t>(size * layout.components);
+    const auto  element = static_cast<uint64_t>(size) * static_cast<uint64_t>(layout.components);
     const auto* indices =
         checked_range(import, sparse.indices.bufferView, static_cast<uint64_t>(sparse.indices.byteOffset),
                       static_cast<uint64_t>(index_size), count, static_cast<uint64_t>(index_size), where);

@@ -69,9 +69,10 @@ Texture decode_image(std::span<const unsigned char> bytes, const std::string& na
 float mean_alpha(const Texture& texture)
 {
     if (texture.rgba.empty()) return 1;
-    uint64_t sum = 0;
+    uint64_t     sum    = 0;
+    const size_t pixels = texture.rgba.size() / 4;
     for (size_t i = 3; i < texture.rgba.size(); i += 4) sum += texture.rgba[i];
-    return static_cast<float>(static_cast<double>(sum) / (255.0 * static_cast<double>(texture.rgba.size() / 4)));
+    return static_cast<float>(static_cast<double>(sum) / (255.0 * static_cast<double>(pixels)));
 }
 
 } // namespace ssrlab

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <ranges>
 
 namespace ssrlab {
 namespace gltf {
@@ -33,8 +34,9 @@ glm::dmat4 local_matrix(const Import& import, int node_index)
     };
     if (check(node.matrix, all_finite<16>(node.matrix), "matrix")) {
         glm::dmat4 matrix(1);
-        for (int column = 0; column < 4; ++column)
-            for (int row = 0; row < 3; ++row) matrix[column][row] = node.matrix[static_cast<size_t>(4 * column + row)];
+        for (size_t column = 0; column < 4; ++column)
+            for (size_t row = 0; row < 3; ++row)
+                matrix[static_cast<int>(column)][static_cast<int>(row)] = node.matrix[4 * column + row];
         return matrix; // the last row is 0 0 0 1 by definition, whatever the file says
     }
     glm::dmat4 matrix(1);
@@ -157,8 +159,7 @@ void visit(Import& import, Walk& walk, const Visit& at)
     const auto light = node.extensions.find("KHR_lights_punctual");
     if (light != node.extensions.end() && light->second.IsObject() && light->second.Has("light"))
         add_light(import, light->second.Get("light").GetNumberAsInt(), to_world);
-    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
-        walk.pending.push_back({*child, at.depth + 1, to_world});
+    for (const int child : std::views::reverse(node.children)) walk.pending.push_back({child, at.depth + 1, to_world});
 }
 
 } // namespace
@@ -172,7 +173,7 @@ Model load_gltf(const std::filesystem::path& file)
     gltf::Walk walk;
     walk.material_left_out       = gltf::add_materials(import);
     const std::vector<int> roots = gltf::root_nodes(import);
-    for (auto root = roots.rbegin(); root != roots.rend(); ++root) walk.pending.push_back({*root, 0, glm::dmat4(1)});
+    for (const int root : std::views::reverse(roots)) walk.pending.push_back({root, 0, glm::dmat4(1)});
     while (!walk.pending.empty()) {
         const gltf::Visit next = walk.pending.back();
         walk.pending.pop_back();

@@ -128,10 +128,10 @@ void add_patch(Mesh& mesh, const Patch& patch, double outwards, int steps)
 Mesh make_teapot(int patch_steps)
 {
     Mesh mesh;
-    for (size_t i = 0; i < profiles.size(); ++i)
+    for (const auto& profile : profiles)
         for (int quarter = 0; quarter < 4; ++quarter)
             // All profiles run the same way round, so the outside is on the same side of all.
-            add_patch(mesh, quarter_turn(profiles[i], quarter), -1, patch_steps);
+            add_patch(mesh, quarter_turn(profile, quarter), -1, patch_steps);
     for (const auto& rows : {handle, spout})
         for (size_t first_row : {size_t{0}, size_t{3}})
             for (double side : {1.0, -1.0}) add_patch(mesh, tube_patch(rows, first_row, side), side, patch_steps);

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/parallel_rows.h"
+#include "core/pixel_index.h"
 #include "truth/screen_ray.h"
 
 #include <algorithm>
@@ -76,7 +77,7 @@ public:
         // The normal that mirrors the eye into the mirror direction, on the eye's side (mirroring does not know sides).
         const glm::dvec3 sum    = to_eye_vs + mirror_direction_vs(gbuffer, pixel);
         const double     length = glm::length(sum);
-        const size_t     i      = size_t(pixel.y) * size_t(gbuffer.view.size_px.x) + size_t(pixel.x);
+        const size_t     i      = pixel_index(pixel, gbuffer.view.size_px);
         const glm::dvec3 stored = glm::normalize(glm::dvec3(gbuffer.normal_vs[i]));
         m_frame                 = frame_about(length > grazing ? sum / length : stored);
         m_view                  = glm::transpose(m_frame) * to_eye_vs;
@@ -111,7 +112,7 @@ struct RowRays {
 void add_pixel(const ReflectedRays& reflected, const GBufferImage& gbuffer, glm::ivec2 pixel,
                const GlossySettings& settings, GlossyTruth& truth, RowRays& row)
 {
-    const size_t i   = size_t(pixel.y) * size_t(gbuffer.view.size_px.x) + size_t(pixel.x);
+    const size_t i   = pixel_index(pixel, gbuffer.view.size_px);
     const auto   add = [&](const Sample& sample) {
         row.rays.push_back(reflected.ray_from(pixel, sample.direction_vs));
         row.weights.push_back(sample.weight);
@@ -153,7 +154,7 @@ void reduce(std::span<const RayEnd> ends, std::span<const double> weights, size_
 
 GlossyTruth empty_glossy_truth(glm::ivec2 size_px)
 {
-    const size_t count = size_t(size_px.x) * size_t(size_px.y);
+    const size_t count = pixel_count(size_px);
     GlossyTruth  truth;
     truth.size_px = size_px;
     truth.rays.resize(count);

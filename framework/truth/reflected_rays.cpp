@@ -1,6 +1,7 @@
 #include "truth/reflected_rays.h"
 
 #include "core/error.h"
+#include "core/pixel_index.h"
 #include "truth/scene_truth.h"
 #include "truth/screen_ray.h"
 
@@ -86,7 +87,7 @@ glm::vec3 ReflectedRays::radiance(const SceneRay& ray, const SceneHit& hit, cons
     if (end.cls == TruthClass::sky) return sky_radiance(m_scene, ray.direction_ws);
     if (end.cls == TruthClass::visible) {
         const glm::ivec2 pixel(end.point_px);
-        return m_gbuffer.radiance[size_t(pixel.y) * size_t(m_gbuffer.view.size_px.x) + size_t(pixel.x)];
+        return m_gbuffer.radiance[pixel_index(pixel, m_gbuffer.view.size_px)];
     }
     return shade_point(m_bvh, m_scene, hit, ray.origin_ws + hit.t * ray.direction_ws, ray.direction_ws);
 }

@@ -1,5 +1,7 @@
 #include "truth/scene_surface.h"
 
+#include "core/pixel_index.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -35,7 +37,7 @@ glm::vec4 texel(const Texture& texture, int x, int y)
 {
     const int      column = wrap(x, texture.size_px.x, texture.wrap_u);
     const int      row    = wrap(y, texture.size_px.y, texture.wrap_v);
-    const uint8_t* bytes  = &texture.rgba[4 * (size_t(row) * size_t(texture.size_px.x) + size_t(column))];
+    const uint8_t* bytes  = &texture.rgba[4 * pixel_index({column, row}, texture.size_px)];
     glm::vec4      value  = glm::vec4(bytes[0], bytes[1], bytes[2], bytes[3]) / 255.0F;
     if (texture.srgb) {
         for (int c : {0, 1, 2}) value[c] = srgb_to_linear(value[c]);

@@ -1,6 +1,7 @@
 #include "truth/scene_truth.h"
 
 #include "core/parallel_rows.h"
+#include "core/pixel_index.h"
 #include "truth/screen_ray.h"
 
 namespace ssrlab {
@@ -14,7 +15,7 @@ void fill_row(const ReflectedRays& reflected, const GBufferImage& gbuffer, int y
     for (int x = 0; x < width; ++x) {
         if (!reflects(gbuffer, {x, y})) continue;
         rays.push_back(reflected.ray_from({x, y}, mirror_direction_vs(gbuffer, {x, y})));
-        pixels.push_back(size_t(y) * size_t(width) + size_t(x));
+        pixels.push_back(pixel_index({x, y}, gbuffer.view.size_px));
     }
     const std::vector<RayEnd> ends = reflected.follow(rays);
     for (size_t k = 0; k < ends.size(); ++k) {
@@ -31,7 +32,7 @@ void fill_row(const ReflectedRays& reflected, const GBufferImage& gbuffer, int y
 
 SceneTruth empty_scene_truth(glm::ivec2 size_px)
 {
-    const size_t count = size_t(size_px.x) * size_t(size_px.y);
+    const size_t count = pixel_count(size_px);
     SceneTruth   truth;
     truth.size_px = size_px;
     truth.cls.resize(count);

@@ -1,6 +1,7 @@
 #include "truth/screen_ray.h"
 
 #include "core/error.h"
+#include "core/pixel_index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,11 +11,6 @@ namespace ssrlab {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-size_t pixel_index(const GBufferImage& gbuffer, glm::ivec2 pixel)
-{
-    return size_t(pixel.y) * size_t(gbuffer.view.size_px.x) + size_t(pixel.x);
-}
 
 enum class Limit { max_distance, far_plane, near_plane, left, right, top, bottom };
 
@@ -97,7 +93,7 @@ void require_complete(const GBufferImage& gbuffer)
 
 bool reflects(const GBufferImage& gbuffer, glm::ivec2 pixel)
 {
-    const size_t    i      = pixel_index(gbuffer, pixel);
+    const size_t    i      = pixel_index(pixel, gbuffer.view.size_px);
     const glm::vec3 normal = gbuffer.normal_vs[i];
     return gbuffer.depth[i] > 0 && std::isfinite(gbuffer.depth[i]) && gbuffer.metallic[i] > 0 &&
            std::isfinite(normal.x) && std::isfinite(normal.y) && std::isfinite(normal.z) && normal != glm::vec3(0);
@@ -105,7 +101,8 @@ bool reflects(const GBufferImage& gbuffer, glm::ivec2 pixel)
 
 glm::dvec3 pixel_point_vs(const GBufferImage& gbuffer, glm::ivec2 pixel)
 {
-    return px_to_vs(gbuffer.view, glm::dvec2(pixel) + 0.5, double(gbuffer.depth[pixel_index(gbuffer, pixel)]));
+    return px_to_vs(gbuffer.view, glm::dvec2(pixel) + 0.5,
+                    double(gbuffer.depth[pixel_index(pixel, gbuffer.view.size_px)]));
 }
 
 namespace {
@@ -114,7 +111,7 @@ namespace {
 glm::dvec3 mirrored_vs(const GBufferImage& gbuffer, glm::ivec2 pixel)
 {
     const glm::dvec3 to_point_vs = view_direction_vs(gbuffer.view, pixel);
-    const glm::dvec3 raw(gbuffer.normal_vs[pixel_index(gbuffer, pixel)]);
+    const glm::dvec3 raw(gbuffer.normal_vs[pixel_index(pixel, gbuffer.view.size_px)]);
     // By a power of two, so that no square over- or underflows.
     const double     largest   = std::max({std::abs(raw.x), std::abs(raw.y), std::abs(raw.z)});
     const glm::dvec3 normal_vs = raw * std::ldexp(1.0, -std::ilogb(largest));
@@ -139,7 +136,7 @@ ScreenRay make_screen_ray(const GBufferImage& gbuffer, glm::ivec2 pixel, glm::dv
 {
     ScreenRay        ray;
     const View&      view = gbuffer.view;
-    const double     depth(gbuffer.depth[pixel_index(gbuffer, pixel)]);
+    const double     depth(gbuffer.depth[pixel_index(pixel, gbuffer.view.size_px)]);
     const glm::dvec3 rate = screen_rate(view, depth, view_direction_vs(view, pixel), direction_vs);
     ray.traced            = true;
     ray.direction_vs      = glm::normalize(direction_vs);

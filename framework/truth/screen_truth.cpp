@@ -1,6 +1,7 @@
 #include "truth/screen_truth.h"
 
 #include "core/parallel_rows.h"
+#include "core/pixel_index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -127,7 +128,7 @@ WalkResult ScreenWalk::walk(const ScreenRay& ray) const
             if (std::max(z_in, z_out) >= back) {
                 if (!m_settings.facing || faces_ray(size_t(index), ray.direction_vs)) {
                     found.status       = TraceStatus::hit;
-                    found.hit_pixel    = {int(index % size.x), int(index / size.x)};
+                    found.hit_pixel    = pixel_at(size_t(index), size);
                     found.hit_t        = first_contact_t(ray, t_in, t_out, double(cell.front), back);
                     found.hit_px_depth = ray.origin_px_depth + found.hit_t * ray.delta_px_depth;
                     const glm::dvec2 low(found.hit_pixel);
@@ -151,8 +152,7 @@ TraceResult screen_truth(const GBufferImage& gbuffer, const TraceSettings& setti
     TraceResult      result = make_trace_result(size, false);
     parallel_rows(size.y, threads, [&](int y) {
         for (int x = 0; x < size.x; ++x) {
-            store(walk.walk(make_screen_ray(gbuffer, {x, y}, settings)), size_t(y) * size_t(size.x) + size_t(x),
-                  result);
+            store(walk.walk(make_screen_ray(gbuffer, {x, y}, settings)), pixel_index({x, y}, size), result);
         }
     });
     return result;

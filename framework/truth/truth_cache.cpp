@@ -1,5 +1,6 @@
 #include "truth/truth_cache.h"
 
+#include "core/pixel_index.h"
 #include "truth/content_hash.h"
 #include "truth/screen_ray.h"
 
@@ -151,7 +152,7 @@ std::vector<char> pack(const TraceResult& result)
 
 bool unpack(const std::vector<char>& payload, glm::ivec2 size_px, TraceResult& result)
 {
-    const size_t count = size_t(size_px.x) * size_t(size_px.y);
+    const size_t count = pixel_count(size_px);
     result             = make_trace_result(size_px, false);
     Reader reader(payload);
     for (size_t i = 0; i < count; ++i) {

@@ -1,4 +1,5 @@
 #include "benchmarks/bench.h"
+#include "core/pixel_index.h"
 #include "shared.h"
 
 namespace ssrlab {
@@ -17,7 +18,7 @@ Bench::Scattered Bench::scatter(Picture& p)
     run_frame(gpu_, *s.frame);
 
     const glm::ivec2 size                 = p.gbuffer->view.size_px;
-    const auto       capacity             = static_cast<size_t>(size.x) * static_cast<size_t>(size.y);
+    const auto       capacity             = pixel_count(size);
     const size_t     count                = s.frame->rays->capacity;
     s.every_pixel                         = make_ray_buffers(gpu_, capacity, Precision::float32);
     s.over_every_pixel                    = make_trace_passes(gpu_, *s.frame, s.every_pixel, s.buffers->view, nullptr);
@@ -28,13 +29,9 @@ Bench::Scattered Bench::scatter(Picture& p)
     std::vector<glm::vec3> origins(capacity), deltas(capacity);
     std::vector<float>     lengths(capacity);
     std::vector<uint32_t>  pixels(capacity);
-    for (size_t i = 0; i < capacity; ++i)
-        origins[i] = {static_cast<float>(i % static_cast<size_t>(size.x)) + 0.5F,
-                      static_cast<float>(i / static_cast<size_t>(size.x)) + 0.5F, 1};
+    for (size_t i = 0; i < capacity; ++i) origins[i] = glm::vec3(glm::vec2(pixel_at(i, size)) + 0.5F, 1);
     for (size_t i = 0; i < count; ++i) {
-        const uint32_t x   = listed_pixels[i] & (MAX_IMAGE_PX - 1),
-                       y   = (listed_pixels[i] >> PIXEL_BITS) & (MAX_IMAGE_PX - 1);
-        const size_t place = static_cast<size_t>(y) * static_cast<size_t>(size.x) + x;
+        const size_t place = pixel_index(unpack_pixel(listed_pixels[i]), size);
         origins[place]     = listed_origins[i];
         deltas[place]      = listed_deltas[i];
         lengths[place]     = listed_lengths[i];

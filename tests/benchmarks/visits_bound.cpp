@@ -1,6 +1,7 @@
 #include "benchmarks/visits_bound.h"
 
 #include "core/parallel_rows.h"
+#include "core/pixel_index.h"
 #include "truth/screen_ray.h"
 
 #include <algorithm>
@@ -76,7 +77,7 @@ double visits_with_perfect_cells(const GBufferImage& gbuffer, const TraceSetting
         for (int column = 0; column < size.x; ++column) {
             const ScreenRay ray = make_screen_ray(gbuffer, {column, row}, settings);
             if (!ray.traced) continue;
-            const size_t index = static_cast<size_t>(row) * static_cast<size_t>(size.x) + static_cast<size_t>(column);
+            const size_t index = pixel_index({column, row}, size);
             visits[static_cast<size_t>(row)] += count_visits(ray, truth, index, top_level);
             ++rays[static_cast<size_t>(row)];
         }

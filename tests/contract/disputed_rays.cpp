@@ -1,6 +1,7 @@
 #include "contract/disputed_rays.h"
 
 #include "core/error.h"
+#include "core/pixel_index.h"
 #include "truth/screen_truth.h"
 
 #include <algorithm>
@@ -83,14 +84,13 @@ Dispute explain_dispute(const GBufferImage& gbuffer, const TraceSettings& settin
     } else {
         const glm::ivec2 pixel  = disputed_pixel(ray, truth, found, dispute.allowed_px);
         const Overlap    inside = overlap(ray, pixel);
-        const double     depth  = static_cast<double>(
-            gbuffer.depth[static_cast<size_t>(pixel.y) * static_cast<size_t>(size.x) + static_cast<size_t>(pixel.x)]);
-        const double z_in    = ray.origin_px_depth.z + inside.t_in * ray.delta_px_depth.z,
-                     z_out   = ray.origin_px_depth.z + inside.t_out * ray.delta_px_depth.z;
-        dispute.corner_px    = depth_inside_px(ray, pixel);
-        dispute.face         = std::min(std::abs(depth - std::min(z_in, z_out)),
-                                        std::abs(std::max(z_in, z_out) - slab_back(gbuffer.view, depth, settings)));
-        dispute.allowed_face = 8 * ulp(std::max({ray.origin_px_depth.z, z_in, z_out, depth})) +
+        const double     depth  = static_cast<double>(gbuffer.depth[pixel_index(pixel, size)]);
+        const double     z_in   = ray.origin_px_depth.z + inside.t_in * ray.delta_px_depth.z,
+                     z_out      = ray.origin_px_depth.z + inside.t_out * ray.delta_px_depth.z;
+        dispute.corner_px       = depth_inside_px(ray, pixel);
+        dispute.face            = std::min(std::abs(depth - std::min(z_in, z_out)),
+                                           std::abs(std::max(z_in, z_out) - slab_back(gbuffer.view, depth, settings)));
+        dispute.allowed_face    = 8 * ulp(std::max({ray.origin_px_depth.z, z_in, z_out, depth})) +
                                dispute.allowed_px * std::abs(ray.delta_px_depth.z) / length_px;
     }
     dispute.text =

@@ -1,5 +1,6 @@
 // What holds for every technique found on disk, whatever it finds: results are finite, on screen, on the ray, bounded and repeatable.
 // Techniques of your own: SSRLAB_TECHNIQUES=FOLDER
+#include "core/pixel_index.h"
 #include "gpu/device.h"
 #include "truth/screen_truth.h"
 
@@ -77,8 +78,7 @@ std::string broken(const Picture& picture, const Technique& technique, const Tra
     const glm::dvec2 inside      = glm::dvec2(point) - glm::dvec2(pixel);
     if (std::min(inside.x, inside.y) < -rounding_px || std::max(inside.x, inside.y) > 1 + rounding_px)
         return fmt::format("hit point ({}, {}) is outside its pixel ({}, {})", point.x, point.y, pixel.x, pixel.y);
-    const double depth = static_cast<double>(
-        picture.image.depth[static_cast<size_t>(pixel.y) * static_cast<size_t>(size.x) + static_cast<size_t>(pixel.x)]);
+    const double depth = static_cast<double>(picture.image.depth[pixel_index(pixel, size)]);
     if (depth <= 0) return fmt::format("hits background at ({}, {})", pixel.x, pixel.y);
     if (!technique.exact) return "";
     const double own_depth = static_cast<double>(picture.image.depth[i]),
@@ -99,8 +99,8 @@ void expect_contract(const Case& c, const Picture& picture, const Technique& tec
     for (size_t i = 0; i < result.status.size(); ++i) {
         const std::string text = broken(picture, technique, settings, result, i, iteration_bound(technique, values));
         if (!text.empty() && wrong++ < 3)
-            ADD_FAILURE() << fmt::format("ray of pixel ({}, {}): {}\n{}", i % static_cast<size_t>(c.size_px.x),
-                                         i / static_cast<size_t>(c.size_px.x), text, repeat);
+            ADD_FAILURE() << fmt::format("ray of pixel ({}, {}): {}\n{}", pixel_at(i, c.size_px).x,
+                                         pixel_at(i, c.size_px).y, text, repeat);
     }
     EXPECT_EQ(wrong, 0U) << repeat;
     std::string first;

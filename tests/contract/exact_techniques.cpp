@@ -1,5 +1,6 @@
 // Techniques that claim to be exact, held to it: the pixel walk's answer on every ray, whatever their parameters.
 #include "contract/disputed_rays.h"
+#include "core/pixel_index.h"
 #include "gpu/device.h"
 #include "render/ray_list.h"
 #include "scene/scene.h"
@@ -84,8 +85,7 @@ std::vector<ScreenRay> rays_of_the_shader(const Picture& picture, const TraceSet
     const Technique&       dda = technique("dda");
     const auto tracer          = make_ray_tracer(device(), picture.gbuffer, dda, values_of(dda), settings, rays.size());
     for (const RayInput& ray : set_up_rays(device(), *tracer)) {
-        const auto i = static_cast<size_t>(ray.pixel.y) * static_cast<size_t>(picture.view.size_px.x) +
-                       static_cast<size_t>(ray.pixel.x);
+        const auto i            = pixel_index(ray.pixel, picture.view.size_px);
         rays[i].traced          = true;
         rays[i].origin_px_depth = ray.origin_px_depth;
         rays[i].delta_px_depth  = ray.delta_px_depth;

@@ -1,4 +1,5 @@
 // The depth pyramid against brute force: every cell of every level, at sizes that halving does not divide.
+#include "core/pixel_index.h"
 #include "gpu/device.h"
 #include "render/frame_passes.h"
 #include "shared.h"
@@ -20,7 +21,7 @@ struct Pyramid {
     glm::uvec2 at(int level, int x, int y) const
     {
         const glm::ivec2 place = atlas.first_cell(level) + glm::ivec2(x, y);
-        return cells.at(static_cast<size_t>(place.y * atlas.size.x + place.x));
+        return cells.at(pixel_index(place, atlas.size));
     }
 };
 
@@ -31,7 +32,7 @@ Pyramid build(const Picture& picture, const TraceSettings& settings, double kind
                                            values_of(hiz, {{"pyramid", kind}, {"top_level", 14}}), {settings});
     submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_pyramid(commands, frame->pyramid); });
     const PyramidAtlas atlas = pyramid_atlas(picture.view.size_px);
-    const auto         count = static_cast<size_t>(atlas.size.x) * static_cast<size_t>(atlas.size.y);
+    const auto         count = pixel_count(atlas.size);
     return {picture.view.size_px, atlas, download_as<glm::uvec2>(device(), picture.buffers->pyramid.cells, count)};
 }
 
@@ -79,9 +80,10 @@ bool is_right(glm::uvec2 cell, const GBufferImage& image, const TraceSettings& s
             const double depth = static_cast<double>(image.depth[at(image, px, py)]);
             if (depth <= 0) continue;
             const double back = kind == PYRAMID_NEAREST ? 0 : std::max(slab_back(image.view, depth, settings), 0.0);
-            const Slab&  slab = slabs.emplace_back(bits(depth), bits(back), bits(back * (1 - 4e-6)));
-            all               = {std::max(all.front, rounded_front(depth)), std::min(all.inner_back, slab.inner_back),
-                                 std::min(all.outer_back, slab.outer_back)};
+            const Slab   slab{bits(depth), bits(back), bits(back * (1 - 4e-6))};
+            slabs.push_back(slab);
+            all = {std::max(all.front, rounded_front(depth)), std::min(all.inner_back, slab.inner_back),
+                   std::min(all.outer_back, slab.outer_back)};
         }
     if (slabs.empty()) return cell == glm::uvec2(0);
     const uint32_t shift = cell.x & 31;

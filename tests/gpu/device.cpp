@@ -1,6 +1,8 @@
 #include "gpu/device.h"
+#include "core/pixel_index.h"
 
 #include "core/error.h"
+#include "core/pixel_index.h"
 #include "render/gbuffer.h"
 
 #include <map>
@@ -96,19 +98,18 @@ std::string repeat_command(const std::string& scene, const std::string& view, gl
 
 size_t count_differences(const TraceResult& a, const TraceResult& b, bool compare_t, std::string& first)
 {
-    const auto width       = static_cast<size_t>(a.size_px.x);
-    size_t     differences = 0;
+    size_t differences = 0;
     for (size_t i = 0; i < a.status.size(); ++i) {
         const bool both_hit = a.status[i] == TraceStatus::hit && b.status[i] == TraceStatus::hit;
         if (a.status[i] == b.status[i] &&
             (!both_hit || (a.hit_pixel[i] == b.hit_pixel[i] && (!compare_t || a.hit_t[i] == b.hit_t[i]))))
             continue;
         if (differences++ > 0) continue;
-        first =
-            fmt::format("ray of pixel ({}, {}): status {} against {}, pixel ({}, {}) against ({}, {}), t {} against {}",
-                        i % width, i / width, trace_status_names[static_cast<size_t>(a.status[i])],
-                        trace_status_names[static_cast<size_t>(b.status[i])], a.hit_pixel[i].x, a.hit_pixel[i].y,
-                        b.hit_pixel[i].x, b.hit_pixel[i].y, a.hit_t[i], b.hit_t[i]);
+        first = fmt::format(
+            "ray of pixel ({}, {}): status {} against {}, pixel ({}, {}) against ({}, {}), t {} against {}",
+            pixel_at(i, a.size_px).x, pixel_at(i, a.size_px).y, trace_status_names[static_cast<size_t>(a.status[i])],
+            trace_status_names[static_cast<size_t>(b.status[i])], a.hit_pixel[i].x, a.hit_pixel[i].y, b.hit_pixel[i].x,
+            b.hit_pixel[i].y, a.hit_t[i], b.hit_t[i]);
     }
     return differences;
 }

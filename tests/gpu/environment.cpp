@@ -1,4 +1,5 @@
 // The environment map on the device: the same lookup as in C++, and what pixels without a surface show.
+#include "core/pixel_index.h"
 #include "gpu/compute.h"
 #include "gpu/device.h"
 #include "render/gpu_scene.h"
@@ -94,7 +95,7 @@ TEST(Environment, BackgroundPixelsShowItAlongTheirViewRay)
                 const glm::dvec3 ray_vs =
                     projection == Projection::orthographic ? glm::dvec3(0, 0, -1) : glm::dvec3(offset.x, -offset.y, -1);
                 const glm::vec3 expected = sky_radiance(scene, view_to_world * ray_vs);
-                const glm::vec3 found    = picture.image.radiance[static_cast<size_t>(y * 97 + x)];
+                const glm::vec3 found    = picture.image.radiance[pixel_index({x, y}, picture.image.view.size_px)];
                 // Half precision keeps 11 bits.
                 ASSERT_LE(glm::length(found - expected), 5e-4F * glm::length(expected) + 2e-3F) << x << ", " << y;
             }

@@ -1,4 +1,5 @@
 // Effects that make one reflection out of several: up-sampling, down-sampling, kernels.
+#include "core/pixel_index.h"
 #include "gpu/passes.h"
 
 #include <algorithm>
@@ -68,7 +69,7 @@ TEST(Upsampling, StopsAtTheBorderOfWhatItsWeightsSee)
         const Reflection found = upsample_two(picture, weights);
         for (int x = 0; x < 30; ++x) EXPECT_EQ(found[at(picture.image, x, 8)], red);
         for (int x = 32; x < 64; ++x) EXPECT_EQ(found[at(picture.image, x, 8)], blue);
-        const glm::vec4 mixed = found[at(picture.image, 31, 8)];
+        const glm::vec4& mixed = found[at(picture.image, 31, 8)];
         EXPECT_NEAR(mixed.r + mixed.b, 1, 1e-3);
         return mixed.r;
     };
@@ -117,7 +118,7 @@ TEST(ColourDownsampling, IsABlockMeanWithACross)
         run_effect(*frame, "colour_downsampling");
         const Reflection small    = read_colours(picture.buffers->small_colour);
         const int        block_px = resolution == half ? 2 : 4;
-        const auto       texel    = [&](int x, int y) { return small[static_cast<size_t>(y * 32 + x)]; };
+        const auto       texel    = [&](int x, int y) { return small[pixel_index({x, y}, {32, 32})]; };
         const glm::ivec2 block    = glm::ivec2(20, 21) / block_px;
         const float      mean     = 64.0F / static_cast<float>(block_px * block_px);
         EXPECT_EQ(texel(block.x, block.y), glm::vec4(mean / 2, 0, 3, 1));
@@ -139,7 +140,7 @@ Reflection filtered(const Reflection& source, glm::ivec2 size_px, bool median)
     Reflection result = source;
     for (int y = 0; y < size_px.y; ++y)
         for (int x = 0; x < size_px.x; ++x) {
-            const auto index = [&](int px, int py) { return static_cast<size_t>(py * size_px.x + px); };
+            const auto index = [&](int px, int py) { return pixel_index({px, py}, size_px); };
             if (source[index(x, y)].a < 0) continue;
             std::vector<glm::vec4> near;
             for (int v = std::max(0, y - 1); v <= std::min(size_px.y - 1, y + 1); ++v)

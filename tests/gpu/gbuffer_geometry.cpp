@@ -1,4 +1,5 @@
 // The G-buffer of built-in scenes against closed forms: every pixel's depth and normal, and which pixels are background.
+#include "core/pixel_index.h"
 #include "gpu/device.h"
 
 #include <cmath>
@@ -223,8 +224,7 @@ TEST(GBuffer, OffCentreByWholePixelsMovesThePicture)
     size_t        other_object = 0, compared = 0;
     for (int y = 3; y < size.y; ++y)
         for (int x = 0; x < size.x - 5; ++x) {
-            const auto from = static_cast<size_t>(y * size.x + x),
-                       to   = static_cast<size_t>((y + shift.y) * size.x + x + shift.x);
+            const auto from = pixel_index({x, y}, size), to = pixel_index(glm::ivec2(x, y) + shift, size);
             ++compared;
             if (still.image.object_id[from] != moved.image.object_id[to]) {
                 ++other_object; // an edge that runs through the pixel's centre

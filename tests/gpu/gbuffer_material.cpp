@@ -1,4 +1,5 @@
 // Materials and light in the G-buffer against closed forms.
+#include "core/pixel_index.h"
 #include "gpu/device.h"
 #include "scene/model.h"
 #include "scene/shapes.h"
@@ -103,7 +104,7 @@ TEST(GBufferMaterial, ShadowLiesWhereTheSunPutsIt)
         size_t           dark_pixels = 0;
         for (int y = 0; y < 64; ++y)
             for (int x = 0; x < 64; ++x) {
-                const auto i = static_cast<size_t>(y * 64 + x);
+                const auto i = pixel_index({x, y}, {64, 64});
                 if (picture.image.object_id[i] != 1) continue;
                 const glm::dvec3 p =
                     px_to_vs(picture.view, glm::dvec2(x, y) + 0.5,
@@ -131,7 +132,7 @@ TEST(GBufferMaterial, PointLightFallsOffWithTheSquare)
     const Picture picture = make_picture(model_to_scene(std::move(model), "lamp"), from_above(), {40, 30});
     for (int y = 0; y < 30; ++y)
         for (int x = 0; x < 40; ++x) {
-            const auto       i = static_cast<size_t>(y * 40 + x);
+            const auto       i = pixel_index({x, y}, {40, 30});
             const glm::dvec3 p =
                 px_to_vs(picture.view, glm::dvec2(x, y) + 0.5, static_cast<double>(picture.image.depth[i]));
             const double d2 = p.x * p.x + p.y * p.y + 4, light = 10 * 2 / std::sqrt(d2) / d2 * 0.75 / std::numbers::pi;

@@ -1,4 +1,5 @@
 // C = C_frag + (C_reflect - C_frag) * beta against the formula, for every switch.
+#include "core/pixel_index.h"
 #include "gpu/device.h"
 #include "truth/screen_ray.h"
 #include "unit/truth_gbuffers.h"
@@ -60,7 +61,7 @@ TEST_P(Shading, IsTheFormulaAtEveryPixel)
         glm::dvec3 expected = glm::dvec3(picture.image.radiance[i]) + glm::dvec3(picture.image.highlight[i]);
         if (result.status[i] == TraceStatus::hit) {
             ++hits;
-            const auto       from = static_cast<size_t>(result.hit_pixel[i].y * 64 + result.hit_pixel[i].x);
+            const auto       from = pixel_index(result.hit_pixel[i], result.size_px);
             const glm::dvec3 reflected =
                 picture.image.radiance[from]; // without the highlight: that belongs to the camera's direction
             expected += (reflected - expected) * beta(picture.image, result, i, effects);

@@ -1,4 +1,5 @@
 // Every status is produced where it should be, on G-buffers whose answers are known.
+#include "core/pixel_index.h"
 #include "gpu/device.h"
 #include "unit/truth_gbuffers.h"
 
@@ -11,7 +12,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 TraceStatus status_at(const TraceResult& result, int x, int y)
 {
-    return result.status.at(static_cast<size_t>(y) * static_cast<size_t>(result.size_px.x) + static_cast<size_t>(x));
+    return result.status.at(pixel_index({x, y}, result.size_px));
 }
 
 class Statuses : public testing::TestWithParam<const char*> {
@@ -32,7 +33,7 @@ TEST_P(Statuses, HitOnTheWall)
         trace_with(floor_and_wall(bench_view({64, 64}), 10), {.thickness_m = 0.5, .max_distance_m = 20});
     for (int x = 0; x < 64; ++x) {
         ASSERT_EQ(status_at(result, x, 48), TraceStatus::hit);
-        const glm::ivec2 pixel = result.hit_pixel[static_cast<size_t>(48 * 64 + x)];
+        const glm::ivec2 pixel = result.hit_pixel[pixel_index({x, 48}, result.size_px)];
         EXPECT_EQ(pixel.x, x);
         EXPECT_NEAR(pixel.y, 21, exact() ? 0 : 1);
     }
@@ -152,8 +153,8 @@ TEST(ShiftedPicture, HitsMoveByExactlyTheShift)
             size_t              hits = 0;
             for (int y = 0; y < window.y; ++y)
                 for (int x = 0; x < window.x; ++x) {
-                    const auto i = static_cast<size_t>((home.y + y) * canvas.x + home.x + x),
-                               j = static_cast<size_t>((corner.y + y) * canvas.x + corner.x + x);
+                    const auto i = pixel_index(home + glm::ivec2(x, y), canvas),
+                               j = pixel_index(corner + glm::ivec2(x, y), canvas);
                     if (a.status[i] == TraceStatus::left_screen || b.status[j] == TraceStatus::left_screen) continue;
                     // A ray clipped at the border in one picture alone has another segment: same pixel, other t.
                     ASSERT_EQ(a.status[i], b.status[j]) << id << " " << x << ", " << y;

@@ -1,4 +1,5 @@
 // Techniques that stride over pixels, on pictures whose answers are known.
+#include "core/pixel_index.h"
 #include "gpu/device.h"
 #include "unit/truth_gbuffers.h"
 
@@ -34,7 +35,7 @@ std::vector<double> errors_px(const TraceResult& result, double nearest_px = 0)
     for (int y = first_floor_row; y <= last_floor_row; ++y) {
         if (y + 0.5 - wall_px(y) < nearest_px) continue;
         for (int x = 0; x < 64; ++x) {
-            const auto i = static_cast<size_t>(y * 64 + x);
+            const auto i = pixel_index({x, y}, result.size_px);
             EXPECT_EQ(result.status[i], TraceStatus::hit) << x << ", " << y;
             if (result.status[i] == TraceStatus::hit) errors.push_back(std::abs(result.hit_px_depth[i].y - wall_px(y)));
         }

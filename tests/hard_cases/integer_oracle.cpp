@@ -1,5 +1,6 @@
 #include "hard_cases/integer_oracle.h"
 
+#include "core/pixel_index.h"
 #include "hard_cases/random_rays.h"
 
 #include <algorithm>
@@ -65,9 +66,7 @@ OracleAnswer integer_oracle(const GBufferImage& gbuffer, const RayInput& ray)
         y            = axes[1].leaves(pixel.y);
         Crossing out = before_or_with(x, y) ? x : y;
         if (beyond_end(out)) out = {1, 1};
-        const auto front = static_cast<int64_t>(
-            gbuffer.depth[static_cast<size_t>(pixel.y) * static_cast<size_t>(size.x) + static_cast<size_t>(pixel.x)] *
-            depth_steps);
+        const auto front = static_cast<int64_t>(gbuffer.depth[pixel_index(pixel, size)] * depth_steps);
         if (front > 0) {
             const Wide z_in = depth_times_d(origin_z, delta_z, at), z_out = depth_times_d(origin_z, delta_z, out);
             const bool in_front_of_back = 2 * z_in >= Wide(front) * at.d || 2 * z_out >= Wide(front) * out.d;

@@ -1,5 +1,6 @@
 #include "hard_cases/random_rays.h"
 
+#include "core/pixel_index.h"
 #include "shared.h"
 
 #include <algorithm>
@@ -115,7 +116,7 @@ Setup make_field(Field field, glm::ivec2 size_px, uint32_t seed)
     Setup setup;
     setup.gbuffer.view = bench_view(size_px);
     setup.settings     = campaign_settings;
-    setup.gbuffer.depth.reserve(static_cast<size_t>(size_px.x) * static_cast<size_t>(size_px.y));
+    setup.gbuffer.depth.reserve(pixel_count(size_px));
     for (int y = 0; y < size_px.y; ++y)
         for (int x = 0; x < size_px.x; ++x)
             setup.gbuffer.depth.push_back(static_cast<float>(depth_of(field, {x, y}, seed)) / depth_steps);

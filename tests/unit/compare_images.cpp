@@ -3,6 +3,7 @@
 #include "compare/measures.h"
 #include "compare/ssim.h"
 #include "core/error.h"
+#include "core/pixel_index.h"
 
 #include <gtest/gtest.h>
 
@@ -122,7 +123,7 @@ TEST(Masks, ChangeNothingInside)
     const glm::ivec2 size   = {53, 31};
     const Image      tested = noise(size, 8), shown = noise(size, 9);
     Image            pasted = tested;
-    Mask             mask(size_t(size.x) * size_t(size.y));
+    Mask             mask(pixel_count(size));
     for (size_t i = 0; i < mask.size(); ++i) {
         mask[i] = (i / 7) % 3 == 0 ? 1 : 0;
         for (size_t c = 0; c < 3 && mask[i] == 0; ++c) pasted.values[3 * i + c] = shown.values[3 * i + c];
@@ -155,10 +156,9 @@ TEST(Filter, EveryWidthGivesThePlainSums)
                     for (int i = -2; i <= 2; ++i) {
                         const int from_x = std::clamp(x + i, 0, size.x - 1), from_y = std::clamp(y + j, 0, size.y - 1);
                         sum += double(across[size_t(i + 2)]) * double(down[size_t(j + 1)]) *
-                               double(plane.values[size_t(from_y) * size_t(size.x) + size_t(from_x)]);
+                               double(plane.values[pixel_index({from_x, from_y}, size)]);
                     }
-                EXPECT_NEAR(filtered.values[size_t(y) * size_t(size.x) + size_t(x)], sum, 1e-6)
-                    << width << ": " << x << ", " << y;
+                EXPECT_NEAR(filtered.values[pixel_index({x, y}, size)], sum, 1e-6) << width << ": " << x << ", " << y;
             }
     }
 }

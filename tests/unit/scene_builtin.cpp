@@ -1,5 +1,6 @@
 #include "scene_files.h"
 
+#include "core/pixel_index.h"
 #include "scene/model.h"
 
 #include <cmath>
@@ -114,7 +115,7 @@ glm::vec2 puddle_gloss(const Scene& scene, glm::dvec2 point_xz)
     const Texture& texture =
         scene.textures.at(static_cast<size_t>(scene.materials[ground.material].metallic_roughness_texture.texture));
     const glm::ivec2 texel((point_xz - glm::dvec2(-6.5, -11.3)) / 13.0 * glm::dvec2(texture.size_px));
-    const uint8_t*   bytes = &texture.rgba[4 * static_cast<size_t>(texel.y * texture.size_px.x + texel.x)];
+    const uint8_t*   bytes = &texture.rgba[4 * pixel_index(texel, texture.size_px)];
     return glm::vec2(bytes[1], bytes[2]) / 255.0F;
 }
 

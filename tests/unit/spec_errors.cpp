@@ -8,7 +8,6 @@
 namespace ssrlab {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
 
 const std::vector<Technique>& techniques()

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/gbuffer_image.h"
+#include "core/pixel_index.h"
 
 #include <cmath>
 #include <limits>
@@ -22,7 +23,7 @@ inline View bench_view(glm::ivec2 size_px, double near_m = 0.1)
 
 inline GBufferImage empty_gbuffer(const View& view)
 {
-    const size_t count = size_t(view.size_px.x) * size_t(view.size_px.y);
+    const size_t count = pixel_count(view.size_px);
     GBufferImage gbuffer;
     gbuffer.view = view;
     gbuffer.depth.resize(count);
@@ -36,10 +37,7 @@ inline GBufferImage empty_gbuffer(const View& view)
     return gbuffer;
 }
 
-inline size_t at(const GBufferImage& gbuffer, int x, int y)
-{
-    return size_t(y) * size_t(gbuffer.view.size_px.x) + size_t(x);
-}
+inline size_t at(const GBufferImage& gbuffer, int x, int y) { return pixel_index({x, y}, gbuffer.view.size_px); }
 
 inline void set_pixel(GBufferImage& gbuffer, int x, int y, double distance_m, glm::dvec3 normal_vs, float metallic)
 {

@@ -1,5 +1,6 @@
 // The glossy truth where its answer is known: white surroundings, mirrors, symmetry; and whether its error bars are honest.
 #include "core/error.h"
+#include "core/pixel_index.h"
 #include "scene/environment.h"
 #include "truth/glossy_truth.h"
 #include "truth_scenes.h"
@@ -101,7 +102,7 @@ struct Room {
         scene.lights.push_back({});
         std::ranges::fill(gbuffer.roughness, roughness);
         for (size_t i = 0; i < gbuffer.radiance.size(); ++i)
-            gbuffer.radiance[i] = glm::vec3(0.2F + 0.01F * float(i / 64), 0.4F, 0.1F);
+            gbuffer.radiance[i] = glm::vec3(0.2F + 0.01F * float(pixel_at(i, gbuffer.view.size_px).y), 0.4F, 0.1F);
     }
     GlossyTruth truth(const GlossySettings& settings = {}, unsigned threads = 0) const
     {

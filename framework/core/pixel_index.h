@@ -1,0 +1,27 @@
+// Where a pixel's value lies in an image that is kept row by row.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstddef>
+
+namespace ssrlab {
+
+inline size_t pixel_count(glm::ivec2 size_px)
+{
+    return static_cast<size_t>(size_px.x) * static_cast<size_t>(size_px.y);
+}
+
+inline size_t pixel_index(glm::ivec2 pixel, glm::ivec2 size_px)
+{
+    return static_cast<size_t>(pixel.y) * static_cast<size_t>(size_px.x) + static_cast<size_t>(pixel.x);
+}
+
+/// The pixel of an index.
+inline glm::ivec2 pixel_at(size_t index, glm::ivec2 size_px)
+{
+    const auto width = static_cast<size_t>(size_px.x);
+    return {static_cast<int>(index % width), static_cast<int>(index / width)};
+}
+
+} // namespace ssrlab
