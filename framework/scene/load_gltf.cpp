@@ -8,7 +8,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <ranges>
 
 namespace ssrlab {
 namespace gltf {
@@ -143,6 +142,13 @@ void place_mesh(Import& import, Walk& walk, int mesh_index, const glm::dmat4& to
     }
 }
 
+/// To be visited in this order, before all that is pending.
+void put_first(Walk& walk, std::vector<int> nodes, int depth, const glm::dmat4& to_world)
+{
+    std::ranges::reverse(nodes);
+    for (const int node : nodes) walk.pending.push_back({node, depth, to_world});
+}
+
 void visit(Import& import, Walk& walk, const Visit& at)
 {
     if (at.node < 0 || static_cast<size_t>(at.node) >= import.json.nodes.size())
@@ -159,7 +165,7 @@ void visit(Import& import, Walk& walk, const Visit& at)
     const auto light = node.extensions.find("KHR_lights_punctual");
     if (light != node.extensions.end() && light->second.IsObject() && light->second.Has("light"))
         add_light(import, light->second.Get("light").GetNumberAsInt(), to_world);
-    for (const int child : std::views::reverse(node.children)) walk.pending.push_back({child, at.depth + 1, to_world});
+    put_first(walk, node.children, at.depth + 1, to_world);
 }
 
 } // namespace
@@ -171,9 +177,8 @@ Model load_gltf(const std::filesystem::path& file)
     gltf::parse_file(import, file);
     if (!import.json.animations.empty()) import.warn("animations are not supported: drawn at rest");
     gltf::Walk walk;
-    walk.material_left_out       = gltf::add_materials(import);
-    const std::vector<int> roots = gltf::root_nodes(import);
-    for (const int root : std::views::reverse(roots)) walk.pending.push_back({root, 0, glm::dmat4(1)});
+    walk.material_left_out = gltf::add_materials(import);
+    gltf::put_first(walk, gltf::root_nodes(import), 0, glm::dmat4(1));
     while (!walk.pending.empty()) {
         const gltf::Visit next = walk.pending.back();
         walk.pending.pop_back();

@@ -1,5 +1,4 @@
 #include "gpu/device.h"
-#include "core/pixel_index.h"
 
 #include "core/error.h"
 #include "core/pixel_index.h"

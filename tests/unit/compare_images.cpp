@@ -152,11 +152,11 @@ TEST(Filter, EveryWidthGivesThePlainSums)
         for (int y = 0; y < size.y; ++y)
             for (int x = 0; x < size.x; ++x) {
                 double sum = 0;
-                for (int j = -1; j <= 1; ++j)
-                    for (int i = -2; i <= 2; ++i) {
-                        const int from_x = std::clamp(x + i, 0, size.x - 1), from_y = std::clamp(y + j, 0, size.y - 1);
-                        sum += double(across[size_t(i + 2)]) * double(down[size_t(j + 1)]) *
-                               double(plane.values[pixel_index({from_x, from_y}, size)]);
+                for (size_t j = 0; j < down.size(); ++j)
+                    for (size_t i = 0; i < across.size(); ++i) {
+                        const glm::ivec2 from =
+                            glm::clamp(glm::ivec2(x - 2 + int(i), y - 1 + int(j)), {0, 0}, size - 1);
+                        sum += double(across[i]) * double(down[j]) * double(plane.values[pixel_index(from, size)]);
                     }
                 EXPECT_NEAR(filtered.values[pixel_index({x, y}, size)], sum, 1e-6) << width << ": " << x << ", " << y;
             }
