@@ -1,5 +1,7 @@
 // Follows the rays of a group as one beam through the depth pyramid, before they are traced: between two t it covers a box on screen and an
 // interval of depth that hold all its rays; where no cell under the box has a surface in that interval, none of the rays touches anything.
+// Near its start that interval meets the very surface that the rays leave. There they are held against planes instead: how far all of them have
+// risen above the ground, the plane of the patch they start from, and how far any patch under the box rises above it (shaders/patch_planes.comp).
 #include "trace_api.glsl"
 #include "ray_list.glsl"
 
@@ -8,13 +10,15 @@ layout(local_size_x = BEAMS_PER_GROUP) in;
 layout(constant_id = CONSTANT_TOP_LEVEL) const int top_level = 0;
 
 layout(set = 0, binding = 12, scalar) writeonly buffer Beams { real2 clear_stretches[]; };
+layout(set = 0, binding = 14, r32f) uniform readonly imageBuffer PatchPlanes;
 #ifdef COUNT_WORK
 layout(set = 0, binding = 13, scalar) writeonly buffer BeamWork { uint beam_fetches[]; };
 #endif
 
 const real first_px = 8, finest_step_px = 8, shortest_stretch_px = 24; // on screen, along the beam's longest way
 const real widest_px = 32;                                             // where rays of different tiles meet in one group
-const int  most_tests = 96;
+const real rising_px = 1.5, rising_step_px = 16;                       // while it is held against planes
+const int  most_tests = 96, most_rising_tests = 3, most_patches = 6;
 // What rounding moves a position by, at the largest image, and a depth, as a share of the beam's nearest: many times more than it can.
 const real rounding_px = 1.0 / 16, rounding_depth = 1.0 / (1 << 20);
 
@@ -60,6 +64,41 @@ bool touches(Box box, int level)
     return found;
 }
 
+struct Plane
+{
+    real2 gradient; // a pixel
+    real  depth;    // at the centre of the patch's first pixel
+};
+
+ivec2 patch_at(real2 position_px)
+{
+    return clamp(ivec2(floor(position_px)), ivec2(0), size_px - 1) >> PATCH_BITS;
+}
+
+Plane load_plane(ivec2 place)
+{
+    COUNT(pyramid_fetches);
+    int word = 3 * (place.y * (((size_px.x - 1) >> PATCH_BITS) + 1) + place.x);
+    return Plane(real2(imageLoad(PatchPlanes, word).x, imageLoad(PatchPlanes, word + 1).x), real(imageLoad(PatchPlanes, word + 2).x));
+}
+
+// Does any surface under the box reach that height? Heights are those above the plane of the ground's gradient through 0 at position 0, 0.
+bool rises_to(Box box, real2 ground, real height)
+{
+    ivec2 first = patch_at(box.low.xy), last = patch_at(box.high.xy), place = first;
+    bool  found = any(greaterThanEqual(last - first, ivec2(most_patches)));
+    while (!found && place.y <= last.y)
+    {
+        Plane plane  = load_plane(place);
+        real2 centre = real2(place << PATCH_BITS) + real(0.5);
+        real2 rise   = max(plane.gradient - ground, real2(0)) * real((1 << PATCH_BITS) - 1);
+        found        = !(plane.depth - dot(ground, centre) + rise.x + rise.y < height);
+        bool wrap    = place.x == last.x;
+        place        = wrap ? ivec2(first.x, place.y + 1) : ivec2(place.x + 1, place.y);
+    }
+    return found;
+}
+
 // One more stretch, if it is long enough to be worth a leap.
 void keep(uint beam, inout int kept, real begin, real end, real length_px)
 {
@@ -76,11 +115,16 @@ void main()
 
     uint count = min(ray_count - first, RAYS_PER_GROUP);
     Box  start = Box(ray_origin(first), ray_origin(first)), end = Box(start.low + ray_delta(first), start.low + ray_delta(first));
+    // Of all rays the least height, where they start and where they end.
+    real2 ground = load_plane(patch_at(start.low.xy)).gradient;
+    real  height = start.low.z - dot(ground, start.low.xy), end_height = end.low.z - dot(ground, end.low.xy);
     for (uint i = 1; i < count; ++i)
     {
         real3 from = ray_origin(first + i), to = from + ray_delta(first + i);
         start = unite(start, Box(from, from));
         end   = unite(end, Box(to, to));
+        height     = min(height, from.z - dot(ground, from.xy));
+        end_height = min(end_height, to.z - dot(ground, to.xy));
     }
     real  nearest  = max(start.high.z, end.high.z);
     real3 rounding = real3(rounding_px, rounding_px, nearest * rounding_depth);
@@ -92,8 +136,23 @@ void main()
     bool  numbers   = all(lessThanEqual(start.low, start.high)) && all(lessThanEqual(end.low, end.high)); // not with NaN
     bool  usable    = numbers && length_px >= first_px + shortest_stretch_px && max(extent.x, extent.y) <= widest_px && top >= 1;
 
+    // A front counts at its pixel's centre, half a pixel away at most.
+    real tilt = abs(ground.x) + abs(ground.y), largest = nearest + tilt * real(max(size_px.x, size_px.y));
+    real clearance = tilt * (real(0.5) + 2 * rounding_px) + largest * 4 * rounding_depth, rise = end_height - height;
+    real begin = rising_px / length_px, t = begin, rising_step = rising_step_px / length_px;
+    bool rises = usable && rise > real(0);
+    int  rising_tests = 0;
+    while (rises && rising_tests < most_rising_tests && t + rising_step < real(1))
+    {
+        Box box = unite(box_at(start, end, t), box_at(start, end, t + rising_step));
+        rises   = !rises_to(box, ground, height + t * rise - clearance);
+        t       = rises ? t + rising_step : t;
+        ++rising_tests;
+    }
+
+    begin       = !usable ? real(1) : t > begin ? begin : first_px / length_px;
+    t           = usable ? max(t, begin) : real(1);
     real finest = finest_step_px / length_px, step_t = 2 * finest;
-    real t      = usable ? first_px / length_px : real(1), begin = t;
     int  kept = 0, tests = 0;
     while (t < real(1) && kept < BEAM_STRETCHES && tests < most_tests)
     {

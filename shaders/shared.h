@@ -27,6 +27,9 @@
 // The one workgroup that lists the tiles (shaders/tile_list.comp).
 #define TILE_LIST_INVOCATIONS 128
 
+// Patches of pixels of which the plane above them is known (shaders/patch_planes.comp): 2^PATCH_BITS pixels square.
+#define PATCH_BITS 4
+
 // Of the beam that a group's rays form (shaders/ray_beams.comp): how many clear stretches are kept, and beams per workgroup.
 #define BEAM_STRETCHES 4
 #define BEAMS_PER_GROUP 64

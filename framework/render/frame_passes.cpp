@@ -189,6 +189,17 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const Gp
     return passes;
 }
 
+namespace {
+
+glm::ivec2 patches_of(glm::ivec2 size_px) { return ((size_px - 1) >> PATCH_BITS) + 1; }
+
+} // namespace
+
+Buffer make_patch_planes(Gpu& gpu, glm::ivec2 size_px)
+{
+    return make_texel_buffer(gpu, pixel_count(patches_of(size_px)) * 3 * sizeof(float), vk::Format::eR32Sfloat);
+}
+
 TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
 {
     const glm::uvec3 tiles     = groups_of_8(size_px);
@@ -211,6 +222,7 @@ Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
             {"HitTs", rays.hit_ts},
             {"Beams", rays.beams},
             {"BeamWork", rays.beam_work},
+            {"PatchPlanes", buffers.patch_planes},
             {"TileMasks", buffers.tiles.masks},
             {"TileCount", buffers.tiles.count},
             {"Tiles", buffers.tiles.tiles},
@@ -256,8 +268,10 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
         if (bindings.contains("Work")) beams.defines.emplace("COUNT_WORK", "1");
         Constants top_level;
         top_level.add(CONSTANT_TOP_LEVEL, static_cast<int32_t>(parameter_or(frame, "top_level", 31)));
-        passes.beam_launch = make_launch_pass(gpu, rays.count, rays.beam_launch, RAYS_PER_GROUP * BEAMS_PER_GROUP);
-        passes.beams       = make_compute_pass(gpu, compile_shader(beams), bindings, top_level);
+        passes.patches      = patches_of(frame.buffers->gbuffer->view.size_px);
+        passes.patch_planes = make_compute_pass(gpu, compile_shader({.file = "patch_planes.comp"}), bindings);
+        passes.beam_launch  = make_launch_pass(gpu, rays.count, rays.beam_launch, RAYS_PER_GROUP * BEAMS_PER_GROUP);
+        passes.beams        = make_compute_pass(gpu, compile_shader(beams), bindings, top_level);
     }
     passes.trace = make_compute_pass(gpu, compile_shader(trace), bindings, constants);
     return passes;
@@ -267,6 +281,7 @@ void record_technique(const vk::raii::CommandBuffer& commands, const TechniquePa
 {
     if (passes.reads_beams) {
         dispatch(commands, passes.beam_launch, {1, 1, 1});
+        dispatch(commands, passes.patch_planes, groups_of_8(passes.patches));
         barrier(commands);
         dispatch_indirect(commands, passes.beams, rays.beam_launch);
         barrier(commands);

@@ -57,6 +57,8 @@ struct TileBuffers {
     Buffer masks, count, tiles, launch, statistics;
 };
 TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px);
+/// Three floats a patch.
+Buffer make_patch_planes(Gpu& gpu, glm::ivec2 size_px);
 
 struct FrameBuffers {
     GBufferPtr                                                     gbuffer;
@@ -65,6 +67,7 @@ struct FrameBuffers {
     FrameStatistics                                                statistics; // of the picture; nothing is traced yet
     std::map<size_t, std::shared_ptr<RayBuffers>>                  rays;       // by capacity; float
     DepthPyramid                                                   pyramid;
+    Buffer                                                         patch_planes; // shaders/patch_planes.comp
     GBufferPtr                                                     second_layer; // empty until a frame asks for it
     DepthPyramid                                                   second_pyramid;
     std::shared_ptr<ConePyramid>                                   cone;         // empty until a frame asks for it
@@ -90,7 +93,8 @@ struct PyramidPasses {
 /// The technique on one list of rays.
 struct TechniquePasses {
     bool        reads_beams = false;
-    ComputePass beam_launch, beams, trace;
+    glm::ivec2  patches{0}; // of the picture, PATCH_BITS
+    ComputePass patch_planes, beam_launch, beams, trace;
 };
 
 struct TracePasses {
