@@ -90,10 +90,11 @@ ivec2 corner_at(CellWalk walk, int level, real t)
 }
 
 // Passes over a stretch without surfaces, up to the cell of this level in which the ray is at t: there it stands as if it had walked.
+// It visits nothing, so a budget that is spent forbids it only where the walk stopped before the stretch.
 void leap(inout CellWalk walk, int level, real t)
 {
     real2 way_px   = (t - walk.t) * walk.forward.delta.xy;
-    bool  goes     = is_open(walk) && max(way_px.x, way_px.y) > real(2 << level);
+    bool  goes     = walk.level >= 0 && walk.t >= walk.t_stop && walk.t < walk.grid.t_end && max(way_px.x, way_px.y) > real(2 << level);
     ivec2 corner   = corner_at(walk, level, t);
     real2 t_border = border_t(walk.forward, walk.grid, corner - (1 << level));
     real  t_entry  = max(walk.t, max(t_border.x, t_border.y));

@@ -78,21 +78,22 @@ RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Techniqu
     if (precision == Precision::float64 && !gpu.info.float64)
         throw_failure("the device '{}' has no double precision", gpu.info.name);
     require_bounded(technique, values);
-    auto tracer          = std::make_shared<RayTracer>();
-    auto buffers         = std::make_shared<FrameBuffers>();
-    buffers->gbuffer     = gbuffer;
-    buffers->tiles       = make_tile_buffers(gpu, gbuffer->view.size_px);
-    buffers->pyramid     = make_depth_pyramid(gpu, gbuffer->view.size_px);
-    PreparedFrame& frame = tracer->frame;
-    frame.buffers        = buffers;
-    frame.technique      = technique;
-    frame.values         = values;
-    frame.settings.trace = settings;
-    frame.pyramid        = make_pyramid_passes(gpu, frame, gbuffer->depth, buffers->pyramid);
-    tracer->rays         = make_ray_buffers(gpu, capacity, precision);
-    tracer->work         = make_buffer(gpu, std::max<uint64_t>(capacity, 1) * sizeof(glm::uvec3));
-    tracer->view         = upload_view(gpu, gbuffer->view, precision);
-    tracer->passes       = make_trace_passes(gpu, frame, tracer->rays, tracer->view, &tracer->work);
+    auto tracer           = std::make_shared<RayTracer>();
+    auto buffers          = std::make_shared<FrameBuffers>();
+    buffers->gbuffer      = gbuffer;
+    buffers->tiles        = make_tile_buffers(gpu, gbuffer->view.size_px);
+    buffers->pyramid      = make_depth_pyramid(gpu, gbuffer->view.size_px);
+    buffers->patch_planes = make_patch_planes(gpu, gbuffer->view.size_px);
+    PreparedFrame& frame  = tracer->frame;
+    frame.buffers         = buffers;
+    frame.technique       = technique;
+    frame.values          = values;
+    frame.settings.trace  = settings;
+    frame.pyramid         = make_pyramid_passes(gpu, frame, gbuffer->depth, buffers->pyramid);
+    tracer->rays          = make_ray_buffers(gpu, capacity, precision);
+    tracer->work          = make_buffer(gpu, std::max<uint64_t>(capacity, 1) * sizeof(glm::uvec3));
+    tracer->view          = upload_view(gpu, gbuffer->view, precision);
+    tracer->passes        = make_trace_passes(gpu, frame, tracer->rays, tracer->view, &tracer->work);
     return tracer;
 }
 
