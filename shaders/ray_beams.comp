@@ -48,18 +48,26 @@ int level_of(Box box)
     return clamp(findMSB(max(int(max(extent.x, extent.y)), 1)), 1, top);
 }
 
+ivec2 cell_at(real2 position_px, int level)
+{
+    return clamp(ivec2(floor(position_px)), ivec2(0), size_px - 1) >> level;
+}
+
+// The next of the cells from first to last, row by row; behind the last one it is below them.
+ivec2 next_cell(ivec2 cell, ivec2 first, ivec2 last)
+{
+    return cell.x == last.x ? ivec2(first.x, cell.y + 1) : ivec2(cell.x + 1, cell.y);
+}
+
 bool touches(Box box, int level)
 {
-    ivec2 first = clamp(ivec2(floor(box.low.xy)), ivec2(0), size_px - 1) >> level;
-    ivec2 last  = clamp(ivec2(floor(box.high.xy)), ivec2(0), size_px - 1) >> level;
-    ivec2 cell  = first;
+    ivec2 first = cell_at(box.low.xy, level), last = cell_at(box.high.xy, level), cell = first;
     bool  found = false;
     while (!found && cell.y <= last.y)
     {
         COUNT(pyramid_fetches);
-        found     = cell_may_touch(load_pyramid(cell, level), float(box.low.z), float(box.high.z));
-        bool wrap = cell.x == last.x;
-        cell      = wrap ? ivec2(first.x, cell.y + 1) : ivec2(cell.x + 1, cell.y);
+        found = cell_may_touch(load_pyramid(cell, level), float(box.low.z), float(box.high.z));
+        cell  = next_cell(cell, first, last);
     }
     return found;
 }
@@ -69,11 +77,6 @@ struct Plane
     real2 gradient; // a pixel
     real  depth;    // at the centre of the patch's first pixel
 };
-
-ivec2 patch_at(real2 position_px)
-{
-    return clamp(ivec2(floor(position_px)), ivec2(0), size_px - 1) >> PATCH_BITS;
-}
 
 Plane load_plane(ivec2 place)
 {
@@ -85,7 +88,7 @@ Plane load_plane(ivec2 place)
 // Does any surface under the box reach that height? Heights are those above the plane of the ground's gradient through 0 at position 0, 0.
 bool rises_to(Box box, real2 ground, real height)
 {
-    ivec2 first = patch_at(box.low.xy), last = patch_at(box.high.xy), place = first;
+    ivec2 first = cell_at(box.low.xy, PATCH_BITS), last = cell_at(box.high.xy, PATCH_BITS), place = first;
     bool  found = any(greaterThanEqual(last - first, ivec2(most_patches)));
     while (!found && place.y <= last.y)
     {
@@ -93,8 +96,7 @@ bool rises_to(Box box, real2 ground, real height)
         real2 centre = real2(place << PATCH_BITS) + real(0.5);
         real2 rise   = max(plane.gradient - ground, real2(0)) * real((1 << PATCH_BITS) - 1);
         found        = !(plane.depth - dot(ground, centre) + rise.x + rise.y < height);
-        bool wrap    = place.x == last.x;
-        place        = wrap ? ivec2(first.x, place.y + 1) : ivec2(place.x + 1, place.y);
+        place        = next_cell(place, first, last);
     }
     return found;
 }
@@ -116,7 +118,7 @@ void main()
     uint count = min(ray_count - first, RAYS_PER_GROUP);
     Box  start = Box(ray_origin(first), ray_origin(first)), end = Box(start.low + ray_delta(first), start.low + ray_delta(first));
     // Of all rays the least height, where they start and where they end.
-    real2 ground = load_plane(patch_at(start.low.xy)).gradient;
+    real2 ground = load_plane(cell_at(start.low.xy, PATCH_BITS)).gradient;
     real  height = start.low.z - dot(ground, start.low.xy), end_height = end.low.z - dot(ground, end.low.xy);
     for (uint i = 1; i < count; ++i)
     {

@@ -189,15 +189,10 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const Gp
     return passes;
 }
 
-namespace {
-
-glm::ivec2 patches_of(glm::ivec2 size_px) { return ((size_px - 1) >> PATCH_BITS) + 1; }
-
-} // namespace
-
 Buffer make_patch_planes(Gpu& gpu, glm::ivec2 size_px)
 {
-    return make_texel_buffer(gpu, pixel_count(patches_of(size_px)) * 3 * sizeof(float), vk::Format::eR32Sfloat);
+    return make_texel_buffer(gpu, pixel_count(level_size(size_px, PATCH_BITS)) * 3 * sizeof(float),
+                             vk::Format::eR32Sfloat);
 }
 
 TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
@@ -268,7 +263,7 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
         if (bindings.contains("Work")) beams.defines.emplace("COUNT_WORK", "1");
         Constants top_level;
         top_level.add(CONSTANT_TOP_LEVEL, static_cast<int32_t>(parameter_or(frame, "top_level", 31)));
-        passes.patches      = patches_of(frame.buffers->gbuffer->view.size_px);
+        passes.patches      = level_size(frame.buffers->gbuffer->view.size_px, PATCH_BITS);
         passes.patch_planes = make_compute_pass(gpu, compile_shader({.file = "patch_planes.comp"}), bindings);
         passes.beam_launch  = make_launch_pass(gpu, rays.count, rays.beam_launch, RAYS_PER_GROUP * BEAMS_PER_GROUP);
         passes.beams        = make_compute_pass(gpu, compile_shader(beams), bindings, top_level);

@@ -256,7 +256,7 @@ TEST(SceneTruth, ShadesWithShadows)
     const SceneRay ray{{0, 1, 0}, {0, -1, 0}, 0, 10};
     SceneHit       hit;
     const auto     shade = [&] {
-        const SceneBvh bvh = SceneBvh(scene);
+        const SceneBvh bvh(scene);
         bvh.intersect({&ray, 1}, {&hit, 1});
         EXPECT_TRUE(hit.met);
         return shade_point(bvh, scene, hit, {0, 0, 0}, ray.direction_ws);
