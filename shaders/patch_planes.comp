@@ -1,42 +1,76 @@
-// The plane above each patch of 2^PATCH_BITS pixels square: depth is linear on screen where a surface is flat, and no front of the patch lies
-// nearer than its plane. Three words: how much nearer it gets each pixel to the right and each pixel down, and its depth at the centre of
-// the first pixel.
-#include "shared.h"
+// The ground of each patch of 2^PATCH_BITS pixels square, and what stands before it. The ground is a plane, linear on screen as depth is where a
+// surface is flat. No front of the patch lies nearer than that plane but those that stand before it: so much nearer that a ray could
+// pass between the two, behind a slab. Four words: how much nearer the plane gets each pixel to the right and each pixel down, its depth at the
+// centre of the first pixel, and the farthest depth of what stands before it, or 0. Any choice of ground is correct; a good one is useful.
+#include "real.glsl"
+#include "slab.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 1, r32f) uniform readonly image2D depth_image;
 layout(set = 0, binding = 14, r32f) uniform writeonly imageBuffer PatchPlanes;
 
-const float no_surface = -1e30;
+const int   side_px = 1 << PATCH_BITS, sample_rows = 4, samples = sample_rows * sample_rows;
+const float none = 1e30;
+// Of depth: how far a sample may lie off a plane that holds it, and how much the line through its neighbours may bend there.
+const float on_plane = 1.0 / 4096, most_bent = 1.0 / 100000;
 
 float depth_at(ivec2 pixel)
 {
     return imageLoad(depth_image, pixel).x;
 }
 
-// How much nearer b is a pixel; nothing where one of the two is no surface.
-float slope(float a, float b, int way_px)
+// Where in the patch a sample lies: its neighbours lie in the patch, too, unless that is too small.
+ivec2 sample_at(int number, ivec2 way)
 {
-    return a > 0.0 && b > 0.0 && way_px > 0 ? (b - a) / float(way_px) : 0.0;
+    ivec2 place = (ivec2(number % sample_rows, number / sample_rows) * 2 + 1) * side_px / (2 * sample_rows), low = min(ivec2(1), way);
+    return clamp(place, low, max(way - 1, low));
 }
 
 void main()
 {
     ivec2 size_px = imageSize(depth_image), patches = ((size_px - 1) >> PATCH_BITS) + 1, place = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(place, patches))) return;
-    ivec2 first = place << PATCH_BITS, way = min(ivec2((1 << PATCH_BITS) - 1), size_px - 1 - first);
-    float corner = depth_at(first);
-    vec2  gradient = vec2(slope(corner, depth_at(first + ivec2(way.x, 0)), way.x), slope(corner, depth_at(first + ivec2(0, way.y)), way.y));
-    float height = no_surface;
-    // Down the columns, so that reads of different cache lines are under way at once.
-    for (int i = 0; i < 1 << (2 * PATCH_BITS); ++i)
+    ivec2 first = place << PATCH_BITS, way = min(ivec2(side_px - 1), size_px - 1 - first);
+
+    // The farthest of the planes through a sample and its neighbours that hold another sample: things stand before the ground, not behind it.
+    float depths[samples];
+    for (int i = 0; i < samples; ++i) depths[i] = depth_at(first + sample_at(i, way));
+    vec2  gradient = vec2(0);
+    float ground = none, corner = 0; // the plane's depth in the middle of the patch, and in its first pixel
+    for (int i = 0; i < samples; ++i)
     {
-        ivec2 local = min(ivec2(i >> PATCH_BITS, i & ((1 << PATCH_BITS) - 1)), way);
-        float depth = depth_at(first + local);
-        height      = depth > 0.0 ? max(height, depth - dot(gradient, vec2(local))) : height;
+        ivec2 local = sample_at(i, way), low = max(local - 1, ivec2(0)), high = min(local + 1, way);
+        vec2  last = vec2(depth_at(first + ivec2(low.x, local.y)), depth_at(first + ivec2(local.x, low.y)));
+        vec2  next = vec2(depth_at(first + ivec2(high.x, local.y)), depth_at(first + ivec2(local.x, high.y)));
+        vec2  span = vec2(max(high - low, ivec2(1))), slope = (next - last) / span;
+        vec2  bent = abs(last + next - 2 * depths[i]) * (span - 1); // not with one neighbour
+        float zero = depths[i] - dot(slope, vec2(local)), middle = zero + dot(slope, vec2(side_px - 1) / 2);
+        int   held = 0;
+        for (int j = 0; j < samples; ++j)
+            held += int(abs(depths[j] - zero - dot(slope, vec2(sample_at(j, way)))) < depths[i] * on_plane);
+        bool farther = bent.x + bent.y < depths[i] * most_bent && held > 1 && middle < ground;
+        gradient     = farther ? slope : gradient;
+        corner       = farther ? zero : corner;
+        ground       = farther ? middle : ground;
     }
-    int word = 3 * (place.y * patches.x + place.x);
+
+    // How much nearer a front is whose slab ends at the ground.
+    float nearest = (ground + slab_shift) / (slab_scale - ground * slab_slope);
+    float stands  = ground < none && nearest > ground ? corner + nearest - ground : none;
+    float height = -none, before = none;
+    // Down the columns, so that reads of different cache lines are under way at once.
+    for (int i = 0; i < side_px * side_px; ++i)
+    {
+        ivec2 local   = min(ivec2(i >> PATCH_BITS, i & (side_px - 1)), way);
+        float depth   = depth_at(first + local), front = depth - dot(gradient, vec2(local));
+        bool  surface = depth > 0.0, is_before = front > stands;
+        before        = surface && is_before ? min(before, depth) : before;
+        height        = surface && !is_before ? max(height, front) : height;
+    }
+    height += dot(abs(gradient), vec2(side_px)) / (1 << 20); // what rounding moved it by, and will where it is used
+    int word = 4 * (place.y * patches.x + place.x);
     imageStore(PatchPlanes, word, vec4(gradient.x));
     imageStore(PatchPlanes, word + 1, vec4(gradient.y));
     imageStore(PatchPlanes, word + 2, vec4(height));
+    imageStore(PatchPlanes, word + 3, vec4(before < none ? before : 0.0));
 }

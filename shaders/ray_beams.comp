@@ -1,7 +1,8 @@
 // Follows the rays of a group as one beam through the depth pyramid, before they are traced: between two t it covers a box on screen and an
 // interval of depth that hold all its rays; where no cell under the box has a surface in that interval, none of the rays touches anything.
 // Near its start that interval meets the very surface that the rays leave. There they are held against planes instead: how far all of them have
-// risen above the ground, the plane of the patch they start from, and how far any patch under the box rises above it (shaders/patch_planes.comp).
+// risen above the ground, the plane of the patch they start from, and how far any patch under the box rises above it; and what stands before
+// the ground of a patch they must pass behind (shaders/patch_planes.comp).
 #include "trace_api.glsl"
 #include "ray_list.glsl"
 
@@ -16,7 +17,7 @@ layout(set = 0, binding = 13, scalar) writeonly buffer BeamWork { uint beam_fetc
 #endif
 
 const real first_px = 8, finest_step_px = 8, shortest_stretch_px = 24; // on screen, along the beam's longest way
-const real widest_px = 32;                                             // where rays of different tiles meet in one group
+const real widest_px = 64;                                             // where rays of different tiles meet in one group
 const real rising_px = 1.5, rising_step_px = 16;                       // while it is held against planes
 const int  most_tests = 96, most_rising_tests = 3, most_patches = 6;
 // What rounding moves a position by, at the largest image, and a depth, as a share of the beam's nearest: many times more than it can.
@@ -76,17 +77,20 @@ struct Plane
 {
     real2 gradient; // a pixel
     real  depth;    // at the centre of the patch's first pixel
+    real  before;   // the farthest depth of what stands before the plane, or 0
 };
 
 Plane load_plane(ivec2 place)
 {
     COUNT(pyramid_fetches);
-    int word = 3 * (place.y * (((size_px.x - 1) >> PATCH_BITS) + 1) + place.x);
-    return Plane(real2(imageLoad(PatchPlanes, word).x, imageLoad(PatchPlanes, word + 1).x), real(imageLoad(PatchPlanes, word + 2).x));
+    int word = 4 * (place.y * (((size_px.x - 1) >> PATCH_BITS) + 1) + place.x);
+    return Plane(real2(imageLoad(PatchPlanes, word).x, imageLoad(PatchPlanes, word + 1).x), real(imageLoad(PatchPlanes, word + 2).x),
+                 real(imageLoad(PatchPlanes, word + 3).x));
 }
 
-// Does any surface under the box reach that height? Heights are those above the plane of the ground's gradient through 0 at position 0, 0.
-bool rises_to(Box box, real2 ground, real height)
+// Does any ground under the box reach that height, or the box the slab of what stands before it? Heights are those above the plane of the
+// gradient of `ground` through 0 at position 0, 0.
+bool meets_patch(Box box, real2 ground, real height)
 {
     ivec2 first = cell_at(box.low.xy, PATCH_BITS), last = cell_at(box.high.xy, PATCH_BITS), place = first;
     bool  found = any(greaterThanEqual(last - first, ivec2(most_patches)));
@@ -95,7 +99,8 @@ bool rises_to(Box box, real2 ground, real height)
         Plane plane  = load_plane(place);
         real2 centre = real2(place << PATCH_BITS) + real(0.5);
         real2 rise   = max(plane.gradient - ground, real2(0)) * real((1 << PATCH_BITS) - 1);
-        found        = !(plane.depth - dot(ground, centre) + rise.x + rise.y < height);
+        bool  rises  = !(plane.depth - dot(ground, centre) + rise.x + rise.y < height);
+        found        = rises || (plane.before > real(0) && reaches_slab_back(plane.before, box.high.z));
         place        = next_cell(place, first, last);
     }
     return found;
@@ -147,7 +152,7 @@ void main()
     while (rises && rising_tests < most_rising_tests && t + rising_step < real(1))
     {
         Box box = unite(box_at(start, end, t), box_at(start, end, t + rising_step));
-        rises   = !rises_to(box, ground, height + t * rise - clearance);
+        rises   = !meets_patch(box, ground, height + t * rise - clearance);
         t       = rises ? t + rising_step : t;
         ++rising_tests;
     }

@@ -1,62 +1,92 @@
-// The planes above patches of pixels against the pixels themselves.
+// The ground of patches of pixels, and what stands before it, against the pixels themselves.
 #include "core/pixel_index.h"
 #include "gpu/device.h"
 #include "render/frame_passes.h"
 #include "shared.h"
 #include "unit/truth_gbuffers.h"
 
+#include <limits>
+#include <map>
+
 namespace ssrlab::test {
 namespace {
 
-/// Rightward, downward, at the patch's first pixel.
-std::vector<glm::vec3> planes_of(const Picture& picture)
+/// Of each patch: the plane's slope rightward and downward, its depth at the first pixel; the farthest depth of what stands before it, or 0.
+std::vector<glm::vec4> planes_of(const Picture& picture, const TraceSettings& settings = {})
 {
     const Technique& hiz   = technique("hiz");
-    const auto       frame = prepare_frame(device(), picture.buffers, hiz, values_of(hiz), {TraceSettings{}});
+    const auto       frame = prepare_frame(device(), picture.buffers, hiz, values_of(hiz), {settings});
     submit(device(), [&](const vk::raii::CommandBuffer& commands) {
         record_rays(commands, frame->trace, *picture.buffers);
         record_pyramid(commands, frame->pyramid);
         record_technique(commands, frame->trace.technique, *frame->rays);
     });
     const glm::ivec2 patches = ((picture.view.size_px - 1) >> PATCH_BITS) + 1;
-    return download_as<glm::vec3>(device(), picture.buffers->patch_planes, pixel_count(patches));
+    return download_as<glm::vec4>(device(), picture.buffers->patch_planes, pixel_count(patches));
 }
 
-/// How far the plane lies above the front of each pixel that has one.
-std::vector<float> heights_above(const Picture& picture)
+struct Front {
+    size_t patch;
+    float  depth;
+    float  height; // of the plane above it
+};
+
+std::vector<Front> fronts_of(const Picture& picture, const std::vector<glm::vec4>& planes)
 {
-    const std::vector<glm::vec3> planes = planes_of(picture);
-    const glm::ivec2             size = picture.view.size_px, patches = ((size - 1) >> PATCH_BITS) + 1;
-    std::vector<float>           heights;
+    const glm::ivec2   size = picture.view.size_px, patches = ((size - 1) >> PATCH_BITS) + 1;
+    std::vector<Front> fronts;
     for (size_t i = 0; i < picture.image.depth.size(); ++i) {
-        if (picture.image.depth[i] <= 0) continue;
-        const glm::ivec2 pixel = pixel_at(i, size), patch = pixel >> PATCH_BITS;
-        const glm::vec3  plane = planes.at(pixel_index(patch, patches));
-        heights.push_back(glm::dot(plane, glm::vec3(pixel - (patch << PATCH_BITS), 1)) - picture.image.depth[i]);
+        const float depth = picture.image.depth[i];
+        if (depth <= 0) continue;
+        const glm::ivec2 pixel = pixel_at(i, size), place = pixel >> PATCH_BITS;
+        const size_t     patch = pixel_index(place, patches);
+        const glm::vec3  plane = planes.at(patch);
+        fronts.push_back({patch, depth, glm::dot(plane, glm::vec3(pixel - (place << PATCH_BITS), 1)) - depth});
     }
-    return heights;
+    return fronts;
+}
+
+/// A ground that gets nearer downward; every seventh column a bar, nearer by that much.
+GBufferImage ground_behind_bars(glm::ivec2 size_px, float nearer)
+{
+    GBufferImage image = empty_gbuffer(bench_view(size_px));
+    for (size_t i = 0; i < image.depth.size(); ++i) {
+        const glm::ivec2 pixel = pixel_at(i, size_px);
+        image.depth[i]         = 0.05F + 0.0004F * float(pixel.y) / float(size_px.y) + (pixel.x % 7 == 0 ? nearer : 0);
+        image.normal_vs[i]     = {0, 0, 1};
+    }
+    return image;
 }
 
 class PatchPlanes : public testing::TestWithParam<glm::ivec2> {};
 
-TEST_P(PatchPlanes, LieAboveEveryFrontAndTouchOne)
+TEST_P(PatchPlanes, NoFrontLiesAboveButWhatStandsBefore)
 {
-    const Picture            picture = make_picture(random_gbuffer(bench_view(GetParam()), 5));
-    const std::vector<float> heights = heights_above(picture);
-    ASSERT_FALSE(heights.empty());
-    EXPECT_GE(std::ranges::min(heights), -1e-6F);
-    EXPECT_LE(std::ranges::min(heights), 1e-6F);
+    const Picture           picture = make_picture(random_gbuffer(bench_view(GetParam()), 5));
+    const auto              planes  = planes_of(picture);
+    std::map<size_t, float> least, farthest;
+    for (const Front& front : fronts_of(picture, planes)) {
+        if (front.height < -1e-6F) {
+            ASSERT_GT(planes[front.patch].w, 0) << "patch " << front.patch;
+            ASSERT_GE(front.depth, planes[front.patch].w) << "patch " << front.patch;
+            const auto entry = farthest.try_emplace(front.patch, front.depth).first;
+            entry->second    = std::min(entry->second, front.depth);
+        } else {
+            const auto entry = least.try_emplace(front.patch, front.height).first;
+            entry->second    = std::min(entry->second, front.height);
+        }
+    }
+    ASSERT_FALSE(least.empty());
+    for (const auto& [patch, height] : least) EXPECT_LE(height, 1e-6F) << "patch " << patch;
+    for (const auto& [patch, depth] : farthest) EXPECT_EQ(depth, planes[patch].w) << "patch " << patch;
 }
 
 TEST_P(PatchPlanes, AreTheSurfaceWhereItIsFlat)
 {
-    GBufferImage image = empty_gbuffer(bench_view(GetParam()));
-    for (size_t i = 0; i < image.depth.size(); ++i) {
-        const glm::ivec2 pixel = pixel_at(i, GetParam());
-        image.depth[i]         = 0.25F + 0.0004F * float(pixel.x) - 0.0002F * float(pixel.y);
-        image.normal_vs[i]     = {0, 0, 1};
-    }
-    for (const float height : heights_above(make_picture(image))) ASSERT_NEAR(height, 0, 1e-6);
+    const Picture picture = make_picture(ground_behind_bars(GetParam(), 0));
+    const auto    planes  = planes_of(picture);
+    for (const Front& front : fronts_of(picture, planes)) ASSERT_NEAR(front.height, 0, 1e-7);
+    for (const glm::vec4& plane : planes) ASSERT_EQ(plane.w, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, PatchPlanes,
@@ -64,11 +94,36 @@ INSTANTIATE_TEST_SUITE_P(Sizes, PatchPlanes,
                                          glm::ivec2(641, 359)),
                          [](const auto& param) { return fmt::format("{}x{}", param.param.x, param.param.y); });
 
+TEST(PatchPlanesBehindBars, AreTheGround)
+{
+    const Picture picture = make_picture(ground_behind_bars({128, 64}, 0.1F));
+    TraceSettings settings;
+    settings.thickness_m = 0.1;
+    const auto planes    = planes_of(picture, settings);
+    for (const Front& front : fronts_of(picture, planes)) {
+        if (front.depth > 0.1F)
+            ASSERT_GE(front.depth, planes[front.patch].w);
+        else
+            ASSERT_NEAR(front.height, 0, 1e-7);
+    }
+    for (const glm::vec4& plane : planes) ASSERT_NEAR(plane.w, 0.15F, 0.0005F);
+}
+
+TEST(PatchPlanesBehindBars, LieAboveThemWhereSlabsNeverEnd)
+{
+    const Picture picture = make_picture(ground_behind_bars({128, 64}, 0.1F));
+    TraceSettings settings;
+    settings.thickness_m = std::numeric_limits<double>::infinity();
+    const auto planes    = planes_of(picture, settings);
+    for (const Front& front : fronts_of(picture, planes)) ASSERT_GE(front.height, -1e-6F);
+    for (const glm::vec4& plane : planes) ASSERT_EQ(plane.w, 0);
+}
+
 TEST(PatchPlanesOfNothing, LieBelowEverything)
 {
     GBufferImage image                  = empty_gbuffer(bench_view({64, 48}));
     image.depth[0]                      = 0.5F;
-    const std::vector<glm::vec3> planes = planes_of(make_picture(image));
+    const std::vector<glm::vec4> planes = planes_of(make_picture(image));
     EXPECT_EQ(planes.front().z, 0.5F);
     for (size_t i = 1; i < planes.size(); ++i) EXPECT_LT(planes[i].z, -1e29F);
 }
