@@ -261,11 +261,11 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
         trace.defines.emplace("RAY_BEAMS", "1");
         ShaderSource beams{.file = "ray_beams.comp", .defines = precision_defines(gpu, precision)};
         if (bindings.contains("Work")) beams.defines.emplace("COUNT_WORK", "1");
-        Constants beam_constants = settings_constants(frame, precision, exact);
+        Constants beam_constants = settings_constants(frame, precision);
         beam_constants.add(CONSTANT_TOP_LEVEL, static_cast<int32_t>(parameter_or(frame, "top_level", 31)));
         passes.patches      = level_size(frame.buffers->gbuffer->view.size_px, PATCH_BITS);
         passes.patch_planes = make_compute_pass(gpu, compile_shader({.file = "patch_planes.comp"}), bindings,
-                                                settings_constants(frame, Precision::float32, false));
+                                                settings_constants(frame, Precision::float32));
         passes.beam_launch  = make_launch_pass(gpu, rays.count, rays.beam_launch, RAYS_PER_GROUP * BEAMS_PER_GROUP);
         passes.beams        = make_compute_pass(gpu, compile_shader(beams), bindings, beam_constants);
     }
