@@ -1,13 +1,13 @@
 // The ground of each patch of 2^PATCH_BITS pixels square, and what stands before it. The ground is a plane, linear on screen as depth is where a
 // surface is flat. No front of the patch lies nearer than that plane but those that stand before it: so much nearer that a ray could
-// pass between the two, behind a slab. Four words: how much nearer the plane gets each pixel to the right and each pixel down, its depth at the
+// pass between the two, behind a slab. Four numbers: how much nearer the plane gets each pixel to the right and each pixel down, its depth at the
 // centre of the first pixel, and the farthest depth of what stands before it, or 0. Any choice of ground is correct; a good one is useful.
 #include "real.glsl"
 #include "slab.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 1, r32f) uniform readonly image2D depth_image;
-layout(set = 0, binding = 14, r32f) uniform writeonly imageBuffer PatchPlanes;
+layout(set = 0, binding = 14, rgba32f) uniform writeonly imageBuffer PatchPlanes;
 
 const int   side_px = 1 << PATCH_BITS, sample_rows = 4, samples = sample_rows * sample_rows;
 const float none = 1e30;
@@ -68,9 +68,5 @@ void main()
         height        = surface && !is_before ? max(height, front) : height;
     }
     height += dot(abs(gradient), vec2(side_px)) / (1 << 20); // what rounding moved it by, and will where it is used
-    int word = 4 * (place.y * patches.x + place.x);
-    imageStore(PatchPlanes, word, vec4(gradient.x));
-    imageStore(PatchPlanes, word + 1, vec4(gradient.y));
-    imageStore(PatchPlanes, word + 2, vec4(height));
-    imageStore(PatchPlanes, word + 3, vec4(before < none ? before : 0.0));
+    imageStore(PatchPlanes, place.y * patches.x + place.x, vec4(gradient, height, before < none ? before : 0.0));
 }

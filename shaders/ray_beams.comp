@@ -11,7 +11,7 @@ layout(local_size_x = BEAMS_PER_GROUP) in;
 layout(constant_id = CONSTANT_TOP_LEVEL) const int top_level = 0;
 
 layout(set = 0, binding = 12, scalar) writeonly buffer Beams { real2 clear_stretches[]; };
-layout(set = 0, binding = 14, r32f) uniform readonly imageBuffer PatchPlanes;
+layout(set = 0, binding = 14, rgba32f) uniform readonly imageBuffer PatchPlanes;
 #ifdef COUNT_WORK
 layout(set = 0, binding = 13, scalar) writeonly buffer BeamWork { uint beam_fetches[]; };
 #endif
@@ -83,9 +83,8 @@ struct Plane
 Plane load_plane(ivec2 place)
 {
     COUNT(pyramid_fetches);
-    int word = 4 * (place.y * (((size_px.x - 1) >> PATCH_BITS) + 1) + place.x);
-    return Plane(real2(imageLoad(PatchPlanes, word).x, imageLoad(PatchPlanes, word + 1).x), real(imageLoad(PatchPlanes, word + 2).x),
-                 real(imageLoad(PatchPlanes, word + 3).x));
+    vec4 plane = imageLoad(PatchPlanes, place.y * (((size_px.x - 1) >> PATCH_BITS) + 1) + place.x);
+    return Plane(real2(plane.xy), real(plane.z), real(plane.w));
 }
 
 // Does any ground under the box reach that height, or the box the slab of what stands before it? Heights are those above the plane of the
@@ -121,13 +120,15 @@ void main()
     if (first >= ray_count) return;
 
     uint count = min(ray_count - first, RAYS_PER_GROUP);
-    Box  start = Box(ray_origin(first), ray_origin(first)), end = Box(start.low + ray_delta(first), start.low + ray_delta(first));
+    ListedRay ray = listed_ray(first);
+    Box start = Box(ray.origin, ray.origin), end = Box(ray.origin + ray.delta, ray.origin + ray.delta);
     // Of all rays the least height, where they start and where they end.
     real2 ground = load_plane(cell_at(start.low.xy, PATCH_BITS)).gradient;
     real  height = start.low.z - dot(ground, start.low.xy), end_height = end.low.z - dot(ground, end.low.xy);
     for (uint i = 1; i < count; ++i)
     {
-        real3 from = ray_origin(first + i), to = from + ray_delta(first + i);
+        ray = listed_ray(first + i);
+        real3 from = ray.origin, to = ray.origin + ray.delta;
         start = unite(start, Box(from, from));
         end   = unite(end, Box(to, to));
         height     = min(height, from.z - dot(ground, from.xy));

@@ -2,16 +2,14 @@
 // the list. By the effects' parameters there may be several rays per pixel, one after the other in the list.
 #include "segment.glsl"
 #include "hash.glsl"
+#include "listed_ray.glsl"
 #include "effects/tiles.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = CONSTANT_RAYS_PER_PIXEL) const int rays_per_pixel = 1;
 
-layout(set = 0, binding = 5, scalar) writeonly buffer RayOrigins { real3 ray_origin[]; };
-layout(set = 0, binding = 6, scalar) writeonly buffer RayDeltas { real3 ray_delta[]; };
-layout(set = 0, binding = 7, scalar) writeonly buffer RayLengths { real ray_length_m[]; };
-layout(set = 0, binding = 8, scalar) writeonly buffer RayPixels { uint ray_pixel[]; }; // number = status of a miss
+layout(set = 0, binding = 5, rgba32ui) uniform writeonly uimageBuffer Rays;
 layout(set = 0, binding = 11, r32ui) uniform readonly uimageBuffer TileMasks; // two words a tile: bit x + 8 y
 
 // A place inside the pixel, exact in float. The depth image is flat inside each pixel: a ray that starts on the far side of its pixel's
@@ -64,10 +62,8 @@ void main()
             start_px           = offset_depth > real(0) ? offset_px : start_px;
             start_depth        = offset_depth > real(0) ? offset_depth : depth;
         }
-        Segment segment           = make_segment(start_px, start_depth, mirrored(view_direction(start_px), normal));
-        ray_origin[index + ray]   = segment.origin;
-        ray_delta[index + ray]    = segment.delta;
-        ray_length_m[index + ray] = segment.length_m;
-        ray_pixel[index + ray]    = pack_pixel(pixel, segment.end_status);
+        Segment   segment = make_segment(start_px, start_depth, mirrored(view_direction(start_px), normal));
+        ListedRay listed  = ListedRay(segment.origin, segment.length_m, segment.delta, pack_pixel(pixel, segment.end_status));
+        STORE_RAY(Rays, index + ray, listed);
     }
 }

@@ -18,11 +18,12 @@ layout(set = 0, binding = 11, scalar) buffer Work { uvec3 work[]; }; // steps, d
 
 Ray load_ray(uint index)
 {
-    Ray ray;
-    ray.origin      = ray_origin(index);
-    ray.delta       = ray_delta(index);
-    ray.length_m    = ray_length_m(index);
-    ray.end_status  = unpack_status(ray_pixel(index));
+    ListedRay listed = listed_ray(index);
+    Ray       ray;
+    ray.origin      = listed.origin;
+    ray.delta       = listed.delta;
+    ray.length_m    = listed.length_m;
+    ray.end_status  = unpack_status(listed.pixel);
     ray.rounding    = depth_rounding(ray.delta);
     ray.start_pixel = clamp(ivec2(floor(ray.origin.xy)), ivec2(0), size_px - 1);
 

@@ -150,8 +150,8 @@ uvec2 load_pyramid(ivec2 cell, int level)
 layout(set = 0, binding = 12, scalar) readonly buffer Beams { real2 clear_stretches[]; };
 real2 load_stretch(int stretch) { return clear_stretches[stretch]; }
 #else
-layout(set = 0, binding = 12, r32f) uniform readonly imageBuffer Beams; // as texels: ray_list.glsl says why
-real2 load_stretch(int stretch) { return real2(imageLoad(Beams, 2 * stretch).x, imageLoad(Beams, 2 * stretch + 1).x); }
+layout(set = 0, binding = 12, rg32f) uniform readonly imageBuffer Beams; // as texels: listed_ray.glsl says why
+real2 load_stretch(int stretch) { return imageLoad(Beams, stretch).xy; }
 #endif
 #ifdef COUNT_WORK
 layout(set = 0, binding = 13, scalar) readonly buffer BeamWork { uint beam_fetches[]; };

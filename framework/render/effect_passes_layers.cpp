@@ -72,11 +72,11 @@ std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame
     const glm::ivec2  size_px = frame.buffers->gbuffer->view.size_px;
     TraceResult       result  = read_result<float>(gpu, size_px, rays, nullptr);
     const size_t      count   = download_as<uint32_t>(gpu, rays.count, 1)[0];
-    const auto        pixels  = download_as<uint32_t>(gpu, rays.pixels, count);
+    const auto        listed  = download_as<ListedRay<float>>(gpu, rays.list, count);
     const auto        records = download_as<uint32_t>(gpu, rays.hit_pixels, count);
     for (size_t i = 0; i < count; ++i) {
         if ((records[i] >> (2 * PIXEL_BITS) & TRACE_SECOND_LAYER) != 0) continue;
-        const glm::ivec2 pixel                     = unpack_pixel(pixels[i]);
+        const glm::ivec2 pixel                     = unpack_pixel(listed[i].pixel);
         result.status[pixel_index(pixel, size_px)] = TraceStatus::not_traced;
     }
     return result;

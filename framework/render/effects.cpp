@@ -172,7 +172,7 @@ std::vector<Effect> make_table()
          .cite    = {"J. Somerville Roberts, Screen Space Reflections"},
          .shader  = "rays.comp",
          .reads   = {"View", "TileMasks", "TileCount", "Tiles", "depth_image", "normal_image", "material_image"},
-         .writes  = {"RayOrigins", "RayDeltas", "RayLengths", "RayPixels"},
+         .writes  = {"Rays"},
          .parameters =
              {integer(
                   "rays_per_pixel", 1, 1, 16,
@@ -192,8 +192,7 @@ std::vector<Effect> make_table()
         {.id      = "trace",
          .summary = "The technique on the list of rays",
          .shader  = "trace.comp",
-         .reads   = {"View", "RayCount", "RayOrigins", "RayDeltas", "RayLengths", "RayPixels", "depth_image",
-                     "normal_image", "depth_pyramid"},
+         .reads   = {"View", "RayCount", "Rays", "depth_image", "normal_image", "depth_pyramid"},
          .writes  = {"Beams", "HitPixels", "HitTs"},
          .need    = where_something_reflects},
         {.id      = "hidden_layer",
@@ -202,8 +201,7 @@ std::vector<Effect> make_table()
                      "M. Mara, M. McGuire, D. Nowrouzezahrai, D. Luebke 2016, Deep G-Buffers for Stable Global "
                         "Illumination Approximation"},
          .shader  = "effects/gather_misses.comp",
-         .reads   = {"View", "RayCount", "RayOrigins", "RayDeltas", "RayLengths", "RayPixels", "depth_image",
-                     "normal_image", "material_image"},
+         .reads   = {"View", "RayCount", "Rays", "depth_image", "normal_image", "material_image"},
          .writes  = {"HitPixels", "HitTs"},
          .parameters =
              {boolean("hidden_layer", false, "whether rays that find nothing are traced in a second depth layer"),
@@ -240,9 +238,8 @@ std::vector<Effect> make_table()
          .cite    = {"J. Somerville Roberts, Screen Space Reflections", "Litheon 2012, Real-Time Local Reflections",
                      "A. Biro 2015, Report on Screen-Space Reflections"},
          .shader  = "effects/hit_colour.comp",
-         .reads   = {"View", "RayCount", "RayOrigins", "RayDeltas", "RayPixels", "HitPixels", "HitTs", "depth_image",
-                     "normal_image", "material_image", "radiance_image", "highlight_image", "small_colour_image",
-                     "cone_pyramid"},
+         .reads   = {"View", "RayCount", "Rays", "HitPixels", "HitTs", "depth_image", "normal_image", "material_image",
+                     "radiance_image", "highlight_image", "small_colour_image", "cone_pyramid"},
          .writes  = {"reflection_image", "block_pixel_image"},
          .parameters =
              {choice("hit_light", {"diffuse", "lit", "mirrored"},
@@ -271,8 +268,8 @@ std::vector<Effect> make_table()
          .summary = "Mirror in mirror: further bounces where what was hit reflects, too",
          .cite    = {"J. Somerville Roberts, Screen Space Reflections"},
          .shader  = "effects/bounce_rays.comp",
-         .reads   = {"View", "RayCount", "RayOrigins", "RayDeltas", "RayPixels", "HitPixels", "HitTs", "depth_image",
-                     "normal_image", "material_image", "radiance_image", "highlight_image", "depth_pyramid"},
+         .reads   = {"View", "RayCount", "Rays", "HitPixels", "HitTs", "depth_image", "normal_image", "material_image",
+                     "radiance_image", "highlight_image", "depth_pyramid"},
          .writes  = {"reflection_image"},
          .parameters =
              {starting_with(choice("bounce_mode", {"off", "history", "direct"},

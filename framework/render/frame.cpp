@@ -65,32 +65,29 @@ Buffer upload_view(Gpu& gpu, const View& view, Precision precision)
 RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision)
 {
     const uint64_t real_bytes = precision == Precision::float64 ? 8 : 4;
-    const uint64_t rays       = std::max<uint64_t>(capacity, 1);
-    const uint64_t largest    = rays * 3 * real_bytes;
+    const uint64_t listed_bytes =
+        precision == Precision::float64 ? sizeof(ListedRay<double>) : sizeof(ListedRay<float>);
+    const uint64_t rays    = std::max<uint64_t>(capacity, 1);
+    const uint64_t largest = rays * sizeof(glm::uvec3); // what was counted of each, a storage buffer
     if (largest > gpu.impl->limits.maxStorageBufferRange)
         throw_failure("{} rays need a buffer of {} MiB; the device allows {} MiB", rays, largest >> 20,
                       gpu.impl->limits.maxStorageBufferRange >> 20);
-    // Doubles have no texel format: shaders/ray_list.glsl.
-    const auto make_reals = [&](uint64_t bytes) {
-        return precision == Precision::float64 ? make_buffer(gpu, bytes)
-                                               : make_texel_buffer(gpu, bytes, vk::Format::eR32Sfloat);
-    };
     RayBuffers buffers;
     buffers.precision  = precision;
     buffers.capacity   = capacity;
     buffers.count      = make_buffer(gpu, 16);
     buffers.launch     = make_buffer(gpu, 16);
-    buffers.origins    = make_reals(largest);
-    buffers.deltas     = make_reals(largest);
-    buffers.lengths    = make_reals(rays * real_bytes);
-    buffers.pixels     = make_texel_buffer(gpu, rays * 4, vk::Format::eR32Uint);
+    buffers.list       = make_texel_buffer(gpu, rays * listed_bytes, vk::Format::eR32G32B32A32Uint);
     buffers.hit_pixels = make_buffer(gpu, rays * 4);
     buffers.hit_ts     = make_buffer(gpu, rays * real_bytes);
 
-    const uint64_t groups = (rays - 1) / RAYS_PER_GROUP + 1;
-    buffers.beams         = make_reals(groups * BEAM_STRETCHES * 2 * real_bytes);
-    buffers.beam_work     = make_buffer(gpu, groups * sizeof(uint32_t));
-    buffers.beam_launch   = make_buffer(gpu, 16);
+    const uint64_t groups    = (rays - 1) / RAYS_PER_GROUP + 1;
+    const uint64_t stretches = groups * BEAM_STRETCHES * 2 * real_bytes;
+    // Doubles have no texel format.
+    buffers.beams       = precision == Precision::float64 ? make_buffer(gpu, stretches)
+                                                          : make_texel_buffer(gpu, stretches, vk::Format::eR32G32Sfloat);
+    buffers.beam_work   = make_buffer(gpu, groups * sizeof(uint32_t));
+    buffers.beam_launch = make_buffer(gpu, 16);
     return buffers;
 }
 

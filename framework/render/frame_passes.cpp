@@ -192,7 +192,7 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const Gp
 Buffer make_patch_planes(Gpu& gpu, glm::ivec2 size_px)
 {
     return make_texel_buffer(gpu, pixel_count(level_size(size_px, PATCH_BITS)) * 4 * sizeof(float),
-                             vk::Format::eR32Sfloat);
+                             vk::Format::eR32G32B32A32Sfloat);
 }
 
 TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
@@ -209,10 +209,7 @@ TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
 Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
 {
     return {{"RayCount", rays.count},
-            {"RayOrigins", rays.origins},
-            {"RayDeltas", rays.deltas},
-            {"RayLengths", rays.lengths},
-            {"RayPixels", rays.pixels},
+            {"Rays", rays.list},
             {"HitPixels", rays.hit_pixels},
             {"HitTs", rays.hit_ts},
             {"Beams", rays.beams},
@@ -367,22 +364,19 @@ glm::ivec2 unpack_pixel(uint32_t packed)
 template <typename Real>
 TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, const Buffer* work)
 {
-    using Real3          = glm::vec<3, Real>;
-    const size_t count   = download_as<uint32_t>(gpu, rays.count, 1)[0];
-    const auto   origins = download_as<Real3>(gpu, rays.origins, count);
-    const auto   deltas  = download_as<Real3>(gpu, rays.deltas, count);
-    const auto   pixels  = download_as<uint32_t>(gpu, rays.pixels, count);
-    const auto   hits    = download_as<uint32_t>(gpu, rays.hit_pixels, count);
-    const auto   ts      = download_as<Real>(gpu, rays.hit_ts, count);
-    const auto   works   = work != nullptr ? download_as<glm::uvec3>(gpu, *work, count) : std::vector<glm::uvec3>{};
-    TraceResult  result  = make_trace_result(size_px, work != nullptr);
+    const size_t count  = download_as<uint32_t>(gpu, rays.count, 1)[0];
+    const auto   listed = download_as<ListedRay<Real>>(gpu, rays.list, count);
+    const auto   hits   = download_as<uint32_t>(gpu, rays.hit_pixels, count);
+    const auto   ts     = download_as<Real>(gpu, rays.hit_ts, count);
+    const auto   works  = work != nullptr ? download_as<glm::uvec3>(gpu, *work, count) : std::vector<glm::uvec3>{};
+    TraceResult  result = make_trace_result(size_px, work != nullptr);
     for (size_t i = 0; i < count; ++i) {
-        const glm::ivec2 pixel     = unpack_pixel(pixels[i]);
+        const glm::ivec2 pixel     = unpack_pixel(listed[i].pixel);
         const size_t     index     = pixel_index(pixel, size_px);
         result.status[index]       = static_cast<TraceStatus>((hits[i] >> (2 * PIXEL_BITS)) & (TRACE_SECOND_LAYER - 1));
         result.hit_pixel[index]    = unpack_pixel(hits[i]);
         result.hit_t[index]        = static_cast<double>(ts[i]);
-        result.hit_px_depth[index] = glm::dvec3(origins[i]) + result.hit_t[index] * glm::dvec3(deltas[i]);
+        result.hit_px_depth[index] = glm::dvec3(listed[i].origin) + result.hit_t[index] * glm::dvec3(listed[i].delta);
         if (work == nullptr) continue;
         result.steps[index]           = works[i].x;
         result.depth_fetches[index]   = works[i].y;

@@ -8,11 +8,20 @@
 
 namespace ssrlab {
 
+/// shaders/listed_ray.glsl
+template <typename Real> struct ListedRay {
+    glm::vec<3, Real> origin{0};
+    Real              length_m = 0;
+    glm::vec<3, Real> delta{0};
+    uint32_t          pixel = 0; // with the status of a miss
+};
+static_assert(sizeof(ListedRay<float>) == 2 * 16 && sizeof(ListedRay<double>) == 4 * 16); // texels
+
 /// The list of rays and what each found (shaders/rays.comp, trace.comp).
 struct RayBuffers {
     Precision precision = Precision::float32;
     size_t    capacity  = 0;
-    Buffer    count, launch, origins, deltas, lengths, pixels, hit_pixels, hit_ts;
+    Buffer    count, launch, list, hit_pixels, hit_ts;
     Buffer    beams, beam_work, beam_launch; // of each group of rays (shaders/ray_beams.comp)
 };
 /// The uniform block of shaders/view.glsl.

@@ -19,35 +19,23 @@ namespace {
 
 template <typename Real> void upload_rays(Gpu& gpu, RayBuffers& buffers, std::span<const RayInput> rays)
 {
-    std::vector<glm::vec<3, Real>> origins, deltas;
-    std::vector<Real>              lengths;
-    std::vector<uint32_t>          pixels;
-    for (const RayInput& ray : rays) {
-        origins.emplace_back(ray.origin_px_depth);
-        deltas.emplace_back(ray.delta_px_depth);
-        lengths.push_back(static_cast<Real>(ray.length_m));
-        pixels.push_back(static_cast<uint32_t>(ray.pixel.x) | static_cast<uint32_t>(ray.pixel.y) << PIXEL_BITS |
-                         static_cast<uint32_t>(ray.end_status) << (2 * PIXEL_BITS));
-    }
+    std::vector<ListedRay<Real>> listed;
+    for (const RayInput& ray : rays)
+        listed.push_back({ray.origin_px_depth, static_cast<Real>(ray.length_m), ray.delta_px_depth,
+                          static_cast<uint32_t>(ray.pixel.x) | static_cast<uint32_t>(ray.pixel.y) << PIXEL_BITS |
+                              static_cast<uint32_t>(ray.end_status) << (2 * PIXEL_BITS)});
     const uint32_t count = static_cast<uint32_t>(rays.size());
     upload(gpu, buffers.count, &count, sizeof(count));
-    upload(gpu, buffers.origins, origins.data(), origins.size() * sizeof(origins[0]));
-    upload(gpu, buffers.deltas, deltas.data(), deltas.size() * sizeof(deltas[0]));
-    upload(gpu, buffers.lengths, lengths.data(), lengths.size() * sizeof(Real));
-    upload(gpu, buffers.pixels, pixels.data(), pixels.size() * sizeof(uint32_t));
+    upload(gpu, buffers.list, listed.data(), listed.size() * sizeof(listed[0]));
 }
 
 template <typename Real> std::vector<RayInput> read_rays(Gpu& gpu, const RayBuffers& buffers)
 {
-    const size_t          count   = download_as<uint32_t>(gpu, buffers.count, 1)[0];
-    const auto            origins = download_as<glm::vec<3, Real>>(gpu, buffers.origins, count);
-    const auto            deltas  = download_as<glm::vec<3, Real>>(gpu, buffers.deltas, count);
-    const auto            lengths = download_as<Real>(gpu, buffers.lengths, count);
-    const auto            pixels  = download_as<uint32_t>(gpu, buffers.pixels, count);
+    const size_t          count = download_as<uint32_t>(gpu, buffers.count, 1)[0];
     std::vector<RayInput> rays;
-    for (size_t i = 0; i < count; ++i)
-        rays.push_back({glm::dvec3(origins[i]), glm::dvec3(deltas[i]), static_cast<double>(lengths[i]),
-                        static_cast<TraceStatus>(pixels[i] >> (2 * PIXEL_BITS)), unpack_pixel(pixels[i])});
+    for (const ListedRay<Real>& ray : download_as<ListedRay<Real>>(gpu, buffers.list, count))
+        rays.push_back({glm::dvec3(ray.origin), glm::dvec3(ray.delta), static_cast<double>(ray.length_m),
+                        static_cast<TraceStatus>(ray.pixel >> (2 * PIXEL_BITS)), unpack_pixel(ray.pixel)});
     return rays;
 }
 

@@ -19,8 +19,9 @@ void main()
 {
     uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     if (index >= ray_count) return;
-    ivec2 reflector = unpack_pixel(ray_pixel(index)), target = unpack_pixel(ray_source[index]);
-    Found found = found_by(reflector, ray_origin(index), ray_delta(index), hit_pixel[index], hit_t[index]);
+    ListedRay ray = listed_ray(index);
+    ivec2 reflector = unpack_pixel(ray.pixel), target = unpack_pixel(ray_source[index]);
+    Found found = found_by(ray, hit_pixel[index], hit_t[index]);
     if (found.weight <= 0.0)
     {
         ray_throughput[index] = vec3(0);
@@ -28,7 +29,7 @@ void main()
     }
     vec2 centre     = vec2(reflector) + 0.5;
     vec3 surface_vs = px_to_vs(vec3(centre, imageLoad(depth_image, reflector).x));
-    vec3 arrived_vs = reflect(ray_direction(ray_origin(index), ray_delta(index)), normalize(imageLoad(normal_image, reflector).xyz));
+    vec3 arrived_vs = reflect(ray_direction(ray), normalize(imageLoad(normal_image, reflector).xyz));
     vec3 own        = surface_light(reflector, false, centre) + highlight_along(reflector, false, surface_vs, arrived_vs);
     vec3 throughput = ray_throughput[index] * beta_of(reflector, -arrived_vs, found.weight);
     ray_throughput[index] = throughput * found.attenuation;

@@ -22,7 +22,7 @@ void main()
     ivec2 hit    = unpack_pixel(record);
     bool  mirror = unpack_status(record) == TRACE_HIT && !in_second_layer(record) && reflects(hit);
     if (!mirror || !reflects(pixel)) return;
-    Found found = found_by(pixel, ray_origin(index), ray_delta(index), record, hit_t[index]);
+    Found found = found_by(listed_ray(index), record, hit_t[index]);
     if (found.weight <= 0.0) return;
     vec4 history = imageLoad(history_image, hit);
     vec3 colour  = found.light + (history.rgb - found.light) * beta_of(hit, to_camera_vs(hit), history.a);

@@ -14,10 +14,7 @@ layout(set = 0, binding = 17, scalar) readonly buffer RaySources { uint ray_sour
 layout(set = 0, binding = 18, scalar) readonly buffer RayThroughputs { vec3 ray_throughput[]; };
 #endif
 layout(set = 0, binding = 19, scalar) buffer DerivedCount { uint derived_count; };
-layout(set = 0, binding = 20, scalar) writeonly buffer DerivedOrigins { real3 derived_origin[]; };
-layout(set = 0, binding = 21, scalar) writeonly buffer DerivedDeltas { real3 derived_delta[]; };
-layout(set = 0, binding = 22, scalar) writeonly buffer DerivedLengths { real derived_length_m[]; };
-layout(set = 0, binding = 23, scalar) writeonly buffer DerivedPixels { uint derived_pixel[]; };
+layout(set = 0, binding = 20, rgba32ui) uniform writeonly uimageBuffer DerivedRays;
 layout(set = 0, binding = 24, scalar) writeonly buffer DerivedSources { uint derived_source[]; }; // pixel whose reflection it belongs to
 layout(set = 0, binding = 25, scalar) writeonly buffer DerivedThroughputs { vec3 derived_throughput[]; };
 
@@ -28,7 +25,7 @@ vec3 throughput_of(uint index)
     return ray_throughput[index];
 #else
     if (!reflects(unpack_pixel(ray_pixel(index)))) return vec3(0);
-    Found found = found_by(unpack_pixel(ray_pixel(index)), ray_origin(index), ray_delta(index), hit_pixel[index], hit_t[index]);
+    Found found = found_by(listed_ray(index), hit_pixel[index], hit_t[index]);
     return vec3(found.weight > 0.0 ? found.attenuation : 0.0);
 #endif
 }
@@ -43,7 +40,7 @@ void main()
     vec3  throughput = vec3(0);
     if (follows)
     {
-        arriving   = ray_direction(ray_origin(index), ray_delta(index));
+        arriving   = ray_direction(listed_ray(index));
         normal     = normal_at(hit);
         throughput = throughput_of(index);
         follows    = throughput != vec3(0) && dot(arriving, normal) < real(0);
@@ -59,10 +56,8 @@ void main()
     real2   centre   = real2(hit) + real(0.5);
     real    depth    = imageLoad(depth_image, hit).x;
     Segment segment  = make_segment(centre, depth, mirrored(widen(arriving), normal));
-    derived_origin[derived]     = segment.origin;
-    derived_delta[derived]      = segment.delta;
-    derived_length_m[derived]   = segment.length_m;
-    derived_pixel[derived]      = pack_pixel(hit, segment.end_status);
+    ListedRay next   = ListedRay(segment.origin, segment.length_m, segment.delta, pack_pixel(hit, segment.end_status));
+    STORE_RAY(DerivedRays, derived, next);
     derived_throughput[derived] = throughput;
 #ifdef FURTHER
     derived_source[derived] = ray_source[index];

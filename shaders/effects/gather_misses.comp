@@ -8,10 +8,7 @@
 layout(local_size_x = RAYS_PER_GROUP) in;
 layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[]; };
 layout(set = 0, binding = 10, scalar) buffer DerivedCount { uint derived_count; };
-layout(set = 0, binding = 11, scalar) writeonly buffer DerivedOrigins { real3 derived_origin[]; };
-layout(set = 0, binding = 12, scalar) writeonly buffer DerivedDeltas { real3 derived_delta[]; };
-layout(set = 0, binding = 13, scalar) writeonly buffer DerivedLengths { real derived_length_m[]; };
-layout(set = 0, binding = 14, scalar) writeonly buffer DerivedPixels { uint derived_pixel[]; };
+layout(set = 0, binding = 11, rgba32ui) uniform writeonly uimageBuffer DerivedRays;
 layout(set = 0, binding = 15, scalar) writeonly buffer DerivedSources { uint derived_source[]; }; // index in the first list
 
 void main()
@@ -25,10 +22,8 @@ void main()
     first = subgroupBroadcastFirst(first);
     if (!missed) return;
 
-    uint derived              = first + subgroupBallotExclusiveBitCount(ballot);
-    derived_origin[derived]   = ray_origin(index);
-    derived_delta[derived]    = ray_delta(index);
-    derived_length_m[derived] = ray_length_m(index);
-    derived_pixel[derived]    = ray_pixel(index);
-    derived_source[derived]   = index;
+    uint      derived       = first + subgroupBallotExclusiveBitCount(ballot);
+    ListedRay ray           = listed_ray(index);
+    derived_source[derived] = index;
+    STORE_RAY(DerivedRays, derived, ray);
 }

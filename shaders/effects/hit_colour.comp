@@ -16,7 +16,7 @@ layout(set = 0, binding = 15, r32ui) uniform writeonly uimage2D block_pixel_imag
 // Colour and weight.
 vec4 reflection_of(uint index)
 {
-    Found found = found_by(unpack_pixel(ray_pixel(index)), ray_origin(index), ray_delta(index), hit_pixel[index], hit_t[index]);
+    Found found = found_by(listed_ray(index), hit_pixel[index], hit_t[index]);
     return vec4(found.light * found.attenuation, found.weight);
 }
 

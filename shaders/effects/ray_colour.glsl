@@ -1,5 +1,5 @@
-// What a ray brings back of the surface that it hit, and how much that weighs. After view.glsl, reflecting.glsl and
-// effect/parameters.
+// What a ray brings back of the surface that it hit, and how much that weighs. After ray_list.glsl, view.glsl,
+// reflecting.glsl and effect/parameters.
 #include "effects/blocks.glsl"
 
 layout(set = 0, binding = 11, rgba16f) uniform readonly image2D radiance_image;
@@ -77,9 +77,9 @@ vec3 surface_light(ivec2 pixel, bool second, vec2 point_px)
     return light;
 }
 
-vec3 ray_direction(vec3 origin, vec3 delta)
+vec3 ray_direction(ListedRay ray)
 {
-    return normalize(px_to_direction_vs(origin, origin + delta));
+    return normalize(px_to_direction_vs(ray.origin, ray.origin + ray.delta));
 }
 
 // Reflections toward the viewer show the wrong side of things. 1 = away from the viewer.
@@ -130,20 +130,20 @@ float attenuation_at(float distance_m)
     return 1.0;
 }
 
-// What the ray of this reflector, with this record of its hit, found; nothing if it missed.
-Found found_by(ivec2 reflector, vec3 origin, vec3 delta, uint record, float t)
+// What the ray found, with this record of its hit; nothing if it missed.
+Found found_by(ListedRay ray, uint record, float t)
 {
     if (unpack_status(record) != TRACE_HIT) return Found(vec3(0), 0.0, 0.0);
     ivec2 hit       = unpack_pixel(record);
     bool  second    = in_second_layer(record);
-    vec3  point     = origin + delta * t;
-    vec3  direction = ray_direction(origin, delta), origin_vs = px_to_vs(origin);
+    vec3  point     = ray.origin + ray.delta * t;
+    vec3  direction = ray_direction(ray), origin_vs = px_to_vs(ray.origin);
     vec3  surface_vs = px_to_vs(vec3(vec2(hit) + 0.5, LOAD_LAYER(depth_image, hit, second).x));
     // A. Biro: a surface that is met elsewhere than where the ray goes is the wrong one.
     if (dot(direction, normalize(surface_vs - origin_vs)) < min_direction_cosine) return Found(vec3(0), 0.0, 0.0);
     vec3 light = surface_light(hit, second, point.xy);
 #ifdef CONE
-    if (!second) light = cone_light(vec2(reflector) + 0.5, point.xy, imageLoad(normal_image, reflector).w, light);
+    if (!second) light = cone_light(vec2(unpack_pixel(ray.pixel)) + 0.5, point.xy, imageLoad(normal_image, unpack_pixel(ray.pixel)).w, light);
 #endif
     light += highlight_along(hit, second, surface_vs, direction);
     return Found(light, attenuation_at(distance(px_to_vs(point), origin_vs)),

@@ -2,7 +2,7 @@
 #include "work_group.glsl"
 
 layout(set = 0, binding = 9, scalar) readonly buffer TileCount { uint tile_count; };
-// As texels: ray_list.glsl says why. Two words a tile: x | y << 16, in tiles; pixels traced in those before it.
+// As texels: listed_ray.glsl says why. Two words a tile: x | y << 16, in tiles; pixels traced in those before it.
 layout(set = 0, binding = 10, r32ui) uniform readonly uimageBuffer Tiles;
 
 ivec2 listed_tile()

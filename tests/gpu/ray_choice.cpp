@@ -18,15 +18,10 @@ std::vector<Ray> rays_of(PreparedFrame& frame)
 {
     submit(device(),
            [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, frame.trace, *frame.buffers); });
-    const size_t     count   = download_as<uint32_t>(device(), frame.rays->count, 1)[0];
-    const auto       pixels  = download_as<uint32_t>(device(), frame.rays->pixels, count);
-    const auto       origins = download_as<glm::vec3>(device(), frame.rays->origins, count);
-    const auto       deltas  = download_as<glm::vec3>(device(), frame.rays->deltas, count);
+    const size_t     count = download_as<uint32_t>(device(), frame.rays->count, 1)[0];
     std::vector<Ray> rays;
-    for (size_t i = 0; i < count; ++i)
-        rays.push_back({{pixels[i] & (MAX_IMAGE_PX - 1), (pixels[i] >> PIXEL_BITS) & (MAX_IMAGE_PX - 1)},
-                        glm::dvec3(origins[i]),
-                        glm::dvec3(deltas[i])});
+    for (const ListedRay<float>& ray : download_as<ListedRay<float>>(device(), frame.rays->list, count))
+        rays.push_back({unpack_pixel(ray.pixel), glm::dvec3(ray.origin), glm::dvec3(ray.delta)});
     return rays;
 }
 
@@ -118,22 +113,19 @@ void set_list(PreparedFrame& frame, const std::vector<glm::ivec2>& pixels, const
         return static_cast<uint32_t>(p.x) | static_cast<uint32_t>(p.y) << PIXEL_BITS |
                static_cast<uint32_t>(number) << (2 * PIXEL_BITS);
     };
-    std::vector<uint32_t>  starts, ends;
-    std::vector<glm::vec3> origins, deltas;
+    std::vector<ListedRay<float>> listed;
+    std::vector<uint32_t>         ends;
     for (size_t i = 0; i < pixels.size(); ++i) {
         const bool hit = hits[i].x >= 0;
-        starts.push_back(pack(pixels[i], TRACE_LEFT_SCREEN));
         ends.push_back(hit ? pack(hits[i], TRACE_HIT) : pack({0, 0}, TRACE_LEFT_SCREEN));
-        origins.emplace_back(glm::vec2(pixels[i]) + 0.5F, 0.02F);
-        deltas.emplace_back(10, 10, -0.01F);
+        listed.push_back(
+            {{glm::vec2(pixels[i]) + 0.5F, 0.02F}, 1, {10, 10, -0.01F}, pack(pixels[i], TRACE_LEFT_SCREEN)});
     }
     const std::vector<float> ts(pixels.size(), 0.5F);
     const auto               count = static_cast<uint32_t>(pixels.size());
     RayBuffers&              rays  = *frame.rays;
     upload(device(), rays.count, &count, sizeof(count));
-    upload(device(), rays.origins, origins.data(), origins.size() * sizeof(origins[0]));
-    upload(device(), rays.deltas, deltas.data(), deltas.size() * sizeof(deltas[0]));
-    upload(device(), rays.pixels, starts.data(), starts.size() * 4);
+    upload(device(), rays.list, listed.data(), listed.size() * sizeof(listed[0]));
     upload(device(), rays.hit_pixels, ends.data(), ends.size() * 4);
     upload(device(), rays.hit_ts, ts.data(), ts.size() * 4);
     submit(device(), [&](const vk::raii::CommandBuffer& commands) {

@@ -11,11 +11,7 @@
 namespace ssrlab::test {
 namespace {
 
-struct Rays {
-    std::vector<glm::dvec3> origins, deltas;
-    std::vector<double>     lengths_m;
-    std::vector<uint32_t>   pixels;
-};
+using Rays = std::vector<ListedRay<double>>;
 
 template <typename Real> Rays make_rays(const Picture& picture, const TraceSettings& settings, Precision precision)
 {
@@ -27,11 +23,8 @@ template <typename Real> Rays make_rays(const Picture& picture, const TraceSetti
     submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, passes, *picture.buffers); });
     const size_t count = download_as<uint32_t>(device(), buffers.count, 1)[0];
     Rays         rays;
-    for (const auto& v : download_as<glm::vec<3, Real>>(device(), buffers.origins, count)) rays.origins.emplace_back(v);
-    for (const auto& v : download_as<glm::vec<3, Real>>(device(), buffers.deltas, count)) rays.deltas.emplace_back(v);
-    for (const Real v : download_as<Real>(device(), buffers.lengths, count))
-        rays.lengths_m.push_back(static_cast<double>(v));
-    rays.pixels = download_as<uint32_t>(device(), buffers.pixels, count);
+    for (const ListedRay<Real>& ray : download_as<ListedRay<Real>>(device(), buffers.list, count))
+        rays.push_back({ray.origin, static_cast<double>(ray.length_m), ray.delta, ray.pixel});
     return rays;
 }
 
@@ -47,32 +40,31 @@ struct Worst {
 Worst compare(const Picture& picture, const TraceSettings& settings, const Rays& rays)
 {
     Worst worst;
-    worst.rays        = rays.pixels.size();
+    worst.rays        = rays.size();
     size_t reflecting = 0;
     for (int y = 0; y < picture.view.size_px.y; ++y)
         for (int x = 0; x < picture.view.size_px.x; ++x) reflecting += reflects(picture.image, {x, y});
-    EXPECT_EQ(rays.pixels.size(), reflecting);
+    EXPECT_EQ(rays.size(), reflecting);
     std::vector<bool> seen(picture.image.depth.size());
-    for (size_t i = 0; i < rays.pixels.size(); ++i) {
-        const glm::ivec2 pixel(rays.pixels[i] & (MAX_IMAGE_PX - 1),
-                               (rays.pixels[i] >> PIXEL_BITS) & (MAX_IMAGE_PX - 1));
+    for (size_t i = 0; i < rays.size(); ++i) {
+        const glm::ivec2 pixel = unpack_pixel(rays[i].pixel);
         EXPECT_FALSE(seen.at(at(picture.image, pixel.x, pixel.y)))
             << "two rays for pixel (" << pixel.x << ", " << pixel.y << ")";
         seen[at(picture.image, pixel.x, pixel.y)] = true;
         const ScreenRay ray                       = make_screen_ray(picture.image, pixel, settings);
         EXPECT_TRUE(ray.traced);
-        worst.other_end += static_cast<TraceStatus>(rays.pixels[i] >> (2 * PIXEL_BITS)) !=
-                           ray.end_status; // two limits within rounding
+        worst.other_end +=
+            static_cast<TraceStatus>(rays[i].pixel >> (2 * PIXEL_BITS)) != ray.end_status; // two limits within rounding
         const double nearest = std::max(ray.origin_px_depth.z, std::abs(ray.origin_px_depth.z + ray.delta_px_depth.z));
         worst.origin_px =
-            std::max(worst.origin_px, glm::length(glm::dvec2(rays.origins[i]) - glm::dvec2(ray.origin_px_depth)));
+            std::max(worst.origin_px, glm::length(glm::dvec2(rays[i].origin) - glm::dvec2(ray.origin_px_depth)));
         worst.delta_px =
-            std::max(worst.delta_px, glm::length(glm::dvec2(rays.deltas[i]) - glm::dvec2(ray.delta_px_depth)));
-        worst.depth = std::max({worst.depth, gap(rays.origins[i].z, ray.origin_px_depth.z) / nearest,
-                                gap(rays.deltas[i].z, ray.delta_px_depth.z) / nearest});
+            std::max(worst.delta_px, glm::length(glm::dvec2(rays[i].delta) - glm::dvec2(ray.delta_px_depth)));
+        worst.depth = std::max({worst.depth, gap(rays[i].origin.z, ray.origin_px_depth.z) / nearest,
+                                gap(rays[i].delta.z, ray.delta_px_depth.z) / nearest});
         if (glm::length(ray.delta_px_depth) > 0)
             worst.length =
-                std::max(worst.length, gap(rays.lengths_m[i], ray.length_m - settings.ray_offset_m) / ray.length_m);
+                std::max(worst.length, gap(rays[i].length_m, ray.length_m - settings.ray_offset_m) / ray.length_m);
     }
     return worst;
 }
