@@ -8,7 +8,6 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = CONSTANT_PYRAMID_KIND) const int pyramid_kind = PYRAMID_OCCUPANCY;
 // Level 1 is made from pixels, in a pipeline of its own: a branch would run both sides.
 layout(constant_id = CONSTANT_FROM_PIXELS) const int from_pixels = 0;
-layout(set = 0, binding = 0, r32f) uniform readonly image2D depth_image;
 layout(set = 0, binding = 1, rg32ui) uniform uimageBuffer depth_pyramid;
 layout(push_constant, scalar) uniform Push
 {
@@ -17,6 +16,8 @@ layout(push_constant, scalar) uniform Push
     ivec2 source_offset;
     ivec2 offset;      // where this level lies in the atlas
     int   atlas_width; // cells
+    int   first_pair;  // level 0 follows the atlas, two pixels in the place of a cell
+    int   pairs_a_row;
 };
 
 // The slab's back, rounded outward: wider than any rounding of the test on the pixel itself.
@@ -33,9 +34,10 @@ struct Range
 };
 const Range nothing = Range(0, 0x7FFFFFFF);
 
-Range pixel_range(ivec2 pixel)
+// bits: of its depth, or anything outside the picture.
+Range pixel_range(ivec2 pixel, uint bits)
 {
-    float depth = any(greaterThanEqual(pixel, source_size)) ? 0.0 : imageLoad(depth_image, pixel).x;
+    float depth = any(greaterThanEqual(pixel, source_size)) ? 0.0 : uintBitsToFloat(bits);
     if (!(depth > 0.0)) return nothing;
     return Range(floatBitsToInt(depth), pyramid_kind == PYRAMID_NEAREST ? 0 : max(floatBitsToInt(outer_back(depth)), 0));
 }
@@ -115,7 +117,10 @@ void main()
     uvec2 cell;
     if (from_pixels != 0)
     {
-        Range a = pixel_range(first), b = pixel_range(first + right), c = pixel_range(first + below), d = pixel_range(first + right + below);
+        int   pair  = first_pair + first.y * pairs_a_row + position.x;
+        uvec2 upper = imageLoad(depth_pyramid, pair).xy, lower = imageLoad(depth_pyramid, pair + pairs_a_row).xy;
+        Range a = pixel_range(first, upper.x), b = pixel_range(first + right, upper.y);
+        Range c = pixel_range(first + below, lower.x), d = pixel_range(first + right + below, lower.y);
         cell    = cell_of_range(unite(unite(a, b), unite(c, d)));
         cell.y  = bins_of_pixel(cell, a) | bins_of_pixel(cell, b) | bins_of_pixel(cell, c) | bins_of_pixel(cell, d);
     }

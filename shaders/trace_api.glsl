@@ -18,7 +18,8 @@ layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1;
 
 layout(set = 0, binding = 1, r32f) uniform readonly image2D depth_image;
 layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image;
-layout(set = 0, binding = 3, r32ui) uniform readonly uimageBuffer depth_pyramid; // levels 1, 2, … in one atlas, two words a cell
+layout(set = 0, binding = 3, rg32ui) uniform readonly uimageBuffer depth_pyramid; // levels 1, 2, … in one atlas, then the pixels' depths, two in the place of a cell
+layout(set = 0, binding = 15, r32ui) uniform readonly uimageBuffer pyramid_words; // the same word by word
 
 struct Ray
 {
@@ -125,6 +126,8 @@ int pyramid_levels()
 bool levels_stacked   = size_px.y > size_px.x;
 int  pyramid_row_bits = levels_stacked ? bits_of((size_px.x + 1) / 2) : pyramid_levels();
 int  pyramid_end      = 1 << (pyramid_levels() + (levels_stacked ? pyramid_row_bits : 0));
+int  first_pair       = levels_stacked ? pyramid_end : ((size_px.y + 1) / 2) << pyramid_row_bits;
+int  pair_row_bits    = max(bits_of(size_px.x) - 1, 0);
 
 // Where a cell of level >= 1 lies in the atlas.
 int pyramid_index(ivec2 cell, int level)
@@ -132,16 +135,26 @@ int pyramid_index(ivec2 cell, int level)
     return (cell.y << pyramid_row_bits) + pyramid_end - (pyramid_end >> (level - 1)) + cell.x;
 }
 
-// Word by word: lavapipe reads 32 bits for all lanes at once, 64 bits lane by lane; and who looks at one word reads one.
-uvec2 load_pyramid(int index)
+// Where two pixels lie, of which this is one.
+int pixel_pair_index(ivec2 pixel)
 {
-    return uvec2(imageLoad(depth_pyramid, 2 * index).x, imageLoad(depth_pyramid, 2 * index + 1).x);
+    return first_pair + (pixel.y << pair_row_bits) + (pixel.x >> 1);
 }
 
 // A cell of level >= 1 (pyramid_cell.glsl says what it knows).
 uvec2 load_pyramid(ivec2 cell, int level)
 {
-    return load_pyramid(pyramid_index(cell, level));
+    return imageLoad(depth_pyramid, pyramid_index(cell, level)).xy;
+}
+
+// The nearest front of a cell of any level, one word: at level 0 the depth of the pixel, above no pixel of the cell is nearer.
+real fetch_front(ivec2 cell, int level)
+{
+    bool leaf = level == 0;
+    COUNT_IF(depth_fetches, leaf);
+    COUNT_IF(pyramid_fetches, !leaf);
+    int word = 2 * (leaf ? pixel_pair_index(cell) : pyramid_index(cell, level)) + (leaf ? cell.x & 1 : 0);
+    return real(uintBitsToFloat(imageLoad(pyramid_words, word).x));
 }
 
 // ---- Beams
@@ -223,8 +236,8 @@ bool touches_surface(Ray ray, ivec2 pixel, real z_a, real z_b)
     return accepts(ray, pixel, interval_touches(fetch_depth(pixel), depth_interval(ray, z_a, z_b)), true);
 }
 
-// What a cell of any level holds. Both images are read whatever the level: lanes of one group stand on different levels, and a branch would run
-// both sides anyway. The read that is in vain goes to the same place for all.
+// What a cell of any level holds. Pixels and cells are read from one place: lanes of one group stand on different levels, and a branch would run
+// both sides.
 struct CellContent
 {
     real  depth; // level 0
@@ -236,7 +249,9 @@ CellContent fetch_cell(ivec2 cell, int level)
     bool leaf = level == 0;
     COUNT_IF(depth_fetches, leaf);
     COUNT_IF(pyramid_fetches, !leaf);
-    return CellContent(real(imageLoad(depth_image, leaf ? cell : ivec2(0)).x), load_pyramid(leaf ? 0 : pyramid_index(cell, level)));
+    uvec2 texel = imageLoad(depth_pyramid, leaf ? pixel_pair_index(cell) : pyramid_index(cell, level)).xy;
+    uint  bits  = (cell.x & 1) != 0 ? texel.y : texel.x;
+    return CellContent(real(uintBitsToFloat(leaf ? bits : 0u)), texel); // a cell's words may be no usable number
 }
 
 // May the ray touch a surface inside this cell? At level 0 the answer is touches_surface()'s; above, no means no for all its pixels.

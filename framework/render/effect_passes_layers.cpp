@@ -24,7 +24,8 @@ TechniquePasses make_layer_passes(Gpu& gpu, const PreparedFrame& frame, const Ra
                                     {"depth_image", buffers.second_layer->depth},
                                     {"normal_image", buffers.second_layer->normal},
                                     {"material_image", buffers.second_layer->material},
-                                    {"depth_pyramid", buffers.second_pyramid.words}};
+                                    {"depth_pyramid", buffers.second_pyramid.cells},
+                                    {"pyramid_words", buffers.second_pyramid.words}};
     bindings.merge(bindings_of(buffers, rays));
     return make_technique_passes(gpu, frame, rays, bindings);
 }

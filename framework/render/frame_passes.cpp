@@ -130,10 +130,11 @@ PyramidAtlas pyramid_atlas(glm::ivec2 size_px)
 {
     const glm::ivec2 largest = level_size(size_px, 1);
     PyramidAtlas     atlas;
-    atlas.levels  = bits_of(std::max(size_px.x, size_px.y));
-    atlas.stacked = size_px.y > size_px.x;
-    atlas.size    = atlas.stacked ? glm::ivec2(1 << bits_of(largest.x), 1 << atlas.levels)
-                                  : glm::ivec2(1 << atlas.levels, largest.y);
+    atlas.levels      = bits_of(std::max(size_px.x, size_px.y));
+    atlas.stacked     = size_px.y > size_px.x;
+    atlas.pairs_a_row = 1 << std::max(bits_of(size_px.x) - 1, 0);
+    atlas.size        = atlas.stacked ? glm::ivec2(1 << bits_of(largest.x), 1 << atlas.levels)
+                                      : glm::ivec2(1 << atlas.levels, largest.y);
     return atlas;
 }
 
@@ -151,9 +152,10 @@ GpuImage make_pyramid_image(Gpu& gpu, glm::ivec2 size_px, vk::Format format)
 
 DepthPyramid make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px)
 {
-    const glm::ivec2 size = pyramid_atlas(size_px).size;
-    DepthPyramid     pyramid;
-    pyramid.cells = make_texel_buffer(gpu, pixel_count(size) * 8, vk::Format::eR32G32Uint);
+    const PyramidAtlas atlas = pyramid_atlas(size_px);
+    const glm::ivec2   pairs(atlas.pairs_a_row, 2 * level_size(size_px, 1).y); // level 1 is made of whole squares
+    DepthPyramid       pyramid;
+    pyramid.cells = make_texel_buffer(gpu, (pixel_count(atlas.size) + pixel_count(pairs)) * 8, vk::Format::eR32G32Uint);
     pyramid.words = make_texel_view(gpu, pyramid.cells, vk::Format::eR32Uint);
     return pyramid;
 }
@@ -165,7 +167,7 @@ std::vector<PyramidPush> pyramid_levels(glm::ivec2 size_px, int top)
     for (int level = 1; level <= std::min(atlas.levels, top); ++level)
         levels.push_back({level_size(size_px, level - 1), level_size(size_px, level),
                           level > 1 ? atlas.first_cell(level - 1) : glm::ivec2(0), atlas.first_cell(level),
-                          atlas.size.x});
+                          atlas.size.x, static_cast<int>(pixel_count(atlas.size)), atlas.pairs_a_row});
     return levels;
 }
 
@@ -178,14 +180,18 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const Gp
         Constants constants = settings_constants(frame, Precision::float32);
         constants.add(CONSTANT_PYRAMID_KIND, static_cast<int32_t>(parameter_or(frame, "pyramid", PYRAMID_OCCUPANCY)));
         constants.add(CONSTANT_FROM_PIXELS, static_cast<int32_t>(from_pixels));
-        return make_compute_pass(gpu, shader, {{"depth_image", depth}, {"depth_pyramid", pyramid.cells}}, constants,
-                                     sizeof(PyramidPush));
+        return make_compute_pass(gpu, shader, {{"depth_pyramid", pyramid.cells}}, constants, sizeof(PyramidPush));
     };
     PyramidPasses passes;
     passes.from_pixels = make(true);
     passes.from_cells  = make(false);
-    passes.levels =
-        pyramid_levels(frame.buffers->gbuffer->view.size_px, static_cast<int>(parameter_or(frame, "top_level", 31)));
+    passes.levels      = pyramid_levels(depth.size_px, static_cast<int>(parameter_or(frame, "top_level", 31)));
+
+    const PyramidAtlas  atlas  = pyramid_atlas(depth.size_px);
+    vk::BufferImageCopy region = whole_image(depth);
+    region.bufferOffset        = pixel_count(atlas.size) * 8;
+    region.bufferRowLength     = static_cast<uint32_t>(atlas.pairs_a_row) * 2;
+    passes.pixels              = {*depth.image, *pyramid.cells.buffer, region};
     return passes;
 }
 
@@ -222,7 +228,8 @@ Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
             {"depth_image", buffers.gbuffer->depth},
             {"normal_image", buffers.gbuffer->normal},
             {"material_image", buffers.gbuffer->material},
-            {"depth_pyramid", buffers.pyramid.words}};
+            {"depth_pyramid", buffers.pyramid.cells},
+            {"pyramid_words", buffers.pyramid.words}};
 }
 
 ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch, int items_per_group)
@@ -347,6 +354,11 @@ void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& pas
 
 void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses& passes)
 {
+    if (passes.pixels.image) {
+        commands.copyImageToBuffer(passes.pixels.image, vk::ImageLayout::eGeneral, passes.pixels.buffer,
+                                   passes.pixels.region);
+        barrier(commands);
+    }
     for (const PyramidPush& level : passes.levels) {
         const ComputePass& pass = &level == &passes.levels.front() ? passes.from_pixels : passes.from_cells;
         push(commands, pass, level);

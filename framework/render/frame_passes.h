@@ -36,21 +36,22 @@ struct DerivedRays {
     Buffer     throughputs; // bounces: what a ray's light still weighs in the reflection it belongs to, RGB
 };
 
-/// Where the levels >= 1 of a pyramid lie in one atlas: side by side, or one above the other where the picture is taller than wide.
+/// Where the levels >= 1 of a pyramid lie in one atlas, side by side, or one above the other where the picture is taller than wide.
 /// Level L begins at side - (side >> (L - 1)), side being the atlas's width or height. Its width is a power of two.
 struct PyramidAtlas {
     glm::ivec2 size{0, 0};      // cells
     int        levels  = 0;     // above level 0, which is the picture itself
     bool       stacked = false; // one above the other
+    int pairs_a_row = 1; // of the depth pyramid's level 0, which follows the atlas: two pixels in the place of a cell
 
     glm::ivec2 first_cell(int level) const;
 };
 PyramidAtlas pyramid_atlas(glm::ivec2 size_px);
 GpuImage     make_pyramid_image(Gpu& gpu, glm::ivec2 size_px, vk::Format format);
 
-/// The depth pyramid, row by row of its atlas.
+/// The depth pyramid: its atlas row by row, then the pixels' depths.
 struct DepthPyramid {
-    Buffer               cells;           // as texels: both words of a cell (shaders/pyramid_cell.glsl)
+    Buffer               cells;           // as texels: both words of a cell (shaders/pyramid_cell.glsl), or two pixels
     vk::raii::BufferView words = nullptr; // as texels: each word
 };
 DepthPyramid make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px);
@@ -93,10 +94,18 @@ struct FrameBuffers {
 struct PyramidPush {
     glm::ivec2 source_size, size, source_offset, offset;
     int        atlas_width = 0;
+    int        first_pair = 0, pairs_a_row = 0; // level 0
+};
+/// Level 0 of the depth pyramid is a copy of the depth image.
+struct DepthCopy {
+    vk::Image           image  = nullptr; // null: none is made
+    vk::Buffer          buffer = nullptr;
+    vk::BufferImageCopy region = {};
 };
 struct PyramidPasses {
     ComputePass              from_pixels, from_cells; // level 1; the others
-    std::vector<PyramidPush> levels;                  // empty: the technique reads no pyramid
+    std::vector<PyramidPush> levels;                  // above level 0
+    DepthCopy                pixels = {};
 };
 
 /// The technique on one list of rays.

@@ -23,6 +23,12 @@ struct Pyramid {
         const glm::ivec2 place = atlas.first_cell(level) + glm::ivec2(x, y);
         return cells.at(pixel_index(place, atlas.size));
     }
+    uint32_t pixel(int x, int y) const
+    {
+        const glm::uvec2 pair =
+            cells.at(pixel_count(atlas.size) + pixel_index({x / 2, y}, {atlas.pairs_a_row, size_px.y}));
+        return x % 2 == 0 ? pair.x : pair.y;
+    }
 };
 
 Pyramid build(const Picture& picture, const TraceSettings& settings, double kind)
@@ -31,9 +37,9 @@ Pyramid build(const Picture& picture, const TraceSettings& settings, double kind
     const auto       frame = prepare_frame(device(), picture.buffers, hiz,
                                            values_of(hiz, {{"pyramid", kind}, {"top_level", 14}}), {settings});
     submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_pyramid(commands, frame->pyramid); });
-    const PyramidAtlas atlas = pyramid_atlas(picture.view.size_px);
-    const auto         count = pixel_count(atlas.size);
-    return {picture.view.size_px, atlas, download_as<glm::uvec2>(device(), picture.buffers->pyramid.cells, count)};
+    const Buffer& cells = picture.buffers->pyramid.cells;
+    return {picture.view.size_px, pyramid_atlas(picture.view.size_px),
+            download_as<glm::uvec2>(device(), cells, cells.bytes / sizeof(glm::uvec2))};
 }
 
 /// Levels: as many halvings, rounded up, as it takes to reach one cell.
@@ -126,6 +132,20 @@ TEST_P(DepthPyramid, EqualsBruteForceOnRandomDepth)
                                               TraceSettings{.thickness_m = std::numeric_limits<double>::infinity()},
                                               TraceSettings{.thickness_m = 0.2, .thickness_relative = true}})
             expect_cells(build(picture, settings, kind), picture.image, settings, kind);
+}
+
+TEST_P(DepthPyramid, KeepsTheDepthOfEveryPixelAsLevel0)
+{
+    const glm::ivec2 size    = GetParam();
+    const Picture    picture = make_picture(random_gbuffer(bench_view(size), 9));
+    const Pyramid    pyramid = build(picture, {}, PYRAMID_OCCUPANCY);
+    for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x) {
+            const float depth = picture.image.depth[at(picture.image, x, y)];
+            ASSERT_EQ(pyramid.pixel(x, y),
+                      std::bit_cast<uint32_t>(depth > 0 ? depth : static_cast<float>(BACKGROUND_DEPTH)))
+                << size.x << "x" << size.y << ", pixel (" << x << ", " << y << ")";
+        }
 }
 
 // A last row or column that a level drops would hide the only texel that is near.

@@ -8,10 +8,7 @@ int top = min(top_level, pyramid_levels());
 // Is the ray, where it leaves the cell or enters it, behind the cell's nearest depth?
 bool gets_behind(Ray ray, CellWalk walk)
 {
-    CellContent content = fetch_cell(cell_of(walk), walk.level);
-    real        z_far   = min(depth_at(ray, walk.t), depth_at(ray, t_exit(walk)));
-    bool pixel_behind = content.depth >= z_far, cell_behind = cell_nearest(content.node) >= float(z_far);
-    return walk.level == 0 ? pixel_behind : cell_behind;
+    return fetch_front(cell_of(walk), walk.level) >= min(depth_at(ray, walk.t), depth_at(ray, t_exit(walk)));
 }
 
 void visit(Ray ray, inout CellWalk walk, int number)

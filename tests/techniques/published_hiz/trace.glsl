@@ -1,14 +1,6 @@
 // Written from the description, in its own terms: position.xy in uv, a cell's surface is one plane, the ray advances to the nearest of the
 // cell's two borders and that plane. It ends where level 0 is passed downward; a hit if that is within the thickness.
 
-// A plane that lies no farther than any front of the cell's pixels.
-real surface_of(ivec2 cell, int level)
-{
-    if (level == 0) return fetch_depth(cell);
-    COUNT(pyramid_fetches);
-    return real(cell_nearest(load_pyramid(cell, level)));
-}
-
 TraceResult trace(Ray ray)
 {
     real3 origin    = real3(ray.origin.xy / real2(size_px), ray.origin.z);
@@ -29,7 +21,7 @@ TraceResult trace(Ray ray)
         int   on_level  = level;
         real2 cells     = real2(size_px) / real2(1 << on_level);
         cell            = clamp(ivec2(floor(position.xy * cells)), ivec2(0), (size_px - 1) >> on_level);
-        real  surface   = surface_of(cell, on_level);
+        real  surface   = fetch_front(cell, on_level);
         real2 border    = (real2(cell) + floor_offset) / cells + uv_offset;
         real2 t_border  = border * inverse.xy - origin.xy * inverse.xy;
         real  t_leave   = min(t_border.x, t_border.y);
