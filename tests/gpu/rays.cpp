@@ -46,25 +46,25 @@ Worst compare(const Picture& picture, const TraceSettings& settings, const Rays&
         for (int x = 0; x < picture.view.size_px.x; ++x) reflecting += reflects(picture.image, {x, y});
     EXPECT_EQ(rays.size(), reflecting);
     std::vector<bool> seen(picture.image.depth.size());
-    for (size_t i = 0; i < rays.size(); ++i) {
-        const glm::ivec2 pixel = unpack_pixel(rays[i].pixel);
+    for (const ListedRay<double>& listed : rays) {
+        const glm::ivec2 pixel = unpack_pixel(listed.pixel);
         EXPECT_FALSE(seen.at(at(picture.image, pixel.x, pixel.y)))
             << "two rays for pixel (" << pixel.x << ", " << pixel.y << ")";
         seen[at(picture.image, pixel.x, pixel.y)] = true;
         const ScreenRay ray                       = make_screen_ray(picture.image, pixel, settings);
         EXPECT_TRUE(ray.traced);
         worst.other_end +=
-            static_cast<TraceStatus>(rays[i].pixel >> (2 * PIXEL_BITS)) != ray.end_status; // two limits within rounding
+            static_cast<TraceStatus>(listed.pixel >> (2 * PIXEL_BITS)) != ray.end_status; // two limits within rounding
         const double nearest = std::max(ray.origin_px_depth.z, std::abs(ray.origin_px_depth.z + ray.delta_px_depth.z));
         worst.origin_px =
-            std::max(worst.origin_px, glm::length(glm::dvec2(rays[i].origin) - glm::dvec2(ray.origin_px_depth)));
+            std::max(worst.origin_px, glm::length(glm::dvec2(listed.origin) - glm::dvec2(ray.origin_px_depth)));
         worst.delta_px =
-            std::max(worst.delta_px, glm::length(glm::dvec2(rays[i].delta) - glm::dvec2(ray.delta_px_depth)));
-        worst.depth = std::max({worst.depth, gap(rays[i].origin.z, ray.origin_px_depth.z) / nearest,
-                                gap(rays[i].delta.z, ray.delta_px_depth.z) / nearest});
+            std::max(worst.delta_px, glm::length(glm::dvec2(listed.delta) - glm::dvec2(ray.delta_px_depth)));
+        worst.depth = std::max({worst.depth, gap(listed.origin.z, ray.origin_px_depth.z) / nearest,
+                                gap(listed.delta.z, ray.delta_px_depth.z) / nearest});
         if (glm::length(ray.delta_px_depth) > 0)
             worst.length =
-                std::max(worst.length, gap(rays[i].length_m, ray.length_m - settings.ray_offset_m) / ray.length_m);
+                std::max(worst.length, gap(listed.length_m, ray.length_m - settings.ray_offset_m) / ray.length_m);
     }
     return worst;
 }
