@@ -19,12 +19,6 @@ int nearest_bin(uvec2 cell)
     return int(cell.x) >> bin_shift(cell);
 }
 
-// No pixel of the cell is nearer.
-float cell_nearest(uvec2 cell)
-{
-    return uintBitsToFloat(cell.x);
-}
-
 // Bins first to last, counted from the nearest; 0 <= first <= last <= 31, else any bits.
 uint bins_between(int first, int last)
 {

@@ -18,8 +18,9 @@ layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1;
 
 layout(set = 0, binding = 1, r32f) uniform readonly image2D depth_image;
 layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image;
-layout(set = 0, binding = 3, rg32ui) uniform readonly uimageBuffer depth_pyramid; // levels 1, 2, … in one atlas, then the pixels' depths, two in the place of a cell
-layout(set = 0, binding = 15, r32ui) uniform readonly uimageBuffer pyramid_words; // the same word by word
+// Levels 1, 2, … in one atlas, then the pixels' depths, two in the place of a cell; and the same word by word.
+layout(set = 0, binding = 3, rg32ui) uniform readonly uimageBuffer depth_pyramid;
+layout(set = 0, binding = 15, r32ui) uniform readonly uimageBuffer pyramid_words;
 
 struct Ray
 {

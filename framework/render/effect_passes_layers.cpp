@@ -72,10 +72,9 @@ std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame
     const RayBuffers& rays    = *frame.rays;
     const glm::ivec2  size_px = frame.buffers->gbuffer->view.size_px;
     TraceResult       result  = read_result<float>(gpu, size_px, rays, nullptr);
-    const size_t      count   = download_as<uint32_t>(gpu, rays.count, 1)[0];
-    const auto        listed  = download_as<ListedRay<float>>(gpu, rays.list, count);
-    const auto        records = download_as<uint32_t>(gpu, rays.hit_pixels, count);
-    for (size_t i = 0; i < count; ++i) {
+    const auto        listed  = read_list<float>(gpu, rays);
+    const auto        records = download_as<uint32_t>(gpu, rays.hit_pixels, listed.size());
+    for (size_t i = 0; i < listed.size(); ++i) {
         if ((records[i] >> (2 * PIXEL_BITS) & TRACE_SECOND_LAYER) != 0) continue;
         const glm::ivec2 pixel                     = unpack_pixel(listed[i].pixel);
         result.status[pixel_index(pixel, size_px)] = TraceStatus::not_traced;

@@ -368,6 +368,12 @@ void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses
     }
 }
 
+uint32_t pack_pixel(glm::ivec2 pixel, int number)
+{
+    return static_cast<uint32_t>(pixel.x) | static_cast<uint32_t>(pixel.y) << PIXEL_BITS |
+           static_cast<uint32_t>(number) << (2 * PIXEL_BITS);
+}
+
 glm::ivec2 unpack_pixel(uint32_t packed)
 {
     return {packed & (MAX_IMAGE_PX - 1), (packed >> PIXEL_BITS) & (MAX_IMAGE_PX - 1)};
@@ -376,8 +382,8 @@ glm::ivec2 unpack_pixel(uint32_t packed)
 template <typename Real>
 TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, const Buffer* work)
 {
-    const size_t count  = download_as<uint32_t>(gpu, rays.count, 1)[0];
-    const auto   listed = download_as<ListedRay<Real>>(gpu, rays.list, count);
+    const auto   listed = read_list<Real>(gpu, rays);
+    const size_t count  = listed.size();
     const auto   hits   = download_as<uint32_t>(gpu, rays.hit_pixels, count);
     const auto   ts     = download_as<Real>(gpu, rays.hit_ts, count);
     const auto   works  = work != nullptr ? download_as<glm::uvec3>(gpu, *work, count) : std::vector<glm::uvec3>{};

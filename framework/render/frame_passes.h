@@ -181,8 +181,14 @@ void record_classification(const vk::raii::CommandBuffer& commands, const TraceP
 void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers);
 void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses& passes);
 
-/// The pixel of shaders/view.glsl, pack_pixel.
+/// A pixel and a number in one word, as in shaders/view.glsl.
+uint32_t   pack_pixel(glm::ivec2 pixel, int number);
 glm::ivec2 unpack_pixel(uint32_t packed);
+/// The list of rays as it is on the device.
+template <typename Real> std::vector<ListedRay<Real>> read_list(Gpu& gpu, const RayBuffers& rays)
+{
+    return download_as<ListedRay<Real>>(gpu, rays.list, download_as<uint32_t>(gpu, rays.count, 1)[0]);
+}
 
 template <typename Real>
 TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, const Buffer* work);

@@ -22,8 +22,7 @@ template <typename Real> void upload_rays(Gpu& gpu, RayBuffers& buffers, std::sp
     std::vector<ListedRay<Real>> listed;
     for (const RayInput& ray : rays)
         listed.push_back({ray.origin_px_depth, static_cast<Real>(ray.length_m), ray.delta_px_depth,
-                          static_cast<uint32_t>(ray.pixel.x) | static_cast<uint32_t>(ray.pixel.y) << PIXEL_BITS |
-                              static_cast<uint32_t>(ray.end_status) << (2 * PIXEL_BITS)});
+                          pack_pixel(ray.pixel, static_cast<int>(ray.end_status))});
     const uint32_t count = static_cast<uint32_t>(rays.size());
     upload(gpu, buffers.count, &count, sizeof(count));
     upload(gpu, buffers.list, listed.data(), listed.size() * sizeof(listed[0]));
@@ -31,9 +30,8 @@ template <typename Real> void upload_rays(Gpu& gpu, RayBuffers& buffers, std::sp
 
 template <typename Real> std::vector<RayInput> read_rays(Gpu& gpu, const RayBuffers& buffers)
 {
-    const size_t          count = download_as<uint32_t>(gpu, buffers.count, 1)[0];
     std::vector<RayInput> rays;
-    for (const ListedRay<Real>& ray : download_as<ListedRay<Real>>(gpu, buffers.list, count))
+    for (const ListedRay<Real>& ray : read_list<Real>(gpu, buffers))
         rays.push_back({glm::dvec3(ray.origin), glm::dvec3(ray.delta), static_cast<double>(ray.length_m),
                         static_cast<TraceStatus>(ray.pixel >> (2 * PIXEL_BITS)), unpack_pixel(ray.pixel)});
     return rays;

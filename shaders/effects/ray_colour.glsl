@@ -143,7 +143,8 @@ Found found_by(ListedRay ray, uint record, float t)
     if (dot(direction, normalize(surface_vs - origin_vs)) < min_direction_cosine) return Found(vec3(0), 0.0, 0.0);
     vec3 light = surface_light(hit, second, point.xy);
 #ifdef CONE
-    if (!second) light = cone_light(vec2(unpack_pixel(ray.pixel)) + 0.5, point.xy, imageLoad(normal_image, unpack_pixel(ray.pixel)).w, light);
+    ivec2 reflector = unpack_pixel(ray.pixel);
+    if (!second) light = cone_light(vec2(reflector) + 0.5, point.xy, imageLoad(normal_image, reflector).w, light);
 #endif
     light += highlight_along(hit, second, surface_vs, direction);
     return Found(light, attenuation_at(distance(px_to_vs(point), origin_vs)),

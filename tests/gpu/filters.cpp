@@ -21,7 +21,7 @@ Reflection upsample(const Picture& picture, double resolution, double weights, c
     Reflection reflection(picture.image.depth.size(), nothing_reflects);
     for (const uint32_t block : download_as<uint32_t>(device(), picture.buffers->block_pixel)) {
         if (block == NO_PIXEL) continue;
-        const glm::ivec2 pixel(block & (MAX_IMAGE_PX - 1), (block >> PIXEL_BITS) & (MAX_IMAGE_PX - 1));
+        const glm::ivec2 pixel                          = unpack_pixel(block);
         reflection[at(picture.image, pixel.x, pixel.y)] = traced(pixel);
     }
     set_reflection(picture, reflection);

@@ -18,9 +18,8 @@ std::vector<Ray> rays_of(PreparedFrame& frame)
 {
     submit(device(),
            [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, frame.trace, *frame.buffers); });
-    const size_t     count = download_as<uint32_t>(device(), frame.rays->count, 1)[0];
     std::vector<Ray> rays;
-    for (const ListedRay<float>& ray : download_as<ListedRay<float>>(device(), frame.rays->list, count))
+    for (const ListedRay<float>& ray : read_list<float>(device(), *frame.rays))
         rays.push_back({unpack_pixel(ray.pixel), glm::dvec3(ray.origin), glm::dvec3(ray.delta)});
     return rays;
 }
@@ -109,17 +108,13 @@ TEST(SeveralRays, StartAtTheCentreWhereThePlaneIsSeenEdgeOn)
 /// Puts a list of rays and their ends in the place of the traced one.
 void set_list(PreparedFrame& frame, const std::vector<glm::ivec2>& pixels, const std::vector<glm::ivec2>& hits)
 {
-    const auto pack = [](glm::ivec2 p, int number) {
-        return static_cast<uint32_t>(p.x) | static_cast<uint32_t>(p.y) << PIXEL_BITS |
-               static_cast<uint32_t>(number) << (2 * PIXEL_BITS);
-    };
     std::vector<ListedRay<float>> listed;
     std::vector<uint32_t>         ends;
     for (size_t i = 0; i < pixels.size(); ++i) {
         const bool hit = hits[i].x >= 0;
-        ends.push_back(hit ? pack(hits[i], TRACE_HIT) : pack({0, 0}, TRACE_LEFT_SCREEN));
+        ends.push_back(hit ? pack_pixel(hits[i], TRACE_HIT) : pack_pixel({0, 0}, TRACE_LEFT_SCREEN));
         listed.push_back(
-            {{glm::vec2(pixels[i]) + 0.5F, 0.02F}, 1, {10, 10, -0.01F}, pack(pixels[i], TRACE_LEFT_SCREEN)});
+            {{glm::vec2(pixels[i]) + 0.5F, 0.02F}, 1, {10, 10, -0.01F}, pack_pixel(pixels[i], TRACE_LEFT_SCREEN)});
     }
     const std::vector<float> ts(pixels.size(), 0.5F);
     const auto               count = static_cast<uint32_t>(pixels.size());
@@ -207,8 +202,7 @@ TEST(Blocks, AreTracedFromTheirFirstReflectingPixel)
         const auto                    blocks = download_as<uint32_t>(device(), picture.buffers->block_pixel);
         std::set<std::pair<int, int>> named;
         for (const uint32_t block : blocks)
-            if (block != NO_PIXEL)
-                named.insert({block & (MAX_IMAGE_PX - 1), (block >> PIXEL_BITS) & (MAX_IMAGE_PX - 1)});
+            if (block != NO_PIXEL) named.insert({unpack_pixel(block).x, unpack_pixel(block).y});
         EXPECT_EQ(named, expected);
     }
 }

@@ -21,9 +21,8 @@ template <typename Real> Rays make_rays(const Picture& picture, const TraceSetti
     const Buffer      view    = upload_view(device(), picture.view, precision);
     const TracePasses passes  = make_trace_passes(device(), *frame, buffers, view, nullptr);
     submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, passes, *picture.buffers); });
-    const size_t count = download_as<uint32_t>(device(), buffers.count, 1)[0];
-    Rays         rays;
-    for (const ListedRay<Real>& ray : download_as<ListedRay<Real>>(device(), buffers.list, count))
+    Rays rays;
+    for (const ListedRay<Real>& ray : read_list<Real>(device(), buffers))
         rays.push_back({ray.origin, static_cast<double>(ray.length_m), ray.delta, ray.pixel});
     return rays;
 }
