@@ -16,8 +16,8 @@ layout(push_constant, scalar) uniform Push
     ivec2 source_offset;
     ivec2 offset;      // where this level lies in the atlas
     int   atlas_width; // cells
-    int   first_pair;  // level 0 follows the atlas, two pixels in the place of a cell
-    int   pairs_a_row;
+    int   atlas_begin; // texels
+    int   pairs_a_row; // level 0 comes before the atlas, two pixels in the place of a cell
 };
 
 // The slab's back, rounded outward: wider than any rounding of the test on the pixel itself.
@@ -42,10 +42,10 @@ Range pixel_range(ivec2 pixel, uint bits)
     return Range(floatBitsToInt(depth), pyramid_kind == PYRAMID_NEAREST ? 0 : max(floatBitsToInt(outer_back(depth)), 0));
 }
 
-// Row by row, and a row is as wide as the whole atlas.
+// A row is as wide as the whole atlas.
 int index_of(ivec2 place)
 {
-    return place.y * atlas_width + place.x;
+    return atlas_begin + place.y * atlas_width + place.x;
 }
 
 uvec2 source_cell(ivec2 cell)
@@ -117,7 +117,7 @@ void main()
     uvec2 cell;
     if (from_pixels != 0)
     {
-        int   pair  = first_pair + first.y * pairs_a_row + position.x;
+        int   pair  = first.y * pairs_a_row + position.x;
         uvec2 upper = imageLoad(depth_pyramid, pair).xy, lower = imageLoad(depth_pyramid, pair + pairs_a_row).xy;
         Range a = pixel_range(first, upper.x), b = pixel_range(first + right, upper.y);
         Range c = pixel_range(first + below, lower.x), d = pixel_range(first + right + below, lower.y);

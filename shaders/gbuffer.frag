@@ -11,11 +11,13 @@ layout(set = 0, binding = 0, scalar) uniform Frame
     int   light_count;
     vec3  ambient;
     float layer_separation; // second layer: at least so far behind the first; in units of the near distance, or of the depth range
+    ivec2 size_px;
 };
 #define LIGHTS_BINDING 2
 #include "lighting.glsl"
 #ifdef SECOND_LAYER
-layout(set = 0, binding = 5, r32f) uniform readonly image2D first_depth;
+#define DEPTH_BINDING 5 // the first layer's
+#include "depth.glsl"
 #endif
 
 layout(location = 0) in vec3 position_ws;
@@ -49,7 +51,7 @@ vec3 shading_normal(Material material, Coordinates at)
 // Transparency; with a minimum separation as M. Mara et al. 2016, Deep G-Buffers for Stable Global Illumination Approximation.
 bool is_peeled_off()
 {
-    float first = imageLoad(first_depth, ivec2(gl_FragCoord.xy)).x;
+    float first = load_depth(ivec2(gl_FragCoord.xy));
     float limit = orthographic != 0 ? first - layer_separation : first / (1.0 + layer_separation * first);
     return first <= 0.0 || gl_FragCoord.z >= limit;
 }

@@ -2,22 +2,17 @@
 // surface is flat. No front of the patch lies nearer than that plane but those that stand before it: so much nearer that a ray could
 // pass between the two, behind a slab. Four numbers: how much nearer the plane gets each pixel to the right and each pixel down, its depth at the
 // centre of the first pixel, and the farthest depth of what stands before it, or 0. Any choice of ground is correct; a good one is useful.
-#include "real.glsl"
+#include "view.glsl"
+#include "depth.glsl"
 #include "slab.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = 0, binding = 1, r32f) uniform readonly image2D depth_image;
 layout(set = 0, binding = 14, rgba32f) uniform writeonly imageBuffer PatchPlanes;
 
 const int   side_px = 1 << PATCH_BITS, sample_rows = 4, samples = sample_rows * sample_rows;
 const float none = 1e30;
 // Of depth: how far a sample may lie off a plane that holds it, and how much the line through its neighbours may bend there.
 const float on_plane = 1.0 / 4096, most_bent = 1.0 / 100000;
-
-float depth_at(ivec2 pixel)
-{
-    return imageLoad(depth_image, pixel).x;
-}
 
 // Where in the patch a sample lies: its neighbours lie in the patch, too, unless that is too small.
 ivec2 sample_at(int number, ivec2 way)
@@ -28,20 +23,20 @@ ivec2 sample_at(int number, ivec2 way)
 
 void main()
 {
-    ivec2 size_px = imageSize(depth_image), patches = ((size_px - 1) >> PATCH_BITS) + 1, place = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 patches = ((size_px - 1) >> PATCH_BITS) + 1, place = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(place, patches))) return;
     ivec2 first = place << PATCH_BITS, way = min(ivec2(side_px - 1), size_px - 1 - first);
 
     // The farthest of the planes through a sample and its neighbours that hold another sample: things stand before the ground, not behind it.
     float depths[samples];
-    for (int i = 0; i < samples; ++i) depths[i] = depth_at(first + sample_at(i, way));
+    for (int i = 0; i < samples; ++i) depths[i] = load_depth(first + sample_at(i, way));
     vec2  gradient = vec2(0);
     float ground = none, corner = 0; // the plane's depth in the middle of the patch, and in its first pixel
     for (int i = 0; i < samples; ++i)
     {
         ivec2 local = sample_at(i, way), low = max(local - 1, ivec2(0)), high = min(local + 1, way);
-        vec2  last = vec2(depth_at(first + ivec2(low.x, local.y)), depth_at(first + ivec2(local.x, low.y)));
-        vec2  next = vec2(depth_at(first + ivec2(high.x, local.y)), depth_at(first + ivec2(local.x, high.y)));
+        vec2  last = vec2(load_depth(first + ivec2(low.x, local.y)), load_depth(first + ivec2(local.x, low.y)));
+        vec2  next = vec2(load_depth(first + ivec2(high.x, local.y)), load_depth(first + ivec2(local.x, high.y)));
         vec2  span = vec2(max(high - low, ivec2(1))), slope = (next - last) / span;
         vec2  bent = abs(last + next - 2 * depths[i]) * (span - 1); // not with one neighbour
         float zero = depths[i] - dot(slope, vec2(local)), middle = zero + dot(slope, vec2(side_px - 1) / 2);
@@ -62,7 +57,7 @@ void main()
     for (int i = 0; i < side_px * side_px; ++i)
     {
         ivec2 local   = min(ivec2(i >> PATCH_BITS, i & (side_px - 1)), way);
-        float depth   = depth_at(first + local), front = depth - dot(gradient, vec2(local));
+        float depth   = load_depth(first + local), front = depth - dot(gradient, vec2(local));
         bool  surface = depth > 0.0, is_before = front > stands;
         before        = surface && is_before ? min(before, depth) : before;
         height        = surface && !is_before ? max(height, front) : height;

@@ -49,7 +49,7 @@ void main()
 
     uint  before = bitCount((upper ? mask.y : mask.x) & (bit - 1)) + (upper ? bitCount(mask.x) : 0);
     uint  index  = (pixels_before_tile() + before) * rays_per_pixel;
-    real  depth  = real(imageLoad(depth_image, pixel).x);
+    real  depth  = real(load_depth(pixel));
     real3 normal = normal_at(pixel);
     for (int ray = 0; ray < rays_per_pixel; ++ray)
     {

@@ -1,5 +1,5 @@
-// Which pixels reflect: those with a surface, a usable normal and some metal.
-layout(set = 0, binding = 1, r32f) uniform readonly image2D depth_image;
+// Which pixels reflect: those with a surface, a usable normal and some metal. After view.glsl.
+#include "depth.glsl"
 layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image;   // xyz = view-space normal, w = roughness
 layout(set = 0, binding = 3, rgba16f) uniform readonly image2D material_image; // rgb = base colour, a = metallic
 
@@ -10,7 +10,7 @@ bool is_surface(float depth, vec3 normal)
 
 bool has_surface(ivec2 pixel)
 {
-    return is_surface(imageLoad(depth_image, pixel).x, imageLoad(normal_image, pixel).xyz);
+    return is_surface(load_depth(pixel), imageLoad(normal_image, pixel).xyz);
 }
 
 bool is_metallic(ivec2 pixel)

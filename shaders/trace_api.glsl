@@ -8,6 +8,7 @@
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #endif
 #include "view.glsl"
+#include "depth.glsl"
 #include "slab.glsl"
 #include "pyramid_cell.glsl"
 #include "hash.glsl"
@@ -16,11 +17,9 @@
 layout(constant_id = CONSTANT_FACING) const int facing_rule = 0;
 layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1;
 
-layout(set = 0, binding = 1, r32f) uniform readonly image2D depth_image;
 layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image;
-// Levels 1, 2, … in one atlas, then the pixels' depths, two in the place of a cell; and the same word by word.
+// The pixels' depths, two in the place of a cell, then levels 1, 2, … in one atlas: what depth.glsl reads word by word.
 layout(set = 0, binding = 3, rg32ui) uniform readonly uimageBuffer depth_pyramid;
-layout(set = 0, binding = 15, r32ui) uniform readonly uimageBuffer pyramid_words;
 
 struct Ray
 {
@@ -101,7 +100,7 @@ real random_of(ivec2 pixel)
 real fetch_depth(ivec2 pixel)
 {
     COUNT(depth_fetches);
-    return real(imageLoad(depth_image, pixel).x);
+    return real(load_depth(pixel));
 }
 
 // Normal of a pixel in view space; the work counters count depths alone.
@@ -122,24 +121,24 @@ int pyramid_levels()
     return bits_of(max(size_px.x, size_px.y));
 }
 
-// The atlas row by row, 2^pyramid_row_bits cells each; level L begins at pyramid_end - (pyramid_end >> (L - 1)). Levels lie side by side; in
-// a picture that is taller than wide one above the other (framework/render/frame_passes.h).
+// The pixels two by two, then the atlas row by row, 2^pyramid_row_bits cells each; level L begins pyramid_side - (pyramid_side >> (L - 1)) cells
+// behind its beginning. Levels lie side by side; in a picture that is taller than wide one above the other (framework/render/depth_pyramid.h).
+int  pairs_a_row      = (size_px.x + 1) >> 1;
 bool levels_stacked   = size_px.y > size_px.x;
-int  pyramid_row_bits = levels_stacked ? bits_of((size_px.x + 1) / 2) : pyramid_levels();
-int  pyramid_end      = 1 << (pyramid_levels() + (levels_stacked ? pyramid_row_bits : 0));
-int  first_pair       = levels_stacked ? pyramid_end : ((size_px.y + 1) / 2) << pyramid_row_bits;
-int  pair_row_bits    = max(bits_of(size_px.x) - 1, 0);
+int  pyramid_row_bits = levels_stacked ? bits_of(pairs_a_row) : pyramid_levels();
+int  pyramid_side     = 1 << (pyramid_levels() + (levels_stacked ? pyramid_row_bits : 0));
+int  pyramid_end      = pyramid_side + pairs_a_row * ((size_px.y + 1) & ~1);
 
 // Where a cell of level >= 1 lies in the atlas.
 int pyramid_index(ivec2 cell, int level)
 {
-    return (cell.y << pyramid_row_bits) + pyramid_end - (pyramid_end >> (level - 1)) + cell.x;
+    return (cell.y << pyramid_row_bits) + pyramid_end - (pyramid_side >> (level - 1)) + cell.x;
 }
 
 // Where two pixels lie, of which this is one.
 int pixel_pair_index(ivec2 pixel)
 {
-    return first_pair + (pixel.y << pair_row_bits) + (pixel.x >> 1);
+    return pixel.y * pairs_a_row + (pixel.x >> 1);
 }
 
 // A cell of level >= 1 (pyramid_cell.glsl says what it knows).
@@ -154,8 +153,7 @@ real fetch_front(ivec2 cell, int level)
     bool leaf = level == 0;
     COUNT_IF(depth_fetches, leaf);
     COUNT_IF(pyramid_fetches, !leaf);
-    int word = 2 * (leaf ? pixel_pair_index(cell) : pyramid_index(cell, level)) + (leaf ? cell.x & 1 : 0);
-    return real(uintBitsToFloat(imageLoad(pyramid_words, word).x));
+    return real(imageLoad(depth_words, leaf ? depth_word(cell) : 2 * pyramid_index(cell, level)).x);
 }
 
 // ---- Beams
@@ -276,7 +274,7 @@ TraceResult hit_at(Ray ray, ivec2 pixel, real t, int steps)
 // A hit somewhere in [t_in, t_out]: the point where the ray first meets the slab.
 TraceResult hit_between(Ray ray, ivec2 pixel, real t_in, real t_out, int steps)
 {
-    real depth = real(imageLoad(depth_image, pixel).x);
+    real depth = real(load_depth(pixel));
     real z_in  = depth_at(ray, t_in);
     real face  = z_in > depth ? depth : slab_back(depth);
     bool inside = z_in <= depth && reaches_slab_back(depth, z_in);

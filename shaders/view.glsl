@@ -6,12 +6,12 @@ layout(constant_id = CONSTANT_ORTHOGRAPHIC) const int orthographic = 0;
 
 layout(set = 0, binding = 0, scalar) uniform View
 {
+    ivec2 size_px;   // first: it lies in the same place whether the rest is float or double
     real2 focal_px;  // perspective: pixels per unit of slope; orthographic: pixels per metre
     real2 centre_px; // where the view axis meets the image
     real2 focal_low_px, centre_low_px; // what rounding took from the two
     real  near_m;
     real  far_m; // orthographic only
-    ivec2 size_px;
 };
 
 real depth_to_distance(real depth)

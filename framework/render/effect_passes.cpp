@@ -51,7 +51,7 @@ ComputePass make_colour_pass(Gpu& gpu, const PreparedFrame& frame, const std::st
     if (frame.hidden_layer) {
         const GBuffer& layer = *frame.buffers->second_layer;
         defines.emplace("SECOND_LAYER", "1");
-        more.insert({{"second_depth_image", layer.depth},
+        more.insert({{"second_depth_words", layer.depth.words},
                      {"second_normal_image", layer.normal},
                      {"second_material_image", layer.material},
                      {"second_radiance_image", layer.radiance},

@@ -21,11 +21,10 @@ TechniquePasses make_layer_passes(Gpu& gpu, const PreparedFrame& frame, const Ra
 {
     const FrameBuffers& buffers  = *frame.buffers;
     Bindings            bindings = {{"View", buffers.view},
-                                    {"depth_image", buffers.second_layer->depth},
+                                    {"depth_words", buffers.second_layer->depth.words},
+                                    {"depth_pyramid", buffers.second_layer->depth.cells},
                                     {"normal_image", buffers.second_layer->normal},
-                                    {"material_image", buffers.second_layer->material},
-                                    {"depth_pyramid", buffers.second_pyramid.cells},
-                                    {"pyramid_words", buffers.second_pyramid.words}};
+                                    {"material_image", buffers.second_layer->material}};
     bindings.merge(bindings_of(buffers, rays));
     return make_technique_passes(gpu, frame, rays, bindings);
 }
@@ -35,15 +34,12 @@ TechniquePasses make_layer_passes(Gpu& gpu, const PreparedFrame& frame, const Ra
 Recording hidden_layer(Gpu& gpu, PreparedFrame& frame)
 {
     FrameBuffers& buffers = *frame.buffers;
-    if (!buffers.second_layer) {
-        buffers.second_layer   = make_second_layer(gpu, *buffers.gbuffer);
-        buffers.second_pyramid = make_depth_pyramid(gpu, buffers.gbuffer->view.size_px);
-    }
+    if (!buffers.second_layer) buffers.second_layer = make_second_layer(gpu, *buffers.gbuffer);
     frame.hidden_layer      = true;
     auto own                = std::make_shared<HiddenLayer>();
     own->layer              = buffers.second_layer;
     own->missed             = derived_rays(gpu, frame, 0);
-    own->pyramid            = make_pyramid_passes(gpu, frame, own->layer->depth, buffers.second_pyramid);
+    own->pyramid            = make_pyramid_passes(gpu, frame, own->layer->depth);
     const Bindings derived  = derived_bindings(*own->missed);
     own->gather             = make_effect_pass(gpu, frame, "effects/gather_misses.comp", {}, derived);
     own->launch             = make_launch_pass(gpu, own->missed->rays.count, own->missed->rays.launch, RAYS_PER_GROUP);

@@ -14,22 +14,22 @@ namespace {
 
 /// shaders/view.glsl, uniform View, scalar layout.
 template <typename Real> struct ViewBlock {
+    glm::ivec2        size_px;
     glm::vec<2, Real> focal_px, centre_px, focal_low_px, centre_low_px;
     Real              near_m, far_m;
-    glm::ivec2        size_px;
 };
 
 template <typename Real> void write_view_as(Gpu& gpu, Buffer& target, const View& view)
 {
     using Real2 = glm::vec<2, Real>;
     const Real2           focal_px(view.focal_px), centre_px(view.centre_px);
-    const ViewBlock<Real> block{focal_px,
+    const ViewBlock<Real> block{view.size_px,
+                                focal_px,
                                 centre_px,
                                 Real2(view.focal_px - glm::dvec2(focal_px)),
                                 Real2(view.centre_px - glm::dvec2(centre_px)),
                                 static_cast<Real>(view.near_m),
-                                static_cast<Real>(view.far_m),
-                                view.size_px};
+                                static_cast<Real>(view.far_m)};
     upload(gpu, target, &block, sizeof(block));
 }
 
@@ -102,7 +102,8 @@ FrameStatistics count_picture(Gpu& gpu, const FrameBuffers& buffers)
     statistics.pixels                = static_cast<uint32_t>(size_px.x) * static_cast<uint32_t>(size_px.y);
     statistics.tiles                 = tiles.x * tiles.y;
     const ComputePass classification = make_compute_pass(gpu, compile_shader({.file = "effects/classification.comp"}),
-                                                         {{"depth_image", buffers.gbuffer->depth},
+                                                         {{"View", buffers.view},
+                                                          {"depth_words", buffers.gbuffer->depth.words},
                                                           {"normal_image", buffers.gbuffer->normal},
                                                           {"material_image", buffers.gbuffer->material},
                                                           {"TileMasks", buffers.tiles.masks},
@@ -159,7 +160,7 @@ PreparedFramePtr prepare(Gpu& gpu, const FrameBuffersPtr& buffers, const Techniq
     frame->values    = values;
     frame->settings  = settings;
     frame->rays      = rays_for(gpu, *buffers, settings);
-    frame->pyramid   = make_pyramid_passes(gpu, *frame, buffers->gbuffer->depth, buffers->pyramid);
+    frame->pyramid   = make_pyramid_passes(gpu, *frame, buffers->gbuffer->depth);
     frame->trace     = make_trace_passes(gpu, *frame, *frame->rays, buffers->view, nullptr);
 
     frame->facts      = facts_of(*frame);
@@ -189,7 +190,6 @@ FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
     buffers->view           = upload_view(gpu, gbuffer->view, Precision::float32);
     buffers->tiles          = make_tile_buffers(gpu, gbuffer->view.size_px);
     buffers->statistics     = count_picture(gpu, *buffers);
-    buffers->pyramid        = make_depth_pyramid(gpu, gbuffer->view.size_px);
     buffers->patch_planes   = make_patch_planes(gpu, gbuffer->view.size_px);
     buffers->reflection     = image(colour, size_px);
     buffers->filtered       = image(colour, size_px);

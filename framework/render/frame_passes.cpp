@@ -58,16 +58,6 @@ bool exact_arithmetic(const Gpu& gpu, const PreparedFrame& frame)
     return true;
 }
 
-/// 2^bits covers the number.
-int bits_of(int number)
-{
-    int bits = 0;
-    while ((1 << bits) < number) ++bits;
-    return bits;
-}
-
-glm::ivec2 level_size(glm::ivec2 size_px, int level) { return ((size_px - 1) >> level) + 1; }
-
 /// An input reads the technique's parameters of these names, if it has them.
 double parameter_or(const PreparedFrame& frame, const std::string& name, double otherwise)
 {
@@ -126,38 +116,10 @@ void add_parameters(Constants& constants, std::span<const Parameter> parameters,
     }
 }
 
-PyramidAtlas pyramid_atlas(glm::ivec2 size_px)
-{
-    const glm::ivec2 largest = level_size(size_px, 1);
-    PyramidAtlas     atlas;
-    atlas.levels      = bits_of(std::max(size_px.x, size_px.y));
-    atlas.stacked     = size_px.y > size_px.x;
-    atlas.pairs_a_row = 1 << std::max(bits_of(size_px.x) - 1, 0);
-    atlas.size        = atlas.stacked ? glm::ivec2(1 << bits_of(largest.x), 1 << atlas.levels)
-                                      : glm::ivec2(1 << atlas.levels, largest.y);
-    return atlas;
-}
-
-glm::ivec2 PyramidAtlas::first_cell(int level) const
-{
-    const int side = stacked ? size.y : size.x, first = side - (side >> (level - 1));
-    return stacked ? glm::ivec2(0, first) : glm::ivec2(first, 0);
-}
-
 GpuImage make_pyramid_image(Gpu& gpu, glm::ivec2 size_px, vk::Format format)
 {
     return make_image(
         gpu, {.format = format, .size_px = pyramid_atlas(size_px).size, .usage = vk::ImageUsageFlagBits::eStorage});
-}
-
-DepthPyramid make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px)
-{
-    const PyramidAtlas atlas = pyramid_atlas(size_px);
-    const glm::ivec2   pairs(atlas.pairs_a_row, 2 * level_size(size_px, 1).y); // level 1 is made of whole squares
-    DepthPyramid       pyramid;
-    pyramid.cells = make_texel_buffer(gpu, (pixel_count(atlas.size) + pixel_count(pairs)) * 8, vk::Format::eR32G32Uint);
-    pyramid.words = make_texel_view(gpu, pyramid.cells, vk::Format::eR32Uint);
-    return pyramid;
 }
 
 std::vector<PyramidPush> pyramid_levels(glm::ivec2 size_px, int top)
@@ -167,12 +129,11 @@ std::vector<PyramidPush> pyramid_levels(glm::ivec2 size_px, int top)
     for (int level = 1; level <= std::min(atlas.levels, top); ++level)
         levels.push_back({level_size(size_px, level - 1), level_size(size_px, level),
                           level > 1 ? atlas.first_cell(level - 1) : glm::ivec2(0), atlas.first_cell(level),
-                          atlas.size.x, static_cast<int>(pixel_count(atlas.size)), atlas.pairs_a_row});
+                          atlas.size.x, static_cast<int>(pixel_count(pixel_pairs(size_px))), pixel_pairs(size_px).x});
     return levels;
 }
 
-PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const GpuImage& depth,
-                                  const DepthPyramid& pyramid)
+PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const DepthPyramid& pyramid)
 {
     if (std::ranges::count(frame.technique.inputs, "depth_pyramid") == 0) return {};
     const Shader shader = compile_shader({.file = "depth_pyramid.comp"});
@@ -185,13 +146,7 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const Gp
     PyramidPasses passes;
     passes.from_pixels = make(true);
     passes.from_cells  = make(false);
-    passes.levels      = pyramid_levels(depth.size_px, static_cast<int>(parameter_or(frame, "top_level", 31)));
-
-    const PyramidAtlas  atlas  = pyramid_atlas(depth.size_px);
-    vk::BufferImageCopy region = whole_image(depth);
-    region.bufferOffset        = pixel_count(atlas.size) * 8;
-    region.bufferRowLength     = static_cast<uint32_t>(atlas.pairs_a_row) * 2;
-    passes.pixels              = {*depth.image, *pyramid.cells.buffer, region};
+    passes.levels      = pyramid_levels(pyramid.size_px, static_cast<int>(parameter_or(frame, "top_level", 31)));
     return passes;
 }
 
@@ -225,11 +180,10 @@ Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
             {"TileCount", buffers.tiles.count},
             {"Tiles", buffers.tiles.tiles},
             {"PictureStatistics", buffers.tiles.statistics},
-            {"depth_image", buffers.gbuffer->depth},
+            {"depth_words", buffers.gbuffer->depth.words},
+            {"depth_pyramid", buffers.gbuffer->depth.cells},
             {"normal_image", buffers.gbuffer->normal},
-            {"material_image", buffers.gbuffer->material},
-            {"depth_pyramid", buffers.pyramid.cells},
-            {"pyramid_words", buffers.pyramid.words}};
+            {"material_image", buffers.gbuffer->material}};
 }
 
 ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch, int items_per_group)
@@ -354,11 +308,6 @@ void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& pas
 
 void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses& passes)
 {
-    if (passes.pixels.image) {
-        commands.copyImageToBuffer(passes.pixels.image, vk::ImageLayout::eGeneral, passes.pixels.buffer,
-                                   passes.pixels.region);
-        barrier(commands);
-    }
     for (const PyramidPush& level : passes.levels) {
         const ComputePass& pass = &level == &passes.levels.front() ? passes.from_pixels : passes.from_cells;
         push(commands, pass, level);

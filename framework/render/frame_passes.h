@@ -36,25 +36,8 @@ struct DerivedRays {
     Buffer     throughputs; // bounces: what a ray's light still weighs in the reflection it belongs to, RGB
 };
 
-/// Where the levels >= 1 of a pyramid lie in one atlas, side by side, or one above the other where the picture is taller than wide.
-/// Level L begins at side - (side >> (L - 1)), side being the atlas's width or height. Its width is a power of two.
-struct PyramidAtlas {
-    glm::ivec2 size{0, 0};      // cells
-    int        levels  = 0;     // above level 0, which is the picture itself
-    bool       stacked = false; // one above the other
-    int pairs_a_row = 1; // of the depth pyramid's level 0, which follows the atlas: two pixels in the place of a cell
-
-    glm::ivec2 first_cell(int level) const;
-};
-PyramidAtlas pyramid_atlas(glm::ivec2 size_px);
-GpuImage     make_pyramid_image(Gpu& gpu, glm::ivec2 size_px, vk::Format format);
-
-/// The depth pyramid: its atlas row by row, then the pixels' depths.
-struct DepthPyramid {
-    Buffer               cells;           // as texels: both words of a cell (shaders/pyramid_cell.glsl), or two pixels
-    vk::raii::BufferView words = nullptr; // as texels: each word
-};
-DepthPyramid make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px);
+/// An atlas of pyramid_atlas() as an image.
+GpuImage make_pyramid_image(Gpu& gpu, glm::ivec2 size_px, vk::Format format);
 
 /// What cones look up (shaders/effects/cone_pyramid.comp).
 struct ConePyramid {
@@ -76,10 +59,8 @@ struct FrameBuffers {
     TileBuffers                                                    tiles;
     FrameStatistics                                                statistics; // of the picture; nothing is traced yet
     std::map<size_t, std::shared_ptr<RayBuffers>>                  rays;       // by capacity; float
-    DepthPyramid                                                   pyramid;
     Buffer                                                         patch_planes; // shaders/patch_planes.comp
     GBufferPtr                                                     second_layer; // empty until a frame asks for it
-    DepthPyramid                                                   second_pyramid;
     std::shared_ptr<ConePyramid>                                   cone;         // empty until a frame asks for it
     std::map<std::pair<size_t, int>, std::shared_ptr<DerivedRays>> derived_rays; // by capacity, and which of two
     GpuImage          reflection;   // RGBA16F: colour, weight; weight < 0 where no ray started
@@ -94,18 +75,11 @@ struct FrameBuffers {
 struct PyramidPush {
     glm::ivec2 source_size, size, source_offset, offset;
     int        atlas_width = 0;
-    int        first_pair = 0, pairs_a_row = 0; // level 0
-};
-/// Level 0 of the depth pyramid is a copy of the depth image.
-struct DepthCopy {
-    vk::Image           image  = nullptr; // null: none is made
-    vk::Buffer          buffer = nullptr;
-    vk::BufferImageCopy region = {};
+    int        atlas_begin = 0, pairs_a_row = 0; // in texels; of level 0
 };
 struct PyramidPasses {
     ComputePass              from_pixels, from_cells; // level 1; the others
     std::vector<PyramidPush> levels;                  // above level 0
-    DepthCopy                pixels = {};
 };
 
 /// The technique on one list of rays.
@@ -145,8 +119,7 @@ struct PreparedFrame {
 /// The first levels of a pyramid above level 0, all of them or up to `top`.
 std::vector<PyramidPush> pyramid_levels(glm::ivec2 size_px, int top = 31);
 /// Those of one layer's depth; none when the technique reads no pyramid.
-PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const GpuImage& depth,
-                                  const DepthPyramid& pyramid);
+PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const DepthPyramid& pyramid);
 /// work: steps, depth and pyramid fetches per ray, or null for the pipeline that is timed.
 TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view,
                               const Buffer* work);

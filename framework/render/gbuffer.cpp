@@ -14,13 +14,14 @@ namespace {
 
 /// shaders/gbuffer.frag, uniform Frame, scalar layout.
 struct FrameBlock {
-    glm::mat4 world_to_view;
-    glm::vec3 eye_ws;
-    int32_t   orthographic;
-    glm::vec3 view_axis_ws;
-    int32_t   light_count;
-    glm::vec3 ambient;
-    float     layer_separation = 0;
+    glm::mat4  world_to_view;
+    glm::vec3  eye_ws;
+    int32_t    orthographic;
+    glm::vec3  view_axis_ws;
+    int32_t    light_count;
+    glm::vec3  ambient;
+    float      layer_separation = 0;
+    glm::ivec2 size_px{0, 0};
 };
 
 using HalfTexel = std::array<uint16_t, 4>;
@@ -49,7 +50,7 @@ GBufferPtr make_gbuffer(Gpu& gpu, const View& view)
         return make_image(gpu, {.format = format, .size_px = view.size_px, .usage = usage});
     };
     const vk::ImageUsageFlags target = Usage::eColorAttachment | Usage::eStorage;
-    gbuffer->depth                   = image(Format::eR32Sfloat, Usage::eStorage);
+    gbuffer->depth                   = make_depth_pyramid(gpu, view.size_px);
     gbuffer->normal                  = image(Format::eR32G32B32A32Sfloat, target);
     gbuffer->material                = image(Format::eR16G16B16A16Sfloat, target);
     gbuffer->radiance                = image(Format::eR16G16B16A16Sfloat, target);
@@ -66,7 +67,9 @@ void fill_frame_uniforms(Gpu& gpu, GBuffer& gbuffer)
                            gbuffer.view.projection == Projection::orthographic,
                            glm::vec3(-view_to_world[2]),
                            static_cast<int32_t>(gbuffer.scene->light_count),
-                           gbuffer.scene->ambient};
+                           gbuffer.scene->ambient,
+                           0,
+                           gbuffer.view.size_px};
     gbuffer.frame_uniforms = make_buffer(gpu, sizeof(block));
     upload(gpu, gbuffer.frame_uniforms, &block, sizeof(block));
 }
@@ -129,7 +132,7 @@ GBufferPtr make_drawn_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& vi
                          .usage = vk::ImageUsageFlagBits::eDepthStencilAttachment | vk::ImageUsageFlagBits::eSampled});
     fill_frame_uniforms(gpu, *gbuffer);
     gbuffer->frame_set =
-        make_frame_set(gpu, *scene, gbuffer->frame_uniforms, first == nullptr ? nullptr : &first->depth);
+        make_frame_set(gpu, *scene, gbuffer->frame_uniforms, first == nullptr ? nullptr : &first->depth.words);
     gbuffer->pipeline      = layer_pipeline(gpu, *scene, *gbuffer, first != nullptr);
     gbuffer->sampler       = {gpu.impl->device, vk::SamplerCreateInfo{}};
     gbuffer->view_uniforms = upload_view(gpu, view, Precision::float32);
@@ -139,7 +142,7 @@ GBufferPtr make_drawn_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& vi
                                             {{"View", gbuffer->view_uniforms},
                                              {"depth_buffer", {gbuffer->depth_buffer, gbuffer->sampler}},
                                              {"environment_map", {scene->environment_map, scene->environment_sampler}},
-                                             {"depth_image", gbuffer->depth},
+                                             {"depth_words", gbuffer->depth.words},
                                              {"radiance_image", gbuffer->radiance}},
                                             constants, sizeof(glm::mat4));
     gbuffer->timestamps = make_timestamps(gpu, 2);
@@ -203,14 +206,13 @@ void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image)
     const size_t count = image.depth.size();
     if (count != pixel_count(image.view.size_px))
         throw std::logic_error("upload_surfaces: depth does not match the view's size");
-    const std::vector<float> depth = usable_depth(image.depth);
-    std::vector<glm::vec4>   normal(count);
-    std::vector<HalfTexel>   material(count);
+    std::vector<glm::vec4> normal(count);
+    std::vector<HalfTexel> material(count);
     for (size_t i = 0; i < count; ++i) {
         normal[i]   = {image.normal_vs[i], image.roughness[i]};
         material[i] = to_half({image.base_colour[i], image.metallic[i]});
     }
-    upload(gpu, gbuffer.depth, depth.data(), count * sizeof(float));
+    write_depth(gpu, gbuffer.depth, usable_depth(image.depth));
     upload(gpu, gbuffer.normal, normal.data(), count * sizeof(glm::vec4));
     upload(gpu, gbuffer.material, material.data(), count * sizeof(HalfTexel));
 }
@@ -235,7 +237,7 @@ GBufferImage read_gbuffer(Gpu& gpu, const GBuffer& gbuffer)
 {
     GBufferImage image;
     image.view = gbuffer.view;
-    for (const float depth : download_as<float>(gpu, gbuffer.depth)) image.depth.push_back(depth > 0 ? depth : 0.0F);
+    for (const float depth : read_depth(gpu, gbuffer.depth)) image.depth.push_back(depth > 0 ? depth : 0.0F);
     for (const glm::vec4& texel : download_as<glm::vec4>(gpu, gbuffer.normal)) {
         image.normal_vs.emplace_back(texel);
         image.roughness.push_back(texel.w);

@@ -1,6 +1,7 @@
 // The images of one view, and what renders them.
 #pragma once
 
+#include "render/depth_pyramid.h"
 #include "render/gpu_scene.h"
 
 namespace ssrlab {
@@ -9,7 +10,7 @@ struct GBuffer {
     View                                view;
     GpuScenePtr                         scene;        // empty when the G-buffer was made elsewhere
     GpuImage                            depth_buffer; // D32, what the rasteriser wrote
-    GpuImage                            depth;        // R32F, what tracers read: background = BACKGROUND_DEPTH
+    DepthPyramid                        depth;        // what tracers read: background = BACKGROUND_DEPTH
     GpuImage                            normal;       // RGBA32F: view-space normal, roughness
     GpuImage                            material;     // RGBA16F: base colour, metallic
     GpuImage                            radiance;     // RGBA16F: the same from every direction

@@ -185,9 +185,10 @@ GpuScenePtr upload_scene(Gpu& gpu, const Scene& source)
     scene->textures.push_back(upload_texture(gpu, white_texture()));
     scene->samplers.push_back(make_sampler(gpu, white_texture()));
 
-    using Type             = vk::DescriptorType;
-    scene->frame_layout    = make_layout(gpu, {Type::eUniformBuffer, Type::eStorageBuffer, Type::eStorageBuffer,
-                                               Type::eStorageBuffer, Type::eCombinedImageSampler, Type::eStorageImage});
+    using Type = vk::DescriptorType;
+    scene->frame_layout =
+        make_layout(gpu, {Type::eUniformBuffer, Type::eStorageBuffer, Type::eStorageBuffer, Type::eStorageBuffer,
+                          Type::eCombinedImageSampler, Type::eStorageTexelBuffer});
     scene->material_layout = make_layout(gpu, std::vector<Type>(textures_per_material, Type::eCombinedImageSampler));
     make_material_sets(gpu, *scene, source);
     for (size_t i = 0; i < source.draws.size(); ++i) {
@@ -203,13 +204,14 @@ GpuScenePtr upload_scene(Gpu& gpu, const Scene& source)
     return scene;
 }
 
-FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms, const GpuImage* first_depth)
+FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms,
+                        const vk::raii::BufferView* first_depth)
 {
     using Type                           = vk::DescriptorType;
     const vk::DescriptorPoolSize sizes[] = {{Type::eUniformBuffer, 1},
                                             {Type::eStorageBuffer, 3},
                                             {Type::eCombinedImageSampler, 1},
-                                            {Type::eStorageImage, 1}};
+                                            {Type::eStorageTexelBuffer, 1}};
     FrameSet                     result;
     result.pool = {gpu.impl->device,
                    vk::DescriptorPoolCreateInfo{.flags         = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
@@ -240,12 +242,11 @@ FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uni
                                                                  .pImageInfo      = &image},
                                           nullptr);
     if (first_depth == nullptr) return result;
-    const vk::DescriptorImageInfo first{{}, *first_depth->view, vk::ImageLayout::eGeneral};
-    gpu.impl->device.updateDescriptorSets(vk::WriteDescriptorSet{.dstSet          = *result.set,
-                                                                 .dstBinding      = 5,
-                                                                 .descriptorCount = 1,
-                                                                 .descriptorType  = Type::eStorageImage,
-                                                                 .pImageInfo      = &first},
+    gpu.impl->device.updateDescriptorSets(vk::WriteDescriptorSet{.dstSet           = *result.set,
+                                                                 .dstBinding       = 5,
+                                                                 .descriptorCount  = 1,
+                                                                 .descriptorType   = Type::eStorageTexelBuffer,
+                                                                 .pTexelBufferView = &**first_depth},
                                           nullptr);
     return result;
 }

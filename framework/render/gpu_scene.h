@@ -62,7 +62,7 @@ struct FrameSet {
     vk::raii::DescriptorSet  set  = nullptr;
 };
 FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms,
-                        const GpuImage* first_depth = nullptr);
+                        const vk::raii::BufferView* first_depth = nullptr);
 
 /// Light matrices and shadow maps; called once by upload_scene.
 void render_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source);

@@ -68,14 +68,13 @@ RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Techniqu
     auto buffers          = std::make_shared<FrameBuffers>();
     buffers->gbuffer      = gbuffer;
     buffers->tiles        = make_tile_buffers(gpu, gbuffer->view.size_px);
-    buffers->pyramid      = make_depth_pyramid(gpu, gbuffer->view.size_px);
     buffers->patch_planes = make_patch_planes(gpu, gbuffer->view.size_px);
     PreparedFrame& frame  = tracer->frame;
     frame.buffers         = buffers;
     frame.technique       = technique;
     frame.values          = values;
     frame.settings.trace  = settings;
-    frame.pyramid         = make_pyramid_passes(gpu, frame, gbuffer->depth, buffers->pyramid);
+    frame.pyramid         = make_pyramid_passes(gpu, frame, gbuffer->depth);
     tracer->rays          = make_ray_buffers(gpu, capacity, precision);
     tracer->work          = make_buffer(gpu, std::max<uint64_t>(capacity, 1) * sizeof(glm::uvec3));
     tracer->view          = upload_view(gpu, gbuffer->view, precision);
@@ -129,11 +128,10 @@ GBufferPtr upload_depth(Gpu& gpu, const View& view, std::span<const float> depth
     const auto image = [&](vk::Format format, glm::ivec2 size_px) {
         return make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
     };
-    gbuffer->depth                 = image(vk::Format::eR32Sfloat, view.size_px);
-    gbuffer->normal                = image(vk::Format::eR32G32B32A32Sfloat, {1, 1});
-    gbuffer->material              = image(vk::Format::eR16G16B16A16Sfloat, {1, 1});
-    const std::vector<float> clean = usable_depth(depth);
-    upload(gpu, gbuffer->depth, clean.data(), clean.size() * sizeof(float));
+    gbuffer->depth    = make_depth_pyramid(gpu, view.size_px);
+    gbuffer->normal   = image(vk::Format::eR32G32B32A32Sfloat, {1, 1});
+    gbuffer->material = image(vk::Format::eR16G16B16A16Sfloat, {1, 1});
+    write_depth(gpu, gbuffer->depth, usable_depth(depth));
     return gbuffer;
 }
 

@@ -5,7 +5,7 @@
 
 vec3 to_camera_vs(ivec2 pixel)
 {
-    vec3 position_vs = px_to_vs(vec3(vec2(pixel) + 0.5, imageLoad(depth_image, pixel).x));
+    vec3 position_vs = px_to_vs(vec3(vec2(pixel) + 0.5, load_depth(pixel)));
     return orthographic != 0 ? vec3(0, 0, 1) : -normalize(position_vs);
 }
 

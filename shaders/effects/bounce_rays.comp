@@ -54,7 +54,7 @@ void main()
 
     uint    derived  = first + subgroupBallotExclusiveBitCount(ballot);
     real2   centre   = real2(hit) + real(0.5);
-    real    depth    = imageLoad(depth_image, hit).x;
+    real    depth    = load_depth(hit);
     Segment segment  = make_segment(centre, depth, mirrored(widen(arriving), normal));
     ListedRay next   = ListedRay(segment.origin, segment.length_m, segment.delta, pack_pixel(hit, segment.end_status));
     STORE_RAY(DerivedRays, derived, next);

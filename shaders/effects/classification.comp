@@ -1,6 +1,6 @@
 // Marks in each tile of 8 x 8 pixels those to trace, and counts what the plan of the frame asks about. A tile per invocation: what its pixels
 // share needs neither shared memory nor an atomic per pixel, which lavapipe runs lane by lane.
-#include "shared.h"
+#include "view.glsl"
 #include "reflecting.glsl"
 #if ROUGHNESS_BINS != 16
 #error four bins in each of four words
@@ -34,7 +34,7 @@ int roughness_bin(float roughness)
 
 void main()
 {
-    ivec2 size_px = imageSize(depth_image), tiles = (size_px + 7) / 8, tile = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 tiles = (size_px + 7) / 8, tile = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(tile, tiles))) return;
 
     const int per_block = block_px * block_px, blocks_x = 8 / block_px;
@@ -49,7 +49,7 @@ void main()
         ivec2 pixel = tile * 8 + in_tile;
         vec4  normal  = imageLoad(normal_image, pixel);
         bool  inside  = all(lessThan(pixel, size_px));
-        bool  surface = inside && is_surface(imageLoad(depth_image, pixel).x, normal.xyz);
+        bool  surface = inside && is_surface(load_depth(pixel), normal.xyz);
         bool  mirror  = surface && is_metallic(pixel);
         surfaces += uint(surface);
         mirrors += uint(mirror);

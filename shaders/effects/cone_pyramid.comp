@@ -1,10 +1,10 @@
 // One level of what cones look up (effects/cone.glsl): colour, and the share of a cell that is empty in front of its surfaces.
 // Y. Uludag 2014, "Hi-Z Screen-Space Cone-Traced Reflections", GPU Pro 5. Cells lie as in depth_pyramid.comp.
 #include "view.glsl"
+#include "depth.glsl"
 #include "effect/parameters"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = 0, binding = 1, r32f) uniform readonly image2D depth_image;
 layout(set = 0, binding = 2, rgba16f) uniform readonly image2D radiance_image;
 layout(set = 0, binding = 3, rgba16f) uniform readonly image2D highlight_image;
 layout(set = 0, binding = 4, rgba16f) uniform image2D cone_pyramid; // colour, visibility
@@ -29,7 +29,7 @@ vec4 source_colour(ivec2 cell)
 
 vec2 source_range(ivec2 cell)
 {
-    float depth = imageLoad(depth_image, cell).x;
+    float depth = load_depth(cell);
     return vec2(depth > 0.0 ? depth_to_distance(depth) : background_m);
 }
 #else

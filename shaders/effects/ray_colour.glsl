@@ -6,15 +6,20 @@ layout(set = 0, binding = 11, rgba16f) uniform readonly image2D radiance_image;
 layout(set = 0, binding = 12, rgba16f) uniform readonly image2D highlight_image;
 layout(set = 0, binding = 14, rgba16f) uniform readonly image2D small_colour_image;
 #ifdef SECOND_LAYER
-layout(set = 0, binding = 26, r32f) uniform readonly image2D second_depth_image;
+layout(set = 0, binding = 26, r32f) uniform readonly imageBuffer second_depth_words;
 layout(set = 0, binding = 27, rgba32f) uniform readonly image2D second_normal_image;
 layout(set = 0, binding = 28, rgba16f) uniform readonly image2D second_material_image;
 layout(set = 0, binding = 29, rgba16f) uniform readonly image2D second_radiance_image;
 layout(set = 0, binding = 30, rgba16f) uniform readonly image2D second_highlight_image;
-#define LOAD_LAYER(name, pixel, second) ((second) ? imageLoad(second_##name, pixel) : imageLoad(name, pixel))
+#define LOAD_LAYER(name, place, second) ((second) ? imageLoad(second_##name, place) : imageLoad(name, place))
 #else
-#define LOAD_LAYER(name, pixel, second) imageLoad(name, pixel)
+#define LOAD_LAYER(name, place, second) imageLoad(name, place)
 #endif
+
+float layer_depth(ivec2 pixel, bool second)
+{
+    return LOAD_LAYER(depth_words, depth_word(pixel), second).x;
+}
 
 struct Found
 {
@@ -106,11 +111,11 @@ float edge_weight(vec2 uv)
 float depth_step_weight(ivec2 pixel, bool second)
 {
     if (depth_step_fade_m <= 0.0) return 1.0;
-    float own_m = depth_to_distance(LOAD_LAYER(depth_image, pixel, second).x), largest_m = 0.0;
+    float own_m = depth_to_distance(layer_depth(pixel, second)), largest_m = 0.0;
     for (int i = 0; i < 4; ++i)
     {
         ivec2 next  = clamp(pixel + ivec2((i & 1) * (i - 2), (1 - (i & 1)) * (i - 1)), ivec2(0), size_px - 1);
-        float depth = LOAD_LAYER(depth_image, next, second).x;
+        float depth = layer_depth(next, second);
         largest_m   = max(largest_m, depth > 0.0 ? abs(depth_to_distance(depth) - own_m) : depth_step_fade_m);
     }
     return 1.0 - clamp(largest_m / depth_step_fade_m, 0.0, 1.0);
@@ -138,7 +143,7 @@ Found found_by(ListedRay ray, uint record, float t)
     bool  second    = in_second_layer(record);
     vec3  point     = ray.origin + ray.delta * t;
     vec3  direction = ray_direction(ray), origin_vs = px_to_vs(ray.origin);
-    vec3  surface_vs = px_to_vs(vec3(vec2(hit) + 0.5, LOAD_LAYER(depth_image, hit, second).x));
+    vec3  surface_vs = px_to_vs(vec3(vec2(hit) + 0.5, layer_depth(hit, second)));
     // A. Biro: a surface that is met elsewhere than where the ray goes is the wrong one.
     if (dot(direction, normalize(surface_vs - origin_vs)) < min_direction_cosine) return Found(vec3(0), 0.0, 0.0);
     vec3 light = surface_light(hit, second, point.xy);

@@ -30,7 +30,7 @@ Surface surface_at(ivec2 pixel)
     vec4 normal   = imageLoad(normal_image, pixel);
     vec4 material = imageLoad(material_image, pixel);
     Surface surface;
-    surface.position_vs  = px_to_vs(vec3(vec2(pixel) + 0.5, imageLoad(depth_image, pixel).x));
+    surface.position_vs  = px_to_vs(vec3(vec2(pixel) + 0.5, load_depth(pixel)));
     surface.normal_vs    = normalize(normal.xyz);
     float cosine         = max(0.0, -dot(surface.normal_vs, view_direction(surface.position_vs)));
     float f0             = mix(0.04, dot(material.rgb, vec3(0.2126, 0.7152, 0.0722)), material.a);

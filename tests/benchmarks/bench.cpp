@@ -206,10 +206,13 @@ Bench::Picture& Bench::picture(const std::string& scene, glm::ivec2 size_px)
     }
     p.gbuffer = render_gbuffer(gpu_, scenes_[scene].gpu, camera_to_view(scenes_[scene].camera, size_px));
     p.buffers = make_frame_buffers(gpu_, p.gbuffer);
-    p.copy    = make_image(
-           gpu_, {.format = vk::Format::eR32Sfloat, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
+    for (GpuImage* image : {&p.depth, &p.copy})
+        *image = make_image(
+            gpu_, {.format = vk::Format::eR32Sfloat, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
+    const std::vector<float> depth = read_depth(gpu_, p.gbuffer->depth);
+    upload(gpu_, p.depth, depth.data(), depth.size() * sizeof(float));
     p.copy_pass  = make_compute_pass(gpu_, compile_shader({.file = "copy_depth.comp"}),
-                                     {{"depth_image", p.gbuffer->depth}, {"depth_copy", p.copy}});
+                                     {{"depth_image", p.depth}, {"depth_copy", p.copy}});
     p.timestamps = make_timestamps(gpu_, 2);
     return p;
 }

@@ -61,7 +61,7 @@ private:
     struct Picture {
         GBufferPtr                              gbuffer;
         FrameBuffersPtr                         buffers;
-        GpuImage                                copy;
+        GpuImage                                depth, copy; // R32F
         ComputePass                             copy_pass;
         Timestamps                              timestamps;
         std::map<std::string, PreparedFramePtr> frames; // by contender

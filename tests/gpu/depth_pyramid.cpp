@@ -21,12 +21,11 @@ struct Pyramid {
     glm::uvec2 at(int level, int x, int y) const
     {
         const glm::ivec2 place = atlas.first_cell(level) + glm::ivec2(x, y);
-        return cells.at(pixel_index(place, atlas.size));
+        return cells.at(pixel_count(pixel_pairs(size_px)) + pixel_index(place, atlas.size));
     }
     uint32_t pixel(int x, int y) const
     {
-        const glm::uvec2 pair =
-            cells.at(pixel_count(atlas.size) + pixel_index({x / 2, y}, {atlas.pairs_a_row, size_px.y}));
+        const glm::uvec2 pair = cells.at(pixel_index({x / 2, y}, pixel_pairs(size_px)));
         return x % 2 == 0 ? pair.x : pair.y;
     }
 };
@@ -37,7 +36,7 @@ Pyramid build(const Picture& picture, const TraceSettings& settings, double kind
     const auto       frame = prepare_frame(device(), picture.buffers, hiz,
                                            values_of(hiz, {{"pyramid", kind}, {"top_level", 14}}), {settings});
     submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_pyramid(commands, frame->pyramid); });
-    const Buffer& cells = picture.buffers->pyramid.cells;
+    const Buffer& cells = picture.buffers->gbuffer->depth.cells;
     return {picture.view.size_px, pyramid_atlas(picture.view.size_px),
             download_as<glm::uvec2>(device(), cells, cells.bytes / sizeof(glm::uvec2))};
 }
