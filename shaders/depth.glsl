@@ -9,10 +9,10 @@
 #endif
 layout(set = 0, binding = DEPTH_BINDING, r32f) uniform DEPTH_ACCESS imageBuffer depth_words;
 
-// Row by row; a row is of even length, so that two pixels lie where the pyramid has a cell.
+// Row by row; the length of a row is a multiple of four: two pixels lie in the place of a cell, four in that of two.
 int depth_word(ivec2 pixel)
 {
-    return pixel.y * ((size_px.x + 1) & ~1) + pixel.x;
+    return pixel.y * ((size_px.x + 3) & ~3) + pixel.x;
 }
 
 #ifndef WRITES_DEPTH

@@ -8,7 +8,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = CONSTANT_PYRAMID_KIND) const int pyramid_kind = PYRAMID_OCCUPANCY;
 // Level 1 is made from pixels, in a pipeline of its own: a branch would run both sides.
 layout(constant_id = CONSTANT_FROM_PIXELS) const int from_pixels = 0;
-layout(set = 0, binding = 1, rg32ui) uniform uimageBuffer depth_pyramid;
+// Two cells, or four pixels, a texel: fewer reads and writes. Every row and every level begins with a whole one.
+layout(set = 0, binding = 1, rgba32ui) uniform uimageBuffer cell_pairs;
 layout(push_constant, scalar) uniform Push
 {
     ivec2 source_size; // cells of the level below
@@ -16,8 +17,8 @@ layout(push_constant, scalar) uniform Push
     ivec2 source_offset;
     ivec2 offset;      // where this level lies in the atlas
     int   atlas_width; // cells
-    int   atlas_begin; // texels
-    int   pairs_a_row; // level 0 comes before the atlas, two pixels in the place of a cell
+    int   atlas_begin; // level 0 comes before the atlas, two pixels in the place of a cell
+    int   pixel_pairs_a_row;
 };
 
 // The slab's back, rounded outward: wider than any rounding of the test on the pixel itself.
@@ -42,15 +43,17 @@ Range pixel_range(ivec2 pixel, uint bits)
     return Range(floatBitsToInt(depth), pyramid_kind == PYRAMID_NEAREST ? 0 : max(floatBitsToInt(outer_back(depth)), 0));
 }
 
-// A row is as wide as the whole atlas.
-int index_of(ivec2 place)
+// A cell and its right neighbour.
+int pair_at(ivec2 place)
 {
-    return atlas_begin + place.y * atlas_width + place.x;
+    return (atlas_begin + place.y * atlas_width + place.x) >> 1;
 }
 
-uvec2 source_cell(ivec2 cell)
+uvec4 source_pair(ivec2 cell)
 {
-    return any(greaterThanEqual(cell, source_size)) ? empty_cell : imageLoad(depth_pyramid, index_of(source_offset + cell)).xy;
+    bvec3 inside = lessThan(ivec3(cell, cell.x + 1), source_size.xyx);
+    uvec4 pair   = inside.y ? imageLoad(cell_pairs, pair_at(source_offset + cell)) : uvec4(0);
+    return uvec4(inside.x ? pair.xy : empty_cell, inside.z ? pair.zw : empty_cell);
 }
 
 Range cell_range(uvec2 cell)
@@ -109,28 +112,50 @@ uint bins_of_quarter(uvec2 cell, uvec2 quarter)
     return bins == 0u ? 0u : bins << (nearest_bin(cell) - nearest);
 }
 
+// Without occupancy everything behind the nearest front counts as full, as far as the farthest back.
+uvec2 finished(uvec2 cell)
+{
+    if (cell.y == 0u) return empty_cell;
+    return pyramid_kind == PYRAMID_OCCUPANCY ? cell : uvec2(cell.x, bins_between(0, findMSB(cell.y)));
+}
+
+// The cell of two pixels and the two below them.
+uvec2 cell_of_pixels(ivec2 first, uvec2 upper, uvec2 lower)
+{
+    const ivec2 right = ivec2(1, 0), below = ivec2(0, 1);
+    Range a = pixel_range(first, upper.x), b = pixel_range(first + right, upper.y);
+    Range c = pixel_range(first + below, lower.x), d = pixel_range(first + right + below, lower.y);
+    uvec2 cell = cell_of_range(unite(unite(a, b), unite(c, d)));
+    cell.y     = bins_of_pixel(cell, a) | bins_of_pixel(cell, b) | bins_of_pixel(cell, c) | bins_of_pixel(cell, d);
+    return finished(cell);
+}
+
+uvec2 cell_of_quarters(uvec4 upper, uvec4 lower)
+{
+    Range range = unite(unite(cell_range(upper.xy), cell_range(upper.zw)), unite(cell_range(lower.xy), cell_range(lower.zw)));
+    uvec2 cell  = cell_of_range(range);
+    cell.y      = bins_of_quarter(cell, upper.xy) | bins_of_quarter(cell, upper.zw);
+    cell.y |= bins_of_quarter(cell, lower.xy) | bins_of_quarter(cell, lower.zw);
+    return finished(cell);
+}
+
+// An invocation makes two cells side by side. The second may lie beyond the level: that place belongs to none.
 void main()
 {
-    ivec2 position = ivec2(gl_GlobalInvocationID.xy), first = 2 * position;
+    ivec2 position = ivec2(2, 1) * ivec2(gl_GlobalInvocationID.xy), first = 2 * position;
     if (any(greaterThanEqual(position, size))) return;
-    const ivec2 right = ivec2(1, 0), below = ivec2(0, 1);
-    uvec2 cell;
+    const ivec2 next = ivec2(2, 0), below = ivec2(0, 1);
+    uvec4 cells;
     if (from_pixels != 0)
     {
-        int   pair  = first.y * pairs_a_row + position.x;
-        uvec2 upper = imageLoad(depth_pyramid, pair).xy, lower = imageLoad(depth_pyramid, pair + pairs_a_row).xy;
-        Range a = pixel_range(first, upper.x), b = pixel_range(first + right, upper.y);
-        Range c = pixel_range(first + below, lower.x), d = pixel_range(first + right + below, lower.y);
-        cell    = cell_of_range(unite(unite(a, b), unite(c, d)));
-        cell.y  = bins_of_pixel(cell, a) | bins_of_pixel(cell, b) | bins_of_pixel(cell, c) | bins_of_pixel(cell, d);
+        int   pair  = (first.y * pixel_pairs_a_row >> 1) + (first.x >> 2);
+        uvec4 upper = imageLoad(cell_pairs, pair), lower = imageLoad(cell_pairs, pair + (pixel_pairs_a_row >> 1));
+        cells       = uvec4(cell_of_pixels(first, upper.xy, lower.xy), cell_of_pixels(first + next, upper.zw, lower.zw));
     }
     else
     {
-        uvec2 a = source_cell(first), b = source_cell(first + right), c = source_cell(first + below), d = source_cell(first + right + below);
-        cell    = cell_of_range(unite(unite(cell_range(a), cell_range(b)), unite(cell_range(c), cell_range(d))));
-        cell.y  = bins_of_quarter(cell, a) | bins_of_quarter(cell, b) | bins_of_quarter(cell, c) | bins_of_quarter(cell, d);
+        cells.xy = cell_of_quarters(source_pair(first), source_pair(first + below));
+        cells.zw = cell_of_quarters(source_pair(first + next), source_pair(first + next + below));
     }
-    // Without occupancy everything behind the nearest front counts as full, as far as the farthest back.
-    if (pyramid_kind != PYRAMID_OCCUPANCY && cell.y != 0u) cell.y = bins_between(0, findMSB(cell.y));
-    imageStore(depth_pyramid, index_of(offset + position), uvec4(cell.y != 0u ? cell : empty_cell, 0, 0));
+    imageStore(cell_pairs, pair_at(offset + position), cells);
 }

@@ -123,7 +123,7 @@ int pyramid_levels()
 
 // The pixels two by two, then the atlas row by row, 2^pyramid_row_bits cells each; level L begins pyramid_side - (pyramid_side >> (L - 1)) cells
 // behind its beginning. Levels lie side by side; in a picture that is taller than wide one above the other (framework/render/depth_pyramid.h).
-int  pairs_a_row      = (size_px.x + 1) >> 1;
+int  pairs_a_row      = ((size_px.x + 3) >> 2) << 1;
 bool levels_stacked   = size_px.y > size_px.x;
 int  pyramid_row_bits = levels_stacked ? bits_of(pairs_a_row) : pyramid_levels();
 int  pyramid_side     = 1 << (pyramid_levels() + (levels_stacked ? pyramid_row_bits : 0));

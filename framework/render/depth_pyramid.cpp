@@ -21,12 +21,11 @@ glm::ivec2 level_size(glm::ivec2 size_px, int level) { return ((size_px - 1) >> 
 
 PyramidAtlas pyramid_atlas(glm::ivec2 size_px)
 {
-    const glm::ivec2 largest = level_size(size_px, 1);
-    PyramidAtlas     atlas;
+    PyramidAtlas atlas;
     atlas.levels  = bits_of(std::max(size_px.x, size_px.y));
     atlas.stacked = size_px.y > size_px.x;
-    atlas.size    = atlas.stacked ? glm::ivec2(1 << bits_of(largest.x), 1 << atlas.levels)
-                                  : glm::ivec2(1 << atlas.levels, largest.y);
+    atlas.size    = atlas.stacked ? glm::ivec2(1 << bits_of(pixel_pairs(size_px).x), 1 << atlas.levels)
+                                  : glm::ivec2(1 << atlas.levels, level_size(size_px, 1).y);
     return atlas;
 }
 
@@ -38,8 +37,7 @@ glm::ivec2 PyramidAtlas::first_cell(int level) const
 
 glm::ivec2 pixel_pairs(glm::ivec2 size_px)
 {
-    const glm::ivec2 squares = level_size(size_px, 1);
-    return {squares.x, 2 * squares.y};
+    return 2 * glm::ivec2(level_size(size_px, 2).x, level_size(size_px, 1).y);
 }
 
 DepthPyramid make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px)
@@ -49,6 +47,7 @@ DepthPyramid make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px)
     pyramid.size_px = size_px;
     pyramid.cells   = make_texel_buffer(gpu, texels * sizeof(glm::uvec2), vk::Format::eR32G32Uint);
     pyramid.words   = make_texel_view(gpu, pyramid.cells, vk::Format::eR32Sfloat);
+    pyramid.pairs   = make_texel_view(gpu, pyramid.cells, vk::Format::eR32G32B32A32Uint);
     return pyramid;
 }
 

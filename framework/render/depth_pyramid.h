@@ -9,7 +9,8 @@
 namespace ssrlab {
 
 /// Where the levels >= 1 of a pyramid lie in one atlas, side by side, or one above the other where the picture is taller than wide.
-/// Level L begins at side - (side >> (L - 1)), side being the atlas's width or height. Its width is a power of two.
+/// Level L begins at side - (side >> (L - 1)), side being the atlas's width or height. Its width is a power of two, and
+/// even where there is any.
 struct PyramidAtlas {
     glm::ivec2 size{0, 0};      // cells
     int        levels  = 0;     // above level 0, which is the picture itself
@@ -26,8 +27,9 @@ struct DepthPyramid {
     glm::ivec2           size_px{0, 0};
     Buffer               cells;           // as texels: both words of a cell (shaders/pyramid_cell.glsl), or two pixels
     vk::raii::BufferView words = nullptr; // as texels: each word
+    vk::raii::BufferView pairs = nullptr; // as texels: two cells, or four pixels
 };
-/// Level 0 as texels of two pixels; whole squares of four.
+/// Level 0 in pairs of pixels: rows of whole cell pairs, and an even number of rows.
 glm::ivec2 pixel_pairs(glm::ivec2 size_px);
 
 /// Without content.

@@ -23,7 +23,7 @@ Recording cone_pyramid(Gpu& gpu, PreparedFrame& frame)
     };
     frame.cone  = true;
     auto passes = std::make_shared<PyramidPasses>(
-        PyramidPasses{make({{"FROM_PIXELS", "1"}}), make({}), pyramid_levels(frame.buffers->gbuffer->view.size_px)});
+        PyramidPasses{1, make({{"FROM_PIXELS", "1"}}), make({}), pyramid_levels(frame.buffers->gbuffer->view.size_px)});
     return [passes](const auto& commands) { record_pyramid(commands, *passes); };
 }
 

@@ -141,12 +141,13 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const De
         Constants constants = settings_constants(frame, Precision::float32);
         constants.add(CONSTANT_PYRAMID_KIND, static_cast<int32_t>(parameter_or(frame, "pyramid", PYRAMID_OCCUPANCY)));
         constants.add(CONSTANT_FROM_PIXELS, static_cast<int32_t>(from_pixels));
-        return make_compute_pass(gpu, shader, {{"depth_pyramid", pyramid.cells}}, constants, sizeof(PyramidPush));
+        return make_compute_pass(gpu, shader, {{"cell_pairs", pyramid.pairs}}, constants, sizeof(PyramidPush));
     };
     PyramidPasses passes;
-    passes.from_pixels = make(true);
-    passes.from_cells  = make(false);
-    passes.levels      = pyramid_levels(pyramid.size_px, static_cast<int>(parameter_or(frame, "top_level", 31)));
+    passes.cells_per_invocation = 2;
+    passes.from_pixels          = make(true);
+    passes.from_cells           = make(false);
+    passes.levels = pyramid_levels(pyramid.size_px, static_cast<int>(parameter_or(frame, "top_level", 31)));
     return passes;
 }
 
@@ -311,8 +312,8 @@ void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses
     for (const PyramidPush& level : passes.levels) {
         const ComputePass& pass = &level == &passes.levels.front() ? passes.from_pixels : passes.from_cells;
         push(commands, pass, level);
-        dispatch(commands, pass,
-                 {static_cast<uint32_t>(level.size.x + 7) / 8, static_cast<uint32_t>(level.size.y + 7) / 8, 1});
+        const int per_invocation = passes.cells_per_invocation;
+        dispatch(commands, pass, groups_of_8({(level.size.x + per_invocation - 1) / per_invocation, level.size.y}));
         barrier(commands);
     }
 }

@@ -78,8 +78,9 @@ struct PyramidPush {
     int        atlas_begin = 0, pairs_a_row = 0; // in texels; of level 0
 };
 struct PyramidPasses {
-    ComputePass              from_pixels, from_cells; // level 1; the others
-    std::vector<PyramidPush> levels;                  // above level 0
+    int                      cells_per_invocation = 1; // side by side
+    ComputePass              from_pixels, from_cells;  // level 1; the others
+    std::vector<PyramidPush> levels;                   // above level 0
 };
 
 /// The technique on one list of rays.
