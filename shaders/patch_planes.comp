@@ -7,12 +7,19 @@
 #include "slab.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 0, binding = 3, rgba32ui) uniform readonly uimageBuffer cell_pairs; // four pixels a texel
 layout(set = 0, binding = 14, rgba32f) uniform writeonly imageBuffer PatchPlanes;
 
 const int   side_px = 1 << PATCH_BITS, sample_rows = 4, samples = sample_rows * sample_rows;
 const float none = 1e30;
 // Of depth: how far a sample may lie off a plane that holds it, and how much the line through its neighbours may bend there.
 const float on_plane = 1.0 / 4096, most_bent = 1.0 / 100000;
+
+// From a pixel whose x is a multiple of four to the right.
+vec4 load_four_depths(ivec2 pixel)
+{
+    return uintBitsToFloat(imageLoad(cell_pairs, depth_word(pixel) >> 2));
+}
 
 // Where in the patch a sample lies: its neighbours lie in the patch, too, unless that is too small.
 ivec2 sample_at(int number, ivec2 way)
@@ -54,13 +61,17 @@ void main()
     float stands  = ground < none && nearest > ground ? corner + nearest - ground : none;
     float height = -none, before = none;
     // Down the columns, so that reads of different cache lines are under way at once.
-    for (int i = 0; i < side_px * side_px; ++i)
+    for (int i = 0; i < side_px * side_px / 4; ++i)
     {
-        ivec2 local   = min(ivec2(i >> PATCH_BITS, i & (side_px - 1)), way);
-        float depth   = load_depth(first + local), front = depth - dot(gradient, vec2(local));
-        bool  surface = depth > 0.0, is_before = front > stands;
-        before        = surface && is_before ? min(before, depth) : before;
-        height        = surface && !is_before ? max(height, front) : height;
+        ivec2 local = min(ivec2(i >> PATCH_BITS << 2, i & (side_px - 1)), way & ivec2(~3, ~0));
+        vec4  depth = load_four_depths(first + local), x = float(local.x) + vec4(0, 1, 2, 3);
+        vec4  front = depth - gradient.x * x - gradient.y * float(local.y);
+        for (int k = 0; k < 4; ++k)
+        {
+            bool surface = local.x + k <= way.x && depth[k] > 0.0, is_before = front[k] > stands;
+            before       = surface && is_before ? min(before, depth[k]) : before;
+            height       = surface && !is_before ? max(height, front[k]) : height;
+        }
     }
     height += dot(abs(gradient), vec2(side_px)) / (1 << 20); // what rounding moved it by, and will where it is used
     imageStore(PatchPlanes, place.y * patches.x + place.x, vec4(gradient, height, before < none ? before : 0.0));

@@ -20,11 +20,8 @@ struct HiddenLayer {
 TechniquePasses make_layer_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays)
 {
     const FrameBuffers& buffers  = *frame.buffers;
-    Bindings            bindings = {{"View", buffers.view},
-                                    {"depth_words", buffers.second_layer->depth.words},
-                                    {"depth_pyramid", buffers.second_layer->depth.cells},
-                                    {"normal_image", buffers.second_layer->normal},
-                                    {"material_image", buffers.second_layer->material}};
+    Bindings            bindings = surface_bindings(*buffers.second_layer);
+    bindings.insert({"View", buffers.view});
     bindings.merge(bindings_of(buffers, rays));
     return make_technique_passes(gpu, frame, rays, bindings);
 }

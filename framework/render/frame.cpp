@@ -99,15 +99,13 @@ FrameStatistics count_picture(Gpu& gpu, const FrameBuffers& buffers)
     const glm::ivec2 size_px = buffers.gbuffer->view.size_px;
     const glm::uvec3 tiles   = groups_of_8(size_px);
     FrameStatistics  statistics;
-    statistics.pixels                = static_cast<uint32_t>(size_px.x) * static_cast<uint32_t>(size_px.y);
-    statistics.tiles                 = tiles.x * tiles.y;
-    const ComputePass classification = make_compute_pass(gpu, compile_shader({.file = "effects/classification.comp"}),
-                                                         {{"View", buffers.view},
-                                                          {"depth_words", buffers.gbuffer->depth.words},
-                                                          {"normal_image", buffers.gbuffer->normal},
-                                                          {"material_image", buffers.gbuffer->material},
-                                                          {"TileMasks", buffers.tiles.masks},
-                                                          {"PictureStatistics", buffers.tiles.statistics}});
+    statistics.pixels = static_cast<uint32_t>(size_px.x) * static_cast<uint32_t>(size_px.y);
+    statistics.tiles  = tiles.x * tiles.y;
+    Bindings bindings = surface_bindings(*buffers.gbuffer);
+    bindings.insert(
+        {{"View", buffers.view}, {"TileMasks", buffers.tiles.masks}, {"PictureStatistics", buffers.tiles.statistics}});
+    const ComputePass classification =
+        make_compute_pass(gpu, compile_shader({.file = "effects/classification.comp"}), bindings);
     submit(gpu, [&](const auto& commands) { record_marking(commands, classification, buffers); });
     statistics.picture = download_as<PictureCounts>(gpu, buffers.tiles.statistics, 1)[0];
     return statistics;

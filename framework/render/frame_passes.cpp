@@ -168,23 +168,30 @@ TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
             make_buffer(gpu, sizeof(PictureCounts))};
 }
 
+Bindings surface_bindings(const GBuffer& gbuffer)
+{
+    return {{"depth_words", gbuffer.depth.words},
+            {"depth_pyramid", gbuffer.depth.cells},
+            {"cell_pairs", gbuffer.depth.pairs},
+            {"normal_image", gbuffer.normal},
+            {"material_image", gbuffer.material}};
+}
+
 Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
 {
-    return {{"RayCount", rays.count},
-            {"Rays", rays.list},
-            {"HitPixels", rays.hit_pixels},
-            {"HitTs", rays.hit_ts},
-            {"Beams", rays.beams},
-            {"BeamWork", rays.beam_work},
-            {"PatchPlanes", buffers.patch_planes},
-            {"TileMasks", buffers.tiles.masks},
-            {"TileCount", buffers.tiles.count},
-            {"Tiles", buffers.tiles.tiles},
-            {"PictureStatistics", buffers.tiles.statistics},
-            {"depth_words", buffers.gbuffer->depth.words},
-            {"depth_pyramid", buffers.gbuffer->depth.cells},
-            {"normal_image", buffers.gbuffer->normal},
-            {"material_image", buffers.gbuffer->material}};
+    Bindings bindings = surface_bindings(*buffers.gbuffer);
+    bindings.insert({{"RayCount", rays.count},
+                     {"Rays", rays.list},
+                     {"HitPixels", rays.hit_pixels},
+                     {"HitTs", rays.hit_ts},
+                     {"Beams", rays.beams},
+                     {"BeamWork", rays.beam_work},
+                     {"PatchPlanes", buffers.patch_planes},
+                     {"TileMasks", buffers.tiles.masks},
+                     {"TileCount", buffers.tiles.count},
+                     {"Tiles", buffers.tiles.tiles},
+                     {"PictureStatistics", buffers.tiles.statistics}});
+    return bindings;
 }
 
 ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch, int items_per_group)

@@ -129,7 +129,9 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
                                       const Bindings& bindings);
 void record_technique(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes, const RayBuffers& rays);
 ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch, int items_per_group);
-/// Everything that shaders may read and write, by its name; without the view.
+/// What a picture shows at each pixel, by the names that shaders give it.
+Bindings surface_bindings(const GBuffer& gbuffer);
+/// That and everything else that shaders may read and write; without the view.
 Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays);
 /// The number types that shaders/real.glsl and wide.glsl stand for.
 Defines precision_defines(const Gpu& gpu, Precision precision);
