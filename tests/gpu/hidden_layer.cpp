@@ -155,6 +155,21 @@ TEST_P(HiddenLayer, RaysThatMissedFindTheWallBehindThePanel)
 INSTANTIATE_TEST_SUITE_P(Techniques, HiddenLayer, testing::Values("dda", "hiz"),
                          [](const auto& param) { return std::string(param.param); });
 
+// What a technique reads besides depth, of the pyramid or of patches, has to be the second layer's too.
+TEST(HiddenLayerWalk, HizFindsThereWhatThePixelWalkFinds)
+{
+    const Picture picture = make_picture("builtin:everything", "default", {641, 359});
+    const auto    found   = [&](const char* id) {
+        const auto frame = prepare(picture, id, thin);
+        run_frame(device(), *frame);
+        return *read_hidden_hits(device(), *frame);
+    };
+    const TraceResult walk = found("dda");
+    std::string       first;
+    EXPECT_EQ(count_differences(found("hiz"), walk, true, first), 0U) << first;
+    EXPECT_GT(std::ranges::count(walk.status, TraceStatus::hit), 1000);
+}
+
 TEST(HiddenLayerPlan, NeedsTheScene)
 {
     const Picture uploaded = make_picture(floor_and_wall(bench_view({32, 32}), 10));
