@@ -1,4 +1,4 @@
-// The depth of every pixel, 0 where there is nothing: level 0 of the depth pyramid (framework/render/depth_pyramid.h). After size_px.
+// The depth of every pixel, BACKGROUND_DEPTH where there is nothing: level 0 of the depth pyramid (framework/render/depth_pyramid.h). After size_px.
 #ifndef DEPTH_BINDING
 #define DEPTH_BINDING 1
 #endif

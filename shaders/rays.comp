@@ -2,7 +2,6 @@
 // the list. By the effects' parameters there may be several rays per pixel, one after the other in the list.
 #include "segment.glsl"
 #include "hash.glsl"
-#include "listed_ray.glsl"
 #include "effects/tiles.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -12,7 +11,7 @@ layout(constant_id = CONSTANT_RAYS_PER_PIXEL) const int rays_per_pixel = 1;
 layout(set = 0, binding = 5, rgba32ui) uniform writeonly uimageBuffer Rays;
 layout(set = 0, binding = 11, r32ui) uniform readonly uimageBuffer TileMasks; // two words a tile: bit x + 8 y
 
-// A place inside the pixel, exact in float. The depth image is flat inside each pixel: a ray that starts on the far side of its pixel's
+// A place inside the pixel, exact in float. Depth is flat inside each pixel: a ray that starts on the far side of its pixel's
 // centre and runs sideways is behind its neighbour's slab face, which ray_offset_m > 0 avoids.
 real2 offset_start(ivec2 pixel, int ray)
 {
@@ -63,7 +62,7 @@ void main()
             start_depth        = offset_depth > real(0) ? offset_depth : depth;
         }
         Segment   segment = make_segment(start_px, start_depth, mirrored(view_direction(start_px), normal));
-        ListedRay listed  = ListedRay(segment.origin, segment.length_m, segment.delta, pack_pixel(pixel, segment.end_status));
+        ListedRay listed  = segment_to_listed_ray(segment, pixel);
         STORE_RAY(Rays, index + ray, listed);
     }
 }

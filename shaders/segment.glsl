@@ -3,6 +3,7 @@
 #include "view.glsl"
 #include "wide.glsl"
 #include "reflecting.glsl"
+#include "listed_ray.glsl"
 
 layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1;
 layout(constant_id = CONSTANT_RAY_OFFSET_M) const real ray_offset_m = 0;
@@ -147,4 +148,9 @@ Segment make_segment(real2 start_px, real depth, Wide3 direction)
     if (limit.side == SIDE_BOTTOM) delta.y = high.y;
     segment.delta = delta;
     return segment;
+}
+
+ListedRay segment_to_listed_ray(Segment segment, ivec2 pixel)
+{
+    return ListedRay(segment.origin, segment.length_m, segment.delta, pack_pixel(pixel, segment.end_status));
 }

@@ -69,7 +69,7 @@
 #define PYRAMID_MINMAX 1
 #define PYRAMID_NEAREST 2
 
-// Background in the depth image that tracers read: nearer than nothing, so that no interval touches it.
+// Background in the depth that tracers read: nearer than nothing, so that no interval touches it.
 #define BACKGROUND_DEPTH -1.0
 
 #endif

@@ -49,7 +49,7 @@ const std::vector<Column> times = {
 
 const std::vector<Column> counts = {
     {"rays", "traced rays: pixels that reflect"},
-    {"fetches_mean", "reads of the depth image and of derived inputs per traced ray"},
+    {"fetches_mean", "reads of depth and of derived inputs per traced ray"},
     {"fetches_p50", "median over the rays"},
     {"fetches_p99", "99th percentile over the rays"},
     {"fetches_max", "of the worst ray"},

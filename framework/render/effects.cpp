@@ -184,7 +184,7 @@ std::vector<Effect> make_table()
                      "its centre outward")},
          .need = where_something_reflects},
         {.id      = "depth_pyramid",
-         .summary = "Reduces the depth image level by level",
+         .summary = "Reduces depth level by level",
          .shader  = "depth_pyramid.comp",
          .reads   = {"depth_words"},
          .writes  = {"depth_pyramid"},

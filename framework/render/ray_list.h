@@ -28,7 +28,7 @@ struct RayOutcome {
     bool operator==(const RayOutcome&) const = default;
 };
 
-/// One technique with one set of values on one depth image, ready for any number of lists.
+/// One technique with one set of values on one picture's depth, ready for any number of lists.
 struct RayTracer;
 using RayTracerPtr = std::shared_ptr<RayTracer>;
 

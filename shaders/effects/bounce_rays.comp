@@ -56,7 +56,7 @@ void main()
     real2   centre   = real2(hit) + real(0.5);
     real    depth    = load_depth(hit);
     Segment segment  = make_segment(centre, depth, mirrored(widen(arriving), normal));
-    ListedRay next   = ListedRay(segment.origin, segment.length_m, segment.delta, pack_pixel(hit, segment.end_status));
+    ListedRay next   = segment_to_listed_ray(segment, hit);
     STORE_RAY(DerivedRays, derived, next);
     derived_throughput[derived] = throughput;
 #ifdef FURTHER
