@@ -9,10 +9,15 @@
 #endif
 layout(set = 0, binding = DEPTH_BINDING, r32f) uniform DEPTH_ACCESS imageBuffer depth_words;
 
-// Row by row; the length of a row is a multiple of four: two pixels lie in the place of a cell, four in that of two.
+// Words of a row, a multiple of four: two pixels lie in the place of a cell, four in that of two.
+int depth_row()
+{
+    return (size_px.x + 3) & ~3;
+}
+
 int depth_word(ivec2 pixel)
 {
-    return pixel.y * ((size_px.x + 3) & ~3) + pixel.x;
+    return pixel.y * depth_row() + pixel.x;
 }
 
 #ifndef WRITES_DEPTH

@@ -117,11 +117,10 @@ int pyramid_levels()
 
 // The pixels two by two, then the atlas row by row, 2^pyramid_row_bits cells each; level L begins pyramid_side - (pyramid_side >> (L - 1)) cells
 // behind its beginning. Levels lie side by side; in a picture that is taller than wide one above the other (framework/render/depth_pyramid.h).
-int  pairs_a_row      = ((size_px.x + 3) >> 2) << 1;
 bool levels_stacked   = size_px.y > size_px.x;
-int  pyramid_row_bits = levels_stacked ? bits_of(pairs_a_row) : pyramid_levels();
+int  pyramid_row_bits = levels_stacked ? bits_of(depth_row() / 2) : pyramid_levels();
 int  pyramid_side     = 1 << (pyramid_levels() + (levels_stacked ? pyramid_row_bits : 0));
-int  pyramid_end      = pyramid_side + pairs_a_row * ((size_px.y + 1) & ~1);
+int  pyramid_end      = pyramid_side + depth_row() * ((size_px.y + 1) / 2);
 
 // Where a cell of level >= 1 lies in the atlas.
 int pyramid_index(ivec2 cell, int level)
@@ -132,7 +131,7 @@ int pyramid_index(ivec2 cell, int level)
 // Where two pixels lie, of which this is one; and its depth among the two.
 int pixel_pair_index(ivec2 pixel)
 {
-    return pixel.y * pairs_a_row + (pixel.x >> 1);
+    return depth_word(pixel) >> 1;
 }
 
 uint depth_bits(uvec2 pair, ivec2 pixel)

@@ -9,8 +9,8 @@
 namespace ssrlab {
 
 /// Where the levels >= 1 of a pyramid lie in one atlas, side by side, or one above the other where the picture is taller than wide.
-/// Level L begins at side - (side >> (L - 1)), side being the atlas's width or height. Its width is a power of two, and
-/// even where there is any.
+/// Level L begins at side - (side >> (L - 1)), side being the atlas's width or height. Its width is a power of two; where
+/// there is a level it is even, and so is the column where each begins.
 struct PyramidAtlas {
     glm::ivec2 size{0, 0};      // cells
     int        levels  = 0;     // above level 0, which is the picture itself
