@@ -18,7 +18,7 @@ layout(push_constant, scalar) uniform Push
     ivec2 offset;      // where this level lies in the atlas
     int   atlas_width; // cells
     int   atlas_begin; // level 0 comes before the atlas, two pixels in the place of a cell
-    int   pixel_pairs_a_row;
+    int   pixel_fours_a_row;
 };
 
 // The slab's back, rounded outward: wider than any rounding of the test on the pixel itself.
@@ -148,8 +148,8 @@ void main()
     uvec4 cells;
     if (from_pixels != 0)
     {
-        int   pair  = (first.y * pixel_pairs_a_row >> 1) + (first.x >> 2);
-        uvec4 upper = imageLoad(cell_pairs, pair), lower = imageLoad(cell_pairs, pair + (pixel_pairs_a_row >> 1));
+        int   four  = first.y * pixel_fours_a_row + (first.x >> 2);
+        uvec4 upper = imageLoad(cell_pairs, four), lower = imageLoad(cell_pairs, four + pixel_fours_a_row);
         cells       = uvec4(cell_of_pixels(first, upper.xy, lower.xy), cell_of_pixels(first + next, upper.zw, lower.zw));
     }
     else

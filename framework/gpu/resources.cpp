@@ -54,6 +54,12 @@ vk::ImageAspectFlags aspect_of(vk::Format format)
     return is_depth(format) ? vk::ImageAspectFlagBits::eDepth : vk::ImageAspectFlagBits::eColor;
 }
 
+vk::BufferImageCopy whole_image(const GpuImage& image)
+{
+    return {.imageSubresource = {aspect_of(image.format), 0, 0, 1},
+            .imageExtent      = {static_cast<uint32_t>(image.size_px.x), static_cast<uint32_t>(image.size_px.y), 1}};
+}
+
 } // namespace
 
 Buffer make_buffer(Gpu& gpu, uint64_t bytes)
@@ -153,12 +159,6 @@ GpuImage make_image(Gpu& gpu, const ImageOptions& options)
             vk::DependencyInfo{.imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &to_general});
     });
     return result;
-}
-
-vk::BufferImageCopy whole_image(const GpuImage& image)
-{
-    return {.imageSubresource = {aspect_of(image.format), 0, 0, 1},
-            .imageExtent      = {static_cast<uint32_t>(image.size_px.x), static_cast<uint32_t>(image.size_px.y), 1}};
 }
 
 void upload(Gpu& gpu, GpuImage& target, const void* data, uint64_t bytes)

@@ -66,9 +66,8 @@ GpuImage make_image(Gpu& gpu, const ImageOptions& options);
 bool     is_depth(vk::Format format);
 
 /// Tightly packed texels of level 0, layer 0.
-vk::BufferImageCopy whole_image(const GpuImage& image);
-void                upload(Gpu& gpu, GpuImage& target, const void* data, uint64_t bytes);
-std::vector<char>   download(Gpu& gpu, const GpuImage& source, uint32_t bytes_per_texel);
+void              upload(Gpu& gpu, GpuImage& target, const void* data, uint64_t bytes);
+std::vector<char> download(Gpu& gpu, const GpuImage& source, uint32_t bytes_per_texel);
 
 template <typename T> std::vector<T> download_as(Gpu& gpu, const GpuImage& source)
 {

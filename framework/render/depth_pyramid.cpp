@@ -15,6 +15,9 @@ int bits_of(int number)
     return bits;
 }
 
+/// Level 0 in words.
+glm::ivec2 words_of(const DepthPyramid& pyramid) { return pixel_pairs(pyramid.size_px) * glm::ivec2(2, 1); }
+
 } // namespace
 
 glm::ivec2 level_size(glm::ivec2 size_px, int level) { return ((size_px - 1) >> level) + 1; }
@@ -53,7 +56,7 @@ DepthPyramid make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px)
 
 void write_depth(Gpu& gpu, DepthPyramid& pyramid, std::span<const float> depth)
 {
-    const glm::ivec2   words = pixel_pairs(pyramid.size_px) * glm::ivec2(2, 1);
+    const glm::ivec2   words = words_of(pyramid);
     std::vector<float> rows(pixel_count(words));
     for (int y = 0; y < pyramid.size_px.y; ++y)
         std::ranges::copy(depth.subspan(pixel_index({0, y}, pyramid.size_px), static_cast<size_t>(pyramid.size_px.x)),
@@ -63,7 +66,7 @@ void write_depth(Gpu& gpu, DepthPyramid& pyramid, std::span<const float> depth)
 
 std::vector<float> read_depth(Gpu& gpu, const DepthPyramid& pyramid)
 {
-    const glm::ivec2   words = pixel_pairs(pyramid.size_px) * glm::ivec2(2, 1);
+    const glm::ivec2   words = words_of(pyramid);
     const auto         rows  = download_as<float>(gpu, pyramid.cells, pixel_count(words));
     std::vector<float> depth;
     depth.reserve(pixel_count(pyramid.size_px));

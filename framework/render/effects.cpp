@@ -164,7 +164,7 @@ std::vector<Effect> make_table()
         {.id      = "classification",
          .summary = "Lists the 8 x 8 tiles that reflect; all later passes up to the compositing work on these alone",
          .shader  = "effects/classification.comp",
-         .reads   = {"depth_words", "normal_image", "material_image"},
+         .reads   = {"View", "depth_words", "normal_image", "material_image"},
          .writes  = {"TileMasks", "TileCount", "Tiles", "RayCount", "PictureStatistics"},
          .need    = classification_need},
         {.id      = "rays",

@@ -126,10 +126,11 @@ std::vector<PyramidPush> pyramid_levels(glm::ivec2 size_px, int top)
 {
     std::vector<PyramidPush> levels;
     const PyramidAtlas       atlas = pyramid_atlas(size_px);
+    const glm::ivec2         pairs = pixel_pairs(size_px);
     for (int level = 1; level <= std::min(atlas.levels, top); ++level)
         levels.push_back({level_size(size_px, level - 1), level_size(size_px, level),
                           level > 1 ? atlas.first_cell(level - 1) : glm::ivec2(0), atlas.first_cell(level),
-                          atlas.size.x, static_cast<int>(pixel_count(pixel_pairs(size_px))), pixel_pairs(size_px).x});
+                          atlas.size.x, static_cast<int>(pixel_count(pairs)), pairs.x / 2});
     return levels;
 }
 

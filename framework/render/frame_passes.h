@@ -75,7 +75,7 @@ struct FrameBuffers {
 struct PyramidPush {
     glm::ivec2 source_size, size, source_offset, offset;
     int        atlas_width = 0;
-    int        atlas_begin = 0, pairs_a_row = 0; // in texels; of level 0
+    int        atlas_begin = 0, pixel_fours_a_row = 0; // level 0 lies before the atlas
 };
 struct PyramidPasses {
     int                      cells_per_invocation = 1; // side by side

@@ -155,7 +155,7 @@ TEST_P(HiddenLayer, RaysThatMissedFindTheWallBehindThePanel)
 INSTANTIATE_TEST_SUITE_P(Techniques, HiddenLayer, testing::Values("dda", "hiz"),
                          [](const auto& param) { return std::string(param.param); });
 
-// What a technique reads besides depth, of the pyramid or of patches, has to be the second layer's too.
+// The pyramid that a technique walks has to be the second layer's, too.
 TEST(HiddenLayerWalk, HizFindsThereWhatThePixelWalkFinds)
 {
     const Picture picture = make_picture("builtin:everything", "default", {641, 359});

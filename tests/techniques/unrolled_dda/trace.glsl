@@ -2,14 +2,14 @@
 #define TRACES_PAIRS
 #include "cell_walk.glsl"
 
-// In pixels, level 0, read as hiz reads them.
+// In pixels, level 0.
 void visit(Ray ray, inout CellWalk walk, int number)
 {
     bool  goes     = goes_on(walk);
     current_ray    = goes ? number : 2;
     real2 t_border = border_t(walk.forward, walk.grid, walk.corner);
     real  t_out    = exit_t(walk.grid, t_border);
-    bool  touched  = touches_cell(ray, walk.grid, (walk.corner - 1) ^ walk.mirror, 0, walk.t, t_out);
+    bool  touched  = touches_surface(ray, walk.grid, (walk.corner - 1) ^ walk.mirror, walk.t, t_out);
     bool  leaves   = goes && !touched;
     ivec2 next     = next_corner(walk.corner, 1, t_border, t_out);
     walk.t         = leaves ? t_out : walk.t;
