@@ -3,6 +3,7 @@
 #include "real.glsl"
 #include "slab.glsl"
 #include "pyramid_cell.glsl"
+#include "shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = CONSTANT_PYRAMID_KIND) const int pyramid_kind = PYRAMID_OCCUPANCY;
@@ -14,11 +15,9 @@ layout(push_constant, scalar) uniform Push
 {
     ivec2 source_size; // cells of the level below
     ivec2 size;        // cells of this level
-    ivec2 source_offset;
-    ivec2 offset;      // where this level lies in the atlas
-    int   atlas_width; // cells
-    int   atlas_begin; // level 0 comes before the atlas, two pixels in the place of a cell
-    int   pixel_fours_a_row;
+    int   source_row;  // where that begins
+    int   row;         // where this one begins
+    int   rows;        // of the whole pyramid
 };
 
 // The slab's back, rounded outward: wider than any rounding of the test on the pixel itself.
@@ -43,16 +42,16 @@ Range pixel_range(ivec2 pixel, uint bits)
     return Range(floatBitsToInt(depth), pyramid_kind == PYRAMID_NEAREST ? 0 : max(floatBitsToInt(outer_back(depth)), 0));
 }
 
-// A cell and its right neighbour.
-int pair_at(ivec2 place)
+// A cell and its right neighbour, of the level that begins in a row.
+int pair_at(int first_row, ivec2 cell)
 {
-    return (atlas_begin + place.y * atlas_width + place.x) >> 1;
+    return strip_index(cell.x, first_row + cell.y, rows) >> 1;
 }
 
 uvec4 source_pair(ivec2 cell)
 {
     bvec3 inside = lessThan(ivec3(cell, cell.x + 1), source_size.xyx);
-    uvec4 pair   = inside.y ? imageLoad(cell_pairs, pair_at(source_offset + cell)) : uvec4(0);
+    uvec4 pair   = inside.y ? imageLoad(cell_pairs, pair_at(source_row, cell)) : uvec4(0);
     return uvec4(inside.x ? pair.xy : empty_cell, inside.z ? pair.zw : empty_cell);
 }
 
@@ -148,8 +147,8 @@ void main()
     uvec4 cells;
     if (from_pixels != 0)
     {
-        int   four  = first.y * pixel_fours_a_row + (first.x >> 2);
-        uvec4 upper = imageLoad(cell_pairs, four), lower = imageLoad(cell_pairs, four + pixel_fours_a_row);
+        ivec2 pair  = ivec2(position.x, first.y);
+        uvec4 upper = imageLoad(cell_pairs, pair_at(source_row, pair)), lower = imageLoad(cell_pairs, pair_at(source_row, pair + below));
         cells       = uvec4(cell_of_pixels(first, upper.xy, lower.xy), cell_of_pixels(first + next, upper.zw, lower.zw));
     }
     else
@@ -157,5 +156,5 @@ void main()
         cells.xy = cell_of_quarters(source_pair(first), source_pair(first + below));
         cells.zw = cell_of_quarters(source_pair(first + next), source_pair(first + next + below));
     }
-    imageStore(cell_pairs, pair_at(offset + position), cells);
+    imageStore(cell_pairs, pair_at(row, position), cells);
 }

@@ -1,4 +1,4 @@
-// Numbers that C++ and GLSL must agree on. Included by both.
+// Numbers, and places in memory, that C++ and GLSL must agree on. Included by both.
 #ifndef SSRLAB_SHARED_H
 #define SSRLAB_SHARED_H
 
@@ -71,5 +71,32 @@
 
 // Background in the depth that tracers read: nearer than nothing, so that no interval touches it.
 #define BACKGROUND_DEPTH -1.0
+
+// ---- The depth pyramid: its levels one below another, level 0 the picture, two pixels in the place of a cell. It lies in strips of
+// 2^STRIP_BITS cells' width: a row of one is a cache line, and what a ray meets on its way up or down the picture follows in memory.
+#define STRIP_BITS 3
+
+#ifdef __cplusplus
+#define SHARED_FUNCTION inline
+#else
+#define SHARED_FUNCTION
+#endif
+
+// The row in which a level begins, with a row to spare for halves of odd numbers of rows.
+SHARED_FUNCTION int level_row(int height_px, int level)
+{
+    return 2 * height_px - ((2 * height_px) >> level) + level;
+}
+
+// At least those of all levels.
+SHARED_FUNCTION int pyramid_rows(int height_px)
+{
+    return 2 * height_px + PIXEL_BITS + 1;
+}
+
+SHARED_FUNCTION int strip_index(int x, int row, int rows)
+{
+    return (((x >> STRIP_BITS) * rows + row) << STRIP_BITS) + (x & ((1 << STRIP_BITS) - 1));
+}
 
 #endif

@@ -18,7 +18,7 @@ layout(constant_id = CONSTANT_FACING) const int facing_rule = 0;
 layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1;
 
 layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image;
-// The pixels' depths, two in the place of a cell, then levels 1, 2, … in one atlas: what depth.glsl reads word by word.
+// The pixels' depths, two in the place of a cell, and below them levels 1, 2, …: what depth.glsl reads word by word.
 layout(set = 0, binding = 3, rg32ui) uniform readonly uimageBuffer depth_pyramid;
 
 struct Ray
@@ -103,37 +103,7 @@ real3 fetch_normal(ivec2 pixel)
     return real3(imageLoad(normal_image, pixel).xyz);
 }
 
-// 2^bits covers the number.
-int bits_of(int number)
-{
-    return number > 1 ? findMSB(number - 1) + 1 : 0;
-}
-
-// Levels above 0 that the pyramid has: 2^levels covers the larger side of the image.
-int pyramid_levels()
-{
-    return bits_of(max(size_px.x, size_px.y));
-}
-
-// The pixels two by two, then the atlas row by row, 2^pyramid_row_bits cells each; level L begins pyramid_side - (pyramid_side >> (L - 1)) cells
-// behind its beginning. Levels lie side by side; in a picture that is taller than wide one above the other (framework/render/depth_pyramid.h).
-bool levels_stacked   = size_px.y > size_px.x;
-int  pyramid_row_bits = levels_stacked ? bits_of(depth_row() / 2) : pyramid_levels();
-int  pyramid_side     = 1 << (pyramid_levels() + (levels_stacked ? pyramid_row_bits : 0));
-int  pyramid_end      = pyramid_side + depth_row() * ((size_px.y + 1) / 2);
-
-// Where a cell of level >= 1 lies in the atlas.
-int pyramid_index(ivec2 cell, int level)
-{
-    return (cell.y << pyramid_row_bits) + pyramid_end - (pyramid_side >> (level - 1)) + cell.x;
-}
-
-// Where two pixels lie, of which this is one; and its depth among the two.
-int pixel_pair_index(ivec2 pixel)
-{
-    return depth_word(pixel) >> 1;
-}
-
+// Of the two pixels of a texel, this one.
 uint depth_bits(uvec2 pair, ivec2 pixel)
 {
     return (pixel.x & 1) != 0 ? pair.y : pair.x;
@@ -143,13 +113,13 @@ uint depth_bits(uvec2 pair, ivec2 pixel)
 real fetch_depth(ivec2 pixel)
 {
     COUNT(depth_fetches);
-    return real(uintBitsToFloat(depth_bits(imageLoad(depth_pyramid, pixel_pair_index(pixel)).xy, pixel)));
+    return real(uintBitsToFloat(depth_bits(imageLoad(depth_pyramid, cell_index(pixel, 0)).xy, pixel)));
 }
 
 // A cell of level >= 1 (pyramid_cell.glsl says what it knows).
 uvec2 load_pyramid(ivec2 cell, int level)
 {
-    return imageLoad(depth_pyramid, pyramid_index(cell, level)).xy;
+    return imageLoad(depth_pyramid, cell_index(cell, level)).xy;
 }
 
 // The nearest front of a cell of any level, one word: at level 0 the depth of the pixel, above no pixel of the cell is nearer.
@@ -158,7 +128,7 @@ real fetch_front(ivec2 cell, int level)
     bool leaf = level == 0;
     COUNT_IF(depth_fetches, leaf);
     COUNT_IF(pyramid_fetches, !leaf);
-    return real(imageLoad(depth_words, leaf ? depth_word(cell) : 2 * pyramid_index(cell, level)).x);
+    return real(imageLoad(depth_words, 2 * cell_index(cell, level) + mix(0, cell.x & 1, leaf)).x);
 }
 
 // ---- Beams
@@ -253,7 +223,7 @@ CellContent fetch_cell(ivec2 cell, int level)
     bool leaf = level == 0;
     COUNT_IF(depth_fetches, leaf);
     COUNT_IF(pyramid_fetches, !leaf);
-    uvec2 texel = imageLoad(depth_pyramid, leaf ? pixel_pair_index(cell) : pyramid_index(cell, level)).xy;
+    uvec2 texel = imageLoad(depth_pyramid, cell_index(cell, level)).xy;
     return CellContent(real(uintBitsToFloat(leaf ? depth_bits(texel, cell) : 0u)), texel); // a cell's words may be no usable number
 }
 

@@ -1,6 +1,7 @@
 #include "render/depth_pyramid.h"
 
 #include "core/pixel_index.h"
+#include "shared.h"
 
 #include <algorithm>
 
@@ -15,37 +16,29 @@ int bits_of(int number)
     return bits;
 }
 
-/// Level 0 in words.
-glm::ivec2 words_of(const DepthPyramid& pyramid) { return pixel_pairs(pyramid.size_px) * glm::ivec2(2, 1); }
+size_t depth_word(const PyramidAtlas& atlas, glm::ivec2 pixel)
+{
+    return 2 * cell_index(atlas, {pixel.x / 2, pixel.y}) + static_cast<size_t>(pixel.x % 2);
+}
 
 } // namespace
+
+size_t cell_index(const PyramidAtlas& atlas, glm::ivec2 place)
+{
+    return static_cast<size_t>(strip_index(place.x, place.y, atlas.size.y));
+}
 
 glm::ivec2 level_size(glm::ivec2 size_px, int level) { return ((size_px - 1) >> level) + 1; }
 
 PyramidAtlas pyramid_atlas(glm::ivec2 size_px)
 {
-    PyramidAtlas atlas;
-    atlas.levels  = bits_of(std::max(size_px.x, size_px.y));
-    atlas.stacked = size_px.y > size_px.x;
-    atlas.size    = atlas.stacked ? glm::ivec2(1 << bits_of(pixel_pairs(size_px).x), 1 << atlas.levels)
-                                  : glm::ivec2(1 << atlas.levels, level_size(size_px, 1).y);
-    return atlas;
-}
-
-glm::ivec2 PyramidAtlas::first_cell(int level) const
-{
-    const int side = stacked ? size.y : size.x, first = side - (side >> (level - 1));
-    return stacked ? glm::ivec2(0, first) : glm::ivec2(first, 0);
-}
-
-glm::ivec2 pixel_pairs(glm::ivec2 size_px)
-{
-    return 2 * glm::ivec2(level_size(size_px, 2).x, level_size(size_px, 1).y);
+    const int levels = bits_of(std::max(size_px.x, size_px.y));
+    return {{level_size(size_px, STRIP_BITS + 1).x << STRIP_BITS, pyramid_rows(size_px.y)}, levels};
 }
 
 DepthPyramid make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px)
 {
-    const size_t texels = pixel_count(pixel_pairs(size_px)) + pixel_count(pyramid_atlas(size_px).size);
+    const size_t texels = pixel_count(pyramid_atlas(size_px).size);
     DepthPyramid pyramid;
     pyramid.size_px = size_px;
     pyramid.cells   = make_texel_buffer(gpu, texels * sizeof(glm::uvec2), vk::Format::eR32G32Uint);
@@ -56,24 +49,22 @@ DepthPyramid make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px)
 
 void write_depth(Gpu& gpu, DepthPyramid& pyramid, std::span<const float> depth)
 {
-    const glm::ivec2   words = words_of(pyramid);
-    std::vector<float> rows(pixel_count(words));
+    const PyramidAtlas atlas = pyramid_atlas(pyramid.size_px);
+    std::vector<float> words(2 * pixel_count(atlas.size));
     for (int y = 0; y < pyramid.size_px.y; ++y)
-        std::ranges::copy(depth.subspan(pixel_index({0, y}, pyramid.size_px), static_cast<size_t>(pyramid.size_px.x)),
-                          rows.begin() + static_cast<ptrdiff_t>(pixel_index({0, y}, words)));
-    upload(gpu, pyramid.cells, rows.data(), rows.size() * sizeof(float));
+        for (int x = 0; x < pyramid.size_px.x; ++x)
+            words[depth_word(atlas, {x, y})] = depth[pixel_index({x, y}, pyramid.size_px)];
+    upload(gpu, pyramid.cells, words.data(), words.size() * sizeof(float));
 }
 
 std::vector<float> read_depth(Gpu& gpu, const DepthPyramid& pyramid)
 {
-    const glm::ivec2   words = words_of(pyramid);
-    const auto         rows  = download_as<float>(gpu, pyramid.cells, pixel_count(words));
+    const PyramidAtlas atlas = pyramid_atlas(pyramid.size_px);
+    const auto         words = download_as<float>(gpu, pyramid.cells, 2 * pixel_count(atlas.size));
     std::vector<float> depth;
     depth.reserve(pixel_count(pyramid.size_px));
-    for (int y = 0; y < pyramid.size_px.y; ++y) {
-        const auto row = rows.begin() + static_cast<ptrdiff_t>(pixel_index({0, y}, words));
-        depth.insert(depth.end(), row, row + pyramid.size_px.x);
-    }
+    for (int y = 0; y < pyramid.size_px.y; ++y)
+        for (int x = 0; x < pyramid.size_px.x; ++x) depth.push_back(words[depth_word(atlas, {x, y})]);
     return depth;
 }
 

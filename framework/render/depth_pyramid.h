@@ -8,29 +8,24 @@
 
 namespace ssrlab {
 
-/// Where the levels >= 1 of a pyramid lie in one atlas, side by side, or one above the other where the picture is taller than wide.
-/// Level L begins at side - (side >> (L - 1)), side being the atlas's width or height. Its width is a power of two; where
-/// there is a level it is even, and so is the column where each begins.
+/// The levels of a pyramid, one below another: level_row() of shaders/shared.h. Level 0 is the picture, two pixels in the place of a cell.
 struct PyramidAtlas {
-    glm::ivec2 size{0, 0};      // cells
-    int        levels  = 0;     // above level 0, which is the picture itself
-    bool       stacked = false; // one above the other
-
-    glm::ivec2 first_cell(int level) const;
+    glm::ivec2 size{0, 0}; // cells; whole strips
+    int        levels = 0; // above level 0
 };
 PyramidAtlas pyramid_atlas(glm::ivec2 size_px);
+/// Where a cell of the atlas lies in a buffer.
+size_t cell_index(const PyramidAtlas& atlas, glm::ivec2 place);
 /// Cells of a level.
 glm::ivec2 level_size(glm::ivec2 size_px, int level);
 
-/// Level 0 is the depth of every pixel, row by row, two in the place of a cell; then comes the atlas, row by row.
+/// The depth of every pixel and what is known of cells: an atlas in strips.
 struct DepthPyramid {
     glm::ivec2           size_px{0, 0};
     Buffer               cells;           // as texels: both words of a cell (shaders/pyramid_cell.glsl), or two pixels
     vk::raii::BufferView words = nullptr; // as texels: each word
     vk::raii::BufferView pairs = nullptr; // as texels: two cells, or four pixels
 };
-/// Level 0 in pairs of pixels: rows of whole cell pairs, and an even number of rows.
-glm::ivec2 pixel_pairs(glm::ivec2 size_px);
 
 /// Without content.
 DepthPyramid       make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px);

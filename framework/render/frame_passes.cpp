@@ -118,19 +118,17 @@ void add_parameters(Constants& constants, std::span<const Parameter> parameters,
 
 GpuImage make_pyramid_image(Gpu& gpu, glm::ivec2 size_px, vk::Format format)
 {
-    return make_image(
-        gpu, {.format = format, .size_px = pyramid_atlas(size_px).size, .usage = vk::ImageUsageFlagBits::eStorage});
+    const glm::ivec2 size = pyramid_atlas(size_px).size - glm::ivec2(0, level_row(size_px.y, 1));
+    return make_image(gpu, {.format = format, .size_px = size, .usage = vk::ImageUsageFlagBits::eStorage});
 }
 
 std::vector<PyramidPush> pyramid_levels(glm::ivec2 size_px, int top)
 {
     std::vector<PyramidPush> levels;
     const PyramidAtlas       atlas = pyramid_atlas(size_px);
-    const glm::ivec2         pairs = pixel_pairs(size_px);
     for (int level = 1; level <= std::min(atlas.levels, top); ++level)
-        levels.push_back({level_size(size_px, level - 1), level_size(size_px, level),
-                          level > 1 ? atlas.first_cell(level - 1) : glm::ivec2(0), atlas.first_cell(level),
-                          atlas.size.x, static_cast<int>(pixel_count(pairs)), pairs.x / 2});
+        levels.push_back({level_size(size_px, level - 1), level_size(size_px, level), level_row(size_px.y, level - 1),
+                          level_row(size_px.y, level), atlas.size.y});
     return levels;
 }
 

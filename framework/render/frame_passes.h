@@ -36,7 +36,7 @@ struct DerivedRays {
     Buffer     throughputs; // bounces: what a ray's light still weighs in the reflection it belongs to, RGB
 };
 
-/// An atlas of pyramid_atlas() as an image.
+/// The levels >= 1 of an atlas as an image.
 GpuImage make_pyramid_image(Gpu& gpu, glm::ivec2 size_px, vk::Format format);
 
 /// What cones look up (shaders/effects/cone_pyramid.comp).
@@ -73,9 +73,9 @@ struct FrameBuffers {
 };
 
 struct PyramidPush {
-    glm::ivec2 source_size, size, source_offset, offset;
-    int        atlas_width = 0;
-    int        atlas_begin = 0, pixel_fours_a_row = 0; // level 0 lies before the atlas
+    glm::ivec2 source_size, size;
+    int        source_row = 0, row = 0; // where the two levels begin
+    int        rows = 0;                // of the whole pyramid
 };
 struct PyramidPasses {
     int                      cells_per_invocation = 1; // side by side

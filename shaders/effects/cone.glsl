@@ -12,9 +12,7 @@ vec4 cone_cell(ivec2 cell, int level)
         if (hit_light == hit_light_lit) light += imageLoad(highlight_image, known).rgb;
         return vec4(light, 1);
     }
-    bool stacked = size_px.y > size_px.x;
-    int  side = stacked ? imageSize(cone_pyramid).y : imageSize(cone_pyramid).x, first = side - (side >> (level - 1));
-    return imageLoad(cone_pyramid, known + (stacked ? ivec2(0, first) : ivec2(first, 0)));
+    return imageLoad(cone_pyramid, known + ivec2(0, level_row(size_px.y, level) - level_row(size_px.y, 1)));
 }
 
 vec4 cone_bilinear(vec2 place_px, int level)
@@ -28,8 +26,7 @@ vec4 cone_bilinear(vec2 place_px, int level)
 
 vec4 cone_trilinear(vec2 place_px, float level)
 {
-    ivec2 atlas = imageSize(cone_pyramid);
-    int   top   = findMSB(max(atlas.x, atlas.y));
+    int   top   = pyramid_levels();
     float known = clamp(level, 0.0, float(top));
     int   finer = int(known);
     return mix(cone_bilinear(place_px, finer), cone_bilinear(place_px, min(finer + 1, top)), known - float(finer));

@@ -13,11 +13,16 @@ layout(push_constant, scalar) uniform Push
 {
     ivec2 source_size; // cells of the level below
     ivec2 size;        // cells of this level
-    ivec2 source_offset;
-    ivec2 offset;      // where this level lies in the atlas
+    int   source_row;  // where that begins in an atlas with level 0, which is none of the images'
+    int   row;         // where this one begins
 };
 
 const float background_m = 1e30;
+
+ivec2 place_of(ivec2 cell, int first_row)
+{
+    return cell + ivec2(0, first_row - level_row(size_px.y, 1));
+}
 
 #ifdef FROM_PIXELS
 vec4 source_colour(ivec2 cell)
@@ -35,12 +40,12 @@ vec2 source_range(ivec2 cell)
 #else
 vec4 source_colour(ivec2 cell)
 {
-    return imageLoad(cone_pyramid, source_offset + cell);
+    return imageLoad(cone_pyramid, place_of(cell, source_row));
 }
 
 vec2 source_range(ivec2 cell)
 {
-    return imageLoad(cone_ranges, source_offset + cell).xy;
+    return imageLoad(cone_ranges, place_of(cell, source_row)).xy;
 }
 #endif
 
@@ -76,6 +81,6 @@ void main()
     // What lies in one plane hides nothing.
     vec4  empty      = range.x < range.y ? (nearest_m - range.x) / (range.y - range.x) : vec4(1);
     float visibility = dot(empty * below, vec4(0.25));
-    imageStore(cone_ranges, offset + cell, vec4(range, 0, 0));
-    imageStore(cone_pyramid, offset + cell, vec4(mean_colour(cell), visibility));
+    imageStore(cone_ranges, place_of(cell, row), vec4(range, 0, 0));
+    imageStore(cone_pyramid, place_of(cell, row), vec4(mean_colour(cell), visibility));
 }

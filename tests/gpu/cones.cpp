@@ -44,7 +44,7 @@ TEST(Cones, VisibilityIsTheEmptyShareOfEachCellsRange)
     EXPECT_NEAR(cell(0, 1), 0.375, 1e-3); // from 4 to 8 m: 0, 0, 1 and 1/2
     EXPECT_NEAR(cell(1, 1), 0.75, 1e-3);  // nothing is behind infinity
     // Level 2: before infinity all that is finite is near.
-    EXPECT_NEAR(cell(2, 0), 0, 1e-3);
+    EXPECT_NEAR(cell(0, 3), 0, 1e-3);
 }
 
 TEST(Cones, VisibilityOfHigherLevelsIsTheProductOverTheLevels)
@@ -54,7 +54,7 @@ TEST(Cones, VisibilityOfHigherLevelsIsTheProductOverTheLevels)
                            4, 4, 5, 5, //
                            8, 6, 9, 9});
     // Level 1: 0.625, 1, 0.375, 0.5. Level 2, from 1 to 9 m: 0, 1/8, 3/8 and 1/2 are empty in front of them.
-    EXPECT_NEAR(cell(2, 0), (0 * 0.625 + 0.125 * 1 + 0.375 * 0.375 + 0.5 * 0.5) / 4, 1e-3);
+    EXPECT_NEAR(cell(0, 3), (0 * 0.625 + 0.125 * 1 + 0.375 * 0.375 + 0.5 * 0.5) / 4, 1e-3);
 }
 
 /// A floor of the given roughness before a wall, where every column has the colour that `colour` says.

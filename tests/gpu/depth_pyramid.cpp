@@ -20,12 +20,11 @@ struct Pyramid {
     glm::ivec2 size(int level) const { return ((size_px - 1) >> level) + 1; }
     glm::uvec2 at(int level, int x, int y) const
     {
-        const glm::ivec2 place = atlas.first_cell(level) + glm::ivec2(x, y);
-        return cells.at(pixel_count(pixel_pairs(size_px)) + pixel_index(place, atlas.size));
+        return cells.at(cell_index(atlas, {x, level_row(size_px.y, level) + y}));
     }
     uint32_t pixel(int x, int y) const
     {
-        const glm::uvec2 pair = cells.at(pixel_index({x / 2, y}, pixel_pairs(size_px)));
+        const glm::uvec2 pair = cells.at(cell_index(atlas, {x / 2, y}));
         return x % 2 == 0 ? pair.x : pair.y;
     }
 };
