@@ -71,11 +71,10 @@ bool touches_surface(Ray ray, Grid grid, ivec2 pixel, int64_t t_in, int64_t t_ou
     return accepts(ray, pixel, slab_between(ray, grid, fetch_depth(pixel), scaled_depth(ray, t_in), scaled_depth(ray, t_out)), true);
 }
 
-bool touches_cell(Ray ray, Grid grid, ivec2 cell, int level, int64_t t_in, int64_t t_out)
+bool touches_cell(Ray ray, Grid grid, ivec2 cell, int level, CellContent content, int64_t t_in, int64_t t_out)
 {
-    bool        leaf    = level == 0;
-    CellContent content = fetch_cell(cell, level);
-    double      z_a = scaled_depth(ray, t_in), z_b = scaled_depth(ray, t_out);
+    bool   leaf = level == 0;
+    double z_a = scaled_depth(ray, t_in), z_b = scaled_depth(ray, t_out);
     // A cell is asked with bounds rounded outward, by more than all roundings of the pixel's own test.
     double origin = double(ray.origin.z), whole = double(grid.whole);
     double slack  = 1e-13LF * (abs(origin) + abs(double(ray.delta.z)));

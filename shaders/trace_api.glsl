@@ -228,11 +228,10 @@ CellContent fetch_cell(ivec2 cell, int level)
 }
 
 // May the ray touch a surface inside this cell? At level 0 the answer is touches_surface()'s; above, no means no for all its pixels.
-bool touches_cell(Ray ray, ivec2 cell, int level, real z_a, real z_b)
+bool touches_cell(Ray ray, ivec2 cell, int level, CellContent content, real z_a, real z_b)
 {
-    bool        leaf    = level == 0;
-    CellContent content = fetch_cell(cell, level);
-    real2       interval = depth_interval(ray, z_a, z_b);
+    bool  leaf     = level == 0;
+    real2 interval = depth_interval(ray, z_a, z_b);
     // Both answers, then a choice: a condition would become a branch, whose both sides run with more bookkeeping.
     bool in_front = content.depth >= interval.x, reached = reaches_slab_back(content.depth, interval.y);
     bool pixel_touched = in_front && reached, cell_touched = cell_may_touch(content.node, float(interval.x), float(interval.y));

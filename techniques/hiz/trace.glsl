@@ -8,10 +8,16 @@
 int top = min(top_level, pyramid_levels());
 
 // number: the ray's current_ray.
-void visit(Ray ray, inout CellWalk walk, int number)
+CellContent look(CellWalk walk, int number)
+{
+    current_ray = goes_on(walk) ? number : 2;
+    return fetch_cell(cell_of(walk), walk.level);
+}
+
+void visit(Ray ray, inout CellWalk walk, CellContent content, int number)
 {
     current_ray  = goes_on(walk) ? number : 2;
-    bool touched = touches_cell(ray, walk.grid, cell_of(walk), walk.level, walk.t, t_exit(walk));
+    bool touched = touches_cell(ray, walk.grid, cell_of(walk), walk.level, content, walk.t, t_exit(walk));
     move(walk, touched, top);
 }
 
@@ -34,8 +40,10 @@ void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult 
         stop_at(b, clear.x);
         while (goes_on(a) || goes_on(b))
         {
-            visit(ray_a, a, 0);
-            visit(ray_b, b, 1);
+            // Both reads are under way before one is waited for.
+            CellContent cell_a = look(a, 0), cell_b = look(b, 1);
+            visit(ray_a, a, cell_a, 0);
+            visit(ray_b, b, cell_b, 1);
         }
         leap(a, min(LEAP_LEVEL, top), clear.y);
         leap(b, min(LEAP_LEVEL, top), clear.y);

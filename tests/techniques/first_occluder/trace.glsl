@@ -6,15 +6,16 @@
 int top = min(top_level, pyramid_levels());
 
 // Is the ray, where it leaves the cell or enters it, behind the cell's nearest depth?
-bool gets_behind(Ray ray, CellWalk walk)
+bool gets_behind(Ray ray, CellWalk walk, real front)
 {
-    return fetch_front(cell_of(walk), walk.level) >= min(depth_at(ray, walk.t), depth_at(ray, t_exit(walk)));
+    real z_in = depth_at(ray, walk.t), z_out = depth_at(ray, t_exit(walk));
+    return front >= (z_in < z_out ? z_in : z_out);
 }
 
-void visit(Ray ray, inout CellWalk walk, int number)
+real look(CellWalk walk, int number)
 {
     current_ray = goes_on(walk) ? number : 2;
-    move(walk, gets_behind(ray, walk), top);
+    return fetch_front(cell_of(walk), walk.level);
 }
 
 TraceResult finish(Ray ray, CellWalk walk, int number)
@@ -32,8 +33,9 @@ void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult 
     CellWalk a = start_walk(ray_a, 0), b = start_walk(ray_b, 0);
     while (goes_on(a) || goes_on(b))
     {
-        visit(ray_a, a, 0);
-        visit(ray_b, b, 1);
+        real front_a = look(a, 0), front_b = look(b, 1);
+        move(a, gets_behind(ray_a, a, front_a), top);
+        move(b, gets_behind(ray_b, b, front_b), top);
     }
     result_a = finish(ray_a, a, 0);
     result_b = finish(ray_b, b, 1);
