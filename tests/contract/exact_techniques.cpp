@@ -32,10 +32,12 @@ std::string case_name(const testing::TestParamInfo<Case>& info)
 
 constexpr glm::ivec2 sizes[] = {{640, 360}, {641, 363}, {1, 1}, {3, 2}, {97, 1}};
 /// Each with its views besides the default one; a level one is among them.
-const std::pair<const char*, std::vector<std::string>> real_scenes[] = {
-    {"animal_on_metal", {"level", "steep"}}, {"teapot_bunnies", {"level", "close"}},
-    {"thin_yard", {"level", "close"}},       {"interior", {"mirror", "low"}},
-    {"engine", {"level", "close"}},          {"forest_clearing", {"level", "close"}}};
+const std::pair<const char*, std::vector<std::string>> real_scenes[] = {{"animal_on_metal", {"level", "steep"}},
+                                                                        {"teapot_bunnies", {"level", "close"}},
+                                                                        {"thin_yard", {"level", "close", "fence"}},
+                                                                        {"interior", {"mirror", "low", "piano"}},
+                                                                        {"engine", {"level", "close"}},
+                                                                        {"forest_clearing", {"level", "close"}}};
 
 std::vector<Case> all_cases()
 {
