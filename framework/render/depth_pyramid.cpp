@@ -16,16 +16,17 @@ int bits_of(int number)
     return bits;
 }
 
-size_t depth_word(const PyramidAtlas& atlas, glm::ivec2 pixel)
+size_t depth_word(glm::ivec2 size_px, glm::ivec2 pixel)
 {
-    return 2 * cell_index(atlas, {pixel.x / 2, pixel.y}) + static_cast<size_t>(pixel.x % 2);
+    return 2 * cell_index(size_px, pixel, 0) + static_cast<size_t>(pixel.x % 2);
 }
 
 } // namespace
 
-size_t cell_index(const PyramidAtlas& atlas, glm::ivec2 place)
+size_t cell_index(glm::ivec2 size_px, glm::ivec2 cell, int level)
 {
-    return static_cast<size_t>(strip_index(place.x, place.y, atlas.size.y));
+    const int x = level == 0 ? cell.x / 2 : cell.x;
+    return static_cast<size_t>(strip_index(x, level_row(size_px.y, level) + cell.y, pyramid_rows(size_px.y)));
 }
 
 glm::ivec2 level_size(glm::ivec2 size_px, int level) { return ((size_px - 1) >> level) + 1; }
@@ -49,22 +50,20 @@ DepthPyramid make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px)
 
 void write_depth(Gpu& gpu, DepthPyramid& pyramid, std::span<const float> depth)
 {
-    const PyramidAtlas atlas = pyramid_atlas(pyramid.size_px);
-    std::vector<float> words(2 * pixel_count(atlas.size));
+    std::vector<float> words(2 * pixel_count(pyramid_atlas(pyramid.size_px).size));
     for (int y = 0; y < pyramid.size_px.y; ++y)
         for (int x = 0; x < pyramid.size_px.x; ++x)
-            words[depth_word(atlas, {x, y})] = depth[pixel_index({x, y}, pyramid.size_px)];
+            words[depth_word(pyramid.size_px, {x, y})] = depth[pixel_index({x, y}, pyramid.size_px)];
     upload(gpu, pyramid.cells, words.data(), words.size() * sizeof(float));
 }
 
 std::vector<float> read_depth(Gpu& gpu, const DepthPyramid& pyramid)
 {
-    const PyramidAtlas atlas = pyramid_atlas(pyramid.size_px);
-    const auto         words = download_as<float>(gpu, pyramid.cells, 2 * pixel_count(atlas.size));
+    const auto words = download_as<float>(gpu, pyramid.cells, 2 * pixel_count(pyramid_atlas(pyramid.size_px).size));
     std::vector<float> depth;
     depth.reserve(pixel_count(pyramid.size_px));
     for (int y = 0; y < pyramid.size_px.y; ++y)
-        for (int x = 0; x < pyramid.size_px.x; ++x) depth.push_back(words[depth_word(atlas, {x, y})]);
+        for (int x = 0; x < pyramid.size_px.x; ++x) depth.push_back(words[depth_word(pyramid.size_px, {x, y})]);
     return depth;
 }
 

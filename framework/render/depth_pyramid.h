@@ -14,8 +14,8 @@ struct PyramidAtlas {
     int        levels = 0; // above level 0
 };
 PyramidAtlas pyramid_atlas(glm::ivec2 size_px);
-/// Where a cell of the atlas lies in a buffer.
-size_t cell_index(const PyramidAtlas& atlas, glm::ivec2 place);
+/// Where a cell lies in the buffer, or at level 0 the two pixels of which this is one.
+size_t cell_index(glm::ivec2 size_px, glm::ivec2 cell, int level);
 /// Cells of a level.
 glm::ivec2 level_size(glm::ivec2 size_px, int level);
 

@@ -18,13 +18,10 @@ struct Pyramid {
     std::vector<glm::uvec2> cells;
 
     glm::ivec2 size(int level) const { return ((size_px - 1) >> level) + 1; }
-    glm::uvec2 at(int level, int x, int y) const
+    glm::uvec2 at(int level, int x, int y) const { return cells.at(cell_index(size_px, {x, y}, level)); }
+    uint32_t   pixel(int x, int y) const
     {
-        return cells.at(cell_index(atlas, {x, level_row(size_px.y, level) + y}));
-    }
-    uint32_t pixel(int x, int y) const
-    {
-        const glm::uvec2 pair = cells.at(cell_index(atlas, {x / 2, y}));
+        const glm::uvec2 pair = cells.at(cell_index(size_px, {x, y}, 0));
         return x % 2 == 0 ? pair.x : pair.y;
     }
 };

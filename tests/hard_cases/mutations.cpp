@@ -58,10 +58,8 @@ std::vector<Mutation> mutations()
     return {
         replaced("PyramidSizesRoundedDown", "touches_cell",
                  "bool mutated_touches_cell(Ray ray, Grid grid, ivec2 cell, int level, CellContent content, real a, "
-                 "real b) { "
-                 "return all(lessThan(cell, max(size_px >> level, ivec2(1)))) && touches_cell(ray, grid, cell, level, "
-                 "content, "
-                 "a, b); }",
+                 "real b) { return all(lessThan(cell, max(size_px >> level, ivec2(1)))) && touches_cell(ray, grid, "
+                 "cell, level, content, a, b); }",
                  "last_row_and_column"),
         replaced("DepthByMix", "touches_cell",
                  "real mixed(Ray ray, real t) { real end = ray.origin.z + ray.delta.z; precise real z = "
