@@ -9,5 +9,5 @@ layout(constant_id = CONSTANT_ITEMS_PER_GROUP) const int items_per_group = 1;
 void main()
 {
     uint count = (item_count + items_per_group - 1) / items_per_group;
-    groups     = uvec3(min(count, MAX_GROUPS_X), (count + MAX_GROUPS_X - 1) / MAX_GROUPS_X, 1);
+    groups     = uvec3(min(count, LAUNCH_ROW_GROUPS), (count + LAUNCH_ROW_GROUPS - 1) / LAUNCH_ROW_GROUPS, 1);
 }

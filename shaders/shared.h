@@ -17,9 +17,9 @@
 #define PIXEL_BITS 14
 #define MAX_IMAGE_PX (1 << PIXEL_BITS)
 
-// Rays are traced in groups of this many; a launch is a grid no wider than MAX_GROUPS_X groups.
+// Rays are traced in groups of this many; a launch is a grid no wider than so many groups.
 #define RAYS_PER_GROUP 64
-#define MAX_GROUPS_X 32768
+#define LAUNCH_ROW_GROUPS 256
 
 // Tiles that a workgroup classifies, side by side (shaders/effects/classification.comp).
 #define CLASSIFIED_TILES 32

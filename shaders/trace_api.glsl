@@ -109,26 +109,17 @@ uint depth_bits(uvec2 pair, ivec2 pixel)
     return (pixel.x & 1) != 0 ? pair.y : pair.x;
 }
 
-// Reads both: a walk of pixels is up to a third faster so on lavapipe (docs/performance.md).
-real fetch_depth(ivec2 pixel)
-{
-    COUNT(depth_fetches);
-    return real(uintBitsToFloat(depth_bits(imageLoad(depth_pyramid, cell_index(pixel, 0)).xy, pixel)));
-}
-
-// A cell of level >= 1 (pyramid_cell.glsl says what it knows).
+// A cell of level >= 1 (pyramid_cell.glsl says what it knows), or at level 0 the two pixels of which this is one.
 uvec2 load_pyramid(ivec2 cell, int level)
 {
     return imageLoad(depth_pyramid, cell_index(cell, level)).xy;
 }
 
-// The nearest front of a cell of any level, one word: at level 0 the depth of the pixel, above no pixel of the cell is nearer.
-real fetch_front(ivec2 cell, int level)
+// Reads two pixels: a walk is up to a third faster so on lavapipe (docs/performance.md).
+real fetch_depth(ivec2 pixel)
 {
-    bool leaf = level == 0;
-    COUNT_IF(depth_fetches, leaf);
-    COUNT_IF(pyramid_fetches, !leaf);
-    return real(imageLoad(depth_words, 2 * cell_index(cell, level) + mix(0, cell.x & 1, leaf)).x);
+    COUNT(depth_fetches);
+    return real(uintBitsToFloat(depth_bits(load_pyramid(pixel, 0), pixel)));
 }
 
 // ---- Beams
@@ -223,8 +214,15 @@ CellContent fetch_cell(ivec2 cell, int level)
     bool leaf = level == 0;
     COUNT_IF(depth_fetches, leaf);
     COUNT_IF(pyramid_fetches, !leaf);
-    uvec2 texel = imageLoad(depth_pyramid, cell_index(cell, level)).xy;
+    uvec2 texel = load_pyramid(cell, level);
     return CellContent(real(uintBitsToFloat(leaf ? depth_bits(texel, cell) : 0u)), texel); // a cell's words may be no usable number
+}
+
+// The nearest front of a cell of any level: at level 0 the depth of the pixel, above no pixel of the cell is nearer.
+real fetch_front(ivec2 cell, int level)
+{
+    CellContent content = fetch_cell(cell, level);
+    return level == 0 ? content.depth : real(uintBitsToFloat(content.node.x));
 }
 
 // May the ray touch a surface inside this cell? At level 0 the answer is touches_surface()'s; above, no means no for all its pixels.

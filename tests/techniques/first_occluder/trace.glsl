@@ -5,11 +5,10 @@
 
 int top = min(top_level, pyramid_levels());
 
-// Is the ray, where it leaves the cell or enters it, behind the cell's nearest depth?
+// Is the ray, where it is farthest in the cell, behind the cell's nearest depth?
 bool gets_behind(Ray ray, CellWalk walk, real front)
 {
-    real z_in = depth_at(ray, walk.t), z_out = depth_at(ray, t_exit(walk));
-    return front >= (z_in < z_out ? z_in : z_out);
+    return front >= depth_at(ray, ray.delta.z < real(0) ? t_exit(walk) : walk.t);
 }
 
 real look(CellWalk walk, int number)
