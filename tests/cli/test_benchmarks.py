@@ -72,6 +72,8 @@ class Test(Case):
         for low, high, target, at_most, verdict in ((11, 13, 10, False, "holds"), (11, 13, 12, False, "undecided"), (11, 13, 14, False, "FAILS"),
                                                     (0.4, 0.5, 0.5, True, "holds"), (0.4, 0.5, 0.45, True, "undecided"), (0.4, 0.5, 0.3, True, "FAILS")):
             self.assertEqual(bench.verdict(low, high, target, at_most), verdict, (low, high, target, at_most))
+        for value, verdict in ((3, "holds"), (1.5, "is all"), (1.4, "FAILS")):
+            self.assertEqual(bench.verdict(value, value, 2.3, False, most=1.5), verdict, value)
 
     def test_a_ratio_is_one_of_medians(self):
         bench = load_bench()
