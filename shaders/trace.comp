@@ -1,6 +1,7 @@
 // Traces the list of rays with the technique that the framework composes in: its parameters, then its trace() or trace_pair().
 #include "trace_api.glsl"
 #include "ray_list.glsl"
+#include "listed_hit.glsl"
 #include "technique/parameters"
 #include "technique/trace.glsl"
 
@@ -10,8 +11,7 @@ layout(local_size_x = RAYS_PER_GROUP / 2) in;
 layout(local_size_x = RAYS_PER_GROUP) in;
 #endif
 
-layout(set = 0, binding = 9, scalar) writeonly buffer HitPixels { uint hit_pixel[]; }; // number = status
-layout(set = 0, binding = 10, scalar) writeonly buffer HitTs { real hit_t[]; };
+layout(set = 0, binding = 9, HIT_FORMAT) uniform writeonly uimageBuffer Hits;
 #ifdef COUNT_WORK
 layout(set = 0, binding = 11, scalar) buffer Work { uvec3 work[]; }; // steps, depth fetches, pyramid fetches
 #endif
@@ -36,8 +36,7 @@ Ray load_ray(uint index)
 // number: the ray's current_ray.
 void store_result(uint index, TraceResult result, int number)
 {
-    hit_pixel[index] = pack_pixel(result.pixel, result.status);
-    hit_t[index]     = result.t;
+    imageStore(Hits, int(index), hit_to_texel(ListedHit(pack_pixel(result.pixel, result.status), result.t)));
 #ifdef COUNT_WORK
     work[index] = uvec3(result.steps, depth_fetches[number], pyramid_fetches[number]);
 #ifdef RAY_BEAMS

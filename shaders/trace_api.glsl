@@ -116,10 +116,15 @@ uvec2 load_pyramid(ivec2 cell, int level)
 }
 
 // Reads two pixels: a walk is up to a third faster so on lavapipe (docs/performance.md).
+real pixel_depth(ivec2 pixel)
+{
+    return real(uintBitsToFloat(depth_bits(load_pyramid(pixel, 0), pixel)));
+}
+
 real fetch_depth(ivec2 pixel)
 {
     COUNT(depth_fetches);
-    return real(uintBitsToFloat(depth_bits(load_pyramid(pixel, 0), pixel)));
+    return pixel_depth(pixel);
 }
 
 // ---- Beams
@@ -245,7 +250,7 @@ TraceResult hit_at(Ray ray, ivec2 pixel, real t, int steps)
 // A hit somewhere in [t_in, t_out]: the point where the ray first meets the slab.
 TraceResult hit_between(Ray ray, ivec2 pixel, real t_in, real t_out, int steps)
 {
-    real depth = real(load_depth(pixel));
+    real depth = pixel_depth(pixel);
     real z_in  = depth_at(ray, t_in);
     real face  = z_in > depth ? depth : slab_back(depth);
     bool inside = z_in <= depth && reaches_slab_back(depth, z_in);

@@ -19,9 +19,11 @@ std::shared_ptr<DerivedRays> derived_rays(Gpu& gpu, const PreparedFrame& frame, 
 
 Bindings derived_bindings(const DerivedRays& derived)
 {
-    return {{"DerivedCount", derived.rays.count},          {"DerivedRays", derived.rays.list},
-            {"DerivedHitPixels", derived.rays.hit_pixels}, {"DerivedHitTs", derived.rays.hit_ts},
-            {"DerivedSources", derived.sources},           {"DerivedThroughputs", derived.throughputs}};
+    return {{"DerivedCount", derived.rays.count},
+            {"DerivedRays", derived.rays.list},
+            {"DerivedHits", derived.rays.hits},
+            {"DerivedSources", derived.sources},
+            {"DerivedThroughputs", derived.throughputs}};
 }
 
 } // namespace ssrlab

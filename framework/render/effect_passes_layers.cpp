@@ -66,9 +66,9 @@ std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame
     const glm::ivec2  size_px = frame.buffers->gbuffer->view.size_px;
     TraceResult       result  = read_result<float>(gpu, size_px, rays, nullptr);
     const auto        listed  = read_list<float>(gpu, rays);
-    const auto        records = download_as<uint32_t>(gpu, rays.hit_pixels, listed.size());
+    const auto        hits    = download_as<ListedHit<float>>(gpu, rays.hits, listed.size());
     for (size_t i = 0; i < listed.size(); ++i) {
-        if ((records[i] >> (2 * PIXEL_BITS) & TRACE_SECOND_LAYER) != 0) continue;
+        if ((hits[i].pixel >> (2 * PIXEL_BITS) & TRACE_SECOND_LAYER) != 0) continue;
         const glm::ivec2 pixel                     = unpack_pixel(listed[i].pixel);
         result.status[pixel_index(pixel, size_px)] = TraceStatus::not_traced;
     }

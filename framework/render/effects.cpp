@@ -193,7 +193,7 @@ std::vector<Effect> make_table()
          .summary = "The technique on the list of rays",
          .shader  = "trace.comp",
          .reads   = {"View", "RayCount", "Rays", "depth_words", "normal_image", "depth_pyramid"},
-         .writes  = {"Beams", "HitPixels", "HitTs"},
+         .writes  = {"Beams", "Hits"},
          .need    = where_something_reflects},
         {.id      = "hidden_layer",
          .summary = "A second depth layer by depth peeling, and the rays that found nothing traced in it",
@@ -202,7 +202,7 @@ std::vector<Effect> make_table()
                         "Illumination Approximation"},
          .shader  = "effects/gather_misses.comp",
          .reads   = {"View", "RayCount", "Rays", "depth_words", "normal_image", "material_image"},
-         .writes  = {"HitPixels", "HitTs"},
+         .writes  = {"Hits"},
          .parameters =
              {boolean("hidden_layer", false, "whether rays that find nothing are traced in a second depth layer"),
               real("hidden_layer_separation_m", 0.5, 0, 1e6,
@@ -238,7 +238,7 @@ std::vector<Effect> make_table()
          .cite    = {"J. Somerville Roberts, Screen Space Reflections", "Litheon 2012, Real-Time Local Reflections",
                      "A. Biro 2015, Report on Screen-Space Reflections"},
          .shader  = "effects/hit_colour.comp",
-         .reads   = {"View", "RayCount", "Rays", "HitPixels", "HitTs", "depth_words", "normal_image", "material_image",
+         .reads   = {"View", "RayCount", "Rays", "Hits", "depth_words", "normal_image", "material_image",
                      "radiance_image", "highlight_image", "small_colour_image", "cone_pyramid"},
          .writes  = {"reflection_image", "block_pixel_image"},
          .parameters =
@@ -268,7 +268,7 @@ std::vector<Effect> make_table()
          .summary = "Mirror in mirror: further bounces where what was hit reflects, too",
          .cite    = {"J. Somerville Roberts, Screen Space Reflections"},
          .shader  = "effects/bounce_rays.comp",
-         .reads   = {"View", "RayCount", "Rays", "HitPixels", "HitTs", "depth_words", "normal_image", "material_image",
+         .reads   = {"View", "RayCount", "Rays", "Hits", "depth_words", "normal_image", "material_image",
                      "radiance_image", "highlight_image", "depth_pyramid"},
          .writes  = {"reflection_image"},
          .parameters =

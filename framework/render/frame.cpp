@@ -73,13 +73,14 @@ RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision)
         throw_failure("{} rays need a buffer of {} MiB; the device allows {} MiB", rays, largest >> 20,
                       gpu.impl->limits.maxStorageBufferRange >> 20);
     RayBuffers buffers;
-    buffers.precision  = precision;
-    buffers.capacity   = capacity;
-    buffers.count      = make_buffer(gpu, 16);
-    buffers.launch     = make_buffer(gpu, 16);
-    buffers.list       = make_texel_buffer(gpu, rays * listed_bytes, vk::Format::eR32G32B32A32Uint);
-    buffers.hit_pixels = make_buffer(gpu, rays * 4);
-    buffers.hit_ts     = make_buffer(gpu, rays * real_bytes);
+    buffers.precision = precision;
+    buffers.capacity  = capacity;
+    buffers.count     = make_buffer(gpu, 16);
+    buffers.launch    = make_buffer(gpu, 16);
+    buffers.list      = make_texel_buffer(gpu, rays * listed_bytes, vk::Format::eR32G32B32A32Uint);
+    buffers.hits      = precision == Precision::float64
+                            ? make_texel_buffer(gpu, rays * sizeof(ListedHit<double>), vk::Format::eR32G32B32A32Uint)
+                            : make_texel_buffer(gpu, rays * sizeof(ListedHit<float>), vk::Format::eR32G32Uint);
 
     const uint64_t groups    = (rays - 1) / RAYS_PER_GROUP + 1;
     const uint64_t stretches = groups * BEAM_STRETCHES * 2 * real_bytes;

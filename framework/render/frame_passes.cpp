@@ -181,8 +181,7 @@ Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
     Bindings bindings = surface_bindings(*buffers.gbuffer);
     bindings.insert({{"RayCount", rays.count},
                      {"Rays", rays.list},
-                     {"HitPixels", rays.hit_pixels},
-                     {"HitTs", rays.hit_ts},
+                     {"Hits", rays.hits},
                      {"Beams", rays.beams},
                      {"BeamWork", rays.beam_work},
                      {"PatchPlanes", buffers.patch_planes},
@@ -340,16 +339,15 @@ TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, co
 {
     const auto   listed = read_list<Real>(gpu, rays);
     const size_t count  = listed.size();
-    const auto   hits   = download_as<uint32_t>(gpu, rays.hit_pixels, count);
-    const auto   ts     = download_as<Real>(gpu, rays.hit_ts, count);
+    const auto   hits   = download_as<ListedHit<Real>>(gpu, rays.hits, count);
     const auto   works  = work != nullptr ? download_as<glm::uvec3>(gpu, *work, count) : std::vector<glm::uvec3>{};
     TraceResult  result = make_trace_result(size_px, work != nullptr);
     for (size_t i = 0; i < count; ++i) {
-        const glm::ivec2 pixel     = unpack_pixel(listed[i].pixel);
-        const size_t     index     = pixel_index(pixel, size_px);
-        result.status[index]       = static_cast<TraceStatus>((hits[i] >> (2 * PIXEL_BITS)) & (TRACE_SECOND_LAYER - 1));
-        result.hit_pixel[index]    = unpack_pixel(hits[i]);
-        result.hit_t[index]        = static_cast<double>(ts[i]);
+        const glm::ivec2 pixel = unpack_pixel(listed[i].pixel);
+        const size_t     index = pixel_index(pixel, size_px);
+        result.status[index] = static_cast<TraceStatus>((hits[i].pixel >> (2 * PIXEL_BITS)) & (TRACE_SECOND_LAYER - 1));
+        result.hit_pixel[index]    = unpack_pixel(hits[i].pixel);
+        result.hit_t[index]        = static_cast<double>(hits[i].t);
         result.hit_px_depth[index] = glm::dvec3(listed[i].origin) + result.hit_t[index] * glm::dvec3(listed[i].delta);
         if (work == nullptr) continue;
         result.steps[index]           = works[i].x;

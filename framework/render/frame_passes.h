@@ -17,11 +17,18 @@ template <typename Real> struct ListedRay {
 };
 static_assert(sizeof(ListedRay<float>) == 2 * 16 && sizeof(ListedRay<double>) == 4 * 16); // texels
 
+/// What a ray of the list found (shaders/listed_hit.glsl).
+template <typename Real> struct ListedHit {
+    uint32_t pixel = 0; // with the status
+    Real     t     = 0;
+};
+static_assert(sizeof(ListedHit<float>) == 8 && sizeof(ListedHit<double>) == 16); // texels
+
 /// The list of rays and what each found (shaders/rays.comp, trace.comp).
 struct RayBuffers {
     Precision precision = Precision::float32;
     size_t    capacity  = 0;
-    Buffer    count, launch, list, hit_pixels, hit_ts;
+    Buffer    count, launch, list, hits;
     Buffer    beams, beam_work, beam_launch; // of each group of rays (shaders/ray_beams.comp)
 };
 /// The uniform block of shaders/view.glsl.

@@ -39,14 +39,13 @@ template <typename Real> std::vector<RayInput> read_rays(Gpu& gpu, const RayBuff
 
 template <typename Real> std::vector<RayOutcome> read_outcomes(Gpu& gpu, const RayTracer& tracer, size_t count)
 {
-    const auto              hits  = download_as<uint32_t>(gpu, tracer.rays.hit_pixels, count);
-    const auto              ts    = download_as<Real>(gpu, tracer.rays.hit_ts, count);
+    const auto              hits  = download_as<ListedHit<Real>>(gpu, tracer.rays.hits, count);
     const auto              works = download_as<glm::uvec3>(gpu, tracer.work, count);
     std::vector<RayOutcome> outcomes(count);
     for (size_t i = 0; i < count; ++i)
-        outcomes[i] = {static_cast<TraceStatus>(hits[i] >> (2 * PIXEL_BITS)),
-                       unpack_pixel(hits[i]),
-                       static_cast<double>(ts[i]),
+        outcomes[i] = {static_cast<TraceStatus>(hits[i].pixel >> (2 * PIXEL_BITS)),
+                       unpack_pixel(hits[i].pixel),
+                       static_cast<double>(hits[i].t),
                        works[i].x,
                        works[i].y,
                        works[i].z};

@@ -2,6 +2,7 @@
 // where the bounce began, times what that still weighs.
 #include "work_group.glsl"
 #include "ray_list.glsl"
+#include "hit_list.glsl"
 #include "view.glsl"
 #include "reflecting.glsl"
 #include "effect/parameters"
@@ -9,8 +10,6 @@
 #include "effects/beta.glsl"
 
 layout(local_size_x = RAYS_PER_GROUP) in;
-layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[]; };
-layout(set = 0, binding = 10, scalar) readonly buffer HitTs { real hit_t[]; };
 layout(set = 0, binding = 13, rgba16f) uniform image2D reflection_image;
 layout(set = 0, binding = 17, scalar) readonly buffer RaySources { uint ray_source[]; };
 layout(set = 0, binding = 18, scalar) buffer RayThroughputs { vec3 ray_throughput[]; };
@@ -21,7 +20,7 @@ void main()
     if (index >= ray_count) return;
     ListedRay ray = listed_ray(index);
     ivec2 reflector = unpack_pixel(ray.pixel), target = unpack_pixel(ray_source[index]);
-    Found found = found_by(ray, hit_pixel[index], hit_t[index]);
+    Found found = found_by(ray, listed_hit(index));
     if (found.weight <= 0.0)
     {
         ray_throughput[index] = vec3(0);

@@ -1,6 +1,7 @@
 // Where a ray hit a surface that reflects, the colour is that surface's own with its reflection of the previous frame, as the camera saw it.
 #include "work_group.glsl"
 #include "ray_list.glsl"
+#include "hit_list.glsl"
 #include "view.glsl"
 #include "reflecting.glsl"
 #include "effect/parameters"
@@ -8,8 +9,6 @@
 #include "effects/beta.glsl"
 
 layout(local_size_x = RAYS_PER_GROUP) in;
-layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[]; };
-layout(set = 0, binding = 10, scalar) readonly buffer HitTs { real hit_t[]; };
 layout(set = 0, binding = 13, rgba16f) uniform writeonly image2D reflection_image;
 layout(set = 0, binding = 17, rgba16f) uniform readonly image2D history_image; // the previous frame's reflection_image
 
@@ -18,11 +17,11 @@ void main()
     uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     if (index >= ray_count) return;
     ivec2 pixel  = unpack_pixel(ray_pixel(index));
-    uint  record = hit_pixel[index];
-    ivec2 hit    = unpack_pixel(record);
-    bool  mirror = unpack_status(record) == TRACE_HIT && !in_second_layer(record) && reflects(hit);
+    ListedHit listed = listed_hit(index);
+    ivec2 hit    = unpack_pixel(listed.pixel);
+    bool  mirror = unpack_status(listed.pixel) == TRACE_HIT && !in_second_layer(listed.pixel) && reflects(hit);
     if (!mirror || !reflects(pixel)) return;
-    Found found = found_by(listed_ray(index), record, hit_t[index]);
+    Found found = found_by(listed_ray(index), listed);
     if (found.weight <= 0.0) return;
     vec4 history = imageLoad(history_image, hit);
     vec3 colour  = found.light + (history.rgb - found.light) * beta_of(hit, to_camera_vs(hit), history.a);

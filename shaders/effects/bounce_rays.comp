@@ -1,14 +1,13 @@
 // From each surface that a ray hit and that reflects, the next ray: in the mirror direction of the ray that arrived.
 #include "work_group.glsl"
 #include "ray_list.glsl"
+#include "hit_list.glsl"
 #include "segment.glsl"
 #include "effect/parameters"
 #include "effects/ray_colour.glsl"
 #extension GL_KHR_shader_subgroup_ballot : require
 
 layout(local_size_x = RAYS_PER_GROUP) in;
-layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[]; };
-layout(set = 0, binding = 10, scalar) readonly buffer HitTs { real hit_t[]; };
 #ifdef FURTHER
 layout(set = 0, binding = 17, scalar) readonly buffer RaySources { uint ray_source[]; };
 layout(set = 0, binding = 18, scalar) readonly buffer RayThroughputs { vec3 ray_throughput[]; };
@@ -25,7 +24,7 @@ vec3 throughput_of(uint index)
     return ray_throughput[index];
 #else
     if (!reflects(unpack_pixel(ray_pixel(index)))) return vec3(0);
-    Found found = found_by(listed_ray(index), hit_pixel[index], hit_t[index]);
+    Found found = found_by(listed_ray(index), listed_hit(index));
     return vec3(found.weight > 0.0 ? found.attenuation : 0.0);
 #endif
 }
@@ -33,7 +32,7 @@ vec3 throughput_of(uint index)
 void main()
 {
     uint  index   = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    uint  record  = index < ray_count ? hit_pixel[index] : 0;
+    uint  record  = index < ray_count ? listed_hit(index).pixel : 0;
     ivec2 hit     = unpack_pixel(record);
     bool  follows = unpack_status(record) == TRACE_HIT && !in_second_layer(record) && reflects(hit);
     real3 arriving = real3(0), normal = real3(0);

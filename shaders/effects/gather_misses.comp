@@ -1,12 +1,12 @@
 // Lists the rays of reflecting pixels that found nothing, as they are, to be traced in the second layer.
 #include "work_group.glsl"
 #include "ray_list.glsl"
+#include "hit_list.glsl"
 #include "view.glsl"
 #include "reflecting.glsl"
 #extension GL_KHR_shader_subgroup_ballot : require
 
 layout(local_size_x = RAYS_PER_GROUP) in;
-layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[]; };
 layout(set = 0, binding = 10, scalar) buffer DerivedCount { uint derived_count; };
 layout(set = 0, binding = 11, rgba32ui) uniform writeonly uimageBuffer DerivedRays;
 layout(set = 0, binding = 15, scalar) writeonly buffer DerivedSources { uint derived_source[]; }; // index in the first list
@@ -14,7 +14,7 @@ layout(set = 0, binding = 15, scalar) writeonly buffer DerivedSources { uint der
 void main()
 {
     uint index  = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    bool missed = index < ray_count && unpack_status(hit_pixel[index]) != TRACE_HIT && reflects(unpack_pixel(ray_pixel(index)));
+    bool missed = index < ray_count && unpack_status(listed_hit(index).pixel) != TRACE_HIT && reflects(unpack_pixel(ray_pixel(index)));
 
     uvec4 ballot = subgroupBallot(missed);
     uint  first  = 0;

@@ -1,6 +1,7 @@
 // The colour that a ray brings back, and how much it weighs: rgb and weight of a pixel's reflection, the mean over the pixel's rays.
 #include "work_group.glsl"
 #include "ray_list.glsl"
+#include "hit_list.glsl"
 #include "view.glsl"
 #include "reflecting.glsl"
 #include "effect/parameters"
@@ -8,15 +9,13 @@
 
 layout(local_size_x = RAYS_PER_GROUP) in;
 
-layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[]; };
-layout(set = 0, binding = 10, scalar) readonly buffer HitTs { real hit_t[]; };
 layout(set = 0, binding = 13, rgba16f) uniform writeonly image2D reflection_image;
 layout(set = 0, binding = 15, r32ui) uniform writeonly uimage2D block_pixel_image;
 
 // Colour and weight.
 vec4 reflection_of(uint index)
 {
-    Found found = found_by(listed_ray(index), hit_pixel[index], hit_t[index]);
+    Found found = found_by(listed_ray(index), listed_hit(index));
     return vec4(found.light * found.attenuation, found.weight);
 }
 
@@ -28,7 +27,7 @@ vec4 mean_reflection(uint first)
     int  hits = 0;
     for (int ray = 0; ray < rays_per_pixel; ++ray)
     {
-        if (unpack_status(hit_pixel[first + ray]) == TRACE_HIT)
+        if (unpack_status(listed_hit(first + ray).pixel) == TRACE_HIT)
         {
             vec4 reflection = reflection_of(first + ray);
             sum += vec4(reflection.rgb * reflection.a, reflection.a);

@@ -1,4 +1,4 @@
-// What a ray brings back of the surface that it hit, and how much that weighs. After ray_list.glsl, view.glsl,
+// What a ray brings back of the surface that it hit, and how much that weighs. After ray_list.glsl, hit_list.glsl, view.glsl,
 // reflecting.glsl and effect/parameters.
 #include "effects/blocks.glsl"
 
@@ -135,13 +135,13 @@ float attenuation_at(float distance_m)
     return 1.0;
 }
 
-// What the ray found, with this record of its hit; nothing if it missed.
-Found found_by(ListedRay ray, uint record, float t)
+// What the ray found; nothing if it missed.
+Found found_by(ListedRay ray, ListedHit found)
 {
-    if (unpack_status(record) != TRACE_HIT) return Found(vec3(0), 0.0, 0.0);
-    ivec2 hit       = unpack_pixel(record);
-    bool  second    = in_second_layer(record);
-    vec3  point     = ray.origin + ray.delta * t;
+    if (unpack_status(found.pixel) != TRACE_HIT) return Found(vec3(0), 0.0, 0.0);
+    ivec2 hit       = unpack_pixel(found.pixel);
+    bool  second    = in_second_layer(found.pixel);
+    vec3  point     = ray.origin + ray.delta * found.t;
     vec3  direction = ray_direction(ray), origin_vs = px_to_vs(ray.origin);
     vec3  surface_vs = px_to_vs(vec3(vec2(hit) + 0.5, layer_depth(hit, second)));
     // A. Biro: a surface that is met elsewhere than where the ray goes is the wrong one.

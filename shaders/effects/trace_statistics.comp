@@ -1,12 +1,12 @@
 // How the rays of the pixels that reflect ended, for the frame's plan.
 #include "work_group.glsl"
 #include "ray_list.glsl"
+#include "hit_list.glsl"
 #include "view.glsl"
 #include "reflecting.glsl"
 #extension GL_KHR_shader_subgroup_arithmetic : require
 
 layout(local_size_x = RAYS_PER_GROUP) in;
-layout(set = 0, binding = 9, scalar) readonly buffer HitPixels { uint hit_pixel[]; };
 layout(set = 0, binding = 10, scalar) buffer TraceStatistics // struct TraceCounts of render/effects.h
 {
     uint rays;
@@ -18,7 +18,7 @@ void main()
 {
     uint index  = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     bool traced = index < ray_count && reflects(unpack_pixel(ray_pixel(index)));
-    uint found  = traced ? hit_pixel[index] : 0;
+    uint found  = traced ? listed_hit(index).pixel : 0;
     bool hit    = traced && unpack_status(found) == TRACE_HIT;
     bool mirror = hit && reflects(unpack_pixel(found));
     uint traced_count = subgroupAdd(uint(traced)), hit_count = subgroupAdd(uint(hit)), mirror_count = subgroupAdd(uint(mirror));

@@ -109,20 +109,18 @@ TEST(SeveralRays, StartAtTheCentreWhereThePlaneIsSeenEdgeOn)
 void set_list(PreparedFrame& frame, const std::vector<glm::ivec2>& pixels, const std::vector<glm::ivec2>& hits)
 {
     std::vector<ListedRay<float>> listed;
-    std::vector<uint32_t>         ends;
+    std::vector<ListedHit<float>> ends;
     for (size_t i = 0; i < pixels.size(); ++i) {
         const bool hit = hits[i].x >= 0;
-        ends.push_back(hit ? pack_pixel(hits[i], TRACE_HIT) : pack_pixel({0, 0}, TRACE_LEFT_SCREEN));
+        ends.push_back({hit ? pack_pixel(hits[i], TRACE_HIT) : pack_pixel({0, 0}, TRACE_LEFT_SCREEN), 0.5F});
         listed.push_back(
             {{glm::vec2(pixels[i]) + 0.5F, 0.02F}, 1, {10, 10, -0.01F}, pack_pixel(pixels[i], TRACE_LEFT_SCREEN)});
     }
-    const std::vector<float> ts(pixels.size(), 0.5F);
-    const auto               count = static_cast<uint32_t>(pixels.size());
-    RayBuffers&              rays  = *frame.rays;
+    const auto  count = static_cast<uint32_t>(pixels.size());
+    RayBuffers& rays  = *frame.rays;
     upload(device(), rays.count, &count, sizeof(count));
     upload(device(), rays.list, listed.data(), listed.size() * sizeof(listed[0]));
-    upload(device(), rays.hit_pixels, ends.data(), ends.size() * 4);
-    upload(device(), rays.hit_ts, ts.data(), ts.size() * 4);
+    upload(device(), rays.hits, ends.data(), ends.size() * sizeof(ends[0]));
     submit(device(), [&](const vk::raii::CommandBuffer& commands) {
         barrier(commands);
         dispatch(commands, frame.trace.ray_launch, {1, 1, 1});
