@@ -68,7 +68,7 @@ std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame
     const auto        listed  = read_list<float>(gpu, rays);
     const auto        hits    = download_as<ListedHit<float>>(gpu, rays.hits, listed.size());
     for (size_t i = 0; i < listed.size(); ++i) {
-        if ((hits[i].pixel >> (2 * PIXEL_BITS) & TRACE_SECOND_LAYER) != 0) continue;
+        if (in_second_layer(hits[i].pixel)) continue;
         const glm::ivec2 pixel                     = unpack_pixel(listed[i].pixel);
         result.status[pixel_index(pixel, size_px)] = TraceStatus::not_traced;
     }

@@ -334,6 +334,13 @@ glm::ivec2 unpack_pixel(uint32_t packed)
     return {packed & (MAX_IMAGE_PX - 1), (packed >> PIXEL_BITS) & (MAX_IMAGE_PX - 1)};
 }
 
+TraceStatus unpack_status(uint32_t packed)
+{
+    return static_cast<TraceStatus>((packed >> (2 * PIXEL_BITS)) & (TRACE_SECOND_LAYER - 1));
+}
+
+bool in_second_layer(uint32_t packed) { return ((packed >> (2 * PIXEL_BITS)) & TRACE_SECOND_LAYER) != 0; }
+
 template <typename Real>
 TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, const Buffer* work)
 {
@@ -343,9 +350,9 @@ TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, co
     const auto   works  = work != nullptr ? download_as<glm::uvec3>(gpu, *work, count) : std::vector<glm::uvec3>{};
     TraceResult  result = make_trace_result(size_px, work != nullptr);
     for (size_t i = 0; i < count; ++i) {
-        const glm::ivec2 pixel = unpack_pixel(listed[i].pixel);
-        const size_t     index = pixel_index(pixel, size_px);
-        result.status[index] = static_cast<TraceStatus>((hits[i].pixel >> (2 * PIXEL_BITS)) & (TRACE_SECOND_LAYER - 1));
+        const glm::ivec2 pixel     = unpack_pixel(listed[i].pixel);
+        const size_t     index     = pixel_index(pixel, size_px);
+        result.status[index]       = unpack_status(hits[i].pixel);
         result.hit_pixel[index]    = unpack_pixel(hits[i].pixel);
         result.hit_t[index]        = static_cast<double>(hits[i].t);
         result.hit_px_depth[index] = glm::dvec3(listed[i].origin) + result.hit_t[index] * glm::dvec3(listed[i].delta);

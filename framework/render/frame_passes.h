@@ -167,6 +167,9 @@ void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses
 /// A pixel and a number in one word, as in shaders/view.glsl.
 uint32_t   pack_pixel(glm::ivec2 pixel, int number);
 glm::ivec2 unpack_pixel(uint32_t packed);
+/// How a ray ended, in whichever layer.
+TraceStatus unpack_status(uint32_t packed);
+bool        in_second_layer(uint32_t packed);
 /// The list of rays as it is on the device.
 template <typename Real> std::vector<ListedRay<Real>> read_list(Gpu& gpu, const RayBuffers& rays)
 {

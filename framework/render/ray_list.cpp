@@ -33,7 +33,7 @@ template <typename Real> std::vector<RayInput> read_rays(Gpu& gpu, const RayBuff
     std::vector<RayInput> rays;
     for (const ListedRay<Real>& ray : read_list<Real>(gpu, buffers))
         rays.push_back({glm::dvec3(ray.origin), glm::dvec3(ray.delta), static_cast<double>(ray.length_m),
-                        static_cast<TraceStatus>(ray.pixel >> (2 * PIXEL_BITS)), unpack_pixel(ray.pixel)});
+                        unpack_status(ray.pixel), unpack_pixel(ray.pixel)});
     return rays;
 }
 
@@ -43,7 +43,7 @@ template <typename Real> std::vector<RayOutcome> read_outcomes(Gpu& gpu, const R
     const auto              works = download_as<glm::uvec3>(gpu, tracer.work, count);
     std::vector<RayOutcome> outcomes(count);
     for (size_t i = 0; i < count; ++i)
-        outcomes[i] = {static_cast<TraceStatus>(hits[i].pixel >> (2 * PIXEL_BITS)),
+        outcomes[i] = {unpack_status(hits[i].pixel),
                        unpack_pixel(hits[i].pixel),
                        static_cast<double>(hits[i].t),
                        works[i].x,

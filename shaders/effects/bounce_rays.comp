@@ -18,13 +18,13 @@ layout(set = 0, binding = 24, scalar) writeonly buffer DerivedSources { uint der
 layout(set = 0, binding = 25, scalar) writeonly buffer DerivedThroughputs { vec3 derived_throughput[]; };
 
 // What light from the hit still weighs in the reflection; 0: the ray is not followed.
-vec3 throughput_of(uint index)
+vec3 throughput_of(uint index, ListedHit hit)
 {
 #ifdef FURTHER
     return ray_throughput[index];
 #else
     if (!reflects(unpack_pixel(ray_pixel(index)))) return vec3(0);
-    Found found = found_by(listed_ray(index), listed_hit(index));
+    Found found = found_by(listed_ray(index), hit);
     return vec3(found.weight > 0.0 ? found.attenuation : 0.0);
 #endif
 }
@@ -32,16 +32,17 @@ vec3 throughput_of(uint index)
 void main()
 {
     uint  index   = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    uint  record  = index < ray_count ? listed_hit(index).pixel : 0;
-    ivec2 hit     = unpack_pixel(record);
-    bool  follows = unpack_status(record) == TRACE_HIT && !in_second_layer(record) && reflects(hit);
+    ListedHit listed = ListedHit(0, real(0));
+    if (index < ray_count) listed = listed_hit(index);
+    ivec2 hit     = unpack_pixel(listed.pixel);
+    bool  follows = unpack_status(listed.pixel) == TRACE_HIT && !in_second_layer(listed.pixel) && reflects(hit);
     real3 arriving = real3(0), normal = real3(0);
     vec3  throughput = vec3(0);
     if (follows)
     {
         arriving   = ray_direction(listed_ray(index));
         normal     = normal_at(hit);
-        throughput = throughput_of(index);
+        throughput = throughput_of(index, listed);
         follows    = throughput != vec3(0) && dot(arriving, normal) < real(0);
     }
 

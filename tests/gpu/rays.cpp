@@ -52,8 +52,7 @@ Worst compare(const Picture& picture, const TraceSettings& settings, const Rays&
         seen[at(picture.image, pixel.x, pixel.y)] = true;
         const ScreenRay ray                       = make_screen_ray(picture.image, pixel, settings);
         EXPECT_TRUE(ray.traced);
-        worst.other_end +=
-            static_cast<TraceStatus>(listed.pixel >> (2 * PIXEL_BITS)) != ray.end_status; // two limits within rounding
+        worst.other_end += unpack_status(listed.pixel) != ray.end_status; // two limits within rounding
         const double nearest = std::max(ray.origin_px_depth.z, std::abs(ray.origin_px_depth.z + ray.delta_px_depth.z));
         worst.origin_px =
             std::max(worst.origin_px, glm::length(glm::dvec2(listed.origin) - glm::dvec2(ray.origin_px_depth)));
