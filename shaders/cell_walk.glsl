@@ -41,9 +41,10 @@ bool goes_on(CellWalk walk)
     return walk.level >= 0 && walk.t < walk.t_stop && walk.visited < max_steps;
 }
 
-ivec2 cell_of(CellWalk walk)
+// The last pixel of the cell on both axes, in the picture itself.
+ivec2 pixel_of(CellWalk walk)
 {
-    return ((walk.corner - 1) >> walk.level) ^ walk.mirror;
+    return (walk.corner - 1) ^ walk.mirror;
 }
 
 crossing t_exit(CellWalk walk)

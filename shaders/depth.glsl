@@ -11,17 +11,17 @@
 #endif
 layout(set = 0, binding = DEPTH_BINDING, r32f) uniform DEPTH_ACCESS imageBuffer depth_words;
 
-// Levels above 0: 2^levels covers the larger side of the image.
+// Levels above 0: until one row of cells is left.
 int pyramid_levels()
 {
-    int side = max(size_px.x, size_px.y);
-    return side > 1 ? findMSB(side - 1) + 1 : 0;
+    return findMSB(2 * size_px.y - 1);
 }
 
-// Where a cell lies, or at level 0 the two pixels of which this is one.
-int cell_index(ivec2 cell, int level)
+int pyramid_root = 1 << pyramid_levels(), pyramid_height = pyramid_rows(pyramid_root, size_px.y);
+
+int cell_index(ivec2 pixel, int level)
 {
-    return strip_index(mix(cell.x, cell.x >> 1, level == 0), level_row(size_px.y, level) + cell.y, pyramid_rows(size_px.y));
+    return pixel_to_cell_index(pixel.x, pixel.y, level, pyramid_root, pyramid_height);
 }
 
 int depth_word(ivec2 pixel)

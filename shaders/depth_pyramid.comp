@@ -15,8 +15,7 @@ layout(push_constant, scalar) uniform Push
 {
     ivec2 source_size; // cells of the level below
     ivec2 size;        // cells of this level
-    int   source_row;  // where that begins
-    int   row;         // where this one begins
+    int   row;         // where it begins
     int   rows;        // of the whole pyramid
 };
 
@@ -42,16 +41,17 @@ Range pixel_range(ivec2 pixel, uint bits)
     return Range(floatBitsToInt(depth), pyramid_kind == PYRAMID_NEAREST ? 0 : max(floatBitsToInt(outer_back(depth)), 0));
 }
 
-// A cell and its right neighbour, of the level that begins in a row.
-int pair_at(int first_row, ivec2 cell)
+// A cell and its right neighbour. place: the cell, counted from the heap's first row.
+int pair_at(ivec2 place)
 {
-    return strip_index(cell.x, first_row + cell.y, rows) >> 1;
+    return strip_index(place.x, place.y, rows) >> 1;
 }
 
+// Of the level below: a row of quarters of a cell, and of its right neighbour.
 uvec4 source_pair(ivec2 cell)
 {
     bvec3 inside = lessThan(ivec3(cell, cell.x + 1), source_size.xyx);
-    uvec4 pair   = inside.y ? imageLoad(cell_pairs, pair_at(source_row, cell)) : uvec4(0);
+    uvec4 pair   = inside.y ? imageLoad(cell_pairs, pair_at(ivec2(cell.x, 2 * row + cell.y))) : uvec4(0);
     return uvec4(inside.x ? pair.xy : empty_cell, inside.z ? pair.zw : empty_cell);
 }
 
@@ -141,14 +141,14 @@ uvec2 cell_of_quarters(uvec4 upper, uvec4 lower)
 // An invocation makes two cells side by side. The second may lie beyond the level: that place belongs to none.
 void main()
 {
-    ivec2 position = ivec2(2, 1) * ivec2(gl_GlobalInvocationID.xy), first = 2 * position;
+    ivec2 position = ivec2(2, 1) * ivec2(gl_GlobalInvocationID.xy), first = 2 * position, place = position + ivec2(0, row);
     if (any(greaterThanEqual(position, size))) return;
     const ivec2 next = ivec2(2, 0), below = ivec2(0, 1);
     uvec4 cells;
     if (from_pixels != 0)
     {
-        ivec2 pair  = ivec2(position.x, first.y);
-        uvec4 upper = imageLoad(cell_pairs, pair_at(source_row, pair)), lower = imageLoad(cell_pairs, pair_at(source_row, pair + below));
+        ivec2 pair  = ivec2(place.x, 2 * place.y);
+        uvec4 upper = imageLoad(cell_pairs, pair_at(pair)), lower = imageLoad(cell_pairs, pair_at(pair + below));
         cells       = uvec4(cell_of_pixels(first, upper.xy, lower.xy), cell_of_pixels(first + next, upper.zw, lower.zw));
     }
     else
@@ -156,5 +156,5 @@ void main()
         cells.xy = cell_of_quarters(source_pair(first), source_pair(first + below));
         cells.zw = cell_of_quarters(source_pair(first + next), source_pair(first + next + below));
     }
-    imageStore(cell_pairs, pair_at(row, position), cells);
+    imageStore(cell_pairs, pair_at(place), cells);
 }

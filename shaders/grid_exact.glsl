@@ -71,7 +71,7 @@ bool touches_surface(Ray ray, Grid grid, ivec2 pixel, int64_t t_in, int64_t t_ou
     return accepts(ray, pixel, slab_between(ray, grid, fetch_depth(pixel), scaled_depth(ray, t_in), scaled_depth(ray, t_out)), true);
 }
 
-bool touches_cell(Ray ray, Grid grid, ivec2 cell, int level, CellContent content, int64_t t_in, int64_t t_out)
+bool touches_cell(Ray ray, Grid grid, ivec2 pixel, int level, CellContent content, int64_t t_in, int64_t t_out)
 {
     bool   leaf = level == 0;
     double z_a = scaled_depth(ray, t_in), z_b = scaled_depth(ray, t_out);
@@ -80,5 +80,5 @@ bool touches_cell(Ray ray, Grid grid, ivec2 cell, int level, CellContent content
     double slack  = 1e-13LF * (abs(origin) + abs(double(ray.delta.z)));
     double z_far  = origin + min(z_a, z_b) / whole - slack, z_near = origin + max(z_a, z_b) / whole + slack;
     bool   touched = leaf ? slab_between(ray, grid, content.depth, z_a, z_b) : cell_may_touch(content.node, float(z_far), float(z_near));
-    return accepts(ray, cell, touched, leaf);
+    return accepts(ray, pixel, touched, leaf);
 }

@@ -48,7 +48,7 @@ bool touches_surface(Ray ray, Grid grid, ivec2 pixel, real t_in, real t_out)
     return touches_surface(ray, pixel, depth_at(ray, t_in), depth_at(ray, t_out));
 }
 
-bool touches_cell(Ray ray, Grid grid, ivec2 cell, int level, CellContent content, real t_in, real t_out)
+bool touches_cell(Ray ray, Grid grid, ivec2 pixel, int level, CellContent content, real t_in, real t_out)
 {
-    return touches_cell(ray, cell, level, content, depth_at(ray, t_in), depth_at(ray, t_out));
+    return touches_cell(ray, pixel, level, content, depth_at(ray, t_in), depth_at(ray, t_out));
 }

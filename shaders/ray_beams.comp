@@ -67,7 +67,7 @@ bool touches(Box box, int level)
     while (!found && cell.y <= last.y)
     {
         COUNT(pyramid_fetches);
-        found = cell_may_touch(load_pyramid(cell, level), float(box.low.z), float(box.high.z));
+        found = cell_may_touch(load_pyramid(cell << level, level), float(box.low.z), float(box.high.z));
         cell  = next_cell(cell, first, last);
     }
     return found;

@@ -72,8 +72,9 @@
 // Background in the depth that tracers read: nearer than nothing, so that no interval touches it.
 #define BACKGROUND_DEPTH -1.0
 
-// ---- The depth pyramid: its levels one below another, level 0 the picture, two pixels in the place of a cell. It lies in strips of
-// 2^STRIP_BITS cells' width: a row of one is a cache line, and what a ray meets on its way up or down the picture follows in memory.
+// ---- The depth pyramid. Its rows are a binary heap: the picture's row y is row root + y, where the root is the power of two that covers the
+// picture's height, and the cells above a row lie in the row of half its number. Level 0 holds two pixels in the place of a cell. All lies
+// in strips of 2^STRIP_BITS cells' width: a row of one is a cache line, and what a ray meets on its way up or down the picture follows in memory.
 #define STRIP_BITS 3
 
 #ifdef __cplusplus
@@ -82,21 +83,21 @@
 #define SHARED_FUNCTION
 #endif
 
-// The row in which a level begins, with a row to spare for halves of odd numbers of rows.
-SHARED_FUNCTION int level_row(int height_px, int level)
+// Odd, so that the strips' cache lines do not compete for the same places.
+SHARED_FUNCTION int pyramid_rows(int root, int height_px)
 {
-    return 2 * height_px - ((2 * height_px) >> level) + level;
-}
-
-// At least those of all levels.
-SHARED_FUNCTION int pyramid_rows(int height_px)
-{
-    return 2 * height_px + PIXEL_BITS + 1;
+    return (root + height_px) | 1;
 }
 
 SHARED_FUNCTION int strip_index(int x, int row, int rows)
 {
     return (((x >> STRIP_BITS) * rows + row) << STRIP_BITS) + (x & ((1 << STRIP_BITS) - 1));
+}
+
+// Of the cell of a level that holds a pixel, or at level 0 of the two pixels of which it is one.
+SHARED_FUNCTION int pixel_to_cell_index(int x_px, int y_px, int level, int root, int rows)
+{
+    return strip_index(x_px >> (level > 1 ? level : 1), (root | y_px) >> level, rows);
 }
 
 #endif

@@ -109,10 +109,10 @@ uint depth_bits(uvec2 pair, ivec2 pixel)
     return (pixel.x & 1) != 0 ? pair.y : pair.x;
 }
 
-// A cell of level >= 1 (pyramid_cell.glsl says what it knows), or at level 0 the two pixels of which this is one.
-uvec2 load_pyramid(ivec2 cell, int level)
+// The cell of a level >= 1 that holds a pixel (pyramid_cell.glsl says what it knows), or at level 0 the two pixels of which it is one.
+uvec2 load_pyramid(ivec2 pixel, int level)
 {
-    return imageLoad(depth_pyramid, cell_index(cell, level)).xy;
+    return imageLoad(depth_pyramid, cell_index(pixel, level)).xy;
 }
 
 // Reads two pixels: a walk is up to a third faster so on lavapipe (docs/performance.md).
@@ -214,31 +214,33 @@ struct CellContent
     uvec2 node;  // level >= 1
 };
 
-CellContent fetch_cell(ivec2 cell, int level)
+// The cell of a level that holds a pixel.
+CellContent fetch_cell(ivec2 pixel, int level)
 {
     bool leaf = level == 0;
     COUNT_IF(depth_fetches, leaf);
     COUNT_IF(pyramid_fetches, !leaf);
-    uvec2 texel = load_pyramid(cell, level);
-    return CellContent(real(uintBitsToFloat(leaf ? depth_bits(texel, cell) : 0u)), texel); // a cell's words may be no usable number
+    uvec2 texel = load_pyramid(pixel, level);
+    return CellContent(real(uintBitsToFloat(leaf ? depth_bits(texel, pixel) : 0u)), texel); // a cell's words may be no usable number
 }
 
-// The nearest front of a cell of any level: at level 0 the depth of the pixel, above no pixel of the cell is nearer.
-real fetch_front(ivec2 cell, int level)
+// The nearest front of that cell: at level 0 the depth of the pixel, above no pixel of the cell is nearer.
+real fetch_front(ivec2 pixel, int level)
 {
-    CellContent content = fetch_cell(cell, level);
+    CellContent content = fetch_cell(pixel, level);
     return level == 0 ? content.depth : real(uintBitsToFloat(content.node.x));
 }
 
-// May the ray touch a surface inside this cell? At level 0 the answer is touches_surface()'s; above, no means no for all its pixels.
-bool touches_cell(Ray ray, ivec2 cell, int level, CellContent content, real z_a, real z_b)
+// May the ray touch a surface inside the cell that holds this pixel? At level 0 the answer is touches_surface()'s; above, no means no for all
+// its pixels.
+bool touches_cell(Ray ray, ivec2 pixel, int level, CellContent content, real z_a, real z_b)
 {
     bool  leaf     = level == 0;
     real2 interval = depth_interval(ray, z_a, z_b);
     // Both answers, then a choice: a condition would become a branch, whose both sides run with more bookkeeping.
     bool in_front = content.depth >= interval.x, reached = reaches_slab_back(content.depth, interval.y);
     bool pixel_touched = in_front && reached, cell_touched = cell_may_touch(content.node, float(interval.x), float(interval.y));
-    return accepts(ray, cell, leaf ? pixel_touched : cell_touched, leaf);
+    return accepts(ray, pixel, leaf ? pixel_touched : cell_touched, leaf);
 }
 
 // ---- Results

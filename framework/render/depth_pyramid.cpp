@@ -3,18 +3,10 @@
 #include "core/pixel_index.h"
 #include "shared.h"
 
-#include <algorithm>
+#include <bit>
 
 namespace ssrlab {
 namespace {
-
-/// 2^bits covers the number.
-int bits_of(int number)
-{
-    int bits = 0;
-    while ((1 << bits) < number) ++bits;
-    return bits;
-}
 
 size_t depth_word(glm::ivec2 size_px, glm::ivec2 pixel)
 {
@@ -23,23 +15,26 @@ size_t depth_word(glm::ivec2 size_px, glm::ivec2 pixel)
 
 } // namespace
 
-size_t cell_index(glm::ivec2 size_px, glm::ivec2 cell, int level)
+int pyramid_levels(glm::ivec2 size_px) { return std::bit_width(static_cast<unsigned>(size_px.y - 1)); }
+
+int pyramid_root(glm::ivec2 size_px) { return 1 << pyramid_levels(size_px); }
+
+glm::ivec2 pyramid_size(glm::ivec2 size_px)
 {
-    const int x = level == 0 ? cell.x / 2 : cell.x;
-    return static_cast<size_t>(strip_index(x, level_row(size_px.y, level) + cell.y, pyramid_rows(size_px.y)));
+    return {level_size(size_px, STRIP_BITS + 1).x << STRIP_BITS, pyramid_rows(pyramid_root(size_px), size_px.y)};
+}
+
+size_t cell_index(glm::ivec2 size_px, glm::ivec2 pixel, int level)
+{
+    const int root = pyramid_root(size_px);
+    return static_cast<size_t>(pixel_to_cell_index(pixel.x, pixel.y, level, root, pyramid_rows(root, size_px.y)));
 }
 
 glm::ivec2 level_size(glm::ivec2 size_px, int level) { return ((size_px - 1) >> level) + 1; }
 
-PyramidAtlas pyramid_atlas(glm::ivec2 size_px)
-{
-    const int levels = bits_of(std::max(size_px.x, size_px.y));
-    return {{level_size(size_px, STRIP_BITS + 1).x << STRIP_BITS, pyramid_rows(size_px.y)}, levels};
-}
-
 DepthPyramid make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px)
 {
-    const size_t texels = pixel_count(pyramid_atlas(size_px).size);
+    const size_t texels = pixel_count(pyramid_size(size_px));
     DepthPyramid pyramid;
     pyramid.size_px = size_px;
     pyramid.cells   = make_texel_buffer(gpu, texels * sizeof(glm::uvec2), vk::Format::eR32G32Uint);
@@ -50,7 +45,7 @@ DepthPyramid make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px)
 
 void write_depth(Gpu& gpu, DepthPyramid& pyramid, std::span<const float> depth)
 {
-    std::vector<float> words(2 * pixel_count(pyramid_atlas(pyramid.size_px).size));
+    std::vector<float> words(2 * pixel_count(pyramid_size(pyramid.size_px)));
     for (int y = 0; y < pyramid.size_px.y; ++y)
         for (int x = 0; x < pyramid.size_px.x; ++x)
             words[depth_word(pyramid.size_px, {x, y})] = depth[pixel_index({x, y}, pyramid.size_px)];
@@ -59,7 +54,7 @@ void write_depth(Gpu& gpu, DepthPyramid& pyramid, std::span<const float> depth)
 
 std::vector<float> read_depth(Gpu& gpu, const DepthPyramid& pyramid)
 {
-    const auto words = download_as<float>(gpu, pyramid.cells, 2 * pixel_count(pyramid_atlas(pyramid.size_px).size));
+    const auto         words = download_as<float>(gpu, pyramid.cells, 2 * pixel_count(pyramid_size(pyramid.size_px)));
     std::vector<float> depth;
     depth.reserve(pixel_count(pyramid.size_px));
     for (int y = 0; y < pyramid.size_px.y; ++y)

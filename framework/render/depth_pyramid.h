@@ -8,18 +8,18 @@
 
 namespace ssrlab {
 
-/// The levels of a pyramid, one below another: level_row() of shaders/shared.h. Level 0 is the picture, two pixels in the place of a cell.
-struct PyramidAtlas {
-    glm::ivec2 size{0, 0}; // cells; whole strips
-    int        levels = 0; // above level 0
-};
-PyramidAtlas pyramid_atlas(glm::ivec2 size_px);
-/// Where a cell lies in the buffer, or at level 0 the two pixels of which this is one.
-size_t cell_index(glm::ivec2 size_px, glm::ivec2 cell, int level);
+/// Levels above 0, which is the picture itself, two pixels in the place of a cell: until one row of cells is left.
+int pyramid_levels(glm::ivec2 size_px);
+/// The row in which level 0 begins; a level begins there halved as often (shaders/shared.h).
+int pyramid_root(glm::ivec2 size_px);
+/// Cells of all levels; whole strips.
+glm::ivec2 pyramid_size(glm::ivec2 size_px);
+/// Where the cell of a level that holds a pixel lies in the buffer, or at level 0 the two pixels of which it is one.
+size_t cell_index(glm::ivec2 size_px, glm::ivec2 pixel, int level);
 /// Cells of a level.
 glm::ivec2 level_size(glm::ivec2 size_px, int level);
 
-/// The depth of every pixel and what is known of cells: an atlas in strips.
+/// The depth of every pixel and what is known of cells: cells in strips.
 struct DepthPyramid {
     glm::ivec2           size_px{0, 0};
     Buffer               cells;           // as texels: both words of a cell (shaders/pyramid_cell.glsl), or two pixels

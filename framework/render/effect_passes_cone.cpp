@@ -2,14 +2,26 @@
 #include "render/effect_passes.h"
 
 namespace ssrlab {
+namespace {
+
+/// The levels above 0, at the rows of the depth pyramid.
+GpuImage make_cone_image(Gpu& gpu, glm::ivec2 size_px, vk::Format format)
+{
+    const glm::ivec2 finest = level_size(size_px, 1);
+    return make_image(gpu, {.format  = format,
+                            .size_px = {finest.x, pyramid_root(size_px) / 2 + finest.y},
+                            .usage   = vk::ImageUsageFlagBits::eStorage});
+}
+
+} // namespace
 
 ConePyramid& cone_pyramid_of(Gpu& gpu, FrameBuffers& buffers)
 {
     if (!buffers.cone) {
         const glm::ivec2 size_px = buffers.gbuffer->view.size_px;
         buffers.cone             = std::make_shared<ConePyramid>();
-        buffers.cone->cells      = make_pyramid_image(gpu, size_px, vk::Format::eR16G16B16A16Sfloat);
-        buffers.cone->ranges     = make_pyramid_image(gpu, size_px, vk::Format::eR32G32Sfloat);
+        buffers.cone->cells      = make_cone_image(gpu, size_px, vk::Format::eR16G16B16A16Sfloat);
+        buffers.cone->ranges     = make_cone_image(gpu, size_px, vk::Format::eR32G32Sfloat);
     }
     return *buffers.cone;
 }
@@ -23,7 +35,7 @@ Recording cone_pyramid(Gpu& gpu, PreparedFrame& frame)
     };
     frame.cone  = true;
     auto passes = std::make_shared<PyramidPasses>(
-        PyramidPasses{1, make({{"FROM_PIXELS", "1"}}), make({}), pyramid_levels(frame.buffers->gbuffer->view.size_px)});
+        PyramidPasses{1, make({{"FROM_PIXELS", "1"}}), make({}), pyramid_pushes(frame.buffers->gbuffer->view.size_px)});
     return [passes](const auto& commands) { record_pyramid(commands, *passes); };
 }
 

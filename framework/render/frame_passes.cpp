@@ -116,19 +116,12 @@ void add_parameters(Constants& constants, std::span<const Parameter> parameters,
     }
 }
 
-GpuImage make_pyramid_image(Gpu& gpu, glm::ivec2 size_px, vk::Format format)
-{
-    const glm::ivec2 size = pyramid_atlas(size_px).size - glm::ivec2(0, level_row(size_px.y, 1));
-    return make_image(gpu, {.format = format, .size_px = size, .usage = vk::ImageUsageFlagBits::eStorage});
-}
-
-std::vector<PyramidPush> pyramid_levels(glm::ivec2 size_px, int top)
+std::vector<PyramidPush> pyramid_pushes(glm::ivec2 size_px, int top)
 {
     std::vector<PyramidPush> levels;
-    const PyramidAtlas       atlas = pyramid_atlas(size_px);
-    for (int level = 1; level <= std::min(atlas.levels, top); ++level)
-        levels.push_back({level_size(size_px, level - 1), level_size(size_px, level), level_row(size_px.y, level - 1),
-                          level_row(size_px.y, level), atlas.size.y});
+    for (int level = 1; level <= std::min(pyramid_levels(size_px), top); ++level)
+        levels.push_back({level_size(size_px, level - 1), level_size(size_px, level), pyramid_root(size_px) >> level,
+                          pyramid_size(size_px).y});
     return levels;
 }
 
@@ -146,7 +139,7 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const De
     passes.cells_per_invocation = 2;
     passes.from_pixels          = make(true);
     passes.from_cells           = make(false);
-    passes.levels = pyramid_levels(pyramid.size_px, static_cast<int>(parameter_or(frame, "top_level", 31)));
+    passes.levels = pyramid_pushes(pyramid.size_px, static_cast<int>(parameter_or(frame, "top_level", 31)));
     return passes;
 }
 

@@ -43,9 +43,6 @@ struct DerivedRays {
     Buffer     throughputs; // bounces: what a ray's light still weighs in the reflection it belongs to, RGB
 };
 
-/// The levels >= 1 of an atlas as an image.
-GpuImage make_pyramid_image(Gpu& gpu, glm::ivec2 size_px, vk::Format format);
-
 /// What cones look up (shaders/effects/cone_pyramid.comp).
 struct ConePyramid {
     GpuImage cells;  // RGBA16F: colour, visibility
@@ -81,8 +78,8 @@ struct FrameBuffers {
 
 struct PyramidPush {
     glm::ivec2 source_size, size;
-    int        source_row = 0, row = 0; // where the two levels begin
-    int        rows = 0;                // of the whole pyramid
+    int        row  = 0; // where it begins
+    int        rows = 0; // of the whole pyramid
 };
 struct PyramidPasses {
     int                      cells_per_invocation = 1; // side by side
@@ -125,7 +122,7 @@ struct PreparedFrame {
 };
 
 /// The first levels of a pyramid above level 0, all of them or up to `top`.
-std::vector<PyramidPush> pyramid_levels(glm::ivec2 size_px, int top = 31);
+std::vector<PyramidPush> pyramid_pushes(glm::ivec2 size_px, int top = 31);
 /// Those of one layer's depth; none when the technique reads no pyramid.
 PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const DepthPyramid& pyramid);
 /// work: steps, depth and pyramid fetches per ray, or null for the pipeline that is timed.

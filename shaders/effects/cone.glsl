@@ -12,7 +12,7 @@ vec4 cone_cell(ivec2 cell, int level)
         if (hit_light == hit_light_lit) light += imageLoad(highlight_image, known).rgb;
         return vec4(light, 1);
     }
-    return imageLoad(cone_pyramid, known + ivec2(0, level_row(size_px.y, level) - level_row(size_px.y, 1)));
+    return imageLoad(cone_pyramid, known + ivec2(0, pyramid_root >> level));
 }
 
 vec4 cone_bilinear(vec2 place_px, int level)

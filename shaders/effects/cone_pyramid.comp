@@ -13,16 +13,10 @@ layout(push_constant, scalar) uniform Push
 {
     ivec2 source_size; // cells of the level below
     ivec2 size;        // cells of this level
-    int   source_row;  // where that begins in an atlas with level 0, which is none of the images'
-    int   row;         // where this one begins
+    int   row;         // where it begins
 };
 
 const float background_m = 1e30;
-
-ivec2 place_of(ivec2 cell, int first_row)
-{
-    return cell + ivec2(0, first_row - level_row(size_px.y, 1));
-}
 
 #ifdef FROM_PIXELS
 vec4 source_colour(ivec2 cell)
@@ -40,12 +34,12 @@ vec2 source_range(ivec2 cell)
 #else
 vec4 source_colour(ivec2 cell)
 {
-    return imageLoad(cone_pyramid, place_of(cell, source_row));
+    return imageLoad(cone_pyramid, cell + ivec2(0, 2 * row));
 }
 
 vec2 source_range(ivec2 cell)
 {
-    return imageLoad(cone_ranges, place_of(cell, source_row)).xy;
+    return imageLoad(cone_ranges, cell + ivec2(0, 2 * row)).xy;
 }
 #endif
 
@@ -81,6 +75,6 @@ void main()
     // What lies in one plane hides nothing.
     vec4  empty      = range.x < range.y ? (nearest_m - range.x) / (range.y - range.x) : vec4(1);
     float visibility = dot(empty * below, vec4(0.25));
-    imageStore(cone_ranges, place_of(cell, row), vec4(range, 0, 0));
-    imageStore(cone_pyramid, place_of(cell, row), vec4(mean_colour(cell), visibility));
+    imageStore(cone_ranges, cell + ivec2(0, row), vec4(range, 0, 0));
+    imageStore(cone_pyramid, cell + ivec2(0, row), vec4(mean_colour(cell), visibility));
 }

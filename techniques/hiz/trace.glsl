@@ -11,13 +11,13 @@ int top = min(top_level, pyramid_levels());
 CellContent look(CellWalk walk, int number)
 {
     current_ray = goes_on(walk) ? number : 2;
-    return fetch_cell(cell_of(walk), walk.level);
+    return fetch_cell(pixel_of(walk), walk.level);
 }
 
 void visit(Ray ray, inout CellWalk walk, CellContent content, int number)
 {
     current_ray  = goes_on(walk) ? number : 2;
-    bool touched = touches_cell(ray, walk.grid, cell_of(walk), walk.level, content, walk.t, t_exit(walk));
+    bool touched = touches_cell(ray, walk.grid, pixel_of(walk), walk.level, content, walk.t, t_exit(walk));
     move(walk, touched, top);
 }
 
@@ -25,7 +25,7 @@ TraceResult finish(Ray ray, CellWalk walk, int number)
 {
     current_ray = number;
     if (walk.level >= 0) return walk.t < walk.grid.t_end ? out_of_steps(walk.visited) : miss(ray, walk.visited);
-    ivec2 pixel = (walk.corner - 1) ^ walk.mirror;
+    ivec2 pixel = pixel_of(walk);
     return hit_between(ray, pixel, crossing_to_t(walk.grid, walk.t), crossing_to_t(walk.grid, t_exit(walk)), walk.visited);
 }
 

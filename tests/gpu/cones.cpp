@@ -10,7 +10,7 @@ namespace {
 
 constexpr double cone_gloss = 2; // of the parameter's choices
 
-/// The visibility of cells after the pass ran on 4 x 4 pixels at these distances in metres; 0: background. x, y in the atlas.
+/// The visibility of cells after the pass ran on 4 x 4 pixels at these distances in metres; 0: background.
 class Visibility {
 public:
     explicit Visibility(const std::array<double, 16>& distances_m)
@@ -21,11 +21,14 @@ public:
         const Picture picture = make_picture(image);
         const auto    frame   = frame_with(picture, {{"gloss", cone_gloss}, {"plan", 0}});
         run_effect(*frame, "cone_pyramid");
-        const GpuImage& atlas = picture.buffers->cone->cells;
-        cells_                = read_colours(atlas);
-        width_                = atlas.size_px.x;
+        const GpuImage& image_of_cells = picture.buffers->cone->cells;
+        cells_                         = read_colours(image_of_cells);
+        width_                         = image_of_cells.size_px.x;
     }
-    float operator()(int x, int y) const { return cells_[size_t(y) * size_t(width_) + size_t(x)].a; }
+    float operator()(int level, int x, int y) const
+    {
+        return cells_[size_t((pyramid_root({4, 4}) >> level) + y) * size_t(width_) + size_t(x)].a;
+    }
 
 private:
     Reflection cells_;
@@ -39,12 +42,12 @@ TEST(Cones, VisibilityIsTheEmptyShareOfEachCellsRange)
                            4, 4, 5, 0, //
                            8, 6, 0, 0});
     // Level 1. From 1 to 3 m: 0, 1/2, 1 and 1 are empty in front of the four pixels.
-    EXPECT_NEAR(cell(0, 0), 0.625, 1e-3);
-    EXPECT_NEAR(cell(1, 0), 1, 1e-3);     // flat
-    EXPECT_NEAR(cell(0, 1), 0.375, 1e-3); // from 4 to 8 m: 0, 0, 1 and 1/2
-    EXPECT_NEAR(cell(1, 1), 0.75, 1e-3);  // nothing is behind infinity
+    EXPECT_NEAR(cell(1, 0, 0), 0.625, 1e-3);
+    EXPECT_NEAR(cell(1, 1, 0), 1, 1e-3);     // flat
+    EXPECT_NEAR(cell(1, 0, 1), 0.375, 1e-3); // from 4 to 8 m: 0, 0, 1 and 1/2
+    EXPECT_NEAR(cell(1, 1, 1), 0.75, 1e-3);  // nothing is behind infinity
     // Level 2: before infinity all that is finite is near.
-    EXPECT_NEAR(cell(0, 3), 0, 1e-3);
+    EXPECT_NEAR(cell(2, 0, 0), 0, 1e-3);
 }
 
 TEST(Cones, VisibilityOfHigherLevelsIsTheProductOverTheLevels)
@@ -54,7 +57,7 @@ TEST(Cones, VisibilityOfHigherLevelsIsTheProductOverTheLevels)
                            4, 4, 5, 5, //
                            8, 6, 9, 9});
     // Level 1: 0.625, 1, 0.375, 0.5. Level 2, from 1 to 9 m: 0, 1/8, 3/8 and 1/2 are empty in front of them.
-    EXPECT_NEAR(cell(0, 3), (0 * 0.625 + 0.125 * 1 + 0.375 * 0.375 + 0.5 * 0.5) / 4, 1e-3);
+    EXPECT_NEAR(cell(2, 0, 0), (0 * 0.625 + 0.125 * 1 + 0.375 * 0.375 + 0.5 * 0.5) / 4, 1e-3);
 }
 
 /// A floor of the given roughness before a wall, where every column has the colour that `colour` says.

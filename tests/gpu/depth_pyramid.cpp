@@ -14,12 +14,14 @@ namespace {
 
 struct Pyramid {
     glm::ivec2              size_px;
-    PyramidAtlas            atlas;
     std::vector<glm::uvec2> cells;
 
     glm::ivec2 size(int level) const { return ((size_px - 1) >> level) + 1; }
-    glm::uvec2 at(int level, int x, int y) const { return cells.at(cell_index(size_px, {x, y}, level)); }
-    uint32_t   pixel(int x, int y) const
+    glm::uvec2 at(int level, int x, int y) const
+    {
+        return cells.at(cell_index(size_px, {x << level, y << level}, level));
+    }
+    uint32_t pixel(int x, int y) const
     {
         const glm::uvec2 pair = cells.at(cell_index(size_px, {x, y}, 0));
         return x % 2 == 0 ? pair.x : pair.y;
@@ -33,15 +35,14 @@ Pyramid build(const Picture& picture, const TraceSettings& settings, double kind
                                            values_of(hiz, {{"pyramid", kind}, {"top_level", 14}}), {settings});
     submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_pyramid(commands, frame->pyramid); });
     const Buffer& cells = picture.buffers->gbuffer->depth.cells;
-    return {picture.view.size_px, pyramid_atlas(picture.view.size_px),
-            download_as<glm::uvec2>(device(), cells, cells.bytes / sizeof(glm::uvec2))};
+    return {picture.view.size_px, download_as<glm::uvec2>(device(), cells, cells.bytes / sizeof(glm::uvec2))};
 }
 
-/// Levels: as many halvings, rounded up, as it takes to reach one cell.
+/// Levels: as many halvings, rounded up, as it takes to reach one row of cells.
 int expected_levels(glm::ivec2 size)
 {
     int levels = 0;
-    for (int n = std::max(size.x, size.y); n > 1; n = (n + 1) / 2) ++levels;
+    for (int n = size.y; n > 1; n = (n + 1) / 2) ++levels;
     return levels;
 }
 
@@ -101,9 +102,9 @@ bool is_right(glm::uvec2 cell, const GBufferImage& image, const TraceSettings& s
 
 void expect_cells(const Pyramid& pyramid, const GBufferImage& image, const TraceSettings& settings, int kind)
 {
-    ASSERT_EQ(pyramid.atlas.levels, expected_levels(pyramid.size_px));
+    ASSERT_EQ(pyramid_levels(pyramid.size_px), expected_levels(pyramid.size_px));
     size_t wrong = 0;
-    for (int level = 1; level <= pyramid.atlas.levels; ++level)
+    for (int level = 1; level <= pyramid_levels(pyramid.size_px); ++level)
         for (int y = 0; y < pyramid.size(level).y; ++y)
             for (int x = 0; x < pyramid.size(level).x; ++x) {
                 const glm::uvec2 cell = pyramid.at(level, x, y);
@@ -153,8 +154,8 @@ TEST_P(DepthPyramid, SeesTheOnlyNearTexelInEveryCornerAndBorder)
         std::ranges::fill(image.depth, 0.01F);
         image.depth[at(image, near.x, near.y)] = 0.75F;
         const Pyramid pyramid                  = build(make_picture(image), {}, PYRAMID_OCCUPANCY);
-        ASSERT_EQ(pyramid.atlas.levels, expected_levels(size));
-        for (int level = 1; level <= pyramid.atlas.levels; ++level)
+        ASSERT_EQ(pyramid_levels(pyramid.size_px), expected_levels(size));
+        for (int level = 1; level <= pyramid_levels(pyramid.size_px); ++level)
             for (int y = 0; y < pyramid.size(level).y; ++y)
                 for (int x = 0; x < pyramid.size(level).x; ++x)
                     ASSERT_EQ(pyramid.at(level, x, y).x & ~31U,

@@ -57,15 +57,15 @@ std::vector<Mutation> mutations()
 {
     return {
         replaced("PyramidSizesRoundedDown", "touches_cell",
-                 "bool mutated_touches_cell(Ray ray, Grid grid, ivec2 cell, int level, CellContent content, real a, "
-                 "real b) { return all(lessThan(cell, max(size_px >> level, ivec2(1)))) && touches_cell(ray, grid, "
-                 "cell, level, content, a, b); }",
+                 "bool mutated_touches_cell(Ray ray, Grid grid, ivec2 pixel, int level, CellContent content, real a, "
+                 "real b) { return all(lessThan(pixel >> level, max(size_px >> level, ivec2(1)))) && "
+                 "touches_cell(ray, grid, pixel, level, content, a, b); }",
                  "last_row_and_column"),
         replaced("DepthByMix", "touches_cell",
                  "real mixed(Ray ray, real t) { real end = ray.origin.z + ray.delta.z; precise real z = "
                  "ray.origin.z * (real(1) - t) + end * t; return z; }\n"
-                 "bool mutated_touches_cell(Ray ray, Grid grid, ivec2 cell, int level, CellContent content, real a, "
-                 "real b) { return touches_cell(ray, cell, level, content, mixed(ray, a), mixed(ray, b)); }",
+                 "bool mutated_touches_cell(Ray ray, Grid grid, ivec2 pixel, int level, CellContent content, real a, "
+                 "real b) { return touches_cell(ray, pixel, level, content, mixed(ray, a), mixed(ray, b)); }",
                  "level_at_the_surface"),
         replaced("BordersMultipliedOut", "border_t",
                  "real2 mutated_border_t(Ray ray, Grid grid, ivec2 border) { return real2(border) * grid.inverse_delta "

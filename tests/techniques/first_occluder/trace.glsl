@@ -14,14 +14,14 @@ bool gets_behind(Ray ray, CellWalk walk, real front)
 real look(CellWalk walk, int number)
 {
     current_ray = goes_on(walk) ? number : 2;
-    return fetch_front(cell_of(walk), walk.level);
+    return fetch_front(pixel_of(walk), walk.level);
 }
 
 TraceResult finish(Ray ray, CellWalk walk, int number)
 {
     current_ray = number;
     if (walk.level >= 0) return walk.t < walk.grid.t_end ? out_of_steps(walk.visited) : miss(ray, walk.visited);
-    ivec2    pixel = (walk.corner - 1) ^ walk.mirror;
+    ivec2    pixel = pixel_of(walk);
     crossing t_out = t_exit(walk);
     if (touches_surface(ray, pixel, depth_at(ray, walk.t), depth_at(ray, t_out))) return hit_between(ray, pixel, walk.t, t_out, walk.visited);
     return miss(ray, walk.visited);

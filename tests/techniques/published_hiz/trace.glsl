@@ -7,6 +7,7 @@ TraceResult trace(Ray ray)
     real3 direction = real3(ray.delta.xy / real2(size_px), ray.delta.z);
     real3 inverse   = real3(direction.x != real(0) ? real(1) / direction.x : real(1e30), direction.y != real(0) ? real(1) / direction.y : real(1e30),
                             direction.z != real(0) ? real(1) / direction.z : real(1e30));
+    real2 pixel_uv  = real(1) / real2(size_px);
     real2 uv_offset = real2(0.005) / real2(size_px) * real2(direction.x < real(0) ? -1 : 1, direction.y < real(0) ? -1 : 1);
     real2 floor_offset = real2(direction.x < real(0) ? 0 : 1, direction.y < real(0) ? 0 : 1);
 
@@ -19,10 +20,10 @@ TraceResult trace(Ray ray)
     while (level >= 0 && t < real(1) && visited < max_steps)
     {
         int   on_level  = level;
-        real2 cells     = real2(size_px) / real2(1 << on_level);
-        cell            = clamp(ivec2(floor(position.xy * cells)), ivec2(0), (size_px - 1) >> on_level);
-        real  surface   = fetch_front(cell, on_level);
-        real2 border    = (real2(cell) + floor_offset) / cells + uv_offset;
+        ivec2 under     = clamp(ivec2(floor(position.xy * real2(size_px))), ivec2(0), size_px - 1);
+        real  surface   = fetch_front(under, on_level);
+        cell            = under >> on_level;
+        real2 border    = (real2(cell) + floor_offset) * (real(1 << on_level) * pixel_uv) + uv_offset;
         real2 t_border  = border * inverse.xy - origin.xy * inverse.xy;
         real  t_leave   = min(t_border.x, t_border.y);
         // Depth is larger where it is nearer: a ray that comes nearer never meets the plane from the front.

@@ -9,7 +9,7 @@ void visit(Ray ray, inout CellWalk walk, int number)
     current_ray    = goes ? number : 2;
     real2 t_border = border_t(walk.forward, walk.grid, walk.corner);
     real  t_out    = exit_t(walk.grid, t_border);
-    bool  touched  = touches_surface(ray, walk.grid, (walk.corner - 1) ^ walk.mirror, walk.t, t_out);
+    bool  touched  = touches_surface(ray, walk.grid, pixel_of(walk), walk.t, t_out);
     bool  leaves   = goes && !touched;
     ivec2 next     = next_corner(walk.corner, 1, t_border, t_out);
     walk.t         = leaves ? t_out : walk.t;
@@ -22,7 +22,7 @@ TraceResult finish(Ray ray, CellWalk walk, int number)
 {
     current_ray = number;
     if (walk.level >= 0) return walk.t < walk.grid.t_end ? out_of_steps(walk.visited) : miss(ray, walk.visited);
-    return hit_between(ray, (walk.corner - 1) ^ walk.mirror, walk.t, t_exit(walk), walk.visited);
+    return hit_between(ray, pixel_of(walk), walk.t, t_exit(walk), walk.visited);
 }
 
 void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult result_b)
