@@ -54,7 +54,7 @@ struct TileBuffers {
     Buffer masks, count, tiles, launch, statistics;
 };
 TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px);
-/// Three floats a patch.
+/// Four floats a patch (shaders/patch_planes.comp).
 Buffer make_patch_planes(Gpu& gpu, glm::ivec2 size_px);
 
 struct FrameBuffers {
