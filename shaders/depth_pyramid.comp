@@ -47,7 +47,7 @@ int pair_at(ivec2 place)
     return strip_index(place.x, place.y, rows) >> 1;
 }
 
-// Of the level below: a row of quarters of a cell, and of its right neighbour.
+// Two quarters of a cell side by side: a cell of the level below and its right neighbour, empty where that level ends.
 uvec4 source_pair(ivec2 cell)
 {
     bvec3 inside = lessThan(ivec3(cell, cell.x + 1), source_size.xyx);

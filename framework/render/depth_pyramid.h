@@ -19,7 +19,7 @@ size_t cell_index(glm::ivec2 size_px, glm::ivec2 pixel, int level);
 /// Cells of a level.
 glm::ivec2 level_size(glm::ivec2 size_px, int level);
 
-/// The depth of every pixel and what is known of cells: cells in strips.
+/// The depth of every pixel and what is known of cells, in strips.
 struct DepthPyramid {
     glm::ivec2           size_px{0, 0};
     Buffer               cells;           // as texels: both words of a cell (shaders/pyramid_cell.glsl), or two pixels

@@ -78,7 +78,7 @@ struct FrameBuffers {
 
 struct PyramidPush {
     glm::ivec2 source_size, size;
-    int        row  = 0; // where it begins
+    int        row  = 0; // where the level begins
     int        rows = 0; // of the whole pyramid
 };
 struct PyramidPasses {

@@ -31,11 +31,11 @@ vec3 throughput_of(uint index, ListedHit hit)
 
 void main()
 {
-    uint  index   = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
+    uint      index  = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     ListedHit listed = ListedHit(0, real(0));
     if (index < ray_count) listed = listed_hit(index);
-    ivec2 hit     = unpack_pixel(listed.pixel);
-    bool  follows = unpack_status(listed.pixel) == TRACE_HIT && !in_second_layer(listed.pixel) && reflects(hit);
+    ivec2 hit      = unpack_pixel(listed.pixel);
+    bool  follows  = unpack_status(listed.pixel) == TRACE_HIT && !in_second_layer(listed.pixel) && reflects(hit);
     real3 arriving = real3(0), normal = real3(0);
     vec3  throughput = vec3(0);
     if (follows)
