@@ -81,26 +81,21 @@ void stop_at(inout CellWalk walk, real t)
     walk.t_stop = t < walk.grid.t_end ? t : walk.grid.t_end;
 }
 
-// The exit corner of the cell of some level in which the ray is at t. The position names it but for rounding, which the borders then settle.
-ivec2 corner_at(CellWalk walk, int level, real t)
-{
-    int   size   = 1 << level;
-    ivec2 corner = ((ivec2(floor(walk.forward.origin.xy + t * walk.forward.delta.xy)) >> level) + 1) << level;
-    corner += ivec2(lessThanEqual(border_t(walk.forward, walk.grid, corner), real2(t))) * size;
-    return corner - ivec2(greaterThan(border_t(walk.forward, walk.grid, corner - size), real2(t))) * size;
-}
-
-// Passes over a stretch without surfaces, up to the cell of this level in which the ray is at t: there it stands as if it had walked.
+// Passes over a stretch without surfaces, to the cell of this level in which the ray is at t: there it stands as if it had walked. Position names
+// that cell but for rounding; where its borders say otherwise, the walk goes on cell by cell.
 // It visits nothing, so a budget that is spent forbids it only where the walk stopped before the stretch.
 void leap(inout CellWalk walk, int level, real t)
 {
-    real2 way_px   = (t - walk.t) * walk.forward.delta.xy;
-    bool  goes     = walk.level >= 0 && walk.t >= walk.t_stop && walk.t < walk.grid.t_end && max(way_px.x, way_px.y) > real(2 << level);
-    ivec2 corner   = corner_at(walk, level, t);
-    real2 t_border = border_t(walk.forward, walk.grid, corner - (1 << level));
-    real  t_entry  = max(walk.t, max(t_border.x, t_border.y));
-    walk.t         = !goes ? walk.t : t < walk.grid.t_end ? t_entry : walk.grid.t_end;
-    walk.corner    = goes ? corner : walk.corner;
-    walk.level     = goes ? level : walk.level;
+    int   size    = 1 << level;
+    ivec2 corner  = (ivec2(floor(walk.forward.origin.xy + t * walk.forward.delta.xy)) | (size - 1)) + 1;
+    real2 t_in    = border_t(walk.forward, walk.grid, corner - size), t_out = border_t(walk.forward, walk.grid, corner);
+    real  t_entry = t_in.x > t_in.y ? t_in.x : t_in.y;
+    bool  arrives = t_entry <= t && t < t_out.x && t < t_out.y, ends = t >= walk.grid.t_end;
+    real2 way_px  = (t - walk.t) * walk.forward.delta.xy;
+    bool  pays    = way_px.x > real(2 * size) || way_px.y > real(2 * size);
+    bool  goes    = (arrives || ends) && pays && walk.level >= 0 && walk.t >= walk.t_stop && walk.t < walk.grid.t_end;
+    walk.t        = !goes ? walk.t : ends ? walk.grid.t_end : t_entry;
+    walk.corner   = goes ? corner : walk.corner;
+    walk.level    = goes ? level : walk.level;
 }
 #endif

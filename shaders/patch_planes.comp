@@ -7,6 +7,7 @@
 #include "slab.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = CONSTANT_PYRAMID_KIND) const int pyramid_kind = PYRAMID_OCCUPANCY;
 layout(set = 0, binding = 3, rgba32ui) uniform readonly uimageBuffer cell_pairs; // four pixels a texel
 layout(set = 0, binding = 14, rgba32f) uniform writeonly imageBuffer PatchPlanes;
 
@@ -56,9 +57,10 @@ void main()
         ground       = farther ? middle : ground;
     }
 
-    // How much nearer a front is whose slab ends at the ground.
+    // How much nearer a front is whose slab ends at the ground. With cells that know the nearest front alone, nothing passes behind it.
     float nearest = (ground + slab_shift) / (slab_scale - ground * slab_slope);
-    float stands  = ground < none && nearest > ground ? corner + nearest - ground : none;
+    bool  passes  = pyramid_kind != PYRAMID_NEAREST && ground < none && nearest > ground;
+    float stands  = passes ? corner + nearest - ground : none;
     float height = -none, before = none;
     // Down the columns, so that reads of different cache lines are under way at once.
     for (int i = 0; i < side_px * side_px / 4; ++i)

@@ -9,6 +9,7 @@
 layout(local_size_x = BEAMS_PER_GROUP) in;
 
 layout(constant_id = CONSTANT_TOP_LEVEL) const int top_level = 0;
+layout(constant_id = CONSTANT_PYRAMID_KIND) const int pyramid_kind = PYRAMID_OCCUPANCY;
 
 layout(set = 0, binding = 12, scalar) writeonly buffer Beams { real2 clear_stretches[]; };
 layout(set = 0, binding = 14, rgba32f) uniform readonly imageBuffer PatchPlanes;
@@ -20,6 +21,9 @@ const real first_px = 8, finest_step_px = 8, shortest_stretch_px = 24; // on scr
 const real widest_px = 64;                                             // where rays of different tiles meet in one group
 const real rising_px = 1.5, rising_step_px = 16;                       // while it is held against planes
 const int  most_tests = 96, most_rising_tests = 3, most_patches = 6;
+// Behind a front nothing is clear where cells know the nearest front alone: a beam has one stretch there, which begins soon or not at all.
+const bool nearest_only = pyramid_kind == PYRAMID_NEAREST;
+const int  most_stretches = nearest_only ? 1 : BEAM_STRETCHES, most_blocked_steps = nearest_only ? 4 : most_tests;
 // What rounding moves a position by, at the largest image, and a depth, as a share of the beam's nearest: many times more than it can.
 const real rounding_px = 1.0 / 16, rounding_depth = 1.0 / (1 << 20);
 
@@ -63,13 +67,15 @@ ivec2 next_cell(ivec2 cell, ivec2 first, ivec2 last)
 bool touches(Box box, int level)
 {
     ivec2 first = cell_at(box.low.xy, level), last = cell_at(box.high.xy, level), cell = first;
-    bool  found = false;
-    while (!found && cell.y <= last.y)
+    bool  found = false, goes = true;
+    do
     {
-        COUNT(pyramid_fetches);
-        found = cell_may_touch(load_pyramid(cell << level, level), float(box.low.z), float(box.high.z));
-        cell  = next_cell(cell, first, last);
-    }
+        COUNT_IF(pyramid_fetches, goes);
+        bool touched = cell_may_touch(load_pyramid(cell << level, level), float(box.low.z), float(box.high.z));
+        found        = found || (goes && touched);
+        cell         = next_cell(cell, first, last);
+        goes         = goes && !found && cell.y <= last.y;
+    } while (goes);
     return found;
 }
 
@@ -82,7 +88,6 @@ struct Plane
 
 Plane load_plane(ivec2 place)
 {
-    COUNT(pyramid_fetches);
     vec4 plane = imageLoad(PatchPlanes, place.y * (((size_px.x - 1) >> PATCH_BITS) + 1) + place.x);
     return Plane(real2(plane.xy), real(plane.z), real(plane.w));
 }
@@ -92,23 +97,26 @@ Plane load_plane(ivec2 place)
 bool meets_patch(Box box, real2 ground, real height)
 {
     ivec2 first = cell_at(box.low.xy, PATCH_BITS), last = cell_at(box.high.xy, PATCH_BITS), place = first;
-    bool  found = any(greaterThanEqual(last - first, ivec2(most_patches)));
-    while (!found && place.y <= last.y)
+    bool  found = any(greaterThanEqual(last - first, ivec2(most_patches))), goes = !found;
+    do
     {
+        COUNT_IF(pyramid_fetches, goes);
         Plane plane  = load_plane(place);
         real2 centre = real2(place << PATCH_BITS) + real(0.5);
         real2 rise   = max(plane.gradient - ground, real2(0)) * real((1 << PATCH_BITS) - 1);
         bool  rises  = !(plane.depth - dot(ground, centre) + rise.x + rise.y < height);
-        found        = rises || (plane.before > real(0) && reaches_slab_back(plane.before, box.high.z));
+        bool  passes = plane.before <= real(0) || !reaches_slab_back(plane.before, box.high.z);
+        found        = found || (goes && (rises || !passes));
         place        = next_cell(place, first, last);
-    }
+        goes         = goes && !found && place.y <= last.y;
+    } while (goes);
     return found;
 }
 
 // One more stretch, if it is long enough to be worth a leap.
 void keep(uint beam, inout int kept, real begin, real end, real length_px)
 {
-    bool keeps = kept < BEAM_STRETCHES && (end - begin) * length_px >= shortest_stretch_px;
+    bool keeps = kept < most_stretches && (end - begin) * length_px >= shortest_stretch_px;
     if (keeps) clear_stretches[beam * BEAM_STRETCHES + kept] = real2(begin, end);
     kept += int(keeps);
 }
@@ -123,6 +131,7 @@ void main()
     ListedRay ray = listed_ray(first);
     Box start = Box(ray.origin, ray.origin), end = Box(ray.origin + ray.delta, ray.origin + ray.delta);
     // Of all rays the least height, where they start and where they end.
+    COUNT(pyramid_fetches);
     real2 ground = load_plane(cell_at(start.low.xy, PATCH_BITS)).gradient;
     real  height = start.low.z - dot(ground, start.low.xy), end_height = end.low.z - dot(ground, end.low.xy);
     for (uint i = 1; i < count; ++i)
@@ -161,8 +170,8 @@ void main()
     begin       = !usable ? real(1) : t > begin ? begin : first_px / length_px;
     t           = usable ? max(t, begin) : real(1);
     real finest = finest_step_px / length_px, step_t = 2 * finest;
-    int  kept = 0, tests = 0;
-    while (t < real(1) && kept < BEAM_STRETCHES && tests < most_tests)
+    int  kept = 0, tests = 0, blocked_steps = 0;
+    while (t < real(1) && kept < most_stretches && tests < most_tests && blocked_steps < most_blocked_steps)
     {
         real t_next  = min(real(1), t + step_t);
         Box  box     = unite(box_at(start, end, t), box_at(start, end, t_next));
@@ -172,6 +181,7 @@ void main()
         t      = touched && !ends ? t : t_next;
         begin  = ends ? t_next : begin;
         step_t = !touched ? step_t * 2 : ends ? step_t : step_t / 2;
+        blocked_steps += int(ends);
         ++tests;
     }
     keep(beam, kept, begin, t, length_px);

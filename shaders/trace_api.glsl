@@ -2,8 +2,9 @@
 // A technique defines    TraceResult trace(Ray ray)
 // or, with #define TRACES_PAIRS,    void trace_pair(Ray a, Ray b, out TraceResult result_a, out TraceResult result_b)
 //
-// Loops end in their condition, at the top, never by break or return: lavapipe (Mesa 22.3) recomputes values that a loop made and that
-// are used after it, and lanes that left in the middle of the body get another iteration's value.
+// Loops end in their condition, never by break or return: on lavapipe (Mesa 22.3) lanes that have left a loop go through its body again until the
+// last lane leaves, and what the loop made and is used after it gets another iteration's value. A short loop around much work ends at the bottom
+// (docs/performance.md); its body must leave what is used after it as it is once the condition is false.
 #ifdef EXACT_ARITHMETIC
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #endif

@@ -65,6 +65,11 @@ double parameter_or(const PreparedFrame& frame, const std::string& name, double 
     return value != frame.values.end() ? value->second : otherwise;
 }
 
+int32_t pyramid_kind(const PreparedFrame& frame)
+{
+    return static_cast<int32_t>(parameter_or(frame, "pyramid", PYRAMID_OCCUPANCY));
+}
+
 } // namespace
 
 Defines precision_defines(const Gpu& gpu, Precision precision)
@@ -131,7 +136,7 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const De
     const Shader shader = compile_shader({.file = "depth_pyramid.comp"});
     const auto   make   = [&](bool from_pixels) {
         Constants constants = settings_constants(frame, Precision::float32);
-        constants.add(CONSTANT_PYRAMID_KIND, static_cast<int32_t>(parameter_or(frame, "pyramid", PYRAMID_OCCUPANCY)));
+        constants.add(CONSTANT_PYRAMID_KIND, pyramid_kind(frame));
         constants.add(CONSTANT_FROM_PIXELS, static_cast<int32_t>(from_pixels));
         return make_compute_pass(gpu, shader, {{"cell_pairs", pyramid.pairs}}, constants, sizeof(PyramidPush));
     };
@@ -220,11 +225,14 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
         if (bindings.contains("Work")) beams.defines.emplace("COUNT_WORK", "1");
         Constants beam_constants = settings_constants(frame, precision);
         beam_constants.add(CONSTANT_TOP_LEVEL, static_cast<int32_t>(parameter_or(frame, "top_level", 31)));
-        passes.patches      = level_size(frame.buffers->gbuffer->view.size_px, PATCH_BITS);
-        passes.patch_planes = make_compute_pass(gpu, compile_shader({.file = "patch_planes.comp"}), bindings,
-                                                settings_constants(frame, Precision::float32));
-        passes.beam_launch  = make_launch_pass(gpu, rays.count, rays.beam_launch, RAYS_PER_GROUP * BEAMS_PER_GROUP);
-        passes.beams        = make_compute_pass(gpu, compile_shader(beams), bindings, beam_constants);
+        beam_constants.add(CONSTANT_PYRAMID_KIND, pyramid_kind(frame));
+        Constants plane_constants = settings_constants(frame, Precision::float32);
+        plane_constants.add(CONSTANT_PYRAMID_KIND, pyramid_kind(frame));
+        passes.patches = level_size(frame.buffers->gbuffer->view.size_px, PATCH_BITS);
+        passes.patch_planes =
+            make_compute_pass(gpu, compile_shader({.file = "patch_planes.comp"}), bindings, plane_constants);
+        passes.beam_launch = make_launch_pass(gpu, rays.count, rays.beam_launch, RAYS_PER_GROUP * BEAMS_PER_GROUP);
+        passes.beams       = make_compute_pass(gpu, compile_shader(beams), bindings, beam_constants);
     }
     passes.trace = make_compute_pass(gpu, compile_shader(trace), bindings, constants);
     return passes;

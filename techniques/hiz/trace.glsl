@@ -31,9 +31,9 @@ TraceResult finish(Ray ray, CellWalk walk, int number)
 
 void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult result_b)
 {
-    int      level = min(start_level, top);
+    int      level = min(start_level, top), stretch = 0;
     CellWalk a = start_walk(ray_a, level), b = start_walk(ray_b, level);
-    for (int stretch = 0; stretch <= BEAM_STRETCHES && (is_open(a) || is_open(b)); ++stretch)
+    do
     {
         real2 clear = clear_stretch(stretch);
         stop_at(a, clear.x);
@@ -47,7 +47,8 @@ void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult 
         }
         leap(a, min(LEAP_LEVEL, top), clear.y);
         leap(b, min(LEAP_LEVEL, top), clear.y);
-    }
+        ++stretch;
+    } while (stretch <= BEAM_STRETCHES && (is_open(a) || is_open(b)));
     result_a = finish(ray_a, a, 0);
     result_b = finish(ray_b, b, 1);
 }

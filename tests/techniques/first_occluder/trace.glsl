@@ -3,6 +3,9 @@
 #define TRACES_PAIRS
 #include "cell_walk.glsl"
 
+// Where nothing is known of what follows a clear stretch.
+#define LEAP_LEVEL 3
+
 int top = min(top_level, pyramid_levels());
 
 // Is the ray, where it is farthest in the cell, behind the cell's nearest depth?
@@ -29,13 +32,23 @@ TraceResult finish(Ray ray, CellWalk walk, int number)
 
 void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult result_b)
 {
+    int      stretch = 0;
     CellWalk a = start_walk(ray_a, 0), b = start_walk(ray_b, 0);
-    while (goes_on(a) || goes_on(b))
+    do
     {
-        real front_a = look(a, 0), front_b = look(b, 1);
-        move(a, gets_behind(ray_a, a, front_a), top);
-        move(b, gets_behind(ray_b, b, front_b), top);
-    }
+        real2 clear = clear_stretch(stretch);
+        stop_at(a, clear.x);
+        stop_at(b, clear.x);
+        while (goes_on(a) || goes_on(b))
+        {
+            real front_a = look(a, 0), front_b = look(b, 1);
+            move(a, gets_behind(ray_a, a, front_a), top);
+            move(b, gets_behind(ray_b, b, front_b), top);
+        }
+        leap(a, min(LEAP_LEVEL, top), clear.y);
+        leap(b, min(LEAP_LEVEL, top), clear.y);
+        ++stretch;
+    } while (is_open(a) || is_open(b));
     result_a = finish(ray_a, a, 0);
     result_b = finish(ray_b, b, 1);
 }
