@@ -7,7 +7,7 @@
 #include "slab.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(constant_id = CONSTANT_PYRAMID_KIND) const int pyramid_kind = PYRAMID_OCCUPANCY;
+layout(constant_id = CONSTANT_BEAMS_IN_FRONT) const int beams_in_front = 0;
 layout(set = 0, binding = 3, rgba32ui) uniform readonly uimageBuffer cell_pairs; // four pixels a texel
 layout(set = 0, binding = 14, rgba32f) uniform writeonly imageBuffer PatchPlanes;
 
@@ -57,9 +57,9 @@ void main()
         ground       = farther ? middle : ground;
     }
 
-    // How much nearer a front is whose slab ends at the ground. With cells that know the nearest front alone, nothing passes behind it.
+    // How much nearer a front is whose slab ends at the ground. Beams that stay in front of everything never pass behind it.
     float nearest = (ground + slab_shift) / (slab_scale - ground * slab_slope);
-    bool  passes  = pyramid_kind != PYRAMID_NEAREST && ground < none && nearest > ground;
+    bool  passes  = beams_in_front == 0 && ground < none && nearest > ground;
     float stands  = passes ? corner + nearest - ground : none;
     float height = -none, before = none;
     // Down the columns, so that reads of different cache lines are under way at once.

@@ -9,7 +9,7 @@
 layout(local_size_x = BEAMS_PER_GROUP) in;
 
 layout(constant_id = CONSTANT_TOP_LEVEL) const int top_level = 0;
-layout(constant_id = CONSTANT_PYRAMID_KIND) const int pyramid_kind = PYRAMID_OCCUPANCY;
+layout(constant_id = CONSTANT_BEAMS_IN_FRONT) const int in_front = 0;
 
 layout(set = 0, binding = 12, scalar) writeonly buffer Beams { real2 clear_stretches[]; };
 layout(set = 0, binding = 14, rgba32f) uniform readonly imageBuffer PatchPlanes;
@@ -21,9 +21,8 @@ const real first_px = 8, finest_step_px = 8, shortest_stretch_px = 24; // on scr
 const real widest_px = 64;                                             // where rays of different tiles meet in one group
 const real rising_px = 1.5, rising_step_px = 16;                       // while it is held against planes
 const int  most_tests = 96, most_rising_tests = 3, most_patches = 6;
-// Behind a front nothing is clear where cells know the nearest front alone: a beam has one stretch there, which begins soon or not at all.
-const bool nearest_only = pyramid_kind == PYRAMID_NEAREST;
-const int  most_stretches = nearest_only ? 1 : BEAM_STRETCHES, most_blocked_steps = nearest_only ? 4 : most_tests;
+// Where a beam has to stay in front of everything, it has one stretch, which begins soon or not at all.
+const int  most_stretches = in_front != 0 ? 1 : BEAM_STRETCHES, most_blocked_steps = in_front != 0 ? 4 : most_tests;
 // What rounding moves a position by, at the largest image, and a depth, as a share of the beam's nearest: many times more than it can.
 const real rounding_px = 1.0 / 16, rounding_depth = 1.0 / (1 << 20);
 
@@ -71,7 +70,9 @@ bool touches(Box box, int level)
     do
     {
         COUNT_IF(pyramid_fetches, goes);
-        bool touched = cell_may_touch(load_pyramid(cell << level, level), float(box.low.z), float(box.high.z));
+        uvec2 content = load_pyramid(cell << level, level);
+        bool  behind  = floatBitsToInt(float(box.low.z)) <= int(content.x); // at its farthest, of the nearest front
+        bool  touched = in_front != 0 ? behind : cell_may_touch(content, float(box.low.z), float(box.high.z));
         found        = found || (goes && touched);
         cell         = next_cell(cell, first, last);
         goes         = goes && !found && cell.y <= last.y;

@@ -49,6 +49,7 @@
 #define CONSTANT_RAYS_PER_PIXEL 11
 #define CONSTANT_FROM_PIXELS 12
 #define CONSTANT_TOP_LEVEL 13
+#define CONSTANT_BEAMS_IN_FRONT 14
 #define CONSTANT_PARAMETERS 32
 #define CONSTANT_EFFECTS 64 // the effects' parameters, in the order of render/effects.cpp
 

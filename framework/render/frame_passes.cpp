@@ -65,9 +65,9 @@ double parameter_or(const PreparedFrame& frame, const std::string& name, double 
     return value != frame.values.end() ? value->second : otherwise;
 }
 
-int32_t pyramid_kind(const PreparedFrame& frame)
+bool has_input(const PreparedFrame& frame, const char* name)
 {
-    return static_cast<int32_t>(parameter_or(frame, "pyramid", PYRAMID_OCCUPANCY));
+    return std::ranges::count(frame.technique.inputs, name) > 0;
 }
 
 } // namespace
@@ -132,11 +132,11 @@ std::vector<PyramidPush> pyramid_pushes(glm::ivec2 size_px, int top)
 
 PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const DepthPyramid& pyramid)
 {
-    if (std::ranges::count(frame.technique.inputs, "depth_pyramid") == 0) return {};
+    if (!has_input(frame, "depth_pyramid")) return {};
     const Shader shader = compile_shader({.file = "depth_pyramid.comp"});
     const auto   make   = [&](bool from_pixels) {
         Constants constants = settings_constants(frame, Precision::float32);
-        constants.add(CONSTANT_PYRAMID_KIND, pyramid_kind(frame));
+        constants.add(CONSTANT_PYRAMID_KIND, static_cast<int32_t>(parameter_or(frame, "pyramid", PYRAMID_OCCUPANCY)));
         constants.add(CONSTANT_FROM_PIXELS, static_cast<int32_t>(from_pixels));
         return make_compute_pass(gpu, shader, {{"cell_pairs", pyramid.pairs}}, constants, sizeof(PyramidPush));
     };
@@ -217,17 +217,17 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
 
     TechniquePasses passes;
     // Walks by exact crossings pass over nothing.
-    passes.reads_beams =
-        std::ranges::count(frame.technique.inputs, "ray_beams") > 0 && !exact && parameter_or(frame, "beams", 1) != 0;
+    const bool in_front = has_input(frame, "front_beams");
+    passes.reads_beams  = (in_front || has_input(frame, "ray_beams")) && !exact && parameter_or(frame, "beams", 1) != 0;
     if (passes.reads_beams) {
         trace.defines.emplace("RAY_BEAMS", "1");
         ShaderSource beams{.file = "ray_beams.comp", .defines = precision_defines(gpu, precision)};
         if (bindings.contains("Work")) beams.defines.emplace("COUNT_WORK", "1");
         Constants beam_constants = settings_constants(frame, precision);
         beam_constants.add(CONSTANT_TOP_LEVEL, static_cast<int32_t>(parameter_or(frame, "top_level", 31)));
-        beam_constants.add(CONSTANT_PYRAMID_KIND, pyramid_kind(frame));
+        beam_constants.add(CONSTANT_BEAMS_IN_FRONT, static_cast<int32_t>(in_front));
         Constants plane_constants = settings_constants(frame, Precision::float32);
-        plane_constants.add(CONSTANT_PYRAMID_KIND, pyramid_kind(frame));
+        plane_constants.add(CONSTANT_BEAMS_IN_FRONT, static_cast<int32_t>(in_front));
         passes.patches = level_size(frame.buffers->gbuffer->view.size_px, PATCH_BITS);
         passes.patch_planes =
             make_compute_pass(gpu, compile_shader({.file = "patch_planes.comp"}), bindings, plane_constants);

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string> manifest_keys  = {"name",  "summary", "cite",       "inputs",
                                                  "exact", "limits",  "bounded_by", "parameters"};
-const std::vector<std::string> known_inputs   = {"depth_pyramid", "ray_beams"};
+const std::vector<std::string> known_inputs   = {"depth_pyramid", "ray_beams", "front_beams"};
 const std::vector<std::string> parameter_keys = {"default", "min", "max", "choices", "doc"};
 
 const toml::node& required(const TomlFile& file, const toml::table& table, const std::string& key,

@@ -13,11 +13,11 @@ namespace {
 
 /// Of each patch: the plane's slope rightward and downward, its depth at the first pixel; the farthest depth of what stands before it, or 0.
 std::vector<glm::vec4> planes_of(const Picture& picture, const TraceSettings& settings = {},
-                                 int pyramid_kind = PYRAMID_OCCUPANCY)
+                                 const char* beams = "ray_beams")
 {
-    const Technique& hiz   = technique("hiz");
-    const auto       frame = prepare_frame(device(), picture.buffers, hiz,
-                                           values_of(hiz, {{"pyramid", static_cast<double>(pyramid_kind)}}), {settings});
+    Technique hiz    = technique("hiz");
+    hiz.inputs       = {"depth_pyramid", beams};
+    const auto frame = prepare_frame(device(), picture.buffers, hiz, values_of(hiz), {settings});
     submit(device(), [&](const vk::raii::CommandBuffer& commands) {
         record_rays(commands, frame->trace, *picture.buffers);
         record_pyramid(commands, frame->pyramid);
@@ -127,12 +127,12 @@ TEST(PatchPlanesBehindBars, LieAboveThemWhereSlabsNeverEnd)
     for (const glm::vec4& plane : planes) ASSERT_EQ(plane.w, 0);
 }
 
-TEST(PatchPlanesBehindBars, LieAboveThemWhereCellsKnowTheNearestFrontAlone)
+TEST(PatchPlanesBehindBars, LieAboveThemWhereBeamsStayInFront)
 {
     const Picture picture = make_picture(ground_behind_bars({128, 64}));
     TraceSettings settings;
     settings.thickness_m = 0.1;
-    const auto planes    = planes_of(picture, settings, PYRAMID_NEAREST);
+    const auto planes    = planes_of(picture, settings, "front_beams");
     for (const Front& front : fronts_of(picture, planes)) ASSERT_GE(front.height, -1e-6F);
     for (const glm::vec4& plane : planes) ASSERT_EQ(plane.w, 0);
 }
