@@ -13,6 +13,9 @@ struct CellWalk
     int      visited;
 };
 
+// Level of the cell in which a walk arrives behind a clear stretch: nothing is known of what follows.
+#define LEAP_LEVEL 3
+
 // In the cell of this level that holds the first pixel behind the ray's own.
 CellWalk start_walk(Ray ray, int level)
 {

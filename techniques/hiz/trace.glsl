@@ -2,9 +2,6 @@
 #define TRACES_PAIRS
 #include "cell_walk.glsl"
 
-// Where nothing is known of what follows a clear stretch.
-#define LEAP_LEVEL 3
-
 int top = min(top_level, pyramid_levels());
 
 // number: the ray's current_ray.

@@ -3,9 +3,6 @@
 #define TRACES_PAIRS
 #include "cell_walk.glsl"
 
-// Where nothing is known of what follows a clear stretch.
-#define LEAP_LEVEL 3
-
 int top = min(top_level, pyramid_levels());
 
 // Is the ray, where it is farthest in the cell, behind the cell's nearest depth?
