@@ -11,7 +11,7 @@ layout(constant_id = CONSTANT_BEAMS_IN_FRONT) const int beams_in_front = 0;
 layout(set = 0, binding = 3, rgba32ui) uniform readonly uimageBuffer cell_pairs; // four pixels a texel
 layout(set = 0, binding = 14, rgba32f) uniform writeonly imageBuffer PatchPlanes;
 
-const int   side_px = 1 << PATCH_BITS, sample_rows = 4, samples = sample_rows * sample_rows;
+const int   side_px = 1 << PATCH_BITS, sample_rows = beams_in_front != 0 ? 2 : 4, samples = sample_rows * sample_rows;
 const float none = 1e30;
 // Of depth: how far a sample may lie off a plane that holds it, and how much the line through its neighbours may bend there.
 const float on_plane = 1.0 / 4096, most_bent = 1.0 / 100000;
@@ -70,9 +70,9 @@ void main()
         vec4  front = depth - gradient.x * x - gradient.y * float(local.y);
         for (int k = 0; k < 4; ++k)
         {
-            bool surface = local.x + k <= way.x && depth[k] > 0.0, is_before = front[k] > stands;
-            before       = surface && is_before ? min(before, depth[k]) : before;
-            height       = surface && !is_before ? max(height, front[k]) : height;
+            bool surface = local.x + k <= way.x && depth[k] > 0.0, is_before = beams_in_front == 0 && front[k] > stands;
+            before       = surface && is_before && depth[k] < before ? depth[k] : before;
+            height       = surface && !is_before && front[k] > height ? front[k] : height;
         }
     }
     height += dot(abs(gradient), vec2(side_px)) / (1 << 20); // what rounding moved it by, and will where it is used

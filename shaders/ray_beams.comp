@@ -34,9 +34,14 @@ struct Box
     real3 low, high;
 };
 
+// Instead of min() and max(), which take longer and may answer anything about NaN: where b is NaN, a.
+real lesser(real a, real b) { return b < a ? b : a; }
+real3 lesser(real3 a, real3 b) { return mix(a, b, lessThan(b, a)); }
+real3 greater(real3 a, real3 b) { return mix(a, b, greaterThan(b, a)); }
+
 Box unite(Box a, Box b)
 {
-    return Box(min(a.low, b.low), max(a.high, b.high));
+    return Box(lesser(a.low, b.low), greater(a.high, b.high));
 }
 
 // Of all points between the two boxes, at the same t of each ray.
@@ -129,7 +134,7 @@ void main()
     if (first >= ray_count) return;
 
     uint count = min(ray_count - first, RAYS_PER_GROUP);
-    ListedRay ray = listed_ray(first);
+    ListedRay ray = listed_ray(first); // with NaN in it the box is not usable, and of the other rays such are left out: they touch nothing
     Box start = Box(ray.origin, ray.origin), end = Box(ray.origin + ray.delta, ray.origin + ray.delta);
     // Of all rays the least height, where they start and where they end.
     COUNT(pyramid_fetches);
@@ -141,8 +146,8 @@ void main()
         real3 from = ray.origin, to = ray.origin + ray.delta;
         start = unite(start, Box(from, from));
         end   = unite(end, Box(to, to));
-        height     = min(height, from.z - dot(ground, from.xy));
-        end_height = min(end_height, to.z - dot(ground, to.xy));
+        height     = lesser(height, from.z - dot(ground, from.xy));
+        end_height = lesser(end_height, to.z - dot(ground, to.xy));
     }
     real  nearest  = max(start.high.z, end.high.z);
     real3 rounding = real3(rounding_px, rounding_px, nearest * rounding_depth);

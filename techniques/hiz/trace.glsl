@@ -30,11 +30,11 @@ void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult 
 {
     int      level = min(start_level, top), stretch = 0;
     CellWalk a = start_walk(ray_a, level), b = start_walk(ray_b, level);
+    real2    clear = clear_stretch(0);
+    stop_at(a, clear.x);
+    stop_at(b, clear.x);
     do
     {
-        real2 clear = clear_stretch(stretch);
-        stop_at(a, clear.x);
-        stop_at(b, clear.x);
         while (goes_on(a) || goes_on(b))
         {
             // Both reads are under way before one is waited for.
@@ -45,6 +45,10 @@ void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult 
         leap(a, min(LEAP_LEVEL, top), clear.y);
         leap(b, min(LEAP_LEVEL, top), clear.y);
         ++stretch;
+        // Here, not before the walk: its loop would work the end out at every turn (docs/performance.md).
+        clear = clear_stretch(stretch);
+        stop_at(a, clear.x);
+        stop_at(b, clear.x);
     } while (stretch <= BEAM_STRETCHES && (is_open(a) || is_open(b)));
     result_a = finish(ray_a, a, 0);
     result_b = finish(ray_b, b, 1);

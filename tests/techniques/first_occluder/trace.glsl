@@ -27,25 +27,28 @@ TraceResult finish(Ray ray, CellWalk walk, int number)
     return miss(ray, walk.visited);
 }
 
+void walk_on(Ray ray_a, Ray ray_b, inout CellWalk a, inout CellWalk b)
+{
+    while (goes_on(a) || goes_on(b))
+    {
+        real front_a = look(a, 0), front_b = look(b, 1);
+        move(a, gets_behind(ray_a, a, front_a), top);
+        move(b, gets_behind(ray_b, b, front_b), top);
+    }
+}
+
 void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult result_b)
 {
-    int      stretch = 0;
     CellWalk a = start_walk(ray_a, 0), b = start_walk(ray_b, 0);
-    do
-    {
-        real2 clear = clear_stretch(stretch);
-        stop_at(a, clear.x);
-        stop_at(b, clear.x);
-        while (goes_on(a) || goes_on(b))
-        {
-            real front_a = look(a, 0), front_b = look(b, 1);
-            move(a, gets_behind(ray_a, a, front_a), top);
-            move(b, gets_behind(ray_b, b, front_b), top);
-        }
-        leap(a, min(LEAP_LEVEL, top), clear.y);
-        leap(b, min(LEAP_LEVEL, top), clear.y);
-        ++stretch;
-    } while (is_open(a) || is_open(b));
+    real2    clear = clear_stretch(0); // in front of everything there is one
+    stop_at(a, clear.x);
+    stop_at(b, clear.x);
+    walk_on(ray_a, ray_b, a, b);
+    leap(a, min(LEAP_LEVEL, top), clear.y);
+    leap(b, min(LEAP_LEVEL, top), clear.y);
+    a.t_stop = a.grid.t_end;
+    b.t_stop = b.grid.t_end;
+    walk_on(ray_a, ray_b, a, b);
     result_a = finish(ray_a, a, 0);
     result_b = finish(ray_b, b, 1);
 }
