@@ -20,7 +20,7 @@ layout(set = 0, binding = 13, scalar) writeonly buffer BeamWork { uint beam_fetc
 const real first_px = 8, finest_step_px = 8, shortest_stretch_px = 24; // on screen, along the beam's longest way
 const real widest_px = 64;                                             // where rays of different tiles meet in one group
 const real rising_px = 1.5, rising_step_px = 16;                       // while it is held against planes
-const int  most_tests = 96, most_rising_tests = 3, most_patches = 6;
+const int  most_tests = 64, most_rising_tests = 3, most_patches = 6;
 // Where a beam has to stay in front of everything, it has one stretch, which begins soon or not at all.
 const int  most_stretches = in_front != 0 ? 1 : BEAM_STRETCHES, most_blocked_steps = in_front != 0 ? 4 : most_tests;
 // What rounding moves a position by, at the largest image, and a depth, as a share of the beam's nearest: many times more than it can.
