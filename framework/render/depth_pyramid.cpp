@@ -36,10 +36,12 @@ DepthPyramid make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px)
 {
     const size_t texels = pixel_count(pyramid_size(size_px));
     DepthPyramid pyramid;
-    pyramid.size_px = size_px;
-    pyramid.cells   = make_texel_buffer(gpu, texels * sizeof(glm::uvec2), vk::Format::eR32G32Uint);
-    pyramid.words   = make_texel_view(gpu, pyramid.cells, vk::Format::eR32Sfloat);
-    pyramid.pairs   = make_texel_view(gpu, pyramid.cells, vk::Format::eR32G32B32A32Uint);
+    pyramid.size_px      = size_px;
+    pyramid.cells        = make_texel_buffer(gpu, texels * sizeof(glm::uvec2), vk::Format::eR32G32Uint);
+    pyramid.words        = make_texel_view(gpu, pyramid.cells, vk::Format::eR32Sfloat);
+    pyramid.pairs        = make_texel_view(gpu, pyramid.cells, vk::Format::eR32G32B32A32Uint);
+    pyramid.patch_planes = make_texel_buffer(gpu, pixel_count(level_size(size_px, PATCH_BITS)) * 4 * sizeof(float),
+                                             vk::Format::eR32G32B32A32Sfloat);
     return pyramid;
 }
 

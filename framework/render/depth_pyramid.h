@@ -25,6 +25,7 @@ struct DepthPyramid {
     Buffer               cells;           // as texels: both words of a cell (shaders/pyramid_cell.glsl), or two pixels
     vk::raii::BufferView words = nullptr; // as texels: each word
     vk::raii::BufferView pairs = nullptr; // as texels: two cells, or four pixels
+    Buffer               patch_planes;    // four floats a patch (shaders/patch_planes.comp)
 };
 
 /// Without content.

@@ -189,7 +189,6 @@ FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
     buffers->view           = upload_view(gpu, gbuffer->view, Precision::float32);
     buffers->tiles          = make_tile_buffers(gpu, gbuffer->view.size_px);
     buffers->statistics     = count_picture(gpu, *buffers);
-    buffers->patch_planes   = make_patch_planes(gpu, gbuffer->view.size_px);
     buffers->reflection     = image(colour, size_px);
     buffers->filtered       = image(colour, size_px);
     buffers->small_colour   = image(colour, half_size_px);

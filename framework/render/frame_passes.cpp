@@ -70,6 +70,13 @@ bool has_input(const PreparedFrame& frame, const char* name)
     return std::ranges::count(frame.technique.inputs, name) > 0;
 }
 
+/// Walks by exact crossings pass over nothing.
+bool reads_beams(const Gpu& gpu, const PreparedFrame& frame)
+{
+    return (has_input(frame, "ray_beams") || has_input(frame, "front_beams")) && !exact_arithmetic(gpu, frame) &&
+           parameter_or(frame, "beams", 1) != 0;
+}
+
 } // namespace
 
 Defines precision_defines(const Gpu& gpu, Precision precision)
@@ -145,13 +152,18 @@ PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const De
     passes.from_pixels          = make(true);
     passes.from_cells           = make(false);
     passes.levels = pyramid_pushes(pyramid.size_px, static_cast<int>(parameter_or(frame, "top_level", 31)));
+    if (reads_beams(gpu, frame)) {
+        Constants constants = settings_constants(frame, Precision::float32);
+        constants.add(CONSTANT_BEAMS_IN_FRONT, static_cast<int32_t>(has_input(frame, "front_beams")));
+        passes.patches      = level_size(pyramid.size_px, PATCH_BITS);
+        passes.patch_planes = make_compute_pass(gpu, compile_shader({.file = "patch_planes.comp"}),
+                                                {{"View", frame.buffers->view},
+                                                 {"cell_pairs", pyramid.pairs},
+                                                 {"depth_words", pyramid.words},
+                                                 {"PatchPlanes", pyramid.patch_planes}},
+                                                constants);
+    }
     return passes;
-}
-
-Buffer make_patch_planes(Gpu& gpu, glm::ivec2 size_px)
-{
-    return make_texel_buffer(gpu, pixel_count(level_size(size_px, PATCH_BITS)) * 4 * sizeof(float),
-                             vk::Format::eR32G32B32A32Sfloat);
 }
 
 TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
@@ -167,11 +179,9 @@ TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
 
 Bindings surface_bindings(const GBuffer& gbuffer)
 {
-    return {{"depth_words", gbuffer.depth.words},
-            {"depth_pyramid", gbuffer.depth.cells},
-            {"cell_pairs", gbuffer.depth.pairs},
-            {"normal_image", gbuffer.normal},
-            {"material_image", gbuffer.material}};
+    return {{"depth_words", gbuffer.depth.words}, {"depth_pyramid", gbuffer.depth.cells},
+            {"cell_pairs", gbuffer.depth.pairs},  {"PatchPlanes", gbuffer.depth.patch_planes},
+            {"normal_image", gbuffer.normal},     {"material_image", gbuffer.material}};
 }
 
 Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
@@ -182,7 +192,6 @@ Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
                      {"Hits", rays.hits},
                      {"Beams", rays.beams},
                      {"BeamWork", rays.beam_work},
-                     {"PatchPlanes", buffers.patch_planes},
                      {"TileMasks", buffers.tiles.masks},
                      {"TileCount", buffers.tiles.count},
                      {"Tiles", buffers.tiles.tiles},
@@ -216,21 +225,14 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
     add_parameters(constants, frame.technique.parameters, frame.values, CONSTANT_PARAMETERS);
 
     TechniquePasses passes;
-    // Walks by exact crossings pass over nothing.
-    const bool in_front = has_input(frame, "front_beams");
-    passes.reads_beams  = (in_front || has_input(frame, "ray_beams")) && !exact && parameter_or(frame, "beams", 1) != 0;
+    passes.reads_beams = reads_beams(gpu, frame);
     if (passes.reads_beams) {
         trace.defines.emplace("RAY_BEAMS", "1");
         ShaderSource beams{.file = "ray_beams.comp", .defines = precision_defines(gpu, precision)};
         if (bindings.contains("Work")) beams.defines.emplace("COUNT_WORK", "1");
         Constants beam_constants = settings_constants(frame, precision);
         beam_constants.add(CONSTANT_TOP_LEVEL, static_cast<int32_t>(parameter_or(frame, "top_level", 31)));
-        beam_constants.add(CONSTANT_BEAMS_IN_FRONT, static_cast<int32_t>(in_front));
-        Constants plane_constants = settings_constants(frame, Precision::float32);
-        plane_constants.add(CONSTANT_BEAMS_IN_FRONT, static_cast<int32_t>(in_front));
-        passes.patches = level_size(frame.buffers->gbuffer->view.size_px, PATCH_BITS);
-        passes.patch_planes =
-            make_compute_pass(gpu, compile_shader({.file = "patch_planes.comp"}), bindings, plane_constants);
+        beam_constants.add(CONSTANT_BEAMS_IN_FRONT, static_cast<int32_t>(has_input(frame, "front_beams")));
         passes.beam_launch = make_launch_pass(gpu, rays.count, rays.beam_launch, RAYS_PER_GROUP * BEAMS_PER_GROUP);
         passes.beams       = make_compute_pass(gpu, compile_shader(beams), bindings, beam_constants);
     }
@@ -242,7 +244,6 @@ void record_technique(const vk::raii::CommandBuffer& commands, const TechniquePa
 {
     if (passes.reads_beams) {
         dispatch(commands, passes.beam_launch, {1, 1, 1});
-        dispatch(commands, passes.patch_planes, groups_of_8(passes.patches));
         barrier(commands);
         dispatch_indirect(commands, passes.beams, rays.beam_launch);
         barrier(commands);
@@ -315,6 +316,10 @@ void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& pas
 
 void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses& passes)
 {
+    if (passes.patches != glm::ivec2(0)) {
+        dispatch(commands, passes.patch_planes, groups_of_8(passes.patches));
+        barrier(commands);
+    }
     for (const PyramidPush& level : passes.levels) {
         const ComputePass& pass = &level == &passes.levels.front() ? passes.from_pixels : passes.from_cells;
         push(commands, pass, level);

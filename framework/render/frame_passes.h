@@ -54,16 +54,13 @@ struct TileBuffers {
     Buffer masks, count, tiles, launch, statistics;
 };
 TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px);
-/// Four floats a patch (shaders/patch_planes.comp).
-Buffer make_patch_planes(Gpu& gpu, glm::ivec2 size_px);
 
 struct FrameBuffers {
     GBufferPtr                                                     gbuffer;
-    Buffer                                                         view; // float
+    Buffer                                                         view; // float; of a ray tracer its own precision
     TileBuffers                                                    tiles;
     FrameStatistics                                                statistics; // of the picture; nothing is traced yet
     std::map<size_t, std::shared_ptr<RayBuffers>>                  rays;       // by capacity; float
-    Buffer                                                         patch_planes; // shaders/patch_planes.comp
     GBufferPtr                                                     second_layer; // empty until a frame asks for it
     std::shared_ptr<ConePyramid>                                   cone;         // empty until a frame asks for it
     std::map<std::pair<size_t, int>, std::shared_ptr<DerivedRays>> derived_rays; // by capacity, and which of two
@@ -85,13 +82,14 @@ struct PyramidPasses {
     int                      cells_per_invocation = 1; // side by side
     ComputePass              from_pixels, from_cells;  // level 1; the others
     std::vector<PyramidPush> levels;                   // above level 0
+    ComputePass              patch_planes{};           // for beams
+    glm::ivec2               patches{0};               // of the picture, PATCH_BITS; none without beams
 };
 
 /// The technique on one list of rays.
 struct TechniquePasses {
     bool        reads_beams = false;
-    glm::ivec2  patches{0}; // of the picture, PATCH_BITS
-    ComputePass patch_planes, beam_launch, beams, trace;
+    ComputePass beam_launch, beams, trace;
 };
 
 struct TracePasses {

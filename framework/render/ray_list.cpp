@@ -11,7 +11,7 @@ namespace ssrlab {
 struct RayTracer {
     PreparedFrame frame;
     RayBuffers    rays;
-    Buffer        view, work;
+    Buffer        work;
     TracePasses   passes;
 };
 
@@ -63,21 +63,20 @@ RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Techniqu
     if (precision == Precision::float64 && !gpu.info.float64)
         throw_failure("the device '{}' has no double precision", gpu.info.name);
     require_bounded(technique, values);
-    auto tracer           = std::make_shared<RayTracer>();
-    auto buffers          = std::make_shared<FrameBuffers>();
-    buffers->gbuffer      = gbuffer;
-    buffers->tiles        = make_tile_buffers(gpu, gbuffer->view.size_px);
-    buffers->patch_planes = make_patch_planes(gpu, gbuffer->view.size_px);
-    PreparedFrame& frame  = tracer->frame;
-    frame.buffers         = buffers;
-    frame.technique       = technique;
-    frame.values          = values;
-    frame.settings.trace  = settings;
-    frame.pyramid         = make_pyramid_passes(gpu, frame, gbuffer->depth);
-    tracer->rays          = make_ray_buffers(gpu, capacity, precision);
-    tracer->work          = make_buffer(gpu, std::max<uint64_t>(capacity, 1) * sizeof(glm::uvec3));
-    tracer->view          = upload_view(gpu, gbuffer->view, precision);
-    tracer->passes        = make_trace_passes(gpu, frame, tracer->rays, tracer->view, &tracer->work);
+    auto tracer          = std::make_shared<RayTracer>();
+    auto buffers         = std::make_shared<FrameBuffers>();
+    buffers->gbuffer     = gbuffer;
+    buffers->tiles       = make_tile_buffers(gpu, gbuffer->view.size_px);
+    buffers->view        = upload_view(gpu, gbuffer->view, precision);
+    PreparedFrame& frame = tracer->frame;
+    frame.buffers        = buffers;
+    frame.technique      = technique;
+    frame.values         = values;
+    frame.settings.trace = settings;
+    frame.pyramid        = make_pyramid_passes(gpu, frame, gbuffer->depth);
+    tracer->rays         = make_ray_buffers(gpu, capacity, precision);
+    tracer->work         = make_buffer(gpu, std::max<uint64_t>(capacity, 1) * sizeof(glm::uvec3));
+    tracer->passes       = make_trace_passes(gpu, frame, tracer->rays, buffers->view, &tracer->work);
     return tracer;
 }
 
@@ -117,7 +116,7 @@ void replace_picture(Gpu& gpu, RayTracer& tracer, const GBufferImage& image)
         throw std::logic_error("replace_picture: size or projection differ");
     gbuffer.view = image.view;
     upload_surfaces(gpu, gbuffer, image);
-    write_view(gpu, tracer.view, image.view, tracer.rays.precision);
+    write_view(gpu, tracer.frame.buffers->view, image.view, tracer.rays.precision);
 }
 
 GBufferPtr upload_depth(Gpu& gpu, const View& view, std::span<const float> depth)

@@ -24,7 +24,7 @@ std::vector<glm::vec4> planes_of(const Picture& picture, const TraceSettings& se
         record_technique(commands, frame->trace.technique, *frame->rays);
     });
     const glm::ivec2 patches = ((picture.view.size_px - 1) >> PATCH_BITS) + 1;
-    return download_as<glm::vec4>(device(), picture.buffers->patch_planes, pixel_count(patches));
+    return download_as<glm::vec4>(device(), picture.buffers->gbuffer->depth.patch_planes, pixel_count(patches));
 }
 
 struct Front {
