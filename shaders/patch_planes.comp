@@ -57,12 +57,12 @@ void main()
         ground       = farther ? middle : ground;
     }
 
-    // How much nearer a front is whose slab ends at the ground. Beams that stay in front of everything never pass behind it.
+    // How much nearer a front is whose slab ends at the ground.
     float nearest = (ground + slab_shift) / (slab_scale - ground * slab_slope);
-    bool  passes  = beams_in_front == 0 && ground < none && nearest > ground;
+    bool  passes  = ground < none && nearest > ground;
     float stands  = passes ? corner + nearest - ground : none;
     float height = -none, before = none;
-    // Down the columns, so that reads of different cache lines are under way at once.
+    // Beams that stay in front of everything pass behind nothing. Down the columns, so that reads of different cache lines are under way at once.
     for (int i = 0; i < side_px * side_px / 4; ++i)
     {
         ivec2 local = min(ivec2(i >> PATCH_BITS << 2, i & (side_px - 1)), way & ivec2(~3, ~0));

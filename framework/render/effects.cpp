@@ -184,7 +184,7 @@ std::vector<Effect> make_table()
                      "its centre outward")},
          .need = where_something_reflects},
         {.id      = "depth_pyramid",
-         .summary = "Reduces depth level by level",
+         .summary = "Reduces depth level by level, and to planes of patches where the technique reads beams",
          .shader  = "depth_pyramid.comp",
          .reads   = {"View", "depth_words"},
          .writes  = {"depth_pyramid", "PatchPlanes"},

@@ -121,7 +121,7 @@ struct PreparedFrame {
 
 /// The first levels of a pyramid above level 0, all of them or up to `top`.
 std::vector<PyramidPush> pyramid_pushes(glm::ivec2 size_px, int top = 31);
-/// Those of one layer's depth; none when the technique reads no pyramid.
+/// Those of one layer's depth, and of the planes of its patches; none when the technique reads no pyramid.
 PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const DepthPyramid& pyramid);
 /// work: steps, depth and pyramid fetches per ray, or null for the pipeline that is timed.
 TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view,
