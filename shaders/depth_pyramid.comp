@@ -4,13 +4,15 @@
 #include "slab.glsl"
 #include "pyramid_cell.glsl"
 #include "shared.h"
+#include "store_texel.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = CONSTANT_PYRAMID_KIND) const int pyramid_kind = PYRAMID_OCCUPANCY;
 // Level 1 is made from pixels, in a pipeline of its own: a branch would run both sides.
 layout(constant_id = CONSTANT_FROM_PIXELS) const int from_pixels = 0;
 // Two cells, or four pixels, a texel: fewer reads and writes. Every row and every level begins with a whole one.
-layout(set = 0, binding = 1, rgba32ui) uniform uimageBuffer cell_pairs;
+layout(set = 0, binding = 1, rgba32ui) uniform readonly uimageBuffer cell_pairs;
+STORED_TEXELS_4(2, StoredCells)
 layout(push_constant, scalar) uniform Push
 {
     ivec2 source_size; // cells of the level below
@@ -33,10 +35,10 @@ struct Range
 };
 const Range nothing = Range(0, 0x7FFFFFFF);
 
-// bits: of its depth, or anything outside the picture.
-Range pixel_range(ivec2 pixel, uint bits)
+// bits: of its depth; around the picture there is background.
+Range pixel_range(uint bits)
 {
-    float depth = any(greaterThanEqual(pixel, source_size)) ? 0.0 : uintBitsToFloat(bits);
+    float depth = uintBitsToFloat(bits);
     if (!(depth > 0.0)) return nothing;
     return Range(floatBitsToInt(depth), pyramid_kind == PYRAMID_NEAREST ? 0 : max(floatBitsToInt(outer_back(depth)), 0));
 }
@@ -119,11 +121,9 @@ uvec2 finished(uvec2 cell)
 }
 
 // The cell of two pixels and the two below them.
-uvec2 cell_of_pixels(ivec2 first, uvec2 upper, uvec2 lower)
+uvec2 cell_of_pixels(uvec2 upper, uvec2 lower)
 {
-    const ivec2 right = ivec2(1, 0), below = ivec2(0, 1);
-    Range a = pixel_range(first, upper.x), b = pixel_range(first + right, upper.y);
-    Range c = pixel_range(first + below, lower.x), d = pixel_range(first + right + below, lower.y);
+    Range a = pixel_range(upper.x), b = pixel_range(upper.y), c = pixel_range(lower.x), d = pixel_range(lower.y);
     uvec2 cell = cell_of_range(unite(unite(a, b), unite(c, d)));
     cell.y     = bins_of_pixel(cell, a) | bins_of_pixel(cell, b) | bins_of_pixel(cell, c) | bins_of_pixel(cell, d);
     return finished(cell);
@@ -149,12 +149,12 @@ void main()
     {
         ivec2 pair  = ivec2(place.x, 2 * place.y);
         uvec4 upper = imageLoad(cell_pairs, pair_at(pair)), lower = imageLoad(cell_pairs, pair_at(pair + below));
-        cells       = uvec4(cell_of_pixels(first, upper.xy, lower.xy), cell_of_pixels(first + next, upper.zw, lower.zw));
+        cells       = uvec4(cell_of_pixels(upper.xy, lower.xy), cell_of_pixels(upper.zw, lower.zw));
     }
     else
     {
         cells.xy = cell_of_quarters(source_pair(first), source_pair(first + below));
         cells.zw = cell_of_quarters(source_pair(first + next), source_pair(first + next + below));
     }
-    imageStore(cell_pairs, pair_at(place), cells);
+    STORE_TEXEL(StoredCells, pair_at(place), cells);
 }

@@ -3,6 +3,7 @@
 #ifndef SSRLAB_LISTED_RAY
 #define SSRLAB_LISTED_RAY
 #include "real.glsl"
+#include "store_texel.glsl"
 
 struct ListedRay
 {
@@ -27,10 +28,10 @@ ListedRay texels_to_ray(uvec4 a, uvec4 b, uvec4 c, uvec4 d)
                   imageLoad(rays, int(index) * 4 + 3))
 #define LOAD_RAY_PIXEL(rays, index) imageLoad(rays, int(index) * 4 + 3).z
 #define STORE_RAY(rays, index, ray)                                                                                                        \
-    imageStore(rays, int(index) * 4, reals_to_texel((ray).origin.x, (ray).origin.y));                                                      \
-    imageStore(rays, int(index) * 4 + 1, reals_to_texel((ray).origin.z, (ray).length_m));                                                  \
-    imageStore(rays, int(index) * 4 + 2, reals_to_texel((ray).delta.x, (ray).delta.y));                                                    \
-    imageStore(rays, int(index) * 4 + 3, uvec4(unpackDouble2x32((ray).delta.z), (ray).pixel, 0))
+    STORE_TEXEL(rays, (index) * 4, reals_to_texel((ray).origin.x, (ray).origin.y));                                                        \
+    STORE_TEXEL(rays, (index) * 4 + 1, reals_to_texel((ray).origin.z, (ray).length_m));                                                    \
+    STORE_TEXEL(rays, (index) * 4 + 2, reals_to_texel((ray).delta.x, (ray).delta.y));                                                      \
+    STORE_TEXEL(rays, (index) * 4 + 3, uvec4(unpackDouble2x32((ray).delta.z), (ray).pixel, 0))
 #else
 ListedRay texels_to_ray(uvec4 start, uvec4 way)
 {
@@ -41,7 +42,7 @@ ListedRay texels_to_ray(uvec4 start, uvec4 way)
 #define LOAD_RAY(rays, index) texels_to_ray(imageLoad(rays, int(index) * 2), imageLoad(rays, int(index) * 2 + 1))
 #define LOAD_RAY_PIXEL(rays, index) imageLoad(rays, int(index) * 2 + 1).w
 #define STORE_RAY(rays, index, ray)                                                                                                        \
-    imageStore(rays, int(index) * 2, floatBitsToUint(vec4((ray).origin, (ray).length_m)));                                                 \
-    imageStore(rays, int(index) * 2 + 1, uvec4(floatBitsToUint((ray).delta), (ray).pixel))
+    STORE_TEXEL(rays, (index) * 2, floatBitsToUint(vec4((ray).origin, (ray).length_m)));                                                   \
+    STORE_TEXEL(rays, (index) * 2 + 1, uvec4(floatBitsToUint((ray).delta), (ray).pixel))
 #endif
 #endif

@@ -11,47 +11,56 @@ layout(constant_id = CONSTANT_BEAMS_IN_FRONT) const int beams_in_front = 0;
 layout(set = 0, binding = 3, rgba32ui) uniform readonly uimageBuffer cell_pairs; // four pixels a texel
 layout(set = 0, binding = 14, rgba32f) uniform writeonly imageBuffer PatchPlanes;
 
-const int   side_px = 1 << PATCH_BITS, sample_rows = beams_in_front != 0 ? 2 : 4, samples = sample_rows * sample_rows;
+const int   side_px = 1 << PATCH_BITS, quads = side_px / 4, sample_rows = beams_in_front != 0 ? 2 : 4, samples = sample_rows * sample_rows;
 const float none = 1e30;
-// Of depth: how far a sample may lie off a plane that holds it, and how much the line through its neighbours may bend there.
+// Of depth: how far a sample may lie off a plane that holds it, and how much the lines through its neighbours may bend there.
 const float on_plane = 1.0 / 4096, most_bent = 1.0 / 100000;
 
-// From a pixel whose x is a multiple of four to the right.
-vec4 load_four_depths(ivec2 pixel)
-{
-    return uintBitsToFloat(imageLoad(cell_pairs, depth_word(pixel) >> 2));
-}
-
-// Where in the patch a sample lies: its neighbours lie in the patch, too, unless that is too small.
-ivec2 sample_at(int number, ivec2 way)
-{
-    ivec2 place = (ivec2(number % sample_rows, number / sample_rows) * 2 + 1) * side_px / (2 * sample_rows), low = min(ivec2(1), way);
-    return clamp(place, low, max(way - 1, low));
-}
+// Of the rows of samples the one in the middle of its share of the patch, or of the columns of four pixels the one that place lies in.
+int sample_row(int number) { return (2 * number + 1) * side_px / (2 * sample_rows); }
+int sample_quad(int number) { return sample_row(number) / 4; }
 
 void main()
 {
     ivec2 patches = ((size_px - 1) >> PATCH_BITS) + 1, place = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(place, patches))) return;
-    ivec2 first = place << PATCH_BITS, way = min(ivec2(side_px - 1), size_px - 1 - first);
+    ivec2 first = place << PATCH_BITS;
+    int   last_y = min(side_px, size_px.y - first.y) - 1, first_quad = depth_word(first) >> 2; // its rows follow each other in memory
+
+    // Samples lie in the third of their four pixels, between the neighbours to the left and right. A patch narrower than that has no ground.
+    vec3  depths[samples]; // y: the sample's
+    vec2  beside[samples]; // above and below it
+    float ys[sample_rows], spans[sample_rows]; // of the neighbours above and below
+    for (int row = 0; row < sample_rows; ++row)
+    {
+        int y = max(min(sample_row(row), last_y - 1), 0), above = max(y - 1, 0), below = min(y + 1, last_y);
+        ys[row]    = float(y);
+        spans[row] = float(max(below - above, 1));
+        for (int column = 0; column < sample_rows; ++column)
+        {
+            int quad = first_quad + sample_quad(column), word = 4 * quad + 2, i = row * sample_rows + column;
+            depths[i] = uintBitsToFloat(imageLoad(cell_pairs, quad + y * quads)).yzw;
+            beside[i] = vec2(imageLoad(depth_words, word + above * side_px).x, imageLoad(depth_words, word + below * side_px).x);
+        }
+    }
 
     // The farthest of the planes through a sample and its neighbours that hold another sample: things stand before the ground, not behind it.
-    float depths[samples];
-    for (int i = 0; i < samples; ++i) depths[i] = load_depth(first + sample_at(i, way));
     vec2  gradient = vec2(0);
     float ground = none, corner = 0; // the plane's depth in the middle of the patch, and in its first pixel
     for (int i = 0; i < samples; ++i)
     {
-        ivec2 local = sample_at(i, way), low = max(local - 1, ivec2(0)), high = min(local + 1, way);
-        vec2  last = vec2(load_depth(first + ivec2(low.x, local.y)), load_depth(first + ivec2(local.x, low.y)));
-        vec2  next = vec2(load_depth(first + ivec2(high.x, local.y)), load_depth(first + ivec2(local.x, high.y)));
-        vec2  span = vec2(max(high - low, ivec2(1))), slope = (next - last) / span;
-        vec2  bent = abs(last + next - 2 * depths[i]) * (span - 1); // not with one neighbour
-        float zero = depths[i] - dot(slope, vec2(local)), middle = zero + dot(slope, vec2(side_px - 1) / 2);
-        int   held = 0;
+        float depth = depths[i].y, x = float(4 * sample_quad(i % sample_rows) + 2), y = ys[i / sample_rows];
+        vec2  before = vec2(depths[i].x, beside[i].x), after = vec2(depths[i].z, beside[i].y);
+        vec2  span = vec2(2, spans[i / sample_rows]), slope = (after - before) / span;
+        vec2  bent = abs(before + after - 2 * depth) * (span - 1); // not with one neighbour
+        float zero = depth - slope.x * x - slope.y * y, middle = zero + (slope.x + slope.y) * float(side_px - 1) / 2;
+        float nearest_off = none;
         for (int j = 0; j < samples; ++j)
-            held += int(abs(depths[j] - zero - dot(slope, vec2(sample_at(j, way)))) < depths[i] * on_plane);
-        bool farther = bent.x + bent.y < depths[i] * most_bent && held > 1 && middle < ground;
+        {
+            float off = abs(depths[j].y - (zero + slope.x * float(4 * sample_quad(j % sample_rows) + 2)) - slope.y * ys[j / sample_rows]);
+            nearest_off = j != i && off < nearest_off ? off : nearest_off;
+        }
+        bool farther = bent.x + bent.y < depth * most_bent && nearest_off < depth * on_plane && middle < ground;
         gradient     = farther ? slope : gradient;
         corner       = farther ? zero : corner;
         ground       = farther ? middle : ground;
@@ -61,20 +70,31 @@ void main()
     float nearest = (ground + slab_shift) / (slab_scale - ground * slab_slope);
     bool  passes  = ground < none && nearest > ground;
     float stands  = passes ? corner + nearest - ground : none;
-    float height = -none, before = none;
+    // Floats as integers: the bits of those above 0 order like the floats, those of background are greater than any, and min() and max() of floats
+    // cost lavapipe more. A plane need not lie below 0.
+    const uint nothing = floatBitsToUint(none);
+    uint before = nothing;
+    int  height = 0;
     // Beams that stay in front of everything pass behind nothing. Down the columns, so that reads of different cache lines are under way at once.
-    for (int i = 0; i < side_px * side_px / 4; ++i)
+    for (int column = 0; column < quads; ++column)
     {
-        ivec2 local = min(ivec2(i >> PATCH_BITS << 2, i & (side_px - 1)), way & ivec2(~3, ~0));
-        vec4  depth = load_four_depths(first + local), x = float(local.x) + vec4(0, 1, 2, 3);
-        vec4  front = depth - gradient.x * x - gradient.y * float(local.y);
-        for (int k = 0; k < 4; ++k)
+        vec4 across = gradient.x * vec4(4 * column + ivec4(0, 1, 2, 3));
+        for (int row = 0; row < side_px; ++row)
         {
-            bool surface = local.x + k <= way.x && depth[k] > 0.0, is_before = beams_in_front == 0 && front[k] > stands;
-            before       = surface && is_before && depth[k] < before ? depth[k] : before;
-            height       = surface && !is_before && front[k] > height ? front[k] : height;
+            int   y     = min(row, last_y);
+            uvec4 bits  = imageLoad(cell_pairs, first_quad + y * quads + column), befores;
+            vec4  depth = uintBitsToFloat(bits), front = depth - gradient.y * float(y) - across;
+            ivec4 heights;
+            for (int k = 0; k < 4; ++k)
+            {
+                bool is_before = beams_in_front == 0 && front[k] > stands;
+                befores[k]     = is_before ? bits[k] : nothing;
+                heights[k]     = !is_before && depth[k] > 0.0 ? floatBitsToInt(front[k]) : 0;
+            }
+            before = min(before, min(min(befores.x, befores.y), min(befores.z, befores.w)));
+            height = max(height, max(max(heights.x, heights.y), max(heights.z, heights.w)));
         }
     }
-    height += dot(abs(gradient), vec2(side_px)) / (1 << 20); // what rounding moved it by, and will where it is used
-    imageStore(PatchPlanes, place.y * patches.x + place.x, vec4(gradient, height, before < none ? before : 0.0));
+    float offset = intBitsToFloat(height) + dot(abs(gradient), vec2(side_px)) / (1 << 20); // what rounding moved it by, and will where it is used
+    imageStore(PatchPlanes, place.y * patches.x + place.x, vec4(gradient, offset, before < nothing ? uintBitsToFloat(before) : 0.0));
 }

@@ -8,7 +8,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = CONSTANT_RAYS_PER_PIXEL) const int rays_per_pixel = 1;
 
-layout(set = 0, binding = 5, rgba32ui) uniform writeonly uimageBuffer Rays;
+STORED_TEXELS_4(5, Rays)
 layout(set = 0, binding = 11, r32ui) uniform readonly uimageBuffer TileMasks; // two words a tile: bit x + 8 y
 
 // A place inside the pixel, exact in float. Depth is flat inside each pixel: a ray that starts on the far side of its pixel's

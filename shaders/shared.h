@@ -27,8 +27,6 @@
 // The one workgroup that lists the tiles (shaders/tile_list.comp).
 #define TILE_LIST_INVOCATIONS 128
 
-// Patches of pixels of which the plane above them is known (shaders/patch_planes.comp): 2^PATCH_BITS pixels square.
-#define PATCH_BITS 4
 
 // Of the beam that a group's rays form (shaders/ray_beams.comp): how many clear stretches are kept, and beams per workgroup.
 #define BEAM_STRETCHES 4
@@ -78,16 +76,20 @@
 // in strips of 2^STRIP_BITS cells' width: a row of one is a cache line, and what a ray meets on its way up or down the picture follows in memory.
 #define STRIP_BITS 3
 
+// Patches of pixels of which the plane above them is known (shaders/patch_planes.comp): 2^PATCH_BITS pixels square, as wide as a strip.
+#define PATCH_BITS (STRIP_BITS + 1)
+
 #ifdef __cplusplus
 #define SHARED_FUNCTION inline
 #else
 #define SHARED_FUNCTION
 #endif
 
-// Odd, so that the strips' cache lines do not compete for the same places.
+// With a row below the picture, which holds background as all beside it does; odd, so that the strips' cache lines do not compete for the same
+// places.
 SHARED_FUNCTION int pyramid_rows(int root, int height_px)
 {
-    return (root + height_px) | 1;
+    return (root + height_px + 1) | 1;
 }
 
 SHARED_FUNCTION int strip_index(int x, int row, int rows)

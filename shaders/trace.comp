@@ -11,7 +11,7 @@ layout(local_size_x = RAYS_PER_GROUP / 2) in;
 layout(local_size_x = RAYS_PER_GROUP) in;
 #endif
 
-layout(set = 0, binding = 9, HIT_FORMAT) uniform writeonly uimageBuffer Hits;
+STORED_HITS(9, Hits)
 #ifdef COUNT_WORK
 layout(set = 0, binding = 11, scalar) buffer Work { uvec3 work[]; }; // steps, depth fetches, pyramid fetches
 #endif
@@ -36,7 +36,7 @@ Ray load_ray(uint index)
 // number: the ray's current_ray.
 void store_result(uint index, TraceResult result, int number)
 {
-    imageStore(Hits, int(index), hit_to_texel(ListedHit(pack_pixel(result.pixel, result.status), result.t)));
+    STORE_TEXEL(Hits, index, hit_to_texel(ListedHit(pack_pixel(result.pixel, result.status), result.t)));
 #ifdef COUNT_WORK
     work[index] = uvec3(result.steps, depth_fetches[number], pyramid_fetches[number]);
 #ifdef RAY_BEAMS

@@ -8,6 +8,8 @@
 namespace ssrlab {
 namespace {
 
+constexpr auto background = static_cast<float>(BACKGROUND_DEPTH);
+
 size_t depth_word(glm::ivec2 size_px, glm::ivec2 pixel)
 {
     return 2 * cell_index(size_px, pixel, 0) + static_cast<size_t>(pixel.x % 2);
@@ -42,12 +44,15 @@ DepthPyramid make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px)
     pyramid.pairs        = make_texel_view(gpu, pyramid.cells, vk::Format::eR32G32B32A32Uint);
     pyramid.patch_planes = make_texel_buffer(gpu, pixel_count(level_size(size_px, PATCH_BITS)) * 4 * sizeof(float),
                                              vk::Format::eR32G32B32A32Sfloat);
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        commands.fillBuffer(*pyramid.cells.buffer, 0, VK_WHOLE_SIZE, std::bit_cast<uint32_t>(background));
+    });
     return pyramid;
 }
 
 void write_depth(Gpu& gpu, DepthPyramid& pyramid, std::span<const float> depth)
 {
-    std::vector<float> words(2 * pixel_count(pyramid_size(pyramid.size_px)));
+    std::vector<float> words(2 * pixel_count(pyramid_size(pyramid.size_px)), background);
     for (int y = 0; y < pyramid.size_px.y; ++y)
         for (int x = 0; x < pyramid.size_px.x; ++x)
             words[depth_word(pyramid.size_px, {x, y})] = depth[pixel_index({x, y}, pyramid.size_px)];

@@ -27,6 +27,7 @@ Bounce make_bounce(Gpu& gpu, const PreparedFrame& frame, const DerivedRays* from
     Bindings arriving = derived_bindings(*bounce.rays);
     if (from != nullptr) arriving.merge(list_bindings(buffers, *from));
     Defines defines = precision_defines(gpu, Precision::float32);
+    defines.merge(store_defines(gpu, bounce.rays->rays.list));
     if (from != nullptr) defines.emplace("FURTHER", "1");
     Bindings traced = list_bindings(buffers, *bounce.rays);
     traced.insert({"View", buffers.view});

@@ -32,16 +32,18 @@ Recording hidden_layer(Gpu& gpu, PreparedFrame& frame)
 {
     FrameBuffers& buffers = *frame.buffers;
     if (!buffers.second_layer) buffers.second_layer = make_second_layer(gpu, *buffers.gbuffer);
-    frame.hidden_layer      = true;
-    auto own                = std::make_shared<HiddenLayer>();
-    own->layer              = buffers.second_layer;
-    own->missed             = derived_rays(gpu, frame, 0);
-    own->pyramid            = make_pyramid_passes(gpu, frame, own->layer->depth);
-    const Bindings derived  = derived_bindings(*own->missed);
-    own->gather             = make_effect_pass(gpu, frame, "effects/gather_misses.comp", {}, derived);
-    own->launch             = make_launch_pass(gpu, own->missed->rays.count, own->missed->rays.launch, RAYS_PER_GROUP);
-    own->technique          = make_layer_passes(gpu, frame, own->missed->rays);
-    own->merge              = make_effect_pass(gpu, frame, "effects/second_layer_hits.comp", {}, derived);
+    frame.hidden_layer     = true;
+    auto own               = std::make_shared<HiddenLayer>();
+    own->layer             = buffers.second_layer;
+    own->missed            = derived_rays(gpu, frame, 0);
+    own->pyramid           = make_pyramid_passes(gpu, frame, own->layer->depth);
+    const Bindings derived = derived_bindings(*own->missed);
+    own->gather =
+        make_effect_pass(gpu, frame, "effects/gather_misses.comp", store_defines(gpu, own->missed->rays.list), derived);
+    own->launch    = make_launch_pass(gpu, own->missed->rays.count, own->missed->rays.launch, RAYS_PER_GROUP);
+    own->technique = make_layer_passes(gpu, frame, own->missed->rays);
+    own->merge =
+        make_effect_pass(gpu, frame, "effects/second_layer_hits.comp", store_defines(gpu, frame.rays->hits), derived);
     const double separation = frame.settings.effects.at("hidden_layer_separation_m");
     return [&frame, own, separation](const auto& commands) {
         const RayBuffers& missed = own->missed->rays;

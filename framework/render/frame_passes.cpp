@@ -86,6 +86,12 @@ Defines precision_defines(const Gpu& gpu, Precision precision)
     return {};
 }
 
+Defines store_defines(const Gpu& gpu, const Buffer& texels)
+{
+    const bool storable = gpu.info.int64 && texels.bytes <= gpu.impl->limits.maxStorageBufferRange;
+    return storable ? Defines{{"STORES_64_BITS", "1"}} : Defines{};
+}
+
 Constants settings_constants(const PreparedFrame& frame, Precision precision, bool exact)
 {
     Constants   constants;
@@ -140,12 +146,14 @@ std::vector<PyramidPush> pyramid_pushes(glm::ivec2 size_px, int top)
 PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const DepthPyramid& pyramid)
 {
     if (!has_input(frame, "depth_pyramid")) return {};
-    const Shader shader = compile_shader({.file = "depth_pyramid.comp"});
+    const Shader shader = compile_shader({.file = "depth_pyramid.comp", .defines = store_defines(gpu, pyramid.cells)});
     const auto   make   = [&](bool from_pixels) {
         Constants constants = settings_constants(frame, Precision::float32);
         constants.add(CONSTANT_PYRAMID_KIND, static_cast<int32_t>(parameter_or(frame, "pyramid", PYRAMID_OCCUPANCY)));
         constants.add(CONSTANT_FROM_PIXELS, static_cast<int32_t>(from_pixels));
-        return make_compute_pass(gpu, shader, {{"cell_pairs", pyramid.pairs}}, constants, sizeof(PyramidPush));
+        return make_compute_pass(gpu, shader,
+                                     {{"cell_pairs", pyramid.pairs}, {"StoredCells", {pyramid.cells, pyramid.pairs}}},
+                                     constants, sizeof(PyramidPush));
     };
     PyramidPasses passes;
     passes.cells_per_invocation = 2;
@@ -219,6 +227,7 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
                                       .include_texts = {{"technique/parameters",
                                                          parameter_declarations(frame.technique.parameters, CONSTANT_PARAMETERS)}}};
     const bool                  exact = exact_arithmetic(gpu, frame);
+    trace.defines.merge(store_defines(gpu, rays.hits));
     if (exact) trace.defines.emplace("EXACT_ARITHMETIC", "1");
     if (bindings.contains("Work")) trace.defines.emplace("COUNT_WORK", "1");
     Constants constants = settings_constants(frame, precision, exact);
@@ -270,10 +279,11 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
         make_compute_pass(gpu, compile_shader({.file = "effects/classification.comp"}), bindings, constants);
     passes.tile_list =
         make_compute_pass(gpu, compile_shader({.file = "tile_list.comp"}), bindings, constants, sizeof(glm::ivec2));
-    passes.tile_launch = make_launch_pass(gpu, buffers.tiles.count, buffers.tiles.launch, 1);
+    passes.tile_launch  = make_launch_pass(gpu, buffers.tiles.count, buffers.tiles.launch, 1);
+    Defines ray_defines = precision_defines(gpu, rays.precision);
+    ray_defines.merge(store_defines(gpu, rays.list));
     passes.rays =
-        make_compute_pass(gpu, compile_shader({.file = "rays.comp", .defines = precision_defines(gpu, rays.precision)}),
-                          bindings, constants);
+        make_compute_pass(gpu, compile_shader({.file = "rays.comp", .defines = ray_defines}), bindings, constants);
     passes.ray_launch = make_launch_pass(gpu, rays.count, rays.launch, RAYS_PER_GROUP);
     passes.technique  = make_technique_passes(gpu, frame, rays, bindings);
     return passes;

@@ -137,6 +137,8 @@ Bindings surface_bindings(const GBuffer& gbuffer);
 Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays);
 /// The number types that shaders/real.glsl and wide.glsl stand for.
 Defines precision_defines(const Gpu& gpu, Precision precision);
+/// For a shader that stores texels of this buffer (shaders/store_texel.glsl): 64 bits at once where the device can.
+Defines store_defines(const Gpu& gpu, const Buffer& texels);
 /// exact: for a shader that is compiled with EXACT_ARITHMETIC, whose slab is in double precision.
 Constants settings_constants(const PreparedFrame& frame, Precision precision, bool exact = false);
 /// One constant per parameter from `id` on, under its own name, and names for the choices: PARAMETER_CHOICE.

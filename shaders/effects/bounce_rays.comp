@@ -13,7 +13,7 @@ layout(set = 0, binding = 17, scalar) readonly buffer RaySources { uint ray_sour
 layout(set = 0, binding = 18, scalar) readonly buffer RayThroughputs { vec3 ray_throughput[]; };
 #endif
 layout(set = 0, binding = 19, scalar) buffer DerivedCount { uint derived_count; };
-layout(set = 0, binding = 20, rgba32ui) uniform writeonly uimageBuffer DerivedRays;
+STORED_TEXELS_4(20, DerivedRays)
 layout(set = 0, binding = 24, scalar) writeonly buffer DerivedSources { uint derived_source[]; }; // pixel whose reflection it belongs to
 layout(set = 0, binding = 25, scalar) writeonly buffer DerivedThroughputs { vec3 derived_throughput[]; };
 

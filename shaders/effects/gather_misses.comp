@@ -8,7 +8,7 @@
 
 layout(local_size_x = RAYS_PER_GROUP) in;
 layout(set = 0, binding = 10, scalar) buffer DerivedCount { uint derived_count; };
-layout(set = 0, binding = 11, rgba32ui) uniform writeonly uimageBuffer DerivedRays;
+STORED_TEXELS_4(11, DerivedRays)
 layout(set = 0, binding = 15, scalar) writeonly buffer DerivedSources { uint derived_source[]; }; // index in the first list
 
 void main()

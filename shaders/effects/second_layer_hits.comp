@@ -4,7 +4,7 @@
 #include "listed_hit.glsl"
 
 layout(local_size_x = RAYS_PER_GROUP) in;
-layout(set = 0, binding = 9, HIT_FORMAT) uniform writeonly uimageBuffer Hits;
+STORED_HITS(9, Hits)
 layout(set = 0, binding = 11, scalar) readonly buffer DerivedCount { uint derived_count; };
 layout(set = 0, binding = 12, scalar) readonly buffer DerivedSources { uint derived_source[]; };
 layout(set = 0, binding = 13, HIT_FORMAT) uniform readonly uimageBuffer DerivedHits;
@@ -16,5 +16,5 @@ void main()
     ListedHit hit = texel_to_hit(imageLoad(DerivedHits, int(index)));
     if (unpack_status(hit.pixel) != TRACE_HIT) return;
     hit.pixel |= uint(TRACE_SECOND_LAYER) << (2 * PIXEL_BITS);
-    imageStore(Hits, int(derived_source[index]), hit_to_texel(hit));
+    STORE_TEXEL(Hits, derived_source[index], hit_to_texel(hit));
 }

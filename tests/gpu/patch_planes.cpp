@@ -93,13 +93,18 @@ TEST_P(PatchPlanes, AreTheSurfaceWhereItIsFlat)
     }
     const Picture picture = make_picture(image);
     const auto    planes  = planes_of(picture);
-    for (const Front& front : fronts_of(picture, planes)) ASSERT_NEAR(front.height, 0, 1e-6);
+    const auto    across  = static_cast<size_t>(((GetParam().x - 1) >> PATCH_BITS) + 1);
+    for (const Front& front : fronts_of(picture, planes)) {
+        const int first_x = static_cast<int>(front.patch % across) << PATCH_BITS;
+        if (first_x + 4 > GetParam().x) continue; // narrower ones have no ground
+        ASSERT_NEAR(front.height, 0, 1e-6);
+    }
     for (const glm::vec4& plane : planes) ASSERT_EQ(plane.w, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, PatchPlanes,
                          testing::Values(glm::ivec2(1, 37), glm::ivec2(97, 2), glm::ivec2(64, 64), glm::ivec2(127, 131),
-                                         glm::ivec2(641, 359)),
+                                         glm::ivec2(101, 17), glm::ivec2(641, 359)),
                          [](const auto& param) { return fmt::format("{}x{}", param.param.x, param.param.y); });
 
 TEST(PatchPlanesBehindBars, AreTheGround)
@@ -143,7 +148,7 @@ TEST(PatchPlanesOfNothing, LieBelowEverything)
     image.depth[0]                      = 0.5F;
     const std::vector<glm::vec4> planes = planes_of(make_picture(image));
     EXPECT_EQ(planes.front().z, 0.5F);
-    for (size_t i = 1; i < planes.size(); ++i) EXPECT_LT(planes[i].z, -1e29F);
+    for (size_t i = 1; i < planes.size(); ++i) EXPECT_EQ(planes[i], glm::vec4(0)); // no front has depth 0
 }
 
 } // namespace
