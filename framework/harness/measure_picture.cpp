@@ -63,7 +63,8 @@ Picture make_picture(Bench& bench, const Run& run)
     const LoadedScene& loaded = scene_of(bench, run.scene);
     const View         view   = camera_to_view(find_camera(loaded.scene, run.view), run.size_px);
     Picture            picture;
-    picture.gbuffer = render_gbuffer(bench.gpu, loaded.uploaded, view);
+    picture.gbuffer =
+        clocked(bench.counted_s, [&] { return render_gbuffer(bench.gpu, loaded.uploaded, view); }); // a warm-up
     std::vector<double> times_ms;
     clocked(bench.timed_s, [&] {
         for (int i = 0; i < gbuffer_repeats; ++i) times_ms.push_back(rerender_gbuffer(bench.gpu, *picture.gbuffer));
@@ -71,8 +72,10 @@ Picture make_picture(Bench& bench, const Run& run)
     picture.gbuffer_ms = quantile(std::move(times_ms), 0.5);
     picture.buffers    = make_frame_buffers(bench.gpu, picture.gbuffer);
     if (bench.experiment.measure.truth) {
-        picture.truths.emplace(loaded.scene, read_gbuffer(bench.gpu, *picture.gbuffer),
-                               truth_cache_dir(bench.results.path()));
+        clocked(bench.truths_s, [&] {
+            picture.truths.emplace(loaded.scene, read_gbuffer(bench.gpu, *picture.gbuffer),
+                                   truth_cache_dir(bench.results.path()));
+        });
     }
     return picture;
 }
@@ -143,6 +146,7 @@ Observed observe(Bench& bench, const FrameBuffersPtr& buffers, MeasuredRun& meas
     measured.frame =
         prepare_frame(bench.gpu, buffers, find_technique(bench.techniques, run.technique), run.values, run.settings);
     add_plan(measured.row, plan_of(*measured.frame));
+    bench.counted_s += counting_s_of(*measured.frame);
     return clocked(bench.counted_s, [&] {
         for (int i = 0; i < std::max(1, measure.warmup); ++i) run_frame(bench.gpu, *measured.frame);
         Observed observed{read_shaded(bench.gpu, *measured.frame),
@@ -158,14 +162,15 @@ Observed observe(Bench& bench, const FrameBuffersPtr& buffers, MeasuredRun& meas
 /// Makes what judging the run needs, unless the last run had the same settings.
 void make_references(Bench& bench, Picture& picture, const MeasuredRun& measured)
 {
-    const FrameSettings& settings = measured.run->settings;
+    const FrameSettings& settings     = measured.run->settings;
+    const bool           image_errors = bench.experiment.measure.image_errors;
     if (!picture.truths) return;
-    clocked(bench.truths_s, [&] { picture.truths->make(settings.trace); });
-    if (!bench.experiment.measure.image_errors || (picture.reference && picture.reference_for == settings)) return;
-    const auto& reflection =
-        clocked(bench.truths_s, [&]() -> const std::vector<glm::vec4>& { return picture.truths->true_reflection(); });
-    picture.reference.emplace(composite_reflection(bench.gpu, *measured.frame, reflection));
-    picture.reference_for = settings;
+    clocked(bench.truths_s, [&] {
+        picture.truths->make(settings.trace, image_errors);
+        if (!image_errors || (picture.reference && picture.reference_for == settings)) return;
+        picture.reference.emplace(composite_reflection(bench.gpu, *measured.frame, picture.truths->true_reflection()));
+        picture.reference_for = settings;
+    });
 }
 
 /// What was seen, how right it is, and how hard it was; the path without the ending.
@@ -192,8 +197,8 @@ void judge(const Bench& bench, Picture& picture, MeasuredRun& measured, const Ob
     add_counts(measured.row, observed.counted);
     if (!picture.truths) return;
     const auto pointer = [](const std::optional<TraceResult>& result) { return result ? &*result : nullptr; };
-    add_measures(measured.row, picture.truths->compare(observed.counted, pointer(observed.twin),
-                                                       pointer(observed.hidden), measure.image_errors));
+    add_measures(measured.row,
+                 picture.truths->compare(observed.counted, pointer(observed.twin), pointer(observed.hidden)));
     if (measure.image_errors)
         add_measures(measured.row, picture.truths->compare_picture(observed.shaded, *picture.reference));
 }
@@ -213,7 +218,8 @@ void prepare_comparison(Bench& bench, MeasuredRun& measured)
     const size_t known  = pipelines_made(bench.gpu);
     measured.everything = prepare_everything(bench.gpu, *measured.frame);
     // A driver may compile a pipeline when it first runs.
-    if (pipelines_made(bench.gpu) != known) run_frame(bench.gpu, *measured.everything);
+    if (pipelines_made(bench.gpu) != known)
+        clocked(bench.counted_s, [&] { run_frame(bench.gpu, *measured.everything); });
 }
 
 /// Timed repeats, every round in another order, until each run is final or a stop was requested.

@@ -36,7 +36,7 @@ Truths::Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path c
 {
 }
 
-void Truths::make(const TraceSettings& settings)
+void Truths::make(const TraceSettings& settings, bool image_errors)
 {
     if (made_for_ == settings) return;
     // Of all settings, the scene truth depends on the maximum distance alone.
@@ -48,6 +48,7 @@ void Truths::make(const TraceSettings& settings)
         reference_.reset();
         scene_truth_ = cached_scene_truth(cache_dir_, *scene_, gbuffer_, settings);
     }
+    if (image_errors && !reference_) reference_.emplace(reference_image(scene_truth_));
     made_for_ = settings;
 }
 
@@ -82,17 +83,16 @@ MeasureValues Truths::compare_picture(const Image& picture, const Reference& ref
     return compare_pictures(picture, reference, scene_truth_, gbuffer_);
 }
 
-MeasureValues Truths::compare(const TraceResult& counted, const TraceResult* twin, const TraceResult* hidden,
-                              bool image_errors)
+MeasureValues Truths::compare(const TraceResult& counted, const TraceResult* twin, const TraceResult* hidden) const
 {
     made_for();
     MeasureValues values = compare_to_screen_truth(counted, screen_truth_);
     merge(values, compare_to_scene_truth(counted, scene_truth_, screen_truth_, gbuffer_));
     merge(values, split_error(counted, twin, screen_truth_, &scene_truth_));
     if (hidden != nullptr) merge(values, compare_hidden_layer(counted, *hidden, scene_truth_));
-    if (!image_errors) return values;
-    if (!reference_) reference_.emplace(reference_image(scene_truth_));
-    merge(values, compare_images(reflected_image(counted, gbuffer_, scene_->background), *reference_, scene_truth_));
+    if (reference_)
+        merge(values,
+              compare_images(reflected_image(counted, gbuffer_, scene_->background), *reference_, scene_truth_));
     return values;
 }
 

@@ -16,12 +16,12 @@ public:
     /// Keeps a reference to `scene`.
     Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path cache_dir);
 
-    /// Makes the truths for these settings, or reads them from the cache, unless they are those of the last call.
-    void make(const TraceSettings& settings);
+    /// Makes the truths for these settings, or reads them from the cache, unless they are those of the last call; with what errors of
+    /// images are measured against, or without.
+    void make(const TraceSettings& settings, bool image_errors);
 
     /// Every measure of `counted`. `twin` is the same trace in double, `hidden` what was found in the second layer; or null.
-    MeasureValues compare(const TraceResult& counted, const TraceResult* twin, const TraceResult* hidden,
-                          bool image_errors);
+    MeasureValues compare(const TraceResult& counted, const TraceResult* twin, const TraceResult* hidden) const;
 
     /// The reflection of the glossy scene truth (many rays where it is rough), at full weight; weight -1 where nothing reflects.
     const std::vector<glm::vec4>& true_reflection();
@@ -41,7 +41,7 @@ private:
     std::optional<TraceSettings>          made_for_;
     TraceResult                           screen_truth_;
     SceneTruth                            scene_truth_;
-    std::optional<Reference>              reference_;       // when asked for: the scene truth's reflection
+    std::optional<Reference>              reference_;       // with image_errors: the scene truth's reflection
     std::optional<std::vector<glm::vec4>> true_reflection_; // when asked for
 };
 

@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "core/stopwatch.h"
 #include "render/frame_passes.h"
 #include "render/ggx_share.h"
 #include "shared.h"
@@ -166,8 +167,11 @@ PreparedFramePtr prepare(Gpu& gpu, const FrameBuffersPtr& buffers, const Techniq
     frame->statistics = buffers->statistics;
     if (counts != nullptr)
         frame->statistics.trace = *counts;
-    else if (!shading_only(settings.effects) && frame->statistics.picture.reflecting_pixels > 0)
+    else if (!shading_only(settings.effects) && frame->statistics.picture.reflecting_pixels > 0) {
+        const Stopwatch stopwatch;
         frame->statistics.trace = count_hits(gpu, *frame);
+        frame->counting_s       = stopwatch.seconds();
+    }
     frame->plan = plan_frame(frame->facts, frame->statistics, settings.effects);
     for (const PlannedEffect& planned : frame->plan)
         if (planned.runs) frame->recordings.push_back(make_recording(gpu, *frame, planned.effect->id));
@@ -212,6 +216,8 @@ PreparedFramePtr prepare_everything(Gpu& gpu, const PreparedFrame& planned)
 }
 
 const std::vector<PlannedEffect>& plan_of(const PreparedFrame& frame) { return frame.plan; }
+
+double counting_s_of(const PreparedFrame& frame) { return frame.counting_s; }
 
 bool plan_leaves_out(const PreparedFrame& frame)
 {

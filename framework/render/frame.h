@@ -64,6 +64,8 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
 PreparedFramePtr prepare_everything(Gpu& gpu, const PreparedFrame& planned);
 /// What runs and why. Of a still picture: its statistics are those of the very frame.
 const std::vector<PlannedEffect>& plan_of(const PreparedFrame& frame);
+/// Seconds of preparing it that went to counting what its rays hit, which the plan depends on.
+double counting_s_of(const PreparedFrame& frame);
 /// Whether a frame with everything on would do more. Of one that only shades this is not asked: false.
 bool plan_leaves_out(const PreparedFrame& frame);
 /// What the plan rests on, a line each.

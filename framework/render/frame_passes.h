@@ -112,6 +112,7 @@ struct PreparedFrame {
     TracePasses                 trace;
     FrameFacts                  facts;
     FrameStatistics             statistics;
+    double                      counting_s = 0; // that it took to count what the rays hit, for the plan
     std::vector<PlannedEffect>  plan;
     std::vector<Recording>      recordings;           // of the effects that run
     bool                        hidden_layer = false; // hits may lie in the second layer

@@ -91,11 +91,11 @@ TEST_P(PatchPlanes, AreTheSurfaceWhereItIsFlat)
         image.depth[i]         = 0.25F + 0.0004F * float(pixel.x) - 0.0002F * float(pixel.y);
         image.normal_vs[i]     = {0, 0, 1};
     }
-    const Picture picture = make_picture(image);
-    const auto    planes  = planes_of(picture);
-    const auto    across  = static_cast<size_t>(((GetParam().x - 1) >> PATCH_BITS) + 1);
+    const Picture    picture = make_picture(image);
+    const auto       planes  = planes_of(picture);
+    const glm::ivec2 patches = ((GetParam() - 1) >> PATCH_BITS) + 1;
     for (const Front& front : fronts_of(picture, planes)) {
-        const int first_x = static_cast<int>(front.patch % across) << PATCH_BITS;
+        const int first_x = pixel_at(front.patch, patches).x << PATCH_BITS;
         if (first_x + 4 > GetParam().x) continue; // narrower ones have no ground
         ASSERT_NEAR(front.height, 0, 1e-6);
     }
