@@ -25,22 +25,33 @@ void main()
     ivec2 patches = ((size_px - 1) >> PATCH_BITS) + 1, place = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(place, patches))) return;
     ivec2 first = place << PATCH_BITS;
-    int   last_y = min(side_px, size_px.y - first.y) - 1, first_quad = depth_word(first) >> 2; // its rows follow each other in memory
+    ivec2 last = min(ivec2(side_px), size_px - first) - 1;
+    int   first_quad = depth_word(first) >> 2; // its rows follow each other in memory
 
-    // Samples lie in the third of their four pixels, between the neighbours to the left and right. A patch narrower than that has no ground.
+    // Samples lie in the third of their four pixels, between the neighbours to the left and right, or farther left in a patch that is narrower.
+    // Of other columns a neighbour beside the picture is background: no plane goes through those samples.
     vec3  depths[samples]; // y: the sample's
     vec2  beside[samples]; // above and below it
-    float ys[sample_rows], spans[sample_rows]; // of the neighbours above and below
+    vec2  at[sample_rows], spans[sample_rows]; // of columns and rows: where samples lie, and how far their neighbours are apart
+    ivec3 picks[sample_rows]; // of the four pixels of a column: left neighbour, sample, right neighbour
+    for (int column = 0; column < sample_rows; ++column)
+    {
+        int inside = sample_quad(column) == 0 ? min(last.x, 3) : 3, pick = max(inside - 1, 0);
+        picks[column]   = ivec3(max(pick - 1, 0), pick, min(pick + 1, inside));
+        at[column].x    = float(4 * sample_quad(column) + pick);
+        spans[column].x = float(max(picks[column].z - picks[column].x, 1));
+    }
     for (int row = 0; row < sample_rows; ++row)
     {
-        int y = max(min(sample_row(row), last_y - 1), 0), above = max(y - 1, 0), below = min(y + 1, last_y);
-        ys[row]    = float(y);
-        spans[row] = float(max(below - above, 1));
+        int y = max(min(sample_row(row), last.y - 1), 0), above = max(y - 1, 0), below = min(y + 1, last.y);
+        at[row].y    = float(y);
+        spans[row].y = float(max(below - above, 1));
         for (int column = 0; column < sample_rows; ++column)
         {
-            int quad = first_quad + sample_quad(column), word = 4 * quad + 2, i = row * sample_rows + column;
-            depths[i] = uintBitsToFloat(imageLoad(cell_pairs, quad + y * quads)).yzw;
-            beside[i] = vec2(imageLoad(depth_words, word + above * side_px).x, imageLoad(depth_words, word + below * side_px).x);
+            int   quad = first_quad + sample_quad(column), word = 4 * quad + picks[column].y, i = row * sample_rows + column;
+            uvec4 four = imageLoad(cell_pairs, quad + y * quads);
+            depths[i]  = uintBitsToFloat(uvec3(four[picks[column].x], four[picks[column].y], four[picks[column].z]));
+            beside[i]  = vec2(imageLoad(depth_words, word + above * side_px).x, imageLoad(depth_words, word + below * side_px).x);
         }
     }
 
@@ -49,15 +60,16 @@ void main()
     float ground = none, corner = 0; // the plane's depth in the middle of the patch, and in its first pixel
     for (int i = 0; i < samples; ++i)
     {
-        float depth = depths[i].y, x = float(4 * sample_quad(i % sample_rows) + 2), y = ys[i / sample_rows];
+        int   column = i % sample_rows, row = i / sample_rows;
+        float depth = depths[i].y, x = at[column].x, y = at[row].y;
         vec2  before = vec2(depths[i].x, beside[i].x), after = vec2(depths[i].z, beside[i].y);
-        vec2  span = vec2(2, spans[i / sample_rows]), slope = (after - before) / span;
+        vec2  span = vec2(spans[column].x, spans[row].y), slope = (after - before) / span;
         vec2  bent = abs(before + after - 2 * depth) * (span - 1); // not with one neighbour
         float zero = depth - slope.x * x - slope.y * y, middle = zero + (slope.x + slope.y) * float(side_px - 1) / 2;
         float nearest_off = none;
         for (int j = 0; j < samples; ++j)
         {
-            float off = abs(depths[j].y - (zero + slope.x * float(4 * sample_quad(j % sample_rows) + 2)) - slope.y * ys[j / sample_rows]);
+            float off = abs(depths[j].y - (zero + slope.x * at[j % sample_rows].x) - slope.y * at[j / sample_rows].y);
             nearest_off = j != i && off < nearest_off ? off : nearest_off;
         }
         bool farther = bent.x + bent.y < depth * most_bent && nearest_off < depth * on_plane && middle < ground;
@@ -71,17 +83,18 @@ void main()
     bool  passes  = ground < none && nearest > ground;
     float stands  = passes ? corner + nearest - ground : none;
     // Floats as integers: the bits of those above 0 order like the floats, those of background are greater than any, and min() and max() of floats
-    // cost lavapipe more. A plane need not lie below 0.
+    // cost lavapipe more. Fronts below 0 keep a plane at 0, which is above them; nothing at all leaves it below everything.
     const uint nothing = floatBitsToUint(none);
+    const int  no_front = 0x80000000;
     uint before = nothing;
-    int  height = 0;
+    int  height = no_front;
     // Beams that stay in front of everything pass behind nothing. Down the columns, so that reads of different cache lines are under way at once.
     for (int column = 0; column < quads; ++column)
     {
         vec4 across = gradient.x * vec4(4 * column + ivec4(0, 1, 2, 3));
         for (int row = 0; row < side_px; ++row)
         {
-            int   y     = min(row, last_y);
+            int   y     = min(row, last.y);
             uvec4 bits  = imageLoad(cell_pairs, first_quad + y * quads + column), befores;
             vec4  depth = uintBitsToFloat(bits), front = depth - gradient.y * float(y) - across;
             ivec4 heights;
@@ -89,12 +102,13 @@ void main()
             {
                 bool is_before = beams_in_front == 0 && front[k] > stands;
                 befores[k]     = is_before ? bits[k] : nothing;
-                heights[k]     = !is_before && depth[k] > 0.0 ? floatBitsToInt(front[k]) : 0;
+                heights[k]     = !is_before && depth[k] > 0.0 ? floatBitsToInt(front[k]) : no_front;
             }
             before = min(before, min(min(befores.x, befores.y), min(befores.z, befores.w)));
             height = max(height, max(max(heights.x, heights.y), max(heights.z, heights.w)));
         }
     }
-    float offset = intBitsToFloat(height) + dot(abs(gradient), vec2(side_px)) / (1 << 20); // what rounding moved it by, and will where it is used
+    float top    = height == no_front ? -none : intBitsToFloat(max(height, 0));
+    float offset = top + dot(abs(gradient), vec2(side_px)) / (1 << 20); // what rounding moved it by, and will where it is used
     imageStore(PatchPlanes, place.y * patches.x + place.x, vec4(gradient, offset, before < nothing ? uintBitsToFloat(before) : 0.0));
 }

@@ -27,7 +27,6 @@
 // The one workgroup that lists the tiles (shaders/tile_list.comp).
 #define TILE_LIST_INVOCATIONS 128
 
-
 // Of the beam that a group's rays form (shaders/ray_beams.comp): how many clear stretches are kept, and beams per workgroup.
 #define BEAM_STRETCHES 4
 #define BEAMS_PER_GROUP 64

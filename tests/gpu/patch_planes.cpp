@@ -23,7 +23,7 @@ std::vector<glm::vec4> planes_of(const Picture& picture, const TraceSettings& se
         record_pyramid(commands, frame->pyramid);
         record_technique(commands, frame->trace.technique, *frame->rays);
     });
-    const glm::ivec2 patches = ((picture.view.size_px - 1) >> PATCH_BITS) + 1;
+    const glm::ivec2 patches = level_size(picture.view.size_px, PATCH_BITS);
     return download_as<glm::vec4>(device(), picture.buffers->gbuffer->depth.patch_planes, pixel_count(patches));
 }
 
@@ -35,7 +35,7 @@ struct Front {
 
 std::vector<Front> fronts_of(const Picture& picture, const std::vector<glm::vec4>& planes)
 {
-    const glm::ivec2   size = picture.view.size_px, patches = ((size - 1) >> PATCH_BITS) + 1;
+    const glm::ivec2   size = picture.view.size_px, patches = level_size(size, PATCH_BITS);
     std::vector<Front> fronts;
     for (size_t i = 0; i < picture.image.depth.size(); ++i) {
         const float depth = picture.image.depth[i];
@@ -91,14 +91,9 @@ TEST_P(PatchPlanes, AreTheSurfaceWhereItIsFlat)
         image.depth[i]         = 0.25F + 0.0004F * float(pixel.x) - 0.0002F * float(pixel.y);
         image.normal_vs[i]     = {0, 0, 1};
     }
-    const Picture    picture = make_picture(image);
-    const auto       planes  = planes_of(picture);
-    const glm::ivec2 patches = ((GetParam() - 1) >> PATCH_BITS) + 1;
-    for (const Front& front : fronts_of(picture, planes)) {
-        const int first_x = pixel_at(front.patch, patches).x << PATCH_BITS;
-        if (first_x + 4 > GetParam().x) continue; // narrower ones have no ground
-        ASSERT_NEAR(front.height, 0, 1e-6);
-    }
+    const Picture picture = make_picture(image);
+    const auto    planes  = planes_of(picture);
+    for (const Front& front : fronts_of(picture, planes)) ASSERT_NEAR(front.height, 0, 1e-6);
     for (const glm::vec4& plane : planes) ASSERT_EQ(plane.w, 0);
 }
 
@@ -148,7 +143,7 @@ TEST(PatchPlanesOfNothing, LieBelowEverything)
     image.depth[0]                      = 0.5F;
     const std::vector<glm::vec4> planes = planes_of(make_picture(image));
     EXPECT_EQ(planes.front().z, 0.5F);
-    for (size_t i = 1; i < planes.size(); ++i) EXPECT_EQ(planes[i], glm::vec4(0)); // no front has depth 0
+    for (size_t i = 1; i < planes.size(); ++i) EXPECT_LT(planes[i].z, -1e29F);
 }
 
 } // namespace
