@@ -1,10 +1,10 @@
 // One level of the depth pyramid. A cell (i, j) of level L covers exactly the pixels [i << L, (i + 1) << L) x [j << L, (j + 1) << L):
 // cell = pixel >> level at any image size, odd, prime or 1 x N (level sizes are rounded up, not down as in mip chains).
-#include "real.glsl"
-#include "slab.glsl"
+#include "api/real.glsl"
+#include "api/slab.glsl"
 #include "pyramid_cell.glsl"
-#include "shared.h"
-#include "store_texel.glsl"
+#include "layout/shared.h"
+#include "layout/store_texel.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = CONSTANT_PYRAMID_KIND) const int pyramid_kind = PYRAMID_OCCUPANCY;

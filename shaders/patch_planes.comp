@@ -2,9 +2,9 @@
 // surface is flat. No front of the patch lies nearer than that plane but those that stand before it: so much nearer that a ray could
 // pass between the two, behind a slab. Four numbers: how much nearer the plane gets each pixel to the right and each pixel down, its depth at the
 // centre of the first pixel, and the farthest depth of what stands before it, or 0. Any choice of ground is correct; a good one is useful.
-#include "view.glsl"
-#include "depth.glsl"
-#include "slab.glsl"
+#include "api/view.glsl"
+#include "layout/depth.glsl"
+#include "api/slab.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = CONSTANT_BEAMS_IN_FRONT) const int beams_in_front = 0;

@@ -3,8 +3,8 @@
 // Near its start that interval meets the very surface that the rays leave. There they are held against planes instead: how far all of them have
 // risen above the ground, the plane of the patch they start from, and how far any patch under the box rises above it; and what stands before
 // the ground of a patch they must pass behind (shaders/patch_planes.comp).
-#include "trace_api.glsl"
-#include "ray_list.glsl"
+#include "api/trace_api.glsl"
+#include "trace/ray_list.glsl"
 
 layout(local_size_x = BEAMS_PER_GROUP) in;
 

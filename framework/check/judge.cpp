@@ -46,7 +46,7 @@ glm::ivec2 start_pixel(const GBufferImage& gbuffer, const RayInput& ray)
     return glm::clamp(glm::ivec2(glm::floor(glm::dvec2(ray.origin_px_depth))), glm::ivec2(0), gbuffer.view.size_px - 1);
 }
 
-/// Direction in view space, not normalised; as shaders/trace_api.glsl, direction_vs.
+/// Direction in view space, not normalised; as shaders/api/trace_api.glsl, direction_vs.
 glm::dvec3 direction_vs(const View& view, const RayInput& ray)
 {
     const auto       slope = [&](glm::dvec2 px) { return (px - view.centre_px) / view.focal_px * glm::dvec2(1, -1); };

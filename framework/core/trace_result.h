@@ -12,7 +12,7 @@
 
 namespace ssrlab {
 
-/// Why a ray stopped. The values are shared with shaders/shared.h.
+/// Why a ray stopped. The values are shared with shaders/layout/shared.h.
 enum class TraceStatus : uint8_t {
     not_traced        = 0, // background, not reflective, or without a usable normal
     hit               = 1,

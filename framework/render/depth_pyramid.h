@@ -10,7 +10,7 @@ namespace ssrlab {
 
 /// Levels above 0, which is the picture itself, two pixels in the place of a cell: until one row of cells is left.
 int pyramid_levels(glm::ivec2 size_px);
-/// The row in which level 0 begins; a level begins there halved as often (shaders/shared.h).
+/// The row in which level 0 begins; a level begins there halved as often (shaders/layout/shared.h).
 int pyramid_root(glm::ivec2 size_px);
 /// Cells of all levels; whole strips.
 glm::ivec2 pyramid_size(glm::ivec2 size_px);

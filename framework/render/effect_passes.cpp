@@ -121,14 +121,14 @@ Recording trace(Gpu& /*gpu*/, PreparedFrame& frame)
 Recording colour_downsampling(Gpu& gpu, PreparedFrame& frame)
 {
     const glm::ivec2 blocks = (frame.buffers->gbuffer->view.size_px - 1) / trace_block_px(frame.settings.effects) + 1;
-    return [blocks, pass = shared_effect_pass(gpu, frame, "effects/colour_downsampling.comp")](const auto& commands) {
+    return [blocks, pass = shared_effect_pass(gpu, frame, "passes/colour_downsampling.comp")](const auto& commands) {
         dispatch(commands, *pass, groups_of_8(blocks));
     };
 }
 
 Recording hit_colour(Gpu& gpu, PreparedFrame& frame)
 {
-    auto pass = std::make_shared<ComputePass>(make_colour_pass(gpu, frame, "effects/hit_colour.comp"));
+    auto pass = std::make_shared<ComputePass>(make_colour_pass(gpu, frame, "passes/hit_colour.comp"));
     return [&frame, pass](const auto& commands) {
         clear_reflection(commands, frame.buffers->reflection);
         if (trace_block_px(frame.settings.effects) > 1)
@@ -139,8 +139,8 @@ Recording hit_colour(Gpu& gpu, PreparedFrame& frame)
 
 Recording blur(Gpu& gpu, PreparedFrame& frame)
 {
-    return [&frame, x = shared_effect_pass(gpu, frame, "effects/blur.comp", {{"ALONG_X", "1"}}),
-            y = shared_effect_pass(gpu, frame, "effects/blur.comp")](const auto& commands) {
+    return [&frame, x = shared_effect_pass(gpu, frame, "passes/blur.comp", {{"ALONG_X", "1"}}),
+            y = shared_effect_pass(gpu, frame, "passes/blur.comp")](const auto& commands) {
         clear_reflection(commands, frame.buffers->filtered); // of tiles that are not listed
         dispatch_indirect(commands, *x, frame.buffers->tiles.launch);
         barrier(commands);
@@ -150,21 +150,21 @@ Recording blur(Gpu& gpu, PreparedFrame& frame)
 
 Recording environment(Gpu& gpu, PreparedFrame& frame)
 {
-    return [&frame, pass = shared_effect_pass(gpu, frame, "effects/environment.comp")](const auto& commands) {
+    return [&frame, pass = shared_effect_pass(gpu, frame, "passes/environment.comp")](const auto& commands) {
         dispatch_indirect(commands, *pass, frame.buffers->tiles.launch);
     };
 }
 
 Recording upsampling(Gpu& gpu, PreparedFrame& frame)
 {
-    return [&frame, pass = shared_effect_pass(gpu, frame, "effects/upsampling.comp")](const auto& commands) {
+    return [&frame, pass = shared_effect_pass(gpu, frame, "passes/upsampling.comp")](const auto& commands) {
         dispatch_indirect(commands, *pass, frame.buffers->tiles.launch);
     };
 }
 
 Recording kernel_filter(Gpu& gpu, PreparedFrame& frame)
 {
-    return [&frame, pass = shared_effect_pass(gpu, frame, "effects/kernel.comp")](const auto& commands) {
+    return [&frame, pass = shared_effect_pass(gpu, frame, "passes/filter_3x3.comp")](const auto& commands) {
         clear_reflection(commands, frame.buffers->filtered); // of tiles that are not listed
         dispatch_indirect(commands, *pass, frame.buffers->tiles.launch);
         record_copy(commands, frame.buffers->filtered, frame.buffers->reflection);
@@ -175,7 +175,7 @@ Recording composite(Gpu& gpu, PreparedFrame& frame)
 {
     // Without rays there is no pass that says so pixel by pixel.
     const bool no_rays = frame.buffers->statistics.picture.reflecting_pixels == 0;
-    return [&frame, no_rays, pass = shared_effect_pass(gpu, frame, "effects/composite.comp")](const auto& commands) {
+    return [&frame, no_rays, pass = shared_effect_pass(gpu, frame, "passes/composite.comp")](const auto& commands) {
         if (no_rays) clear_reflection(commands, frame.buffers->reflection);
         dispatch(commands, *pass, groups_of_8(frame.buffers->gbuffer->view.size_px));
     };
@@ -211,7 +211,7 @@ Image composite_reflection(Gpu& gpu, const PreparedFrame& frame, std::span<const
     for (const glm::vec4& value : reflection) texels.push_back(glm::packHalf4x16(value));
     FrameBuffers& buffers = *frame.buffers;
     upload(gpu, buffers.reflection, texels.data(), texels.size() * sizeof(uint64_t));
-    const ComputePass pass = make_effect_pass(gpu, frame, "effects/composite.comp");
+    const ComputePass pass = make_effect_pass(gpu, frame, "passes/composite.comp");
     submit(gpu, [&](const auto& commands) {
         barrier(commands);
         dispatch(commands, pass, groups_of_8(buffers.gbuffer->view.size_px));
@@ -226,7 +226,7 @@ TraceCounts count_hits(Gpu& gpu, PreparedFrame& frame)
     Bindings     bindings = bindings_of(*frame.buffers, *frame.rays);
     bindings.insert({{"View", frame.buffers->view}, {"TraceStatistics", counts}});
     const ComputePass count =
-        make_compute_pass(gpu, compile_shader({.file = "effects/trace_statistics.comp"}), bindings);
+        make_compute_pass(gpu, compile_shader({.file = "trace/trace_statistics.comp"}), bindings);
     submit(gpu, [&](const auto& commands) {
         commands.fillBuffer(*counts.buffer, 0, VK_WHOLE_SIZE, 0);
         record_rays(commands, frame.trace, *frame.buffers);

@@ -31,10 +31,10 @@ Bounce make_bounce(Gpu& gpu, const PreparedFrame& frame, const DerivedRays* from
     if (from != nullptr) defines.emplace("FURTHER", "1");
     Bindings traced = list_bindings(buffers, *bounce.rays);
     traced.insert({"View", buffers.view});
-    bounce.set_up    = make_colour_pass(gpu, frame, "effects/bounce_rays.comp", defines, arriving);
+    bounce.set_up    = make_colour_pass(gpu, frame, "passes/bounce_rays.comp", defines, arriving);
     bounce.launch    = make_launch_pass(gpu, bounce.rays->rays.count, bounce.rays->rays.launch, RAYS_PER_GROUP);
     bounce.technique = make_technique_passes(gpu, frame, bounce.rays->rays, traced);
-    bounce.colour    = make_colour_pass(gpu, frame, "effects/bounce_colour.comp", {}, traced);
+    bounce.colour    = make_colour_pass(gpu, frame, "passes/bounce_colour.comp", {}, traced);
     return bounce;
 }
 
@@ -73,7 +73,7 @@ Recording direct(Gpu& gpu, PreparedFrame& frame, int count)
 Recording history(Gpu& gpu, PreparedFrame& frame, int count)
 {
     auto pass = std::make_shared<ComputePass>(
-        make_colour_pass(gpu, frame, "effects/bounce_history.comp", {}, {{"history_image", frame.buffers->filtered}}));
+        make_colour_pass(gpu, frame, "passes/bounce_history.comp", {}, {{"history_image", frame.buffers->filtered}}));
     return [&frame, pass, count](const auto& commands) {
         for (int i = 0; i < count; ++i) {
             record_copy(commands, frame.buffers->reflection, frame.buffers->filtered);

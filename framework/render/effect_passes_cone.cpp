@@ -31,7 +31,7 @@ Recording cone_pyramid(Gpu& gpu, PreparedFrame& frame)
     const ConePyramid& cone = cone_pyramid_of(gpu, *frame.buffers);
     const Bindings     own  = {{"cone_pyramid", cone.cells}, {"cone_ranges", cone.ranges}};
     const auto         make = [&](const Defines& defines) {
-        return make_effect_pass(gpu, frame, "effects/cone_pyramid.comp", defines, own, sizeof(PyramidPush));
+        return make_effect_pass(gpu, frame, "passes/cone_pyramid.comp", defines, own, sizeof(PyramidPush));
     };
     frame.cone  = true;
     auto passes = std::make_shared<PyramidPasses>(

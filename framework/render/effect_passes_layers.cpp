@@ -39,11 +39,11 @@ Recording hidden_layer(Gpu& gpu, PreparedFrame& frame)
     own->pyramid           = make_pyramid_passes(gpu, frame, own->layer->depth);
     const Bindings derived = derived_bindings(*own->missed);
     own->gather =
-        make_effect_pass(gpu, frame, "effects/gather_misses.comp", store_defines(gpu, own->missed->rays.list), derived);
+        make_effect_pass(gpu, frame, "passes/gather_misses.comp", store_defines(gpu, own->missed->rays.list), derived);
     own->launch    = make_launch_pass(gpu, own->missed->rays.count, own->missed->rays.launch, RAYS_PER_GROUP);
     own->technique = make_layer_passes(gpu, frame, own->missed->rays);
     own->merge =
-        make_effect_pass(gpu, frame, "effects/second_layer_hits.comp", store_defines(gpu, frame.rays->hits), derived);
+        make_effect_pass(gpu, frame, "passes/second_layer_hits.comp", store_defines(gpu, frame.rays->hits), derived);
     const double separation = frame.settings.effects.at("hidden_layer_separation_m");
     return [&frame, own, separation](const auto& commands) {
         const RayBuffers& missed = own->missed->rays;

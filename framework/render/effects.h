@@ -20,13 +20,13 @@ struct FrameFacts {
     std::vector<std::string> inputs; // that the technique reads
 };
 
-/// shaders/effects/classification.comp counts these on the G-buffer.
+/// shaders/rays/classification.comp counts these on the G-buffer.
 struct PictureCounts {
     uint32_t                             surface_pixels = 0, reflecting_pixels = 0, reflecting_tiles = 0;
     std::array<uint32_t, ROUGHNESS_BINS> roughness_pixels{}; // of reflecting pixels; bin 0: roughness 0
 };
 
-/// shaders/effects/trace_statistics.comp counts these after tracing.
+/// shaders/trace/trace_statistics.comp counts these after tracing.
 struct TraceCounts {
     uint32_t rays = 0, hits = 0, mirror_hits = 0; // mirror hits: what was hit reflects, too
 };

@@ -13,7 +13,7 @@
 namespace ssrlab {
 namespace {
 
-/// shaders/view.glsl, uniform View, scalar layout.
+/// shaders/api/view.glsl, uniform View, scalar layout.
 template <typename Real> struct ViewBlock {
     glm::ivec2        size_px;
     glm::vec<2, Real> focal_px, centre_px, focal_low_px, centre_low_px;
@@ -107,7 +107,7 @@ FrameStatistics count_picture(Gpu& gpu, const FrameBuffers& buffers)
     bindings.insert(
         {{"View", buffers.view}, {"TileMasks", buffers.tiles.masks}, {"PictureStatistics", buffers.tiles.statistics}});
     const ComputePass classification =
-        make_compute_pass(gpu, compile_shader({.file = "effects/classification.comp"}), bindings);
+        make_compute_pass(gpu, compile_shader({.file = "rays/classification.comp"}), bindings);
     submit(gpu, [&](const auto& commands) { record_marking(commands, classification, buffers); });
     statistics.picture = download_as<PictureCounts>(gpu, buffers.tiles.statistics, 1)[0];
     return statistics;

@@ -12,7 +12,7 @@
 namespace ssrlab {
 namespace {
 
-/// shaders/slab.glsl says what the three numbers are.
+/// shaders/api/slab.glsl says what the three numbers are.
 struct Slab {
     double slope = 0, scale = 1, shift = 0;
 };
@@ -44,7 +44,7 @@ template <typename Real> void add_settings(Constants& constants, const View& vie
     constants.add(CONSTANT_ORTHOGRAPHIC, static_cast<int32_t>(view.projection == Projection::orthographic));
 }
 
-/// The parameter `arithmetic` chooses what shaders/trace_api.glsl crosses borders in. A define, not a constant: 64-bit integers must not even be
+/// The parameter `arithmetic` chooses what shaders/api/trace_api.glsl crosses borders in. A define, not a constant: 64-bit integers must not even be
 /// declared on a device without them.
 bool exact_arithmetic(const Gpu& gpu, const PreparedFrame& frame)
 {
@@ -211,7 +211,7 @@ ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch
 {
     Constants constants;
     constants.add(CONSTANT_ITEMS_PER_GROUP, items_per_group);
-    return make_compute_pass(gpu, compile_shader({.file = "launch.comp"}), {{"ItemCount", items}, {"Launch", launch}},
+    return make_compute_pass(gpu, compile_shader({.file = "trace/dispatch_args.comp"}), {{"ItemCount", items}, {"Launch", launch}},
                              constants);
 }
 
@@ -219,9 +219,7 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
                                       const Bindings& bindings)
 {
     const Precision precision = rays.precision;
-    // A folder with a trace.comp of its own replaces the standard one (for techniques that work in tiles, say).
-    const std::filesystem::path own = frame.technique.folder / "trace.comp";
-    ShaderSource                trace{.file = std::filesystem::exists(own) ? own : std::filesystem::path("trace.comp"),
+    ShaderSource                trace{.file          = "trace/trace.comp",
                                       .defines       = precision_defines(gpu, precision),
                                       .include_files = {{"technique/trace.glsl", frame.technique.folder / "trace.glsl"}},
                                       .include_texts = {{"technique/parameters",
@@ -276,14 +274,14 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
     constants.add(CONSTANT_TRACE_BLOCK_PX, counts ? 1 : trace_block_px(frame.settings.effects));
     TracePasses passes;
     passes.classification =
-        make_compute_pass(gpu, compile_shader({.file = "effects/classification.comp"}), bindings, constants);
+        make_compute_pass(gpu, compile_shader({.file = "rays/classification.comp"}), bindings, constants);
     passes.tile_list =
-        make_compute_pass(gpu, compile_shader({.file = "tile_list.comp"}), bindings, constants, sizeof(glm::ivec2));
+        make_compute_pass(gpu, compile_shader({.file = "rays/tile_list.comp"}), bindings, constants, sizeof(glm::ivec2));
     passes.tile_launch  = make_launch_pass(gpu, buffers.tiles.count, buffers.tiles.launch, 1);
     Defines ray_defines = precision_defines(gpu, rays.precision);
     ray_defines.merge(store_defines(gpu, rays.list));
     passes.rays =
-        make_compute_pass(gpu, compile_shader({.file = "rays.comp", .defines = ray_defines}), bindings, constants);
+        make_compute_pass(gpu, compile_shader({.file = "rays/rays.comp", .defines = ray_defines}), bindings, constants);
     passes.ray_launch = make_launch_pass(gpu, rays.count, rays.launch, RAYS_PER_GROUP);
     passes.technique  = make_technique_passes(gpu, frame, rays, bindings);
     return passes;

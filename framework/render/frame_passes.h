@@ -8,7 +8,7 @@
 
 namespace ssrlab {
 
-/// shaders/listed_ray.glsl
+/// shaders/layout/packed_ray.glsl
 template <typename Real> struct ListedRay {
     glm::vec<3, Real> origin{0};
     Real              length_m = 0;
@@ -17,21 +17,21 @@ template <typename Real> struct ListedRay {
 };
 static_assert(sizeof(ListedRay<float>) == 2 * 16 && sizeof(ListedRay<double>) == 4 * 16); // texels
 
-/// What a ray of the list found (shaders/listed_hit.glsl).
+/// What a ray of the list found (shaders/layout/packed_hit.glsl).
 template <typename Real> struct ListedHit {
     uint32_t pixel = 0; // with the status
     Real     t     = 0;
 };
 static_assert(sizeof(ListedHit<float>) == 8 && sizeof(ListedHit<double>) == 16); // texels
 
-/// The list of rays and what each found (shaders/rays.comp, trace.comp).
+/// The list of rays and what each found (shaders/rays/rays.comp, shaders/trace/trace.comp).
 struct RayBuffers {
     Precision precision = Precision::float32;
     size_t    capacity  = 0;
     Buffer    count, launch, list, hits;
     Buffer    beams, beam_work, beam_launch; // of each group of rays (shaders/ray_beams.comp)
 };
-/// The uniform block of shaders/view.glsl.
+/// The uniform block of shaders/api/view.glsl.
 Buffer     upload_view(Gpu& gpu, const View& view, Precision precision);
 void       write_view(Gpu& gpu, Buffer& target, const View& view, Precision precision);
 RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision);
@@ -43,13 +43,13 @@ struct DerivedRays {
     Buffer     throughputs; // bounces: what a ray's light still weighs in the reflection it belongs to, RGB
 };
 
-/// What cones look up (shaders/effects/cone_pyramid.comp).
+/// What cones look up (shaders/passes/cone_pyramid.comp).
 struct ConePyramid {
     GpuImage cells;  // RGBA16F: colour, visibility
     GpuImage ranges; // RG32F: nearest and farthest distance in metres
 };
 
-/// The tiles to trace (shaders/effects/classification.comp) and the counts for the plan.
+/// The tiles to trace (shaders/rays/classification.comp) and the counts for the plan.
 struct TileBuffers {
     Buffer masks, count, tiles, launch, statistics;
 };
@@ -136,9 +136,9 @@ ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch
 Bindings surface_bindings(const GBuffer& gbuffer);
 /// That and everything else that shaders may read and write; without the view.
 Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays);
-/// The number types that shaders/real.glsl and wide.glsl stand for.
+/// The number types that shaders/api/real.glsl and rays/double_float.glsl stand for.
 Defines precision_defines(const Gpu& gpu, Precision precision);
-/// For a shader that stores texels of this buffer (shaders/store_texel.glsl): 64 bits at once where the device can.
+/// For a shader that stores texels of this buffer (shaders/layout/store_texel.glsl): 64 bits at once where the device can.
 Defines store_defines(const Gpu& gpu, const Buffer& texels);
 /// exact: for a shader that is compiled with EXACT_ARITHMETIC, whose slab is in double precision.
 Constants settings_constants(const PreparedFrame& frame, Precision precision, bool exact = false);
@@ -162,7 +162,7 @@ void record_classification(const vk::raii::CommandBuffer& commands, const TraceP
 void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers);
 void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses& passes);
 
-/// A pixel and a number in one word, as in shaders/view.glsl.
+/// A pixel and a number in one word, as in shaders/api/view.glsl.
 uint32_t   pack_pixel(glm::ivec2 pixel, int number);
 glm::ivec2 unpack_pixel(uint32_t packed);
 /// How a ray ended, in whichever layer.

@@ -12,7 +12,7 @@
 namespace ssrlab {
 namespace {
 
-/// shaders/gbuffer.frag, uniform Frame, scalar layout.
+/// shaders/gbuffer/gbuffer.frag, uniform Frame, scalar layout.
 struct FrameBlock {
     glm::mat4  world_to_view;
     glm::vec3  eye_ws;
@@ -111,7 +111,7 @@ std::shared_ptr<const DrawPipeline> layer_pipeline(Gpu& gpu, GpuScene& scene, co
 {
     std::shared_ptr<const DrawPipeline>& pipeline = second ? scene.second_layer_pipeline : scene.first_layer_pipeline;
     if (!pipeline) {
-        DrawPipelineOptions options{.fragment_shader = "gbuffer.frag",
+        DrawPipelineOptions options{.fragment_shader = "gbuffer/gbuffer.frag",
                                     .colour_formats  = {gbuffer.normal.format, gbuffer.material.format,
                                                         gbuffer.radiance.format, gbuffer.highlight.format,
                                                         gbuffer.object.format}};
@@ -138,7 +138,7 @@ GBufferPtr make_drawn_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& vi
     gbuffer->view_uniforms = upload_view(gpu, view, Precision::float32);
     Constants constants;
     constants.add(CONSTANT_ORTHOGRAPHIC, static_cast<int32_t>(view.projection == Projection::orthographic));
-    gbuffer->background = make_compute_pass(gpu, compile_shader({.file = "background.comp"}),
+    gbuffer->background = make_compute_pass(gpu, compile_shader({.file = "gbuffer/background.comp"}),
                                             {{"View", gbuffer->view_uniforms},
                                              {"depth_buffer", {gbuffer->depth_buffer, gbuffer->sampler}},
                                              {"environment_map", {scene->environment_map, scene->environment_sampler}},

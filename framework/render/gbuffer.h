@@ -25,7 +25,7 @@ struct GBuffer {
     Timestamps                          timestamps;
 };
 
-/// Depth as tracers read it: what shaders/background.comp makes of a depth buffer.
+/// Depth as tracers read it: what shaders/gbuffer/background.comp makes of a depth buffer.
 std::vector<float> usable_depth(std::span<const float> depth);
 /// Depth, normal, roughness, base colour and metallic of a picture of the same size.
 void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image);

@@ -1,4 +1,4 @@
-// How much light a GGX surface reflects: the integral over its lobe, as a table for shaders/effects/ggx_share.glsl.
+// How much light a GGX surface reflects: the integral over its lobe, as a table for shaders/passes/ggx_share.glsl.
 #pragma once
 
 #include <glm/glm.hpp>

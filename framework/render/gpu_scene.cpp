@@ -8,7 +8,7 @@
 namespace ssrlab {
 namespace {
 
-/// shaders/scene_types.glsl, struct Material, scalar layout.
+/// shaders/gbuffer/scene_types.glsl, struct Material, scalar layout.
 struct MaterialBlock {
     glm::vec4  base_colour;
     glm::vec3  emissive;

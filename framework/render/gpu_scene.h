@@ -6,7 +6,7 @@
 
 namespace ssrlab {
 
-/// Push constants of every pass that draws the scene (shaders/scene_types.glsl).
+/// Push constants of every pass that draws the scene (shaders/gbuffer/scene_types.glsl).
 struct DrawPush {
     glm::mat4 world_to_clip;
     uint32_t  material_index;

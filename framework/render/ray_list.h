@@ -7,7 +7,7 @@
 
 namespace ssrlab {
 
-/// A ray as a technique gets it (struct Ray of shaders/trace_api.glsl), and the pixel that names it.
+/// A ray as a technique gets it (struct Ray of shaders/api/trace_api.glsl), and the pixel that names it.
 struct RayInput {
     glm::dvec3  origin_px_depth{0}; // x_px, y_px, depth at t = 0; the tracer starts in the pixel that contains it
     glm::dvec3  delta_px_depth{0};  // to t = 1; the segment must lie on the image

@@ -9,7 +9,7 @@
 namespace ssrlab {
 namespace {
 
-/// shaders/scene_types.glsl, struct Light, scalar layout.
+/// shaders/gbuffer/scene_types.glsl, struct Light, scalar layout.
 struct LightBlock {
     glm::vec3 position_ws;
     int32_t   type;
@@ -143,7 +143,7 @@ void render_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source)
                                                   .compareOp     = vk::CompareOp::eLessOrEqual}};
     if (matrices.empty()) return;
     const DrawPipeline pipeline = make_draw_pipeline(
-        gpu, scene, {.fragment_shader = "shadow.frag", .colour_formats = {}, .reversed_depth = false});
+        gpu, scene, {.fragment_shader = "gbuffer/shadow.frag", .colour_formats = {}, .reversed_depth = false});
     // The shadow shaders read nothing of the frame's uniforms; any buffer satisfies the layout.
     const FrameSet set = make_frame_set(gpu, scene, scene.lights);
     for (uint32_t layer = 0; layer < matrices.size(); ++layer)

@@ -224,7 +224,7 @@ Technique load_technique(const fs::path& folder)
         technique.bounded_by = toml_texts(file, *node, "bounded_by");
         check_bounds(file, *node, technique);
     }
-    if (!fs::exists(folder / "trace.glsl") && !fs::exists(folder / "trace.comp")) {
+    if (!fs::exists(folder / "trace.glsl")) {
         throw_spec_error("{}: missing; it holds the technique's trace function", short_path(folder / "trace.glsl"));
     }
     return technique;

@@ -2,7 +2,7 @@
 //
 // World directions: +x right, +y up, -z forwards. The map's middle is forwards, its right half is +x, its top row is up:
 //   u = 0.5 + atan2(x, -z) / (2 pi)    v = 0.5 - atan2(y, sqrt(x^2 + z^2)) / pi    (u = 0.5 at the poles)
-// Texels are blended bilinearly, around in u, clamped in v. shaders/environment.glsl is the same in GLSL.
+// Texels are blended bilinearly, around in u, clamped in v. shaders/gbuffer/environment.glsl is the same in GLSL.
 #pragma once
 
 #include <glm/glm.hpp>

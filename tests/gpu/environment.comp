@@ -3,7 +3,7 @@ layout(local_size_x = 64) in;
 layout(set = 0, binding = 0) uniform sampler2D environment_map;
 layout(set = 0, binding = 1, scalar) readonly buffer Directions { vec3 directions[]; };
 layout(set = 0, binding = 2, scalar) writeonly buffer Radiances { vec3 radiances[]; };
-#include "environment.glsl"
+#include "gbuffer/environment.glsl"
 
 void main()
 {

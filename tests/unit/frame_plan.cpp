@@ -158,14 +158,14 @@ TEST(EffectTable, NamesAreUniqueAndDefaultsInRange)
 TEST(EffectTable, ShadersOfTheEffectsFolderAreAllInTheTable)
 {
     // Further passes of a row, and the count that plans rest on.
-    std::set<std::string> used{"effects/second_layer_hits.comp", "effects/bounce_colour.comp",
-                               "effects/bounce_history.comp", "effects/trace_statistics.comp"};
+    std::set<std::string> used{"passes/second_layer_hits.comp", "passes/bounce_colour.comp",
+                               "passes/bounce_history.comp", "trace/trace_statistics.comp"};
     for (const Effect& effect : all_effects()) {
         EXPECT_TRUE(std::filesystem::exists(shader_folder() / effect.shader)) << effect.shader;
         used.insert(effect.shader);
     }
-    for (const auto& file : std::filesystem::directory_iterator(shader_folder() / "effects")) {
-        const std::string name = "effects/" + file.path().filename().string();
+    for (const auto& file : std::filesystem::directory_iterator(shader_folder() / "passes")) {
+        const std::string name = "passes/" + file.path().filename().string();
         if (file.path().extension() != ".comp") continue;
         EXPECT_TRUE(used.contains(name)) << name;
     }

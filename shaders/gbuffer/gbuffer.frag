@@ -1,0 +1,83 @@
+// What the camera sees: geometry, material, and the lit colour in two parts (same from every direction; depends on the view).
+#include "gbuffer/scene_types.glsl"
+#include "gbuffer/material.glsl"
+
+layout(set = 0, binding = 0, scalar) uniform Frame
+{
+    mat4  world_to_view;
+    vec3  eye_ws;          // perspective: position
+    int   orthographic;
+    vec3  view_axis_ws;    // orthographic: direction of view
+    int   light_count;
+    vec3  ambient;
+    float layer_separation; // second layer: at least so far behind the first; in units of the near distance, or of the depth range
+    ivec2 size_px;
+};
+#define LIGHTS_BINDING 2
+#include "gbuffer/lighting.glsl"
+#ifdef SECOND_LAYER
+#define DEPTH_BINDING 5 // the first layer's
+#include "layout/depth.glsl"
+#endif
+
+layout(location = 0) in vec3 position_ws;
+layout(location = 1) in vec3 normal_ws;
+layout(location = 2) in vec4 tangent_ws;
+layout(location = 3) in vec4 uv;
+layout(location = 4) in vec4 vertex_colour;
+
+layout(location = 0) out vec4 normal_and_roughness; // view space
+layout(location = 1) out vec4 base_and_metallic;
+layout(location = 2) out vec4 radiance;             // the same from every direction
+layout(location = 3) out vec4 highlight;            // depends on the view
+layout(location = 4) out uint object;
+
+vec3 shading_normal(Material material, Coordinates at)
+{
+    vec3 normal = normalize(normal_ws);
+    if (dot(tangent_ws.xyz, tangent_ws.xyz) > 0.0)
+    {
+        vec3 tangent   = normalize(tangent_ws.xyz - normal * dot(normal, tangent_ws.xyz));
+        vec3 bitangent = cross(normal, tangent) * tangent_ws.w;
+        vec3 mapped    = sample_texture(normal_texture, material, 2, at).xyz * 2.0 - 1.0;
+        mapped.xy *= material.normal_scale;
+        normal = normalize(tangent * mapped.x + bitangent * mapped.y + normal * mapped.z);
+    }
+    return material.double_sided != 0 && !gl_FrontFacing ? -normal : normal;
+}
+
+#ifdef SECOND_LAYER
+// Depth peeling: the nearest of all that lies behind what the first layer shows. C. Everitt 2001, Interactive Order-Independent
+// Transparency; with a minimum separation as M. Mara et al. 2016, Deep G-Buffers for Stable Global Illumination Approximation.
+bool is_peeled_off()
+{
+    float first = load_depth(ivec2(gl_FragCoord.xy));
+    float limit = orthographic != 0 ? first - layer_separation : first / (1.0 + layer_separation * first);
+    return first <= 0.0 || gl_FragCoord.z >= limit;
+}
+#endif
+
+void main()
+{
+    Coordinates at       = coordinates_of(uv);
+    Material    material = materials[material_index];
+    vec4        base     = base_colour_of(material, at, vertex_colour);
+    if (material.alpha_cutoff >= 0.0 && base.a < material.alpha_cutoff) discard;
+#ifdef SECOND_LAYER
+    if (is_peeled_off()) discard;
+#endif
+    vec4  metallic_roughness = sample_texture(metallic_roughness_texture, material, 1, at);
+    float metallic  = clamp(material.metallic * metallic_roughness.b, 0.0, 1.0);
+    float roughness = clamp(material.roughness * metallic_roughness.g, 0.0, 1.0);
+    vec3  normal    = shading_normal(material, at);
+    vec3  to_eye    = orthographic != 0 ? -view_axis_ws : normalize(eye_ws - position_ws);
+    vec3  diffuse_light, highlights;
+    light_surface(Surface(position_ws, normal, base.rgb, metallic, roughness), light_count, to_eye, diffuse_light, highlights);
+    vec3 emissive = material.emissive * sample_texture(emissive_texture, material, 3, at).rgb;
+
+    normal_and_roughness = vec4(mat3(world_to_view) * normal, roughness);
+    base_and_metallic    = vec4(base.rgb, metallic);
+    radiance             = vec4(base.rgb * ((1.0 - metallic) / pi * diffuse_light + ambient) + emissive, 1.0);
+    highlight            = vec4(highlights, 1.0);
+    object               = object_id;
+}

@@ -1,0 +1,13 @@
+// Depth only; masked texels cast no shadow.
+#include "gbuffer/scene_types.glsl"
+#include "gbuffer/material.glsl"
+
+layout(location = 3) in vec4 uv;
+layout(location = 4) in vec4 vertex_colour;
+
+void main()
+{
+    Coordinates at       = coordinates_of(uv);
+    Material    material = materials[material_index];
+    if (material.alpha_cutoff >= 0.0 && base_colour_of(material, at, vertex_colour).a < material.alpha_cutoff) discard;
+}

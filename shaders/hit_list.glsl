@@ -1,6 +1,0 @@
-// What was found of the list of rays, for shaders that read it (trace.comp writes it).
-#include "listed_hit.glsl"
-
-layout(set = 0, binding = 9, HIT_FORMAT) uniform readonly uimageBuffer Hits;
-
-ListedHit listed_hit(uint index) { return texel_to_hit(imageLoad(Hits, int(index))); }

@@ -1,0 +1,105 @@
+// Numbers, and places in memory, that C++ and GLSL must agree on. Included by both.
+#ifndef SSRLAB_SHARED_H
+#define SSRLAB_SHARED_H
+
+// Why a ray stopped (core/trace_result.h has the same list with its meaning).
+#define TRACE_NOT_TRACED 0
+#define TRACE_HIT 1
+#define TRACE_LEFT_SCREEN 2
+#define TRACE_PAST_MAX_DISTANCE 3
+#define TRACE_OUT_OF_STEPS 4
+#define TRACE_FACING_AWAY 5
+
+// What a ray found in the second depth layer has this added to its status.
+#define TRACE_SECOND_LAYER 8
+
+// A pixel and a small number in one uint: x in bits 0..13, y in 14..27, the number in 28..31.
+#define PIXEL_BITS 14
+#define MAX_IMAGE_PX (1 << PIXEL_BITS)
+
+// Rays are traced in groups of this many; a launch is a grid no wider than so many groups.
+#define RAYS_PER_GROUP 64
+#define LAUNCH_ROW_GROUPS 256
+
+// Tiles that a workgroup classifies, side by side (shaders/rays/classification.comp).
+#define CLASSIFIED_TILES 32
+
+// The one workgroup that lists the tiles (shaders/rays/tile_list.comp).
+#define TILE_LIST_INVOCATIONS 128
+
+// Of the beam that a group's rays form (shaders/ray_beams.comp): how many clear stretches are kept, and beams per workgroup.
+#define BEAM_STRETCHES 4
+#define BEAMS_PER_GROUP 64
+
+// Specialization constants. Technique parameters start at CONSTANT_PARAMETERS, in the order of technique.toml's names.
+#define CONSTANT_SLAB_SLOPE 0
+#define CONSTANT_SLAB_SCALE 1
+#define CONSTANT_SLAB_SHIFT 2
+#define CONSTANT_MAX_DISTANCE_M 3
+#define CONSTANT_RAY_OFFSET_M 4
+#define CONSTANT_FACING 5
+#define CONSTANT_ORTHOGRAPHIC 6
+#define CONSTANT_EVERY_SURFACE 7
+#define CONSTANT_ITEMS_PER_GROUP 8
+#define CONSTANT_TRACE_BLOCK_PX 9
+#define CONSTANT_PYRAMID_KIND 10
+#define CONSTANT_RAYS_PER_PIXEL 11
+#define CONSTANT_FROM_PIXELS 12
+#define CONSTANT_TOP_LEVEL 13
+#define CONSTANT_BEAMS_IN_FRONT 14
+#define CONSTANT_PARAMETERS 32
+#define CONSTANT_EFFECTS 64 // the effects' parameters, in the order of render/effects.cpp
+
+// Sub-pixel offsets are centres of a grid of this many cells per side.
+#define OFFSET_CELLS 256
+
+// A block without a pixel that reflects.
+#define NO_PIXEL 0xFFFFFFFFu
+
+// Roughness histogram of the reflecting pixels: bin 0 holds roughness 0, the others share (0, 1].
+#define ROUGHNESS_BINS 16
+
+// Of the table of GGX shares, in roughness and in cosine.
+#define GGX_SHARE_ENTRIES 32
+
+// What a pyramid cell records (hiz's parameter `pyramid`, in this order).
+#define PYRAMID_OCCUPANCY 0
+#define PYRAMID_MINMAX 1
+#define PYRAMID_NEAREST 2
+
+// Background in the depth that tracers read: nearer than nothing, so that no interval touches it.
+#define BACKGROUND_DEPTH -1.0
+
+// ---- The depth pyramid. Its rows are a binary heap: the picture's row y is row root + y, where the root is the power of two that covers the
+// picture's height, and the cells above a row lie in the row of half its number. Level 0 holds two pixels in the place of a cell. All lies
+// in strips of 2^STRIP_BITS cells' width: a row of one is a cache line, and what a ray meets on its way up or down the picture follows in memory.
+#define STRIP_BITS 3
+
+// Patches of pixels of which the plane above them is known (shaders/patch_planes.comp): 2^PATCH_BITS pixels square, as wide as a strip.
+#define PATCH_BITS (STRIP_BITS + 1)
+
+#ifdef __cplusplus
+#define SHARED_FUNCTION inline
+#else
+#define SHARED_FUNCTION
+#endif
+
+// With a row below the picture, which holds background as all beside it does; odd, so that the strips' cache lines do not compete for the same
+// places.
+SHARED_FUNCTION int pyramid_rows(int root, int height_px)
+{
+    return (root + height_px + 1) | 1;
+}
+
+SHARED_FUNCTION int strip_index(int x, int row, int rows)
+{
+    return (((x >> STRIP_BITS) * rows + row) << STRIP_BITS) + (x & ((1 << STRIP_BITS) - 1));
+}
+
+// Of the cell of a level that holds a pixel, or at level 0 of the two pixels of which it is one.
+SHARED_FUNCTION int pixel_to_cell_index(int x_px, int y_px, int level, int root, int rows)
+{
+    return strip_index(x_px >> (level > 1 ? level : 1), (root | y_px) >> level, rows);
+}
+
+#endif

@@ -1,0 +1,29 @@
+// Where a ray hit a surface that reflects, the colour is that surface's own with its reflection of the previous frame, as the camera saw it.
+#include "layout/work_group.glsl"
+#include "trace/ray_list.glsl"
+#include "trace/hit_list.glsl"
+#include "api/view.glsl"
+#include "rays/reflecting.glsl"
+#include "effect/parameters"
+#include "passes/ray_colour.glsl"
+#include "passes/beta.glsl"
+
+layout(local_size_x = RAYS_PER_GROUP) in;
+layout(set = 0, binding = 13, rgba16f) uniform writeonly image2D reflection_image;
+layout(set = 0, binding = 17, rgba16f) uniform readonly image2D history_image; // the previous frame's reflection_image
+
+void main()
+{
+    uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
+    if (index >= ray_count) return;
+    ivec2 pixel  = unpack_pixel(ray_pixel(index));
+    ListedHit listed = listed_hit(index);
+    ivec2 hit    = unpack_pixel(listed.pixel);
+    bool  mirror = unpack_status(listed.pixel) == TRACE_HIT && !in_second_layer(listed.pixel) && reflects(hit);
+    if (!mirror || !reflects(pixel)) return;
+    Found found = found_by(listed_ray(index), listed);
+    if (found.weight <= 0.0) return;
+    vec4 history = imageLoad(history_image, hit);
+    vec3 colour  = found.light + (history.rgb - found.light) * beta_of(hit, to_camera_vs(hit), history.a);
+    imageStore(reflection_image, pixel, vec4(colour * found.attenuation, found.weight));
+}

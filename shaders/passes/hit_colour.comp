@@ -1,0 +1,51 @@
+// The colour that a ray brings back, and how much it weighs: rgb and weight of a pixel's reflection, the mean over the pixel's rays.
+#include "layout/work_group.glsl"
+#include "trace/ray_list.glsl"
+#include "trace/hit_list.glsl"
+#include "api/view.glsl"
+#include "rays/reflecting.glsl"
+#include "effect/parameters"
+#include "passes/ray_colour.glsl"
+
+layout(local_size_x = RAYS_PER_GROUP) in;
+
+layout(set = 0, binding = 13, rgba16f) uniform writeonly image2D reflection_image;
+layout(set = 0, binding = 15, r32ui) uniform writeonly uimage2D block_pixel_image;
+
+// Colour and weight.
+vec4 reflection_of(uint index, ListedHit hit)
+{
+    Found found = found_by(listed_ray(index), hit);
+    return vec4(found.light * found.attenuation, found.weight);
+}
+
+// The mean of the pictures that the rays would make one by one, if more than half of them hit.
+// J. Somerville Roberts, "Screen Space Reflections": noise is where few of them do.
+vec4 mean_reflection(uint first)
+{
+    vec4 sum  = vec4(0);
+    int  hits = 0;
+    for (int ray = 0; ray < rays_per_pixel; ++ray)
+    {
+        ListedHit hit = listed_hit(first + ray);
+        if (unpack_status(hit.pixel) == TRACE_HIT)
+        {
+            vec4 reflection = reflection_of(first + ray, hit);
+            sum += vec4(reflection.rgb * reflection.a, reflection.a);
+            ++hits;
+        }
+    }
+    if (2 * hits <= rays_per_pixel || sum.a <= 0.0) return vec4(0);
+    return vec4(sum.rgb / sum.a, sum.a / float(rays_per_pixel));
+}
+
+void main()
+{
+    uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
+    uint first = index * rays_per_pixel;
+    if (first >= ray_count) return;
+    ivec2 pixel = unpack_pixel(ray_pixel(first));
+    if (!reflects(pixel)) return;
+    imageStore(reflection_image, pixel, rays_per_pixel > 1 ? mean_reflection(first) : reflection_of(first, listed_hit(first)));
+    if (block_px > 1) imageStore(block_pixel_image, pixel / block_px, uvec4(pack_pixel(pixel, 0)));
+}

@@ -1,0 +1,20 @@
+// Writes what rays found in the second layer over their misses in the first.
+#include "layout/work_group.glsl"
+#include "api/view.glsl"
+#include "layout/packed_hit.glsl"
+
+layout(local_size_x = RAYS_PER_GROUP) in;
+STORED_HITS(9, Hits)
+layout(set = 0, binding = 11, scalar) readonly buffer DerivedCount { uint derived_count; };
+layout(set = 0, binding = 12, scalar) readonly buffer DerivedSources { uint derived_source[]; };
+layout(set = 0, binding = 13, HIT_FORMAT) uniform readonly uimageBuffer DerivedHits;
+
+void main()
+{
+    uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
+    if (index >= derived_count) return;
+    ListedHit hit = texel_to_hit(imageLoad(DerivedHits, int(index)));
+    if (unpack_status(hit.pixel) != TRACE_HIT) return;
+    hit.pixel |= uint(TRACE_SECOND_LAYER) << (2 * PIXEL_BITS);
+    STORE_TEXEL(Hits, derived_source[index], hit_to_texel(hit));
+}

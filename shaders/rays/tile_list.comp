@@ -1,0 +1,59 @@
+// From the masks of all tiles: which tiles are listed, how many pixels are traced in those before each, and how many rays there will be.
+// Tiles traced as a whole come first, so that their rays fill groups of RAYS_PER_GROUP; both parts row by row. The same picture gives the
+// same list.
+#include "layout/shared.h"
+
+layout(local_size_x = TILE_LIST_INVOCATIONS) in;
+
+layout(constant_id = CONSTANT_RAYS_PER_PIXEL) const int rays_per_pixel = 1;
+
+layout(set = 0, binding = 4, scalar) writeonly buffer RayCount { uint ray_count; };
+layout(set = 0, binding = 9, scalar) writeonly buffer TileCount { uint tile_count; };
+layout(set = 0, binding = 10, scalar) writeonly buffer Tiles { uvec2 tiles[]; };
+layout(set = 0, binding = 11, scalar) readonly buffer TileMasks { uvec2 tile_masks[]; };
+layout(push_constant, scalar) uniform Size { ivec2 size_tiles; };
+
+// x: tiles traced as a whole, y: others, z: pixels of these
+shared uvec3 share_counts[TILE_LIST_INVOCATIONS];
+
+uint pixels_of(uint tile)
+{
+    uvec2 mask = tile_masks[tile];
+    return bitCount(mask.x) + bitCount(mask.y);
+}
+
+uvec3 count_of(uint pixels)
+{
+    return pixels == 64 ? uvec3(1, 0, 0) : uvec3(0, pixels > 0 ? 1 : 0, pixels);
+}
+
+void main()
+{
+    uint all = size_tiles.x * size_tiles.y, share = (all + TILE_LIST_INVOCATIONS - 1) / TILE_LIST_INVOCATIONS;
+    uint own = gl_LocalInvocationIndex, first = min(own * share, all), last = min(first + share, all);
+
+    uvec3 count = uvec3(0);
+    for (uint tile = first; tile < last; ++tile) count += count_of(pixels_of(tile));
+    share_counts[own] = count;
+    barrier();
+    uvec3 before = uvec3(0), total = uvec3(0);
+    for (uint i = 0; i < TILE_LIST_INVOCATIONS; ++i)
+    {
+        before += i < own ? share_counts[i] : uvec3(0);
+        total += share_counts[i];
+    }
+
+    for (uint tile = first; tile < last; ++tile)
+    {
+        uint pixels = pixels_of(tile);
+        bool whole  = pixels == 64;
+        uint place = whole ? before.x : total.x + before.y, pixels_before = whole ? 64 * before.x : 64 * total.x + before.z;
+        if (pixels > 0) tiles[place] = uvec2(tile % size_tiles.x | tile / size_tiles.x << 16, pixels_before);
+        before += count_of(pixels);
+    }
+    if (own == 0)
+    {
+        tile_count = total.x + total.y;
+        ray_count  = (64 * total.x + total.z) * rays_per_pixel;
+    }
+}

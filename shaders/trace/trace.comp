@@ -1,0 +1,65 @@
+// Traces the list of rays with the technique that the framework composes in: its parameters, then its trace() or trace_pair().
+#include "api/trace_api.glsl"
+#include "trace/ray_list.glsl"
+#include "layout/packed_hit.glsl"
+#include "technique/parameters"
+#include "technique/trace.glsl"
+
+#ifdef TRACES_PAIRS
+layout(local_size_x = RAYS_PER_GROUP / 2) in;
+#else
+layout(local_size_x = RAYS_PER_GROUP) in;
+#endif
+
+STORED_HITS(9, Hits)
+#ifdef COUNT_WORK
+layout(set = 0, binding = 11, scalar) buffer Work { uvec3 work[]; }; // steps, depth fetches, pyramid fetches
+#endif
+
+Ray load_ray(uint index)
+{
+    ListedRay listed = listed_ray(index);
+    Ray       ray;
+    ray.origin      = listed.origin;
+    ray.delta       = listed.delta;
+    ray.length_m    = listed.length_m;
+    ray.end_status  = unpack_status(listed.pixel);
+    ray.rounding    = depth_rounding(ray.delta);
+    ray.start_pixel = clamp(ivec2(floor(ray.origin.xy)), ivec2(0), size_px - 1);
+
+    // A ray that runs exactly along the right or lower image border runs in the last column or row: off the border, it crosses none.
+    bvec2 along_border = bvec2(ray.delta.x == real(0) && ray.origin.x == real(size_px.x), ray.delta.y == real(0) && ray.origin.y == real(size_px.y));
+    ray.origin.xy -= real2(along_border) * real(0.5);
+    return ray;
+}
+
+// number: the ray's current_ray.
+void store_result(uint index, TraceResult result, int number)
+{
+    STORE_TEXEL(Hits, index, hit_to_texel(ListedHit(pack_pixel(result.pixel, result.status), result.t)));
+#ifdef COUNT_WORK
+    work[index] = uvec3(result.steps, depth_fetches[number], pyramid_fetches[number]);
+#ifdef RAY_BEAMS
+    if (index % RAYS_PER_GROUP == 0) work[index].z += beam_fetches[work_group()]; // the whole group's, counted once
+#endif
+#endif
+}
+
+void main()
+{
+    uint first = work_group() * RAYS_PER_GROUP, place = gl_LocalInvocationID.x;
+#ifdef TRACES_PAIRS
+    // Eight neighbouring invocations take 16 rays that follow each other: the first eight, and the eight after those.
+    uint index = first + (place & ~7) + place, second = index + 8;
+    if (index >= ray_count) return;
+    bool        is_pair = second < ray_count;
+    TraceResult result, second_result;
+    trace_pair(load_ray(index), load_ray(is_pair ? second : index), result, second_result);
+    store_result(index, result, 0);
+    if (is_pair) store_result(second, second_result, 1);
+#else
+    uint index = first + place;
+    if (index >= ray_count) return;
+    store_result(index, trace(load_ray(index)), 0);
+#endif
+}
