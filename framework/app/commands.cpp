@@ -78,7 +78,8 @@ int show_technique(const CommonOptions& common, const std::string& id)
     std::puts(fmt::format("{} ({})\n{}\n", technique.name, technique.id, technique.summary).c_str());
     std::puts(technique.exact ? "exact: gives the pixel walk's answer on every ray" : "not exact");
     std::puts(fmt::format("folder: {}", technique.folder.string()).c_str());
-    if (!technique.inputs.empty()) std::puts(fmt::format("inputs: {}", fmt::join(technique.inputs, ", ")).c_str());
+    for (const Structure& structure : technique.structures)
+        std::puts(fmt::format("structure: {} ({}), {}", structure.id, structure.name, structure.folder.string()).c_str());
     for (const std::string& citation : technique.cite) std::puts(fmt::format("source: {}", citation).c_str());
     std::puts("\nParameters");
     for (const Parameter& parameter : technique.parameters) {
@@ -86,7 +87,7 @@ int show_technique(const CommonOptions& common, const std::string& id)
             parameter.type == ParameterType::choice    ? fmt::format("{}", fmt::join(parameter.choices, " | "))
             : parameter.type == ParameterType::boolean ? "true | false"
                                                        : fmt::format("{} … {}", parameter.min, parameter.max);
-        std::puts(fmt::format("  {:<14} {} (default {})\n                 {}", parameter.name, range,
+        std::puts(fmt::format("  {:<24} {} (default {})\n                           {}", parameter.name, range,
                               format_parameter(parameter, parameter.default_value), parameter.doc)
                       .c_str());
     }
@@ -114,7 +115,7 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
     const auto        frame  = prepare(common, options, stage);
     const TraceResult result = count_frame(stage.gpu, *frame);
     Image             image{result.size_px,
-                {"hit.x", "hit.y", "hit.t", "hit.z", "status", "steps", "depth_fetches", "pyramid_fetches"},
+                {"hit.x", "hit.y", "hit.t", "hit.z", "status", "steps", "depth_fetches", "structure_fetches"},
                 {},
                 {}};
     image.metadata["ssrlab:status_names"] = status_legend();
@@ -127,7 +128,7 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
         for (const double value :
              {point.x, point.y, hit ? result.hit_t[i] : 0.0, point.z, static_cast<double>(result.status[i]),
               static_cast<double>(result.steps[i]), static_cast<double>(result.depth_fetches[i]),
-              static_cast<double>(result.pyramid_fetches[i])})
+              static_cast<double>(structure_fetches_of(result, i))})
             image.values.push_back(static_cast<float>(value));
     }
     write_image(options.output, image);

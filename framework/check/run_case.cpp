@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/stopwatch.h"
+#include "shared.h"
 
 #include <algorithm>
 #include <cmath>
@@ -104,9 +105,8 @@ private:
     {
         const double stated = stated_bound();
         if (!technique_.exact) return static_cast<uint32_t>(stated);
-        const auto start  = values_.find("start_level");
-        double     proven = 2.0 * (setup.gbuffer.view.size_px.x + setup.gbuffer.view.size_px.y - 1) +
-                        (start != values_.end() ? start->second : 0);
+        // Two cells for each pixel that the ray may cross, and those below the level at which it begins.
+        double proven = 2.0 * (setup.gbuffer.view.size_px.x + setup.gbuffer.view.size_px.y - 1) + PIXEL_BITS;
         if (case_.most_steps) proven = std::min(proven, static_cast<double>(case_.most_steps(setup)));
         return static_cast<uint32_t>(std::min(stated, proven));
     }

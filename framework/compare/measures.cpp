@@ -19,7 +19,7 @@ constexpr auto table = std::to_array<Measure>({
     {"steps_mean", "steps", "loop iterations per traced ray", own},
     {"steps_max", "steps", "largest number of loop iterations of a ray", own},
     {"depth_fetches_mean", "fetches", "depth texels read per traced ray", own},
-    {"pyramid_fetches_mean", "fetches", "pyramid texels read per traced ray", own},
+    {"structure_fetches_mean", "fetches", "reads of structures (such as the depth pyramid) per traced ray", own},
 
     {"screen_same_pixel", "share",
      "rays that hit the same pixel as the screen truth, or miss as it does, of traced rays", contract},

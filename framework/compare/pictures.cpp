@@ -73,9 +73,8 @@ Image agreement_picture(const TraceResult& tested, const SceneTruth& truth)
 Image fetch_heat_map(const TraceResult& tested)
 {
     return paint(tested.size_px, [&](size_t i) {
-        if (tested.depth_fetches.empty() && tested.pyramid_fetches.empty()) return heat_colour(tested.steps[i]);
-        return heat_colour((tested.depth_fetches.empty() ? 0 : tested.depth_fetches[i]) +
-                           (tested.pyramid_fetches.empty() ? 0 : tested.pyramid_fetches[i]));
+        return heat_colour(tested.depth_fetches.empty() ? tested.steps[i]
+                                                        : tested.depth_fetches[i] + structure_fetches_of(tested, i));
     });
 }
 

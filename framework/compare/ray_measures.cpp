@@ -195,7 +195,10 @@ MeasureValues count_work(const TraceResult& result)
     };
     values["steps_mean"]           = mean(result.steps);
     values["depth_fetches_mean"]   = mean(result.depth_fetches);
-    values["pyramid_fetches_mean"] = mean(result.pyramid_fetches);
+    std::vector<uint32_t> structure_fetches; // empty when the result was not counted
+    for (size_t i = 0; i < result.depth_fetches.size(); ++i)
+        structure_fetches.push_back(structure_fetches_of(result, i));
+    values["structure_fetches_mean"] = mean(structure_fetches);
     if (rays > 0 && !result.steps.empty())
         values["steps_max"] = *std::max_element(result.steps.begin(), result.steps.end());
     return values;

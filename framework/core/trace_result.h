@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -24,6 +25,14 @@ enum class TraceStatus : uint8_t {
 inline constexpr std::array<std::string_view, 6> trace_status_names = {
     "not_traced", "hit", "left_screen", "past_max_distance", "out_of_steps", "facing_away"};
 
+/// How often each ray read a structure. What building took for a whole group of rays counts with its first one.
+struct StructureFetches {
+    std::string           structure;
+    std::vector<uint32_t> fetches;
+
+    bool operator==(const StructureFetches&) const = default;
+};
+
 /// One entry per pixel of the image, row-major. The ray of pixel (x, y) is its mirror reflection.
 struct TraceResult {
     glm::ivec2               size_px{0, 0};
@@ -34,7 +43,7 @@ struct TraceResult {
         hit_t; // 0 at the reflecting pixel, 1 at the end of the clipped screen segment; undefined unless hit
     std::vector<uint32_t> steps;         // loop iterations; 0 where not traced
     std::vector<uint32_t> depth_fetches; // empty when the result was not counted
-    std::vector<uint32_t> pyramid_fetches;
+    std::vector<StructureFetches> structure_fetches; // of each structure that the technique reads
 };
 
 /// Every pixel not traced; with room for fetch counts if they are to be counted.
@@ -50,9 +59,16 @@ inline TraceResult make_trace_result(glm::ivec2 size_px, bool counted)
     result.steps.resize(count);
     if (counted) {
         result.depth_fetches.resize(count);
-        result.pyramid_fetches.resize(count);
     }
     return result;
+}
+
+/// All reads of structures by one ray.
+inline uint32_t structure_fetches_of(const TraceResult& result, size_t pixel)
+{
+    uint32_t sum = 0;
+    for (const StructureFetches& of : result.structure_fetches) sum += of.fetches[pixel];
+    return sum;
 }
 
 /// The hit contract's settings: they belong to the experiment, never to a technique.

@@ -26,7 +26,7 @@ class Includer : public glslang::TShader::Includer {
 public:
     explicit Includer(const ShaderSource& source) : source_(source) {}
 
-    IncludeResult* includeLocal(const char* name, const char*, size_t depth) override
+    IncludeResult* includeLocal(const char* name, const char* from, size_t depth) override
     {
         constexpr size_t max_depth = 32;
         if (depth > max_depth) return nullptr;
@@ -34,9 +34,8 @@ public:
         if (const auto text = source_.include_texts.find(name); text != source_.include_texts.end()) {
             texts_.push_back(text->second);
         } else {
-            const auto file = source_.include_files.find(name);
-            const auto path = file != source_.include_files.end() ? file->second : shader_folder() / name;
-            if (!std::filesystem::is_regular_file(path)) return nullptr;
+            const std::filesystem::path path = find(name, from);
+            if (path.empty()) return nullptr;
             shown = path.string();
             texts_.push_back(read_file(path));
         }
@@ -50,6 +49,19 @@ public:
     void releaseInclude(IncludeResult*) override {}
 
 private:
+    /// Virtual names, then beside the including file, then the source's folders, then those of the project.
+    std::filesystem::path find(const char* name, const char* from) const
+    {
+        if (const auto file = source_.include_files.find(name); file != source_.include_files.end()) return file->second;
+        std::vector<std::filesystem::path> folders{std::filesystem::path(from).parent_path()};
+        folders.insert(folders.end(), source_.include_folders.begin(), source_.include_folders.end());
+        folders.push_back(shader_folder());
+        folders.push_back(technique_folder());
+        for (const std::filesystem::path& folder : folders)
+            if (!folder.empty() && std::filesystem::is_regular_file(folder / name)) return folder / name;
+        return {};
+    }
+
     const ShaderSource&                       source_;
     std::list<std::string>                    texts_;
     std::list<std::unique_ptr<IncludeResult>> results_;
@@ -105,8 +117,12 @@ std::vector<std::filesystem::path> files_read(const ShaderSource& source)
 {
     std::vector<std::filesystem::path> files = {shader_folder() / source.file}; // a technique's own lies elsewhere
     for (const auto& [name, path] : source.include_files) files.push_back(path);
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(shader_folder()))
-        if (entry.is_regular_file()) files.push_back(entry.path());
+    std::vector<std::filesystem::path> folders = source.include_folders;
+    folders.push_back(shader_folder());
+    if (!source.include_folders.empty()) folders.push_back(technique_folder());
+    for (const std::filesystem::path& folder : folders)
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+            if (entry.is_regular_file()) files.push_back(entry.path());
     return files;
 }
 
@@ -160,6 +176,7 @@ struct GlslangProcess {
 } // namespace
 
 std::filesystem::path shader_folder() { return std::filesystem::path(SSRLAB_SOURCE_DIR) / "shaders"; }
+std::filesystem::path technique_folder() { return std::filesystem::path(SSRLAB_SOURCE_DIR) / "techniques"; }
 
 namespace {
 Shader compile(const ShaderSource& source)

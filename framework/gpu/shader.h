@@ -32,10 +32,13 @@ struct ShaderSource {
     std::map<std::string, std::string>           defines       = {};
     std::map<std::string, std::filesystem::path> include_files = {}; // virtual include name -> file
     std::map<std::string, std::string>           include_texts = {}; // virtual include name -> text
+    std::vector<std::filesystem::path>           include_folders = {}; // besides the shader folder and an including file's own
 };
 
 /// Where the project's shaders lie.
 std::filesystem::path shader_folder();
+/// Where the project's techniques and structures lie: their files may be included, too.
+std::filesystem::path technique_folder();
 
 /// Throws SpecError "FILE:LINE: message" for the first error found.
 Shader compile_shader(const ShaderSource& source);

@@ -31,7 +31,7 @@ const std::vector<Column> times = {
     {"repeats", "timed frames"},
     {"gbuffer_ms_median", "rendering the G-buffer, measured once per scene, view and size"},
     {"rays_ms_median", "finding the tiles that reflect and making the rays"},
-    {"pyramid_ms_median", "building the technique's derived inputs; 0 without any"},
+    {"structures_ms_median", "building the structures that the technique reads; 0 without any"},
     {"shade_ms_median", "turning hits into colour and putting the picture together"},
     {"effects", "passes that ran, in their order, each with the median of its GPU time in milliseconds"},
     {"effects_skipped", "passes that the plan left out, because the picture does not need them or they are off"},
@@ -49,7 +49,7 @@ const std::vector<Column> times = {
 
 const std::vector<Column> counts = {
     {"rays", "traced rays: pixels that reflect"},
-    {"fetches_mean", "reads of depth and of derived inputs per traced ray"},
+    {"fetches_mean", "reads of depth and of structures per traced ray"},
     {"fetches_p50", "median over the rays"},
     {"fetches_p99", "99th percentile over the rays"},
     {"fetches_max", "of the worst ray"},
@@ -87,6 +87,21 @@ std::vector<Column> parameters(const Experiment& experiment, std::span<const Tec
             }
         }
     }
+    return columns;
+}
+
+/// Of each structure that some technique reads.
+std::vector<Column> structure_columns(const Experiment& experiment, std::span<const Technique> techniques)
+{
+    std::vector<Column> columns;
+    for (const TechniqueSweep& sweep : experiment.techniques)
+        for (const Structure& structure : find_technique(techniques, sweep.id).structures) {
+            const std::string ms = structure.id + ".ms_median";
+            if (std::ranges::find(columns, ms, &Column::name) != columns.end()) continue;
+            columns.push_back({ms, fmt::format("building the structure {}", structure.id)});
+            columns.push_back(
+                {structure.id + ".fetches_mean", fmt::format("reads of the structure {} per traced ray", structure.id)});
+        }
     return columns;
 }
 
@@ -131,6 +146,7 @@ std::vector<Column> result_columns(const Experiment& experiment, std::span<const
     append(front, settings());
     std::vector<Column> back = times;
     append(back, counts);
+    append(back, structure_columns(experiment, techniques));
     append(back, quality());
     append(back, shares());
     append(back, ending);

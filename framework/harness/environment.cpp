@@ -69,7 +69,10 @@ std::map<std::string, std::string> describe_identity(const Experiment&          
     identity["driver"]        = device.driver;
     if (!device.processor.empty()) identity["processor"] = device.processor;
     for (const TechniqueSweep& sweep : experiment.techniques) {
-        identity["technique " + sweep.id] = folder_hash(find_technique(techniques, sweep.id).folder);
+        const Technique& technique        = find_technique(techniques, sweep.id);
+        identity["technique " + sweep.id] = folder_hash(technique.folder);
+        for (const Structure& structure : technique.structures)
+            identity["structure " + structure.id] = folder_hash(structure.folder);
     }
     for (const std::string& scene : experiment.scenes) identity["scene " + scene] = scene_hash(scene);
     return identity;

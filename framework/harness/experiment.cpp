@@ -138,11 +138,21 @@ ValueLists read_settings(const TomlFile& file)
     return settings;
 }
 
-TechniqueSweep read_sweep(const TomlFile& file, const toml::table& table, const Technique& technique)
+/// A parameter of a structure may be named "structure.parameter" or lie in a table of the structure's name.
+bool is_structure(const Technique& technique, const std::string& name)
 {
-    TechniqueSweep sweep{technique.id, toml_place(file, table), {}, {}};
+    return std::ranges::find(technique.structures, name, &Structure::id) != technique.structures.end();
+}
+
+void read_values(const TomlFile& file, const toml::table& table, const std::string& prefix, const Technique& technique,
+                 TechniqueSweep& sweep)
+{
     for (const auto& [key, node] : table) {
-        const std::string name(key.str());
+        const std::string name = prefix + std::string(key.str());
+        if (node.is_table() && is_structure(technique, name)) {
+            read_values(file, *node.as_table(), name + ".", technique, sweep);
+            continue;
+        }
         const auto        setting = std::ranges::find(all_settings(), name, &Setting::name);
         if (setting != all_settings().end()) {
             for (const toml::node* value : values_of(file, node, name)) {
@@ -156,6 +166,12 @@ TechniqueSweep read_sweep(const TomlFile& file, const toml::table& table, const 
             sweep.values[name].push_back(parameter_value(file, *value, parameter));
         }
     }
+}
+
+TechniqueSweep read_sweep(const TomlFile& file, const toml::table& table, const Technique& technique)
+{
+    TechniqueSweep sweep{technique.id, toml_place(file, table), {}, {}};
+    read_values(file, table, "", technique, sweep);
     for (const auto& [name, value] : default_values(technique)) sweep.values.try_emplace(name, std::vector{value});
     return sweep;
 }

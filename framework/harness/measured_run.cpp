@@ -57,7 +57,7 @@ void add_counts(Row& row, const TraceResult& counted)
         if (counted.status[i] == TraceStatus::not_traced) continue;
         ended[static_cast<size_t>(counted.status[i])] += 1;
         steps.push_back(counted.steps[i]);
-        if (!counted.depth_fetches.empty()) fetches.push_back(counted.depth_fetches[i] + counted.pyramid_fetches[i]);
+        if (!counted.depth_fetches.empty()) fetches.push_back(counted.depth_fetches[i] + structure_fetches_of(counted, i));
     }
     row["rays"]    = std::to_string(steps.size());
     row["outcome"] = steps.empty() ? "no_rays" : "ok";
@@ -70,6 +70,10 @@ void add_counts(Row& row, const TraceResult& counted)
     add_measures(row, count_work(counted));
     if (fetches.empty()) return;
     row["fetches_mean"] = number_text(mean(fetches));
+    for (const StructureFetches& structure : counted.structure_fetches)
+        row[structure.structure + ".fetches_mean"] =
+            number_text(std::accumulate(structure.fetches.begin(), structure.fetches.end(), 0.0) /
+                        static_cast<double>(steps.size()));
     row["fetches_p50"]  = number_text(quantile(fetches, 0.5));
     row["fetches_p99"]  = number_text(quantile(fetches, 0.99));
     row["fetches_max"]  = number_text(std::ranges::max(fetches));
@@ -123,7 +127,7 @@ void add_times(MeasuredRun& measured, double gbuffer_ms)
         return found == measured.effect_ms.end() ? 0 : quantile(found->second, 0.5);
     };
     row["rays_ms_median"]    = number_text(median_ms("classification") + median_ms("rays"));
-    row["pyramid_ms_median"] = number_text(median_ms("depth_pyramid"));
+    row["structures_ms_median"] = number_text(median_ms("structures"));
     row["shade_ms_median"]   = number_text(median_ms("hit_colour") + median_ms("composite"));
     std::string effects;
     for (const Effect& effect : all_effects())

@@ -29,7 +29,7 @@ double expected_steps(const Run& run, const Technique& technique)
     if (run.values.contains("stride_px") && run.values.contains("max_steps"))
         return std::min(bound, walked_share * crossed / run.values.at("stride_px"));
     if (!technique.exact) return sampled_share * bound;
-    return std::min(bound, technique.inputs.empty() ? walked_share * crossed : visits_per_level * std::log2(crossed));
+    return std::min(bound, technique.structures.empty() ? walked_share * crossed : visits_per_level * std::log2(crossed));
 }
 
 } // namespace

@@ -108,14 +108,15 @@ Recording rays(Gpu& /*gpu*/, PreparedFrame& frame)
     return [&](const auto& commands) { record_ray_setup(commands, frame.trace, *frame.buffers); };
 }
 
-Recording depth_pyramid(Gpu& /*gpu*/, PreparedFrame& frame)
+Recording structures(Gpu& /*gpu*/, PreparedFrame& frame)
 {
-    return [&](const auto& commands) { record_pyramid(commands, frame.pyramid); };
+    return [&](const auto& commands) { record_depth_structures(commands, frame.structures);
+        record_ray_structures(commands, frame.trace.technique, *frame.rays); };
 }
 
 Recording trace(Gpu& /*gpu*/, PreparedFrame& frame)
 {
-    return [&](const auto& commands) { record_technique(commands, frame.trace.technique, *frame.rays); };
+    return [&](const auto& commands) { dispatch_indirect(commands, frame.trace.technique.trace, frame.rays->launch); };
 }
 
 Recording colour_downsampling(Gpu& gpu, PreparedFrame& frame)
@@ -188,7 +189,7 @@ Recording make_recording(Gpu& gpu, PreparedFrame& frame, const std::string& effe
     static const std::map<std::string, Recording (*)(Gpu&, PreparedFrame&)> makers = {
         {"classification", classification},
         {"rays", rays},
-        {"depth_pyramid", depth_pyramid},
+        {"structures", structures},
         {"trace", trace},
         {"hidden_layer", hidden_layer},
         {"colour_downsampling", colour_downsampling},
@@ -230,7 +231,7 @@ TraceCounts count_hits(Gpu& gpu, PreparedFrame& frame)
     submit(gpu, [&](const auto& commands) {
         commands.fillBuffer(*counts.buffer, 0, VK_WHOLE_SIZE, 0);
         record_rays(commands, frame.trace, *frame.buffers);
-        record_pyramid(commands, frame.pyramid);
+        record_depth_structures(commands, frame.structures);
         record_technique(commands, frame.trace.technique, *frame.rays);
         barrier(commands);
         dispatch_indirect(commands, count, frame.rays->launch);

@@ -33,7 +33,7 @@ Bounce make_bounce(Gpu& gpu, const PreparedFrame& frame, const DerivedRays* from
     traced.insert({"View", buffers.view});
     bounce.set_up    = make_colour_pass(gpu, frame, "passes/bounce_rays.comp", defines, arriving);
     bounce.launch    = make_launch_pass(gpu, bounce.rays->rays.count, bounce.rays->rays.launch, RAYS_PER_GROUP);
-    bounce.technique = make_technique_passes(gpu, frame, bounce.rays->rays, traced);
+    bounce.technique = make_technique_passes(gpu, frame, *buffers.gbuffer, bounce.rays->rays, traced);
     bounce.colour    = make_colour_pass(gpu, frame, "passes/bounce_colour.comp", {}, traced);
     return bounce;
 }

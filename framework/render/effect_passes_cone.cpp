@@ -13,6 +13,12 @@ GpuImage make_cone_image(Gpu& gpu, glm::ivec2 size_px, vk::Format format)
                             .usage   = vk::ImageUsageFlagBits::eStorage});
 }
 
+/// shaders/passes/cone_pyramid.comp
+struct ConePush {
+    glm::ivec2 source_size, size;
+    int        row = 0; // where the level begins
+};
+
 } // namespace
 
 ConePyramid& cone_pyramid_of(Gpu& gpu, FrameBuffers& buffers)
@@ -31,12 +37,20 @@ Recording cone_pyramid(Gpu& gpu, PreparedFrame& frame)
     const ConePyramid& cone = cone_pyramid_of(gpu, *frame.buffers);
     const Bindings     own  = {{"cone_pyramid", cone.cells}, {"cone_ranges", cone.ranges}};
     const auto         make = [&](const Defines& defines) {
-        return make_effect_pass(gpu, frame, "passes/cone_pyramid.comp", defines, own, sizeof(PyramidPush));
+        return std::make_shared<ComputePass>(
+            make_effect_pass(gpu, frame, "passes/cone_pyramid.comp", defines, own, sizeof(ConePush)));
     };
-    frame.cone  = true;
-    auto passes = std::make_shared<PyramidPasses>(
-        PyramidPasses{1, make({{"FROM_PIXELS", "1"}}), make({}), pyramid_pushes(frame.buffers->gbuffer->view.size_px)});
-    return [passes](const auto& commands) { record_pyramid(commands, *passes); };
+    frame.cone               = true;
+    const glm::ivec2 size_px = frame.buffers->gbuffer->view.size_px;
+    return [size_px, from_pixels = make({{"FROM_PIXELS", "1"}}), from_cells = make({})](const auto& commands) {
+        for (int level = 1; level <= pyramid_levels(size_px); ++level) {
+            const ComputePass& pass = level == 1 ? *from_pixels : *from_cells;
+            const glm::ivec2   size = level_size(size_px, level);
+            push(commands, pass, ConePush{level_size(size_px, level - 1), size, pyramid_root(size_px) >> level});
+            dispatch(commands, pass, groups_of_8(size));
+            barrier(commands);
+        }
+    };
 }
 
 } // namespace ssrlab

@@ -11,7 +11,7 @@ namespace {
 struct HiddenLayer {
     GBufferPtr                   layer;
     std::shared_ptr<DerivedRays> missed;
-    PyramidPasses                pyramid;
+    std::vector<StructurePasses> structures;
     ComputePass                  gather, launch, merge;
     TechniquePasses              technique;
 };
@@ -23,7 +23,7 @@ TechniquePasses make_layer_passes(Gpu& gpu, const PreparedFrame& frame, const Ra
     Bindings            bindings = surface_bindings(*buffers.second_layer);
     bindings.insert({"View", buffers.view});
     bindings.merge(bindings_of(buffers, rays));
-    return make_technique_passes(gpu, frame, rays, bindings);
+    return make_technique_passes(gpu, frame, *buffers.second_layer, rays, bindings);
 }
 
 } // namespace
@@ -36,7 +36,7 @@ Recording hidden_layer(Gpu& gpu, PreparedFrame& frame)
     auto own               = std::make_shared<HiddenLayer>();
     own->layer             = buffers.second_layer;
     own->missed            = derived_rays(gpu, frame, 0);
-    own->pyramid           = make_pyramid_passes(gpu, frame, own->layer->depth);
+    own->structures        = make_depth_structures(gpu, frame, *own->layer);
     const Bindings derived = derived_bindings(*own->missed);
     own->gather =
         make_effect_pass(gpu, frame, "passes/gather_misses.comp", store_defines(gpu, own->missed->rays.list), derived);
@@ -48,7 +48,7 @@ Recording hidden_layer(Gpu& gpu, PreparedFrame& frame)
     return [&frame, own, separation](const auto& commands) {
         const RayBuffers& missed = own->missed->rays;
         record_second_layer(commands, *own->layer, separation);
-        record_pyramid(commands, own->pyramid);
+        record_depth_structures(commands, own->structures);
         commands.fillBuffer(*missed.count.buffer, 0, VK_WHOLE_SIZE, 0);
         barrier(commands);
         dispatch_indirect(commands, own->gather, frame.rays->launch);
@@ -66,7 +66,7 @@ std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame
     if (!frame.hidden_layer) return std::nullopt;
     const RayBuffers& rays    = *frame.rays;
     const glm::ivec2  size_px = frame.buffers->gbuffer->view.size_px;
-    TraceResult       result  = read_result<float>(gpu, size_px, rays, nullptr);
+    TraceResult       result  = read_result<float>(gpu, frame, rays, nullptr);
     const auto        listed  = read_list<float>(gpu, rays);
     const auto        hits    = download_as<ListedHit<float>>(gpu, rays.hits, listed.size());
     for (size_t i = 0; i < listed.size(); ++i) {

@@ -55,9 +55,9 @@ Need classification_need(const FrameFacts& /*facts*/, const FrameStatistics& sta
     return {Call::needed, fmt::format("{} of {} tiles reflect", tiles, statistics.tiles)};
 }
 
-Need depth_pyramid_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+Need structures_need(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
 {
-    if (std::ranges::count(facts.inputs, "depth_pyramid") == 0) return {Call::off, "the technique reads none"};
+    if (facts.structures.empty()) return {Call::off, "the technique reads none"};
     return where_something_reflects(facts, statistics, values);
 }
 
@@ -183,12 +183,10 @@ std::vector<Effect> make_table()
                      "pixels that have rays: all that reflect, or the first one of each block of 2 x 2 or 4 x 4, from "
                      "its centre outward")},
          .need = where_something_reflects},
-        {.id      = "depth_pyramid",
-         .summary = "Reduces depth level by level, and to planes of patches where the technique reads beams",
-         .shader  = "depth_pyramid.comp",
-         .reads   = {"View", "depth_words"},
-         .writes  = {"depth_pyramid", "PatchPlanes"},
-         .need    = depth_pyramid_need},
+        {.id      = "structures",
+         .summary = "Builds what the technique reads beside depth, such as the depth pyramid",
+         .shader  = "",
+         .need    = structures_need},
         {.id      = "trace",
          .summary = "The technique on the list of rays",
          .shader  = "trace/trace.comp",

@@ -17,7 +17,7 @@ struct FrameFacts {
     bool                     scene           = false; // the G-buffer was drawn from one
     bool                     environment_map = false; // otherwise one colour arrives from everywhere
     bool                     alpha_mask      = false;
-    std::vector<std::string> inputs; // that the technique reads
+    std::vector<std::string> structures; // that the technique reads
 };
 
 /// shaders/rays/classification.comp counts these on the G-buffer.
@@ -50,7 +50,7 @@ struct Effect {
     std::string              id, summary;
     std::vector<std::string> cite = {};
     std::string              shader;        // below shaders/
-    std::vector<std::string> reads, writes; // as the shaders name them
+    std::vector<std::string> reads = {}, writes = {}; // as the shaders name them
     std::vector<Parameter>   parameters = {};
     Need (*need)(const FrameFacts&, const FrameStatistics&, const ParameterValues&);
     bool beyond_shading = false; // off with effect_set = shading

@@ -65,7 +65,6 @@ Buffer upload_view(Gpu& gpu, const View& view, Precision precision)
 
 RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision)
 {
-    const uint64_t real_bytes = precision == Precision::float64 ? 8 : 4;
     const uint64_t listed_bytes =
         precision == Precision::float64 ? sizeof(ListedRay<double>) : sizeof(ListedRay<float>);
     const uint64_t rays    = std::max<uint64_t>(capacity, 1);
@@ -83,13 +82,8 @@ RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision)
                             ? make_texel_buffer(gpu, rays * sizeof(ListedHit<double>), vk::Format::eR32G32B32A32Uint)
                             : make_texel_buffer(gpu, rays * sizeof(ListedHit<float>), vk::Format::eR32G32Uint);
 
-    const uint64_t groups    = (rays - 1) / RAYS_PER_GROUP + 1;
-    const uint64_t stretches = groups * BEAM_STRETCHES * 2 * real_bytes;
-    // Doubles have no texel format.
-    buffers.beams       = precision == Precision::float64 ? make_buffer(gpu, stretches)
-                                                          : make_texel_buffer(gpu, stretches, vk::Format::eR32G32Sfloat);
-    buffers.beam_work   = make_buffer(gpu, groups * sizeof(uint32_t));
-    buffers.beam_launch = make_buffer(gpu, 16);
+    buffers.group_launch = make_buffer(gpu, 16);
+    buffers.structures   = std::make_shared<StructureBuffers>();
     return buffers;
 }
 
@@ -141,7 +135,8 @@ void upload_ggx_shares(Gpu& gpu, FrameBuffers& buffers)
 FrameFacts facts_of(const PreparedFrame& frame)
 {
     const GpuScene* scene = frame.buffers->gbuffer->scene.get();
-    FrameFacts      facts{.inputs = frame.technique.inputs};
+    FrameFacts      facts;
+    for (const Structure& structure : frame.technique.structures) facts.structures.push_back(structure.id);
     if (scene == nullptr) return facts;
     facts.scene           = true;
     facts.environment_map = scene->has_environment_map;
@@ -160,7 +155,7 @@ PreparedFramePtr prepare(Gpu& gpu, const FrameBuffersPtr& buffers, const Techniq
     frame->values    = values;
     frame->settings  = settings;
     frame->rays      = rays_for(gpu, *buffers, settings);
-    frame->pyramid   = make_pyramid_passes(gpu, *frame, buffers->gbuffer->depth);
+    frame->structures = make_depth_structures(gpu, *frame, *buffers->gbuffer);
     frame->trace     = make_trace_passes(gpu, *frame, *frame->rays, buffers->view, nullptr);
 
     frame->facts      = facts_of(*frame);
@@ -259,17 +254,18 @@ TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision)
         throw_failure("the device '{}' has no double precision", gpu.info.name);
     const GBuffer&    gbuffer = *frame.buffers->gbuffer;
     const RayBuffers  rays    = make_ray_buffers(gpu, frame.buffers->statistics.picture.reflecting_pixels, precision);
-    const Buffer      work    = make_buffer(gpu, std::max<uint64_t>(rays.capacity, 1) * 12);
+    const Buffer      work    = make_buffer(gpu, std::max<uint64_t>(rays.capacity, 1) * work_words(frame.technique) *
+                                                  sizeof(uint32_t));
     const Buffer      view    = upload_view(gpu, gbuffer.view, precision);
     const TracePasses passes  = make_trace_passes(gpu, frame, rays, view, &work);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         record_rays(commands, passes, *frame.buffers);
-        record_pyramid(commands, frame.pyramid);
+        record_depth_structures(commands, frame.structures);
         record_technique(commands, passes.technique, rays);
         barrier(commands);
     });
-    return precision == Precision::float64 ? read_result<double>(gpu, gbuffer.view.size_px, rays, &work)
-                                           : read_result<float>(gpu, gbuffer.view.size_px, rays, &work);
+    return precision == Precision::float64 ? read_result<double>(gpu, frame, rays, &work)
+                                           : read_result<float>(gpu, frame, rays, &work);
 }
 
 Image read_shaded(Gpu& gpu, const PreparedFrame& frame)

@@ -12,6 +12,10 @@
 namespace ssrlab {
 namespace {
 
+/// Walks by borders in whole numbers (shaders/api/grid_exact.glsl). A define, not a constant: 64-bit integers must not even
+/// be declared on a device without them.
+constexpr const char* exact_arithmetic = "EXACT_ARITHMETIC";
+
 /// shaders/api/slab.glsl says what the three numbers are.
 struct Slab {
     double slope = 0, scale = 1, shift = 0;
@@ -44,37 +48,17 @@ template <typename Real> void add_settings(Constants& constants, const View& vie
     constants.add(CONSTANT_ORTHOGRAPHIC, static_cast<int32_t>(view.projection == Projection::orthographic));
 }
 
-/// The parameter `arithmetic` chooses what shaders/api/trace_api.glsl crosses borders in. A define, not a constant: 64-bit integers must not even be
-/// declared on a device without them.
-bool exact_arithmetic(const Gpu& gpu, const PreparedFrame& frame)
+/// Throws Failure where the choice of a parameter needs what the device does not have.
+void require_device(const Gpu& gpu, const PreparedFrame& frame)
 {
-    const auto parameter = std::ranges::find(frame.technique.parameters, "arithmetic", &Parameter::name);
-    if (parameter == frame.technique.parameters.end() || parameter->type != ParameterType::choice ||
-        format_parameter(*parameter, frame.values.at("arithmetic")) != "exact")
-        return false;
-    if (!gpu.info.int64 || !gpu.info.float64)
-        throw_failure("arithmetic = exact needs 64-bit integers and doubles in shaders; the device '{}' has no {}",
-                      gpu.info.name, gpu.info.int64 ? "shaderFloat64" : "shaderInt64");
-    return true;
-}
-
-/// An input reads the technique's parameters of these names, if it has them.
-double parameter_or(const PreparedFrame& frame, const std::string& name, double otherwise)
-{
-    const auto value = frame.values.find(name);
-    return value != frame.values.end() ? value->second : otherwise;
-}
-
-bool has_input(const PreparedFrame& frame, const char* name)
-{
-    return std::ranges::count(frame.technique.inputs, name) > 0;
-}
-
-/// Walks by exact crossings pass over nothing.
-bool reads_beams(const Gpu& gpu, const PreparedFrame& frame)
-{
-    return (has_input(frame, "ray_beams") || has_input(frame, "front_beams")) && !exact_arithmetic(gpu, frame) &&
-           parameter_or(frame, "beams", 1) != 0;
+    if (gpu.info.int64 && gpu.info.float64) return;
+    for (const Parameter& parameter : frame.technique.parameters) {
+        const std::string chosen = format_parameter(parameter, frame.values.at(parameter.name));
+        const auto        define = parameter.defines.find(chosen);
+        if (define != parameter.defines.end() && define->second == exact_arithmetic)
+            throw_failure("{} = {} needs 64-bit integers and doubles in shaders; the device '{}' has no {}",
+                          parameter.name, chosen, gpu.info.name, gpu.info.int64 ? "shaderFloat64" : "shaderInt64");
+    }
 }
 
 } // namespace
@@ -107,6 +91,18 @@ Constants settings_constants(const PreparedFrame& frame, Precision precision, bo
     return constants;
 }
 
+namespace {
+
+/// "depth_pyramid.kind" -> "depth_pyramid_kind"
+std::string glsl_name(const Parameter& parameter)
+{
+    std::string name = parameter.name;
+    std::ranges::replace(name, '.', '_');
+    return name;
+}
+
+} // namespace
+
 std::string parameter_declarations(std::span<const Parameter> parameters, uint32_t id)
 {
     std::string text;
@@ -115,9 +111,9 @@ std::string parameter_declarations(std::span<const Parameter> parameters, uint32
                                   : parameter.type == ParameterType::boolean ? "bool {} = false"
                                                                              : "int {} = 0";
         text += fmt::format("layout(constant_id = {}) const {};\n", id++,
-                            fmt::format(fmt::runtime(declaration), parameter.name));
+                            fmt::format(fmt::runtime(declaration), glsl_name(parameter)));
         for (size_t i = 0; i < parameter.choices.size(); ++i)
-            text += fmt::format("const int {}_{} = {};\n", parameter.name, parameter.choices[i], i);
+            text += fmt::format("const int {}_{} = {};\n", glsl_name(parameter), parameter.choices[i], i);
     }
     return text;
 }
@@ -134,46 +130,6 @@ void add_parameters(Constants& constants, std::span<const Parameter> parameters,
     }
 }
 
-std::vector<PyramidPush> pyramid_pushes(glm::ivec2 size_px, int top)
-{
-    std::vector<PyramidPush> levels;
-    for (int level = 1; level <= std::min(pyramid_levels(size_px), top); ++level)
-        levels.push_back({level_size(size_px, level - 1), level_size(size_px, level), pyramid_root(size_px) >> level,
-                          pyramid_size(size_px).y});
-    return levels;
-}
-
-PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const DepthPyramid& pyramid)
-{
-    if (!has_input(frame, "depth_pyramid")) return {};
-    const Shader shader = compile_shader({.file = "depth_pyramid.comp", .defines = store_defines(gpu, pyramid.cells)});
-    const auto   make   = [&](bool from_pixels) {
-        Constants constants = settings_constants(frame, Precision::float32);
-        constants.add(CONSTANT_PYRAMID_KIND, static_cast<int32_t>(parameter_or(frame, "pyramid", PYRAMID_OCCUPANCY)));
-        constants.add(CONSTANT_FROM_PIXELS, static_cast<int32_t>(from_pixels));
-        return make_compute_pass(gpu, shader,
-                                     {{"cell_pairs", pyramid.pairs}, {"StoredCells", {pyramid.cells, pyramid.pairs}}},
-                                     constants, sizeof(PyramidPush));
-    };
-    PyramidPasses passes;
-    passes.cells_per_invocation = 2;
-    passes.from_pixels          = make(true);
-    passes.from_cells           = make(false);
-    passes.levels = pyramid_pushes(pyramid.size_px, static_cast<int>(parameter_or(frame, "top_level", 31)));
-    if (reads_beams(gpu, frame)) {
-        Constants constants = settings_constants(frame, Precision::float32);
-        constants.add(CONSTANT_BEAMS_IN_FRONT, static_cast<int32_t>(has_input(frame, "front_beams")));
-        passes.patches      = level_size(pyramid.size_px, PATCH_BITS);
-        passes.patch_planes = make_compute_pass(gpu, compile_shader({.file = "patch_planes.comp"}),
-                                                {{"View", frame.buffers->view},
-                                                 {"cell_pairs", pyramid.pairs},
-                                                 {"depth_words", pyramid.words},
-                                                 {"PatchPlanes", pyramid.patch_planes}},
-                                                constants);
-    }
-    return passes;
-}
-
 TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
 {
     const glm::uvec3 tiles     = groups_of_8(size_px);
@@ -187,9 +143,12 @@ TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
 
 Bindings surface_bindings(const GBuffer& gbuffer)
 {
-    return {{"depth_words", gbuffer.depth.words}, {"depth_pyramid", gbuffer.depth.cells},
-            {"cell_pairs", gbuffer.depth.pairs},  {"PatchPlanes", gbuffer.depth.patch_planes},
-            {"normal_image", gbuffer.normal},     {"material_image", gbuffer.material}};
+    return {{"depth_words", gbuffer.depth.words},
+            {"depth_cells", gbuffer.depth.cells},
+            {"cell_pairs", gbuffer.depth.pairs},
+            {"StoredCells", {gbuffer.depth.cells, gbuffer.depth.pairs}},
+            {"normal_image", gbuffer.normal},
+            {"material_image", gbuffer.material}};
 }
 
 Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
@@ -198,8 +157,6 @@ Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
     bindings.insert({{"RayCount", rays.count},
                      {"Rays", rays.list},
                      {"Hits", rays.hits},
-                     {"Beams", rays.beams},
-                     {"BeamWork", rays.beam_work},
                      {"TileMasks", buffers.tiles.masks},
                      {"TileCount", buffers.tiles.count},
                      {"Tiles", buffers.tiles.tiles},
@@ -215,47 +172,71 @@ ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch
                              constants);
 }
 
-TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays,
-                                      const Bindings& bindings)
+namespace {
+
+Shader compile_trace(const Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, bool counts)
 {
-    const Precision precision = rays.precision;
-    ShaderSource                trace{.file          = "trace/trace.comp",
-                                      .defines       = precision_defines(gpu, precision),
-                                      .include_files = {{"technique/trace.glsl", frame.technique.folder / "trace.glsl"}},
-                                      .include_texts = {{"technique/parameters",
-                                                         parameter_declarations(frame.technique.parameters, CONSTANT_PARAMETERS)}}};
-    const bool                  exact = exact_arithmetic(gpu, frame);
-    trace.defines.merge(store_defines(gpu, rays.hits));
-    if (exact) trace.defines.emplace("EXACT_ARITHMETIC", "1");
-    if (bindings.contains("Work")) trace.defines.emplace("COUNT_WORK", "1");
-    Constants constants = settings_constants(frame, precision, exact);
+    const Technique& technique = frame.technique;
+    const bool       in_double = rays.precision == Precision::float64;
+    ShaderSource     source{
+            .file            = "trace/trace.comp",
+            .defines         = precision_defines(gpu, rays.precision),
+            .include_files   = structure_include_files(technique),
+            .include_texts   = {{"technique/parameters",
+                                 parameter_declarations(technique.parameters, CONSTANT_PARAMETERS)},
+                                {"technique/structures", structure_declarations(technique, nullptr, in_double)}},
+            .include_folders = technique_folders(technique)};
+    source.include_files.emplace("technique/trace.glsl", technique.folder / "trace.glsl");
+    source.defines.emplace("STRUCTURES", std::to_string(technique.structures.size()));
+    if (technique.rays_per_invocation > 1)
+        source.defines.emplace("RAYS_PER_INVOCATION", std::to_string(technique.rays_per_invocation));
+    for (const std::string& macro : shader_macros(technique, frame.values)) source.defines.emplace(macro, "1");
+    source.defines.merge(store_defines(gpu, rays.hits));
+    if (counts) source.defines.emplace("COUNT_WORK", "1");
+    return compile_shader(source);
+}
+
+} // namespace
+
+TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, const GBuffer& layer,
+                                      const RayBuffers& rays, const Bindings& bindings)
+{
+    const std::vector<std::string> macros = shader_macros(frame.technique, frame.values);
+    require_device(gpu, frame);
+    Constants constants =
+        settings_constants(frame, rays.precision, std::ranges::count(macros, exact_arithmetic) > 0);
     add_parameters(constants, frame.technique.parameters, frame.values, CONSTANT_PARAMETERS);
 
     TechniquePasses passes;
-    passes.reads_beams = reads_beams(gpu, frame);
-    if (passes.reads_beams) {
-        trace.defines.emplace("RAY_BEAMS", "1");
-        ShaderSource beams{.file = "ray_beams.comp", .defines = precision_defines(gpu, precision)};
-        if (bindings.contains("Work")) beams.defines.emplace("COUNT_WORK", "1");
-        Constants beam_constants = settings_constants(frame, precision);
-        beam_constants.add(CONSTANT_TOP_LEVEL, static_cast<int32_t>(parameter_or(frame, "top_level", 31)));
-        beam_constants.add(CONSTANT_BEAMS_IN_FRONT, static_cast<int32_t>(has_input(frame, "front_beams")));
-        passes.beam_launch = make_launch_pass(gpu, rays.count, rays.beam_launch, RAYS_PER_GROUP * BEAMS_PER_GROUP);
-        passes.beams       = make_compute_pass(gpu, compile_shader(beams), bindings, beam_constants);
-    }
-    passes.trace = make_compute_pass(gpu, compile_shader(trace), bindings, constants);
+    passes.structures   = make_ray_structures(gpu, frame, layer, rays, bindings);
+    passes.group_launch = make_launch_pass(gpu, rays.count, rays.group_launch, RAYS_PER_GROUP * RAY_GROUPS_PER_WORKGROUP);
+    Bindings all = bindings;
+    all.merge(structure_bindings(gpu, frame.technique, layer, rays));
+    passes.trace =
+        make_compute_pass(gpu, compile_trace(gpu, frame, rays, bindings.contains("Work")), all, constants);
     return passes;
+}
+
+void record_depth_structures(const vk::raii::CommandBuffer& commands, const std::vector<StructurePasses>& structures)
+{
+    for (const StructurePasses& structure : structures) record_structure(commands, structure, nullptr);
 }
 
 void record_technique(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes, const RayBuffers& rays)
 {
-    if (passes.reads_beams) {
-        dispatch(commands, passes.beam_launch, {1, 1, 1});
-        barrier(commands);
-        dispatch_indirect(commands, passes.beams, rays.beam_launch);
-        barrier(commands);
-    }
+    record_ray_structures(commands, passes, rays);
     dispatch_indirect(commands, passes.trace, rays.launch);
+}
+
+void record_ray_structures(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes,
+                           const RayBuffers& rays)
+{
+    const auto has_passes = [](const StructurePasses& structure) { return !structure.dispatches.empty(); };
+    if (std::ranges::none_of(passes.structures, has_passes)) return;
+    dispatch(commands, passes.group_launch, {1, 1, 1});
+    barrier(commands);
+    for (const StructurePasses& structure : passes.structures)
+        record_structure(commands, structure, &rays.group_launch);
 }
 
 TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view,
@@ -283,7 +264,7 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
     passes.rays =
         make_compute_pass(gpu, compile_shader({.file = "rays/rays.comp", .defines = ray_defines}), bindings, constants);
     passes.ray_launch = make_launch_pass(gpu, rays.count, rays.launch, RAYS_PER_GROUP);
-    passes.technique  = make_technique_passes(gpu, frame, rays, bindings);
+    passes.technique  = make_technique_passes(gpu, frame, *buffers.gbuffer, rays, bindings);
     return passes;
 }
 
@@ -322,21 +303,6 @@ void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& pas
     record_ray_setup(commands, passes, buffers);
 }
 
-void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses& passes)
-{
-    if (passes.patches != glm::ivec2(0)) {
-        dispatch(commands, passes.patch_planes, groups_of_8(passes.patches));
-        barrier(commands);
-    }
-    for (const PyramidPush& level : passes.levels) {
-        const ComputePass& pass = &level == &passes.levels.front() ? passes.from_pixels : passes.from_cells;
-        push(commands, pass, level);
-        const int per_invocation = passes.cells_per_invocation;
-        dispatch(commands, pass, groups_of_8({(level.size.x + per_invocation - 1) / per_invocation, level.size.y}));
-        barrier(commands);
-    }
-}
-
 uint32_t pack_pixel(glm::ivec2 pixel, int number)
 {
     return static_cast<uint32_t>(pixel.x) | static_cast<uint32_t>(pixel.y) << PIXEL_BITS |
@@ -355,14 +321,22 @@ TraceStatus unpack_status(uint32_t packed)
 
 bool in_second_layer(uint32_t packed) { return ((packed >> (2 * PIXEL_BITS)) & TRACE_SECOND_LAYER) != 0; }
 
+size_t work_words(const Technique& technique) { return 2 + technique.structures.size(); }
+
 template <typename Real>
-TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, const Buffer* work)
+TraceResult read_result(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer* work)
 {
-    const auto   listed = read_list<Real>(gpu, rays);
-    const size_t count  = listed.size();
-    const auto   hits   = download_as<ListedHit<Real>>(gpu, rays.hits, count);
-    const auto   works  = work != nullptr ? download_as<glm::uvec3>(gpu, *work, count) : std::vector<glm::uvec3>{};
-    TraceResult  result = make_trace_result(size_px, work != nullptr);
+    const glm::ivec2 size_px    = frame.buffers->gbuffer->view.size_px;
+    const auto&      structures = frame.technique.structures;
+    const auto       listed     = read_list<Real>(gpu, rays);
+    const size_t     count = listed.size(), words = work_words(frame.technique);
+    const auto       hits          = download_as<ListedHit<Real>>(gpu, rays.hits, count);
+    const auto       works         = work != nullptr ? download_as<uint32_t>(gpu, *work, count * words) : std::vector<uint32_t>{};
+    const auto       group_fetches = work != nullptr ? read_group_fetches(gpu, frame.technique, rays)
+                                                     : std::vector<std::vector<uint32_t>>(structures.size());
+    TraceResult      result        = make_trace_result(size_px, work != nullptr);
+    for (const Structure& structure : structures)
+        if (work != nullptr) result.structure_fetches.push_back({structure.id, std::vector<uint32_t>(pixel_count(size_px))});
     for (size_t i = 0; i < count; ++i) {
         const glm::ivec2 pixel     = unpack_pixel(listed[i].pixel);
         const size_t     index     = pixel_index(pixel, size_px);
@@ -371,14 +345,19 @@ TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, co
         result.hit_t[index]        = static_cast<double>(hits[i].t);
         result.hit_px_depth[index] = glm::dvec3(listed[i].origin) + result.hit_t[index] * glm::dvec3(listed[i].delta);
         if (work == nullptr) continue;
-        result.steps[index]           = works[i].x;
-        result.depth_fetches[index]   = works[i].y;
-        result.pyramid_fetches[index] = works[i].z;
+        result.steps[index]         = works[i * words];
+        result.depth_fetches[index] = works[i * words + 1];
+        for (size_t s = 0; s < structures.size(); ++s) {
+            uint32_t& fetches = result.structure_fetches[s].fetches[index];
+            fetches           = works[i * words + 2 + s];
+            // Those for a whole group of rays count once, with its first ray.
+            if (i % RAYS_PER_GROUP == 0 && !group_fetches[s].empty()) fetches += group_fetches[s][i / RAYS_PER_GROUP];
+        }
     }
     return result;
 }
-template TraceResult read_result<float>(Gpu&, glm::ivec2, const RayBuffers&, const Buffer*);
-template TraceResult read_result<double>(Gpu&, glm::ivec2, const RayBuffers&, const Buffer*);
+template TraceResult read_result<float>(Gpu&, const PreparedFrame&, const RayBuffers&, const Buffer*);
+template TraceResult read_result<double>(Gpu&, const PreparedFrame&, const RayBuffers&, const Buffer*);
 
 float half_to_float(uint16_t half) { return glm::unpackHalf1x16(half); }
 

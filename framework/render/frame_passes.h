@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/gbuffer.h"
+#include "render/structure_passes.h"
 
 #include <functional>
 #include <map>
@@ -29,7 +30,8 @@ struct RayBuffers {
     Precision precision = Precision::float32;
     size_t    capacity  = 0;
     Buffer    count, launch, list, hits;
-    Buffer    beams, beam_work, beam_launch; // of each group of rays (shaders/ray_beams.comp)
+    Buffer    group_launch; // of passes with an invocation for each group of rays
+    std::shared_ptr<StructureBuffers> structures = {}; // that depend on this list
 };
 /// The uniform block of shaders/api/view.glsl.
 Buffer     upload_view(Gpu& gpu, const View& view, Precision precision);
@@ -57,7 +59,7 @@ TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px);
 
 struct FrameBuffers {
     GBufferPtr                                                     gbuffer;
-    Buffer                                                         view; // float; of a ray tracer its own precision
+    Buffer                                                         view; // float
     TileBuffers                                                    tiles;
     FrameStatistics                                                statistics; // of the picture; nothing is traced yet
     std::map<size_t, std::shared_ptr<RayBuffers>>                  rays;       // by capacity; float
@@ -73,23 +75,10 @@ struct FrameBuffers {
     vk::raii::Sampler ggx_share_sampler = nullptr;
 };
 
-struct PyramidPush {
-    glm::ivec2 source_size, size;
-    int        row  = 0; // where the level begins
-    int        rows = 0; // of the whole pyramid
-};
-struct PyramidPasses {
-    int                      cells_per_invocation = 1; // side by side
-    ComputePass              from_pixels, from_cells;  // level 1; the others
-    std::vector<PyramidPush> levels;                   // above level 0
-    ComputePass              patch_planes{};           // for beams
-    glm::ivec2               patches{0};               // of the picture, PATCH_BITS; none without beams
-};
-
 /// The technique on one list of rays.
 struct TechniquePasses {
-    bool        reads_beams = false;
-    ComputePass beam_launch, beams, trace;
+    std::vector<StructurePasses> structures; // that depend on the list
+    ComputePass                  group_launch, trace;
 };
 
 struct TracePasses {
@@ -108,7 +97,7 @@ struct PreparedFrame {
     ParameterValues             values;
     FrameSettings               settings;
     std::shared_ptr<RayBuffers> rays;
-    PyramidPasses               pyramid;
+    std::vector<StructurePasses> structures; // that depend on depth alone
     TracePasses                 trace;
     FrameFacts                  facts;
     FrameStatistics             statistics;
@@ -120,16 +109,18 @@ struct PreparedFrame {
     Timestamps                  timestamps;
 };
 
-/// The first levels of a pyramid above level 0, all of them or up to `top`.
-std::vector<PyramidPush> pyramid_pushes(glm::ivec2 size_px, int top = 31);
-/// Those of one layer's depth, and of the planes of its patches; none when the technique reads no pyramid.
-PyramidPasses make_pyramid_passes(Gpu& gpu, const PreparedFrame& frame, const DepthPyramid& pyramid);
 /// work: steps, depth and pyramid fetches per ray, or null for the pipeline that is timed.
 TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view,
                               const Buffer* work);
 /// The technique on a list and the layer that is bound.
-TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays,
-                                      const Bindings& bindings);
+TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, const GBuffer& layer,
+                                      const RayBuffers& rays, const Bindings& bindings);
+/// The structures that depend on depth alone.
+void record_depth_structures(const vk::raii::CommandBuffer& commands, const std::vector<StructurePasses>& structures);
+/// The structures that depend on the list of rays.
+void record_ray_structures(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes,
+                           const RayBuffers& rays);
+/// Those, then the trace.
 void record_technique(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes, const RayBuffers& rays);
 ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch, int items_per_group);
 /// What a picture shows at each pixel, by the names that shaders give it.
@@ -160,7 +151,6 @@ void record_marking(const vk::raii::CommandBuffer& commands, const ComputePass& 
 void record_classification(const vk::raii::CommandBuffer& commands, const TracePasses& passes,
                            const FrameBuffers& buffers);
 void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers);
-void record_pyramid(const vk::raii::CommandBuffer& commands, const PyramidPasses& passes);
 
 /// A pixel and a number in one word, as in shaders/api/view.glsl.
 uint32_t   pack_pixel(glm::ivec2 pixel, int number);
@@ -174,8 +164,11 @@ template <typename Real> std::vector<ListedRay<Real>> read_list(Gpu& gpu, const 
     return download_as<ListedRay<Real>>(gpu, rays.list, download_as<uint32_t>(gpu, rays.count, 1)[0]);
 }
 
+/// Words of the counting pipeline's buffer for each ray: steps, depth fetches, fetches of each structure.
+size_t work_words(const Technique& technique);
+/// work: null for a result without counts.
 template <typename Real>
-TraceResult read_result(Gpu& gpu, glm::ivec2 size_px, const RayBuffers& rays, const Buffer* work);
+TraceResult read_result(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer* work);
 
 float half_to_float(uint16_t half);
 

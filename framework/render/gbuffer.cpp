@@ -50,7 +50,7 @@ GBufferPtr make_gbuffer(Gpu& gpu, const View& view)
         return make_image(gpu, {.format = format, .size_px = view.size_px, .usage = usage});
     };
     const vk::ImageUsageFlags target = Usage::eColorAttachment | Usage::eStorage;
-    gbuffer->depth                   = make_depth_pyramid(gpu, view.size_px);
+    gbuffer->depth                   = make_depth_buffer(gpu, view.size_px);
     gbuffer->normal                  = image(Format::eR32G32B32A32Sfloat, target);
     gbuffer->material                = image(Format::eR16G16B16A16Sfloat, target);
     gbuffer->radiance                = image(Format::eR16G16B16A16Sfloat, target);

@@ -1,7 +1,8 @@
 // The images of one view, and what renders them.
 #pragma once
 
-#include "render/depth_pyramid.h"
+#include "render/depth_buffer.h"
+#include "render/structure_passes.h"
 #include "render/gpu_scene.h"
 
 namespace ssrlab {
@@ -10,7 +11,7 @@ struct GBuffer {
     View                                view;
     GpuScenePtr                         scene;        // empty when the G-buffer was made elsewhere
     GpuImage                            depth_buffer; // D32, what the rasteriser wrote
-    DepthPyramid                        depth;        // what tracers read: background = BACKGROUND_DEPTH
+    DepthBuffer                         depth;        // what tracers read: background = BACKGROUND_DEPTH
     GpuImage                            normal;       // RGBA32F: view-space normal, roughness
     GpuImage                            material;     // RGBA16F: base colour, metallic
     GpuImage                            radiance;     // RGBA16F: the same from every direction
@@ -23,6 +24,7 @@ struct GBuffer {
     Buffer                              view_uniforms;
     ComputePass                         background;
     Timestamps                          timestamps;
+    std::shared_ptr<StructureBuffers>   structures = std::make_shared<StructureBuffers>(); // on this depth
 };
 
 /// Depth as tracers read it: what shaders/gbuffer/background.comp makes of a depth buffer.

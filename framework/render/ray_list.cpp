@@ -5,12 +5,14 @@
 #include "shared.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace ssrlab {
 
 struct RayTracer {
     PreparedFrame frame;
     RayBuffers    rays;
+    Buffer        view; // in the precision of the trace
     Buffer        work;
     TracePasses   passes;
 };
@@ -40,15 +42,18 @@ template <typename Real> std::vector<RayInput> read_rays(Gpu& gpu, const RayBuff
 template <typename Real> std::vector<RayOutcome> read_outcomes(Gpu& gpu, const RayTracer& tracer, size_t count)
 {
     const auto              hits  = download_as<ListedHit<Real>>(gpu, tracer.rays.hits, count);
-    const auto              works = download_as<glm::uvec3>(gpu, tracer.work, count);
+    const size_t            words = work_words(tracer.frame.technique);
+    const auto              works = download_as<uint32_t>(gpu, tracer.work, count * words);
     std::vector<RayOutcome> outcomes(count);
-    for (size_t i = 0; i < count; ++i)
+    for (size_t i = 0; i < count; ++i) {
+        const std::span own(works.data() + i * words, words);
         outcomes[i] = {unpack_status(hits[i].pixel),
                        unpack_pixel(hits[i].pixel),
                        static_cast<double>(hits[i].t),
-                       works[i].x,
-                       works[i].y,
-                       works[i].z};
+                       own[0],
+                       own[1],
+                       std::accumulate(own.begin() + 2, own.end(), 0U)};
+    }
     return outcomes;
 }
 
@@ -67,16 +72,17 @@ RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Techniqu
     auto buffers         = std::make_shared<FrameBuffers>();
     buffers->gbuffer     = gbuffer;
     buffers->tiles       = make_tile_buffers(gpu, gbuffer->view.size_px);
-    buffers->view        = upload_view(gpu, gbuffer->view, precision);
+    buffers->view        = upload_view(gpu, gbuffer->view, Precision::float32);
+    tracer->view         = upload_view(gpu, gbuffer->view, precision);
     PreparedFrame& frame = tracer->frame;
     frame.buffers        = buffers;
     frame.technique      = technique;
     frame.values         = values;
     frame.settings.trace = settings;
-    frame.pyramid        = make_pyramid_passes(gpu, frame, gbuffer->depth);
+    frame.structures     = make_depth_structures(gpu, frame, *gbuffer);
     tracer->rays         = make_ray_buffers(gpu, capacity, precision);
-    tracer->work         = make_buffer(gpu, std::max<uint64_t>(capacity, 1) * sizeof(glm::uvec3));
-    tracer->passes       = make_trace_passes(gpu, frame, tracer->rays, buffers->view, &tracer->work);
+    tracer->work         = make_buffer(gpu, std::max<uint64_t>(capacity, 1) * work_words(technique) * sizeof(uint32_t));
+    tracer->passes       = make_trace_passes(gpu, frame, tracer->rays, tracer->view, &tracer->work);
     return tracer;
 }
 
@@ -101,7 +107,7 @@ std::vector<RayOutcome> trace_rays(Gpu& gpu, RayTracer& tracer, std::span<const 
         barrier(commands);
         dispatch(commands, tracer.passes.ray_launch, {1, 1, 1});
         barrier(commands);
-        record_pyramid(commands, tracer.frame.pyramid);
+        record_depth_structures(commands, tracer.frame.structures);
         record_technique(commands, tracer.passes.technique, tracer.rays);
         barrier(commands);
     });
@@ -116,7 +122,8 @@ void replace_picture(Gpu& gpu, RayTracer& tracer, const GBufferImage& image)
         throw std::logic_error("replace_picture: size or projection differ");
     gbuffer.view = image.view;
     upload_surfaces(gpu, gbuffer, image);
-    write_view(gpu, tracer.frame.buffers->view, image.view, tracer.rays.precision);
+    write_view(gpu, tracer.frame.buffers->view, image.view, Precision::float32);
+    write_view(gpu, tracer.view, image.view, tracer.rays.precision);
 }
 
 GBufferPtr upload_depth(Gpu& gpu, const View& view, std::span<const float> depth)
@@ -126,7 +133,7 @@ GBufferPtr upload_depth(Gpu& gpu, const View& view, std::span<const float> depth
     const auto image = [&](vk::Format format, glm::ivec2 size_px) {
         return make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
     };
-    gbuffer->depth    = make_depth_pyramid(gpu, view.size_px);
+    gbuffer->depth    = make_depth_buffer(gpu, view.size_px);
     gbuffer->normal   = image(vk::Format::eR32G32B32A32Sfloat, {1, 1});
     gbuffer->material = image(vk::Format::eR16G16B16A16Sfloat, {1, 1});
     write_depth(gpu, gbuffer->depth, usable_depth(depth));

@@ -23,7 +23,7 @@ struct RayOutcome {
     double      t               = 0;
     uint32_t    steps           = 0;
     uint32_t    depth_fetches   = 0;
-    uint32_t    pyramid_fetches = 0;
+    uint32_t    structure_fetches = 0; // without those for a whole group of rays
 
     bool operator==(const RayOutcome&) const = default;
 };

@@ -1,12 +1,10 @@
 #include "render/technique.h"
 
-#include "core/toml_reading.h"
+#include "core/names.h"
+#include "render/manifest.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
-#include <functional>
-#include <numeric>
 #include <set>
 
 namespace ssrlab {
@@ -14,120 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> manifest_keys  = {"name",  "summary", "cite",       "inputs",
-                                                 "exact", "limits",  "bounded_by", "parameters"};
-const std::vector<std::string> known_inputs   = {"depth_pyramid", "ray_beams", "front_beams"};
-const std::vector<std::string> parameter_keys = {"default", "min", "max", "choices", "doc"};
-
-const toml::node& required(const TomlFile& file, const toml::table& table, const std::string& key,
-                           const std::string& owner)
-{
-    const toml::node* node = table.get(key);
-    if (node == nullptr) throw_spec_error("{}: {} has no '{}'", toml_place(file, table), owner, key);
-    return *node;
-}
-
-ParameterType type_of_default(const TomlFile& file, const toml::node& node, bool has_choices, const std::string& name)
-{
-    if (has_choices) return ParameterType::choice;
-    if (node.is_boolean()) return ParameterType::boolean;
-    if (node.is_integer()) return ParameterType::integer;
-    if (node.is_floating_point()) return ParameterType::real;
-    toml_refuse(file, node, "default of " + name, "an integer, a number, a boolean or one of 'choices'");
-}
-
-double read_limit(const TomlFile& file, const toml::table& table, const Parameter& parameter, const std::string& key)
-{
-    const std::string name = key + " of " + parameter.name;
-    const toml::node& node = required(file, table, key, "parameter '" + parameter.name + "'");
-    if (parameter.type == ParameterType::integer) return static_cast<double>(toml_integer(file, node, name));
-    return toml_number(file, node, name);
-}
-
-void refuse_limits(const TomlFile& file, const toml::table& table, const Parameter& parameter)
-{
-    for (const char* key : {"min", "max"}) {
-        if (const toml::node* node = table.get(key)) {
-            throw_spec_error("{}: '{}' belongs to numbers, and '{}' is none", toml_place(file, *node), key,
-                             parameter.name);
-        }
-    }
-}
-
-void read_choices(const TomlFile& file, const toml::table& table, const toml::node& node, Parameter& parameter)
-{
-    refuse_limits(file, table, parameter);
-    const toml::node& list = *table.get("choices");
-    parameter.choices      = toml_texts(file, list, "choices of " + parameter.name);
-    if (std::set(parameter.choices.begin(), parameter.choices.end()).size() != parameter.choices.size()) {
-        throw_spec_error("{}: 'choices' of '{}' names one twice", toml_place(file, list), parameter.name);
-    }
-    for (const std::string& choice : parameter.choices) {
-        // The shader gets each choice as a constant.
-        if (!is_glsl_name(parameter.name + "_" + choice)) {
-            throw_spec_error("{}: choice '{}' of '{}' must be letters, digits and underscores", toml_place(file, list),
-                             choice, parameter.name);
-        }
-    }
-    parameter.max = static_cast<double>(parameter.choices.size()) - 1;
-    parameter.default_value =
-        parse_parameter(parameter, toml_text(file, node, "default of " + parameter.name), toml_place(file, node));
-}
-
-void read_number(const TomlFile& file, const toml::table& table, const toml::node& node, Parameter& parameter)
-{
-    parameter.min           = read_limit(file, table, parameter, "min");
-    parameter.max           = read_limit(file, table, parameter, "max");
-    parameter.default_value = toml_number(file, node, "default of " + parameter.name);
-    if (parameter.min > parameter.max) {
-        throw_spec_error("{}: min {} of '{}' is above its max {}", toml_place(file, table), parameter.min,
-                         parameter.name, parameter.max);
-    }
-    if (parameter.default_value < parameter.min || parameter.default_value > parameter.max) {
-        throw_spec_error("{}: default {} of '{}' is outside [{}, {}]", toml_place(file, node), parameter.default_value,
-                         parameter.name, parameter.min, parameter.max);
-    }
-}
-
-Parameter read_parameter(const TomlFile& file, const toml::key& key, const toml::node& node)
-{
-    Parameter parameter;
-    parameter.name = key.str();
-    if (!is_glsl_name(parameter.name)) {
-        throw_spec_error("{}:{}: parameter '{}' is not a name that GLSL accepts (letters, digits, underscores; no "
-                         "keyword)",
-                         file.path, key.source().begin.line, parameter.name);
-    }
-    const toml::table& table = toml_table(file, node, parameter.name);
-    toml_known_keys(file, table, "field of parameter '" + parameter.name + "'", parameter_keys);
-    const std::string owner        = "parameter '" + parameter.name + "'";
-    parameter.doc                  = toml_text(file, required(file, table, "doc", owner), "doc of " + parameter.name);
-    const toml::node& default_node = required(file, table, "default", owner);
-    parameter.type                 = type_of_default(file, default_node, table.contains("choices"), parameter.name);
-    switch (parameter.type) {
-    case ParameterType::choice: read_choices(file, table, default_node, parameter); break;
-    case ParameterType::boolean:
-        refuse_limits(file, table, parameter);
-        parameter.max           = 1;
-        parameter.default_value = toml_bool(file, default_node, parameter.name) ? 1 : 0;
-        break;
-    default: read_number(file, table, default_node, parameter);
-    }
-    return parameter;
-}
-
-/// In the order in which the manifest declares them, which toml++ does not keep.
-std::vector<Parameter> read_parameters(const TomlFile& file, const toml::table& table)
-{
-    std::vector<std::pair<toml::source_position, Parameter>> declared;
-    for (const auto& [key, node] : table) {
-        declared.emplace_back(key.source().begin, read_parameter(file, key, node));
-    }
-    std::ranges::sort(declared, [](const auto& a, const auto& b) { return a.first < b.first; });
-    std::vector<Parameter> parameters;
-    for (auto& [position, parameter] : declared) parameters.push_back(std::move(parameter));
-    return parameters;
-}
+const std::vector<std::string> manifest_keys = {
+    "name", "summary", "cite", "structures", "exact", "limits", "bounded_by", "rays_per_invocation", "parameters"};
 
 void check_bounds(const TomlFile& file, const toml::node& node, const Technique& technique)
 {
@@ -136,17 +22,6 @@ void check_bounds(const TomlFile& file, const toml::node& node, const Technique&
             throw_spec_error("{}: 'bounded_by' names '{}', which is not an integer", toml_place(file, node), name);
         }
     }
-}
-
-/// A list of which every text must be known.
-std::vector<std::string> read_known(const TomlFile& file, const toml::node& node, const std::string& key,
-                                    const std::string& kind, std::span<const std::string> known)
-{
-    std::vector<std::string> names = toml_texts(file, node, key);
-    for (const std::string& name : names)
-        if (std::ranges::count(known, name) == 0)
-            throw_spec_error("{}: {}", toml_place(file, node), unknown_name(kind, name, known));
-    return names;
 }
 
 void read_limits(const TomlFile& file, const toml::node& node, Technique& technique)
@@ -158,30 +33,53 @@ void read_limits(const TomlFile& file, const toml::node& node, Technique& techni
         throw_spec_error("{}: 'limits' contradicts 'exact': an exact technique has none", toml_place(file, node));
 }
 
-void append_from(std::vector<Technique>& techniques, const fs::path& dir)
+bool is_technique(const fs::path& folder)
+{
+    return fs::exists(folder / "technique.toml") || fs::exists(folder / "trace.glsl");
+}
+
+bool is_structure(const fs::path& folder) { return fs::exists(folder / "structure.toml"); }
+
+/// Of a directory of techniques: itself or the folders in it, down to those `deepest` levels farther in.
+std::vector<fs::path> folders_in(const fs::path& dir, bool (*wanted)(const fs::path&), int deepest)
 {
     if (!fs::is_directory(dir)) throw_spec_error("{}: no such directory of techniques", short_path(dir));
     std::vector<fs::path> folders;
-    if (fs::exists(dir / "technique.toml")) {
-        folders.push_back(fs::weakly_canonical(dir));
-    } else {
-        for (const fs::directory_entry& entry : fs::directory_iterator(dir)) {
-            const bool complete = fs::exists(entry.path() / "technique.toml");
-            if (complete || fs::exists(entry.path() / "trace.glsl")) folders.push_back(entry.path());
-        }
-        std::ranges::sort(folders);
-        if (folders.empty()) throw_spec_error("{}: holds no technique (a folder with technique.toml)", short_path(dir));
+    if (wanted(dir)) folders.push_back(fs::weakly_canonical(dir));
+    constexpr auto skip = fs::directory_options::skip_permission_denied;
+    for (auto entry = fs::recursive_directory_iterator(dir, skip); entry != fs::recursive_directory_iterator();
+         ++entry) {
+        if (entry.depth() == deepest) entry.disable_recursion_pending();
+        if (entry->is_directory() && wanted(entry->path())) folders.push_back(entry->path());
     }
-    for (const fs::path& folder : folders) {
-        Technique  technique = load_technique(folder);
-        const auto same      = std::ranges::find(techniques, technique.id, &Technique::id);
-        if (same == techniques.end()) {
-            techniques.push_back(std::move(technique));
-        } else if (!fs::equivalent(same->folder, folder)) {
-            throw_spec_error("two techniques are called '{}': {} and {}", technique.id, short_path(same->folder),
-                             short_path(folder));
-        }
+    std::ranges::sort(folders);
+    return folders;
+}
+
+/// The in-tree directory, then those in $SSRLAB_TECHNIQUES, then the others.
+std::vector<fs::path> technique_dirs(std::span<const fs::path> extra_dirs)
+{
+    std::vector<fs::path> dirs{fs::path(SSRLAB_SOURCE_DIR) / "techniques"};
+    const char*           variable = std::getenv("SSRLAB_TECHNIQUES");
+    const std::string     list     = variable == nullptr ? "" : variable;
+    for (size_t start = 0; start < list.size();) {
+        const size_t end = std::min(list.find(':', start), list.size());
+        if (end > start) dirs.emplace_back(list.substr(start, end - start));
+        start = end + 1;
     }
+    dirs.insert(dirs.end(), extra_dirs.begin(), extra_dirs.end());
+    return dirs;
+}
+
+/// The same folder may be named twice, two folders of one id may not.
+template <typename Item> void append(std::vector<Item>& items, Item item, const std::string& kind)
+{
+    const auto same = std::ranges::find(items, item.id, &Item::id);
+    if (same == items.end())
+        items.push_back(std::move(item));
+    else if (!fs::equivalent(same->folder, item.folder))
+        throw_spec_error("two {} are called '{}': {} and {}", kind, item.id, short_path(same->folder),
+                         short_path(item.folder));
 }
 
 } // namespace
@@ -198,50 +96,58 @@ std::span<const Limit> known_limits()
     return limits;
 }
 
-Technique load_technique(const fs::path& folder)
+Technique load_technique(const fs::path& folder, std::span<const Structure> known)
 {
     const TomlFile file = read_toml(folder / "technique.toml");
     Technique      technique;
     technique.folder = folder;
-    technique.id     = fs::weakly_canonical(folder).filename().string();
-    if (!is_glsl_name(technique.id)) {
-        throw_spec_error(
-            "{}:1: the folder's name '{}' is the technique's id and must be letters, digits and underscores", file.path,
-            technique.id);
-    }
+    technique.id     = read_folder_id(file, folder, "technique");
     toml_known_keys(file, file.root, "key", manifest_keys);
-    technique.name    = toml_text(file, required(file, file.root, "name", "the technique"), "name");
-    technique.summary = toml_text(file, required(file, file.root, "summary", "the technique"), "summary");
+    technique.name    = toml_text(file, manifest_key(file, file.root, "name", "the technique"), "name");
+    technique.summary = toml_text(file, manifest_key(file, file.root, "summary", "the technique"), "summary");
     if (const toml::node* node = file.root.get("cite")) technique.cite = toml_texts(file, *node, "cite");
-    if (const toml::node* node = file.root.get("inputs"))
-        technique.inputs = read_known(file, *node, "inputs", "input", known_inputs);
+    if (const toml::node* node = file.root.get("structures"))
+        technique.structures =
+            collect_structures(toml_texts(file, *node, "structures"), known, toml_place(file, *node));
     if (const toml::node* node = file.root.get("exact")) technique.exact = toml_bool(file, *node, "exact");
     if (const toml::node* node = file.root.get("limits")) read_limits(file, *node, technique);
-    if (const toml::node* node = file.root.get("parameters")) {
-        technique.parameters = read_parameters(file, toml_table(file, *node, "parameters"));
+    if (const toml::node* node = file.root.get("rays_per_invocation")) {
+        technique.rays_per_invocation = static_cast<int>(toml_integer(file, *node, "rays_per_invocation"));
+        if (technique.rays_per_invocation != 1 && technique.rays_per_invocation != 2)
+            toml_refuse(file, *node, "rays_per_invocation", "1 or 2");
     }
+    technique.parameters = read_parameters(file);
+    for (const Structure& structure : technique.structures)
+        technique.parameters.insert(technique.parameters.end(), structure.parameters.begin(),
+                                    structure.parameters.end());
     if (const toml::node* node = file.root.get("bounded_by")) {
         technique.bounded_by = toml_texts(file, *node, "bounded_by");
         check_bounds(file, *node, technique);
     }
-    if (!fs::exists(folder / "trace.glsl")) {
+    if (!fs::exists(folder / "trace.glsl"))
         throw_spec_error("{}: missing; it holds the technique's trace function", short_path(folder / "trace.glsl"));
-    }
     return technique;
+}
+
+std::vector<Structure> list_structures(std::span<const fs::path> extra_dirs)
+{
+    std::vector<Structure> structures;
+    for (const fs::path& dir : technique_dirs(extra_dirs))
+        for (const fs::path& folder : folders_in(dir, is_structure, 1))
+            append(structures, load_structure(folder), "structures");
+    return structures;
 }
 
 std::vector<Technique> list_techniques(std::span<const fs::path> extra_dirs)
 {
-    std::vector<Technique> techniques;
-    append_from(techniques, fs::path(SSRLAB_SOURCE_DIR) / "techniques");
-    const char* variable = std::getenv("SSRLAB_TECHNIQUES");
-    std::string dirs     = variable == nullptr ? "" : variable;
-    for (size_t start = 0; start < dirs.size();) {
-        const size_t end = std::min(dirs.find(':', start), dirs.size());
-        if (end > start) append_from(techniques, dirs.substr(start, end - start));
-        start = end + 1;
+    const std::vector<Structure> structures = list_structures(extra_dirs);
+    std::vector<Technique>       techniques;
+    for (const fs::path& dir : technique_dirs(extra_dirs)) {
+        const std::vector<fs::path> folders = folders_in(dir, is_technique, 0);
+        if (folders.empty() && folders_in(dir, is_structure, 1).empty())
+            throw_spec_error("{}: holds no technique (a folder with technique.toml)", short_path(dir));
+        for (const fs::path& folder : folders) append(techniques, load_technique(folder, structures), "techniques");
     }
-    for (const fs::path& dir : extra_dirs) append_from(techniques, dir);
     return techniques;
 }
 

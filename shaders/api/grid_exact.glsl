@@ -40,16 +40,6 @@ Grid make_grid(Ray ray)
     return grid;
 }
 
-// As in grid_float.glsl.
-ivec2 run_forward(inout Ray ray, inout Grid grid)
-{
-    ivec2 mirror       = grid.forward - 1;
-    grid.origin_steps  = (grid.origin_steps ^ mirror) - mirror; // its sign changed where the mirror is -1
-    grid.inverse_delta = abs(grid.inverse_delta);
-    grid.forward       = ivec2(1);
-    return mirror;
-}
-
 // Depths are compared without a division, times `whole` and counted from the ray's origin: what is equal stays equal in both products.
 double scaled_depth(Ray ray, int64_t t)
 {
@@ -57,28 +47,22 @@ double scaled_depth(Ray ray, int64_t t)
     return z;
 }
 
-bool slab_between(Ray ray, Grid grid, real depth, double z_a, double z_b)
+// As in grid_float.glsl.
+bool slab_between(Ray ray, Grid grid, real depth, int64_t t_in, int64_t t_out)
 {
-    double         d     = double(depth), origin = double(ray.origin.z), whole = double(grid.whole);
+    double         z_a = scaled_depth(ray, t_in), z_b = scaled_depth(ray, t_out);
+    double         d = double(depth), origin = double(ray.origin.z), whole = double(grid.whole);
     precise double back  = (d * slab_scale - slab_shift) / (1.0LF + d * slab_slope);
     precise double low   = (back - origin) * whole;
     precise double high  = (d - origin) * whole;
     return high >= min(z_a, z_b) && low <= max(z_a, z_b);
 }
 
-bool touches_surface(Ray ray, Grid grid, ivec2 pixel, int64_t t_in, int64_t t_out)
+// By more than all roundings of slab_between().
+vec2 covered_depths(Ray ray, Grid grid, int64_t t_in, int64_t t_out)
 {
-    return accepts(ray, pixel, slab_between(ray, grid, fetch_depth(pixel), scaled_depth(ray, t_in), scaled_depth(ray, t_out)), true);
-}
-
-bool touches_cell(Ray ray, Grid grid, ivec2 pixel, int level, CellContent content, int64_t t_in, int64_t t_out)
-{
-    bool   leaf = level == 0;
     double z_a = scaled_depth(ray, t_in), z_b = scaled_depth(ray, t_out);
-    // A cell is asked with bounds rounded outward, by more than all roundings of the pixel's own test.
     double origin = double(ray.origin.z), whole = double(grid.whole);
     double slack  = 1e-13LF * (abs(origin) + abs(double(ray.delta.z)));
-    double z_far  = origin + min(z_a, z_b) / whole - slack, z_near = origin + max(z_a, z_b) / whole + slack;
-    bool   touched = leaf ? slab_between(ray, grid, content.depth, z_a, z_b) : cell_may_touch(content.node, float(z_far), float(z_near));
-    return accepts(ray, pixel, touched, leaf);
+    return vec2(float(origin + min(z_a, z_b) / whole - slack), float(origin + max(z_a, z_b) / whole + slack));
 }

@@ -30,25 +30,23 @@ Grid make_grid(Ray ray)
     return grid;
 }
 
-// Mirrors the picture so that the ray runs toward larger coordinates on both axes: pixel p becomes p ^ the result. Crossings keep
-// their bits, as only signs change.
-ivec2 run_forward(inout Ray ray, inout Grid grid)
+// Does the slab behind this depth meet the ray between two crossings?
+bool slab_between(Ray ray, Grid grid, real depth, real t_in, real t_out)
 {
-    ivec2 mirror       = grid.forward - 1;
-    ray.origin.xy      = mix(ray.origin.xy, -ray.origin.xy, notEqual(mirror, ivec2(0)));
-    ray.delta.xy       = abs(ray.delta.xy);
-    grid.inverse_delta = abs(grid.inverse_delta);
-    grid.forward       = ivec2(1);
-    return mirror;
+    return interval_touches(depth, depth_interval(ray, depth_at(ray, t_in), depth_at(ray, t_out)));
 }
 
-// Does the ray hit the surface seen at this pixel between two crossings? And may it touch one inside this cell?
-bool touches_surface(Ray ray, Grid grid, ivec2 pixel, real t_in, real t_out)
+// Depths that the ray covers between two crossings, rounded outward: x the farthest, y the nearest.
+vec2 covered_depths(Ray ray, Grid grid, real t_in, real t_out)
 {
-    return touches_surface(ray, pixel, depth_at(ray, t_in), depth_at(ray, t_out));
+    return vec2(depth_interval(ray, depth_at(ray, t_in), depth_at(ray, t_out)));
 }
 
-bool touches_cell(Ray ray, Grid grid, ivec2 pixel, int level, CellContent content, real t_in, real t_out)
+// Where the ray enters and leaves a pixel that it crosses.
+real2 span_in_pixel(Ray ray, Grid grid, ivec2 pixel)
 {
-    return touches_cell(ray, pixel, level, content, depth_at(ray, t_in), depth_at(ray, t_out));
+    real2 t_entry = border_t(ray, grid, pixel + 1 - grid.forward);
+    real  t_in    = max(real(0), max(t_entry.x, t_entry.y));
+    real2 t_exit  = border_t(ray, grid, pixel + grid.forward);
+    return real2(t_in, max(t_in, min(min(t_exit.x, t_exit.y), grid.t_end)));
 }

@@ -3,7 +3,7 @@
 #include "api/view.glsl"
 #define DEPTH_BINDING 3
 #define WRITES_DEPTH
-#include "layout/depth.glsl"
+#include "layout/memory_layout.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 1) uniform sampler2D depth_buffer;
@@ -18,7 +18,7 @@ void main()
     if (any(greaterThanEqual(pixel, size_px))) return;
     float depth = texelFetch(depth_buffer, pixel, 0).x;
     bool usable = depth > 0.0 && depth <= 1.0;
-    imageStore(depth_words, depth_word(pixel), vec4(usable ? depth : BACKGROUND_DEPTH));
+    store_depth(pixel, usable ? depth : BACKGROUND_DEPTH);
     if (usable) return;
     vec3 ray_vs = vec3(orthographic != 0 ? vec2(0) : px_to_slope(vec2(pixel) + 0.5), -1.0);
     imageStore(radiance_image, pixel, vec4(environment_radiance(mat3(view_to_world) * ray_vs), 1));

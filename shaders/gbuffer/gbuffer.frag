@@ -17,7 +17,8 @@ layout(set = 0, binding = 0, scalar) uniform Frame
 #include "gbuffer/lighting.glsl"
 #ifdef SECOND_LAYER
 #define DEPTH_BINDING 5 // the first layer's
-#include "layout/depth.glsl"
+#define READS_DEPTH
+#include "layout/memory_layout.glsl"
 #endif
 
 layout(location = 0) in vec3 position_ws;

@@ -2,7 +2,7 @@
 #ifndef SSRLAB_LISTED_HIT
 #define SSRLAB_LISTED_HIT
 #include "api/real.glsl"
-#include "layout/store_texel.glsl"
+#include "layout/memory_layout.glsl"
 
 struct ListedHit
 {

@@ -3,7 +3,7 @@
 #ifndef SSRLAB_LISTED_RAY
 #define SSRLAB_LISTED_RAY
 #include "api/real.glsl"
-#include "layout/store_texel.glsl"
+#include "layout/memory_layout.glsl"
 
 struct ListedRay
 {

@@ -27,9 +27,8 @@
 // The one workgroup that lists the tiles (shaders/rays/tile_list.comp).
 #define TILE_LIST_INVOCATIONS 128
 
-// Of the beam that a group's rays form (shaders/ray_beams.comp): how many clear stretches are kept, and beams per workgroup.
-#define BEAM_STRETCHES 4
-#define BEAMS_PER_GROUP 64
+// Groups of rays that a workgroup of a structure's pass per ray group works on, one an invocation.
+#define RAY_GROUPS_PER_WORKGROUP 64
 
 // Specialization constants. Technique parameters start at CONSTANT_PARAMETERS, in the order of technique.toml's names.
 #define CONSTANT_SLAB_SLOPE 0
@@ -42,11 +41,7 @@
 #define CONSTANT_EVERY_SURFACE 7
 #define CONSTANT_ITEMS_PER_GROUP 8
 #define CONSTANT_TRACE_BLOCK_PX 9
-#define CONSTANT_PYRAMID_KIND 10
 #define CONSTANT_RAYS_PER_PIXEL 11
-#define CONSTANT_FROM_PIXELS 12
-#define CONSTANT_TOP_LEVEL 13
-#define CONSTANT_BEAMS_IN_FRONT 14
 #define CONSTANT_PARAMETERS 32
 #define CONSTANT_EFFECTS 64 // the effects' parameters, in the order of render/effects.cpp
 
@@ -62,11 +57,6 @@
 // Of the table of GGX shares, in roughness and in cosine.
 #define GGX_SHARE_ENTRIES 32
 
-// What a pyramid cell records (hiz's parameter `pyramid`, in this order).
-#define PYRAMID_OCCUPANCY 0
-#define PYRAMID_MINMAX 1
-#define PYRAMID_NEAREST 2
-
 // Background in the depth that tracers read: nearer than nothing, so that no interval touches it.
 #define BACKGROUND_DEPTH -1.0
 
@@ -74,9 +64,6 @@
 // picture's height, and the cells above a row lie in the row of half its number. Level 0 holds two pixels in the place of a cell. All lies
 // in strips of 2^STRIP_BITS cells' width: a row of one is a cache line, and what a ray meets on its way up or down the picture follows in memory.
 #define STRIP_BITS 3
-
-// Patches of pixels of which the plane above them is known (shaders/patch_planes.comp): 2^PATCH_BITS pixels square, as wide as a strip.
-#define PATCH_BITS (STRIP_BITS + 1)
 
 #ifdef __cplusplus
 #define SHARED_FUNCTION inline

@@ -1,19 +1,17 @@
-// Traces the list of rays with the technique that the framework composes in: its parameters, then its trace() or trace_pair().
+// Traces the list of rays with the technique that the framework composes in: its parameters, the structures it reads, then its trace(); or, with the
+// manifest's rays_per_invocation = 2, its trace_pair(Ray a, Ray b, out TraceResult result_a, out TraceResult result_b).
 #include "api/trace_api.glsl"
 #include "trace/ray_list.glsl"
 #include "layout/packed_hit.glsl"
 #include "technique/parameters"
+#include "technique/structures"
 #include "technique/trace.glsl"
 
-#ifdef TRACES_PAIRS
-layout(local_size_x = RAYS_PER_GROUP / 2) in;
-#else
-layout(local_size_x = RAYS_PER_GROUP) in;
-#endif
+layout(local_size_x = RAYS_PER_GROUP / RAYS_PER_INVOCATION) in;
 
 STORED_HITS(9, Hits)
 #ifdef COUNT_WORK
-layout(set = 0, binding = 11, scalar) buffer Work { uvec3 work[]; }; // steps, depth fetches, pyramid fetches
+layout(set = 0, binding = 11, scalar) buffer Work { uint work[]; }; // of each ray: steps, depth fetches, fetches of each structure
 #endif
 
 Ray load_ray(uint index)
@@ -33,22 +31,24 @@ Ray load_ray(uint index)
     return ray;
 }
 
-// number: the ray's current_ray.
-void store_result(uint index, TraceResult result, int number)
+// own_lane: that of the ray.
+void store_result(uint index, TraceResult result, int own_lane)
 {
     STORE_TEXEL(Hits, index, hit_to_texel(ListedHit(pack_pixel(result.pixel, result.status), result.t)));
 #ifdef COUNT_WORK
-    work[index] = uvec3(result.steps, depth_fetches[number], pyramid_fetches[number]);
-#ifdef RAY_BEAMS
-    if (index % RAYS_PER_GROUP == 0) work[index].z += beam_fetches[work_group()]; // the whole group's, counted once
-#endif
+    uint first      = index * (2 + STRUCTURES);
+    work[first]     = result.steps;
+    work[first + 1] = depth_fetches[own_lane];
+    for (int structure = 0; structure < STRUCTURES; ++structure)
+        work[first + 2 + structure] = structure_fetches[LANES * structure + own_lane];
 #endif
 }
 
 void main()
 {
     uint first = work_group() * RAYS_PER_GROUP, place = gl_LocalInvocationID.x;
-#ifdef TRACES_PAIRS
+    reset_counters();
+#if RAYS_PER_INVOCATION == 2
     // Eight neighbouring invocations take 16 rays that follow each other: the first eight, and the eight after those.
     uint index = first + (place & ~7) + place, second = index + 8;
     if (index >= ray_count) return;

@@ -1,55 +1,36 @@
-// Two rays at a time: what one visit waits for, the other ray's visit can use (docs/performance.md).
-#define TRACES_PAIRS
-#include "cell_walk.glsl"
-
-int top = min(top_level, pyramid_levels());
-
-// number: the ray's current_ray.
-CellContent look(CellWalk walk, int number)
+// Walks the cells of the depth pyramid: down into a cell that may be touched, else on to the next one, and up where that one has another parent.
+TraceResult trace(Ray ray)
 {
-    current_ray = goes_on(walk) ? number : 2;
-    return fetch_cell(pixel_of(walk), walk.level);
-}
-
-void visit(Ray ray, inout CellWalk walk, CellContent content, int number)
-{
-    current_ray  = goes_on(walk) ? number : 2;
-    bool touched = touches_cell(ray, walk.grid, pixel_of(walk), walk.level, content, walk.t, t_exit(walk));
-    move(walk, touched, top);
-}
-
-TraceResult finish(Ray ray, CellWalk walk, int number)
-{
-    current_ray = number;
-    if (walk.level >= 0) return walk.t < walk.grid.t_end ? out_of_steps(walk.visited) : miss(ray, walk.visited);
-    ivec2 pixel = pixel_of(walk);
-    return hit_between(ray, pixel, crossing_to_t(walk.grid, walk.t), crossing_to_t(walk.grid, t_exit(walk)), walk.visited);
-}
-
-void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult result_b)
-{
-    int      level = min(start_level, top), stretch = 0;
-    CellWalk a = start_walk(ray_a, level), b = start_walk(ray_b, level);
-    real2    clear = clear_stretch(0);
-    stop_at(a, clear.x);
-    stop_at(b, clear.x);
-    do
+    Grid      grid     = make_grid(ray);
+    int       top      = pyramid_top(), level = min(start_level, top), visited = 0;
+    crossing2 t_border = border_t(ray, grid, ray.start_pixel + grid.forward);
+    crossing  t_in     = exit_t(grid, t_border), t_out = t_in;
+    ivec2     cell     = cross_borders(grid, ray.start_pixel, t_border, t_in) >> level;
+    bool      found    = false;
+    while (!found && t_in < grid.t_end && visited < max_steps)
     {
-        while (goes_on(a) || goes_on(b))
+        ivec2 pixel  = cell << level;
+        t_border     = border_t(ray, grid, (cell + grid.forward) << level);
+        t_out        = exit_t(grid, t_border);
+        bool touched = touches_cell(ray, grid, pixel, level, fetch_cell(pixel, level), t_in, t_out);
+        found        = touched && level == 0;
+        if (touched && level > 0)
         {
-            // Both reads are under way before one is waited for.
-            CellContent cell_a = look(a, 0), cell_b = look(b, 1);
-            visit(ray_a, a, cell_a, 0);
-            visit(ray_b, b, cell_b, 1);
+            // Of the four cells below, the one that holds the ray at t_in.
+            --level;
+            bvec2 beyond = lessThanEqual(border_t(ray, grid, (2 * cell + 1) << level), crossing2(t_in));
+            cell         = 2 * cell + ivec2(equal(ivec2(beyond), grid.forward));
         }
-        leap(a, min(LEAP_LEVEL, top), clear.y);
-        leap(b, min(LEAP_LEVEL, top), clear.y);
-        ++stretch;
-        // Here, not before the walk: its loop would work the end out at every turn (docs/performance.md).
-        clear = clear_stretch(stretch);
-        stop_at(a, clear.x);
-        stop_at(b, clear.x);
-    } while (stretch <= BEAM_STRETCHES && (is_open(a) || is_open(b)));
-    result_a = finish(ray_a, a, 0);
-    result_b = finish(ray_b, b, 1);
+        else if (!found)
+        {
+            ivec2 next = cross_borders(grid, cell, t_border, t_out);
+            bool  up   = level < top && next >> 1 != cell >> 1;
+            cell       = up ? next >> 1 : next;
+            level += int(up);
+            t_in       = t_out;
+        }
+        ++visited;
+    }
+    if (found) return hit_between(ray, cell, crossing_to_t(grid, t_in), crossing_to_t(grid, t_out), visited);
+    return t_in < grid.t_end ? out_of_steps(visited) : miss(ray, visited);
 }

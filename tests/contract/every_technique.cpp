@@ -107,7 +107,7 @@ void expect_contract(const Case& c, const Picture& picture, const Technique& tec
     EXPECT_EQ(count_differences(result, again, true, first), 0U) << "the second run differs: " << first << "\n"
                                                                  << repeat;
     EXPECT_TRUE(result.steps == again.steps && result.depth_fetches == again.depth_fetches &&
-                result.pyramid_fetches == again.pyramid_fetches)
+                result.structure_fetches == again.structure_fetches)
         << "the second run counts other work\n"
         << repeat;
 }

@@ -1,5 +1,6 @@
 // Techniques that claim to be exact, held to it: the pixel walk's answer on every ray, whatever their parameters.
 #include "contract/disputed_rays.h"
+#include "core/files.h"
 #include "core/pixel_index.h"
 #include "gpu/device.h"
 #include "render/ray_list.h"
@@ -61,17 +62,21 @@ std::vector<Case> all_cases()
 /// Every setting of the parameters that may change the way a technique walks, and must not change what it finds.
 std::vector<ParameterValues> variants(const Technique& technique, const Case& c)
 {
-    if (technique.id != "hiz") return {default_values(technique)};
+    const bool walks_cells = std::ranges::count(technique.parameters, "start_level", &Parameter::name) > 0 &&
+                             std::ranges::count(technique.parameters, "depth_pyramid.kind", &Parameter::name) > 0;
+    if (!walks_cells) return {default_values(technique)};
     // Every kind of pyramid at its default levels; every level at the sizes with odd borders, which is where a level may go wrong.
     std::vector<std::pair<int, int>> levels{{0, 7}};
     if (c.size_px == glm::ivec2(641, 363) || c.size_px == glm::ivec2(97, 1))
         levels = {{0, 7}, {0, 0}, {0, 14}, {14, 14}, {5, 3}, {1, 5}};
     std::vector<ParameterValues> list;
-    const size_t                 kinds = find_parameter(technique, "pyramid", "test").choices.size();
+    const size_t                 kinds = find_parameter(technique, "depth_pyramid.kind", "test").choices.size();
     for (const auto& [start, top] : levels)
         for (size_t kind = 0; kind < kinds; ++kind)
             list.push_back(values_of(
-                technique, {{"pyramid", static_cast<double>(kind)}, {"start_level", start}, {"top_level", top}}));
+                technique, {{"depth_pyramid.kind", static_cast<double>(kind)},
+                            {"start_level", start},
+                            {"depth_pyramid.top_level", top}}));
     return list;
 }
 
@@ -171,28 +176,37 @@ TEST_P(ExactTechniques, EqualThePixelWalkAndTheScreenTruth)
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ExactTechniques, testing::ValuesIn(all_cases()), case_name);
 
-/// The loop that stops behind the first object is not exact, but beams must not change what it finds. Those that may pass behind things do.
-TEST(FrontBeams, ChangeNoAnswerOfALoopThatStopsBehindTheFirstObject)
+/// The traversal that stops at the first occluder is not exact, but packets must not change what it finds. Those that may pass behind things do.
+TEST(FrontPackets, ChangeNoAnswerOfATraversalThatStopsAtTheFirstOccluder)
 {
-    const std::filesystem::path folders[]  = {std::filesystem::path(SSRLAB_SOURCE_DIR) / "tests/techniques"};
-    const auto                  techniques = list_techniques(folders);
-    const Technique&            stops      = find_technique(techniques, "first_occluder");
-    Technique                   passes     = stops;
-    passes.inputs                          = {"depth_pyramid", "ray_beams"};
-    const TraceSettings settings{.thickness_m = 0.1, .max_distance_m = 1e9};
-    const auto          values = [&](int beams) { return values_of(stops, {{"beams", beams}, {"max_steps", 60000}}); };
+    namespace fs = std::filesystem;
+    const fs::path   folders[]  = {fs::path(SSRLAB_SOURCE_DIR) / "tests/techniques"};
+    const auto       techniques = list_techniques(folders);
+    const Technique& stops      = find_technique(techniques, "first_occluder");
+    Technique        behind     = stops;
+    behind.structures           = technique("hiz_packets").structures;
+    // The same walk without packets.
+    Technique   walks   = stops;
+    std::string pattern = (fs::temp_directory_path() / "walks.XXXXXX").string();
+    walks.folder        = ::mkdtemp(pattern.data());
+    walks.structures    = technique("hiz").structures;
+    write_file_atomically(walks.folder / "trace.glsl", "real2 empty_interval(int number) { return real2(2); }\n" +
+                                                           read_file(stops.folder / "trace.glsl"));
+    const TraceSettings   settings{.thickness_m = 0.1, .max_distance_m = 1e9};
+    const ParameterValues values = values_of(stops, {{"max_steps", 60000}});
     for (const auto& [scene, view] : {std::pair("interior", "default"), std::pair("interior", "piano"),
                                       std::pair("thin_yard", "default"), std::pair("thin_yard", "fence")}) {
         const Picture     picture = make_picture(scene, view, {641, 363});
-        const TraceResult walked  = trace(picture, stops, values(0), settings);
+        const TraceResult walked  = trace(picture, walks, values, settings);
         std::string       first;
         const auto        differs = [&](const Technique& t) {
-            return count_differences(trace(picture, t, values(1), settings), walked, true, first);
+            return count_differences(trace(picture, t, values, settings), walked, true, first);
         };
-        EXPECT_GT(differs(passes), 100U) << scene << " " << view;
+        EXPECT_GT(differs(behind), 100U) << scene << " " << view;
         EXPECT_EQ(differs(stops), 0U) << first << "\n"
-                                      << repeat_command(scene, view, {641, 363}, stops, values(1), settings);
+                                      << repeat_command(scene, view, {641, 363}, stops, values, settings);
     }
+    fs::remove_all(walks.folder);
 }
 
 } // namespace

@@ -12,6 +12,9 @@
 namespace ssrlab::test {
 namespace {
 
+/// Choices of depth_pyramid.kind.
+enum Kind : int { occupancy, minmax, nearest_only };
+
 struct Pyramid {
     glm::ivec2              size_px;
     std::vector<glm::uvec2> cells;
@@ -32,8 +35,8 @@ Pyramid build(const Picture& picture, const TraceSettings& settings, double kind
 {
     const Technique& hiz   = technique("hiz");
     const auto       frame = prepare_frame(device(), picture.buffers, hiz,
-                                           values_of(hiz, {{"pyramid", kind}, {"top_level", 14}}), {settings});
-    submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_pyramid(commands, frame->pyramid); });
+                                           values_of(hiz, {{"depth_pyramid.kind", kind}, {"depth_pyramid.top_level", 14}}), {settings});
+    submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_depth_structures(commands, frame->structures); });
     const Buffer& cells = picture.buffers->gbuffer->depth.cells;
     return {picture.view.size_px, download_as<glm::uvec2>(device(), cells, cells.bytes / sizeof(glm::uvec2))};
 }
@@ -81,7 +84,7 @@ bool is_right(glm::uvec2 cell, const GBufferImage& image, const TraceSettings& s
         for (int px = x << level; px < std::min((x + 1) << level, size.x); ++px) {
             const double depth = static_cast<double>(image.depth[at(image, px, py)]);
             if (depth <= 0) continue;
-            const double back = kind == PYRAMID_NEAREST ? 0 : std::max(slab_back(image.view, depth, settings), 0.0);
+            const double back = kind == nearest_only ? 0 : std::max(slab_back(image.view, depth, settings), 0.0);
             const Slab   slab{bits(depth), bits(back), bits(back * (1 - 4e-6))};
             slabs.push_back(slab);
             all = {std::max(all.front, rounded_front(depth)), std::min(all.inner_back, slab.inner_back),
@@ -92,7 +95,7 @@ bool is_right(glm::uvec2 cell, const GBufferImage& image, const TraceSettings& s
     uint32_t       least = 0, most = 0;
     for (const Slab& slab : slabs) {
         // Without occupancy everything from the nearest front to the farthest back is full.
-        const uint32_t front = kind == PYRAMID_OCCUPANCY ? slab.front : all.front;
+        const uint32_t front = kind == occupancy ? slab.front : all.front;
         least |= bins(all.front, front, slab.inner_back, shift);
         most |= bins(all.front, front, slab.outer_back, shift);
     }
@@ -123,7 +126,7 @@ class DepthPyramid : public testing::TestWithParam<glm::ivec2> {};
 TEST_P(DepthPyramid, EqualsBruteForceOnRandomDepth)
 {
     const Picture picture = make_picture(random_gbuffer(bench_view(GetParam()), 7));
-    for (const int kind : {PYRAMID_OCCUPANCY, PYRAMID_MINMAX, PYRAMID_NEAREST})
+    for (const int kind : {occupancy, minmax, nearest_only})
         for (const TraceSettings& settings : {TraceSettings{.thickness_m = 0.1}, TraceSettings{.thickness_m = 0},
                                               TraceSettings{.thickness_m = std::numeric_limits<double>::infinity()},
                                               TraceSettings{.thickness_m = 0.2, .thickness_relative = true}})
@@ -134,7 +137,7 @@ TEST_P(DepthPyramid, KeepsTheDepthOfEveryPixelAsLevel0)
 {
     const glm::ivec2 size    = GetParam();
     const Picture    picture = make_picture(random_gbuffer(bench_view(size), 9));
-    const Pyramid    pyramid = build(picture, {}, PYRAMID_OCCUPANCY);
+    const Pyramid    pyramid = build(picture, {}, occupancy);
     for (int y = 0; y < size.y; ++y)
         for (int x = 0; x < size.x; ++x) {
             const float depth = picture.image.depth[at(picture.image, x, y)];
@@ -153,7 +156,7 @@ TEST_P(DepthPyramid, SeesTheOnlyNearTexelInEveryCornerAndBorder)
         GBufferImage image = empty_gbuffer(bench_view(size));
         std::ranges::fill(image.depth, 0.01F);
         image.depth[at(image, near.x, near.y)] = 0.75F;
-        const Pyramid pyramid                  = build(make_picture(image), {}, PYRAMID_OCCUPANCY);
+        const Pyramid pyramid                  = build(make_picture(image), {}, occupancy);
         ASSERT_EQ(pyramid_levels(pyramid.size_px), expected_levels(size));
         for (int level = 1; level <= pyramid_levels(pyramid.size_px); ++level)
             for (int y = 0; y < pyramid.size(level).y; ++y)
@@ -179,8 +182,8 @@ TEST(DepthPyramidOrthographic, EqualsBruteForce)
     view.far_m            = 20;
     const Picture picture = make_picture(random_gbuffer(view, 3));
     for (const bool relative : {false, true})
-        expect_cells(build(picture, {.thickness_m = 0.1, .thickness_relative = relative}, PYRAMID_OCCUPANCY),
-                     picture.image, {.thickness_m = 0.1, .thickness_relative = relative}, PYRAMID_OCCUPANCY);
+        expect_cells(build(picture, {.thickness_m = 0.1, .thickness_relative = relative}, occupancy),
+                     picture.image, {.thickness_m = 0.1, .thickness_relative = relative}, occupancy);
 }
 
 // NaN, infinities, negative numbers and depths nearer than the near plane are background, and disturb no other pixel.
@@ -198,7 +201,7 @@ TEST(UnusableDepth, IsBackgroundAndChangesNothingElse)
     const Picture       good = make_picture(clean), bad = make_picture(spoilt);
     const TraceSettings settings{.thickness_m = 0.3};
     EXPECT_EQ(good.image.depth, bad.image.depth);
-    expect_cells(build(bad, settings, PYRAMID_OCCUPANCY), clean, settings, PYRAMID_OCCUPANCY);
+    expect_cells(build(bad, settings, occupancy), clean, settings, occupancy);
     std::string first;
     for (const char* id : {"dda", "hiz", "linear", "linear_binary"}) {
         const Technique& t = technique(id);

@@ -20,7 +20,7 @@ TEST_P(FrameRuns, TimesAreThereAndResultsAreTheCountedOnes)
     EXPECT_EQ(count_differences(first, second, true, text), 0U) << text;
     EXPECT_EQ(first.steps, second.steps);
     EXPECT_EQ(first.depth_fetches, second.depth_fetches);
-    EXPECT_EQ(first.pyramid_fetches, second.pyramid_fetches);
+    EXPECT_EQ(first.structure_fetches, second.structure_fetches);
 
     std::vector<float> shaded;
     for (int run = 0; run < 3; ++run) {
@@ -29,8 +29,8 @@ TEST_P(FrameRuns, TimesAreThereAndResultsAreTheCountedOnes)
             EXPECT_GT(ms, 0);
             EXPECT_LT(ms, 60000);
         }
-        EXPECT_GE(times.of("depth_pyramid"), t.inputs.empty() ? 0 : 1e-4);
-        const TraceResult timed = read_result<float>(device(), picture.view.size_px, *frame->rays, nullptr);
+        EXPECT_GE(times.of("structures"), t.structures.empty() ? 0 : 1e-4);
+        const TraceResult timed = read_result<float>(device(), *frame, *frame->rays, nullptr);
         EXPECT_EQ(count_differences(timed, first, true, text), 0U) << "run " << run << ": " << text;
         const auto pixels = read_shaded(device(), *frame).values;
         if (run == 0) shaded = pixels;

@@ -11,20 +11,20 @@
 namespace ssrlab::test {
 namespace {
 
-/// Of each patch: the plane's slope rightward and downward, its depth at the first pixel; the farthest depth of what stands before it, or 0.
+constexpr int patch_px = 16; // techniques/hiz_packets/patch_planes/structure.toml
+
+/// Of each patch: the plane's slope rightward and downward, its depth at the first pixel; the farthest depth of its occluders, or 0.
 std::vector<glm::vec4> planes_of(const Picture& picture, const TraceSettings& settings = {},
-                                 const char* beams = "ray_beams")
+                                 const Technique& reads = technique("hiz_packets"))
 {
-    Technique hiz    = technique("hiz");
-    hiz.inputs       = {"depth_pyramid", beams};
-    const auto frame = prepare_frame(device(), picture.buffers, hiz, values_of(hiz), {settings});
+    const auto frame = prepare_frame(device(), picture.buffers, reads, values_of(reads), {settings});
     submit(device(), [&](const vk::raii::CommandBuffer& commands) {
-        record_rays(commands, frame->trace, *picture.buffers);
-        record_pyramid(commands, frame->pyramid);
-        record_technique(commands, frame->trace.technique, *frame->rays);
+        record_depth_structures(commands, frame->structures);
     });
-    const glm::ivec2 patches = level_size(picture.view.size_px, PATCH_BITS);
-    return download_as<glm::vec4>(device(), picture.buffers->gbuffer->depth.patch_planes, pixel_count(patches));
+    const glm::ivec2 patches = (picture.view.size_px - 1) / patch_px + 1;
+    for (const auto& [name, buffer] : *picture.buffers->gbuffer->structures)
+        if (name.ends_with(".planes")) return download_as<glm::vec4>(device(), buffer, pixel_count(patches));
+    throw std::logic_error("no patch planes");
 }
 
 struct Front {
@@ -35,15 +35,15 @@ struct Front {
 
 std::vector<Front> fronts_of(const Picture& picture, const std::vector<glm::vec4>& planes)
 {
-    const glm::ivec2   size = picture.view.size_px, patches = level_size(size, PATCH_BITS);
+    const glm::ivec2   size = picture.view.size_px, patches = (size - 1) / patch_px + 1;
     std::vector<Front> fronts;
     for (size_t i = 0; i < picture.image.depth.size(); ++i) {
         const float depth = picture.image.depth[i];
         if (depth <= 0) continue;
-        const glm::ivec2 pixel = pixel_at(i, size), place = pixel >> PATCH_BITS;
+        const glm::ivec2 pixel = pixel_at(i, size), place = pixel / patch_px;
         const size_t     patch = pixel_index(place, patches);
         const glm::vec3  plane = planes.at(patch);
-        fronts.push_back({patch, depth, glm::dot(plane, glm::vec3(pixel - (place << PATCH_BITS), 1)) - depth});
+        fronts.push_back({patch, depth, glm::dot(plane, glm::vec3(pixel - (place * patch_px), 1)) - depth});
     }
     return fronts;
 }
@@ -127,12 +127,14 @@ TEST(PatchPlanesBehindBars, LieAboveThemWhereSlabsNeverEnd)
     for (const glm::vec4& plane : planes) ASSERT_EQ(plane.w, 0);
 }
 
-TEST(PatchPlanesBehindBars, LieAboveThemWhereBeamsStayInFront)
+TEST(PatchPlanesBehindBars, LieAboveThemWherePacketsStayInFront)
 {
     const Picture picture = make_picture(ground_behind_bars({128, 64}));
     TraceSettings settings;
     settings.thickness_m = 0.1;
-    const auto planes    = planes_of(picture, settings, "front_beams");
+    const std::filesystem::path folders[]  = {std::filesystem::path(SSRLAB_SOURCE_DIR) / "tests/techniques"};
+    const auto                  techniques = list_techniques(folders);
+    const auto planes = planes_of(picture, settings, find_technique(techniques, "first_occluder"));
     for (const Front& front : fronts_of(picture, planes)) ASSERT_GE(front.height, -1e-6F);
     for (const glm::vec4& plane : planes) ASSERT_EQ(plane.w, 0);
 }

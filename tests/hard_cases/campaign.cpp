@@ -72,9 +72,11 @@ public:
     {
         for (const double exact : {0.0, 1.0}) {
             walks_.push_back(make("dda", {{"arithmetic", exact}}));
-            for (ParameterValues variant : hiz_variants) {
-                variant["arithmetic"] = exact;
-                (exact == 0 ? hiz_float_ : hiz_exact_).push_back(make("hiz", variant));
+            for (const Variant& variant : hiz_variants) {
+                if (exact != 0 && variant.id != "hiz") continue; // packets know float alone
+                ParameterValues values = variant.values;
+                if (exact != 0) values["arithmetic"] = exact;
+                (exact == 0 ? hiz_float_ : hiz_exact_).push_back(make(variant.id, values));
             }
         }
     }
@@ -85,7 +87,8 @@ public:
     size_t differing(bool exact, size_t variant, const std::vector<RayInput>& rays, const Outcomes& walk, Count& count)
     {
         const auto   found  = trace_rays(device(), *(exact ? hiz_exact_ : hiz_float_)[variant], rays);
-        const double start  = values_of(technique("hiz"), hiz_variants[variant]).at("start_level");
+        const double start =
+            values_of(technique(hiz_variants[variant].id), hiz_variants[variant].values).at("start_level");
         size_t       differ = 0;
         for (size_t i = 0; i < rays.size(); ++i) {
             differ += !same_bits(found[i], walk[i]);
@@ -95,7 +98,7 @@ public:
         return differ;
     }
 
-    static size_t variants() { return hiz_variants.size(); }
+    size_t variants(bool exact) const { return (exact ? hiz_exact_ : hiz_float_).size(); }
 
 private:
     RayTracerPtr make(const std::string& id, const ParameterValues& changed)
@@ -104,10 +107,18 @@ private:
                                batch_);
     }
 
-    static inline const std::vector<ParameterValues> hiz_variants = {
-        {},
-        {{"pyramid", 1}, {"start_level", 14}, {"top_level", 14}},
-        {{"pyramid", 2}, {"start_level", 5}, {"top_level", 3}}};
+    struct Variant {
+        std::string     id;
+        ParameterValues values;
+    };
+    /// Those of hiz first, since they run in whole numbers, too.
+    static inline const std::vector<Variant> hiz_variants = {
+        {"hiz", {}},
+        {"hiz", {{"depth_pyramid.kind", 1}, {"start_level", 14}, {"depth_pyramid.top_level", 14}}},
+        {"hiz", {{"depth_pyramid.kind", 2}, {"start_level", 5}, {"depth_pyramid.top_level", 3}}},
+        {"hiz_packets", {}},
+        {"hiz_packets", {{"depth_pyramid.kind", 1}, {"start_level", 14}, {"depth_pyramid.top_level", 14}}},
+        {"hiz_packets", {{"depth_pyramid.kind", 2}, {"start_level", 5}, {"depth_pyramid.top_level", 3}}}};
 
     GBufferPtr                gbuffer_;
     size_t                    batch_;
@@ -168,13 +179,13 @@ Count campaign_on(Field field, glm::ivec2 size, const Plan& plan, size_t rays, s
         const auto walk  = tracers.walk(false, list);
         const bool judge = number % plan.judged_every == 0;
         // Every way to run hiz where the integers judge, else one of them in turn.
-        for (size_t v = 0; v < FieldTracers::variants(); ++v)
-            if (judge || v == number % FieldTracers::variants())
+        for (size_t v = 0; v < tracers.variants(false); ++v)
+            if (judge || v == number % tracers.variants(false))
                 count.differ += tracers.differing(false, v, list, walk, count);
         count.rays += list.size();
         if (!judge) continue;
         const auto exact_walk = tracers.walk(true, list);
-        for (size_t v = 0; v < FieldTracers::variants(); ++v)
+        for (size_t v = 0; v < tracers.variants(true); ++v)
             count.differ_exact += tracers.differing(true, v, list, exact_walk, count);
         judge_by_integers(setup, list, walk, exact_walk, count, first);
     }

@@ -26,7 +26,7 @@ public:
         if (at == std::string::npos) throw std::logic_error("mutation: '" + from + "' is not in " + id);
         trace.replace(at, from.size(), to);
         write_file_atomically(folder_ / "mutant/trace.glsl", trace);
-        mutant_ = load_technique(folder_ / "mutant");
+        mutant_ = load_technique(folder_ / "mutant", list_structures({}));
     }
     ~Mutant() { fs::remove_all(folder_); }
     Mutant(const Mutant&)                     = delete;
@@ -65,12 +65,13 @@ std::vector<Mutation> mutations()
                  "real mixed(Ray ray, real t) { real end = ray.origin.z + ray.delta.z; precise real z = "
                  "ray.origin.z * (real(1) - t) + end * t; return z; }\n"
                  "bool mutated_touches_cell(Ray ray, Grid grid, ivec2 pixel, int level, CellContent content, real a, "
-                 "real b) { return touches_cell(ray, pixel, level, content, mixed(ray, a), mixed(ray, b)); }",
+                 "real b) { if (level > 0) return touches_cell(ray, grid, pixel, level, content, a, b); return "
+                 "interval_touches(content.depth, depth_interval(ray, mixed(ray, a), mixed(ray, b))); }",
                  "level_at_the_surface"),
         replaced("BordersMultipliedOut", "border_t",
                  "real2 mutated_border_t(Ray ray, Grid grid, ivec2 border) { return real2(border) * grid.inverse_delta "
                  "- ray.origin.xy * grid.inverse_delta; }"),
-        // In the mirrored picture no way is negative, and signs of zeros do not matter: these two concern the pixel walk.
+        // These two concern the pixel walk.
         replaced("BordersByDivision", "border_t",
                  "real2 mutated_border_t(Ray ray, Grid grid, ivec2 border) { return (real2(border) - ray.origin.xy) / "
                  "ray.delta.xy; }",
@@ -82,10 +83,13 @@ std::vector<Mutation> mutations()
         replaced("LessForLessOrEqualAtCorners", "next_corner",
                  "ivec2 mutated_next_corner(ivec2 corner, int size, real2 t_border, real t) { bool x = t_border.x <= "
                  "t; return corner + size * ivec2(x, !x); }",
-                 "exact_diagonal"),
+                 "exact_diagonal", "hiz_packets"),
         replaced("LessForLessOrEqualAtChildren", "child_corner",
                  "ivec2 mutated_child_corner(Ray ray, Grid grid, ivec2 corner, int size, real t) { ivec2 m = corner - "
-                 "(size >> 1); return mix(m, corner, lessThan(border_t(ray, grid, m), real2(t))); }"),
+                 "(size >> 1); return mix(m, corner, lessThan(border_t(ray, grid, m), real2(t))); }",
+                 {}, "hiz_packets"),
+        {"LessForLessOrEqualBelow", "hiz", "bvec2 beyond = lessThanEqual(", "bvec2 beyond = lessThan(", {}},
+        {"TheOtherCellBelow", "hiz", "ivec2(equal(ivec2(beyond), grid.forward))", "ivec2(beyond)", {}},
         replaced("PixelFromThePosition", "cross_borders",
                  "ivec2 mutated_cross_borders(Grid grid, ivec2 cell, real2 t_border, real t) { return cell; }", {},
                  "dda"),
@@ -93,13 +97,15 @@ std::vector<Mutation> mutations()
          "found = touches_surface(ray, grid, pixel, t_in, t_out) && fetch_depth(pixel) > "
          "min(depth_at(ray, t_in), depth_at(ray, t_out));",
          "equality_counts"},
-        replaced("ClearStretchesEndTooLate", "clear_stretch",
-                 "real2 mutated_clear_stretch(int number) { real2 t = clear_stretch(number); return real2(t.x, t.y + "
-                 "real(0.02)); }"),
-        replaced("ClearStretchesBeginTooEarly", "clear_stretch",
-                 "real2 mutated_clear_stretch(int number) { real2 t = clear_stretch(number); return real2(t.x < "
-                 "real(1) ? real(0) : t.x, t.y); }"),
-        {"OutOfStepsIsAMiss", "hiz", "out_of_steps(walk.visited)", "miss(ray, walk.visited)", "seven_steps"},
+        replaced("EmptyIntervalsEndTooLate", "empty_interval",
+                 "real2 mutated_empty_interval(int number) { real2 t = empty_interval(number); return real2(t.x, t.y + "
+                 "real(0.02)); }",
+                 {}, "hiz_packets"),
+        replaced("EmptyIntervalsBeginTooEarly", "empty_interval",
+                 "real2 mutated_empty_interval(int number) { real2 t = empty_interval(number); return real2(t.x < "
+                 "real(1) ? real(0) : t.x, t.y); }",
+                 {}, "hiz_packets"),
+        {"OutOfStepsIsAMiss", "hiz", "out_of_steps(visited)", "miss(ray, visited)", "seven_steps"},
         {"StopsBehindTheFirstObject", "dda", "while (!found && t_out < grid.t_end",
          "while (!found && (t_in == real(0) || depth_at(ray, t_out) >= fetch_depth(pixel)) && t_out < grid.t_end",
          "floating_beam"},

@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const FrameFacts with_pyramid{.inputs = {"depth_pyramid"}};
+const FrameFacts with_pyramid{.structures = {"depth_pyramid"}};
 
 /// 1000 pixels in 20 tiles, of which `reflecting` reflect, `rough` of these with roughness.
 FrameStatistics picture(uint32_t reflecting, uint32_t rough, uint32_t hits, uint32_t mirror_hits)
@@ -104,7 +104,7 @@ TEST(Plan, WithoutThePlanEverythingRunsThatIsNotSwitchedOff)
 // A second layer and further bounces continue rays one by one, whether the picture calls for them or not.
 TEST(Plan, FurtherRaysNeedOneRayPerPixelAtFullResolution)
 {
-    const FrameFacts      drawn{.scene = true, .inputs = {"depth_pyramid"}};
+    const FrameFacts      drawn{.scene = true, .structures = {"depth_pyramid"}};
     const FrameStatistics mirrors = picture(400, 0, 300, 10);
     const auto            plan    = plan_frame(drawn, mirrors, values_with({{"hidden_layer", 1}}));
     EXPECT_EQ(reason(plan, "hidden_layer"), "25 % of 400 rays found nothing");
@@ -123,7 +123,7 @@ TEST(Plan, FurtherRaysNeedOneRayPerPixelAtFullResolution)
 // The filter after a trace without a hit has the second layer's hits to work on.
 TEST(Plan, HitsOfTheSecondLayerAreFilteredLikeOthers)
 {
-    const FrameFacts      drawn{.scene = true, .inputs = {}};
+    const FrameFacts      drawn{.scene = true, .structures = {}};
     const FrameStatistics misses = picture(400, 0, 0, 0);
     EXPECT_FALSE(running(plan_frame(drawn, misses, values_with({{"kernel", 1}}))).contains("kernel_filter"));
     EXPECT_TRUE(running(plan_frame(drawn, misses, values_with({{"kernel", 1}, {"hidden_layer", 1}})))

@@ -41,7 +41,7 @@ TEST(Rows, ColumnsAreUniqueAndIdentityComesFirst)
     EXPECT_EQ(names.front(), "run_id");
     EXPECT_EQ(names.back(), "message");
     for (const char* name :
-         {"steps", "space", "trace_ms_median", "frame_ms_median", "fps", "inverse_fps_s", "rays", "pyramid_ms_median",
+         {"steps", "space", "trace_ms_median", "frame_ms_median", "fps", "inverse_fps_s", "rays", "structures_ms_median",
           "depth_fetches_mean", "fetches_p99", "recall_1px", "out_of_steps_share", "outcome"}) {
         EXPECT_THAT(names, testing::Contains(name));
     }
@@ -117,7 +117,7 @@ TEST(Rows, CountsOfAResultWithKnownFigures)
     EXPECT_EQ(row.at("facing_away_share"), "0");
     EXPECT_EQ(row.at("steps_mean"), "25");
     EXPECT_EQ(row.at("depth_fetches_mean"), "2.5");
-    EXPECT_EQ(row.at("pyramid_fetches_mean"), "7.5");
+    EXPECT_EQ(row.at("structure_fetches_mean"), "7.5");
     EXPECT_EQ(row.at("fetches_mean"), "10");
     EXPECT_EQ(row.at("fetches_max"), "10");
 }
@@ -196,7 +196,7 @@ TEST(Rows, TheEstimateFollowsSizeAndTechnique)
     dda.bounded_by                            = {"steps"};
     dda.parameters[0].max                     = 60000;
     hiz                                       = dda;
-    hiz.inputs                                = {"depth_pyramid"};
+    hiz.structures                            = {{.id = "depth_pyramid"}};
     const auto frame_s                        = [&](const Technique& technique, glm::ivec2 size_px) {
         ssrlab::Run run;
         run.size_px         = size_px;

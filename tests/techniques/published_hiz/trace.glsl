@@ -14,7 +14,7 @@ TraceResult trace(Ray ray)
     // Out of the pixel that it starts from.
     real2 t_axis = ((floor(origin.xy * real2(size_px)) + floor_offset) / real2(size_px) + uv_offset - origin.xy) * inverse.xy;
     real  t_start = min(t_axis.x, t_axis.y), t = t_start;
-    int   top = min(top_level, pyramid_levels()), level = 0, visited = 0;
+    int   top = pyramid_top(), level = 0, visited = 0;
     real3 position = origin + t * direction;
     ivec2 cell = ray.start_pixel, pixel = cell;
     while (level >= 0 && t < real(1) && visited < max_steps)

@@ -1,12 +1,11 @@
 // The walk of techniques/dda, two rays at a time and two pixels of each in one iteration, in a picture mirrored so that they run forward.
-#define TRACES_PAIRS
-#include "cell_walk.glsl"
+#include "hiz_packets/traversal.glsl"
 
 // In pixels, level 0.
-void visit(Ray ray, inout CellWalk walk, int number)
+void visit(Ray ray, inout Traversal walk, int own_lane)
 {
-    bool  goes     = goes_on(walk);
-    current_ray    = goes ? number : 2;
+    bool  goes     = is_active(walk);
+    lane           = goes ? own_lane : 2;
     real2 t_border = border_t(walk.forward, walk.grid, walk.corner);
     real  t_out    = exit_t(walk.grid, t_border);
     bool  touched  = touches_surface(ray, walk.grid, pixel_of(walk), walk.t, t_out);
@@ -18,17 +17,17 @@ void visit(Ray ray, inout CellWalk walk, int number)
     walk.visited += int(goes);
 }
 
-TraceResult finish(Ray ray, CellWalk walk, int number)
+TraceResult finish(Ray ray, Traversal walk, int own_lane)
 {
-    current_ray = number;
+    lane = own_lane;
     if (walk.level >= 0) return walk.t < walk.grid.t_end ? out_of_steps(walk.visited) : miss(ray, walk.visited);
     return hit_between(ray, pixel_of(walk), walk.t, t_exit(walk), walk.visited);
 }
 
 void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult result_b)
 {
-    CellWalk a = start_walk(ray_a, 0), b = start_walk(ray_b, 0);
-    while (goes_on(a) || goes_on(b))
+    Traversal a = start_traversal(ray_a, 0), b = start_traversal(ray_b, 0);
+    while (is_active(a) || is_active(b))
     {
         visit(ray_a, a, 0);
         visit(ray_b, b, 1);

@@ -1,4 +1,4 @@
-// Depth as tracers read it, and the pyramid that is built on it, in one buffer. Folder-internal.
+// Depth as tracers read it, with room for two words a cell of each level above it. Folder-internal.
 #pragma once
 
 #include "gpu/resources.h"
@@ -19,18 +19,17 @@ size_t cell_index(glm::ivec2 size_px, glm::ivec2 pixel, int level);
 /// Cells of a level.
 glm::ivec2 level_size(glm::ivec2 size_px, int level);
 
-/// The depth of every pixel and what is known of cells, in strips.
-struct DepthPyramid {
+/// The depth of every pixel as level 0, and the cells above it, in strips (shaders/layout/memory_layout.glsl).
+struct DepthBuffer {
     glm::ivec2           size_px{0, 0};
-    Buffer               cells;           // as texels: both words of a cell (shaders/pyramid_cell.glsl), or two pixels
+    Buffer               cells;           // as texels: both words of a cell, or the depths of two pixels
     vk::raii::BufferView words = nullptr; // as texels: each word
     vk::raii::BufferView pairs = nullptr; // as texels: two cells, or four pixels
-    Buffer               patch_planes;    // four floats a patch (shaders/patch_planes.comp)
 };
 
 /// Without content.
-DepthPyramid       make_depth_pyramid(Gpu& gpu, glm::ivec2 size_px);
-void               write_depth(Gpu& gpu, DepthPyramid& pyramid, std::span<const float> depth);
-std::vector<float> read_depth(Gpu& gpu, const DepthPyramid& pyramid);
+DepthBuffer       make_depth_buffer(Gpu& gpu, glm::ivec2 size_px);
+void               write_depth(Gpu& gpu, DepthBuffer& buffer, std::span<const float> depth);
+std::vector<float> read_depth(Gpu& gpu, const DepthBuffer& buffer);
 
 } // namespace ssrlab

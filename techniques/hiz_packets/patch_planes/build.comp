@@ -1,17 +1,26 @@
-// The ground of each patch of 2^PATCH_BITS pixels square, and what stands before it. The ground is a plane, linear on screen as depth is where a
-// surface is flat. No front of the patch lies nearer than that plane but those that stand before it: so much nearer that a ray could
-// pass between the two, behind a slab. Four numbers: how much nearer the plane gets each pixel to the right and each pixel down, its depth at the
-// centre of the first pixel, and the farthest depth of what stands before it, or 0. Any choice of ground is correct; a good one is useful.
+// The base plane of each patch of pixels, and its occluders. The base plane is linear on screen, as depth is where a surface is flat. Every depth in
+// the patch lies behind this plane, except the occluders: they are so much nearer that a ray could pass between the two, behind a slab. Four numbers:
+// how much nearer the plane gets each pixel to the right and each pixel down, its depth at the centre of the first pixel, and the farthest depth of the
+// occluders, or 0. Any choice of a base plane is correct; a good one is useful.
 #include "api/view.glsl"
-#include "layout/depth.glsl"
 #include "api/slab.glsl"
+#define READS_DEPTH
+#define READS_CELL_PAIRS
+#include "layout/memory_layout.glsl"
+#include "structure/buffers"
+#include "patch.glsl"
+#if PATCH_BITS != STRIP_BITS + 1
+#error a patch is as wide as a strip: its rows are adjacent in memory
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(constant_id = CONSTANT_BEAMS_IN_FRONT) const int beams_in_front = 0;
-layout(set = 0, binding = 3, rgba32ui) uniform readonly uimageBuffer cell_pairs; // four pixels a texel
-layout(set = 0, binding = 14, rgba32f) uniform writeonly imageBuffer PatchPlanes;
 
-const int   side_px = 1 << PATCH_BITS, quads = side_px / 4, sample_rows = beams_in_front != 0 ? 2 : 4, samples = sample_rows * sample_rows;
+#ifdef IN_FRONT
+const int sample_rows = 2; // packets that stay in front of everything pass behind nothing
+#else
+const int sample_rows = 4;
+#endif
+const int   side_px = 1 << PATCH_BITS, quads = side_px / 4, samples = sample_rows * sample_rows;
 const float none = 1e30;
 // Of depth: how far a sample may lie off a plane that holds it, and how much the lines through its neighbours may bend there.
 const float on_plane = 1.0 / 4096, most_bent = 1.0 / 100000;
@@ -49,15 +58,15 @@ void main()
         for (int column = 0; column < sample_rows; ++column)
         {
             int   quad = first_quad + sample_quad(column), word = 4 * quad + picks[column].y, i = row * sample_rows + column;
-            uvec4 four = imageLoad(cell_pairs, quad + y * quads);
+            uvec4 four = load_pair(quad + y * quads);
             depths[i]  = uintBitsToFloat(uvec3(four[picks[column].x], four[picks[column].y], four[picks[column].z]));
             beside[i]  = vec2(imageLoad(depth_words, word + above * side_px).x, imageLoad(depth_words, word + below * side_px).x);
         }
     }
 
-    // The farthest of the planes through a sample and its neighbours that hold another sample: things stand before the ground, not behind it.
+    // The farthest of the planes through a sample and its neighbours that hold another sample: occluders stand before the base plane, not behind it.
     vec2  gradient = vec2(0);
-    float ground = none, corner = 0; // the plane's depth in the middle of the patch, and in its first pixel
+    float base = none, corner = 0; // the plane's depth in the middle of the patch, and in its first pixel
     for (int i = 0; i < samples; ++i)
     {
         int   column = i % sample_rows, row = i / sample_rows;
@@ -72,35 +81,39 @@ void main()
             float off = abs(depths[j].y - (zero + slope.x * at[j % sample_rows].x) - slope.y * at[j / sample_rows].y);
             nearest_off = j != i && off < nearest_off ? off : nearest_off;
         }
-        bool farther = bent.x + bent.y < depth * most_bent && nearest_off < depth * on_plane && middle < ground;
+        bool farther = bent.x + bent.y < depth * most_bent && nearest_off < depth * on_plane && middle < base;
         gradient     = farther ? slope : gradient;
         corner       = farther ? zero : corner;
-        ground       = farther ? middle : ground;
+        base         = farther ? middle : base;
     }
 
-    // How much nearer a front is whose slab ends at the ground.
-    float nearest = (ground + slab_shift) / (slab_scale - ground * slab_slope);
-    bool  passes  = ground < none && nearest > ground;
-    float stands  = passes ? corner + nearest - ground : none;
-    // Floats as integers: the bits of those above 0 order like the floats, those of background are greater than any, and min() and max() of floats
-    // cost lavapipe more. Fronts below 0 keep a plane at 0, which is above them; nothing at all leaves it below everything.
+    // How much nearer a front is whose slab ends at the base plane.
+    float nearest = (base + slab_shift) / (slab_scale - base * slab_slope);
+    bool  passes  = base < none && nearest > base;
+    float stands  = passes ? corner + nearest - base : none;
+    // Floats as integers, whose min() and max() cost less: the bits of those above 0 order like the floats, those of background are greater than any.
+    // Fronts below 0 keep a plane at 0, which is above them; nothing at all leaves it below everything.
     const uint nothing = floatBitsToUint(none);
     const int  no_front = 0x80000000;
     uint before = nothing;
     int  height = no_front;
-    // Beams that stay in front of everything pass behind nothing. Down the columns, so that reads of different cache lines are under way at once.
+    // Down the columns, so that reads of different cache lines are under way at once.
     for (int column = 0; column < quads; ++column)
     {
         vec4 across = gradient.x * vec4(4 * column + ivec4(0, 1, 2, 3));
         for (int row = 0; row < side_px; ++row)
         {
             int   y     = min(row, last.y);
-            uvec4 bits  = imageLoad(cell_pairs, first_quad + y * quads + column), befores;
+            uvec4 bits  = load_pair(first_quad + y * quads + column), befores;
             vec4  depth = uintBitsToFloat(bits), front = depth - gradient.y * float(y) - across;
             ivec4 heights;
             for (int k = 0; k < 4; ++k)
             {
-                bool is_before = beams_in_front == 0 && front[k] > stands;
+                #ifdef IN_FRONT
+                bool is_before = false;
+#else
+                bool is_before = front[k] > stands;
+#endif
                 befores[k]     = is_before ? bits[k] : nothing;
                 heights[k]     = !is_before && depth[k] > 0.0 ? floatBitsToInt(front[k]) : no_front;
             }
@@ -110,5 +123,5 @@ void main()
     }
     float top    = height == no_front ? -none : intBitsToFloat(max(height, 0));
     float offset = top + dot(abs(gradient), vec2(side_px)) / (1 << 20); // what rounding moved it by, and will where it is used
-    imageStore(PatchPlanes, place.y * patches.x + place.x, vec4(gradient, offset, before < nothing ? uintBitsToFloat(before) : 0.0));
+    store_planes(place.y * patches.x + place.x, vec4(gradient, offset, before < nothing ? uintBitsToFloat(before) : 0.0));
 }

@@ -3,7 +3,6 @@
 //   y = 32 bins of depth from there away from the camera, set where any of its pixels' slabs lies; 0: nothing to hit
 // Bits of positive floats order like the floats. A bin is 2^bin_shift of them, begins at a multiple of its width, and is as narrow as 32
 // bins allow: so the bins of a wider cell are unions of those of its quarters.
-#include "layout/shared.h"
 
 #define FINEST_BIN_SHIFT 5
 const uvec2 empty_cell = uvec2(0);

@@ -1,32 +1,29 @@
-// Follows the rays of a group as one beam through the depth pyramid, before they are traced: between two t it covers a box on screen and an
-// interval of depth that hold all its rays; where no cell under the box has a surface in that interval, none of the rays touches anything.
-// Near its start that interval meets the very surface that the rays leave. There they are held against planes instead: how far all of them have
-// risen above the ground, the plane of the patch they start from, and how far any patch under the box rises above it; and what stands before
-// the ground of a patch they must pass behind (shaders/patch_planes.comp).
+// Follows the rays of a group as one packet through the depth pyramid, before they are traced. Between two t it covers a box on screen and an interval of
+// depth that hold all its rays; where no cell under the box has a surface in that interval, none of the rays touches anything. Near its start that
+// interval meets the very surface that the rays leave. There they are held against planes instead: how far all of them have risen above the base plane
+// of the patch they start from, how far any patch under the box rises above it, and the occluders of a patch that they must pass behind (patch_planes).
 #include "api/trace_api.glsl"
 #include "trace/ray_list.glsl"
+#include "structure/parameters"
+#include "structure/buffers"
 
-layout(local_size_x = BEAMS_PER_GROUP) in;
+layout(local_size_x = RAY_GROUPS_PER_WORKGROUP) in;
 
-layout(constant_id = CONSTANT_TOP_LEVEL) const int top_level = 0;
-layout(constant_id = CONSTANT_BEAMS_IN_FRONT) const int in_front = 0;
-
-layout(set = 0, binding = 12, scalar) writeonly buffer Beams { real2 clear_stretches[]; };
-layout(set = 0, binding = 14, rgba32f) uniform readonly imageBuffer PatchPlanes;
-#ifdef COUNT_WORK
-layout(set = 0, binding = 13, scalar) writeonly buffer BeamWork { uint beam_fetches[]; };
-#endif
-
-const real first_px = 8, finest_step_px = 8, shortest_stretch_px = 24; // on screen, along the beam's longest way
+const real first_px = 8, finest_step_px = 8, shortest_interval_px = 24; // on screen, along the longest delta
 const real widest_px = 64;                                             // where rays of different tiles meet in one group
 const real rising_px = 1.5, rising_step_px = 16;                       // while it is held against planes
 const int  most_tests = 64, most_rising_tests = 3, most_patches = 6;
-// Where a beam has to stay in front of everything, it has one stretch, which begins soon or not at all.
-const int  most_stretches = in_front != 0 ? 1 : BEAM_STRETCHES, most_blocked_steps = in_front != 0 ? 4 : most_tests;
-// What rounding moves a position by, at the largest image, and a depth, as a share of the beam's nearest: many times more than it can.
+#ifdef IN_FRONT // it has to stay in front of everything: then it has one interval, which begins soon or not at all
+const int most_intervals = 1, most_blocked_steps = 4;
+#else
+const int most_intervals = intervals_count, most_blocked_steps = most_tests;
+#endif
+// What rounding moves a position by, at the largest image, and a depth, as a share of the nearest: many times more than it can.
 const real rounding_px = 1.0 / 16, rounding_depth = 1.0 / (1 << 20);
 
-int top = min(top_level, pyramid_levels());
+int top = pyramid_top();
+
+uint fetches = 0; // of this packet
 
 // x_px, y_px, depth
 struct Box
@@ -74,10 +71,14 @@ bool touches(Box box, int level)
     bool  found = false, goes = true;
     do
     {
-        COUNT_IF(pyramid_fetches, goes);
-        uvec2 content = load_pyramid(cell << level, level);
+        fetches += uint(goes);
+        uvec2 content = load_cell(cell << level, level);
         bool  behind  = floatBitsToInt(float(box.low.z)) <= int(content.x); // at its farthest, of the nearest front
-        bool  touched = in_front != 0 ? behind : cell_may_touch(content, float(box.low.z), float(box.high.z));
+        #ifdef IN_FRONT
+        bool touched = behind;
+#else
+        bool touched = cell_may_touch(content, float(box.low.z), float(box.high.z));
+#endif
         found        = found || (goes && touched);
         cell         = next_cell(cell, first, last);
         goes         = goes && !found && cell.y <= last.y;
@@ -85,33 +86,20 @@ bool touches(Box box, int level)
     return found;
 }
 
-struct Plane
-{
-    real2 gradient; // a pixel
-    real  depth;    // at the centre of the patch's first pixel
-    real  before;   // the farthest depth of what stands before the plane, or 0
-};
-
-Plane load_plane(ivec2 place)
-{
-    vec4 plane = imageLoad(PatchPlanes, place.y * (((size_px.x - 1) >> PATCH_BITS) + 1) + place.x);
-    return Plane(real2(plane.xy), real(plane.z), real(plane.w));
-}
-
-// Does any ground under the box reach that height, or the box the slab of what stands before it? Heights are those above the plane of the
-// gradient of `ground` through 0 at position 0, 0.
-bool meets_patch(Box box, real2 ground, real height)
+// Does any base plane under the box reach that height, or the box the slab of an occluder? Heights are those above the plane of the gradient `base`
+// through 0 at position 0, 0.
+bool meets_patch(Box box, real2 base, real height)
 {
     ivec2 first = cell_at(box.low.xy, PATCH_BITS), last = cell_at(box.high.xy, PATCH_BITS), place = first;
     bool  found = any(greaterThanEqual(last - first, ivec2(most_patches))), goes = !found;
     do
     {
-        COUNT_IF(pyramid_fetches, goes);
+        fetches += uint(goes);
         Plane plane  = load_plane(place);
         real2 centre = real2(place << PATCH_BITS) + real(0.5);
-        real2 rise   = max(plane.gradient - ground, real2(0)) * real((1 << PATCH_BITS) - 1);
-        bool  rises  = !(plane.depth - dot(ground, centre) + rise.x + rise.y < height);
-        bool  passes = plane.before <= real(0) || !reaches_slab_back(plane.before, box.high.z);
+        real2 rise   = max(plane.gradient - base, real2(0)) * real((1 << PATCH_BITS) - 1);
+        bool  rises  = !(plane.depth - dot(base, centre) + rise.x + rise.y < height);
+        bool  passes = plane.occluder <= real(0) || !reaches_slab_back(plane.occluder, box.high.z);
         found        = found || (goes && (rises || !passes));
         place        = next_cell(place, first, last);
         goes         = goes && !found && place.y <= last.y;
@@ -119,48 +107,48 @@ bool meets_patch(Box box, real2 ground, real height)
     return found;
 }
 
-// One more stretch, if it is long enough to be worth a leap.
-void keep(uint beam, inout int kept, real begin, real end, real length_px)
+// One more interval, if it is long enough to be worth a skip.
+void keep(int packet, inout int kept, real begin, real end, real length_px)
 {
-    bool keeps = kept < most_stretches && (end - begin) * length_px >= shortest_stretch_px;
-    if (keeps) clear_stretches[beam * BEAM_STRETCHES + kept] = real2(begin, end);
+    bool keeps = kept < most_intervals && (end - begin) * length_px >= shortest_interval_px;
+    if (keeps) store_intervals(packet * intervals_count + kept, real2(begin, end));
     kept += int(keeps);
 }
 
 void main()
 {
-    uint beam  = work_group() * BEAMS_PER_GROUP + gl_LocalInvocationID.x;
-    uint first = beam * RAYS_PER_GROUP;
+    int  packet = ray_group();
+    uint first  = packet * RAYS_PER_GROUP;
     if (first >= ray_count) return;
 
     uint count = min(ray_count - first, RAYS_PER_GROUP);
     ListedRay ray = listed_ray(first); // with NaN in it the box is not usable, and of the other rays such are left out: they touch nothing
     Box start = Box(ray.origin, ray.origin), end = Box(ray.origin + ray.delta, ray.origin + ray.delta);
     // Of all rays the least height, where they start and where they end.
-    COUNT(pyramid_fetches);
-    real2 ground = load_plane(cell_at(start.low.xy, PATCH_BITS)).gradient;
-    real  height = start.low.z - dot(ground, start.low.xy), end_height = end.low.z - dot(ground, end.low.xy);
+    ++fetches;
+    real2 base = load_plane(cell_at(start.low.xy, PATCH_BITS)).gradient;
+    real  height = start.low.z - dot(base, start.low.xy), end_height = end.low.z - dot(base, end.low.xy);
     for (uint i = 1; i < count; ++i)
     {
         ray = listed_ray(first + i);
         real3 from = ray.origin, to = ray.origin + ray.delta;
         start = unite(start, Box(from, from));
         end   = unite(end, Box(to, to));
-        height     = lesser(height, from.z - dot(ground, from.xy));
-        end_height = lesser(end_height, to.z - dot(ground, to.xy));
+        height     = lesser(height, from.z - dot(base, from.xy));
+        end_height = lesser(end_height, to.z - dot(base, to.xy));
     }
     real  nearest  = max(start.high.z, end.high.z);
     real3 rounding = real3(rounding_px, rounding_px, nearest * rounding_depth);
     start = Box(start.low - rounding, start.high + rounding);
     end   = Box(end.low - rounding, end.high + rounding);
 
-    real2 way       = max(abs(end.low.xy - start.low.xy), abs(end.high.xy - start.high.xy)), extent = start.high.xy - start.low.xy;
-    real  length_px = max(way.x, way.y);
+    real2 delta_px  = max(abs(end.low.xy - start.low.xy), abs(end.high.xy - start.high.xy)), extent = start.high.xy - start.low.xy;
+    real  length_px = max(delta_px.x, delta_px.y);
     bool  numbers   = all(lessThanEqual(start.low, start.high)) && all(lessThanEqual(end.low, end.high)); // not with NaN
-    bool  usable    = numbers && length_px >= first_px + shortest_stretch_px && max(extent.x, extent.y) <= widest_px && top >= 1;
+    bool  usable    = numbers && length_px >= first_px + shortest_interval_px && max(extent.x, extent.y) <= widest_px && top >= 1;
 
     // A front counts at its pixel's centre, half a pixel away at most.
-    real tilt = abs(ground.x) + abs(ground.y), largest = nearest + tilt * real(max(size_px.x, size_px.y));
+    real tilt = abs(base.x) + abs(base.y), largest = nearest + tilt * real(max(size_px.x, size_px.y));
     real clearance = tilt * (real(0.5) + 2 * rounding_px) + largest * 4 * rounding_depth, rise = end_height - height;
     real begin = rising_px / length_px, t = begin, rising_step = rising_step_px / length_px;
     bool rises = usable && rise > real(0);
@@ -168,7 +156,7 @@ void main()
     while (rises && rising_tests < most_rising_tests && t + rising_step < real(1))
     {
         Box box = unite(box_at(start, end, t), box_at(start, end, t + rising_step));
-        rises   = !meets_patch(box, ground, height + t * rise - clearance);
+        rises   = !meets_patch(box, base, height + t * rise - clearance);
         t       = rises ? t + rising_step : t;
         ++rising_tests;
     }
@@ -177,22 +165,20 @@ void main()
     t           = usable ? max(t, begin) : real(1);
     real finest = finest_step_px / length_px, step_t = 2 * finest;
     int  kept = 0, tests = 0, blocked_steps = 0;
-    while (t < real(1) && kept < most_stretches && tests < most_tests && blocked_steps < most_blocked_steps)
+    while (t < real(1) && kept < most_intervals && tests < most_tests && blocked_steps < most_blocked_steps)
     {
         real t_next  = min(real(1), t + step_t);
         Box  box     = unite(box_at(start, end, t), box_at(start, end, t_next));
         int  level   = level_of(box);
         bool touched = touches(box, level), ends = touched && step_t <= finest;
-        if (ends) keep(beam, kept, begin, t, length_px);
+        if (ends) keep(packet, kept, begin, t, length_px);
         t      = touched && !ends ? t : t_next;
         begin  = ends ? t_next : begin;
         step_t = !touched ? step_t * 2 : ends ? step_t : step_t / 2;
         blocked_steps += int(ends);
         ++tests;
     }
-    keep(beam, kept, begin, t, length_px);
-    for (int i = kept; i < BEAM_STRETCHES; ++i) clear_stretches[beam * BEAM_STRETCHES + i] = real2(2);
-#ifdef COUNT_WORK
-    beam_fetches[beam] = pyramid_fetches[0];
-#endif
+    keep(packet, kept, begin, t, length_px);
+    for (int i = kept; i < intervals_count; ++i) store_intervals(packet * intervals_count + i, real2(2));
+    store_group_fetches(packet, fetches);
 }

@@ -1,0 +1,54 @@
+// Two rays at a time: what one visit waits for, the other ray's visit can use (docs/performance.md).
+#include "traversal.glsl"
+
+int top = pyramid_top();
+
+// own_lane: that of the ray.
+CellContent fetch(Traversal walk, int own_lane)
+{
+    lane = is_active(walk) ? own_lane : 2;
+    return fetch_cell(pixel_of(walk), walk.level);
+}
+
+void visit(Ray ray, inout Traversal walk, CellContent content, int own_lane)
+{
+    lane         = is_active(walk) ? own_lane : 2;
+    bool touched = touches_cell(ray, walk.grid, pixel_of(walk), walk.level, content, walk.t, t_exit(walk));
+    advance(walk, touched, top);
+}
+
+TraceResult finish(Ray ray, Traversal walk, int own_lane)
+{
+    lane = own_lane;
+    if (walk.level >= 0) return walk.t < walk.grid.t_end ? out_of_steps(walk.visited) : miss(ray, walk.visited);
+    return hit_between(ray, pixel_of(walk), walk.t, t_exit(walk), walk.visited);
+}
+
+void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult result_b)
+{
+    int       level = min(start_level, top), number = 0;
+    Traversal a = start_traversal(ray_a, level), b = start_traversal(ray_b, level);
+    real2     empty = empty_interval(0);
+    stop_at(a, empty.x);
+    stop_at(b, empty.x);
+    // This short loop around much work ends at the bottom (docs/performance.md): its body must not change its results once its condition is false.
+    do
+    {
+        while (is_active(a) || is_active(b))
+        {
+            // Both reads are under way before one is waited for.
+            CellContent cell_a = fetch(a, 0), cell_b = fetch(b, 1);
+            visit(ray_a, a, cell_a, 0);
+            visit(ray_b, b, cell_b, 1);
+        }
+        skip_to(a, min(SKIP_LEVEL, top), empty.y);
+        skip_to(b, min(SKIP_LEVEL, top), empty.y);
+        ++number;
+        // Here, not before the walk: its loop would work the end out in every iteration (docs/performance.md).
+        empty = empty_interval(number);
+        stop_at(a, empty.x);
+        stop_at(b, empty.x);
+    } while (number <= intervals_count && (is_open(a) || is_open(b)));
+    result_a = finish(ray_a, a, 0);
+    result_b = finish(ray_b, b, 1);
+}

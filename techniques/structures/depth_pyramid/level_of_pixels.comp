@@ -1,0 +1,19 @@
+// Level 1 of the depth pyramid, from pixels.
+#include "make_cells.glsl"
+
+// The cell of two pixels and the two below them.
+uvec2 cell_of_pixels(uvec2 upper, uvec2 lower)
+{
+    Range a = pixel_range(upper.x), b = pixel_range(upper.y), c = pixel_range(lower.x), d = pixel_range(lower.y);
+    uvec2 cell = cell_of_range(unite(unite(a, b), unite(c, d)));
+    cell.y     = bins_of_pixel(cell, a) | bins_of_pixel(cell, b) | bins_of_pixel(cell, c) | bins_of_pixel(cell, d);
+    return finished(cell);
+}
+
+// Around the image there is background.
+void main()
+{
+    if (any(greaterThanEqual(cell, size))) return;
+    uvec4 upper = load_pair(pair_index(cell * ivec2(1, 2), pyramid_root)), lower = load_pair(pair_index(cell * ivec2(1, 2) + ivec2(0, 1), pyramid_root));
+    store_cells(uvec4(cell_of_pixels(upper.xy, lower.xy), cell_of_pixels(upper.zw, lower.zw)));
+}

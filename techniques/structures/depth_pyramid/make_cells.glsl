@@ -1,0 +1,106 @@
+// How cells are made; level_of_pixels.comp and level_of_cells.comp include it. A cell (i, j) of level L covers exactly the pixels
+// [i << L, (i + 1) << L) x [j << L, (j + 1) << L): cell = pixel >> level at any image size, odd, prime or 1 x N (level sizes are rounded up, not down
+// as in mip chains). An invocation makes two cells side by side: fewer reads and writes. The second may lie beyond the level: that place belongs to none.
+#include "api/view.glsl"
+#include "api/slab.glsl"
+#include "cell.glsl"
+#define READS_CELL_PAIRS
+#define WRITES_CELLS
+#include "layout/memory_layout.glsl"
+#include "structure/parameters"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(push_constant, scalar) uniform Push { int level; };
+
+// The slab's back, rounded outward: wider than any rounding of the test on the pixel itself.
+float outer_back(float depth)
+{
+    const float margin = 1.0 - 1.0 / 1048576.0;
+    return float(slab_back(real(depth))) * margin;
+}
+
+// The bits of a pixel's front and back, or of a cell's; nearest < farthest where there is nothing to hit.
+struct Range
+{
+    int nearest, farthest;
+};
+const Range nothing = Range(0, 0x7FFFFFFF);
+
+// bits: of its depth; around the picture there is background.
+Range pixel_range(uint bits)
+{
+    float depth = uintBitsToFloat(bits);
+    if (!(depth > 0.0)) return nothing;
+    return Range(floatBitsToInt(depth), depth_pyramid_kind == depth_pyramid_kind_nearest ? 0 : max(floatBitsToInt(outer_back(depth)), 0));
+}
+
+Range cell_range(uvec2 cell)
+{
+    if (cell.y == 0u) return nothing;
+    return Range(int(cell.x) & ~31, (nearest_bin(cell) - findMSB(cell.y)) << bin_shift(cell));
+}
+
+Range unite(Range a, Range b)
+{
+    return Range(max(a.nearest, b.nearest), min(a.farthest, b.farthest));
+}
+
+// A cell of this range, without bins yet.
+uvec2 cell_of_range(Range range)
+{
+    int front = (range.nearest + 31) & ~31;
+    // 32 or 33 bins if they begin at a multiple of 2^shift; never more than 32 with one bit more.
+    int shift = max(findMSB(front - range.farthest) - 4, FINEST_BIN_SHIFT);
+    shift += ((front >> shift) - (range.farthest >> shift)) >> 5;
+    return uvec2(front | shift, 0);
+}
+
+// A pixel fills all bins from its front to its back.
+uint bins_of_pixel(uvec2 cell, Range pixel)
+{
+    if (pixel.nearest < pixel.farthest) return 0u;
+    int shift = bin_shift(cell), nearest = nearest_bin(cell);
+    return bins_between(nearest - (pixel.nearest >> shift), nearest - (pixel.farthest >> shift));
+}
+
+// Neighbouring bits united, in the lower half.
+uint unite_pairs(uint bits)
+{
+    bits = (bits | bits >> 1) & 0x55555555u; // in even places, then these moved together
+    bits = (bits | bits >> 1) & 0x33333333u;
+    bits = (bits | bits >> 2) & 0x0F0F0F0Fu;
+    bits = (bits | bits >> 4) & 0x00FF00FFu;
+    return (bits | bits >> 8) & 0x0000FFFFu;
+}
+
+// The bins of a quarter in terms of the whole cell.
+uint bins_of_quarter(uvec2 cell, uvec2 quarter)
+{
+    int  shift = bin_shift(quarter), nearest = nearest_bin(quarter);
+    uint bins  = quarter.y;
+    while (bins != 0u && shift < bin_shift(cell))
+    {
+        // Pairs end at odd bins; the last one may stand alone behind them.
+        int  even = ~nearest & 1;
+        uint last = even == 1 ? bins >> 31 << 16 : 0u;
+        bins = unite_pairs(bins << even) | last;
+        nearest >>= 1;
+        ++shift;
+    }
+    return bins == 0u ? 0u : bins << (nearest_bin(cell) - nearest);
+}
+
+// Without occupancy everything behind the nearest front counts as full, as far as the farthest back.
+uvec2 finished(uvec2 cell)
+{
+    if (cell.y == 0u) return empty_cell;
+    return depth_pyramid_kind == depth_pyramid_kind_occupancy ? cell : uvec2(cell.x, bins_between(0, findMSB(cell.y)));
+}
+
+// Cells of the level, and the first of the two that this invocation makes.
+ivec2 size = ((size_px - 1) >> level) + 1, cell = ivec2(2, 1) * ivec2(gl_GlobalInvocationID.xy);
+
+void store_cells(uvec4 cells)
+{
+    store_pair(pair_index(cell, pyramid_root >> level), cells);
+}

@@ -1,0 +1,1 @@
+#include "hiz_packets/ray_packets/read.glsl"

@@ -1,0 +1,2 @@
+#define IN_FRONT
+#include "hiz_packets/patch_planes/build.comp"

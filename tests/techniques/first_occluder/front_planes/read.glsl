@@ -1,0 +1,1 @@
+#include "hiz_packets/patch_planes/read.glsl"
