@@ -253,8 +253,8 @@ TEST(Pictures, AgreementColours)
 TEST(Pictures, HeatMapGrowsWithFetches)
 {
     TraceResult result     = row_of(4);
-    result.depth_fetches   = {0, 1, 4096, 100000};
-    result.pyramid_fetches = {0, 0, 0, 0};
+    result.depth_fetches     = {0, 1, 4096, 100000};
+    result.structure_fetches = {{"depth_pyramid", {0, 0, 0, 0}}};
     const Image image      = fetch_heat_map(result);
     EXPECT_EQ(image.values[0] + image.values[1] + image.values[2], 0);
     EXPECT_FLOAT_EQ(image.values[5], 0.1F);

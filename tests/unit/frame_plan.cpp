@@ -51,7 +51,7 @@ TEST(Plan, WithoutAnythingThatReflectsNothingIsTraced)
 {
     const auto plan = plan_frame(with_pyramid, picture(0, 0, 0, 0), default_effect_values());
     EXPECT_EQ(running(plan), std::set<std::string>{"composite"});
-    for (const char* effect : {"classification", "rays", "depth_pyramid", "trace", "hit_colour", "blur"})
+    for (const char* effect : {"classification", "rays", "structures", "trace", "hit_colour", "blur"})
         EXPECT_EQ(reason(plan, effect), "no pixel reflects") << effect;
 }
 
@@ -59,7 +59,7 @@ TEST(Plan, ASmoothPictureInWhichEveryRayHitsNeedsTraceAndShadingAlone)
 {
     const auto plan = plan_frame(with_pyramid, picture(400, 0, 400, 0), default_effect_values());
     EXPECT_EQ(running(plan),
-              (std::set<std::string>{"classification", "rays", "depth_pyramid", "trace", "hit_colour", "composite"}));
+              (std::set<std::string>{"classification", "rays", "structures", "trace", "hit_colour", "composite"}));
     EXPECT_EQ(reason(plan, "trace"), "400 pixels reflect (40 %)");
     EXPECT_EQ(reason(plan, "classification"), "8 of 20 tiles reflect");
     EXPECT_EQ(reason(plan, "blur"), "every pixel that reflects is smooth");
@@ -98,7 +98,7 @@ TEST(Plan, WithoutThePlanEverythingRunsThatIsNotSwitchedOff)
     const auto shading =
         running(plan_frame(with_pyramid, picture(400, 100, 300, 10), values_with({{"plan", 0}, {"effect_set", 1}})));
     EXPECT_EQ(shading,
-              (std::set<std::string>{"classification", "rays", "depth_pyramid", "trace", "hit_colour", "composite"}));
+              (std::set<std::string>{"classification", "rays", "structures", "trace", "hit_colour", "composite"}));
 }
 
 // A second layer and further bounces continue rays one by one, whether the picture calls for them or not.

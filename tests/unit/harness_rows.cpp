@@ -21,6 +21,7 @@ const Technique walk = {"walk",
                         false,
                         {},
                         {"steps"},
+                        1,
                         {{"steps", ParameterType::integer, 64, 1, 60000, {}, "d"},
                          {"space", ParameterType::choice, 0, 0, 1, {"view", "screen"}, "d"}},
                         {}};
@@ -104,7 +105,7 @@ TEST(Rows, CountsOfAResultWithKnownFigures)
                        {},
                        {0, 10, 20, 30, 40},
                        {0, 1, 2, 3, 4},
-                       {0, 9, 8, 7, 6}};
+                       {{"depth_pyramid", {0, 9, 8, 7, 6}}}};
     result.hit_pixel.resize(5);
     result.hit_px_depth.resize(5);
     result.hit_t.resize(5);
@@ -118,6 +119,7 @@ TEST(Rows, CountsOfAResultWithKnownFigures)
     EXPECT_EQ(row.at("steps_mean"), "25");
     EXPECT_EQ(row.at("depth_fetches_mean"), "2.5");
     EXPECT_EQ(row.at("structure_fetches_mean"), "7.5");
+    EXPECT_EQ(row.at("depth_pyramid.fetches_mean"), "7.5");
     EXPECT_EQ(row.at("fetches_mean"), "10");
     EXPECT_EQ(row.at("fetches_max"), "10");
 }
@@ -125,7 +127,7 @@ TEST(Rows, CountsOfAResultWithKnownFigures)
 TEST(Rows, NothingToTraceIsAnOutcome)
 {
     Row row;
-    add_counts(row, {{1, 1}, {TraceStatus::not_traced}, {{}}, {{}}, {0}, {0}, {0}, {0}});
+    add_counts(row, {{1, 1}, {TraceStatus::not_traced}, {{}}, {{}}, {0}, {0}, {0}, {{"depth_pyramid", {0}}}});
     EXPECT_EQ(row.at("outcome"), "no_rays");
     EXPECT_EQ(row.at("rays"), "0");
     EXPECT_FALSE(row.contains("steps_mean"));
@@ -196,7 +198,7 @@ TEST(Rows, TheEstimateFollowsSizeAndTechnique)
     dda.bounded_by                            = {"steps"};
     dda.parameters[0].max                     = 60000;
     hiz                                       = dda;
-    hiz.structures                            = {{.id = "depth_pyramid"}};
+    hiz.structures.resize(1);
     const auto frame_s                        = [&](const Technique& technique, glm::ivec2 size_px) {
         ssrlab::Run run;
         run.size_px         = size_px;

@@ -64,24 +64,31 @@ TEST(TechniqueManifest, LimitsAreKnownNamesAndBelongToInexactTechniques)
 TEST(TechniqueManifest, ReadsEveryField)
 {
     const TechniqueDir dir;
+    Structure          pyramid;
+    pyramid.id         = "depth_pyramid";
+    pyramid.parameters = {{"depth_pyramid.top_level", ParameterType::integer, 7, 0, 14, {}, "Coarsest level."}};
+    const Structure known[]      = {pyramid};
     const Technique    technique = load_technique(dir.add("walk", R"(name    = "Walk"
 summary = "Walks the pyramid."
 cite    = ["A 2014", "B 2020"]
-inputs  = ["depth_pyramid"]
+structures = ["depth_pyramid"]
 exact   = true
 bounded_by = ["steps", "binary_steps"]
 [parameters]
 steps        = { default = 64, min = 1, max = 50000, doc = "Steps." }
 stride_px    = { default = 1.5, min = 0, max = inf, doc = "Stride." }
 jitter       = { default = false, doc = "Jitter." }
-space        = { default = "screen", choices = ["view", "screen"], doc = "Space." }
+space        = { default = "screen", choices = ["view", "screen"], defines = { view = "IN_VIEW" }, doc = "Space." }
 binary_steps = { default = 0, min = 0, max = 32, doc = "Bisections." }
-)"));
+)"),
+                                                 known);
     EXPECT_EQ(technique.id, "walk");
     EXPECT_THAT(technique.cite, ElementsAre("A 2014", "B 2020"));
     EXPECT_TRUE(technique.exact);
     EXPECT_THAT(technique.limits, ElementsAre());
-    ASSERT_EQ(technique.parameters.size(), 5U);
+    ASSERT_EQ(technique.parameters.size(), 6U);
+    EXPECT_EQ(technique.parameters[5].name, "depth_pyramid.top_level"); // its structures' come last
+    EXPECT_EQ(technique.structures.at(0).id, "depth_pyramid");
     EXPECT_EQ(technique.parameters[0].name, "steps"); // as declared, not sorted
     EXPECT_EQ(technique.parameters[0].type, ParameterType::integer);
     EXPECT_EQ(technique.parameters[1].type, ParameterType::real);
@@ -91,6 +98,10 @@ binary_steps = { default = 0, min = 0, max = 32, doc = "Bisections." }
     EXPECT_EQ(technique.parameters[3].default_value, 1);
     EXPECT_EQ(iteration_bound(technique, {{"steps", 100}, {"binary_steps", 10}}), 110);
     EXPECT_EQ(default_values(technique).at("stride_px"), 1.5);
+    ParameterValues values = default_values(technique);
+    EXPECT_THAT(shader_macros(technique, values), ElementsAre());
+    values.at("space") = 0;
+    EXPECT_THAT(shader_macros(technique, values), ElementsAre("IN_VIEW"));
 }
 
 TEST(TechniqueManifest, MistakesAreNamedWithFileAndLine)
@@ -120,6 +131,9 @@ TEST(TechniqueManifest, MistakesAreNamedWithFileAndLine)
         {"mode = { default = \"a\", choices = [\"a\", \"a\"], doc = \"d\" }",
          ":4: 'choices' of 'mode' names one twice"},
         {"mode = { default = true, min = 0, doc = \"d\" }", ":4: 'min' belongs to numbers"},
+        {"mode = { default = \"a\", choices = [\"a\", \"b\"], defines = { c = \"C\" }, doc = \"d\" }",
+         ":4: unknown choice of 'mode' 'c'"},
+        {"mode = { default = true, defines = { a = \"A\" }, doc = \"d\" }", ":4: 'defines' belongs to choices"},
         {"\"two words\" = { default = true, doc = \"d\" }",
          ":4: parameter 'two words' is not a name that GLSL accepts"},
         {"float = { default = true, doc = \"d\" }", ":4: parameter 'float' is not a name that GLSL accepts"},
@@ -143,9 +157,10 @@ TEST(TechniqueManifest, MistakesAboveTheParameters)
     EXPECT_THAT(message("summary = \"Walks.\"\n"), HasSubstr("the technique has no 'name'"));
     EXPECT_THAT(message("name = 7\nsummary = \"Walks.\"\n"),
                 HasSubstr(":1: 'name' must be a non-empty string, got the integer 7"));
-    EXPECT_THAT(message(head + "inputs = \"depth\"\n"), HasSubstr(":3: 'inputs' must be a list of strings"));
-    EXPECT_THAT(message(head + "inputs = [\"depth_pyramyd\"]\n"),
-                HasSubstr(":3: unknown input 'depth_pyramyd': did you mean 'depth_pyramid'?"));
+    EXPECT_THAT(message(head + "structures = \"depth\"\n"), HasSubstr(":3: 'structures' must be a list of strings"));
+    EXPECT_THAT(message(head + "structures = [\"depth_pyramyd\"]\n"),
+                HasSubstr(":3: unknown structure 'depth_pyramyd'"));
+    EXPECT_THAT(message(head + "rays_per_invocation = 3\n"), HasSubstr(":3: 'rays_per_invocation' must be 1 or 2"));
     EXPECT_THAT(message(head + "exact = 1\n"), HasSubstr(":3: 'exact' must be true or false"));
     EXPECT_THAT(message(head + "exakt = true\n"), HasSubstr(":3: unknown key 'exakt': did you mean 'exact'?"));
     EXPECT_THAT(message(head + "bounded_by = [\"steps\"]\n"),
