@@ -106,6 +106,8 @@ def code_files():
 
 
 class Test(unittest.TestCase):
+    maxDiff = None
+
     def each_page(self, find, but=()):
         found = {page: find(page, read(page)) for page in pages() if page not in but}
         self.assertGreater(len(found), 10)
