@@ -70,13 +70,13 @@ def accuracy_curves(results, _):
             floor = 1e-3 if "displacement" in column else 0.5 / max(1.0, part.rays.max())
             part["error"] = exact.clip(lower=floor)
             figure, (left, right) = plt.subplots(1, 2, figsize=(12.5, 5.4), sharey=True)
-            draw_curves(left, results, part, "cost_ms_median", "error", "trace + inputs, ms")
+            draw_curves(left, results, part, "cost_ms_median", "error", "trace + structures, ms")
             draw_curves(right, results, part, "fetches_mean", "error", "fetches per ray")
             left.set_ylabel(ylabel)
             if (exact < floor).any():
                 for axis in (left, right):
                     axis.axhline(floor, color="#999999", lw=0.8, ls=":")
-                left.text(0.01, 0.01, "dotted: no error, or less than can be drawn", transform=left.transAxes, fontsize=8,
+                left.text(0.01, 0.01, "dotted: no error, or too small to draw", transform=left.transAxes, fontsize=8,
                           color="#666666")
             right.legend(fontsize=8.5, loc="best")
             figure.suptitle(title)
@@ -84,8 +84,8 @@ def accuracy_curves(results, _):
 
 
 def target_rows(results, rows, recall, base):
-    """The cheapest setting of each technique that reaches each target, and how many times as fast as linear's it is; the best recall of one
-    that does not. The ends of the ratio's interval are the ratios of the ends of both intervals."""
+    """The cheapest setting of each technique that reaches each target, and its speed-up over linear; the best recall of one that does not
+    reach it. The ends of the ratio's interval are the ratios of the ends of both intervals."""
     for target in TARGETS:
         reached = rows[rows[recall] >= target]
         linear = reached[reached.technique == "linear"].nsmallest(1, "cost_ms_median")
@@ -118,7 +118,7 @@ def equal_time_rows(results, rows, recall, base):
             part = within[within.technique == technique]
             row = {**base, "kind": "best_within_time", "technique": technique, "time_budget_ms": share * best}
             if part.empty:
-                yield {**row, "setting": "none is that fast"}
+                yield {**row, "setting": "no setting is fast enough"}
                 continue
             one = part.loc[part[recall].idxmax()]
             yield {**row, "setting": describe(results, one, rows), "run_id": one.run_id, "recall": one[recall],

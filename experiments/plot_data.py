@@ -1,4 +1,4 @@
-"""results.csv as a table, and how techniques look in every plot."""
+"""results.csv as a table, and the style of each technique in every plot."""
 import json
 import os
 
@@ -12,7 +12,7 @@ PICTURE = ["scene", "view", "width", "height"]
 
 
 class Results:
-    """Rows that succeeded, what they were asked (`inputs`), and the environment they came from."""
+    """Rows that succeeded, their settings and parameters (`inputs`), and the environment they came from."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -27,7 +27,7 @@ class Results:
         if os.path.exists(path):
             with open(path, encoding="utf-8") as file:
                 self.environment = json.load(file)
-        # What a technique costs: its trace and the inputs that only it needs.
+        # The cost of a technique: its trace and the structures that only it needs.
         for end in ("median", "ci_low", "ci_high"):
             column = f"trace_ms_{end}"
             if column in self.rows:
@@ -83,7 +83,7 @@ def is_number(column):
 
 
 def said_as(name, value):
-    """True is worth its name, False is worth nothing, a choice is worth itself."""
+    """True is written as its name, False is not written, a choice is written as itself."""
     if value in (True, "true", "True"):
         return name
     if value in (False, "false", "False"):

@@ -1,20 +1,20 @@
-"""Effects: milliseconds added against error removed, one point for each setting, relative to the first run of the picture."""
+"""Passes: milliseconds added against error removed, one point per setting, relative to the first run of the frame."""
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-ERRORS = [("picture_rmse", "all that reflects"), ("picture_visible_border_rmse", "borders between materials, visible hits")]
+ERRORS = [("picture_rmse", "all reflecting pixels"), ("picture_visible_border_rmse", "borders between materials, visible hits")]
 
 
 def told(name, value):
-    """An effect's setting in words: "gloss cone", "environment", "no cross_blur", "rays_per_pixel 4"."""
+    """A pass's setting in words: "gloss cone", "environment", "no downsample_cross_blur", "rays_per_pixel 4"."""
     if isinstance(value, (bool, np.bool_)):
         return name if value else f"no {name}"
     return f"{name} {value:g}" if not isinstance(value, str) else f"{name} {value}"
 
 
 def compared(results):
-    """(title, file-name part, first row, [(label, row)]) for each picture and technique whose runs differ in effects."""
+    """(title, file-name part, first row, [(label, row)]) for each frame and technique whose runs differ in passes."""
     effects = [name for name in results.environment.get("effect_parameters", "").split() if name in results.rows]
     if not effects or "run_number" not in results.rows or not results.has("picture_rmse", "frame_ms_median"):
         return
@@ -76,7 +76,7 @@ def trade(axis, first, points, error, where):
 
 
 def trades(results, tables):
-    """What each effect costs and what error it removes; above zero the picture is nearer to the truth."""
+    """What each pass costs and what error it removes; above zero the image is nearer to the truth."""
     for title, name, first, points in compared(results) or ():
         shown = [(error, where) for error, where in ERRORS
                  if error in first and pd.notna(first[error]) and all(pd.notna(row[error]) for _, row in points)]
@@ -87,8 +87,8 @@ def trades(results, tables):
             trade(axis, first, points, error, where)
         figure.suptitle(title)
         for label, row in points:
-            tables.setdefault("Effects: milliseconds added and error removed, against the first run", []).append(
-                {"picture": title, "changed": label, "ms added": f"{row.frame_ms_median - first.frame_ms_median:.2f}",
+            tables.setdefault("Passes: milliseconds added and error removed, relative to the first run", []).append(
+                {"frame": title, "changed": label, "ms added": f"{row.frame_ms_median - first.frame_ms_median:.2f}",
                  **{f"{error} removed": f"{first[error] - row[error]:+.4f}" for error, _ in shown}})
         yield f"effects_{name}", figure
 

@@ -74,7 +74,7 @@ def law_of_steps(results, tables):
             right.plot(x, slope * x + intercept, color=style["color"], linestyle=style["linestyle"],
                        label=f"{series}: {slope:.3g} ms/step + {intercept:.3g} ms, R² {r2:.4f}")
             tables.setdefault("Law of steps: frame time = slope · steps + intercept, from 50 steps up", []).append(
-                {"picture": title, "series": series, "slope, ms per step": f"{slope:.4g}",
+                {"frame": title, "series": series, "slope, ms per step": f"{slope:.4g}",
                  "intercept, ms": f"{intercept:.4g}", "R²": f"{r2:.4f}"})
         left.set(xscale="log", xlabel="steps", ylabel="frames per second", title="FPS")
         log_axis(left.yaxis)
@@ -125,7 +125,7 @@ def thickness_maps(results, _):
 
 
 def thickness_curves(results, tables):
-    """What a thicker slab finds and what it invents; the optimum has the fewest wrong rays."""
+    """Points found and false hits against thickness; the optimum has the fewest wrong rays."""
     if not results.has("screen_missed", "recall_1px", "false_hits", "truth_visible"):
         return
     for title, name, rows in results.pictures():
@@ -150,15 +150,15 @@ def thickness_curves(results, tables):
             for thickness, x, y in zip(part.thickness_m, false, missed):
                 right.annotate(f"{thickness:g}", (x, y), textcoords="offset points", xytext=(4, 4), fontsize=7.5,
                                color=style["color"])
-            tables.setdefault("Best thickness: fewest rays that miss a visible point or hit a false one", []).append(
-                {"picture": title, "series": said, "thickness, m": f"{part.thickness_m[best]:g}",
+            tables.setdefault("Best thickness: fewest missed points and false hits", []).append(
+                {"frame": title, "series": said, "thickness, m": f"{part.thickness_m[best]:g}",
                  "missed, % of rays": f"{missed[best]:.2f}", "false, % of rays": f"{false[best]:.2f}"})
         left.set(xscale="log", xlabel="thickness, m", ylabel="wrong, % of rays (missed + false)",
                  title="Optimum (circled)", ylim=(0, None))
         plain_ticks(left.xaxis, set(rows.thickness_m))
         left.tick_params(axis="x", rotation=45)
         right.set(xlabel="false hits, % of rays", ylabel="visible points missed, % of rays",
-                  title="The trade, labelled with thickness in m")
+                  title="Trade-off, labelled with thickness in m")
         log_axis(right.xaxis)
         log_axis(right.yaxis)
         left.legend(fontsize=8.5)
@@ -190,16 +190,16 @@ def bars(axis, rows, results, value, spread, ylabel):
 
 
 def comparison_bars(results, _):
-    """Time with its interval and fetches of every technique, where each has one setting per picture."""
+    """Time with its interval and fetches of every technique, where each has one setting per frame."""
     for (view, width, height), rows in results.rows.groupby(["view", "width", "height"], sort=False):
         single = rows.groupby(["scene", "series"]).size().max() == 1
         if not single or rows.series.nunique() < 2 or rows.series.nunique() > 8:
             continue
         figure, (top, bottom) = plt.subplots(2, 1, figsize=(max(7, 2.3 * rows.scene.nunique()), 7.4))
-        bars(top, rows, results, "cost_ms_median", "cost_ms", "trace + inputs, ms")
+        bars(top, rows, results, "cost_ms_median", "cost_ms", "trace + structures, ms")
         bars(bottom, rows, results, "fetches_mean", None, "fetches per ray")
         top.set_title(f"Time, median and 95 % interval ({width}×{height}, view {view})")
-        bottom.set_title("Work: depth and pyramid fetches per traced ray")
+        bottom.set_title("Work: fetches of depth and structures per traced ray")
         top.legend(ncol=4, loc="upper center", bbox_to_anchor=(0.5, -0.08))
         yield f"compare_{view}_{width}x{height}", figure
 
@@ -212,7 +212,7 @@ def growth(results, tables):
         if rows.pixels.nunique() < 3 or any(rows[name].nunique() > 1 for name in numbers):
             continue
         figure, axes = plt.subplots(1, 2, figsize=(11, 4.4))
-        for axis, column, label in ((axes[0], "cost_ms_median", "trace + inputs, ms"),
+        for axis, column, label in ((axes[0], "cost_ms_median", "trace + structures, ms"),
                                     (axes[1], "fetches_mean", "fetches per ray")):
             for series, line in rows.groupby("series"):
                 line = line.sort_values("pixels")

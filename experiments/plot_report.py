@@ -37,7 +37,7 @@ def blocks(results, plots, tables, summary):
     identity = environment.get("identity", {})
     device_type = environment.get("device_type", "").lower()
     if device_type == "cpu":
-        yield "text", "Times are those of a software device: compare them with each other, not with a GPU's."
+        yield "text", "The device is a CPU. Compare these times with each other, not with those of a GPU."
     about = {"device": identity.get("device"), "driver": identity.get("driver"),
              "processor": identity.get("processor"), "commit": environment.get("commit"),
              "command": environment.get("command_line"), "started": environment.get("started"),
@@ -52,9 +52,9 @@ def blocks(results, plots, tables, summary):
     known = summary[(summary.kind == "cheapest_for_target") & summary.recall.notna()] if len(summary) else summary
     if len(known):
         yield "heading", f"At {100 * HEADLINE_TARGET:g} % recall"
-        yield "text", ("Milliseconds of the cheapest setting that finds so many, and [95 % interval] how many times as fast as linear's it is; "
-                       "else the best recall. Against the screen truth exact techniques find all. Against the scene truth every tracer "
-                       "of one depth buffer is bounded by what that buffer does not hold.")
+        yield "text", (f"Time of the cheapest setting that reaches {100 * HEADLINE_TARGET:g} % recall, and speed-up over linear [95 % interval]. "
+                       '"no": not reached; the best recall is shown. Against the screen truth, exact techniques find every hit. '
+                       "Against the scene truth, a single depth buffer lacks hidden surfaces, so no tracer reaches 100 %.")
         yield table(list(at_target(known[known.target == HEADLINE_TARGET])))
     if plots:
         yield "heading", "Plots"
@@ -66,13 +66,13 @@ def blocks(results, plots, tables, summary):
     targets = known[known.run_id.notna()] if len(known) else known
     if len(targets):
         yield "heading", "Cheapest setting for a target recall"
-        yield "text", ("Time is trace plus the inputs that the technique needs. screen_recall_1px: of the hits that the depth "
-                       "buffer holds; recall_1px: of the true points that the picture shows, which no tracer can all find. "
-                       "All derived rows: summary.csv.")
+        yield "text", ("Time is the trace plus the structures that the technique needs. screen_recall_1px is the share found of the "
+                       "hits that the depth buffer holds. recall_1px is the share found of the true points that the frame shows; "
+                       "no tracer finds all of them. All derived rows are in summary.csv.")
         yield table([{"scene": row.scene, "size": f"{row.width}×{row.height}", "of": row.recall_of,
                       "target": f"{100 * row.target:g} %", "setting": row.setting, "ms": row.time_ms,
                       "fetches": row.fetches_mean,
-                      "times as fast as linear": interval(row.speedup_over_linear, row.speedup_ci_low, row.speedup_ci_high)}
+                      "speed-up over linear": interval(row.speedup_over_linear, row.speedup_ci_low, row.speedup_ci_high)}
                      for _, row in targets.iterrows()])
     if len(results.rows):
         yield "heading", "Rows"
@@ -81,12 +81,12 @@ def blocks(results, plots, tables, summary):
         chosen = results.rows.sort_values(["scene", "width", "series"] + extra).head(MANY_ROWS)
         yield table([{name: row[name] for name in shown[:5] + extra + shown[5:]} for _, row in chosen.iterrows()])
         if len(results.rows) > MANY_ROWS:
-            yield "text", f"The first {MANY_ROWS} of {len(results.rows)}; all of them, with every measure: results.csv."
+            yield "text", f"These are the first {MANY_ROWS} of {len(results.rows)} rows. results.csv has all of them, with every measure."
     pictures = results.rows[results.rows.picture.notna()] if "picture" in results.rows else results.rows.iloc[:0]
     if len(pictures):
         if len(pictures) <= MANY_PAIRS:
             yield "heading", "Side by side"
-            yield "text", "Each picture beside the one whose settings differ least from its own."
+            yield "text", "Each picture is shown beside the one with the most similar settings."
             for left, right, caption in pairs(results, pictures):
                 yield "pair", left, right, caption
         yield "heading", "Pictures"

@@ -12,18 +12,19 @@ namespace {
 
 constexpr const char* introduction = R"(# Results
 
-Written by `ssrlab measures`; do not edit. `ssrlab run` makes one folder per experiment here (git ignores them), and
-`reference/` holds small committed runs to compare with.
+`ssrlab measures` writes this page; do not edit it. `ssrlab run` makes one folder per experiment
+here, which git ignores. `reference/` holds small committed runs to compare with.
 
 | in a results folder | |
 |---|---|
 | `results.csv` | one row per run, in the columns below |
-| `environment.json` | device, driver, commit, command line, seed, the specification, and hashes of everything that decides a result |
-| `pictures/` | what each run reflects, where it is right and wrong, and its work per ray |
+| `environment.json` | device, driver, commit, command line, seed, specification, and hashes of everything that decides a result |
+| `pictures/` | per run: the reflection, right and wrong rays in false colours, and the work per ray |
 | `report.html`, `report.md`, `summary.csv`, `plots/` | made from the above by `ssrlab plot` |
 
 ## Columns
-A field without a value is empty, never NaN. Parameters of techniques (marked) are empty for techniques that lack them.
+A field without a value is empty, never NaN. Parameters of techniques are marked. They are empty for
+techniques that do not have them.
 )";
 
 std::string code(std::string_view text) { return fmt::format("`{}`", text); }

@@ -11,11 +11,11 @@ namespace ssrlab {
 namespace {
 
 const std::vector<Column> identity = {
-    {"run_id", "hash of the run: scene, view, size, technique, settings, parameters; what these names stood for: "
+    {"run_id", "hash of the run: scene, view, size, technique, settings, parameters; content hashes are in "
                "environment.json"},
     {"experiment", "name of the specification"},
     {"run_number",
-     "among the picture's runs as the specification lists them, from 0: 0 is what others are compared with"},
+     "position in the specification's list of runs of this frame, from 0; the others are compared with run 0"},
     {"scene", "file, recipe or builtin:NAME"},
     {"view", "camera"},
     {"width", "pixels"},
