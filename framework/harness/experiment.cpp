@@ -213,7 +213,6 @@ MeasureSettings read_measure(const TomlFile& file)
     integer("warmup", measure.warmup, 0, 1000);
     integer("min_repeats", measure.min_repeats, 1, 100000);
     integer("max_repeats", measure.max_repeats, 1, 100000);
-    number("interval_percent", measure.interval_percent, 0, 100);
     number("budget_s", measure.budget_s, 0, infinity);
     flag("truth", measure.truth);
     flag("image_errors", measure.image_errors);

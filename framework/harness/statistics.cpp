@@ -52,10 +52,4 @@ double quantile(std::vector<double> samples, double p)
     return std::lerp(*below, *above, position - std::floor(position));
 }
 
-bool is_tight(const Summary& summary, double percent)
-{
-    const double allowed = summary.median * percent / 100;
-    return summary.ci_high - summary.median <= allowed && summary.median - summary.ci_low <= allowed;
-}
-
 } // namespace ssrlab

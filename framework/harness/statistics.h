@@ -23,7 +23,4 @@ double quantile(std::vector<double> samples, double p);
 /// probability: the largest k with 2 * P(Binomial(count, 1/2) < k) <= 5 %. 0 below six samples.
 int interval_rank(int count);
 
-/// Whether the interval lies within ± percent of the median.
-bool is_tight(const Summary& summary, double percent);
-
 } // namespace ssrlab
