@@ -28,6 +28,7 @@ packages=(
     "libbenchmark-dev         header:benchmark/benchmark.h"
     "python3-matplotlib       module:matplotlib"
     "python3-pandas           module:pandas"
+    "python3-scipy            module:scipy"
     "python3-openimageio      module:OpenImageIO"
 )
 

@@ -28,7 +28,7 @@ void check_choice(const CommonOptions& common, const PictureOptions& options)
 {
     const auto techniques = list_techniques(common.technique_dirs);
     parse_choice(find_technique(techniques, options.technique), options.parameters);
-    if (!options.size.empty()) parse_size(options.size);
+    if (!options.size.empty()) size_option(options.size);
 }
 
 std::string matrix_text(const glm::dmat4& matrix)
@@ -138,7 +138,7 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
 
 int write_gbuffer(const CommonOptions& common, const PictureOptions& options)
 {
-    if (!options.size.empty()) parse_size(options.size);
+    if (!options.size.empty()) size_option(options.size);
     Stage              stage  = prepare_stage(common, options);
     const GBufferImage source = read_gbuffer(stage.gpu, *stage.gbuffer);
     Image              image{stage.view.size_px,

@@ -1,25 +1,20 @@
 #include "app/stage.h"
 
 #include "core/error.h"
+#include "core/size.h"
 #include "harness/experiment.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 
 namespace ssrlab {
 
-glm::ivec2 parse_size(const std::string& text)
+glm::ivec2 size_option(const std::string& text)
 {
-    glm::ivec2  size{0, 0};
-    const char* end    = text.data() + text.size();
-    const auto  width  = std::from_chars(text.data(), end, size.x);
-    const auto  height = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x'
-                             ? std::from_chars(width.ptr + 1, end, size.y)
-                             : std::from_chars_result{end, std::errc::invalid_argument};
-    if (height.ec != std::errc() || height.ptr != end || size.x < 1 || size.y < 1)
+    const std::optional<glm::ivec2> size_px = parse_size(text);
+    if (!size_px || size_px->x < 1 || size_px->y < 1)
         throw_spec_error("--size: expected WIDTHxHEIGHT, both at least 1, got '{}'", text);
-    return size;
+    return *size_px;
 }
 
 Stage prepare_stage(const CommonOptions& common, const PictureOptions& options)
@@ -27,7 +22,7 @@ Stage prepare_stage(const CommonOptions& common, const PictureOptions& options)
     Stage stage;
     stage.scene          = load_scene(options.scene);
     const Camera& camera = find_camera(stage.scene, options.view);
-    stage.view           = camera_to_view(camera, options.size.empty() ? camera.size_px : parse_size(options.size));
+    stage.view           = camera_to_view(camera, options.size.empty() ? camera.size_px : size_option(options.size));
     for (const std::string& warning : stage.scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
     stage.gpu     = open_gpu({.device = common.device, .validation = common.validation});
     stage.gbuffer = render_gbuffer(stage.gpu, upload_scene(stage.gpu, stage.scene), stage.view);

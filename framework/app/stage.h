@@ -17,8 +17,8 @@ Stage prepare_stage(const CommonOptions& common, const PictureOptions& options);
 /// Prints the validation layer's messages; 1 when there are any.
 int report_messages(const Stage& stage);
 
-/// "1280x720"; throws SpecError.
-glm::ivec2 parse_size(const std::string& text);
+/// The value of --size; throws SpecError.
+glm::ivec2 size_option(const std::string& text);
 
 struct Choice {
     ParameterValues values;

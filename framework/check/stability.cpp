@@ -4,6 +4,7 @@
 #include "check/hard_case.h"
 #include "check/run_check.h"
 #include "core/error.h"
+#include "core/quantile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,13 +35,7 @@ Answers answers_of(Gpu& gpu, const Technique& technique, const Setup& setup)
     return answers;
 }
 
-/// 0 for an empty list.
-double quantile(std::vector<double> values, double q)
-{
-    if (values.empty()) return 0;
-    std::ranges::sort(values);
-    return values[std::min(values.size() - 1, static_cast<size_t>(q * static_cast<double>(values.size())))];
-}
+double quantile_or_0(const std::vector<double>& values, double p) { return values.empty() ? 0 : quantile(values, p); }
 
 double standard_deviation(const std::vector<glm::dvec2>& points)
 {
@@ -82,8 +77,8 @@ JitterRow measure_jitter(Gpu& gpu, const Technique& technique)
         if (hits.size() > 1) spreads.push_back(standard_deviation(hits));
     }
     row.flips_percent    = 1e-4 * per_million(flips, row.pixels * phases.size());
-    row.median_spread_px = quantile(spreads, 0.5);
-    row.p99_spread_px    = quantile(spreads, 0.99);
+    row.median_spread_px = quantile_or_0(spreads, 0.5);
+    row.p99_spread_px    = quantile_or_0(spreads, 0.99);
     return row;
 }
 
@@ -148,9 +143,10 @@ std::vector<FormatRow> measure_formats(Gpu& gpu, const Technique& technique)
     std::vector<FormatRow> rows;
     for (const auto& [deep, of_group] : tallies)
         for (size_t f = 0; f < of_group.size(); ++f)
-            rows.push_back({depth_formats()[f].name, technique.id, deep, quantile(of_group[f].errors, 0.5),
+            rows.push_back({depth_formats()[f].name, technique.id, deep, quantile_or_0(of_group[f].errors, 0.5),
                             quantile(of_group[f].errors, 0.99), of_group[f].rays,
-                            per_million(of_group[f].changed, of_group[f].rays), quantile(of_group[f].moved_px, 0.5)});
+                            per_million(of_group[f].changed, of_group[f].rays),
+                            quantile_or_0(of_group[f].moved_px, 0.5)});
     return rows;
 }
 

@@ -31,7 +31,7 @@ constexpr auto table = std::to_array<Measure>({
     {"screen_false", "share", "rays that hit where the screen truth does not, of traced rays", contract},
     {"screen_out_of_steps", "share", "rays that end as out_of_steps, of traced rays", contract},
     {"screen_recall_1px", "share", "rays found within 1 px, of those that the screen truth hits", contract},
-    {"screen_displacement_median_px", "px", "median distance of hit points over rays where both hit (nearest rank)",
+    {"screen_displacement_median_px", "px", "median distance of hit points over rays where both hit (interpolated)",
      own},
     {"screen_displacement_p95_px", "px", "95th percentile of the same distances", own},
     {"screen_displacement_p99_px", "px", "99th percentile of the same distances", own},

@@ -1,6 +1,7 @@
 // Measures that compare rays with rays.
 #include "compare/measures.h"
 #include "core/pixel_index.h"
+#include "core/quantile.h"
 
 #include <algorithm>
 #include <array>
@@ -18,13 +19,10 @@ constexpr double within_four_px = 4;
 bool traced(const TraceResult& result, size_t i) { return result.status[i] != TraceStatus::not_traced; }
 bool hits(const TraceResult& result, size_t i) { return result.status[i] == TraceStatus::hit; }
 
-/// Nearest rank. Reorders.
-std::optional<double> percentile(std::vector<double>& values, double p)
+std::optional<double> known_quantile(const std::vector<double>& values, double p)
 {
     if (values.empty()) return std::nullopt;
-    const auto rank = size_t(std::max(1.0, std::ceil(p / 100 * double(values.size())))) - 1;
-    std::nth_element(values.begin(), values.begin() + ptrdiff_t(rank), values.end());
-    return values[rank];
+    return quantile(values, p);
 }
 
 /// Distance between the hit points of two results that both hit.
@@ -125,9 +123,9 @@ MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResu
             {"screen_false", share(false_hits, rays)},
             {"screen_out_of_steps", share(out_of_steps, rays)},
             {"screen_recall_1px", recall_against(tested, truth)},
-            {"screen_displacement_median_px", percentile(distances, 50)},
-            {"screen_displacement_p95_px", percentile(distances, 95)},
-            {"screen_displacement_p99_px", percentile(distances, 99)}};
+            {"screen_displacement_median_px", known_quantile(distances, 0.5)},
+            {"screen_displacement_p95_px", known_quantile(distances, 0.95)},
+            {"screen_displacement_p99_px", known_quantile(distances, 0.99)}};
 }
 
 MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth& truth,

@@ -88,6 +88,7 @@ Environment describe_environment(const Experiment& experiment, std::span<const T
     auto& notes            = environment.notes;
     notes["title"]         = experiment.title;
     notes["experiment"]    = experiment.name;
+    notes["samples"]       = "samples.csv";
     notes["specification"] = experiment.text;
     notes["command_line"]  = command_line;
     notes["seed"]          = std::to_string(experiment.measure.seed);

@@ -1,9 +1,9 @@
 #include "harness/experiment.h"
 
+#include "core/size.h"
 #include "core/toml_reading.h"
 
 #include <algorithm>
-#include <charconv>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -67,21 +67,11 @@ std::vector<std::string> read_texts(const TomlFile& file, const std::string& nam
 
 glm::ivec2 read_size(const TomlFile& file, const toml::node& node)
 {
-    const std::string text     = toml_text(file, node, "sizes");
-    const char*       end      = text.data() + text.size();
-    int               sides[2] = {0, 0};
-    const auto        width    = std::from_chars(text.data(), end, sides[0]);
-    const bool        cross    = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
-    const auto        height   = cross ? std::from_chars(width.ptr + 1, end, sides[1]) : width;
-    if (!cross || height.ec != std::errc() || height.ptr != end) {
-        toml_refuse(file, node, "sizes", "a size like \"1280x720\"");
-    }
-    for (const int side : sides) {
-        if (side < 1 || side > max_size_px) {
-            toml_refuse(file, node, "sizes", fmt::format("from 1x1 to {0}x{0} pixels", max_size_px));
-        }
-    }
-    return {sides[0], sides[1]};
+    const std::optional<glm::ivec2> size_px = parse_size(toml_text(file, node, "sizes"));
+    if (!size_px) toml_refuse(file, node, "sizes", "a size like \"1280x720\"");
+    if (std::min(size_px->x, size_px->y) < 1 || std::max(size_px->x, size_px->y) > max_size_px)
+        toml_refuse(file, node, "sizes", fmt::format("from 1x1 to {0}x{0} pixels", max_size_px));
+    return *size_px;
 }
 
 std::vector<glm::ivec2> read_sizes(const TomlFile& file)
@@ -229,7 +219,6 @@ MeasureSettings read_measure(const TomlFile& file)
     integer("warmup", measure.warmup, 0, 1000);
     integer("min_repeats", measure.min_repeats, 1, 100000);
     integer("max_repeats", measure.max_repeats, 1, 100000);
-    number("interval_percent", measure.interval_percent, 0, 100);
     number("budget_s", measure.budget_s, 0, infinity);
     flag("truth", measure.truth);
     flag("image_errors", measure.image_errors);

@@ -20,8 +20,7 @@ struct MeasureSettings {
     int      warmup           = 1; // untimed frames before the first timed one
     int      min_repeats      = 9; // below 6 there is no 95 % interval
     int      max_repeats      = 100;
-    double   interval_percent = 2;    // tight: the 95 % interval of the median of trace_ms lies within ± this
-    double   budget_s         = 5;    // a run stops after min_repeats once its frames took this long
+    double   budget_s         = 1;    // a run has as many repeats as its pilot frame says fit into this
     bool     truth            = true; // compare with the truths
     bool     image_errors = true; // also compare the pictures (SSIM, FLIP …), which takes longer than comparing rays
     bool     double_twin  = true; // trace once more in double precision, to tell rounding from the other errors

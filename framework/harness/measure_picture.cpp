@@ -7,6 +7,7 @@
 #include "core/parallel_rows.h"
 #include "core/stopwatch.h"
 #include "harness/environment.h"
+#include "harness/samples.h"
 #include "harness/statistics.h"
 #include "harness/stop_signal.h"
 
@@ -25,6 +26,7 @@ struct Picture {
     GBufferPtr            gbuffer;
     FrameBuffersPtr       buffers;
     double                gbuffer_ms = 0;
+    int                   round      = 0; // of samples.csv
     std::optional<Truths> truths;
 
     // The picture with the true reflection under the settings of the last run: no technique is in it.
@@ -70,6 +72,7 @@ Picture make_picture(Bench& bench, const Run& run)
         for (int i = 0; i < gbuffer_repeats; ++i) times_ms.push_back(rerender_gbuffer(bench.gpu, *picture.gbuffer));
     });
     picture.gbuffer_ms = quantile(std::move(times_ms), 0.5);
+    picture.round      = bench.results.next_round();
     picture.buffers    = make_frame_buffers(bench.gpu, picture.gbuffer);
     if (bench.experiment.measure.truth) {
         clocked(bench.truths_s, [&] {
@@ -96,9 +99,9 @@ double cost_of(const Bench& bench, const Run& run)
     return estimated_seconds(run, find_technique(bench.techniques, run.technique), bench.experiment.measure);
 }
 
-void finish(Bench& bench, const Run& run, const Row& row)
+void finish(Bench& bench, const Run& run, const Row& row, std::string_view samples = "")
 {
-    bench.results.append(row);
+    bench.results.append(row, samples);
     ++bench.written;
     if (row.at("outcome") == "failed") {
         ++bench.failed;
@@ -211,6 +214,16 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
     judge(bench, picture, measured, observed);
 }
 
+/// The pilot: one warm frame, whose time is not recorded, says how many repeats fit into the budget.
+void plan_repeats(Bench& bench, MeasuredRun& measured)
+{
+    clocked(bench.counted_s, [&] {
+        const Stopwatch stopwatch;
+        run_frame(bench.gpu, *measured.frame);
+        measured.repeats = repeats_for(stopwatch.seconds(), bench.experiment.measure);
+    });
+}
+
 /// The same frame with everything on, where that is more.
 void prepare_comparison(Bench& bench, MeasuredRun& measured)
 {
@@ -222,22 +235,24 @@ void prepare_comparison(Bench& bench, MeasuredRun& measured)
         clocked(bench.counted_s, [&] { run_frame(bench.gpu, *measured.everything); });
 }
 
-/// Timed repeats, every round in another order, until each run is final or a stop was requested.
-void repeat_until_final(Bench& bench, const Picture& picture, std::vector<MeasuredRun>& open)
+/// Timed repeats, every round in another order, until each run has those planned for it or a stop was requested.
+void repeat_until_final(Bench& bench, Picture& picture, std::vector<MeasuredRun>& open)
 {
     const auto over = [](const MeasuredRun& measured) { return measured.run == nullptr; };
     while (!open.empty() && stop_requested() == 0) {
         std::ranges::shuffle(open, bench.random);
         for (MeasuredRun& measured : open) {
             if (stop_requested() != 0) break;
-            try_step(bench, measured,
-                     [&] { clocked(bench.timed_s, [&] { add_repeat(bench.gpu, measured, picture.gbuffer_ms); }); });
-            if (over(measured) || !is_final(measured, bench.experiment.measure)) continue;
+            try_step(bench, measured, [&] {
+                clocked(bench.timed_s, [&] { add_repeat(bench.gpu, measured, picture.gbuffer_ms, picture.round); });
+            });
+            if (over(measured) || static_cast<int>(measured.rounds.size()) < measured.repeats) continue;
             add_times(measured, picture.gbuffer_ms);
-            finish(bench, *measured.run, measured.row);
+            finish(bench, *measured.run, measured.row, samples_text(measured));
             measured.run = nullptr;
         }
         std::erase_if(open, over);
+        ++picture.round;
         bench.progress.tick();
     }
 }
@@ -248,7 +263,7 @@ void keep_measured(Bench& bench, const Picture& picture, std::vector<MeasuredRun
     for (MeasuredRun& measured : open) {
         if (static_cast<int>(measured.trace_ms.size()) < bench.experiment.measure.min_repeats) continue;
         add_times(measured, picture.gbuffer_ms);
-        finish(bench, *measured.run, measured.row);
+        finish(bench, *measured.run, measured.row, samples_text(measured));
     }
 }
 
@@ -275,6 +290,7 @@ void measure_batch(Bench& bench, Picture& picture, std::span<const Run> runs)
         const auto prepare_both = [&] {
             prepare(bench, picture, measured);
             prepare_comparison(bench, measured);
+            plan_repeats(bench, measured);
         };
         if (!try_step(bench, measured, prepare_both)) continue;
         bench.progress.prepared_run(run->id, cost_of(bench, *run));

@@ -1,6 +1,5 @@
 #include "harness/measured_run.h"
 
-#include "core/stopwatch.h"
 #include "harness/statistics.h"
 
 #include <fmt/format.h>
@@ -8,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ctime>
 #include <numeric>
 
 namespace ssrlab {
@@ -94,11 +94,12 @@ void add_plan(Row& row, const std::vector<PlannedEffect>& plan)
     row["effects_skipped"] = skipped;
 }
 
-void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms)
+void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms, int round)
 {
-    const Stopwatch  stopwatch;
-    const FrameTimes times = run_frame(gpu, *measured.frame);
-    measured.spent_s += stopwatch.seconds();
+    const std::clock_t cpu_before = std::clock();
+    const FrameTimes   times      = run_frame(gpu, *measured.frame);
+    measured.cpu_ms.push_back(1000.0 * static_cast<double>(std::clock() - cpu_before) / CLOCKS_PER_SEC);
+    measured.rounds.push_back(round);
     for (const auto& [effect, ms] : times.effects_ms) measured.effect_ms[effect].push_back(ms);
     measured.trace_ms.push_back(times.of("trace"));
     measured.frame_ms.push_back(gbuffer_ms + times.total_ms());
@@ -106,12 +107,10 @@ void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms)
         measured.saved_ms.push_back(run_frame(gpu, *measured.everything).total_ms() - times.total_ms());
 }
 
-bool is_final(const MeasuredRun& measured, const MeasureSettings& measure)
+int repeats_for(double pilot_s, const MeasureSettings& measure)
 {
-    const int repeats = static_cast<int>(measured.trace_ms.size());
-    if (repeats < measure.min_repeats) return false;
-    return repeats >= measure.max_repeats || measured.spent_s >= measure.budget_s ||
-           is_tight(summarise(measured.trace_ms), measure.interval_percent);
+    return static_cast<int>(std::clamp(measure.budget_s / pilot_s, static_cast<double>(measure.min_repeats),
+                                       static_cast<double>(measure.max_repeats)));
 }
 
 void add_times(MeasuredRun& measured, double gbuffer_ms)

@@ -14,9 +14,10 @@ struct MeasuredRun {
     const Run*                                 run = nullptr;
     PreparedFramePtr                           frame, everything; // the same with everything on, or null
     Row                                        row;
-    std::vector<double>                        trace_ms, frame_ms, saved_ms;
+    std::vector<int>                           rounds; // one entry per timed frame, as in the lists below
+    std::vector<double>                        trace_ms, frame_ms, cpu_ms, saved_ms;
     std::map<std::string, std::vector<double>> effect_ms;   // by effect, of those that ran
-    double                                     spent_s = 0; // wall time of the timed frames
+    int                                        repeats = 0; // that it will have, known before the first one
 };
 
 /// Run id, experiment, scene … and every setting and parameter.
@@ -30,9 +31,10 @@ void add_plan(Row& row, const std::vector<PlannedEffect>& plan);
 /// Pairs of a planned frame and one with everything on.
 inline constexpr int saved_pairs = 5;
 /// One timed frame, and the first few times one with everything on.
-void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms);
-/// Enough repeats, and the interval is tight or the budget spent.
-bool is_final(const MeasuredRun& measured, const MeasureSettings& measure);
+void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms, int round);
+/// How many repeats fit into the budget, from the wall time of a frame before the first repeat. Their number depends on no time
+/// that is recorded: stopping where an interval happens to be tight would make intervals too tight.
+int repeats_for(double pilot_s, const MeasureSettings& measure);
 void add_times(MeasuredRun& measured, double gbuffer_ms);
 Row  failed_row(Row row, const std::string& message);
 

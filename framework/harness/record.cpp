@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "harness/samples.h"
 
 #include <nlohmann/json.hpp>
 
@@ -55,7 +56,8 @@ std::vector<std::string> differences(const std::map<std::string, std::string>& a
 
 ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> columns, const Environment& environment,
                            bool resuming)
-    : folder_(std::move(folder)), csv_(folder_ / "results.csv"), columns_(std::move(columns))
+    : folder_(std::move(folder)), csv_(folder_ / "results.csv"), samples_(folder_ / "samples.csv"),
+      columns_(std::move(columns))
 {
     std::error_code error;
     fs::create_directories(folder_, error);
@@ -73,6 +75,7 @@ ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> columns, co
             start(environment);
     } catch (...) {
         if (csv_fd_ >= 0) ::close(csv_fd_);
+        if (samples_fd_ >= 0) ::close(samples_fd_);
         if (lock_fd_ >= 0) ::close(lock_fd_);
         throw;
     }
@@ -81,6 +84,7 @@ ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> columns, co
 ResultFolder::~ResultFolder()
 {
     ::close(csv_fd_);
+    ::close(samples_fd_);
     ::close(lock_fd_); // releases the lock; so does the end of the process, however it ends
 }
 
@@ -102,10 +106,18 @@ void ResultFolder::lock()
 void ResultFolder::start(const Environment& environment)
 {
     write_file_atomically(folder_ / "environment.json", to_json(environment));
+    write_file_atomically(samples_, csv_line(sample_columns()));
     // Last, because a results.csv promises that everything else is there.
     write_file_atomically(csv_, csv_line(columns_));
-    csv_fd_ = ::open(csv_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-    if (csv_fd_ < 0) throw_failure("{}: cannot be written: {}", short_path(csv_), std::strerror(errno));
+    open_files();
+}
+
+void ResultFolder::open_files()
+{
+    for (const auto& [file, fd] : {std::pair{&csv_, &csv_fd_}, std::pair{&samples_, &samples_fd_}}) {
+        *fd = ::open(file->c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+        if (*fd < 0) throw_failure("{}: cannot be written: {}", short_path(*file), std::strerror(errno));
+    }
 }
 
 void ResultFolder::resume(const Environment& environment)
@@ -122,33 +134,63 @@ void ResultFolder::resume(const Environment& environment)
             "{}: cannot be resumed, its columns are not those of this version; choose another folder with -o",
             short_path(csv_));
     }
-    // Replaced as a whole: a kill in between leaves the old file.
-    const std::string kept = finished_rows(rest);
+    const std::string samples     = read_file(samples_);
+    std::string_view  sample_rest = samples;
+    if (take_csv_record(sample_rest) != sample_columns())
+        throw_failure("{}: damaged: its first line is not '{}'", short_path(samples_),
+                      fmt::join(sample_columns(), ","));
+    const SampleCounts counts = count_samples(sample_rest);
+    next_round_               = counts.next_round;
+    // Each file is replaced as a whole: a kill in between leaves the old one, and resuming again comes to the same.
+    const std::string kept = finished_rows(rest, counts.frames);
     if (kept != text) write_file_atomically(csv_, kept);
-    csv_fd_ = ::open(csv_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-    if (csv_fd_ < 0) throw_failure("{}: cannot be written: {}", short_path(csv_), std::strerror(errno));
+    const std::string kept_samples = samples_of(sample_rest, finished_);
+    if (kept_samples != samples) write_file_atomically(samples_, kept_samples);
+    open_files();
 }
 
-/// Header and rows that stand: not those that failed, which are tried again, and not a last one that a kill tore.
-std::string ResultFolder::finished_rows(std::string_view rows)
+/// Header and rows that stand: not those that failed or whose samples are not all there, which are tried again, and not a last one
+/// that a kill tore. `frames`: timed frames by run in samples.csv.
+std::string ResultFolder::finished_rows(std::string_view rows, const std::map<std::string, int>& frames)
 {
-    const auto            outcome = std::ranges::find(columns_, "outcome") - columns_.begin();
-    std::string           kept    = csv_line(columns_);
+    const auto field = [&](const CsvRecord& record, const char* column) {
+        const auto i = static_cast<size_t>(std::ranges::find(columns_, column) - columns_.begin());
+        return i < record.size() ? record[i] : "";
+    };
+    std::string           kept = csv_line(columns_);
     std::set<std::string> seen;
     while (const auto record = take_csv_record(rows)) {
         if (record->size() != columns_.size() || !seen.insert(record->front()).second) {
             throw_failure("{}: damaged: the row of run '{}' {}", short_path(csv_), record->front(),
                           record->size() != columns_.size() ? "has the wrong number of fields" : "is there twice");
         }
-        const bool failed = outcome < std::ssize(*record) && (*record)[static_cast<size_t>(outcome)] == "failed";
-        if (failed) continue;
+        if (field(*record, "outcome") == "failed") continue;
+        const std::string repeats = field(*record, "repeats");
+        const auto        sampled = frames.find(record->front());
+        if (!repeats.empty() && (sampled == frames.end() || std::to_string(sampled->second) != repeats)) continue;
         kept += csv_line(*record);
         finished_.insert(record->front());
     }
     return kept;
 }
 
-void ResultFolder::append(const Row& row)
+namespace {
+
+/// One checked write and a sync; on failure what was written is cut off again.
+void append_whole(int fd, const fs::path& file, std::string_view bytes, const std::string& what)
+{
+    struct stat before = {};
+    if (::fstat(fd, &before) != 0) throw_failure("{}: {}", short_path(file), std::strerror(errno));
+    if (write_fully(fd, bytes) && ::fdatasync(fd) == 0) return;
+    const int  reason = errno;
+    const bool cut    = ::ftruncate(fd, before.st_size) == 0;
+    throw_failure("{}: writing {} failed: {}{}", short_path(file), what, std::strerror(reason),
+                  cut ? "; the rows before it are intact, continue with --resume" : "");
+}
+
+} // namespace
+
+void ResultFolder::append(const Row& row, std::string_view samples)
 {
     CsvRecord record;
     for (const std::string& column : columns_) record.push_back(row.contains(column) ? row.at(column) : "");
@@ -156,16 +198,9 @@ void ResultFolder::append(const Row& row)
     const auto stray = std::ranges::find_if_not(row, known);
     if (stray != row.end()) throw_failure("{}: has no column '{}'", short_path(csv_), stray->first);
 
-    struct stat before = {};
-    if (::fstat(csv_fd_, &before) != 0) throw_failure("{}: {}", short_path(csv_), std::strerror(errno));
-    if (write_fully(csv_fd_, csv_line(record)) && ::fdatasync(csv_fd_) == 0) {
-        finished_.insert(record.front());
-        return;
-    }
-    const int  reason = errno;
-    const bool cut    = ::ftruncate(csv_fd_, before.st_size) == 0;
-    throw_failure("{}: writing the row of run {} failed: {}{}", short_path(csv_), record.front(), std::strerror(reason),
-                  cut ? "; the rows before it are intact, continue with --resume" : "");
+    if (!samples.empty()) append_whole(samples_fd_, samples_, samples, "the samples of run " + record.front());
+    append_whole(csv_fd_, csv_, csv_line(record), "the row of run " + record.front());
+    finished_.insert(record.front());
 }
 
 /// What a killed writer left beside its files; nothing that only looks alike.
@@ -175,9 +210,10 @@ void ResultFolder::remove_partial_files() const
     for (const fs::path& folder : {folder_, folder_ / "pictures"}) {
         if (!fs::is_directory(folder)) continue;
         for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-            const std::string name    = entry.path().filename().string();
-            const bool        text    = name.starts_with("environment.json.tmp") || name.starts_with("results.csv.tmp");
-            const bool        picture = name.starts_with(".") && name.find(".tmp.") != std::string::npos;
+            const std::string name = entry.path().filename().string();
+            const bool        text = name.starts_with("environment.json.tmp") || name.starts_with("results.csv.tmp") ||
+                              name.starts_with("samples.csv.tmp");
+            const bool picture = name.starts_with(".") && name.find(".tmp.") != std::string::npos;
             if (text || (picture && folder != folder_)) partial.push_back(entry.path());
         }
     }

@@ -1,4 +1,4 @@
-// results.csv: one row per run, each written whole or not at all.
+// results.csv: one row per run, each written whole or not at all; samples.csv: the timed frames behind the rows.
 #pragma once
 
 #include "harness/csv.h"
@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ssrlab {
@@ -28,8 +29,8 @@ std::vector<std::string> differences(const std::map<std::string, std::string>& a
 class ResultFolder {
 public:
     /// Fresh: creates the folder, environment.json and the header; refuses (Failure) a folder that has results.
-    /// Resuming: cuts off a torn row and takes out the rows that failed, so that they are tried again; refuses (SpecError) when columns or
-    /// identity differ, naming what does.
+    /// Resuming: cuts off a torn row, and takes out the rows that failed or that lack samples, so that these runs are tried again, and
+    /// the samples of runs without a row; refuses (SpecError) when columns or identity differ, naming what does.
     ResultFolder(std::filesystem::path folder, std::vector<std::string> columns, const Environment& environment,
                  bool resume);
     ~ResultFolder();
@@ -39,9 +40,12 @@ public:
     /// The runs that have a row.
     const std::set<std::string>& finished() const { return finished_; }
 
-    /// One checked write of the whole row, then a sync. On failure the row's torn bytes are cut off again and a Failure
-    /// names the file: what is on disk is always a correct prefix.
-    void append(const Row& row);
+    /// Above every round in samples.csv.
+    int next_round() const { return next_round_; }
+
+    /// One checked write of the run's samples, then one of its row, each with a sync. On failure the torn bytes are cut off
+    /// again and a Failure names the file: what is on disk is always a correct prefix, and a row's samples are there before it.
+    void append(const Row& row, std::string_view samples = "");
 
     const std::filesystem::path& path() const { return folder_; }
 
@@ -49,13 +53,15 @@ private:
     void        lock();
     void        start(const Environment& environment);
     void        resume(const Environment& environment);
-    std::string finished_rows(std::string_view rows);
+    std::string finished_rows(std::string_view rows, const std::map<std::string, int>& frames);
+    void        open_files();
     void        remove_partial_files() const;
 
-    std::filesystem::path    folder_, csv_;
+    std::filesystem::path    folder_, csv_, samples_;
     std::vector<std::string> columns_;
     std::set<std::string>    finished_;
-    int                      lock_fd_ = -1, csv_fd_ = -1;
+    int                      next_round_ = 0;
+    int                      lock_fd_ = -1, csv_fd_ = -1, samples_fd_ = -1;
 };
 
 } // namespace ssrlab

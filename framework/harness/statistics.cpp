@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 
 namespace ssrlab {
@@ -40,22 +39,6 @@ Summary summarise(std::vector<double> samples)
     for (double& sample : samples) sample = std::abs(sample - summary.median);
     summary.mad = quantile(std::move(samples), 0.5);
     return summary;
-}
-
-double quantile(std::vector<double> samples, double p)
-{
-    if (samples.empty()) return unknown;
-    const double position = p * static_cast<double>(samples.size() - 1);
-    const auto   below    = samples.begin() + static_cast<std::ptrdiff_t>(position);
-    std::ranges::nth_element(samples, below);
-    const auto above = below + 1 == samples.end() ? below : std::min_element(below + 1, samples.end());
-    return std::lerp(*below, *above, position - std::floor(position));
-}
-
-bool is_tight(const Summary& summary, double percent)
-{
-    const double allowed = summary.median * percent / 100;
-    return summary.ci_high - summary.median <= allowed && summary.median - summary.ci_low <= allowed;
 }
 
 } // namespace ssrlab

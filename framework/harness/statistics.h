@@ -1,6 +1,8 @@
 // What repeated timings say: robust against the outliers that every machine produces.
 #pragma once
 
+#include "core/quantile.h"
+
 #include <cstdint>
 #include <vector>
 
@@ -16,14 +18,8 @@ struct Summary {
 
 Summary summarise(std::vector<double> samples);
 
-/// The value below which a share p of the samples lies, interpolated linearly; NaN without samples.
-double quantile(std::vector<double> samples, double p);
-
 /// Rank k such that the k-th smallest and the k-th largest of `count` samples enclose the median with at least 95 %
 /// probability: the largest k with 2 * P(Binomial(count, 1/2) < k) <= 5 %. 0 below six samples.
 int interval_rank(int count);
-
-/// Whether the interval lies within ± percent of the median.
-bool is_tight(const Summary& summary, double percent);
 
 } // namespace ssrlab

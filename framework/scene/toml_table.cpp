@@ -1,7 +1,8 @@
 #include "scene/toml_table.h"
 
+#include "core/size.h"
+
 #include <cmath>
-#include <cstdio>
 
 namespace ssrlab {
 namespace {
@@ -118,10 +119,8 @@ std::optional<glm::ivec2> TomlTable::size_px(const char* key)
 {
     const std::optional<std::string> value = text(key);
     if (!value) return std::nullopt;
-    glm::ivec2 size{0, 0};
-    char       rest = 0;
-    if (std::sscanf(value->c_str(), "%5dx%5d%c", &size.x, &size.y, &rest) != 2 || size.x < 1 || size.y < 1)
-        refuse(key, "a size in pixels such as \"1280x720\"");
+    const std::optional<glm::ivec2> size = parse_size(*value);
+    if (!size || size->x < 1 || size->y < 1) refuse(key, "a size in pixels such as \"1280x720\"");
     return size;
 }
 

@@ -16,7 +16,7 @@ namespace ssrlab {
 
 class ContentHash {
 public:
-    ContentHash() : m_state(XXH3_createState(), XXH3_freeState) { XXH3_128bits_reset(m_state.get()); }
+    ContentHash() : state_(XXH3_createState(), XXH3_freeState) { XXH3_128bits_reset(state_.get()); }
 
     /// Numbers, enums and GLM types: nothing with padding.
     template <typename T>
@@ -42,19 +42,19 @@ public:
 
     ContentHash& add_bytes(const void* bytes, size_t size)
     {
-        XXH3_128bits_update(m_state.get(), bytes, size);
+        XXH3_128bits_update(state_.get(), bytes, size);
         return *this;
     }
 
     /// 32 hexadecimal digits.
     std::string hex() const
     {
-        const XXH128_hash_t hash = XXH3_128bits_digest(m_state.get());
+        const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
         return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
     }
 
 private:
-    std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> m_state;
+    std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
 };
 
 } // namespace ssrlab

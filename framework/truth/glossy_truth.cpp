@@ -69,7 +69,7 @@ struct Sample {
 /// The lobe of one pixel.
 class Lobe {
 public:
-    Lobe(const GBufferImage& gbuffer, glm::ivec2 pixel, double roughness) : m_alpha(roughness * roughness)
+    Lobe(const GBufferImage& gbuffer, glm::ivec2 pixel, double roughness) : alpha_(roughness * roughness)
     {
         const glm::dvec3 to_eye_vs = gbuffer.view.projection == Projection::perspective
                                          ? -glm::normalize(pixel_point_vs(gbuffer, pixel))
@@ -79,26 +79,26 @@ public:
         const double     length = glm::length(sum);
         const size_t     i      = pixel_index(pixel, gbuffer.view.size_px);
         const glm::dvec3 stored = glm::normalize(glm::dvec3(gbuffer.normal_vs[i]));
-        m_frame                 = frame_about(length > grazing ? sum / length : stored);
-        m_view                  = glm::transpose(m_frame) * to_eye_vs;
-        m_view.z                = std::max(m_view.z, grazing);
+        frame_                  = frame_about(length > grazing ? sum / length : stored);
+        view_                   = glm::transpose(frame_) * to_eye_vs;
+        view_.z                 = std::max(view_.z, grazing);
     }
 
     Sample sample(glm::dvec2 u) const
     {
-        const glm::dvec3 half  = visible_normal(glm::normalize(m_view), m_alpha, u);
-        const glm::dvec3 light = 2 * glm::dot(m_view, half) * half - m_view;
+        const glm::dvec3 half  = visible_normal(glm::normalize(view_), alpha_, u);
+        const glm::dvec3 light = 2 * glm::dot(view_, half) * half - view_;
         if (!(light.z > 0)) return {};
-        const double to_view = 1 + lambda(m_view.z, m_alpha);
-        return {glm::normalize(m_frame * light), to_view / (to_view + lambda(light.z, m_alpha))};
+        const double to_view = 1 + lambda(view_.z, alpha_);
+        return {glm::normalize(frame_ * light), to_view / (to_view + lambda(light.z, alpha_))};
     }
 
 private:
     static constexpr double grazing = 1e-6;
 
-    double     m_alpha;
-    glm::dmat3 m_frame{1};
-    glm::dvec3 m_view{0};
+    double     alpha_;
+    glm::dmat3 frame_{1};
+    glm::dvec3 view_{0};
 };
 
 /// The rays of one row, pixel after pixel.

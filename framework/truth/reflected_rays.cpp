@@ -21,38 +21,38 @@ bool inside_image(const View& view, glm::dvec2 point_px)
 
 ReflectedRays::ReflectedRays(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer,
                              double max_distance_m)
-    : m_bvh(bvh), m_scene(scene), m_gbuffer(gbuffer), m_max_distance_m(max_distance_m),
-      m_view_to_world(glm::inverse(gbuffer.view.world_to_view))
+    : bvh_(bvh), scene_(scene), gbuffer_(gbuffer), max_distance_m_(max_distance_m),
+      view_to_world_(glm::inverse(gbuffer.view.world_to_view))
 {
 }
 
 glm::dvec3 ReflectedRays::point_to_ws(glm::dvec3 point_vs) const
 {
-    return glm::dvec3(m_view_to_world * glm::dvec4(point_vs, 1));
+    return glm::dvec3(view_to_world_ * glm::dvec4(point_vs, 1));
 }
 
 glm::dvec3 ReflectedRays::direction_to_ws(glm::dvec3 direction_vs) const
 {
-    return glm::dmat3(m_view_to_world) * direction_vs;
+    return glm::dmat3(view_to_world_) * direction_vs;
 }
 
 /// From where the camera looks at a point.
 glm::dvec3 ReflectedRays::eye_vs(glm::dvec3 point_vs) const
 {
-    return m_gbuffer.view.projection == Projection::perspective ? glm::dvec3(0) : glm::dvec3(point_vs.x, point_vs.y, 0);
+    return gbuffer_.view.projection == Projection::perspective ? glm::dvec3(0) : glm::dvec3(point_vs.x, point_vs.y, 0);
 }
 
 /// t = 1 is the point.
 SceneRay ReflectedRays::sight_ray(glm::dvec3 point_vs) const
 {
     const glm::dvec3 origin_vs = eye_vs(point_vs);
-    return {point_to_ws(origin_vs), direction_to_ws(point_vs - origin_vs), m_gbuffer.view.near_m / -point_vs.z,
+    return {point_to_ws(origin_vs), direction_to_ws(point_vs - origin_vs), gbuffer_.view.near_m / -point_vs.z,
             1 - visibility_tolerance};
 }
 
 SceneRay ReflectedRays::ray_from(glm::ivec2 pixel, glm::dvec3 direction_vs) const
 {
-    const glm::dvec3 point_vs = pixel_point_vs(m_gbuffer, pixel);
+    const glm::dvec3 point_vs = pixel_point_vs(gbuffer_, pixel);
     const double     start_m  = self_hit_share * glm::length(point_vs - eye_vs(point_vs));
     return {point_to_ws(point_vs), direction_to_ws(direction_vs), start_m, infinity};
 }
@@ -68,35 +68,35 @@ RayEnd ReflectedRays::classify(const SceneRay& ray, const SceneHit& hit) const
     end.distance_m = hit.met ? hit.t : infinity;
     if (!hit.met) return with(TruthClass::sky);
 
-    const View& view    = m_gbuffer.view;
+    const View& view    = gbuffer_.view;
     end.point_vs        = glm::dvec3(view.world_to_view * glm::dvec4(ray.origin_ws + hit.t * ray.direction_ws, 1));
     const bool in_front = -end.point_vs.z >= view.near_m;
     if (in_front) end.point_px = glm::dvec2(vs_to_px(view, end.point_vs));
-    if (hit.t > m_max_distance_m) return with(TruthClass::beyond);
+    if (hit.t > max_distance_m_) return with(TruthClass::beyond);
     if (!in_front) return with(TruthClass::behind_camera);
     if (!inside_image(view, end.point_px)) return with(TruthClass::off_screen);
     const glm::dvec3 sight_ws     = direction_to_ws(end.point_vs - eye_vs(end.point_vs));
     const bool       camera_front = glm::dot(hit.normal_ws, sight_ws) < 0;
     const bool       ray_front    = glm::dot(hit.normal_ws, ray.direction_ws) < 0;
-    const bool       drawn = ray_front || m_scene.materials[m_scene.draws[hit.surface.draw].material].double_sided;
+    const bool       drawn        = ray_front || scene_.materials[scene_.draws[hit.surface.draw].material].double_sided;
     return with(camera_front == ray_front && drawn ? TruthClass::visible : TruthClass::facing_away);
 }
 
 glm::vec3 ReflectedRays::radiance(const SceneRay& ray, const SceneHit& hit, const RayEnd& end) const
 {
-    if (end.cls == TruthClass::sky) return sky_radiance(m_scene, ray.direction_ws);
+    if (end.cls == TruthClass::sky) return sky_radiance(scene_, ray.direction_ws);
     if (end.cls == TruthClass::visible) {
         const glm::ivec2 pixel(end.point_px);
-        return m_gbuffer.radiance[pixel_index(pixel, m_gbuffer.view.size_px)];
+        return gbuffer_.radiance[pixel_index(pixel, gbuffer_.view.size_px)];
     }
-    return shade_point(m_bvh, m_scene, hit, ray.origin_ws + hit.t * ray.direction_ws, ray.direction_ws);
+    return shade_point(bvh_, scene_, hit, ray.origin_ws + hit.t * ray.direction_ws, ray.direction_ws);
 }
 
 std::vector<RayEnd> ReflectedRays::follow(std::span<const SceneRay> rays) const
 {
     std::vector<SceneHit> hits(rays.size());
     std::vector<RayEnd>   ends(rays.size());
-    m_bvh.intersect(rays, hits);
+    bvh_.intersect(rays, hits);
     std::vector<size_t>   candidates;
     std::vector<SceneRay> sight_rays;
     for (size_t k = 0; k < rays.size(); ++k) {
@@ -106,7 +106,7 @@ std::vector<RayEnd> ReflectedRays::follow(std::span<const SceneRay> rays) const
         sight_rays.push_back(sight_ray(ends[k].point_vs));
     }
     std::vector<uint8_t> blocked(sight_rays.size());
-    m_bvh.occluded(sight_rays, Sides::as_rasterised, blocked);
+    bvh_.occluded(sight_rays, Sides::as_rasterised, blocked);
     for (size_t c = 0; c < candidates.size(); ++c)
         if (blocked[c] != 0) ends[candidates[c]].cls = TruthClass::hidden;
     for (size_t k = 0; k < rays.size(); ++k) ends[k].radiance = radiance(rays[k], hits[k], ends[k]);

@@ -38,11 +38,11 @@ private:
     RayEnd     classify(const SceneRay& ray, const SceneHit& hit) const;
     glm::vec3  radiance(const SceneRay& ray, const SceneHit& hit, const RayEnd& end) const;
 
-    const SceneBvh&     m_bvh;
-    const Scene&        m_scene;
-    const GBufferImage& m_gbuffer;
-    double              m_max_distance_m;
-    glm::dmat4          m_view_to_world;
+    const SceneBvh&     bvh_;
+    const Scene&        scene_;
+    const GBufferImage& gbuffer_;
+    double              max_distance_m_;
+    glm::dmat4          view_to_world_;
 };
 
 /// Throws Failure unless the G-buffer covers its image with all that the rays need.

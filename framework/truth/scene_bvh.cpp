@@ -134,15 +134,15 @@ struct SceneBvh::Embree {
     }
 };
 
-SceneBvh::SceneBvh(const Scene& scene) : m_scene(&scene), m_embree(std::make_unique<Embree>())
+SceneBvh::SceneBvh(const Scene& scene) : scene_(&scene), embree_(std::make_unique<Embree>())
 {
     require_valid(scene);
     for (uint32_t i = 0; i < scene.draws.size(); ++i) {
-        if (scene.draws[i].index_count > 0) m_embree->add(scene, i);
+        if (scene.draws[i].index_count > 0) embree_->add(scene, i);
     }
-    rtcSetSceneFlags(m_embree->scene, RTC_SCENE_FLAG_ROBUST);
-    rtcCommitScene(m_embree->scene);
-    if (const RTCError error = rtcGetDeviceError(m_embree->device); error != RTC_ERROR_NONE) {
+    rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
+    rtcCommitScene(embree_->scene);
+    if (const RTCError error = rtcGetDeviceError(embree_->device); error != RTC_ERROR_NONE) {
         throw_failure("scene '{}': Embree could not build its hierarchy (error {})", scene.name, int(error));
     }
 }
@@ -162,8 +162,8 @@ void SceneBvh::intersect(std::span<const SceneRay> rays, std::span<SceneHit> hit
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect1M(m_embree->scene, &context, work.data(), unsigned(work.size()), sizeof(RTCRayHit));
-    for (size_t i = 0; i < rays.size(); ++i) hits[i] = to_scene_hit(*m_scene, rays[i], work[i]);
+    rtcIntersect1M(embree_->scene, &context, work.data(), unsigned(work.size()), sizeof(RTCRayHit));
+    for (size_t i = 0; i < rays.size(); ++i) hits[i] = to_scene_hit(*scene_, rays[i], work[i]);
 }
 
 void SceneBvh::occluded(std::span<const SceneRay> rays, Sides sides, std::span<uint8_t> occluded) const
@@ -173,7 +173,7 @@ void SceneBvh::occluded(std::span<const SceneRay> rays, Sides sides, std::span<u
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcOccluded1M(m_embree->scene, &context, work.data(), unsigned(work.size()), sizeof(RTCRay));
+    rtcOccluded1M(embree_->scene, &context, work.data(), unsigned(work.size()), sizeof(RTCRay));
     // Embree marks an occluded ray with tfar = -inf.
     for (size_t i = 0; i < rays.size(); ++i) {
         occluded[i] = std::isinf(work[i].tfar) && work[i].tfar < 0 ? 1 : 0;

@@ -43,8 +43,8 @@ public:
 
 private:
     struct Embree;
-    const Scene*            m_scene;
-    std::unique_ptr<Embree> m_embree;
+    const Scene*            scene_;
+    std::unique_ptr<Embree> embree_;
 };
 
 } // namespace ssrlab

@@ -67,28 +67,28 @@ double slab_back(const View& view, double depth, const TraceSettings& settings)
 }
 
 ScreenWalk::ScreenWalk(const GBufferImage& gbuffer, const TraceSettings& settings)
-    : m_gbuffer(gbuffer), m_settings(settings), m_cells(gbuffer.depth.size())
+    : gbuffer_(gbuffer), settings_(settings), cells_(gbuffer.depth.size())
 {
     require_complete(gbuffer);
-    for (size_t i = 0; i < m_cells.size(); ++i) {
+    for (size_t i = 0; i < cells_.size(); ++i) {
         const float depth = gbuffer.depth[i];
         if (!(depth > 0) || !std::isfinite(depth)) {
-            m_cells[i] = {-std::numeric_limits<float>::infinity(), 0};
+            cells_[i] = {-std::numeric_limits<float>::infinity(), 0};
         } else {
             const auto back = float(exact_back(i));
-            m_cells[i]      = {depth, std::nextafter(back, -std::numeric_limits<float>::infinity())};
+            cells_[i]       = {depth, std::nextafter(back, -std::numeric_limits<float>::infinity())};
         }
     }
 }
 
 double ScreenWalk::exact_back(size_t index) const
 {
-    return slab_back(m_gbuffer.view, double(m_gbuffer.depth[index]), m_settings);
+    return slab_back(gbuffer_.view, double(gbuffer_.depth[index]), settings_);
 }
 
 bool ScreenWalk::faces_ray(size_t index, glm::dvec3 direction_vs) const
 {
-    return glm::dot(glm::dvec3(m_gbuffer.normal_vs[index]), direction_vs) < 0;
+    return glm::dot(glm::dvec3(gbuffer_.normal_vs[index]), direction_vs) < 0;
 }
 
 WalkResult ScreenWalk::walk(const ScreenRay& ray) const
@@ -97,7 +97,7 @@ WalkResult ScreenWalk::walk(const ScreenRay& ray) const
     found.status = ray.end_status;
     if (!ray.traced) return found;
 
-    const glm::ivec2 size = m_gbuffer.view.size_px;
+    const glm::ivec2 size = gbuffer_.view.size_px;
     Axis             x(ray.origin_px_depth.x, ray.delta_px_depth.x, ray.start_pixel.x, size.x);
     Axis             y(ray.origin_px_depth.y, ray.delta_px_depth.y, ray.start_pixel.y, size.y);
     const double     t_end  = std::min({1.0, x.t_exit, y.t_exit});
@@ -121,12 +121,12 @@ WalkResult ScreenWalk::walk(const ScreenRay& ray) const
 
         const double t_out = std::min({x.t_next, y.t_next, 1.0});
         const double z_out = z0 + t_out * dz;
-        const Cell   cell  = m_cells[size_t(index)];
+        const Cell   cell  = cells_[size_t(index)];
         ++found.pixels;
         if (std::min(z_in, z_out) <= double(cell.front) && std::max(z_in, z_out) >= double(cell.back)) {
             const double back = exact_back(size_t(index));
             if (std::max(z_in, z_out) >= back) {
-                if (!m_settings.facing || faces_ray(size_t(index), ray.direction_vs)) {
+                if (!settings_.facing || faces_ray(size_t(index), ray.direction_vs)) {
                     found.status       = TraceStatus::hit;
                     found.hit_pixel    = pixel_at(size_t(index), size);
                     found.hit_t        = first_contact_t(ray, t_in, t_out, double(cell.front), back);

@@ -40,9 +40,9 @@ private:
     bool   faces_ray(size_t index, glm::dvec3 direction_vs) const;
     double exact_back(size_t index) const;
 
-    const GBufferImage& m_gbuffer;
-    TraceSettings       m_settings;
-    std::vector<Cell>   m_cells;
+    const GBufferImage& gbuffer_;
+    TraceSettings       settings_;
+    std::vector<Cell>   cells_;
 };
 
 /// Independent of every shader. threads = 0: all cores. steps counts the pixels visited.

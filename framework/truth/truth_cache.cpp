@@ -11,6 +11,7 @@
 #include <fstream>
 #include <limits>
 #include <optional>
+#include <type_traits>
 
 namespace ssrlab {
 namespace {
@@ -73,36 +74,36 @@ void add(ContentHash& hash, const Scene& scene)
 
 class Writer {
 public:
-    template <typename T> void put(const T& value)
+    template <typename T> void operator()(const T& value)
     {
         const auto* bytes = reinterpret_cast<const char*>(&value);
-        m_bytes.insert(m_bytes.end(), bytes, bytes + sizeof value);
+        bytes_.insert(bytes_.end(), bytes, bytes + sizeof value);
     }
-    std::vector<char> take() { return std::move(m_bytes); }
+    std::vector<char> take() { return std::move(bytes_); }
 
 private:
-    std::vector<char> m_bytes;
+    std::vector<char> bytes_;
 };
 
 class Reader {
 public:
-    explicit Reader(const std::vector<char>& bytes) : m_bytes(bytes) {}
+    explicit Reader(const std::vector<char>& bytes) : bytes_(bytes) {}
 
-    template <typename T> void get(T& value)
+    template <typename T> void operator()(T& value)
     {
-        if (m_bytes.size() - m_place < sizeof value) {
-            m_ok = false;
+        if (bytes_.size() - place_ < sizeof value) {
+            ok_ = false;
             return;
         }
-        std::memcpy(static_cast<void*>(&value), m_bytes.data() + m_place, sizeof value);
-        m_place += sizeof value;
+        std::memcpy(static_cast<void*>(&value), bytes_.data() + place_, sizeof value);
+        place_ += sizeof value;
     }
-    bool complete() const { return m_ok && m_place == m_bytes.size(); }
+    bool complete() const { return ok_ && place_ == bytes_.size(); }
 
 private:
-    const std::vector<char>& m_bytes;
-    size_t                   m_place = 0;
-    bool                     m_ok    = true;
+    const std::vector<char>& bytes_;
+    size_t                   place_ = 0;
+    bool                     ok_    = true;
 };
 
 std::optional<std::vector<char>> read_payload(const fs::path& path)
@@ -135,103 +136,67 @@ void write_payload(const fs::path& path, const std::vector<char>& payload)
     if (!file || error) fs::remove(temporary, error);
 }
 
-// Both forms hold only what is defined: a miss is its status and its steps.
-std::vector<char> pack(const TraceResult& result)
+// The order of a file's values, for writing and for reading. It holds only what is defined: a miss is its status and its steps.
+template <typename Pass> void pass_values(Pass& pass, TraceResult& result)
 {
-    Writer writer;
     for (size_t i = 0; i < result.status.size(); ++i) {
-        writer.put(result.status[i]);
-        if (result.status[i] != TraceStatus::not_traced) writer.put(result.steps[i]);
+        pass(result.status[i]);
+        if (result.status[i] != TraceStatus::not_traced) pass(result.steps[i]);
         if (result.status[i] != TraceStatus::hit) continue;
-        writer.put(result.hit_pixel[i]);
-        writer.put(result.hit_px_depth[i]);
-        writer.put(result.hit_t[i]);
+        pass(result.hit_pixel[i]);
+        pass(result.hit_px_depth[i]);
+        pass(result.hit_t[i]);
     }
-    return writer.take();
 }
 
-bool unpack(const std::vector<char>& payload, glm::ivec2 size_px, TraceResult& result)
+template <typename Pass> void pass_values(Pass& pass, SceneTruth& truth)
 {
-    const size_t count = pixel_count(size_px);
-    result             = make_trace_result(size_px, false);
-    Reader reader(payload);
-    for (size_t i = 0; i < count; ++i) {
-        reader.get(result.status[i]);
-        if (result.status[i] != TraceStatus::not_traced) reader.get(result.steps[i]);
-        if (result.status[i] != TraceStatus::hit) continue;
-        reader.get(result.hit_pixel[i]);
-        reader.get(result.hit_px_depth[i]);
-        reader.get(result.hit_t[i]);
-    }
-    return reader.complete();
-}
-
-std::vector<char> pack(const SceneTruth& truth)
-{
-    Writer writer;
     for (size_t i = 0; i < truth.cls.size(); ++i) {
-        writer.put(truth.cls[i]);
+        pass(truth.cls[i]);
         if (truth.cls[i] == TruthClass::not_traced) continue;
-        writer.put(truth.radiance[i]);
-        if (truth.cls[i] == TruthClass::sky) continue;
-        writer.put(truth.point_vs[i]);
-        writer.put(truth.point_px[i]);
-        writer.put(truth.distance_m[i]);
+        pass(truth.radiance[i]);
+        if (truth.cls[i] == TruthClass::sky) {
+            truth.distance_m[i] = std::numeric_limits<double>::infinity();
+            continue;
+        }
+        pass(truth.point_vs[i]);
+        pass(truth.point_px[i]);
+        pass(truth.distance_m[i]);
     }
-    return writer.take();
 }
 
-bool unpack(const std::vector<char>& payload, glm::ivec2 size_px, SceneTruth& truth)
+template <typename Pass> void pass_values(Pass& pass, GlossyTruth& truth)
 {
-    truth = empty_scene_truth(size_px);
-    Reader reader(payload);
-    for (size_t i = 0; i < truth.cls.size(); ++i) {
-        reader.get(truth.cls[i]);
-        if (truth.cls[i] == TruthClass::not_traced) continue;
-        reader.get(truth.radiance[i]);
-        truth.distance_m[i] = std::numeric_limits<double>::infinity();
-        if (truth.cls[i] == TruthClass::sky) continue;
-        reader.get(truth.point_vs[i]);
-        reader.get(truth.point_px[i]);
-        reader.get(truth.distance_m[i]);
-    }
-    return reader.complete();
-}
-
-std::vector<char> pack(const GlossyTruth& truth)
-{
-    Writer writer;
     for (size_t i = 0; i < truth.rays.size(); ++i) {
-        writer.put(truth.rays[i]);
+        pass(truth.rays[i]);
         if (truth.rays[i] == 0) continue;
-        writer.put(truth.radiance[i]);
-        writer.put(truth.standard_error[i]);
-        writer.put(truth.weight[i]);
+        pass(truth.radiance[i]);
+        pass(truth.standard_error[i]);
+        pass(truth.weight[i]);
     }
-    return writer.take();
 }
 
-bool unpack(const std::vector<char>& payload, glm::ivec2 size_px, GlossyTruth& truth)
+/// Without anything traced.
+template <typename Truth> Truth empty_truth(glm::ivec2 size_px)
 {
-    truth = empty_glossy_truth(size_px);
-    Reader reader(payload);
-    for (size_t i = 0; i < truth.rays.size(); ++i) {
-        reader.get(truth.rays[i]);
-        if (truth.rays[i] == 0) continue;
-        reader.get(truth.radiance[i]);
-        reader.get(truth.standard_error[i]);
-        reader.get(truth.weight[i]);
-    }
-    return reader.complete();
+    if constexpr (std::is_same_v<Truth, SceneTruth>) return empty_scene_truth(size_px);
+    if constexpr (std::is_same_v<Truth, GlossyTruth>) return empty_glossy_truth(size_px);
+    if constexpr (std::is_same_v<Truth, TraceResult>) return make_trace_result(size_px, false);
 }
 
 template <typename Truth, typename Compute>
 Truth cached(const fs::path& path, glm::ivec2 size_px, const Compute& compute)
 {
-    Truth truth;
-    if (const auto payload = read_payload(path); payload && unpack(*payload, size_px, truth)) return truth;
-    truth = compute();
-    write_payload(path, pack(truth));
+    if (const auto payload = read_payload(path)) {
+        Truth  truth = empty_truth<Truth>(size_px);
+        Reader reader(*payload);
+        pass_values(reader, truth);
+        if (reader.complete()) return truth;
+    }
+    Truth  truth = compute();
+    Writer writer;
+    pass_values(writer, truth);
+    write_payload(path, writer.take());
     return truth;
 }
 

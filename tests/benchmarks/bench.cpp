@@ -16,22 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Every technique as it comes (marches in pixels: they have no metres to divide an unlimited ray by), and what hiz is compared with.
-std::vector<Contender> all_contenders(std::span<const Technique> techniques)
-{
-    std::vector<Contender> list;
-    for (const Technique& technique : techniques) {
-        Contender contender{technique.id, technique.id, {}};
-        for (const Parameter& parameter : technique.parameters)
-            if (parameter.name == "space") contender.values["space"] = "screen";
-        list.push_back(contender);
-    }
-    list.push_back({"hiz_without_beams", "hiz", {{"beams", "false"}}});
-    list.push_back({"hiz_minmax", "hiz", {{"pyramid", "minmax"}}});
-    list.push_back({"hiz_nearest", "hiz", {{"pyramid", "nearest"}, {"beams", "false"}}});
-    return list;
-}
-
 double cpu_ms()
 {
     timespec time{};
@@ -86,16 +70,11 @@ template <typename Record> double Bench::measure(benchmark::State& state, Pictur
     });
 }
 
-Bench::Bench(const std::string& device)
+Bench::Bench(const std::string& device, const std::string& tracer)
     : gpu_(open_gpu({.device = device})),
       techniques_(list_techniques(std::vector<fs::path>{fs::path(SSRLAB_SOURCE_DIR) / "tests/techniques"})),
-      contenders_(all_contenders(techniques_))
+      tracer_{find_technique(techniques_, tracer).id, {}}
 {
-}
-
-bool Bench::reads_pyramid(const Contender& contender) const
-{
-    return std::ranges::count(find_technique(techniques_, contender.technique).inputs, "depth_pyramid") > 0;
 }
 
 void Bench::gbuffer(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
@@ -113,37 +92,29 @@ void Bench::copy(benchmark::State& state, const std::string& scene, glm::ivec2 s
 void Bench::pyramid(benchmark::State& state, const std::string& scene, glm::ivec2 size_px, const std::string& kind)
 {
     Picture&       p     = picture(scene, size_px);
-    PreparedFrame& frame = frame_of(p, contender(kind == "occupancy" ? "hiz" : "hiz_" + kind));
+    PreparedFrame& frame = frame_of(p, {tracer_.technique, {{"pyramid", kind}}});
     measure(state, p, [&](const auto& commands) { record_pyramid(commands, frame.pyramid); });
 }
 
 void Bench::rays(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
 {
     Picture&       p     = picture(scene, size_px);
-    PreparedFrame& frame = frame_of(p, contender("dda"));
+    PreparedFrame& frame = frame_of(p, tracer_);
     measure(state, p, [&](const auto& commands) { record_rays(commands, frame.trace, *p.buffers); });
 }
 
-void Bench::trace(benchmark::State& state, const std::string& scene, glm::ivec2 size_px, const Contender& tracer)
+void Bench::trace(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
 {
     Picture&       p     = picture(scene, size_px);
-    PreparedFrame& frame = frame_of(p, tracer);
-    Judgement      work  = judgement_of(p, tracer);
+    PreparedFrame& frame = frame_of(p, tracer_);
     prepare_trace(*p.buffers, frame);
-    const double ms = measure(
-        state, p, [&](const auto& commands) { record_technique(commands, frame.trace.technique, *frame.rays); });
-    state.counters["rays"]            = work.rays;
-    state.counters["visits_per_ray"]  = work.visits;
-    state.counters["visits_p99"]      = work.visits_p99;
-    state.counters["fetches_per_ray"] = work.fetches;
-    state.counters["ns_per_ray"]      = work.rays > 0 ? ms * 1e6 / work.rays : 0;
-    if (size_px.x <= largest_judged_px) state.counters["recall"] = work.recall;
+    measure(state, p, [&](const auto& commands) { record_technique(commands, frame.trace.technique, *frame.rays); });
 }
 
 void Bench::shade(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
 {
     Picture&       p     = picture(scene, size_px);
-    PreparedFrame& frame = frame_of(p, contender("hiz"));
+    PreparedFrame& frame = frame_of(p, tracer_);
     prepare_trace(*p.buffers, frame);
     submit(gpu_, [&](const auto& commands) { record_technique(commands, frame.trace.technique, *frame.rays); });
     const Recording hit_colour = make_recording(gpu_, frame, "hit_colour"),
@@ -211,29 +182,26 @@ Bench::Picture& Bench::picture(const std::string& scene, glm::ivec2 size_px)
             gpu_, {.format = vk::Format::eR32Sfloat, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
     const std::vector<float> depth = read_depth(gpu_, p.gbuffer->depth);
     upload(gpu_, p.depth, depth.data(), depth.size() * sizeof(float));
-    p.copy_pass  = make_compute_pass(gpu_, compile_shader({.file = SSRLAB_SOURCE_DIR "/tests/benchmarks/copy_depth.comp"}),
-                                     {{"depth_image", p.depth}, {"depth_copy", p.copy}});
+    p.copy_pass =
+        make_compute_pass(gpu_, compile_shader({.file = SSRLAB_SOURCE_DIR "/tests/benchmarks/copy_depth.comp"}),
+                          {{"depth_image", p.depth}, {"depth_copy", p.copy}});
     p.timestamps = make_timestamps(gpu_, 2);
     return p;
-}
-
-const Contender& Bench::contender(const std::string& name) const
-{
-    return *std::ranges::find(contenders_, name, &Contender::name);
 }
 
 /// Compiled, and run once so that the driver has compiled it, too.
 PreparedFrame& Bench::frame_of(Picture& p, const Contender& c)
 {
-    if (!p.frames.contains(c.name)) {
+    PreparedFramePtr& frame = p.frames[c];
+    if (!frame) {
         const Technique& technique = find_technique(techniques_, c.technique);
         ParameterValues  values    = default_values(technique);
         for (const auto& [name, text] : c.values)
             values.at(name) = parse_parameter(find_parameter(technique, name, "benchmark"), text, "benchmark");
-        p.frames[c.name] = prepare_frame(gpu_, p.buffers, technique, values, bench_settings);
-        run_frame(gpu_, *p.frames[c.name]);
+        frame = prepare_frame(gpu_, p.buffers, technique, values, bench_settings);
+        run_frame(gpu_, *frame);
     }
-    return *p.frames[c.name];
+    return *frame;
 }
 
 /// Rays and inputs in place: another benchmark may have used the buffers.

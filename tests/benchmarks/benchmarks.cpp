@@ -1,4 +1,4 @@
-// Single passes by GPU timestamps. Names: SCENE/SIZE/PASS or SCENE:VIEW/SIZE/PASS, e.g. thin_yard/1080p/trace/hiz; choose with
+// Single passes by GPU timestamps. Names: SCENE/SIZE/PASS or SCENE:VIEW/SIZE/PASS, e.g. thin_yard/1080p/copy_depth; choose with
 // --benchmark_filter.
 //   build/bin/benchmarks --scene=thin_yard --benchmark_filter=1080p
 #include "benchmarks/bench.h"
@@ -39,9 +39,7 @@ void add_all(Bench& bench, const std::string& scene)
             pass("pyramid/" + kind, calls,
                  [kind](auto& b, auto& state, auto&... picture) { b.pyramid(state, picture..., kind); });
         pass("rays", calls, [](auto& b, auto& state, auto&... picture) { b.rays(state, picture...); });
-        for (const Contender& contender : bench.contenders())
-            pass("trace/" + contender.name, bench.reads_pyramid(contender) ? calls : 1,
-                 [contender](auto& b, auto& state, auto&... picture) { b.trace(state, picture..., contender); });
+        pass("trace", calls, [](auto& b, auto& state, auto&... picture) { b.trace(state, picture...); });
         pass("shade", calls, [](auto& b, auto& state, auto&... picture) { b.shade(state, picture...); });
         for (const bool compacted : {true, false})
             pass(compacted ? "scattered/list" : "scattered/every_pixel", calls,
@@ -68,16 +66,17 @@ std::string take_option(std::vector<char*>& arguments, const std::string& name, 
 int run(std::vector<char*> arguments)
 {
     const std::string device = take_option(arguments, "device", ""),
+                      tracer = take_option(arguments, "technique", "hiz"),
                       scenes = take_option(arguments, "scene", "thin_yard,interior");
     std::string interleave   = "--benchmark_enable_random_interleaving=true";
     arguments.insert(arguments.begin() + 1, interleave.data()); // first, so that the caller can say otherwise
     auto count = static_cast<int>(arguments.size());
     benchmark::Initialize(&count, arguments.data());
     if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) {
-        std::fputs("also: --device=NAME_OR_INDEX --scene=SCENE[:VIEW][,SCENE[:VIEW]…]\n", stderr);
+        std::fputs("also: --device=NAME_OR_INDEX --technique=NAME --scene=SCENE[:VIEW][,SCENE[:VIEW]…]\n", stderr);
         return 2;
     }
-    Bench bench(device);
+    Bench bench(device, tracer);
     benchmark::AddCustomContext("device", bench.info().name);
     benchmark::AddCustomContext("device_type", bench.info().type);
     benchmark::AddCustomContext("driver", bench.info().driver);

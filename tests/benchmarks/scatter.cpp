@@ -13,7 +13,7 @@ Bench::Scattered Bench::scatter(Picture& p)
     Scattered s;
     s.gbuffer                  = upload_gbuffer(gpu_, image);
     s.buffers                  = make_frame_buffers(gpu_, s.gbuffer);
-    const Technique& technique = find_technique(techniques_, "hiz");
+    const Technique& technique = find_technique(techniques_, tracer_.technique);
     s.frame                    = prepare_frame(gpu_, s.buffers, technique, default_values(technique), bench_settings);
     run_frame(gpu_, *s.frame);
 

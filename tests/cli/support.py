@@ -73,6 +73,15 @@ class Case(unittest.TestCase):
         with open(os.path.join(self.path(folder), "results.csv"), encoding="utf-8", newline="") as file:
             return list(csv.DictReader(file))
 
+    def samples(self, folder="out"):
+        """samples.csv as {run id: {pass: [(round, ms), …]}}."""
+        samples = {}
+        with open(os.path.join(self.path(folder), "samples.csv"), encoding="utf-8", newline="") as file:
+            for one in csv.DictReader(file):
+                passes = samples.setdefault(one["run_id"], {})
+                passes.setdefault(one["pass"], []).append((int(one["round"]), float(one["ms"])))
+        return samples
+
     def whole_rows(self, folder="out"):
         """Rows in the file so far, 0 before there is one."""
         path = os.path.join(self.path(folder), "results.csv")
@@ -94,6 +103,17 @@ class Case(unittest.TestCase):
     def assert_complete(self, rows, count):
         self.assertEqual([row["outcome"] for row in rows], ["ok"] * count, f"repeat: {self.last_command}\n{rows}")
         self.assertEqual(len({row["run_id"] for row in rows}), count)
+        self.assert_samples(rows)
+
+    def assert_samples(self, rows):
+        """Every row has the samples of each of its repeats, once; nothing else has any."""
+        samples = self.samples()
+        self.assertEqual(set(samples), {row["run_id"] for row in rows if row["repeats"]})
+        for row in rows:
+            for name, values in samples[row["run_id"]].items():
+                rounds = [number for number, _ in values]
+                self.assertEqual(len(set(rounds)), int(row["repeats"]), f"{row['run_id']} {name} {rounds}")
+                self.assertEqual(len(rounds), int(row["repeats"]), f"{row['run_id']} {name} {rounds}")
 
 
 def main():

@@ -1,9 +1,11 @@
 """run and plot: rows, resuming, interruptions, a full disk."""
 import json
+import math
 import os
 import re
 import resource
 import signal
+import statistics
 import time
 
 from support import SOURCE, SWEEP, SWEEP_ROWS, Case, main
@@ -37,6 +39,52 @@ class Test(Case):
             environment = json.load(file)
         # Times of a software device are those of a processor.
         self.assertEqual("processor" in environment["identity"], environment["device_type"] == "Cpu")
+
+    def test_times_follow_from_the_samples(self):
+        """Medians and intervals of results.csv, recomputed from samples.csv alone, to the last digit that it prints."""
+        spec = self.write("s.toml", SWEEP.replace("min_repeats = 2\nmax_repeats = 4", "min_repeats = 7\nmax_repeats = 9") +
+                          "truth = false\npictures = false\n")
+        self.ssrlab("run", spec, "-o", "out")
+        samples = self.samples()
+
+        def text(value):
+            return float(f"{value:.6g}")
+
+        for row in self.rows():
+            passes = {name: sorted(ms for _, ms in values) for name, values in samples[row["run_id"]].items()}
+            for column, name in (("trace_ms", "trace"), ("frame_ms", "frame")):
+                values = passes[name]
+                count = len(values)
+                rank = sum(1 for k in range(1, count) if 2 * sum(math.comb(count, i) for i in range(k)) <= 0.05 * 2 ** count)
+                self.assertEqual(float(row[f"{column}_median"]), text(statistics.median(values)))
+                self.assertEqual(float(row[f"{column}_ci_low"]), text(values[rank - 1]))
+                self.assertEqual(float(row[f"{column}_ci_high"]), text(values[count - rank]))
+            for shown in row["effects"].split():
+                name, median = shown.split("=")
+                self.assertEqual(float(median), text(statistics.median(passes[name])))
+        with open(self.path("out/samples.csv"), encoding="utf-8") as file:
+            self.assertEqual(file.readline().strip(), "run_id,round,pass,ms,cpu_ms")
+        with open(self.path("out/environment.json"), encoding="utf-8") as file:
+            self.assertEqual(json.load(file)["samples"], "samples.csv")
+
+    def test_runs_take_turns_in_rounds(self):
+        """The runs of a frame share their rounds, from 0; each run is in a round at most once."""
+        spec = self.write("s.toml", SWEEP)
+        self.ssrlab("run", spec, "-o", "out")
+        samples = self.samples()
+        for row in self.rows():
+            rounds = [number for number, _ in samples[row["run_id"]]["frame"]]
+            self.assertEqual(rounds, list(range(int(row["repeats"]))))
+
+    def test_lost_samples_are_measured_again(self):
+        spec = self.write("s.toml", SWEEP)
+        self.ssrlab("run", spec, "-o", "out")
+        os.truncate(self.path("out/samples.csv"), os.path.getsize(self.path("out/samples.csv")) - 40)
+        self.ssrlab("run", spec, "-o", "out", "--resume", says=["1 written now"])
+        self.assert_complete(self.rows(), SWEEP_ROWS)
+        with open(self.path("out/samples.csv"), "w", encoding="utf-8") as file:
+            file.write("run_id,ms\n")
+        self.refused("run", spec, "-o", "out", "--resume", code=1, says=["samples.csv: damaged"])
 
     def test_dry_run_lists_and_writes_nothing(self):
         self.ssrlab("run", SMOKE, "--dry-run", "-o", "out", says=["12 runs"])

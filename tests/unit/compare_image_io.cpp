@@ -19,20 +19,20 @@ namespace fs = std::filesystem;
 
 class ImageIo : public testing::Test {
 protected:
-    ImageIo() : m_folder(fs::temp_directory_path() / ("ssrlab_image_io_" + std::to_string(getpid())))
+    ImageIo() : folder_(fs::temp_directory_path() / ("ssrlab_image_io_" + std::to_string(getpid())))
     {
-        fs::create_directories(m_folder);
+        fs::create_directories(folder_);
     }
-    ~ImageIo() override { fs::remove_all(m_folder); }
+    ~ImageIo() override { fs::remove_all(folder_); }
 
     std::vector<std::string> files() const
     {
         std::vector<std::string> names;
-        for (const auto& entry : fs::directory_iterator(m_folder)) names.push_back(entry.path().filename());
+        for (const auto& entry : fs::directory_iterator(folder_)) names.push_back(entry.path().filename());
         return names;
     }
 
-    fs::path m_folder;
+    fs::path folder_;
 };
 
 Image sample_image()
@@ -60,8 +60,8 @@ std::string bytes_of(const fs::path& path)
 TEST_F(ImageIo, ExrKeepsEveryBitByName)
 {
     const Image image = sample_image();
-    write_image(m_folder / "a.exr", image);
-    const Image read = read_image(m_folder / "a.exr");
+    write_image(folder_ / "a.exr", image);
+    const Image read = read_image(folder_ / "a.exr");
     EXPECT_EQ(read.size_px, image.size_px);
     ASSERT_EQ(read.channels.size(), 4U);
     for (const std::string& channel : image.channels) {
@@ -73,12 +73,12 @@ TEST_F(ImageIo, ExrKeepsEveryBitByName)
 
 TEST_F(ImageIo, SamePictureSameFile)
 {
-    write_image(m_folder / "a.exr", sample_image());
-    write_image(m_folder / "b.exr", sample_image());
-    EXPECT_EQ(bytes_of(m_folder / "a.exr"), bytes_of(m_folder / "b.exr"));
-    write_image(m_folder / "a.png", sample_image());
-    write_image(m_folder / "b.png", sample_image());
-    EXPECT_EQ(bytes_of(m_folder / "a.png"), bytes_of(m_folder / "b.png"));
+    write_image(folder_ / "a.exr", sample_image());
+    write_image(folder_ / "b.exr", sample_image());
+    EXPECT_EQ(bytes_of(folder_ / "a.exr"), bytes_of(folder_ / "b.exr"));
+    write_image(folder_ / "a.png", sample_image());
+    write_image(folder_ / "b.png", sample_image());
+    EXPECT_EQ(bytes_of(folder_ / "a.png"), bytes_of(folder_ / "b.png"));
 }
 
 TEST_F(ImageIo, PngIsSrgbEncoded)
@@ -87,23 +87,23 @@ TEST_F(ImageIo, PngIsSrgbEncoded)
     image.size_px  = {4, 1};
     image.channels = {"R", "G", "B"};
     image.values   = {0, 0.2140411F, 1, -3, 9, NAN, 0.5F, 0.5F, 0.5F, 1, 1, 1};
-    write_image(m_folder / "a.png", image);
-    const Image read = read_image(m_folder / "a.png");
+    write_image(folder_ / "a.png", image);
+    const Image read = read_image(folder_ / "a.png");
     EXPECT_THAT(std::vector(read.values.begin(), read.values.begin() + 6),
                 testing::ElementsAre(0, testing::FloatNear(0.5F, 0.003F), 1, 0, 1, 0));
 }
 
 TEST_F(ImageIo, FailuresNameThePath)
 {
-    EXPECT_THROW(write_image(m_folder / "missing" / "a.exr", sample_image()), Failure);
-    EXPECT_THROW(write_image(m_folder / "a.jpg", sample_image()), Failure);
-    EXPECT_THROW(read_image(m_folder / "none.exr"), Failure);
+    EXPECT_THROW(write_image(folder_ / "missing" / "a.exr", sample_image()), Failure);
+    EXPECT_THROW(write_image(folder_ / "a.jpg", sample_image()), Failure);
+    EXPECT_THROW(read_image(folder_ / "none.exr"), Failure);
     Image wrong = sample_image();
     wrong.values.pop_back();
-    EXPECT_THROW(write_image(m_folder / "a.exr", wrong), Failure);
-    std::ofstream(m_folder / "rubbish.exr") << "not an image";
+    EXPECT_THROW(write_image(folder_ / "a.exr", wrong), Failure);
+    std::ofstream(folder_ / "rubbish.exr") << "not an image";
     try {
-        read_image(m_folder / "rubbish.exr");
+        read_image(folder_ / "rubbish.exr");
         FAIL();
     } catch (const Failure& failure) {
         EXPECT_THAT(failure.what(), testing::HasSubstr("rubbish.exr"));
@@ -117,25 +117,25 @@ TEST_F(ImageIo, FullDiskLeavesNoPartialFile)
     large.size_px  = {512, 512};
     large.channels = {"R", "G", "B"};
     for (int i = 0; i < 512 * 512 * 3; ++i) large.values.push_back(float(i % 10007 * 7919 % 10007));
-    write_image(m_folder / "old.exr", sample_image());
-    const std::string old = bytes_of(m_folder / "old.exr");
+    write_image(folder_ / "old.exr", sample_image());
+    const std::string old = bytes_of(folder_ / "old.exr");
     std::signal(SIGXFSZ, SIG_IGN);
     rlimit before{};
     getrlimit(RLIMIT_FSIZE, &before);
     const rlimit small{100000, before.rlim_max};
     setrlimit(RLIMIT_FSIZE, &small);
-    EXPECT_THROW(write_image(m_folder / "new.exr", large), Failure);
-    EXPECT_THROW(write_image(m_folder / "old.exr", large), Failure);
+    EXPECT_THROW(write_image(folder_ / "new.exr", large), Failure);
+    EXPECT_THROW(write_image(folder_ / "old.exr", large), Failure);
     setrlimit(RLIMIT_FSIZE, &before);
     EXPECT_THAT(files(), testing::ElementsAre("old.exr"));
-    EXPECT_EQ(bytes_of(m_folder / "old.exr"), old);
+    EXPECT_EQ(bytes_of(folder_ / "old.exr"), old);
 }
 
 TEST_F(ImageIo, TruncatedFileIsAFailure)
 {
-    write_image(m_folder / "a.exr", sample_image());
-    fs::resize_file(m_folder / "a.exr", fs::file_size(m_folder / "a.exr") - 20);
-    EXPECT_THROW(read_image(m_folder / "a.exr"), Failure);
+    write_image(folder_ / "a.exr", sample_image());
+    fs::resize_file(folder_ / "a.exr", fs::file_size(folder_ / "a.exr") - 20);
+    EXPECT_THROW(read_image(folder_ / "a.exr"), Failure);
 }
 
 } // namespace

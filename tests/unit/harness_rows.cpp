@@ -4,6 +4,7 @@
 #include "harness/measured_run.h"
 #include "harness/progress.h"
 #include "harness/quality.h"
+#include "harness/samples.h"
 
 #include <gmock/gmock.h>
 
@@ -95,6 +96,24 @@ TEST(Rows, EveryEntryOfARowHasAColumn)
     for (const auto& [name, value] : measured.row) EXPECT_THAT(names, testing::Contains(name));
 }
 
+TEST(Rows, SamplesReadBackAsTheyWere)
+{
+    ssrlab::Run run;
+    run.id = "ra";
+    MeasuredRun measured;
+    measured.run           = &run;
+    measured.rounds        = {3, 4};
+    measured.effect_ms     = {{"trace", {0.1, 1.0 / 3}}};
+    measured.frame_ms      = {2, 4};
+    measured.cpu_ms        = {7, 8};
+    const std::string text = samples_text(measured);
+    EXPECT_EQ(text, "ra,3,trace,0.1,\r\nra,3,frame,2,7\r\nra,4,trace,0.3333333333333333,\r\nra,4,frame,4,8\r\n");
+    const SampleCounts counts = count_samples(text + "rb,9,frame,1");
+    EXPECT_THAT(counts.frames, testing::ElementsAre(testing::Pair("ra", 2)));
+    EXPECT_EQ(counts.next_round, 5);
+    EXPECT_EQ(samples_of(text + "rb,9,frame,1,1\r\nrc,", {"ra"}), csv_line(sample_columns()) + text);
+}
+
 TEST(Rows, CountsOfAResultWithKnownFigures)
 {
     using enum TraceStatus;
@@ -135,25 +154,16 @@ TEST(Rows, NothingToTraceIsAnOutcome)
     EXPECT_EQ(number_text(std::nan("")), "");
 }
 
-TEST(Rows, ARunIsFinalWhenTightOrSpentButNeverTooEarly)
+TEST(Rows, RepeatsFillTheBudgetWithinTheirBounds)
 {
     MeasureSettings measure;
-    measure.min_repeats      = 6;
-    measure.max_repeats      = 9;
-    measure.interval_percent = 1;
-    measure.budget_s         = 1;
-    MeasuredRun measured;
-    measured.spent_s  = 99;
-    measured.trace_ms = std::vector<double>(5, 1.0);
-    EXPECT_FALSE(is_final(measured, measure)); // too few, whatever was spent
-    measured.trace_ms.push_back(1.0);
-    EXPECT_TRUE(is_final(measured, measure));
-    measured.spent_s = 0;
-    EXPECT_TRUE(is_final(measured, measure)); // tight
-    measured.trace_ms = {1, 2, 3, 4, 5, 6};
-    EXPECT_FALSE(is_final(measured, measure));
-    measured.trace_ms = {1, 2, 3, 4, 5, 6, 7, 8, 9};
-    EXPECT_TRUE(is_final(measured, measure)); // often enough
+    measure.min_repeats = 6;
+    measure.max_repeats = 30;
+    measure.budget_s    = 1;
+    EXPECT_EQ(repeats_for(0.1, measure), 10);
+    EXPECT_EQ(repeats_for(99, measure), 6);
+    EXPECT_EQ(repeats_for(1e-6, measure), 30);
+    EXPECT_EQ(repeats_for(0, measure), 30);
 }
 
 TEST(Rows, SavedTimeIsTheMedianOfItsPairsAndEmptyWithoutAny)

@@ -57,14 +57,6 @@ TEST(Statistics, IntervalsCoverTheMedianAsOftenAsPromised)
     EXPECT_LE(covered, 4000 * 0.98);
 }
 
-TEST(Statistics, TightMeansBothSides)
-{
-    EXPECT_TRUE(is_tight({9, 100, 1, 98, 102}, 2));
-    EXPECT_FALSE(is_tight({9, 100, 1, 98, 102.1}, 2));
-    EXPECT_FALSE(is_tight({9, 100, 1, 97.9, 102}, 2));
-    EXPECT_FALSE(is_tight(summarise({1, 1, 1}), 50)); // too few for an interval
-}
-
 TEST(Statistics, Quantiles)
 {
     EXPECT_EQ(quantile({4, 1, 3, 2, 5}, 0.5), 3);

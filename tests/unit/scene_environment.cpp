@@ -96,9 +96,9 @@ class EnvironmentFiles : public testing::Test {
 protected:
     std::string recipe(const std::string& lines) const
     {
-        return m_folder.write("scene.toml", lines + "\n[[part]]\nshape = 'box'\n");
+        return folder_.write("scene.toml", lines + "\n[[part]]\nshape = 'box'\n");
     }
-    TempFolder m_folder;
+    TempFolder folder_;
 };
 
 TEST_F(EnvironmentFiles, AreReadScaledAndPutIntoTheScene)
@@ -106,7 +106,7 @@ TEST_F(EnvironmentFiles, AreReadScaledAndPutIntoTheScene)
     std::vector<float> values;
     for (int i = 0; i < 4 * 2 * 3; ++i) values.push_back(0.25F * float(i));
     for (const char* name : {"sky.exr", "sky.hdr"}) {
-        write_picture(m_folder / name, {4, 2}, values);
+        write_picture(folder_ / name, {4, 2}, values);
         const Scene scene = load_scene(recipe(std::string("environment = '") + name + "'\nenvironment_scale = 2"));
         ASSERT_EQ(scene.environment.size_px, glm::ivec2(4, 2));
         EXPECT_TRUE(scene.warnings.empty());
@@ -119,7 +119,7 @@ TEST_F(EnvironmentFiles, AreReadScaledAndPutIntoTheScene)
 TEST_F(EnvironmentFiles, ClampWhatNoPictureCanHold)
 {
     const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
-    write_picture(m_folder / "sky.exr", {2, 1}, {inf, -1, nan, 1, 2, 3});
+    write_picture(folder_ / "sky.exr", {2, 1}, {inf, -1, nan, 1, 2, 3});
     const Scene scene = load_scene(recipe("environment = 'sky.exr'"));
     EXPECT_EQ(scene.environment.radiance[0], glm::vec3(65504, 0, 0));
     EXPECT_EQ(scene.environment.radiance[1], glm::vec3(1, 2, 3));
@@ -135,12 +135,12 @@ TEST_F(EnvironmentFiles, MistakesNamePlaceExpectedAndGot)
                 testing::AllOf(HasSubstr("scene.toml:1"), HasSubstr("none.exr")));
     EXPECT_THAT(error_of<SpecError>(recipe("environment_scale = 2")), HasSubstr("needs 'environment'"));
     EXPECT_THAT(error_of<SpecError>(recipe("environment = 'none.exr'\nenvironment_scale = -1")), HasSubstr("[0, "));
-    write_picture(m_folder / "square.exr", {2, 2}, std::vector<float>(12));
+    write_picture(folder_ / "square.exr", {2, 2}, std::vector<float>(12));
     EXPECT_THAT(error_of<Failure>(recipe("environment = 'square.exr'")),
                 testing::AllOf(HasSubstr("square.exr"), HasSubstr("twice as wide as high"), HasSubstr("2x2")));
-    m_folder.write("broken.exr", "not a picture");
+    folder_.write("broken.exr", "not a picture");
     EXPECT_THAT(error_of<Failure>(recipe("environment = 'broken.exr'")), HasSubstr("broken.exr"));
-    m_folder.write("folder.exr/file", "");
+    folder_.write("folder.exr/file", "");
     EXPECT_THAT(error_of<Failure>(recipe("environment = 'folder.exr'")), HasSubstr("not a regular file"));
 }
 

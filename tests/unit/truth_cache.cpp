@@ -16,12 +16,12 @@ namespace fs = std::filesystem;
 
 class TruthCache : public testing::Test {
 protected:
-    TruthCache() : m_folder(fs::temp_directory_path() / ("ssrlab_truth_cache_" + std::to_string(getpid()))) {}
-    ~TruthCache() override { fs::remove_all(m_folder); }
+    TruthCache() : folder_(fs::temp_directory_path() / ("ssrlab_truth_cache_" + std::to_string(getpid()))) {}
+    ~TruthCache() override { fs::remove_all(folder_); }
 
-    std::vector<fs::path> files() const { return {fs::directory_iterator(m_folder), fs::directory_iterator()}; }
+    std::vector<fs::path> files() const { return {fs::directory_iterator(folder_), fs::directory_iterator()}; }
 
-    fs::path m_folder;
+    fs::path folder_;
 };
 
 void expect_equal(const TraceResult& a, const TraceResult& b)
@@ -38,10 +38,10 @@ TEST_F(TruthCache, ScreenTruthReadsWhatItWrote)
 {
     const GBufferImage gbuffer  = random_gbuffer(bench_view({31, 23}), 1);
     const TraceResult  computed = screen_truth(gbuffer, {});
-    expect_equal(cached_screen_truth(m_folder, gbuffer, {}), computed);
+    expect_equal(cached_screen_truth(folder_, gbuffer, {}), computed);
     ASSERT_EQ(files().size(), 1U);
     const auto written = fs::last_write_time(files()[0]);
-    expect_equal(cached_screen_truth(m_folder, gbuffer, {}), computed);
+    expect_equal(cached_screen_truth(folder_, gbuffer, {}), computed);
     EXPECT_EQ(fs::last_write_time(files()[0]), written);
 }
 
@@ -52,7 +52,7 @@ TEST_F(TruthCache, EveryInputChangesTheName)
     size_t        expected        = 0;
     const auto    expect_new_file = [&](auto change) {
         change();
-        cached_screen_truth(m_folder, gbuffer, settings);
+        cached_screen_truth(folder_, gbuffer, settings);
         EXPECT_EQ(files().size(), ++expected);
     };
     expect_new_file([] {});
@@ -67,19 +67,19 @@ TEST_F(TruthCache, EveryInputChangesTheName)
     expect_new_file([&] { settings.ray_offset_m = 0.1; });
     expect_new_file([&] { settings.facing = true; });
     gbuffer.view.name = "another name for the same view";
-    cached_screen_truth(m_folder, gbuffer, settings);
+    cached_screen_truth(folder_, gbuffer, settings);
     EXPECT_EQ(files().size(), expected);
 }
 
 TEST_F(TruthCache, DamagedFilesAreComputedAnew)
 {
     const GBufferImage gbuffer  = random_gbuffer(bench_view({31, 23}), 3);
-    const TraceResult  computed = cached_screen_truth(m_folder, gbuffer, {});
+    const TraceResult  computed = cached_screen_truth(folder_, gbuffer, {});
     const fs::path     file     = files()[0];
     const auto         size     = fs::file_size(file);
     for (const auto cut : {size - 1, size / 2, uintmax_t(20), uintmax_t(0)}) {
         fs::resize_file(file, cut);
-        expect_equal(cached_screen_truth(m_folder, gbuffer, {}), computed);
+        expect_equal(cached_screen_truth(folder_, gbuffer, {}), computed);
         EXPECT_EQ(fs::file_size(file), size);
     }
     for (const int place : {0, 9, 20, 40, 500}) {
@@ -89,7 +89,7 @@ TEST_F(TruthCache, DamagedFilesAreComputedAnew)
         stream.seekp(place);
         stream.put(char(byte ^ 0x10));
         stream.close();
-        expect_equal(cached_screen_truth(m_folder, gbuffer, {}), computed);
+        expect_equal(cached_screen_truth(folder_, gbuffer, {}), computed);
     }
     EXPECT_EQ(files().size(), 1U); // no temporary file is left
 }
@@ -108,7 +108,7 @@ TEST_F(TruthCache, SceneTruthReadsWhatItWrote)
     const GBufferImage gbuffer  = floor_and_wall(bench_view({33, 20}), 100);
     const SceneTruth   computed = scene_truth(SceneBvh(scene), scene, gbuffer, {});
     for (int i = 0; i < 2; ++i) {
-        const SceneTruth cached = cached_scene_truth(m_folder, scene, gbuffer, {});
+        const SceneTruth cached = cached_scene_truth(folder_, scene, gbuffer, {});
         EXPECT_EQ(cached.cls, computed.cls);
         EXPECT_EQ(cached.point_vs, computed.point_vs);
         EXPECT_EQ(cached.point_px, computed.point_px);
@@ -117,15 +117,15 @@ TEST_F(TruthCache, SceneTruthReadsWhatItWrote)
     }
     EXPECT_EQ(files().size(), 1U);
     scene.materials[1].base_colour.g = 0.25F;
-    cached_scene_truth(m_folder, scene, gbuffer, {});
+    cached_scene_truth(folder_, scene, gbuffer, {});
     scene.vertices[6].position_ws.x += 0.125F;
-    cached_scene_truth(m_folder, scene, gbuffer, {});
+    cached_scene_truth(folder_, scene, gbuffer, {});
     EXPECT_EQ(files().size(), 3U);
     scene.environment.size_px  = {2, 1};
     scene.environment.radiance = {glm::vec3(1), glm::vec3(2)};
-    cached_scene_truth(m_folder, scene, gbuffer, {});
+    cached_scene_truth(folder_, scene, gbuffer, {});
     scene.environment.radiance[1].b = 3;
-    cached_scene_truth(m_folder, scene, gbuffer, {});
+    cached_scene_truth(folder_, scene, gbuffer, {});
     EXPECT_EQ(files().size(), 5U);
 }
 
@@ -139,17 +139,17 @@ TEST_F(TruthCache, GlossyTruthReadsWhatItWrote)
     const GlossySettings glossy{.rays = 8};
     const GlossyTruth    computed = glossy_truth(SceneBvh(scene), scene, gbuffer, {}, glossy);
     for (int i = 0; i < 2; ++i) {
-        const GlossyTruth cached = cached_glossy_truth(m_folder, scene, gbuffer, {}, glossy);
+        const GlossyTruth cached = cached_glossy_truth(folder_, scene, gbuffer, {}, glossy);
         EXPECT_EQ(cached.rays, computed.rays);
         EXPECT_EQ(cached.radiance, computed.radiance);
         EXPECT_EQ(cached.standard_error, computed.standard_error);
         EXPECT_EQ(cached.weight, computed.weight);
     }
     EXPECT_EQ(files().size(), 1U);
-    cached_glossy_truth(m_folder, scene, gbuffer, {}, {.rays = 9});
-    cached_glossy_truth(m_folder, scene, gbuffer, {}, {.rays = 8, .seed = 1});
+    cached_glossy_truth(folder_, scene, gbuffer, {}, {.rays = 9});
+    cached_glossy_truth(folder_, scene, gbuffer, {}, {.rays = 8, .seed = 1});
     gbuffer.roughness[0] = 0.7F;
-    cached_glossy_truth(m_folder, scene, gbuffer, {}, glossy);
+    cached_glossy_truth(folder_, scene, gbuffer, {}, glossy);
     EXPECT_EQ(files().size(), 4U);
 }
 
