@@ -92,8 +92,8 @@ void Bench::copy(benchmark::State& state, const std::string& scene, glm::ivec2 s
 void Bench::pyramid(benchmark::State& state, const std::string& scene, glm::ivec2 size_px, const std::string& kind)
 {
     Picture&       p     = picture(scene, size_px);
-    PreparedFrame& frame = frame_of(p, {tracer_.technique, {{"pyramid", kind}}});
-    measure(state, p, [&](const auto& commands) { record_pyramid(commands, frame.pyramid); });
+    PreparedFrame& frame = frame_of(p, {tracer_.technique, {{"depth_pyramid.kind", kind}}});
+    measure(state, p, [&](const auto& commands) { record_depth_structures(commands, frame.structures); });
 }
 
 void Bench::rays(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
@@ -204,12 +204,12 @@ PreparedFrame& Bench::frame_of(Picture& p, const Contender& c)
     return *frame;
 }
 
-/// Rays and inputs in place: another benchmark may have used the buffers.
+/// Rays and structures in place: another benchmark may have used the buffers.
 void Bench::prepare_trace(const FrameBuffers& buffers, PreparedFrame& frame)
 {
     submit(gpu_, [&](const auto& commands) {
         record_rays(commands, frame.trace, buffers);
-        record_pyramid(commands, frame.pyramid);
+        record_depth_structures(commands, frame.structures);
     });
 }
 

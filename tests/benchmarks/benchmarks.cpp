@@ -66,7 +66,7 @@ std::string take_option(std::vector<char*>& arguments, const std::string& name, 
 int run(std::vector<char*> arguments)
 {
     const std::string device = take_option(arguments, "device", ""),
-                      tracer = take_option(arguments, "technique", "hiz"),
+                      tracer = take_option(arguments, "technique", "hiz_packets"),
                       scenes = take_option(arguments, "scene", "thin_yard,interior");
     std::string interleave   = "--benchmark_enable_random_interleaving=true";
     arguments.insert(arguments.begin() + 1, interleave.data()); // first, so that the caller can say otherwise

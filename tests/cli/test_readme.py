@@ -2,9 +2,15 @@
 import os
 import re
 
+import OpenImageIO as oiio
+
 from support import SOURCE, Case, main
 
 STATUE = "v -1 0 -1\nv 1 0 -1\nv 0 0 1\nv 0 2 0\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 3 2\n"
+
+
+def imageio_read(path):
+    return oiio.ImageBuf(path).get_pixels(oiio.UINT8)
 
 
 class Test(Case):
@@ -22,6 +28,19 @@ class Test(Case):
 
     def test_scene_renders(self):
         self.ssrlab("render", "statue.toml", "-t", "hiz", "--size", "64x36", "-o", "a.png")
+
+    def test_technique_passes_the_hard_cases(self):
+        self.ssrlab("--techniques", "mine", "check", "strides")
+
+    def test_picture_is_what_its_command_makes(self):
+        """Within what another compiler or driver may change: 99 % of the values within 2 of 255."""
+        with open(os.path.join(SOURCE, "README.md"), encoding="utf-8") as file:
+            command, output = re.search(r"^build/bin/ssrlab (render .* -o (\S+\.png))$", file.read(), re.M).groups()
+        self.ssrlab(*command.split())
+        made, shown = (imageio_read(path) for path in (self.path(output), os.path.join(SOURCE, "docs/images", output)))
+        self.assertEqual(made.shape, shown.shape)
+        near = (abs(made.astype(int) - shown.astype(int)) <= 2).mean()
+        self.assertGreater(near, 0.99, "make it again with README's command")
 
     def test_experiment_runs_with_the_technique(self):
         small = self.blocks["mine.toml"].replace("320x180", "48x27").replace("640x360", "64x36").replace("= 1\n", "= 0.1\n")
