@@ -61,11 +61,8 @@ class Test(Case):
         self.refused("--techniques", "mine", "list", code=2,
                      says=["mine/tile_walk/technique.toml:3", "unknown structure 'tile_front'", "did you mean 'tile_fronts'"])
 
-
-class NoMagicNames(Case):
-    """A parameter means to the framework what the manifest says, whatever its name."""
-
-    def test_a_parameter_that_is_called_as_another_technique_s_changes_nothing(self):
+    def test_a_parameter_with_the_name_of_another_technique_s_changes_nothing(self):
+        """A parameter means to the framework what the manifest says, whatever its name."""
         hiz = os.path.join(SOURCE, "techniques", "hiz")
         with open(os.path.join(hiz, "technique.toml"), encoding="utf-8") as file:
             manifest = file.read()
