@@ -21,11 +21,9 @@ public:
         std::string pattern = (fs::temp_directory_path() / "mutant.XXXXXX").string();
         folder_             = ::mkdtemp(pattern.data());
         fs::copy(technique(id).folder, folder_ / "mutant", fs::copy_options::recursive);
-        std::string  trace = read_file(folder_ / "mutant/trace.glsl");
-        const size_t at    = trace.find(from);
-        if (at == std::string::npos) throw std::logic_error("mutation: '" + from + "' is not in " + id);
-        trace.replace(at, from.size(), to);
-        write_file_atomically(folder_ / "mutant/trace.glsl", trace);
+        if (!replace_in(folder_ / "mutant/trace.glsl", from, to) &&
+            !replace_in(folder_ / "mutant/traversal.glsl", from, to))
+            throw std::logic_error("mutation: '" + from + "' is not in " + id);
         mutant_ = load_technique(folder_ / "mutant", list_structures({}));
     }
     ~Mutant() { fs::remove_all(folder_); }
@@ -34,6 +32,16 @@ public:
     const Technique& operator*() const { return mutant_; }
 
 private:
+    static bool replace_in(const fs::path& file, const std::string& from, const std::string& to)
+    {
+        if (!fs::exists(file)) return false;
+        std::string  text = read_file(file);
+        const size_t at   = text.find(from);
+        if (at == std::string::npos) return false;
+        write_file_atomically(file, text.replace(at, from.size(), to));
+        return true;
+    }
+
     fs::path  folder_;
     Technique mutant_;
 };
@@ -80,14 +88,11 @@ std::vector<Mutation> mutations()
                  "Grid mutated_make_grid(Ray ray) { Grid g = make_grid(ray); g.inverse_delta = real2(1) / "
                  "ray.delta.xy; g.forward = ivec2(greaterThan(ray.delta.xy, real2(0))); return g; }",
                  "signed_zero", "dda"),
-        replaced("LessForLessOrEqualAtCorners", "next_corner",
-                 "ivec2 mutated_next_corner(ivec2 corner, int size, real2 t_border, real t) { bool x = t_border.x <= "
-                 "t; return corner + size * ivec2(x, !x); }",
-                 "exact_diagonal", "hiz_packets"),
-        replaced("LessForLessOrEqualAtChildren", "child_corner",
-                 "ivec2 mutated_child_corner(Ray ray, Grid grid, ivec2 corner, int size, real t) { ivec2 m = corner - "
-                 "(size >> 1); return mix(m, corner, lessThan(border_t(ray, grid, m), real2(t))); }",
-                 {}, "hiz_packets"),
+        {"LessForLessOrEqualAtCorners", "hiz_packets",
+         "return mix(corner, corner + size, lessThanEqual(t_border, real2(t)));",
+         "bool x = t_border.x <= t; return corner + size * ivec2(x, !x);", "exact_diagonal"},
+        {"LessForLessOrEqualAtChildren", "hiz_packets", "lessThanEqual(border_t(ray, grid, middle), real2(t))",
+         "lessThan(border_t(ray, grid, middle), real2(t))", {}},
         {"LessForLessOrEqualBelow", "hiz", "bvec2 beyond = lessThanEqual(", "bvec2 beyond = lessThan(", {}},
         {"TheOtherCellBelow", "hiz", "ivec2(equal(ivec2(beyond), grid.forward))", "ivec2(beyond)", {}},
         replaced("PixelFromThePosition", "cross_borders",
