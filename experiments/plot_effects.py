@@ -7,7 +7,7 @@ ERRORS = [("picture_rmse", "all that reflects"), ("picture_visible_border_rmse",
 
 
 def told(name, value):
-    """An effect's setting in words: "gloss cone", "environment", "no cross_blur", "rays_per_pixel 4"."""
+    """An effect's setting in words: "gloss cone", "environment_fallback", "no downsample_cross_blur", "rays_per_pixel 4"."""
     if isinstance(value, (bool, np.bool_)):
         return name if value else f"no {name}"
     return f"{name} {value:g}" if not isinstance(value, str) else f"{name} {value}"
@@ -15,7 +15,7 @@ def told(name, value):
 
 def compared(results):
     """(title, file-name part, first row, [(label, row)]) for each picture and technique whose runs differ in effects."""
-    effects = [name for name in results.environment.get("effect_parameters", "").split() if name in results.rows]
+    effects = [name for name in results.environment.get("pass_parameters", "").split() if name in results.rows]
     if not effects or "run_number" not in results.rows or not results.has("picture_rmse", "frame_ms_median"):
         return
     for title, name, rows in results.pictures():

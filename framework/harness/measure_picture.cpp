@@ -211,15 +211,14 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
     judge(bench, picture, measured, observed);
 }
 
-/// The same frame with everything on, where that is more.
+/// The same frame, unculled, where that is more.
 void prepare_comparison(Bench& bench, MeasuredRun& measured)
 {
-    if (!bench.experiment.measure.saved_time || !plan_leaves_out(*measured.frame)) return;
-    const size_t known  = pipelines_made(bench.gpu);
-    measured.everything = prepare_everything(bench.gpu, *measured.frame);
+    if (!bench.experiment.measure.saved_time || !plan_skips_work(*measured.frame)) return;
+    const size_t known = pipelines_made(bench.gpu);
+    measured.unculled  = prepare_unculled(bench.gpu, *measured.frame);
     // A driver may compile a pipeline when it first runs.
-    if (pipelines_made(bench.gpu) != known)
-        clocked(bench.counted_s, [&] { run_frame(bench.gpu, *measured.everything); });
+    if (pipelines_made(bench.gpu) != known) clocked(bench.counted_s, [&] { run_frame(bench.gpu, *measured.unculled); });
 }
 
 /// Timed repeats, every round in another order, until each run is final or a stop was requested.

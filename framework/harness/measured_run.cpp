@@ -82,12 +82,12 @@ void add_measures(Row& row, const MeasureValues& values)
     }
 }
 
-void add_plan(Row& row, const std::vector<PlannedEffect>& plan)
+void add_plan(Row& row, const std::vector<PlannedPass>& plan)
 {
     std::string skipped;
-    for (const PlannedEffect& planned : plan)
-        if (!planned.runs) skipped += (skipped.empty() ? "" : " ") + planned.effect->id;
-    row["effects_skipped"] = skipped;
+    for (const PlannedPass& planned : plan)
+        if (!planned.runs) skipped += (skipped.empty() ? "" : " ") + planned.pass->id;
+    row["passes_skipped"] = skipped;
 }
 
 void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms)
@@ -95,11 +95,11 @@ void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms)
     const Stopwatch  stopwatch;
     const FrameTimes times = run_frame(gpu, *measured.frame);
     measured.spent_s += stopwatch.seconds();
-    for (const auto& [effect, ms] : times.effects_ms) measured.effect_ms[effect].push_back(ms);
+    for (const auto& [pass, ms] : times.passes_ms) measured.pass_ms[pass].push_back(ms);
     measured.trace_ms.push_back(times.of("trace"));
     measured.frame_ms.push_back(gbuffer_ms + times.total_ms());
-    if (measured.everything && measured.saved_ms.size() < saved_pairs)
-        measured.saved_ms.push_back(run_frame(gpu, *measured.everything).total_ms() - times.total_ms());
+    if (measured.unculled && measured.saved_ms.size() < saved_pairs)
+        measured.saved_ms.push_back(run_frame(gpu, *measured.unculled).total_ms() - times.total_ms());
 }
 
 bool is_final(const MeasuredRun& measured, const MeasureSettings& measure)
@@ -118,18 +118,18 @@ void add_times(MeasuredRun& measured, double gbuffer_ms)
     add_summary(row, "frame_ms", frame);
     row["repeats"]           = std::to_string(measured.trace_ms.size());
     row["gbuffer_ms_median"] = number_text(gbuffer_ms);
-    const auto median_ms     = [&](const std::string& effect) {
-        const auto found = measured.effect_ms.find(effect);
-        return found == measured.effect_ms.end() ? 0 : quantile(found->second, 0.5);
+    const auto median_ms     = [&](const std::string& pass) {
+        const auto found = measured.pass_ms.find(pass);
+        return found == measured.pass_ms.end() ? 0 : quantile(found->second, 0.5);
     };
     row["rays_ms_median"]    = number_text(median_ms("classification") + median_ms("rays"));
     row["pyramid_ms_median"] = number_text(median_ms("depth_pyramid"));
     row["shade_ms_median"]   = number_text(median_ms("hit_colour") + median_ms("composite"));
-    std::string effects;
-    for (const Effect& effect : all_effects())
-        if (measured.effect_ms.contains(effect.id))
-            effects += fmt::format("{}{}={}", effects.empty() ? "" : " ", effect.id, number_text(median_ms(effect.id)));
-    row["effects"] = effects;
+    std::string passes;
+    for (const Pass& pass : all_passes())
+        if (measured.pass_ms.contains(pass.id))
+            passes += fmt::format("{}{}={}", passes.empty() ? "" : " ", pass.id, number_text(median_ms(pass.id)));
+    row["passes"] = passes;
     if (!measured.saved_ms.empty()) row["saved_ms"] = number_text(quantile(measured.saved_ms, 0.5));
     row["fps"]           = number_text(1000 / frame.median);
     row["inverse_fps_s"] = number_text(frame.median / 1000);

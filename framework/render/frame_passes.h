@@ -3,7 +3,6 @@
 
 #include "render/gbuffer.h"
 
-#include <functional>
 #include <map>
 
 namespace ssrlab {
@@ -69,8 +68,8 @@ struct FrameBuffers {
     GpuImage          small_colour; // RGBA16F, half size or less: lit colour as rays at a lower resolution find it
     GpuImage          block_pixel;  // R32UI, half size or less: which pixel of a block has rays, or NO_PIXEL
     GpuImage          shaded;       // RGBA16F
-    GpuImage          ggx_shares;   // RG16F: ggx_share_table()
-    vk::raii::Sampler ggx_share_sampler = nullptr;
+    GpuImage          dfg_table;    // RG16F: dfg_table()
+    vk::raii::Sampler dfg_sampler = nullptr;
 };
 
 struct PyramidPush {
@@ -99,9 +98,6 @@ struct TracePasses {
 
 using Defines = std::map<std::string, std::string>;
 
-/// Writes an effect's commands.
-using Recording = std::function<void(const vk::raii::CommandBuffer&)>;
-
 struct PreparedFrame {
     FrameBuffersPtr             buffers;
     Technique                   technique;
@@ -113,8 +109,8 @@ struct PreparedFrame {
     FrameFacts                  facts;
     FrameStatistics             statistics;
     double                      counting_s = 0; // that it took to count what the rays hit, for the plan
-    std::vector<PlannedEffect>  plan;
-    std::vector<Recording>      recordings;           // of the effects that run
+    std::vector<PlannedPass>    plan;
+    std::vector<RecordFunction> record_functions;     // of the passes that run
     bool                        hidden_layer = false; // hits may lie in the second layer
     bool                        cone         = false; // rough surfaces look up cones
     Timestamps                  timestamps;
@@ -146,11 +142,6 @@ Constants settings_constants(const PreparedFrame& frame, Precision precision, bo
 std::string parameter_declarations(std::span<const Parameter> parameters, uint32_t id);
 void        add_parameters(Constants& constants, std::span<const Parameter> parameters, const ParameterValues& values,
                            uint32_t id);
-
-/// Pipelines of an effect. The recording refers to the frame, which must outlive it.
-Recording make_recording(Gpu& gpu, PreparedFrame& frame, const std::string& effect);
-/// Traces once and counts how the rays ended.
-TraceCounts count_hits(Gpu& gpu, PreparedFrame& frame);
 
 /// Classification and ray set-up.
 void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers);

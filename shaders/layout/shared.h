@@ -48,7 +48,7 @@
 #define CONSTANT_TOP_LEVEL 13
 #define CONSTANT_BEAMS_IN_FRONT 14
 #define CONSTANT_PARAMETERS 32
-#define CONSTANT_EFFECTS 64 // the effects' parameters, in the order of render/effects.cpp
+#define CONSTANT_PASSES 64 // the passes' parameters, in the order of render/passes/all_passes.cpp
 
 // Sub-pixel offsets are centres of a grid of this many cells per side.
 #define OFFSET_CELLS 256
@@ -59,8 +59,8 @@
 // Roughness histogram of the reflecting pixels: bin 0 holds roughness 0, the others share (0, 1].
 #define ROUGHNESS_BINS 16
 
-// Of the table of GGX shares, in roughness and in cosine.
-#define GGX_SHARE_ENTRIES 32
+// Of the split-sum (DFG) table, in roughness and in cosine.
+#define DFG_TABLE_ENTRIES 32
 
 // What a pyramid cell records (hiz's parameter `pyramid`, in this order).
 #define PYRAMID_OCCUPANCY 0

@@ -146,8 +146,8 @@ void Bench::shade(benchmark::State& state, const std::string& scene, glm::ivec2 
     PreparedFrame& frame = frame_of(p, contender("hiz"));
     prepare_trace(*p.buffers, frame);
     submit(gpu_, [&](const auto& commands) { record_technique(commands, frame.trace.technique, *frame.rays); });
-    const Recording hit_colour = make_recording(gpu_, frame, "hit_colour"),
-                    composite  = make_recording(gpu_, frame, "composite");
+    const RecordFunction hit_colour = hit_colour_pass().prepare(gpu_, frame),
+                         composite  = composite_pass().prepare(gpu_, frame);
     measure(state, p, [&](const auto& commands) {
         hit_colour(commands);
         barrier(commands);
@@ -211,8 +211,9 @@ Bench::Picture& Bench::picture(const std::string& scene, glm::ivec2 size_px)
             gpu_, {.format = vk::Format::eR32Sfloat, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
     const std::vector<float> depth = read_depth(gpu_, p.gbuffer->depth);
     upload(gpu_, p.depth, depth.data(), depth.size() * sizeof(float));
-    p.copy_pass  = make_compute_pass(gpu_, compile_shader({.file = SSRLAB_SOURCE_DIR "/tests/benchmarks/copy_depth.comp"}),
-                                     {{"depth_image", p.depth}, {"depth_copy", p.copy}});
+    p.copy_pass =
+        make_compute_pass(gpu_, compile_shader({.file = SSRLAB_SOURCE_DIR "/tests/benchmarks/copy_depth.comp"}),
+                          {{"depth_image", p.depth}, {"depth_copy", p.copy}});
     p.timestamps = make_timestamps(gpu_, 2);
     return p;
 }

@@ -1,5 +1,5 @@
-// Cone tracing: the pyramids that rough surfaces look up in the place of single pixels.
-#include "render/effect_passes.h"
+// Gloss by cones: the pyramids in which rough surfaces look up colours, in place of single pixels.
+#include "render/passes/pass_helpers.h"
 
 namespace ssrlab {
 namespace {
@@ -13,8 +13,6 @@ GpuImage make_cone_image(Gpu& gpu, glm::ivec2 size_px, vk::Format format)
                             .usage   = vk::ImageUsageFlagBits::eStorage});
 }
 
-} // namespace
-
 ConePyramid& cone_pyramid_of(Gpu& gpu, FrameBuffers& buffers)
 {
     if (!buffers.cone) {
@@ -26,17 +24,40 @@ ConePyramid& cone_pyramid_of(Gpu& gpu, FrameBuffers& buffers)
     return *buffers.cone;
 }
 
-Recording cone_pyramid(Gpu& gpu, PreparedFrame& frame)
+PassDecision decide(const FrameFacts& /*facts*/, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (choice<Gloss>(values) != Gloss::cone) return {PassDecision::off, "gloss is not cone"};
+    return needed_if_anything_is_rough(statistics);
+}
+
+RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
 {
     const ConePyramid& cone = cone_pyramid_of(gpu, *frame.buffers);
     const Bindings     own  = {{"cone_pyramid", cone.cells}, {"cone_ranges", cone.ranges}};
     const auto         make = [&](const Defines& defines) {
-        return make_effect_pass(gpu, frame, "passes/cone_pyramid.comp", defines, own, sizeof(PyramidPush));
+        return make_pass(gpu, frame, "passes/cone_pyramid.comp", defines, own, sizeof(PyramidPush));
     };
     frame.cone  = true;
     auto passes = std::make_shared<PyramidPasses>(
         PyramidPasses{1, make({{"FROM_PIXELS", "1"}}), make({}), pyramid_pushes(frame.buffers->gbuffer->view.size_px)});
     return [passes](const auto& commands) { record_pyramid(commands, *passes); };
+}
+
+} // namespace
+
+Pass cone_pyramid_pass()
+{
+    return {
+        .id             = "cone_pyramid",
+        .summary        = "Builds the pyramid of colours and visibility in which hit_colour looks up cones",
+        .cite           = {"Y. Uludag 2014, Hi-Z Screen-Space Cone-Traced Reflections (GPU Pro 5)"},
+        .parameters     = {real_parameter("cone_scale", 0.75, 0, 2,
+                                          "factor on the half angle of a cone that the article derives from the roughness"),
+                           integer_parameter("cone_steps", 2, 1, 16,
+                                             "circles in a cone, from the hit back to the reflector")},
+        .decide         = decide,
+        .prepare        = prepare,
+        .beyond_shading = true};
 }
 
 } // namespace ssrlab
