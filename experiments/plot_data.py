@@ -31,7 +31,7 @@ class Results:
         for end in ("median", "ci_low", "ci_high"):
             column = f"trace_ms_{end}"
             if column in self.rows:
-                self.rows[f"cost_ms_{end}"] = self.rows[column] + self.rows.pyramid_ms_median.fillna(0)
+                self.rows[f"cost_ms_{end}"] = self.rows[column] + self.rows.structures_ms_median.fillna(0)
         self.rows["series"] = self._series()
         self.techniques = list(dict.fromkeys(self.rows.technique.sort_values()))
         self.styles = self._styles()

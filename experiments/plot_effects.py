@@ -15,7 +15,7 @@ def told(name, value):
 
 def compared(results):
     """(title, file-name part, first row, [(label, row)]) for each frame and technique whose runs differ in passes."""
-    effects = [name for name in results.environment.get("effect_parameters", "").split() if name in results.rows]
+    effects = [name for name in results.environment.get("pass_parameters", "").split() if name in results.rows]
     if not effects or "run_number" not in results.rows or not results.has("picture_rmse", "frame_ms_median"):
         return
     for title, name, rows in results.pictures():

@@ -3,7 +3,7 @@ import html
 import os
 
 SHOWN = ["scene", "view", "width", "height", "series", "trace_ms_median", "trace_ms_ci_low", "trace_ms_ci_high",
-         "pyramid_ms_median", "frame_ms_median", "fps", "fetches_mean", "recall_1px", "screen_recall_1px", "false_hits",
+         "structures_ms_median", "frame_ms_median", "fps", "fetches_mean", "recall_1px", "screen_recall_1px", "false_hits",
          "flip_visible", "repeats"]
 MANY_ROWS = 60
 MANY_PICTURES = 24

@@ -17,7 +17,7 @@ struct CommonOptions {
 
 struct PictureOptions {
     std::string              scene, technique, view = "default", size, output;
-    std::vector<std::string> parameters; // name=value: the technique's parameters, or settings of [trace] and [effects]
+    std::vector<std::string> parameters; // name=value: the technique's parameters, or settings of [trace] and [passes]
 };
 
 int list_everything(const CommonOptions& common);

@@ -67,7 +67,7 @@ int main(int argc, char** argv)
     gbuffer->callback([&] { command = [&] { return write_gbuffer(common, picture); }; });
 
     PlanOptions plan;
-    auto*       planned = app.add_subcommand("plan", "Which passes a picture needs, why, and what they cost or save");
+    auto*       planned = app.add_subcommand("plan", "Which passes a frame needs, why, and what they cost or save");
     planned->add_option("SCENE", plan.picture.scene, "As for render")->required();
     planned->add_option("-t,--technique", plan.picture.technique, "Technique (see ssrlab list)")
         ->default_val("hiz")

@@ -1,4 +1,4 @@
-// ssrlab plan: which passes a picture needs, why, and what they cost or save.
+// ssrlab plan: which passes a frame needs, why, and what they cost or save.
 #pragma once
 
 #include "app/commands.h"
@@ -7,10 +7,10 @@ namespace ssrlab {
 
 struct PlanOptions {
     PictureOptions picture;
-    int            repeats = 9; // timed frames, planned and with everything on in turn
+    int            repeats = 9; // timed frames, of the planned and the unculled frame in turn
 };
 
-/// Fails (1) when the planned picture differs from the one with everything on.
+/// Fails (1) when the planned image differs from the unculled one.
 int print_plan(const CommonOptions& common, const PlanOptions& options);
 
 } // namespace ssrlab

@@ -24,7 +24,7 @@ struct Choice {
     ParameterValues values;
     FrameSettings   settings;
 };
-/// name=value pairs: settings of [trace] and [effects], or else parameters of the technique. Throws SpecError.
+/// name=value pairs: settings of [trace] and [passes], or else parameters of the technique. Throws SpecError.
 Choice parse_choice(const Technique& technique, const std::vector<std::string>& pairs);
 
 } // namespace ssrlab

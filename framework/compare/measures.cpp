@@ -71,7 +71,7 @@ constexpr auto table = std::to_array<Measure>({
 
     {"hidden_recovered_share", "share",
      "rays that the second depth layer answers within 1 px of the true point, of rays whose true point is hidden; this "
-     "and the next four where the effect hidden_layer ran",
+     "and the next four where the pass hidden_layer ran",
      truth},
     {"ghost_share", "share",
      "rays without hit in the first layer whose true point is visible or hidden (ghost shadows), of traced rays",

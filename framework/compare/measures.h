@@ -49,7 +49,7 @@ MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResu
 MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth& scene_truth,
                                      const TraceResult& screen_truth, const GBufferImage& gbuffer);
 
-/// What the effect hidden_layer adds: `first` and `second` are what the rays found in each depth layer.
+/// What the pass hidden_layer adds: `first` and `second` are what the rays found in each depth layer.
 MeasureValues compare_hidden_layer(const TraceResult& first, const TraceResult& second, const SceneTruth& scene_truth);
 
 /// Mean and largest work per ray.

@@ -33,12 +33,12 @@ const std::vector<Column> times = {
     {"rays_ms_median", "finding the tiles that reflect and making the rays"},
     {"structures_ms_median", "building the structures that the technique reads; 0 without any"},
     {"shade_ms_median", "turning hits into colour and putting the picture together"},
-    {"effects", "passes that ran, in their order, each with the median of its GPU time in milliseconds"},
-    {"effects_skipped", "passes that the plan left out, because the picture does not need them or they are off"},
+    {"passes", "passes that ran, in their order, each with the median of its GPU time in milliseconds"},
+    {"passes_skipped", "passes that did not run, because the frame does not need them or they are off"},
     {"saved_ms",
-     "what the plan saves: a frame with everything on (plan = false) less the planned one, median over five "
-     "pairs; empty where the plan leaves nothing out but what is off, and where it was not measured "
-     "(saved_time = false, effect_set = shading)"},
+     "time saved by skipping: the unculled frame (skip_unneeded_passes = false) minus the planned one, median over "
+     "five pairs; empty if only disabled passes were skipped, or if it was not measured (saved_time = false, "
+     "pass_set = shading)"},
     {"frame_ms_median", "sum of all passes with the G-buffer's median, per repeat; median over the repeats"},
     {"frame_ms_mad", "its median absolute deviation"},
     {"frame_ms_ci_low", "lower end of the 95 % interval of the median"},

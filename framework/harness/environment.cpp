@@ -100,8 +100,8 @@ Environment describe_environment(const Experiment& experiment, std::span<const T
     notes["cpu_threads"]   = std::to_string(std::thread::hardware_concurrency());
     notes["device_type"]   = device.type;
     notes["vulkan"]        = device.api_version;
-    for (const Parameter& parameter : effect_parameters())
-        notes["effect_parameters"] += (notes["effect_parameters"].empty() ? "" : " ") + parameter.name;
+    for (const Parameter& parameter : pass_parameters())
+        notes["pass_parameters"] += (notes["pass_parameters"].empty() ? "" : " ") + parameter.name;
     return environment;
 }
 

@@ -50,7 +50,7 @@ FrameSettings to_settings(const ParameterValues& values)
 std::string run_id(const Run& run)
 {
     std::string identity = fmt::format("{}\n{}\n{}\n{}\n", run.scene, run.view, size_text(run.size_px), run.technique);
-    // An effect's parameter counts when it is not at its default: a new effect leaves the ids of earlier runs alone.
+    // A pass's parameter counts when it is not at its default: a new pass leaves the ids of earlier runs alone.
     for (const Setting& setting : all_settings()) {
         const double value = setting.get(run.settings);
         if (setting.table == "trace" || value != setting.default_value)

@@ -237,8 +237,8 @@ MeasureSettings read_measure(const TomlFile& file)
 
 Experiment load_experiment(const std::filesystem::path& path, std::span<const Technique> techniques)
 {
-    static const std::vector<std::string> known = {"name",  "title",   "scenes",     "views",  "sizes",
-                                                   "trace", "effects", "techniques", "measure"};
+    static const std::vector<std::string> known = {"name",  "title",  "scenes",     "views",  "sizes",
+                                                   "trace", "passes", "techniques", "measure"};
     const TomlFile                        file  = read_toml(path);
     toml_known_keys(file, file.root, "key", known);
     Experiment experiment;

@@ -25,7 +25,7 @@ struct MeasureSettings {
     bool     image_errors = true; // also compare the pictures (SSIM, FLIP …), which takes longer than comparing rays
     bool     double_twin  = true; // trace once more in double precision, to tell rounding from the other errors
     bool     pictures     = true; // write the reflected picture of each run
-    bool     saved_time   = true; // time a few frames with everything on, too; never where effect_set = shading
+    bool     saved_time   = true; // time a few unculled frames, too; never with pass_set = shading
 };
 
 using ValueLists = std::map<std::string, std::vector<double>>;
@@ -62,7 +62,7 @@ struct Run {
     int             number = 0; // among the picture's runs as the specification lists them
 };
 
-/// A setting of [trace] or [effects]: key in the specification and column of the record, from this one table.
+/// A setting of [trace] or [passes]: key in the specification and column of the record, from this one table.
 struct Setting : Parameter {
     std::string                                 table;
     std::function<double(const FrameSettings&)> get;

@@ -224,15 +224,14 @@ void plan_repeats(Bench& bench, MeasuredRun& measured)
     });
 }
 
-/// The same frame with everything on, where that is more.
+/// The same frame, unculled, where that is more.
 void prepare_comparison(Bench& bench, MeasuredRun& measured)
 {
-    if (!bench.experiment.measure.saved_time || !plan_leaves_out(*measured.frame)) return;
-    const size_t known  = pipelines_made(bench.gpu);
-    measured.everything = prepare_everything(bench.gpu, *measured.frame);
+    if (!bench.experiment.measure.saved_time || !plan_skips_work(*measured.frame)) return;
+    const size_t known = pipelines_made(bench.gpu);
+    measured.unculled  = prepare_unculled(bench.gpu, *measured.frame);
     // A driver may compile a pipeline when it first runs.
-    if (pipelines_made(bench.gpu) != known)
-        clocked(bench.counted_s, [&] { run_frame(bench.gpu, *measured.everything); });
+    if (pipelines_made(bench.gpu) != known) clocked(bench.counted_s, [&] { run_frame(bench.gpu, *measured.unculled); });
 }
 
 /// Timed repeats, every round in another order, until each run has those planned for it or a stop was requested.
@@ -286,7 +285,9 @@ void measure_batch(Bench& bench, Picture& picture, std::span<const Run> runs)
         bench.progress.tick();
         MeasuredRun measured;
         measured.run = run;
-        measured.row = identity_row(bench.experiment, *run, find_technique(bench.techniques, run->technique));
+        const Technique& technique = find_technique(bench.techniques, run->technique);
+        measured.row               = identity_row(bench.experiment, *run, technique);
+        for (const Structure& structure : technique.structures) measured.structures.push_back(structure.id);
         const auto prepare_both = [&] {
             prepare(bench, picture, measured);
             prepare_comparison(bench, measured);

@@ -86,12 +86,12 @@ void add_measures(Row& row, const MeasureValues& values)
     }
 }
 
-void add_plan(Row& row, const std::vector<PlannedEffect>& plan)
+void add_plan(Row& row, const std::vector<PlannedPass>& plan)
 {
     std::string skipped;
-    for (const PlannedEffect& planned : plan)
-        if (!planned.runs) skipped += (skipped.empty() ? "" : " ") + planned.effect->id;
-    row["effects_skipped"] = skipped;
+    for (const PlannedPass& planned : plan)
+        if (!planned.runs) skipped += (skipped.empty() ? "" : " ") + planned.id;
+    row["passes_skipped"] = skipped;
 }
 
 void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms, int round)
@@ -100,11 +100,15 @@ void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms, int round)
     const FrameTimes   times      = run_frame(gpu, *measured.frame);
     measured.cpu_ms.push_back(1000.0 * static_cast<double>(std::clock() - cpu_before) / CLOCKS_PER_SEC);
     measured.rounds.push_back(round);
-    for (const auto& [effect, ms] : times.effects_ms) measured.effect_ms[effect].push_back(ms);
+    measured.pass_order.clear();
+    for (const auto& [pass, ms] : times.passes_ms) {
+        measured.pass_order.push_back(pass);
+        measured.pass_ms[pass].push_back(ms);
+    }
     measured.trace_ms.push_back(times.of("trace"));
     measured.frame_ms.push_back(gbuffer_ms + times.total_ms());
-    if (measured.everything && measured.saved_ms.size() < saved_pairs)
-        measured.saved_ms.push_back(run_frame(gpu, *measured.everything).total_ms() - times.total_ms());
+    if (measured.unculled && measured.saved_ms.size() < saved_pairs)
+        measured.saved_ms.push_back(run_frame(gpu, *measured.unculled).total_ms() - times.total_ms());
 }
 
 int repeats_for(double pilot_s, const MeasureSettings& measure)
@@ -121,18 +125,22 @@ void add_times(MeasuredRun& measured, double gbuffer_ms)
     add_summary(row, "frame_ms", frame);
     row["repeats"]           = std::to_string(measured.trace_ms.size());
     row["gbuffer_ms_median"] = number_text(gbuffer_ms);
-    const auto median_ms     = [&](const std::string& effect) {
-        const auto found = measured.effect_ms.find(effect);
-        return found == measured.effect_ms.end() ? 0 : quantile(found->second, 0.5);
+    const auto median_ms     = [&](const std::string& pass) {
+        const auto found = measured.pass_ms.find(pass);
+        return found == measured.pass_ms.end() ? 0 : quantile(found->second, 0.5);
     };
     row["rays_ms_median"]    = number_text(median_ms("classification") + median_ms("rays"));
-    row["structures_ms_median"] = number_text(median_ms("structures"));
+    double structures_ms = 0;
+    for (const std::string& id : measured.structures) {
+        row[id + ".ms_median"] = number_text(median_ms(id));
+        structures_ms += median_ms(id);
+    }
+    row["structures_ms_median"] = number_text(structures_ms);
     row["shade_ms_median"]   = number_text(median_ms("hit_colour") + median_ms("composite"));
-    std::string effects;
-    for (const Effect& effect : all_effects())
-        if (measured.effect_ms.contains(effect.id))
-            effects += fmt::format("{}{}={}", effects.empty() ? "" : " ", effect.id, number_text(median_ms(effect.id)));
-    row["effects"] = effects;
+    std::string passes;
+    for (const std::string& id : measured.pass_order)
+        passes += fmt::format("{}{}={}", passes.empty() ? "" : " ", id, number_text(median_ms(id)));
+    row["passes"] = passes;
     if (!measured.saved_ms.empty()) row["saved_ms"] = number_text(quantile(measured.saved_ms, 0.5));
     row["fps"]           = number_text(1000 / frame.median);
     row["inverse_fps_s"] = number_text(frame.median / 1000);

@@ -12,11 +12,13 @@ namespace ssrlab {
 
 struct MeasuredRun {
     const Run*                                 run = nullptr;
-    PreparedFramePtr                           frame, everything; // the same with everything on, or null
+    PreparedFramePtr                           frame, unculled; // the same without skipping, or null
     Row                                        row;
     std::vector<int>                           rounds; // one entry per timed frame, as in the lists below
     std::vector<double>                        trace_ms, frame_ms, cpu_ms, saved_ms;
-    std::map<std::string, std::vector<double>> effect_ms;   // by effect, of those that ran
+    std::map<std::string, std::vector<double>> pass_ms;     // by pass, of those that ran
+    std::vector<std::string>                   pass_order;  // the same in the order of a frame
+    std::vector<std::string>                   structures;  // of the technique
     int                                        repeats = 0; // that it will have, known before the first one
 };
 
@@ -26,11 +28,11 @@ Row identity_row(const Experiment& experiment, const Run& run, const Technique& 
 void add_counts(Row& row, const TraceResult& counted);
 /// The measures that have a column.
 void add_measures(Row& row, const MeasureValues& values);
-/// Which effects were skipped.
-void add_plan(Row& row, const std::vector<PlannedEffect>& plan);
-/// Pairs of a planned frame and one with everything on.
+/// Which passes were skipped.
+void add_plan(Row& row, const std::vector<PlannedPass>& plan);
+/// Pairs of a planned and an unculled frame.
 inline constexpr int saved_pairs = 5;
-/// One timed frame, and the first few times one with everything on.
+/// One timed frame, and the first few times the unculled one, too.
 void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms, int round);
 /// How many repeats fit into the budget, from the wall time of a frame before the first repeat. Their number depends on no time
 /// that is recorded: stopping where an interval happens to be tight would make intervals too tight.

@@ -42,7 +42,8 @@ double estimated_seconds(const Run& run, const Technique& technique, const Measu
                                        static_cast<double>(measure.max_repeats));
     const double counting = measure.truth ? 4 : 2;
     const double errors_s = measure.truth && measure.image_errors ? pixels * image_errors_s : 0;
-    const int    saved    = measure.saved_time && !shading_only(run.settings.effects) ? saved_pairs + 1 : 0;
+    const int    saved =
+        measure.saved_time && choice<PassSet>(run.settings.passes) != PassSet::shading ? saved_pairs + 1 : 0;
     return overhead_s + errors_s + frame_s * (repeats + measure.warmup + counting + saved);
 }
 

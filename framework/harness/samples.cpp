@@ -22,7 +22,7 @@ std::string samples_text(const MeasuredRun& measured)
         text += csv_line({measured.run->id, round, pass, fmt::format("{}", ms), cpu_ms});
     };
     for (size_t frame = 0; frame < measured.rounds.size(); ++frame) {
-        for (const auto& [effect, ms] : measured.effect_ms) add(frame, effect, ms[frame], "");
+        for (const auto& [pass, ms] : measured.pass_ms) add(frame, pass, ms[frame], "");
         add(frame, "frame", measured.frame_ms[frame], fmt::format("{}", measured.cpu_ms[frame]));
     }
     return text;

@@ -33,10 +33,10 @@ std::vector<Setting> make_table()
                       "how far along its direction the ray starts"),
         trace_setting("facing", boolean, &TraceSettings::facing, 1, "whether a hit's surface must face the ray"),
     };
-    for (const Parameter& parameter : effect_parameters()) {
+    for (const Parameter& parameter : pass_parameters()) {
         const std::string& name = parameter.name;
-        table.push_back({parameter, "effects", [=](const FrameSettings& s) { return s.effects.at(name); },
-                         [=](FrameSettings& s, double value) { s.effects.at(name) = value; }});
+        table.push_back({parameter, "passes", [=](const FrameSettings& s) { return s.passes.at(name); },
+                         [=](FrameSettings& s, double value) { s.passes.at(name) = value; }});
     }
     return table;
 }

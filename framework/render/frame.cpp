@@ -1,7 +1,7 @@
 #include "core/error.h"
 #include "core/stopwatch.h"
+#include "render/directional_albedo.h"
 #include "render/frame_passes.h"
-#include "render/ggx_share.h"
 #include "shared.h"
 
 #include <glm/gtc/packing.hpp>
@@ -36,16 +36,16 @@ template <typename Real> void write_view_as(Gpu& gpu, Buffer& target, const View
 
 } // namespace
 
-double FrameTimes::of(const std::string& effect) const
+double FrameTimes::of(const std::string& pass) const
 {
-    const auto found = std::ranges::find(effects_ms, effect, &std::pair<std::string, double>::first);
-    return found == effects_ms.end() ? 0 : found->second;
+    const auto found = std::ranges::find(passes_ms, pass, &std::pair<std::string, double>::first);
+    return found == passes_ms.end() ? 0 : found->second;
 }
 
 double FrameTimes::total_ms() const
 {
-    return std::accumulate(effects_ms.begin(), effects_ms.end(), 0.0,
-                           [](double sum, const auto& effect) { return sum + effect.second; });
+    return std::accumulate(passes_ms.begin(), passes_ms.end(), 0.0,
+                           [](double sum, const auto& pass) { return sum + pass.second; });
 }
 
 void write_view(Gpu& gpu, Buffer& target, const View& view, Precision precision)
@@ -89,8 +89,8 @@ RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision)
 
 namespace {
 
-/// Counts on the device: which pixels reflect decides how much room the rays need.
-FrameStatistics count_picture(Gpu& gpu, const FrameBuffers& buffers)
+/// Counts on the device: the number of reflecting pixels decides how large the ray list is.
+FrameStatistics count_gbuffer(Gpu& gpu, const FrameBuffers& buffers)
 {
     const glm::ivec2 size_px = buffers.gbuffer->view.size_px;
     const glm::uvec3 tiles   = groups_of_8(size_px);
@@ -103,33 +103,34 @@ FrameStatistics count_picture(Gpu& gpu, const FrameBuffers& buffers)
     const ComputePass classification =
         make_compute_pass(gpu, compile_shader({.file = "rays/classification.comp"}), bindings);
     submit(gpu, [&](const auto& commands) { record_marking(commands, classification, buffers); });
-    statistics.picture = download_as<PictureCounts>(gpu, buffers.tiles.statistics, 1)[0];
+    statistics.gbuffer = download_as<GBufferCounts>(gpu, buffers.tiles.statistics, 1)[0];
     return statistics;
 }
 
 std::shared_ptr<RayBuffers> rays_for(Gpu& gpu, FrameBuffers& buffers, const FrameSettings& settings)
 {
-    const PictureCounts& counts   = buffers.statistics.picture;
-    const size_t         pixels   = settings.effects.at("plan") == 0 ? counts.surface_pixels : counts.reflecting_pixels;
-    const size_t         capacity = pixels * static_cast<size_t>(settings.effects.at("rays_per_pixel"));
-    std::shared_ptr<RayBuffers>& rays = buffers.rays[capacity];
+    const GBufferCounts& counts = buffers.statistics.gbuffer;
+    const size_t         pixels =
+        settings.passes.at("skip_unneeded_passes") == 0 ? counts.surface_pixels : counts.reflecting_pixels;
+    const size_t                 capacity = pixels * static_cast<size_t>(settings.passes.at("rays_per_pixel"));
+    std::shared_ptr<RayBuffers>& rays     = buffers.rays[capacity];
     if (!rays) rays = std::make_shared<RayBuffers>(make_ray_buffers(gpu, capacity, Precision::float32));
     return rays;
 }
 
-void upload_ggx_shares(Gpu& gpu, FrameBuffers& buffers)
+void upload_dfg_table(Gpu& gpu, FrameBuffers& buffers)
 {
     std::vector<uint32_t> texels;
-    for (const glm::vec2& share : ggx_share_table()) texels.push_back(glm::packHalf2x16(share));
-    buffers.ggx_shares        = make_image(gpu, {.format  = vk::Format::eR16G16Sfloat,
-                                                 .size_px = glm::ivec2(GGX_SHARE_ENTRIES),
-                                                 .usage   = vk::ImageUsageFlagBits::eSampled});
-    buffers.ggx_share_sampler = {gpu.impl->device,
-                                 vk::SamplerCreateInfo{.magFilter    = vk::Filter::eLinear,
-                                                       .minFilter    = vk::Filter::eLinear,
-                                                       .addressModeU = vk::SamplerAddressMode::eClampToEdge,
-                                                       .addressModeV = vk::SamplerAddressMode::eClampToEdge}};
-    upload(gpu, buffers.ggx_shares, texels.data(), texels.size() * sizeof(uint32_t));
+    for (const glm::vec2& entry : dfg_table()) texels.push_back(glm::packHalf2x16(entry));
+    buffers.dfg_table   = make_image(gpu, {.format  = vk::Format::eR16G16Sfloat,
+                                           .size_px = glm::ivec2(DFG_TABLE_ENTRIES),
+                                           .usage   = vk::ImageUsageFlagBits::eSampled});
+    buffers.dfg_sampler = {gpu.impl->device,
+                           vk::SamplerCreateInfo{.magFilter    = vk::Filter::eLinear,
+                                                 .minFilter    = vk::Filter::eLinear,
+                                                 .addressModeU = vk::SamplerAddressMode::eClampToEdge,
+                                                 .addressModeV = vk::SamplerAddressMode::eClampToEdge}};
+    upload(gpu, buffers.dfg_table, texels.data(), texels.size() * sizeof(uint32_t));
 }
 
 FrameFacts facts_of(const PreparedFrame& frame)
@@ -144,7 +145,26 @@ FrameFacts facts_of(const PreparedFrame& frame)
     return facts;
 }
 
-/// counts: what the rays hit, null: to be counted.
+/// Traces once and counts how the rays ended.
+TraceCounts count_hits(Gpu& gpu, PreparedFrame& frame)
+{
+    const Buffer counts   = make_buffer(gpu, 16);
+    Bindings     bindings = bindings_of(*frame.buffers, *frame.rays);
+    bindings.insert({{"View", frame.buffers->view}, {"TraceStatistics", counts}});
+    const ComputePass count = make_compute_pass(gpu, compile_shader({.file = "trace/trace_statistics.comp"}), bindings);
+    submit(gpu, [&](const auto& commands) {
+        commands.fillBuffer(*counts.buffer, 0, VK_WHOLE_SIZE, 0);
+        record_rays(commands, frame.trace, *frame.buffers);
+        record_depth_structures(commands, frame.structures);
+        record_technique(commands, frame.trace.technique, *frame.rays);
+        barrier(commands);
+        dispatch_indirect(commands, count, frame.rays->launch);
+        barrier(commands);
+    });
+    return download_as<TraceCounts>(gpu, counts, 1)[0];
+}
+
+/// counts: what the rays hit; null: to be counted.
 PreparedFramePtr prepare(Gpu& gpu, const FrameBuffersPtr& buffers, const Technique& technique,
                          const ParameterValues& values, const FrameSettings& settings, const TraceCounts* counts)
 {
@@ -162,15 +182,18 @@ PreparedFramePtr prepare(Gpu& gpu, const FrameBuffersPtr& buffers, const Techniq
     frame->statistics = buffers->statistics;
     if (counts != nullptr)
         frame->statistics.trace = *counts;
-    else if (!shading_only(settings.effects) && frame->statistics.picture.reflecting_pixels > 0) {
+    else if (choice<PassSet>(settings.passes) != PassSet::shading && frame->statistics.gbuffer.reflecting_pixels > 0) {
         const Stopwatch stopwatch;
         frame->statistics.trace = count_hits(gpu, *frame);
         frame->counting_s       = stopwatch.seconds();
     }
-    frame->plan = plan_frame(frame->facts, frame->statistics, settings.effects);
-    for (const PlannedEffect& planned : frame->plan)
-        if (planned.runs) frame->recordings.push_back(make_recording(gpu, *frame, planned.effect->id));
-    frame->timestamps = make_timestamps(gpu, static_cast<uint32_t>(frame->recordings.size()) + 1);
+    frame->plan = plan_frame(frame->facts, frame->statistics, settings.passes);
+    for (const PlannedPass& planned : frame->plan)
+        if (planned.runs)
+            frame->record_functions.push_back(planned.pass->prepare_structure != nullptr
+                                                  ? planned.pass->prepare_structure(*frame, planned.id)
+                                                  : planned.pass->prepare(gpu, *frame));
+    frame->timestamps = make_timestamps(gpu, static_cast<uint32_t>(frame->record_functions.size()) + 1);
     return frame;
 }
 
@@ -187,13 +210,13 @@ FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
     buffers->gbuffer        = gbuffer;
     buffers->view           = upload_view(gpu, gbuffer->view, Precision::float32);
     buffers->tiles          = make_tile_buffers(gpu, gbuffer->view.size_px);
-    buffers->statistics     = count_picture(gpu, *buffers);
+    buffers->statistics     = count_gbuffer(gpu, *buffers);
     buffers->reflection     = image(colour, size_px);
     buffers->filtered       = image(colour, size_px);
     buffers->small_colour   = image(colour, half_size_px);
     buffers->block_pixel    = image(vk::Format::eR32Uint, half_size_px);
     buffers->shaded         = image(colour, size_px);
-    upload_ggx_shares(gpu, *buffers);
+    upload_dfg_table(gpu, *buffers);
     return buffers;
 }
 
@@ -203,26 +226,26 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
     return prepare(gpu, buffers, technique, values, settings, nullptr);
 }
 
-PreparedFramePtr prepare_everything(Gpu& gpu, const PreparedFrame& planned)
+PreparedFramePtr prepare_unculled(Gpu& gpu, const PreparedFrame& planned)
 {
-    FrameSettings settings      = planned.settings;
-    settings.effects.at("plan") = 0;
+    FrameSettings settings                     = planned.settings;
+    settings.passes.at("skip_unneeded_passes") = 0;
     return prepare(gpu, planned.buffers, planned.technique, planned.values, settings, &planned.statistics.trace);
 }
 
-const std::vector<PlannedEffect>& plan_of(const PreparedFrame& frame) { return frame.plan; }
+const std::vector<PlannedPass>& plan_of(const PreparedFrame& frame) { return frame.plan; }
 
 double counting_s_of(const PreparedFrame& frame) { return frame.counting_s; }
 
-bool plan_leaves_out(const PreparedFrame& frame)
+bool plan_skips_work(const PreparedFrame& frame)
 {
-    ParameterValues everything = frame.settings.effects;
-    if (everything.at("plan") == 0 || shading_only(everything)) return false;
-    everything.at("plan")       = 0;
-    const PictureCounts& counts = frame.statistics.picture;
+    ParameterValues unculled = frame.settings.passes;
+    if (unculled.at("skip_unneeded_passes") == 0 || choice<PassSet>(unculled) == PassSet::shading) return false;
+    unculled.at("skip_unneeded_passes") = 0;
+    const GBufferCounts& counts         = frame.statistics.gbuffer;
     return counts.reflecting_pixels < counts.surface_pixels ||
-           !std::ranges::equal(frame.plan, plan_frame(frame.facts, frame.statistics, everything), {},
-                               &PlannedEffect::runs, &PlannedEffect::runs);
+           !std::ranges::equal(frame.plan, plan_frame(frame.facts, frame.statistics, unculled), {}, &PlannedPass::runs,
+                               &PlannedPass::runs);
 }
 
 std::vector<std::string> facts_of_plan(const PreparedFrame& frame)
@@ -235,7 +258,7 @@ FrameTimes run_frame(Gpu& gpu, PreparedFrame& frame)
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         uint32_t timestamp = 0;
         write_timestamp(commands, frame.timestamps, timestamp++);
-        for (const Recording& record : frame.recordings) {
+        for (const RecordFunction& record : frame.record_functions) {
             record(commands);
             barrier(commands);
             write_timestamp(commands, frame.timestamps, timestamp++);
@@ -243,8 +266,8 @@ FrameTimes run_frame(Gpu& gpu, PreparedFrame& frame)
     });
     const auto intervals_ms = read_intervals_ms(gpu, frame.timestamps);
     FrameTimes times;
-    for (const PlannedEffect& planned : frame.plan)
-        if (planned.runs) times.effects_ms.emplace_back(planned.effect->id, intervals_ms[times.effects_ms.size()]);
+    for (const PlannedPass& planned : frame.plan)
+        if (planned.runs) times.passes_ms.emplace_back(planned.id, intervals_ms[times.passes_ms.size()]);
     return times;
 }
 
@@ -253,7 +276,7 @@ TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision)
     if (precision == Precision::float64 && !gpu.info.float64)
         throw_failure("the device '{}' has no double precision", gpu.info.name);
     const GBuffer&    gbuffer = *frame.buffers->gbuffer;
-    const RayBuffers  rays    = make_ray_buffers(gpu, frame.buffers->statistics.picture.reflecting_pixels, precision);
+    const RayBuffers  rays    = make_ray_buffers(gpu, frame.buffers->statistics.gbuffer.reflecting_pixels, precision);
     const Buffer      work    = make_buffer(gpu, std::max<uint64_t>(rays.capacity, 1) * work_words(frame.technique) *
                                                   sizeof(uint32_t));
     const Buffer      view    = upload_view(gpu, gbuffer.view, precision);

@@ -1,11 +1,11 @@
-// The line's GPU part: G-buffer -> rays -> inputs -> trace -> effects -> picture, one technique with one set of values.
+// The line's GPU part: G-buffer -> rays -> inputs -> trace -> shade -> image, one technique with one set of values.
 #pragma once
 
 #include "core/gbuffer_image.h"
 #include "core/image.h"
 #include "core/trace_result.h"
 #include "gpu/gpu.h"
-#include "render/effects.h"
+#include "render/frame_plan.h"
 #include "render/technique.h"
 #include "scene/scene.h"
 
@@ -18,18 +18,18 @@ namespace ssrlab {
 
 struct FrameSettings {
     TraceSettings   trace;
-    ParameterValues effects = default_effect_values(); // by the names of effect_parameters()
+    ParameterValues passes = default_pass_values(); // by the names of pass_parameters()
 
     bool operator==(const FrameSettings&) const = default;
 };
 
 enum class Precision { float32, float64 };
 
-/// Milliseconds by GPU timestamps, of the effects that ran, in their order.
+/// Milliseconds by GPU timestamps, of the passes that ran, in their order.
 struct FrameTimes {
-    std::vector<std::pair<std::string, double>> effects_ms;
+    std::vector<std::pair<std::string, double>> passes_ms;
 
-    double of(const std::string& effect) const; // 0 when it did not run
+    double of(const std::string& pass) const; // 0 when it did not run
     double total_ms() const;
 };
 
@@ -56,31 +56,31 @@ GBufferImage read_gbuffer(Gpu& gpu, const GBuffer& gbuffer);
 
 FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer);
 
-/// Plans the frame and compiles what it needs; effects that depend on what is hit make it trace once.
+/// Plans the frame and compiles what it needs; if passes depend on hits, it traces once.
 /// Throws SpecError with the technique's file and line when its shader does not compile.
 PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const Technique& technique,
                                const ParameterValues& values, const FrameSettings& settings);
-/// The same frame with its plan off: every effect that is asked for runs, on every surface. What rays hit is not counted again.
-PreparedFramePtr prepare_everything(Gpu& gpu, const PreparedFrame& planned);
-/// What runs and why. Of a still picture: its statistics are those of the very frame.
-const std::vector<PlannedEffect>& plan_of(const PreparedFrame& frame);
-/// Seconds of preparing it that went to counting what its rays hit, which the plan depends on.
+/// The same frame, unculled: every pass that is not off runs, on every surface. Hits are not counted again.
+PreparedFramePtr prepare_unculled(Gpu& gpu, const PreparedFrame& planned);
+/// What runs and why. The frame is still, so the plan's statistics are its own.
+const std::vector<PlannedPass>& plan_of(const PreparedFrame& frame);
+/// Seconds of prepare_frame() spent counting hits for the plan.
 double counting_s_of(const PreparedFrame& frame);
-/// Whether a frame with everything on would do more. Of one that only shades this is not asked: false.
-bool plan_leaves_out(const PreparedFrame& frame);
+/// Whether the unculled frame would do more. False with pass_set = shading.
+bool plan_skips_work(const PreparedFrame& frame);
 /// What the plan rests on, a line each.
 std::vector<std::string> facts_of_plan(const PreparedFrame& frame);
 
-/// Runs what the plan says once and waits. The first call of a frame includes driver compilation: warm up.
+/// Runs the planned passes once and waits. The first call of a frame includes driver compilation: warm up.
 FrameTimes run_frame(Gpu& gpu, PreparedFrame& frame);
-/// The reflected picture that the last run_frame of this frame left in the shared buffers. Linear RGB.
+/// The image that the last run_frame of this frame left in the shared buffers. Linear RGB.
 Image read_shaded(Gpu& gpu, const PreparedFrame& frame);
 /// What the last run_frame of this frame found in the second layer: `hit` there, not_traced elsewhere. Empty when the plan
 /// has no hidden layer.
 std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame);
 /// The second layer itself, of a frame whose plan has one.
 GBufferImage read_second_layer(Gpu& gpu, const PreparedFrame& frame);
-/// The picture with another reflection in the place of the traced one: colour and weight of each pixel, weight < 0 where nothing reflects.
+/// The image with this reflection in place of the traced one: colour and weight of each pixel, weight < 0 where nothing reflects.
 /// Leaves this reflection in the shared buffers.
 Image composite_reflection(Gpu& gpu, const PreparedFrame& frame, std::span<const glm::vec4> reflection);
 /// Traces once with the counting pipeline (work counters on; never timed). Precision float64 gives the double twin.

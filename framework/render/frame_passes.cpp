@@ -138,7 +138,7 @@ TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
                                        vk::Format::eR32Uint);
     };
     return {two_words(), make_buffer(gpu, 16), two_words(), make_buffer(gpu, 16),
-            make_buffer(gpu, sizeof(PictureCounts))};
+            make_buffer(gpu, sizeof(GBufferCounts))};
 }
 
 Bindings surface_bindings(const GBuffer& gbuffer)
@@ -224,19 +224,18 @@ void record_depth_structures(const vk::raii::CommandBuffer& commands, const std:
 
 void record_technique(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes, const RayBuffers& rays)
 {
-    record_ray_structures(commands, passes, rays);
+    for (const StructurePasses& structure : passes.structures)
+        record_ray_structure(commands, passes, structure, rays);
     dispatch_indirect(commands, passes.trace, rays.launch);
 }
 
-void record_ray_structures(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes,
-                           const RayBuffers& rays)
+void record_ray_structure(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes,
+                          const StructurePasses& structure, const RayBuffers& rays)
 {
-    const auto has_passes = [](const StructurePasses& structure) { return !structure.dispatches.empty(); };
-    if (std::ranges::none_of(passes.structures, has_passes)) return;
+    if (structure.dispatches.empty()) return;
     dispatch(commands, passes.group_launch, {1, 1, 1});
     barrier(commands);
-    for (const StructurePasses& structure : passes.structures)
-        record_structure(commands, structure, &rays.group_launch);
+    record_structure(commands, structure, &rays.group_launch);
 }
 
 TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view,
@@ -247,12 +246,12 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
     bindings.insert({"View", view});
     if (work != nullptr) bindings.insert({"Work", *work});
     Constants constants = settings_constants(frame, rays.precision);
-    // What is counted is the technique's work on one ray from the centre of each pixel that reflects, whatever the effects.
+    // What is counted is the technique's work on one ray from the centre of each pixel that reflects, whatever the passes.
     const bool counts     = work != nullptr;
-    const auto of_effects = [&](const char* name) { return static_cast<int32_t>(frame.settings.effects.at(name)); };
-    constants.add(CONSTANT_EVERY_SURFACE, !counts && of_effects("plan") == 0 ? 1 : 0);
-    constants.add(CONSTANT_RAYS_PER_PIXEL, counts ? 1 : of_effects("rays_per_pixel"));
-    constants.add(CONSTANT_TRACE_BLOCK_PX, counts ? 1 : trace_block_px(frame.settings.effects));
+    const auto of_passes = [&](const char* name) { return static_cast<int32_t>(frame.settings.passes.at(name)); };
+    constants.add(CONSTANT_EVERY_SURFACE, !counts && of_passes("skip_unneeded_passes") == 0 ? 1 : 0);
+    constants.add(CONSTANT_RAYS_PER_PIXEL, counts ? 1 : of_passes("rays_per_pixel"));
+    constants.add(CONSTANT_TRACE_BLOCK_PX, counts ? 1 : trace_block_px(frame.settings.passes));
     TracePasses passes;
     passes.classification =
         make_compute_pass(gpu, compile_shader({.file = "rays/classification.comp"}), bindings, constants);

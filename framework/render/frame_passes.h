@@ -4,7 +4,6 @@
 #include "render/gbuffer.h"
 #include "render/structure_passes.h"
 
-#include <functional>
 #include <map>
 
 namespace ssrlab {
@@ -71,8 +70,8 @@ struct FrameBuffers {
     GpuImage          small_colour; // RGBA16F, half size or less: lit colour as rays at a lower resolution find it
     GpuImage          block_pixel;  // R32UI, half size or less: which pixel of a block has rays, or NO_PIXEL
     GpuImage          shaded;       // RGBA16F
-    GpuImage          ggx_shares;   // RG16F: ggx_share_table()
-    vk::raii::Sampler ggx_share_sampler = nullptr;
+    GpuImage          dfg_table;    // RG16F: dfg_table()
+    vk::raii::Sampler dfg_sampler = nullptr;
 };
 
 /// The technique on one list of rays.
@@ -88,9 +87,6 @@ struct TracePasses {
 
 using Defines = std::map<std::string, std::string>;
 
-/// Writes an effect's commands.
-using Recording = std::function<void(const vk::raii::CommandBuffer&)>;
-
 struct PreparedFrame {
     FrameBuffersPtr             buffers;
     Technique                   technique;
@@ -102,8 +98,8 @@ struct PreparedFrame {
     FrameFacts                  facts;
     FrameStatistics             statistics;
     double                      counting_s = 0; // that it took to count what the rays hit, for the plan
-    std::vector<PlannedEffect>  plan;
-    std::vector<Recording>      recordings;           // of the effects that run
+    std::vector<PlannedPass>    plan;
+    std::vector<RecordFunction> record_functions;     // of the passes that run
     bool                        hidden_layer = false; // hits may lie in the second layer
     bool                        cone         = false; // rough surfaces look up cones
     Timestamps                  timestamps;
@@ -117,10 +113,10 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
                                       const RayBuffers& rays, const Bindings& bindings);
 /// The structures that depend on depth alone.
 void record_depth_structures(const vk::raii::CommandBuffer& commands, const std::vector<StructurePasses>& structures);
-/// The structures that depend on the list of rays.
-void record_ray_structures(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes,
-                           const RayBuffers& rays);
-/// Those, then the trace.
+/// One that depends on the list of rays, if it does.
+void record_ray_structure(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes,
+                          const StructurePasses& structure, const RayBuffers& rays);
+/// All of those, then the trace.
 void record_technique(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes, const RayBuffers& rays);
 ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch, int items_per_group);
 /// What a picture shows at each pixel, by the names that shaders give it.
@@ -137,11 +133,6 @@ Constants settings_constants(const PreparedFrame& frame, Precision precision, bo
 std::string parameter_declarations(std::span<const Parameter> parameters, uint32_t id);
 void        add_parameters(Constants& constants, std::span<const Parameter> parameters, const ParameterValues& values,
                            uint32_t id);
-
-/// Pipelines of an effect. The recording refers to the frame, which must outlive it.
-Recording make_recording(Gpu& gpu, PreparedFrame& frame, const std::string& effect);
-/// Traces once and counts how the rays ended.
-TraceCounts count_hits(Gpu& gpu, PreparedFrame& frame);
 
 /// Classification and ray set-up.
 void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers);

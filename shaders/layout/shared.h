@@ -43,7 +43,7 @@
 #define CONSTANT_TRACE_BLOCK_PX 9
 #define CONSTANT_RAYS_PER_PIXEL 11
 #define CONSTANT_PARAMETERS 32
-#define CONSTANT_EFFECTS 64 // the effects' parameters, in the order of render/effects.cpp
+#define CONSTANT_PASSES 64 // the passes' parameters, in the order of render/passes/all_passes.cpp
 
 // Sub-pixel offsets are centres of a grid of this many cells per side.
 #define OFFSET_CELLS 256
@@ -54,8 +54,8 @@
 // Roughness histogram of the reflecting pixels: bin 0 holds roughness 0, the others share (0, 1].
 #define ROUGHNESS_BINS 16
 
-// Of the table of GGX shares, in roughness and in cosine.
-#define GGX_SHARE_ENTRIES 32
+// Of the split-sum (DFG) table, in roughness and in cosine.
+#define DFG_TABLE_ENTRIES 32
 
 // Background in the depth that tracers read: nearer than nothing, so that no interval touches it.
 #define BACKGROUND_DEPTH -1.0

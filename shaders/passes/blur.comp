@@ -2,7 +2,7 @@
 // follow-up: Screenspace reflections filtering and up-sampling: holes weigh less, and look farther for what they lack (push-pull).
 #include "api/view.glsl"
 #include "rays/reflecting.glsl"
-#include "effect/parameters"
+#include "pass/parameters"
 #include "rays/tiles.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -25,7 +25,7 @@ const int taps_a_side = 16;
 float radius_px(ivec2 pixel, bool hole)
 {
     float roughness = imageLoad(normal_image, pixel).w;
-    return max(0.0, blur_bias + blur_scale * roughness) * float(size_px.y) * (hole ? blur_hole_widening : 1.0);
+    return max(0.0, blur_bias + blur_scale * roughness) * float(size_px.y) * (hole ? hole_blur_scale : 1.0);
 }
 
 struct Sum

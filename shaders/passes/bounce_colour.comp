@@ -5,7 +5,7 @@
 #include "trace/hit_list.glsl"
 #include "api/view.glsl"
 #include "rays/reflecting.glsl"
-#include "effect/parameters"
+#include "pass/parameters"
 #include "passes/ray_colour.glsl"
 #include "passes/beta.glsl"
 

@@ -1,7 +1,7 @@
 // The colours that rays find, at the resolution at which they are traced: each texel the mean of its block of pixels, slightly blurred in the
 // shape of a cross. B. Wronski 2014, "GDC follow-up: Screenspace reflections filtering and up-sampling".
 #include "layout/shared.h"
-#include "effect/parameters"
+#include "pass/parameters"
 #include "passes/blocks.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -22,7 +22,7 @@ vec4 block_sum(ivec2 block)
         if (all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size)))
         {
             vec3 colour = imageLoad(radiance_image, pixel).rgb;
-            if (hit_light == hit_light_lit) colour += imageLoad(highlight_image, pixel).rgb;
+            if (hit_shading == hit_shading_lit) colour += imageLoad(highlight_image, pixel).rgb;
             sum += vec4(colour, 1);
         }
     }

@@ -1,7 +1,7 @@
 // The picture: C = C_own + (C_reflected - C_own) * beta.
 #include "api/view.glsl"
 #include "rays/reflecting.glsl"
-#include "effect/parameters"
+#include "pass/parameters"
 #include "passes/beta.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

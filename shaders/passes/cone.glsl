@@ -1,5 +1,5 @@
-// What a rough surface reflects: colours along a cone about the mirror ray, from effects/cone_pyramid.comp. After view.glsl and
-// effect/parameters.
+// What a rough surface reflects: colours along a cone about the mirror ray, from passes/cone_pyramid.comp. After view.glsl and
+// pass/parameters.
 // Y. Uludag 2014, "Hi-Z Screen-Space Cone-Traced Reflections", GPU Pro 5.
 layout(set = 0, binding = 35, rgba16f) uniform readonly image2D cone_pyramid; // colour, visibility
 
@@ -9,7 +9,7 @@ vec4 cone_cell(ivec2 cell, int level)
     if (level == 0)
     {
         vec3 light = imageLoad(radiance_image, known).rgb;
-        if (hit_light == hit_light_lit) light += imageLoad(highlight_image, known).rgb;
+        if (hit_shading == hit_shading_lit) light += imageLoad(highlight_image, known).rgb;
         return vec4(light, 1);
     }
     return imageLoad(cone_pyramid, known + ivec2(0, pyramid_root >> level));

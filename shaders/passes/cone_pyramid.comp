@@ -1,9 +1,9 @@
-// One level of what cones look up (effects/cone.glsl): colour, and the share of a cell that is empty in front of its surfaces.
+// One level of what cones look up (passes/cone.glsl): colour, and the share of a cell that is empty in front of its surfaces.
 // Y. Uludag 2014, "Hi-Z Screen-Space Cone-Traced Reflections", GPU Pro 5. Cells lie as in depth_pyramid.comp.
 #include "api/view.glsl"
 #define READS_DEPTH
 #include "layout/memory_layout.glsl"
-#include "effect/parameters"
+#include "pass/parameters"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 2, rgba16f) uniform readonly image2D radiance_image;
@@ -23,7 +23,7 @@ const float background_m = 1e30;
 vec4 source_colour(ivec2 cell)
 {
     vec4 light = imageLoad(radiance_image, cell);
-    if (hit_light == hit_light_lit) light += imageLoad(highlight_image, cell);
+    if (hit_shading == hit_shading_lit) light += imageLoad(highlight_image, cell);
     return vec4(light.rgb, 1);
 }
 

@@ -1,7 +1,7 @@
-// A 3 x 3 kernel over what neighbouring pixels reflect: the third pass that J. Somerville Roberts, "Screen Space Reflections",
+// A 3 x 3 filter over what neighbouring pixels reflect: the third pass that J. Somerville Roberts, "Screen Space Reflections",
 // recommends against noise. Pixels that do not reflect have no part in it.
 #include "layout/shared.h"
-#include "effect/parameters"
+#include "pass/parameters"
 #include "rays/tiles.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -63,5 +63,5 @@ void main()
     if (any(greaterThanEqual(pixel, imageSize(reflection_image)))) return;
     vec4 own = imageLoad(reflection_image, pixel);
     read_neighbours(pixel);
-    imageStore(filtered_image, pixel, own.a < 0.0 ? own : kernel == kernel_box3 ? mean() : median());
+    imageStore(filtered_image, pixel, own.a < 0.0 ? own : filter_3x3 == filter_3x3_box3 ? mean() : median());
 }

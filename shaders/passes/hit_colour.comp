@@ -4,7 +4,7 @@
 #include "trace/hit_list.glsl"
 #include "api/view.glsl"
 #include "rays/reflecting.glsl"
-#include "effect/parameters"
+#include "pass/parameters"
 #include "passes/ray_colour.glsl"
 
 layout(local_size_x = RAYS_PER_GROUP) in;

@@ -1,5 +1,5 @@
 // What a ray brings back of the surface that it hit, and how much that weighs. After ray_list.glsl, hit_list.glsl, view.glsl,
-// reflecting.glsl and effect/parameters.
+// reflecting.glsl and pass/parameters.
 #include "passes/blocks.glsl"
 
 layout(set = 0, binding = 11, rgba16f) uniform readonly image2D radiance_image;
@@ -76,9 +76,9 @@ vec3 blurred_light(vec2 point_px)
 // resolution.
 vec3 surface_light(ivec2 pixel, bool second, vec2 point_px)
 {
-    if (block_px > 1 && cross_blur) return blurred_light(point_px);
+    if (block_px > 1 && downsample_cross_blur) return blurred_light(point_px);
     vec3 light = LOAD_LAYER(radiance_image, pixel, second).rgb;
-    if (hit_light == hit_light_lit) light += LOAD_LAYER(highlight_image, pixel, second).rgb;
+    if (hit_shading == hit_shading_lit) light += LOAD_LAYER(highlight_image, pixel, second).rgb;
     return light;
 }
 
@@ -124,8 +124,8 @@ float depth_step_weight(ivec2 pixel, bool second)
 float weight_of(float away, vec2 uv, float depth_step)
 {
     float viewer = viewer_weight(away), edge = edge_weight(uv);
-    if (fade_combination == fade_combination_minimum) return min(min(viewer, edge), min(depth_step, 1.0 - own_share));
-    return viewer * edge * depth_step * (1.0 - own_share);
+    if (fade_operator == fade_operator_minimum) return min(min(viewer, edge), min(depth_step, 1.0 - base_colour_min_weight));
+    return viewer * edge * depth_step * (1.0 - base_colour_min_weight);
 }
 
 float attenuation_at(float distance_m)

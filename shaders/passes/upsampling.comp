@@ -3,9 +3,9 @@
 // In place: what is read was traced, what is written was not.
 #include "api/view.glsl"
 #include "rays/reflecting.glsl"
-#include "effect/parameters"
+#include "pass/parameters"
 #include "passes/blocks.glsl"
-#include "passes/ggx_share.glsl"
+#include "passes/directional_albedo.glsl"
 #include "rays/tiles.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -34,8 +34,8 @@ Surface surface_at(ivec2 pixel)
     surface.normal_vs    = normalize(normal.xyz);
     float cosine         = max(0.0, -dot(surface.normal_vs, view_direction(surface.position_vs)));
     float f0             = mix(0.04, dot(material.rgb, vec3(0.2126, 0.7152, 0.0722)), material.a);
-    vec2 share           = ggx_share(normal.w, cosine);
-    surface.reflectivity = f0 * share.x + share.y;
+    vec2 terms           = dfg(normal.w, cosine);
+    surface.reflectivity = f0 * terms.x + terms.y;
     return surface;
 }
 

@@ -1,5 +1,5 @@
 // Rays ready to trace: for each pixel that is marked in a listed tile the screen-space segment of its mirror ray. Other pixels leave no trace in
-// the list. By the effects' parameters there may be several rays per pixel, one after the other in the list.
+// the list. By the passes' parameters there may be several rays per pixel, one after the other in the list.
 #include "rays/segment.glsl"
 #include "api/hash.glsl"
 #include "rays/tiles.glsl"

@@ -117,8 +117,8 @@ void Bench::shade(benchmark::State& state, const std::string& scene, glm::ivec2 
     PreparedFrame& frame = frame_of(p, tracer_);
     prepare_trace(*p.buffers, frame);
     submit(gpu_, [&](const auto& commands) { record_technique(commands, frame.trace.technique, *frame.rays); });
-    const Recording hit_colour = make_recording(gpu_, frame, "hit_colour"),
-                    composite  = make_recording(gpu_, frame, "composite");
+    const RecordFunction hit_colour = hit_colour_pass().prepare(gpu_, frame),
+                         composite  = composite_pass().prepare(gpu_, frame);
     measure(state, p, [&](const auto& commands) {
         hit_colour(commands);
         barrier(commands);

@@ -41,19 +41,18 @@ GBufferImage coloured_mirrors(glm::ivec2 size_px)
     return image;
 }
 
-ParameterValues bouncing(const char* mode, int bounces, const ParameterValues& changed = {})
+ParameterValues bouncing(BounceMode mode, int bounces, const ParameterValues& changed = {})
 {
-    ParameterValues effects = default_effect_values();
-    effects.at("bounces")   = bounces;
-    // By the choices' order in render/effects.cpp.
-    effects.at("bounce_mode") = std::string(mode) == "off" ? 0 : std::string(mode) == "history" ? 1 : 2;
-    for (const auto& [name, value] : changed) effects.at(name) = value;
-    return effects;
+    ParameterValues passes   = default_pass_values();
+    passes.at("bounces")     = bounces;
+    passes.at("bounce_mode") = choice_value(mode);
+    for (const auto& [name, value] : changed) passes.at(name) = value;
+    return passes;
 }
 
-PreparedFramePtr prepare(const Picture& picture, const ParameterValues& effects, const char* id = "hiz")
+PreparedFramePtr prepare(const Picture& picture, const ParameterValues& passes, const char* id = "hiz")
 {
-    return prepare_frame(device(), picture.buffers, technique(id), values_of(technique(id)), {settings, effects});
+    return prepare_frame(device(), picture.buffers, technique(id), values_of(technique(id)), {settings, passes});
 }
 
 std::vector<float> shaded(PreparedFrame& frame)
@@ -62,10 +61,10 @@ std::vector<float> shaded(PreparedFrame& frame)
     return read_shaded(device(), frame).values;
 }
 
-const PlannedEffect& bounces_of(const PreparedFrame& frame)
+const PlannedPass& bounces_of(const PreparedFrame& frame)
 {
     const auto& plan = plan_of(frame);
-    return *std::ranges::find_if(plan, [](const PlannedEffect& row) { return row.effect->id == "bounces"; });
+    return *std::ranges::find_if(plan, [](const PlannedPass& row) { return row.pass->id == "bounces"; });
 }
 
 // The back wall's m-th image lies where the unfolded ray has passed m mirrors: m = floor((|x| + 2) / 4) for a ray that would be at
@@ -74,9 +73,10 @@ TEST(FacingMirrors, ShowOneMoreImagePerBounce)
 {
     const glm::ivec2      size_px(512, 256);
     const Picture         picture = make_picture(facing_mirrors(size_px));
-    const ParameterValues no_fades{{"viewer_fade", 0}, {"edge_fade", 0}};
+    const ParameterValues no_fades{chosen(ViewerFade::off), chosen(EdgeFade::off)};
     for (const int bounces : {0, 1, 2, 3}) {
-        const auto frame  = prepare(picture, bouncing(bounces == 0 ? "off" : "direct", std::max(1, bounces), no_fades));
+        const auto frame = prepare(
+            picture, bouncing(bounces == 0 ? BounceMode::off : BounceMode::direct, std::max(1, bounces), no_fades));
         const auto values = shaded(*frame);
         EXPECT_EQ(bounces_of(*frame).runs, bounces > 0);
         size_t checked = 0;
@@ -136,7 +136,7 @@ TEST_P(Direct, IsTheChainOfMirrorDirections)
     const ScreenWalk    walk(image, settings);
     std::vector<float>  before;
     for (const int bounces : {1, 2, 5}) {
-        const auto values = shaded(*prepare(picture, bouncing("direct", bounces), GetParam()));
+        const auto values = shaded(*prepare(picture, bouncing(BounceMode::direct, bounces), GetParam()));
         EXPECT_NE(values, before) << bounces << " bounces show more";
         before = values;
         for (int y = 0; y < 64; ++y)
@@ -185,7 +185,7 @@ TEST(History, IsTheRecursionAndComesToRest)
     frame = next(nullptr);
     for (int bounces = 1; bounces <= 3; ++bounces) {
         frame             = next(&frame);
-        const auto values = shaded(*prepare(picture, bouncing("history", bounces)));
+        const auto values = shaded(*prepare(picture, bouncing(BounceMode::history, bounces)));
         for (size_t i = 0; i < frame.size(); ++i) {
             glm::dvec3       own = image.radiance[i];
             const glm::ivec2 pixel(static_cast<int>(i % 192), static_cast<int>(i / 192));
@@ -196,16 +196,17 @@ TEST(History, IsTheRecursionAndComesToRest)
         }
     }
     // Every hit lies farther away than the reflector: the longest chain ends.
-    const auto at_rest = shaded(*prepare(picture, bouncing("history", 8)));
-    EXPECT_EQ(shaded(*prepare(picture, bouncing("history", 9))), at_rest);
-    EXPECT_NE(shaded(*prepare(picture, bouncing("history", 1))), at_rest);
+    const auto at_rest = shaded(*prepare(picture, bouncing(BounceMode::history, 8)));
+    EXPECT_EQ(shaded(*prepare(picture, bouncing(BounceMode::history, 9))), at_rest);
+    EXPECT_NE(shaded(*prepare(picture, bouncing(BounceMode::history, 1))), at_rest);
 }
 
 TEST(Bounces, DependOnNothingThatRanBefore)
 {
-    const Picture picture = make_picture(coloured_mirrors({96, 32}));
-    const auto    direct = prepare(picture, bouncing("direct", 3)), history = prepare(picture, bouncing("history", 3)),
-               none         = prepare(picture, bouncing("off", 1));
+    const Picture picture   = make_picture(coloured_mirrors({96, 32}));
+    const auto    direct    = prepare(picture, bouncing(BounceMode::direct, 3)),
+               history      = prepare(picture, bouncing(BounceMode::history, 3)),
+               none         = prepare(picture, bouncing(BounceMode::off, 1));
     const auto first_direct = shaded(*direct), first_history = shaded(*history), first_none = shaded(*none);
     EXPECT_NE(first_direct, first_none);
     EXPECT_NE(first_direct, first_history);
@@ -220,20 +221,21 @@ TEST(Bounces, DependOnNothingThatRanBefore)
 TEST(Bounces, AreLeftOutWhereNothingThatWasHitReflects)
 {
     const Picture dull = make_picture(floor_and_wall(bench_view({64, 64}), 10));
-    for (const char* mode : {"history", "direct"}) {
-        const auto frame      = prepare(dull, bouncing(mode, 2)),
-                   everything = prepare(dull, bouncing(mode, 2, {{"plan", 0}}));
+    for (const BounceMode mode : {BounceMode::history, BounceMode::direct}) {
+        const auto frame    = prepare(dull, bouncing(mode, 2)),
+                   unculled = prepare(dull, bouncing(mode, 2, {{"skip_unneeded_passes", 0}}));
         EXPECT_FALSE(bounces_of(*frame).runs);
-        EXPECT_TRUE(bounces_of(*everything).runs);
+        EXPECT_TRUE(bounces_of(*unculled).runs);
         const std::string& reason = bounces_of(*frame).reason;
         EXPECT_TRUE(reason.starts_with("none of ") && reason.ends_with(" hits reflects")) << reason;
-        EXPECT_EQ(shaded(*frame), shaded(*everything)) << mode;
+        EXPECT_EQ(shaded(*frame), shaded(*unculled)) << choice_value(mode);
     }
     const Picture mirrors = make_picture(coloured_mirrors({96, 32}));
-    const auto    frame   = prepare(mirrors, bouncing("direct", 1));
+    const auto    frame   = prepare(mirrors, bouncing(BounceMode::direct, 1));
     EXPECT_TRUE(bounces_of(*frame).runs);
     EXPECT_NE(bounces_of(*frame).reason.find(" hits reflect"), std::string::npos) << bounces_of(*frame).reason;
-    EXPECT_EQ(shaded(*frame), shaded(*prepare(mirrors, bouncing("direct", 1, {{"plan", 0}}))));
+    EXPECT_EQ(shaded(*frame),
+              shaded(*prepare(mirrors, bouncing(BounceMode::direct, 1, {{"skip_unneeded_passes", 0}}))));
 }
 
 } // namespace

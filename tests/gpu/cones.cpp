@@ -8,8 +8,6 @@
 namespace ssrlab::test {
 namespace {
 
-constexpr double cone_gloss = 2; // of the parameter's choices
-
 /// The visibility of cells after the pass ran on 4 x 4 pixels at these distances in metres; 0: background.
 class Visibility {
 public:
@@ -19,8 +17,8 @@ public:
         for (int i = 0; i < 16; ++i)
             if (distances_m.at(i) > 0) set_pixel(image, i % 4, i / 4, distances_m.at(i), {0, 0, 1}, 1);
         const Picture picture = make_picture(image);
-        const auto    frame   = frame_with(picture, {{"gloss", cone_gloss}, {"plan", 0}});
-        run_effect(*frame, "cone_pyramid");
+        const auto    frame   = frame_with(picture, {chosen(Gloss::cone), {"skip_unneeded_passes", 0}});
+        run_pass(*frame, cone_pyramid_pass());
         const GpuImage& image_of_cells = picture.buffers->cone->cells;
         cells_                         = read_colours(image_of_cells);
         width_                         = image_of_cells.size_px.x;
@@ -71,10 +69,14 @@ Picture floor_before_wall(float roughness, const Colour& colour, glm::ivec2 size
 }
 
 /// What hit_colour makes of the hits, without fades.
-Reflection reflection_of(const Picture& picture, ParameterValues effects)
+Reflection reflection_of(const Picture& picture, ParameterValues passes)
 {
-    effects.insert({{"viewer_fade", 0}, {"edge_fade", 0}, {"plan", 0}, {"bounce_mode", 0}, {"blur_scale", 0}});
-    const auto frame = frame_with(picture, effects);
+    passes.insert({chosen(ViewerFade::off),
+                   chosen(EdgeFade::off),
+                   chosen(BounceMode::off),
+                   {"skip_unneeded_passes", 0},
+                   {"blur_scale", 0}});
+    const auto frame = frame_with(picture, passes);
     run_frame(device(), *frame);
     return read_colours(picture.buffers->reflection);
 }
@@ -83,9 +85,9 @@ TEST(Cones, LeaveSmoothSurfacesToTheLastBit)
 {
     const Picture picture =
         floor_before_wall(0, [](int x) { return glm::vec3(static_cast<float>(x * 7919 % 256) / 256); });
-    const Reflection cones = reflection_of(picture, {{"gloss", cone_gloss}});
+    const Reflection cones = reflection_of(picture, {chosen(Gloss::cone)});
     EXPECT_GT(std::ranges::count_if(cones, [](const glm::vec4& pixel) { return pixel.a > 0; }), 1000);
-    EXPECT_EQ(cones, reflection_of(picture, {{"gloss", 0}}));
+    EXPECT_EQ(cones, reflection_of(picture, {chosen(Gloss::off)}));
 }
 
 TEST(Cones, OfOneColourSeeThatColour)
@@ -96,7 +98,7 @@ TEST(Cones, OfOneColourSeeThatColour)
         const Picture picture = floor_before_wall(0.6F, one_colour, size_px);
         for (const double steps : {1, 7}) {
             int seen = 0;
-            for (const glm::vec4& pixel : reflection_of(picture, {{"gloss", cone_gloss}, {"cone_steps", steps}})) {
+            for (const glm::vec4& pixel : reflection_of(picture, {chosen(Gloss::cone), {"cone_steps", steps}})) {
                 if (pixel.a <= 0) continue;
                 ++seen;
                 for (int c = 0; c < 3; ++c) ASSERT_NEAR(pixel[c], 0.25F * static_cast<float>(c + 1), 1e-3F);
@@ -114,7 +116,7 @@ TEST(Cones, OverTwoColoursMixThemByTheirShareOfTheCone)
     constexpr double scale = 0.5, roughness = 0.5;
     const Picture    picture = floor_before_wall(
            static_cast<float>(roughness), [](int x) { return x < border ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0); });
-    const Reflection found = reflection_of(picture, {{"gloss", cone_gloss}, {"cone_steps", 1}, {"cone_scale", scale}});
+    const Reflection found = reflection_of(picture, {chosen(Gloss::cone), {"cone_steps", 1}, {"cone_scale", scale}});
     // The mirror ray of a floor pixel stays in its column: from slope s below the horizon to 2 / 4 m - s.
     const double height = 2 * (row + 0.5 - 64 - 64 / 4.0);
     const double alpha2 = std::pow(roughness, 4);

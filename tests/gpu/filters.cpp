@@ -1,4 +1,4 @@
-// Effects that make one reflection out of several: up-sampling, down-sampling, kernels.
+// Passes that make one reflection out of several: up-sampling, down-sampling, filters.
 #include "core/pixel_index.h"
 #include "gpu/passes.h"
 
@@ -8,15 +8,16 @@
 namespace ssrlab::test {
 namespace {
 
+using enum TraceResolution;
+using enum UpsamplingWeights;
+
 constexpr glm::vec4 red{1, 0, 0, 1}, blue{0, 0, 1, 1};
-constexpr double    half = 1, quarter = 2; // choices of trace_resolution
-constexpr double    bilinear = 0, by_depth = 1, by_normal = 2, by_reflectivity = 3;
 
 /// Traces, so that the blocks name their pixels, then puts `traced` in their place and up-samples.
 template <typename Traced>
-Reflection upsample(const Picture& picture, double resolution, double weights, const Traced& traced)
+Reflection upsample(const Picture& picture, TraceResolution resolution, UpsamplingWeights weights, const Traced& traced)
 {
-    const auto frame = frame_with(picture, {{"trace_resolution", resolution}, {"upsampling_weights", weights}});
+    const auto frame = frame_with(picture, {chosen(resolution), chosen(weights)});
     run_frame(device(), *frame);
     Reflection reflection(picture.image.depth.size(), nothing_reflects);
     for (const uint32_t block : download_as<uint32_t>(device(), picture.buffers->block_pixel)) {
@@ -25,7 +26,7 @@ Reflection upsample(const Picture& picture, double resolution, double weights, c
         reflection[at(picture.image, pixel.x, pixel.y)] = traced(pixel);
     }
     set_reflection(picture, reflection);
-    run_effect(*frame, "upsampling");
+    run_pass(*frame, upsampling_pass());
     return read_colours(picture.buffers->reflection);
 }
 
@@ -35,8 +36,8 @@ TEST(Upsampling, KeepsALinearRamp)
     const auto    ramp    = [](glm::ivec2 p) {
         return glm::vec4(static_cast<float>(p.x) / 64, static_cast<float>(p.y) / 48, 0.25F, 1);
     };
-    for (const double resolution : {half, quarter})
-        for (const double weights : {bilinear, by_depth, by_normal}) {
+    for (const TraceResolution resolution : {half, quarter})
+        for (const UpsamplingWeights weights : {bilinear, depth, depth_normal}) {
             const Reflection found = upsample(picture, resolution, weights, ramp);
             // Outside the first and last traced rows and columns there is nothing to interpolate with.
             for (int y = 2; y < 44; ++y)
@@ -55,7 +56,7 @@ template <typename Change> Picture two_surfaces(const Change& change_right)
     return make_picture(image);
 }
 
-Reflection upsample_two(const Picture& picture, double weights)
+Reflection upsample_two(const Picture& picture, UpsamplingWeights weights)
 {
     return upsample(picture, half, weights, [](glm::ivec2 p) { return p.x < 31 ? red : blue; });
 }
@@ -65,7 +66,7 @@ TEST(Upsampling, StopsAtTheBorderOfWhatItsWeightsSee)
     const Picture rough = two_surfaces([](auto& image, int x, int y) { image.roughness[at(image, x, y)] = 0.9F; });
     const Picture far   = two_surfaces([](auto& image, int x, int y) { set_pixel(image, x, y, 6, {0, 0, 1}, 1); });
     const Picture bent  = two_surfaces([](auto& image, int x, int y) { set_pixel(image, x, y, 5, {0.8, 0, 0.6}, 1); });
-    const auto    share_of_red = [](const Picture& picture, double weights) {
+    const auto    share_of_red = [](const Picture& picture, UpsamplingWeights weights) {
         const Reflection found = upsample_two(picture, weights);
         for (int x = 0; x < 30; ++x) EXPECT_EQ(found[at(picture.image, x, 8)], red);
         for (int x = 32; x < 64; ++x) EXPECT_EQ(found[at(picture.image, x, 8)], blue);
@@ -74,10 +75,10 @@ TEST(Upsampling, StopsAtTheBorderOfWhatItsWeightsSee)
         return mixed.r;
     };
     for (const Picture& picture : {rough, far, bent}) EXPECT_NEAR(share_of_red(picture, bilinear), 0.5, 1e-3);
-    EXPECT_NEAR(share_of_red(rough, by_normal), 0.5, 1e-3);
-    EXPECT_LT(share_of_red(rough, by_reflectivity), 0.01);
-    EXPECT_LT(share_of_red(bent, by_normal), 0.01);
-    EXPECT_LT(share_of_red(far, by_depth), 0.01);
+    EXPECT_NEAR(share_of_red(rough, depth_normal), 0.5, 1e-3);
+    EXPECT_LT(share_of_red(rough, reflectivity), 0.01);
+    EXPECT_LT(share_of_red(bent, depth_normal), 0.01);
+    EXPECT_LT(share_of_red(far, depth), 0.01);
 }
 
 // Pixel (30, 9) belongs to the right surface; bilinear weights know only the traced pixels above and below it, which don't.
@@ -89,7 +90,7 @@ TEST(Upsampling, TakesTheMostAlikeWhereAllWeightsVanish)
     set_pixel(image, 30, 9, 7, {0, 0, 1}, 1);
     const Picture picture = make_picture(image);
     EXPECT_EQ(upsample_two(picture, bilinear)[at(image, 30, 9)], red);
-    EXPECT_EQ(upsample_two(picture, by_depth)[at(image, 30, 9)], blue);
+    EXPECT_EQ(upsample_two(picture, depth)[at(image, 30, 9)], blue);
 }
 
 TEST(Upsampling, HolesAndPixelsThatReflectNothing)
@@ -113,9 +114,9 @@ TEST(ColourDownsampling, IsABlockMeanWithACross)
     for (int x = 0; x < 64; ++x) image.radiance[at(image, x, 50)] = {0, 8, 0};
     for (glm::vec3& radiance : image.radiance) radiance.b = 3;
     const Picture picture = make_picture(image);
-    for (const double resolution : {half, quarter}) {
-        const auto frame = frame_with(picture, {{"trace_resolution", resolution}});
-        run_effect(*frame, "colour_downsampling");
+    for (const TraceResolution resolution : {half, quarter}) {
+        const auto frame = frame_with(picture, {chosen(resolution)});
+        run_pass(*frame, colour_downsampling_pass());
         const Reflection small    = read_colours(picture.buffers->small_colour);
         const int        block_px = resolution == half ? 2 : 4;
         const auto       texel    = [&](int x, int y) { return small[pixel_index({x, y}, {32, 32})]; };
@@ -162,15 +163,15 @@ Reflection filtered(const Reflection& source, glm::ivec2 size_px, bool median)
     return result;
 }
 
-Reflection run_kernel(const Picture& picture, const Reflection& source, double kernel)
+Reflection run_filter(const Picture& picture, const Reflection& source, Filter3x3 filter)
 {
-    const auto frame = frame_with(picture, {{"kernel", kernel}});
+    const auto frame = frame_with(picture, {chosen(filter)});
     set_reflection(picture, source);
-    run_effect(*frame, "kernel_filter");
+    run_pass(*frame, filter_3x3_pass());
     return read_colours(picture.buffers->reflection);
 }
 
-TEST(Kernel, BoxIsTheMeanAndMedianThrowsOutliersAway)
+TEST(Filter3x3Pass, BoxIsTheMeanAndMedianThrowsOutliersAway)
 {
     const glm::ivec2 size_px{24, 16};
     const Picture    picture = make_picture(metal_wall(size_px));
@@ -179,15 +180,15 @@ TEST(Kernel, BoxIsTheMeanAndMedianThrowsOutliersAway)
     const Reflection flat = source;
     source[outlier]       = {5, 0.25F, 1, 1};
     source[hole]          = glm::vec4(0);
-    EXPECT_EQ(run_kernel(picture, source, 2), flat);
-    const Reflection mean = run_kernel(picture, source, 1);
+    EXPECT_EQ(run_filter(picture, source, Filter3x3::median3), flat);
+    const Reflection mean = run_filter(picture, source, Filter3x3::box3);
     EXPECT_NEAR(mean[outlier].r, 1, 1e-3); // (8 * 0.5 + 5) / 9
     EXPECT_NEAR(mean[hole].r, 0.5, 1e-3);
     EXPECT_NEAR(mean[hole].a, 8.0 / 9, 1e-3);
     EXPECT_EQ(mean[at(picture.image, 3, 3)], flat[0]);
 }
 
-TEST(Kernel, IsTheHostsOnAnyReflection)
+TEST(Filter3x3Pass, IsTheHostsOnAnyReflection)
 {
     const glm::ivec2 size_px{61, 35};
     GBufferImage     image = metal_wall(size_px);
@@ -202,7 +203,7 @@ TEST(Kernel, IsTheHostsOnAnyReflection)
     }
     const Picture picture = make_picture(image);
     for (const bool median : {false, true}) {
-        const Reflection found    = run_kernel(picture, source, median ? 2 : 1),
+        const Reflection found    = run_filter(picture, source, median ? Filter3x3::median3 : Filter3x3::box3),
                          expected = filtered(source, size_px, median);
         for (size_t i = 0; i < found.size(); ++i)
             for (int c = 0; c < 4; ++c)

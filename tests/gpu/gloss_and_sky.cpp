@@ -1,4 +1,4 @@
-// Blur by roughness, the environment, the share that a surface reflects, and hits lit as their reflector sees them.
+// Blur by roughness, the environment, the directional albedo, and hits lit as their reflector sees them.
 #include "gpu/passes.h"
 #include "scene/scene.h"
 #include "truth/screen_ray.h"
@@ -20,11 +20,11 @@ Picture rough_wall(float roughness)
     return make_picture(image);
 }
 
-Reflection blur(const Picture& picture, const Reflection& reflection, const ParameterValues& effects)
+Reflection blur(const Picture& picture, const Reflection& reflection, const ParameterValues& passes)
 {
-    const auto frame = frame_with(picture, effects);
+    const auto frame = frame_with(picture, passes);
     set_reflection(picture, reflection);
-    run_effect(*frame, "blur");
+    run_pass(*frame, blur_pass());
     return read_colours(picture.buffers->reflection);
 }
 
@@ -101,7 +101,7 @@ TEST(EnvironmentFallback, IsTheSkyInTheMirrorDirectionBlendedByTheWeight)
     for (size_t i = 0; i < before.size(); ++i)
         if (picture.image.metallic[i] > 0) before[i] = {2, 1, 0.5F, static_cast<float>(i % 3) / 2};
     set_reflection(picture, before);
-    run_effect(*frame, "environment");
+    run_pass(*frame, environment_pass());
     const Reflection after         = read_colours(picture.buffers->reflection);
     const glm::dmat3 view_to_world = glm::transpose(glm::dmat3(picture.view.world_to_view));
     size_t           blended       = 0;
@@ -120,8 +120,8 @@ TEST(EnvironmentFallback, IsTheSkyInTheMirrorDirectionBlendedByTheWeight)
     EXPECT_GT(blended, 1000U);
 }
 
-/// The share of light that a GGX surface reflects, by quadrature over its half vectors (B. Karis 2013, Real Shading in Unreal Engine 4).
-double reflected_share(double f0, double roughness, double cosine)
+/// The directional albedo of a GGX surface, by quadrature over its half vectors (B. Karis 2013, Real Shading in Unreal Engine 4).
+double directional_albedo(double f0, double roughness, double cosine)
 {
     const double     alpha = roughness * roughness;
     const glm::dvec3 v(std::sqrt(1 - cosine * cosine), 0, cosine);
@@ -141,7 +141,7 @@ double reflected_share(double f0, double roughness, double cosine)
     return sum / (n * n);
 }
 
-TEST(Composite, GgxReflectsTheShareThatTheIntegralGives)
+TEST(Composite, GgxReflectsItsDirectionalAlbedo)
 {
     for (const float roughness : {0.1F, 0.4F, 0.8F, 1.0F})
         for (const float base : {0.2F, 1.0F}) {
@@ -150,15 +150,15 @@ TEST(Composite, GgxReflectsTheShareThatTheIntegralGives)
             std::ranges::fill(image.roughness, roughness);
             std::ranges::fill(image.base_colour, glm::vec3(base));
             const Picture picture = make_picture(image);
-            const auto    frame   = frame_with(picture, {{"reflectance", 1}});
+            const auto    frame   = frame_with(picture, {chosen(Reflectance::ggx)});
             set_reflection(picture, Reflection(64 * 64, glm::vec4(1)));
-            run_effect(*frame, "composite");
+            run_pass(*frame, composite_pass());
             const Reflection found = read_colours(picture.buffers->shaded);
             for (const int x : {2, 16, 24, 28, 30}) {
                 const glm::dvec3 to_eye = -glm::normalize(glm::dvec3((x + 0.5 - 32) / 32, -0.5 / 32, -1));
                 const double cosine = glm::dot(to_eye, glm::dvec3(picture.image.normal_vs[at(picture.image, x, 32)]));
                 EXPECT_NEAR(found[at(picture.image, x, 32)].r,
-                            reflected_share(static_cast<double>(base), static_cast<double>(roughness), cosine), 0.01)
+                            directional_albedo(static_cast<double>(base), static_cast<double>(roughness), cosine), 0.01)
                     << "roughness " << roughness << ", base " << base << ", cosine " << cosine;
             }
         }
@@ -187,9 +187,10 @@ TEST(HitColour, MirroredLightIsTheHighlightThatTheReflectorSees)
 {
     Scene scene = load_scene("builtin:stairs");
     for (Light& light : scene.lights) light.casts_shadow = false;
-    const Picture picture = make_picture(scene, find_camera(scene, "default"), {161, 91});
-    const auto frame = frame_with(picture, {{"hit_light", 2}, {"viewer_fade", 0}, {"edge_fade", 0}, {"effect_set", 1}});
-    const TraceResult traced = count_frame(device(), *frame);
+    const Picture     picture = make_picture(scene, find_camera(scene, "default"), {161, 91});
+    const auto        frame   = frame_with(picture, {chosen(HitShading::mirrored), chosen(ViewerFade::off),
+                                                     chosen(EdgeFade::off), chosen(PassSet::shading)});
+    const TraceResult traced  = count_frame(device(), *frame);
     run_frame(device(), *frame);
     const Reflection found         = read_colours(picture.buffers->reflection);
     const glm::dmat3 view_to_world = glm::transpose(glm::dmat3(picture.view.world_to_view));

@@ -44,27 +44,27 @@ Camera level_camera(Projection projection = Projection::perspective)
     return camera;
 }
 
-ParameterValues effects_with(const ParameterValues& changed)
+ParameterValues passes_with(const ParameterValues& changed)
 {
-    ParameterValues effects    = default_effect_values();
-    effects.at("hidden_layer") = 1;
-    effects.at("gloss")        = 0; // each pixel shows what its own ray found
-    effects.at("environment")  = 0;
-    for (const auto& [name, value] : changed) effects.at(name) = value;
-    return effects;
+    ParameterValues passes            = default_pass_values();
+    passes.at("hidden_layer")         = 1;
+    passes.at("gloss")                = choice_value(Gloss::off); // each pixel shows what its own ray found
+    passes.at("environment_fallback") = 0;
+    for (const auto& [name, value] : changed) passes.at(name) = value;
+    return passes;
 }
 
-const PlannedEffect& planned(const PreparedFrame& frame, const std::string& id)
+const PlannedPass& planned(const PreparedFrame& frame, const std::string& id)
 {
     const auto& plan = plan_of(frame);
-    return *std::ranges::find_if(plan, [&](const PlannedEffect& row) { return row.effect->id == id; });
+    return *std::ranges::find_if(plan, [&](const PlannedPass& row) { return row.pass->id == id; });
 }
 
 PreparedFramePtr prepare(const Picture& picture, const std::string& id, const TraceSettings& settings,
                          const ParameterValues& changed = {})
 {
     const Technique& t = technique(id);
-    return prepare_frame(device(), picture.buffers, t, values_of(t), {settings, effects_with(changed)});
+    return prepare_frame(device(), picture.buffers, t, values_of(t), {settings, passes_with(changed)});
 }
 
 std::vector<float> shaded(PreparedFrame& frame)
@@ -89,7 +89,8 @@ TEST_P(Layers, TheSecondShowsWhatThePanelHides)
 {
     const Picture picture = make_picture(panel_before_wall(), level_camera(GetParam()), {96, 64});
     for (const double separation_m : {0.0, 0.1, 3.9, 4.1}) {
-        const auto frame = prepare(picture, "hiz", thin, {{"plan", 0}, {"hidden_layer_separation_m", separation_m}});
+        const auto frame =
+            prepare(picture, "hiz", thin, {{"skip_unneeded_passes", 0}, {"hidden_layer_separation_m", separation_m}});
         run_frame(device(), *frame);
         const GBufferImage layer = read_second_layer(device(), *frame);
         size_t             shown = 0;
@@ -127,7 +128,7 @@ TEST_P(HiddenLayer, RaysThatMissedFindTheWallBehindThePanel)
     const TraceResult first     = count_frame(device(), *frame);
     const TraceResult unblocked = trace(bare, technique(GetParam()), values_of(technique(GetParam())), thin);
     EXPECT_TRUE(planned(*frame, "hidden_layer").runs);
-    EXPECT_NE(planned(*frame, "hidden_layer").reason.find("rays found nothing"), std::string::npos);
+    EXPECT_NE(planned(*frame, "hidden_layer").reason.find("rays missed"), std::string::npos);
     run_frame(device(), *frame);
     const TraceResult second    = *read_hidden_hits(device(), *frame);
     const Image       picture   = read_shaded(device(), *frame);
@@ -173,7 +174,7 @@ TEST(HiddenLayerWalk, HizFindsThereWhatThePixelWalkFinds)
 TEST(HiddenLayerPlan, NeedsTheScene)
 {
     const Picture uploaded = make_picture(floor_and_wall(bench_view({32, 32}), 10));
-    const auto    frame    = prepare(uploaded, "hiz", thin, {{"plan", 0}});
+    const auto    frame    = prepare(uploaded, "hiz", thin, {{"skip_unneeded_passes", 0}});
     EXPECT_FALSE(planned(*frame, "hidden_layer").runs);
     EXPECT_EQ(planned(*frame, "hidden_layer").reason, "no scene to draw again");
 }
@@ -181,9 +182,10 @@ TEST(HiddenLayerPlan, NeedsTheScene)
 TEST(HiddenLayerPlan, IsOffUpToTheThreshold)
 {
     const Picture picture = make_picture(panel_before_wall(), level_camera(), {96, 64});
-    for (const double plan : {0.0, 1.0}) {
-        EXPECT_TRUE(planned(*prepare(picture, "hiz", thin, {{"plan", plan}}), "hidden_layer").runs);
-        const auto frame = prepare(picture, "hiz", thin, {{"plan", plan}, {"hidden_layer_threshold", 0.9}});
+    for (const double skips : {0.0, 1.0}) {
+        EXPECT_TRUE(planned(*prepare(picture, "hiz", thin, {{"skip_unneeded_passes", skips}}), "hidden_layer").runs);
+        const auto frame =
+            prepare(picture, "hiz", thin, {{"skip_unneeded_passes", skips}, {"hidden_layer_threshold", 0.9}});
         EXPECT_FALSE(planned(*frame, "hidden_layer").runs);
         EXPECT_NE(planned(*frame, "hidden_layer").reason.find("the threshold is 90 %"), std::string::npos);
     }
@@ -200,15 +202,15 @@ TEST(HiddenLayerPlan, IsLeftOutWhereEveryRayHits)
     add_wall(scene, 1, wall_m);
     add_quad(scene, 2, {-1, 0, -panel_m}, {2, 0, 0}, {0, 1, 0});
     set_bounds(scene);
-    const Picture picture    = make_picture(scene, level_camera(), {96, 64});
-    const auto    frame      = prepare(picture, "hiz", thin);
-    const auto    everything = prepare(picture, "hiz", thin, {{"plan", 0}});
+    const Picture picture  = make_picture(scene, level_camera(), {96, 64});
+    const auto    frame    = prepare(picture, "hiz", thin);
+    const auto    unculled = prepare(picture, "hiz", thin, {{"skip_unneeded_passes", 0}});
     EXPECT_FALSE(planned(*frame, "hidden_layer").runs);
-    EXPECT_TRUE(planned(*everything, "hidden_layer").runs);
+    EXPECT_TRUE(planned(*unculled, "hidden_layer").runs);
     const std::string& reason = planned(*frame, "hidden_layer").reason;
     EXPECT_TRUE(reason.starts_with("none of ") && reason.ends_with(" rays missed")) << reason;
-    EXPECT_EQ(reason, planned(*everything, "hidden_layer").reason) << "only pixels that reflect count";
-    EXPECT_EQ(shaded(*frame), shaded(*everything));
+    EXPECT_EQ(reason, planned(*unculled, "hidden_layer").reason) << "only pixels that reflect count";
+    EXPECT_EQ(shaded(*frame), shaded(*unculled));
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Single effects on reflections made by hand.
+// Single passes on reflections made by hand.
 #pragma once
 
 #include "gpu/device.h"
@@ -13,11 +13,11 @@ namespace ssrlab::test {
 using Reflection = std::vector<glm::vec4>;
 inline constexpr glm::vec4 nothing_reflects{0, 0, 0, -1};
 
-inline PreparedFramePtr frame_with(const Picture& picture, const ParameterValues& effects,
+inline PreparedFramePtr frame_with(const Picture& picture, const ParameterValues& passes,
                                    const std::string& technique_id = "dda")
 {
     FrameSettings settings{.trace = {.thickness_m = 0.5, .max_distance_m = 50}};
-    for (const auto& [name, value] : effects) settings.effects.at(name) = value;
+    for (const auto& [name, value] : passes) settings.passes.at(name) = value;
     const Technique& chosen = technique(technique_id);
     return prepare_frame(device(), picture.buffers, chosen, values_of(chosen), settings);
 }
@@ -36,22 +36,22 @@ inline Reflection read_colours(const GpuImage& image)
     return colours;
 }
 
-/// Runs effects and nothing else.
-inline void run_effects(PreparedFrame& frame, const std::vector<std::string>& ids)
+/// Runs these passes and nothing else.
+inline void run_passes(PreparedFrame& frame, const std::vector<Pass>& passes)
 {
-    std::vector<Recording> effects;
-    for (const std::string& id : ids) effects.push_back(make_recording(device(), frame, id));
+    std::vector<RecordFunction> record_functions;
+    for (const Pass& pass : passes) record_functions.push_back(pass.prepare(device(), frame));
     submit(device(), [&](const vk::raii::CommandBuffer& commands) {
         barrier(commands);
-        for (const Recording& effect : effects) {
-            effect(commands);
+        for (const RecordFunction& record : record_functions) {
+            record(commands);
             barrier(commands);
         }
     });
 }
 
-/// Lists the tiles, then runs the effect.
-inline void run_effect(PreparedFrame& frame, const std::string& id) { run_effects(frame, {"classification", id}); }
+/// Lists the tiles, then runs the pass.
+inline void run_pass(PreparedFrame& frame, const Pass& pass) { run_passes(frame, {classification_pass(), pass}); }
 
 /// A wall of metal that fills the picture and faces the camera.
 inline GBufferImage metal_wall(glm::ivec2 size_px, double distance_m = 5)

@@ -1,4 +1,4 @@
-// Leaving out what a picture does not need leaves every bit of it: planned against everything on, on every scene.
+// Skipping passes leaves every bit of the image: the planned against the unculled frame, on every scene.
 #include "gpu/device.h"
 
 #include <gmock/gmock.h>
@@ -6,11 +6,11 @@
 namespace ssrlab::test {
 namespace {
 
-ParameterValues effects_with(const ParameterValues& changed)
+ParameterValues passes_with(const ParameterValues& changed)
 {
-    ParameterValues effects = default_effect_values();
-    for (const auto& [name, value] : changed) effects.at(name) = value;
-    return effects;
+    ParameterValues passes = default_pass_values();
+    for (const auto& [name, value] : changed) passes.at(name) = value;
+    return passes;
 }
 
 struct Shown {
@@ -18,13 +18,13 @@ struct Shown {
     std::vector<std::string> ran;
 };
 
-Shown show(const Picture& picture, const char* id, const ParameterValues& effects)
+Shown show(const Picture& picture, const char* id, const ParameterValues& passes)
 {
     const TraceSettings settings{.thickness_m = 0.1, .max_distance_m = 20};
     const auto          frame =
-        prepare_frame(device(), picture.buffers, technique(id), values_of(technique(id)), {settings, effects});
+        prepare_frame(device(), picture.buffers, technique(id), values_of(technique(id)), {settings, passes});
     Shown shown;
-    for (const auto& [effect, ms] : run_frame(device(), *frame).effects_ms) shown.ran.push_back(effect);
+    for (const auto& [pass, ms] : run_frame(device(), *frame).passes_ms) shown.ran.push_back(pass);
     shown.pixels = read_shaded(device(), *frame).values;
     return shown;
 }
@@ -38,17 +38,17 @@ size_t different(const std::vector<float>& a, const std::vector<float>& b)
 
 class PlannedFrames : public testing::TestWithParam<std::string> {};
 
-TEST_P(PlannedFrames, AreThoseWithEverythingOn)
+TEST_P(PlannedFrames, AreBitIdenticalToUnculledOnes)
 {
     for (const glm::ivec2& size_px : {glm::ivec2(161, 91), glm::ivec2(320, 180)}) {
         const Picture picture = make_picture(GetParam(), "default", size_px);
-        for (const auto& [id, gloss] : {std::pair("hiz", 1), std::pair("linear", 1), std::pair("hiz", 2)}) {
-            const Shown planned = show(picture, id, effects_with({{"gloss", gloss}})),
-                        all     = show(picture, id, effects_with({{"gloss", gloss}, {"plan", 0}}));
+        for (const auto& [id, gloss] : {std::pair("hiz", Gloss::blur), {"linear", Gloss::blur}, {"hiz", Gloss::cone}}) {
+            const Shown planned = show(picture, id, passes_with({chosen(gloss)})),
+                        all     = show(picture, id, passes_with({chosen(gloss), {"skip_unneeded_passes", 0}}));
             EXPECT_GE(all.ran.size(), planned.ran.size());
             EXPECT_EQ(different(planned.pixels, all.pixels), 0U)
                 << "ssrlab plan " << GetParam() << " -t " << id << " --size " << size_px.x << "x" << size_px.y
-                << " -p thickness_m=0.1 -p max_distance_m=20 -p gloss=" << (gloss == 2 ? "cone" : "blur");
+                << " -p thickness_m=0.1 -p max_distance_m=20 -p gloss=" << (gloss == Gloss::cone ? "cone" : "blur");
         }
     }
 }
@@ -67,22 +67,22 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PlannedFrames, testing::ValuesIn(all_scenes()),
     return name;
 });
 
-TEST(PlannedFrame, LeavesOutWhatThePictureDoesNotNeedUnlessToldOtherwise)
+TEST(PlannedFrame, SkipsUnneededPassesUnlessToldNotTo)
 {
     const Picture matte  = make_picture("builtin:matte", "default", {161, 91});
     const auto    leaves = [&](const ParameterValues& changed) {
-        return plan_leaves_out(*prepare_frame(device(), matte.buffers, technique("hiz"), values_of(technique("hiz")),
-                                                 {{}, effects_with(changed)}));
+        return plan_skips_work(*prepare_frame(device(), matte.buffers, technique("hiz"), values_of(technique("hiz")),
+                                                 {{}, passes_with(changed)}));
     };
     EXPECT_TRUE(leaves({}));
-    EXPECT_FALSE(leaves({{"plan", 0}}));
-    EXPECT_FALSE(leaves({{"effect_set", 1}}));
+    EXPECT_FALSE(leaves({{"skip_unneeded_passes", 0}}));
+    EXPECT_FALSE(leaves({chosen(PassSet::shading)}));
 }
 
-TEST(PlannedFrame, OfNothingThatReflectsOnlyPutsThePictureTogether)
+TEST(PlannedFrame, WithoutReflectionsOnlyComposites)
 {
     const Picture picture = make_picture("builtin:void", "default", {161, 91});
-    EXPECT_THAT(show(picture, "hiz", effects_with({})).ran, testing::ElementsAre("composite"));
+    EXPECT_THAT(show(picture, "hiz", passes_with({})).ran, testing::ElementsAre("composite"));
 }
 
 } // namespace

@@ -135,7 +135,8 @@ TEST(SeveralRays, CountWhenMoreThanHalfOfThemHit)
     constexpr glm::ivec2 miss{-1, -1};
     const auto           hit = [](int x) { return glm::ivec2(x, 0); };
     const auto           run = [&](double per_pixel, const std::vector<std::vector<glm::ivec2>>& ends) {
-        const auto frame = frame_with(picture, {{"rays_per_pixel", per_pixel}, {"viewer_fade", 0}, {"edge_fade", 0}});
+        const auto frame =
+            frame_with(picture, {{"rays_per_pixel", per_pixel}, chosen(ViewerFade::off), chosen(EdgeFade::off)});
         std::vector<glm::ivec2> pixels, hits;
         for (size_t i = 0; i < ends.size(); ++i)
             for (const glm::ivec2& end : ends[i]) {
@@ -143,7 +144,7 @@ TEST(SeveralRays, CountWhenMoreThanHalfOfThemHit)
                 hits.push_back(end);
             }
         set_list(*frame, pixels, hits);
-        run_effects(*frame, {"hit_colour"}); // classification would start a list of its own
+        run_passes(*frame, {hit_colour_pass()}); // classification would start a list of its own
         const Reflection all = read_colours(picture.buffers->reflection);
         return Reflection(all.begin() + 5 * 16, all.begin() + 5 * 16 + static_cast<ptrdiff_t>(ends.size()));
     };
@@ -189,13 +190,14 @@ TEST(Blocks, AreTracedFromTheirFirstReflectingPixel)
                     expected.insert({pixel.x, pixel.y});
                     break;
                 }
-        const auto frame = frame_with(picture, {{"trace_resolution", block_px == 2 ? 1 : 2}});
-        const auto rays  = rays_of(*frame);
+        const auto frame =
+            frame_with(picture, {chosen(block_px == 2 ? TraceResolution::half : TraceResolution::quarter)});
+        const auto rays = rays_of(*frame);
         for (const Ray& ray : rays) found.insert({ray.pixel.x, ray.pixel.y});
         EXPECT_EQ(found, expected);
         EXPECT_EQ(rays.size(), expected.size());
         EXPECT_GT(expected.size(), 50U);
-        // The effect that needs it finds it.
+        // The pass that needs it finds it.
         run_frame(device(), *frame);
         const auto                    blocks = download_as<uint32_t>(device(), picture.buffers->block_pixel);
         std::set<std::pair<int, int>> named;
@@ -207,28 +209,29 @@ TEST(Blocks, AreTracedFromTheirFirstReflectingPixel)
 
 class Skipping : public testing::TestWithParam<ParameterValues> {};
 
-// What is not needed changes nothing when it runs anyway; what is counted does not depend on the effects.
+// What is not needed changes nothing when it runs anyway; what is counted does not depend on the passes.
 TEST_P(Skipping, LeavesEveryBit)
 {
-    const Picture   picture = make_picture("builtin:sphere_over_mirror", "default", {161, 91});
-    ParameterValues all     = GetParam();
-    all["plan"]             = 0;
-    const auto planned = frame_with(picture, GetParam(), "hiz"), everything = frame_with(picture, all, "hiz");
+    const Picture   picture     = make_picture("builtin:sphere_over_mirror", "default", {161, 91});
+    ParameterValues all         = GetParam();
+    all["skip_unneeded_passes"] = 0;
+    const auto planned = frame_with(picture, GetParam(), "hiz"), unculled = frame_with(picture, all, "hiz");
     run_frame(device(), *planned);
     const Image expected = read_shaded(device(), *planned);
-    run_frame(device(), *everything);
-    EXPECT_EQ(read_shaded(device(), *everything).values, expected.values);
+    run_frame(device(), *unculled);
+    EXPECT_EQ(read_shaded(device(), *unculled).values, expected.values);
     const auto  plain = frame_with(picture, {}, "hiz");
     std::string first;
     EXPECT_EQ(count_differences(count_frame(device(), *planned), count_frame(device(), *plain), true, first), 0U)
         << first;
 }
 
-INSTANTIATE_TEST_SUITE_P(Effects, Skipping,
-                         testing::Values(ParameterValues{}, ParameterValues{{"rays_per_pixel", 4}},
-                                         ParameterValues{{"trace_resolution", 1}},
-                                         ParameterValues{{"trace_resolution", 2}, {"rays_per_pixel", 2}, {"kernel", 1}},
-                                         ParameterValues{{"kernel", 2}}));
+INSTANTIATE_TEST_SUITE_P(
+    Passes, Skipping,
+    testing::Values(ParameterValues{}, ParameterValues{{"rays_per_pixel", 4}},
+                    ParameterValues{chosen(TraceResolution::half)},
+                    ParameterValues{chosen(TraceResolution::quarter), {"rays_per_pixel", 2}, chosen(Filter3x3::box3)},
+                    ParameterValues{chosen(Filter3x3::median3)}));
 
 } // namespace
 } // namespace ssrlab::test

@@ -22,24 +22,41 @@ GBufferImage coloured()
     return image;
 }
 
-double beta(const GBufferImage& image, const TraceResult& result, size_t i, const ParameterValues& effects)
+double viewer_weight(ViewerFade fade, double away, double start)
+{
+    switch (fade) {
+    case ViewerFade::off: return 1;
+    case ViewerFade::linear: return std::max(0.0, away);
+    case ViewerFade::cut: return away > 0 ? 1 : 0;
+    case ViewerFade::smooth: break;
+    }
+    return std::clamp((away - start) / (1 - start), 0.0, 1.0);
+}
+
+double edge_weight(EdgeFade fade, glm::dvec2 offset)
+{
+    const double radial = std::clamp(2 * glm::length(offset), 0.0, 1.0);
+    switch (fade) {
+    case EdgeFade::off: return 1;
+    case EdgeFade::manhattan: return std::clamp(1 - std::abs(offset.x) - std::abs(offset.y), 0.0, 1.0);
+    case EdgeFade::linear: return 1 - radial;
+    case EdgeFade::squared: break;
+    }
+    return 1 - radial * radial;
+}
+
+double beta(const GBufferImage& image, const TraceResult& result, size_t i, const ParameterValues& passes)
 {
     const glm::ivec2 pixel(static_cast<int>(i) % 64, static_cast<int>(i) / 64);
-    const double     exponent = effects.at("metallic_exponent");
+    const double     exponent = passes.at("metallic_exponent");
     double           value    = exponent > 0 ? std::pow(static_cast<double>(image.metallic[i]), exponent) : 1;
     const double     away     = -mirror_direction_vs(image, pixel).z;
-    const double     start    = effects.at("viewer_fade_start");
     const glm::dvec2 offset   = glm::dvec2(result.hit_px_depth[i]) / 64.0 - 0.5;
-    const double     radial   = std::clamp(2 * glm::length(offset), 0.0, 1.0);
-    // By the choices' order in render/effects.cpp.
-    const double viewers[] = {1, std::max(0.0, away), away > 0 ? 1.0 : 0.0,
-                              std::clamp((away - start) / (1 - start), 0.0, 1.0)};
-    const double edges[]   = {1, std::clamp(1 - std::abs(offset.x) - std::abs(offset.y), 0.0, 1.0), 1 - radial,
-                              1 - radial * radial};
-    const double viewer    = viewers[static_cast<size_t>(effects.at("viewer_fade"))];
-    const double edge      = edges[static_cast<size_t>(effects.at("edge_fade"))];
-    const double most      = 1 - effects.at("own_share");
-    value *= effects.at("fade_combination") == 0 ? viewer * edge * most : std::min({viewer, edge, most});
+    const double     viewer   = viewer_weight(choice<ViewerFade>(passes), away, passes.at("viewer_fade_start"));
+    const double     edge     = edge_weight(choice<EdgeFade>(passes), offset);
+    const double     most     = 1 - passes.at("base_colour_min_weight");
+    value *=
+        choice<FadeOperator>(passes) == FadeOperator::product ? viewer * edge * most : std::min({viewer, edge, most});
     return value;
 }
 
@@ -49,10 +66,10 @@ TEST_P(Shading, IsTheFormulaAtEveryPixel)
 {
     const Picture       picture = make_picture(coloured());
     const TraceSettings settings{.thickness_m = 0.5, .max_distance_m = 50};
-    ParameterValues     effects = default_effect_values();
-    for (const auto& [name, value] : GetParam()) effects.at(name) = value;
+    ParameterValues     passes = default_pass_values();
+    for (const auto& [name, value] : GetParam()) passes.at(name) = value;
     const auto frame =
-        prepare_frame(device(), picture.buffers, technique("hiz"), values_of(technique("hiz")), {settings, effects});
+        prepare_frame(device(), picture.buffers, technique("hiz"), values_of(technique("hiz")), {settings, passes});
     const TraceResult result = count_frame(device(), *frame);
     run_frame(device(), *frame);
     const Image shaded = read_shaded(device(), *frame);
@@ -64,7 +81,7 @@ TEST_P(Shading, IsTheFormulaAtEveryPixel)
             const auto       from = pixel_index(result.hit_pixel[i], result.size_px);
             const glm::dvec3 reflected =
                 picture.image.radiance[from]; // without the highlight: that belongs to the camera's direction
-            expected += (reflected - expected) * beta(picture.image, result, i, effects);
+            expected += (reflected - expected) * beta(picture.image, result, i, passes);
         }
         for (int c = 0; c < 3; ++c)
             ASSERT_NEAR(static_cast<double>(shaded.values[3 * i + static_cast<size_t>(c)]), expected[c],
@@ -76,15 +93,19 @@ TEST_P(Shading, IsTheFormulaAtEveryPixel)
 
 INSTANTIATE_TEST_SUITE_P(
     Settings, Shading,
-    testing::Values(ParameterValues{}, ParameterValues{{"metallic_exponent", 0}, {"viewer_fade", 0}, {"edge_fade", 0}},
-                    ParameterValues{{"viewer_fade", 0}, {"edge_fade", 0}},
-                    ParameterValues{{"metallic_exponent", 1.5}, {"viewer_fade", 0}, {"edge_fade", 0}},
-                    ParameterValues{{"metallic_exponent", 0}, {"viewer_fade", 1}, {"edge_fade", 0}},
-                    ParameterValues{{"metallic_exponent", 0}, {"viewer_fade", 2}, {"edge_fade", 1}},
-                    ParameterValues{{"viewer_fade", 3}, {"viewer_fade_start", 0.4}, {"edge_fade", 2}},
+    testing::Values(ParameterValues{},
+                    ParameterValues{{"metallic_exponent", 0}, chosen(ViewerFade::off), chosen(EdgeFade::off)},
+                    ParameterValues{chosen(ViewerFade::off), chosen(EdgeFade::off)},
+                    ParameterValues{{"metallic_exponent", 1.5}, chosen(ViewerFade::off), chosen(EdgeFade::off)},
+                    ParameterValues{{"metallic_exponent", 0}, chosen(ViewerFade::linear), chosen(EdgeFade::off)},
+                    ParameterValues{{"metallic_exponent", 0}, chosen(ViewerFade::cut), chosen(EdgeFade::manhattan)},
+                    ParameterValues{chosen(ViewerFade::smooth), {"viewer_fade_start", 0.4}, chosen(EdgeFade::linear)},
                     // Litheon's blending: the smaller weight, at most 0.4.
-                    ParameterValues{{"viewer_fade", 3}, {"edge_fade", 3}, {"fade_combination", 1}, {"own_share", 0.6}},
-                    ParameterValues{{"plan", 0}, {"metallic_exponent", 2}}));
+                    ParameterValues{chosen(ViewerFade::smooth),
+                                    chosen(EdgeFade::squared),
+                                    chosen(FadeOperator::minimum),
+                                    {"base_colour_min_weight", 0.6}},
+                    ParameterValues{{"skip_unneeded_passes", 0}, {"metallic_exponent", 2}}));
 
 // Nothing hit, nothing changed: the lit colour to the last bit, also of pixels that are no surface.
 TEST(ShadingOfMisses, LeavesTheLitColour)

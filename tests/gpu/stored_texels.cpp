@@ -16,7 +16,7 @@ Stored frame_of(const ParameterValues& changed, bool int64)
     Gpu gpu        = device();
     gpu.info.int64 = int64;
     FrameSettings settings{.trace = {.thickness_m = 0.1, .max_distance_m = 100}};
-    for (const auto& [name, value] : changed) settings.effects.at(name) = value;
+    for (const auto& [name, value] : changed) settings.passes.at(name) = value;
     const Picture    picture = make_picture("builtin:everything", "default", {163, 91});
     const Technique& hiz     = technique("hiz");
     const auto       frame   = prepare_frame(gpu, picture.buffers, hiz, values_of(hiz), settings);
@@ -32,9 +32,9 @@ Stored frame_of(const ParameterValues& changed, bool int64)
 
 TEST(StoredTexels, AreTheSame64BitsAtATime)
 {
-    for (const ParameterValues& effects :
-         {ParameterValues{{"hidden_layer", 1}}, {{"bounce_mode", 2}, {"bounces", 2}}}) {
-        const Stored wide = frame_of(effects, true), words = frame_of(effects, false);
+    for (const ParameterValues& passes :
+         {ParameterValues{{"hidden_layer", 1}}, {chosen(BounceMode::direct), {"bounces", 2}}}) {
+        const Stored wide = frame_of(passes, true), words = frame_of(passes, false);
         EXPECT_EQ(wide.cells, words.cells);
         EXPECT_EQ(wide.rays, words.rays);
         EXPECT_EQ(wide.hits, words.hits);

@@ -1,6 +1,7 @@
 // The plan as a pure function: what is left out, and the reason with the number that decided.
+#include "render/frame_plan.h"
+#include "core/files.h"
 #include "gpu/shader.h"
-#include "render/effects.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,106 +17,108 @@ using testing::HasSubstr;
 const FrameFacts with_pyramid{.structures = {"depth_pyramid"}};
 
 /// 1000 pixels in 20 tiles, of which `reflecting` reflect, `rough` of these with roughness.
-FrameStatistics picture(uint32_t reflecting, uint32_t rough, uint32_t hits, uint32_t mirror_hits)
+FrameStatistics frame(uint32_t reflecting, uint32_t rough, uint32_t hits, uint32_t mirror_hits)
 {
-    FrameStatistics statistics{.pixels = 1000, .tiles = 20, .picture = {}, .trace = {reflecting, hits, mirror_hits}};
-    statistics.picture.surface_pixels      = 900;
-    statistics.picture.reflecting_pixels   = reflecting;
-    statistics.picture.reflecting_tiles    = (reflecting + 49) / 50;
-    statistics.picture.roughness_pixels[0] = reflecting - rough;
-    statistics.picture.roughness_pixels[8] = rough;
+    FrameStatistics statistics{.pixels = 1000, .tiles = 20, .gbuffer = {}, .trace = {reflecting, hits, mirror_hits}};
+    statistics.gbuffer.surface_pixels      = 900;
+    statistics.gbuffer.reflecting_pixels   = reflecting;
+    statistics.gbuffer.reflecting_tiles    = (reflecting + 49) / 50;
+    statistics.gbuffer.roughness_pixels[0] = reflecting - rough;
+    statistics.gbuffer.roughness_pixels[8] = rough;
     return statistics;
 }
 
 ParameterValues values_with(const ParameterValues& changed)
 {
-    ParameterValues values = default_effect_values();
+    ParameterValues values = default_pass_values();
     for (const auto& [name, value] : changed) values.at(name) = value;
     return values;
 }
 
-std::set<std::string> running(const std::vector<PlannedEffect>& plan)
+std::set<std::string> running(const std::vector<PlannedPass>& plan)
 {
     std::set<std::string> ids;
-    for (const PlannedEffect& planned : plan)
-        if (planned.runs) ids.insert(planned.effect->id);
+    for (const PlannedPass& planned : plan)
+        if (planned.runs) ids.insert(planned.pass->id);
     return ids;
 }
 
-std::string reason(const std::vector<PlannedEffect>& plan, const std::string& effect)
+std::string reason(const std::vector<PlannedPass>& plan, const std::string& pass)
 {
-    return std::ranges::find(plan, effect, [](const PlannedEffect& p) { return p.effect->id; })->reason;
+    return std::ranges::find(plan, pass, [](const PlannedPass& p) { return p.pass->id; })->reason;
 }
 
 TEST(Plan, WithoutAnythingThatReflectsNothingIsTraced)
 {
-    const auto plan = plan_frame(with_pyramid, picture(0, 0, 0, 0), default_effect_values());
+    const auto plan = plan_frame(with_pyramid, frame(0, 0, 0, 0), default_pass_values());
     EXPECT_EQ(running(plan), std::set<std::string>{"composite"});
-    for (const char* effect : {"classification", "rays", "structures", "trace", "hit_colour", "blur"})
-        EXPECT_EQ(reason(plan, effect), "no pixel reflects") << effect;
+    for (const char* pass : {"classification", "rays", "depth_pyramid", "trace", "hit_colour", "blur"})
+        EXPECT_EQ(reason(plan, pass), "no pixel reflects") << pass;
 }
 
 TEST(Plan, ASmoothPictureInWhichEveryRayHitsNeedsTraceAndShadingAlone)
 {
-    const auto plan = plan_frame(with_pyramid, picture(400, 0, 400, 0), default_effect_values());
+    const auto plan = plan_frame(with_pyramid, frame(400, 0, 400, 0), default_pass_values());
     EXPECT_EQ(running(plan),
-              (std::set<std::string>{"classification", "rays", "structures", "trace", "hit_colour", "composite"}));
+              (std::set<std::string>{"classification", "rays", "depth_pyramid", "trace", "hit_colour", "composite"}));
     EXPECT_EQ(reason(plan, "trace"), "400 pixels reflect (40 %)");
     EXPECT_EQ(reason(plan, "classification"), "8 of 20 tiles reflect");
-    EXPECT_EQ(reason(plan, "blur"), "every pixel that reflects is smooth");
+    EXPECT_EQ(reason(plan, "blur"), "every reflecting pixel is smooth");
 }
 
 TEST(Plan, TheNumberThatDecidedIsInTheReason)
 {
-    const auto plan = plan_frame(with_pyramid, picture(400, 100, 350, 10), default_effect_values());
+    const auto plan = plan_frame(with_pyramid, frame(400, 100, 350, 10), default_pass_values());
     EXPECT_TRUE(running(plan).contains("blur"));
     EXPECT_THAT(reason(plan, "blur"), HasSubstr("25 %"));
 }
 
 TEST(Plan, GlossIsDoneOneWay)
 {
-    const auto rough = picture(400, 100, 350, 10), smooth = picture(400, 0, 350, 10);
-    const auto cones = plan_frame(with_pyramid, rough, values_with({{"gloss", 2}}));
+    const auto rough = frame(400, 100, 350, 10), smooth = frame(400, 0, 350, 10);
+    const auto cones = plan_frame(with_pyramid, rough, values_with({chosen(Gloss::cone)}));
     EXPECT_TRUE(running(cones).contains("cone_pyramid"));
     EXPECT_FALSE(running(cones).contains("blur"));
     EXPECT_THAT(reason(cones, "cone_pyramid"), HasSubstr("25 %"));
-    EXPECT_FALSE(running(plan_frame(with_pyramid, rough, default_effect_values())).contains("cone_pyramid"));
-    EXPECT_FALSE(running(plan_frame(with_pyramid, smooth, values_with({{"gloss", 2}}))).contains("cone_pyramid"));
+    EXPECT_FALSE(running(plan_frame(with_pyramid, rough, default_pass_values())).contains("cone_pyramid"));
+    EXPECT_FALSE(
+        running(plan_frame(with_pyramid, smooth, values_with({chosen(Gloss::cone)}))).contains("cone_pyramid"));
 }
 
 TEST(Plan, TechniquesWithoutAPyramidBuildNone)
 {
-    const auto plan = plan_frame({}, picture(400, 0, 400, 0), values_with({{"plan", 0}}));
+    const auto plan = plan_frame({}, frame(400, 0, 400, 0), values_with({{"skip_unneeded_passes", 0}}));
     EXPECT_FALSE(running(plan).contains("depth_pyramid"));
 }
 
 // Switched off stays off; not needed runs.
-TEST(Plan, WithoutThePlanEverythingRunsThatIsNotSwitchedOff)
+TEST(Plan, WithoutSkippingEveryPassRunsThatIsNotOff)
 {
-    const auto everything = running(plan_frame(with_pyramid, picture(0, 0, 0, 0), values_with({{"plan", 0}})));
-    EXPECT_TRUE(everything.contains("trace"));
-    EXPECT_TRUE(everything.contains("blur"));
-    const auto shading =
-        running(plan_frame(with_pyramid, picture(400, 100, 300, 10), values_with({{"plan", 0}, {"effect_set", 1}})));
+    const auto unculled =
+        running(plan_frame(with_pyramid, frame(0, 0, 0, 0), values_with({{"skip_unneeded_passes", 0}})));
+    EXPECT_TRUE(unculled.contains("trace"));
+    EXPECT_TRUE(unculled.contains("blur"));
+    const auto shading = running(plan_frame(with_pyramid, frame(400, 100, 300, 10),
+                                            values_with({{"skip_unneeded_passes", 0}, chosen(PassSet::shading)})));
     EXPECT_EQ(shading,
-              (std::set<std::string>{"classification", "rays", "structures", "trace", "hit_colour", "composite"}));
+              (std::set<std::string>{"classification", "rays", "depth_pyramid", "trace", "hit_colour", "composite"}));
 }
 
 // A second layer and further bounces continue rays one by one, whether the picture calls for them or not.
 TEST(Plan, FurtherRaysNeedOneRayPerPixelAtFullResolution)
 {
     const FrameFacts      drawn{.scene = true, .structures = {"depth_pyramid"}};
-    const FrameStatistics mirrors = picture(400, 0, 300, 10);
+    const FrameStatistics mirrors = frame(400, 0, 300, 10);
     const auto            plan    = plan_frame(drawn, mirrors, values_with({{"hidden_layer", 1}}));
-    EXPECT_EQ(reason(plan, "hidden_layer"), "25 % of 400 rays found nothing");
+    EXPECT_EQ(reason(plan, "hidden_layer"), "25 % of 400 rays missed");
     EXPECT_EQ(reason(plan, "bounces"), "3.33 % of 300 hits reflect");
-    for (const auto& [name, value] : ParameterValues{{"rays_per_pixel", 2}, {"trace_resolution", 1}})
-        for (const double planned : {0.0, 1.0}) {
-            const auto without =
-                plan_frame(drawn, mirrors, values_with({{"hidden_layer", 1}, {name, value}, {"plan", planned}}));
-            for (const char* effect : {"hidden_layer", "bounces"}) {
-                EXPECT_FALSE(running(without).contains(effect)) << name;
-                EXPECT_EQ(reason(without, effect), "needs one ray per pixel at full resolution") << name;
+    for (const auto& [name, value] : ParameterValues{{"rays_per_pixel", 2}, chosen(TraceResolution::half)})
+        for (const double skips : {0.0, 1.0}) {
+            const auto without = plan_frame(
+                drawn, mirrors, values_with({{"hidden_layer", 1}, {name, value}, {"skip_unneeded_passes", skips}}));
+            for (const char* pass : {"hidden_layer", "bounces"}) {
+                EXPECT_FALSE(running(without).contains(pass)) << name;
+                EXPECT_EQ(reason(without, pass), "needs one ray per pixel at full resolution") << name;
             }
         }
 }
@@ -124,51 +127,65 @@ TEST(Plan, FurtherRaysNeedOneRayPerPixelAtFullResolution)
 TEST(Plan, HitsOfTheSecondLayerAreFilteredLikeOthers)
 {
     const FrameFacts      drawn{.scene = true, .structures = {}};
-    const FrameStatistics misses = picture(400, 0, 0, 0);
-    EXPECT_FALSE(running(plan_frame(drawn, misses, values_with({{"kernel", 1}}))).contains("kernel_filter"));
-    EXPECT_TRUE(running(plan_frame(drawn, misses, values_with({{"kernel", 1}, {"hidden_layer", 1}})))
-                    .contains("kernel_filter"));
+    const FrameStatistics misses = frame(400, 0, 0, 0);
+    EXPECT_FALSE(running(plan_frame(drawn, misses, values_with({chosen(Filter3x3::box3)}))).contains("filter_3x3"));
+    EXPECT_TRUE(running(plan_frame(drawn, misses, values_with({chosen(Filter3x3::box3), {"hidden_layer", 1}})))
+                    .contains("filter_3x3"));
 }
 
 TEST(Plan, EveryReasonIsThereForEverySetting)
 {
-    for (const Parameter& parameter : effect_parameters())
+    for (const Parameter& parameter : pass_parameters())
         for (const double value : {parameter.min, parameter.max})
-            for (const FrameStatistics& statistics :
-                 {picture(0, 0, 0, 0), picture(1000, 1000, 0, 0), picture(1, 0, 1, 1)})
-                for (const PlannedEffect& planned : plan_frame({}, statistics, values_with({{parameter.name, value}})))
-                    EXPECT_FALSE(planned.reason.empty()) << planned.effect->id << " with " << parameter.name;
+            for (const FrameStatistics& statistics : {frame(0, 0, 0, 0), frame(1000, 1000, 0, 0), frame(1, 0, 1, 1)})
+                for (const PlannedPass& planned : plan_frame({}, statistics, values_with({{parameter.name, value}})))
+                    EXPECT_FALSE(planned.reason.empty()) << planned.pass->id << " with " << parameter.name;
 }
 
-TEST(EffectTable, NamesAreUniqueAndDefaultsInRange)
+TEST(PassList, NamesAreUniqueAndDefaultsInRange)
 {
     std::set<std::string> ids, names;
-    for (const Effect& effect : all_effects()) {
-        EXPECT_TRUE(ids.insert(effect.id).second) << effect.id;
-        EXPECT_FALSE(effect.summary.empty()) << effect.id;
+    for (const Pass& pass : all_passes()) {
+        EXPECT_TRUE(ids.insert(pass.id).second) << pass.id;
+        EXPECT_FALSE(pass.summary.empty()) << pass.id;
     }
-    for (const Parameter& parameter : effect_parameters()) {
+    for (const Parameter& parameter : pass_parameters()) {
         EXPECT_TRUE(names.insert(parameter.name).second) << parameter.name;
         EXPECT_FALSE(parameter.doc.empty()) << parameter.name;
         EXPECT_NO_THROW(check_parameter(parameter, parameter.default_value, "table"));
     }
 }
 
-// Every shader file of a row exists, and no shader of the folder is left over.
-TEST(EffectTable, ShadersOfTheEffectsFolderAreAllInTheTable)
+// Each file of the folder is one pass or what several share; shaders that no pass names are left over.
+TEST(PassList, EveryShaderOfTheFolderIsNamedByAPass)
 {
-    // Further passes of a row, and the count that plans rest on.
-    std::set<std::string> used{"passes/second_layer_hits.comp", "passes/bounce_colour.comp",
-                               "passes/bounce_history.comp", "trace/trace_statistics.comp"};
-    for (const Effect& effect : all_effects()) {
-        EXPECT_TRUE(std::filesystem::exists(shader_folder() / effect.shader)) << effect.shader;
-        used.insert(effect.shader);
-    }
+    std::string sources;
+    for (const auto& file : std::filesystem::directory_iterator(SSRLAB_SOURCE_DIR "/framework/render/passes"))
+        sources += read_file(file.path());
+    size_t shaders = 0;
     for (const auto& file : std::filesystem::directory_iterator(shader_folder() / "passes")) {
-        const std::string name = "passes/" + file.path().filename().string();
         if (file.path().extension() != ".comp") continue;
-        EXPECT_TRUE(used.contains(name)) << name;
+        ++shaders;
+        const std::string name = "\"passes/" + file.path().filename().string() + "\"";
+        EXPECT_NE(sources.find(name), std::string::npos) << name;
     }
+    EXPECT_GT(shaders, 0U);
+}
+
+TEST(PassChoices, AreEnumsByTheNamesOfTheParameter)
+{
+    const auto is = [](const std::string& name, size_t count, const std::string& choice, double value) {
+        const auto parameter = std::ranges::find(pass_parameters(), name, &Parameter::name);
+        ASSERT_NE(parameter, pass_parameters().end()) << name;
+        EXPECT_EQ(parameter->choices.size(), count) << name;
+        EXPECT_EQ(parse_parameter(*parameter, choice, "here"), value) << name;
+    };
+    is("gloss", 3, "cone", choice_value(Gloss::cone));
+    is("filter_3x3", 3, "median3", choice_value(Filter3x3::median3));
+    is("upsampling_weights", 4, "depth_normal", choice_value(UpsamplingWeights::depth_normal));
+    is("pass_set", 2, "all", choice_value(PassSet::all));
+    EXPECT_EQ(choice<Gloss>(default_pass_values()), Gloss::blur);
+    EXPECT_EQ(choice<BounceMode>(values_with({chosen(BounceMode::history)})), BounceMode::history);
 }
 
 } // namespace

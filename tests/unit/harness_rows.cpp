@@ -81,18 +81,18 @@ TEST(Rows, EveryEntryOfARowHasAColumn)
     EXPECT_EQ(measured.row.at("thickness_m"), "0.1");
     EXPECT_EQ(measured.row.at("max_distance_m"), "1000000000");
     EXPECT_EQ(measured.row.at("edge_fade"), "manhattan");
-    measured.effect_ms = {{"trace", std::vector<double>(7, 4.0)}, {"composite", std::vector<double>(7, 1.5)}};
-    measured.trace_ms  = {1, 2, 3, 4, 5, 6, 7};
-    measured.frame_ms  = {11, 12, 13, 14, 15, 16, 17};
-    add_plan(measured.row, plan_frame({}, {}, default_effect_values()));
+    measured.pass_ms  = {{"trace", std::vector<double>(7, 4.0)}, {"composite", std::vector<double>(7, 1.5)}};
+    measured.trace_ms = {1, 2, 3, 4, 5, 6, 7};
+    measured.frame_ms = {11, 12, 13, 14, 15, 16, 17};
+    add_plan(measured.row, plan_frame({}, {}, default_pass_values()));
     add_times(measured, 7);
     add_measures(measured.row, no_measures());
     measured.row = failed_row(measured.row, "no");
     EXPECT_EQ(measured.row.at("trace_ms_median"), "4");
     EXPECT_EQ(measured.row.at("trace_ms_ci_low"), "1");
     EXPECT_EQ(measured.row.at("inverse_fps_s"), "0.014");
-    EXPECT_EQ(measured.row.at("effects"), "trace=4 composite=1.5");
-    EXPECT_THAT(measured.row.at("effects_skipped"), testing::HasSubstr("trace"));
+    EXPECT_EQ(measured.row.at("passes"), "trace=4 composite=1.5");
+    EXPECT_THAT(measured.row.at("passes_skipped"), testing::HasSubstr("trace"));
     for (const auto& [name, value] : measured.row) EXPECT_THAT(names, testing::Contains(name));
 }
 
@@ -103,7 +103,7 @@ TEST(Rows, SamplesReadBackAsTheyWere)
     MeasuredRun measured;
     measured.run           = &run;
     measured.rounds        = {3, 4};
-    measured.effect_ms     = {{"trace", {0.1, 1.0 / 3}}};
+    measured.pass_ms       = {{"trace", {0.1, 1.0 / 3}}};
     measured.frame_ms      = {2, 4};
     measured.cpu_ms        = {7, 8};
     const std::string text = samples_text(measured);

@@ -202,8 +202,9 @@ TEST(Spec, ATechniquesTableMayNameSettingsOfItsOwn)
     const auto runs = expand(experiment, techniques());
     ASSERT_EQ(runs.size(), 3U);
     EXPECT_EQ(count_runs(experiment), 3);
-    EXPECT_EQ(
-        std::ranges::count(runs, false, [](const auto& run) { return run.settings.effects.at("edge_fade") != 0; }), 1);
+    EXPECT_EQ(std::ranges::count(
+                  runs, false, [](const auto& run) { return choice<EdgeFade>(run.settings.passes) != EdgeFade::off; }),
+              1);
     EXPECT_THAT(error_of("scenes = \"a\"\n[techniques.linear]\nthickness_m = -1\n"),
                 HasSubstr(".toml:3: 'thickness_m' must be a number in [0, "));
 }

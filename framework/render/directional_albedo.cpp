@@ -1,4 +1,4 @@
-#include "render/ggx_share.h"
+#include "render/directional_albedo.h"
 
 #include "shared.h"
 
@@ -18,13 +18,13 @@ double smith_lambda(double alpha, double cosine)
 
 /// The split of B. Karis 2013, "Real Shading in Unreal Engine 4", with height-correlated masking and shadowing. Half vectors are drawn from
 /// the visible normals, a regular grid of them: J. Dupuy, A. Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps".
-glm::dvec2 share_of(double roughness, double cosine)
+glm::dvec2 dfg(double roughness, double cosine)
 {
     constexpr int    heights = 64, turns = 16; // of half the circle: the other half is its mirror image
     const double     alpha = std::max(roughness * roughness, 1e-4), lambda_v = smith_lambda(alpha, cosine);
     const glm::dvec3 to_eye(std::sqrt(1 - cosine * cosine), 0, cosine);
     const glm::dvec3 stretched = glm::normalize(to_eye * glm::dvec3(alpha, alpha, 1));
-    glm::dvec2       share(0);
+    glm::dvec2       sum(0);
     for (int i = 0; i < heights; ++i)
         for (int j = 0; j < turns; ++j) {
             const double z = 1 - (i + 0.5) / heights * (1 + stretched.z), phi = std::numbers::pi * (j + 0.5) / turns;
@@ -35,22 +35,22 @@ glm::dvec2 share_of(double roughness, double cosine)
             if (n_l <= 0) continue;
             const double seen   = (1 + lambda_v) / (1 + lambda_v + smith_lambda(alpha, n_l));
             const double beside = 1 - std::min(v_h, 1.0), fresnel = beside * beside * beside * beside * beside;
-            share += seen * glm::dvec2(1 - fresnel, fresnel);
+            sum += seen * glm::dvec2(1 - fresnel, fresnel);
         }
-    return share / static_cast<double>(heights * turns);
+    return sum / static_cast<double>(heights * turns);
 }
 
 } // namespace
 
-const std::vector<glm::vec2>& ggx_share_table()
+const std::vector<glm::vec2>& dfg_table()
 {
     static const std::vector<glm::vec2> table = [] {
-        constexpr double       last = GGX_SHARE_ENTRIES - 1;
-        std::vector<glm::vec2> shares;
-        for (int row = 0; row < GGX_SHARE_ENTRIES; ++row)
-            for (int column = 0; column < GGX_SHARE_ENTRIES; ++column)
-                shares.emplace_back(share_of(row / last, std::max(std::pow(column / last, 2), 1e-4)));
-        return shares;
+        constexpr double       last = DFG_TABLE_ENTRIES - 1;
+        std::vector<glm::vec2> entries;
+        for (int row = 0; row < DFG_TABLE_ENTRIES; ++row)
+            for (int column = 0; column < DFG_TABLE_ENTRIES; ++column)
+                entries.emplace_back(dfg(row / last, std::max(std::pow(column / last, 2), 1e-4)));
+        return entries;
     }();
     return table;
 }

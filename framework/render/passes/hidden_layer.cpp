@@ -1,9 +1,6 @@
 // The hidden layer: the scene once more without what the first layer shows, and the rays that missed, traced in it.
 #include "core/pixel_index.h"
-#include "render/effect_passes.h"
-#include "shared.h"
-
-#include <algorithm>
+#include "render/passes/pass_helpers.h"
 
 namespace ssrlab {
 namespace {
@@ -26,9 +23,22 @@ TechniquePasses make_layer_passes(Gpu& gpu, const PreparedFrame& frame, const Ra
     return make_technique_passes(gpu, frame, *buffers.second_layer, rays, bindings);
 }
 
-} // namespace
+PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (values.at("hidden_layer") == 0) return {PassDecision::off, "hidden_layer = false"};
+    if (!facts.scene) return {PassDecision::off, "no scene to draw again"};
+    if (!one_ray_per_pixel(values)) return {PassDecision::off, "needs one ray per pixel at full resolution"};
+    const TraceCounts& trace  = statistics.trace;
+    const uint32_t     misses = trace.rays - trace.hits;
+    if (misses == 0) return {PassDecision::not_needed, fmt::format("none of {} rays missed", trace.rays)};
+    const double      threshold = values.at("hidden_layer_threshold");
+    const std::string reason    = fmt::format("{} of {} rays missed", percent(misses, trace.rays), trace.rays);
+    if (misses <= threshold * trace.rays)
+        return {PassDecision::off, fmt::format("{}, the threshold is {:.3g} %", reason, 100 * threshold)};
+    return {PassDecision::needed, reason};
+}
 
-Recording hidden_layer(Gpu& gpu, PreparedFrame& frame)
+RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
 {
     FrameBuffers& buffers = *frame.buffers;
     if (!buffers.second_layer) buffers.second_layer = make_second_layer(gpu, *buffers.gbuffer);
@@ -39,12 +49,11 @@ Recording hidden_layer(Gpu& gpu, PreparedFrame& frame)
     own->structures        = make_depth_structures(gpu, frame, *own->layer);
     const Bindings derived = derived_bindings(*own->missed);
     own->gather =
-        make_effect_pass(gpu, frame, "passes/gather_misses.comp", store_defines(gpu, own->missed->rays.list), derived);
+        make_pass(gpu, frame, "passes/gather_misses.comp", store_defines(gpu, own->missed->rays.list), derived);
     own->launch    = make_launch_pass(gpu, own->missed->rays.count, own->missed->rays.launch, RAYS_PER_GROUP);
     own->technique = make_layer_passes(gpu, frame, own->missed->rays);
-    own->merge =
-        make_effect_pass(gpu, frame, "passes/second_layer_hits.comp", store_defines(gpu, frame.rays->hits), derived);
-    const double separation = frame.settings.effects.at("hidden_layer_separation_m");
+    own->merge = make_pass(gpu, frame, "passes/second_layer_hits.comp", store_defines(gpu, frame.rays->hits), derived);
+    const double separation = frame.settings.passes.at("hidden_layer_separation_m");
     return [&frame, own, separation](const auto& commands) {
         const RayBuffers& missed = own->missed->rays;
         record_second_layer(commands, *own->layer, separation);
@@ -59,6 +68,27 @@ Recording hidden_layer(Gpu& gpu, PreparedFrame& frame)
         barrier(commands);
         dispatch_indirect(commands, own->merge, missed.launch);
     };
+}
+
+} // namespace
+
+Pass hidden_layer_pass()
+{
+    return {
+        .id             = "hidden_layer",
+        .summary        = "Draws a second depth layer by depth peeling, and traces in it the rays that missed",
+        .cite           = {"C. Everitt 2001, Interactive Order-Independent Transparency",
+                           "M. Mara, M. McGuire, D. Nowrouzezahrai, D. Luebke 2016, Deep G-Buffers for Stable Global "
+                                     "Illumination Approximation"},
+        .parameters     = {boolean_parameter("hidden_layer", false, "trace rays that missed in a second depth layer"),
+                           real_parameter("hidden_layer_separation_m", 0.5, 0, 1e6,
+                                          "the second layer is the nearest surface more than this far behind the first"),
+                           real_parameter("hidden_layer_threshold", 0, 0, 1,
+                                          "skip the second layer if at most this share of rays missed; above 0 the image "
+                                              "changes")},
+        .decide         = decide,
+        .prepare        = prepare,
+        .beyond_shading = true};
 }
 
 std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame)

@@ -1,5 +1,5 @@
-// Cone tracing: the pyramids that rough surfaces look up in the place of single pixels.
-#include "render/effect_passes.h"
+// Gloss by cones: the pyramids in which rough surfaces look up colours, in place of single pixels.
+#include "render/passes/pass_helpers.h"
 
 namespace ssrlab {
 namespace {
@@ -19,8 +19,6 @@ struct ConePush {
     int        row = 0; // where the level begins
 };
 
-} // namespace
-
 ConePyramid& cone_pyramid_of(Gpu& gpu, FrameBuffers& buffers)
 {
     if (!buffers.cone) {
@@ -32,13 +30,19 @@ ConePyramid& cone_pyramid_of(Gpu& gpu, FrameBuffers& buffers)
     return *buffers.cone;
 }
 
-Recording cone_pyramid(Gpu& gpu, PreparedFrame& frame)
+PassDecision decide(const FrameFacts& /*facts*/, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (choice<Gloss>(values) != Gloss::cone) return {PassDecision::off, "gloss is not cone"};
+    return needed_if_anything_is_rough(statistics);
+}
+
+RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
 {
     const ConePyramid& cone = cone_pyramid_of(gpu, *frame.buffers);
     const Bindings     own  = {{"cone_pyramid", cone.cells}, {"cone_ranges", cone.ranges}};
     const auto         make = [&](const Defines& defines) {
         return std::make_shared<ComputePass>(
-            make_effect_pass(gpu, frame, "passes/cone_pyramid.comp", defines, own, sizeof(ConePush)));
+            make_pass(gpu, frame, "passes/cone_pyramid.comp", defines, own, sizeof(ConePush)));
     };
     frame.cone               = true;
     const glm::ivec2 size_px = frame.buffers->gbuffer->view.size_px;
@@ -51,6 +55,23 @@ Recording cone_pyramid(Gpu& gpu, PreparedFrame& frame)
             barrier(commands);
         }
     };
+}
+
+} // namespace
+
+Pass cone_pyramid_pass()
+{
+    return {
+        .id             = "cone_pyramid",
+        .summary        = "Builds the pyramid of colours and visibility in which hit_colour looks up cones",
+        .cite           = {"Y. Uludag 2014, Hi-Z Screen-Space Cone-Traced Reflections (GPU Pro 5)"},
+        .parameters     = {real_parameter("cone_scale", 0.75, 0, 2,
+                                          "factor on the half angle of a cone that the article derives from the roughness"),
+                           integer_parameter("cone_steps", 2, 1, 16,
+                                             "circles in a cone, from the hit back to the reflector")},
+        .decide         = decide,
+        .prepare        = prepare,
+        .beyond_shading = true};
 }
 
 } // namespace ssrlab

@@ -1,6 +1,5 @@
 // Mirror in mirror: further bounces, traced ray by ray or taken from the previous frame's reflection.
-#include "render/effect_passes.h"
-#include "shared.h"
+#include "render/passes/pass_helpers.h"
 
 namespace ssrlab {
 namespace {
@@ -53,8 +52,8 @@ void record_bounce(const vk::raii::CommandBuffer& commands, const Bounce& bounce
     dispatch_indirect(commands, bounce.colour, rays.launch);
 }
 
-/// The first bounce continues the frame's rays; the others go to and fro between two lists.
-Recording direct(Gpu& gpu, PreparedFrame& frame, int count)
+/// The first bounce continues the frame's rays; the others alternate between two lists.
+RecordFunction direct(Gpu& gpu, PreparedFrame& frame, int count)
 {
     auto bounces = std::make_shared<std::vector<Bounce>>();
     bounces->push_back(make_bounce(gpu, frame, nullptr, 0));
@@ -69,8 +68,8 @@ Recording direct(Gpu& gpu, PreparedFrame& frame, int count)
     };
 }
 
-/// Every pass plays the next frame of a still picture, so that a run depends on nothing that was there before.
-Recording history(Gpu& gpu, PreparedFrame& frame, int count)
+/// Every pass stands for the next frame of a still image, so that a run depends on nothing from before it.
+RecordFunction history(Gpu& gpu, PreparedFrame& frame, int count)
 {
     auto pass = std::make_shared<ComputePass>(
         make_colour_pass(gpu, frame, "passes/bounce_history.comp", {}, {{"history_image", frame.buffers->filtered}}));
@@ -82,15 +81,39 @@ Recording history(Gpu& gpu, PreparedFrame& frame, int count)
     };
 }
 
+RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
+{
+    const int count = static_cast<int>(frame.settings.passes.at("bounces"));
+    return choice<BounceMode>(frame.settings.passes) == BounceMode::history ? history(gpu, frame, count)
+                                                                            : direct(gpu, frame, count);
+}
+
+PassDecision decide(const FrameFacts& /*facts*/, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (choice<BounceMode>(values) == BounceMode::off) return {PassDecision::off, "bounce_mode = off"};
+    if (!one_ray_per_pixel(values)) return {PassDecision::off, "needs one ray per pixel at full resolution"};
+    const TraceCounts& trace = statistics.trace;
+    if (trace.mirror_hits == 0) return {PassDecision::not_needed, fmt::format("none of {} hits reflects", trace.hits)};
+    return {PassDecision::needed,
+            fmt::format("{} of {} hits reflect", percent(trace.mirror_hits, trace.hits), trace.hits)};
+}
+
 } // namespace
 
-Recording bounces(Gpu& gpu, PreparedFrame& frame)
+Pass bounces_pass()
 {
-    constexpr int history_mode = 1; // of the parameter's choices
-    const auto&   effects      = frame.settings.effects;
-    const int     count        = static_cast<int>(effects.at("bounces"));
-    return static_cast<int>(effects.at("bounce_mode")) == history_mode ? history(gpu, frame, count)
-                                                                       : direct(gpu, frame, count);
+    return {.id             = "bounces",
+            .summary        = "Further bounces between mirrors: continues the rays whose hits reflect, too",
+            .cite           = {"J. Somerville Roberts, Screen Space Reflections"},
+            .parameters     = {choice_parameter(BounceMode::direct,
+                                                "further bounces. off: none; history: from the previous frames' "
+                                                    "reflections as the camera saw them; direct: traced in the mirror "
+                                                    "direction of the arriving ray"),
+                               integer_parameter("bounces", 1, 1, 16,
+                                                 "further bounces, or earlier frames; each adds one level of reflection")},
+            .decide         = decide,
+            .prepare        = prepare,
+            .beyond_shading = true};
 }
 
 } // namespace ssrlab

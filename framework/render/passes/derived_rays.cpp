@@ -1,4 +1,4 @@
-#include "render/effect_passes.h"
+#include "render/passes/pass_helpers.h"
 
 #include <algorithm>
 

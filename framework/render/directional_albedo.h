@@ -1,0 +1,14 @@
+// The directional albedo of a GGX surface, as the split-sum (DFG) table for shaders/passes/directional_albedo.glsl.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <vector>
+
+namespace ssrlab {
+
+/// Roughness by row, square root of the cosine by column, both from 0 to 1, DFG_TABLE_ENTRIES of each.
+/// A surface with reflectance f0 at normal incidence has the directional albedo f0 * x + y.
+const std::vector<glm::vec2>& dfg_table();
+
+} // namespace ssrlab
