@@ -39,7 +39,7 @@ std::set<std::string> running(const std::vector<PlannedPass>& plan)
 {
     std::set<std::string> ids;
     for (const PlannedPass& planned : plan)
-        if (planned.runs) ids.insert(planned.pass->id);
+        if (planned.runs) ids.insert(planned.id);
     return ids;
 }
 
@@ -139,7 +139,7 @@ TEST(Plan, EveryReasonIsThereForEverySetting)
         for (const double value : {parameter.min, parameter.max})
             for (const FrameStatistics& statistics : {frame(0, 0, 0, 0), frame(1000, 1000, 0, 0), frame(1, 0, 1, 1)})
                 for (const PlannedPass& planned : plan_frame({}, statistics, values_with({{parameter.name, value}})))
-                    EXPECT_FALSE(planned.reason.empty()) << planned.pass->id << " with " << parameter.name;
+                    EXPECT_FALSE(planned.reason.empty()) << planned.id << " with " << parameter.name;
 }
 
 TEST(PassList, NamesAreUniqueAndDefaultsInRange)

@@ -81,6 +81,7 @@ TEST(Rows, EveryEntryOfARowHasAColumn)
     EXPECT_EQ(measured.row.at("thickness_m"), "0.1");
     EXPECT_EQ(measured.row.at("max_distance_m"), "1000000000");
     EXPECT_EQ(measured.row.at("edge_fade"), "manhattan");
+    measured.pass_order = {"trace", "composite"};
     measured.pass_ms  = {{"trace", std::vector<double>(7, 4.0)}, {"composite", std::vector<double>(7, 1.5)}};
     measured.trace_ms = {1, 2, 3, 4, 5, 6, 7};
     measured.frame_ms = {11, 12, 13, 14, 15, 16, 17};
