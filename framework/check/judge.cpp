@@ -1,5 +1,6 @@
 #include "check/judge.h"
 
+#include "compare/validate_result.h"
 #include "core/error.h"
 #include "core/pixel_index.h"
 #include "truth/screen_truth.h"
@@ -65,8 +66,7 @@ double slack_t(const RayInput& ray) { return 1e-3 / std::max(screen_length_px(ra
 
 std::string name(const RayOutcome& outcome)
 {
-    if (outcome.status != TraceStatus::hit)
-        return std::string(trace_status_names.at(static_cast<size_t>(outcome.status)));
+    if (outcome.status != TraceStatus::hit) return std::string(status_name(outcome.status));
     return fmt::format("hit in ({}, {}) at t {:.9g}", outcome.hit_pixel.x, outcome.hit_pixel.y, outcome.t);
 }
 
@@ -171,7 +171,8 @@ double Judge::depth_rounding(const RayInput& ray, const Visit& v) const
 std::string Judge::unsound_hit(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const
 {
     const Range t = part_in_pixel(ray, outcome.hit_pixel, sliver_px);
-    if (t.empty()) return fmt::format("{}, a pixel that the ray does not cross", name(outcome));
+    if (t.empty() || !on_image(setup_.gbuffer, outcome.hit_pixel))
+        return fmt::format("{}, a pixel that the ray does not cross", name(outcome));
     const double step = claim.may_hit_within_a_step && outcome.steps > 0 ? outcome.t / outcome.steps : 0;
     const Visit  v    = visit(ray, outcome.hit_pixel, std::max(t.from - step, 0.0), std::min(t.to + step, 1.0));
     if (!(v.contact >= -depth_rounding(ray, v)))
@@ -217,14 +218,15 @@ Judgement Judge::judge(const RayInput& ray, const RayOutcome& outcome, const Cla
 
 std::string Judge::broken_invariant(const RayInput& ray, const RayOutcome& outcome) const
 {
+    const Answer answer{outcome.status, outcome.hit_pixel,     outcome.t,
+                        outcome.steps,  outcome.depth_fetches, outcome.pyramid_fetches};
+    if (const std::string what = impossible(answer, setup_.gbuffer.view.size_px, infinity); !what.empty()) return what;
     if (!std::isfinite(outcome.t)) return fmt::format("t is {}", outcome.t);
     if (outcome.status != TraceStatus::hit) {
         const bool possible = outcome.status == ray.end_status || outcome.status == TraceStatus::out_of_steps ||
                               (outcome.status == TraceStatus::facing_away && setup_.settings.facing);
         return possible ? "" : fmt::format("ends as {}, which this ray cannot", name(outcome));
     }
-    if (!on_image(setup_.gbuffer, outcome.hit_pixel)) return fmt::format("{}, which is off the image", name(outcome));
-    if (!(outcome.t >= 0 && outcome.t <= 1)) return fmt::format("{}, outside the segment", name(outcome));
     if (outcome.hit_pixel == start_pixel(setup_.gbuffer, ray)) return fmt::format("{}, its start pixel", name(outcome));
     return {};
 }

@@ -39,8 +39,7 @@ bool same_answer(const RayOutcome& a, const RayOutcome& b, bool compare_t)
 
 std::string text(const RayOutcome& outcome)
 {
-    if (outcome.status != TraceStatus::hit)
-        return std::string(trace_status_names.at(static_cast<size_t>(outcome.status)));
+    if (outcome.status != TraceStatus::hit) return std::string(status_name(outcome.status));
     return fmt::format("hit ({}, {}) t {:.9g}", outcome.hit_pixel.x, outcome.hit_pixel.y, outcome.t);
 }
 

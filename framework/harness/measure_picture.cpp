@@ -2,6 +2,7 @@
 
 #include "compare/image_io.h"
 #include "compare/pictures.h"
+#include "compare/validate_result.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "core/parallel_rows.h"
@@ -100,9 +101,9 @@ void finish(Bench& bench, const Run& run, const Row& row)
 {
     bench.results.append(row);
     ++bench.written;
-    if (row.at("outcome") == "failed") {
+    if (row.contains("message")) {
         ++bench.failed;
-        bench.progress.say(fmt::format("run {} failed: {}", run.id, row.at("message")));
+        bench.progress.say(fmt::format("run {} {}: {}", run.id, row.at("outcome"), row.at("message")));
     }
     bench.progress.finish_run(run.id, cost_of(bench, run));
 }
@@ -115,7 +116,7 @@ template <typename Step> bool try_step(Bench& bench, MeasuredRun& measured, cons
         return true;
     } catch (const std::exception& error) {
         refuse_changed_sources(bench);
-        finish(bench, *measured.run, failed_row(measured.row, error.what()));
+        finish(bench, *measured.run, failed_row(measured.row, error));
         measured.run = nullptr;
         return false;
     }
@@ -203,10 +204,25 @@ void judge(const Bench& bench, Picture& picture, MeasuredRun& measured, const Ob
         add_measures(measured.row, picture.truths->compare_picture(observed.shaded, *picture.reference));
 }
 
+/// Nothing is measured by answers that cannot be.
+void refuse_impossible(const Bench& bench, const Run& run, const Observed& observed)
+{
+    const Technique& technique = find_technique(bench.techniques, run.technique);
+    const double     steps     = declared_steps(technique, run.values);
+    const auto       refuse    = [&](const TraceResult& result, const char* where) {
+        if (const auto found = find_impossible(result, steps))
+            throw InvalidResult(fmt::format("{}{}; {}", where, *found, trace_command(run, technique)));
+    };
+    refuse(observed.counted, "");
+    if (observed.twin) refuse(*observed.twin, "in double precision: ");
+    if (observed.hidden) refuse(*observed.hidden, "in the second layer: ");
+}
+
 /// Everything but the timed repeats.
 void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
 {
     const Observed observed = observe(bench, picture.buffers, measured);
+    refuse_impossible(bench, *measured.run, observed);
     make_references(bench, picture, measured);
     judge(bench, picture, measured, observed);
 }
@@ -298,7 +314,7 @@ void measure_picture(Bench& bench, std::span<const Run> runs)
         refuse_changed_sources(bench);
         for (const Run& run : runs) {
             const Technique& technique = find_technique(bench.techniques, run.technique);
-            finish(bench, run, failed_row(identity_row(bench.experiment, run, technique), error.what()));
+            finish(bench, run, failed_row(identity_row(bench.experiment, run, technique), error));
         }
         return;
     }

@@ -1,6 +1,7 @@
 #include "harness/quality.h"
 
 #include "compare/pictures.h"
+#include "compare/validate_result.h"
 #include "core/error.h"
 #include "core/parallel_rows.h"
 #include "truth/truth_cache.h"
@@ -17,6 +18,7 @@ std::filesystem::path truth_cache_dir(const std::filesystem::path& results)
 
 Image reflected_image(const TraceResult& result, const GBufferImage& gbuffer, glm::vec3 background)
 {
+    require_possible(result);
     Image image{result.size_px, {"R", "G", "B"}, std::vector<float>(result.status.size() * 3), {}};
     parallel_pixels(result.size_px.x, result.size_px.y, [&](size_t i) {
         glm::vec3 colour(0);

@@ -140,8 +140,8 @@ std::string ResultFolder::finished_rows(std::string_view rows)
             throw_failure("{}: damaged: the row of run '{}' {}", short_path(csv_), record->front(),
                           record->size() != columns_.size() ? "has the wrong number of fields" : "is there twice");
         }
-        const bool failed = outcome < std::ssize(*record) && (*record)[static_cast<size_t>(outcome)] == "failed";
-        if (failed) continue;
+        const std::string how = outcome < std::ssize(*record) ? (*record)[static_cast<size_t>(outcome)] : "";
+        if (how == "failed" || how == "invalid") continue;
         kept += csv_line(*record);
         finished_.insert(record->front());
     }

@@ -33,12 +33,21 @@ Ray load_ray(uint index)
     return ray;
 }
 
+// Neither an unknown status, nor a hit off the image: packed, they would turn into another answer.
+bool is_answer(TraceResult result)
+{
+    bool on_image = all(greaterThanEqual(result.pixel, ivec2(0))) && all(lessThan(result.pixel, size_px));
+    return result.status > TRACE_NOT_TRACED && result.status <= TRACE_FACING_AWAY && (on_image || result.status != TRACE_HIT);
+}
+
 // number: the ray's current_ray.
 void store_result(uint index, TraceResult result, int number)
 {
-    STORE_TEXEL(Hits, index, hit_to_texel(ListedHit(pack_pixel(result.pixel, result.status), result.t)));
+    bool  answers = is_answer(result);
+    ivec2 pixel   = answers && result.status == TRACE_HIT ? result.pixel : ivec2(0);
+    STORE_TEXEL(Hits, index, hit_to_texel(ListedHit(pack_pixel(pixel, answers ? result.status : TRACE_IMPOSSIBLE), result.t)));
 #ifdef COUNT_WORK
-    work[index] = uvec3(result.steps, depth_fetches[number], pyramid_fetches[number]);
+    work[index] = answers ? uvec3(result.steps, depth_fetches[number], pyramid_fetches[number]) : uvec3(result.status, result.pixel);
 #ifdef RAY_BEAMS
     if (index % RAYS_PER_GROUP == 0) work[index].z += beam_fetches[work_group()]; // the whole group's, counted once
 #endif
