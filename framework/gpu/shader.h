@@ -32,12 +32,14 @@ struct ShaderSource {
     std::map<std::string, std::string>           defines       = {};
     std::map<std::string, std::filesystem::path> include_files = {}; // virtual include name -> file
     std::map<std::string, std::string>           include_texts = {}; // virtual include name -> text
+    std::vector<std::filesystem::path> include_folders = {}; // a plug-in's own: searched before the shader folder
 };
 
 /// Where the project's shaders lie.
 std::filesystem::path shader_folder();
 
-/// Throws SpecError "FILE:LINE: message" for the first error found.
+/// Includes come from the source itself, its folders and the shader folder, and from nowhere else. Throws SpecError with a line
+/// "FILE:LINE: message" for each error found; what is missing from a file of include_files is said of that file.
 Shader compile_shader(const ShaderSource& source);
 
 } // namespace ssrlab

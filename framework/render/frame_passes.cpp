@@ -223,7 +223,8 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
                                       .defines       = precision_defines(gpu, precision),
                                       .include_files = {{"technique/trace.glsl", frame.technique.folder / "trace.glsl"}},
                                       .include_texts = {{"technique/parameters",
-                                                         parameter_declarations(frame.technique.parameters, CONSTANT_PARAMETERS)}}};
+                                                         parameter_declarations(frame.technique.parameters, CONSTANT_PARAMETERS)}},
+                                      .include_folders = {frame.technique.folder}};
     const bool                  exact = exact_arithmetic(gpu, frame);
     trace.defines.merge(store_defines(gpu, rays.hits));
     if (exact) trace.defines.emplace("EXACT_ARITHMETIC", "1");
