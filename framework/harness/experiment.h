@@ -21,6 +21,7 @@ struct MeasureSettings {
     int      min_repeats      = 9; // below 6 there is no 95 % interval
     int      max_repeats      = 100;
     double   interval_percent = 2;    // tight: the 95 % interval of the median of trace_ms lies within ± this
+    double   time_limit_s     = 60;   // a run fails whose preparation or frame takes longer on the device
     double   budget_s         = 5;    // a run stops after min_repeats once its frames took this long
     bool     truth            = true; // compare with the truths
     bool     image_errors = true; // also compare the pictures (SSIM, FLIP …), which takes longer than comparing rays

@@ -59,6 +59,11 @@ template <typename Step> decltype(auto) clocked(double& seconds, const Step& ste
     return step();
 }
 
+double cost_of(const Bench& bench, const Run& run)
+{
+    return estimated_seconds(run, find_technique(bench.techniques, run.technique), bench.experiment.measure);
+}
+
 Picture make_picture(Bench& bench, const Run& run)
 {
     const LoadedScene& loaded = scene_of(bench, run.scene);
@@ -90,22 +95,6 @@ void refuse_changed_sources(const Bench& bench)
     if (changed.empty()) return;
     throw_failure("{}: stopped, because these changed while it was measured: {}; its rows are from before",
                   short_path(bench.results.path()), fmt::join(changed, ", "));
-}
-
-double cost_of(const Bench& bench, const Run& run)
-{
-    return estimated_seconds(run, find_technique(bench.techniques, run.technique), bench.experiment.measure);
-}
-
-void finish(Bench& bench, const Run& run, const Row& row)
-{
-    bench.results.append(row);
-    ++bench.written;
-    if (row.contains("message")) {
-        ++bench.failed;
-        bench.progress.say(fmt::format("run {} {}: {}", run.id, row.at("outcome"), row.at("message")));
-    }
-    bench.progress.finish_run(run.id, cost_of(bench, run));
 }
 
 /// Tries a step of one run; when it throws, the run's row says why and the run is over.
@@ -221,7 +210,10 @@ void refuse_impossible(const Bench& bench, const Run& run, const Observed& obser
 /// Everything but the timed repeats.
 void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
 {
-    const Observed observed = observe(bench, picture.buffers, measured);
+    const Observed observed = [&] {
+        const UnderWay under_way(bench.state, measured.run->id, bench.experiment.measure.time_limit_s);
+        return observe(bench, picture.buffers, measured);
+    }();
     refuse_impossible(bench, *measured.run, observed);
     make_references(bench, picture, measured);
     judge(bench, picture, measured, observed);
@@ -231,7 +223,8 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
 void prepare_comparison(Bench& bench, MeasuredRun& measured)
 {
     if (!bench.experiment.measure.saved_time || !plan_leaves_out(*measured.frame)) return;
-    const size_t known  = pipelines_made(bench.gpu);
+    const size_t   known = pipelines_made(bench.gpu);
+    const UnderWay under_way(bench.state, measured.run->id, bench.experiment.measure.time_limit_s);
     measured.everything = prepare_everything(bench.gpu, *measured.frame);
     // A driver may compile a pipeline when it first runs.
     if (pipelines_made(bench.gpu) != known)
@@ -246,8 +239,10 @@ void repeat_until_final(Bench& bench, const Picture& picture, std::vector<Measur
         std::ranges::shuffle(open, bench.random);
         for (MeasuredRun& measured : open) {
             if (stop_requested() != 0) break;
-            try_step(bench, measured,
-                     [&] { clocked(bench.timed_s, [&] { add_repeat(bench.gpu, measured, picture.gbuffer_ms); }); });
+            try_step(bench, measured, [&] {
+                const UnderWay under_way(bench.state, measured.run->id, bench.experiment.measure.time_limit_s);
+                clocked(bench.timed_s, [&] { add_repeat(bench.gpu, measured, picture.gbuffer_ms); });
+            });
             if (over(measured) || !is_final(measured, bench.experiment.measure)) continue;
             add_times(measured, picture.gbuffer_ms);
             finish(bench, *measured.run, measured.row);
@@ -303,12 +298,24 @@ void measure_batch(Bench& bench, Picture& picture, std::span<const Run> runs)
 
 } // namespace
 
+void finish(Bench& bench, const Run& run, const Row& row)
+{
+    bench.results.append(row);
+    ++bench.state.written;
+    if (row.contains("message")) {
+        ++bench.state.failed;
+        bench.progress.say(fmt::format("run {} {}: {}", run.id, row.at("outcome"), row.at("message")));
+    }
+    bench.progress.finish_run(run.id, cost_of(bench, run));
+}
+
 void measure_picture(Bench& bench, std::span<const Run> runs)
 {
     const Run& first = runs.front();
     bench.progress.start_picture(fmt::format("{} {} {}", first.scene, first.view, size_text(first.size_px)));
     Picture picture;
     try {
+        const UnderWay under_way(bench.state, first.id, 0, true);
         picture = make_picture(bench, first);
     } catch (const std::exception& error) {
         refuse_changed_sources(bench);

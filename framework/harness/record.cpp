@@ -13,7 +13,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 
 namespace ssrlab {
 namespace {
@@ -54,7 +56,7 @@ std::vector<std::string> differences(const std::map<std::string, std::string>& a
 }
 
 ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> columns, const Environment& environment,
-                           bool resuming)
+                           bool resuming, bool retry)
     : folder_(std::move(folder)), csv_(folder_ / "results.csv"), columns_(std::move(columns))
 {
     std::error_code error;
@@ -68,7 +70,7 @@ ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> columns, co
         }
         remove_partial_files();
         if (fs::exists(csv_))
-            resume(environment);
+            resume(environment, retry);
         else
             start(environment);
     } catch (...) {
@@ -89,7 +91,13 @@ void ResultFolder::lock()
     const fs::path file = folder_ / ".lock";
     lock_fd_            = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (lock_fd_ < 0) throw_failure("{}: cannot be written: {}", short_path(file), std::strerror(errno));
-    if (::flock(lock_fd_, LOCK_EX | LOCK_NB) != 0) {
+    // A sweep that was just killed may have a child that is still ending.
+    bool locked = false;
+    for (int i = 0; i < 20 && !locked; ++i) {
+        if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        locked = ::flock(lock_fd_, LOCK_EX | LOCK_NB) == 0;
+    }
+    if (!locked) {
         if (errno != EWOULDBLOCK) throw_failure("{}: cannot be locked: {}", short_path(file), std::strerror(errno));
         throw_failure("{}: another ssrlab is writing here (process {})", short_path(folder_), read_file(file));
     }
@@ -108,7 +116,7 @@ void ResultFolder::start(const Environment& environment)
     if (csv_fd_ < 0) throw_failure("{}: cannot be written: {}", short_path(csv_), std::strerror(errno));
 }
 
-void ResultFolder::resume(const Environment& environment)
+void ResultFolder::resume(const Environment& environment, bool retry)
 {
     const auto changed = differences(recorded_identity(folder_ / "environment.json"), environment.identity);
     if (!changed.empty()) {
@@ -123,14 +131,14 @@ void ResultFolder::resume(const Environment& environment)
             short_path(csv_));
     }
     // Replaced as a whole: a kill in between leaves the old file.
-    const std::string kept = finished_rows(rest);
+    const std::string kept = finished_rows(rest, retry);
     if (kept != text) write_file_atomically(csv_, kept);
     csv_fd_ = ::open(csv_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
     if (csv_fd_ < 0) throw_failure("{}: cannot be written: {}", short_path(csv_), std::strerror(errno));
 }
 
 /// Header and rows that stand: not those that failed, which are tried again, and not a last one that a kill tore.
-std::string ResultFolder::finished_rows(std::string_view rows)
+std::string ResultFolder::finished_rows(std::string_view rows, bool retry)
 {
     const auto            outcome = std::ranges::find(columns_, "outcome") - columns_.begin();
     std::string           kept    = csv_line(columns_);
@@ -141,11 +149,26 @@ std::string ResultFolder::finished_rows(std::string_view rows)
                           record->size() != columns_.size() ? "has the wrong number of fields" : "is there twice");
         }
         const std::string how = outcome < std::ssize(*record) ? (*record)[static_cast<size_t>(outcome)] : "";
-        if (how == "failed" || how == "invalid") continue;
+        if (retry && (how == "failed" || how == "invalid")) continue;
         kept += csv_line(*record);
         finished_.insert(record->front());
     }
     return kept;
+}
+
+/// Rows in a file that nobody will find are lost, and a lock that is gone lets a second writer in.
+void ResultFolder::require_unmoved(const fs::path& file, int fd) const
+{
+    struct stat ours = {}, there = {};
+    const bool  same = ::fstat(fd, &ours) == 0 && ::stat(file.c_str(), &there) == 0 && ours.st_dev == there.st_dev &&
+                      ours.st_ino == there.st_ino;
+    if (!same) throw_failure("{}: was removed or replaced while it was in use", short_path(file));
+}
+
+void ResultFolder::require_unmoved() const
+{
+    require_unmoved(csv_, csv_fd_);
+    require_unmoved(folder_ / ".lock", lock_fd_);
 }
 
 void ResultFolder::append(const Row& row)
@@ -156,6 +179,7 @@ void ResultFolder::append(const Row& row)
     const auto stray = std::ranges::find_if_not(row, known);
     if (stray != row.end()) throw_failure("{}: has no column '{}'", short_path(csv_), stray->first);
 
+    require_unmoved();
     struct stat before = {};
     if (::fstat(csv_fd_, &before) != 0) throw_failure("{}: {}", short_path(csv_), std::strerror(errno));
     if (write_fully(csv_fd_, csv_line(record)) && ::fdatasync(csv_fd_) == 0) {

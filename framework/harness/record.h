@@ -28,10 +28,10 @@ std::vector<std::string> differences(const std::map<std::string, std::string>& a
 class ResultFolder {
 public:
     /// Fresh: creates the folder, environment.json and the header; refuses (Failure) a folder that has results.
-    /// Resuming: cuts off a torn row and takes out the rows that failed, so that they are tried again; refuses (SpecError) when columns or
-    /// identity differ, naming what does.
+    /// Resuming: cuts off a torn row and, with `retry`, takes out the rows that failed, so that they are tried again; refuses (SpecError)
+    /// when columns or identity differ, naming what does.
     ResultFolder(std::filesystem::path folder, std::vector<std::string> columns, const Environment& environment,
-                 bool resume);
+                 bool resume, bool retry = true);
     ~ResultFolder();
     ResultFolder(const ResultFolder&)            = delete;
     ResultFolder& operator=(const ResultFolder&) = delete;
@@ -43,13 +43,17 @@ public:
     /// names the file: what is on disk is always a correct prefix.
     void append(const Row& row);
 
+    /// Throws Failure when the folder's files are no longer those that were written.
+    void require_unmoved() const;
+
     const std::filesystem::path& path() const { return folder_; }
 
 private:
     void        lock();
     void        start(const Environment& environment);
-    void        resume(const Environment& environment);
-    std::string finished_rows(std::string_view rows);
+    void        resume(const Environment& environment, bool retry);
+    std::string finished_rows(std::string_view rows, bool retry);
+    void        require_unmoved(const std::filesystem::path& file, int fd) const;
     void        remove_partial_files() const;
 
     std::filesystem::path    folder_, csv_;
