@@ -11,10 +11,8 @@
 namespace ssrlab {
 namespace {
 
-constexpr double self_hit_sine  = 0.01;
-constexpr double behind_share   = 0.001;
-constexpr double within_one_px  = 1;
-constexpr double within_four_px = 4;
+constexpr double self_hit_sine = 0.01;
+constexpr double behind_share  = 0.001;
 
 bool traced(const TraceResult& result, size_t i) { return result.status[i] != TraceStatus::not_traced; }
 bool hits(const TraceResult& result, size_t i) { return result.status[i] == TraceStatus::hit; }
