@@ -135,6 +135,8 @@ private:
                 report(i, "out of steps within its budget");
             check_expected(setup, i, outcome);
             const Judgement verdict = judge.judge(setup.rays[i], outcome, claim);
+            row_.findable += verdict.findable;
+            row_.found += verdict.found;
             row_.slivers += verdict.verdict == Verdict::sliver;
             row_.allowed += verdict.verdict == Verdict::allowed;
             if (verdict.verdict != Verdict::sliver)
