@@ -44,7 +44,7 @@ def blocks(results, plots, tables, summary):
              "seed": environment.get("seed"), "system": environment.get("system")}
     yield table([{"environment": name, "": value} for name, value in about.items() if value])
 
-    failed = results.all_rows[results.all_rows.outcome == "failed"]
+    failed = results.all_rows[results.all_rows.outcome.isin(["failed", "invalid"])]
     if len(failed):
         yield "heading", "Failed runs"
         yield table([{"run": row.run_id, "technique": row.technique, "scene": row.scene, "message": row.message}

@@ -77,7 +77,9 @@ int check_techniques(const CommonOptions& common, const HardCaseOptions& options
                       std::printf("%s\n%s", table_line(row).c_str(), table_findings(row).c_str());
                       std::fflush(stdout);
                   });
-    for (const std::string& line : check_refusals()) {
+    std::vector<std::string> more = check_refusals();
+    if (options.only_case.empty()) std::ranges::copy(check_finds(rows), std::back_inserter(more));
+    for (const std::string& line : more) {
         ++broken;
         std::puts(line.c_str());
     }

@@ -2,7 +2,9 @@
 
 #include "app/stage.h"
 #include "compare/image_io.h"
+#include "compare/validate_result.h"
 #include "core/error.h"
+#include "harness/measured_run.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -29,6 +31,13 @@ void check_choice(const CommonOptions& common, const PictureOptions& options)
     const auto techniques = list_techniques(common.technique_dirs);
     parse_choice(find_technique(techniques, options.technique), options.parameters);
     if (!options.size.empty()) size_option(options.size);
+}
+
+double most_steps_of(const CommonOptions& common, const PictureOptions& options)
+{
+    const auto       techniques = list_techniques(common.technique_dirs);
+    const Technique& technique  = find_technique(techniques, options.technique);
+    return declared_steps(technique, parse_choice(technique, options.parameters).values);
 }
 
 std::string matrix_text(const glm::dmat4& matrix)
@@ -115,7 +124,8 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
     const auto        frame  = prepare(common, options, stage);
     const TraceResult result = count_frame(stage.gpu, *frame);
     Image             image{result.size_px,
-                {"hit.x", "hit.y", "hit.t", "hit.z", "status", "steps", "depth_fetches", "structure_fetches"},
+                {"hit.x", "hit.y", "hit.t", "hit.z", "pixel.x", "pixel.y", "status", "steps", "depth_fetches",
+                 "structure_fetches"},
                 {},
                 {}};
     image.metadata["ssrlab:status_names"] = status_legend();
@@ -125,14 +135,16 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
         const bool hit = result.status[i] == TraceStatus::hit;
         // A miss has no hit point: zeros, and the status says so.
         const glm::dvec3 point = hit ? result.hit_px_depth[i] : glm::dvec3(0);
+        const glm::dvec2 pixel = hit ? glm::dvec2(result.hit_pixel[i]) : glm::dvec2(0);
         for (const double value :
-             {point.x, point.y, hit ? result.hit_t[i] : 0.0, point.z, static_cast<double>(result.status[i]),
-              static_cast<double>(result.steps[i]), static_cast<double>(result.depth_fetches[i]),
-              static_cast<double>(structure_fetches_of(result, i))})
+             {point.x, point.y, hit ? result.hit_t[i] : 0.0, point.z, pixel.x, pixel.y,
+              static_cast<double>(result.status[i]), static_cast<double>(result.steps[i]),
+              static_cast<double>(result.depth_fetches[i]), static_cast<double>(structure_fetches_of(result, i))})
             image.values.push_back(static_cast<float>(value));
     }
     write_image(options.output, image);
     std::puts(options.output.c_str());
+    require_possible(result, most_steps_of(common, options));
     return report_messages(stage);
 }
 

@@ -1,5 +1,7 @@
 #include "check/judge.h"
 
+#include "compare/measures.h"
+#include "compare/validate_result.h"
 #include "core/error.h"
 #include "core/pixel_index.h"
 #include "truth/screen_truth.h"
@@ -58,6 +60,13 @@ glm::dvec3 direction_vs(const View& view, const RayInput& ray)
     return {to * from_depth - from * to_depth, to_depth - from_depth};
 }
 
+/// 0 where one of them has no direction.
+double cosine(glm::dvec3 a, glm::dvec3 b)
+{
+    const double lengths = glm::length(a) * glm::length(b);
+    return lengths > 0 ? glm::dot(a, b) / lengths : 0;
+}
+
 double screen_length_px(const RayInput& ray) { return glm::length(glm::dvec2(ray.delta_px_depth)); }
 
 /// A thousandth of a pixel.
@@ -65,8 +74,7 @@ double slack_t(const RayInput& ray) { return 1e-3 / std::max(screen_length_px(ra
 
 std::string name(const RayOutcome& outcome)
 {
-    if (outcome.status != TraceStatus::hit)
-        return std::string(trace_status_names.at(static_cast<size_t>(outcome.status)));
+    if (outcome.status != TraceStatus::hit) return std::string(status_name(outcome.status));
     return fmt::format("hit in ({}, {}) at t {:.9g}", outcome.hit_pixel.x, outcome.hit_pixel.y, outcome.t);
 }
 
@@ -110,8 +118,8 @@ Visit Judge::visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_
     visit.contact =
         std::min(visit.front - std::min(visit.z_in, visit.z_out), std::max(visit.z_in, visit.z_out) - visit.back);
     if (setup_.settings.facing)
-        visit.faces = glm::dot(glm::dvec3(setup_.gbuffer.normal_vs[pixel_index(pixel, setup_.gbuffer.view.size_px)]),
-                               direction_vs(setup_.gbuffer.view, ray)) < 0;
+        visit.facing = cosine(glm::dvec3(setup_.gbuffer.normal_vs[pixel_index(pixel, setup_.gbuffer.view.size_px)]),
+                              direction_vs(setup_.gbuffer.view, ray));
     return visit;
 }
 
@@ -147,8 +155,8 @@ RayOutcome Judge::exact_answer(const RayInput& ray) const
     answer.status = ray.end_status;
     for (const Visit& v : walk(ray)) {
         ++answer.steps;
-        if (v.contact >= 0 && !v.faces) answer.status = TraceStatus::facing_away;
-        if (!(v.contact >= 0) || !v.faces) continue;
+        if (v.contact >= 0 && !v.faces()) answer.status = TraceStatus::facing_away;
+        if (!(v.contact >= 0) || !v.faces()) continue;
         const bool   inside = v.z_in <= v.front && v.z_in >= v.back;
         const double face   = v.z_in > v.front ? v.front : v.back;
         const double dz     = ray.delta_px_depth.z;
@@ -166,20 +174,56 @@ double Judge::depth_rounding(const RayInput& ray, const Visit& v) const
     return 0x1p-21 * (std::abs(ray.origin_px_depth.z) + std::abs(ray.delta_px_depth.z) + v.front);
 }
 
+bool Judge::surely_touches(const RayInput& ray, const Visit& v) const
+{
+    return v.contact > depth_rounding(ray, v) && depth_inside_px(ray, v) > sliver_px;
+}
+
+/// Rounding could make the ray touch this pixel's surface, or a step that reaches `more_t` farther does.
+bool Judge::may_touch(const RayInput& ray, const Visit& v, double more_t) const
+{
+    const Range t = part_in_pixel(ray, v.pixel, sliver_px);
+    if (t.empty()) return false;
+    const Visit wider = visit(ray, v.pixel, std::max(t.from - more_t, 0.0), std::min(t.to + more_t, 1.0));
+    return wider.contact >= -depth_rounding(ray, wider);
+}
+
 /// A hit must lie in a pixel that the ray crosses, where it touches the slab (or, if so claimed, would touch it within a step); slivers count
 /// as crossing.
 std::string Judge::unsound_hit(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const
 {
     const Range t = part_in_pixel(ray, outcome.hit_pixel, sliver_px);
-    if (t.empty()) return fmt::format("{}, a pixel that the ray does not cross", name(outcome));
+    if (t.empty() || !on_image(setup_.gbuffer, outcome.hit_pixel))
+        return fmt::format("{}, a pixel that the ray does not cross", name(outcome));
     const double step = claim.may_hit_within_a_step && outcome.steps > 0 ? outcome.t / outcome.steps : 0;
     const Visit  v    = visit(ray, outcome.hit_pixel, std::max(t.from - step, 0.0), std::min(t.to + step, 1.0));
     if (!(v.contact >= -depth_rounding(ray, v)))
         return fmt::format("{}, where the ray's depth {:.9g} … {:.9g} does not meet the slab {:.9g} … {:.9g}",
                            name(outcome), v.z_in, v.z_out, v.front, v.back);
+    if (v.facing > facing_rounding)
+        return fmt::format("{}, whose surface faces away from the ray (cosine {:.6g})", name(outcome), v.facing);
     if (outcome.t < t.from - slack_t(ray) || outcome.t > t.to + slack_t(ray))
         return fmt::format("{}, but the ray is in that pixel from {:.9g} to {:.9g}", name(outcome), t.from, t.to);
     return {};
+}
+
+/// A ray without a hit must say whether it touched a surface that faces away.
+std::string Judge::unsound_end(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const
+{
+    const std::vector<Visit> visits = walk(ray);
+    if (outcome.status == TraceStatus::facing_away) {
+        const double more_t = claim.may_hit_within_a_step ? 1 : 0; // how long its steps were, a miss does not say
+        const bool   any    = std::ranges::any_of(
+                 visits, [&](const Visit& v) { return v.facing > -facing_rounding && may_touch(ray, v, more_t); });
+        return any ? "" : "ends as facing_away, but touches no surface that faces away";
+    }
+    if (outcome.status == TraceStatus::out_of_steps || claim.may_miss_between_samples || claim.may_miss_behind_objects)
+        return "";
+    const auto away = std::ranges::find_if(
+        visits, [&](const Visit& v) { return v.facing > facing_rounding && surely_touches(ray, v); });
+    if (away == visits.end()) return "";
+    return fmt::format("ends as {}, but touches the surface in ({}, {}), which faces away", name(outcome),
+                       away->pixel.x, away->pixel.y);
 }
 
 Judgement Judge::judge(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const
@@ -187,23 +231,24 @@ Judgement Judge::judge(const RayInput& ray, const RayOutcome& outcome, const Cla
     const RayOutcome exact = exact_answer(ray);
     const bool       hit = outcome.status == TraceStatus::hit, both_hit = hit && exact.status == TraceStatus::hit;
     Judgement        result;
+    result.findable = exact.status == TraceStatus::hit;
     if (both_hit) result.deviation_px = std::abs(outcome.t - exact.t) * screen_length_px(ray);
-    if (hit) {
-        result.reason = unsound_hit(ray, outcome, claim);
-        if (!result.reason.empty()) {
-            result.verdict = Verdict::wrong;
-            return result;
-        }
+    result.reason = hit ? unsound_hit(ray, outcome, claim) : unsound_end(ray, outcome, claim);
+    if (!result.reason.empty()) {
+        result.verdict = Verdict::wrong;
+        return result;
     }
+    result.found = both_hit && (outcome.hit_pixel == exact.hit_pixel || result.deviation_px <= within_one_px);
     if (outcome.status == exact.status && (!both_hit || outcome.hit_pixel == exact.hit_pixel)) return result;
 
     // Something was skipped. Is there a pixel before the reported one that the ray undoubtedly hits?
-    result.verdict  = hit && !unsound_hit(ray, outcome, {}).empty() ? Verdict::allowed : Verdict::sliver;
+    const bool within_limits = hit ? !unsound_hit(ray, outcome, {}).empty() : !unsound_end(ray, outcome, {}).empty();
+    result.verdict  = within_limits || outcome.status == TraceStatus::out_of_steps ? Verdict::allowed : Verdict::sliver;
     bool was_behind = false;
     for (const Visit& v : walk(ray)) {
         if (hit && (v.pixel == outcome.hit_pixel || v.t_in >= outcome.t - slack_t(ray))) break;
         was_behind = was_behind || (v.front > 0 && std::max(v.z_in, v.z_out) < v.back);
-        if (!v.faces || !(v.contact > depth_rounding(ray, v)) || depth_inside_px(ray, v) <= sliver_px) continue;
+        if (!(v.facing < -facing_rounding) || !surely_touches(ray, v)) continue;
         result.verdict = claim.may_miss_between_samples || (claim.may_miss_behind_objects && was_behind)
                              ? Verdict::allowed
                              : Verdict::wrong;
@@ -217,14 +262,14 @@ Judgement Judge::judge(const RayInput& ray, const RayOutcome& outcome, const Cla
 
 std::string Judge::broken_invariant(const RayInput& ray, const RayOutcome& outcome) const
 {
+    const Answer answer{outcome.status, outcome.hit_pixel, outcome.t, outcome.steps};
+    if (const std::string what = impossible(answer, setup_.gbuffer.view.size_px, infinity); !what.empty()) return what;
     if (!std::isfinite(outcome.t)) return fmt::format("t is {}", outcome.t);
     if (outcome.status != TraceStatus::hit) {
         const bool possible = outcome.status == ray.end_status || outcome.status == TraceStatus::out_of_steps ||
                               (outcome.status == TraceStatus::facing_away && setup_.settings.facing);
         return possible ? "" : fmt::format("ends as {}, which this ray cannot", name(outcome));
     }
-    if (!on_image(setup_.gbuffer, outcome.hit_pixel)) return fmt::format("{}, which is off the image", name(outcome));
-    if (!(outcome.t >= 0 && outcome.t <= 1)) return fmt::format("{}, outside the segment", name(outcome));
     if (outcome.hit_pixel == start_pixel(setup_.gbuffer, ray)) return fmt::format("{}, its start pixel", name(outcome));
     return {};
 }

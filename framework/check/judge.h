@@ -10,18 +10,21 @@ namespace ssrlab {
 
 /// How far a ray may be inside a pixel that was wrongly skipped or taken before it is a gross error.
 inline constexpr double sliver_px = 0.05;
+/// Cosine between normal and ray below which rounding decides whether the surface faces the ray.
+inline constexpr double facing_rounding = 1e-4;
 
 enum class Verdict {
     right,
-    sliver, // another pixel than the exact one, but the ray is less than sliver_px inside the pixels in question, or touches their slab's face
+    sliver, // a near tie: another answer than the exact one, and rounding could decide every comparison that tells the two apart
     allowed, // missed, or hit within a step, what the technique's declared limits let it
     wrong,
 };
 
 struct Judgement {
-    Verdict     verdict      = Verdict::right;
-    double      deviation_px = 0;  // between the hit points on screen, if the ray hits in both
-    std::string reason       = {}; // wrong only
+    Verdict verdict      = Verdict::right;
+    double  deviation_px = 0;                // between the hit points on screen, if the ray hits in both
+    bool    findable = false, found = false; // the exact answer is a hit; and the technique hits within a pixel of it
+    std::string reason = {};                 // wrong only
 };
 
 /// What the technique claims.
@@ -39,7 +42,8 @@ struct Visit {
     double     z_in = 0, z_out = 0;
     double     front = 0, back = 0; // of its slab; background: front <= 0
     double     contact = 0;         // depth by which the ray's interval overlaps the slab; negative: a gap
-    bool       faces   = true;      // or the facing rule is off
+    double     facing  = -1;        // cosine between normal and ray; -1 where the facing rule is off
+    bool       faces() const { return facing < 0; }
 };
 
 /// How deep the ray goes into the pixel: its largest distance to the pixel's borders there.
@@ -62,7 +66,10 @@ public:
 private:
     Visit       visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_out) const;
     double      depth_rounding(const RayInput& ray, const Visit& visit) const;
+    bool        surely_touches(const RayInput& ray, const Visit& visit) const;
+    bool        may_touch(const RayInput& ray, const Visit& visit, double more_t) const;
     std::string unsound_hit(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
+    std::string unsound_end(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
 
     const Setup& setup_;
 };

@@ -40,8 +40,7 @@ bool same_answer(const RayOutcome& a, const RayOutcome& b, bool compare_t)
 
 std::string text(const RayOutcome& outcome)
 {
-    if (outcome.status != TraceStatus::hit)
-        return std::string(trace_status_names.at(static_cast<size_t>(outcome.status)));
+    if (outcome.status != TraceStatus::hit) return std::string(status_name(outcome.status));
     return fmt::format("hit ({}, {}) t {:.9g}", outcome.hit_pixel.x, outcome.hit_pixel.y, outcome.t);
 }
 
@@ -136,6 +135,8 @@ private:
                 report(i, "out of steps within its budget");
             check_expected(setup, i, outcome);
             const Judgement verdict = judge.judge(setup.rays[i], outcome, claim);
+            row_.findable += verdict.findable;
+            row_.found += verdict.found;
             row_.slivers += verdict.verdict == Verdict::sliver;
             row_.allowed += verdict.verdict == Verdict::allowed;
             if (verdict.verdict != Verdict::sliver)

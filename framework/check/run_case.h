@@ -8,17 +8,18 @@ namespace ssrlab {
 
 /// A row of the table.
 struct CaseRow {
-    std::string              family, case_name, technique;
-    size_t                   rays  = 0;
-    size_t                   wrong = 0, slivers = 0, allowed = 0; // of rays; allowed: by the declared limits
-    double                   worst_deviation_px = 0;
-    size_t                   non_finite = 0, out_of_steps = 0;
-    uint32_t                 most_steps        = 0;
-    size_t                   precision_changes = 0; // rays whose status or pixel differ between float and double
-    double                   seconds           = 0;
-    uint64_t                 digest            = 0;  // of all outcomes, to compare runs
-    size_t                   breaks            = 0;  // claims broken: wrong rays, invariants, relations
-    std::vector<std::string> findings          = {}; // the first few, each naming its setup and ray
+    std::string family, case_name, technique;
+    size_t      rays     = 0;
+    size_t      findable = 0, found = 0; // rays that hit something, exactly; and of these, found within a pixel
+    size_t      wrong = 0, slivers = 0, allowed = 0; // of rays; slivers: near ties; allowed: by the declared limits
+    double      worst_deviation_px = 0;
+    size_t      non_finite = 0, out_of_steps = 0;
+    uint32_t    most_steps            = 0;
+    size_t      precision_changes     = 0; // rays whose status or pixel differ between float and double
+    double      seconds               = 0;
+    uint64_t    digest                = 0;  // of all outcomes, to compare runs
+    size_t      breaks                = 0;  // claims broken: wrong rays, invariants, relations
+    std::vector<std::string> findings = {}; // the first few, each naming its setup and ray
 };
 
 struct CheckOptions {

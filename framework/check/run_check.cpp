@@ -3,6 +3,8 @@
 #include "core/error.h"
 #include "core/names.h"
 
+#include <map>
+
 namespace ssrlab {
 
 const HardCase& find_case(const std::string& name)
@@ -37,6 +39,20 @@ std::vector<CaseRow> run_check(Gpu& gpu, Gpu* robust, const CheckRequest& reques
             }
         }
     return rows;
+}
+
+std::vector<std::string> check_finds(const std::vector<CaseRow>& rows)
+{
+    std::map<std::string, std::pair<size_t, size_t>> found_of; // and findable
+    for (const CaseRow& row : rows) {
+        found_of[row.technique].first += row.found;
+        found_of[row.technique].second += row.findable;
+    }
+    std::vector<std::string> lines;
+    for (const auto& [technique, count] : found_of)
+        if (count.first == 0 && count.second > 0)
+            lines.push_back(fmt::format("{} finds none of {} hits that are there", technique, count.second));
+    return lines;
 }
 
 std::vector<std::string> check_refusals()

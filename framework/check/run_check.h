@@ -16,6 +16,9 @@ struct CheckRequest {
 std::vector<CaseRow> run_check(Gpu& gpu, Gpu* robust, const CheckRequest& request,
                                const std::function<void(const CaseRow&)>& on_row);
 
+/// A line for each technique that finds nothing in all these rows of what there is: limits allow to miss, but not everything.
+std::vector<std::string> check_finds(const std::vector<CaseRow>& rows);
+
 /// Attempts what must be refused; a line for each that was not.
 std::vector<std::string> check_refusals();
 

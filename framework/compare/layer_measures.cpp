@@ -14,8 +14,8 @@ MeasureValues compare_hidden_layer(const TraceResult& first, const TraceResult& 
         const bool on_screen = is_hidden || truth.cls[i] == TruthClass::visible;
         const bool is_ghost  = on_screen && first.status[i] != TraceStatus::hit;
         const bool hits      = second.status[i] == TraceStatus::hit;
-        const bool right =
-            hits && on_screen && screen_distance_px(glm::dvec2(second.hit_px_depth[i]), truth.point_px[i]) <= 1;
+        const bool right     = hits && on_screen &&
+                           screen_distance_px(glm::dvec2(second.hit_px_depth[i]), truth.point_px[i]) <= within_one_px;
         ++rays;
         hidden += is_hidden;
         recovered += is_hidden && right;

@@ -81,6 +81,10 @@ MeasureValues compare_pictures(const Image& tested, const Reference& reference, 
 /// The reference reflection: the scene truth's radiance where traced, black elsewhere; channels R, G, B.
 Image reference_image(const SceneTruth& scene_truth);
 
+/// "Within 1 px" and "within 4 px": hits on a lattice of pixels are often exactly as far apart, and rounding must not decide.
+inline constexpr double within_one_px  = 1 + 1e-3;
+inline constexpr double within_four_px = 4 + 1e-3;
+
 /// Largest of |dx| and |dy|: two points of one pixel are never more than 1 apart.
 double screen_distance_px(glm::dvec2 a, glm::dvec2 b);
 

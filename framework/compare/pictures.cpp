@@ -33,7 +33,7 @@ template <typename ColourOf> Image paint(glm::ivec2 size_px, const ColourOf& col
 
 glm::vec3 agreement_colour(bool hit, bool findable, glm::dvec2 hit_px, glm::dvec2 true_px)
 {
-    if (hit && findable) return screen_distance_px(hit_px, true_px) <= 1 ? green : yellow;
+    if (hit && findable) return screen_distance_px(hit_px, true_px) <= within_one_px ? green : yellow;
     if (findable) return red;
     return hit ? magenta : grey;
 }

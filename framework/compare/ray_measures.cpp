@@ -1,5 +1,6 @@
 // Measures that compare rays with rays.
 #include "compare/measures.h"
+#include "compare/validate_result.h"
 #include "core/pixel_index.h"
 #include "core/quantile.h"
 
@@ -11,10 +12,8 @@
 namespace ssrlab {
 namespace {
 
-constexpr double self_hit_sine  = 0.01;
-constexpr double behind_share   = 0.001;
-constexpr double within_one_px  = 1;
-constexpr double within_four_px = 4;
+constexpr double self_hit_sine = 0.01;
+constexpr double behind_share  = 0.001;
 
 bool traced(const TraceResult& result, size_t i) { return result.status[i] != TraceStatus::not_traced; }
 bool hits(const TraceResult& result, size_t i) { return result.status[i] == TraceStatus::hit; }
@@ -95,6 +94,7 @@ double screen_distance_px(glm::dvec2 a, glm::dvec2 b) { return std::max(std::abs
 MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResult& truth)
 {
     require_same_size(tested.size_px, truth.size_px);
+    require_possible(tested);
     size_t rays = 0, same_pixel = 0, within = 0, displaced = 0, missed = 0, false_hits = 0, out_of_steps = 0;
     std::vector<double> distances;
     for (size_t i = 0; i < truth.status.size(); ++i) {
@@ -134,6 +134,7 @@ MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth
     require_same_size(tested.size_px, truth.size_px);
     require_same_size(tested.size_px, screen_truth.size_px);
     require_same_size(tested.size_px, gbuffer.view.size_px);
+    require_possible(tested);
     std::array<size_t, truth_class_names.size()> of_class{};
     size_t                                       rays = 0, hit_count = 0, found_1px = 0, found_4px = 0, displaced = 0;
     size_t                                       stepped_over = 0, out_of_steps = 0, facing_rule = 0, not_in_depth = 0;

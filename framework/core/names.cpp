@@ -4,8 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
+#include <regex>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -29,11 +29,18 @@ size_t edit_distance(std::string_view a, std::string_view b)
     return row[b.size()];
 }
 
-constexpr auto glsl_keywords = std::to_array<std::string_view>(
-    {"bool",   "break",  "buffer", "case",  "centroid", "const",   "continue", "default", "discard",
-     "do",     "double", "else",   "false", "float",    "for",     "if",       "in",      "inout",
-     "input",  "int",    "main",   "out",   "output",   "real",    "return",   "sampler", "shared",
-     "struct", "switch", "trace",  "true",  "uint",     "uniform", "using",    "void",    "while"});
+// GLSL 4.60, section 3.6: keywords and what is reserved; and the project's own macros and entry points.
+constexpr std::string_view glsl_keywords =
+    " "
+    "active asm atomic_uint attribute bool break buffer case cast centroid class coherent common "
+    "const continue default discard do double else enum extern external false filter fixed flat float "
+    "for goto half highp if in inline inout input int interface invariant layout long lowp main "
+    "mediump namespace noinline noperspective out output partition patch precise precision public "
+    "readonly resource restrict return sample shared short sizeof smooth static struct subroutine "
+    "superp switch template this trace true typedef uint uniform union unsigned using varying void "
+    "volatile while writeonly ";
+constexpr const char* glsl_types = "[biudhf]?vec[234]|real[234]?|d?mat[234](x[234])?|[iu]?subpassInput(MS)?|"
+                                   "[iu]?sampler([1-9CS]\\w*|Buffer)?|[iu]?(image|texture)([1-9C]\\w*|Buffer)";
 
 } // namespace
 
@@ -56,7 +63,8 @@ bool is_glsl_name(const std::string& name)
     const auto allowed = [&](unsigned char c) { return letter(c) || (c < 128 && std::isdigit(c) != 0); };
     return !name.empty() && letter(static_cast<unsigned char>(name.front())) && std::ranges::all_of(name, allowed) &&
            !name.starts_with("gl_") && name.find("__") == std::string::npos &&
-           std::ranges::find(glsl_keywords, name) == glsl_keywords.end();
+           glsl_keywords.find(" " + name + " ") == std::string_view::npos &&
+           !std::regex_match(name, std::regex(glsl_types));
 }
 
 } // namespace ssrlab

@@ -21,9 +21,16 @@ enum class TraceStatus : uint8_t {
     past_max_distance = 3, // reached the maximum distance (or infinity) inside the image
     out_of_steps      = 4, // gave up; never a hit
     facing_away       = 5, // would be a miss, and touched only surfaces that face away from it (facing rule on)
+    impossible        = 7, // not an answer: an unknown status, or a hit off the image (compare/validate_result.h)
 };
+/// Of those that are answers.
 inline constexpr std::array<std::string_view, 6> trace_status_names = {
     "not_traced", "hit", "left_screen", "past_max_distance", "out_of_steps", "facing_away"};
+inline std::string_view status_name(TraceStatus status)
+{
+    const auto number = static_cast<size_t>(status);
+    return number < trace_status_names.size() ? trace_status_names[number] : "impossible";
+}
 
 /// How often each ray read a structure. What building took for a whole group of rays counts with its first one.
 struct StructureFetches {

@@ -2,6 +2,8 @@
 
 #include "core/files.h"
 
+#include <atomic>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 
@@ -24,17 +26,24 @@ fs::path cache_folder()
     return {};
 }
 
+void warn_once(const char* why) noexcept
+{
+    static std::atomic_flag warned;
+    if (!warned.test_and_set()) std::fprintf(stderr, "warning: shaders are compiled anew, without a cache: %s\n", why);
+}
+
 } // namespace
 
 std::optional<std::string> read_cached(const std::string& name)
 {
     const fs::path folder = cache_folder();
-    if (folder.empty() || !fs::is_regular_file(folder / name)) return std::nullopt;
     try {
+        if (folder.empty() || !fs::is_regular_file(folder / name)) return std::nullopt;
         const std::string file = read_file(folder / name);
         const std::string rest = file.size() > hash_bytes ? file.substr(hash_bytes) : "";
         if (!rest.empty() && file.compare(0, hash_bytes, content_hash(rest)) == 0) return rest;
-    } catch (const std::exception&) { // unreadable is as good as absent
+    } catch (const std::exception& error) { // unreadable is as good as absent
+        warn_once(error.what());
     }
     return std::nullopt;
 }
@@ -46,7 +55,8 @@ void write_cached(const std::string& name, std::string_view bytes) noexcept
         if (folder.empty()) return;
         fs::create_directories(folder);
         write_file_atomically(folder / name, content_hash(bytes).append(bytes));
-    } catch (const std::exception&) { // made anew next time
+    } catch (const std::exception& error) { // made anew next time
+        warn_once(error.what());
     }
 }
 

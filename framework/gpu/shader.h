@@ -32,7 +32,7 @@ struct ShaderSource {
     std::map<std::string, std::string>           defines       = {};
     std::map<std::string, std::filesystem::path> include_files = {}; // virtual include name -> file
     std::map<std::string, std::string>           include_texts = {}; // virtual include name -> text
-    std::vector<std::filesystem::path>           include_folders = {}; // besides the shader folder and an including file's own
+    std::vector<std::filesystem::path> include_folders = {}; // a plug-in's own: searched before those of the project
 };
 
 /// Where the project's shaders lie.
@@ -40,7 +40,8 @@ std::filesystem::path shader_folder();
 /// Where the project's techniques and structures lie: their files may be included, too.
 std::filesystem::path technique_folder();
 
-/// Throws SpecError "FILE:LINE: message" for the first error found.
+/// Includes come from the source itself, its folders and the shader folder, and from nowhere else. Throws SpecError with a line
+/// "FILE:LINE: message" for each error found; what is missing from a file of include_files is said of that file.
 Shader compile_shader(const ShaderSource& source);
 
 } // namespace ssrlab

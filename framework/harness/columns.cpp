@@ -60,7 +60,8 @@ const std::vector<Column> ending = {
     {"picture", "the reflected picture, relative to this file; beside it NAME_agreement.png (right and wrong in false "
                 "colours) and "
                 "NAME_fetches.png (work per ray)"},
-    {"outcome", "ok; no_rays: nothing in the picture reflects; failed: see message"},
+    {"outcome", "ok; no_rays: nothing in the picture reflects; failed: see message; invalid: a ray has an answer that "
+                "cannot be, see message"},
     {"message", "what went wrong"},
 };
 

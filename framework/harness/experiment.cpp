@@ -12,6 +12,8 @@ namespace ssrlab {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+// Below that after which the device is given up (gpu.cpp).
+constexpr double most_time_limit_s = 240;
 
 /// A value or a list of values. An empty list would silently sweep nothing.
 std::vector<const toml::node*> values_of(const TomlFile& file, const toml::node& node, const std::string& name)
@@ -220,6 +222,7 @@ MeasureSettings read_measure(const TomlFile& file)
     integer("min_repeats", measure.min_repeats, 1, 100000);
     integer("max_repeats", measure.max_repeats, 1, 100000);
     number("budget_s", measure.budget_s, 0, infinity);
+    number("time_limit_s", measure.time_limit_s, 0.1, most_time_limit_s);
     flag("truth", measure.truth);
     flag("image_errors", measure.image_errors);
     flag("double_twin", measure.double_twin);

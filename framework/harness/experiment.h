@@ -20,6 +20,7 @@ struct MeasureSettings {
     int      warmup           = 1; // untimed frames before the first timed one
     int      min_repeats      = 9; // below 6 there is no 95 % interval
     int      max_repeats      = 100;
+    double   time_limit_s     = 60;   // a run fails whose preparation or frame takes longer on the device
     double   budget_s         = 1;    // a run has as many repeats as its pilot frame says fit into this
     bool     truth            = true; // compare with the truths
     bool     image_errors = true; // also compare the pictures (SSIM, FLIP …), which takes longer than comparing rays

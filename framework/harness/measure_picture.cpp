@@ -2,6 +2,7 @@
 
 #include "compare/image_io.h"
 #include "compare/pictures.h"
+#include "compare/validate_result.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "core/parallel_rows.h"
@@ -60,6 +61,11 @@ template <typename Step> decltype(auto) clocked(double& seconds, const Step& ste
     return step();
 }
 
+double cost_of(const Bench& bench, const Run& run)
+{
+    return estimated_seconds(run, find_technique(bench.techniques, run.technique), bench.experiment.measure);
+}
+
 Picture make_picture(Bench& bench, const Run& run)
 {
     const LoadedScene& loaded = scene_of(bench, run.scene);
@@ -94,22 +100,6 @@ void refuse_changed_sources(const Bench& bench)
                   short_path(bench.results.path()), fmt::join(changed, ", "));
 }
 
-double cost_of(const Bench& bench, const Run& run)
-{
-    return estimated_seconds(run, find_technique(bench.techniques, run.technique), bench.experiment.measure);
-}
-
-void finish(Bench& bench, const Run& run, const Row& row, std::string_view samples = "")
-{
-    bench.results.append(row, samples);
-    ++bench.written;
-    if (row.at("outcome") == "failed") {
-        ++bench.failed;
-        bench.progress.say(fmt::format("run {} failed: {}", run.id, row.at("message")));
-    }
-    bench.progress.finish_run(run.id, cost_of(bench, run));
-}
-
 /// Tries a step of one run; when it throws, the run's row says why and the run is over.
 template <typename Step> bool try_step(Bench& bench, MeasuredRun& measured, const Step& step)
 {
@@ -118,7 +108,7 @@ template <typename Step> bool try_step(Bench& bench, MeasuredRun& measured, cons
         return true;
     } catch (const std::exception& error) {
         refuse_changed_sources(bench);
-        finish(bench, *measured.run, failed_row(measured.row, error.what()));
+        finish(bench, *measured.run, failed_row(measured.row, error));
         measured.run = nullptr;
         return false;
     }
@@ -206,10 +196,28 @@ void judge(const Bench& bench, Picture& picture, MeasuredRun& measured, const Ob
         add_measures(measured.row, picture.truths->compare_picture(observed.shaded, *picture.reference));
 }
 
+/// Nothing is measured by answers that cannot be.
+void refuse_impossible(const Bench& bench, const Run& run, const Observed& observed)
+{
+    const Technique& technique = find_technique(bench.techniques, run.technique);
+    const double     steps     = declared_steps(technique, run.values);
+    const auto       refuse    = [&](const TraceResult& result, const char* where) {
+        if (const auto found = find_impossible(result, steps))
+            throw InvalidResult(fmt::format("{}{}; {}", where, *found, trace_command(run, technique)));
+    };
+    refuse(observed.counted, "");
+    if (observed.twin) refuse(*observed.twin, "in double precision: ");
+    if (observed.hidden) refuse(*observed.hidden, "in the second layer: ");
+}
+
 /// Everything but the timed repeats.
 void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
 {
-    const Observed observed = observe(bench, picture.buffers, measured);
+    const Observed observed = [&] {
+        const UnderWay under_way(bench.state, measured.run->id, bench.experiment.measure.time_limit_s);
+        return observe(bench, picture.buffers, measured);
+    }();
+    refuse_impossible(bench, *measured.run, observed);
     make_references(bench, picture, measured);
     judge(bench, picture, measured, observed);
 }
@@ -218,6 +226,7 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
 void plan_repeats(Bench& bench, MeasuredRun& measured)
 {
     clocked(bench.counted_s, [&] {
+        const UnderWay  under_way(bench.state, measured.run->id, bench.experiment.measure.time_limit_s);
         const Stopwatch stopwatch;
         run_frame(bench.gpu, *measured.frame);
         measured.repeats = repeats_for(stopwatch.seconds(), bench.experiment.measure);
@@ -228,8 +237,9 @@ void plan_repeats(Bench& bench, MeasuredRun& measured)
 void prepare_comparison(Bench& bench, MeasuredRun& measured)
 {
     if (!bench.experiment.measure.saved_time || !plan_skips_work(*measured.frame)) return;
-    const size_t known = pipelines_made(bench.gpu);
-    measured.unculled  = prepare_unculled(bench.gpu, *measured.frame);
+    const size_t   known = pipelines_made(bench.gpu);
+    const UnderWay under_way(bench.state, measured.run->id, bench.experiment.measure.time_limit_s);
+    measured.unculled = prepare_unculled(bench.gpu, *measured.frame);
     // A driver may compile a pipeline when it first runs.
     if (pipelines_made(bench.gpu) != known) clocked(bench.counted_s, [&] { run_frame(bench.gpu, *measured.unculled); });
 }
@@ -243,6 +253,7 @@ void repeat_until_final(Bench& bench, Picture& picture, std::vector<MeasuredRun>
         for (MeasuredRun& measured : open) {
             if (stop_requested() != 0) break;
             try_step(bench, measured, [&] {
+                const UnderWay under_way(bench.state, measured.run->id, bench.experiment.measure.time_limit_s);
                 clocked(bench.timed_s, [&] { add_repeat(bench.gpu, measured, picture.gbuffer_ms, picture.round); });
             });
             if (over(measured) || static_cast<int>(measured.rounds.size()) < measured.repeats) continue;
@@ -304,18 +315,30 @@ void measure_batch(Bench& bench, Picture& picture, std::span<const Run> runs)
 
 } // namespace
 
+void finish(Bench& bench, const Run& run, const Row& row, std::string_view samples)
+{
+    bench.results.append(row, samples);
+    ++bench.state.written;
+    if (row.contains("message")) {
+        ++bench.state.failed;
+        bench.progress.say(fmt::format("run {} {}: {}", run.id, row.at("outcome"), row.at("message")));
+    }
+    bench.progress.finish_run(run.id, cost_of(bench, run));
+}
+
 void measure_picture(Bench& bench, std::span<const Run> runs)
 {
     const Run& first = runs.front();
     bench.progress.start_picture(fmt::format("{} {} {}", first.scene, first.view, size_text(first.size_px)));
     Picture picture;
     try {
+        const UnderWay under_way(bench.state, first.id, 0, true);
         picture = make_picture(bench, first);
     } catch (const std::exception& error) {
         refuse_changed_sources(bench);
         for (const Run& run : runs) {
             const Technique& technique = find_technique(bench.techniques, run.technique);
-            finish(bench, run, failed_row(identity_row(bench.experiment, run, technique), error.what()));
+            finish(bench, run, failed_row(identity_row(bench.experiment, run, technique), error));
         }
         return;
     }

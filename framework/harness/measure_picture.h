@@ -5,6 +5,7 @@
 #include "harness/progress.h"
 #include "harness/quality.h"
 #include "harness/record.h"
+#include "harness/supervise.h"
 
 #include <optional>
 #include <random>
@@ -25,13 +26,16 @@ struct Bench {
     Gpu&                               gpu;
     ResultFolder&                      results;
     Progress&                          progress;
+    SweepState&                        state;
     std::map<std::string, std::string> identity; // what environment.json says
     std::mt19937_64                    random{experiment.measure.seed};
-    std::unique_ptr<LoadedScene>       scene   = nullptr;
-    size_t                             written = 0, failed = 0;
+    std::unique_ptr<LoadedScene>       scene = nullptr;
     // Wall time of frames that were timed, of those that were judged and counted instead, and of making or reading truths.
     double timed_s = 0, counted_s = 0, truths_s = 0;
 };
+
+/// Appends the row of a run that is over.
+void finish(Bench& bench, const Run& run, const Row& row, std::string_view samples = "");
 
 /// Appends a row for each run as soon as it is final; a run that fails is a row with the reason. Returns early, with the
 /// rows so far complete, when a stop was requested.

@@ -1,5 +1,7 @@
 #include "harness/measured_run.h"
 
+#include "compare/validate_result.h"
+#include "core/files.h"
 #include "harness/statistics.h"
 
 #include <fmt/format.h>
@@ -51,6 +53,7 @@ Row identity_row(const Experiment& experiment, const Run& run, const Technique& 
 
 void add_counts(Row& row, const TraceResult& counted)
 {
+    require_possible(counted);
     std::array<double, trace_status_names.size()> ended{};
     std::vector<double>                           fetches, steps;
     for (size_t i = 0; i < counted.status.size(); ++i) {
@@ -146,10 +149,29 @@ void add_times(MeasuredRun& measured, double gbuffer_ms)
     row["inverse_fps_s"] = number_text(frame.median / 1000);
 }
 
-Row failed_row(Row row, const std::string& message)
+double declared_steps(const Technique& technique, const ParameterValues& values)
 {
-    row["outcome"] = "failed";
-    row["message"] = message;
+    return technique.bounded_by.empty() ? max_iterations : iteration_bound(technique, values);
+}
+
+std::string trace_command(const Run& run, const Technique& technique)
+{
+    const std::filesystem::path in_tree = std::filesystem::path(SSRLAB_SOURCE_DIR) / "techniques";
+    std::string                 text    = "ssrlab trace " + run.scene;
+    if (technique.folder.parent_path() != in_tree) text += " --techniques " + short_path(technique.folder);
+    text += fmt::format(" --view {} --size {} -t {}", run.view, size_text(run.size_px), technique.id);
+    for (const Parameter& parameter : technique.parameters)
+        text += fmt::format(" -p {}={}", parameter.name, format_parameter(parameter, run.values.at(parameter.name)));
+    for (const Setting& setting : all_settings())
+        if (const double value = setting.get(run.settings); setting.table == "trace" && value != setting.default_value)
+            text += fmt::format(" -p {}={}", setting.name, format_parameter(setting, value));
+    return text + " -o hits.exr";
+}
+
+Row failed_row(Row row, const std::exception& error)
+{
+    row["outcome"] = dynamic_cast<const InvalidResult*>(&error) != nullptr ? "invalid" : "failed";
+    row["message"] = error.what();
     return row;
 }
 

@@ -38,7 +38,14 @@ void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms, int round);
 /// that is recorded: stopping where an interval happens to be tight would make intervals too tight.
 int repeats_for(double pilot_s, const MeasureSettings& measure);
 void add_times(MeasuredRun& measured, double gbuffer_ms);
-Row  failed_row(Row row, const std::string& message);
+/// Outcome failed or, of an InvalidResult, invalid; and why.
+Row failed_row(Row row, const std::exception& error);
+
+/// The most loop iterations of one ray that a technique declares, or that any may take.
+double declared_steps(const Technique& technique, const ParameterValues& values);
+
+/// The command that shows what each ray of a run found.
+std::string trace_command(const Run& run, const Technique& technique);
 
 /// Six significant digits; NaN is an empty field.
 std::string number_text(double value);

@@ -21,6 +21,13 @@ constexpr double overhead_s            = 0.15;   // pipelines, rays compared, pi
 constexpr double image_errors_s        = 1.1e-6; // per pixel
 constexpr double prepared_share        = 0.5;    // of a run's cost, before its timed repeats
 
+/// Whoever reads it may be gone: no reason to stop.
+void write(const std::string& text)
+{
+    std::fputs(text.c_str(), stderr);
+    std::fflush(stderr);
+}
+
 double expected_steps(const Run& run, const Technique& technique)
 {
     const double bound   = iteration_bound(technique, run.values);
@@ -94,10 +101,9 @@ void Progress::print()
     const std::string left      = left_s < 0.5 ? "" : ", about " + duration_text(left_s) + " left";
     const std::string line      = fmt::format("{} of {} runs, {}, {} so far{}", done_runs_, total_runs_, picture_,
                                               duration_text(elapsed_s), left);
-    fmt::print(stderr, "{}{}{}", in_place_ ? "\r\033[K" : "", line, in_place_ && done_runs_ < total_runs_ ? "" : "\n");
-    std::fflush(stderr);
+    write((in_place_ ? "\r\033[K" : "") + line + (in_place_ && done_runs_ < total_runs_ ? "" : "\n"));
 }
 
-void Progress::say(const std::string& line) { fmt::print(stderr, "{}{}\n", in_place_ ? "\r\033[K" : "", line); }
+void Progress::say(const std::string& line) { write((in_place_ ? "\r\033[K" : "") + line + "\n"); }
 
 } // namespace ssrlab

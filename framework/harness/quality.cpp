@@ -1,11 +1,16 @@
 #include "harness/quality.h"
 
 #include "compare/pictures.h"
+#include "compare/validate_result.h"
 #include "core/error.h"
+#include "core/files.h"
 #include "core/parallel_rows.h"
 #include "truth/truth_cache.h"
 
+#include <cerrno>
 #include <cstdlib>
+#include <system_error>
+#include <unistd.h>
 
 namespace ssrlab {
 std::filesystem::path truth_cache_dir(const std::filesystem::path& results)
@@ -15,8 +20,18 @@ std::filesystem::path truth_cache_dir(const std::filesystem::path& results)
     return std::filesystem::absolute(results).lexically_normal().parent_path() / ".truth_cache";
 }
 
+std::string cache_trouble(const std::filesystem::path& cache_dir)
+{
+    std::error_code error;
+    std::filesystem::create_directories(cache_dir, error);
+    if (!error && ::access(cache_dir.c_str(), R_OK | W_OK | X_OK) != 0) error = {errno, std::generic_category()};
+    if (!error) return "";
+    return fmt::format("{}: truths are computed anew, without a cache: {}", short_path(cache_dir), error.message());
+}
+
 Image reflected_image(const TraceResult& result, const GBufferImage& gbuffer, glm::vec3 background)
 {
+    require_possible(result);
     Image image{result.size_px, {"R", "G", "B"}, std::vector<float>(result.status.size() * 3), {}};
     parallel_pixels(result.size_px.x, result.size_px.y, [&](size_t i) {
         glm::vec3 colour(0);

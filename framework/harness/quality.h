@@ -47,6 +47,8 @@ private:
 
 /// $SSRLAB_CACHE, or .truth_cache beside the results folder.
 std::filesystem::path truth_cache_dir(const std::filesystem::path& results);
+/// Why truths cannot be kept there; empty: they can.
+std::string cache_trouble(const std::filesystem::path& cache_dir);
 
 /// The reflected radiance that a result finds: the G-buffer's at the hit pixel; the scene's background where nothing is hit.
 Image reflected_image(const TraceResult& result, const GBufferImage& gbuffer, glm::vec3 background);

@@ -14,7 +14,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 
 namespace ssrlab {
 namespace {
@@ -55,7 +57,7 @@ std::vector<std::string> differences(const std::map<std::string, std::string>& a
 }
 
 ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> columns, const Environment& environment,
-                           bool resuming)
+                           bool resuming, bool retry)
     : folder_(std::move(folder)), csv_(folder_ / "results.csv"), samples_(folder_ / "samples.csv"),
       columns_(std::move(columns))
 {
@@ -70,7 +72,7 @@ ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> columns, co
         }
         remove_partial_files();
         if (fs::exists(csv_))
-            resume(environment);
+            resume(environment, retry);
         else
             start(environment);
     } catch (...) {
@@ -93,7 +95,13 @@ void ResultFolder::lock()
     const fs::path file = folder_ / ".lock";
     lock_fd_            = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (lock_fd_ < 0) throw_failure("{}: cannot be written: {}", short_path(file), std::strerror(errno));
-    if (::flock(lock_fd_, LOCK_EX | LOCK_NB) != 0) {
+    // A sweep that was just killed may have a child that is still ending.
+    bool locked = false;
+    for (int i = 0; i < 20 && !locked; ++i) {
+        if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        locked = ::flock(lock_fd_, LOCK_EX | LOCK_NB) == 0;
+    }
+    if (!locked) {
         if (errno != EWOULDBLOCK) throw_failure("{}: cannot be locked: {}", short_path(file), std::strerror(errno));
         throw_failure("{}: another ssrlab is writing here (process {})", short_path(folder_), read_file(file));
     }
@@ -120,7 +128,7 @@ void ResultFolder::open_files()
     }
 }
 
-void ResultFolder::resume(const Environment& environment)
+void ResultFolder::resume(const Environment& environment, bool retry)
 {
     const auto changed = differences(recorded_identity(folder_ / "environment.json"), environment.identity);
     if (!changed.empty()) {
@@ -142,16 +150,16 @@ void ResultFolder::resume(const Environment& environment)
     const SampleCounts counts = count_samples(sample_rest);
     next_round_               = counts.next_round;
     // Each file is replaced as a whole: a kill in between leaves the old one, and resuming again comes to the same.
-    const std::string kept = finished_rows(rest, counts.frames);
+    const std::string kept = finished_rows(rest, counts.frames, retry);
     if (kept != text) write_file_atomically(csv_, kept);
     const std::string kept_samples = samples_of(sample_rest, finished_);
     if (kept_samples != samples) write_file_atomically(samples_, kept_samples);
     open_files();
 }
 
-/// Header and rows that stand: not those that failed or whose samples are not all there, which are tried again, and not a last one
-/// that a kill tore. `frames`: timed frames by run in samples.csv.
-std::string ResultFolder::finished_rows(std::string_view rows, const std::map<std::string, int>& frames)
+/// Header and rows that stand: not those whose samples are not all there nor, with `retry`, those that failed, which are tried
+/// again, and not a last one that a kill tore. `frames`: timed frames by run in samples.csv.
+std::string ResultFolder::finished_rows(std::string_view rows, const std::map<std::string, int>& frames, bool retry)
 {
     const auto field = [&](const CsvRecord& record, const char* column) {
         const auto i = static_cast<size_t>(std::ranges::find(columns_, column) - columns_.begin());
@@ -164,7 +172,8 @@ std::string ResultFolder::finished_rows(std::string_view rows, const std::map<st
             throw_failure("{}: damaged: the row of run '{}' {}", short_path(csv_), record->front(),
                           record->size() != columns_.size() ? "has the wrong number of fields" : "is there twice");
         }
-        if (field(*record, "outcome") == "failed") continue;
+        const std::string how = field(*record, "outcome");
+        if (retry && (how == "failed" || how == "invalid")) continue;
         const std::string repeats = field(*record, "repeats");
         const auto        sampled = frames.find(record->front());
         if (!repeats.empty() && (sampled == frames.end() || std::to_string(sampled->second) != repeats)) continue;
@@ -172,6 +181,22 @@ std::string ResultFolder::finished_rows(std::string_view rows, const std::map<st
         finished_.insert(record->front());
     }
     return kept;
+}
+
+/// Rows in a file that nobody will find are lost, and a lock that is gone lets a second writer in.
+void ResultFolder::require_unmoved(const fs::path& file, int fd) const
+{
+    struct stat ours = {}, there = {};
+    const bool  same = ::fstat(fd, &ours) == 0 && ::stat(file.c_str(), &there) == 0 && ours.st_dev == there.st_dev &&
+                      ours.st_ino == there.st_ino;
+    if (!same) throw_failure("{}: was removed or replaced while it was in use", short_path(file));
+}
+
+void ResultFolder::require_unmoved() const
+{
+    require_unmoved(csv_, csv_fd_);
+    require_unmoved(samples_, samples_fd_);
+    require_unmoved(folder_ / ".lock", lock_fd_);
 }
 
 namespace {
@@ -198,6 +223,7 @@ void ResultFolder::append(const Row& row, std::string_view samples)
     const auto stray = std::ranges::find_if_not(row, known);
     if (stray != row.end()) throw_failure("{}: has no column '{}'", short_path(csv_), stray->first);
 
+    require_unmoved();
     if (!samples.empty()) append_whole(samples_fd_, samples_, samples, "the samples of run " + record.front());
     append_whole(csv_fd_, csv_, csv_line(record), "the row of run " + record.front());
     finished_.insert(record.front());

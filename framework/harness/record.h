@@ -29,10 +29,10 @@ std::vector<std::string> differences(const std::map<std::string, std::string>& a
 class ResultFolder {
 public:
     /// Fresh: creates the folder, environment.json and the header; refuses (Failure) a folder that has results.
-    /// Resuming: cuts off a torn row, and takes out the rows that failed or that lack samples, so that these runs are tried again, and
-    /// the samples of runs without a row; refuses (SpecError) when columns or identity differ, naming what does.
+    /// Resuming: cuts off a torn row, takes out the rows that lack samples and, with `retry`, those that failed, so that these runs
+    /// are tried again, and the samples of runs without a row; refuses (SpecError) when columns or identity differ, naming what does.
     ResultFolder(std::filesystem::path folder, std::vector<std::string> columns, const Environment& environment,
-                 bool resume);
+                 bool resume, bool retry = true);
     ~ResultFolder();
     ResultFolder(const ResultFolder&)            = delete;
     ResultFolder& operator=(const ResultFolder&) = delete;
@@ -47,13 +47,17 @@ public:
     /// again and a Failure names the file: what is on disk is always a correct prefix, and a row's samples are there before it.
     void append(const Row& row, std::string_view samples = "");
 
+    /// Throws Failure when the folder's files are no longer those that were written.
+    void require_unmoved() const;
+
     const std::filesystem::path& path() const { return folder_; }
 
 private:
     void        lock();
     void        start(const Environment& environment);
-    void        resume(const Environment& environment);
-    std::string finished_rows(std::string_view rows, const std::map<std::string, int>& frames);
+    void        resume(const Environment& environment, bool retry);
+    std::string finished_rows(std::string_view rows, const std::map<std::string, int>& frames, bool retry);
+    void        require_unmoved(const std::filesystem::path& file, int fd) const;
     void        open_files();
     void        remove_partial_files() const;
 

@@ -10,6 +10,7 @@
 #include "harness/progress.h"
 #include "harness/record.h"
 #include "harness/stop_signal.h"
+#include "harness/supervise.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -49,6 +50,13 @@ std::vector<Run> choose(std::vector<Run> runs, const std::string& only)
     return runs;
 }
 
+std::vector<Run> planned_runs(const RunOptions& options, const Experiment& experiment,
+                              std::span<const Technique> techniques)
+{
+    refuse_unknown_scenes(experiment);
+    return choose(expand(experiment, techniques, options.yes), options.only);
+}
+
 double total_cost(std::span<const Run> runs, std::span<const Technique> techniques, const MeasureSettings& measure)
 {
     double seconds = 0;
@@ -86,43 +94,86 @@ std::span<const Run> take_picture(std::span<const Run>& rest)
     return picture;
 }
 
-} // namespace
-
-int run_experiment(const RunOptions& options)
+/// Of the validation layer, those after the first `reported`.
+void report_messages(Bench& bench, size_t& reported)
 {
+    const auto messages = validation_messages(bench.gpu);
+    for (; reported < messages.size(); ++reported, ++bench.state.messages)
+        bench.progress.say("validation: " + messages[reported]);
+}
+
+/// A child ended at these: rows that say so, and no second try.
+void record_lost(Bench& bench, std::vector<Run>& runs, const LostRun& lost)
+{
+    const auto at    = std::ranges::find(runs, lost.run_id, &Run::id);
+    const auto is_it = [&, at = at == runs.end() ? Run() : *at](const Run& run) {
+        return lost.whole_picture ? run.scene == at.scene && run.view == at.view && run.size_px == at.size_px
+                                  : run.id == at.id;
+    };
+    for (const Run& run : runs) {
+        if (!is_it(run)) continue;
+        const Technique& technique = find_technique(bench.techniques, run.technique);
+        finish(bench, run, failed_row(identity_row(bench.experiment, run, technique), Failure(lost.why)));
+    }
+    std::erase_if(runs, is_it);
+}
+
+int sweep(const RunOptions& options, SweepState& state)
+{
+    const bool                   goes_on    = state.lost.run_id[0] != 0;
     const std::vector<Technique> techniques = list_techniques(options.techniques);
     const Experiment             experiment = load_experiment(options.specification, techniques);
-    refuse_unknown_scenes(experiment);
-    std::vector<Run> runs    = choose(expand(experiment, techniques, options.yes), options.only);
-    const auto       columns = result_columns(experiment, techniques);
-    if (options.dry_run) return list_runs(experiment, runs, techniques);
+    std::vector<Run>             runs       = planned_runs(options, experiment, techniques);
+    const auto                   columns    = result_columns(experiment, techniques);
 
     const Stopwatch stopwatch;
     Gpu             gpu = open_gpu(options.gpu);
     refuse_large_sizes(experiment, gpu.info);
-    const fs::path folder = options.folder.empty() ? fs::path("results") / experiment.name : options.folder;
-    listen_for_stop();
+    const fs::path    folder      = options.folder.empty() ? fs::path("results") / experiment.name : options.folder;
     const Environment environment = describe_environment(experiment, techniques, gpu.info, options.command_line);
-    ResultFolder      results(folder, names_of(columns), environment, options.resume);
+    ResultFolder      results(folder, names_of(columns), environment, options.resume || goes_on, !goes_on);
     std::erase_if(runs, [&](const Run& run) { return results.finished().contains(run.id); });
 
     Progress progress(runs.size(), total_cost(runs, techniques, experiment.measure));
-    Bench    bench{experiment, techniques, gpu, results, progress, environment.identity};
+    Bench    bench{experiment, techniques, gpu, results, progress, state, environment.identity};
+    if (goes_on) record_lost(bench, runs, state.lost);
+    if (const std::string trouble = cache_trouble(truth_cache_dir(results.path())); !trouble.empty())
+        progress.say("warning: " + trouble);
+    size_t reported = 0;
     for (std::span<const Run> rest = runs; !rest.empty() && stop_requested() == 0;) {
         measure_picture(bench, take_picture(rest));
+        report_messages(bench, reported);
     }
-    const double took_s = stopwatch.seconds();
-    fmt::print(
+    results.require_unmoved();
+    const double      took_s  = stopwatch.seconds();
+    const std::string summary = fmt::format(
         "{}: {} rows, {} written now, {} of them failed; of {}, {:.0f} % went to frames that were timed, {:.0f} % "
         "to frames that were counted, {:.0f} % to truths\n",
-        short_path(results.path() / "results.csv"), results.finished().size(), bench.written, bench.failed,
+        short_path(results.path() / "results.csv"), results.finished().size(), state.written, state.failed,
         duration_text(took_s), 100 * bench.timed_s / took_s, 100 * bench.counted_s / took_s,
         100 * bench.truths_s / took_s);
+    std::fputs(summary.c_str(), stdout);
     if (stop_requested() != 0) {
         progress.say("stopped; the same command with --resume does the other runs");
         return 128 + stop_requested();
     }
-    return bench.failed > 0 ? 1 : 0;
+    if (state.messages > 0) progress.say(fmt::format("{} messages of the validation layer", state.messages));
+    return state.failed > 0 || state.messages > 0 ? 1 : 0;
+}
+
+} // namespace
+
+int run_experiment(const RunOptions& options)
+{
+    if (options.dry_run) {
+        const std::vector<Technique> techniques = list_techniques(options.techniques);
+        const Experiment             experiment = load_experiment(options.specification, techniques);
+        return list_runs(experiment, planned_runs(options, experiment, techniques), techniques);
+    }
+    SweepState* state = shared_with_parent();
+    if (state == nullptr) return supervise(own_command());
+    listen_for_stop();
+    return sweep(options, *state);
 }
 
 } // namespace ssrlab

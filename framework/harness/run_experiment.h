@@ -21,8 +21,8 @@ struct RunOptions {
     std::string                        command_line;
 };
 
-/// 0 when every row is ok (or had nothing to trace), 1 when a run failed, 130 or 143 after SIGINT or SIGTERM: the rows so far
-/// are complete and --resume does the others. Throws SpecError before anything is written, Failure when writing is refused.
+/// 0 when every row is ok (or had nothing to trace), 1 when a run failed, 128 + the signal after one that asked to stop (130: SIGINT): the rows
+/// so far are complete and --resume does the others. Throws SpecError before anything is written, Failure when writing is refused.
 int run_experiment(const RunOptions& options);
 
 } // namespace ssrlab

@@ -320,7 +320,7 @@ TraceStatus unpack_status(uint32_t packed)
 
 bool in_second_layer(uint32_t packed) { return ((packed >> (2 * PIXEL_BITS)) & TRACE_SECOND_LAYER) != 0; }
 
-size_t work_words(const Technique& technique) { return 2 + technique.structures.size(); }
+size_t work_words(const Technique& technique) { return 2 + std::max<size_t>(technique.structures.size(), 1); }
 
 template <typename Real>
 TraceResult read_result(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer* work)
@@ -344,6 +344,11 @@ TraceResult read_result(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& 
         result.hit_t[index]        = static_cast<double>(hits[i].t);
         result.hit_px_depth[index] = glm::dvec3(listed[i].origin) + result.hit_t[index] * glm::dvec3(listed[i].delta);
         if (work == nullptr) continue;
+        if (result.status[index] == TraceStatus::impossible) {
+            result.steps[index]     = works[i * words];
+            result.hit_pixel[index] = {static_cast<int>(works[i * words + 1]), static_cast<int>(works[i * words + 2])};
+            continue;
+        }
         result.steps[index]         = works[i * words];
         result.depth_fetches[index] = works[i * words + 1];
         for (size_t s = 0; s < structures.size(); ++s) {

@@ -155,7 +155,8 @@ template <typename Real> std::vector<ListedRay<Real>> read_list(Gpu& gpu, const 
     return download_as<ListedRay<Real>>(gpu, rays.list, download_as<uint32_t>(gpu, rays.count, 1)[0]);
 }
 
-/// Words of the counting pipeline's buffer for each ray: steps, depth fetches, fetches of each structure.
+/// Words of the counting pipeline's buffer for each ray: steps, depth fetches, fetches of each structure; of what is no answer
+/// the status and the pixel that the technique returned.
 size_t work_words(const Technique& technique);
 /// work: null for a result without counts.
 template <typename Real>

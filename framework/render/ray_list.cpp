@@ -43,6 +43,7 @@ template <typename Real> std::vector<RayOutcome> read_outcomes(Gpu& gpu, const R
 {
     const auto              hits  = download_as<ListedHit<Real>>(gpu, tracer.rays.hits, count);
     const size_t            words = work_words(tracer.frame.technique);
+    const auto              structures = static_cast<ptrdiff_t>(tracer.frame.technique.structures.size());
     const auto              works = download_as<uint32_t>(gpu, tracer.work, count * words);
     std::vector<RayOutcome> outcomes(count);
     for (size_t i = 0; i < count; ++i) {
@@ -52,7 +53,9 @@ template <typename Real> std::vector<RayOutcome> read_outcomes(Gpu& gpu, const R
                        static_cast<double>(hits[i].t),
                        own[0],
                        own[1],
-                       std::accumulate(own.begin() + 2, own.end(), 0U)};
+                       std::accumulate(own.begin() + 2, own.begin() + 2 + structures, 0U)};
+        if (outcomes[i].status == TraceStatus::impossible)
+            outcomes[i] = {TraceStatus::impossible, {static_cast<int>(own[1]), static_cast<int>(own[2])}, 0, own[0], 0, 0};
     }
     return outcomes;
 }

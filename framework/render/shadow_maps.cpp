@@ -1,6 +1,8 @@
 // One standard-depth map per directional or spot light, six per point light, drawn once per scene.
 #include "render/gpu_scene.h"
 
+#include "core/error.h"
+
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
@@ -106,6 +108,29 @@ void draw_layer(Gpu& gpu, const GpuScene& scene, const DrawPipeline& pipeline, v
     });
 }
 
+GpuImage make_shadow_map(Gpu& gpu, size_t layers, const std::string& scene)
+{
+    const auto refuse = [&](const std::string& why) {
+        throw_failure(
+            "{}: its lights need {} shadow maps, {} MiB, which the device cannot hold ({}); six for each point "
+            "light, one for each other; a recipe may say shadow = false",
+            scene, layers, layers * shadow_map_px * shadow_map_px * sizeof(float) >> 20, why);
+    };
+    const size_t most = gpu.impl->limits.maxImageArrayLayers;
+    if (layers > most) refuse(fmt::format("at most {}", most));
+    try {
+        return make_image(gpu,
+                          {.format  = vk::Format::eD32Sfloat,
+                           .size_px = layers == 0 ? glm::ivec2(1) : glm::ivec2(shadow_map_px),
+                           .usage  = vk::ImageUsageFlagBits::eDepthStencilAttachment | vk::ImageUsageFlagBits::eSampled,
+                           .layers = static_cast<uint32_t>(std::max<size_t>(layers, 1)),
+                           .array_view = true});
+    } catch (const std::exception& error) {
+        refuse(error.what());
+        throw;
+    }
+}
+
 } // namespace
 
 void render_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source)
@@ -128,19 +153,14 @@ void render_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source)
     scene.light_count     = static_cast<uint32_t>(blocks.size());
     scene.lights          = make_buffer_with<LightBlock>(gpu, blocks);
     scene.shadow_matrices = make_buffer_with<glm::mat4>(gpu, stored);
-    scene.shadow_map =
-        make_image(gpu, {.format  = vk::Format::eD32Sfloat,
-                         .size_px = matrices.empty() ? glm::ivec2(1) : glm::ivec2(shadow_map_px),
-                         .usage   = vk::ImageUsageFlagBits::eDepthStencilAttachment | vk::ImageUsageFlagBits::eSampled,
-                         .layers  = static_cast<uint32_t>(std::max<size_t>(matrices.size(), 1)),
-                         .array_view = true});
-    scene.shadow_sampler = {gpu.impl->device,
-                            vk::SamplerCreateInfo{.magFilter     = vk::Filter::eLinear,
-                                                  .minFilter     = vk::Filter::eLinear,
-                                                  .addressModeU  = vk::SamplerAddressMode::eClampToEdge,
-                                                  .addressModeV  = vk::SamplerAddressMode::eClampToEdge,
-                                                  .compareEnable = true,
-                                                  .compareOp     = vk::CompareOp::eLessOrEqual}};
+    scene.shadow_map      = make_shadow_map(gpu, matrices.size(), source.name);
+    scene.shadow_sampler  = {gpu.impl->device,
+                             vk::SamplerCreateInfo{.magFilter     = vk::Filter::eLinear,
+                                                   .minFilter     = vk::Filter::eLinear,
+                                                   .addressModeU  = vk::SamplerAddressMode::eClampToEdge,
+                                                   .addressModeV  = vk::SamplerAddressMode::eClampToEdge,
+                                                   .compareEnable = true,
+                                                   .compareOp     = vk::CompareOp::eLessOrEqual}};
     if (matrices.empty()) return;
     const DrawPipeline pipeline = make_draw_pipeline(
         gpu, scene, {.fragment_shader = "gbuffer/shadow.frag", .colour_formats = {}, .reversed_depth = false});

@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
 
 namespace ssrlab {
 namespace {
+
+// Every pixel asks every light; what names a hundred thousand views is no list for people.
+constexpr size_t max_lights = 1024, max_cameras = 100'000;
 
 /// A camera that sees all of the bounds, from the front, above and to the right.
 Camera fit_camera(const Bounds& bounds)
@@ -82,19 +86,27 @@ void add_draw(Scene& scene, const Mesh& mesh)
 
 void make_camera_names_unique(std::vector<Camera>& cameras)
 {
-    std::set<std::string> used;
+    std::set<std::string>      used;
+    std::map<std::string, int> last_number; // of a name: thousands may have the same
     for (Camera& camera : cameras) {
         const std::string base = camera.name.empty() ? "camera" : camera.name;
+        int&              last = last_number.try_emplace(base, 1).first->second;
         camera.name            = base;
-        for (int number = 2; !used.insert(camera.name).second; ++number)
-            camera.name = fmt::format("{}_{}", base, number);
+        while (!used.insert(camera.name).second) camera.name = fmt::format("{}_{}", base, ++last);
     }
+}
+
+void refuse_more_than(size_t most, size_t count, const char* what, const std::string& scene)
+{
+    if (count > most) throw_spec_error("{}: {} {}, at most {} are supported", scene, count, what, most);
 }
 
 } // namespace
 
 Scene model_to_scene(Model model, const std::string& name)
 {
+    refuse_more_than(max_lights, model.lights.size(), "lights", name);
+    refuse_more_than(max_cameras, model.cameras.size(), "cameras", name);
     repair(model);
     merge_duplicates(model);
     const Bounds bounds = bounds_of(model);

@@ -9,6 +9,7 @@
 #define TRACE_PAST_MAX_DISTANCE 3
 #define TRACE_OUT_OF_STEPS 4
 #define TRACE_FACING_AWAY 5
+#define TRACE_IMPOSSIBLE 7
 
 // What a ray found in the second depth layer has this added to its status.
 #define TRACE_SECOND_LAYER 8

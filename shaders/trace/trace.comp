@@ -11,7 +11,8 @@ layout(local_size_x = RAYS_PER_GROUP / RAYS_PER_INVOCATION) in;
 
 STORED_HITS(9, Hits)
 #ifdef COUNT_WORK
-layout(set = 0, binding = 11, scalar) buffer Work { uint work[]; }; // of each ray: steps, depth fetches, fetches of each structure
+layout(set = 0, binding = 11, scalar) buffer Work { uint work[]; }; // of each ray: steps, depth fetches, fetches of each structure; of no answer its status and pixel
+#define WORK_WORDS (2 + max(STRUCTURES, 1))
 #endif
 
 Ray load_ray(uint index)
@@ -31,15 +32,25 @@ Ray load_ray(uint index)
     return ray;
 }
 
+// Neither an unknown status, nor a hit off the image: packed, they would turn into another answer.
+bool is_answer(TraceResult result)
+{
+    bool on_image = all(greaterThanEqual(result.pixel, ivec2(0))) && all(lessThan(result.pixel, size_px));
+    return result.status > TRACE_NOT_TRACED && result.status <= TRACE_FACING_AWAY && (on_image || result.status != TRACE_HIT);
+}
+
 // own_lane: that of the ray.
 void store_result(uint index, TraceResult result, int own_lane)
 {
-    STORE_TEXEL(Hits, index, hit_to_texel(ListedHit(pack_pixel(result.pixel, result.status), result.t)));
+    bool  answers = is_answer(result);
+    ivec2 pixel   = answers && result.status == TRACE_HIT ? result.pixel : ivec2(0);
+    STORE_TEXEL(Hits, index, hit_to_texel(ListedHit(pack_pixel(pixel, answers ? result.status : TRACE_IMPOSSIBLE), result.t)));
 #ifdef COUNT_WORK
-    uint first      = index * (2 + STRUCTURES);
-    work[first]     = result.steps;
-    work[first + 1] = depth_fetches[own_lane];
-    for (int structure = 0; structure < STRUCTURES; ++structure)
+    uint first = index * WORK_WORDS;
+    work[first]     = answers ? result.steps : result.status;
+    work[first + 1] = answers ? depth_fetches[own_lane] : result.pixel.x;
+    work[first + 2] = result.pixel.y; // overwritten, but for what is no answer
+    for (int structure = 0; answers && structure < STRUCTURES; ++structure)
         work[first + 2 + structure] = structure_fetches[LANES * structure + own_lane];
 #endif
 }

@@ -1,5 +1,6 @@
 """A technique outside the source tree, without rebuilding."""
 import csv
+import os
 
 from support import Case, main
 
@@ -55,6 +56,58 @@ class Test(Case):
         self.write("mine/coin/trace.glsl", TRACE.replace("ivec2 pixel = pixel_at", "ivec2 pixel = pixle_at"))
         self.refused("render", "builtin:mirror_floor_wall", "-t", "coin", "--techniques", "mine", "--size", "64x36", "-o", "a.png",
                      code=2, says=["mine/coin/trace.glsl:3", "pixle_at"])
+
+    def shader_refused(self, text, says, never=()):
+        self.write("mine/coin/trace.glsl", text)
+        out = self.refused("render", "builtin:mirror_floor_wall", "-t", "coin", "--techniques", "mine", "--size", "64x36", "-o", "a.png",
+                           code=2, says=says)
+        for secret in never:
+            self.assertNotIn(secret, out)
+        return out
+
+    def test_all_errors_in_its_shader_are_named(self):
+        self.shader_refused(TRACE.replace("ivec2 pixel = pixel_at", "ivec2 pixel = pixle_at").replace("return miss(ray, 1)", "return mis(ray, 1)"),
+                            ["mine/coin/trace.glsl:3: 'pixle_at'", "mine/coin/trace.glsl:6: 'mis'"])
+
+    def test_missing_trace_function_is_said_of_its_file(self):
+        out = self.shader_refused(TRACE.replace("trace(Ray", "trace_it(Ray"), ["mine/coin/trace.glsl:7: 'trace'"])
+        self.assertTrue(out.startswith("ssrlab: " + self.path("mine/coin/trace.glsl:7")), out)
+
+    def test_unbalanced_braces_are_said_of_its_file(self):
+        self.shader_refused(TRACE.rstrip().removesuffix("}"), ["mine/coin/trace.glsl:2: this '{' is never closed"])
+        self.shader_refused("// { in a comment\n" + TRACE + "}\n", ["mine/coin/trace.glsl:9: "])
+
+    def test_includes_come_from_its_folder_and_the_project_alone(self):
+        secret = self.write("mine/secret.glsl", "top secret text\n")
+        self.write("mine/coin/link.glsl", "")
+        os.remove(self.path("mine/coin/link.glsl"))
+        os.symlink(secret, self.path("mine/coin/link.glsl"))
+        for name in (secret, "../secret.glsl", "sub/../../secret.glsl", "link.glsl", "none.glsl"):
+            for brackets in ('"{}"', "<{}>"):
+                self.shader_refused(f"\n#include {brackets.format(name)}\n" + TRACE, ["mine/coin/trace.glsl:2: '#include'", name],
+                                    never=["secret text", "top"])
+        self.shader_refused('#include "api/hash.glsl"\n#include "loop.glsl"\n' + TRACE, ["mine/coin/trace.glsl:2", "loop.glsl"])
+
+    def test_does_not_stand_for_a_shader_of_the_project(self):
+        self.write("mine/coin/api/hash.glsl", "")
+        self.shader_refused(TRACE, ["api/hash.glsl", "mine/coin/api/hash.glsl"])
+
+    def test_helper_beside_it_is_found_and_part_of_what_is_compiled(self):
+        self.write("mine/coin/parts/half.glsl", "const int taken = 1;\n")
+        self.write("mine/coin/trace.glsl", '#include "parts/half.glsl"\n' + TRACE.replace("ray, 1)", "ray, taken)"))
+        self.ssrlab("run", self.spec, "-o", "out", "--techniques", "mine")
+        self.assertEqual({row["steps_mean"] for row in self.rows() if row["technique"] == "coin"}, {"1"})
+        self.write("mine/coin/parts/half.glsl", "const int taken = 9;\n")
+        self.refused("run", self.spec, "-o", "out", "--resume", "--techniques", "mine", code=2, says=["cannot be resumed", "technique coin"])
+        self.ssrlab("run", self.spec, "-o", "other", "--techniques", "mine")
+        self.assertGreater(max(float(row["steps_mean"]) for row in self.rows("other") if row["technique"] == "coin"), 1)
+        self.write("mine/coin/parts/half.glsl", "const int taken = oops;\n")
+        self.shader_refused('\n#include "parts/half.glsl"\n' + TRACE, ["mine/coin/parts/half.glsl:1: 'oops'"])
+
+    def test_parameter_with_the_name_of_a_type_is_refused(self):
+        for name in ("vec3", "ivec2", "mat4x3", "sampler2D", "uimage2DArray", "dvec4", "uint", "precise", "real3"):
+            self.write("mine/coin/technique.toml", MANIFEST.replace("place =", name + " ="))
+            self.refused("list", "--techniques", "mine", code=2, says=["mine/coin/technique.toml:4", f"'{name}'"])
 
     def test_error_in_its_shader_is_a_failed_row(self):
         self.write("mine/coin/trace.glsl", TRACE.replace("ivec2 pixel = pixel_at", "ivec2 pixel = pixle_at"))

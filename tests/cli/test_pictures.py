@@ -57,14 +57,18 @@ class Test(Case):
     def test_trace_has_every_channel_and_the_legend(self):
         self.ssrlab("trace", SCENE, "-t", "hiz", "-p", "max_distance_m=9", "--size", "161x91", "-o", self.path("h.exr"))
         channels, spec = self.read("h.exr")
-        self.assertEqual(set(channels), {"hit.x", "hit.y", "hit.t", "hit.z", "status", "steps", "depth_fetches", "pyramid_fetches"})
+        self.assertEqual(set(channels), {"hit.x", "hit.y", "hit.t", "hit.z", "pixel.x", "pixel.y", "status", "steps", "depth_fetches", "structure_fetches"})
         self.assertEqual(spec.getattribute("ssrlab:status_names"), STATUS_NAMES)
         hit = channels["status"] == 1
         self.assertGreater(hit.sum(), 0)
         self.assertTrue((channels["hit.t"][hit] <= 1).all() and (channels["hit.t"][hit] >= 0).all())
         self.assertTrue((channels["hit.x"][hit] <= 161).all() and (channels["hit.y"][hit] <= 91).all())
         self.assertTrue((channels["hit.x"][~hit] == 0).all())
-        self.assertGreater(channels["pyramid_fetches"].sum(), 0)
+        for axis in "xy":
+            pixel, place = channels[f"pixel.{axis}"][hit], channels[f"hit.{axis}"][hit]
+            self.assertTrue((pixel == numpy.floor(pixel)).all() and (abs(place - pixel - 0.5) <= 0.501).all())
+            self.assertTrue((channels[f"pixel.{axis}"][~hit] == 0).all())
+        self.assertGreater(channels["structure_fetches"].sum(), 0)
 
     def test_too_few_steps_say_so(self):
         self.ssrlab("trace", SCENE, "-t", "dda", "-p", "max_steps=2", "--size", "64x36", "-o", self.path("h.exr"))

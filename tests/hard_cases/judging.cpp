@@ -92,6 +92,70 @@ TEST(Judge, GrazingAPixelByLessThanASliverDecidesNothing)
     EXPECT_EQ(judge.judge(setup.rays[0], miss(), {}).verdict, Verdict::sliver);
 }
 
+/// The same with every normal turned toward the ray or away from it.
+ssrlab::Setup two_poles_facing(double z)
+{
+    auto setup            = two_poles();
+    setup.settings.facing = true;
+    setup.rays[0]         = ray_between(setup.gbuffer.view, {5.5, 10.5, 4.2}, {55.5, 10.5, 4.8});
+    for (glm::vec3& normal : setup.gbuffer.normal_vs) normal = {0, 0, z};
+    return setup;
+}
+
+TEST(Judge, AHitOfASurfaceThatFacesAwayIsWrong)
+{
+    const auto away = two_poles_facing(-1), toward = two_poles_facing(1);
+    EXPECT_EQ(Judge(away).exact_answer(away.rays[0]).status, TraceStatus::facing_away);
+    for (const bool sampled : {false, true}) {
+        const Claim claim{.may_miss_between_samples = sampled};
+        EXPECT_THAT(Judge(away).judge(away.rays[0], hit({20, 10}, 14.5 / 50), claim).reason, HasSubstr("faces away"));
+        EXPECT_EQ(Judge(toward).judge(toward.rays[0], hit({20, 10}, 14.5 / 50), claim).verdict, Verdict::right);
+    }
+}
+
+TEST(Judge, FacingAwayIsWrongWhereNothingFacesAway)
+{
+    auto empty = two_poles_facing(1);
+    empty.gbuffer.depth.assign(empty.gbuffer.depth.size(), 0);
+    const auto  toward = two_poles_facing(1);
+    const Claim sampled{.may_miss_between_samples = true};
+    for (const auto* setup : {&empty, &toward})
+        EXPECT_THAT(Judge(*setup).judge(setup->rays[0], {TraceStatus::facing_away}, sampled).reason,
+                    HasSubstr("touches no surface that faces away"));
+}
+
+TEST(Judge, AMissOfWhatFacesAwayMustSaySo)
+{
+    const auto away = two_poles_facing(-1);
+    EXPECT_EQ(Judge(away).judge(away.rays[0], {TraceStatus::facing_away}, {}).verdict, Verdict::right);
+    EXPECT_THAT(Judge(away).judge(away.rays[0], miss(), {}).reason, HasSubstr("in (20, 10), which faces away"));
+    EXPECT_EQ(Judge(away).judge(away.rays[0], miss(), {.may_miss_between_samples = true}).verdict, Verdict::allowed);
+}
+
+TEST(Judge, CountsWhatIsThereAndWhatIsFound)
+{
+    const auto  setup = two_poles();
+    const Judge judge(setup);
+    const auto  found = [&](const RayOutcome& outcome) {
+        const Judgement judgement = judge.judge(setup.rays[0], outcome, {.may_miss_between_samples = true});
+        EXPECT_TRUE(judgement.findable);
+        return judgement.found;
+    };
+    EXPECT_TRUE(found(hit({20, 10}, 14.5 / 50)));
+    EXPECT_FALSE(found(hit({30, 10}, 24.5 / 50)));
+    EXPECT_FALSE(found(miss()));
+    const auto thin = two_poles(0.1);
+    EXPECT_FALSE(Judge(thin).judge(thin.rays[0], miss(), {}).findable);
+}
+
+TEST(Judge, AHitOffTheImageIsReadNowhere)
+{
+    const auto setup = two_poles();
+    // The ray ends 0.03 px before the border: the pixel behind it is within a near tie.
+    auto ray = level_ray(setup.gbuffer.view, {5.5, 10.5}, {58.47, 0}, 4.5);
+    EXPECT_EQ(Judge(setup).judge(ray, hit({64, 10}, 1), {}).verdict, Verdict::wrong);
+}
+
 TEST(Judge, InvariantsAreNamed)
 {
     const auto   setup = two_poles();
@@ -102,9 +166,10 @@ TEST(Judge, InvariantsAreNamed)
     EXPECT_THAT(judge.broken_invariant(ray, hit({20, 10}, nan)), HasSubstr("nan"));
     EXPECT_THAT(judge.broken_invariant(ray, {TraceStatus::left_screen, {}, nan}), HasSubstr("nan"));
     EXPECT_THAT(judge.broken_invariant(ray, hit({64, 10}, 0.5)), HasSubstr("off the image"));
-    EXPECT_THAT(judge.broken_invariant(ray, hit({20, 10}, 1.5)), HasSubstr("outside the segment"));
+    EXPECT_THAT(judge.broken_invariant(ray, hit({20, 10}, 1.5)), HasSubstr("outside [0, 1]"));
     EXPECT_THAT(judge.broken_invariant(ray, hit({5, 10}, 0)), HasSubstr("its start pixel"));
     EXPECT_THAT(judge.broken_invariant(ray, {TraceStatus::not_traced}), HasSubstr("cannot"));
+    EXPECT_THAT(judge.broken_invariant(ray, {TraceStatus::impossible, {}, 0, 200}), HasSubstr("status 200"));
     EXPECT_THAT(judge.broken_invariant(ray, {TraceStatus::facing_away}), HasSubstr("cannot"));
 }
 

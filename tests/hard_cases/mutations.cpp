@@ -117,6 +117,21 @@ std::vector<Mutation> mutations()
         {"HitBeyondTheEnd", "dda",
          "if (found) return hit_between(ray, pixel, crossing_to_t(grid, t_in), crossing_to_t(grid, t_out), visited);",
          "if (found) return hit_at(ray, pixel, t_in + real(1), visited);", "axis_aligned"},
+        replaced("FacesIsAlwaysTrue", "touches_surface",
+                 "bool mutated_touches_surface(Ray ray, Grid grid, ivec2 pixel, real a, real b) { return "
+                 "interval_touches(fetch_depth(pixel), depth_interval(ray, depth_at(ray, a), depth_at(ray, b))); }",
+                 "facing_rule", "dda"),
+        replaced("FacingAwayWithoutReason", "miss",
+                 "TraceResult mutated_miss(Ray ray, int steps) { return TraceResult(facing_rule != 0 ? "
+                 "TRACE_FACING_AWAY : ray.end_status, ivec2(0), real(0), steps); }",
+                 "facing_rule", "dda"),
+        replaced("NeverFacingAway", "miss",
+                 "TraceResult mutated_miss(Ray ray, int steps) { return TraceResult(ray.end_status, ivec2(0), real(0), "
+                 "steps); }",
+                 "facing_rule", "dda"),
+        replaced("AlwaysAMiss", "touches_surface",
+                 "bool mutated_touches_surface(Ray ray, Grid grid, ivec2 pixel, real a, real b) { return false; }",
+                 "axis_aligned", "dda"),
         {"NotANumber", "dda", "return t_out < grid.t_end ? out_of_steps(visited) : miss(ray, visited);",
          "return TraceResult(ray.end_status, ivec2(0), sqrt(ray.delta.z - real(1)), visited);",
          "one_object_in_the_sky"},

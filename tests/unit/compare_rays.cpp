@@ -56,6 +56,17 @@ TEST(RayMeasures, AgainstScreenTruth)
     EXPECT_DOUBLE_EQ(values.at("screen_displacement_p99_px").value(), 3.94);
 }
 
+// Hits on a lattice are often exactly 1 px from the truth: rounding must not decide what counts.
+TEST(RayMeasures, ATieWithinRoundingIsFound)
+{
+    for (const double off_px : {-1e-4, 0.0, 1e-4, 1e-2}) {
+        TraceResult truth = row_of(2), tested = row_of(2);
+        set_hit(truth, 1, 20.25);
+        set_hit(tested, 1, 21.25 + off_px);
+        EXPECT_EQ(compare_to_screen_truth(tested, truth).at("screen_recall_1px"), off_px < 1e-3 ? 1 : 0) << off_px;
+    }
+}
+
 TEST(RayMeasures, WhatTheSecondLayerAdds)
 {
     TraceResult first = row_of(10), second = row_of(10);

@@ -88,7 +88,7 @@ TEST(Rows, EveryEntryOfARowHasAColumn)
     add_plan(measured.row, plan_frame({}, {}, default_pass_values()));
     add_times(measured, 7);
     add_measures(measured.row, no_measures());
-    measured.row = failed_row(measured.row, "no");
+    measured.row = failed_row(measured.row, Failure("no"));
     EXPECT_EQ(measured.row.at("trace_ms_median"), "4");
     EXPECT_EQ(measured.row.at("trace_ms_ci_low"), "1");
     EXPECT_EQ(measured.row.at("inverse_fps_s"), "0.014");

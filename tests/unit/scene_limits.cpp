@@ -1,0 +1,43 @@
+// Many cameras and lights: in time, or refused with the file's name.
+#include "core/error.h"
+#include "core/stopwatch.h"
+#include "scene/load_scene.h"
+#include "scene/model.h"
+
+#include <gmock/gmock.h>
+
+namespace ssrlab {
+namespace {
+
+using testing::HasSubstr;
+using testing::Property;
+using testing::Throws;
+
+Model model_with(size_t cameras, size_t lights)
+{
+    Model model;
+    model.cameras.resize(cameras);
+    model.lights.resize(lights);
+    return model;
+}
+
+TEST(SceneLimits, CamerasOfOneNameAreNumberedInLinearTime)
+{
+    const Stopwatch stopwatch;
+    const Scene     scene = model_to_scene(model_with(50'000, 1), "many.gltf");
+    EXPECT_LT(stopwatch.seconds(), 5) << "each one used to be compared with all before it";
+    EXPECT_EQ(scene.cameras[0].name, "default");
+    EXPECT_EQ(scene.cameras[1].name, "default_2");
+    EXPECT_EQ(scene.cameras[49'999].name, "default_50000");
+}
+
+TEST(SceneLimits, MoreAreRefusedWithTheFilesName)
+{
+    EXPECT_THAT([] { model_to_scene(model_with(100'001, 1), "many.gltf"); },
+                Throws<SpecError>(Property(&SpecError::what, HasSubstr("many.gltf: 100001 cameras, at most 100000"))));
+    EXPECT_THAT([] { model_to_scene(model_with(1, 1025), "many.gltf"); },
+                Throws<SpecError>(Property(&SpecError::what, HasSubstr("many.gltf: 1025 lights, at most 1024"))));
+}
+
+} // namespace
+} // namespace ssrlab
