@@ -1,6 +1,7 @@
 #include "compare/validate_result.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ssrlab {
 namespace {
@@ -36,8 +37,8 @@ std::string impossible(const Answer& answer, glm::ivec2 size_px, double most_ste
     const glm::ivec2 pixel = answer.hit_pixel;
     if (pixel.x < 0 || pixel.y < 0 || pixel.x >= size_px.x || pixel.y >= size_px.y)
         return off_the_image(pixel, size_px);
-    // Written so that NaN fails.
-    if (!(answer.t >= 0 && answer.t <= 1)) return fmt::format("t = {} of a hit is outside [0, 1]", answer.t);
+    if (std::isnan(answer.t)) return "t of a hit is not a number";
+    if (answer.t < 0 || answer.t > 1) return fmt::format("t = {} of a hit is outside [0, 1]", answer.t);
     return "";
 }
 

@@ -45,7 +45,7 @@ class Test(Case):
         self.found_invalid("return hit_at(ray, ivec2(64, 10), real(0.5), 1);", "hit pixel (64, 10) is off the image of 64x36")
 
     def test_t_that_is_no_number(self):
-        self.found_invalid(f"return TraceResult({PLACES}, sqrt(ray.origin.z - real(2)), 1);", "t = nan")
+        self.found_invalid(f"return TraceResult({PLACES}, sqrt(ray.origin.z - real(2)), 1);", "t of a hit is not a number")
 
     def test_t_beyond_the_segment(self):
         self.found_invalid(f"return TraceResult({PLACES}, real(7), 1);", "t = 7")
@@ -66,7 +66,7 @@ class Test(Case):
         self.found_invalid("return TraceResult(TRACE_NOT_TRACED, ivec2(0), real(0), 1);", "status 0")
 
     def test_uninitialised_result(self):
-        self.found_invalid("TraceResult result;\n    if (ray.length_m < real(0)) result = miss(ray, 1);\n    return result;", "")
+        self.found_invalid("TraceResult result;\n    return result;", "")
 
     def test_one_bad_ray_is_enough(self):
         self.found_invalid("return ray.start_pixel == ivec2(32, 30) ? hit_at(ray, ivec2(-1, 0), real(0.5), 1) : miss(ray, 1);",

@@ -163,7 +163,7 @@ TEST(Judge, InvariantsAreNamed)
     const auto&  ray = setup.rays[0];
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THAT(judge.broken_invariant(ray, hit({20, 10}, 0.29)), IsEmpty());
-    EXPECT_THAT(judge.broken_invariant(ray, hit({20, 10}, nan)), HasSubstr("nan"));
+    EXPECT_THAT(judge.broken_invariant(ray, hit({20, 10}, nan)), HasSubstr("not a number"));
     EXPECT_THAT(judge.broken_invariant(ray, {TraceStatus::left_screen, {}, nan}), HasSubstr("nan"));
     EXPECT_THAT(judge.broken_invariant(ray, hit({64, 10}, 0.5)), HasSubstr("off the image"));
     EXPECT_THAT(judge.broken_invariant(ray, hit({20, 10}, 1.5)), HasSubstr("outside [0, 1]"));

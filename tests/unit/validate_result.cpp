@@ -56,7 +56,7 @@ TEST(ValidateResult, SaysHowManyWhichAndWhat)
               "off the image of 8x4");
     EXPECT_THAT(found([](TraceResult& r, size_t i) { r.hit_pixel[i] = {-1, 2}; }), Optional(HasSubstr("(-1, 2)")));
     EXPECT_THAT(found([](TraceResult& r, size_t i) { r.hit_t[i] = std::numeric_limits<double>::quiet_NaN(); }),
-                Optional(HasSubstr("t = nan")));
+                Optional(HasSubstr("t of a hit is not a number")));
     EXPECT_THAT(found([](TraceResult& r, size_t i) { r.hit_t[i] = 7; }), Optional(HasSubstr("t = 7")));
     EXPECT_THAT(found([](TraceResult& r, size_t i) { r.hit_t[i] = -0.1; }), Optional(HasSubstr("t = -0.1")));
     EXPECT_THAT(found([](TraceResult& r, size_t i) { r.steps[i] = static_cast<uint32_t>(-1); }),
