@@ -120,7 +120,7 @@ void record_lost(Bench& bench, std::vector<Run>& runs, const LostRun& lost)
 
 int sweep(const RunOptions& options, SweepState& state)
 {
-    const bool                   goes_on    = state.lost.run_id[0] != 0;
+    const bool                   continues    = state.lost.run_id[0] != 0;
     const std::vector<Technique> techniques = list_techniques(options.techniques);
     const Experiment             experiment = load_experiment(options.specification, techniques);
     std::vector<Run>             runs       = planned_runs(options, experiment, techniques);
@@ -131,12 +131,12 @@ int sweep(const RunOptions& options, SweepState& state)
     refuse_large_sizes(experiment, gpu.info);
     const fs::path    folder      = options.folder.empty() ? fs::path("results") / experiment.name : options.folder;
     const Environment environment = describe_environment(experiment, techniques, gpu.info, options.command_line);
-    ResultFolder      results(folder, names_of(columns), environment, options.resume || goes_on, !goes_on);
+    ResultFolder      results(folder, names_of(columns), environment, options.resume || continues, !continues);
     std::erase_if(runs, [&](const Run& run) { return results.finished().contains(run.id); });
 
     Progress progress(runs.size(), total_cost(runs, techniques, experiment.measure));
     Bench    bench{experiment, techniques, gpu, results, progress, state, environment.identity};
-    if (goes_on) record_lost(bench, runs, state.lost);
+    if (continues) record_lost(bench, runs, state.lost);
     if (const std::string trouble = cache_trouble(truth_cache_dir(results.path())); !trouble.empty())
         progress.say("warning: " + trouble);
     size_t reported = 0;

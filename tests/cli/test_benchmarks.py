@@ -71,7 +71,7 @@ class Test(Case):
         self.assertTrue(low <= ratio <= high, (low, ratio, high))
 
     def test_growth_is_drawn_from_a_sweep(self):
-        file = self.write("growth.toml", f'scenes = ["{SCENE}"]\nsizes = ["40x20", "80x40", "160x80"]\n[effects]\neffect_set = "shading"\n'
+        file = self.write("growth.toml", f'scenes = ["{SCENE}"]\nsizes = ["40x20", "80x40", "160x80"]\n[passes]\npass_set = "shading"\n'
                           "[techniques.dda]\n[techniques.hiz]\n[measure]\nmin_repeats = 1\nbudget_s = 0\ntruth = false\npictures = false\n")
         self.ssrlab("run", file, "-o", self.path("out"))
         picture = self.path("growth.png")

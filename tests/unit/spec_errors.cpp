@@ -20,6 +20,7 @@ const std::vector<Technique>& techniques()
                                                  false,
                                                  {},
                                                  {"steps", "binary_steps"},
+                                                 1,
                                                  {{"steps", ParameterType::integer, 64, 1, 60000, {}, "d"},
                                                   {"binary_steps", ParameterType::integer, 0, 0, 60000, {}, "d"},
                                                   {"space", ParameterType::choice, 0, 0, 1, {"view", "screen"}, "d"},
@@ -34,6 +35,7 @@ const std::vector<Technique>& techniques()
                                                  true,
                                                  {},
                                                  {"max_steps"},
+                                                 1,
                                                  {{"max_steps", ParameterType::integer, 60000, 1, 60000, {}, "d"}},
                                                  {}}};
     return both;
