@@ -36,10 +36,10 @@ TEST(RayMeasures, AgainstScreenTruth)
 {
     TraceResult truth = row_of(10), tested = row_of(10);
     truth.status[0] = tested.status[0] = TraceStatus::not_traced;
-    for (const size_t i : {1, 2, 3, 4, 5}) set_hit(truth, i, 20.25);
-    set_hit(tested, 1, 20.75);                    // same pixel, 0.5 px
-    set_hit(tested, 2, 21.25);                    // neighbour, exactly 1 px: within
-    set_hit(tested, 3, 24.25);                    // displaced by 4 px
+    for (const size_t i : {1, 2, 3, 4, 5}) set_hit(truth, i, 2.25);
+    set_hit(tested, 1, 2.75);                    // same pixel, 0.5 px
+    set_hit(tested, 2, 3.25);                    // neighbour, exactly 1 px: within
+    set_hit(tested, 3, 6.25);                    // displaced by 4 px
     tested.status[4] = TraceStatus::out_of_steps; // missed
     set_hit(tested, 6, 5.5);                      // false
     const MeasureValues values = compare_to_screen_truth(tested, truth);
@@ -61,8 +61,8 @@ TEST(RayMeasures, ATieWithinRoundingIsFound)
 {
     for (const double off_px : {-1e-4, 0.0, 1e-4, 1e-2}) {
         TraceResult truth = row_of(2), tested = row_of(2);
-        set_hit(truth, 1, 20.25);
-        set_hit(tested, 1, 21.25 + off_px);
+        set_hit(truth, 1, 0.25);
+        set_hit(tested, 1, 1.25 + off_px);
         EXPECT_EQ(compare_to_screen_truth(tested, truth).at("screen_recall_1px"), off_px < 1e-3 ? 1 : 0) << off_px;
     }
 }

@@ -45,7 +45,7 @@ std::set<std::string> running(const std::vector<PlannedPass>& plan)
 
 std::string reason(const std::vector<PlannedPass>& plan, const std::string& pass)
 {
-    return std::ranges::find(plan, pass, [](const PlannedPass& p) { return p.pass->id; })->reason;
+    return std::ranges::find(plan, pass, &PlannedPass::id)->reason;
 }
 
 TEST(Plan, WithoutAnythingThatReflectsNothingIsTraced)
