@@ -78,6 +78,10 @@ int show_technique(const CommonOptions& common, const std::string& id)
     std::puts(fmt::format("{} ({})\n{}\n", technique.name, technique.id, technique.summary).c_str());
     std::puts(technique.exact ? "exact: gives the pixel walk's answer on every ray" : "not exact");
     std::puts(fmt::format("folder: {}", technique.folder.string()).c_str());
+    for (const Accuracy& accuracy : technique.accuracy)
+        std::puts(fmt::format("accuracy: {} (better when {})", accuracy.parameter,
+                              accuracy.higher_is_better ? "higher" : "lower")
+                      .c_str());
     if (!technique.inputs.empty()) std::puts(fmt::format("inputs: {}", fmt::join(technique.inputs, ", ")).c_str());
     for (const std::string& citation : technique.cite) std::puts(fmt::format("source: {}", citation).c_str());
     std::puts("\nParameters");

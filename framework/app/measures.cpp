@@ -18,6 +18,7 @@ Written by `ssrlab measures`; do not edit. `ssrlab run` makes one folder per exp
 | in a results folder | |
 |---|---|
 | `results.csv` | one row per run, in the columns below |
+| `samples.csv` | every timed frame: run_id, round, pass, ms, cpu_ms; docs/measuring.md says what a round is |
 | `environment.json` | device, driver, commit, command line, seed, the specification, and hashes of everything that decides a result |
 | `pictures/` | what each run reflects, where it is right and wrong, and its work per ray |
 | `report.html`, `report.md`, `summary.csv`, `plots/` | made from the above by `ssrlab plot` |

@@ -58,6 +58,12 @@ Progress::Progress(size_t total_runs, double total_cost)
 {
 }
 
+void Progress::add_runs(size_t count, double cost)
+{
+    total_runs_ += count;
+    total_cost_ += cost;
+}
+
 void Progress::start_picture(const std::string& what)
 {
     picture_ = what;

@@ -68,8 +68,9 @@ int list_runs(const Experiment& experiment, std::span<const Run> runs, std::span
                    size_text(run.size_px), run.settings.trace.thickness_m, run.settings.trace.max_distance_m,
                    run.technique, values);
     }
-    fmt::print("{} runs, about {} on two CPU cores without a GPU\n", runs.size(),
-               duration_text(total_cost(runs, techniques, experiment.measure)));
+    fmt::print("{} runs, about {} on two CPU cores without a GPU{}\n", runs.size(),
+               duration_text(total_cost(runs, techniques, experiment.measure)),
+               experiment.targets.empty() ? "" : "; the search for [targets] adds runs");
     return 0;
 }
 
@@ -91,10 +92,11 @@ std::span<const Run> take_picture(std::span<const Run>& rest)
 int run_experiment(const RunOptions& options)
 {
     const std::vector<Technique> techniques = list_techniques(options.techniques);
-    const Experiment             experiment = load_experiment(options.specification, techniques);
+    Experiment                   experiment = load_experiment(options.specification, techniques);
     refuse_unknown_scenes(experiment);
-    std::vector<Run> runs    = choose(expand(experiment, techniques, options.yes), options.only);
-    const auto       columns = result_columns(experiment, techniques);
+    const std::vector<Run> runs = choose(expand(experiment, techniques, options.yes), options.only);
+    if (!options.only.empty()) experiment.targets.clear(); // one run is asked for, no search
+    const auto columns = result_columns(experiment, techniques);
     if (options.dry_run) return list_runs(experiment, runs, techniques);
 
     const Stopwatch stopwatch;
@@ -104,11 +106,12 @@ int run_experiment(const RunOptions& options)
     listen_for_stop();
     const Environment environment = describe_environment(experiment, techniques, gpu.info, options.command_line);
     ResultFolder      results(folder, names_of(columns), environment, options.resume);
-    std::erase_if(runs, [&](const Run& run) { return results.finished().contains(run.id); });
+    std::vector<Run>  pending = runs;
+    std::erase_if(pending, [&](const Run& run) { return results.finished().contains(run.id); });
 
-    Progress progress(runs.size(), total_cost(runs, techniques, experiment.measure));
+    Progress progress(pending.size(), total_cost(pending, techniques, experiment.measure));
     Bench    bench{experiment, techniques, gpu, results, progress, environment.identity};
-    for (std::span<const Run> rest = runs; !rest.empty() && stop_requested() == 0;) {
+    for (std::span<const Run> rest(runs); !rest.empty() && stop_requested() == 0;) {
         measure_picture(bench, take_picture(rest));
     }
     const double took_s = stopwatch.seconds();

@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> manifest_keys  = {"name",  "summary", "cite",       "inputs",
-                                                 "exact", "limits",  "bounded_by", "parameters"};
+const std::vector<std::string> manifest_keys  = {"name",   "summary",    "cite",     "inputs",    "exact",
+                                                 "limits", "bounded_by", "accuracy", "parameters"};
 const std::vector<std::string> known_inputs   = {"depth_pyramid", "ray_beams", "front_beams"};
 const std::vector<std::string> parameter_keys = {"default", "min", "max", "choices", "doc"};
 
@@ -138,6 +138,32 @@ void check_bounds(const TomlFile& file, const toml::node& node, const Technique&
     }
 }
 
+/// accuracy = { parameter = "steps", better = "higher" }, or a list of such tables.
+void read_accuracy(const TomlFile& file, const toml::node& node, Technique& technique)
+{
+    std::vector<const toml::node*> nodes;
+    if (const toml::array* list = node.as_array())
+        for (const toml::node& one : *list) nodes.push_back(&one);
+    else
+        nodes.push_back(&node);
+    static const std::vector<std::string> keys = {"parameter", "better"};
+    for (const toml::node* one : nodes) {
+        const toml::table& table = toml_table(file, *one, "accuracy");
+        toml_known_keys(file, table, "field of 'accuracy'", keys);
+        const toml::node& name   = required(file, table, "parameter", "'accuracy'");
+        const toml::node& better = required(file, table, "better", "'accuracy'");
+        const Parameter&  parameter =
+            find_parameter(technique, toml_text(file, name, "parameter"), toml_place(file, name));
+        if (parameter.type != ParameterType::integer && parameter.type != ParameterType::real)
+            throw_spec_error("{}: 'accuracy' names '{}', which is not a number", toml_place(file, name),
+                             parameter.name);
+        const std::string direction = toml_text(file, better, "better");
+        if (direction != "higher" && direction != "lower")
+            toml_refuse(file, better, "better", "\"higher\" or \"lower\"");
+        technique.accuracy.push_back({parameter.name, direction == "higher"});
+    }
+}
+
 /// A list of which every text must be known.
 std::vector<std::string> read_known(const TomlFile& file, const toml::node& node, const std::string& key,
                                     const std::string& kind, std::span<const std::string> known)
@@ -224,6 +250,7 @@ Technique load_technique(const fs::path& folder)
         technique.bounded_by = toml_texts(file, *node, "bounded_by");
         check_bounds(file, *node, technique);
     }
+    if (const toml::node* node = file.root.get("accuracy")) read_accuracy(file, *node, technique);
     if (!fs::exists(folder / "trace.glsl")) {
         throw_spec_error("{}: missing; it holds the technique's trace function", short_path(folder / "trace.glsl"));
     }

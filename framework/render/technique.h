@@ -25,6 +25,12 @@ struct Parameter {
 /// Values by parameter name, in the representation of Parameter::default_value.
 using ParameterValues = std::map<std::string, double>;
 
+/// A parameter that buys accuracy with time: what a search for a target turns.
+struct Accuracy {
+    std::string parameter;
+    bool        higher_is_better = true;
+};
+
 struct Technique {
     std::string              id;   // the folder's name
     std::string              name; // title for people
@@ -36,6 +42,7 @@ struct Technique {
     std::vector<std::string> bounded_by;    // parameters whose sum bounds the loop iterations of one ray
     std::vector<Parameter>   parameters;
     std::filesystem::path    folder;
+    std::vector<Accuracy>    accuracy = {};
 };
 
 /// What a technique that is not exact may declare that it gets wrong. The check holds it to everything else.
