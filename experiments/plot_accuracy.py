@@ -3,13 +3,15 @@ import numpy as np
 import pandas as pd
 from matplotlib import pyplot as plt
 
+from pairs import Ratio, paired_ratio
 from plot_data import describe, label_of
 from plot_figures import log_axis
 
 NOT_REACHED = "not reached"
-TARGETS = [0.90, 0.95, 0.99, 0.995]
-# (column, what it is measured against)
-RECALLS = [("recall_1px", "scene truth"), ("screen_recall_1px", "screen truth")]
+SUBJECT = "hiz"  # whose speed-ups are the headline; techniques whose names begin with it are its variants, not rivals
+# (prefix of the columns, what they are measured against)
+TRUTHS = [("", "scene truth"), ("screen_", "screen truth")]
+MANY_LABELS = 8
 
 
 def pareto(rows, cost, error):
@@ -44,6 +46,9 @@ def draw_curves(axis, results, rows, cost, error, xlabel):
             # Several numbers vary: a cloud, of which the front is what counts.
             style["linestyle"] = "none"
             named = line[line.index.isin(front.index)]
+        elif len(line) > MANY_LABELS:
+            # A search adds points where a target is crossed: the front and the ends say enough.
+            named = line[line.index.isin(front.index) | (line.index == line.index[0]) | (line.index == line.index[-1])]
         axis.plot(line[cost], line[error], label=series, ms=5, lw=1.3, **style)
         for _, row in named.iterrows():
             labels.append(axis.annotate(label_of(results, row, rows), (row[cost], row[error]), textcoords="offset points", xytext=(4, 3),
@@ -56,62 +61,152 @@ def draw_curves(axis, results, rows, cost, error, xlabel):
     drop_overlapping(labels)
 
 
+def draw_errors(results, rows, columns, axes):
+    """Each column's distance from 1 on its axis: (column, cost, label of cost). Returns whether one has no error to draw."""
+    clipped = False
+    for axis, (column, cost, xlabel) in zip(axes, columns):
+        part = rows[rows[column].notna()].copy()
+        exact = part[column] if "displacement" in column else 1 - part[column]
+        floor = 1e-3 if "displacement" in column else 0.5 / max(1.0, part.rays.max())
+        part["error"] = exact.clip(lower=floor)
+        draw_curves(axis, results, part, cost, "error", xlabel)
+        if (exact < floor).any():
+            axis.axhline(floor, color="#999999", lw=0.8, ls=":")
+            clipped = True
+    return clipped
+
+
+def finish(figure, axes, title, clipped):
+    if clipped:
+        title += "\n(dotted: no error, or less than can be drawn)"
+    axes[-1].legend(fontsize=8.5, loc="upper left", bbox_to_anchor=(1.01, 1))
+    figure.suptitle(title)
+
+
 def accuracy_curves(results, _):
-    """Error against time and against fetches, log-log."""
+    """Error against time and against fetches; precision and F1 against time: recall alone misleads. Log-log."""
+    cost, fetches = ("cost_ms_median", "trace + inputs, ms"), ("fetches_mean", "fetches per ray")
     for title, name, rows in results.pictures():
         if len(rows) < 5 or not results.swept(rows):
             continue
-        kinds = [(column, f"1 − recall within 1 px ({truth})") for column, truth in RECALLS]
+        known = [column for column in rows if rows[column].notna().sum() >= 5]
+        kinds = [(f"{prefix}recall_1px", f"1 − recall within 1 px ({truth})") for prefix, truth in TRUTHS]
         for column, ylabel in kinds + [("screen_displacement_p95_px", "hit displacement, 95th percentile, px")]:
-            if not results.has(column) or rows[column].notna().sum() < 5:
+            if column not in known:
                 continue
-            part = rows[rows[column].notna()].copy()
-            exact = part[column] if "displacement" in column else 1 - part[column]
-            floor = 1e-3 if "displacement" in column else 0.5 / max(1.0, part.rays.max())
-            part["error"] = exact.clip(lower=floor)
-            figure, (left, right) = plt.subplots(1, 2, figsize=(12.5, 5.4), sharey=True)
-            draw_curves(left, results, part, "cost_ms_median", "error", "trace + structures, ms")
-            draw_curves(right, results, part, "fetches_mean", "error", "fetches per ray")
-            left.set_ylabel(ylabel)
-            if (exact < floor).any():
-                for axis in (left, right):
-                    axis.axhline(floor, color="#999999", lw=0.8, ls=":")
-                left.text(0.01, 0.01, "dotted: no error, or too small to draw", transform=left.transAxes, fontsize=8,
-                          color="#666666")
-            right.legend(fontsize=8.5, loc="best")
-            figure.suptitle(title)
+            figure, axes = plt.subplots(1, 2, figsize=(15, 5.4), sharey=True)
+            clipped = draw_errors(results, rows, [(column, *cost), (column, *fetches)], axes)
+            axes[0].set_ylabel(ylabel)
+            finish(figure, axes, title, clipped)
             yield f"accuracy_{column}_{name}", figure
+        for prefix, truth in TRUTHS:
+            columns = [f"{prefix}precision_1px", f"{prefix}f1_1px"]
+            if any(column not in known for column in columns):
+                continue
+            figure, axes = plt.subplots(1, 2, figsize=(15, 5.4))
+            clipped = draw_errors(results, rows, [(column, *cost) for column in columns], axes)
+            for axis, said in zip(axes, ("precision: hits that are right", "F1 of recall and precision")):
+                axis.set_ylabel(f"1 − {said} ({truth})")
+            finish(figure, axes, title, clipped)
+            yield f"accuracy_{prefix}precision_f1_{name}", figure
 
 
-def target_rows(results, rows, recall, base):
-    """The cheapest setting of each technique that reaches each target, and its speed-up over linear; the best recall of one that does not
-    reach it. The ends of the ratio's interval are the ratios of the ends of both intervals."""
-    for target in TARGETS:
-        reached = rows[rows[recall] >= target]
-        linear = reached[reached.technique == "linear"].nsmallest(1, "cost_ms_median")
+def reaches(rows, measure, target):
+    return rows[measure] <= target if measure.startswith("flip") else rows[measure] >= target
+
+
+def neighbour(results, one, rows, measure, target):
+    """The row on the same line (nothing differs but an accuracy parameter) that is the next less accurate one, and misses the
+    target; None where the line begins with `one`. And whether the row's technique has such a line at all."""
+    has_line = False
+    for parameter, better in results.accuracy.get(one.technique, {}).items():
+        same = [name for name in results.inputs if name != parameter and rows[name].notna().any()]
+        line = rows[rows.technique == one.technique]
+        for name in same:
+            line = line[(line[name] == one[name]) | (line[name].isna() & pd.isna(one[name]))]
+        if line[parameter].nunique() < 2:
+            continue
+        has_line = True
+        worse = line[line[parameter] < one[parameter]] if better == "higher" else line[line[parameter] > one[parameter]]
+        worse = worse[~reaches(worse, measure, target)].sort_values(parameter, ascending=better == "higher")
+        if len(worse):
+            return worse.iloc[-1], True
+    return None, has_line
+
+
+def ratio_of_rows(results, slow, fast):
+    """By pairs; without samples the ratio of the medians, and no interval."""
+    slow_ms, fast_ms = results.costs.get(slow.run_id), results.costs.get(fast.run_id)
+    ratio = paired_ratio(slow_ms, fast_ms) if slow_ms is not None and fast_ms is not None else None
+    if ratio is None or ratio.pairs == 0:
+        return Ratio(slow.cost_ms_median / fast.cost_ms_median, np.nan, np.nan, 0)
+    return ratio
+
+
+def verdict(low, high):
+    if np.isnan(low) or np.isnan(high):
+        return "not known"
+    return "faster" if low > 1 else "slower" if high < 1 else "no difference shown"
+
+
+def speedup_row(results, rows, measure, target, base, subject, rival, over):
+    """How many times as fast the subject is. The rival's cheapest setting may lie up to the neighbour that misses the target: the
+    interval begins at the lower end for that one."""
+    ratio = ratio_of_rows(results, rival, subject)
+    missed, has_line = neighbour(results, rival, rows, measure, target)
+    low, bracket = ratio.low, "none"
+    if missed is not None:
+        low, bracket = np.fmin(low, ratio_of_rows(results, missed, subject).low) if not np.isnan(low) else low, "closed"
+    elif has_line:
+        low, bracket = np.nan, "open"  # cheaper settings were not listed: the rival may be faster than this
+    return {**base, "kind": "speedup", "technique": subject.technique, "target": target, "over": over,
+            "over_technique": rival.technique, "setting": describe(results, rival, rows), "run_id": rival.run_id,
+            **quality(rival, measure), **times(rival), "speedup": ratio.median, "speedup_ci_low": low,
+            "speedup_ci_high": ratio.high, "pairs": ratio.pairs, "bracket": bracket, "verdict": verdict(low, ratio.high)}
+
+
+def times(row):
+    return {"time_ms": row.cost_ms_median, "time_ms_ci_low": row.cost_ms_ci_low, "time_ms_ci_high": row.cost_ms_ci_high,
+            "fetches_mean": row.fetches_mean}
+
+
+def quality(row, measure):
+    """The measure that is asked for, and recall, precision and F1 against the same truth."""
+    prefix = "screen_" if measure.startswith("screen_") else ""
+    return {"value": row[measure], **{name: row.get(f"{prefix}{name}_1px", np.nan) for name in ("recall", "precision", "f1")}}
+
+
+def target_rows(results, rows, measure, base):
+    """The cheapest setting of each technique that reaches each target, or the best that it reaches; and the subject's speed-ups
+    over dda, over the best other technique and over linear at theirs."""
+    for target in results.targets[measure]:
+        reached = rows[reaches(rows, measure, target)]
+        best = {technique: part.nsmallest(1, "cost_ms_median").iloc[0] for technique, part in reached.groupby("technique")}
         for technique in results.techniques:
             row = {**base, "kind": "cheapest_for_target", "technique": technique, "target": target}
-            best = reached[reached.technique == technique].nsmallest(1, "cost_ms_median")
-            if best.empty:
-                yield {**row, "setting": NOT_REACHED, "recall": rows[rows.technique == technique][recall].max()}
+            if technique not in best:
+                known = rows[rows.technique == technique][measure]
+                yield {**row, "setting": NOT_REACHED, "value": known.min() if measure.startswith("flip") else known.max()}
                 continue
-            one = best.iloc[0]
-            row.update(setting=describe(results, one, rows), run_id=one.run_id, recall=one[recall],
-                       time_ms=one.cost_ms_median, time_ms_ci_low=one.cost_ms_ci_low,
-                       time_ms_ci_high=one.cost_ms_ci_high, fetches_mean=one.fetches_mean)
-            if not linear.empty:
-                other = linear.iloc[0]
-                row.update(speedup_over_linear=other.cost_ms_median / one.cost_ms_median,
-                           speedup_ci_low=other.cost_ms_ci_low / one.cost_ms_ci_high,
-                           speedup_ci_high=other.cost_ms_ci_high / one.cost_ms_ci_low)
-                if technique == "linear":  # against itself
-                    row.update(speedup_ci_low=1.0, speedup_ci_high=1.0)
-            yield row
+            one = best[technique]
+            missed, _ = neighbour(results, one, rows, measure, target)
+            yield {**row, "setting": describe(results, one, rows), "run_id": one.run_id, **quality(one, measure), **times(one),
+                   "missed_by": None if missed is None else missed.run_id}
+        if SUBJECT not in best:
+            continue
+        others = [one for technique, one in best.items() if technique != "dda" and not technique.startswith(SUBJECT)]
+        rivals = [("dda", best.get("dda")), ("best other", min(others, key=lambda one: one.cost_ms_median, default=None)),
+                  ("linear", best.get("linear"))]
+        for over, rival in rivals:
+            if rival is not None:
+                yield speedup_row(results, rows, measure, target, base, best[SUBJECT], rival, over)
 
 
-def equal_time_rows(results, rows, recall, base):
-    """The best recall of each technique within the time that the most accurate setting takes, and within half of it."""
-    best = rows[rows[recall] >= rows[recall].max() - 1e-3].cost_ms_median.min()
+def equal_time_rows(results, rows, measure, base):
+    """The best of each technique within the time that the most accurate setting takes, and within half of it."""
+    if measure.startswith("flip"):
+        return
+    best = rows[rows[measure] >= rows[measure].max() - 1e-3].cost_ms_median.min()
     for share in (0.5, 1.0):
         within = rows[rows.cost_ms_median <= share * best]
         for technique in results.techniques:
@@ -120,45 +215,45 @@ def equal_time_rows(results, rows, recall, base):
             if part.empty:
                 yield {**row, "setting": "no setting is fast enough"}
                 continue
-            one = part.loc[part[recall].idxmax()]
-            yield {**row, "setting": describe(results, one, rows), "run_id": one.run_id, "recall": one[recall],
-                   "time_ms": one.cost_ms_median, "time_ms_ci_low": one.cost_ms_ci_low,
-                   "time_ms_ci_high": one.cost_ms_ci_high, "fetches_mean": one.fetches_mean}
+            one = part.loc[part[measure].idxmax()]
+            yield {**row, "setting": describe(results, one, rows), "run_id": one.run_id, **quality(one, measure), **times(one)}
 
 
-def price_rows(results, rows, recall, base):
-    """Along the Pareto front: milliseconds for each further 1 % of recall."""
-    front = pareto(rows.assign(error=1 - rows[recall]), "cost_ms_median", "error")
+def price_rows(results, rows, measure, base):
+    """Along the Pareto front: milliseconds for each further 1 % of the measure."""
+    if measure.startswith("flip"):
+        return
+    front = pareto(rows.assign(error=1 - rows[measure]), "cost_ms_median", "error")
     before = None
     for _, one in front.iterrows():
         row = {**base, "kind": "marginal_price", "technique": one.technique, "setting": describe(results, one, rows),
-               "run_id": one.run_id, "recall": one[recall], "time_ms": one.cost_ms_median,
-               "time_ms_ci_low": one.cost_ms_ci_low, "time_ms_ci_high": one.cost_ms_ci_high,
-               "fetches_mean": one.fetches_mean}
+               "run_id": one.run_id, **quality(one, measure), **times(one)}
         if before is not None:
-            row["price_ms_per_percent"] = (one.cost_ms_median - before.cost_ms_median) / (100 * (one[recall] - before[recall]))
+            row["price_ms_per_percent"] = (one.cost_ms_median - before.cost_ms_median) / (100 * (one[measure] - before[measure]))
         before = one
         yield row
 
 
-COLUMNS = ["scene", "view", "width", "height", "recall_of", "kind", "technique", "target", "time_budget_ms", "setting",
-           "run_id", "recall", "time_ms", "time_ms_ci_low", "time_ms_ci_high", "fetches_mean", "speedup_over_linear",
-           "speedup_ci_low", "speedup_ci_high", "price_ms_per_percent"]
+COLUMNS = ["scene", "view", "width", "height", "measure", "kind", "technique", "target", "over", "over_technique",
+           "time_budget_ms", "setting", "run_id", "missed_by", "value", "recall", "precision", "f1", "time_ms",
+           "time_ms_ci_low", "time_ms_ci_high", "fetches_mean", "speedup", "speedup_ci_low", "speedup_ci_high", "pairs",
+           "bracket", "verdict", "price_ms_per_percent"]
 
 
 def summary(results):
-    """The derived rows; none without a recall."""
+    """The derived rows, the headline first; none without a measure."""
     derived = []
     for _, _, rows in results.pictures():
         first = rows.iloc[0]
-        for recall, _ in RECALLS:
-            known = rows[rows[recall].notna()] if recall in rows else rows.iloc[:0]
+        for measure in results.targets:
+            known = rows[rows[measure].notna()] if measure in rows else rows.iloc[:0]
             if known.empty:
                 continue
             base = {"scene": first.scene, "view": first["view"], "width": first.width, "height": first.height,
-                    "recall_of": recall}
+                    "measure": measure}
             for make in (target_rows, equal_time_rows, price_rows):
-                derived.extend(make(results, known, recall, base))
+                derived.extend(make(results, known, measure, base))
+    derived.sort(key=lambda row: row["kind"] != "speedup")
     return pd.DataFrame(derived, columns=COLUMNS)
 
 

@@ -1,14 +1,19 @@
 """results.csv as a table, and the style of each technique in every plot."""
 import json
 import os
+import tomllib
 
 import pandas as pd
+
+from pairs import cost_samples
 
 # Okabe and Ito 2008: told apart by the colour-blind; markers and dashes repeat the distinction.
 COLOURS = ["#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#000000", "#F0E442"]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*"]
 DASHES = ["-", "--", ":", "-."]
 PICTURE = ["scene", "view", "width", "height"]
+# Where a specification names no [targets].
+TARGETS = {"recall_1px": [0.90, 0.95, 0.99, 0.995], "screen_recall_1px": [0.90, 0.95, 0.99, 0.995]}
 
 
 class Results:
@@ -27,7 +32,10 @@ class Results:
         if os.path.exists(path):
             with open(path, encoding="utf-8") as file:
                 self.environment = json.load(file)
-        # The cost of a technique: its trace and the structures that only it needs.
+        self.targets = targets_of(self.environment)
+        self.accuracy = accuracy_of(self.environment)
+        self.costs = cost_samples(folder)
+        # What a technique costs: its trace and the inputs that only it needs.
         for end in ("median", "ci_low", "ci_high"):
             column = f"trace_ms_{end}"
             if column in self.rows:
@@ -78,6 +86,22 @@ class Results:
         return styles
 
 
+def targets_of(environment):
+    """{measure: values} of the specification's [targets]."""
+    stated = tomllib.loads(environment.get("specification", "")).get("targets", {})
+    return {name: values if isinstance(values, list) else [values] for name, values in stated.items()} or TARGETS
+
+
+def accuracy_of(environment):
+    """{technique: {parameter: "higher" or "lower"}}: what buys accuracy with time."""
+    accuracy = {}
+    for entry in environment.get("accuracy", "").split():
+        name, better = entry.split("=")
+        technique, parameter = name.split(".")
+        accuracy.setdefault(technique, {})[parameter] = better
+    return accuracy
+
+
 def is_number(column):
     return column.dtype.kind in "if"
 
@@ -107,7 +131,12 @@ def describe(results, row, rows):
 
 
 def errors(rows, name):
-    """Distances from median to both ends of the interval, for matplotlib; zero where the interval is not known."""
-    low = (rows[f"{name}_median"] - rows[f"{name}_ci_low"]).clip(lower=0).fillna(0)
-    high = (rows[f"{name}_ci_high"] - rows[f"{name}_median"]).clip(lower=0).fillna(0)
+    """Distances from median to both ends of the interval, for matplotlib; NaN, which draws no bar, where it is not known."""
+    low = (rows[f"{name}_median"] - rows[f"{name}_ci_low"]).clip(lower=0)
+    high = (rows[f"{name}_ci_high"] - rows[f"{name}_median"]).clip(lower=0)
     return [low.to_numpy(), high.to_numpy()]
+
+
+def known(rows, name):
+    """Which rows have an interval: the others are drawn hollow."""
+    return rows[f"{name}_ci_low"].notna() & rows[f"{name}_ci_high"].notna()

@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib.ticker import FuncFormatter, LogLocator  # noqa: E402
 
-from plot_data import errors, is_number  # noqa: E402
+from plot_data import errors, is_number, known  # noqa: E402
 
 LAW_FROM_STEPS = 50  # the report's frame rate is capped below
 
@@ -64,8 +64,10 @@ def law_of_steps(results, tables):
         for series, line in lines:
             style = results.styles[series]
             left.plot(line.steps, line.fps, label=series, **style)
-            right.errorbar(line.steps, line.inverse_fps_s * 1000, yerr=errors(line, "frame_ms"), capsize=2,
-                           **{**style, "linestyle": "none"})
+            sure = known(line, "frame_ms")
+            for part, face in ((line[sure], style["color"]), (line[~sure], "none")):
+                right.errorbar(part.steps, part.inverse_fps_s * 1000, yerr=errors(part, "frame_ms"), capsize=2,
+                               **{**style, "linestyle": "none", "markerfacecolor": face})
             high = line[line.steps >= LAW_FROM_STEPS]
             if len(high) < 3:
                 continue
@@ -175,8 +177,9 @@ def bars(axis, rows, results, value, spread, ylabel):
         part = rows[rows.series == name].drop_duplicates("scene").set_index("scene").reindex(scenes)
         at = np.arange(len(scenes)) + (i - (len(series) - 1) / 2) * width
         style = results.styles[name]
-        axis.bar(at, part[value], width * 0.92, label=name, color=style["color"], alpha=style["alpha"],
-                 yerr=errors(part, spread) if spread else None, error_kw={"lw": 1, "capsize": 2, "ecolor": "#333333"})
+        unknown = ~known(part, spread) if spread else part[value].isna()
+        axis.bar(at, part[value], width * 0.92, label=name, color=["none" if hollow else style["color"] for hollow in unknown],
+                 edgecolor=style["color"], alpha=style["alpha"], yerr=errors(part, spread) if spread else None, error_kw={"lw": 1, "capsize": 2, "ecolor": "#333333"})
         tops = part[f"{spread}_ci_high"].fillna(part[value]) if spread else part[value]
         for x, height, top in zip(at, part[value], tops):
             if np.isfinite(height):
@@ -198,8 +201,8 @@ def comparison_bars(results, _):
         figure, (top, bottom) = plt.subplots(2, 1, figsize=(max(7, 2.3 * rows.scene.nunique()), 7.4))
         bars(top, rows, results, "cost_ms_median", "cost_ms", "trace + structures, ms")
         bars(bottom, rows, results, "fetches_mean", None, "fetches per ray")
-        top.set_title(f"Time, median and 95 % interval ({width}×{height}, view {view})")
-        bottom.set_title("Work: fetches of depth and structures per traced ray")
+        top.set_title(f"Time, median and 95 % interval, hollow: not known ({width}×{height}, view {view})")
+        bottom.set_title("Work: depth and pyramid fetches per traced ray")
         top.legend(ncol=4, loc="upper center", bbox_to_anchor=(0.5, -0.08))
         yield f"compare_{view}_{width}x{height}", figure
 

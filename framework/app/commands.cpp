@@ -89,6 +89,10 @@ int show_technique(const CommonOptions& common, const std::string& id)
     std::puts(fmt::format("folder: {}", technique.folder.string()).c_str());
     for (const Structure& structure : technique.structures)
         std::puts(fmt::format("structure: {} ({}), {}", structure.id, structure.name, structure.folder.string()).c_str());
+    for (const Accuracy& accuracy : technique.accuracy)
+        std::puts(fmt::format("accuracy: {} (better when {})", accuracy.parameter,
+                              accuracy.higher_is_better ? "higher" : "lower")
+                      .c_str());
     for (const std::string& citation : technique.cite) std::puts(fmt::format("source: {}", citation).c_str());
     std::puts("\nParameters");
     for (const Parameter& parameter : technique.parameters) {

@@ -18,6 +18,7 @@ here, which git ignores. `reference/` holds small committed runs to compare with
 | in a results folder | |
 |---|---|
 | `results.csv` | one row per run, in the columns below |
+| `samples.csv` | every timed frame: run_id, round, pass, ms, cpu_ms; docs/measuring.md says what a round is |
 | `environment.json` | device, driver, commit, command line, seed, specification, and hashes of everything that decides a result |
 | `pictures/` | per run: the reflection, right and wrong rays in false colours, and the work per ray |
 | `report.html`, `report.md`, `summary.csv`, `plots/` | made from the above by `ssrlab plot` |

@@ -95,7 +95,7 @@ MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResu
 {
     require_same_size(tested.size_px, truth.size_px);
     require_possible(tested);
-    size_t rays = 0, same_pixel = 0, within = 0, displaced = 0, missed = 0, false_hits = 0, out_of_steps = 0;
+    size_t rays = 0, same_pixel = 0, within = 0, found = 0, displaced = 0, missed = 0, false_hits = 0, out_of_steps = 0;
     std::vector<double> distances;
     for (size_t i = 0; i < truth.status.size(); ++i) {
         if (!traced(truth, i)) continue;
@@ -106,6 +106,7 @@ MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResu
             distances.push_back(distance_px);
             if (tested.hit_pixel[i] == truth.hit_pixel[i]) ++same_pixel;
             ++(distance_px <= within_one_px ? within : displaced);
+            found += distance_px <= within_one_px;
         } else if (hits(truth, i)) {
             ++missed;
         } else if (hits(tested, i)) {
@@ -115,6 +116,7 @@ MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResu
             ++within;
         }
     }
+    const size_t true_hits = found + displaced + missed, own_hits = found + displaced + false_hits;
     return {{"traced_rays", double(rays)},
             {"screen_same_pixel", share(same_pixel, rays)},
             {"screen_within_1px", share(within, rays)},
@@ -122,7 +124,9 @@ MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResu
             {"screen_missed", share(missed, rays)},
             {"screen_false", share(false_hits, rays)},
             {"screen_out_of_steps", share(out_of_steps, rays)},
-            {"screen_recall_1px", recall_against(tested, truth)},
+            {"screen_recall_1px", share(found, true_hits)},
+            {"screen_precision_1px", share(found, own_hits)},
+            {"screen_f1_1px", share(2 * found, true_hits + own_hits)},
             {"screen_displacement_median_px", known_quantile(distances, 0.5)},
             {"screen_displacement_p95_px", known_quantile(distances, 0.95)},
             {"screen_displacement_p99_px", known_quantile(distances, 0.99)}};
@@ -171,6 +175,7 @@ MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth
                          {"missed_facing_rule", share(facing_rule, visible)},
                          {"missed_not_in_depth", share(not_in_depth, visible)},
                          {"precision_1px", share(found_1px, hit_count)},
+                         {"f1_1px", share(2 * found_1px, visible + hit_count)},
                          {"false_hits", share(wrong, rays)},
                          {"false_self", share(false_hits[size_t(FalseHit::self)], rays)},
                          {"false_too_thick", share(false_hits[size_t(FalseHit::too_thick)], rays)},

@@ -100,6 +100,15 @@ Environment describe_environment(const Experiment& experiment, std::span<const T
     notes["cpu_threads"]   = std::to_string(std::thread::hardware_concurrency());
     notes["device_type"]   = device.type;
     notes["vulkan"]        = device.api_version;
+    // What a search for targets turns, so that plots know which neighbours on a line differ in accuracy.
+    for (const TechniqueSweep& sweep : experiment.techniques) {
+        for (const Accuracy& accuracy : find_technique(techniques, sweep.id).accuracy) {
+            const std::string entry =
+                fmt::format("{}.{}={}", sweep.id, accuracy.parameter, accuracy.higher_is_better ? "higher" : "lower");
+            if (notes["accuracy"].find(entry) == std::string::npos)
+                notes["accuracy"] += (notes["accuracy"].empty() ? "" : " ") + entry;
+        }
+    }
     for (const Parameter& parameter : pass_parameters())
         notes["pass_parameters"] += (notes["pass_parameters"].empty() ? "" : " ") + parameter.name;
     return environment;

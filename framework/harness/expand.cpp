@@ -47,20 +47,6 @@ FrameSettings to_settings(const ParameterValues& values)
     return settings;
 }
 
-std::string run_id(const Run& run)
-{
-    std::string identity = fmt::format("{}\n{}\n{}\n{}\n", run.scene, run.view, size_text(run.size_px), run.technique);
-    // A pass's parameter counts when it is not at its default: a new pass leaves the ids of earlier runs alone.
-    for (const Setting& setting : all_settings()) {
-        const double value = setting.get(run.settings);
-        if (setting.table == "trace" || value != setting.default_value)
-            identity += fmt::format("{}={}\n", setting.name, value);
-    }
-    for (const auto& [name, value] : run.values) identity += fmt::format("{}={}\n", name, value);
-    // The letter keeps spreadsheets from reading 12e4… as a number.
-    return "r" + content_hash(identity);
-}
-
 void refuse_cut_loops(const TechniqueSweep& sweep, const Technique& technique, const ParameterValues& values)
 {
     const double bound = iteration_bound(technique, values);
@@ -90,6 +76,20 @@ std::vector<Run> expand_picture(const Experiment& experiment, std::span<const Te
 }
 
 } // namespace
+
+std::string run_id(const Run& run)
+{
+    std::string identity = fmt::format("{}\n{}\n{}\n{}\n", run.scene, run.view, size_text(run.size_px), run.technique);
+    // An effect's parameter counts when it is not at its default: a new effect leaves the ids of earlier runs alone.
+    for (const Setting& setting : all_settings()) {
+        const double value = setting.get(run.settings);
+        if (setting.table == "trace" || value != setting.default_value)
+            identity += fmt::format("{}={}\n", setting.name, value);
+    }
+    for (const auto& [name, value] : run.values) identity += fmt::format("{}={}\n", name, value);
+    // The letter keeps spreadsheets from reading 12e4… as a number.
+    return "r" + content_hash(identity);
+}
 
 std::string size_text(glm::ivec2 size_px) { return fmt::format("{}x{}", size_px.x, size_px.y); }
 

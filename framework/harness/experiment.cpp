@@ -2,6 +2,7 @@
 
 #include "core/size.h"
 #include "core/toml_reading.h"
+#include "harness/search.h"
 
 #include <algorithm>
 #include <functional>
@@ -236,12 +237,37 @@ MeasureSettings read_measure(const TomlFile& file)
     return measure;
 }
 
+std::vector<Target> read_targets(const TomlFile& file, const MeasureSettings& measure)
+{
+    std::vector<Target> targets;
+    const toml::table*  table = optional_table(file, "targets");
+    if (table == nullptr) return targets;
+    std::vector<std::string> known;
+    for (const TargetMeasure& one : target_measures()) known.push_back(one.name);
+    toml_known_keys(file, *table, "measure of [targets]", known);
+    if (!measure.truth)
+        throw_spec_error("{}: [targets] are judged by the truths: needs truth = true in [measure], got false",
+                         toml_place(file, *table));
+    for (const TargetMeasure& one : target_measures()) {
+        const toml::node* node = table->get(one.name);
+        if (node == nullptr) continue;
+        if (one.name == "flip_visible" && !measure.image_errors)
+            throw_spec_error("{}: 'flip_visible' needs image_errors = true in [measure], got false",
+                             toml_place(file, *node));
+        Target target{one.name, {}, one.higher_is_better};
+        for (const toml::node* value : values_of(file, *node, one.name))
+            target.values.push_back(number_within(file, *value, one.name, 0, 1));
+        targets.push_back(std::move(target));
+    }
+    return targets;
+}
+
 } // namespace
 
 Experiment load_experiment(const std::filesystem::path& path, std::span<const Technique> techniques)
 {
-    static const std::vector<std::string> known = {"name",  "title",  "scenes",     "views",  "sizes",
-                                                   "trace", "passes", "techniques", "measure"};
+    static const std::vector<std::string> known = {"name",  "title",  "scenes",     "views",   "sizes",
+                                                   "trace", "passes", "techniques", "measure", "targets"};
     const TomlFile                        file  = read_toml(path);
     toml_known_keys(file, file.root, "key", known);
     Experiment experiment;
@@ -259,6 +285,7 @@ Experiment load_experiment(const std::filesystem::path& path, std::span<const Te
     experiment.settings     = read_settings(file);
     experiment.techniques   = read_sweeps(file, techniques);
     experiment.measure      = read_measure(file);
+    experiment.targets      = read_targets(file, experiment.measure);
     return experiment;
 }
 

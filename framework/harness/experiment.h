@@ -16,17 +16,24 @@ namespace ssrlab {
 
 /// How long and how often is measured.
 struct MeasureSettings {
-    uint64_t seed             = 1; // of the random order of repeats
-    int      warmup           = 1; // untimed frames before the first timed one
-    int      min_repeats      = 9; // below 6 there is no 95 % interval
-    int      max_repeats      = 100;
-    double   time_limit_s     = 60;   // a run fails whose preparation or frame takes longer on the device
-    double   budget_s         = 1;    // a run has as many repeats as its pilot frame says fit into this
-    bool     truth            = true; // compare with the truths
+    uint64_t seed         = 1; // of the random order of repeats
+    int      warmup       = 1; // untimed frames before the first timed one
+    int      min_repeats  = 9; // below 6 there is no 95 % interval
+    int      max_repeats  = 100;
+    double   time_limit_s = 60;   // a run fails whose preparation or frame takes longer on the device
+    double   budget_s     = 1;    // a run has as many repeats as its pilot frame says fit into this
+    bool     truth        = true; // compare with the truths
     bool     image_errors = true; // also compare the pictures (SSIM, FLIP …), which takes longer than comparing rays
     bool     double_twin  = true; // trace once more in double precision, to tell rounding from the other errors
     bool     pictures     = true; // write the reflected picture of each run
     bool     saved_time   = true; // time a few unculled frames, too; never with pass_set = shading
+};
+
+/// Values of a measure that a search makes techniques reach.
+struct Target {
+    std::string         measure;
+    std::vector<double> values;
+    bool                higher_is_better = true;
 };
 
 using ValueLists = std::map<std::string, std::vector<double>>;
@@ -50,6 +57,7 @@ struct Experiment {
     ValueLists                  settings;
     std::vector<TechniqueSweep> techniques;
     MeasureSettings             measure;
+    std::vector<Target>         targets = {};
 };
 
 /// One technique with one set of values on one picture: everything that decides its outcome, and its number.
@@ -83,6 +91,9 @@ double count_runs(const Experiment& experiment);
 /// Scene by scene, view by view, size by size; a run listed twice comes once. Throws SpecError for a run whose iterations a
 /// driver may cut, and for more than max_runs_unasked runs unless `many` is set.
 std::vector<Run> expand(const Experiment& experiment, std::span<const Technique> techniques, bool many = false);
+
+/// The short hash that is Run::id.
+std::string run_id(const Run& run);
 
 std::string size_text(glm::ivec2 size_px); // "1280x720"
 

@@ -9,18 +9,22 @@
 #include "core/stopwatch.h"
 #include "harness/environment.h"
 #include "harness/samples.h"
+#include "harness/search.h"
 #include "harness/statistics.h"
 #include "harness/stop_signal.h"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <deque>
+#include <map>
 
 namespace ssrlab {
 namespace {
 
-// Runs that are timed interleaved: enough that drift meets all alike, few enough that a kill loses little.
-constexpr size_t batch_size      = 16;
+// Runs that are timed interleaved, and so in pairs: most frames have fewer; few enough that a kill loses little. A search has all of its
+// frame's runs in one batch, since what it compares must be paired.
+constexpr size_t batch_size      = 64;
 constexpr int    gbuffer_repeats = 5;
 
 struct Picture {
@@ -288,29 +292,91 @@ std::vector<const Run*> by_settings(std::span<const Run> runs)
     return grouped;
 }
 
+/// All of a run but its timed repeats; a run that fails is over.
+void open_run(Bench& bench, Picture& picture, const Run& run, std::vector<MeasuredRun>& open)
+{
+    bench.progress.tick();
+    MeasuredRun measured;
+    measured.run                = &run;
+    const Technique& technique  = find_technique(bench.techniques, run.technique);
+    measured.row                = identity_row(bench.experiment, run, technique);
+    for (const Structure& structure : technique.structures) measured.structures.push_back(structure.id);
+    const auto prepare_all = [&] {
+        prepare(bench, picture, measured);
+        prepare_comparison(bench, measured);
+        plan_repeats(bench, measured);
+    };
+    if (!try_step(bench, measured, prepare_all)) return;
+    bench.progress.prepared_run(run.id, cost_of(bench, run));
+    open.push_back(std::move(measured));
+}
+
+void time_runs(Bench& bench, Picture& picture, std::vector<MeasuredRun>& open)
+{
+    refuse_changed_sources(bench);
+    repeat_until_final(bench, picture, open);
+    keep_measured(bench, picture, open);
+}
+
 void measure_batch(Bench& bench, Picture& picture, std::span<const Run> runs)
 {
     std::vector<MeasuredRun> open;
     for (const Run* run : by_settings(runs)) {
         if (stop_requested() != 0) return;
-        bench.progress.tick();
-        MeasuredRun measured;
-        measured.run = run;
-        const Technique& technique = find_technique(bench.techniques, run->technique);
-        measured.row               = identity_row(bench.experiment, *run, technique);
-        for (const Structure& structure : technique.structures) measured.structures.push_back(structure.id);
-        const auto prepare_both = [&] {
-            prepare(bench, picture, measured);
-            prepare_comparison(bench, measured);
-            plan_repeats(bench, measured);
-        };
-        if (!try_step(bench, measured, prepare_both)) continue;
-        bench.progress.prepared_run(run->id, cost_of(bench, *run));
-        open.push_back(std::move(measured));
+        open_run(bench, picture, *run, open);
     }
-    refuse_changed_sources(bench);
-    repeat_until_final(bench, picture, open);
-    keep_measured(bench, picture, open);
+    time_runs(bench, picture, open);
+}
+
+/// The picture, or rows that say why there is none.
+std::optional<Picture> try_picture(Bench& bench, std::span<const Run> runs)
+{
+    try {
+        const UnderWay under_way(bench.state, runs.front().id, 0, true);
+        return make_picture(bench, runs.front());
+    } catch (const std::exception& error) {
+        refuse_changed_sources(bench);
+        for (const Run& run : runs) {
+            const Technique& technique = find_technique(bench.techniques, run.technique);
+            finish(bench, run, failed_row(identity_row(bench.experiment, run, technique), error));
+        }
+        return std::nullopt;
+    }
+}
+
+std::vector<Run> without_row(const Bench& bench, std::span<const Run> runs)
+{
+    std::vector<Run> pending(runs.begin(), runs.end());
+    std::erase_if(pending, [&](const Run& run) { return bench.results.finished().contains(run.id); });
+    return pending;
+}
+
+/// Measures are known before a run is timed. So the search comes first, and then all runs of the picture, listed ones and those of the
+/// search, are timed in the same rounds.
+void search_and_measure(Bench& bench, std::span<const Run> listed)
+{
+    std::map<std::string, Row> rows = bench.results.rows();
+    std::vector<Run>           all(listed.begin(), listed.end());
+    std::deque<Run>            opened; // keeps addresses
+    std::vector<MeasuredRun>   open;
+    std::optional<Picture>     picture;
+    for (std::vector<Run> next = all; !next.empty();) {
+        const std::vector<Run> pending = without_row(bench, next);
+        if (!picture && !pending.empty()) picture = try_picture(bench, pending);
+        if (!picture && !pending.empty()) return;
+        for (const Run* run : by_settings(pending)) {
+            if (stop_requested() != 0) return;
+            open_run(bench, *picture, opened.emplace_back(*run), open);
+        }
+        for (const MeasuredRun& measured : open) rows[measured.run->id] = measured.row;
+        next = next_probes(bench.experiment, bench.techniques, all, rows);
+        all.insert(all.end(), next.begin(), next.end());
+        const std::vector<Run> added = without_row(bench, next);
+        double                 cost  = 0;
+        for (const Run& run : added) cost += cost_of(bench, run);
+        bench.progress.add_runs(added.size(), cost);
+    }
+    if (picture) time_runs(bench, *picture, open);
 }
 
 } // namespace
@@ -326,26 +392,18 @@ void finish(Bench& bench, const Run& run, const Row& row, std::string_view sampl
     bench.progress.finish_run(run.id, cost_of(bench, run));
 }
 
-void measure_picture(Bench& bench, std::span<const Run> runs)
+void measure_picture(Bench& bench, std::span<const Run> listed)
 {
-    const Run& first = runs.front();
+    const Run& first = listed.front();
     bench.progress.start_picture(fmt::format("{} {} {}", first.scene, first.view, size_text(first.size_px)));
-    Picture picture;
-    try {
-        const UnderWay under_way(bench.state, first.id, 0, true);
-        picture = make_picture(bench, first);
-    } catch (const std::exception& error) {
-        refuse_changed_sources(bench);
-        for (const Run& run : runs) {
-            const Technique& technique = find_technique(bench.techniques, run.technique);
-            finish(bench, run, failed_row(identity_row(bench.experiment, run, technique), error));
-        }
-        return;
-    }
-    while (!runs.empty() && stop_requested() == 0) {
-        const auto batch = runs.first(std::min(batch_size, runs.size()));
-        runs             = runs.subspan(batch.size());
-        measure_batch(bench, picture, batch);
+    if (!bench.experiment.targets.empty()) return search_and_measure(bench, listed);
+    const std::vector<Run> pending = without_row(bench, listed);
+    if (pending.empty()) return;
+    std::optional<Picture> picture = try_picture(bench, pending);
+    for (std::span<const Run> rest(pending); picture && !rest.empty() && stop_requested() == 0;) {
+        const auto batch = rest.first(std::min(batch_size, rest.size()));
+        rest             = rest.subspan(batch.size());
+        measure_batch(bench, *picture, batch);
     }
 }
 

@@ -37,8 +37,8 @@ struct Bench {
 /// Appends the row of a run that is over.
 void finish(Bench& bench, const Run& run, const Row& row, std::string_view samples = "");
 
-/// Appends a row for each run as soon as it is final; a run that fails is a row with the reason. Returns early, with the
-/// rows so far complete, when a stop was requested.
+/// Appends a row for each run that has none, as soon as it is final, and for those that the search for the experiment's targets adds; a
+/// run that fails is a row with the reason. Returns early, with the rows so far complete, when a stop was requested.
 void measure_picture(Bench& bench, std::span<const Run> runs);
 
 } // namespace ssrlab

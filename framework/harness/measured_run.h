@@ -36,7 +36,7 @@ inline constexpr int saved_pairs = 5;
 void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms, int round);
 /// How many repeats fit into the budget, from the wall time of a frame before the first repeat. Their number depends on no time
 /// that is recorded: stopping where an interval happens to be tight would make intervals too tight.
-int repeats_for(double pilot_s, const MeasureSettings& measure);
+int  repeats_for(double pilot_s, const MeasureSettings& measure);
 void add_times(MeasuredRun& measured, double gbuffer_ms);
 /// Outcome failed or, of an InvalidResult, invalid; and why.
 Row failed_row(Row row, const std::exception& error);

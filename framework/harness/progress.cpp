@@ -33,8 +33,9 @@ double expected_steps(const Run& run, const Technique& technique)
     const double bound   = iteration_bound(technique, run.values);
     const double crossed = run.size_px.x + run.size_px.y;
     // Strides end with the ray, far below their bound.
-    if (run.values.contains("stride_px") && run.values.contains("max_steps"))
-        return std::min(bound, walked_share * crossed / run.values.at("stride_px"));
+    for (const Accuracy& accuracy : technique.accuracy)
+        if (!accuracy.higher_is_better && std::ranges::count(technique.bounded_by, accuracy.parameter) == 0)
+            return std::min(bound, walked_share * crossed / run.values.at(accuracy.parameter));
     if (!technique.exact) return sampled_share * bound;
     return std::min(bound, technique.structures.empty() ? walked_share * crossed : visits_per_level * std::log2(crossed));
 }
@@ -64,6 +65,12 @@ std::string duration_text(double seconds)
 Progress::Progress(size_t total_runs, double total_cost)
     : total_runs_(total_runs), total_cost_(total_cost), in_place_(::isatty(STDERR_FILENO) != 0)
 {
+}
+
+void Progress::add_runs(size_t count, double cost)
+{
+    total_runs_ += count;
+    total_cost_ += cost;
 }
 
 void Progress::start_picture(const std::string& what)

@@ -20,6 +20,8 @@ public:
     /// `total_cost`: the sum of estimated_seconds over all runs to do; the time left scales with what is left of it.
     Progress(size_t total_runs, double total_cost);
 
+    /// More runs than were known: a search tries further settings.
+    void add_runs(size_t count, double cost);
     void start_picture(const std::string& what);
     /// Everything but the timed repeats is done.
     void prepared_run(const std::string& id, double cost);

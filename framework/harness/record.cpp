@@ -229,6 +229,19 @@ void ResultFolder::append(const Row& row, std::string_view samples)
     finished_.insert(record.front());
 }
 
+std::map<std::string, Row> ResultFolder::rows() const
+{
+    std::map<std::string, Row> rows;
+    const std::string          text = read_file(csv_);
+    std::string_view           rest = text;
+    take_csv_record(rest); // the header
+    while (const auto record = take_csv_record(rest)) {
+        Row& row = rows[record->front()];
+        for (size_t i = 0; i < columns_.size(); ++i) row[columns_[i]] = record->at(i);
+    }
+    return rows;
+}
+
 /// What a killed writer left beside its files; nothing that only looks alike.
 void ResultFolder::remove_partial_files() const
 {

@@ -40,6 +40,9 @@ public:
     /// The runs that have a row.
     const std::set<std::string>& finished() const { return finished_; }
 
+    /// The rows that stand, by run id, as results.csv has them.
+    std::map<std::string, Row> rows() const;
+
     /// Above every round in samples.csv.
     int next_round() const { return next_round_; }
 

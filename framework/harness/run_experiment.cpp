@@ -76,8 +76,9 @@ int list_runs(const Experiment& experiment, std::span<const Run> runs, std::span
                    size_text(run.size_px), run.settings.trace.thickness_m, run.settings.trace.max_distance_m,
                    run.technique, values);
     }
-    fmt::print("{} runs, about {} on two CPU cores without a GPU\n", runs.size(),
-               duration_text(total_cost(runs, techniques, experiment.measure)));
+    fmt::print("{} runs, about {} on two CPU cores without a GPU{}\n", runs.size(),
+               duration_text(total_cost(runs, techniques, experiment.measure)),
+               experiment.targets.empty() ? "" : "; the search for [targets] adds runs");
     return 0;
 }
 
@@ -103,28 +104,29 @@ void report_messages(Bench& bench, size_t& reported)
 }
 
 /// A child ended at these: rows that say so, and no second try.
-void record_lost(Bench& bench, std::vector<Run>& runs, const LostRun& lost)
+void record_lost(Bench& bench, std::span<const Run> runs, const LostRun& lost)
 {
-    const auto at    = std::ranges::find(runs, lost.run_id, &Run::id);
-    const auto is_it = [&, at = at == runs.end() ? Run() : *at](const Run& run) {
-        return lost.whole_picture ? run.scene == at.scene && run.view == at.view && run.size_px == at.size_px
-                                  : run.id == at.id;
+    const auto at = std::ranges::find(runs, lost.run_id, &Run::id);
+    if (at == runs.end()) throw_failure("run {} of the search for the targets: {}", lost.run_id, lost.why);
+    const auto is_it = [&](const Run& run) {
+        return lost.whole_picture ? run.scene == at->scene && run.view == at->view && run.size_px == at->size_px
+                                  : run.id == at->id;
     };
     for (const Run& run : runs) {
         if (!is_it(run)) continue;
         const Technique& technique = find_technique(bench.techniques, run.technique);
         finish(bench, run, failed_row(identity_row(bench.experiment, run, technique), Failure(lost.why)));
     }
-    std::erase_if(runs, is_it);
 }
 
 int sweep(const RunOptions& options, SweepState& state)
 {
     const bool                   continues    = state.lost.run_id[0] != 0;
     const std::vector<Technique> techniques = list_techniques(options.techniques);
-    const Experiment             experiment = load_experiment(options.specification, techniques);
+    Experiment                   experiment = load_experiment(options.specification, techniques);
     std::vector<Run>             runs       = planned_runs(options, experiment, techniques);
-    const auto                   columns    = result_columns(experiment, techniques);
+    if (!options.only.empty()) experiment.targets.clear(); // one run is asked for, no search
+    const auto columns = result_columns(experiment, techniques);
 
     const Stopwatch stopwatch;
     Gpu             gpu = open_gpu(options.gpu);
@@ -132,15 +134,16 @@ int sweep(const RunOptions& options, SweepState& state)
     const fs::path    folder      = options.folder.empty() ? fs::path("results") / experiment.name : options.folder;
     const Environment environment = describe_environment(experiment, techniques, gpu.info, options.command_line);
     ResultFolder      results(folder, names_of(columns), environment, options.resume || continues, !continues);
-    std::erase_if(runs, [&](const Run& run) { return results.finished().contains(run.id); });
+    std::vector<Run>  pending = runs;
+    std::erase_if(pending, [&](const Run& run) { return results.finished().contains(run.id); });
 
-    Progress progress(runs.size(), total_cost(runs, techniques, experiment.measure));
+    Progress progress(pending.size(), total_cost(pending, techniques, experiment.measure));
     Bench    bench{experiment, techniques, gpu, results, progress, state, environment.identity};
-    if (continues) record_lost(bench, runs, state.lost);
+    if (continues) record_lost(bench, pending, state.lost);
     if (const std::string trouble = cache_trouble(truth_cache_dir(results.path())); !trouble.empty())
         progress.say("warning: " + trouble);
     size_t reported = 0;
-    for (std::span<const Run> rest = runs; !rest.empty() && stop_requested() == 0;) {
+    for (std::span<const Run> rest(runs); !rest.empty() && stop_requested() == 0;) {
         measure_picture(bench, take_picture(rest));
         report_messages(bench, reported);
     }

@@ -12,8 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> manifest_keys = {
-    "name", "summary", "cite", "structures", "exact", "limits", "bounded_by", "rays_per_invocation", "parameters"};
+const std::vector<std::string> manifest_keys = {"name",   "summary",    "cite",     "structures",          "exact",
+                                                "limits", "bounded_by", "accuracy", "rays_per_invocation", "parameters"};
 
 void check_bounds(const TomlFile& file, const toml::node& node, const Technique& technique)
 {
@@ -21,6 +21,32 @@ void check_bounds(const TomlFile& file, const toml::node& node, const Technique&
         if (find_parameter(technique, name, toml_place(file, node)).type != ParameterType::integer) {
             throw_spec_error("{}: 'bounded_by' names '{}', which is not an integer", toml_place(file, node), name);
         }
+    }
+}
+
+/// accuracy = { parameter = "steps", better = "higher" }, or a list of such tables.
+void read_accuracy(const TomlFile& file, const toml::node& node, Technique& technique)
+{
+    std::vector<const toml::node*> nodes;
+    if (const toml::array* list = node.as_array())
+        for (const toml::node& one : *list) nodes.push_back(&one);
+    else
+        nodes.push_back(&node);
+    static const std::vector<std::string> keys = {"parameter", "better"};
+    for (const toml::node* one : nodes) {
+        const toml::table& table = toml_table(file, *one, "accuracy");
+        toml_known_keys(file, table, "field of 'accuracy'", keys);
+        const toml::node& name   = manifest_key(file, table, "parameter", "'accuracy'");
+        const toml::node& better = manifest_key(file, table, "better", "'accuracy'");
+        const Parameter&  parameter =
+            find_parameter(technique, toml_text(file, name, "parameter"), toml_place(file, name));
+        if (parameter.type != ParameterType::integer && parameter.type != ParameterType::real)
+            throw_spec_error("{}: 'accuracy' names '{}', which is not a number", toml_place(file, name),
+                             parameter.name);
+        const std::string direction = toml_text(file, better, "better");
+        if (direction != "higher" && direction != "lower")
+            toml_refuse(file, better, "better", "\"higher\" or \"lower\"");
+        technique.accuracy.push_back({parameter.name, direction == "higher"});
     }
 }
 
@@ -124,6 +150,7 @@ Technique load_technique(const fs::path& folder, std::span<const Structure> know
         technique.bounded_by = toml_texts(file, *node, "bounded_by");
         check_bounds(file, *node, technique);
     }
+    if (const toml::node* node = file.root.get("accuracy")) read_accuracy(file, *node, technique);
     if (!fs::exists(folder / "trace.glsl"))
         throw_spec_error("{}: missing; it holds the technique's trace function", short_path(folder / "trace.glsl"));
     return technique;

@@ -10,6 +10,12 @@
 
 namespace ssrlab {
 
+/// A parameter that buys accuracy with time: what a search for a target turns.
+struct Accuracy {
+    std::string parameter;
+    bool        higher_is_better = true;
+};
+
 struct Technique {
     std::string              id;   // the folder's name
     std::string              name; // title for people
@@ -22,6 +28,7 @@ struct Technique {
     int                      rays_per_invocation = 1; // 2: defines trace_pair() in the place of trace()
     std::vector<Parameter>   parameters; // its own, then those of its structures as "structure.parameter"
     std::filesystem::path    folder;
+    std::vector<Accuracy>    accuracy = {};
 };
 
 /// What a technique that is not exact may declare that it gets wrong. The check holds it to everything else.

@@ -1,6 +1,7 @@
 // Screen t of sample i; > 1 beyond the end of the segment.
 real sample_t(Ray ray, int i)
 {
+    if (space == space_pixels) return real(i) * stride_to_t(ray, real(stride_px));
     real fraction = real(i) / real(steps);
     return space == space_screen ? fraction : metres_to_t(ray, max_distance_m * fraction);
 }
@@ -20,7 +21,7 @@ TraceResult trace(Ray ray)
         ivec2 pixel   = pixel_at(ray, t);
         found         = !ended && pixel != ray.start_pixel && touches_surface(ray, pixel, z, z);
     }
-    if (!found) return miss(ray, taken);
+    if (!found) return space == space_pixels && !ended && sample_t(ray, taken + 1) <= real(1) ? out_of_steps(taken) : miss(ray, taken);
 
     // The bracket: free at t_free, a hit at t. Asking for the slab, not just for its front, never moves t out of one.
     for (int k = 0; k < binary_steps; ++k)

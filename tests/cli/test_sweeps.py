@@ -10,6 +10,22 @@ import time
 
 from support import SOURCE, SWEEP, SWEEP_ROWS, Case, main
 
+SEARCH = """
+scenes = ["builtin:stairs"]
+sizes  = ["160x90"]
+[trace]
+max_distance_m = 9
+[targets]
+screen_recall_1px = 0.9
+[techniques.linear]
+space = "screen"
+steps = [2, 400]
+[techniques.dda]
+[measure]
+min_repeats = 2
+max_repeats = 2
+pictures = false
+"""
 SMOKE = os.path.join(SOURCE, "experiments", "smoke.toml")
 
 
@@ -85,6 +101,32 @@ class Test(Case):
         with open(self.path("out/samples.csv"), "w", encoding="utf-8") as file:
             file.write("run_id,ms\n")
         self.refused("run", spec, "-o", "out", "--resume", code=1, says=["samples.csv: damaged"])
+
+    def test_search_reaches_its_target(self):
+        """Between the two neighbours where a line crosses the target lie at most 10 %, every probe is a row like any other,
+        and a sweep that was stopped goes on with the same search."""
+        spec = self.write("s.toml", SEARCH)
+        self.ssrlab("run", spec, "-o", "out")
+        rows = self.rows()
+        self.assert_complete(rows, len(rows))
+        line = sorted((float(row["steps"]), float(row["screen_recall_1px"])) for row in rows if row["technique"] == "linear")
+        self.assertGreater(len(line), 2)
+        reached = next(i for i, (_, recall) in enumerate(line) if recall >= 0.9)
+        self.assertLess(line[reached - 1][1], 0.9)
+        self.assertLessEqual(line[reached][0] / line[reached - 1][0], 1.1)
+        # All of a frame are timed in the same rounds.
+        samples = self.samples()
+        self.assertEqual({samples[row["run_id"]]["frame"][0][0] for row in rows}, {0})
+        self.ssrlab("run", spec, "-o", "out", "--resume", says=["0 written now"])
+        probes = [row["run_id"] for row in rows if row["technique"] == "linear"][-2:]
+        with open(self.path("out/results.csv"), encoding="utf-8", newline="") as file:
+            kept = [text for text in file if text[:text.index(",")] not in probes]
+        with open(self.path("out/results.csv"), "w", encoding="utf-8", newline="") as file:
+            file.writelines(kept)
+        self.ssrlab("run", spec, "-o", "out", "--resume", says=["2 written now"])
+        again = self.rows()
+        self.assert_complete(again, len(rows))
+        self.assertEqual({row["run_id"] for row in again}, {row["run_id"] for row in rows})
 
     def test_dry_run_lists_and_writes_nothing(self):
         self.ssrlab("run", SMOKE, "--dry-run", "-o", "out", says=["12 runs"])

@@ -51,6 +51,8 @@ TEST(RayMeasures, AgainstScreenTruth)
     EXPECT_EQ(values.at("screen_false"), 1 / 9.0);
     EXPECT_EQ(values.at("screen_out_of_steps"), 1 / 9.0);
     EXPECT_EQ(values.at("screen_recall_1px"), 2 / 5.0);
+    EXPECT_EQ(values.at("screen_precision_1px"), 2 / 4.0);
+    EXPECT_EQ(values.at("screen_f1_1px"), 4 / 9.0);
     EXPECT_EQ(values.at("screen_displacement_median_px"), 1);
     EXPECT_DOUBLE_EQ(values.at("screen_displacement_p95_px").value(), 3.7); // nine tenths of the way from 1 to 4
     EXPECT_DOUBLE_EQ(values.at("screen_displacement_p99_px").value(), 3.94);
@@ -162,6 +164,7 @@ TEST(RayMeasures, AgainstSceneTruth)
     EXPECT_EQ(values.at("missed_facing_rule"), 1 / 6.0);
     EXPECT_EQ(values.at("missed_not_in_depth"), 1 / 6.0);
     EXPECT_EQ(values.at("precision_1px"), 1 / 4.0);
+    EXPECT_EQ(values.at("f1_1px"), 2 / 10.0);
     EXPECT_EQ(values.at("false_hits"), 3 / 8.0);
     EXPECT_EQ(values.at("false_self"), 1 / 8.0);
     EXPECT_EQ(values.at("false_too_thick"), 1 / 8.0);

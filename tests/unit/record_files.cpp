@@ -2,6 +2,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "harness/record.h"
+#include "harness/samples.h"
 
 #include <gmock/gmock.h>
 
@@ -214,7 +215,8 @@ TEST_F(RecordFiles, KillsLoseDoubleOrTearNoRow)
             const auto sweep = [&] {
                 ResultFolder results(folder, columns, here, true);
                 for (int i = 0; i < row_count; ++i) {
-                    if (!results.finished().contains("r" + std::to_string(i))) results.append(row_of(i));
+                    const std::string id = "r" + std::to_string(i);
+                    if (!results.finished().contains(id)) results.append(row_of(i), id + ",0,frame,1,1\r\n");
                 }
             };
             const int status = in_child(sweep, useconds_t(500 + random() % 20000));
@@ -225,6 +227,9 @@ TEST_F(RecordFiles, KillsLoseDoubleOrTearNoRow)
         ++sweeps;
         const auto records = rows();
         ASSERT_EQ(records.size(), static_cast<size_t>(row_count));
+        const SampleCounts samples = count_samples(read_file(folder / "samples.csv"));
+        ASSERT_EQ(samples.frames.size(), static_cast<size_t>(row_count));
+        for (const auto& [id, frames] : samples.frames) ASSERT_EQ(frames, 1) << id;
         for (int i = 0; i < row_count; ++i) {
             const Row expected = row_of(i);
             ASSERT_EQ(records[static_cast<size_t>(i)],

@@ -148,6 +148,18 @@ TEST(Spec, EveryParameterAgainstEveryMistake)
                 HasSubstr(".toml:2: 'techniques.linear' must be a table"));
 }
 
+TEST(Spec, TargetsAgainstEveryMistake)
+{
+    const std::pair<std::string, std::string> mistakes[] = {
+        {"[targets]\nrecall = 0.9", "unknown measure of [targets] 'recall'"},
+        {"[targets]\nrecall_1px = 1.5", "'recall_1px' must be in [0, 1], got the number 1.5"},
+        {"[targets]\nf1_1px = []", "'f1_1px' is an empty list"},
+        {"[targets]\nf1_1px = \"0.9\"", "'f1_1px' must be"},
+        {"[measure]\ntruth = false\n[targets]\nf1_1px = 0.9", "needs truth = true in [measure], got false"},
+        {"[measure]\nimage_errors = false\n[targets]\nflip_visible = 0.1", "needs image_errors = true"}};
+    for (const auto& [lines, answer] : mistakes) EXPECT_THAT(error_of(with_line(lines)), HasSubstr(answer)) << lines;
+}
+
 TEST(Spec, EveryMeasureFieldAgainstEveryMistake)
 {
     for (const char* field : {"seed", "warmup", "min_repeats", "max_repeats", "budget_s", "truth", "image_errors",

@@ -49,6 +49,35 @@ template <typename Call> std::string spec_error(const Call& call)
 
 const std::string head = "name = \"Walk\"\nsummary = \"Walks.\"\n";
 
+TEST(TechniqueManifest, AccuracyNamesNumbersAndADirection)
+{
+    const TechniqueDir dir;
+    const std::string  tail = "[parameters]\nsteps = { default = 4, min = 1, max = 9, doc = \"d\" }\n"
+                              "fine = { default = true, doc = \"d\" }\n";
+    const auto         load = [&](const std::string& id, const std::string& line) {
+        return load_technique(dir.add(id, head + line + "\n" + tail));
+    };
+    EXPECT_THAT(load("none", "").accuracy, testing::IsEmpty());
+    const auto one = load("one", "accuracy = { parameter = \"steps\", better = \"higher\" }").accuracy;
+    ASSERT_EQ(one.size(), 1U);
+    EXPECT_EQ(one[0].parameter, "steps");
+    EXPECT_TRUE(one[0].higher_is_better);
+    EXPECT_FALSE(
+        load("list", "accuracy = [{ parameter = \"steps\", better = \"lower\" }]").accuracy.at(0).higher_is_better);
+    const std::pair<std::string, std::string> mistakes[] = {
+        {"accuracy = { parameter = \"step\", better = \"higher\" }", "technique.toml:3: "},
+        {"accuracy = { parameter = \"fine\", better = \"higher\" }",
+         ":3: 'accuracy' names 'fine', which is not a number"},
+        {"accuracy = { parameter = \"steps\", better = \"more\" }",
+         ":3: 'better' must be \"higher\" or \"lower\", got the string \"more\""},
+        {"accuracy = { parameter = \"steps\" }", ":3: 'accuracy' has no 'better'"},
+        {"accuracy = { parameter = \"steps\", best = \"lower\" }", ":3: unknown field of 'accuracy' 'best'"},
+        {"accuracy = \"steps\"", ":3: 'accuracy' must be"}};
+    int number = 0;
+    for (const auto& [line, answer] : mistakes)
+        EXPECT_THAT(spec_error([&] { load("mistake" + std::to_string(number++), line); }), HasSubstr(answer)) << line;
+}
+
 TEST(TechniqueManifest, LimitsAreKnownNamesAndBelongToInexactTechniques)
 {
     const TechniqueDir dir;

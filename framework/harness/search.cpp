@@ -1,0 +1,115 @@
+#include "harness/search.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <set>
+
+namespace ssrlab {
+namespace {
+
+/// A setting along a line, and how good it is by one measure.
+struct Point {
+    const Run* run;
+    double     value, measured;
+};
+
+std::optional<double> measured_of(const std::map<std::string, Row>& rows, const Run& run, const std::string& measure)
+{
+    const auto row = rows.find(run.id);
+    if (row == rows.end() || !row->second.contains(measure)) return std::nullopt;
+    const std::string& text  = row->second.at(measure);
+    double             value = 0;
+    const auto         read  = std::from_chars(text.data(), text.data() + text.size(), value);
+    return read.ec == std::errc() ? std::optional(value) : std::nullopt;
+}
+
+/// Halfway by ratio; nothing when there is no place between the two that is worth a run.
+std::optional<double> halfway(const Parameter& parameter, double a, double b)
+{
+    const double low = std::min(a, b), high = std::max(a, b);
+    if (low <= 0 || high / low <= search_ratio) return std::nullopt;
+    double middle = std::sqrt(low * high);
+    if (parameter.type == ParameterType::integer) {
+        middle = std::round(middle);
+    } else {
+        const double unit = std::pow(10, std::floor(std::log10(middle)) - 2); // three digits say it
+        middle            = std::round(middle / unit) * unit;
+    }
+    return middle > low && middle < high ? std::optional(middle) : std::nullopt;
+}
+
+/// The first neighbours, from the cheap end, of which one misses the target and the next reaches it.
+std::optional<std::pair<Point, Point>> crossing(std::span<const Point> line, double target, bool higher_is_better)
+{
+    const auto reaches = [&](const Point& point) {
+        return higher_is_better ? point.measured >= target : point.measured <= target;
+    };
+    const auto first = std::ranges::find_if(line, reaches);
+    if (first == line.begin() || first == line.end()) return std::nullopt;
+    return std::pair{*(first - 1), *first};
+}
+
+/// Runs by all that they are but the value of one parameter.
+std::map<std::string, std::vector<const Run*>> lines_of(std::span<const Run> runs, const Technique& technique,
+                                                        const std::string& parameter)
+{
+    std::map<std::string, std::vector<const Run*>> lines;
+    for (const Run& run : runs) {
+        if (run.technique != technique.id) continue;
+        Run line = run;
+        line.values.erase(parameter);
+        lines[run_id(line)].push_back(&run);
+    }
+    return lines;
+}
+
+} // namespace
+
+std::span<const TargetMeasure> target_measures()
+{
+    static const std::vector<TargetMeasure> measures = {{"recall_1px", true},    {"precision_1px", true},
+                                                        {"f1_1px", true},        {"screen_recall_1px", true},
+                                                        {"screen_f1_1px", true}, {"flip_visible", false}};
+    return measures;
+}
+
+std::vector<Run> next_probes(const Experiment& experiment, std::span<const Technique> techniques,
+                             std::span<const Run> runs, const std::map<std::string, Row>& rows)
+{
+    std::set<std::string> tried;
+    for (const Run& run : runs) tried.insert(run.id);
+    std::vector<Run> probes;
+    const auto       probe = [&](const Accuracy& accuracy, const Parameter& parameter, const Point& a, const Point& b) {
+        const auto value = halfway(parameter, a.value, b.value);
+        if (!value) return;
+        Run run                        = *b.run;
+        run.values[accuracy.parameter] = *value;
+        run.id                         = run_id(run);
+        run.number                     = static_cast<int>(runs.size() + probes.size());
+        if (tried.insert(run.id).second) probes.push_back(std::move(run));
+    };
+    for (const Technique& technique : techniques) {
+        for (const Accuracy& accuracy : technique.accuracy) {
+            const Parameter& parameter = find_parameter(technique, accuracy.parameter, technique.id);
+            for (const auto& [key, line] : lines_of(runs, technique, accuracy.parameter)) {
+                for (const Target& target : experiment.targets) {
+                    std::vector<Point> points;
+                    for (const Run* run : line)
+                        if (const auto measured = measured_of(rows, *run, target.measure))
+                            points.push_back({run, run->values.at(accuracy.parameter), *measured});
+                    std::ranges::sort(points, {}, [&](const Point& point) {
+                        return accuracy.higher_is_better ? point.value : -point.value;
+                    });
+                    for (const double value : target.values)
+                        if (const auto found = crossing(points, value, target.higher_is_better))
+                            probe(accuracy, parameter, found->first, found->second);
+                }
+            }
+        }
+    }
+    return probes;
+}
+
+} // namespace ssrlab

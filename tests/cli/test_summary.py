@@ -1,0 +1,121 @@
+"""Speed-ups by pairs and the rows of summary.csv, on results made up here: no run, no device."""
+import json
+import os
+import sys
+
+from support import SOURCE, Case, main
+
+sys.path.insert(0, os.path.join(SOURCE, "experiments"))
+import numpy as np  # noqa: E402
+import pandas as pd  # noqa: E402
+import pairs  # noqa: E402
+import plot_accuracy  # noqa: E402
+import plot_report  # noqa: E402
+from plot_data import Results  # noqa: E402
+
+
+def series(values, first_round=0):
+    return pd.Series(values, index=range(first_round, first_round + len(values)), dtype=float)
+
+
+class Test(Case):
+    def test_drift_cancels_in_pairs(self):
+        drift = np.linspace(1, 5, 12)
+        ratio = pairs.paired_ratio(series(3 * drift), series(drift))
+        self.assertEqual((ratio.median, ratio.low, ratio.high, ratio.pairs), (3, 3, 3, 12))
+
+    def test_only_common_rounds_are_pairs(self):
+        ratio = pairs.paired_ratio(series([8.0] * 9), series([2.0] * 9, first_round=3))
+        self.assertEqual((ratio.median, ratio.pairs), (4, 6))
+        self.assertTrue(np.isnan(pairs.paired_ratio(series([1.0] * 3), series([1.0] * 3, first_round=9)).median))
+
+    def test_interval_is_unknown_below_six_pairs(self):
+        ratio = pairs.paired_ratio(series([2.0] * 5), series([1.0] * 5))
+        self.assertEqual(ratio.median, 2)
+        self.assertTrue(np.isnan(ratio.low) and np.isnan(ratio.high))
+        six = pairs.paired_ratio(series([1, 2, 3, 4, 5, 6]), series([1.0] * 6))
+        self.assertEqual((six.low, six.high), (1, 6))
+
+    def test_interval_covers_as_often_as_promised(self):
+        random = np.random.default_rng(5)
+        for count in (6, 12, 20, 30):
+            covered = 0
+            for _ in range(1500):
+                noise = np.exp(0.05 * random.standard_t(2, count))
+                ratio = pairs.paired_ratio(series(noise), series([1.0] * count))
+                covered += ratio.low <= 1 <= ratio.high
+            self.assertGreaterEqual(covered / 1500, 0.95 - 0.012, count)
+
+    def results(self, extra_time=0.0):
+        """hiz 1 ms; dda 4 ms; linear 8, 20, 22, 90 ms at recalls 0.5, 0.98, 0.991, 0.999. linear_binary misses."""
+        rows = [("h", "hiz", "", 1, 1.0, 0.9), ("d", "dda", "", 4, 1.0, 0.9), ("l1", "linear", 100, 8, 0.5, 0.8),
+                ("l2", "linear", 900, 20, 0.98, 0.8), ("l3", "linear", 990, 22, 0.991, 0.8),
+                ("l4", "linear", 4000, 90, 0.999, 0.8), ("b", "linear_binary", 50, 3, 0.7, 0.8)]
+        table = ["run_id,scene,view,width,height,technique,steps,trace_ms_median,trace_ms_ci_low,trace_ms_ci_high,repeats,"
+                 "pyramid_ms_median,fetches_mean,screen_recall_1px,screen_precision_1px,screen_f1_1px,outcome,rays"]
+        samples = ["run_id,round,pass,ms,cpu_ms"]
+        for run, technique, steps, ms, recall, precision in rows:
+            f1 = 2 * recall * precision / (recall + precision)
+            table.append(f"{run},s,default,8,8,{technique},{steps},{ms},{ms},{ms},9,0,5,{recall},{precision},{f1},ok,64")
+            for number in range(9):
+                # Drift that all meet alike, and a pyramid's share for hiz.
+                factor = 1 + 0.1 * number
+                parts = {"trace": ms * factor, "shade": 77}
+                if run == "h":
+                    parts = {"trace": 0.75 * ms * factor, "depth_pyramid": 0.25 * ms * factor, "shade": 77}
+                samples += [f"{run},{number},{name},{value!r}," for name, value in parts.items()]
+                samples.append(f"{run},{number},frame,99,99")
+        self.write("out/results.csv", "\n".join(table) + "\n")
+        self.write("out/samples.csv", "\n".join(samples) + "\n")
+        self.write("out/environment.json", json.dumps({
+            "accuracy": "linear.steps=higher linear_binary.steps=higher",
+            "specification": "[targets]\nscreen_recall_1px = [0.99]\n"}))
+        return Results(self.path("out"))
+
+    def test_speedups_come_first_and_include_the_bracket(self):
+        summary = plot_accuracy.summary(self.results())
+        first = summary.head(3)
+        self.assertEqual(list(first.kind), ["speedup"] * 3)
+        self.assertEqual(list(first.over), ["dda", "best other", "linear"])
+        self.assertEqual(list(first.over_technique), ["dda", "linear", "linear"])
+        dda, _, linear = (row for _, row in first.iterrows())
+        self.assertAlmostEqual(dda.speedup, 4)
+        self.assertAlmostEqual(dda.speedup_ci_low, 4)
+        self.assertEqual((dda.bracket, dda.verdict), ("none", "faster"))
+        # 990 steps reach 99 %, 900 do not: between 20 and 22 times.
+        self.assertEqual((linear.run_id, linear.bracket), ("l3", "closed"))
+        self.assertAlmostEqual(linear.speedup, 22)
+        self.assertAlmostEqual(linear.speedup_ci_low, 20)
+        self.assertAlmostEqual(linear.speedup_ci_high, 22)
+        self.assertEqual((linear.recall, linear.precision), (0.991, 0.8))
+        cheapest = summary[(summary.kind == "cheapest_for_target")].set_index("technique")
+        self.assertEqual(cheapest.setting["linear_binary"], "not reached")
+        self.assertEqual(cheapest.value["linear_binary"], 0.7)
+        self.assertEqual(cheapest.missed_by["linear"], "l2")
+        text = plot_report.headline(summary)
+        self.assertIn("22 [20, 22]×", next(text)["over linear"])
+
+    def test_without_samples_the_interval_is_unknown(self):
+        self.results()
+        os.remove(self.path("out/samples.csv"))
+        row = plot_accuracy.summary(Results(self.path("out"))).iloc[0]
+        self.assertEqual((row.speedup, row.pairs, row.verdict), (4, 0, "not known"))
+        self.assertTrue(np.isnan(row.speedup_ci_low))
+
+    def test_a_line_that_begins_at_the_target_is_no_closed_bracket(self):
+        results = self.results()
+        results.rows = results.rows[~results.rows.run_id.isin(["l1", "l2"])]
+        row = plot_accuracy.summary(results).iloc[2]
+        self.assertEqual((row.run_id, row.bracket, row.verdict), ("l3", "open", "not known"))
+
+    def test_unknown_intervals_are_hollow(self):
+        from plot_data import errors, known
+        rows = pd.DataFrame({"t_median": [2.0, 3.0], "t_ci_low": [1.0, np.nan], "t_ci_high": [4.0, np.nan]})
+        low, high = errors(rows, "t")
+        self.assertEqual((low[0], high[0]), (1, 2))
+        self.assertTrue(np.isnan(low[1]) and np.isnan(high[1]))
+        self.assertEqual(list(known(rows, "t")), [True, False])
+
+
+if __name__ == "__main__":
+    main()
