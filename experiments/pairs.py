@@ -11,9 +11,6 @@ import numpy as np
 import pandas as pd
 from scipy.stats import binom
 
-# What a technique costs: its trace and the structures that only it needs.
-COST_PASSES = ("trace", "depth_pyramid")
-
 
 class Ratio(NamedTuple):
     """low and high are NaN where the interval is not known: below six pairs."""
@@ -36,11 +33,17 @@ def paired_ratio(slow_ms, fast_ms, confidence=0.95):
     return Ratio(float(np.median(ratios)), float(low), float(high), count)
 
 
+def cost_passes(folder):
+    """What a technique costs: its trace and the structures that only it needs, which have a column ID.ms_median each."""
+    columns = pd.read_csv(os.path.join(folder, "results.csv"), nrows=0).columns
+    return ["trace"] + [name.removesuffix(".ms_median") for name in columns if name.endswith(".ms_median")]
+
+
 def cost_samples(folder):
     """{run id: milliseconds of trace and structures, by round}; empty for results without samples."""
     path = os.path.join(folder, "samples.csv")
     if not os.path.exists(path):
         return {}
     samples = pd.read_csv(path, dtype={"run_id": str, "pass": str})
-    cost = samples[samples["pass"].isin(COST_PASSES)].groupby(["run_id", "round"], sort=False).ms.sum()
+    cost = samples[samples["pass"].isin(cost_passes(folder))].groupby(["run_id", "round"], sort=False).ms.sum()
     return {run: part.droplevel("run_id") for run, part in cost.groupby("run_id", sort=False)}

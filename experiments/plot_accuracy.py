@@ -85,7 +85,7 @@ def finish(figure, axes, title, clipped):
 
 def accuracy_curves(results, _):
     """Error against time and against fetches; precision and F1 against time: recall alone misleads. Log-log."""
-    cost, fetches = ("cost_ms_median", "trace + inputs, ms"), ("fetches_mean", "fetches per ray")
+    cost, fetches = ("cost_ms_median", "trace + structures, ms"), ("fetches_mean", "fetches per ray")
     for title, name, rows in results.pictures():
         if len(rows) < 5 or not results.swept(rows):
             continue

@@ -35,7 +35,7 @@ class Results:
         self.targets = targets_of(self.environment)
         self.accuracy = accuracy_of(self.environment)
         self.costs = cost_samples(folder)
-        # What a technique costs: its trace and the inputs that only it needs.
+        # What a technique costs: its trace and the structures that only it needs.
         for end in ("median", "ci_low", "ci_high"):
             column = f"trace_ms_{end}"
             if column in self.rows:
@@ -66,7 +66,7 @@ class Results:
         return sorted(names, key=lambda name: -rows[name].nunique())
 
     def _series(self):
-        """Technique with its varying choices (space, pyramid …): a line in a plot."""
+        """Technique with its varying choices (space, depth_pyramid.kind …): a line in a plot."""
         rows = self.rows
         chosen = [name for name in self.varying(rows) if not is_number(rows[name])]
         labels = []

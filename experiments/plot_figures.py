@@ -202,7 +202,7 @@ def comparison_bars(results, _):
         bars(top, rows, results, "cost_ms_median", "cost_ms", "trace + structures, ms")
         bars(bottom, rows, results, "fetches_mean", None, "fetches per ray")
         top.set_title(f"Time, median and 95 % interval, hollow: not known ({width}×{height}, view {view})")
-        bottom.set_title("Work: depth and pyramid fetches per traced ray")
+        bottom.set_title("Work: fetches of depth and structures per traced ray")
         top.legend(ncol=4, loc="upper center", bbox_to_anchor=(0.5, -0.08))
         yield f"compare_{view}_{width}x{height}", figure
 
