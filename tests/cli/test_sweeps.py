@@ -38,13 +38,13 @@ class Test(Case):
         self.assertGreater(counted, 0)
         self.assertLessEqual(timed + counted + truths, 101)
         rows = self.rows()
-        self.assert_complete(rows, 12)
+        self.assert_complete(rows, 14)
         for row in rows:
             self.assertGreater(float(row["trace_ms_median"]), 0)
             self.assertLessEqual(float(row["trace_ms_ci_low"]), float(row["trace_ms_ci_high"]))
             self.assertNotIn("nan", [value.lower() for value in row.values()])
             self.assertTrue(os.path.exists(self.path("out/" + row["picture"])))
-            if row["technique"] in ("dda", "hiz"):
+            if row["technique"] in ("dda", "hiz", "hiz_packets"):
                 self.assertEqual(float(row["screen_same_pixel"]), 1)
         self.ssrlab("plot", "out")
         plots = os.listdir(self.path("out/plots"))
