@@ -168,10 +168,10 @@ TEST(Rows, SavedTimeIsTheMedianOfItsPairsAndEmptyWithoutAny)
 TEST(Rows, ReflectedImageTakesTheHitPixelsRadiance)
 {
     GBufferImage gbuffer;
-    gbuffer.radiance = {{1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
-    const TraceResult result{
-        {3, 1}, {TraceStatus::hit, TraceStatus::left_screen, TraceStatus::not_traced}, {{2, 0}, {}, {}}, {}, {}, {}, {},
-        {}};
+    gbuffer.radiance    = {{1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
+    TraceResult result  = make_trace_result({3, 1}, false);
+    result.status       = {TraceStatus::hit, TraceStatus::left_screen, TraceStatus::not_traced};
+    result.hit_pixel[0] = {2, 0};
     EXPECT_THAT(reflected_image(result, gbuffer, {7, 8, 9}).values, testing::ElementsAre(0, 0, 3, 7, 8, 9, 0, 0, 0));
 }
 
