@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <limits>
+#include <utility>
 
 namespace ssrlab::test {
 namespace {
@@ -119,8 +120,8 @@ TEST(Judge, FacingAwayIsWrongWhereNothingFacesAway)
     empty.gbuffer.depth.assign(empty.gbuffer.depth.size(), 0);
     const auto  toward = two_poles_facing(1);
     const Claim sampled{.may_miss_between_samples = true};
-    for (const auto& setup : {empty, toward})
-        EXPECT_THAT(Judge(setup).judge(setup.rays[0], {TraceStatus::facing_away}, sampled).reason,
+    for (const ssrlab::Setup* setup : {&std::as_const(empty), &toward})
+        EXPECT_THAT(Judge(*setup).judge(setup->rays[0], {TraceStatus::facing_away}, sampled).reason,
                     HasSubstr("touches no surface that faces away"));
 }
 
