@@ -73,7 +73,7 @@ public:
         for (const double exact : {0.0, 1.0}) {
             walks_.push_back(make("dda", {{"arithmetic", exact}}));
             for (const Variant& variant : hiz_variants) {
-                if (exact != 0 && variant.id != "hiz") continue; // packets know float alone
+                if (exact != 0 && variant.id == "hiz_packets") continue; // packets know float alone
                 ParameterValues values = variant.values;
                 if (exact != 0) values["arithmetic"] = exact;
                 (exact == 0 ? hiz_float_ : hiz_exact_).push_back(make(variant.id, values));
@@ -111,11 +111,14 @@ private:
         std::string     id;
         ParameterValues values;
     };
-    /// Those of hiz first, since they run in whole numbers, too.
+    /// Those that run in whole numbers, too, first.
     static inline const std::vector<Variant> hiz_variants = {
         {"hiz", {}},
         {"hiz", {{"depth_pyramid.kind", 1}, {"start_level", 14}, {"depth_pyramid.top_level", 14}}},
         {"hiz", {{"depth_pyramid.kind", 2}, {"start_level", 5}, {"depth_pyramid.top_level", 3}}},
+        {"quadtree", {}},
+        {"quadtree", {{"plane_quadtree.bins", 0}, {"start_level", 14}, {"climb", 14}, {"plane_quadtree.top_level", 14}}},
+        {"quadtree", {{"plane_quadtree.planes", 1}, {"start_level", 5}, {"climb", 1}, {"plane_quadtree.top_level", 3}}},
         {"hiz_packets", {}},
         {"hiz_packets", {{"depth_pyramid.kind", 1}, {"start_level", 14}, {"depth_pyramid.top_level", 14}}},
         {"hiz_packets", {{"depth_pyramid.kind", 2}, {"start_level", 5}, {"depth_pyramid.top_level", 3}}}};

@@ -11,7 +11,7 @@ namespace {
 
 TEST(ExactArithmetic, HoldsOnEveryHardCase)
 {
-    for (const std::string id : {"dda", "hiz"})
+    for (const std::string id : {"dda", "hiz", "quadtree"})
         for (const CaseFamily& family : hard_cases())
             for (const HardCase& hard_case : family.cases) {
                 const CaseRow row = run_case(device(), technique(id), values_of(technique(id), {{"arithmetic", 1}}),
@@ -30,7 +30,7 @@ TEST(ExactArithmetic, IsTheSameInFloatAndDouble)
     for (const SceneListing& scene : list_scenes()) {
         const Picture picture = make_picture(scene.name, "default", {640, 360});
         const size_t  pixels  = picture.image.depth.size();
-        for (const std::string id : {"dda", "hiz"}) {
+        for (const std::string id : {"dda", "hiz", "quadtree"}) {
             const Technique&      t      = technique(id);
             const ParameterValues values = values_of(t, {{"arithmetic", 1}});
             const auto            single = make_ray_tracer(device(), picture.gbuffer, t, values, settings, pixels);
