@@ -66,7 +66,7 @@ Buffer upload_view(Gpu& gpu, const View& view, Precision precision)
 RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision)
 {
     const uint64_t listed_bytes =
-        precision == Precision::float64 ? sizeof(ListedRay<double>) : sizeof(ListedRay<float>);
+        precision == Precision::float64 ? sizeof(PackedRay<double>) : sizeof(PackedRay<float>);
     const uint64_t rays    = std::max<uint64_t>(capacity, 1);
     const uint64_t largest = rays * sizeof(glm::uvec3); // what was counted of each, a storage buffer
     if (largest > gpu.impl->limits.maxStorageBufferRange)
@@ -79,8 +79,8 @@ RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision)
     buffers.launch    = make_buffer(gpu, 16);
     buffers.list      = make_texel_buffer(gpu, rays * listed_bytes, vk::Format::eR32G32B32A32Uint);
     buffers.hits      = precision == Precision::float64
-                            ? make_texel_buffer(gpu, rays * sizeof(ListedHit<double>), vk::Format::eR32G32B32A32Uint)
-                            : make_texel_buffer(gpu, rays * sizeof(ListedHit<float>), vk::Format::eR32G32Uint);
+                            ? make_texel_buffer(gpu, rays * sizeof(PackedHit<double>), vk::Format::eR32G32B32A32Uint)
+                            : make_texel_buffer(gpu, rays * sizeof(PackedHit<float>), vk::Format::eR32G32Uint);
 
     buffers.group_launch = make_buffer(gpu, 16);
     buffers.structures   = std::make_shared<StructureBuffers>();

@@ -329,7 +329,7 @@ TraceResult read_result(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& 
     const auto&      structures = frame.technique.structures;
     const auto       listed     = read_list<Real>(gpu, rays);
     const size_t     count = listed.size(), words = work_words(frame.technique);
-    const auto       hits          = download_as<ListedHit<Real>>(gpu, rays.hits, count);
+    const auto       hits          = download_as<PackedHit<Real>>(gpu, rays.hits, count);
     const auto       works         = work != nullptr ? download_as<uint32_t>(gpu, *work, count * words) : std::vector<uint32_t>{};
     const auto       group_fetches = work != nullptr ? read_group_fetches(gpu, frame.technique, rays)
                                                      : std::vector<std::vector<uint32_t>>(structures.size());

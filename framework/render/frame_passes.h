@@ -9,20 +9,20 @@
 namespace ssrlab {
 
 /// shaders/layout/packed_ray.glsl
-template <typename Real> struct ListedRay {
+template <typename Real> struct PackedRay {
     glm::vec<3, Real> origin{0};
     Real              length_m = 0;
     glm::vec<3, Real> delta{0};
     uint32_t          pixel = 0; // with the status of a miss
 };
-static_assert(sizeof(ListedRay<float>) == 2 * 16 && sizeof(ListedRay<double>) == 4 * 16); // texels
+static_assert(sizeof(PackedRay<float>) == 2 * 16 && sizeof(PackedRay<double>) == 4 * 16); // texels
 
 /// What a ray of the list found (shaders/layout/packed_hit.glsl).
-template <typename Real> struct ListedHit {
+template <typename Real> struct PackedHit {
     uint32_t pixel = 0; // with the status
     Real     t     = 0;
 };
-static_assert(sizeof(ListedHit<float>) == 8 && sizeof(ListedHit<double>) == 16); // texels
+static_assert(sizeof(PackedHit<float>) == 8 && sizeof(PackedHit<double>) == 16); // texels
 
 /// The list of rays and what each found (shaders/rays/rays.comp, shaders/trace/trace.comp).
 struct RayBuffers {
@@ -150,9 +150,9 @@ glm::ivec2 unpack_pixel(uint32_t packed);
 TraceStatus unpack_status(uint32_t packed);
 bool        in_second_layer(uint32_t packed);
 /// The list of rays as it is on the device.
-template <typename Real> std::vector<ListedRay<Real>> read_list(Gpu& gpu, const RayBuffers& rays)
+template <typename Real> std::vector<PackedRay<Real>> read_list(Gpu& gpu, const RayBuffers& rays)
 {
-    return download_as<ListedRay<Real>>(gpu, rays.list, download_as<uint32_t>(gpu, rays.count, 1)[0]);
+    return download_as<PackedRay<Real>>(gpu, rays.list, download_as<uint32_t>(gpu, rays.count, 1)[0]);
 }
 
 /// Words of the counting pipeline's buffer for each ray: steps, depth fetches, fetches of each structure; of what is no answer

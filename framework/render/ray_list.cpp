@@ -21,7 +21,7 @@ namespace {
 
 template <typename Real> void upload_rays(Gpu& gpu, RayBuffers& buffers, std::span<const RayInput> rays)
 {
-    std::vector<ListedRay<Real>> listed;
+    std::vector<PackedRay<Real>> listed;
     for (const RayInput& ray : rays)
         listed.push_back({ray.origin_px_depth, static_cast<Real>(ray.length_m), ray.delta_px_depth,
                           pack_pixel(ray.pixel, static_cast<int>(ray.end_status))});
@@ -33,7 +33,7 @@ template <typename Real> void upload_rays(Gpu& gpu, RayBuffers& buffers, std::sp
 template <typename Real> std::vector<RayInput> read_rays(Gpu& gpu, const RayBuffers& buffers)
 {
     std::vector<RayInput> rays;
-    for (const ListedRay<Real>& ray : read_list<Real>(gpu, buffers))
+    for (const PackedRay<Real>& ray : read_list<Real>(gpu, buffers))
         rays.push_back({glm::dvec3(ray.origin), glm::dvec3(ray.delta), static_cast<double>(ray.length_m),
                         unpack_status(ray.pixel), unpack_pixel(ray.pixel)});
     return rays;
@@ -41,7 +41,7 @@ template <typename Real> std::vector<RayInput> read_rays(Gpu& gpu, const RayBuff
 
 template <typename Real> std::vector<RayOutcome> read_outcomes(Gpu& gpu, const RayTracer& tracer, size_t count)
 {
-    const auto              hits  = download_as<ListedHit<Real>>(gpu, tracer.rays.hits, count);
+    const auto              hits  = download_as<PackedHit<Real>>(gpu, tracer.rays.hits, count);
     const size_t            words = work_words(tracer.frame.technique);
     const auto              structures = static_cast<ptrdiff_t>(tracer.frame.technique.structures.size());
     const auto              works = download_as<uint32_t>(gpu, tracer.work, count * words);

@@ -4,28 +4,16 @@
 #include "layout/memory_layout.glsl"
 
 // per = "pixel"
-int pixel_index(ivec2 pixel)
-{
-    return pixel.y * size_px.x + pixel.x;
-}
+int pixel_index(ivec2 pixel) { return pixel.y * size_px.x + pixel.x; }
 
 // per = "tile": the tile that holds a pixel.
-int tile_index(ivec2 pixel, int tile_px)
-{
-    return (pixel.y / tile_px) * ((size_px.x - 1) / tile_px + 1) + pixel.x / tile_px;
-}
+int tile_index(ivec2 pixel, int tile_px) { return (pixel.y / tile_px) * ((size_px.x - 1) / tile_px + 1) + pixel.x / tile_px; }
 
 // per = "cell": the cell of a level >= 1 that holds a pixel.
-int level_cell_index(ivec2 pixel, int level)
-{
-    return ((pyramid_root | pixel.y) >> level) * (((size_px.x - 1) >> 1) + 1) + (pixel.x >> level);
-}
+int level_cell_index(ivec2 pixel, int level) { return ((pyramid_root | pixel.y) >> level) * (((size_px.x - 1) >> 1) + 1) + (pixel.x >> level); }
 
 // Cells of a level; level 0 is the pixels.
-ivec2 level_size(int level)
-{
-    return ((size_px - 1) >> level) + 1;
-}
+ivec2 level_size(int level) { return ((size_px - 1) >> level) + 1; }
 
 // per = "ray_group": of this invocation. A pass per ray group has RAY_GROUPS_PER_WORKGROUP invocations a workgroup, one for each group.
 int ray_group()

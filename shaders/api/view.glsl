@@ -42,23 +42,11 @@ real3 px_to_direction_vs(real3 from_px_depth, real3 to_px_depth)
     return real3(to * from_px_depth.z - from * to_px_depth.z, rise);
 }
 
-uint pack_pixel(ivec2 pixel, int number)
-{
-    return uint(pixel.x) | uint(pixel.y) << PIXEL_BITS | uint(number) << (2 * PIXEL_BITS);
-}
+uint pack_pixel(ivec2 pixel, int number) { return uint(pixel.x) | uint(pixel.y) << PIXEL_BITS | uint(number) << (2 * PIXEL_BITS); }
 
-ivec2 unpack_pixel(uint packed)
-{
-    return ivec2(packed, packed >> PIXEL_BITS) & (MAX_IMAGE_PX - 1);
-}
+ivec2 unpack_pixel(uint packed) { return ivec2(packed, packed >> PIXEL_BITS) & (MAX_IMAGE_PX - 1); }
 
 // How a ray ended, in whichever layer.
-int unpack_status(uint packed)
-{
-    return int(packed >> (2 * PIXEL_BITS)) & (TRACE_SECOND_LAYER - 1);
-}
+int unpack_status(uint packed) { return int(packed >> (2 * PIXEL_BITS)) & (TRACE_SECOND_LAYER - 1); }
 
-bool in_second_layer(uint packed)
-{
-    return (int(packed >> (2 * PIXEL_BITS)) & TRACE_SECOND_LAYER) != 0;
-}
+bool in_second_layer(uint packed) { return (int(packed >> (2 * PIXEL_BITS)) & TRACE_SECOND_LAYER) != 0; }

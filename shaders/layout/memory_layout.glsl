@@ -1,6 +1,6 @@
 // Where data lies in memory, and how it is read and written. This is the one shader file that knows drivers: all others load and store. Each trick
-// and its gain: docs/performance.md. A shader names what it needs before it includes this file: READS_DEPTH, WRITES_DEPTH, READS_CELLS, READS_CELL_PAIRS,
-// WRITES_CELLS (these after size_px, the image's size).
+// and its gain: docs/performance.md. A shader names what it needs before it includes this file: READS_DEPTH, WRITES_DEPTH, READS_CELLS, CELL_PAIRS
+// (after size_px, the image's size).
 #include "layout/shared.h"
 #ifndef SSRLAB_MEMORY_LAYOUT
 #define SSRLAB_MEMORY_LAYOUT
@@ -62,8 +62,7 @@ uvec4 to_stored(uvec4 words) { return words; }
 // ---- Depth and the cells above it
 // One buffer holds the depth of every pixel, BACKGROUND_DEPTH where there is nothing, as level 0, and above it two words for each cell of each level
 // (layout/shared.h says in what order: strips one cache line wide, rows as a binary heap). A structure may fill the cells.
-#if defined(READS_DEPTH) || defined(WRITES_DEPTH) || defined(READS_CELLS) || defined(READS_CELL_PAIRS) || defined(WRITES_CELLS)
-#ifndef SSRLAB_CELL_LAYOUT
+#if (defined(READS_DEPTH) || defined(WRITES_DEPTH) || defined(READS_CELLS) || defined(CELL_PAIRS)) && !defined(SSRLAB_CELL_LAYOUT)
 #define SSRLAB_CELL_LAYOUT
 
 // Levels above 0: until one row of cells is left.
@@ -84,7 +83,6 @@ int depth_word(ivec2 pixel)
 {
     return 2 * cell_index(pixel, 0) + (pixel.x & 1);
 }
-#endif
 #endif
 
 #ifndef DEPTH_BINDING
@@ -128,8 +126,8 @@ float depth_of_pair(uvec2 pair, ivec2 pixel)
 }
 #endif
 
-#if defined(READS_CELL_PAIRS) && !defined(SSRLAB_READS_CELL_PAIRS)
-#define SSRLAB_READS_CELL_PAIRS
+#if defined(CELL_PAIRS) && !defined(SSRLAB_CELL_PAIRS)
+#define SSRLAB_CELL_PAIRS
 layout(set = 0, binding = 10, rgba32ui) uniform readonly uimageBuffer cell_pairs;
 
 // Two cells side by side, or four pixels. x: even (a multiple of four for pixels). first_row: the row of the heap with which the cells' level begins.
@@ -142,10 +140,7 @@ uvec4 load_pair(int index)
 {
     return imageLoad(cell_pairs, index);
 }
-#endif
 
-#if defined(WRITES_CELLS) && !defined(SSRLAB_WRITES_CELLS)
-#define SSRLAB_WRITES_CELLS
 STORED_TEXELS_4(11, StoredCells)
 
 void store_pair(int index, uvec4 cells)

@@ -1,10 +1,10 @@
 // What tracing found of a ray of the list, in a texel (layout/packed_ray.glsl says why).
-#ifndef SSRLAB_LISTED_HIT
-#define SSRLAB_LISTED_HIT
+#ifndef SSRLAB_PACKED_HIT
+#define SSRLAB_PACKED_HIT
 #include "api/real.glsl"
 #include "layout/memory_layout.glsl"
 
-struct ListedHit
+struct PackedHit
 {
     uint pixel; // pack_pixel() of the pixel that was hit and of the status
     real t;
@@ -13,12 +13,12 @@ struct ListedHit
 #ifdef REAL_IS_DOUBLE
 #define HIT_FORMAT rgba32ui
 #define STORED_HITS STORED_TEXELS_4
-uvec4 hit_to_texel(ListedHit hit) { return uvec4(hit.pixel, 0, unpackDouble2x32(hit.t)); }
-ListedHit texel_to_hit(uvec4 texel) { return ListedHit(texel.x, packDouble2x32(texel.zw)); }
+uvec4 hit_to_texel(PackedHit hit) { return uvec4(hit.pixel, 0, unpackDouble2x32(hit.t)); }
+PackedHit texel_to_hit(uvec4 texel) { return PackedHit(texel.x, packDouble2x32(texel.zw)); }
 #else
 #define HIT_FORMAT rg32ui
 #define STORED_HITS STORED_TEXELS_2
-uvec2 hit_to_texel(ListedHit hit) { return uvec2(hit.pixel, floatBitsToUint(hit.t)); }
-ListedHit texel_to_hit(uvec4 texel) { return ListedHit(texel.x, uintBitsToFloat(texel.y)); }
+uvec2 hit_to_texel(PackedHit hit) { return uvec2(hit.pixel, floatBitsToUint(hit.t)); }
+PackedHit texel_to_hit(uvec4 texel) { return PackedHit(texel.x, uintBitsToFloat(texel.y)); }
 #endif
 #endif

@@ -1,11 +1,11 @@
 // A ray as the list of rays holds it, in texels of four words: lavapipe reads one with a load for each lane. A texel of one word costs it almost as
 // much, a word of a storage buffer a dozen instructions for each lane (docs/performance.md).
-#ifndef SSRLAB_LISTED_RAY
-#define SSRLAB_LISTED_RAY
+#ifndef SSRLAB_PACKED_RAY
+#define SSRLAB_PACKED_RAY
 #include "api/real.glsl"
 #include "layout/memory_layout.glsl"
 
-struct ListedRay
+struct PackedRay
 {
     real3 origin;
     real  length_m;
@@ -17,10 +17,10 @@ struct ListedRay
 real2 texel_to_reals(uvec4 texel) { return real2(packDouble2x32(texel.xy), packDouble2x32(texel.zw)); }
 uvec4 reals_to_texel(real a, real b) { return uvec4(unpackDouble2x32(a), unpackDouble2x32(b)); }
 
-ListedRay texels_to_ray(uvec4 a, uvec4 b, uvec4 c, uvec4 d)
+PackedRay texels_to_ray(uvec4 a, uvec4 b, uvec4 c, uvec4 d)
 {
     real2 first = texel_to_reals(a), second = texel_to_reals(b), third = texel_to_reals(c);
-    return ListedRay(real3(first, second.x), second.y, real3(third, packDouble2x32(d.xy)), d.z);
+    return PackedRay(real3(first, second.x), second.y, real3(third, packDouble2x32(d.xy)), d.z);
 }
 
 #define LOAD_RAY(rays, index)                                                                                                              \
@@ -33,10 +33,10 @@ ListedRay texels_to_ray(uvec4 a, uvec4 b, uvec4 c, uvec4 d)
     STORE_TEXEL(rays, (index) * 4 + 2, reals_to_texel((ray).delta.x, (ray).delta.y));                                                      \
     STORE_TEXEL(rays, (index) * 4 + 3, uvec4(unpackDouble2x32((ray).delta.z), (ray).pixel, 0))
 #else
-ListedRay texels_to_ray(uvec4 start, uvec4 way)
+PackedRay texels_to_ray(uvec4 start, uvec4 way)
 {
     vec4 origin = uintBitsToFloat(start);
-    return ListedRay(origin.xyz, origin.w, uintBitsToFloat(way.xyz), way.w);
+    return PackedRay(origin.xyz, origin.w, uintBitsToFloat(way.xyz), way.w);
 }
 
 #define LOAD_RAY(rays, index) texels_to_ray(imageLoad(rays, int(index) * 2), imageLoad(rays, int(index) * 2 + 1))

@@ -1,6 +1,9 @@
 // Numbers, and places in memory, that C++ and GLSL must agree on. Included by both.
 #ifndef SSRLAB_SHARED_H
 #define SSRLAB_SHARED_H
+#ifdef __cplusplus
+#include "frame_shared.h"
+#endif
 
 // Why a ray stopped (core/trace_result.h has the same list with its meaning).
 #define TRACE_NOT_TRACED 0
@@ -22,16 +25,10 @@
 #define RAYS_PER_GROUP 64
 #define LAUNCH_ROW_GROUPS 256
 
-// Tiles that a workgroup classifies, side by side (shaders/rays/classification.comp).
-#define CLASSIFIED_TILES 32
-
-// The one workgroup that lists the tiles (shaders/rays/tile_list.comp).
-#define TILE_LIST_INVOCATIONS 128
-
 // Groups of rays that a workgroup of a structure's pass per ray group works on, one an invocation.
 #define RAY_GROUPS_PER_WORKGROUP 64
 
-// Specialization constants. Technique parameters start at CONSTANT_PARAMETERS, in the order of technique.toml's names.
+// Specialization constants; frame_shared.h has more. Technique parameters start at CONSTANT_PARAMETERS, in the order of technique.toml's names.
 #define CONSTANT_SLAB_SLOPE 0
 #define CONSTANT_SLAB_SCALE 1
 #define CONSTANT_SLAB_SHIFT 2
@@ -39,24 +36,7 @@
 #define CONSTANT_RAY_OFFSET_M 4
 #define CONSTANT_FACING 5
 #define CONSTANT_ORTHOGRAPHIC 6
-#define CONSTANT_EVERY_SURFACE 7
-#define CONSTANT_ITEMS_PER_GROUP 8
-#define CONSTANT_TRACE_BLOCK_PX 9
-#define CONSTANT_RAYS_PER_PIXEL 11
 #define CONSTANT_PARAMETERS 32
-#define CONSTANT_PASSES 64 // the passes' parameters, in the order of render/passes/all_passes.cpp
-
-// Sub-pixel offsets are centres of a grid of this many cells per side.
-#define OFFSET_CELLS 256
-
-// A block without a pixel that reflects.
-#define NO_PIXEL 0xFFFFFFFFu
-
-// Roughness histogram of the reflecting pixels: bin 0 holds roughness 0, the others share (0, 1].
-#define ROUGHNESS_BINS 16
-
-// Of the split-sum (DFG) table, in roughness and in cosine.
-#define DFG_TABLE_ENTRIES 32
 
 // Background in the depth that tracers read: nearer than nothing, so that no interval touches it.
 #define BACKGROUND_DEPTH -1.0

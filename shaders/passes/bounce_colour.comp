@@ -18,9 +18,9 @@ void main()
 {
     uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     if (index >= ray_count) return;
-    ListedRay ray = listed_ray(index);
+    PackedRay ray = packed_ray(index);
     ivec2 reflector = unpack_pixel(ray.pixel), target = unpack_pixel(ray_source[index]);
-    Found found = found_by(ray, listed_hit(index));
+    Found found = found_by(ray, packed_hit(index));
     if (found.weight <= 0.0)
     {
         ray_throughput[index] = vec3(0);

@@ -17,11 +17,11 @@ void main()
     uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     if (index >= ray_count) return;
     ivec2 pixel  = unpack_pixel(ray_pixel(index));
-    ListedHit listed = listed_hit(index);
+    PackedHit listed = packed_hit(index);
     ivec2 hit    = unpack_pixel(listed.pixel);
     bool  mirror = unpack_status(listed.pixel) == TRACE_HIT && !in_second_layer(listed.pixel) && reflects(hit);
     if (!mirror || !reflects(pixel)) return;
-    Found found = found_by(listed_ray(index), listed);
+    Found found = found_by(packed_ray(index), listed);
     if (found.weight <= 0.0) return;
     vec4 history = imageLoad(history_image, hit);
     vec3 colour  = found.light + (history.rgb - found.light) * beta_of(hit, to_camera_vs(hit), history.a);

@@ -18,13 +18,13 @@ layout(set = 0, binding = 24, scalar) writeonly buffer DerivedSources { uint der
 layout(set = 0, binding = 25, scalar) writeonly buffer DerivedThroughputs { vec3 derived_throughput[]; };
 
 // What light from the hit still weighs in the reflection; 0: the ray is not followed.
-vec3 throughput_of(uint index, ListedHit hit)
+vec3 throughput_of(uint index, PackedHit hit)
 {
 #ifdef FURTHER
     return ray_throughput[index];
 #else
     if (!reflects(unpack_pixel(ray_pixel(index)))) return vec3(0);
-    Found found = found_by(listed_ray(index), hit);
+    Found found = found_by(packed_ray(index), hit);
     return vec3(found.weight > 0.0 ? found.attenuation : 0.0);
 #endif
 }
@@ -32,15 +32,15 @@ vec3 throughput_of(uint index, ListedHit hit)
 void main()
 {
     uint      index  = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    ListedHit listed = ListedHit(0, real(0));
-    if (index < ray_count) listed = listed_hit(index);
+    PackedHit listed = PackedHit(0, real(0));
+    if (index < ray_count) listed = packed_hit(index);
     ivec2 hit      = unpack_pixel(listed.pixel);
     bool  follows  = unpack_status(listed.pixel) == TRACE_HIT && !in_second_layer(listed.pixel) && reflects(hit);
     real3 arriving = real3(0), normal = real3(0);
     vec3  throughput = vec3(0);
     if (follows)
     {
-        arriving   = ray_direction(listed_ray(index));
+        arriving   = ray_direction(packed_ray(index));
         normal     = normal_at(hit);
         throughput = throughput_of(index, listed);
         follows    = throughput != vec3(0) && dot(arriving, normal) < real(0);
@@ -56,7 +56,7 @@ void main()
     real2   centre   = real2(hit) + real(0.5);
     real    depth    = load_depth(hit);
     Segment segment  = make_segment(centre, depth, mirrored(widen(arriving), normal));
-    ListedRay next   = segment_to_listed_ray(segment, hit);
+    PackedRay next   = segment_to_packed_ray(segment, hit);
     STORE_RAY(DerivedRays, derived, next);
     derived_throughput[derived] = throughput;
 #ifdef FURTHER

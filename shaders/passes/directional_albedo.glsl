@@ -1,4 +1,5 @@
 // The split-sum table: the directional albedo of a GGX surface is f0 * x + y (render/directional_albedo.h).
+#include "layout/frame_shared.h"
 layout(set = 0, binding = 36) uniform sampler2D dfg_table;
 
 vec2 dfg(float roughness, float cosine)

@@ -14,7 +14,7 @@ layout(set = 0, binding = 15, scalar) writeonly buffer DerivedSources { uint der
 void main()
 {
     uint index  = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    bool missed = index < ray_count && unpack_status(listed_hit(index).pixel) != TRACE_HIT && reflects(unpack_pixel(ray_pixel(index)));
+    bool missed = index < ray_count && unpack_status(packed_hit(index).pixel) != TRACE_HIT && reflects(unpack_pixel(ray_pixel(index)));
 
     uvec4 ballot = subgroupBallot(missed);
     uint  first  = 0;
@@ -23,7 +23,7 @@ void main()
     if (!missed) return;
 
     uint      derived       = first + subgroupBallotExclusiveBitCount(ballot);
-    ListedRay ray           = listed_ray(index);
+    PackedRay ray           = packed_ray(index);
     derived_source[derived] = index;
     STORE_RAY(DerivedRays, derived, ray);
 }

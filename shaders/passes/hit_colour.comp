@@ -13,9 +13,9 @@ layout(set = 0, binding = 13, rgba16f) uniform writeonly image2D reflection_imag
 layout(set = 0, binding = 15, r32ui) uniform writeonly uimage2D block_pixel_image;
 
 // Colour and weight.
-vec4 reflection_of(uint index, ListedHit hit)
+vec4 reflection_of(uint index, PackedHit hit)
 {
-    Found found = found_by(listed_ray(index), hit);
+    Found found = found_by(packed_ray(index), hit);
     return vec4(found.light * found.attenuation, found.weight);
 }
 
@@ -27,7 +27,7 @@ vec4 mean_reflection(uint first)
     int  hits = 0;
     for (int ray = 0; ray < rays_per_pixel; ++ray)
     {
-        ListedHit hit = listed_hit(first + ray);
+        PackedHit hit = packed_hit(first + ray);
         if (unpack_status(hit.pixel) == TRACE_HIT)
         {
             vec4 reflection = reflection_of(first + ray, hit);
@@ -46,6 +46,6 @@ void main()
     if (first >= ray_count) return;
     ivec2 pixel = unpack_pixel(ray_pixel(first));
     if (!reflects(pixel)) return;
-    imageStore(reflection_image, pixel, rays_per_pixel > 1 ? mean_reflection(first) : reflection_of(first, listed_hit(first)));
+    imageStore(reflection_image, pixel, rays_per_pixel > 1 ? mean_reflection(first) : reflection_of(first, packed_hit(first)));
     if (block_px > 1) imageStore(block_pixel_image, pixel / block_px, uvec4(pack_pixel(pixel, 0)));
 }

@@ -82,7 +82,7 @@ vec3 surface_light(ivec2 pixel, bool second, vec2 point_px)
     return light;
 }
 
-vec3 ray_direction(ListedRay ray)
+vec3 ray_direction(PackedRay ray)
 {
     return normalize(px_to_direction_vs(ray.origin, ray.origin + ray.delta));
 }
@@ -136,7 +136,7 @@ float attenuation_at(float distance_m)
 }
 
 // What the ray found; nothing if it missed.
-Found found_by(ListedRay ray, ListedHit found)
+Found found_by(PackedRay ray, PackedHit found)
 {
     if (unpack_status(found.pixel) != TRACE_HIT) return Found(vec3(0), 0.0, 0.0);
     ivec2 hit       = unpack_pixel(found.pixel);

@@ -13,7 +13,7 @@ void main()
 {
     uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     if (index >= derived_count) return;
-    ListedHit hit = texel_to_hit(imageLoad(DerivedHits, int(index)));
+    PackedHit hit = texel_to_hit(imageLoad(DerivedHits, int(index)));
     if (unpack_status(hit.pixel) != TRACE_HIT) return;
     hit.pixel |= uint(TRACE_SECOND_LAYER) << (2 * PIXEL_BITS);
     STORE_TEXEL(Hits, derived_source[index], hit_to_texel(hit));

@@ -7,6 +7,7 @@
 #include "passes/blocks.glsl"
 #include "passes/directional_albedo.glsl"
 #include "rays/tiles.glsl"
+#include "layout/frame_shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 4, rgba16f) uniform image2D reflection_image;

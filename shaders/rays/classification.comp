@@ -2,6 +2,7 @@
 // share needs neither shared memory nor an atomic per pixel, which lavapipe runs lane by lane.
 #include "api/view.glsl"
 #include "rays/reflecting.glsl"
+#include "layout/frame_shared.h"
 #if ROUGHNESS_BINS != 16
 #error four bins in each of four words
 #endif

@@ -3,6 +3,7 @@
 #include "rays/segment.glsl"
 #include "api/hash.glsl"
 #include "rays/tiles.glsl"
+#include "layout/frame_shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -62,7 +63,7 @@ void main()
             start_depth        = offset_depth > real(0) ? offset_depth : depth;
         }
         Segment   segment = make_segment(start_px, start_depth, mirrored(view_direction(start_px), normal));
-        ListedRay listed  = segment_to_listed_ray(segment, pixel);
+        PackedRay listed  = segment_to_packed_ray(segment, pixel);
         STORE_RAY(Rays, index + ray, listed);
     }
 }

@@ -150,7 +150,7 @@ Segment make_segment(real2 start_px, real depth, Wide3 direction)
     return segment;
 }
 
-ListedRay segment_to_listed_ray(Segment segment, ivec2 pixel)
+PackedRay segment_to_packed_ray(Segment segment, ivec2 pixel)
 {
-    return ListedRay(segment.origin, segment.length_m, segment.delta, pack_pixel(pixel, segment.end_status));
+    return PackedRay(segment.origin, segment.length_m, segment.delta, pack_pixel(pixel, segment.end_status));
 }

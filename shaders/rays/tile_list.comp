@@ -2,6 +2,7 @@
 // Tiles traced as a whole come first, so that their rays fill groups of RAYS_PER_GROUP; both parts row by row. The same picture gives the
 // same list.
 #include "layout/shared.h"
+#include "layout/frame_shared.h"
 
 layout(local_size_x = TILE_LIST_INVOCATIONS) in;
 

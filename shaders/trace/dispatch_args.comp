@@ -1,5 +1,6 @@
 // Turns a number of items into the size of the launch that works on them.
 #include "layout/shared.h"
+#include "layout/frame_shared.h"
 
 layout(local_size_x = 1) in;
 layout(set = 0, binding = 0, scalar) readonly buffer ItemCount { uint item_count; };

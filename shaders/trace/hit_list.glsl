@@ -3,4 +3,4 @@
 
 layout(set = 0, binding = 9, HIT_FORMAT) uniform readonly uimageBuffer Hits;
 
-ListedHit listed_hit(uint index) { return texel_to_hit(imageLoad(Hits, int(index))); }
+PackedHit packed_hit(uint index) { return texel_to_hit(imageLoad(Hits, int(index))); }

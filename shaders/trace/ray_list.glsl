@@ -6,7 +6,7 @@
 layout(set = 0, binding = 4, scalar) readonly buffer RayCount { uint ray_count; };
 layout(set = 0, binding = 5, rgba32ui) uniform readonly uimageBuffer Rays;
 
-ListedRay listed_ray(uint index) { return LOAD_RAY(Rays, index); }
+PackedRay packed_ray(uint index) { return LOAD_RAY(Rays, index); }
 
 // pack_pixel() of the pixel and of the status of a miss.
 uint ray_pixel(uint index) { return LOAD_RAY_PIXEL(Rays, index); }

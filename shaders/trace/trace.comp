@@ -17,7 +17,7 @@ layout(set = 0, binding = 11, scalar) buffer Work { uint work[]; }; // of each r
 
 Ray load_ray(uint index)
 {
-    ListedRay listed = listed_ray(index);
+    PackedRay listed = packed_ray(index);
     Ray       ray;
     ray.origin      = listed.origin;
     ray.delta       = listed.delta;
@@ -44,7 +44,7 @@ void store_result(uint index, TraceResult result, int own_lane)
 {
     bool  answers = is_answer(result);
     ivec2 pixel   = answers && result.status == TRACE_HIT ? result.pixel : ivec2(0);
-    STORE_TEXEL(Hits, index, hit_to_texel(ListedHit(pack_pixel(pixel, answers ? result.status : TRACE_IMPOSSIBLE), result.t)));
+    STORE_TEXEL(Hits, index, hit_to_texel(PackedHit(pack_pixel(pixel, answers ? result.status : TRACE_IMPOSSIBLE), result.t)));
 #ifdef COUNT_WORK
     uint first = index * WORK_WORDS;
     work[first]     = answers ? result.steps : result.status;

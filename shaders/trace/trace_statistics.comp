@@ -18,7 +18,7 @@ void main()
 {
     uint index  = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     bool traced = index < ray_count && reflects(unpack_pixel(ray_pixel(index)));
-    uint found  = traced ? listed_hit(index).pixel : 0;
+    uint found  = traced ? packed_hit(index).pixel : 0;
     bool hit    = traced && unpack_status(found) == TRACE_HIT;
     bool mirror = hit && reflects(unpack_pixel(found));
     uint traced_count = subgroupAdd(uint(traced)), hit_count = subgroupAdd(uint(hit)), mirror_count = subgroupAdd(uint(mirror));

@@ -22,9 +22,9 @@ Bench::Scattered Bench::scatter(Picture& p)
     const size_t     count    = s.frame->rays->capacity;
     s.every_pixel             = make_ray_buffers(gpu_, capacity, Precision::float32);
     s.over_every_pixel        = make_trace_passes(gpu_, *s.frame, s.every_pixel, s.buffers->view, nullptr);
-    std::vector<ListedRay<float>> rays(capacity);
+    std::vector<PackedRay<float>> rays(capacity);
     for (size_t i = 0; i < capacity; ++i) rays[i].origin = glm::vec3(glm::vec2(pixel_at(i, size)) + 0.5F, 1);
-    for (const ListedRay<float>& ray : download_as<ListedRay<float>>(gpu_, s.frame->rays->list, count))
+    for (const PackedRay<float>& ray : download_as<PackedRay<float>>(gpu_, s.frame->rays->list, count))
         rays[pixel_index(unpack_pixel(ray.pixel), size)] = ray;
     const auto all = static_cast<uint32_t>(capacity);
     upload(gpu_, s.every_pixel.count, &all, sizeof(all));

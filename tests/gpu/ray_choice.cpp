@@ -19,7 +19,7 @@ std::vector<Ray> rays_of(PreparedFrame& frame)
     submit(device(),
            [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, frame.trace, *frame.buffers); });
     std::vector<Ray> rays;
-    for (const ListedRay<float>& ray : read_list<float>(device(), *frame.rays))
+    for (const PackedRay<float>& ray : read_list<float>(device(), *frame.rays))
         rays.push_back({unpack_pixel(ray.pixel), glm::dvec3(ray.origin), glm::dvec3(ray.delta)});
     return rays;
 }
@@ -108,8 +108,8 @@ TEST(SeveralRays, StartAtTheCentreWhereThePlaneIsSeenEdgeOn)
 /// Puts a list of rays and their ends in the place of the traced one.
 void set_list(PreparedFrame& frame, const std::vector<glm::ivec2>& pixels, const std::vector<glm::ivec2>& hits)
 {
-    std::vector<ListedRay<float>> listed;
-    std::vector<ListedHit<float>> ends;
+    std::vector<PackedRay<float>> listed;
+    std::vector<PackedHit<float>> ends;
     for (size_t i = 0; i < pixels.size(); ++i) {
         const bool hit = hits[i].x >= 0;
         ends.push_back({hit ? pack_pixel(hits[i], TRACE_HIT) : pack_pixel({0, 0}, TRACE_LEFT_SCREEN), 0.5F});

@@ -11,7 +11,7 @@
 namespace ssrlab::test {
 namespace {
 
-using Rays = std::vector<ListedRay<double>>;
+using Rays = std::vector<PackedRay<double>>;
 
 template <typename Real> Rays make_rays(const Picture& picture, const TraceSettings& settings, Precision precision)
 {
@@ -22,7 +22,7 @@ template <typename Real> Rays make_rays(const Picture& picture, const TraceSetti
     const TracePasses passes  = make_trace_passes(device(), *frame, buffers, view, nullptr);
     submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, passes, *picture.buffers); });
     Rays rays;
-    for (const ListedRay<Real>& ray : read_list<Real>(device(), buffers))
+    for (const PackedRay<Real>& ray : read_list<Real>(device(), buffers))
         rays.push_back({ray.origin, static_cast<double>(ray.length_m), ray.delta, ray.pixel});
     return rays;
 }
@@ -45,7 +45,7 @@ Worst compare(const Picture& picture, const TraceSettings& settings, const Rays&
         for (int x = 0; x < picture.view.size_px.x; ++x) reflecting += reflects(picture.image, {x, y});
     EXPECT_EQ(rays.size(), reflecting);
     std::vector<bool> seen(picture.image.depth.size());
-    for (const ListedRay<double>& listed : rays) {
+    for (const PackedRay<double>& listed : rays) {
         const glm::ivec2 pixel = unpack_pixel(listed.pixel);
         EXPECT_FALSE(seen.at(at(picture.image, pixel.x, pixel.y)))
             << "two rays for pixel (" << pixel.x << ", " << pixel.y << ")";

@@ -25,8 +25,8 @@ Stored frame_of(const ParameterValues& changed, bool int64)
     EXPECT_GT(rays, 0U);
     const Buffer& cells = picture.gbuffer->depth.cells;
     return {download_as<char>(gpu, cells, cells.bytes),
-            download_as<char>(gpu, frame->rays->list, rays * sizeof(ListedRay<float>)),
-            download_as<char>(gpu, frame->rays->hits, rays * sizeof(ListedHit<float>)),
+            download_as<char>(gpu, frame->rays->list, rays * sizeof(PackedRay<float>)),
+            download_as<char>(gpu, frame->rays->hits, rays * sizeof(PackedHit<float>)),
             read_shaded(gpu, *frame).values};
 }
 

@@ -98,7 +98,7 @@ std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame
     const glm::ivec2  size_px = frame.buffers->gbuffer->view.size_px;
     TraceResult       result  = read_result<float>(gpu, frame, rays, nullptr);
     const auto        listed  = read_list<float>(gpu, rays);
-    const auto        hits    = download_as<ListedHit<float>>(gpu, rays.hits, listed.size());
+    const auto        hits    = download_as<PackedHit<float>>(gpu, rays.hits, listed.size());
     for (size_t i = 0; i < listed.size(); ++i) {
         if (in_second_layer(hits[i].pixel)) continue;
         const glm::ivec2 pixel                     = unpack_pixel(listed[i].pixel);

@@ -5,7 +5,7 @@
 #include "api/view.glsl"
 #include "api/slab.glsl"
 #define READS_DEPTH
-#define READS_CELL_PAIRS
+#define CELL_PAIRS
 #include "layout/memory_layout.glsl"
 #include "structure/buffers"
 #include "patch.glsl"

@@ -122,7 +122,7 @@ void main()
     if (first >= ray_count) return;
 
     uint count = min(ray_count - first, RAYS_PER_GROUP);
-    ListedRay ray = listed_ray(first); // with NaN in it the box is not usable, and of the other rays such are left out: they touch nothing
+    PackedRay ray = packed_ray(first); // with NaN in it the box is not usable, and of the other rays such are left out: they touch nothing
     Box start = Box(ray.origin, ray.origin), end = Box(ray.origin + ray.delta, ray.origin + ray.delta);
     // Of all rays the least height, where they start and where they end.
     ++fetches;
@@ -130,7 +130,7 @@ void main()
     real  height = start.low.z - dot(base, start.low.xy), end_height = end.low.z - dot(base, end.low.xy);
     for (uint i = 1; i < count; ++i)
     {
-        ray = listed_ray(first + i);
+        ray = packed_ray(first + i);
         real3 from = ray.origin, to = ray.origin + ray.delta;
         start = unite(start, Box(from, from));
         end   = unite(end, Box(to, to));

@@ -4,8 +4,7 @@
 #include "api/view.glsl"
 #include "api/slab.glsl"
 #include "cell.glsl"
-#define READS_CELL_PAIRS
-#define WRITES_CELLS
+#define CELL_PAIRS
 #include "layout/memory_layout.glsl"
 #include "structure/parameters"
 

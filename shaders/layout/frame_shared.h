@@ -1,0 +1,30 @@
+// The same for the passes around the trace: what only they and C++ must agree on.
+#ifndef SSRLAB_FRAME_SHARED_H
+#define SSRLAB_FRAME_SHARED_H
+
+// Tiles that a workgroup classifies, side by side (shaders/rays/classification.comp).
+#define CLASSIFIED_TILES 32
+
+// The one workgroup that lists the tiles (shaders/rays/tile_list.comp).
+#define TILE_LIST_INVOCATIONS 128
+
+// Specialization constants of these shaders.
+#define CONSTANT_EVERY_SURFACE 7
+#define CONSTANT_ITEMS_PER_GROUP 8
+#define CONSTANT_TRACE_BLOCK_PX 9
+#define CONSTANT_RAYS_PER_PIXEL 11
+#define CONSTANT_PASSES 64 // the passes' parameters, in the order of render/passes/all_passes.cpp
+
+// Sub-pixel offsets are centres of a grid of this many cells per side.
+#define OFFSET_CELLS 256
+
+// A block without a pixel that reflects.
+#define NO_PIXEL 0xFFFFFFFFu
+
+// Roughness histogram of the reflecting pixels: bin 0 holds roughness 0, the others share (0, 1].
+#define ROUGHNESS_BINS 16
+
+// Of the split-sum (DFG) table, in roughness and in cosine.
+#define DFG_TABLE_ENTRIES 32
+
+#endif
