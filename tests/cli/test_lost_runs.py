@@ -11,19 +11,20 @@ summary = "Does not end."
 [parameters]
 end = { default = false, doc = "Whether it ends." }
 """
-# A driver may cut one loop, but not four in each other.
-TRACE = """TraceResult trace(Ray ray)
+# A driver may cut a loop after 65,535 iterations: this body makes them long enough.
+TRACE = """#define A x ^= x << 13; x ^= x >> 17; x ^= x << 5;
+#define B A A A A A A A A
+#define C B B B B B B B B
+#define D C C C C C C C C
+TraceResult trace(Ray ray)
 {
     uint x = uint(ray.start_pixel.x) + 1u;
-    for (uint i = 0u; !end && i < 60000u; ++i)
-        for (uint j = 0u; j < 60000u; ++j)
-            for (uint k = 0u; k < 60000u; ++k)
-                for (uint l = 0u; l < 60000u; ++l) x = x * 1664525u + 1013904223u;
+    for (uint i = 0u; !end && i < 4000000000u; ++i) { D D D D D D D D }
     return x == 7u ? out_of_steps(1) : miss(ray, 1);
 }
 """
 SWEEP = """scenes = ["builtin:mirror_floor_wall"]
-sizes  = ["64x36"]
+sizes  = ["320x180"]
 [techniques.endless]
 end = [true, false]
 [techniques.dda]
@@ -65,8 +66,9 @@ class Test(Case):
 
     def test_time_limit_is_checked(self):
         for value in ("0", "1000", '"long"'):
+            self.sweep_with_endless()
             spec = self.write("s.toml", SWEEP.replace("time_limit_s = 15", f"time_limit_s = {value}"))
-            self.refused("run", spec, "-o", "out", code=2, says=["s.toml:11", "time_limit_s"])
+            self.refused("run", spec, "-o", "out", "--techniques", "mine", code=2, says=["s.toml:11", "time_limit_s"])
 
     def test_every_signal_that_asks_to_stop(self):
         spec = self.write("s.toml", LONG)
