@@ -2,6 +2,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib import pyplot as plt
+from matplotlib.ticker import LogLocator
 
 from pairs import Ratio, paired_ratio
 from plot_data import describe, label_of
@@ -70,6 +71,9 @@ def draw_errors(results, rows, columns, axes):
         floor = 1e-3 if "displacement" in column else 0.5 / max(1.0, part.rays.max())
         part["error"] = exact.clip(lower=floor)
         draw_curves(axis, results, part, cost, "error", xlabel)
+        low, high = axis.get_ylim()
+        if high < 10 * low:  # 1, 2, 5 would label one or two places
+            axis.yaxis.set_major_locator(LogLocator(subs=range(1, 10)))
         if (exact < floor).any():
             axis.axhline(floor, color="#999999", lw=0.8, ls=":")
             clipped = True
