@@ -79,23 +79,38 @@ float occupied(Node node)
     return node.low < -no_end / 2 ? node.high : bin_height(node) * float(bitCount(node.bins));
 }
 
+// The slope of the fronts, of 4 x 4 pixels. Sums are made across, so that mirrored images have mirrored planes to the last bit.
+vec2 slope_of_pixels()
+{
+    vec4 fronts; // of the quarters
+    for (int i = 0; i < 4; ++i)
+    {
+        int corner = (i & 1) * 2 + (i >> 1) * 8;
+        fronts[i]  = (parts[corner].high + parts[corner + 5].high) + (parts[corner + 1].high + parts[corner + 4].high);
+    }
+    return vec2((fronts.y + fronts.w) - (fronts.x + fronts.z), (fronts.z + fronts.w) - (fronts.x + fronts.y)) / 16;
+}
+
+// Of the four quarters, `count` of which are not empty.
+vec2 mean_gradient(int count)
+{
+    return ((parts[0].gradient + parts[3].gradient) + (parts[1].gradient + parts[2].gradient)) / float(max(count, 1));
+}
+
 void main()
 {
     ivec2 cell = ivec2(gl_GlobalInvocationID.xy), first = cell << level;
     if (any(greaterThanEqual(cell, level_size(level)))) return;
-    vec2 rise = vec2(0), sum = vec2(0); // of the fronts from one half of the cell to the other; of the parts' gradients
-    int  count = 0;
+    int count = 0;
     for (int i = 0; i < parts_count; ++i)
     {
         parts[i] = load_part(first + (place_of(i) << part_level), part_level);
-        rise += sign(offset_px(i)) * parts[i].high;
-        sum += parts[i].gradient;
         count += int(parts[i].bins != 0u);
     }
     // A plane through four pixels is no tighter than a level one. Above those, parents keep to their quarters' mean: a plane of another gradient would
     // have to hold theirs.
-    bool fits = level == 2 ? count == parts_count : level > 2 && count > 0;
-    vec2 gradient = level == 2 ? rise / float(parts_count * 2) : sum / float(max(count, 1));
+    bool fits     = level == 2 ? count == parts_count : level > 2 && count > 0;
+    vec2 gradient = level == 2 ? slope_of_pixels() : mean_gradient(count);
     Node node = node_around(vec2(0));
     if (fits && plane_quadtree_planes == plane_quadtree_planes_fitted)
     {

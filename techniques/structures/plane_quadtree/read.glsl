@@ -17,7 +17,7 @@ Node fetch_node(ivec2 pixel, int level)
 // The ray's height above the plane of a node, at t; linear in t. first: the first pixel of its cell.
 real height_at(Ray ray, Node node, ivec2 first, int level, real t)
 {
-    real2 from_centre = ray.origin.xy + t * ray.delta.xy - (real2(first) + real(1 << level) / 2);
+    real2 from_centre = ray.origin.xy - (real2(first) + real(1 << level) / 2) + t * ray.delta.xy;
     return depth_at(ray, t) - dot(real2(node.gradient), from_centre);
 }
 
