@@ -59,7 +59,7 @@ class Test(Case):
         for contender, (technique, _) in bench.CONTENDERS.items():
             self.assertEqual(sweep.rows[contender]["technique"], technique)
             self.assertEqual(len(sweep.times_ms(contender)), 6, contender)
-        self.assertEqual(len(sweep.times_ms("tracer", "depth_pyramid")), 6)
+        self.assertEqual(len(sweep.times_ms("tracer", ["depth_pyramid"])), 6)
         self.assertEqual(sweep.number("tracer", "screen_recall_1px"), 1)
         self.assertLess(sweep.number("tracer", "fetches_mean"), 0.5 * sweep.number("walk", "fetches_mean"))
         self.assertGreater(sweep.number("nearest only", "steps_mean"), sweep.number("tracer", "steps_mean"))
