@@ -71,11 +71,11 @@ class Test(Case):
             self.refused("run", spec, "-o", "out", "--techniques", "mine", code=2, says=["s.toml:11", "time_limit_s"])
 
     def test_every_signal_that_asks_to_stop(self):
-        spec = self.write("s.toml", LONG)
+        spec = self.write("s.toml", LONG.replace('"64x36"', '"64x36", "66x36", "68x36"'))
         for which in (signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGPIPE):
             shutil.rmtree(self.path("out"), ignore_errors=True)
             self.assertEqual(self.stop_in_the_middle(self.start("run", spec, "-o", "out"), which), 128 + which, which)
-            self.assertLess(self.whole_rows(), 24)
+            self.assertLess(self.whole_rows(), 72)
             self.assertEqual([row["outcome"] for row in self.rows()], ["ok"] * self.whole_rows())
 
     def test_nothing_is_left_running_after_a_kill(self):
