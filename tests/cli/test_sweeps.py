@@ -75,7 +75,7 @@ class Test(Case):
                 self.assertEqual(float(row[f"{column}_median"]), text(statistics.median(values)))
                 self.assertEqual(float(row[f"{column}_ci_low"]), text(values[rank - 1]))
                 self.assertEqual(float(row[f"{column}_ci_high"]), text(values[count - rank]))
-            for shown in row["effects"].split():
+            for shown in row["passes"].split():
                 name, median = shown.split("=")
                 self.assertEqual(float(median), text(statistics.median(passes[name])))
         with open(self.path("out/samples.csv"), encoding="utf-8") as file:
@@ -129,7 +129,7 @@ class Test(Case):
         self.assertEqual({row["run_id"] for row in again}, {row["run_id"] for row in rows})
 
     def test_dry_run_lists_and_writes_nothing(self):
-        self.ssrlab("run", SMOKE, "--dry-run", "-o", "out", says=["12 runs"])
+        self.ssrlab("run", SMOKE, "--dry-run", "-o", "out", says=["14 runs"])
         self.assertFalse(os.path.exists(self.path("out")))
 
     def test_only_repeats_one_run(self):
