@@ -228,7 +228,8 @@ class Test(Case):
         self.refused("run", spec, "-o", "out", "--resume", code=2, says=["cannot be resumed", "specification"])
 
     def test_second_writer_is_refused(self):
-        spec = self.write("s.toml", SWEEP)
+        # Long enough that the first one still writes after the two seconds for which a second one waits.
+        spec = self.write("s.toml", SWEEP.replace("min_repeats = 2\nmax_repeats = 4", "min_repeats = 400\nmax_repeats = 400"))
         first = self.start("run", spec, "-o", "out")
         until = time.monotonic() + 60
         while self.whole_rows() == 0 and time.monotonic() < until:
