@@ -1,5 +1,5 @@
-// Walks the cells of the plane quadtree: down into the quarter where the ray may first touch something, else on to the next cell, and up as far as the
-// border that it crosses is one of the parents', too.
+// Walks the cells of the plane quadtree: down into the quarter where the ray may first touch something, else on to the next cell, and up at most as far as
+// the border that it crosses is one of the parents', too.
 TraceResult trace(Ray ray)
 {
     Grid      grid     = make_grid(ray);
