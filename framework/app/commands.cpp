@@ -88,7 +88,8 @@ int show_technique(const CommonOptions& common, const std::string& id)
     std::puts(technique.exact ? "exact: gives the pixel walk's answer on every ray" : "not exact");
     std::puts(fmt::format("folder: {}", technique.folder.string()).c_str());
     for (const Structure& structure : technique.structures)
-        std::puts(fmt::format("structure: {} ({}), {}", structure.id, structure.name, structure.folder.string()).c_str());
+        std::puts(
+            fmt::format("structure: {} ({}), {}", structure.id, structure.name, structure.folder.string()).c_str());
     for (const Accuracy& accuracy : technique.accuracy)
         std::puts(fmt::format("accuracy: {} (better when {})", accuracy.parameter,
                               accuracy.higher_is_better ? "higher" : "lower")
@@ -129,7 +130,7 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
     const TraceResult result = count_frame(stage.gpu, *frame);
     Image             image{result.size_px,
                 {"hit.x", "hit.y", "hit.t", "hit.z", "pixel.x", "pixel.y", "status", "steps", "depth_fetches",
-                 "structure_fetches"},
+                             "structure_fetches"},
                 {},
                 {}};
     image.metadata["ssrlab:status_names"] = status_legend();

@@ -48,8 +48,8 @@ struct TraceResult {
     std::vector<glm::dvec3>  hit_px_depth; // x, y in pixels, depth; on the ray, inside hit_pixel; undefined unless hit
     std::vector<double>
         hit_t; // 0 at the reflecting pixel, 1 at the end of the clipped screen segment; undefined unless hit
-    std::vector<uint32_t> steps;         // loop iterations; 0 where not traced
-    std::vector<uint32_t> depth_fetches; // empty when the result was not counted
+    std::vector<uint32_t>         steps;             // loop iterations; 0 where not traced
+    std::vector<uint32_t>         depth_fetches;     // empty when the result was not counted
     std::vector<StructureFetches> structure_fetches; // of each structure that the technique reads
 };
 

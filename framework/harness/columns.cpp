@@ -48,12 +48,9 @@ const std::vector<Column> times = {
 };
 
 const std::vector<Column> counts = {
-    {"rays", "traced rays: pixels that reflect"},
-    {"fetches_mean", "reads of depth and of structures per traced ray"},
-    {"fetches_p50", "median over the rays"},
-    {"fetches_p99", "99th percentile over the rays"},
-    {"fetches_max", "of the worst ray"},
-    {"steps_p99", "loop iterations, 99th percentile over the rays"},
+    {"rays", "traced rays: pixels that reflect"}, {"fetches_mean", "reads of depth and of structures per traced ray"},
+    {"fetches_p50", "median over the rays"},      {"fetches_p99", "99th percentile over the rays"},
+    {"fetches_max", "of the worst ray"},          {"steps_p99", "loop iterations, 99th percentile over the rays"},
 };
 
 const std::vector<Column> ending = {
@@ -100,8 +97,8 @@ std::vector<Column> structure_columns(const Experiment& experiment, std::span<co
             const std::string ms = structure.id + ".ms_median";
             if (std::ranges::find(columns, ms, &Column::name) != columns.end()) continue;
             columns.push_back({ms, fmt::format("building the structure {}", structure.id)});
-            columns.push_back(
-                {structure.id + ".fetches_mean", fmt::format("reads of the structure {} per traced ray", structure.id)});
+            columns.push_back({structure.id + ".fetches_mean",
+                               fmt::format("reads of the structure {} per traced ray", structure.id)});
         }
     return columns;
 }

@@ -146,7 +146,7 @@ void read_values(const TomlFile& file, const toml::table& table, const std::stri
             read_values(file, *node.as_table(), name + ".", technique, sweep);
             continue;
         }
-        const auto        setting = std::ranges::find(all_settings(), name, &Setting::name);
+        const auto setting = std::ranges::find(all_settings(), name, &Setting::name);
         if (setting != all_settings().end()) {
             for (const toml::node* value : values_of(file, node, name)) {
                 sweep.settings[name].push_back(parameter_value(file, *value, *setting));

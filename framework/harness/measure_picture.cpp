@@ -297,9 +297,9 @@ void open_run(Bench& bench, Picture& picture, const Run& run, std::vector<Measur
 {
     bench.progress.tick();
     MeasuredRun measured;
-    measured.run                = &run;
-    const Technique& technique  = find_technique(bench.techniques, run.technique);
-    measured.row                = identity_row(bench.experiment, run, technique);
+    measured.run               = &run;
+    const Technique& technique = find_technique(bench.techniques, run.technique);
+    measured.row               = identity_row(bench.experiment, run, technique);
     for (const Structure& structure : technique.structures) measured.structures.push_back(structure.id);
     const auto prepare_all = [&] {
         prepare(bench, picture, measured);

@@ -60,7 +60,8 @@ void add_counts(Row& row, const TraceResult& counted)
         if (counted.status[i] == TraceStatus::not_traced) continue;
         ended[static_cast<size_t>(counted.status[i])] += 1;
         steps.push_back(counted.steps[i]);
-        if (!counted.depth_fetches.empty()) fetches.push_back(counted.depth_fetches[i] + structure_fetches_of(counted, i));
+        if (!counted.depth_fetches.empty())
+            fetches.push_back(counted.depth_fetches[i] + structure_fetches_of(counted, i));
     }
     row["rays"]    = std::to_string(steps.size());
     row["outcome"] = steps.empty() ? "no_rays" : "ok";
@@ -77,9 +78,9 @@ void add_counts(Row& row, const TraceResult& counted)
         row[structure.structure + ".fetches_mean"] =
             number_text(std::accumulate(structure.fetches.begin(), structure.fetches.end(), 0.0) /
                         static_cast<double>(steps.size()));
-    row["fetches_p50"]  = number_text(quantile(fetches, 0.5));
-    row["fetches_p99"]  = number_text(quantile(fetches, 0.99));
-    row["fetches_max"]  = number_text(std::ranges::max(fetches));
+    row["fetches_p50"] = number_text(quantile(fetches, 0.5));
+    row["fetches_p99"] = number_text(quantile(fetches, 0.99));
+    row["fetches_max"] = number_text(std::ranges::max(fetches));
 }
 
 void add_measures(Row& row, const MeasureValues& values)
@@ -132,14 +133,14 @@ void add_times(MeasuredRun& measured, double gbuffer_ms)
         const auto found = measured.pass_ms.find(pass);
         return found == measured.pass_ms.end() ? 0 : quantile(found->second, 0.5);
     };
-    row["rays_ms_median"]    = number_text(median_ms("classification") + median_ms("rays"));
-    double structures_ms = 0;
+    row["rays_ms_median"] = number_text(median_ms("classification") + median_ms("rays"));
+    double structures_ms  = 0;
     for (const std::string& id : measured.structures) {
         row[id + ".ms_median"] = number_text(median_ms(id));
         structures_ms += median_ms(id);
     }
     row["structures_ms_median"] = number_text(structures_ms);
-    row["shade_ms_median"]   = number_text(median_ms("hit_colour") + median_ms("composite"));
+    row["shade_ms_median"]      = number_text(median_ms("hit_colour") + median_ms("composite"));
     std::string passes;
     for (const std::string& id : measured.pass_order)
         passes += fmt::format("{}{}={}", passes.empty() ? "" : " ", id, number_text(median_ms(id)));

@@ -37,7 +37,8 @@ double expected_steps(const Run& run, const Technique& technique)
         if (!accuracy.higher_is_better && std::ranges::count(technique.bounded_by, accuracy.parameter) == 0)
             return std::min(bound, walked_share * crossed / run.values.at(accuracy.parameter));
     if (!technique.exact) return sampled_share * bound;
-    return std::min(bound, technique.structures.empty() ? walked_share * crossed : visits_per_level * std::log2(crossed));
+    return std::min(bound,
+                    technique.structures.empty() ? walked_share * crossed : visits_per_level * std::log2(crossed));
 }
 
 } // namespace

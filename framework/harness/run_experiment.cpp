@@ -121,7 +121,7 @@ void record_lost(Bench& bench, std::span<const Run> runs, const LostRun& lost)
 
 int sweep(const RunOptions& options, SweepState& state)
 {
-    const bool                   continues    = state.lost.run_id[0] != 0;
+    const bool                   continues  = state.lost.run_id[0] != 0;
     const std::vector<Technique> techniques = list_techniques(options.techniques);
     Experiment                   experiment = load_experiment(options.specification, techniques);
     std::vector<Run>             runs       = planned_runs(options, experiment, techniques);

@@ -37,7 +37,7 @@ glm::ivec2 level_size(glm::ivec2 size_px, int level) { return ((size_px - 1) >> 
 DepthBuffer make_depth_buffer(Gpu& gpu, glm::ivec2 size_px)
 {
     const size_t texels = pixel_count(pyramid_size(size_px));
-    DepthBuffer depth;
+    DepthBuffer  depth;
     depth.size_px = size_px;
     depth.cells   = make_texel_buffer(gpu, texels * sizeof(glm::uvec2), vk::Format::eR32G32Uint);
     depth.words   = make_texel_view(gpu, depth.cells, vk::Format::eR32Sfloat);

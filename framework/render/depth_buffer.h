@@ -28,7 +28,7 @@ struct DepthBuffer {
 };
 
 /// Without content.
-DepthBuffer       make_depth_buffer(Gpu& gpu, glm::ivec2 size_px);
+DepthBuffer        make_depth_buffer(Gpu& gpu, glm::ivec2 size_px);
 void               write_depth(Gpu& gpu, DepthBuffer& buffer, std::span<const float> depth);
 std::vector<float> read_depth(Gpu& gpu, const DepthBuffer& buffer);
 

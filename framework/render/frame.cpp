@@ -169,14 +169,14 @@ PreparedFramePtr prepare(Gpu& gpu, const FrameBuffersPtr& buffers, const Techniq
                          const ParameterValues& values, const FrameSettings& settings, const TraceCounts* counts)
 {
     require_bounded(technique, values);
-    auto frame       = std::make_shared<PreparedFrame>();
-    frame->buffers   = buffers;
-    frame->technique = technique;
-    frame->values    = values;
-    frame->settings  = settings;
-    frame->rays      = rays_for(gpu, *buffers, settings);
+    auto frame        = std::make_shared<PreparedFrame>();
+    frame->buffers    = buffers;
+    frame->technique  = technique;
+    frame->values     = values;
+    frame->settings   = settings;
+    frame->rays       = rays_for(gpu, *buffers, settings);
     frame->structures = make_depth_structures(gpu, *frame, *buffers->gbuffer);
-    frame->trace     = make_trace_passes(gpu, *frame, *frame->rays, buffers->view, nullptr);
+    frame->trace      = make_trace_passes(gpu, *frame, *frame->rays, buffers->view, nullptr);
 
     frame->facts      = facts_of(*frame);
     frame->statistics = buffers->statistics;
@@ -275,12 +275,12 @@ TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision)
 {
     if (precision == Precision::float64 && !gpu.info.float64)
         throw_failure("the device '{}' has no double precision", gpu.info.name);
-    const GBuffer&    gbuffer = *frame.buffers->gbuffer;
-    const RayBuffers  rays    = make_ray_buffers(gpu, frame.buffers->statistics.gbuffer.reflecting_pixels, precision);
-    const Buffer      work    = make_buffer(gpu, std::max<uint64_t>(rays.capacity, 1) * work_words(frame.technique) *
-                                                  sizeof(uint32_t));
-    const Buffer      view    = upload_view(gpu, gbuffer.view, precision);
-    const TracePasses passes  = make_trace_passes(gpu, frame, rays, view, &work);
+    const GBuffer&   gbuffer = *frame.buffers->gbuffer;
+    const RayBuffers rays    = make_ray_buffers(gpu, frame.buffers->statistics.gbuffer.reflecting_pixels, precision);
+    const Buffer     work =
+        make_buffer(gpu, std::max<uint64_t>(rays.capacity, 1) * work_words(frame.technique) * sizeof(uint32_t));
+    const Buffer      view   = upload_view(gpu, gbuffer.view, precision);
+    const TracePasses passes = make_trace_passes(gpu, frame, rays, view, &work);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         record_rays(commands, passes, *frame.buffers);
         record_depth_structures(commands, frame.structures);

@@ -143,12 +143,9 @@ TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
 
 Bindings surface_bindings(const GBuffer& gbuffer)
 {
-    return {{"depth_words", gbuffer.depth.words},
-            {"depth_cells", gbuffer.depth.cells},
-            {"cell_pairs", gbuffer.depth.pairs},
-            {"StoredCells", {gbuffer.depth.cells, gbuffer.depth.pairs}},
-            {"normal_image", gbuffer.normal},
-            {"material_image", gbuffer.material}};
+    return {{"depth_words", gbuffer.depth.words}, {"depth_cells", gbuffer.depth.cells},
+            {"cell_pairs", gbuffer.depth.pairs},  {"StoredCells", {gbuffer.depth.cells, gbuffer.depth.pairs}},
+            {"normal_image", gbuffer.normal},     {"material_image", gbuffer.material}};
 }
 
 Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
@@ -168,8 +165,8 @@ ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch
 {
     Constants constants;
     constants.add(CONSTANT_ITEMS_PER_GROUP, items_per_group);
-    return make_compute_pass(gpu, compile_shader({.file = "trace/dispatch_args.comp"}), {{"ItemCount", items}, {"Launch", launch}},
-                             constants);
+    return make_compute_pass(gpu, compile_shader({.file = "trace/dispatch_args.comp"}),
+                             {{"ItemCount", items}, {"Launch", launch}}, constants);
 }
 
 namespace {
@@ -179,12 +176,11 @@ Shader compile_trace(const Gpu& gpu, const PreparedFrame& frame, const RayBuffer
     const Technique& technique = frame.technique;
     const bool       in_double = rays.precision == Precision::float64;
     ShaderSource     source{
-            .file            = "trace/trace.comp",
-            .defines         = precision_defines(gpu, rays.precision),
-            .include_files   = structure_include_files(technique),
-            .include_texts   = {{"technique/parameters",
-                                 parameter_declarations(technique.parameters, CONSTANT_PARAMETERS)},
-                                {"technique/structures", structure_declarations(technique, nullptr, in_double)}},
+            .file          = "trace/trace.comp",
+            .defines       = precision_defines(gpu, rays.precision),
+            .include_files = structure_include_files(technique),
+            .include_texts = {{"technique/parameters", parameter_declarations(technique.parameters, CONSTANT_PARAMETERS)},
+                              {"technique/structures", structure_declarations(technique, nullptr, in_double)}},
             .include_folders = technique_folders(technique)};
     source.include_files.emplace("technique/trace.glsl", technique.folder / "trace.glsl");
     source.defines.emplace("STRUCTURES", std::to_string(technique.structures.size()));
@@ -203,17 +199,16 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
 {
     const std::vector<std::string> macros = shader_macros(frame.technique, frame.values);
     require_device(gpu, frame);
-    Constants constants =
-        settings_constants(frame, rays.precision, std::ranges::count(macros, exact_arithmetic) > 0);
+    Constants constants = settings_constants(frame, rays.precision, std::ranges::count(macros, exact_arithmetic) > 0);
     add_parameters(constants, frame.technique.parameters, frame.values, CONSTANT_PARAMETERS);
 
     TechniquePasses passes;
-    passes.structures   = make_ray_structures(gpu, frame, layer, rays, bindings);
-    passes.group_launch = make_launch_pass(gpu, rays.count, rays.group_launch, RAYS_PER_GROUP * RAY_GROUPS_PER_WORKGROUP);
+    passes.structures = make_ray_structures(gpu, frame, layer, rays, bindings);
+    passes.group_launch =
+        make_launch_pass(gpu, rays.count, rays.group_launch, RAYS_PER_GROUP * RAY_GROUPS_PER_WORKGROUP);
     Bindings all = bindings;
     all.merge(structure_bindings(gpu, frame.technique, layer, rays));
-    passes.trace =
-        make_compute_pass(gpu, compile_trace(gpu, frame, rays, bindings.contains("Work")), all, constants);
+    passes.trace = make_compute_pass(gpu, compile_trace(gpu, frame, rays, bindings.contains("Work")), all, constants);
     return passes;
 }
 
@@ -224,8 +219,7 @@ void record_depth_structures(const vk::raii::CommandBuffer& commands, const std:
 
 void record_technique(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes, const RayBuffers& rays)
 {
-    for (const StructurePasses& structure : passes.structures)
-        record_ray_structure(commands, passes, structure, rays);
+    for (const StructurePasses& structure : passes.structures) record_ray_structure(commands, passes, structure, rays);
     dispatch_indirect(commands, passes.trace, rays.launch);
 }
 
@@ -247,7 +241,7 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
     if (work != nullptr) bindings.insert({"Work", *work});
     Constants constants = settings_constants(frame, rays.precision);
     // What is counted is the technique's work on one ray from the centre of each pixel that reflects, whatever the passes.
-    const bool counts     = work != nullptr;
+    const bool counts    = work != nullptr;
     const auto of_passes = [&](const char* name) { return static_cast<int32_t>(frame.settings.passes.at(name)); };
     constants.add(CONSTANT_EVERY_SURFACE, !counts && of_passes("skip_unneeded_passes") == 0 ? 1 : 0);
     constants.add(CONSTANT_RAYS_PER_PIXEL, counts ? 1 : of_passes("rays_per_pixel"));
@@ -255,8 +249,8 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
     TracePasses passes;
     passes.classification =
         make_compute_pass(gpu, compile_shader({.file = "rays/classification.comp"}), bindings, constants);
-    passes.tile_list =
-        make_compute_pass(gpu, compile_shader({.file = "rays/tile_list.comp"}), bindings, constants, sizeof(glm::ivec2));
+    passes.tile_list    = make_compute_pass(gpu, compile_shader({.file = "rays/tile_list.comp"}), bindings, constants,
+                                            sizeof(glm::ivec2));
     passes.tile_launch  = make_launch_pass(gpu, buffers.tiles.count, buffers.tiles.launch, 1);
     Defines ray_defines = precision_defines(gpu, rays.precision);
     ray_defines.merge(store_defines(gpu, rays.list));
@@ -329,13 +323,14 @@ TraceResult read_result(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& 
     const auto&      structures = frame.technique.structures;
     const auto       listed     = read_list<Real>(gpu, rays);
     const size_t     count = listed.size(), words = work_words(frame.technique);
-    const auto       hits          = download_as<PackedHit<Real>>(gpu, rays.hits, count);
-    const auto       works         = work != nullptr ? download_as<uint32_t>(gpu, *work, count * words) : std::vector<uint32_t>{};
-    const auto       group_fetches = work != nullptr ? read_group_fetches(gpu, frame.technique, rays)
-                                                     : std::vector<std::vector<uint32_t>>(structures.size());
-    TraceResult      result        = make_trace_result(size_px, work != nullptr);
+    const auto       hits = download_as<PackedHit<Real>>(gpu, rays.hits, count);
+    const auto  works = work != nullptr ? download_as<uint32_t>(gpu, *work, count * words) : std::vector<uint32_t>{};
+    const auto  group_fetches = work != nullptr ? read_group_fetches(gpu, frame.technique, rays)
+                                                : std::vector<std::vector<uint32_t>>(structures.size());
+    TraceResult result        = make_trace_result(size_px, work != nullptr);
     for (const Structure& structure : structures)
-        if (work != nullptr) result.structure_fetches.push_back({structure.id, std::vector<uint32_t>(pixel_count(size_px))});
+        if (work != nullptr)
+            result.structure_fetches.push_back({structure.id, std::vector<uint32_t>(pixel_count(size_px))});
     for (size_t i = 0; i < count; ++i) {
         const glm::ivec2 pixel     = unpack_pixel(listed[i].pixel);
         const size_t     index     = pixel_index(pixel, size_px);

@@ -26,10 +26,10 @@ static_assert(sizeof(PackedHit<float>) == 8 && sizeof(PackedHit<double>) == 16);
 
 /// The list of rays and what each found (shaders/rays/rays.comp, shaders/trace/trace.comp).
 struct RayBuffers {
-    Precision precision = Precision::float32;
-    size_t    capacity  = 0;
-    Buffer    count, launch, list, hits;
-    Buffer    group_launch; // of passes with an invocation for each group of rays
+    Precision                         precision = Precision::float32;
+    size_t                            capacity  = 0;
+    Buffer                            count, launch, list, hits;
+    Buffer                            group_launch;    // of passes with an invocation for each group of rays
     std::shared_ptr<StructureBuffers> structures = {}; // that depend on this list
 };
 /// The uniform block of shaders/api/view.glsl.
@@ -88,21 +88,21 @@ struct TracePasses {
 using Defines = std::map<std::string, std::string>;
 
 struct PreparedFrame {
-    FrameBuffersPtr             buffers;
-    Technique                   technique;
-    ParameterValues             values;
-    FrameSettings               settings;
-    std::shared_ptr<RayBuffers> rays;
+    FrameBuffersPtr              buffers;
+    Technique                    technique;
+    ParameterValues              values;
+    FrameSettings                settings;
+    std::shared_ptr<RayBuffers>  rays;
     std::vector<StructurePasses> structures; // that depend on depth alone
-    TracePasses                 trace;
-    FrameFacts                  facts;
-    FrameStatistics             statistics;
-    double                      counting_s = 0; // that it took to count what the rays hit, for the plan
-    std::vector<PlannedPass>    plan;
-    std::vector<RecordFunction> record_functions;     // of the passes that run
-    bool                        hidden_layer = false; // hits may lie in the second layer
-    bool                        cone         = false; // rough surfaces look up cones
-    Timestamps                  timestamps;
+    TracePasses                  trace;
+    FrameFacts                   facts;
+    FrameStatistics              statistics;
+    double                       counting_s = 0; // that it took to count what the rays hit, for the plan
+    std::vector<PlannedPass>     plan;
+    std::vector<RecordFunction>  record_functions;     // of the passes that run
+    bool                         hidden_layer = false; // hits may lie in the second layer
+    bool                         cone         = false; // rough surfaces look up cones
+    Timestamps                   timestamps;
 };
 
 /// work: steps, depth and pyramid fetches per ray, or null for the pipeline that is timed.

@@ -43,7 +43,8 @@ std::vector<PlannedPass> plan_frame(const FrameFacts& facts, const FrameStatisti
         if (pass.prepare_structure == nullptr || facts.structures.empty())
             plan.push_back({&pass, pass.id, runs, decision.reason});
         else
-            for (const std::string& structure : facts.structures) plan.push_back({&pass, structure, runs, decision.reason});
+            for (const std::string& structure : facts.structures)
+                plan.push_back({&pass, structure, runs, decision.reason});
     }
     return plan;
 }

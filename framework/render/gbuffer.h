@@ -2,8 +2,8 @@
 #pragma once
 
 #include "render/depth_buffer.h"
-#include "render/structure_passes.h"
 #include "render/gpu_scene.h"
+#include "render/structure_passes.h"
 
 namespace ssrlab {
 

@@ -82,7 +82,8 @@ void read_defines(const TomlFile& file, const toml::table& table, Parameter& par
     const toml::node* node = table.get("defines");
     if (node == nullptr) return;
     if (parameter.type != ParameterType::choice)
-        throw_spec_error("{}: 'defines' belongs to choices, and '{}' has none", toml_place(file, *node), parameter.name);
+        throw_spec_error("{}: 'defines' belongs to choices, and '{}' has none", toml_place(file, *node),
+                         parameter.name);
     const toml::table& defines = toml_table(file, *node, "defines of " + parameter.name);
     toml_known_keys(file, defines, "choice of '" + parameter.name + "'", parameter.choices);
     for (const auto& [choice, macro] : defines)
@@ -115,8 +116,8 @@ Parameter read_parameter(const TomlFile& file, const toml::key& key, const toml:
     }
     const toml::table& table = toml_table(file, node, parameter.name);
     toml_known_keys(file, table, "field of parameter '" + parameter.name + "'", parameter_keys);
-    const std::string owner        = "parameter '" + parameter.name + "'";
-    parameter.doc                  = toml_text(file, manifest_key(file, table, "doc", owner), "doc of " + parameter.name);
+    const std::string owner = "parameter '" + parameter.name + "'";
+    parameter.doc           = toml_text(file, manifest_key(file, table, "doc", owner), "doc of " + parameter.name);
     const toml::node& default_node = manifest_key(file, table, "default", owner);
     parameter.type                 = type_of_default(file, default_node, table.contains("choices"), parameter.name);
     switch (parameter.type) {
@@ -138,7 +139,7 @@ Parameter read_parameter(const TomlFile& file, const toml::key& key, const toml:
 } // namespace
 
 const toml::node& manifest_key(const TomlFile& file, const toml::table& table, const std::string& key,
-                           const std::string& owner)
+                               const std::string& owner)
 {
     const toml::node* node = table.get(key);
     if (node == nullptr) throw_spec_error("{}: {} has no '{}'", toml_place(file, table), owner, key);
@@ -150,7 +151,7 @@ std::vector<Parameter> read_parameters(const TomlFile& file)
 {
     const toml::node* parameters_node = file.root.get("parameters");
     if (parameters_node == nullptr) return {};
-    const toml::table& table = toml_table(file, *parameters_node, "parameters");
+    const toml::table&                                       table = toml_table(file, *parameters_node, "parameters");
     std::vector<std::pair<toml::source_position, Parameter>> declared;
     for (const auto& [key, node] : table) {
         declared.emplace_back(key.source().begin, read_parameter(file, key, node));

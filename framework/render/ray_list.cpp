@@ -41,10 +41,10 @@ template <typename Real> std::vector<RayInput> read_rays(Gpu& gpu, const RayBuff
 
 template <typename Real> std::vector<RayOutcome> read_outcomes(Gpu& gpu, const RayTracer& tracer, size_t count)
 {
-    const auto              hits  = download_as<PackedHit<Real>>(gpu, tracer.rays.hits, count);
-    const size_t            words = work_words(tracer.frame.technique);
+    const auto              hits       = download_as<PackedHit<Real>>(gpu, tracer.rays.hits, count);
+    const size_t            words      = work_words(tracer.frame.technique);
     const auto              structures = static_cast<ptrdiff_t>(tracer.frame.technique.structures.size());
-    const auto              works = download_as<uint32_t>(gpu, tracer.work, count * words);
+    const auto              works      = download_as<uint32_t>(gpu, tracer.work, count * words);
     std::vector<RayOutcome> outcomes(count);
     for (size_t i = 0; i < count; ++i) {
         const std::span own(works.data() + i * words, words);
@@ -55,7 +55,8 @@ template <typename Real> std::vector<RayOutcome> read_outcomes(Gpu& gpu, const R
                        own[1],
                        std::accumulate(own.begin() + 2, own.begin() + 2 + structures, 0U)};
         if (outcomes[i].status == TraceStatus::impossible)
-            outcomes[i] = {TraceStatus::impossible, {static_cast<int>(own[1]), static_cast<int>(own[2])}, 0, own[0], 0, 0};
+            outcomes[i] = {
+                TraceStatus::impossible, {static_cast<int>(own[1]), static_cast<int>(own[2])}, 0, own[0], 0, 0};
     }
     return outcomes;
 }

@@ -20,9 +20,9 @@ struct RayInput {
 struct RayOutcome {
     TraceStatus status = TraceStatus::not_traced;
     glm::ivec2  hit_pixel{0, 0};
-    double      t               = 0;
-    uint32_t    steps           = 0;
-    uint32_t    depth_fetches   = 0;
+    double      t                 = 0;
+    uint32_t    steps             = 0;
+    uint32_t    depth_fetches     = 0;
     uint32_t    structure_fetches = 0; // without those for a whole group of rays
 
     bool operator==(const RayOutcome&) const = default;

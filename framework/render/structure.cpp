@@ -44,8 +44,7 @@ SizeRule read_rule(const TomlFile& file, const toml::table& table, const std::st
 int read_integer(const TomlFile& file, const toml::node& node, const std::string& name, int64_t min, int64_t max)
 {
     const int64_t value = toml_integer(file, node, name);
-    if (value < min || value > max)
-        toml_refuse(file, node, name, fmt::format("an integer in [{}, {}]", min, max));
+    if (value < min || value > max) toml_refuse(file, node, name, fmt::format("an integer in [{}, {}]", min, max));
     return static_cast<int>(value);
 }
 
@@ -77,8 +76,9 @@ StructureBuffer read_buffer(const TomlFile& file, const toml::key& key, const to
     StructureBuffer    buffer;
     buffer.name = key.str();
     if (!is_glsl_name(buffer.name))
-        throw_spec_error("{}:{}: buffer '{}' is not a name that GLSL accepts (letters, digits, underscores; no keyword)",
-                         file.path, key.source().begin.line, buffer.name);
+        throw_spec_error(
+            "{}:{}: buffer '{}' is not a name that GLSL accepts (letters, digits, underscores; no keyword)", file.path,
+            key.source().begin.line, buffer.name);
     toml_known_keys(file, table, "field of " + owner, buffer_keys);
     buffer.per     = read_rule(file, table, owner, buffer_rules);
     buffer.tile_px = read_tile_px(file, table, owner, buffer.per);
@@ -120,8 +120,8 @@ StructurePass read_pass(const TomlFile& file, const toml::node& node, const Stru
     pass.first_level = read_optional(file, table, "first_level", owner, 1, 1, most_levels);
     if (const toml::node* last = table.get("last_level")) {
         if (last->is_string()) {
-            const std::string name      = toml_text(file, *last, "last_level");
-            const auto        parameter = std::ranges::find(structure.parameters, structure.id + "." + name, &Parameter::name);
+            const std::string name = toml_text(file, *last, "last_level");
+            const auto parameter = std::ranges::find(structure.parameters, structure.id + "." + name, &Parameter::name);
             if (parameter == structure.parameters.end() || parameter->type != ParameterType::integer)
                 throw_spec_error("{}: 'last_level' names '{}', which is no integer parameter of {}",
                                  toml_place(file, *last), name, structure.id);
@@ -198,8 +198,8 @@ std::vector<Structure> collect_structures(std::span<const std::string> ids, std:
     std::map<std::string, std::string> owner_of; // by buffer; "" for the cells of the depth's buffer
     for (const Structure& structure : collected)
         for (const StructureBuffer& buffer : structure.buffers) {
-            const bool        in_depth = buffer.per == SizeRule::depth_cell;
-            const auto [it, is_new]    = owner_of.emplace(in_depth ? "" : buffer.name, structure.id);
+            const bool in_depth     = buffer.per == SizeRule::depth_cell;
+            const auto [it, is_new] = owner_of.emplace(in_depth ? "" : buffer.name, structure.id);
             if (is_new) continue;
             if (in_depth)
                 throw_spec_error("{}: '{}' and '{}' both keep their cells in the depth's buffer", place, it->second,

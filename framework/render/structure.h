@@ -21,7 +21,7 @@ enum class SizeRule {
     cell,       // of every level above the pixels: 2^level pixels square
     depth_cell, // buffers: two words a cell in the depth's own buffer, whose level 0 is the depth; one structure at a time
     level,      // passes: a dispatch for each level, with an invocation for each of its cells
-    ray_group,  // 64 rays that follow each other in the list
+    ray_group, // 64 rays that follow each other in the list
 };
 
 /// An element has one, two or four words.
@@ -36,8 +36,8 @@ struct StructureBuffer {
 struct StructurePass {
     std::filesystem::path          shader;
     SizeRule                       per         = SizeRule::pixel;
-    int                            tile_px     = 0; // per tile
-    int                            first_level = 1; // per level
+    int                            tile_px     = 0;  // per tile
+    int                            first_level = 1;  // per level
     std::variant<int, std::string> last_level  = 31; // a number, or the name of an integer parameter
     glm::ivec2                     cells_per_invocation{1, 1};
 };

@@ -90,11 +90,12 @@ ShaderSource shader_of(const Technique& technique, const Structure& structure, c
         if (belongs_to(technique.parameters[i], ids))
             parameters += parameter_declarations(std::span(&technique.parameters[i], 1),
                                                  CONSTANT_PARAMETERS + static_cast<uint32_t>(i));
-    ShaderSource source{.file            = std::filesystem::absolute(pass.shader),
-                        .include_files   = structure_include_files(technique),
-                        .include_texts   = {{"structure/parameters", parameters},
-                                            {"structure/buffers", structure_declarations(technique, &structure, in_double)}},
-                        .include_folders = technique_folders(technique)};
+    ShaderSource source{
+        .file            = std::filesystem::absolute(pass.shader),
+        .include_files   = structure_include_files(technique),
+        .include_texts   = {{"structure/parameters", parameters},
+                            {"structure/buffers", structure_declarations(technique, &structure, in_double)}},
+        .include_folders = technique_folders(technique)};
     source.defines.emplace("BUILDS_STRUCTURE", "1");
     source.defines.emplace("STRUCTURES", std::to_string(technique.structures.size()));
     return source;
@@ -251,8 +252,8 @@ Bindings structure_bindings(Gpu& gpu, const Technique& technique, const GBuffer&
         }
         if (!builds_per_ray(structure) || !rays.structures) continue;
         if (const std::string key = group_fetches_key(structure); !rays.structures->contains(key))
-            rays.structures->emplace(
-                key, make_texel_buffer(gpu, ray_groups(rays) * sizeof(uint32_t), vk::Format::eR32Uint));
+            rays.structures->emplace(key,
+                                     make_texel_buffer(gpu, ray_groups(rays) * sizeof(uint32_t), vk::Format::eR32Uint));
     }
     return bindings;
 }

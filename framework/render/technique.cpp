@@ -12,8 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> manifest_keys = {"name",   "summary",    "cite",     "structures",          "exact",
-                                                "limits", "bounded_by", "accuracy", "rays_per_invocation", "parameters"};
+const std::vector<std::string> manifest_keys = {
+    "name",   "summary",    "cite",     "structures",          "exact",
+    "limits", "bounded_by", "accuracy", "rays_per_invocation", "parameters"};
 
 void check_bounds(const TomlFile& file, const toml::node& node, const Technique& technique)
 {

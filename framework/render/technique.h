@@ -26,7 +26,7 @@ struct Technique {
     std::vector<std::string> limits;        // names of known_limits(): what it does not claim
     std::vector<std::string> bounded_by;    // parameters whose sum bounds the loop iterations of one ray
     int                      rays_per_invocation = 1; // 2: defines trace_pair() in the place of trace()
-    std::vector<Parameter>   parameters; // its own, then those of its structures as "structure.parameter"
+    std::vector<Parameter>   parameters;              // its own, then those of its structures as "structure.parameter"
     std::filesystem::path    folder;
     std::vector<Accuracy>    accuracy = {};
 };
@@ -49,7 +49,7 @@ std::vector<Structure> list_structures(std::span<const std::filesystem::path> ex
 /// The technique of that id; throws SpecError listing the known ones.
 const Technique& find_technique(std::span<const Technique> techniques, const std::string& id);
 
-ParameterValues default_values(const Technique& technique);
+ParameterValues  default_values(const Technique& technique);
 const Parameter& find_parameter(const Technique& technique, const std::string& name, const std::string& place);
 
 /// Loop iterations of one ray that a launch with these values may need; a driver may cut loops at 65,535.

@@ -54,10 +54,7 @@
 
 // With a row below the picture, which holds background as all beside it does; odd, so that the strips' cache lines do not compete for the same
 // places.
-SHARED_FUNCTION int pyramid_rows(int root, int height_px)
-{
-    return (root + height_px + 1) | 1;
-}
+SHARED_FUNCTION int pyramid_rows(int root, int height_px) { return (root + height_px + 1) | 1; }
 
 SHARED_FUNCTION int strip_index(int x, int row, int rows)
 {

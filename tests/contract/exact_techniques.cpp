@@ -73,10 +73,9 @@ std::vector<ParameterValues> variants(const Technique& technique, const Case& c)
     const size_t                 kinds = find_parameter(technique, "depth_pyramid.kind", "test").choices.size();
     for (const auto& [start, top] : levels)
         for (size_t kind = 0; kind < kinds; ++kind)
-            list.push_back(values_of(
-                technique, {{"depth_pyramid.kind", static_cast<double>(kind)},
-                            {"start_level", start},
-                            {"depth_pyramid.top_level", top}}));
+            list.push_back(values_of(technique, {{"depth_pyramid.kind", static_cast<double>(kind)},
+                                                 {"start_level", start},
+                                                 {"depth_pyramid.top_level", top}}));
     return list;
 }
 
@@ -179,7 +178,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ExactTechniques, testing::ValuesIn(all_cases())
 /// The traversal that stops at the first occluder is not exact, but packets must not change what it finds. Those that may pass behind things do.
 TEST(FrontPackets, ChangeNoAnswerOfATraversalThatStopsAtTheFirstOccluder)
 {
-    namespace fs = std::filesystem;
+    namespace fs                = std::filesystem;
     const fs::path   folders[]  = {fs::path(SSRLAB_SOURCE_DIR) / "tests/techniques"};
     const auto       techniques = list_techniques(folders);
     const Technique& stops      = find_technique(techniques, "first_occluder");

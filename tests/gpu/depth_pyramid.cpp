@@ -33,10 +33,12 @@ struct Pyramid {
 
 Pyramid build(const Picture& picture, const TraceSettings& settings, double kind)
 {
-    const Technique& hiz   = technique("hiz");
-    const auto       frame = prepare_frame(device(), picture.buffers, hiz,
-                                           values_of(hiz, {{"depth_pyramid.kind", kind}, {"depth_pyramid.top_level", 14}}), {settings});
-    submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_depth_structures(commands, frame->structures); });
+    const Technique& hiz = technique("hiz");
+    const auto       frame =
+        prepare_frame(device(), picture.buffers, hiz,
+                      values_of(hiz, {{"depth_pyramid.kind", kind}, {"depth_pyramid.top_level", 14}}), {settings});
+    submit(device(),
+           [&](const vk::raii::CommandBuffer& commands) { record_depth_structures(commands, frame->structures); });
     const Buffer& cells = picture.buffers->gbuffer->depth.cells;
     return {picture.view.size_px, download_as<glm::uvec2>(device(), cells, cells.bytes / sizeof(glm::uvec2))};
 }
@@ -182,8 +184,8 @@ TEST(DepthPyramidOrthographic, EqualsBruteForce)
     view.far_m            = 20;
     const Picture picture = make_picture(random_gbuffer(view, 3));
     for (const bool relative : {false, true})
-        expect_cells(build(picture, {.thickness_m = 0.1, .thickness_relative = relative}, occupancy),
-                     picture.image, {.thickness_m = 0.1, .thickness_relative = relative}, occupancy);
+        expect_cells(build(picture, {.thickness_m = 0.1, .thickness_relative = relative}, occupancy), picture.image,
+                     {.thickness_m = 0.1, .thickness_relative = relative}, occupancy);
 }
 
 // NaN, infinities, negative numbers and depths nearer than the near plane are background, and disturb no other pixel.

@@ -18,9 +18,8 @@ std::vector<glm::vec4> planes_of(const Picture& picture, const TraceSettings& se
                                  const Technique& reads = technique("hiz_packets"))
 {
     const auto frame = prepare_frame(device(), picture.buffers, reads, values_of(reads), {settings});
-    submit(device(), [&](const vk::raii::CommandBuffer& commands) {
-        record_depth_structures(commands, frame->structures);
-    });
+    submit(device(),
+           [&](const vk::raii::CommandBuffer& commands) { record_depth_structures(commands, frame->structures); });
     const glm::ivec2 patches = (picture.view.size_px - 1) / patch_px + 1;
     for (const auto& [name, buffer] : *picture.buffers->gbuffer->structures)
         if (name.ends_with(".planes")) return download_as<glm::vec4>(device(), buffer, pixel_count(patches));
@@ -131,10 +130,10 @@ TEST(PatchPlanesBehindBars, LieAboveThemWherePacketsStayInFront)
 {
     const Picture picture = make_picture(ground_behind_bars({128, 64}));
     TraceSettings settings;
-    settings.thickness_m = 0.1;
+    settings.thickness_m                   = 0.1;
     const std::filesystem::path folders[]  = {std::filesystem::path(SSRLAB_SOURCE_DIR) / "tests/techniques"};
     const auto                  techniques = list_techniques(folders);
-    const auto planes = planes_of(picture, settings, find_technique(techniques, "first_occluder"));
+    const auto                  planes     = planes_of(picture, settings, find_technique(techniques, "first_occluder"));
     for (const Front& front : fronts_of(picture, planes)) ASSERT_GE(front.height, -1e-6F);
     for (const glm::vec4& plane : planes) ASSERT_EQ(plane.w, 0);
 }

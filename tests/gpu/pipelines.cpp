@@ -57,7 +57,8 @@ TEST(Pipelines, AreSharedWhereNoConstantThatTheShaderUsesDiffers)
 
 TEST(Pipelines, KnowTheConstantsThatAShaderUses)
 {
-    EXPECT_EQ(compile_shader({.file = "trace/dispatch_args.comp"}).constants, std::set<uint32_t>{CONSTANT_ITEMS_PER_GROUP});
+    EXPECT_EQ(compile_shader({.file = "trace/dispatch_args.comp"}).constants,
+              std::set<uint32_t>{CONSTANT_ITEMS_PER_GROUP});
     const auto of_rays = compile_shader({.file = "rays/rays.comp"}).constants;
     EXPECT_TRUE(of_rays.contains(CONSTANT_MAX_DISTANCE_M));
     EXPECT_FALSE(of_rays.contains(CONSTANT_SLAB_SLOPE));

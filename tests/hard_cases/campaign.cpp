@@ -86,10 +86,10 @@ public:
     /// Rays on which hiz in one of its ways differs from the walk; also counts broken bounds.
     size_t differing(bool exact, size_t variant, const std::vector<RayInput>& rays, const Outcomes& walk, Count& count)
     {
-        const auto   found  = trace_rays(device(), *(exact ? hiz_exact_ : hiz_float_)[variant], rays);
+        const auto   found = trace_rays(device(), *(exact ? hiz_exact_ : hiz_float_)[variant], rays);
         const double start =
             values_of(technique(hiz_variants[variant].id), hiz_variants[variant].values).at("start_level");
-        size_t       differ = 0;
+        size_t differ = 0;
         for (size_t i = 0; i < rays.size(); ++i) {
             differ += !same_bits(found[i], walk[i]);
             count.too_long += found[i].steps > bound_ + start;
@@ -117,7 +117,8 @@ private:
         {"hiz", {{"depth_pyramid.kind", 1}, {"start_level", 14}, {"depth_pyramid.top_level", 14}}},
         {"hiz", {{"depth_pyramid.kind", 2}, {"start_level", 5}, {"depth_pyramid.top_level", 3}}},
         {"quadtree", {}},
-        {"quadtree", {{"plane_quadtree.bins", 0}, {"start_level", 14}, {"climb", 14}, {"plane_quadtree.top_level", 14}}},
+        {"quadtree",
+         {{"plane_quadtree.bins", 0}, {"start_level", 14}, {"climb", 14}, {"plane_quadtree.top_level", 14}}},
         {"quadtree", {{"plane_quadtree.planes", 1}, {"start_level", 5}, {"climb", 1}, {"plane_quadtree.top_level", 3}}},
         {"hiz_packets", {}},
         {"hiz_packets", {{"depth_pyramid.kind", 1}, {"start_level", 14}, {"depth_pyramid.top_level", 14}}},

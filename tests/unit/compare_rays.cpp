@@ -37,9 +37,9 @@ TEST(RayMeasures, AgainstScreenTruth)
     TraceResult truth = row_of(10), tested = row_of(10);
     truth.status[0] = tested.status[0] = TraceStatus::not_traced;
     for (const size_t i : {1, 2, 3, 4, 5}) set_hit(truth, i, 2.25);
-    set_hit(tested, 1, 2.75);                    // same pixel, 0.5 px
-    set_hit(tested, 2, 3.25);                    // neighbour, exactly 1 px: within
-    set_hit(tested, 3, 6.25);                    // displaced by 4 px
+    set_hit(tested, 1, 2.75);                     // same pixel, 0.5 px
+    set_hit(tested, 2, 3.25);                     // neighbour, exactly 1 px: within
+    set_hit(tested, 3, 6.25);                     // displaced by 4 px
     tested.status[4] = TraceStatus::out_of_steps; // missed
     set_hit(tested, 6, 5.5);                      // false
     const MeasureValues values = compare_to_screen_truth(tested, truth);
@@ -266,10 +266,10 @@ TEST(Pictures, AgreementColours)
 
 TEST(Pictures, HeatMapGrowsWithFetches)
 {
-    TraceResult result     = row_of(4);
+    TraceResult result       = row_of(4);
     result.depth_fetches     = {0, 1, 4096, 100000};
     result.structure_fetches = {{"depth_pyramid", {0, 0, 0, 0}}};
-    const Image image      = fetch_heat_map(result);
+    const Image image        = fetch_heat_map(result);
     EXPECT_EQ(image.values[0] + image.values[1] + image.values[2], 0);
     EXPECT_FLOAT_EQ(image.values[5], 0.1F);
     EXPECT_FLOAT_EQ(image.values[6], 0.9F);

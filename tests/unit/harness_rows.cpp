@@ -43,8 +43,8 @@ TEST(Rows, ColumnsAreUniqueAndIdentityComesFirst)
     EXPECT_EQ(names.front(), "run_id");
     EXPECT_EQ(names.back(), "message");
     for (const char* name :
-         {"steps", "space", "trace_ms_median", "frame_ms_median", "fps", "inverse_fps_s", "rays", "structures_ms_median",
-          "depth_fetches_mean", "fetches_p99", "recall_1px", "out_of_steps_share", "outcome"}) {
+         {"steps", "space", "trace_ms_median", "frame_ms_median", "fps", "inverse_fps_s", "rays",
+          "structures_ms_median", "depth_fetches_mean", "fetches_p99", "recall_1px", "out_of_steps_share", "outcome"}) {
         EXPECT_THAT(names, testing::Contains(name));
     }
 }
@@ -82,9 +82,9 @@ TEST(Rows, EveryEntryOfARowHasAColumn)
     EXPECT_EQ(measured.row.at("max_distance_m"), "1000000000");
     EXPECT_EQ(measured.row.at("edge_fade"), "manhattan");
     measured.pass_order = {"trace", "composite"};
-    measured.pass_ms  = {{"trace", std::vector<double>(7, 4.0)}, {"composite", std::vector<double>(7, 1.5)}};
-    measured.trace_ms = {1, 2, 3, 4, 5, 6, 7};
-    measured.frame_ms = {11, 12, 13, 14, 15, 16, 17};
+    measured.pass_ms    = {{"trace", std::vector<double>(7, 4.0)}, {"composite", std::vector<double>(7, 1.5)}};
+    measured.trace_ms   = {1, 2, 3, 4, 5, 6, 7};
+    measured.frame_ms   = {11, 12, 13, 14, 15, 16, 17};
     add_plan(measured.row, plan_frame({}, {}, default_pass_values()));
     add_times(measured, 7);
     add_measures(measured.row, no_measures());
@@ -210,7 +210,7 @@ TEST(Rows, TheEstimateFollowsSizeAndTechnique)
     dda.parameters[0].max                     = 60000;
     hiz                                       = dda;
     hiz.structures.resize(1);
-    const auto frame_s                        = [&](const Technique& technique, glm::ivec2 size_px) {
+    const auto frame_s = [&](const Technique& technique, glm::ivec2 size_px) {
         ssrlab::Run run;
         run.size_px         = size_px;
         run.values          = {{"steps", 60000}, {"space", 1}};

@@ -143,20 +143,22 @@ TEST(Structures, AreCollectedAfterWhatTheyRead)
 
 TEST(Structures, ThatCannotStandTogetherAreRefused)
 {
-    const Structure   known[] = {reading("a", {"b"}), reading("b", {"a"}), reading("p", {}, SizeRule::depth_cell),
-                                 reading("q", {}, SizeRule::depth_cell), reading("x", {})};
-    const auto        message = [&](std::vector<std::string> ids) {
+    const Structure known[] = {reading("a", {"b"}), reading("b", {"a"}), reading("p", {}, SizeRule::depth_cell),
+                               reading("q", {}, SizeRule::depth_cell), reading("x", {})};
+    const auto      message = [&](std::vector<std::string> ids) {
         return spec_error([&] { collect_structures(ids, known, "t:1"); });
     };
     EXPECT_THAT(message({"a"}), HasSubstr("t:1: structure 'a' reads itself"));
     EXPECT_THAT(message({"gone"}), HasSubstr("t:1: unknown structure 'gone'"));
     EXPECT_THAT(message({"p", "q"}), HasSubstr("t:1: 'p' and 'q' both keep their cells in the depth's buffer"));
     const Structure same[] = {known[4], [&] {
-                                  Structure y       = known[4];
-                                  y.id              = "y";
+                                  Structure y = known[4];
+                                  y.id        = "y";
                                   return y;
                               }()};
-    EXPECT_THAT(spec_error([&] { collect_structures(std::vector<std::string>{"x", "y"}, same, "t:1"); }),
+    EXPECT_THAT(spec_error([&] {
+                    collect_structures(std::vector<std::string>{"x", "y"}, same, "t:1");
+                }),
                 HasSubstr("t:1: 'x' and 'y' both have a buffer 'x_buffer'"));
 }
 

@@ -94,10 +94,10 @@ TEST(TechniqueManifest, ReadsEveryField)
 {
     const TechniqueDir dir;
     Structure          pyramid;
-    pyramid.id         = "depth_pyramid";
-    pyramid.parameters = {{"depth_pyramid.top_level", ParameterType::integer, 7, 0, 14, {}, "Coarsest level."}};
-    const Structure known[]      = {pyramid};
-    const Technique    technique = load_technique(dir.add("walk", R"(name    = "Walk"
+    pyramid.id                = "depth_pyramid";
+    pyramid.parameters        = {{"depth_pyramid.top_level", ParameterType::integer, 7, 0, 14, {}, "Coarsest level."}};
+    const Structure known[]   = {pyramid};
+    const Technique technique = load_technique(dir.add("walk", R"(name    = "Walk"
 summary = "Walks the pyramid."
 cite    = ["A 2014", "B 2020"]
 structures = ["depth_pyramid"]
@@ -110,7 +110,7 @@ jitter       = { default = false, doc = "Jitter." }
 space        = { default = "screen", choices = ["view", "screen"], defines = { view = "IN_VIEW" }, doc = "Space." }
 binary_steps = { default = 0, min = 0, max = 32, doc = "Bisections." }
 )"),
-                                                 known);
+                                               known);
     EXPECT_EQ(technique.id, "walk");
     EXPECT_THAT(technique.cite, ElementsAre("A 2014", "B 2020"));
     EXPECT_TRUE(technique.exact);

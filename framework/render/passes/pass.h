@@ -38,7 +38,7 @@ struct Pass {
     PassDecision (*decide)(const FrameFacts&, const FrameStatistics&, const ParameterValues&);
     /// Makes the pass's pipelines. The record function refers to the frame, which must outlive it.
     RecordFunction (*prepare)(Gpu&, PreparedFrame&) = nullptr;
-    bool beyond_shading = false; // off with pass_set = shading
+    bool beyond_shading                             = false; // off with pass_set = shading
     /// In the place of prepare: runs once for each structure of the technique, under that structure's id.
     RecordFunction (*prepare_structure)(PreparedFrame&, const std::string& structure) = nullptr;
 };
