@@ -4,6 +4,7 @@
 #include "compare/image_io.h"
 #include "compare/validate_result.h"
 #include "core/error.h"
+#include "core/files.h"
 #include "harness/measured_run.h"
 
 #include <algorithm>
@@ -189,7 +190,7 @@ int plot_results(const std::string& folder)
     const std::filesystem::path table = std::filesystem::path(folder) / "results.csv";
     if (!std::filesystem::exists(table)) throw_spec_error("{}: no such file; ssrlab run writes it", table.string());
     // Debian's python3 has Debian's matplotlib; another one may come first in PATH.
-    const std::string script = (std::filesystem::path(SSRLAB_SOURCE_DIR) / "experiments" / "plot.py").string();
+    const std::string script = (data_root() / "experiments" / "plot.py").string();
     std::fflush(nullptr);
     const pid_t child = ::fork();
     if (child < 0) throw_failure("the plot script cannot be started: {}", std::strerror(errno));

@@ -95,10 +95,7 @@ private:
                 fmt::format("{}{}ray {}:{}: {}", label_, label_.empty() ? "" : ", ", setup_index_, ray, what));
     }
 
-    double stated_bound() const
-    {
-        return technique_.bounded_by.empty() ? max_iterations : iteration_bound(technique_, values_);
-    }
+    double stated_bound() const { return declared_steps(technique_, values_); }
 
     uint32_t step_bound(const Setup& setup) const
     {

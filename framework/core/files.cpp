@@ -117,6 +117,19 @@ std::string folder_hash(const fs::path& folder)
     return content_hash(listing);
 }
 
+const fs::path& data_root()
+{
+    static const fs::path root = [] {
+        const fs::path  beside = fs::read_symlink("/proc/self/exe").parent_path().parent_path() / "share/ssrlab";
+        std::error_code error;
+        const fs::path  found = fs::canonical(beside, error);
+        if (error || !fs::is_directory(found / "shaders"))
+            throw_failure("{}: the program's shaders are not there; build or install it again", beside.string());
+        return found;
+    }();
+    return root;
+}
+
 std::string short_path(const fs::path& path)
 {
     std::error_code error;

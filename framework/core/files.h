@@ -27,6 +27,10 @@ std::string content_hash(std::string_view bytes);
 /// One hash of all files below `folder` (names and contents); an absent folder hashes as an empty one.
 std::string folder_hash(const std::filesystem::path& folder);
 
+/// Where the program's data lies (shaders/, techniques/, experiments/): the folder share/ssrlab beside the program's own. In a build folder that is a link
+/// to the source tree. Throws Failure when it is not there.
+const std::filesystem::path& data_root();
+
 /// As a person at the current directory would type it.
 std::string short_path(const std::filesystem::path& path);
 

@@ -14,6 +14,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
+#include <iterator>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -140,8 +142,8 @@ int unclosed_brace(const std::string& text)
     return open.empty() ? 0 : open.front();
 }
 
-/// "path:12: 'x' : undeclared identifier". The project's shaders have no errors of their own: what is found in them is missing from the
-/// plug-in's file.
+/// "path:12: 'x' : undeclared identifier". The project's shaders have no errors of their own: what is found in them is
+/// missing from the plug-in's file.
 std::string error_text(const std::string& error, const ShaderSource& source)
 {
     if (source.include_files.empty() || !error.starts_with(shader_folder().string())) return error;
@@ -197,9 +199,10 @@ std::vector<std::filesystem::path> files_read(const ShaderSource& source)
 {
     std::vector<std::filesystem::path> files = {shader_folder() / source.file}; // a technique's own lies elsewhere
     for (const auto& [name, path] : source.include_files) files.push_back(path);
-    std::vector<fs::path> folders = source.include_folders;
-    folders.push_back(shader_folder());
+    std::vector<fs::path> folders = {shader_folder()};
     if (!source.include_folders.empty()) folders.push_back(technique_folder());
+    const auto is_listed = [&](const fs::path& folder) { return lies_in(folder, technique_folder()); };
+    std::ranges::copy_if(source.include_folders, std::back_inserter(folders), std::not_fn(is_listed));
     for (const fs::path& folder : folders)
         for (const auto& entry : fs::recursive_directory_iterator(folder))
             if (entry.is_regular_file()) files.push_back(entry.path());
@@ -255,8 +258,8 @@ struct GlslangProcess {
 
 } // namespace
 
-fs::path shader_folder() { return fs::path(SSRLAB_SOURCE_DIR) / "shaders"; }
-fs::path technique_folder() { return fs::path(SSRLAB_SOURCE_DIR) / "techniques"; }
+fs::path shader_folder() { return data_root() / "shaders"; }
+fs::path technique_folder() { return data_root() / "techniques"; }
 
 namespace {
 Shader compile(const ShaderSource& source)

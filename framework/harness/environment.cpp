@@ -31,7 +31,7 @@ std::string first_line_of(const std::string& command)
 
 std::string source_commit()
 {
-    const std::string git    = "git -C '" SSRLAB_SOURCE_DIR "' ";
+    const std::string git    = "git -C '" + data_root().string() + "' ";
     const std::string commit = first_line_of(git + "rev-parse HEAD");
     if (commit.empty()) return "not known";
     return first_line_of(git + "status --porcelain --untracked-files=no").empty() ? commit : commit + " with changes";
@@ -64,7 +64,7 @@ std::map<std::string, std::string> describe_identity(const Experiment&          
 {
     std::map<std::string, std::string> identity;
     identity["specification"] = content_hash(experiment.text);
-    identity["shaders"]       = folder_hash(fs::path(SSRLAB_SOURCE_DIR) / "shaders");
+    identity["shaders"]       = folder_hash(data_root() / "shaders");
     identity["device"]        = device.name;
     identity["driver"]        = device.driver;
     if (!device.processor.empty()) identity["processor"] = device.processor;

@@ -150,14 +150,9 @@ void add_times(MeasuredRun& measured, double gbuffer_ms)
     row["inverse_fps_s"] = number_text(frame.median / 1000);
 }
 
-double declared_steps(const Technique& technique, const ParameterValues& values)
-{
-    return technique.bounded_by.empty() ? max_iterations : iteration_bound(technique, values);
-}
-
 std::string trace_command(const Run& run, const Technique& technique)
 {
-    const std::filesystem::path in_tree = std::filesystem::path(SSRLAB_SOURCE_DIR) / "techniques";
+    const std::filesystem::path in_tree = data_root() / "techniques";
     std::string                 text    = "ssrlab trace " + run.scene;
     if (technique.folder.parent_path() != in_tree) text += " --techniques " + short_path(technique.folder);
     text += fmt::format(" --view {} --size {} -t {}", run.view, size_text(run.size_px), technique.id);

@@ -41,9 +41,6 @@ void add_times(MeasuredRun& measured, double gbuffer_ms);
 /// Outcome failed or, of an InvalidResult, invalid; and why.
 Row failed_row(Row row, const std::exception& error);
 
-/// The most loop iterations of one ray that a technique declares, or that any may take.
-double declared_steps(const Technique& technique, const ParameterValues& values);
-
 /// The command that shows what each ray of a run found.
 std::string trace_command(const Run& run, const Technique& technique);
 

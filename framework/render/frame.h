@@ -1,4 +1,4 @@
-// The line's GPU part: G-buffer -> rays -> inputs -> trace -> shade -> image, one technique with one set of values.
+// The line's GPU part: G-buffer -> rays -> structures -> trace -> shade -> image, one technique with one set of values.
 #pragma once
 
 #include "core/gbuffer_image.h"
@@ -35,7 +35,7 @@ struct FrameTimes {
 
 struct GpuScene;      // a scene's buffers, textures and shadow maps
 struct GBuffer;       // images of one view
-struct FrameBuffers;  // rays, derived inputs and results: allocated once per image size, shared by all runs on it
+struct FrameBuffers;  // rays and results: allocated once per image size, shared by all runs on it
 struct PreparedFrame; // the pipelines of one run
 
 using GpuScenePtr      = std::shared_ptr<GpuScene>;

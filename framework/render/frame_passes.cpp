@@ -203,9 +203,11 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
     add_parameters(constants, frame.technique.parameters, frame.values, CONSTANT_PARAMETERS);
 
     TechniquePasses passes;
-    passes.structures = make_ray_structures(gpu, frame, layer, rays, bindings);
-    passes.group_launch =
-        make_launch_pass(gpu, rays.count, rays.group_launch, RAYS_PER_GROUP * RAY_GROUPS_PER_WORKGROUP);
+    passes.structures   = make_ray_structures(gpu, frame, layer, rays, bindings);
+    const auto is_built = [](const StructurePasses& structure) { return !structure.dispatches.empty(); };
+    if (std::ranges::any_of(passes.structures, is_built))
+        passes.group_launch =
+            make_launch_pass(gpu, rays.count, rays.group_launch, RAYS_PER_GROUP * RAY_GROUPS_PER_WORKGROUP);
     Bindings all = bindings;
     all.merge(structure_bindings(gpu, frame.technique, layer, rays));
     passes.trace = make_compute_pass(gpu, compile_trace(gpu, frame, rays, bindings.contains("Work")), all, constants);

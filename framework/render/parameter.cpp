@@ -121,10 +121,7 @@ Parameter read_parameter(const TomlFile& file, const toml::key& key, const toml:
     const toml::node& default_node = manifest_key(file, table, "default", owner);
     parameter.type                 = type_of_default(file, default_node, table.contains("choices"), parameter.name);
     switch (parameter.type) {
-    case ParameterType::choice:
-        read_choices(file, table, default_node, parameter);
-        read_defines(file, table, parameter);
-        break;
+    case ParameterType::choice: read_choices(file, table, default_node, parameter); break;
     case ParameterType::boolean:
         refuse_limits(file, table, parameter);
         parameter.max           = 1;
@@ -132,7 +129,7 @@ Parameter read_parameter(const TomlFile& file, const toml::key& key, const toml:
         break;
     default: read_number(file, table, default_node, parameter);
     }
-    if (parameter.type != ParameterType::choice && table.contains("defines")) read_defines(file, table, parameter);
+    read_defines(file, table, parameter);
     return parameter;
 }
 
@@ -146,19 +143,14 @@ const toml::node& manifest_key(const TomlFile& file, const toml::table& table, c
     return *node;
 }
 
-// toml++ does not keep the order of declaration; its positions do.
 std::vector<Parameter> read_parameters(const TomlFile& file)
 {
     const toml::node* parameters_node = file.root.get("parameters");
     if (parameters_node == nullptr) return {};
-    const toml::table&                                       table = toml_table(file, *parameters_node, "parameters");
-    std::vector<std::pair<toml::source_position, Parameter>> declared;
-    for (const auto& [key, node] : table) {
-        declared.emplace_back(key.source().begin, read_parameter(file, key, node));
-    }
-    std::ranges::sort(declared, [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<Parameter> parameters;
-    for (auto& [position, parameter] : declared) parameters.push_back(std::move(parameter));
+    for_each_in_order(
+        toml_table(file, *parameters_node, "parameters"),
+        [&](const toml::key& key, const toml::node& node) { parameters.push_back(read_parameter(file, key, node)); });
     return parameters;
 }
 

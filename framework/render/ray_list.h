@@ -41,7 +41,7 @@ RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Techniqu
 /// reflect as a whole, row by row, then the others.
 std::vector<RayInput> set_up_rays(Gpu& gpu, RayTracer& tracer);
 
-/// Builds the inputs that the technique reads and traces the list. Values are rounded to the tracer's precision.
+/// Builds the structures that the technique reads and traces the list. Values are rounded to the tracer's precision.
 std::vector<RayOutcome> trace_rays(Gpu& gpu, RayTracer& tracer, std::span<const RayInput> rays);
 
 /// Puts another picture of the same size and projection in the place of the tracer's G-buffer.

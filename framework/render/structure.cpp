@@ -140,14 +140,6 @@ StructurePass read_pass(const TomlFile& file, const toml::node& node, const Stru
     return pass;
 }
 
-template <typename Read> void for_each_in_order(const toml::table& table, const Read& read)
-{
-    std::vector<std::pair<const toml::key*, const toml::node*>> entries;
-    for (const auto& [key, node] : table) entries.emplace_back(&key, &node);
-    std::ranges::sort(entries, {}, [](const auto& entry) { return entry.first->source().begin; });
-    for (const auto& [key, node] : entries) read(*key, *node);
-}
-
 } // namespace
 
 Structure load_structure(const fs::path& folder)
@@ -157,9 +149,7 @@ Structure load_structure(const fs::path& folder)
     structure.folder = folder;
     structure.id     = read_folder_id(file, folder, "structure");
     toml_known_keys(file, file.root, "key", structure_keys);
-    structure.name    = toml_text(file, manifest_key(file, file.root, "name", "the structure"), "name");
-    structure.summary = toml_text(file, manifest_key(file, file.root, "summary", "the structure"), "summary");
-    if (const toml::node* node = file.root.get("cite")) structure.cite = toml_texts(file, *node, "cite");
+    read_about(file, "the structure", structure);
     if (const toml::node* node = file.root.get("reads")) structure.reads = toml_texts(file, *node, "reads");
     structure.parameters = read_parameters(file);
     for (Parameter& parameter : structure.parameters) parameter.name.insert(0, structure.id + ".");

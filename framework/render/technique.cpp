@@ -1,5 +1,6 @@
 #include "render/technique.h"
 
+#include "core/files.h"
 #include "core/names.h"
 #include "render/manifest.h"
 
@@ -86,7 +87,7 @@ std::vector<fs::path> folders_in(const fs::path& dir, bool (*wanted)(const fs::p
 /// The in-tree directory, then those in $SSRLAB_TECHNIQUES, then the others.
 std::vector<fs::path> technique_dirs(std::span<const fs::path> extra_dirs)
 {
-    std::vector<fs::path> dirs{fs::path(SSRLAB_SOURCE_DIR) / "techniques"};
+    std::vector<fs::path> dirs{data_root() / "techniques"};
     const char*           variable = std::getenv("SSRLAB_TECHNIQUES");
     const std::string     list     = variable == nullptr ? "" : variable;
     for (size_t start = 0; start < list.size();) {
@@ -130,9 +131,7 @@ Technique load_technique(const fs::path& folder, std::span<const Structure> know
     technique.folder = folder;
     technique.id     = read_folder_id(file, folder, "technique");
     toml_known_keys(file, file.root, "key", manifest_keys);
-    technique.name    = toml_text(file, manifest_key(file, file.root, "name", "the technique"), "name");
-    technique.summary = toml_text(file, manifest_key(file, file.root, "summary", "the technique"), "summary");
-    if (const toml::node* node = file.root.get("cite")) technique.cite = toml_texts(file, *node, "cite");
+    read_about(file, "the technique", technique);
     if (const toml::node* node = file.root.get("structures"))
         technique.structures =
             collect_structures(toml_texts(file, *node, "structures"), known, toml_place(file, *node));

@@ -55,6 +55,8 @@ const Parameter& find_parameter(const Technique& technique, const std::string& n
 /// Loop iterations of one ray that a launch with these values may need; a driver may cut loops at 65,535.
 double                  iteration_bound(const Technique& technique, const ParameterValues& values);
 inline constexpr double max_iterations = 60000;
+/// The most loop iterations of one ray that a technique declares, or that any may take.
+double declared_steps(const Technique& technique, const ParameterValues& values);
 /// Throws SpecError when the values allow more than max_iterations.
 void require_bounded(const Technique& technique, const ParameterValues& values);
 

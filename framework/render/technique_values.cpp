@@ -29,6 +29,11 @@ double iteration_bound(const Technique& technique, const ParameterValues& values
                            [&](double sum, const std::string& name) { return sum + values.at(name); });
 }
 
+double declared_steps(const Technique& technique, const ParameterValues& values)
+{
+    return technique.bounded_by.empty() ? max_iterations : iteration_bound(technique, values);
+}
+
 void require_bounded(const Technique& technique, const ParameterValues& values)
 {
     const double bound = iteration_bound(technique, values);

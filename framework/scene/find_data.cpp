@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "core/files.h"
 #include "scene/load_scene.h"
 
 #include <cstdlib>
@@ -15,7 +16,7 @@ std::vector<fs::path> data_folders()
 {
     std::vector<fs::path> folders;
     if (const char* folder = std::getenv("SSRLAB_DATA")) folders.emplace_back(folder);
-    folders.emplace_back(fs::path(SSRLAB_SOURCE_DIR) / "scene_data");
+    folders.emplace_back(data_root() / "scene_data");
     return folders;
 }
 

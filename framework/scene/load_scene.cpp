@@ -1,6 +1,7 @@
 #include "scene/load_scene.h"
 
 #include "core/error.h"
+#include "core/files.h"
 #include "scene/builtin_scenes.h"
 
 #include <algorithm>
@@ -82,7 +83,7 @@ std::vector<fs::path> recipe_folders()
         for (std::string folder; std::getline(stream, folder, ':');)
             if (!folder.empty()) folders.emplace_back(folder);
     }
-    folders.emplace_back(fs::path(SSRLAB_SOURCE_DIR) / "experiments/scenes");
+    folders.emplace_back(data_root() / "experiments/scenes");
     return folders;
 }
 

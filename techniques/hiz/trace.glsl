@@ -1,4 +1,4 @@
-// Walks the cells of the depth pyramid: down into a cell that may be touched, else on to the next one, and up where that one has another parent.
+// Walks the cells of the depth pyramid: opens one that the ray may touch, else goes on, and up where the parent changes.
 TraceResult trace(Ray ray)
 {
     Grid      grid     = make_grid(ray);

@@ -1,5 +1,5 @@
-// Walks the cells of the plane quadtree: down into the quarter where the ray may first touch something, else on to the next cell, and up at most as far as
-// the border that it crosses is one of the parents', too.
+// Walks the cells of the plane quadtree. A node that the ray may touch is opened, at the quarter where it may touch
+// first. Else the ray goes on to the next cell, and climbs as long as the border that it crosses bounds the parent, too.
 TraceResult trace(Ray ray)
 {
     Grid      grid     = make_grid(ray);

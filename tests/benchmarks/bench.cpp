@@ -1,6 +1,7 @@
 #include "benchmarks/bench.h"
 
 #include "core/error.h"
+#include "core/files.h"
 #include "core/stopwatch.h"
 #include "scene/load_scene.h"
 #include "truth/scene_truth.h"
@@ -72,7 +73,7 @@ template <typename Record> double Bench::measure(benchmark::State& state, Pictur
 
 Bench::Bench(const std::string& device, const std::string& tracer)
     : gpu_(open_gpu({.device = device})),
-      techniques_(list_techniques(std::vector<fs::path>{fs::path(SSRLAB_SOURCE_DIR) / "tests/techniques"})),
+      techniques_(list_techniques(std::vector<fs::path>{data_root() / "tests/techniques"})),
       tracer_{find_technique(techniques_, tracer).id, {}}
 {
 }
@@ -183,7 +184,7 @@ Bench::Picture& Bench::picture(const std::string& scene, glm::ivec2 size_px)
     const std::vector<float> depth = read_depth(gpu_, p.gbuffer->depth);
     upload(gpu_, p.depth, depth.data(), depth.size() * sizeof(float));
     p.copy_pass =
-        make_compute_pass(gpu_, compile_shader({.file = SSRLAB_SOURCE_DIR "/tests/benchmarks/copy_depth.comp"}),
+        make_compute_pass(gpu_, compile_shader({.file = data_root() / "tests/benchmarks/copy_depth.comp"}),
                           {{"depth_image", p.depth}, {"depth_copy", p.copy}});
     p.timestamps = make_timestamps(gpu_, 2);
     return p;

@@ -1,6 +1,7 @@
 #include "benchmarks/bench.h"
 #include "benchmarks/visits_bound.h"
 #include "compare/measures.h"
+#include "core/files.h"
 #include "harness/quality.h"
 #include "truth/truth_cache.h"
 
@@ -42,7 +43,7 @@ void Bench::judge(benchmark::State& state, const std::string& scene, glm::ivec2 
     if (size_px.x > largest_judged_px) return;
     const GBufferImage gbuffer = read_gbuffer(gpu_, *p.gbuffer);
     const TraceResult  truth   = cached_screen_truth(
-           truth_cache_dir(std::filesystem::path(SSRLAB_SOURCE_DIR) / "results/bench"), gbuffer, bench_settings.trace);
+           truth_cache_dir(data_root() / "results/bench"), gbuffer, bench_settings.trace);
     const MeasureValues measures = compare_to_screen_truth(result, truth);
     state.counters["differs_from_truth"] =
         static_cast<double>(count_different(result, truth, false)) / std::max(rays, 1.0);

@@ -179,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ExactTechniques, testing::ValuesIn(all_cases())
 TEST(FrontPackets, ChangeNoAnswerOfATraversalThatStopsAtTheFirstOccluder)
 {
     namespace fs                = std::filesystem;
-    const fs::path   folders[]  = {fs::path(SSRLAB_SOURCE_DIR) / "tests/techniques"};
+    const fs::path   folders[]  = {data_root() / "tests/techniques"};
     const auto       techniques = list_techniques(folders);
     const Technique& stops      = find_technique(techniques, "first_occluder");
     Technique        behind     = stops;

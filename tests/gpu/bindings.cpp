@@ -1,5 +1,6 @@
 // What is bound to a shader's names: texel buffers give what was stored, and mistakes are named.
 #include "core/error.h"
+#include "core/files.h"
 #include "gpu/compute.h"
 #include "gpu/device.h"
 
@@ -16,7 +17,7 @@ struct Buffers {
     ComputePass pass(const Buffer& floats_or_not)
     {
         return make_compute_pass(
-            device(), compile_shader({.file = SSRLAB_SOURCE_DIR "/tests/gpu/bindings.comp"}),
+            device(), compile_shader({.file = data_root() / "tests/gpu/bindings.comp"}),
             {{"Floats", floats_or_not}, {"Words", words}, {"FloatCopies", float_copies}, {"WordCopies", word_copies}});
     }
 };

@@ -1,4 +1,5 @@
 // The environment map on the device: the same lookup as in C++, and what pixels without a surface show.
+#include "core/files.h"
 #include "core/pixel_index.h"
 #include "gpu/compute.h"
 #include "gpu/device.h"
@@ -39,7 +40,7 @@ std::vector<glm::vec3> look_up_on_device(const Scene& scene, const std::vector<g
     const Buffer      asked    = make_buffer_with<glm::vec3>(device(), directions);
     const Buffer      answers  = make_buffer(device(), directions.size() * sizeof(glm::vec3));
     const ComputePass pass =
-        make_compute_pass(device(), compile_shader({.file = SSRLAB_SOURCE_DIR "/tests/gpu/environment.comp"}),
+        make_compute_pass(device(), compile_shader({.file = data_root() / "tests/gpu/environment.comp"}),
                           {{"environment_map", {uploaded->environment_map, uploaded->environment_sampler}},
                            {"Directions", asked},
                            {"Radiances", answers}});

@@ -1,4 +1,5 @@
 // The ground of patches of pixels, and what stands before it, against the pixels themselves.
+#include "core/files.h"
 #include "core/pixel_index.h"
 #include "gpu/device.h"
 #include "render/frame_passes.h"
@@ -131,7 +132,7 @@ TEST(PatchPlanesBehindBars, LieAboveThemWherePacketsStayInFront)
     const Picture picture = make_picture(ground_behind_bars({128, 64}));
     TraceSettings settings;
     settings.thickness_m                   = 0.1;
-    const std::filesystem::path folders[]  = {std::filesystem::path(SSRLAB_SOURCE_DIR) / "tests/techniques"};
+    const std::filesystem::path folders[]  = {data_root() / "tests/techniques"};
     const auto                  techniques = list_techniques(folders);
     const auto                  planes     = planes_of(picture, settings, find_technique(techniques, "first_occluder"));
     for (const Front& front : fronts_of(picture, planes)) ASSERT_GE(front.height, -1e-6F);

@@ -1,5 +1,6 @@
 // Peers' formulations, written from their published descriptions, fail where they are known to fail: a check that cannot fail proves nothing.
 #include "check/run_check.h"
+#include "core/files.h"
 #include "gpu/device.h"
 #include "hard_cases/integer_oracle.h"
 #include "hard_cases/random_rays.h"
@@ -11,7 +12,7 @@ namespace {
 
 const Technique& fragile(const std::string& id)
 {
-    static const std::filesystem::path  dirs[]     = {std::filesystem::path(SSRLAB_SOURCE_DIR) / "tests/techniques"};
+    static const std::filesystem::path  dirs[]     = {data_root() / "tests/techniques"};
     static const std::vector<Technique> techniques = list_techniques(dirs);
     return find_technique(techniques, id);
 }

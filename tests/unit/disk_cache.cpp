@@ -2,6 +2,7 @@
 #include "gpu/disk_cache.h"
 
 #include "core/files.h"
+#include "temp_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -15,15 +16,9 @@ namespace fs = std::filesystem;
 
 class DiskCache : public testing::Test {
 protected:
-    DiskCache()
-    {
-        std::string pattern = (fs::temp_directory_path() / "cache.XXXXXX").string();
-        folder_             = ::mkdtemp(pattern.data());
-        ::setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
-    }
-    ~DiskCache() override { fs::remove_all(folder_); }
+    DiskCache() { ::setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1); }
 
-    fs::path folder_;
+    TempFolder folder_;
 };
 
 TEST_F(DiskCache, ReturnsWhatWasKept)

@@ -160,7 +160,7 @@ TEST(PassList, NamesAreUniqueAndDefaultsInRange)
 TEST(PassList, EveryShaderOfTheFolderIsNamedByAPass)
 {
     std::string sources;
-    for (const auto& file : std::filesystem::directory_iterator(SSRLAB_SOURCE_DIR "/framework/render/passes"))
+    for (const auto& file : std::filesystem::directory_iterator(data_root() / "framework/render/passes"))
         sources += read_file(file.path());
     size_t shaders = 0;
     for (const auto& file : std::filesystem::directory_iterator(shader_folder() / "passes")) {

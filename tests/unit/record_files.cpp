@@ -1,8 +1,10 @@
 // results.csv under attack: odd text, full disks, kills at any moment, two writers.
 #include "core/error.h"
 #include "core/files.h"
+#include "errors.h"
 #include "harness/record.h"
 #include "harness/samples.h"
+#include "temp_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -24,13 +26,8 @@ const std::vector<std::string> columns = {"run_id", "value", "message"};
 const Environment              here    = {{{"specification", "a"}, {"shaders", "b"}}, {{"commit", "\xff not UTF-8"}}};
 
 struct RecordFiles : testing::Test {
-    fs::path folder;
-    RecordFiles()
-    {
-        std::string pattern = (fs::temp_directory_path() / "record.XXXXXX").string();
-        folder              = fs::path(::mkdtemp(pattern.data())) / "results, \"ü\" 1";
-    }
-    ~RecordFiles() override { fs::remove_all(folder.parent_path()); }
+    TempFolder temp;
+    fs::path   folder = temp / "results, \"ü\" 1";
 
     std::vector<CsvRecord> rows() const
     {
@@ -44,16 +41,6 @@ struct RecordFiles : testing::Test {
         return records;
     }
 };
-
-template <typename Error, typename Call> std::string message_of(const Call& call)
-{
-    try {
-        call();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "(no such error)";
-}
 
 Row row_of(int i)
 {

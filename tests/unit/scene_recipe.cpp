@@ -1,5 +1,6 @@
 #include "scene_files.h"
 
+#include "core/files.h"
 #include "scene/mesh_repair.h"
 #include "scene/recipe.h"
 #include "scene/shapes.h"
@@ -236,7 +237,7 @@ TEST(SceneRecipe, ShippedRecipesAreWellFormed)
     for (const SceneListing& listing : list_scenes()) {
         if (listing.name.starts_with("builtin:")) continue;
         const Recipe recipe =
-            read_recipe(std::filesystem::path(SSRLAB_SOURCE_DIR) / "experiments/scenes" / (listing.name + ".toml"));
+            read_recipe(data_root() / "experiments/scenes" / (listing.name + ".toml"));
         EXPECT_FALSE(listing.summary.empty()) << listing.name;
         EXPECT_GE(recipe.views.size(), 2U) << listing.name;
         EXPECT_EQ(recipe.views.at(0).name, "default") << listing.name;

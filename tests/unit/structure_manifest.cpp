@@ -1,7 +1,9 @@
 // Manifests of structures: every field, and mistakes named with file and line.
 #include "core/error.h"
 #include "core/files.h"
+#include "errors.h"
 #include "render/technique.h"
+#include "temp_folder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,35 +15,15 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-struct StructureDir {
-    fs::path path;
-    StructureDir()
-    {
-        std::string pattern = (fs::temp_directory_path() / "structures.XXXXXX").string();
-        path                = ::mkdtemp(pattern.data());
-    }
-    ~StructureDir() { fs::remove_all(path); }
-    StructureDir(const StructureDir&)            = delete;
-    StructureDir& operator=(const StructureDir&) = delete;
-
+struct StructureDir : TempFolder {
     fs::path add(const std::string& id, const std::string& manifest) const
     {
-        fs::create_directories(path / id);
-        write_file_atomically(path / id / "structure.toml", manifest);
-        write_file_atomically(path / id / "build.comp", "void main() {}\n");
-        return path / id;
+        fs::create_directories(path() / id);
+        write_file_atomically(path() / id / "structure.toml", manifest);
+        write_file_atomically(path() / id / "build.comp", "void main() {}\n");
+        return path() / id;
     }
 };
-
-template <typename Call> std::string spec_error(const Call& call)
-{
-    try {
-        call();
-    } catch (const SpecError& error) {
-        return error.what();
-    }
-    return "(no SpecError)";
-}
 
 const std::string head   = "name = \"Tiles\"\nsummary = \"Nearest depths.\"\n";
 const std::string buffer = "[buffers]\nfronts = { per = \"tile\", tile_px = 8, type = \"float\" }\n";
@@ -117,7 +99,7 @@ TEST(StructureManifest, MistakesAreNamedWithFileAndLine)
          ":8: 'first_level of a pass of tiles' must be an integer in [1, 31]"}};
     const StructureDir dir;
     for (const Mistake& mistake : mistakes) {
-        const std::string message = spec_error([&] { load_structure(dir.add("tiles", mistake.manifest)); });
+        const std::string message = message_of<SpecError>([&] { load_structure(dir.add("tiles", mistake.manifest)); });
         EXPECT_THAT(message, HasSubstr("tiles/structure.toml:")) << mistake.manifest;
         EXPECT_THAT(message, HasSubstr(mistake.message)) << mistake.manifest;
     }
@@ -146,7 +128,7 @@ TEST(Structures, ThatCannotStandTogetherAreRefused)
     const Structure known[] = {reading("a", {"b"}), reading("b", {"a"}), reading("p", {}, SizeRule::depth_cell),
                                reading("q", {}, SizeRule::depth_cell), reading("x", {})};
     const auto      message = [&](std::vector<std::string> ids) {
-        return spec_error([&] { collect_structures(ids, known, "t:1"); });
+        return message_of<SpecError>([&] { collect_structures(ids, known, "t:1"); });
     };
     EXPECT_THAT(message({"a"}), HasSubstr("t:1: structure 'a' reads itself"));
     EXPECT_THAT(message({"gone"}), HasSubstr("t:1: unknown structure 'gone'"));
@@ -156,7 +138,7 @@ TEST(Structures, ThatCannotStandTogetherAreRefused)
                                   y.id        = "y";
                                   return y;
                               }()};
-    EXPECT_THAT(spec_error([&] {
+    EXPECT_THAT(message_of<SpecError>([&] {
                     collect_structures(std::vector<std::string>{"x", "y"}, same, "t:1");
                 }),
                 HasSubstr("t:1: 'x' and 'y' both have a buffer 'x_buffer'"));

@@ -1,7 +1,9 @@
 // technique.toml: what it says, and what a mistake in it is answered with.
 #include "core/error.h"
 #include "core/files.h"
+#include "errors.h"
 #include "render/technique.h"
+#include "temp_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -17,35 +19,15 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// A directory of techniques that vanishes with the test.
-struct TechniqueDir {
-    fs::path path;
-    TechniqueDir()
-    {
-        std::string pattern = (fs::temp_directory_path() / "techniques.XXXXXX").string();
-        path                = ::mkdtemp(pattern.data());
-    }
-    ~TechniqueDir() { fs::remove_all(path); }
-    TechniqueDir(const TechniqueDir&)            = delete;
-    TechniqueDir& operator=(const TechniqueDir&) = delete;
-
+struct TechniqueDir : TempFolder {
     fs::path add(const std::string& id, const std::string& manifest, bool with_trace = true) const
     {
-        fs::create_directories(path / id);
-        write_file_atomically(path / id / "technique.toml", manifest);
-        if (with_trace) write_file_atomically(path / id / "trace.glsl", "TraceResult trace(Ray ray) {}\n");
-        return path / id;
+        fs::create_directories(path() / id);
+        write_file_atomically(path() / id / "technique.toml", manifest);
+        if (with_trace) write_file_atomically(path() / id / "trace.glsl", "TraceResult trace(Ray ray) {}\n");
+        return path() / id;
     }
 };
-
-template <typename Call> std::string spec_error(const Call& call)
-{
-    try {
-        call();
-    } catch (const SpecError& error) {
-        return error.what();
-    }
-    return "(no SpecError)";
-}
 
 const std::string head = "name = \"Walk\"\nsummary = \"Walks.\"\n";
 
@@ -75,7 +57,8 @@ TEST(TechniqueManifest, AccuracyNamesNumbersAndADirection)
         {"accuracy = \"steps\"", ":3: 'accuracy' must be"}};
     int number = 0;
     for (const auto& [line, answer] : mistakes)
-        EXPECT_THAT(spec_error([&] { load("mistake" + std::to_string(number++), line); }), HasSubstr(answer)) << line;
+        EXPECT_THAT(message_of<SpecError>([&] { load("mistake" + std::to_string(number++), line); }), HasSubstr(answer))
+            << line;
 }
 
 TEST(TechniqueManifest, LimitsAreKnownNamesAndBelongToInexactTechniques)
@@ -83,11 +66,12 @@ TEST(TechniqueManifest, LimitsAreKnownNamesAndBelongToInexactTechniques)
     const TechniqueDir dir;
     EXPECT_THAT(load_technique(dir.add("march", head + "limits = [\"point_sampled\"]\n")).limits,
                 ElementsAre("point_sampled"));
-    EXPECT_THAT(spec_error([&] { load_technique(dir.add("vague", head + "limits = [\"point_sampel\"]\n")); }),
-                HasSubstr("vague/technique.toml:3: unknown limit 'point_sampel': did you mean 'point_sampled'?"));
     EXPECT_THAT(
-        spec_error([&] { load_technique(dir.add("both", head + "exact = true\nlimits = [\"point_sampled\"]\n")); }),
-        HasSubstr("both/technique.toml:4: 'limits' contradicts 'exact'"));
+        message_of<SpecError>([&] { load_technique(dir.add("vague", head + "limits = [\"point_sampel\"]\n")); }),
+        HasSubstr("vague/technique.toml:3: unknown limit 'point_sampel': did you mean 'point_sampled'?"));
+    EXPECT_THAT(message_of<SpecError>(
+                    [&] { load_technique(dir.add("both", head + "exact = true\nlimits = [\"point_sampled\"]\n")); }),
+                HasSubstr("both/technique.toml:4: 'limits' contradicts 'exact'"));
 }
 
 TEST(TechniqueManifest, ReadsEveryField)
@@ -171,7 +155,7 @@ TEST(TechniqueManifest, MistakesAreNamedWithFileAndLine)
     const TechniqueDir dir;
     for (const Mistake& mistake : mistakes) {
         const fs::path folder = dir.add("walk", head + "[parameters]\n" + mistake.line + "\n");
-        EXPECT_THAT(spec_error([&] { load_technique(folder); }),
+        EXPECT_THAT(message_of<SpecError>([&] { load_technique(folder); }),
                     HasSubstr("walk/technique.toml" + std::string(mistake.message)))
             << mistake.line;
     }
@@ -181,7 +165,7 @@ TEST(TechniqueManifest, MistakesAboveTheParameters)
 {
     const TechniqueDir dir;
     const auto         message = [&](const std::string& manifest) {
-        return spec_error([&] { load_technique(dir.add("walk", manifest)); });
+        return message_of<SpecError>([&] { load_technique(dir.add("walk", manifest)); });
     };
     EXPECT_THAT(message("summary = \"Walks.\"\n"), HasSubstr("the technique has no 'name'"));
     EXPECT_THAT(message("name = 7\nsummary = \"Walks.\"\n"),
@@ -200,9 +184,11 @@ TEST(TechniqueManifest, ATechniqueNeedsItsTraceFunction)
 {
     const TechniqueDir dir;
     const fs::path     folder = dir.add("walk", head, false);
-    EXPECT_THAT(spec_error([&] { load_technique(folder); }), HasSubstr("walk/trace.glsl: missing"));
-    EXPECT_THAT(spec_error([&] { load_technique(dir.path / "absent"); }), HasSubstr("technique.toml: no such file"));
-    EXPECT_THAT(spec_error([&] { load_technique(dir.add("two words", head)); }), HasSubstr("technique's id"));
+    EXPECT_THAT(message_of<SpecError>([&] { load_technique(folder); }), HasSubstr("walk/trace.glsl: missing"));
+    EXPECT_THAT(message_of<SpecError>([&] { load_technique(dir.path() / "absent"); }),
+                HasSubstr("technique.toml: no such file"));
+    EXPECT_THAT(message_of<SpecError>([&] { load_technique(dir.add("two words", head)); }),
+                HasSubstr("technique's id"));
 }
 
 TEST(TechniqueManifest, DirectoriesAreSearchedAndDuplicatesRefused)
@@ -211,15 +197,16 @@ TEST(TechniqueManifest, DirectoriesAreSearchedAndDuplicatesRefused)
     first.add("test_walk_a", head);
     first.add("test_walk_b", head);
     second.add("test_walk_b", head);
-    const fs::path only_first[] = {first.path};
-    const fs::path twice[]      = {first.path, first.path / "test_walk_a"}; // the same folder again is no conflict
-    const fs::path conflict[]   = {first.path, second.path};
-    const fs::path absent[]     = {first.path / "absent"};
+    const fs::path only_first[] = {first.path()};
+    const fs::path twice[]      = {first.path(), first.path() / "test_walk_a"}; // the same folder again is no conflict
+    const fs::path conflict[]   = {first.path(), second.path()};
+    const fs::path absent[]     = {first.path() / "absent"};
     EXPECT_EQ(find_technique(list_techniques(only_first), "test_walk_a").summary, "Walks.");
     EXPECT_EQ(list_techniques(twice).size(), list_techniques(only_first).size());
-    EXPECT_THAT(spec_error([&] { list_techniques(conflict); }), HasSubstr("two techniques are called 'test_walk_b'"));
-    EXPECT_THAT(spec_error([&] { list_techniques(absent); }), HasSubstr("no such directory"));
-    EXPECT_THAT(spec_error([&] { find_technique(list_techniques(only_first), "test_wolk_a"); }),
+    EXPECT_THAT(message_of<SpecError>([&] { list_techniques(conflict); }),
+                HasSubstr("two techniques are called 'test_walk_b'"));
+    EXPECT_THAT(message_of<SpecError>([&] { list_techniques(absent); }), HasSubstr("no such directory"));
+    EXPECT_THAT(message_of<SpecError>([&] { find_technique(list_techniques(only_first), "test_wolk_a"); }),
                 HasSubstr("did you mean 'test_walk_a'?"));
 }
 
@@ -234,14 +221,17 @@ TEST(TechniqueManifest, ValuesAreParsedCheckedAndPrinted)
         EXPECT_EQ(format_parameter(parameter, parse_parameter(parameter, text, "-p")), text);
     }
     for (const char* text : {"", "ten", "1.5", "0", "101", "nan", "inf", "1e400", "7 ", "0x10"}) {
-        EXPECT_THAT(spec_error([&] { parse_parameter(steps, text, "-p"); }),
+        EXPECT_THAT(message_of<SpecError>([&] { parse_parameter(steps, text, "-p"); }),
                     HasSubstr("-p: 'steps' must be an integer in [1, 100], got"))
             << text;
     }
-    EXPECT_THAT(spec_error([&] { parse_parameter(stride, "nan", "-p"); }), HasSubstr("must be a number in [0, 10]"));
-    EXPECT_THAT(spec_error([&] { parse_parameter(jitter, "1", "-p"); }), HasSubstr("must be true or false, got '1'"));
-    EXPECT_THAT(spec_error([&] { parse_parameter(space, "clip", "-p"); }), HasSubstr("must be one of view, screen"));
-    EXPECT_THAT(spec_error([&] { check_parameter(steps, std::numeric_limits<double>::quiet_NaN(), "-p"); }),
+    EXPECT_THAT(message_of<SpecError>([&] { parse_parameter(stride, "nan", "-p"); }),
+                HasSubstr("must be a number in [0, 10]"));
+    EXPECT_THAT(message_of<SpecError>([&] { parse_parameter(jitter, "1", "-p"); }),
+                HasSubstr("must be true or false, got '1'"));
+    EXPECT_THAT(message_of<SpecError>([&] { parse_parameter(space, "clip", "-p"); }),
+                HasSubstr("must be one of view, screen"));
+    EXPECT_THAT(message_of<SpecError>([&] { check_parameter(steps, std::numeric_limits<double>::quiet_NaN(), "-p"); }),
                 HasSubstr("got nan"));
 }
 

@@ -13,7 +13,7 @@ uvec2 cell_of_quarters(uvec4 upper, uvec4 lower)
 // Two quarters of a cell side by side: a cell of the level below and its right neighbour, empty where that level ends.
 uvec4 load_quarters(ivec2 quarter)
 {
-    ivec2 source_size = ((size_px - 1) >> (level - 1)) + 1;
+    ivec2 source_size = level_size(level - 1);
     bvec3 inside = lessThan(ivec3(quarter, quarter.x + 1), source_size.xyx);
     uvec4 pair   = inside.y ? load_pair(pair_index(quarter, pyramid_root >> (level - 1))) : uvec4(0);
     return uvec4(inside.x ? pair.xy : empty_cell, inside.z ? pair.zw : empty_cell);

@@ -4,6 +4,7 @@
 #include "api/view.glsl"
 #include "api/slab.glsl"
 #include "cell.glsl"
+#include "api/structure_api.glsl"
 #define CELL_PAIRS
 #include "layout/memory_layout.glsl"
 #include "structure/parameters"
@@ -97,7 +98,7 @@ uvec2 finished(uvec2 cell)
 }
 
 // Cells of the level, and the first of the two that this invocation makes.
-ivec2 size = ((size_px - 1) >> level) + 1, cell = ivec2(2, 1) * ivec2(gl_GlobalInvocationID.xy);
+ivec2 size = level_size(level), cell = ivec2(2, 1) * ivec2(gl_GlobalInvocationID.xy);
 
 void store_cells(uvec4 cells)
 {
