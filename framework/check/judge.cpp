@@ -117,7 +117,7 @@ Visit Judge::visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_
     visit.back  = slab_back(setup_.gbuffer.view, depth, setup_.settings);
     visit.contact =
         std::min(visit.front - std::min(visit.z_in, visit.z_out), std::max(visit.z_in, visit.z_out) - visit.back);
-    if (setup_.settings.facing)
+    if (setup_.settings.behind != Behind::hit)
         visit.facing = cosine(glm::dvec3(setup_.gbuffer.normal_vs[pixel_index(pixel, setup_.gbuffer.view.size_px)]),
                               direction_vs(setup_.gbuffer.view, ray));
     return visit;
@@ -267,7 +267,8 @@ std::string Judge::broken_invariant(const RayInput& ray, const RayOutcome& outco
     if (!std::isfinite(outcome.t)) return fmt::format("t is {}", outcome.t);
     if (outcome.status != TraceStatus::hit) {
         const bool possible = outcome.status == ray.end_status || outcome.status == TraceStatus::out_of_steps ||
-                              (outcome.status == TraceStatus::facing_away && setup_.settings.facing);
+                              (outcome.status == TraceStatus::facing_away && setup_.settings.behind == Behind::pass) ||
+                              (outcome.status == TraceStatus::stopped && setup_.settings.behind == Behind::stop);
         return possible ? "" : fmt::format("ends as {}, which this ray cannot", name(outcome));
     }
     if (outcome.hit_pixel == start_pixel(setup_.gbuffer, ray)) return fmt::format("{}, its start pixel", name(outcome));

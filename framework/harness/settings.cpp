@@ -18,6 +18,21 @@ Setting trace_setting(const char* name, ParameterType type, Field TraceSettings:
             [=](FrameSettings& settings, double value) { settings.trace.*field = static_cast<Field>(value); }};
 }
 
+template <typename Choice>
+Setting trace_choice(const char* name, Choice TraceSettings::*field, std::span<const std::string_view> choices,
+                     const char* doc)
+{
+    return {{.name          = name,
+             .type          = ParameterType::choice,
+             .default_value = static_cast<double>(TraceSettings{}.*field),
+             .max           = static_cast<double>(choices.size() - 1),
+             .choices       = {choices.begin(), choices.end()},
+             .doc           = doc},
+            "trace",
+            [=](const FrameSettings& settings) { return static_cast<double>(settings.trace.*field); },
+            [=](FrameSettings& settings, double value) { settings.trace.*field = static_cast<Choice>(value); }};
+}
+
 std::vector<Setting> make_table()
 {
     using enum ParameterType;
@@ -31,7 +46,11 @@ std::vector<Setting> make_table()
                       "length of the ray in view space"),
         trace_setting("ray_offset_m", real, &TraceSettings::ray_offset_m, 1e6,
                       "how far along its direction the ray starts"),
-        trace_setting("facing", boolean, &TraceSettings::facing, 1, "whether a hit's surface must face the ray"),
+        trace_choice("behind", &TraceSettings::behind, behind_names,
+                     "what becomes of a ray that meets a pixel from a side that the frame does not show: hit, pass (the "
+                     "ray goes on) or stop (it ends without a hit)"),
+        trace_choice("surface", &TraceSettings::surface, surface_names,
+                     "what a pixel holds around its depth: a box with a thickness, or a plane, see docs/hit_contract.md"),
     };
     for (const Parameter& parameter : pass_parameters()) {
         const std::string& name = parameter.name;

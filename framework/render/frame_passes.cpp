@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ssrlab {
 namespace {
@@ -21,30 +22,42 @@ struct Slab {
     double slope = 0, scale = 1, shift = 0;
 };
 
-Slab slab_of(const View& view, const TraceSettings& trace)
+/// Thickness 0 or more: of the back. Less: of a front that lies before the depth.
+Slab slab_of(const View& view, const TraceSettings& trace, double thickness)
 {
-    const double thickness = trace.thickness_m;
     if (std::isinf(thickness)) return {0, 0, 0};
-    if (view.projection == Projection::perspective)
-        return trace.thickness_relative ? Slab{0, 1 / (1 + thickness), 0} : Slab{thickness / view.near_m, 1, 0};
+    if (view.projection == Projection::perspective) {
+        if (!trace.thickness_relative) return {thickness / view.near_m, 1, 0};
+        return {0, thickness > -1 ? 1 / (1 + thickness) : 1e30, 0};
+    }
     const double range = view.far_m - view.near_m;
     return trace.thickness_relative ? Slab{0, 1 + thickness, thickness * view.far_m / range}
                                     : Slab{0, 1, thickness / range};
 }
 
-template <typename Real> void add_slab(Constants& constants, const View& view, const FrameSettings& settings)
+template <typename Real> void add_slab(Constants& constants, uint32_t first, const Slab& slab)
 {
-    const Slab slab = slab_of(view, settings.trace);
-    constants.add(CONSTANT_SLAB_SLOPE, static_cast<Real>(slab.slope));
-    constants.add(CONSTANT_SLAB_SCALE, static_cast<Real>(slab.scale));
-    constants.add(CONSTANT_SLAB_SHIFT, static_cast<Real>(slab.shift));
+    constants.add(first, static_cast<Real>(slab.slope));
+    constants.add(first + 1, static_cast<Real>(slab.scale));
+    constants.add(first + 2, static_cast<Real>(slab.shift));
+}
+static_assert(CONSTANT_SLAB_SCALE == CONSTANT_SLAB_SLOPE + 1 && CONSTANT_SLAB_SHIFT == CONSTANT_SLAB_SLOPE + 2);
+static_assert(CONSTANT_FRONT_SCALE == CONSTANT_FRONT_SLOPE + 1 && CONSTANT_FRONT_SHIFT == CONSTANT_FRONT_SLOPE + 2);
+
+template <typename Real> void add_slabs(Constants& constants, const View& view, const TraceSettings& trace)
+{
+    const bool   endless   = trace.surface == SurfaceModel::box_infinite;
+    const double thickness = endless ? std::numeric_limits<double>::infinity() : trace.thickness_m;
+    add_slab<Real>(constants, CONSTANT_SLAB_SLOPE, slab_of(view, trace, thickness));
+    if (trace.surface == SurfaceModel::box_two_sided)
+        add_slab<Real>(constants, CONSTANT_FRONT_SLOPE, slab_of(view, trace, -thickness));
 }
 
 template <typename Real> void add_settings(Constants& constants, const View& view, const FrameSettings& settings)
 {
     constants.add(CONSTANT_MAX_DISTANCE_M, static_cast<Real>(settings.trace.max_distance_m));
     constants.add(CONSTANT_RAY_OFFSET_M, static_cast<Real>(settings.trace.ray_offset_m));
-    constants.add(CONSTANT_FACING, static_cast<int32_t>(settings.trace.facing));
+    constants.add(CONSTANT_BEHIND, static_cast<int32_t>(settings.trace.behind));
     constants.add(CONSTANT_ORTHOGRAPHIC, static_cast<int32_t>(view.projection == Projection::orthographic));
 }
 
@@ -70,6 +83,15 @@ Defines precision_defines(const Gpu& gpu, Precision precision)
     return {};
 }
 
+void add_surface(ShaderSource& source, SurfaceModel model)
+{
+    const std::filesystem::path folder = shader_folder() / "surfaces" / (has_planes(model) ? "plane" : "box");
+    source.include_files.emplace("surface/meeting.glsl", folder / "meeting.glsl");
+    source.include_files.emplace("surface/held.glsl", folder / "held.glsl");
+    if (model == SurfaceModel::box_two_sided) source.defines.emplace("SURFACE_TWO_SIDED", "1");
+    if (model == SurfaceModel::plane_solid) source.defines.emplace("SURFACE_SOLID", "1");
+}
+
 Defines store_defines(const Gpu& gpu, const Buffer& texels)
 {
     const bool storable = gpu.info.int64 && texels.bytes <= gpu.impl->limits.maxStorageBufferRange;
@@ -85,9 +107,9 @@ Constants settings_constants(const PreparedFrame& frame, Precision precision, bo
     else
         add_settings<float>(constants, view, frame.settings);
     if (precision == Precision::float64 || exact)
-        add_slab<double>(constants, view, frame.settings);
+        add_slabs<double>(constants, view, frame.settings.trace);
     else
-        add_slab<float>(constants, view, frame.settings);
+        add_slabs<float>(constants, view, frame.settings.trace);
     return constants;
 }
 
@@ -145,7 +167,8 @@ Bindings surface_bindings(const GBuffer& gbuffer)
 {
     return {{"depth_words", gbuffer.depth.words}, {"depth_cells", gbuffer.depth.cells},
             {"cell_pairs", gbuffer.depth.pairs},  {"StoredCells", {gbuffer.depth.cells, gbuffer.depth.pairs}},
-            {"normal_image", gbuffer.normal},     {"material_image", gbuffer.material}};
+            {"normal_image", gbuffer.normal},     {"material_image", gbuffer.material},
+            {"gradient_image", gbuffer.gradient}, {"solid_image", gbuffer.solid}};
 }
 
 Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
@@ -183,6 +206,7 @@ Shader compile_trace(const Gpu& gpu, const PreparedFrame& frame, const RayBuffer
                               {"technique/structures", structure_declarations(technique, nullptr, in_double)}},
             .include_folders = technique_folders(technique)};
     source.include_files.emplace("technique/trace.glsl", technique.folder / "trace.glsl");
+    add_surface(source, frame.settings.trace.surface);
     source.defines.emplace("STRUCTURES", std::to_string(technique.structures.size()));
     if (technique.rays_per_invocation > 1)
         source.defines.emplace("RAYS_PER_INVOCATION", std::to_string(technique.rays_per_invocation));

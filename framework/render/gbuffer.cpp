@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/pixel_index.h"
+#include "core/plane_gradient.h"
 #include "render/frame_passes.h"
 #include "shared.h"
 
@@ -56,6 +57,8 @@ GBufferPtr make_gbuffer(Gpu& gpu, const View& view)
     gbuffer->radiance                = image(Format::eR16G16B16A16Sfloat, target);
     gbuffer->highlight               = image(Format::eR16G16B16A16Sfloat, target);
     gbuffer->object                  = image(Format::eR32Uint, target);
+    gbuffer->gradient                = image(Format::eR32Uint, target);
+    gbuffer->solid                   = image(Format::eR32Sfloat, target);
     return gbuffer;
 }
 
@@ -90,7 +93,8 @@ void record_rasterisation(const vk::raii::CommandBuffer& commands, const GBuffer
     const vk::RenderingAttachmentInfo colours[] = {
         attachment(gbuffer.normal, colour(glm::vec4(0))), attachment(gbuffer.material, colour(glm::vec4(0))),
         attachment(gbuffer.radiance, colour(glm::vec4(0))), attachment(gbuffer.highlight, colour(glm::vec4(0))),
-        attachment(gbuffer.object, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}})};
+        attachment(gbuffer.object, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}}),
+        attachment(gbuffer.gradient, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}})};
     // Reversed depth: background is 0.
     const auto       depth = attachment(gbuffer.depth_buffer, vk::ClearDepthStencilValue{0.0F, 0});
     const glm::ivec2 size  = gbuffer.view.size_px;
@@ -114,7 +118,7 @@ std::shared_ptr<const DrawPipeline> layer_pipeline(Gpu& gpu, GpuScene& scene, co
         DrawPipelineOptions options{.fragment_shader = "gbuffer/gbuffer.frag",
                                     .colour_formats  = {gbuffer.normal.format, gbuffer.material.format,
                                                         gbuffer.radiance.format, gbuffer.highlight.format,
-                                                        gbuffer.object.format}};
+                                                        gbuffer.object.format, gbuffer.gradient.format}};
         if (second) options.fragment_defines = {{"SECOND_LAYER", "1"}};
         pipeline = std::make_shared<const DrawPipeline>(make_draw_pipeline(gpu, scene, options));
     }
@@ -212,6 +216,14 @@ void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image)
         normal[i]   = {image.normal_vs[i], image.roughness[i]};
         material[i] = to_half({image.base_colour[i], image.metallic[i]});
     }
+    GBufferImage planes{image.view, image.depth, image.normal_vs, {}, {}, {}, {}, {}, {}, image.gradient, {}};
+    complete_gradients(planes);
+    std::vector<uint32_t> gradients;
+    for (const glm::vec2& gradient : planes.gradient) gradients.push_back(pack_gradient(gradient));
+    std::vector<float> solid = image.solid_back;
+    solid.resize(count);
+    upload(gpu, gbuffer.gradient, gradients.data(), count * sizeof(uint32_t));
+    upload(gpu, gbuffer.solid, solid.data(), count * sizeof(float));
     write_depth(gpu, gbuffer.depth, usable_depth(image.depth));
     upload(gpu, gbuffer.normal, normal.data(), count * sizeof(glm::vec4));
     upload(gpu, gbuffer.material, material.data(), count * sizeof(HalfTexel));
@@ -251,6 +263,9 @@ GBufferImage read_gbuffer(Gpu& gpu, const GBuffer& gbuffer)
     for (const HalfTexel& texel : download_as<HalfTexel>(gpu, gbuffer.highlight))
         image.highlight.emplace_back(from_half(texel));
     image.object_id = download_as<uint32_t>(gpu, gbuffer.object);
+    for (const uint32_t packed : download_as<uint32_t>(gpu, gbuffer.gradient))
+        image.gradient.push_back(unpack_gradient(packed));
+    image.solid_back = download_as<float>(gpu, gbuffer.solid);
     return image;
 }
 

@@ -17,6 +17,8 @@ struct GBuffer {
     GpuImage                            radiance;     // RGBA16F: the same from every direction
     GpuImage                            highlight;    // RGBA16F: depends on the view
     GpuImage                            object;       // R32UI
+    GpuImage                            gradient;     // R32UI: of depth, core/plane_gradient.h
+    GpuImage                            solid;        // R32F: where the solid behind the pixel ends, 0: thin
     Buffer                              frame_uniforms;
     FrameSet                            frame_set;
     std::shared_ptr<const DrawPipeline> pipeline;

@@ -47,7 +47,7 @@ std::vector<RayOutcome> trace_rays(Gpu& gpu, RayTracer& tracer, std::span<const 
 /// Puts another picture of the same size and projection in the place of the tracer's G-buffer.
 void replace_picture(Gpu& gpu, RayTracer& tracer, const GBufferImage& image);
 
-/// A G-buffer of nothing but depth, for lists of rays without the facing rule: a twelfth of the memory.
+/// A G-buffer of nothing but depth, for lists of rays with boxes, and behind = hit: a twelfth of the memory.
 GBufferPtr upload_depth(Gpu& gpu, const View& view, std::span<const float> depth);
 
 } // namespace ssrlab

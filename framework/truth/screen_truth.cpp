@@ -126,7 +126,7 @@ WalkResult ScreenWalk::walk(const ScreenRay& ray) const
         if (std::min(z_in, z_out) <= double(cell.front) && std::max(z_in, z_out) >= double(cell.back)) {
             const double back = exact_back(size_t(index));
             if (std::max(z_in, z_out) >= back) {
-                if (!settings_.facing || faces_ray(size_t(index), ray.direction_vs)) {
+                if (settings_.behind == Behind::hit || faces_ray(size_t(index), ray.direction_vs)) {
                     found.status       = TraceStatus::hit;
                     found.hit_pixel    = pixel_at(size_t(index), size);
                     found.hit_t        = first_contact_t(ray, t_in, t_out, double(cell.front), back);
@@ -136,7 +136,8 @@ WalkResult ScreenWalk::walk(const ScreenRay& ray) const
                     found.hit_px_depth.y = std::clamp(found.hit_px_depth.y, low.y, low.y + 1);
                     return found;
                 }
-                found.status = TraceStatus::facing_away;
+                found.status = settings_.behind == Behind::pass ? TraceStatus::facing_away : TraceStatus::stopped;
+                if (settings_.behind == Behind::stop) return found;
             }
         }
         t_in = t_out;

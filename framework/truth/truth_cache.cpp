@@ -33,12 +33,13 @@ void add(ContentHash& hash, const GBufferImage& gbuffer)
     const View& view = gbuffer.view;
     hash.add(view.size_px).add(view.projection).add(view.world_to_view).add(view.focal_px).add(view.centre_px);
     hash.add(view.near_m).add(view.far_m).add(gbuffer.depth).add(gbuffer.normal_vs).add(gbuffer.metallic);
+    hash.add(gbuffer.gradient.size()).add(gbuffer.gradient).add(gbuffer.solid_back.size()).add(gbuffer.solid_back);
 }
 
 void add(ContentHash& hash, const TraceSettings& settings)
 {
     hash.add(settings.thickness_m).add(settings.thickness_relative).add(settings.max_distance_m);
-    hash.add(settings.ray_offset_m).add(settings.facing);
+    hash.add(settings.ray_offset_m).add(settings.behind).add(settings.surface);
 }
 
 void add(ContentHash& hash, const TextureUse& use) { hash.add(use.texture).add(use.uv_set).add(use.uv_transform); }

@@ -47,18 +47,7 @@ double scaled_depth(Ray ray, int64_t t)
     return z;
 }
 
-// As in grid_float.glsl.
-bool slab_between(Ray ray, Grid grid, real depth, int64_t t_in, int64_t t_out)
-{
-    double         z_a = scaled_depth(ray, t_in), z_b = scaled_depth(ray, t_out);
-    double         d = double(depth), origin = double(ray.origin.z), whole = double(grid.whole);
-    precise double back  = (d * slab_scale - slab_shift) / (1.0LF + d * slab_slope);
-    precise double low   = (back - origin) * whole;
-    precise double high  = (d - origin) * whole;
-    return high >= min(z_a, z_b) && low <= max(z_a, z_b);
-}
-
-// By more than all roundings of slab_between().
+// As in grid_float.glsl, by more than all roundings of a hit test.
 vec2 covered_depths(Ray ray, Grid grid, int64_t t_in, int64_t t_out)
 {
     double z_a = scaled_depth(ray, t_in), z_b = scaled_depth(ray, t_out);

@@ -30,12 +30,6 @@ Grid make_grid(Ray ray)
     return grid;
 }
 
-// Does the slab behind this depth meet the ray between two crossings?
-bool slab_between(Ray ray, Grid grid, real depth, real t_in, real t_out)
-{
-    return interval_touches(depth, depth_interval(ray, depth_at(ray, t_in), depth_at(ray, t_out)));
-}
-
 // Depths that the ray covers between two crossings, rounded outward: x the farthest, y the nearest.
 vec2 covered_depths(Ray ray, Grid grid, real t_in, real t_out)
 {

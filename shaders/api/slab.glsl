@@ -13,6 +13,25 @@ layout(constant_id = CONSTANT_SLAB_SLOPE) const slab_real slab_slope = 0;
 layout(constant_id = CONSTANT_SLAB_SCALE) const slab_real slab_scale = 1;
 layout(constant_id = CONSTANT_SLAB_SHIFT) const slab_real slab_shift = 0;
 
+#ifdef SURFACE_TWO_SIDED
+// The same numbers for the front, which lies as far before the depth.
+layout(constant_id = CONSTANT_FRONT_SLOPE) const slab_real front_slope = 0;
+layout(constant_id = CONSTANT_FRONT_SCALE) const slab_real front_scale = 1;
+layout(constant_id = CONSTANT_FRONT_SHIFT) const slab_real front_shift = 0;
+const slab_real infinitely_near = slab_real(1e30);
+
+slab_real slab_front_of(slab_real depth)
+{
+    slab_real         below = slab_real(1) + depth * front_slope;
+    precise slab_real front = (depth * front_scale - front_shift) / below;
+    return below > slab_real(0) ? front : infinitely_near;
+}
+real slab_front(real depth) { return real(slab_front_of(slab_real(depth))); }
+#else
+slab_real slab_front_of(slab_real depth) { return depth; }
+real      slab_front(real depth) { return depth; }
+#endif
+
 // Does the depth interval that ends at z_near (its nearest depth) reach the slab's back? Multiplied out: a division is not correctly
 // rounded on every device, and it is slower.
 bool reaches_slab_back(real depth, real z_near)
@@ -22,8 +41,9 @@ bool reaches_slab_back(real depth, real z_near)
     return left >= right;
 }
 
-real slab_back(real depth)
+slab_real slab_back_of(slab_real depth)
 {
-    precise real back = (depth * real(slab_scale) - real(slab_shift)) / (real(1) + depth * real(slab_slope));
+    precise slab_real back = (depth * slab_scale - slab_shift) / (slab_real(1) + depth * slab_slope);
     return back;
 }
+real slab_back(real depth) { return real(slab_back_of(slab_real(depth))); }

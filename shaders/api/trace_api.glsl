@@ -12,7 +12,7 @@
 #include "layout/memory_layout.glsl"
 #include "trace/work_counters.glsl"
 
-layout(constant_id = CONSTANT_FACING) const int facing_rule = 0;
+layout(constant_id = CONSTANT_BEHIND) const int behind_rule = 0; // BEHIND_*
 layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1;
 
 layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image;
@@ -30,8 +30,8 @@ struct Ray
 struct TraceResult
 {
     int   status; // TRACE_*
-    ivec2 pixel;  // the pixel that was hit; undefined unless TRACE_HIT
-    real  t;      // where the ray first meets the slab inside that pixel; undefined unless TRACE_HIT
+    ivec2 pixel;  // the pixel that was met; undefined unless TRACE_HIT or TRACE_STOPPED
+    real  t;      // where the ray first meets what that pixel holds; undefined likewise
     int   steps;  // loop iterations
 };
 
@@ -122,32 +122,11 @@ real2 depth_interval(Ray ray, real z_a, real z_b)
     return interval;
 }
 
-// Does an interval of depths meet the slab behind this depth?
+// Does an interval of depths meet the slab of this depth?
 bool interval_touches(real depth, real2 interval)
 {
-    bool in_front = depth >= interval.x, reached = reaches_slab_back(depth, interval.y); // both, then a choice: cheaper than a branch
+    bool in_front = slab_front(depth) >= interval.x, reached = reaches_slab_back(depth, interval.y); // both, then a choice: cheaper than a branch
     return in_front && reached;
-}
-
-// Does the surface seen at this pixel face the ray, or does that not matter in this run?
-bool faces(Ray ray, ivec2 pixel)
-{
-    return facing_rule == 0 || dot(fetch_normal(pixel), direction_vs(ray)) < real(0);
-}
-
-// A surface that the ray touches is hit unless it faces away and that matters.
-bool accepts(Ray ray, ivec2 pixel, bool touched, bool is_pixel)
-{
-    if (facing_rule == 0) return touched;
-    bool accepted = !is_pixel || faces(ray, pixel);
-    if (touched && !accepted) note_facing_away();
-    return touched && accepted;
-}
-
-// Does the ray, whose depth covers the interval between z_a and z_b, hit the surface seen at this pixel?
-bool touches_surface(Ray ray, ivec2 pixel, real z_a, real z_b)
-{
-    return accepts(ray, pixel, interval_touches(fetch_depth(pixel), depth_interval(ray, z_a, z_b)), true);
 }
 
 // ---- Walking by borders. `crossing` is the t of one: a real, or a count of exact steps (arithmetic = exact).
@@ -156,6 +135,40 @@ bool touches_surface(Ray ray, ivec2 pixel, real z_a, real z_b)
 #else
 #include "api/grid_float.glsl"
 #endif
+
+
+// What a pixel holds, by the run's surface model (shaders/surfaces/README.md):
+//   PixelSurface surface_at(Ray, ivec2 pixel, real depth)
+//   bool meets(Ray, PixelSurface, real t_in, real t_out)        does the ray meet it between the two
+//   bool from_behind(Ray, PixelSurface, real t_in)              from the side that the frame does not show, if it meets it
+//   real contact_t(Ray, PixelSurface, real t_in, real t_out)    where, if it meets it
+#include "surface/meeting.glsl"
+#ifndef EXACT_ARITHMETIC
+bool meets(Ray ray, Grid grid, PixelSurface surface, real t_in, real t_out) { return meets(ray, surface, t_in, t_out); }
+#endif
+
+// Does a ray that meets a pixel end there? Not where it comes from behind and may pass.
+bool ends_at(Ray ray, PixelSurface surface, bool met, real t_in)
+{
+    if (behind_rule != BEHIND_PASS || !met) return met;
+    bool passes = from_behind(ray, surface, t_in);
+    if (passes) note_facing_away();
+    return !passes;
+}
+
+// Does the ray end at this pixel between two t, by a hit or by being stopped?
+bool touches_surface(Ray ray, ivec2 pixel, real t_in, real t_out)
+{
+    PixelSurface surface = surface_at(ray, pixel, fetch_depth(pixel));
+    return ends_at(ray, surface, meets(ray, surface, t_in, t_out), t_in);
+}
+
+// The same between two crossings.
+bool touches_surface(Ray ray, Grid grid, ivec2 pixel, crossing t_in, crossing t_out)
+{
+    PixelSurface surface = surface_at(ray, pixel, fetch_depth(pixel));
+    return ends_at(ray, surface, meets(ray, grid, surface, t_in, t_out), crossing_to_t(grid, t_in));
+}
 
 // Where the ray leaves the cell whose borders it crosses at t_border, or ends. A select, not min(): no number is NaN.
 crossing exit_t(Grid grid, crossing2 t_border)
@@ -170,32 +183,29 @@ ivec2 cross_borders(Grid grid, ivec2 cell, crossing2 t_border, crossing t)
     return cell + ivec2(lessThanEqual(t_border, crossing2(t))) * (2 * grid.forward - 1);
 }
 
-// Does the ray hit the surface seen at this pixel between two crossings?
-bool touches_surface(Ray ray, Grid grid, ivec2 pixel, crossing t_in, crossing t_out)
-{
-    return accepts(ray, pixel, slab_between(ray, grid, fetch_depth(pixel), t_in, t_out), true);
-}
-
 // ---- Results
-// A hit at this t.
-TraceResult hit_at(Ray ray, ivec2 pixel, real t, int steps)
+// The ray ends at a pixel that touches_surface() said it does, at this t; t_in: where that interval began.
+TraceResult end_at(Ray ray, PixelSurface surface, ivec2 pixel, real t_in, real t, int steps)
 {
-    return TraceResult(TRACE_HIT, pixel, t, steps);
+    bool stopped = behind_rule == BEHIND_STOP && from_behind(ray, surface, t_in);
+    return TraceResult(stopped ? TRACE_STOPPED : TRACE_HIT, pixel, t, steps);
 }
 
-// A hit somewhere in [t_in, t_out]: the point where the ray first meets the slab.
+// A hit (or stop) at the end of an interval [t_in, t] between two samples, or at one sample.
+TraceResult hit_at(Ray ray, ivec2 pixel, real t_in, real t, int steps)
+{
+    PixelSurface surface = surface_at(ray, pixel, fetch_depth(pixel));
+    return end_at(ray, surface, pixel, t_in, t, steps);
+}
+
+// A hit (or stop) somewhere in [t_in, t_out]: at the point where the ray first meets what the pixel holds.
 TraceResult hit_between(Ray ray, ivec2 pixel, real t_in, real t_out, int steps)
 {
-    real depth = real(depth_of_pair(load_cell(pixel, 0), pixel)); // known already: the hit test fetched it
-    real z_in  = depth_at(ray, t_in);
-    real face  = z_in > depth ? depth : slab_back(depth);
-    bool inside = z_in <= depth && reaches_slab_back(depth, z_in);
-    precise real t_face = (face - ray.origin.z) / ray.delta.z;
-    real t     = inside || ray.delta.z == real(0) ? t_in : clamp(t_face, t_in, t_out);
-    return TraceResult(TRACE_HIT, pixel, t, steps);
+    PixelSurface surface = surface_at(ray, pixel, fetch_depth(pixel));
+    return end_at(ray, surface, pixel, t_in, contact_t(ray, surface, t_in, t_out), steps);
 }
 
-// Nothing was hit: the ray ends as its segment says, or met only surfaces that face away.
+// Nothing was hit: the ray ends as its segment says, or as one that met something from behind and passed.
 TraceResult miss(Ray ray, int steps)
 {
     return TraceResult(met_facing_away() ? TRACE_FACING_AWAY : ray.end_status, ivec2(0), real(0), steps);

@@ -32,6 +32,7 @@ layout(location = 1) out vec4 base_and_metallic;
 layout(location = 2) out vec4 radiance;             // the same from every direction
 layout(location = 3) out vec4 highlight;            // depends on the view
 layout(location = 4) out uint object;
+layout(location = 5) out uint gradient; // of depth, as framework/core/plane_gradient.h packs it
 
 vec3 shading_normal(Material material, Coordinates at)
 {
@@ -58,8 +59,18 @@ bool is_peeled_off()
 }
 #endif
 
+// The rasteriser's depth is linear across a triangle, so differences between pixels of a quad are its plane's own.
+uint packed_gradient(float depth, vec2 slope)
+{
+    float limit = orthographic != 0 ? 1.0 : depth;
+    bool  finite = !any(isnan(slope)) && !any(isinf(slope));
+    uvec2 bits  = floatBitsToUint(clamp(slope, vec2(-limit), vec2(limit))) + 0x8000u;
+    return finite ? (bits.x & 0xFFFF0000u) | bits.y >> 16 : 0xFFFFFFFFu;
+}
+
 void main()
 {
+    vec2        depth_slope = vec2(dFdx(gl_FragCoord.z), dFdy(gl_FragCoord.z));
     Coordinates at       = coordinates_of(uv);
     Material    material = materials[material_index];
     vec4        base     = base_colour_of(material, at, vertex_colour);
@@ -81,4 +92,5 @@ void main()
     radiance             = vec4(base.rgb * ((1.0 - metallic) / pi * diffuse_light + ambient) + emissive, 1.0);
     highlight            = vec4(highlights, 1.0);
     object               = object_id;
+    gradient             = packed_gradient(gl_FragCoord.z, depth_slope);
 }

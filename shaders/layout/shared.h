@@ -12,6 +12,7 @@
 #define TRACE_PAST_MAX_DISTANCE 3
 #define TRACE_OUT_OF_STEPS 4
 #define TRACE_FACING_AWAY 5
+#define TRACE_STOPPED 6
 #define TRACE_IMPOSSIBLE 7
 
 // What a ray found in the second depth layer has this added to its status.
@@ -28,14 +29,22 @@
 // Groups of rays that a workgroup of a structure's pass per ray group works on, one an invocation.
 #define RAY_GROUPS_PER_WORKGROUP 64
 
+// What becomes of a ray that meets a pixel from behind (core/trace_result.h, Behind).
+#define BEHIND_HIT 0
+#define BEHIND_PASS 1
+#define BEHIND_STOP 2
+
 // Specialization constants; frame_shared.h has more. Technique parameters start at CONSTANT_PARAMETERS, in the order of technique.toml's names.
 #define CONSTANT_SLAB_SLOPE 0
 #define CONSTANT_SLAB_SCALE 1
 #define CONSTANT_SLAB_SHIFT 2
 #define CONSTANT_MAX_DISTANCE_M 3
 #define CONSTANT_RAY_OFFSET_M 4
-#define CONSTANT_FACING 5
+#define CONSTANT_BEHIND 5
 #define CONSTANT_ORTHOGRAPHIC 6
+#define CONSTANT_FRONT_SLOPE 12
+#define CONSTANT_FRONT_SCALE 13
+#define CONSTANT_FRONT_SHIFT 14
 #define CONSTANT_PARAMETERS 32
 
 // Background in the depth that tracers read: nearer than nothing, so that no interval touches it.

@@ -32,18 +32,20 @@ Ray load_ray(uint index)
     return ray;
 }
 
+bool has_place(TraceResult result) { return result.status == TRACE_HIT || result.status == TRACE_STOPPED; }
+
 // Neither an unknown status, nor a hit off the image: packed, they would turn into another answer.
 bool is_answer(TraceResult result)
 {
     bool on_image = all(greaterThanEqual(result.pixel, ivec2(0))) && all(lessThan(result.pixel, size_px));
-    return result.status > TRACE_NOT_TRACED && result.status <= TRACE_FACING_AWAY && (on_image || result.status != TRACE_HIT);
+    return result.status > TRACE_NOT_TRACED && result.status <= TRACE_STOPPED && (on_image || !has_place(result));
 }
 
 // own_lane: that of the ray.
 void store_result(uint index, TraceResult result, int own_lane)
 {
     bool  answers = is_answer(result);
-    ivec2 pixel   = answers && result.status == TRACE_HIT ? result.pixel : ivec2(0);
+    ivec2 pixel   = answers && has_place(result) ? result.pixel : ivec2(0);
     STORE_TEXEL(Hits, index, hit_to_texel(PackedHit(pack_pixel(pixel, answers ? result.status : TRACE_IMPOSSIBLE), result.t)));
 #ifdef COUNT_WORK
     uint first = index * WORK_WORDS;

@@ -8,26 +8,24 @@ real sample_t(Ray ray, int i)
 
 TraceResult trace(Ray ray)
 {
-    real  t_before = real(0), t = real(0), z = ray.origin.z;
+    real  t_before = real(0), t = real(0);
     ivec2 pixel = ray.start_pixel;
     bool  ended = false, found = false;
     int   taken = 0;
     while (!ended && !found && taken < steps)
     {
         ++taken;
-        real z_before = z;
-        t_before      = t;
-        t             = sample_t(ray, taken);
-        ended         = t > real(1);
-        pixel         = pixel_at(ray, t);
-        z             = depth_at(ray, t);
-        found         = !ended && pixel != ray.start_pixel && touches_surface(ray, pixel, interval ? z_before : z, z);
+        t_before = t;
+        t        = sample_t(ray, taken);
+        ended    = t > real(1);
+        pixel    = pixel_at(ray, t);
+        found    = !ended && pixel != ray.start_pixel && touches_surface(ray, pixel, interval ? t_before : t, t);
     }
     if (!found) return space == space_pixels && !ended && sample_t(ray, taken + 1) <= real(1) ? out_of_steps(taken) : miss(ray, taken);
-    if (!interpolate || ray.delta.z == real(0)) return hit_at(ray, pixel, t, taken);
+    if (!interpolate || ray.delta.z == real(0)) return hit_at(ray, pixel, interval ? t_before : t, t, taken);
 
     ivec2 front = pixel_at(ray, clamp((fetch_depth(pixel) - ray.origin.z) / ray.delta.z, t_before, t));
     real2 span  = span_in_pixel(ray, make_grid(ray), front);
-    bool  moves = front != ray.start_pixel && touches_surface(ray, front, depth_at(ray, span.x), depth_at(ray, span.y));
-    return moves ? hit_between(ray, front, span.x, span.y, taken) : hit_at(ray, pixel, t, taken);
+    bool  moves = front != ray.start_pixel && touches_surface(ray, front, span.x, span.y);
+    return moves ? hit_between(ray, front, span.x, span.y, taken) : hit_at(ray, pixel, interval ? t_before : t, t, taken);
 }

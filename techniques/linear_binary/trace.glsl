@@ -8,7 +8,7 @@ real sample_t(Ray ray, int i)
 
 TraceResult trace(Ray ray)
 {
-    real t_free = real(0), t = real(0), z = ray.origin.z;
+    real t_free = real(0), t = real(0);
     bool ended = false, found = false;
     int  taken = 0;
     while (!ended && !found && taken < steps)
@@ -17,9 +17,8 @@ TraceResult trace(Ray ray)
         t_free        = t;
         t             = sample_t(ray, taken);
         ended         = t > real(1);
-        z             = depth_at(ray, t);
         ivec2 pixel   = pixel_at(ray, t);
-        found         = !ended && pixel != ray.start_pixel && touches_surface(ray, pixel, z, z);
+        found         = !ended && pixel != ray.start_pixel && touches_surface(ray, pixel, t, t);
     }
     if (!found) return space == space_pixels && !ended && sample_t(ray, taken + 1) <= real(1) ? out_of_steps(taken) : miss(ray, taken);
 
@@ -27,11 +26,10 @@ TraceResult trace(Ray ray)
     for (int k = 0; k < binary_steps; ++k)
     {
         real  middle   = real(0.5) * (t_free + t);
-        real  z_middle = depth_at(ray, middle);
         ivec2 pixel    = pixel_at(ray, middle);
-        bool  touched  = pixel != ray.start_pixel && touches_surface(ray, pixel, z_middle, z_middle);
+        bool  touched  = pixel != ray.start_pixel && touches_surface(ray, pixel, middle, middle);
         t_free         = touched ? t_free : middle;
         t              = touched ? middle : t;
     }
-    return hit_at(ray, pixel_at(ray, t), t, taken + binary_steps);
+    return hit_at(ray, pixel_at(ray, t), t, t, taken + binary_steps);
 }

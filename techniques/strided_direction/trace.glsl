@@ -56,7 +56,7 @@ TraceResult trace(Ray ray)
         searching = steps_left > 0;
         pixel     = pixel_at(ray, t_behind);
         span      = span_in_pixel(ray, grid, pixel);
-        if (behind && !searching) found = touches_surface(ray, pixel, depth_at(ray, span.x), depth_at(ray, span.y));
+        if (behind && !searching) found = touches_surface(ray, pixel, span.x, span.y);
     }
     if (found) return hit_between(ray, pixel, span.x, span.y, taken);
     return searching || t <= real(1) ? out_of_steps(taken) : miss(ray, taken);

@@ -39,10 +39,10 @@ class Test(Case):
         self.refused(*command, code=1, says=["rays have an answer that cannot be", says])
 
     def test_hit_off_the_image(self):
-        self.found_invalid("return hit_at(ray, ivec2(-5, 99999), real(0.5), 1);", "hit pixel (-5, 99999) is off the image of 64x36")
+        self.found_invalid("return hit_at(ray, ivec2(-5, 99999), real(0.5), real(0.5), 1);", "hit pixel (-5, 99999) is off the image of 64x36")
 
     def test_hit_one_pixel_off_the_image(self):
-        self.found_invalid("return hit_at(ray, ivec2(64, 10), real(0.5), 1);", "hit pixel (64, 10) is off the image of 64x36")
+        self.found_invalid("return hit_at(ray, ivec2(64, 10), real(0.5), real(0.5), 1);", "hit pixel (64, 10) is off the image of 64x36")
 
     def test_t_that_is_no_number(self):
         self.found_invalid(f"return TraceResult({PLACES}, sqrt(ray.origin.z - real(2)), 1);", "t of a hit is not a number")
@@ -69,7 +69,7 @@ class Test(Case):
         self.found_invalid("TraceResult result;\n    return result;", "")
 
     def test_one_bad_ray_is_enough(self):
-        self.found_invalid("return ray.start_pixel == ivec2(32, 30) ? hit_at(ray, ivec2(-1, 0), real(0.5), 1) : miss(ray, 1);",
+        self.found_invalid("return ray.start_pixel == ivec2(32, 30) ? hit_at(ray, ivec2(-1, 0), real(0.5), real(0.5), 1) : miss(ray, 1);",
                            "1 of ")
 
     def test_a_miss_may_leave_its_pixel_undefined(self):

@@ -13,7 +13,7 @@ TRACE = """TraceResult trace(Ray ray)
 {
     ivec2 pixel = pixel_at(ray, real(place));
     real  depth = depth_at(ray, real(place));
-    if (pixel != ray.start_pixel && touches_surface(ray, pixel, depth, depth)) return hit_at(ray, pixel, real(place), 1);
+    if (pixel != ray.start_pixel && touches_surface(ray, pixel, real(place), real(place))) return hit_at(ray, pixel, real(place), real(place), 1);
     return miss(ray, 1);
 }
 """

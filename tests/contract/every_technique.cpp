@@ -32,7 +32,7 @@ std::vector<TraceSettings> settings_for(glm::ivec2 size_px)
         for (const double distance : {9.0, infinity})
             list.push_back({.thickness_m = thickness, .max_distance_m = distance});
     if (size_px != glm::ivec2(161, 91)) return {list[0], list[3]};
-    list.push_back({.thickness_m = 0.1, .max_distance_m = 20, .facing = true});
+    list.push_back({.thickness_m = 0.1, .max_distance_m = 20, .behind = Behind::pass});
     return list;
 }
 
@@ -63,7 +63,7 @@ std::string broken(const Picture& picture, const Technique& technique, const Tra
         return "traced where nothing reflects, or the reverse";
     if (result.steps[i] > most_steps)
         return fmt::format("{} steps, at most {} were declared", result.steps[i], most_steps);
-    if (!settings.facing && result.status[i] == TraceStatus::facing_away) return "facing_away without the facing rule";
+    if (settings.behind == Behind::hit && result.status[i] == TraceStatus::facing_away) return "facing_away without the facing rule";
     if (!std::isfinite(result.hit_t[i])) return fmt::format("t = {}", result.hit_t[i]);
     if (result.status[i] != TraceStatus::hit) return "";
 

@@ -86,12 +86,12 @@ TEST_P(Statuses, FacingAwayOnlyWithTheRule)
     GBufferImage image = floor_and_wall(bench_view({64, 64}), 10);
     for (size_t i = 0; i < image.depth.size(); ++i)
         if (image.metallic[i] == 0) image.normal_vs[i] = {0, 0, -1};
-    EXPECT_EQ(status_at(trace_with(image, {.thickness_m = 0.5, .max_distance_m = 20, .facing = true}), 20, 48),
+    EXPECT_EQ(status_at(trace_with(image, {.thickness_m = 0.5, .max_distance_m = 20, .behind = Behind::pass}), 20, 48),
               TraceStatus::facing_away);
-    EXPECT_EQ(status_at(trace_with(image, {.thickness_m = 0.5, .max_distance_m = 20, .facing = false}), 20, 48),
+    EXPECT_EQ(status_at(trace_with(image, {.thickness_m = 0.5, .max_distance_m = 20, .behind = Behind::hit}), 20, 48),
               TraceStatus::hit);
     EXPECT_EQ(status_at(trace_with(floor_and_wall(bench_view({64, 64}), 10),
-                                   {.thickness_m = 0.5, .max_distance_m = 20, .facing = true}),
+                                   {.thickness_m = 0.5, .max_distance_m = 20, .behind = Behind::pass}),
                         20, 48),
               TraceStatus::hit);
 }

@@ -183,7 +183,7 @@ TEST(Strides, ObeyTheFacingRule)
         if (turned.metallic[i] == 0) turned.normal_vs[i] = {0, 0, -1};
     for (const std::string_view id : both) {
         const size_t i = 52 * 64 + 20;
-        EXPECT_EQ(trace_with(turned, id, {{"stride_px", 4}}, {.thickness_m = 0.5, .max_distance_m = 20, .facing = true})
+        EXPECT_EQ(trace_with(turned, id, {{"stride_px", 4}}, {.thickness_m = 0.5, .max_distance_m = 20, .behind = Behind::pass})
                       .status[i],
                   TraceStatus::facing_away)
             << id;

@@ -97,7 +97,7 @@ TEST(Judge, GrazingAPixelByLessThanASliverDecidesNothing)
 ssrlab::Setup two_poles_facing(double z)
 {
     auto setup            = two_poles();
-    setup.settings.facing = true;
+    setup.settings.behind = Behind::pass;
     setup.rays[0]         = ray_between(setup.gbuffer.view, {5.5, 10.5, 4.2}, {55.5, 10.5, 4.8});
     for (glm::vec3& normal : setup.gbuffer.normal_vs) normal = {0, 0, z};
     return setup;

@@ -119,13 +119,13 @@ std::vector<Mutation> mutations()
          "floating_beam"},
         {"HitBeyondTheEnd", "dda",
          "if (found) return hit_between(ray, pixel, crossing_to_t(grid, t_in), crossing_to_t(grid, t_out), visited);",
-         "if (found) return hit_at(ray, pixel, t_in + real(1), visited);", "axis_aligned"},
+         "if (found) return hit_at(ray, pixel, t_in, t_in + real(1), visited);", "axis_aligned"},
         replaced("FacesIsAlwaysTrue", "touches_surface",
                  "bool mutated_touches_surface(Ray ray, Grid grid, ivec2 pixel, real a, real b) { return "
                  "interval_touches(fetch_depth(pixel), depth_interval(ray, depth_at(ray, a), depth_at(ray, b))); }",
                  "facing_rule", "dda"),
         replaced("FacingAwayWithoutReason", "miss",
-                 "TraceResult mutated_miss(Ray ray, int steps) { return TraceResult(facing_rule != 0 ? "
+                 "TraceResult mutated_miss(Ray ray, int steps) { return TraceResult(behind_rule != BEHIND_HIT ? "
                  "TRACE_FACING_AWAY : ray.end_status, ivec2(0), real(0), steps); }",
                  "facing_rule", "dda"),
         replaced("NeverFacingAway", "miss",

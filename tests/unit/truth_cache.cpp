@@ -65,7 +65,7 @@ TEST_F(TruthCache, EveryInputChangesTheName)
     expect_new_file([&] { settings.thickness_relative = true; });
     expect_new_file([&] { settings.max_distance_m = 3; });
     expect_new_file([&] { settings.ray_offset_m = 0.1; });
-    expect_new_file([&] { settings.facing = true; });
+    expect_new_file([&] { settings.behind = Behind::pass; });
     gbuffer.view.name = "another name for the same view";
     cached_screen_truth(folder_, gbuffer, settings);
     EXPECT_EQ(files().size(), expected);

@@ -203,7 +203,7 @@ TEST(ScreenTruth, FacingRule)
 {
     GBufferImage  gbuffer = floor_and_wall(bench_view({64, 64}), 10);
     TraceSettings settings;
-    settings.facing = true;
+    settings.behind = Behind::pass;
     EXPECT_EQ(count(screen_truth(gbuffer, settings), TraceStatus::hit), 64 * 29);
     for (auto& normal_vs : gbuffer.normal_vs) {
         if (normal_vs.z > 0) normal_vs.z = -1;

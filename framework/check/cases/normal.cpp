@@ -81,7 +81,7 @@ HardCase facing_rule()
                 {},
                 picture_of(bench_view({97, 64}), {plane({0, 0, -10}, glm::normalize(glm::dvec3(0, 0.4, 1))),
                                                   sphere({0.5, 0.3, -5}, 1), box({-2, -3, -6}, {-1.8, 3, -5.8})}),
-                {.thickness_m = 2, .max_distance_m = 100, .facing = true},
+                {.thickness_m = 2, .max_distance_m = 100, .behind = Behind::pass},
                 {}};
             return std::vector{setup};
         }};

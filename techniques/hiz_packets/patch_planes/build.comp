@@ -1,9 +1,10 @@
 // The base plane of each patch of pixels, and its occluders. The base plane is linear on screen, as depth is where a surface is flat. Every depth in
 // the patch lies behind this plane, except the occluders: they are so much nearer that a ray could pass between the two, behind a slab. Four numbers:
-// how much nearer the plane gets each pixel to the right and each pixel down, its depth at the centre of the first pixel, and the farthest depth of the
-// occluders, or 0. Any choice of a base plane is correct; a good one is useful.
+// how much nearer the plane gets each pixel to the right and each pixel down, its depth at the centre of the first pixel, and the least key of the
+// occluders (surface/held.glsl, back_key), or 0. Any choice of a base plane is correct; a good one is useful.
 #include "api/view.glsl"
 #include "api/slab.glsl"
+#include "api/held.glsl"
 #define READS_DEPTH
 #define CELL_PAIRS
 #include "layout/memory_layout.glsl"
@@ -87,9 +88,9 @@ void main()
         base         = farther ? middle : base;
     }
 
-    // How much nearer a front is whose slab ends at the base plane.
-    float nearest = (base + slab_shift) / (slab_scale - base * slab_slope);
-    bool  passes  = base < none && nearest > base;
+    // How much nearer than the base plane the key of a pixel is whose back lies there.
+    float nearest = key_of_back(base);
+    bool  passes  = base < none && nearest >= base;
     float stands  = passes ? corner + nearest - base : none;
     // Floats as integers, whose min() and max() cost less: the bits of those above 0 order like the floats, those of background are greater than any.
     // Fronts below 0 keep a plane at 0, which is above them; nothing at all leaves it below everything.
@@ -105,17 +106,19 @@ void main()
         {
             int   y     = min(row, last.y);
             uvec4 bits  = load_pair(first_quad + y * quads + column), befores;
-            vec4  depth = uintBitsToFloat(bits), front = depth - gradient.y * float(y) - across;
+            vec4  depth = uintBitsToFloat(bits), plane_rise = gradient.y * float(y) + across;
             ivec4 heights;
             for (int k = 0; k < 4; ++k)
             {
+                ivec2 pixel = first + ivec2(4 * column + k, y);
+                float key   = back_key(pixel, depth[k]);
                 #ifdef IN_FRONT
                 bool is_before = false;
 #else
-                bool is_before = front[k] > stands;
+                bool is_before = key > 0.0 && key - plane_rise[k] > stands;
 #endif
-                befores[k]     = is_before ? bits[k] : nothing;
-                heights[k]     = !is_before && depth[k] > 0.0 ? floatBitsToInt(front[k]) : no_front;
+                befores[k]     = is_before ? floatBitsToUint(key) : nothing;
+                heights[k]     = !is_before && depth[k] > 0.0 ? floatBitsToInt(front_above(pixel, depth[k], gradient) - plane_rise[k]) : no_front;
             }
             before = min(before, min(min(befores.x, befores.y), min(befores.z, befores.w)));
             height = max(height, max(max(heights.x, heights.y), max(heights.z, heights.w)));

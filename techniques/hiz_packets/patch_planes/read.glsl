@@ -4,7 +4,7 @@ struct Plane
 {
     real2 gradient; // a pixel
     real  depth;    // at the centre of the patch's first pixel
-    real  occluder; // the farthest depth of what stands before the plane, or 0
+    real  occluder; // the least key of what stands before the plane (surface/held.glsl, back_key), or 0
 };
 
 // Of the patch with these coordinates; counted for the structure that asks.

@@ -3,6 +3,7 @@
 // interval meets the very surface that the rays leave. There they are held against planes instead: how far all of them have risen above the base plane
 // of the patch they start from, how far any patch under the box rises above it, and the occluders of a patch that they must pass behind (patch_planes).
 #include "api/trace_api.glsl"
+#include "api/held.glsl"
 #include "trace/ray_list.glsl"
 #include "structure/parameters"
 #include "structure/buffers"
@@ -97,9 +98,10 @@ bool meets_patch(Box box, real2 base, real height)
         fetches += uint(goes);
         Plane plane  = load_plane(place);
         real2 centre = real2(place << PATCH_BITS) + real(0.5);
-        real2 rise   = max(plane.gradient - base, real2(0)) * real((1 << PATCH_BITS) - 1);
+        real2 steeper = plane.gradient - base;
+        real2 rise    = max(steeper, real2(0)) * real((1 << PATCH_BITS) - 1) + (level_fronts ? real2(0) : abs(steeper) * real(held_reach_px));
         bool  rises  = !(plane.depth - dot(base, centre) + rise.x + rise.y < height);
-        bool  passes = plane.occluder <= real(0) || !reaches_slab_back(plane.occluder, box.high.z);
+        bool  passes = plane.occluder <= real(0) || passes_behind(plane.occluder, box.high.z);
         found        = found || (goes && (rises || !passes));
         place        = next_cell(place, first, last);
         goes         = goes && !found && place.y <= last.y;
@@ -147,9 +149,9 @@ void main()
     bool  numbers   = all(lessThanEqual(start.low, start.high)) && all(lessThanEqual(end.low, end.high)); // not with NaN
     bool  usable    = numbers && length_px >= first_px + shortest_interval_px && max(extent.x, extent.y) <= widest_px && top >= 1;
 
-    // A front counts at its pixel's centre, half a pixel away at most.
+    // A level front counts at its pixel's centre, half a pixel away at most.
     real tilt = abs(base.x) + abs(base.y), largest = nearest + tilt * real(max(size_px.x, size_px.y));
-    real clearance = tilt * (real(0.5) + 2 * rounding_px) + largest * 4 * rounding_depth, rise = end_height - height;
+    real clearance = tilt * (real(level_fronts ? 0.5 : 0.0) + 2 * rounding_px) + largest * 4 * rounding_depth, rise = end_height - height;
     real begin = rising_px / length_px, t = begin, rising_step = rising_step_px / length_px;
     bool rises = usable && rise > real(0);
     int  rising_tests = 0;

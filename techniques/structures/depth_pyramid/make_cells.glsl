@@ -3,6 +3,7 @@
 // as in mip chains). An invocation makes two cells side by side: fewer reads and writes. The second may lie beyond the level: that place belongs to none.
 #include "api/view.glsl"
 #include "api/slab.glsl"
+#include "api/held.glsl"
 #include "cell.glsl"
 #include "api/structure_api.glsl"
 #define CELL_PAIRS
@@ -12,13 +13,6 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { int level; };
 
-// The slab's back, rounded outward: wider than any rounding of the test on the pixel itself.
-float outer_back(float depth)
-{
-    const float margin = 1.0 - 1.0 / 1048576.0;
-    return float(slab_back(real(depth))) * margin;
-}
-
 // The bits of a pixel's front and back, or of a cell's; nearest < farthest where there is nothing to hit.
 struct Range
 {
@@ -27,11 +21,12 @@ struct Range
 const Range nothing = Range(0, 0x7FFFFFFF);
 
 // bits: of its depth; around the picture there is background.
-Range pixel_range(uint bits)
+Range pixel_range(ivec2 pixel, uint bits)
 {
     float depth = uintBitsToFloat(bits);
     if (!(depth > 0.0)) return nothing;
-    return Range(floatBitsToInt(depth), depth_pyramid_kind == depth_pyramid_kind_nearest ? 0 : max(floatBitsToInt(outer_back(depth)), 0));
+    vec2 held = held_depths(pixel, depth);
+    return Range(floatBitsToInt(held.x), depth_pyramid_kind == depth_pyramid_kind_nearest ? 0 : max(floatBitsToInt(held.y), 0));
 }
 
 Range cell_range(uvec2 cell)

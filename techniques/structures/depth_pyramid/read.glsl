@@ -30,8 +30,9 @@ bool touches_cell(Ray ray, Grid grid, ivec2 pixel, int level, CellContent conten
     bool leaf    = level == 0;
     vec2 covered = covered_depths(ray, grid, t_in, t_out);
     // Both answers, then a choice: cheaper than a branch.
-    bool pixel_touched = slab_between(ray, grid, content.depth, t_in, t_out), cell_touched = cell_may_touch(content.cell, covered.x, covered.y);
-    return accepts(ray, pixel, leaf ? pixel_touched : cell_touched, leaf);
+    PixelSurface surface = surface_at(ray, pixel, content.depth);
+    bool pixel_met = meets(ray, grid, surface, t_in, t_out), cell_touched = cell_may_touch(content.cell, covered.x, covered.y);
+    return leaf ? ends_at(ray, surface, pixel_met, crossing_to_t(grid, t_in)) : cell_touched;
 }
 
 // The nearest depth of that cell: no pixel of it is nearer. Negative or 0 where there is nothing.

@@ -1,6 +1,7 @@
 // A level of the plane quadtree from the level below. A pixel counts as a node of level 0: a level plane, and the band from its slab's back to its front.
 #include "api/view.glsl"
 #include "api/slab.glsl"
+#include "api/held.glsl"
 #include "structure/parameters"
 #include "structure/buffers"
 #include "node.glsl"
@@ -8,20 +9,19 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { int level; };
 
-// The slab's back, rounded outward by more than the hit test rounds. One that reaches depth 0 has no end: no ray passes behind it.
-Node node_of_pixel(float depth)
+// What the pixel holds. What reaches behind depth 0 has no end: no ray passes behind it.
+Node node_of_pixel(ivec2 pixel, float depth)
 {
     if (!(depth > 0.0)) return empty_node;
-    float margin = (depth * float(slab_scale) + abs(float(slab_shift))) / (1 << 20);
-    float back   = float(slab_back(real(depth))) - margin;
-    return Node(vec2(0), back > 0.0 ? back : -no_end, min(depth, no_end), ~0u);
+    vec2 held = held_depths(pixel, depth);
+    return Node(vec2(0), held.y > 0.0 ? held.y : -no_end, min(held.x, no_end), ~0u);
 }
 
 // A part of the cell: of level 1 and 2 a pixel, of those above a quarter, which is a node of the level below.
 Node load_part(ivec2 pixel, int part_level)
 {
     if (any(greaterThanEqual(pixel, size_px))) return empty_node;
-    if (part_level == 0) return node_of_pixel(depth_of_pair(load_cell(pixel, 0), pixel));
+    if (part_level == 0) return node_of_pixel(pixel, depth_of_pair(load_cell(pixel, 0), pixel));
     return unpack_node(load_nodes(level_cell_index(pixel, part_level)));
 }
 

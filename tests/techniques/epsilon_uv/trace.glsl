@@ -30,7 +30,7 @@ TraceResult trace(Ray ray)
         real2 border = real2(pixel) + real2(greaterThan(ray.delta.xy, real2(0))) + epsilon;
         real2 t_axis = (border - ray.origin.xy) * inverse;
         t_next       = min(t_axis.x, t_axis.y);
-        found        = pixel != ray.start_pixel && touches_surface(ray, pixel, depth_at(ray, t), depth_at(ray, min(t_next, real(1))));
+        found        = pixel != ray.start_pixel && touches_surface(ray, pixel, t, min(t_next, real(1)));
         ended        = !(t_next < real(1));
         ivec2 next   = ivec2(floor(position_at(ray, t_next)));
         ended        = ended || !on_screen(next);

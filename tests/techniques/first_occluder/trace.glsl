@@ -22,7 +22,7 @@ TraceResult finish(Ray ray, Traversal walk, int own_lane)
     if (walk.level >= 0) return walk.t < walk.grid.t_end ? out_of_steps(walk.visited) : miss(ray, walk.visited);
     ivec2    pixel = pixel_of(walk);
     real     t_out = t_exit(walk);
-    if (touches_surface(ray, pixel, depth_at(ray, walk.t), depth_at(ray, t_out))) return hit_between(ray, pixel, walk.t, t_out, walk.visited);
+    if (touches_surface(ray, pixel, walk.t, t_out)) return hit_between(ray, pixel, walk.t, t_out, walk.visited);
     return miss(ray, walk.visited);
 }
 

@@ -29,7 +29,7 @@ TraceResult trace(Ray ray)
         }
         t_out = min(min(t_max.x, t_max.y), real(1));
         ended = t_in >= real(1) || !on_screen(pixel);
-        found = !ended && touches_surface(ray, pixel, depth_at(ray, t_in), depth_at(ray, t_out));
+        found = !ended && touches_surface(ray, pixel, t_in, t_out);
         ++visited;
     }
     if (found) return hit_between(ray, pixel, t_in, t_out, visited);

@@ -37,6 +37,8 @@ TraceResult trace(Ray ray)
         ++visited;
     }
     if (level >= 0) return t < real(1) ? out_of_steps(visited) : miss(ray, visited);
-    bool hit = pixel != ray.start_pixel && touches_surface(ray, pixel, position.z, min(position.z, fetch_depth(pixel)));
-    return hit ? hit_at(ray, pixel, t, visited) : miss(ray, visited);
+    real depth = fetch_depth(pixel);
+    bool touched = interval_touches(depth, depth_interval(ray, position.z, min(position.z, depth)));
+    bool hit = pixel != ray.start_pixel && ends_at(ray, surface_at(ray, pixel, depth), touched, t);
+    return hit ? hit_at(ray, pixel, t, t, visited) : miss(ray, visited);
 }

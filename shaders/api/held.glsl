@@ -1,0 +1,19 @@
+// What a pixel holds, for structures: they must know where no ray can meet it. After api/view.glsl and api/slab.glsl.
+struct Held
+{
+    vec2  gradient;    // of a plane through 0 at the pixel's centre, from one pixel to the next
+    float front, back; // all that the pixel holds lies in these heights above that plane (depths, where the gradient is 0)
+};
+
+// How far from its centre a ray that is in a pixel may be on each axis, with rounding.
+const float held_reach_px = 0.5 + 1.0 / 64;
+
+#include "surface/held.glsl"
+
+// The nearest and the farthest depth that the pixel holds.
+vec2 held_depths(ivec2 pixel, float depth)
+{
+    Held  held   = held_by(pixel, depth);
+    float spread = (abs(held.gradient.x) + abs(held.gradient.y)) * held_reach_px;
+    return vec2(held.front + spread, held.back - spread);
+}

@@ -1,0 +1,80 @@
+// A pixel as a plane with a small tolerance behind it, and with SURFACE_SOLID as what lies between the plane and the next surface, where that is the
+// solid's far side. shaders/surfaces/README.md says what each function answers.
+#include "surfaces/plane/stored.glsl"
+
+struct PixelSurface
+{
+    real start, rate; // the ray's height above the plane is start + t * rate
+    real back;        // the height where the tolerance, or the slab of a pixel without a plane, ends
+    real solid;       // the depth where the solid ends; nearer than everything without one
+};
+
+PixelSurface surface_at(Ray ray, ivec2 pixel, real depth)
+{
+    vec2  stored   = load_gradient(pixel);
+    bool  usable   = has_plane(stored);
+    real2 gradient = usable ? real2(stored) : real2(0);
+    real2 from_centre = ray.origin.xy - (real2(pixel) + real(0.5));
+    precise real start = (ray.origin.z - depth) - (gradient.x * from_centre.x + gradient.y * from_centre.y);
+    precise real rate  = ray.delta.z - (gradient.x * ray.delta.x + gradient.y * ray.delta.y);
+    return PixelSurface(start, rate, usable ? -plane_tolerance(depth) : slab_back(depth) - depth, real(load_solid(pixel)));
+}
+
+real height_at(PixelSurface surface, real t)
+{
+    precise real height = surface.start + t * surface.rate;
+    return height;
+}
+
+bool meets(Ray ray, PixelSurface surface, real t_in, real t_out)
+{
+    real a = height_at(surface, t_in), b = height_at(surface, t_out);
+    real low = a < b ? a : b, high = a < b ? b : a;
+    bool met = low <= real(0) && high >= surface.back;
+#ifdef SURFACE_SOLID
+    real z_a = depth_at(ray, t_in), z_b = depth_at(ray, t_out);
+    met = met || (high < surface.back && (z_a > z_b ? z_a : z_b) >= surface.solid);
+#endif
+    return met;
+}
+
+// It comes from below.
+bool from_behind(Ray ray, PixelSurface surface, real t_in)
+{
+    return height_at(surface, t_in) < surface.back;
+}
+
+real contact_t(Ray ray, PixelSurface surface, real t_in, real t_out)
+{
+    real height = height_at(surface, t_in);
+    real face   = height > real(0) ? real(0) : surface.back;
+    precise real t_face = (face - surface.start) / surface.rate;
+    real t = height <= real(0) && height >= surface.back || surface.rate == real(0) ? t_in : clamp(t_face, t_in, t_out);
+#ifdef SURFACE_SOLID
+    if (height < surface.back)
+    {
+        precise real t_solid = (surface.solid - ray.origin.z) / ray.delta.z;
+        bool inside = depth_at(ray, t_in) >= surface.solid;
+        if (inside) t = t_in;
+        else if (depth_at(ray, t_out) >= surface.solid) t = clamp(min(t, t_solid), t_in, t_out);
+    }
+#endif
+    return t;
+}
+
+#ifdef EXACT_ARITHMETIC
+// As scaled_depth(): heights times `whole`.
+bool meets(Ray ray, Grid grid, PixelSurface surface, int64_t t_in, int64_t t_out)
+{
+    double         whole = double(grid.whole);
+    precise double a = double(t_in) * double(surface.rate), b = double(t_out) * double(surface.rate);
+    precise double front = -double(surface.start) * whole, back = (double(surface.back) - double(surface.start)) * whole;
+    bool           met = min(a, b) <= front && max(a, b) >= back;
+#ifdef SURFACE_SOLID
+    double         z_a = scaled_depth(ray, t_in), z_b = scaled_depth(ray, t_out);
+    precise double solid = (double(surface.solid) - double(ray.origin.z)) * whole;
+    met = met || (max(a, b) < back && max(z_a, z_b) >= solid);
+#endif
+    return met;
+}
+#endif
