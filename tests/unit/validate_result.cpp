@@ -72,7 +72,7 @@ TEST(ValidateResult, SaysHowManyWhichAndWhat)
         };
     };
     EXPECT_THAT(found(stored(TraceStatus::hit, {-5, 99999})), Optional(HasSubstr("hit pixel (-5, 99999) is off")));
-    EXPECT_THAT(found(stored(TraceStatus::not_traced, {0, 0})), Optional(HasSubstr("status 0 is none of 1 … 5")));
+    EXPECT_THAT(found(stored(TraceStatus::not_traced, {0, 0})), Optional(HasSubstr("status 0 is none of 1 … 6")));
 }
 
 // None of these may read beyond the picture: the address sanitizer would say so.
