@@ -52,8 +52,8 @@ void complete_gradients(GBufferImage& image)
                                                        glm::dvec3(image.normal_vs[i]));
         const bool       usable   = std::isfinite(gradient.x) && std::isfinite(gradient.y);
         constexpr float  none     = std::numeric_limits<float>::quiet_NaN();
-        image.gradient[i] = unpack_gradient(
-            pack_gradient(usable ? glm::vec2(glm::clamp(gradient, glm::dvec2(-limit), glm::dvec2(limit))) : glm::vec2(none)));
+        image.gradient[i]         = unpack_gradient(pack_gradient(
+                    usable ? glm::vec2(glm::clamp(gradient, glm::dvec2(-limit), glm::dvec2(limit))) : glm::vec2(none)));
     }
 }
 

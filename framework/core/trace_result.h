@@ -21,8 +21,8 @@ enum class TraceStatus : uint8_t {
     past_max_distance = 3, // reached the maximum distance (or infinity) inside the image
     out_of_steps      = 4, // gave up; never a hit
     facing_away       = 5, // would be a miss, and met something from behind (behind = pass)
-    stopped           = 6, // met something from behind, which this frame does not show from there (behind = stop); no hit
-    impossible        = 7, // not an answer: an unknown status, or a hit off the image (compare/validate_result.h)
+    stopped    = 6, // met something from behind, which this frame does not show from there (behind = stop); no hit
+    impossible = 7, // not an answer: an unknown status, or a hit off the image (compare/validate_result.h)
 };
 /// Of those that are answers.
 inline constexpr std::array<std::string_view, 7> trace_status_names = {
@@ -84,7 +84,10 @@ enum class SurfaceModel : uint8_t { box, box_two_sided, box_infinite, plane, pla
 inline constexpr std::array<std::string_view, 5> surface_names = {"box", "box_two_sided", "box_infinite", "plane",
                                                                   "plane_solid"};
 /// Whether pixels hold sloped planes, so that a G-buffer must have gradients.
-inline bool has_planes(SurfaceModel model) { return model == SurfaceModel::plane || model == SurfaceModel::plane_solid; }
+inline bool has_planes(SurfaceModel model)
+{
+    return model == SurfaceModel::plane || model == SurfaceModel::plane_solid;
+}
 
 /// What becomes of a ray that meets a pixel from a side that the frame does not show.
 enum class Behind : uint8_t { hit, pass, stop };
@@ -92,12 +95,12 @@ inline constexpr std::array<std::string_view, 3> behind_names = {"hit", "pass", 
 
 /// The hit contract's settings: they belong to the experiment, never to a technique.
 struct TraceSettings {
-    double thickness_m        = 0.1;   // the slab of a pixel reaches from its distance to distance + thickness
-    bool   thickness_relative = false; // thickness is then a fraction of the distance
-    double max_distance_m     = 1e9;   // length of the ray in view space; may be +inf
-    double ray_offset_m       = 0;     // the ray starts so far along its direction
-    Behind behind             = Behind::hit;
-    SurfaceModel surface      = SurfaceModel::box; // thickness is of the boxes, and of pixels without a usable plane
+    double       thickness_m        = 0.1;   // the slab of a pixel reaches from its distance to distance + thickness
+    bool         thickness_relative = false; // thickness is then a fraction of the distance
+    double       max_distance_m     = 1e9;   // length of the ray in view space; may be +inf
+    double       ray_offset_m       = 0;     // the ray starts so far along its direction
+    Behind       behind             = Behind::hit;
+    SurfaceModel surface = SurfaceModel::box; // thickness is of the boxes, and of pixels without a usable plane
 
     bool operator==(const TraceSettings&) const = default;
 };

@@ -46,11 +46,13 @@ std::vector<Setting> make_table()
                       "length of the ray in view space"),
         trace_setting("ray_offset_m", real, &TraceSettings::ray_offset_m, 1e6,
                       "how far along its direction the ray starts"),
-        trace_choice("behind", &TraceSettings::behind, behind_names,
-                     "what becomes of a ray that meets a pixel from a side that the frame does not show: hit, pass (the "
-                     "ray goes on) or stop (it ends without a hit)"),
-        trace_choice("surface", &TraceSettings::surface, surface_names,
-                     "what a pixel holds around its depth: a box with a thickness, or a plane, see docs/hit_contract.md"),
+        trace_choice(
+            "behind", &TraceSettings::behind, behind_names,
+            "what becomes of a ray that meets a pixel from a side that the frame does not show: hit, pass (the "
+            "ray goes on) or stop (it ends without a hit)"),
+        trace_choice(
+            "surface", &TraceSettings::surface, surface_names,
+            "what a pixel holds around its depth: a box with a thickness, or a plane, see docs/hit_contract.md"),
     };
     for (const Parameter& parameter : pass_parameters()) {
         const std::string& name = parameter.name;

@@ -13,6 +13,7 @@ struct FrameFacts {
     bool                     scene           = false; // the G-buffer was drawn from one
     bool                     environment_map = false; // without a map, one colour arrives from everywhere
     bool                     alpha_mask      = false;
+    bool                     solids          = false; // the surface model asks where solids end
     std::vector<std::string> structures; // that the technique reads, in the order in which they are built
 };
 

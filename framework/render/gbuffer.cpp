@@ -1,5 +1,7 @@
 #include "render/gbuffer.h"
 
+#include "render/solid_backs.h"
+
 #include "core/error.h"
 #include "core/pixel_index.h"
 #include "core/plane_gradient.h"
@@ -77,7 +79,9 @@ void fill_frame_uniforms(Gpu& gpu, GBuffer& gbuffer)
     upload(gpu, gbuffer.frame_uniforms, &block, sizeof(block));
 }
 
-vk::RenderingAttachmentInfo attachment(const GpuImage& image, vk::ClearValue clear)
+} // namespace
+
+vk::RenderingAttachmentInfo cleared_attachment(const GpuImage& image, vk::ClearValue clear)
 {
     return {.imageView   = *image.view,
             .imageLayout = vk::ImageLayout::eGeneral,
@@ -86,17 +90,21 @@ vk::RenderingAttachmentInfo attachment(const GpuImage& image, vk::ClearValue cle
             .clearValue  = clear};
 }
 
+namespace {
+
 vk::ClearValue colour(glm::vec4 c) { return vk::ClearColorValue{std::array<float, 4>{c.x, c.y, c.z, c.w}}; }
 
 void record_rasterisation(const vk::raii::CommandBuffer& commands, const GBuffer& gbuffer)
 {
     const vk::RenderingAttachmentInfo colours[] = {
-        attachment(gbuffer.normal, colour(glm::vec4(0))), attachment(gbuffer.material, colour(glm::vec4(0))),
-        attachment(gbuffer.radiance, colour(glm::vec4(0))), attachment(gbuffer.highlight, colour(glm::vec4(0))),
-        attachment(gbuffer.object, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}}),
-        attachment(gbuffer.gradient, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}})};
+        cleared_attachment(gbuffer.normal, colour(glm::vec4(0))),
+        cleared_attachment(gbuffer.material, colour(glm::vec4(0))),
+        cleared_attachment(gbuffer.radiance, colour(glm::vec4(0))),
+        cleared_attachment(gbuffer.highlight, colour(glm::vec4(0))),
+        cleared_attachment(gbuffer.object, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}}),
+        cleared_attachment(gbuffer.gradient, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}})};
     // Reversed depth: background is 0.
-    const auto       depth = attachment(gbuffer.depth_buffer, vk::ClearDepthStencilValue{0.0F, 0});
+    const auto       depth = cleared_attachment(gbuffer.depth_buffer, vk::ClearDepthStencilValue{0.0F, 0});
     const glm::ivec2 size  = gbuffer.view.size_px;
     const vk::Rect2D area{{0, 0}, {static_cast<uint32_t>(size.x), static_cast<uint32_t>(size.y)}};
     commands.beginRendering({.renderArea           = area,
@@ -169,6 +177,7 @@ GBufferPtr render_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view)
 {
     GBufferPtr gbuffer = make_drawn_gbuffer(gpu, scene, view, nullptr);
     rerender_gbuffer(gpu, *gbuffer);
+    prepare_solid_backs(gpu, *gbuffer);
     return gbuffer;
 }
 

@@ -18,7 +18,9 @@ struct GBuffer {
     GpuImage                            highlight;    // RGBA16F: depends on the view
     GpuImage                            object;       // R32UI
     GpuImage                            gradient;     // R32UI: of depth, core/plane_gradient.h
-    GpuImage                            solid;        // R32F: where the solid behind the pixel ends, 0: thin
+    GpuImage                            solid;        // R32F: where the solid behind the pixel ends, 0: thin; solid_backs.h draws it
+    GpuImage                            solid_depth;  // D32, of that pass
+    FrameSet                            solid_set;
     Buffer                              frame_uniforms;
     FrameSet                            frame_set;
     std::shared_ptr<const DrawPipeline> pipeline;
@@ -28,6 +30,9 @@ struct GBuffer {
     Timestamps                          timestamps;
     std::shared_ptr<StructureBuffers>   structures = std::make_shared<StructureBuffers>(); // on this depth
 };
+
+/// An image to draw into, cleared first.
+vk::RenderingAttachmentInfo cleared_attachment(const GpuImage& image, vk::ClearValue clear);
 
 /// Depth as tracers read it: what shaders/gbuffer/background.comp makes of a depth buffer.
 std::vector<float> usable_depth(std::span<const float> depth);

@@ -16,6 +16,7 @@ struct DrawPush {
 struct DrawPipeline {
     vk::raii::PipelineLayout layout   = nullptr;
     vk::raii::Pipeline       pipeline = nullptr;
+    bool                     culls    = true; // back faces, but for double-sided materials
 };
 
 struct GpuScene {
@@ -37,7 +38,7 @@ struct GpuScene {
     std::vector<vk::raii::DescriptorSet> material_sets;
     std::vector<DrawCall>                draws;
     // Of the G-buffer and its second layer, made when one is first drawn: lavapipe keeps memory for every graphics pipeline that it ever made.
-    std::shared_ptr<const DrawPipeline> first_layer_pipeline, second_layer_pipeline;
+    std::shared_ptr<const DrawPipeline> first_layer_pipeline, second_layer_pipeline, solid_back_pipeline;
     uint32_t                            light_count = 0;
     glm::vec3                           ambient{0};
     bool                                alpha_mask          = false; // some material has one
@@ -49,6 +50,7 @@ struct DrawPipelineOptions {
     std::vector<vk::Format> colour_formats;
     bool reversed_depth = true; // the G-buffer's convention; shadow maps use standard depth with a bias
     std::map<std::string, std::string> fragment_defines = {};
+    bool culls = true;
 };
 DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipelineOptions& options);
 

@@ -1,6 +1,7 @@
 // The hidden layer: the scene once more without what the first layer shows, and the rays that missed, traced in it.
 #include "core/pixel_index.h"
 #include "render/passes/pass_helpers.h"
+#include "render/solid_backs.h"
 
 namespace ssrlab {
 namespace {
@@ -45,6 +46,8 @@ RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
     frame.hidden_layer     = true;
     auto own               = std::make_shared<HiddenLayer>();
     own->layer             = buffers.second_layer;
+    const bool solids      = frame.settings.trace.surface == SurfaceModel::plane_solid;
+    if (solids) prepare_solid_backs(gpu, *own->layer);
     own->missed            = derived_rays(gpu, frame, 0);
     own->structures        = make_depth_structures(gpu, frame, *own->layer);
     const Bindings derived = derived_bindings(*own->missed);
@@ -54,9 +57,10 @@ RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
     own->technique = make_layer_passes(gpu, frame, own->missed->rays);
     own->merge = make_pass(gpu, frame, "passes/second_layer_hits.comp", store_defines(gpu, frame.rays->hits), derived);
     const double separation = frame.settings.passes.at("hidden_layer_separation_m");
-    return [&frame, own, separation](const auto& commands) {
+    return [&frame, own, separation, solids](const auto& commands) {
         const RayBuffers& missed = own->missed->rays;
         record_second_layer(commands, *own->layer, separation);
+        if (solids) record_solid_backs(commands, *own->layer);
         record_depth_structures(commands, own->structures);
         commands.fillBuffer(*missed.count.buffer, 0, VK_WHOLE_SIZE, 0);
         barrier(commands);

@@ -1,0 +1,32 @@
+// Where solids end, for the surface model that asks.
+#include "render/passes/pass_helpers.h"
+#include "render/solid_backs.h"
+
+namespace ssrlab {
+namespace {
+
+PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& /*values*/)
+{
+    if (!facts.solids) return {PassDecision::off, "the surface model has no solids"};
+    if (!facts.scene) return {PassDecision::off, "no scene to draw again: solids as the frame came with them"};
+    if (statistics.gbuffer.reflecting_pixels == 0) return {PassDecision::not_needed, "no pixel reflects"};
+    return {PassDecision::needed, "surface = plane_solid"};
+}
+
+RecordFunction prepare(Gpu& /*gpu*/, PreparedFrame& frame)
+{
+    return [&](const auto& commands) { record_solid_backs(commands, *frame.buffers->gbuffer); };
+}
+
+} // namespace
+
+Pass solid_backs_pass()
+{
+    return {.id      = "solid_backs",
+            .summary = "Draws the nearest surface behind the G-buffer's, to know where solids end",
+            .cite    = {"D. Gustafsson 2017, Screen space path tracing (Voxagon blog)"},
+            .decide  = decide,
+            .prepare = prepare};
+}
+
+} // namespace ssrlab
