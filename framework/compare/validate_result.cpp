@@ -33,7 +33,7 @@ std::string impossible(const Answer& answer, glm::ivec2 size_px, double most_ste
     }
     if (answer.steps > most_steps)
         return fmt::format("{} steps, but the technique declares at most {}", answer.steps, most_steps);
-    if (answer.status != TraceStatus::hit) return "";
+    if (!has_place(answer.status)) return "";
     const glm::ivec2 pixel = answer.hit_pixel;
     if (pixel.x < 0 || pixel.y < 0 || pixel.x >= size_px.x || pixel.y >= size_px.y)
         return off_the_image(pixel, size_px);

@@ -24,6 +24,8 @@ enum class TraceStatus : uint8_t {
     stopped    = 6, // met something from behind, which this frame does not show from there (behind = stop); no hit
     impossible = 7, // not an answer: an unknown status, or a hit off the image (compare/validate_result.h)
 };
+/// Does a ray that ended so name a pixel and a point?
+inline bool has_place(TraceStatus status) { return status == TraceStatus::hit || status == TraceStatus::stopped; }
 /// Of those that are answers.
 inline constexpr std::array<std::string_view, 7> trace_status_names = {
     "not_traced", "hit", "left_screen", "past_max_distance", "out_of_steps", "facing_away", "stopped"};
@@ -45,10 +47,10 @@ struct StructureFetches {
 struct TraceResult {
     glm::ivec2               size_px{0, 0};
     std::vector<TraceStatus> status;
-    std::vector<glm::ivec2>  hit_pixel;    // the pixel whose slab was met; undefined unless hit
-    std::vector<glm::dvec3>  hit_px_depth; // x, y in pixels, depth; on the ray, inside hit_pixel; undefined unless hit
+    std::vector<glm::ivec2>  hit_pixel;    // the pixel that was met; undefined unless hit or stopped
+    std::vector<glm::dvec3>  hit_px_depth; // x, y in pixels, depth; on the ray, inside hit_pixel; undefined likewise
     std::vector<double>
-        hit_t; // 0 at the reflecting pixel, 1 at the end of the clipped screen segment; undefined unless hit
+        hit_t; // 0 at the reflecting pixel, 1 at the end of the clipped screen segment; undefined likewise
     std::vector<uint32_t>         steps;             // loop iterations; 0 where not traced
     std::vector<uint32_t>         depth_fetches;     // empty when the result was not counted
     std::vector<StructureFetches> structure_fetches; // of each structure that the technique reads

@@ -173,6 +173,52 @@ TEST_P(ExactTechniques, EqualThePixelWalkAndTheScreenTruth)
         << "double twin: " << first;
 }
 
+struct Held {
+    SurfaceModel surface;
+    Behind       behind;
+};
+constexpr Held every_model[] = {{SurfaceModel::box, Behind::pass},           {SurfaceModel::box, Behind::stop},
+                                {SurfaceModel::box_two_sided, Behind::hit},  {SurfaceModel::box_infinite, Behind::stop},
+                                {SurfaceModel::plane, Behind::hit},          {SurfaceModel::plane, Behind::pass},
+                                {SurfaceModel::plane_solid, Behind::stop}};
+
+std::vector<Case> cases_of_models()
+{
+    std::vector<Case> cases;
+    for (const Case& c : all_cases()) {
+        if (c.size_px == glm::ivec2(641, 363)) cases.push_back({c.scene, c.view, {321, 181}});
+        if (c.size_px == glm::ivec2(97, 1)) cases.push_back(c);
+    }
+    for (const auto& [scene, views] : real_scenes) cases.push_back({scene, "default", {1919, 1079}});
+    return cases;
+}
+
+class ExactTechniquesOnModels : public testing::TestWithParam<Case> {};
+
+TEST_P(ExactTechniquesOnModels, EqualThePixelWalkWhateverAPixelHolds)
+{
+    const Case&   c       = GetParam();
+    const Picture picture = make_picture(c.scene, c.view, c.size_px);
+    for (const Held& held : every_model) {
+        const bool large = c.size_px.x > 700;
+        if (large && held.surface != SurfaceModel::plane_solid) continue;
+        const TraceSettings settings{
+            .thickness_m = 0.1, .max_distance_m = 1e9, .behind = held.behind, .surface = held.surface};
+        const Technique&  dda  = technique("dda");
+        const TraceResult walk = trace(picture, dda, values_of(dda), settings);
+        std::string       first;
+        for (const Technique& t : list_techniques({})) {
+            if (!t.exact || t.id == "dda") continue;
+            const ParameterValues values = values_of(t);
+            EXPECT_EQ(count_differences(trace(picture, t, values, settings), walk, true, first), 0U)
+                << first << "\n"
+                << repeat_command(c.scene, c.view, c.size_px, t, values, settings);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, ExactTechniquesOnModels, testing::ValuesIn(cases_of_models()), case_name);
+
 INSTANTIATE_TEST_SUITE_P(Scenes, ExactTechniques, testing::ValuesIn(all_cases()), case_name);
 
 /// The traversal that stops at the first occluder is not exact, but packets must not change what it finds. Those that may pass behind things do.
