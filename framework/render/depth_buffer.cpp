@@ -15,6 +15,12 @@ size_t depth_word(glm::ivec2 size_px, glm::ivec2 pixel)
     return 2 * cell_index(size_px, pixel, 0) + static_cast<size_t>(pixel.x % 2);
 }
 
+size_t plane_place(glm::ivec2 size_px, glm::ivec2 pixel)
+{
+    const int first = planes_first(size_px.x, pyramid_rows(pyramid_root(size_px), size_px.y));
+    return static_cast<size_t>(first + strip_index(pixel.x, pixel.y, planes_rows(size_px.y)));
+}
+
 } // namespace
 
 int pyramid_levels(glm::ivec2 size_px) { return std::bit_width(static_cast<unsigned>(size_px.y - 1)); }
@@ -36,7 +42,8 @@ glm::ivec2 level_size(glm::ivec2 size_px, int level) { return ((size_px - 1) >> 
 
 DepthBuffer make_depth_buffer(Gpu& gpu, glm::ivec2 size_px)
 {
-    const size_t texels = pixel_count(pyramid_size(size_px));
+    const int    first  = planes_first(size_px.x, pyramid_rows(pyramid_root(size_px), size_px.y));
+    const auto   texels = static_cast<size_t>(planes_end(size_px.x, size_px.y, first));
     DepthBuffer  depth;
     depth.size_px = size_px;
     depth.cells   = make_texel_buffer(gpu, texels * sizeof(glm::uvec2), vk::Format::eR32G32Uint);
@@ -48,13 +55,16 @@ DepthBuffer make_depth_buffer(Gpu& gpu, glm::ivec2 size_px)
     return depth;
 }
 
-void write_depth(Gpu& gpu, DepthBuffer& buffer, std::span<const float> depth)
+void write_depth(Gpu& gpu, DepthBuffer& buffer, std::span<const float> depth, std::span<const uint32_t> gradients)
 {
-    std::vector<float> words(2 * pixel_count(pyramid_size(buffer.size_px)), background);
+    std::vector<uint32_t> words(buffer.cells.bytes / sizeof(uint32_t), std::bit_cast<uint32_t>(background));
     for (int y = 0; y < buffer.size_px.y; ++y)
-        for (int x = 0; x < buffer.size_px.x; ++x)
-            words[depth_word(buffer.size_px, {x, y})] = depth[pixel_index({x, y}, buffer.size_px)];
-    upload(gpu, buffer.cells, words.data(), words.size() * sizeof(float));
+        for (int x = 0; x < buffer.size_px.x; ++x) {
+            const size_t i = pixel_index({x, y}, buffer.size_px), plane = 2 * plane_place(buffer.size_px, {x, y});
+            words[depth_word(buffer.size_px, {x, y})] = words[plane] = std::bit_cast<uint32_t>(depth[i]);
+            words[plane + 1]                                         = gradients.empty() ? 0 : gradients[i];
+        }
+    upload(gpu, buffer.cells, words.data(), words.size() * sizeof(uint32_t));
 }
 
 std::vector<float> read_depth(Gpu& gpu, const DepthBuffer& buffer)

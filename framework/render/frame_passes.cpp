@@ -88,6 +88,7 @@ void add_surface(ShaderSource& source, SurfaceModel model)
     const std::filesystem::path folder = shader_folder() / "surfaces" / (has_planes(model) ? "plane" : "box");
     source.include_files.emplace("surface/meeting.glsl", folder / "meeting.glsl");
     source.include_files.emplace("surface/held.glsl", folder / "held.glsl");
+    if (has_planes(model)) source.defines.emplace("PIXEL_PLANES", "1");
     if (model == SurfaceModel::box_two_sided) source.defines.emplace("SURFACE_TWO_SIDED", "1");
     if (model == SurfaceModel::plane_solid) source.defines.emplace("SURFACE_SOLID", "1");
 }
@@ -168,7 +169,7 @@ Bindings surface_bindings(const GBuffer& gbuffer)
     return {{"depth_words", gbuffer.depth.words}, {"depth_cells", gbuffer.depth.cells},
             {"cell_pairs", gbuffer.depth.pairs},  {"StoredCells", {gbuffer.depth.cells, gbuffer.depth.pairs}},
             {"normal_image", gbuffer.normal},     {"material_image", gbuffer.material},
-            {"gradient_image", gbuffer.gradient}, {"solid_image", gbuffer.solid}};
+            {"solid_image", gbuffer.solid}};
 }
 
 Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)

@@ -150,11 +150,15 @@ GBufferPtr make_drawn_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& vi
     gbuffer->view_uniforms = upload_view(gpu, view, Precision::float32);
     Constants constants;
     constants.add(CONSTANT_ORTHOGRAPHIC, static_cast<int32_t>(view.projection == Projection::orthographic));
-    gbuffer->background = make_compute_pass(gpu, compile_shader({.file = "gbuffer/background.comp"}),
+    const ShaderSource background{.file    = "gbuffer/background.comp",
+                                  .defines = store_defines(gpu, gbuffer->depth.cells)};
+    gbuffer->background = make_compute_pass(gpu, compile_shader(background),
                                             {{"View", gbuffer->view_uniforms},
                                              {"depth_buffer", {gbuffer->depth_buffer, gbuffer->sampler}},
                                              {"environment_map", {scene->environment_map, scene->environment_sampler}},
                                              {"depth_words", gbuffer->depth.words},
+                                             {"StoredPlanes", gbuffer->depth.cells},
+                                             {"gradient_image", gbuffer->gradient},
                                              {"radiance_image", gbuffer->radiance}},
                                             constants, sizeof(glm::mat4));
     gbuffer->timestamps = make_timestamps(gpu, 2);
@@ -233,7 +237,7 @@ void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image)
     solid.resize(count);
     upload(gpu, gbuffer.gradient, gradients.data(), count * sizeof(uint32_t));
     upload(gpu, gbuffer.solid, solid.data(), count * sizeof(float));
-    write_depth(gpu, gbuffer.depth, usable_depth(image.depth));
+    write_depth(gpu, gbuffer.depth, usable_depth(image.depth), gradients);
     upload(gpu, gbuffer.normal, normal.data(), count * sizeof(glm::vec4));
     upload(gpu, gbuffer.material, material.data(), count * sizeof(HalfTexel));
 }

@@ -140,9 +140,8 @@ GBufferPtr upload_depth(Gpu& gpu, const View& view, std::span<const float> depth
     gbuffer->depth    = make_depth_buffer(gpu, view.size_px);
     gbuffer->normal   = image(vk::Format::eR32G32B32A32Sfloat, {1, 1});
     gbuffer->material = image(vk::Format::eR16G16B16A16Sfloat, {1, 1});
-    gbuffer->gradient = image(vk::Format::eR32Uint, {1, 1});
     gbuffer->solid    = image(vk::Format::eR32Sfloat, {1, 1});
-    write_depth(gpu, gbuffer->depth, usable_depth(depth));
+    write_depth(gpu, gbuffer->depth, usable_depth(depth), {});
     return gbuffer;
 }
 

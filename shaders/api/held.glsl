@@ -8,12 +8,13 @@ struct Held
 // How far from its centre a ray that is in a pixel may be on each axis, with rounding.
 const float held_reach_px = 0.5 + 1.0 / 64;
 
+// gradient: the second word of a pixel with its plane (layout/memory_layout.glsl).
 #include "surface/held.glsl"
 
 // The nearest and the farthest depth that the pixel holds.
-vec2 held_depths(ivec2 pixel, float depth)
+vec2 held_depths(ivec2 pixel, float depth, uint gradient)
 {
-    Held  held   = held_by(pixel, depth);
+    Held  held   = held_by(pixel, depth, gradient);
     float spread = (abs(held.gradient.x) + abs(held.gradient.y)) * held_reach_px;
     return vec2(held.front + spread, held.back - spread);
 }

@@ -96,12 +96,15 @@ real3 fetch_normal(ivec2 pixel)
     return real3(imageLoad(normal_image, pixel).xyz);
 }
 
-// Depth of a pixel, BACKGROUND_DEPTH where there is nothing; counted.
-real fetch_depth(ivec2 pixel)
+// What is stored of a pixel, for surface_at(); counted.
+uvec2 fetch_pixel(ivec2 pixel)
 {
     count_depth_fetch();
-    return real(depth_of_pair(load_cell(pixel, 0), pixel));
+    return load_cell(pixel, 0);
 }
+
+// Depth of a pixel, BACKGROUND_DEPTH where there is nothing; counted.
+real fetch_depth(ivec2 pixel) { return real(depth_in(fetch_pixel(pixel), pixel)); }
 
 // ---- The hit contract (docs/hit_contract.md)
 // How far rounding may move the depth of a ray. Nothing in double precision, which is what float is held to.
@@ -138,7 +141,7 @@ bool interval_touches(real depth, real2 interval)
 
 
 // What a pixel holds, by the run's surface model (shaders/surfaces/README.md):
-//   PixelSurface surface_at(Ray, ivec2 pixel, real depth)
+//   PixelSurface surface_at(Ray, ivec2 pixel, uvec2 words)      words: fetch_pixel()
 //   bool meets(Ray, PixelSurface, real t_in, real t_out)        does the ray meet it between the two
 //   bool from_behind(Ray, PixelSurface, real t_in)              from the side that the frame does not show, if it meets it
 //   real contact_t(Ray, PixelSurface, real t_in, real t_out)    where, if it meets it
@@ -159,14 +162,14 @@ bool ends_at(Ray ray, PixelSurface surface, bool met, real t_in)
 // Does the ray end at this pixel between two t, by a hit or by being stopped?
 bool touches_surface(Ray ray, ivec2 pixel, real t_in, real t_out)
 {
-    PixelSurface surface = surface_at(ray, pixel, fetch_depth(pixel));
+    PixelSurface surface = surface_at(ray, pixel, fetch_pixel(pixel));
     return ends_at(ray, surface, meets(ray, surface, t_in, t_out), t_in);
 }
 
 // The same between two crossings.
 bool touches_surface(Ray ray, Grid grid, ivec2 pixel, crossing t_in, crossing t_out)
 {
-    PixelSurface surface = surface_at(ray, pixel, fetch_depth(pixel));
+    PixelSurface surface = surface_at(ray, pixel, fetch_pixel(pixel));
     return ends_at(ray, surface, meets(ray, grid, surface, t_in, t_out), crossing_to_t(grid, t_in));
 }
 
@@ -194,14 +197,14 @@ TraceResult end_at(Ray ray, PixelSurface surface, ivec2 pixel, real t_in, real t
 // A hit (or stop) at the end of an interval [t_in, t] between two samples, or at one sample.
 TraceResult hit_at(Ray ray, ivec2 pixel, real t_in, real t, int steps)
 {
-    PixelSurface surface = surface_at(ray, pixel, fetch_depth(pixel));
+    PixelSurface surface = surface_at(ray, pixel, fetch_pixel(pixel));
     return end_at(ray, surface, pixel, t_in, t, steps);
 }
 
 // A hit (or stop) somewhere in [t_in, t_out]: at the point where the ray first meets what the pixel holds.
 TraceResult hit_between(Ray ray, ivec2 pixel, real t_in, real t_out, int steps)
 {
-    PixelSurface surface = surface_at(ray, pixel, fetch_depth(pixel));
+    PixelSurface surface = surface_at(ray, pixel, fetch_pixel(pixel));
     return end_at(ray, surface, pixel, t_in, contact_t(ray, surface, t_in, t_out), steps);
 }
 

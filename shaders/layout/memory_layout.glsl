@@ -79,6 +79,12 @@ int cell_index(ivec2 pixel, int level)
     return pixel_to_cell_index(pixel.x, pixel.y, level, pyramid_root, pyramid_height);
 }
 
+// Of the two words of a pixel with its plane.
+int plane_index(ivec2 pixel)
+{
+    return planes_first(size_px.x, pyramid_height) + strip_index(pixel.x, pixel.y, planes_rows(size_px.y));
+}
+
 int depth_word(ivec2 pixel)
 {
     return 2 * cell_index(pixel, 0) + (pixel.x & 1);
@@ -102,9 +108,13 @@ float load_depth(ivec2 pixel)
 #define SSRLAB_WRITES_DEPTH
 layout(set = 0, binding = DEPTH_BINDING, r32f) uniform writeonly imageBuffer depth_words;
 
-void store_depth(ivec2 pixel, float depth)
+STORED_TEXELS_2(PLANES_BINDING, StoredPlanes)
+
+// gradient: as framework/core/plane_gradient.h packs it.
+void store_depth(ivec2 pixel, float depth, uint gradient)
 {
     imageStore(depth_words, depth_word(pixel), vec4(depth));
+    STORE_TEXEL(StoredPlanes, plane_index(pixel), uvec2(floatBitsToUint(depth), gradient));
 }
 #endif
 
@@ -112,18 +122,29 @@ void store_depth(ivec2 pixel, float depth)
 #define SSRLAB_READS_CELLS
 layout(set = 0, binding = 3, rg32ui) uniform readonly uimageBuffer depth_cells;
 
-// The two words of the cell of a level that holds a pixel, or at level 0 the depths of two pixels: pixels and cells are read alike, since the lanes of a
-// group stand on different levels.
+// The two words of the cell of a level that holds a pixel. At level 0 the depths of two pixels, or with planes the pixel's depth and gradient. Pixels and
+// cells are read alike, since the lanes of a group stand on different levels.
+#ifdef PIXEL_PLANES
+int leaf_rows = planes_rows(size_px.y), leaf_first = planes_first(size_px.x, pyramid_height) - (pyramid_root << STRIP_BITS);
+
+// plane_index() at level 0, cell_index() above, with one multiplication.
+uvec2 load_cell(ivec2 pixel, int level)
+{
+    bool leaf  = level == 0;
+    int  index = strip_index(pixel.x >> level, (pyramid_root | pixel.y) >> level, leaf ? leaf_rows : pyramid_height) + (leaf ? leaf_first : 0);
+    return imageLoad(depth_cells, index).xy;
+}
+
+// What load_cell() says of this pixel at level 0.
+float depth_in(uvec2 words, ivec2 pixel) { return uintBitsToFloat(words.x); }
+#else
 uvec2 load_cell(ivec2 pixel, int level)
 {
     return imageLoad(depth_cells, cell_index(pixel, level)).xy;
 }
 
-// What load_cell() says of this pixel at level 0.
-float depth_of_pair(uvec2 pair, ivec2 pixel)
-{
-    return uintBitsToFloat((pixel.x & 1) != 0 ? pair.y : pair.x);
-}
+float depth_in(uvec2 words, ivec2 pixel) { return uintBitsToFloat((pixel.x & 1) != 0 ? words.y : words.x); }
+#endif
 #endif
 
 #if defined(CELL_PAIRS) && !defined(SSRLAB_CELL_PAIRS)
@@ -139,6 +160,17 @@ int pair_index(ivec2 cell, int first_row)
 uvec4 load_pair(int index)
 {
     return imageLoad(cell_pairs, index);
+}
+
+// The gradients of four pixels in a row, x a multiple of four; 0 without planes.
+uvec4 load_gradients(ivec2 pixel)
+{
+#ifdef PIXEL_PLANES
+    int first = plane_index(pixel) >> 1;
+    return uvec4(load_pair(first).yw, load_pair(first + 1).yw);
+#else
+    return uvec4(0);
+#endif
 }
 
 STORED_TEXELS_4(11, StoredCells)

@@ -1,7 +1,7 @@
 // What a box holds, rounded outward: wider than any rounding of the hit test on the pixel itself.
 const float held_margin = 1.0 / 1048576.0;
 
-Held held_by(ivec2 pixel, float depth)
+Held held_by(ivec2 pixel, float depth, uint gradient)
 {
     Held held;
     held.gradient = vec2(0);
@@ -18,10 +18,10 @@ Held held_by(ivec2 pixel, float depth)
 
 // A front counts at its pixel's centre, and is level across it.
 const bool level_fronts = true;
-float front_above(ivec2 pixel, float depth, vec2 gradient) { return held_by(pixel, depth).front; }
+float front_above(Held held, vec2 gradient) { return held.front; }
 
 // A number that is larger the nearer the back is: the depth itself, since a slab's back is monotone in its front.
-float back_key(ivec2 pixel, float depth) { return depth; }
+float back_key(Held held, float depth) { return depth; }
 
 // The key of a pixel whose back lies at that depth.
 float key_of_back(float back) { return (back + float(slab_shift)) / (float(slab_scale) - back * float(slab_slope)); }

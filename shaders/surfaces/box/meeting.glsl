@@ -6,7 +6,7 @@ struct PixelSurface
     ivec2 pixel;
 };
 
-PixelSurface surface_at(Ray ray, ivec2 pixel, real depth) { return PixelSurface(depth, pixel); }
+PixelSurface surface_at(Ray ray, ivec2 pixel, uvec2 words) { return PixelSurface(real(depth_in(words, pixel)), pixel); }
 
 bool meets(Ray ray, PixelSurface surface, real t_in, real t_out)
 {

@@ -2,9 +2,9 @@
 #include "surfaces/plane/stored.glsl"
 const float held_margin = 1.0 / 65536.0;
 
-Held held_by(ivec2 pixel, float depth)
+Held held_by(ivec2 pixel, float depth, uint gradient)
 {
-    vec2 stored = load_gradient(pixel);
+    vec2 stored = unpack_gradient(gradient);
     Held held;
     held.gradient = has_plane(stored) ? stored : vec2(0);
     float tilt    = abs(held.gradient.x) + abs(held.gradient.y), margin = (depth + tilt) * held_margin;
@@ -18,16 +18,14 @@ Held held_by(ivec2 pixel, float depth)
 
 // The most that the pixel holds above a plane of this gradient through 0 at its centre.
 const bool level_fronts = false;
-float front_above(ivec2 pixel, float depth, vec2 gradient)
+float front_above(Held held, vec2 gradient)
 {
-    Held held = held_by(pixel, depth);
     return held.front + dot(abs(held.gradient - gradient), vec2(held_reach_px));
 }
 
 // A number that is larger the nearer the back is: the depth of the back, at its farthest.
-float back_key(ivec2 pixel, float depth)
+float back_key(Held held, float depth)
 {
-    Held held = held_by(pixel, depth);
     return held.back - (abs(held.gradient.x) + abs(held.gradient.y)) * held_reach_px;
 }
 

@@ -9,9 +9,10 @@ struct PixelSurface
     real solid;       // the depth where the solid ends; nearer than everything without one
 };
 
-PixelSurface surface_at(Ray ray, ivec2 pixel, real depth)
+PixelSurface surface_at(Ray ray, ivec2 pixel, uvec2 words)
 {
-    vec2  stored   = load_gradient(pixel);
+    real  depth    = real(depth_in(words, pixel));
+    vec2  stored   = unpack_gradient(words.y);
     bool  usable   = has_plane(stored);
     real2 gradient = usable ? real2(stored) : real2(0);
     real2 from_centre = ray.origin.xy - (real2(pixel) + real(0.5));

@@ -1,17 +1,12 @@
 // Planes and solids as the G-buffer stores them.
 #ifndef SSRLAB_STORED_PLANES
 #define SSRLAB_STORED_PLANES
-layout(set = 0, binding = 12, r32ui) uniform readonly uimage2D gradient_image; // framework/core/plane_gradient.h packs it
 #ifdef SURFACE_SOLID
 layout(set = 0, binding = 13, r32f) uniform readonly image2D solid_image;
 #endif
 
-// Of depth, from one pixel to the next; NaN where the pixel has no usable plane.
-vec2 load_gradient(ivec2 pixel)
-{
-    uint words = imageLoad(gradient_image, pixel).x;
-    return uintBitsToFloat(uvec2(words & 0xFFFF0000u, words << 16));
-}
+// Of depth, from one pixel to the next; NaN where the pixel has no usable plane. framework/core/plane_gradient.h packs it.
+vec2 unpack_gradient(uint words) { return uintBitsToFloat(uvec2(words & 0xFFFF0000u, words << 16)); }
 
 bool has_plane(vec2 gradient) { return (floatBitsToUint(gradient.x) & 0x7FFFFFFFu) <= 0x7F800000u; }
 

@@ -107,18 +107,20 @@ void main()
             int   y     = min(row, last.y);
             uvec4 bits  = load_pair(first_quad + y * quads + column), befores;
             vec4  depth = uintBitsToFloat(bits), plane_rise = gradient.y * float(y) + across;
+            uvec4 gradients = load_gradients(first + ivec2(4 * column, y));
             ivec4 heights;
             for (int k = 0; k < 4; ++k)
             {
                 ivec2 pixel = first + ivec2(4 * column + k, y);
-                float key   = back_key(pixel, depth[k]);
+                Held  held  = held_by(pixel, depth[k], gradients[k]);
+                float key   = back_key(held, depth[k]);
                 #ifdef IN_FRONT
                 bool is_before = false;
 #else
                 bool is_before = key > 0.0 && key - plane_rise[k] > stands;
 #endif
                 befores[k]     = is_before ? floatBitsToUint(key) : nothing;
-                heights[k]     = !is_before && depth[k] > 0.0 ? floatBitsToInt(front_above(pixel, depth[k], gradient) - plane_rise[k]) : no_front;
+                heights[k]     = !is_before && depth[k] > 0.0 ? floatBitsToInt(front_above(held, gradient) - plane_rise[k]) : no_front;
             }
             before = min(before, min(min(befores.x, befores.y), min(befores.z, befores.w)));
             height = max(height, max(max(heights.x, heights.y), max(heights.z, heights.w)));

@@ -1,11 +1,11 @@
 // Level 1 of the depth pyramid, from pixels.
 #include "make_cells.glsl"
 
-// The cell of two pixels and the two below them.
-uvec2 cell_of_pixels(ivec2 first, uvec2 upper, uvec2 lower)
+// The cell of two pixels and the two below them: their depths, and their gradients.
+uvec2 cell_of_pixels(ivec2 first, uvec4 depths, uvec4 gradients)
 {
-    Range a = pixel_range(first, upper.x), b = pixel_range(first + ivec2(1, 0), upper.y);
-    Range c = pixel_range(first + ivec2(0, 1), lower.x), d = pixel_range(first + 1, lower.y);
+    Range a = pixel_range(first, depths.x, gradients.x), b = pixel_range(first + ivec2(1, 0), depths.y, gradients.y);
+    Range c = pixel_range(first + ivec2(0, 1), depths.z, gradients.z), d = pixel_range(first + 1, depths.w, gradients.w);
     uvec2 cell = cell_of_range(unite(unite(a, b), unite(c, d)));
     cell.y     = bins_of_pixel(cell, a) | bins_of_pixel(cell, b) | bins_of_pixel(cell, c) | bins_of_pixel(cell, d);
     return finished(cell);
@@ -15,6 +15,9 @@ uvec2 cell_of_pixels(ivec2 first, uvec2 upper, uvec2 lower)
 void main()
 {
     if (any(greaterThanEqual(cell, size))) return;
+    ivec2 first = 2 * cell, below = first + ivec2(0, 1);
     uvec4 upper = load_pair(pair_index(cell * ivec2(1, 2), pyramid_root)), lower = load_pair(pair_index(cell * ivec2(1, 2) + ivec2(0, 1), pyramid_root));
-    store_cells(uvec4(cell_of_pixels(2 * cell, upper.xy, lower.xy), cell_of_pixels(2 * cell + ivec2(2, 0), upper.zw, lower.zw)));
+    uvec4 upper_gradients = load_gradients(first), lower_gradients = load_gradients(below);
+    store_cells(uvec4(cell_of_pixels(first, uvec4(upper.xy, lower.xy), uvec4(upper_gradients.xy, lower_gradients.xy)),
+                      cell_of_pixels(first + ivec2(2, 0), uvec4(upper.zw, lower.zw), uvec4(upper_gradients.zw, lower_gradients.zw))));
 }

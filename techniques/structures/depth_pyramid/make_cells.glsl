@@ -21,11 +21,11 @@ struct Range
 const Range nothing = Range(0, 0x7FFFFFFF);
 
 // bits: of its depth; around the picture there is background.
-Range pixel_range(ivec2 pixel, uint bits)
+Range pixel_range(ivec2 pixel, uint bits, uint gradient)
 {
     float depth = uintBitsToFloat(bits);
     if (!(depth > 0.0)) return nothing;
-    vec2 held = held_depths(pixel, depth);
+    vec2 held = held_depths(pixel, depth, gradient);
     return Range(floatBitsToInt(held.x), depth_pyramid_kind == depth_pyramid_kind_nearest ? 0 : max(floatBitsToInt(held.y), 0));
 }
 

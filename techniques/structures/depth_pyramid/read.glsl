@@ -11,7 +11,7 @@ int pyramid_top()
 struct CellContent
 {
     real  depth; // level 0
-    uvec2 cell;  // level >= 1 (cell.glsl)
+    uvec2 cell;  // its words: level >= 1 as cell.glsl says, level 0 as fetch_pixel() does
 };
 
 // The cell of a level that holds a pixel; counted.
@@ -21,7 +21,7 @@ CellContent fetch_cell(ivec2 pixel, int level)
     count_depth_fetch(leaf);
     count_fetch(STRUCTURE_depth_pyramid, !leaf);
     uvec2 words = load_cell(pixel, level);
-    return CellContent(real(leaf ? depth_of_pair(words, pixel) : 0.0), words); // a cell's words may be no usable number
+    return CellContent(real(leaf ? depth_in(words, pixel) : 0.0), words);
 }
 
 // May the ray touch a surface inside that cell between two crossings? At level 0 the answer is touches_surface()'s; above, no means no for all its pixels.
@@ -30,7 +30,8 @@ bool touches_cell(Ray ray, Grid grid, ivec2 pixel, int level, CellContent conten
     bool leaf    = level == 0;
     vec2 covered = covered_depths(ray, grid, t_in, t_out);
     // Both answers, then a choice: cheaper than a branch.
-    PixelSurface surface = surface_at(ray, pixel, content.depth);
+    // A cell's words may be no usable numbers; as floats some of them would make the arithmetic slow.
+    PixelSurface surface = surface_at(ray, pixel, leaf ? content.cell : uvec2(0));
     bool pixel_met = meets(ray, grid, surface, t_in, t_out), cell_touched = cell_may_touch(content.cell, covered.x, covered.y);
     return leaf ? ends_at(ray, surface, pixel_met, crossing_to_t(grid, t_in)) : cell_touched;
 }

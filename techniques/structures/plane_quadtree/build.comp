@@ -10,10 +10,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { int level; };
 
 // What the pixel holds. What reaches behind depth 0 has no end: no ray passes behind it.
-Node node_of_pixel(ivec2 pixel, float depth)
+Node node_of_pixel(ivec2 pixel, uvec2 words)
 {
+    float depth = depth_in(words, pixel);
     if (!(depth > 0.0)) return empty_node;
-    vec2 held = held_depths(pixel, depth);
+    vec2 held = held_depths(pixel, depth, words.y);
     return Node(vec2(0), held.y > 0.0 ? held.y : -no_end, min(held.x, no_end), ~0u);
 }
 
@@ -21,7 +22,7 @@ Node node_of_pixel(ivec2 pixel, float depth)
 Node load_part(ivec2 pixel, int part_level)
 {
     if (any(greaterThanEqual(pixel, size_px))) return empty_node;
-    if (part_level == 0) return node_of_pixel(pixel, depth_of_pair(load_cell(pixel, 0), pixel));
+    if (part_level == 0) return node_of_pixel(pixel, load_cell(pixel, 0));
     return unpack_node(load_nodes(level_cell_index(pixel, part_level)));
 }
 

@@ -37,8 +37,9 @@ TraceResult trace(Ray ray)
         ++visited;
     }
     if (level >= 0) return t < real(1) ? out_of_steps(visited) : miss(ray, visited);
-    real depth = fetch_depth(pixel);
+    uvec2 words = fetch_pixel(pixel);
+    real  depth = real(depth_in(words, pixel));
     bool touched = interval_touches(depth, depth_interval(ray, position.z, min(position.z, depth)));
-    bool hit = pixel != ray.start_pixel && ends_at(ray, surface_at(ray, pixel, depth), touched, t);
+    bool hit = pixel != ray.start_pixel && ends_at(ray, surface_at(ray, pixel, words), touched, t);
     return hit ? hit_at(ray, pixel, t, t, visited) : miss(ray, visited);
 }
