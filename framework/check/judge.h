@@ -2,6 +2,7 @@
 #pragma once
 
 #include "check/setup.h"
+#include "truth/pixel_surface.h"
 
 #include <limits>
 #include <string>
@@ -37,21 +38,25 @@ Claim claim_of(const Technique& technique);
 
 /// A pixel that a ray visits, in order.
 struct Visit {
-    glm::ivec2 pixel{0, 0};
-    double     t_in = 0, t_out = 0;
-    double     z_in = 0, z_out = 0;
-    double     front = 0, back = 0; // of its slab; background: front <= 0
-    double     contact = 0;         // depth by which the ray's interval overlaps the slab; negative: a gap
-    double     facing  = -1;        // cosine between normal and ray; -1 where the facing rule is off
-    bool       faces() const { return facing < 0; }
+    glm::ivec2   pixel{0, 0};
+    double       t_in = 0, t_out = 0;
+    double       z_in = 0, z_out = 0;
+    PixelSurface surface;           // background: front <= 0
+    double       over_back_in  = 0; // how far above the surface's back the ray enters and leaves, in depth
+    double       over_back_out = 0;
+    double       contact       = 0;  // depth by which the ray overlaps what the pixel holds; negative: a gap
+    double       facing        = -1; // cosine between normal and ray; -1 where it makes no difference
+    bool         passes_behind() const { return surface.front > 0 && contact < 0 && over_back_in < 0; }
 };
 
+bool       on_image(const GBufferImage& gbuffer, glm::ivec2 pixel);
+glm::ivec2 start_pixel(const GBufferImage& gbuffer, const RayInput& ray);
 /// How deep the ray goes into the pixel: its largest distance to the pixel's borders there.
 double depth_inside_px(const RayInput& ray, const Visit& visit);
 
 class Judge {
 public:
-    /// Keeps a reference to the setup.
+    /// Keeps a reference to the setup. Throws Failure if its G-buffer lacks what its surface model needs.
     explicit Judge(const Setup& setup);
 
     /// All pixels of the walk, the start pixel excluded.
@@ -64,12 +69,22 @@ public:
     std::string broken_invariant(const RayInput& ray, const RayOutcome& outcome) const;
 
 private:
+    /// From which sides the ray may meet what it visits, rounding considered.
+    struct Sides {
+        bool front = true, behind = true;
+    };
+
     Visit       visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_out) const;
     double      depth_rounding(const RayInput& ray, const Visit& visit) const;
     bool        surely_touches(const RayInput& ray, const Visit& visit) const;
+    bool        surely_ends_ray(const RayInput& ray, const Visit& visit) const;
     bool        may_touch(const RayInput& ray, const Visit& visit, double more_t) const;
+    Sides       sides(const RayInput& ray, const Visit& visit, const Claim& claim) const;
+    std::string unsound_side(const RayInput& ray, const RayOutcome& outcome, const Visit& wide,
+                             const Claim& claim) const;
     std::string unsound_hit(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
     std::string unsound_end(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
+    std::string unsound(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
 
     const Setup& setup_;
 };

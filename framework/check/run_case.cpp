@@ -34,24 +34,25 @@ Stage put_on_device(Gpu& gpu, const Technique& technique, const ParameterValues&
 bool same_answer(const RayOutcome& a, const RayOutcome& b, bool compare_t)
 {
     if (a.status != b.status) return false;
-    if (a.status != TraceStatus::hit) return true;
+    if (!has_place(a.status)) return true;
     return a.hit_pixel == b.hit_pixel && (!compare_t || a.t == b.t);
 }
 
 std::string text(const RayOutcome& outcome)
 {
-    if (outcome.status != TraceStatus::hit) return std::string(status_name(outcome.status));
-    return fmt::format("hit ({}, {}) t {:.9g}", outcome.hit_pixel.x, outcome.hit_pixel.y, outcome.t);
+    if (!has_place(outcome.status)) return std::string(status_name(outcome.status));
+    return fmt::format("{} ({}, {}) t {:.9g}", status_name(outcome.status), outcome.hit_pixel.x, outcome.hit_pixel.y,
+                       outcome.t);
 }
 
 void add_to_digest(uint64_t& digest, const RayOutcome& outcome)
 {
-    const bool hit    = outcome.status == TraceStatus::hit;
+    const bool ends   = has_place(outcome.status);
     uint64_t   t_bits = 0;
     std::memcpy(&t_bits, &outcome.t, sizeof(t_bits));
     const uint64_t pixel =
         static_cast<uint64_t>(outcome.hit_pixel.x) << 32 | static_cast<uint64_t>(outcome.hit_pixel.y);
-    for (const uint64_t word : {static_cast<uint64_t>(outcome.status), hit ? pixel : 0, hit ? t_bits : 0,
+    for (const uint64_t word : {static_cast<uint64_t>(outcome.status), ends ? pixel : 0, ends ? t_bits : 0,
                                 static_cast<uint64_t>(outcome.steps)})
         digest = (digest ^ word) * 0x100000001b3ULL;
 }
@@ -165,8 +166,7 @@ private:
         if (!technique_.exact || !expected->status) return; // the judge allows for a technique's limits
         const bool pixel_right = !expected->pixel || outcome.hit_pixel == *expected->pixel;
         const bool t_right     = !expected->t || std::abs(outcome.t - *expected->t) < 1e-4;
-        if (outcome.status == expected->status && (outcome.status != TraceStatus::hit || (pixel_right && t_right)))
-            return;
+        if (outcome.status == expected->status && (!has_place(outcome.status) || (pixel_right && t_right))) return;
         RayOutcome wanted{*expected->status, expected->pixel.value_or(glm::ivec2(-1)), expected->t.value_or(-1)};
         report(i, fmt::format("{}, but the closed form says {}", text(outcome), text(wanted)));
     }
@@ -202,7 +202,7 @@ private:
             return;
         }
         for (size_t i = 0; i < answers.size(); ++i) {
-            const RayOutcome back = answers[i].status == TraceStatus::hit ? relation.back(answers[i]) : answers[i];
+            const RayOutcome back = has_place(answers[i].status) ? relation.back(answers[i]) : answers[i];
             if (!same_answer(back, outcomes[i], relation.compare_t))
                 report(i, fmt::format("{}, but {}: {}", text(outcomes[i]), relation.name, text(back)));
         }
@@ -274,8 +274,8 @@ std::string describe_ray(Gpu& gpu, const Technique& technique, const ParameterVa
     for (const Visit& v : judge.walk(ray))
         out += fmt::format(
             "  ({:5}, {:5})  t {:.9f} … {:.9f}  depth {:.9f} … {:.9f}  slab {:.9f} … {:.9f}  {:.4f} px inside{}\n",
-            v.pixel.x, v.pixel.y, v.t_in, v.t_out, v.z_in, v.z_out, v.front, v.back, depth_inside_px(ray, v),
-            v.contact >= 0 ? "  touches" : "");
+            v.pixel.x, v.pixel.y, v.t_in, v.t_out, v.z_in, v.z_out, v.surface.front, v.surface.back,
+            depth_inside_px(ray, v), v.contact >= 0 ? "  touches" : "");
     out += fmt::format("{}: {} after {} iterations\nexactly: {}\n", technique.id, text(outcome), outcome.steps,
                        text(judge.exact_answer(ray)));
     const std::string broken  = judge.broken_invariant(ray, outcome);

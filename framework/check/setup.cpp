@@ -173,7 +173,10 @@ Setup mirrored(const Setup& setup, int axis)
     mirror_pixels(result.gbuffer.depth, view.size_px, axis);
     mirror_pixels(result.gbuffer.normal_vs, view.size_px, axis);
     mirror_pixels(result.gbuffer.metallic, view.size_px, axis);
+    if (!setup.gbuffer.gradient.empty()) mirror_pixels(result.gbuffer.gradient, view.size_px, axis);
+    if (!setup.gbuffer.solid_back.empty()) mirror_pixels(result.gbuffer.solid_back, view.size_px, axis);
     for (glm::vec3& normal : result.gbuffer.normal_vs) normal[axis] = -normal[axis];
+    for (glm::vec2& gradient : result.gbuffer.gradient) gradient[axis] = -gradient[axis];
     for (RayInput& ray : result.rays) {
         ray.origin_px_depth[axis] = size - ray.origin_px_depth[axis];
         ray.delta_px_depth[axis]  = -ray.delta_px_depth[axis];
@@ -184,7 +187,7 @@ Setup mirrored(const Setup& setup, int axis)
 
 RayOutcome mirrored(RayOutcome outcome, glm::ivec2 size_px, int axis)
 {
-    if (outcome.status == TraceStatus::hit) outcome.hit_pixel[axis] = size_px[axis] - 1 - outcome.hit_pixel[axis];
+    if (has_place(outcome.status)) outcome.hit_pixel[axis] = size_px[axis] - 1 - outcome.hit_pixel[axis];
     return outcome;
 }
 

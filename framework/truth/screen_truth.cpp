@@ -2,6 +2,7 @@
 
 #include "core/parallel_rows.h"
 #include "core/pixel_index.h"
+#include "truth/pixel_surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,53 +43,53 @@ void store(const WalkResult& found, size_t i, TraceResult& result)
     result.hit_t[i]        = found.hit_t;
 }
 
-/// Where the ray, entering the pixel at t_in, first meets the slab.
-double first_contact_t(const ScreenRay& ray, double t_in, double t_out, double front, double back)
+/// The depths that a pixel's surface can be met at, rounded outward: [nearest, farthest].
+std::pair<double, double> depth_range(const PixelSurface& surface)
 {
-    const double z0   = ray.origin_px_depth.z;
-    const double dz   = ray.delta_px_depth.z;
-    const double z_in = z0 + t_in * dz;
-    if (z_in <= front && z_in >= back) return t_in;
-    const double face = z_in > front ? front : back;
-    return dz == 0 ? t_in : std::clamp((face - z0) / dz, t_in, t_out);
+    // A ray's position may leave the pixel by its rounding.
+    const double reach = (0.5 + 1e-9) * (std::abs(surface.gradient.x) + std::abs(surface.gradient.y));
+    const double back  = surface.back - reach;
+    return {surface.front + reach, surface.solid_back > 0 ? std::min(back, surface.solid_back) : back};
 }
 
 } // namespace
-
-double slab_back(const View& view, double depth, const TraceSettings& settings)
-{
-    const double thickness = settings.thickness_m;
-    // Written as depth / (1 + ...) because that is exactly `depth` when the thickness is 0.
-    if (view.projection == Projection::perspective) {
-        return depth / (1.0 + (settings.thickness_relative ? thickness : thickness * depth / view.near_m));
-    }
-    const double thickness_m = settings.thickness_relative ? thickness * depth_to_distance(view, depth) : thickness;
-    return depth - thickness_m / (view.far_m - view.near_m);
-}
 
 ScreenWalk::ScreenWalk(const GBufferImage& gbuffer, const TraceSettings& settings)
     : gbuffer_(gbuffer), settings_(settings), cells_(gbuffer.depth.size())
 {
     require_complete(gbuffer);
+    require_surface(gbuffer, settings);
+    constexpr float infinite = std::numeric_limits<float>::infinity();
     for (size_t i = 0; i < cells_.size(); ++i) {
-        const float depth = gbuffer.depth[i];
-        if (!(depth > 0) || !std::isfinite(depth)) {
-            cells_[i] = {-std::numeric_limits<float>::infinity(), 0};
-        } else {
-            const auto back = float(exact_back(i));
-            cells_[i]       = {depth, std::nextafter(back, -std::numeric_limits<float>::infinity())};
+        const auto surface = pixel_surface(gbuffer, i, settings);
+        if (!surface) {
+            cells_[i] = {-infinite, 0};
+            continue;
         }
+        const auto [nearest, farthest] = depth_range(*surface);
+        cells_[i] = {std::nextafter(float(nearest), infinite), std::nextafter(float(farthest), -infinite)};
     }
 }
 
-double ScreenWalk::exact_back(size_t index) const
+/// What the ray meets there, and how it ends if it ends there. False: it goes on.
+bool ScreenWalk::ends_at(size_t index, const RayPart& part, glm::dvec3 direction_vs, WalkResult& found) const
 {
-    return slab_back(gbuffer_.view, double(gbuffer_.depth[index]), settings_);
-}
-
-bool ScreenWalk::faces_ray(size_t index, glm::dvec3 direction_vs) const
-{
-    return glm::dot(glm::dvec3(gbuffer_.normal_vs[index]), direction_vs) < 0;
+    const auto surface = pixel_surface(gbuffer_, index, settings_);
+    const auto meeting = meet(*surface, part, glm::dot(glm::dvec3(gbuffer_.normal_vs[index]), direction_vs));
+    if (!meeting.meets) return false;
+    if (meeting.from_behind && settings_.behind == Behind::pass) {
+        found.status = TraceStatus::facing_away;
+        return false;
+    }
+    const bool stops   = meeting.from_behind && settings_.behind == Behind::stop;
+    found.status       = stops ? TraceStatus::stopped : TraceStatus::hit;
+    found.hit_pixel    = pixel_at(index, gbuffer_.view.size_px);
+    found.hit_t        = meeting.t;
+    found.hit_px_depth = part.at(meeting.t);
+    const glm::dvec2 low(found.hit_pixel);
+    found.hit_px_depth.x = std::clamp(found.hit_px_depth.x, low.x, low.x + 1);
+    found.hit_px_depth.y = std::clamp(found.hit_px_depth.y, low.y, low.y + 1);
+    return true;
 }
 
 WalkResult ScreenWalk::walk(const ScreenRay& ray) const
@@ -123,23 +124,9 @@ WalkResult ScreenWalk::walk(const ScreenRay& ray) const
         const double z_out = z0 + t_out * dz;
         const Cell   cell  = cells_[size_t(index)];
         ++found.pixels;
-        if (std::min(z_in, z_out) <= double(cell.front) && std::max(z_in, z_out) >= double(cell.back)) {
-            const double back = exact_back(size_t(index));
-            if (std::max(z_in, z_out) >= back) {
-                if (settings_.behind == Behind::hit || faces_ray(size_t(index), ray.direction_vs)) {
-                    found.status       = TraceStatus::hit;
-                    found.hit_pixel    = pixel_at(size_t(index), size);
-                    found.hit_t        = first_contact_t(ray, t_in, t_out, double(cell.front), back);
-                    found.hit_px_depth = ray.origin_px_depth + found.hit_t * ray.delta_px_depth;
-                    const glm::dvec2 low(found.hit_pixel);
-                    found.hit_px_depth.x = std::clamp(found.hit_px_depth.x, low.x, low.x + 1);
-                    found.hit_px_depth.y = std::clamp(found.hit_px_depth.y, low.y, low.y + 1);
-                    return found;
-                }
-                found.status = settings_.behind == Behind::pass ? TraceStatus::facing_away : TraceStatus::stopped;
-                if (settings_.behind == Behind::stop) return found;
-            }
-        }
+        if (std::min(z_in, z_out) <= double(cell.front) && std::max(z_in, z_out) >= double(cell.back) &&
+            ends_at(size_t(index), {ray.origin_px_depth, ray.delta_px_depth, t_in, t_out}, ray.direction_vs, found))
+            return found;
         t_in = t_out;
         z_in = z_out;
     }

@@ -3,6 +3,7 @@
 
 #include "core/gbuffer_image.h"
 #include "core/trace_result.h"
+#include "truth/pixel_surface.h"
 #include "truth/screen_ray.h"
 
 #include <filesystem>
@@ -10,10 +11,7 @@
 
 namespace ssrlab {
 
-/// Depth (> 0) of the far side of the slab that a pixel of that depth stands for.
-double slab_back(const View& view, double depth, const TraceSettings& settings);
-
-/// What one ray found. The last three fields are undefined unless hit.
+/// What one ray found. The last three fields are undefined unless hit or stopped.
 struct WalkResult {
     TraceStatus status = TraceStatus::not_traced;
     uint32_t    pixels = 0; // visited; the start pixel is not one of them
@@ -30,15 +28,14 @@ public:
     WalkResult walk(const ScreenRay& ray) const;
 
 private:
-    /// A pixel's slab in depth, rounded outward to float: it rejects a pixel for certain, and small cells keep the walk in
+    /// All depths of what a pixel holds, rounded outward to float: it rejects a pixel for certain, and small cells keep the walk in
     /// the cache. front = -inf on the background, so that nothing meets it.
     struct Cell {
         float front;
         float back;
     };
 
-    bool   faces_ray(size_t index, glm::dvec3 direction_vs) const;
-    double exact_back(size_t index) const;
+    bool ends_at(size_t index, const RayPart& part, glm::dvec3 direction_vs, WalkResult& found) const;
 
     const GBufferImage& gbuffer_;
     TraceSettings       settings_;

@@ -63,7 +63,7 @@ std::string broken(const Picture& picture, const Technique& technique, const Tra
         return "traced where nothing reflects, or the reverse";
     if (result.steps[i] > most_steps)
         return fmt::format("{} steps, at most {} were declared", result.steps[i], most_steps);
-    if (settings.behind == Behind::hit && result.status[i] == TraceStatus::facing_away) return "facing_away without the facing rule";
+    if (settings.behind != Behind::pass && result.status[i] == TraceStatus::facing_away) return "facing_away, but no ray may pass";
     if (!std::isfinite(result.hit_t[i])) return fmt::format("t = {}", result.hit_t[i]);
     if (result.status[i] != TraceStatus::hit) return "";
 

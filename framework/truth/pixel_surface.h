@@ -1,0 +1,56 @@
+// What a pixel holds and where a ray meets it: sections "What a pixel holds" and "The meeting" of docs/hit_contract.md, in double precision.
+#pragma once
+
+#include "core/gbuffer_image.h"
+#include "core/trace_result.h"
+
+#include <optional>
+
+namespace ssrlab {
+
+/// A front and a back that slope alike, in depth; behind the back perhaps a solid.
+struct PixelSurface {
+    glm::dvec2 centre_px{0, 0};
+    double     front = 0;          // at the centre; +inf: infinitely near
+    double     back  = 0;          // at the centre; -inf: there is none
+    glm::dvec2 gradient{0, 0};     // depth per px; 0: level
+    double     solid_back = 0;     // where the solid ends; 0: there is none
+    bool       sides_by_height = false; // met from behind where the ray comes from below; else where the normal says so
+
+    double front_at(glm::dvec2 position_px) const { return front + glm::dot(gradient, position_px - centre_px); }
+    double back_at(glm::dvec2 position_px) const { return back + glm::dot(gradient, position_px - centre_px); }
+};
+
+/// The part t_in … t_out of a ray origin + t * delta, in (x_px, y_px, depth).
+struct RayPart {
+    glm::dvec3 origin_px_depth{0};
+    glm::dvec3 delta_px_depth{0};
+    double     t_in = 0, t_out = 0;
+
+    glm::dvec3 at(double t) const { return origin_px_depth + t * delta_px_depth; }
+};
+
+/// Undefined unless `meets`.
+struct Meeting {
+    bool   meets       = false;
+    bool   from_behind = false;
+    double t           = 0; // where the ray first meets what the pixel holds
+};
+
+/// Depth of the far side of the slab that a pixel of that depth (> 0) stands for.
+double slab_back(const View& view, double depth, const TraceSettings& settings);
+/// Depth of the near side of the two-sided slab; +inf where it would be at the eye or behind it.
+double slab_front(const View& view, double depth, const TraceSettings& settings);
+/// How far the back of a plane lies below its front.
+double plane_tolerance(const View& view, double depth);
+
+/// Throws Failure unless the G-buffer has what the model needs.
+void require_surface(const GBufferImage& gbuffer, const TraceSettings& settings);
+
+/// Empty on the background.
+std::optional<PixelSurface> pixel_surface(const GBufferImage& gbuffer, size_t index, const TraceSettings& settings);
+
+/// `facing`: the sign of normal · direction; it says from which side a box is met.
+Meeting meet(const PixelSurface& surface, const RayPart& ray, double facing);
+
+} // namespace ssrlab
