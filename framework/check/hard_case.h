@@ -61,6 +61,7 @@ CaseFamily size_cases();
 CaseFamily camera_cases();
 CaseFamily scale_cases();
 CaseFamily surface_cases();
+CaseFamily plane_cases();
 CaseFamily normal_cases();
 CaseFamily parameter_cases();
 CaseFamily motion_cases();

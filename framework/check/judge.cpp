@@ -87,11 +87,13 @@ Judge::Sides Judge::sides(const RayInput& ray, const Visit& v, const Claim& clai
 {
     if (!v.surface.sides_by_height)
         return {v.facing < facing_rounding, !(v.facing < -facing_rounding) || v.surface.solid_back > 0};
+    // Who tests whole steps continues a plane to where the ray was a step before: it may be on either side there.
+    if (claim.may_hit_within_a_step) return {};
     const double rounding = depth_rounding(ray, v);
-    const bool   anywhere = claim.may_miss_between_samples || claim.may_hit_within_a_step;
+    const bool   anywhere = claim.may_miss_between_samples;
     const double lowest   = anywhere ? std::min(v.over_back_in, v.over_back_out) : v.over_back_in,
                  highest  = anywhere ? std::max(v.over_back_in, v.over_back_out) : v.over_back_in;
-    return {highest >= -rounding, lowest < rounding};
+    return {highest + v.sampled_more >= -rounding, lowest < rounding};
 }
 
 bool Judge::surely_ends_ray(const RayInput& ray, const Visit& v) const
@@ -108,8 +110,9 @@ std::string Judge::unsound_side(const RayInput& ray, const RayOutcome& outcome, 
     const auto               own = std::ranges::find_if(visits, [&](const Visit& v) { return v.pixel == wide.pixel; });
     // A pixel that only rounding puts on the ray's way may be entered anywhere.
     const Claim anywhere{.may_miss_between_samples = true};
-    const Sides possible =
-        claim.may_hit_within_a_step || own == visits.end() ? sides(ray, wide, anywhere) : sides(ray, *own, claim);
+    const Sides possible = claim.may_hit_within_a_step || claim.may_miss_between_samples || own == visits.end()
+                               ? sides(ray, wide, anywhere)
+                               : sides(ray, *own, claim);
     if (outcome.status == TraceStatus::hit && !possible.front)
         return fmt::format("{}, which faces away or is met from behind (cosine {:.6g}, {:.6g} over its back)",
                            name(outcome), wide.facing, wide.over_back_in);
@@ -127,7 +130,8 @@ std::string Judge::unsound_hit(const RayInput& ray, const RayOutcome& outcome, c
     if (t.empty() || !on_image(setup_.gbuffer, outcome.hit_pixel))
         return fmt::format("{}, a pixel that the ray does not cross", name(outcome));
     const double step = claim.may_hit_within_a_step && outcome.steps > 0 ? outcome.t / outcome.steps : 0;
-    const Visit  v    = visit(ray, outcome.hit_pixel, std::max(t.from - step, 0.0), std::min(t.to + step, 1.0));
+    const Visit  v    = visit(ray, outcome.hit_pixel, std::max(t.from - step, 0.0), std::min(t.to + step, 1.0),
+                              claim.may_miss_between_samples);
     if (!(v.contact >= -depth_rounding(ray, v)))
         return fmt::format("{}, where the ray's depth {:.9g} … {:.9g} does not meet the slab {:.9g} … {:.9g}",
                            name(outcome), v.z_in, v.z_out, v.surface.front, v.surface.back);

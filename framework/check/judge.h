@@ -44,6 +44,7 @@ struct Visit {
     PixelSurface surface;           // background: front <= 0
     double       over_back_in  = 0; // how far above the surface's back the ray enters and leaves, in depth
     double       over_back_out = 0;
+    double       sampled_more  = 0; // how much farther the back lies for one sample than for an interval
     double       contact       = 0;  // depth by which the ray overlaps what the pixel holds; negative: a gap
     double       facing        = -1; // cosine between normal and ray; -1 where it makes no difference
     bool         passes_behind() const { return surface.front > 0 && contact < 0 && over_back_in < 0; }
@@ -74,7 +75,8 @@ private:
         bool front = true, behind = true;
     };
 
-    Visit       visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_out) const;
+    /// sampled: by points, for which a plane has the thickness of the run.
+    Visit visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_out, bool sampled = false) const;
     double      depth_rounding(const RayInput& ray, const Visit& visit) const;
     bool        surely_touches(const RayInput& ray, const Visit& visit) const;
     bool        surely_ends_ray(const RayInput& ray, const Visit& visit) const;

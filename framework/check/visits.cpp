@@ -59,7 +59,7 @@ double depth_inside_px(const RayInput& ray, const Visit& visit)
     return inside(0.5 * (from + to));
 }
 
-Visit Judge::visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_out) const
+Visit Judge::visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_out, bool sampled) const
 {
     const size_t  index = pixel_index(pixel, setup_.gbuffer.view.size_px);
     const RayPart part{ray.origin_px_depth, ray.delta_px_depth, t_in, t_out};
@@ -75,7 +75,11 @@ Visit Judge::visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_
     visit.over_back_out     = out.z - surface.back_at(to);
     const double over_front = std::min(in.z - surface.front_at(from), out.z - surface.front_at(to));
     const double in_solid   = surface.solid_back > 0 ? std::max(in.z, out.z) - surface.solid_back : -infinity;
-    visit.contact           = std::min(-over_front, std::max({visit.over_back_in, visit.over_back_out, in_solid}));
+    const double slab =
+        slab_back(setup_.gbuffer.view, static_cast<double>(setup_.gbuffer.depth[index]), setup_.settings);
+    if (sampled) visit.sampled_more = std::max(surface.back - slab, 0.0);
+    const double over_back = std::max(visit.over_back_in, visit.over_back_out) + visit.sampled_more;
+    visit.contact          = std::min(-over_front, std::max(over_back, in_solid));
     if (setup_.settings.behind != Behind::hit)
         visit.facing = cosine(glm::dvec3(setup_.gbuffer.normal_vs[index]), direction_vs(setup_.gbuffer.view, ray));
     return visit;

@@ -48,6 +48,8 @@ constexpr auto table = std::to_array<Measure>({
      own},
     {"missed_out_of_steps", "share", "visible rays that end as out_of_steps, of visible rays", own},
     {"missed_facing_rule", "share", "visible rays that end as facing_away, of visible rays", own},
+    {"missed_stopped", "share", "visible rays that end as stopped, of visible rays", own},
+    {"stopped_right_share", "share", "stopped rays whose true point is not visible in the frame, of stopped rays", own},
     {"missed_not_in_depth", "share",
      "all other visible rays without hit: the screen truth does not find the point either, of visible rays", own},
     {"precision_1px", "share", "hits within 1 px of a visible true point, of hits", truth},

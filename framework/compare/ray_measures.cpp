@@ -142,6 +142,7 @@ MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth
     std::array<size_t, truth_class_names.size()> of_class{};
     size_t                                       rays = 0, hit_count = 0, found_1px = 0, found_4px = 0, displaced = 0;
     size_t                                       stepped_over = 0, out_of_steps = 0, facing_rule = 0, not_in_depth = 0;
+    size_t                                       stopped = 0, missed_stopped = 0;
     std::array<size_t, 3>                        false_hits{};
     for (size_t i = 0; i < truth.cls.size(); ++i) {
         if (truth.cls[i] == TruthClass::not_traced) continue;
@@ -151,11 +152,14 @@ MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth
         const bool found   = finds(tested, truth, i, within_one_px);
         found_1px += found;
         found_4px += finds(tested, truth, i, within_four_px);
+        const bool stops = tested.status[i] == TraceStatus::stopped;
+        stopped += stops;
+        missed_stopped += stops && visible;
         if (hits(tested, i)) {
             ++hit_count;
             displaced += visible && !found;
             if (!found) ++false_hits[size_t(false_hit_cause(tested, gbuffer, i))];
-        } else if (visible) {
+        } else if (visible && !stops) {
             if (tested.status[i] == TraceStatus::out_of_steps)
                 ++out_of_steps;
             else if (tested.status[i] == TraceStatus::facing_away)
@@ -173,6 +177,8 @@ MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth
                          {"missed_stepped_over", share(stepped_over, visible)},
                          {"missed_out_of_steps", share(out_of_steps, visible)},
                          {"missed_facing_rule", share(facing_rule, visible)},
+                         {"missed_stopped", share(missed_stopped, visible)},
+                         {"stopped_right_share", share(stopped - missed_stopped, stopped)},
                          {"missed_not_in_depth", share(not_in_depth, visible)},
                          {"precision_1px", share(found_1px, hit_count)},
                          {"f1_1px", share(2 * found_1px, visible + hit_count)},

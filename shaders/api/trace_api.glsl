@@ -142,6 +142,7 @@ bool interval_touches(real depth, real2 interval)
 
 // What a pixel holds, by the run's surface model (shaders/surfaces/README.md):
 //   PixelSurface surface_at(Ray, ivec2 pixel, uvec2 words)      words: fetch_pixel()
+//   PixelSurface sampled_surface_at(Ray, ivec2 pixel, uvec2 words)  for one sample instead of an interval
 //   bool meets(Ray, PixelSurface, real t_in, real t_out)        does the ray meet it between the two
 //   bool from_behind(Ray, PixelSurface, real t_in)              from the side that the frame does not show, if it meets it
 //   real contact_t(Ray, PixelSurface, real t_in, real t_out)    where, if it meets it
@@ -164,6 +165,13 @@ bool touches_surface(Ray ray, ivec2 pixel, real t_in, real t_out)
 {
     PixelSurface surface = surface_at(ray, pixel, fetch_pixel(pixel));
     return ends_at(ray, surface, meets(ray, surface, t_in, t_out), t_in);
+}
+
+// Does it end at this pixel by one sample, at t? There a plane has the thickness of the run.
+bool touches_sample(Ray ray, ivec2 pixel, real t)
+{
+    PixelSurface surface = sampled_surface_at(ray, pixel, fetch_pixel(pixel));
+    return ends_at(ray, surface, meets(ray, surface, t, t), t);
 }
 
 // The same between two crossings.
@@ -194,7 +202,13 @@ TraceResult end_at(Ray ray, PixelSurface surface, ivec2 pixel, real t_in, real t
     return TraceResult(stopped ? TRACE_STOPPED : TRACE_HIT, pixel, t, steps);
 }
 
-// A hit (or stop) at the end of an interval [t_in, t] between two samples, or at one sample.
+// A hit (or stop) at one sample, which touches_sample() found.
+TraceResult hit_at_sample(Ray ray, ivec2 pixel, real t, int steps)
+{
+    return end_at(ray, sampled_surface_at(ray, pixel, fetch_pixel(pixel)), pixel, t, t, steps);
+}
+
+// A hit (or stop) at the end of an interval [t_in, t] between two samples.
 TraceResult hit_at(Ray ray, ivec2 pixel, real t_in, real t, int steps)
 {
     PixelSurface surface = surface_at(ray, pixel, fetch_pixel(pixel));

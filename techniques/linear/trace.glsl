@@ -6,6 +6,11 @@ real sample_t(Ray ray, int i)
     return space == space_screen ? fraction : metres_to_t(ray, max_distance_m * fraction);
 }
 
+TraceResult hit(Ray ray, ivec2 pixel, real t_before, real t, int taken)
+{
+    return interval ? hit_at(ray, pixel, t_before, t, taken) : hit_at_sample(ray, pixel, t, taken);
+}
+
 TraceResult trace(Ray ray)
 {
     real  t_before = real(0), t = real(0);
@@ -19,13 +24,13 @@ TraceResult trace(Ray ray)
         t        = sample_t(ray, taken);
         ended    = t > real(1);
         pixel    = pixel_at(ray, t);
-        found    = !ended && pixel != ray.start_pixel && touches_surface(ray, pixel, interval ? t_before : t, t);
+        found    = !ended && pixel != ray.start_pixel && (interval ? touches_surface(ray, pixel, t_before, t) : touches_sample(ray, pixel, t));
     }
     if (!found) return space == space_pixels && !ended && sample_t(ray, taken + 1) <= real(1) ? out_of_steps(taken) : miss(ray, taken);
-    if (!interpolate || ray.delta.z == real(0)) return hit_at(ray, pixel, interval ? t_before : t, t, taken);
+    if (!interpolate || ray.delta.z == real(0)) return hit(ray, pixel, t_before, t, taken);
 
     ivec2 front = pixel_at(ray, clamp((fetch_depth(pixel) - ray.origin.z) / ray.delta.z, t_before, t));
     real2 span  = span_in_pixel(ray, make_grid(ray), front);
     bool  moves = front != ray.start_pixel && touches_surface(ray, front, span.x, span.y);
-    return moves ? hit_between(ray, front, span.x, span.y, taken) : hit_at(ray, pixel, interval ? t_before : t, t, taken);
+    return moves ? hit_between(ray, front, span.x, span.y, taken) : hit(ray, pixel, t_before, t, taken);
 }

@@ -18,7 +18,7 @@ TraceResult trace(Ray ray)
         t             = sample_t(ray, taken);
         ended         = t > real(1);
         ivec2 pixel   = pixel_at(ray, t);
-        found         = !ended && pixel != ray.start_pixel && touches_surface(ray, pixel, t, t);
+        found         = !ended && pixel != ray.start_pixel && touches_sample(ray, pixel, t);
     }
     if (!found) return space == space_pixels && !ended && sample_t(ray, taken + 1) <= real(1) ? out_of_steps(taken) : miss(ray, taken);
 
@@ -27,9 +27,9 @@ TraceResult trace(Ray ray)
     {
         real  middle   = real(0.5) * (t_free + t);
         ivec2 pixel    = pixel_at(ray, middle);
-        bool  touched  = pixel != ray.start_pixel && touches_surface(ray, pixel, middle, middle);
+        bool  touched  = pixel != ray.start_pixel && touches_sample(ray, pixel, middle);
         t_free         = touched ? t_free : middle;
         t              = touched ? middle : t;
     }
-    return hit_at(ray, pixel_at(ray, t), t, t, taken + binary_steps);
+    return hit_at_sample(ray, pixel_at(ray, t), t, taken + binary_steps);
 }

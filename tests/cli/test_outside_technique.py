@@ -12,8 +12,7 @@ place = { default = 0.5, min = 0.0, max = 1.0, doc = "Where, as a part of the ra
 TRACE = """TraceResult trace(Ray ray)
 {
     ivec2 pixel = pixel_at(ray, real(place));
-    real  depth = depth_at(ray, real(place));
-    if (pixel != ray.start_pixel && touches_surface(ray, pixel, real(place), real(place))) return hit_at(ray, pixel, real(place), real(place), 1);
+    if (pixel != ray.start_pixel && touches_sample(ray, pixel, real(place))) return hit_at_sample(ray, pixel, real(place), 1);
     return miss(ray, 1);
 }
 """

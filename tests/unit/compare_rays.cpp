@@ -163,6 +163,8 @@ TEST(RayMeasures, AgainstSceneTruth)
     EXPECT_EQ(values.at("missed_out_of_steps"), 1 / 6.0);
     EXPECT_EQ(values.at("missed_facing_rule"), 1 / 6.0);
     EXPECT_EQ(values.at("missed_not_in_depth"), 1 / 6.0);
+    EXPECT_EQ(values.at("missed_stopped"), 0);
+    EXPECT_EQ(values.at("stopped_right_share"), std::nullopt);
     EXPECT_EQ(values.at("precision_1px"), 1 / 4.0);
     EXPECT_EQ(values.at("f1_1px"), 2 / 10.0);
     EXPECT_EQ(values.at("false_hits"), 3 / 8.0);

@@ -8,6 +8,8 @@ struct PixelSurface
 
 PixelSurface surface_at(Ray ray, ivec2 pixel, uvec2 words) { return PixelSurface(real(depth_in(words, pixel)), pixel); }
 
+PixelSurface sampled_surface_at(Ray ray, ivec2 pixel, uvec2 words) { return surface_at(ray, pixel, words); }
+
 bool meets(Ray ray, PixelSurface surface, real t_in, real t_out)
 {
     return interval_touches(surface.depth, depth_interval(ray, depth_at(ray, t_in), depth_at(ray, t_out)));

@@ -21,6 +21,15 @@ PixelSurface surface_at(Ray ray, ivec2 pixel, uvec2 words)
     return PixelSurface(start, rate, usable ? -plane_tolerance(depth) : slab_back(depth) - depth, real(load_solid(pixel)));
 }
 
+// One sample sees no crossing: it needs a thickness, the run's.
+PixelSurface sampled_surface_at(Ray ray, ivec2 pixel, uvec2 words)
+{
+    PixelSurface surface = surface_at(ray, pixel, words);
+    real         depth   = real(depth_in(words, pixel));
+    surface.back         = min(surface.back, slab_back(depth) - depth);
+    return surface;
+}
+
 real height_at(PixelSurface surface, real t)
 {
     precise real height = surface.start + t * surface.rate;
