@@ -13,6 +13,8 @@ per     = "tile"
 tile_px = 8
 """
 BUILD = """#include "api/view.glsl"
+#include "api/slab.glsl"
+#include "api/held.glsl"
 #include "structure/parameters"
 #include "structure/buffers"
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -25,7 +27,8 @@ void main()
     for (int i = 0; i < 64; ++i)
     {
         ivec2 pixel = min(first + ivec2(i & 7, i >> 3), size_px - 1);
-        front       = max(front, depth_of_pair(load_cell(pixel, 0), pixel));
+        uvec2 words = load_cell(pixel, 0);
+        front       = max(front, held_depths(pixel, depth_in(words, pixel), words.y).x);
     }
     store_fronts(tile_index(first, 8), front * tile_fronts_nearer_by);
 }
@@ -136,7 +139,7 @@ class Test(Case):
     def test_error_in_its_shader_names_file_and_line(self):
         self.write("mine/tile_fronts/build.comp", BUILD.replace("float front = BACK", "float front = BAKC"))
         self.refused("render", "builtin:stairs", "-t", "tile_skip", "--techniques", "mine", "--size", "64x36", "-o", "a.png", code=2,
-                     says=["mine/tile_fronts/build.comp:10", "BAKCGROUND_DEPTH"])
+                     says=["mine/tile_fronts/build.comp:12", "BAKCGROUND_DEPTH"])
 
 
 if __name__ == "__main__":

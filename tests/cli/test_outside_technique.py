@@ -66,15 +66,15 @@ class Test(Case):
 
     def test_all_errors_in_its_shader_are_named(self):
         self.shader_refused(TRACE.replace("ivec2 pixel = pixel_at", "ivec2 pixel = pixle_at").replace("return miss(ray, 1)", "return mis(ray, 1)"),
-                            ["mine/coin/trace.glsl:3: 'pixle_at'", "mine/coin/trace.glsl:6: 'mis'"])
+                            ["mine/coin/trace.glsl:3: 'pixle_at'", "mine/coin/trace.glsl:5: 'mis'"])
 
     def test_missing_trace_function_is_said_of_its_file(self):
-        out = self.shader_refused(TRACE.replace("trace(Ray", "trace_it(Ray"), ["mine/coin/trace.glsl:7: 'trace'"])
-        self.assertTrue(out.startswith("ssrlab: mine/coin/trace.glsl:7:"), out)
+        out = self.shader_refused(TRACE.replace("trace(Ray", "trace_it(Ray"), ["mine/coin/trace.glsl:6: 'trace'"])
+        self.assertTrue(out.startswith("ssrlab: mine/coin/trace.glsl:6:"), out)
 
     def test_unbalanced_braces_are_said_of_its_file(self):
         self.shader_refused(TRACE.rstrip().removesuffix("}"), ["mine/coin/trace.glsl:2: this '{' is never closed"])
-        self.shader_refused("// { in a comment\n" + TRACE + "}\n", ["mine/coin/trace.glsl:9: "])
+        self.shader_refused("// { in a comment\n" + TRACE + "}\n", ["mine/coin/trace.glsl:8: "])
 
     def test_includes_come_from_its_folder_and_the_project_alone(self):
         secret = self.write("mine/secret.glsl", "top secret text\n")

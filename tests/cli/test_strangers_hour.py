@@ -54,9 +54,9 @@ class Test(Case):
         self.assertEqual({row["depth_pyramid.kind"] for row in rows if row["technique"] == "hiz"}, {"occupancy", "nearest"})
 
     def test_mistakes_name_the_file_and_line(self):
-        self.write("mine/tile_fronts/build.comp", self.blocks["mine/tile_fronts/build.comp"].replace("load_depth(min", "load_dpeth(min"))
+        self.write("mine/tile_fronts/build.comp", self.blocks["mine/tile_fronts/build.comp"].replace("load_cell(pixel", "load_clel(pixel"))
         self.refused("--techniques", "mine", "render", "builtin:stairs", "-t", "tile_walk", "--size", "64x36", "-o", "a.png", code=2,
-                     says=["mine/tile_fronts/build.comp:13", "load_dpeth"])
+                     says=["mine/tile_fronts/build.comp:16", "load_clel"])
         self.write("mine/tile_walk/technique.toml", self.blocks["mine/tile_walk/technique.toml"].replace('["tile_fronts"]', '["tile_front"]'))
         self.refused("--techniques", "mine", "list", code=2,
                      says=["mine/tile_walk/technique.toml:3", "unknown structure 'tile_front'", "did you mean 'tile_fronts'"])

@@ -17,7 +17,7 @@ namespace {
 /// Four hundred thousand rays in every run, a hundred million in the long one.
 size_t               planned_rays() { return std::getenv("SSRLAB_LONG") == nullptr ? 400'000 : 100'000'000; }
 constexpr size_t     batch         = 10'000;
-constexpr glm::ivec2 plane_sizes[] = {{65, 67}, {127, 131}, {641, 359}, {3, 1021}, {1, 97}};
+constexpr glm::ivec2 plane_sizes[] = {{257, 193}, {127, 131}, {641, 359}, {3, 1021}, {1, 97}};
 
 /// Gradients from level to as steep as they may be, of either sign, one in twenty pixels without a plane; behind every third pixel a solid.
 void add_planes(GBufferImage& image, uint32_t seed)
