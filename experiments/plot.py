@@ -16,6 +16,7 @@ import plot_accuracy
 import plot_effects
 import plot_figures
 import plot_report
+import plot_surfaces
 from matplotlib import pyplot as plt
 from plot_data import Results
 
@@ -27,7 +28,7 @@ def main(folder):
     plots_folder = os.path.join(folder, "plots")
     os.makedirs(plots_folder, exist_ok=True)
     plots, tables = [], {}
-    for make in plot_figures.ALL + plot_accuracy.ALL + plot_effects.ALL:
+    for make in plot_figures.ALL + plot_accuracy.ALL + plot_effects.ALL + plot_surfaces.ALL:
         for name, figure in (make(results, tables) if len(results.rows) else ()):
             for extension in ("png", "svg"):
                 figure.savefig(os.path.join(plots_folder, f"{name}.{extension}"))
@@ -36,6 +37,9 @@ def main(folder):
     summary = plot_accuracy.summary(results)
     if len(summary):
         summary.to_csv(os.path.join(folder, "summary.csv"), index=False, float_format="%.6g")
+    surfaces = plot_surfaces.ladder(results)
+    if len(surfaces):
+        surfaces.to_csv(os.path.join(folder, "surfaces.csv"), index=False, float_format="%.5g")
     plot_report.write(results, plots, tables, summary)
     print(f"{os.path.join(folder, 'report.html')}: {len(plots)} plots, {len(results.rows)} of {len(results.all_rows)} rows ok")
 

@@ -125,6 +125,7 @@ const Camera& find_camera(const Scene& scene, const std::string& name)
         if (camera.name == name) return camera;
         names += (names.empty() ? "" : ", ") + camera.name;
     }
+    if (name == Camera{}.name && !scene.cameras.empty()) return scene.cameras.front();
     throw_spec_error("scene '{}' has no view '{}': its views are {}", scene.name, name, names);
 }
 

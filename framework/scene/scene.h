@@ -107,7 +107,7 @@ std::vector<SceneListing> list_scenes();
 /// What arrives from infinitely far away: the environment map, or the background.
 glm::vec3 sky_radiance(const Scene& scene, glm::dvec3 direction_ws);
 
-/// The camera of that name; throws SpecError listing the known names.
+/// The camera of that name; "default" is the first one where none is called so. Throws SpecError listing the known names.
 const Camera& find_camera(const Scene& scene, const std::string& name);
 
 } // namespace ssrlab

@@ -268,6 +268,7 @@ TEST(SceneGltf, Cameras)
     EXPECT_EQ(plan.projection, Projection::orthographic);
     EXPECT_EQ(plan.height_m, 6);
     EXPECT_EQ(plan.far_m, 50);
+    EXPECT_EQ(&find_camera(scene, "default"), &scene.cameras.front()) << "a file's first camera is its default view";
     EXPECT_THROW(find_camera(scene, "nose"), SpecError);
 }
 

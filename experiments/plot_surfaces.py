@@ -1,0 +1,100 @@
+"""What a pixel is taken to hold: precision against recall as thickness grows, and F1 against time. Each function returns its figures."""
+from matplotlib import pyplot as plt
+
+# One colour and marker a surface model; a line's dash says what becomes of rays from behind.
+STYLES = {"box": ("#0072B2", "o"), "box_two_sided": ("#56B4E9", "s"), "box_infinite": ("#999999", "X"), "plane": ("#E69F00", "^"),
+          "plane_solid": ("#009E73", "D")}
+DASHES = {"hit": ":", "pass": "--", "stop": "-"}
+THICKNESS_MATTERS = {"box", "box_two_sided"}
+
+
+def style_of(surface, behind):
+    colour, marker = STYLES.get(surface, ("#000000", "v"))
+    return dict(color=colour, marker=marker, linestyle=DASHES.get(behind, "-"), ms=6, lw=1.3,
+                markerfacecolor=colour if behind == "stop" else "white", label=f"{surface}, {behind}")
+
+
+def models_of(rows):
+    """(surface, behind, rows) of each pair that occurs."""
+    for (surface, behind), line in rows.groupby(["surface", "behind"], sort=False):
+        yield surface, behind, line
+
+
+def has_models(results):
+    return results.has("surface", "precision_1px", "recall_1px") and results.rows.surface.nunique() > 1
+
+
+def precision_against_recall(results, tables):
+    """A curve a model: along it the thickness grows. A plane needs none, so it is one point."""
+    if not has_models(results) or results.rows.thickness_m.nunique() < 2:
+        return
+    for title, name, rows in results.pictures():
+        figure, axis = plt.subplots(figsize=(7.2, 5.2))
+        for surface, behind, line in models_of(rows):
+            line = line.sort_values("thickness_m")
+            if surface not in THICKNESS_MATTERS:
+                line = line.iloc[:1]
+            axis.plot(100 * line.recall_1px, 100 * line.precision_1px, **style_of(surface, behind))
+            if surface != "box" or behind != "stop":
+                continue
+            for _, row in line.iterrows():
+                axis.annotate(f"{row.thickness_m:g} m", (100 * row.recall_1px, 100 * row.precision_1px), textcoords="offset points",
+                              xytext=(6, -3), fontsize=7, color=STYLES["box"][0])
+        axis.set(xlabel="recall: visible points found within 1 px, %", ylabel="precision: hits that are right, %",
+                 title=f"Surface models: {title}")
+        axis.legend(fontsize=7, loc="lower left")
+        yield f"surfaces_precision_recall_{name}", figure
+
+
+def f1_against_time(results, tables):
+    """What each model costs: the trace, its structures and, for solids, the pass that draws their backs."""
+    if not has_models(results) or not results.has("f1_1px", "cost_ms_median") or results.rows.thickness_m.nunique() > 1:
+        return
+    rows = results.rows[results.rows.width == results.rows.width.max()]
+    rows = rows[rows.technique == rows.technique.iloc[0]]
+    figure, axis = plt.subplots(figsize=(7.2, 5.2))
+    for surface, behind, line in models_of(rows):
+        solid_ms = line.passes.str.extract(r"solid_backs=([0-9.e+-]+)")[0].astype(float).fillna(0)
+        axis.plot(line.cost_ms_median + solid_ms, 100 * line.f1_1px, **{**style_of(surface, behind), "linestyle": "none"})
+        for (_, row), more in zip(line.iterrows(), solid_ms):
+            axis.annotate(row.scene.split("_")[0], (row.cost_ms_median + more, 100 * row.f1_1px), textcoords="offset points",
+                          xytext=(5, 3), fontsize=7)
+    width, height = rows.width.iloc[0], rows.height.iloc[0]
+    axis.set(xlabel="trace, structures and backs of solids, ms", ylabel="F1 against the scene, %", title=f"Surface models at {width}×{height}")
+    axis.legend(fontsize=8)
+    yield "surfaces_f1_time", figure
+
+
+def f1_against_size(results, tables):
+    """Resolution does not cure a box."""
+    if not has_models(results) or results.rows.height.nunique() < 3 or results.rows.thickness_m.nunique() > 1:
+        return
+    scenes = list(dict.fromkeys(results.rows.scene))
+    figure, axes = plt.subplots(1, len(scenes), figsize=(3.1 * len(scenes), 3.6), sharey=True, squeeze=False)
+    for axis, scene in zip(axes[0], scenes):
+        rows = results.rows[results.rows.scene == scene]
+        rows = rows[rows.technique == rows.technique.iloc[0]]
+        for surface, behind, line in models_of(rows):
+            line = line.sort_values("height")
+            axis.plot(line.height, 100 * line.f1_1px, **style_of(surface, behind))
+        axis.set(title=scene, xlabel="image height, px")
+        axis.set_xticks(sorted(rows.height.unique()))
+    axes[0][0].set_ylabel("F1 against the scene, %")
+    axes[0][0].legend(fontsize=7)
+    yield "surfaces_f1_size", figure
+
+
+def ladder(results):
+    """A row a scene, size and model, at the thickness with the best F1: what surfaces.csv holds."""
+    if not has_models(results):
+        return []
+    rows = results.rows.copy()
+    rows["solid_backs_ms"] = rows.passes.str.extract(r"solid_backs=([0-9.e+-]+)")[0].astype(float).fillna(0)
+    keys = ["scene", "view", "width", "height", "technique", "surface", "behind"]
+    best = rows.loc[rows.groupby(keys, sort=False).f1_1px.idxmax()]
+    shown = ["thickness_m", "recall_1px", "precision_1px", "f1_1px", "stopped_share", "stopped_right_share", "false_hits",
+             "steps_mean", "trace_ms_median", "structures_ms_median", "solid_backs_ms"]
+    return best[keys + [name for name in shown if name in best]]
+
+
+ALL = [precision_against_recall, f1_against_time, f1_against_size]
