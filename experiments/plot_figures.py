@@ -135,12 +135,13 @@ def thickness_curves(results, tables):
             continue
         figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.4))
         for series, part in rows.groupby("series"):
-            if part.steps.notna().any():
+            stepped = "steps" in part and part.steps.notna().any()
+            if stepped:
                 part = part[part.steps == part.steps.max()]
             part = part.drop_duplicates("thickness_m").sort_values("thickness_m")
             if len(part) < 4:
                 continue
-            said = f"{series}, {part.steps.max():g} steps" if part.steps.notna().any() else series
+            said = f"{series}, {part.steps.max():g} steps" if stepped else series
             missed = 100 * (1 - part.recall_1px) * part.truth_visible
             false = 100 * part.false_hits
             wrong = missed + false

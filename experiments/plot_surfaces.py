@@ -20,6 +20,14 @@ def models_of(rows):
         yield surface, behind, line
 
 
+def sorted_legend(axis):
+    """In the order of the ladder; a model's two rules side by side."""
+    order = list(STYLES)
+    handles, labels = axis.get_legend_handles_labels()
+    pairs = sorted(zip(labels, handles), key=lambda pair: (order.index(pair[0].split(",")[0]), pair[0]))
+    return [handle for _, handle in pairs], [label for label, _ in pairs]
+
+
 def has_models(results):
     return results.has("surface", "precision_1px", "recall_1px") and results.rows.surface.nunique() > 1
 
@@ -35,14 +43,15 @@ def precision_against_recall(results, tables):
             if surface not in THICKNESS_MATTERS:
                 line = line.iloc[:1]
             axis.plot(100 * line.recall_1px, 100 * line.precision_1px, **style_of(surface, behind))
-            if surface != "box" or behind != "stop":
+            if surface != "box":
                 continue
+            side = (8, 3) if behind == "stop" else (-8, -9)
             for _, row in line.iterrows():
                 axis.annotate(f"{row.thickness_m:g} m", (100 * row.recall_1px, 100 * row.precision_1px), textcoords="offset points",
-                              xytext=(6, -3), fontsize=7, color=STYLES["box"][0])
+                              xytext=side, fontsize=7, color=STYLES["box"][0], ha="left" if behind == "stop" else "right")
         axis.set(xlabel="recall: visible points found within 1 px, %", ylabel="precision: hits that are right, %",
                  title=f"Surface models: {title}")
-        axis.legend(fontsize=7, loc="lower left")
+        axis.legend(*sorted_legend(axis), fontsize=7.5, loc="best")
         yield f"surfaces_precision_recall_{name}", figure
 
 

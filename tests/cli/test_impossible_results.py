@@ -57,7 +57,7 @@ class Test(Case):
         self.found_invalid("return miss(ray, 9);", "9 steps, but the technique declares at most 8")
 
     def test_unknown_status(self):
-        self.found_invalid("return TraceResult(200, ivec2(0), real(0), 1);", "status 200 is none of 1 … 5")
+        self.found_invalid("return TraceResult(200, ivec2(0), real(0), 1);", "status 200 is none of 1 … 6")
 
     def test_status_below_zero(self):
         self.found_invalid("return TraceResult(-1, ivec2(0), real(0), 1);", "status -1")

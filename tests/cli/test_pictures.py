@@ -6,7 +6,7 @@ import OpenImageIO as oiio
 from support import PROGRAM, SOURCE, Case, main
 
 SCENE = "builtin:sphere_over_mirror"
-STATUS_NAMES = "0=not_traced 1=hit 2=left_screen 3=past_max_distance 4=out_of_steps 5=facing_away"
+STATUS_NAMES = "0=not_traced 1=hit 2=left_screen 3=past_max_distance 4=out_of_steps 5=facing_away 6=stopped"
 
 
 class Test(Case):
