@@ -102,24 +102,6 @@ bool contains_ignoring_case(const std::string& text, const std::string& part)
            }) != text.end();
 }
 
-/// An index, a part of the name, or (empty) a discrete GPU, else lavapipe, else whatever comes first.
-int choose_device(const std::vector<GpuInfo>& infos, const std::string& wanted)
-{
-    if (infos.empty()) throw_failure("no Vulkan device found. Debian: install mesa-vulkan-drivers");
-    if (wanted.empty()) {
-        for (const char* type : {"DiscreteGpu", "Cpu"})
-            for (const GpuInfo& info : infos)
-                if (info.type == type) return info.index;
-        return 0;
-    }
-    std::string names;
-    for (const GpuInfo& info : infos) {
-        if (wanted == std::to_string(info.index) || contains_ignoring_case(info.name, wanted)) return info.index;
-        names += fmt::format("\n  {} {}", info.index, info.name);
-    }
-    throw_spec_error("device '{}' not found; devices are:{}", wanted, names);
-}
-
 uint32_t find_queue_family(const vk::raii::PhysicalDevice& device)
 {
     const auto families = device.getQueueFamilyProperties();
@@ -138,13 +120,12 @@ vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical_device, ui
          .queueFamilyIndex = queue_family, .queueCount = 1, .pQueuePriorities = &priority};
     vk::PhysicalDeviceVulkan13Features features13{
         .synchronization2 = true, .dynamicRendering = true, .maintenance4 = true};
-    vk::PhysicalDeviceVulkan12Features features12{
-        .pNext = &features13, .scalarBlockLayout = true, .hostQueryReset = true};
-    const vk::PhysicalDeviceFeatures2 features{.pNext    = &features12,
-                                               .features = {.robustBufferAccess = robust,
-                                                            .samplerAnisotropy  = available.samplerAnisotropy,
-                                                            .shaderFloat64      = available.shaderFloat64,
-                                                            .shaderInt64        = available.shaderInt64}};
+    vk::PhysicalDeviceVulkan12Features features12{.pNext = &features13, .scalarBlockLayout = true};
+    const vk::PhysicalDeviceFeatures2  features{.pNext    = &features12,
+                                                .features = {.robustBufferAccess = robust,
+                                                             .samplerAnisotropy  = available.samplerAnisotropy,
+                                                             .shaderFloat64      = available.shaderFloat64,
+                                                             .shaderInt64        = available.shaderInt64}};
     return {physical_device,
             vk::DeviceCreateInfo{.pNext = &features, .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue}};
 }
@@ -227,6 +208,23 @@ Gpu open_gpu(const GpuOptions& options)
         throw_failure("the Vulkan device cannot be opened: {}", error.what());
     }
     return gpu;
+}
+
+int choose_device(std::span<const GpuInfo> infos, const std::string& wanted)
+{
+    if (infos.empty()) throw_failure("no Vulkan device found. Debian: install mesa-vulkan-drivers");
+    if (wanted.empty()) {
+        for (const char* type : {"DiscreteGpu", "IntegratedGpu", "VirtualGpu", "Cpu"})
+            for (const GpuInfo& info : infos)
+                if (info.type == type) return info.index;
+        return infos.front().index;
+    }
+    std::string names;
+    for (const GpuInfo& info : infos) {
+        if (wanted == std::to_string(info.index) || contains_ignoring_case(info.name, wanted)) return info.index;
+        names += fmt::format("\n  {} {}", info.index, info.name);
+    }
+    throw_spec_error("device '{}' not found; devices are:{}", wanted, names);
 }
 
 size_t pipelines_made(const Gpu& gpu) { return gpu.impl->pipelines_made; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,9 @@ struct Gpu {
 /// Throws SpecError for an unknown device, Failure when there is no Vulkan driver.
 Gpu                  open_gpu(const GpuOptions& options = {});
 std::vector<GpuInfo> list_gpus();
+/// Index of the device that `wanted` names, by its number or a part of its name. Empty: a discrete GPU, else an integrated one, else a virtual one, else a
+/// CPU device. Throws SpecError listing the devices, Failure when there are none.
+int choose_device(std::span<const GpuInfo> infos, const std::string& wanted);
 /// Messages of the validation layer so far (empty = none, or layer not loaded).
 std::vector<std::string> validation_messages(const Gpu& gpu);
 /// Compute pipelines that were made so far: where the number has not changed, all were known.
