@@ -1,6 +1,7 @@
 #include "render/depth_buffer.h"
 
 #include "core/pixel_index.h"
+#include "planes.h"
 #include "shared.h"
 
 #include <bit>

@@ -19,7 +19,8 @@ size_t cell_index(glm::ivec2 size_px, glm::ivec2 pixel, int level);
 /// Cells of a level.
 glm::ivec2 level_size(glm::ivec2 size_px, int level);
 
-/// The depth of every pixel as level 0, and the cells above it, in strips; behind them every pixel's depth with its plane (shaders/layout/memory_layout.glsl).
+/// The depth of every pixel as level 0, and the cells above it, in strips; behind them every pixel's depth with its
+/// plane (shaders/layout/cell_places.glsl, plane_places.glsl).
 struct DepthBuffer {
     glm::ivec2           size_px{0, 0};
     Buffer               cells;           // as texels: both words of a cell, or the depths of two pixels
@@ -28,7 +29,7 @@ struct DepthBuffer {
 };
 
 /// Without content.
-DepthBuffer        make_depth_buffer(Gpu& gpu, glm::ivec2 size_px);
+DepthBuffer make_depth_buffer(Gpu& gpu, glm::ivec2 size_px);
 /// gradients: of each pixel, packed (core/plane_gradient.h); empty: level planes.
 void write_depth(Gpu& gpu, DepthBuffer& buffer, std::span<const float> depth, std::span<const uint32_t> gradients);
 std::vector<float> read_depth(Gpu& gpu, const DepthBuffer& buffer);

@@ -200,7 +200,7 @@ Shader compile_trace(const Gpu& gpu, const PreparedFrame& frame, const RayBuffer
     const Technique& technique = frame.technique;
     const bool       in_double = rays.precision == Precision::float64;
     ShaderSource     source{
-            .file          = "trace/trace.comp",
+            .file          = technique.rays_per_invocation == 2 ? "trace/trace_pairs.comp" : "trace/trace.comp",
             .defines       = precision_defines(gpu, rays.precision),
             .include_files = structure_include_files(technique),
             .include_texts = {{"technique/parameters", parameter_declarations(technique.parameters, CONSTANT_PARAMETERS)},
@@ -209,8 +209,6 @@ Shader compile_trace(const Gpu& gpu, const PreparedFrame& frame, const RayBuffer
     source.include_files.emplace("technique/trace.glsl", technique.folder / "trace.glsl");
     add_surface(source, frame.settings.trace.surface);
     source.defines.emplace("STRUCTURES", std::to_string(technique.structures.size()));
-    if (technique.rays_per_invocation > 1)
-        source.defines.emplace("RAYS_PER_INVOCATION", std::to_string(technique.rays_per_invocation));
     for (const std::string& macro : shader_macros(technique, frame.values)) source.defines.emplace(macro, "1");
     source.defines.merge(store_defines(gpu, rays.hits));
     if (counts) source.defines.emplace("COUNT_WORK", "1");

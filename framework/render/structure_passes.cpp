@@ -14,7 +14,7 @@ namespace {
 
 constexpr int first_binding = 32, group_fetches_binding = 31;
 
-/// An element type of GLSL as the macros of shaders/layout/memory_layout.glsl want it.
+/// An element type of GLSL as the macros of shaders/layout/structure_buffers.glsl want it.
 struct ElementType {
     int         words;
     const char *format, *swizzle, *from_bits, *to_bits;
@@ -184,7 +184,8 @@ std::vector<StructurePasses> make_structures(Gpu& gpu, const PreparedFrame& fram
 
 std::string buffer_declarations(const StructureBuffer& buffer, int binding, bool stored, bool in_double)
 {
-    std::string text = fmt::format("const int {}_count = {};\n", buffer.name, buffer.count);
+    std::string text = fmt::format("#include \"layout/structure_buffers.glsl\"\nconst int {}_count = {};\n",
+                                   buffer.name, buffer.count);
     if (is_double(buffer, in_double)) {
         text += fmt::format("LOADED_DOUBLES({}, {}, {})\n", binding, buffer.name, buffer.type);
         if (stored) text += fmt::format("STORED_DOUBLES({}, {}, {})\n", binding + 1, buffer.name, buffer.type);
@@ -280,7 +281,8 @@ std::string structure_declarations(const Technique& technique, const Structure* 
             text += fmt::format("#include \"structure/{}/read.glsl\"\n", structure.id);
     }
     if (built != nullptr && builds_per_ray(*built))
-        text += fmt::format("#ifdef COUNT_WORK\nSTORED_BUFFER_1({}, group_fetches, uint, uint)\n#else\n"
+        text += fmt::format("#ifdef COUNT_WORK\n#include \"layout/structure_buffers.glsl\"\nSTORED_BUFFER_1({}, "
+                            "group_fetches, uint, uint)\n#else\n"
                             "void store_group_fetches(int group, uint fetches) {{}}\n#endif\n",
                             group_fetches_binding);
     return text;

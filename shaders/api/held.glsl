@@ -8,7 +8,7 @@ struct Held
 // How far from its centre a ray that is in a pixel may be on each axis, with rounding.
 const float held_reach_px = 0.5 + 1.0 / 64;
 
-// gradient: the second word of a pixel with its plane (layout/memory_layout.glsl).
+// gradient: the second word of a pixel with its plane (layout/plane_places.glsl).
 #include "surface/held.glsl"
 
 // The nearest and the farthest depth that the pixel holds.

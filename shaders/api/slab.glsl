@@ -14,19 +14,7 @@ layout(constant_id = CONSTANT_SLAB_SCALE) const slab_real slab_scale = 1;
 layout(constant_id = CONSTANT_SLAB_SHIFT) const slab_real slab_shift = 0;
 
 #ifdef SURFACE_TWO_SIDED
-// The same numbers for the front, which lies as far before the depth.
-layout(constant_id = CONSTANT_FRONT_SLOPE) const slab_real front_slope = 0;
-layout(constant_id = CONSTANT_FRONT_SCALE) const slab_real front_scale = 1;
-layout(constant_id = CONSTANT_FRONT_SHIFT) const slab_real front_shift = 0;
-const slab_real infinitely_near = slab_real(1e30);
-
-slab_real slab_front_of(slab_real depth)
-{
-    slab_real         below = slab_real(1) + depth * front_slope;
-    precise slab_real front = (depth * front_scale - front_shift) / below;
-    return below > slab_real(0) ? front : infinitely_near;
-}
-real slab_front(real depth) { return real(slab_front_of(slab_real(depth))); }
+#include "api/slab_two_sided.glsl"
 #else
 slab_real slab_front_of(slab_real depth) { return depth; }
 real      slab_front(real depth) { return depth; }

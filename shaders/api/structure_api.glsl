@@ -1,7 +1,7 @@
 // What the shaders of a structure and the techniques that read it share: where elements lie in a buffer of each size rule. After api/view.glsl.
 // A buffer NAME of the manifest has load_NAME(index); in the structure's own passes also store_NAME(index, value); with `count` elements each, NAME_count.
-#define READS_CELLS
-#include "layout/memory_layout.glsl"
+#include "layout/load_cell.glsl"
+#include "layout/workgroups.glsl"
 
 // per = "pixel"
 int pixel_index(ivec2 pixel) { return pixel.y * size_px.x + pixel.x; }

@@ -8,8 +8,7 @@
 #include "api/view.glsl"
 #include "api/slab.glsl"
 #include "api/hash.glsl"
-#define READS_CELLS
-#include "layout/memory_layout.glsl"
+#include "layout/load_cell.glsl"
 #include "trace/work_counters.glsl"
 
 layout(constant_id = CONSTANT_BEHIND) const int behind_rule = 0; // BEHIND_*
@@ -66,10 +65,7 @@ real metres_to_t(Ray ray, real distance_m)
 }
 
 // Screen t of a stride, in pixels along the longer axis; a shorter ray takes one stride.
-real stride_to_t(Ray ray, real stride_px)
-{
-    return stride_px / max(stride_px, max(abs(ray.delta.x), abs(ray.delta.y)));
-}
+real stride_to_t(Ray ray, real stride_px) { return stride_px / max(stride_px, max(abs(ray.delta.x), abs(ray.delta.y))); }
 
 // Direction in view space from the ray's origin to a position of some depth, not normalised.
 real3 direction_to_vs(Ray ray, real2 position_px, real depth)
@@ -78,23 +74,14 @@ real3 direction_to_vs(Ray ray, real2 position_px, real depth)
 }
 
 // Direction of the ray in view space, not normalised.
-real3 direction_vs(Ray ray)
-{
-    return px_to_direction_vs(ray.origin, ray.origin + ray.delta);
-}
+real3 direction_vs(Ray ray) { return px_to_direction_vs(ray.origin, ray.origin + ray.delta); }
 
 // A number in [0, 1), always the same for the same pixel, unlike its neighbours'.
-real random_of(ivec2 pixel)
-{
-    return real(pcg(pcg(uint(pixel.x)) + uint(pixel.y)) >> 8) / real(1 << 24);
-}
+real random_of(ivec2 pixel) { return real(pcg(pcg(uint(pixel.x)) + uint(pixel.y)) >> 8) / real(1 << 24); }
 
 // ---- Fetches
 // Normal of a pixel in view space; not counted.
-real3 fetch_normal(ivec2 pixel)
-{
-    return real3(imageLoad(normal_image, pixel).xyz);
-}
+real3 fetch_normal(ivec2 pixel) { return real3(imageLoad(normal_image, pixel).xyz); }
 
 // What is stored of a pixel, for surface_at(); counted.
 uvec2 fetch_pixel(ivec2 pixel)

@@ -14,16 +14,10 @@ layout(set = 0, binding = 0, scalar) uniform View
     real  far_m; // orthographic only
 };
 
-real depth_to_distance(real depth)
-{
-    return orthographic == 0 ? near_m / depth : far_m - depth * (far_m - near_m);
-}
+real depth_to_distance(real depth) { return orthographic == 0 ? near_m / depth : far_m - depth * (far_m - near_m); }
 
 // Slope of the view ray through a pixel position (orthographic: its offset in metres); x right, y up.
-real2 px_to_slope(real2 position_px)
-{
-    return (position_px - centre_px) / focal_px * real2(1, -1);
-}
+real2 px_to_slope(real2 position_px) { return (position_px - centre_px) / focal_px * real2(1, -1); }
 
 real3 px_to_vs(real3 px_depth)
 {

@@ -3,8 +3,7 @@
 #include "api/view.glsl"
 #define DEPTH_BINDING 3
 #define PLANES_BINDING 6
-#define WRITES_DEPTH
-#include "layout/memory_layout.glsl"
+#include "layout/store_depth.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 1) uniform sampler2D depth_buffer;

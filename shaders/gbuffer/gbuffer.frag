@@ -17,8 +17,7 @@ layout(set = 0, binding = 0, scalar) uniform Frame
 #include "gbuffer/lighting.glsl"
 #ifdef SECOND_LAYER
 #define DEPTH_BINDING 5 // the first layer's
-#define READS_DEPTH
-#include "layout/memory_layout.glsl"
+#include "layout/load_depth.glsl"
 #endif
 
 layout(location = 0) in vec3 position_ws;

@@ -2,7 +2,6 @@
 #include "gbuffer/scene_types.glsl"
 #include "gbuffer/material.glsl"
 #define DEPTH_BINDING 5
-#define READS_DEPTH
 layout(set = 0, binding = 0, scalar) uniform Frame // as gbuffer.frag declares it
 {
     mat4  world_to_view;
@@ -14,7 +13,7 @@ layout(set = 0, binding = 0, scalar) uniform Frame // as gbuffer.frag declares i
     float layer_separation;
     ivec2 size_px;
 };
-#include "layout/memory_layout.glsl"
+#include "layout/load_depth.glsl"
 
 layout(location = 3) in vec4 uv;
 layout(location = 4) in vec4 vertex_colour;

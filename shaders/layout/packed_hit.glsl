@@ -2,7 +2,7 @@
 #ifndef SSRLAB_PACKED_HIT
 #define SSRLAB_PACKED_HIT
 #include "api/real.glsl"
-#include "layout/memory_layout.glsl"
+#include "layout/stored_texels.glsl"
 
 struct PackedHit
 {

@@ -1,6 +1,6 @@
 // Mixes what a further bounce found into the reflection that it belongs to: C = C_own + (C_reflected - C_own) * beta at the reflector
 // where the bounce began, times what that still weighs.
-#include "layout/memory_layout.glsl"
+#include "layout/workgroups.glsl"
 #include "trace/ray_list.glsl"
 #include "trace/hit_list.glsl"
 #include "api/view.glsl"

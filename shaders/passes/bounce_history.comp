@@ -1,5 +1,5 @@
 // Where a ray hit a surface that reflects, the colour is that surface's own with its reflection of the previous frame, as the camera saw it.
-#include "layout/memory_layout.glsl"
+#include "layout/workgroups.glsl"
 #include "trace/ray_list.glsl"
 #include "trace/hit_list.glsl"
 #include "api/view.glsl"

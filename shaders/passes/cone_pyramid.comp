@@ -1,8 +1,7 @@
 // One level of what cones look up (passes/cone.glsl): colour, and the share of a cell that is empty in front of its surfaces.
 // Y. Uludag 2014, "Hi-Z Screen-Space Cone-Traced Reflections", GPU Pro 5. Cells lie as in depth_pyramid.comp.
 #include "api/view.glsl"
-#define READS_DEPTH
-#include "layout/memory_layout.glsl"
+#include "layout/load_depth.glsl"
 #include "pass/parameters"
 
 layout(local_size_x = 8, local_size_y = 8) in;

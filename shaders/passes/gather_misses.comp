@@ -1,5 +1,5 @@
 // Lists the rays of reflecting pixels that found nothing, as they are, to be traced in the second layer.
-#include "layout/memory_layout.glsl"
+#include "layout/workgroups.glsl"
 #include "trace/ray_list.glsl"
 #include "trace/hit_list.glsl"
 #include "api/view.glsl"

@@ -1,5 +1,5 @@
 // The colour that a ray brings back, and how much it weighs: rgb and weight of a pixel's reflection, the mean over the pixel's rays.
-#include "layout/memory_layout.glsl"
+#include "layout/workgroups.glsl"
 #include "trace/ray_list.glsl"
 #include "trace/hit_list.glsl"
 #include "api/view.glsl"

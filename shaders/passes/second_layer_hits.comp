@@ -1,5 +1,5 @@
 // Writes what rays found in the second layer over their misses in the first.
-#include "layout/memory_layout.glsl"
+#include "layout/workgroups.glsl"
 #include "api/view.glsl"
 #include "layout/packed_hit.glsl"
 

@@ -1,6 +1,5 @@
 // Which pixels reflect: those with a surface, a usable normal and some metal. After view.glsl.
-#define READS_DEPTH
-#include "layout/memory_layout.glsl"
+#include "layout/load_depth.glsl"
 layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image;   // xyz = view-space normal, w = roughness
 layout(set = 0, binding = 3, rgba16f) uniform readonly image2D material_image; // rgb = base colour, a = metallic
 

@@ -1,5 +1,5 @@
 // The tiles of 8 x 8 pixels that shaders/rays/tile_list.comp lists, one for each workgroup of an indirect launch.
-#include "layout/memory_layout.glsl"
+#include "layout/workgroups.glsl"
 
 layout(set = 0, binding = 9, scalar) readonly buffer TileCount { uint tile_count; };
 // As texels: layout/packed_ray.glsl says why. Two words a tile: x | y << 16, in tiles; pixels traced in those before it.

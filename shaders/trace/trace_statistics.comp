@@ -1,5 +1,5 @@
 // How the rays of the pixels that reflect ended, for the frame's plan.
-#include "layout/memory_layout.glsl"
+#include "layout/workgroups.glsl"
 #include "trace/ray_list.glsl"
 #include "trace/hit_list.glsl"
 #include "api/view.glsl"

@@ -1,10 +1,8 @@
 // What is kept of each ray beside its result: counts of work, compiled out of the pipelines that are timed, and whether it met a surface that faces away.
-// An invocation traces one ray, or two with the manifest's rays_per_invocation: then `lane` says for which one counts, and 2 counts for none.
-#ifdef RAYS_PER_INVOCATION
-#define LANES 3
-int lane = 0;
+// An invocation traces one ray, or two (trace/trace_pairs.comp).
+#ifdef TRACES_PAIRS
+#include "trace/pair_lanes.glsl"
 #else
-#define RAYS_PER_INVOCATION 1
 #define LANES 1
 const int lane = 0;
 #endif

@@ -59,27 +59,15 @@ Traversal start_traversal(Ray ray, int level)
 }
 
 // Has it neither found anything yet nor ended?
-bool is_open(Traversal walk)
-{
-    return walk.level >= 0 && walk.t < walk.grid.t_end && walk.visited < max_steps;
-}
+bool is_open(Traversal walk) { return walk.level >= 0 && walk.t < walk.grid.t_end && walk.visited < max_steps; }
 
 // The same, up to where it has to stop.
-bool is_active(Traversal walk)
-{
-    return walk.level >= 0 && walk.t < walk.t_stop && walk.visited < max_steps;
-}
+bool is_active(Traversal walk) { return walk.level >= 0 && walk.t < walk.t_stop && walk.visited < max_steps; }
 
 // The last pixel of the cell on both axes, in the image itself.
-ivec2 pixel_of(Traversal walk)
-{
-    return (walk.corner - 1) ^ walk.mirror;
-}
+ivec2 pixel_of(Traversal walk) { return (walk.corner - 1) ^ walk.mirror; }
 
-real t_exit(Traversal walk)
-{
-    return exit_t(walk.grid, border_t(walk.forward, walk.grid, walk.corner));
-}
+real t_exit(Traversal walk) { return exit_t(walk.grid, border_t(walk.forward, walk.grid, walk.corner)); }
 
 // Down into a cell that is touched; else on to the next one, and perhaps up. A walk that has ended stays as it is.
 void advance(inout Traversal walk, bool touched, int top)
@@ -100,10 +88,7 @@ void advance(inout Traversal walk, bool touched, int top)
     walk.visited += int(moves);
 }
 
-void stop_at(inout Traversal walk, real t)
-{
-    walk.t_stop = t < walk.grid.t_end ? t : walk.grid.t_end;
-}
+void stop_at(inout Traversal walk, real t) { walk.t_stop = t < walk.grid.t_end ? t : walk.grid.t_end; }
 
 // Skips an empty interval, to the cell of this level in which the ray is at t: there it stands as if it had walked. Position names that cell but for
 // rounding; where its borders say otherwise, the walk goes on cell by cell. A skip visits nothing, so an exhausted step budget prevents it only if the

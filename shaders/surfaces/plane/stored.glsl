@@ -22,8 +22,5 @@ float load_solid(ivec2 pixel)
 }
 
 // How far the back lies below the plane: 1/1024 of the distance.
-real plane_tolerance(real depth)
-{
-    return (orthographic == 0 ? depth : far_m / (far_m - near_m) - depth) / real(1024);
-}
+real plane_tolerance(real depth) { return (orthographic == 0 ? depth : far_m / (far_m - near_m) - depth) / real(1024); }
 #endif

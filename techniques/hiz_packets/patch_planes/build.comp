@@ -5,9 +5,8 @@
 #include "api/view.glsl"
 #include "api/slab.glsl"
 #include "api/held.glsl"
-#define READS_DEPTH
-#define CELL_PAIRS
-#include "layout/memory_layout.glsl"
+#include "layout/load_depth.glsl"
+#include "layout/cell_pairs.glsl"
 #include "structure/buffers"
 #include "patch.glsl"
 #if PATCH_BITS != STRIP_BITS + 1

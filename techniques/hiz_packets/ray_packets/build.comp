@@ -55,10 +55,7 @@ int level_of(Box box)
     return clamp(findMSB(max(int(max(extent.x, extent.y)), 1)), 1, top);
 }
 
-ivec2 cell_at(real2 position_px, int level)
-{
-    return clamp(ivec2(floor(position_px)), ivec2(0), size_px - 1) >> level;
-}
+ivec2 cell_at(real2 position_px, int level) { return clamp(ivec2(floor(position_px)), ivec2(0), size_px - 1) >> level; }
 
 // The next of the cells from first to last, row by row; behind the last one it is below them.
 ivec2 next_cell(ivec2 cell, ivec2 first, ivec2 last)

@@ -7,22 +7,13 @@
 #define FINEST_BIN_SHIFT 5
 const uvec2 empty_cell = uvec2(0);
 
-int bin_shift(uvec2 cell)
-{
-    return int(cell.x & 31u);
-}
+int bin_shift(uvec2 cell) { return int(cell.x & 31u); }
 
 // The nearest bin: bits of depth >> bin_shift.
-int nearest_bin(uvec2 cell)
-{
-    return int(cell.x) >> bin_shift(cell);
-}
+int nearest_bin(uvec2 cell) { return int(cell.x) >> bin_shift(cell); }
 
 // Bins first to last, counted from the nearest; 0 <= first <= last <= 31, else any bits.
-uint bins_between(int first, int last)
-{
-    return (~0u << first) & ~(~1u << last);
-}
+uint bins_between(int first, int last) { return (~0u << first) & ~(~1u << last); }
 
 bool cell_may_touch(uvec2 cell, float z_far, float z_near)
 {

@@ -6,8 +6,7 @@
 #include "api/held.glsl"
 #include "cell.glsl"
 #include "api/structure_api.glsl"
-#define CELL_PAIRS
-#include "layout/memory_layout.glsl"
+#include "layout/cell_pairs.glsl"
 #include "structure/parameters"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -95,7 +94,4 @@ uvec2 finished(uvec2 cell)
 // Cells of the level, and the first of the two that this invocation makes.
 ivec2 size = level_size(level), cell = ivec2(2, 1) * ivec2(gl_GlobalInvocationID.xy);
 
-void store_cells(uvec4 cells)
-{
-    store_pair(pair_index(cell, pyramid_root >> level), cells);
-}
+void store_cells(uvec4 cells) { store_pair(pair_index(cell, pyramid_root >> level), cells); }

@@ -2,10 +2,7 @@
 #include "cell.glsl"
 
 // The coarsest level that is there.
-int pyramid_top()
-{
-    return min(depth_pyramid_top_level, pyramid_levels());
-}
+int pyramid_top() { return min(depth_pyramid_top_level, pyramid_levels()); }
 
 // What a cell of any level holds. Pixels and cells are read from one place.
 struct CellContent

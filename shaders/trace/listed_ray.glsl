@@ -1,0 +1,52 @@
+// Loads a ray of the list and stores what was found of it. After the technique.
+#include "trace/ray_list.glsl"
+#include "layout/packed_hit.glsl"
+#include "layout/workgroups.glsl"
+
+STORED_HITS(9, Hits)
+#ifdef COUNT_WORK
+layout(set = 0, binding = 11, scalar) buffer Work { uint work[]; }; // of each ray: steps, depth fetches, fetches of each structure; of no answer its status and pixel
+#define WORK_WORDS (2 + max(STRUCTURES, 1))
+#endif
+
+Ray load_ray(uint index)
+{
+    PackedRay listed = packed_ray(index);
+    Ray       ray;
+    ray.origin      = listed.origin;
+    ray.delta       = listed.delta;
+    ray.length_m    = listed.length_m;
+    ray.end_status  = unpack_status(listed.pixel);
+    ray.rounding    = depth_rounding(ray.delta);
+    ray.start_pixel = clamp(ivec2(floor(ray.origin.xy)), ivec2(0), size_px - 1);
+
+    // A ray that runs exactly along the right or lower image border runs in the last column or row: off the border, it crosses none.
+    bvec2 along_border = bvec2(ray.delta.x == real(0) && ray.origin.x == real(size_px.x), ray.delta.y == real(0) && ray.origin.y == real(size_px.y));
+    ray.origin.xy -= real2(along_border) * real(0.5);
+    return ray;
+}
+
+bool has_place(TraceResult result) { return result.status == TRACE_HIT || result.status == TRACE_STOPPED; }
+
+// Neither an unknown status, nor a hit off the image: packed, they would turn into another answer.
+bool is_answer(TraceResult result)
+{
+    bool on_image = all(greaterThanEqual(result.pixel, ivec2(0))) && all(lessThan(result.pixel, size_px));
+    return result.status > TRACE_NOT_TRACED && result.status <= TRACE_STOPPED && (on_image || !has_place(result));
+}
+
+// own_lane: that of the ray (trace/work_counters.glsl).
+void store_result(uint index, TraceResult result, int own_lane)
+{
+    bool  answers = is_answer(result);
+    ivec2 pixel   = answers && has_place(result) ? result.pixel : ivec2(0);
+    STORE_TEXEL(Hits, index, hit_to_texel(PackedHit(pack_pixel(pixel, answers ? result.status : TRACE_IMPOSSIBLE), result.t)));
+#ifdef COUNT_WORK
+    uint first = index * WORK_WORDS;
+    work[first]     = answers ? result.steps : result.status;
+    work[first + 1] = answers ? depth_fetches[own_lane] : result.pixel.x;
+    work[first + 2] = result.pixel.y; // overwritten, but for what is no answer
+    for (int structure = 0; answers && structure < STRUCTURES; ++structure)
+        work[first + 2 + structure] = structure_fetches[LANES * structure + own_lane];
+#endif
+}
