@@ -41,15 +41,6 @@ double most_steps_of(const CommonOptions& common, const PictureOptions& options)
     return declared_steps(technique, parse_choice(technique, options.parameters).values);
 }
 
-std::string matrix_text(const glm::dmat4& matrix)
-{
-    std::string text;
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row)
-            text += fmt::format("{}{:.17g}", text.empty() ? "" : " ", matrix[column][row]);
-    return text;
-}
-
 std::string status_legend()
 {
     std::string text;
@@ -158,29 +149,7 @@ int write_gbuffer(const CommonOptions& common, const PictureOptions& options)
 {
     if (!options.size.empty()) size_option(options.size);
     Stage              stage  = prepare_stage(common, options);
-    const GBufferImage source = read_gbuffer(stage.gpu, *stage.gbuffer);
-    Image              image{stage.view.size_px,
-                {"depth", "normal_vs.x", "normal_vs.y", "normal_vs.z", "roughness", "metallic", "base_colour.R",
-                              "base_colour.G", "base_colour.B", "R", "G", "B", "object_id"},
-                {},
-                {}};
-    image.metadata["ssrlab:world_to_view"] = matrix_text(stage.view.world_to_view);
-    image.metadata["ssrlab:view_to_clip"]  = matrix_text(view_to_clip(stage.view));
-    image.metadata["ssrlab:depth"]         = stage.view.projection == Projection::perspective
-                                                 ? "near_m / distance_m"
-                                                 : "(far_m - distance_m) / (far_m - near_m)";
-    image.metadata["ssrlab:near_m"]        = fmt::format("{:.17g}", stage.view.near_m);
-    image.metadata["ssrlab:far_m"] =
-        stage.view.projection == Projection::perspective ? "inf" : fmt::format("{:.17g}", stage.view.far_m);
-    for (size_t i = 0; i < source.depth.size(); ++i) {
-        const glm::vec3 lit = source.radiance[i] + source.highlight[i];
-        for (const float value :
-             {source.depth[i], source.normal_vs[i].x, source.normal_vs[i].y, source.normal_vs[i].z, source.roughness[i],
-              source.metallic[i], source.base_colour[i].x, source.base_colour[i].y, source.base_colour[i].z, lit.x,
-              lit.y, lit.z, static_cast<float>(source.object_id[i])})
-            image.values.push_back(value);
-    }
-    write_image(options.output, image);
+    write_image(options.output, frame_image(read_gbuffer(stage.gpu, *stage.gbuffer)));
     std::puts(options.output.c_str());
     return report_messages(stage);
 }

@@ -28,7 +28,7 @@ void open_closed_streams()
 void add_picture_options(CLI::App& command, ssrlab::PictureOptions& options, bool traces)
 {
     command
-        .add_option("SCENE", options.scene, "A .glb or .gltf file, a scene recipe, or builtin:NAME (see ssrlab list)")
+        .add_option("SCENE", options.scene, "A .glb or .gltf file, a scene recipe, builtin:NAME (see ssrlab list), or a frame of another renderer (.exr)")
         ->required();
     if (traces) {
         command.add_option("-t,--technique", options.technique, "Technique (see ssrlab list)")->required();

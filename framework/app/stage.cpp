@@ -20,12 +20,12 @@ glm::ivec2 size_option(const std::string& text)
 Stage prepare_stage(const CommonOptions& common, const PictureOptions& options)
 {
     Stage stage;
-    stage.scene          = load_scene(options.scene);
-    const Camera& camera = find_camera(stage.scene, options.view);
-    stage.view           = camera_to_view(camera, options.size.empty() ? camera.size_px : size_option(options.size));
+    stage.scene = load_scene(options.scene);
+    stage.view = find_view(stage.scene, options.view, options.size.empty() ? glm::ivec2(0) : size_option(options.size));
     for (const std::string& warning : stage.scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
     stage.gpu     = open_gpu({.device = common.device, .validation = common.validation});
-    stage.gbuffer = render_gbuffer(stage.gpu, upload_scene(stage.gpu, stage.scene), stage.view);
+    stage.gbuffer = stage.scene.frame ? upload_gbuffer(stage.gpu, stage.scene.frame->gbuffer)
+                                      : render_gbuffer(stage.gpu, upload_scene(stage.gpu, stage.scene), stage.view);
     return stage;
 }
 

@@ -57,6 +57,7 @@ const std::vector<Column> ending = {
     {"picture", "the reflected picture, relative to this file; beside it NAME_agreement.png (right and wrong in false "
                 "colours) and "
                 "NAME_fetches.png (work per ray)"},
+    {"no_scene_truth", "why the measures that need the scene's triangles are empty; empty: they have a value"},
     {"outcome", "ok; no_rays: nothing in the picture reflects; failed: see message; invalid: a ray has an answer that "
                 "cannot be, see message"},
     {"message", "what went wrong"},

@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "scene/load_scene.h"
 
 #include <set>
 
@@ -75,6 +76,12 @@ std::vector<Run> expand_picture(const Experiment& experiment, std::span<const Te
     return runs;
 }
 
+/// A frame of another renderer has the size that it has.
+std::vector<glm::ivec2> sizes_of(const Experiment& experiment, const std::string& scene)
+{
+    return is_frame(scene) ? std::vector{frame_size_px(scene)} : experiment.sizes_px;
+}
+
 } // namespace
 
 std::string run_id(const Run& run)
@@ -117,7 +124,7 @@ std::vector<Run> expand(const Experiment& experiment, std::span<const Technique>
     std::set<std::string>  ids;
     for (const std::string& scene : experiment.scenes) {
         for (const std::string& view : experiment.views) {
-            for (const glm::ivec2& size_px : experiment.sizes_px) {
+            for (const glm::ivec2& size_px : sizes_of(experiment, scene)) {
                 for (Run run : on_each_picture) {
                     run.scene   = scene;
                     run.view    = view;

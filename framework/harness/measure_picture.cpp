@@ -43,10 +43,10 @@ const LoadedScene& scene_of(Bench& bench, const std::string& name)
 {
     if (bench.scene == nullptr || bench.scene->name != name) {
         bench.scene.reset(); // before the next one is loaded: one scene in memory at a time
-        auto loaded      = std::make_unique<LoadedScene>();
-        loaded->name     = name;
-        loaded->scene    = load_scene(name);
-        loaded->uploaded = upload_scene(bench.gpu, loaded->scene);
+        auto loaded   = std::make_unique<LoadedScene>();
+        loaded->name  = name;
+        loaded->scene = load_scene(name);
+        if (!loaded->scene.frame) loaded->uploaded = upload_scene(bench.gpu, loaded->scene);
         for (const std::string& warning : loaded->scene.warnings)
             bench.progress.say(fmt::format("{}: {}", name, warning));
         bench.scene = std::move(loaded);
@@ -73,17 +73,21 @@ double cost_of(const Bench& bench, const Run& run)
 Picture make_picture(Bench& bench, const Run& run)
 {
     const LoadedScene& loaded = scene_of(bench, run.scene);
-    const View         view   = camera_to_view(find_camera(loaded.scene, run.view), run.size_px);
+    const View         view   = find_view(loaded.scene, run.view, run.size_px);
     Picture            picture;
-    picture.gbuffer =
-        clocked(bench.counted_s, [&] { return render_gbuffer(bench.gpu, loaded.uploaded, view); }); // a warm-up
-    std::vector<double> times_ms;
-    clocked(bench.timed_s, [&] {
-        for (int i = 0; i < gbuffer_repeats; ++i) times_ms.push_back(rerender_gbuffer(bench.gpu, *picture.gbuffer));
+    picture.gbuffer = clocked(bench.counted_s, [&] { // a warm-up
+        return loaded.scene.frame ? upload_gbuffer(bench.gpu, loaded.scene.frame->gbuffer)
+                                  : render_gbuffer(bench.gpu, loaded.uploaded, view);
     });
-    picture.gbuffer_ms = quantile(std::move(times_ms), 0.5);
-    picture.round      = bench.results.next_round();
-    picture.buffers    = make_frame_buffers(bench.gpu, picture.gbuffer);
+    if (!loaded.scene.frame) {
+        std::vector<double> times_ms;
+        clocked(bench.timed_s, [&] {
+            for (int i = 0; i < gbuffer_repeats; ++i) times_ms.push_back(rerender_gbuffer(bench.gpu, *picture.gbuffer));
+        });
+        picture.gbuffer_ms = quantile(std::move(times_ms), 0.5);
+    }
+    picture.round   = bench.results.next_round();
+    picture.buffers = make_frame_buffers(bench.gpu, picture.gbuffer);
     if (bench.experiment.measure.truth) {
         clocked(bench.truths_s, [&] {
             picture.truths.emplace(loaded.scene, read_gbuffer(bench.gpu, *picture.gbuffer),
@@ -165,7 +169,11 @@ void make_references(Bench& bench, Picture& picture, const MeasuredRun& measured
     clocked(bench.truths_s, [&] {
         picture.truths->make(settings.trace, image_errors);
         if (!image_errors || (picture.reference && picture.reference_for == settings)) return;
-        picture.reference.emplace(composite_reflection(bench.gpu, *measured.frame, picture.truths->true_reflection()));
+        if (const std::optional<Image> given = picture.truths->given_picture())
+            picture.reference.emplace(*given);
+        else if (picture.truths->without_scene().empty())
+            picture.reference.emplace(
+                composite_reflection(bench.gpu, *measured.frame, picture.truths->true_reflection()));
         picture.reference_for = settings;
     });
 }
@@ -194,9 +202,10 @@ void judge(const Bench& bench, Picture& picture, MeasuredRun& measured, const Ob
     add_counts(measured.row, observed.counted);
     if (!picture.truths) return;
     const auto pointer = [](const std::optional<TraceResult>& result) { return result ? &*result : nullptr; };
+    measured.row["no_scene_truth"] = picture.truths->without_scene();
     add_measures(measured.row,
                  picture.truths->compare(observed.counted, pointer(observed.twin), pointer(observed.hidden)));
-    if (measure.image_errors)
+    if (measure.image_errors && picture.reference)
         add_measures(measured.row, picture.truths->compare_picture(observed.shaded, *picture.reference));
 }
 

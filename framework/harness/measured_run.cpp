@@ -128,7 +128,7 @@ void add_times(MeasuredRun& measured, double gbuffer_ms)
     add_summary(row, "trace_ms", summarise(measured.trace_ms));
     add_summary(row, "frame_ms", frame);
     row["repeats"]           = std::to_string(measured.trace_ms.size());
-    row["gbuffer_ms_median"] = number_text(gbuffer_ms);
+    row["gbuffer_ms_median"] = gbuffer_ms > 0 ? number_text(gbuffer_ms) : ""; // a frame of another renderer has none
     const auto median_ms     = [&](const std::string& pass) {
         const auto found = measured.pass_ms.find(pass);
         return found == measured.pass_ms.end() ? 0 : quantile(found->second, 0.5);

@@ -1,5 +1,6 @@
 #include "harness/quality.h"
 
+#include "compare/image_io.h"
 #include "compare/pictures.h"
 #include "compare/validate_result.h"
 #include "core/error.h"
@@ -59,11 +60,16 @@ void Truths::make(const TraceSettings& settings, bool image_errors)
     made_for_.reset();
     true_reflection_.reset();
     screen_truth_ = cached_screen_truth(cache_dir_, gbuffer_, settings);
-    if (!same_scene_truth) {
+    if (scene_->frame) {
+        // All that is known: which pixels reflect.
+        scene_truth_ = empty_scene_truth(gbuffer_.view.size_px);
+        for (size_t i = 0; i < scene_truth_.cls.size(); ++i)
+            if (screen_truth_.status[i] != TraceStatus::not_traced) scene_truth_.cls[i] = TruthClass::hidden;
+    } else if (!same_scene_truth) {
         reference_.reset();
         scene_truth_ = cached_scene_truth(cache_dir_, *scene_, gbuffer_, settings);
     }
-    if (image_errors && !reference_) reference_.emplace(reference_image(scene_truth_));
+    if (image_errors && !reference_ && !scene_->frame) reference_.emplace(reference_image(scene_truth_));
     made_for_ = settings;
 }
 
@@ -76,7 +82,34 @@ const TraceSettings& Truths::made_for() const
 Image Truths::agreement(const TraceResult& counted) const
 {
     made_for();
-    return agreement_picture(counted, scene_truth_);
+    return scene_->frame ? agreement_picture(counted, screen_truth_) : agreement_picture(counted, scene_truth_);
+}
+
+std::string Truths::without_scene() const
+{
+    return scene_->frame ? "a frame of another renderer has no triangles" : "";
+}
+
+std::optional<Image> Truths::given_picture() const
+{
+    if (!scene_->frame || scene_->frame->reference.empty()) return std::nullopt;
+    const Image file = read_image(scene_->frame->reference);
+    Image       image{file.size_px, {"R", "G", "B"}, std::vector<float>(pixel_count(file.size_px) * 3), {}};
+    if (file.size_px != gbuffer_.view.size_px)
+        throw_spec_error("{}: {}x{} pixels, expected {}x{} as the frame has", short_path(scene_->frame->reference),
+                         file.size_px.x, file.size_px.y, gbuffer_.view.size_px.x, gbuffer_.view.size_px.y);
+    for (size_t c = 0; c < 3; ++c) {
+        const auto found = std::ranges::find_if(file.channels, [&](const std::string& name) {
+            return name == image.channels[c] || name.ends_with("Combined." + image.channels[c]);
+        });
+        if (found == file.channels.end())
+            throw_spec_error("{}: no channel '{}'; expected R, G and B", short_path(scene_->frame->reference),
+                             image.channels[c]);
+        const auto from = static_cast<size_t>(found - file.channels.begin());
+        for (size_t i = 0; i < pixel_count(file.size_px); ++i)
+            image.values[3 * i + c] = file.values[file.channels.size() * i + from];
+    }
+    return image;
 }
 
 const std::vector<glm::vec4>& Truths::true_reflection()
@@ -102,6 +135,10 @@ MeasureValues Truths::compare(const TraceResult& counted, const TraceResult* twi
 {
     made_for();
     MeasureValues values = compare_to_screen_truth(counted, screen_truth_);
+    if (scene_->frame) {
+        merge(values, split_error(counted, twin, screen_truth_, nullptr));
+        return values;
+    }
     merge(values, compare_to_scene_truth(counted, scene_truth_, screen_truth_, gbuffer_));
     merge(values, split_error(counted, twin, screen_truth_, &scene_truth_));
     if (hidden != nullptr) merge(values, compare_hidden_layer(counted, *hidden, scene_truth_));

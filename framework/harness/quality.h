@@ -26,6 +26,11 @@ public:
     /// The reflection of the glossy scene truth (many rays where it is rough), at full weight; weight -1 where nothing reflects.
     const std::vector<glm::vec4>& true_reflection();
 
+    /// Why there is no scene truth: a frame of another renderer has no triangles. Empty: there is one.
+    std::string without_scene() const;
+    /// The picture of true reflections that comes with such a frame, if one does. Throws where it has another size.
+    std::optional<Image> given_picture() const;
+
     /// A finished picture against the one with the true reflection.
     MeasureValues compare_picture(const Image& picture, const Reference& reference) const;
 

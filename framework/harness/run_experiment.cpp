@@ -11,6 +11,7 @@
 #include "harness/record.h"
 #include "harness/stop_signal.h"
 #include "harness/supervise.h"
+#include "scene/load_scene.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -25,8 +26,8 @@ void refuse_unknown_scenes(const Experiment& experiment)
     std::vector<std::string> known;
     for (const SceneListing& listing : list_scenes()) known.push_back(listing.name);
     for (const std::string& scene : experiment.scenes) {
-        const std::string extension = fs::path(scene).extension().string();
-        const bool        is_path   = extension == ".glb" || extension == ".gltf" || extension == ".toml";
+        const std::string extension = lower_extension(scene);
+        const bool is_path = extension == ".glb" || extension == ".gltf" || extension == ".toml" || is_frame(scene);
         if (is_path ? fs::exists(scene) : std::ranges::find(known, scene) != known.end()) continue;
         throw_spec_error("{}: {}", experiment.scenes_place,
                          is_path ? "scene '" + scene + "': no such file" : unknown_name("scene", scene, known));

@@ -24,8 +24,8 @@ std::string known_names()
 
 [[noreturn]] void throw_unknown(const std::string& name)
 {
-    throw_spec_error("unknown scene '{}': give a .glb or .gltf file, a recipe (.toml), or one of {}", name,
-                     known_names());
+    throw_spec_error("unknown scene '{}': give a .glb or .gltf file, a recipe (.toml), a frame (.exr), or one of {}",
+                     name, known_names());
 }
 
 Model load_gltf_with_views(const fs::path& file)
@@ -54,7 +54,22 @@ Model load_model(const std::string& name)
     return lower_extension(file) == ".toml" ? load_recipe(file) : load_gltf_with_views(file);
 }
 
+Scene frame_scene(const std::string& name)
+{
+    Scene scene;
+    scene.name     = name;
+    scene.frame    = load_frame(name);
+    scene.warnings = scene.frame->warnings;
+    Camera camera;
+    camera.name    = scene.frame->gbuffer.view.name;
+    camera.size_px = scene.frame->gbuffer.view.size_px;
+    scene.cameras.push_back(camera);
+    return scene;
+}
+
 } // namespace
+
+bool is_frame(const std::string& name) { return lower_extension(name) == ".exr"; }
 
 std::string lower_extension(const fs::path& file)
 {
@@ -68,7 +83,7 @@ fs::path find_scene_file(const std::string& name)
 {
     if (name.starts_with(builtin_prefix)) return {};
     const std::string extension = lower_extension(name);
-    if (extension == ".glb" || extension == ".gltf" || extension == ".toml") return name;
+    if (extension == ".glb" || extension == ".gltf" || extension == ".toml" || extension == ".exr") return name;
     if (name.find('/') == std::string::npos)
         for (const fs::path& folder : recipe_folders())
             if (fs::exists(folder / (name + ".toml"))) return folder / (name + ".toml");
@@ -110,6 +125,7 @@ std::vector<SceneListing> list_scenes()
 Scene load_scene(const std::string& name)
 {
     try {
+        if (is_frame(name)) return frame_scene(name);
         return model_to_scene(load_model(name), name);
     } catch (const std::bad_alloc&) {
         throw_failure("scene '{}': out of memory", name);
@@ -127,6 +143,17 @@ const Camera& find_camera(const Scene& scene, const std::string& name)
     }
     if (name == Camera{}.name && !scene.cameras.empty()) return scene.cameras.front();
     throw_spec_error("scene '{}' has no view '{}': its views are {}", scene.name, name, names);
+}
+
+View find_view(const Scene& scene, const std::string& name, glm::ivec2 size_px)
+{
+    const Camera& camera = find_camera(scene, name);
+    if (size_px == glm::ivec2(0)) size_px = camera.size_px;
+    if (!scene.frame) return camera_to_view(camera, size_px);
+    if (size_px != camera.size_px)
+        throw_spec_error("scene '{}' is a frame of {}x{} pixels: it cannot be drawn at {}x{}", scene.name,
+                         camera.size_px.x, camera.size_px.y, size_px.x, size_px.y);
+    return scene.frame->gbuffer.view;
 }
 
 } // namespace ssrlab

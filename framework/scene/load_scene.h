@@ -31,6 +31,9 @@ std::filesystem::path find_scene_file(const std::string& name);
 /// Every file that decides how the scene looks: its own, its views, and all that a recipe, glTF, OBJ or MTL file names.
 std::vector<std::filesystem::path> scene_files(const std::string& name);
 
+/// Whether a scene's name is that of a frame of another renderer (load_frame.h).
+bool is_frame(const std::string& name);
+
 /// ".OBJ" is ".obj".
 std::string lower_extension(const std::filesystem::path& file);
 

@@ -3,10 +3,12 @@
 
 #include "core/view.h"
 #include "scene/environment.h"
+#include "scene/load_frame.h"
 
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -90,10 +92,12 @@ struct Scene {
     glm::vec3                ambient{0.25F}; // radiance arriving equally from everywhere
     glm::vec3                background{0};  // radiance from infinitely far away, where there is no environment map
     EnvironmentMap           environment;    // what is there instead of `background`, if not empty
+    std::optional<Frame>     frame;          // of another renderer, instead of triangles, lights and cameras
     std::vector<std::string> warnings;       // one line each: what was dropped or is not supported
 };
 
-/// `name`: a .glb/.gltf path, the name of a recipe (experiments/scenes/NAME.toml, or a path to a .toml), or builtin:NAME.
+/// `name`: a .glb/.gltf path, the name of a recipe (experiments/scenes/NAME.toml, or a path to a .toml), builtin:NAME, or an .exr
+/// (load_frame.h).
 /// Throws SpecError for unknown names and recipe mistakes, Failure for unreadable or damaged files.
 Scene load_scene(const std::string& name);
 
@@ -109,5 +113,8 @@ glm::vec3 sky_radiance(const Scene& scene, glm::dvec3 direction_ws);
 
 /// The camera of that name; "default" is the first one where none is called so. Throws SpecError listing the known names.
 const Camera& find_camera(const Scene& scene, const std::string& name);
+
+/// That camera's view; size 0x0: the camera's own. Throws SpecError where a frame of another renderer is asked for another view or size.
+View find_view(const Scene& scene, const std::string& name, glm::ivec2 size_px);
 
 } // namespace ssrlab

@@ -71,6 +71,7 @@ std::vector<fs::path> scene_files(const std::string& name)
     Files          files;
     const fs::path file = find_scene_file(name);
     try {
+        if (is_frame(name)) return frame_files(file);
         add(file, files);
         add(file.string() + ".views.toml", files);
         if (lower_extension(file) == ".toml") add_parts(file, files);

@@ -1,0 +1,34 @@
+// The planes of numbers that an imported frame is made of. Folder-internal.
+#pragma once
+
+#include "scene/frame_convention.h"
+#include "scene/load_frame.h"
+
+#include <optional>
+
+namespace ssrlab {
+
+struct FramePlane {
+    std::string        shown; // "FILE: channel 'NAME'"
+    std::string        name;
+    std::vector<float> values;
+    bool               is_half = false;
+};
+
+/// A frame while it is read.
+struct FrameSource {
+    ExrFile         file;
+    FrameConvention convention;
+    Frame           frame;
+};
+
+/// What holds the quantity (frame_channels.h): the channel that the convention names, the one that is recognised, or a value. Throws
+/// SpecError where two channels could be it.
+std::optional<FramePlane> find_plane(const FrameSource& source, const std::string& quantity);
+/// The same; throws SpecError where there is none. `otherwise`: where else it could be said.
+FramePlane need_plane(const FrameSource& source, const std::string& quantity, const char* otherwise = "");
+
+/// Throws SpecError: file, channel, what was expected, what is there.
+[[noreturn]] void refuse(const FrameSource& source, const FramePlane& plane, size_t i, const char* expected);
+
+} // namespace ssrlab

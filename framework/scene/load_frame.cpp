@@ -1,0 +1,251 @@
+#include "scene/load_frame.h"
+
+#include "core/error.h"
+#include "core/pixel_index.h"
+#include "scene/frame_channels.h"
+#include "scene/frame_planes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ssrlab {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double dielectric_f0 = 0.04; // of the metallic workflow
+
+/// Distance along the view axis per distance along the pixel's ray.
+double axis_share(const View& view, glm::ivec2 pixel)
+{
+    if (view.projection == Projection::orthographic) return 1;
+    const glm::dvec2 slope = (glm::dvec2(pixel) + 0.5 - view.centre_px) / view.focal_px;
+    return 1 / glm::length(glm::dvec3(slope, 1));
+}
+
+/// Metres along the view axis; infinity: nothing is there.
+double device_distance_m(const FrameConvention& convention, double depth)
+{
+    const double near_m = convention.view.near_m, far_m = convention.device_far_m;
+    const double reversed = convention.depth == DepthKind::standard ? 1 - depth : depth;
+    if (convention.view.projection == Projection::orthographic) return far_m - reversed * (far_m - near_m);
+    if (std::isinf(far_m)) return near_m / reversed;
+    return near_m * far_m / (near_m + reversed * (far_m - near_m));
+}
+
+float usable_depth_of(const FrameSource& source, const FramePlane& plane, size_t i)
+{
+    const FrameConvention& convention = source.convention;
+    const double           value      = static_cast<double>(plane.values[i]);
+    if (std::isnan(value)) refuse(source, plane, i, "a number");
+    if (convention.depth == DepthKind::reversed || convention.depth == DepthKind::standard) {
+        if (value < 0 || value > 1) refuse(source, plane, i, "device depth in 0 … 1");
+        if (value == (convention.depth == DepthKind::reversed ? 0 : 1)) return 0;
+        const bool own =
+            convention.depth == DepthKind::reversed &&
+            (convention.view.projection == Projection::orthographic || std::isinf(convention.device_far_m));
+        if (own) return plane.values[i]; // the same convention: the same bits
+        return static_cast<float>(distance_to_depth(convention.view, device_distance_m(convention, value)));
+    }
+    const double metres = value * convention.unit_m;
+    if (metres >= convention.background_m) return 0;
+    const double along = convention.depth == DepthKind::distance
+                             ? metres
+                             : metres * axis_share(convention.view, pixel_at(i, source.file.size_px));
+    if (along < convention.view.near_m * (1 - 1e-6)) refuse(source, plane, i, "a distance of at least near_m");
+    const double depth = distance_to_depth(convention.view, along);
+    return static_cast<float>(std::clamp(depth, 0.0, 1.0));
+}
+
+void read_depth_plane(FrameSource& source)
+{
+    const FramePlane plane = need_plane(source, "depth");
+    if (plane.is_half)
+        source.frame.warnings.push_back(
+            plane.shown + " is half: depth has 11 bits, and steps of up to 0.1 % of the distance; export it as float");
+    auto& depth = source.frame.gbuffer.depth;
+    for (size_t i = 0; i < plane.values.size(); ++i) depth.push_back(usable_depth_of(source, plane, i));
+    if (std::ranges::all_of(depth, [](float d) { return d == 0; }))
+        source.frame.warnings.push_back(plane.shown + ": every pixel is background: is [depth] kind right?");
+}
+
+glm::dmat3 normals_to_view(const FrameSource& source, const std::string& channel)
+{
+    const FrameConvention& convention = source.convention;
+    const std::string      said       = normal_space_of(channel);
+    const std::string      space      = convention.normal_space.empty() ? said : convention.normal_space;
+    if (space.empty())
+        throw_spec_error(
+            "{}: channel '{}': nothing says whether it is in view or world space: write {} with [normals] space",
+            source.file.shown, channel, convention.place);
+    if (space == "view") return glm::dmat3(1);
+    if (!convention.has_axes)
+        throw_spec_error("{}: normals in world space need the camera's 'right', 'up' and 'forward' in [camera]",
+                         convention.place);
+    return glm::dmat3(convention.view.world_to_view);
+}
+
+/// Conventions that do not fit show here: normals of another length, or of surfaces that look away.
+void judge_normals(FrameSource& source, const FramePlane& plane)
+{
+    const GBufferImage& gbuffer = source.frame.gbuffer;
+    double              length  = 0;
+    size_t              covered = 0, count = 0, away = 0;
+    for (size_t i = 0; i < gbuffer.depth.size(); ++i) {
+        const glm::dvec3 normal = gbuffer.normal_vs[i];
+        covered += gbuffer.depth[i] > 0;
+        if (gbuffer.depth[i] == 0 || normal == glm::dvec3(0)) continue;
+        const glm::dvec3 point = px_to_vs(gbuffer.view, glm::dvec2(pixel_at(i, gbuffer.view.size_px)) + 0.5,
+                                          static_cast<double>(gbuffer.depth[i]));
+        const glm::dvec3 sight = gbuffer.view.projection == Projection::perspective ? point : glm::dvec3(0, 0, -1);
+        ++count;
+        length += glm::length(normal);
+        away += glm::dot(normal, sight) > 0;
+    }
+    if (covered == 0) return;
+    if (count == 0) throw_spec_error("{}: every normal is zero, expected directions of length 1", plane.shown);
+    length /= static_cast<double>(count);
+    if (length < 0.9 || length > 1.1)
+        throw_spec_error("{}: expected normals of length 1, got {:.2f} on average: is [normals] unsigned right?",
+                         plane.shown, length);
+    if (4 * away > count)
+        source.frame.warnings.push_back(
+            fmt::format("{}: {:.0f} % of the normals look away from the camera: are [normals] space and flip right?",
+                        plane.shown, 100.0 * static_cast<double>(away) / static_cast<double>(count)));
+}
+
+void read_normals(FrameSource& source)
+{
+    const FrameConvention& convention = source.convention;
+    GBufferImage&          gbuffer    = source.frame.gbuffer;
+    const FramePlane       planes[]   = {need_plane(source, "normal.x"), need_plane(source, "normal.y"),
+                                         need_plane(source, "normal.z")};
+    const glm::dmat3       to_view    = normals_to_view(source, planes[0].name);
+    const bool             same =
+        to_view == glm::dmat3(1) && !convention.unsigned_normals && convention.normal_sign == glm::dvec3(1);
+    for (size_t i = 0; i < gbuffer.depth.size(); ++i) {
+        for (const FramePlane& plane : planes)
+            if (gbuffer.depth[i] > 0 && !std::isfinite(plane.values[i])) refuse(source, plane, i, "a finite number");
+        const glm::vec3 stored(planes[0].values[i], planes[1].values[i], planes[2].values[i]);
+        glm::dvec3      normal = stored;
+        if (convention.unsigned_normals) normal = 2.0 * normal - 1.0;
+        normal = to_view * (convention.normal_sign * normal);
+        gbuffer.normal_vs.push_back(gbuffer.depth[i] == 0 ? glm::vec3(0) : same ? stored : glm::vec3(normal));
+    }
+    judge_normals(source, planes[0]);
+}
+
+float share_at(const FrameSource& source, const FramePlane& plane, size_t i)
+{
+    constexpr float rounding = 1e-3F;
+    const float     value    = plane.values[i];
+    if (source.frame.gbuffer.depth[i] > 0 && !(value >= -rounding && value <= 1 + rounding))
+        refuse(source, plane, i, "a value in 0 … 1");
+    return source.frame.gbuffer.depth[i] > 0 ? std::clamp(value, 0.0F, 1.0F) : 0;
+}
+
+void read_roughness(FrameSource& source)
+{
+    auto&      roughness = source.frame.gbuffer.roughness;
+    const auto smooth =
+        source.convention.channels.contains("roughness") ? std::nullopt : find_plane(source, "smoothness");
+    const FramePlane plane = smooth ? *smooth : need_plane(source, "roughness", " or [values]");
+    for (size_t i = 0; i < plane.values.size(); ++i)
+        roughness.push_back(smooth ? 1 - share_at(source, plane, i) : share_at(source, plane, i));
+}
+
+/// A surface of the specular workflow is as metallic as its reflectance is above that of a dielectric.
+void read_metallic(FrameSource& source)
+{
+    auto&      metallic = source.frame.gbuffer.metallic;
+    const auto given    = find_plane(source, "metallic");
+    const auto red      = given ? std::nullopt : find_plane(source, "specular.R");
+    if (!red) {
+        const FramePlane plane = given ? *given : need_plane(source, "metallic", " or [values]");
+        for (size_t i = 0; i < plane.values.size(); ++i) metallic.push_back(share_at(source, plane, i));
+        return;
+    }
+    const FramePlane green = need_plane(source, "specular.G"), blue = need_plane(source, "specular.B");
+    for (size_t i = 0; i < red->values.size(); ++i) {
+        const float f0 = std::max({share_at(source, *red, i), share_at(source, green, i), share_at(source, blue, i)});
+        metallic.push_back(
+            std::max(0.0F, static_cast<float>((static_cast<double>(f0) - dielectric_f0) / (1 - dielectric_f0))));
+    }
+}
+
+/// Three planes as colours; `otherwise` in their place where there are none. Not finite: black.
+std::vector<glm::vec3> read_colour(FrameSource& source, const std::string& name, glm::vec3 otherwise,
+                                   const char* without)
+{
+    std::vector<glm::vec3> colours(pixel_count(source.file.size_px), otherwise);
+    auto                   red = find_plane(source, name + ".R");
+    if (!red) {
+        if (*without != 0) source.frame.warnings.push_back(fmt::format("{}: {}", source.file.shown, without));
+        return colours;
+    }
+    const FramePlane planes[] = {std::move(*red), need_plane(source, name + ".G"), need_plane(source, name + ".B")};
+    size_t           broken   = 0;
+    for (size_t i = 0; i < colours.size(); ++i) {
+        const glm::vec3 colour(planes[0].values[i], planes[1].values[i], planes[2].values[i]);
+        const bool      finite = std::isfinite(colour.x) && std::isfinite(colour.y) && std::isfinite(colour.z);
+        broken += !finite;
+        colours[i] = finite ? colour : glm::vec3(0);
+    }
+    if (broken > 0)
+        source.frame.warnings.push_back(
+            fmt::format("{}: {} pixels are not finite; they count as black", planes[0].shown, broken));
+    return colours;
+}
+
+/// What only ssrlab's own files have.
+void read_own(FrameSource& source)
+{
+    GBufferImage& gbuffer = source.frame.gbuffer;
+    if (const auto ids = find_plane(source, "object_id"))
+        for (const float id : ids->values) gbuffer.object_id.push_back(static_cast<uint32_t>(std::max(id, 0.0F)));
+    else
+        for (const float depth : gbuffer.depth) gbuffer.object_id.push_back(depth > 0 ? 1 : 0);
+    const auto x = find_plane(source, "gradient.x"), y = find_plane(source, "gradient.y");
+    for (size_t i = 0; x && y && i < gbuffer.depth.size(); ++i)
+        gbuffer.gradient.emplace_back(x->values[i], y->values[i]);
+    if (const auto back = find_plane(source, "solid_back")) gbuffer.solid_back = back->values;
+}
+
+} // namespace
+
+Frame load_frame(const fs::path& exr)
+{
+    FrameSource source{open_exr(exr), {}, {}};
+    source.convention         = read_convention(source.file);
+    source.frame.gbuffer.view = source.convention.view;
+    source.frame.reference    = source.convention.reference;
+    read_depth_plane(source);
+    read_normals(source);
+    read_roughness(source);
+    read_metallic(source);
+    GBufferImage& gbuffer = source.frame.gbuffer;
+    gbuffer.base_colour   = read_colour(source, "base_colour", glm::vec3(1), "no base colour: it counts as white");
+    const bool split      = find_plane(source, "radiance.R").has_value();
+    gbuffer.radiance =
+        read_colour(source, split ? "radiance" : "lit", glm::vec3(0), "no lit colour: surfaces are black");
+    gbuffer.highlight = read_colour(source, "highlight", glm::vec3(0), "");
+    read_own(source);
+    return std::move(source.frame);
+}
+
+glm::ivec2 frame_size_px(const fs::path& exr) { return open_exr(exr).size_px; }
+
+std::vector<fs::path> frame_files(const fs::path& exr)
+{
+    std::vector<fs::path> files{exr};
+    const fs::path        convention = convention_file(exr);
+    if (!fs::exists(convention)) return files;
+    files.push_back(convention);
+    const FrameConvention read = read_convention(open_exr(exr));
+    for (const auto& [quantity, name] : read.channels)
+        if (const size_t colon = name.rfind(':'); colon != std::string::npos)
+            files.push_back(exr.parent_path() / name.substr(0, colon));
+    if (!read.reference.empty()) files.push_back(read.reference);
+    return files;
+}
+
+} // namespace ssrlab

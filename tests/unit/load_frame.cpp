@@ -1,0 +1,242 @@
+// Frames of other renderers: every convention against the same distances, and what is said about files that cannot be right.
+#include "compare/image_io.h"
+#include "core/error.h"
+#include "core/pixel_index.h"
+#include "errors.h"
+#include "scene/frame_channels.h"
+#include "scene/load_scene.h"
+#include "scene/scene.h"
+#include "temp_folder.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace ssrlab {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::UnorderedElementsAre;
+
+constexpr glm::ivec2  size_px{8, 6};
+constexpr double      near_m = 0.25, far_m = 50;
+constexpr const char* camera = "[camera]\nfov_y_deg = 90\nnear_m = 0.25\n";
+
+/// Of a wall that slopes away to the right; the last pixel is background.
+double distance_m(size_t i) { return 2 + 0.5 * static_cast<double>(pixel_at(i, size_px).x); }
+bool   covered(size_t i) { return i + 1 < pixel_count(size_px); }
+
+/// Sent along the pixel's ray: slopes at 90 degrees and 6 rows.
+double ray_length(size_t i)
+{
+    const glm::dvec2 slope = (glm::dvec2(pixel_at(i, size_px)) + 0.5 - 0.5 * glm::dvec2(size_px)) / 3.0;
+    return glm::length(glm::dvec3(slope, 1));
+}
+
+class LoadFrame : public testing::Test {
+protected:
+    using Values = std::function<double(size_t)>;
+
+    void channel(const std::string& name, const Values& value) { channels_.emplace_back(name, value); }
+
+    /// Depth and what else a frame must have, facing the camera.
+    void whole_frame(const std::string& depth, const Values& value)
+    {
+        channel(depth, value);
+        const glm::dvec3 normal(0, 0, 1);
+        for (int c = 0; c < 3; ++c) channel(std::string("normal_vs.") + "xyz"[c], [=](size_t) { return normal[c]; });
+        channel("roughness", [](size_t) { return 0.25; });
+        channel("metallic", [](size_t) { return 0.5; });
+    }
+
+    std::string write(const std::string& convention)
+    {
+        Image image{size_px, {}, {}, {}};
+        for (const auto& [name, value] : channels_) image.channels.push_back(name);
+        for (size_t i = 0; i < pixel_count(size_px); ++i)
+            for (const auto& [name, value] : channels_) image.values.push_back(static_cast<float>(value(i)));
+        write_image(folder_ / "f.exr", image);
+        if (!convention.empty()) folder_.write("f.exr.toml", convention);
+        return (folder_ / "f.exr").string();
+    }
+
+    Frame load(const std::string& convention) { return load_frame(write(convention)); }
+
+    template <typename Error = SpecError> std::string refused(const std::string& convention)
+    {
+        const std::string path = write(convention);
+        return message_of<Error>([&] { load_frame(path); });
+    }
+
+    void expect_the_wall(const Frame& frame) const
+    {
+        for (size_t i = 0; i < pixel_count(size_px); ++i) {
+            const double expected = covered(i) ? near_m / distance_m(i) : 0;
+            ASSERT_NEAR(frame.gbuffer.depth[i], expected, 2e-6 * expected) << "pixel " << i;
+        }
+    }
+
+    TempFolder                                  folder_;
+    std::vector<std::pair<std::string, Values>> channels_;
+};
+
+TEST_F(LoadFrame, EveryDepthConventionGivesTheSameDistances)
+{
+    const double infinity = std::numeric_limits<double>::infinity();
+    struct Convention {
+        std::string text;
+        Values      value;
+    };
+    const std::string with_far      = std::string(camera) + "far_m = 50\n";
+    const Convention  conventions[] = {
+         {std::string(camera) + "[depth]\nkind = 'reversed'\n", [](size_t i) { return near_m / distance_m(i); }},
+         {with_far + "[depth]\nkind = 'reversed'\n",
+          [](size_t i) { return near_m * (far_m - distance_m(i)) / (distance_m(i) * (far_m - near_m)); }},
+         {with_far + "[depth]\nkind = 'standard'\n",
+          [](size_t i) { return far_m * (distance_m(i) - near_m) / (distance_m(i) * (far_m - near_m)); }},
+         {std::string(camera) + "[depth]\nkind = 'standard'\n", [](size_t i) { return 1 - near_m / distance_m(i); }},
+         {std::string(camera) + "[depth]\nkind = 'distance'\n", [](size_t i) { return distance_m(i); }},
+         {std::string(camera) + "[depth]\nkind = 'distance'\nunit_m = 0.01\nbackground_m = 900\n",
+          [](size_t i) { return 100 * distance_m(i); }},
+         {std::string(camera) + "[depth]\nkind = 'ray_distance'\n",
+          [](size_t i) { return distance_m(i) * ray_length(i); }}};
+    for (size_t k = 0; k < std::size(conventions); ++k) {
+        SCOPED_TRACE(conventions[k].text);
+        const double nothing = k < 2 ? 0 : k < 4 ? 1 : k == 5 ? 65504 * 100.0 : infinity;
+        channels_.clear();
+        whole_frame("Depth.Z", [&, k](size_t i) { return covered(i) ? conventions[k].value(i) : nothing; });
+        expect_the_wall(load(conventions[k].text));
+    }
+}
+
+TEST_F(LoadFrame, NormalsOfTheWorldTurnIntoTheCamera)
+{
+    channel("ViewLayer.Depth.Z", [](size_t) { return 3.0; });
+    // The world is z up; the camera looks along +y. Stored in 0 … 1: a wall that faces it, (0, -1, 0).
+    const glm::dvec3 stored(0.5, 0, 0.5);
+    for (int c = 0; c < 3; ++c) channel(std::string("ViewLayer.Normal.") + "XYZ"[c], [=](size_t) { return stored[c]; });
+    channel("ViewLayer.roughness.X", [](size_t) { return 0; });
+    channel("ViewLayer.metallic.X", [](size_t) { return 1; });
+    const std::string axes  = "right = [1, 0, 0]\nup = [0, 0, 1]\nforward = [0, 1, 0]\n";
+    const std::string depth = "[depth]\nkind = 'distance'\n";
+    const Frame       frame = load(camera + axes + depth + "[normals]\nspace = 'world'\nunsigned = true\n");
+    for (const glm::vec3& normal : frame.gbuffer.normal_vs) EXPECT_LT(glm::length(normal - glm::vec3(0, 0, 1)), 1e-6F);
+
+    EXPECT_THAT(refused(camera + axes + depth),
+                HasSubstr("'ViewLayer.Normal.X': nothing says whether it is in view or world"));
+    EXPECT_THAT(refused(camera + depth + "[normals]\nspace = 'world'\n"), HasSubstr("need the camera's 'right', 'up'"));
+    EXPECT_THAT(
+        refused(camera + axes + depth + "[normals]\nspace = 'world'\n"),
+        AllOf(HasSubstr("f.exr: channel 'ViewLayer.Normal.X'"), HasSubstr("expected normals of length 1, got 0.71")));
+    EXPECT_THAT(
+        load(camera + axes + depth + "[normals]\nspace = 'world'\nunsigned = true\nflip = 'y'\n").warnings.front(),
+        HasSubstr("100 % of the normals look away"));
+}
+
+TEST_F(LoadFrame, SpecularAndSmoothnessStandForMetallicAndRoughness)
+{
+    channel("depth", [](size_t) { return 0.1; });
+    for (const char* name : {"normal_vs.x", "normal_vs.y"}) channel(name, [](size_t) { return 0; });
+    channel("normal_vs.z", [](size_t) { return 1; });
+    channel("Smoothness.R", [](size_t) { return 0.75; });
+    for (const char* name : {"Specular.R", "Specular.G", "Specular.B"})
+        channel(name, [](size_t i) { return i == 0 ? 0.04 : 0.52; });
+    const Frame frame = load(std::string(camera) + "[depth]\nkind = 'reversed'\n");
+    EXPECT_EQ(frame.gbuffer.roughness[0], 0.25F);
+    EXPECT_NEAR(frame.gbuffer.metallic[0], 0, 1e-6);
+    EXPECT_NEAR(frame.gbuffer.metallic[1], 0.5, 1e-6);
+}
+
+TEST_F(LoadFrame, ChannelsAreNamedValuedOrTakenFromOtherFiles)
+{
+    whole_frame("what.R", [](size_t i) { return covered(i) ? near_m / distance_m(i) : 0; });
+    const std::string head = std::string(camera) + "[depth]\nkind = 'reversed'\n";
+    EXPECT_THAT(refused(head), AllOf(HasSubstr("f.exr: no channel is recognised as depth"), HasSubstr("what.R")));
+    EXPECT_THAT(refused(head + "[channels]\ndepth = 'there.R'\n"),
+                HasSubstr("has no channel 'there.R'; it has metallic, roughness"));
+    EXPECT_THAT(refused(head + "[channels]\ndepht = 'what.R'\n"), HasSubstr("f.exr.toml:7: unknown key of channels 'depht'"));
+    const std::string named =
+        head + "[channels]\ndepth = 'what.R'\n'lit.R' = 'l.exr:R'\n'lit.G' = 'l.exr:R'\n'lit.B' = 'l.exr:R'\n";
+    EXPECT_THAT(refused(named), HasSubstr("l.exr: no such file"));
+    write_image(folder_ / "l.exr", {size_px, {"R"}, std::vector<float>(pixel_count(size_px), 0.5F), {}});
+    const Frame frame = load(named + "[values]\nmetallic = 0.75\n");
+    expect_the_wall(frame);
+    EXPECT_EQ(frame.gbuffer.radiance[3], glm::vec3(0.5F));
+    EXPECT_EQ(frame.gbuffer.metallic[3], 0.75F);
+    EXPECT_THAT(scene_files((folder_ / "f.exr").string()),
+                UnorderedElementsAre(folder_ / "f.exr", folder_ / "f.exr.toml", folder_ / "l.exr", folder_ / "l.exr",
+                                     folder_ / "l.exr"));
+    write_image(folder_ / "l.exr", {{3, 2}, {"R"}, std::vector<float>(6, 0.5F), {}});
+    EXPECT_THAT(refused(named), HasSubstr("3x2 pixels, expected 8x6"));
+}
+
+TEST_F(LoadFrame, NamesOfEngines)
+{
+    const std::vector<ExrChannel> channels = {{"FinalImageMovieRenderQueue_WorldDepth.R", 0, 0, false},
+                                              {"FinalImageMovieRenderQueue_WorldDepth.G", 0, 1, false},
+                                              {"FinalImageWorldNormal.G", 0, 2, false},
+                                              {"FinalImageBaseColor.B", 0, 3, false},
+                                              {"R", 0, 4, false},
+                                              {"ViewLayer.Combined.G", 0, 5, false},
+                                              {"MetalRoughness.X", 0, 6, false}};
+    const auto                    name     = [&](const char* quantity) {
+        const auto found = find_quantity(channels, quantity);
+        return found.size() == 1 ? found[0].name : fmt::format("{} channels", found.size());
+    };
+    EXPECT_EQ(name("depth"), "FinalImageMovieRenderQueue_WorldDepth.R");
+    EXPECT_EQ(name("normal.y"), "FinalImageWorldNormal.G");
+    EXPECT_EQ(name("normal.x"), "0 channels");
+    EXPECT_EQ(name("base_colour.B"), "FinalImageBaseColor.B");
+    EXPECT_EQ(name("lit.R"), "R");
+    EXPECT_EQ(name("lit.G"), "ViewLayer.Combined.G");
+    EXPECT_EQ(name("roughness"), "MetalRoughness.X");
+    EXPECT_EQ(normal_space_of("FinalImageWorldNormal.G"), "world");
+    EXPECT_EQ(normal_space_of("normal_vs.x"), "view");
+    EXPECT_EQ(normal_space_of("ViewLayer.Normal.X"), "");
+}
+
+TEST_F(LoadFrame, WhatCannotBeRightIsSaid)
+{
+    const std::string device = std::string(camera) + "[depth]\nkind = 'reversed'\n";
+    whole_frame("depth", [](size_t i) { return i == 10 ? 35.5 : 0.5; });
+    EXPECT_THAT(refused(""), HasSubstr("nothing says how the camera looks: write"));
+    EXPECT_THAT(refused(camera), HasSubstr("nothing says what depth means: write"));
+    EXPECT_THAT(refused(device),
+                HasSubstr("f.exr: channel 'depth': expected device depth in 0 … 1, got 35.5 at pixel 2,1"));
+    EXPECT_THAT(refused("[camera]\nnear_m = 0.1\n"), AllOf(HasSubstr("f.exr.toml:1"), HasSubstr("'fov_y_deg'")));
+    EXPECT_THAT(refused(std::string(camera) + "[depth]\nkind = 'backward'\n"),
+                HasSubstr("must be one of reversed, standard"));
+    channels_[0].second = [](size_t i) { return i == 7 ? std::nan("") : 0.5; };
+    EXPECT_THAT(refused(device), HasSubstr("channel 'depth': expected a number, got nan at pixel 7,0"));
+    channels_[0].second = [](size_t) { return 0.1; };
+    EXPECT_THAT(refused(std::string(camera) + "[depth]\nkind = 'distance'\n"),
+                HasSubstr("expected a distance of at least near_m, got 0.1"));
+    channels_[4].second = [](size_t) { return 7; };
+    EXPECT_THAT(refused(device), HasSubstr("channel 'roughness': expected a value in 0 … 1, got 7"));
+    channel("Layer.Depth.Z", [](size_t) { return 1; });
+    channels_[0].first = "Other.Depth.Z";
+    EXPECT_THAT(refused(device), HasSubstr("'Layer.Depth.Z' and 'Other.Depth.Z' could both be depth"));
+    folder_.write("g.exr", "this is no image");
+    EXPECT_THAT(message_of<Failure>([&] { load_frame(folder_ / "g.exr"); }), HasSubstr("g.exr: cannot be read as EXR"));
+    EXPECT_THAT(message_of<SpecError>([&] { load_scene((folder_ / "h.exr").string()); }),
+                HasSubstr("h.exr: no such file"));
+}
+
+TEST_F(LoadFrame, AFrameHasOneViewAtOneSize)
+{
+    whole_frame("depth", [](size_t) { return 0.5; });
+    const Scene scene = load_scene(write(std::string(camera) + "[depth]\nkind = 'reversed'\n"));
+    EXPECT_EQ(find_view(scene, "default", {0, 0}).size_px, size_px);
+    EXPECT_EQ(find_view(scene, "default", size_px).near_m, near_m);
+    EXPECT_THAT(message_of<SpecError>([&] {
+                    find_view(scene, "default", {16, 9});
+                }),
+                HasSubstr("8x6 pixels: it cannot be drawn at 16x9"));
+    EXPECT_THROW(find_view(scene, "side", size_px), SpecError);
+}
+
+} // namespace
+} // namespace ssrlab
