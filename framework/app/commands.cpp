@@ -41,6 +41,14 @@ double most_steps_of(const CommonOptions& common, const PictureOptions& options)
     return declared_steps(technique, parse_choice(technique, options.parameters).values);
 }
 
+/// "pan.png" is "pan_0007.png" in frame 7.
+std::string numbered(const std::string& output, int frame)
+{
+    const std::filesystem::path path(output);
+    return (path.parent_path() / fmt::format("{}_{:04}{}", path.stem().string(), frame, path.extension().string()))
+        .string();
+}
+
 std::string status_legend()
 {
     std::string text;
@@ -103,14 +111,18 @@ int show_technique(const CommonOptions& common, const std::string& id)
 int render_picture(const CommonOptions& common, const PictureOptions& options)
 {
     check_choice(common, options);
-    Stage      stage = prepare_stage(common, options);
-    const auto frame = prepare(common, options, stage);
-    run_frame(stage.gpu, *frame);
-    const FrameTimes times = run_frame(stage.gpu, *frame);
-    write_image(options.output, read_shaded(stage.gpu, *frame));
-    std::puts(fmt::format("{}: {}x{}, trace {:.2f} ms on {}", options.output, stage.view.size_px.x,
-                          stage.view.size_px.y, times.of("trace"), stage.gpu.info.name)
-                  .c_str());
+    Stage stage = prepare_stage(common, options);
+    for (int i = 0; i < std::max(options.frames, 1); ++i) {
+        if (i > 0) show_frame(stage, options.view, {options.at.frame + i, options.at.jitter_phases});
+        const auto frame = prepare(common, options, stage);
+        run_frame(stage.gpu, *frame);
+        const FrameTimes  times = run_frame(stage.gpu, *frame);
+        const std::string file  = options.frames > 0 ? numbered(options.output, options.at.frame + i) : options.output;
+        write_image(file, read_shaded(stage.gpu, *frame));
+        std::puts(fmt::format("{}: {}x{}, trace {:.2f} ms on {}", file, stage.view.size_px.x, stage.view.size_px.y,
+                              times.of("trace"), stage.gpu.info.name)
+                      .c_str());
+    }
     return report_messages(stage);
 }
 
@@ -148,7 +160,7 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
 int write_gbuffer(const CommonOptions& common, const PictureOptions& options)
 {
     if (!options.size.empty()) size_option(options.size);
-    Stage              stage  = prepare_stage(common, options);
+    Stage stage = prepare_stage(common, options);
     write_image(options.output, frame_image(read_gbuffer(stage.gpu, *stage.gbuffer)));
     std::puts(options.output.c_str());
     return report_messages(stage);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/frame.h"
+#include "scene/sequence.h"
 
 #include <filesystem>
 #include <string>
@@ -18,6 +19,8 @@ struct CommonOptions {
 struct PictureOptions {
     std::string              scene, technique, view = "default", size, output;
     std::vector<std::string> parameters; // name=value: the technique's parameters, or settings of [trace] and [passes]
+    SequenceFrame            at;
+    int                      frames = 0; // render: so many pictures from frame at.frame on; 0: one, without a number
 };
 
 int list_everything(const CommonOptions& common);

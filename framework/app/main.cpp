@@ -25,6 +25,18 @@ void open_closed_streams()
     }
 }
 
+void add_frame_options(CLI::App& command, ssrlab::PictureOptions& options)
+{
+    command.add_option("--frame", options.at.frame, "Frame of the scene's motion and of a camera path")
+        ->capture_default_str()
+        ->check(CLI::Range(0, ssrlab::max_frames));
+    command
+        .add_option("--jitter", options.at.jitter_phases,
+                    "Sub-pixel offsets of the camera that repeat after so many frames; 0: none")
+        ->capture_default_str()
+        ->check(CLI::Range(0, ssrlab::max_jitter_phases));
+}
+
 void add_picture_options(CLI::App& command, ssrlab::PictureOptions& options, bool traces)
 {
     command
@@ -37,7 +49,8 @@ void add_picture_options(CLI::App& command, ssrlab::PictureOptions& options, boo
             "name=value: a parameter of the technique (see ssrlab show), or a setting such as thickness_m");
     }
     command.add_option("--size", options.size, "WIDTHxHEIGHT in pixels; default: the view's own");
-    command.add_option("--view", options.view, "Name of a view of the scene")->capture_default_str();
+    command.add_option("--view", options.view, "Name of a view or camera path of the scene")->capture_default_str();
+    add_frame_options(command, options);
     command.add_option("-o,--output", options.output, "File to write")->required();
 }
 
@@ -71,6 +84,8 @@ int main(int argc, char** argv)
     show->callback([&] { command = [&] { return show_technique(common, technique); }; });
     auto* render = app.add_subcommand("render", "A picture with reflections (.png or .exr)");
     add_picture_options(*render, picture, true);
+    render->add_option("--frames", picture.frames, "Write so many numbered pictures, of this frame and those after it")
+        ->check(CLI::Range(1, max_frames));
     render->callback([&] { command = [&] { return render_picture(common, picture); }; });
     auto* trace = app.add_subcommand("trace", "What each ray found and why it stopped (.exr)");
     add_picture_options(*trace, picture, true);
@@ -87,7 +102,9 @@ int main(int argc, char** argv)
         ->capture_default_str();
     planned->add_option("-p,--parameter", plan.picture.parameters, "name=value, as for render");
     planned->add_option("--size", plan.picture.size, "WIDTHxHEIGHT in pixels; default: the view's own");
-    planned->add_option("--view", plan.picture.view, "Name of a view of the scene")->capture_default_str();
+    planned->add_option("--view", plan.picture.view, "Name of a view or camera path of the scene")
+        ->capture_default_str();
+    add_frame_options(*planned, plan.picture);
     planned->add_option("--repeats", plan.repeats, "Timed frames")->capture_default_str()->check(CLI::PositiveNumber);
     planned->callback([&] { command = [&] { return print_plan(common, plan); }; });
 

@@ -20,13 +20,26 @@ glm::ivec2 size_option(const std::string& text)
 Stage prepare_stage(const CommonOptions& common, const PictureOptions& options)
 {
     Stage stage;
-    stage.scene = load_scene(options.scene);
-    stage.view = find_view(stage.scene, options.view, options.size.empty() ? glm::ivec2(0) : size_option(options.size));
+    stage.first           = load_scene(options.scene);
+    stage.scene           = scene_at(stage.first, options.at.frame);
+    const glm::ivec2 size = options.size.empty() ? glm::ivec2(0) : size_option(options.size);
+    stage.view            = view_at(stage.scene, options.view, size, options.at);
     for (const std::string& warning : stage.scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-    stage.gpu     = open_gpu({.device = common.device, .validation = common.validation});
+    stage.gpu = open_gpu({.device = common.device, .validation = common.validation});
+    if (!stage.scene.frame) stage.uploaded = upload_scene(stage.gpu, stage.scene);
     stage.gbuffer = stage.scene.frame ? upload_gbuffer(stage.gpu, stage.scene.frame->gbuffer)
-                                      : render_gbuffer(stage.gpu, upload_scene(stage.gpu, stage.scene), stage.view);
+                                      : render_gbuffer(stage.gpu, stage.uploaded, stage.view);
     return stage;
+}
+
+void show_frame(Stage& stage, const std::string& view, SequenceFrame at)
+{
+    if (anything_moves(stage.first)) {
+        stage.scene = scene_at(stage.first, at.frame);
+        move_scene(stage.gpu, *stage.uploaded, stage.scene);
+    }
+    stage.view    = view_at(stage.scene, view, stage.view.size_px, at);
+    stage.gbuffer = render_gbuffer(stage.gpu, stage.uploaded, stage.view);
 }
 
 Choice parse_choice(const Technique& technique, const std::vector<std::string>& pairs)

@@ -8,12 +8,16 @@ namespace ssrlab {
 
 /// The scene's picture of one view on the device.
 struct Stage {
-    Scene      scene;
-    View       view;
-    Gpu        gpu;
-    GBufferPtr gbuffer;
+    Scene       first; // the scene in frame 0
+    Scene       scene;
+    View        view;
+    Gpu         gpu;
+    GpuScenePtr uploaded;
+    GBufferPtr  gbuffer;
 };
 Stage prepare_stage(const CommonOptions& common, const PictureOptions& options);
+/// The same view in another frame of the sequence.
+void show_frame(Stage& stage, const std::string& view, SequenceFrame at);
 /// Prints the validation layer's messages; 1 when there are any.
 int report_messages(const Stage& stage);
 

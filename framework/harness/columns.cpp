@@ -20,6 +20,8 @@ const std::vector<Column> identity = {
     {"view", "camera"},
     {"width", "pixels"},
     {"height", "pixels"},
+    {"frame", "of the sequence: 0 is the scene as loaded and the start of a camera path"},
+    {"jitter_phases", "sub-pixel offsets of the camera (Halton 2, 3) that repeat after so many frames; 0: none"},
     {"technique", "folder of the technique"},
 };
 

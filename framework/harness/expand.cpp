@@ -67,7 +67,8 @@ std::vector<Run> expand_picture(const Experiment& experiment, std::span<const Te
         for (const ParameterValues& one : values) refuse_cut_loops(sweep, technique, one);
         for (const ParameterValues& settings : cross_product(settings_of(experiment, sweep))) {
             for (const ParameterValues& one : values) {
-                by_settings[settings].push_back({"", "", "", {0, 0}, to_settings(settings), sweep.id, one, number++});
+                by_settings[settings].push_back(
+                    {"", "", "", {0, 0}, to_settings(settings), sweep.id, one, {}, number++});
             }
         }
     }
@@ -82,11 +83,20 @@ std::vector<glm::ivec2> sizes_of(const Experiment& experiment, const std::string
     return is_frame(scene) ? std::vector{frame_size_px(scene)} : experiment.sizes_px;
 }
 
+/// A frame of another renderer is one frame.
+std::vector<SequenceFrame> frames_of(const Experiment& experiment, const std::string& scene)
+{
+    return is_frame(scene) ? std::vector<SequenceFrame>(1) : experiment.frames;
+}
+
 } // namespace
 
 std::string run_id(const Run& run)
 {
     std::string identity = fmt::format("{}\n{}\n{}\n{}\n", run.scene, run.view, size_text(run.size_px), run.technique);
+    // A still frame has the id that it had before there were sequences.
+    if (run.at != SequenceFrame{})
+        identity += fmt::format("frame={}\njitter_phases={}\n", run.at.frame, run.at.jitter_phases);
     // An effect's parameter counts when it is not at its default: a new effect leaves the ids of earlier runs alone.
     for (const Setting& setting : all_settings()) {
         const double value = setting.get(run.settings);
@@ -96,6 +106,11 @@ std::string run_id(const Run& run)
     for (const auto& [name, value] : run.values) identity += fmt::format("{}={}\n", name, value);
     // The letter keeps spreadsheets from reading 12e4… as a number.
     return "r" + content_hash(identity);
+}
+
+bool same_picture(const Run& a, const Run& b)
+{
+    return a.scene == b.scene && a.view == b.view && a.size_px == b.size_px && a.at == b.at;
 }
 
 std::string size_text(glm::ivec2 size_px) { return fmt::format("{}x{}", size_px.x, size_px.y); }
@@ -108,7 +123,7 @@ double count_runs(const Experiment& experiment)
     }
     const double pictures = static_cast<double>(experiment.scenes.size()) *
                             static_cast<double>(experiment.views.size()) *
-                            static_cast<double>(experiment.sizes_px.size());
+                            static_cast<double>(experiment.sizes_px.size() * experiment.frames.size());
     return pictures * sweeps;
 }
 
@@ -122,19 +137,18 @@ std::vector<Run> expand(const Experiment& experiment, std::span<const Technique>
     const std::vector<Run> on_each_picture = expand_picture(experiment, techniques);
     std::vector<Run>       runs;
     std::set<std::string>  ids;
-    for (const std::string& scene : experiment.scenes) {
-        for (const std::string& view : experiment.views) {
-            for (const glm::ivec2& size_px : sizes_of(experiment, scene)) {
-                for (Run run : on_each_picture) {
-                    run.scene   = scene;
-                    run.view    = view;
-                    run.size_px = size_px;
-                    run.id      = run_id(run);
-                    if (ids.insert(run.id).second) runs.push_back(std::move(run));
-                }
-            }
-        }
-    }
+    for (const std::string& scene : experiment.scenes)
+        for (const std::string& view : experiment.views)
+            for (const glm::ivec2& size_px : sizes_of(experiment, scene))
+                for (const SequenceFrame& at : frames_of(experiment, scene))
+                    for (Run run : on_each_picture) {
+                        run.scene   = scene;
+                        run.view    = view;
+                        run.size_px = size_px;
+                        run.at      = at;
+                        run.id      = run_id(run);
+                        if (ids.insert(run.id).second) runs.push_back(std::move(run));
+                    }
     return runs;
 }
 

@@ -86,6 +86,25 @@ std::vector<glm::ivec2> read_sizes(const TomlFile& file)
     return sizes_px;
 }
 
+/// frames = 3 or [0, 5, 9], and jitter_phases of them all.
+std::vector<SequenceFrame> read_frames(const TomlFile& file)
+{
+    int phases = 0;
+    if (const toml::node* node = file.root.get("jitter_phases"))
+        phases = static_cast<int>(integer_within(file, *node, "jitter_phases", 0, max_jitter_phases));
+    const toml::node* node = file.root.get("frames");
+    if (node == nullptr) return {{0, phases}};
+    std::vector<SequenceFrame> frames;
+    if (!node->is_array()) {
+        const int64_t count = integer_within(file, *node, "frames", 1, max_frames);
+        for (int frame = 0; frame < count; ++frame) frames.push_back({frame, phases});
+        return frames;
+    }
+    for (const toml::node* value : values_of(file, *node, "frames"))
+        frames.push_back({static_cast<int>(integer_within(file, *value, "frames", 0, max_frames)), phases});
+    return frames;
+}
+
 const toml::table* optional_table(const TomlFile& file, const std::string& name)
 {
     const toml::node* node = file.root.get(name);
@@ -266,8 +285,9 @@ std::vector<Target> read_targets(const TomlFile& file, const MeasureSettings& me
 
 Experiment load_experiment(const std::filesystem::path& path, std::span<const Technique> techniques)
 {
-    static const std::vector<std::string> known = {"name",  "title",  "scenes",     "views",   "sizes",
-                                                   "trace", "passes", "techniques", "measure", "targets"};
+    static const std::vector<std::string> known = {"name",   "title",      "scenes",        "views",
+                                                   "sizes",  "frames",     "jitter_phases", "trace",
+                                                   "passes", "techniques", "measure",       "targets"};
     const TomlFile                        file  = read_toml(path);
     toml_known_keys(file, file.root, "key", known);
     Experiment experiment;
@@ -282,6 +302,7 @@ Experiment load_experiment(const std::filesystem::path& path, std::span<const Te
     experiment.scenes_place = toml_place(file, *file.root.get("scenes"));
     experiment.views        = read_texts(file, "views", {"default"});
     experiment.sizes_px     = read_sizes(file);
+    experiment.frames       = read_frames(file);
     experiment.settings     = read_settings(file);
     experiment.techniques   = read_sweeps(file, techniques);
     experiment.measure      = read_measure(file);

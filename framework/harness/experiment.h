@@ -3,6 +3,7 @@
 
 #include "render/frame.h"
 #include "render/technique.h"
+#include "scene/sequence.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -47,12 +48,13 @@ struct TechniqueSweep {
 };
 
 struct Experiment {
-    std::filesystem::path    file;
-    std::string              text; // the whole file
-    std::string              name, title;
-    std::vector<std::string> scenes, views;
-    std::string              scenes_place; // file:line
-    std::vector<glm::ivec2>  sizes_px;
+    std::filesystem::path      file;
+    std::string                text; // the whole file
+    std::string                name, title;
+    std::vector<std::string>   scenes, views;
+    std::string                scenes_place; // file:line
+    std::vector<glm::ivec2>    sizes_px;
+    std::vector<SequenceFrame> frames = {{}};
     /// Every setting's values by Setting::name, defaults filled in.
     ValueLists                  settings;
     std::vector<TechniqueSweep> techniques;
@@ -68,6 +70,7 @@ struct Run {
     FrameSettings   settings;
     std::string     technique;
     ParameterValues values;
+    SequenceFrame   at     = {};
     int             number = 0; // among the picture's runs as the specification lists them
 };
 
@@ -88,7 +91,10 @@ Experiment load_experiment(const std::filesystem::path& file, std::span<const Te
 /// The number of runs that expand() makes, without making them.
 double count_runs(const Experiment& experiment);
 
-/// Scene by scene, view by view, size by size; a run listed twice comes once. Throws SpecError for a run whose iterations a
+/// Whether two runs share a picture: scene, view, size and frame of the sequence.
+bool same_picture(const Run& a, const Run& b);
+
+/// Scene by scene, view by view, size by size, frame by frame; a run listed twice comes once. Throws SpecError for a run whose iterations a
 /// driver may cut, and for more than max_runs_unasked runs unless `many` is set.
 std::vector<Run> expand(const Experiment& experiment, std::span<const Technique> techniques, bool many = false);
 

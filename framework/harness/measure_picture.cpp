@@ -39,18 +39,25 @@ struct Picture {
     FrameSettings            reference_for;
 };
 
-const LoadedScene& scene_of(Bench& bench, const std::string& name)
+const LoadedScene& scene_of(Bench& bench, const std::string& name, int frame)
 {
     if (bench.scene == nullptr || bench.scene->name != name) {
         bench.scene.reset(); // before the next one is loaded: one scene in memory at a time
         auto loaded   = std::make_unique<LoadedScene>();
         loaded->name  = name;
-        loaded->scene = load_scene(name);
+        loaded->first = load_scene(name);
+        loaded->scene = loaded->first;
         if (!loaded->scene.frame) loaded->uploaded = upload_scene(bench.gpu, loaded->scene);
         for (const std::string& warning : loaded->scene.warnings)
             bench.progress.say(fmt::format("{}: {}", name, warning));
         bench.scene = std::move(loaded);
     }
+    LoadedScene& loaded = *bench.scene;
+    if (loaded.frame != frame && anything_moves(loaded.first)) {
+        loaded.scene = scene_at(loaded.first, frame);
+        move_scene(bench.gpu, *loaded.uploaded, loaded.scene);
+    }
+    loaded.frame = frame;
     return *bench.scene;
 }
 
@@ -72,8 +79,8 @@ double cost_of(const Bench& bench, const Run& run)
 
 Picture make_picture(Bench& bench, const Run& run)
 {
-    const LoadedScene& loaded = scene_of(bench, run.scene);
-    const View         view   = find_view(loaded.scene, run.view, run.size_px);
+    const LoadedScene& loaded = scene_of(bench, run.scene, run.at.frame);
+    const View         view   = view_at(loaded.scene, run.view, run.size_px, run.at);
     Picture            picture;
     picture.gbuffer = clocked(bench.counted_s, [&] { // a warm-up
         return loaded.scene.frame ? upload_gbuffer(bench.gpu, loaded.scene.frame->gbuffer)
@@ -403,8 +410,9 @@ void finish(Bench& bench, const Run& run, const Row& row, std::string_view sampl
 
 void measure_picture(Bench& bench, std::span<const Run> listed)
 {
-    const Run& first = listed.front();
-    bench.progress.start_picture(fmt::format("{} {} {}", first.scene, first.view, size_text(first.size_px)));
+    const Run&        first = listed.front();
+    const std::string frame = first.at == SequenceFrame{} ? "" : fmt::format(" frame {}", first.at.frame);
+    bench.progress.start_picture(fmt::format("{} {} {}{}", first.scene, first.view, size_text(first.size_px), frame));
     if (!bench.experiment.targets.empty()) return search_and_measure(bench, listed);
     const std::vector<Run> pending = without_row(bench, listed);
     if (pending.empty()) return;

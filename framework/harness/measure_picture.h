@@ -15,7 +15,9 @@ namespace ssrlab {
 /// Kept from one picture to the next as long as the scene stays the same.
 struct LoadedScene {
     std::string name;
-    Scene       scene;
+    Scene       first; // in frame 0
+    int         frame = 0;
+    Scene       scene; // in that frame
     GpuScenePtr uploaded;
 };
 

@@ -41,6 +41,8 @@ Row identity_row(const Experiment& experiment, const Run& run, const Technique& 
                {"view", run.view},
                {"width", std::to_string(run.size_px.x)},
                {"height", std::to_string(run.size_px.y)},
+               {"frame", std::to_string(run.at.frame)},
+               {"jitter_phases", std::to_string(run.at.jitter_phases)},
                {"technique", run.technique}};
     for (const Setting& setting : all_settings()) {
         row[setting.name] = format_parameter(setting, setting.get(run.settings));
@@ -156,6 +158,8 @@ std::string trace_command(const Run& run, const Technique& technique)
     std::string                 text    = "ssrlab trace " + run.scene;
     if (technique.folder.parent_path() != in_tree) text += " --techniques " + short_path(technique.folder);
     text += fmt::format(" --view {} --size {} -t {}", run.view, size_text(run.size_px), technique.id);
+    if (run.at.frame != 0) text += fmt::format(" --frame {}", run.at.frame);
+    if (run.at.jitter_phases != 0) text += fmt::format(" --jitter {}", run.at.jitter_phases);
     for (const Parameter& parameter : technique.parameters)
         text += fmt::format(" -p {}={}", parameter.name, format_parameter(parameter, run.values.at(parameter.name)));
     for (const Setting& setting : all_settings())

@@ -83,13 +83,11 @@ int list_runs(const Experiment& experiment, std::span<const Run> runs, std::span
     return 0;
 }
 
-/// Runs that share scene, view and size stand together; takes the next such group off the front.
+/// Runs of one picture stand together; takes the next such group off the front.
 std::span<const Run> take_picture(std::span<const Run>& rest)
 {
-    const Run& first = rest.front();
-    const auto same  = [&](const Run& run) {
-        return run.scene == first.scene && run.view == first.view && run.size_px == first.size_px;
-    };
+    const Run& first   = rest.front();
+    const auto same    = [&](const Run& run) { return same_picture(run, first); };
     const auto count   = static_cast<size_t>(std::ranges::find_if_not(rest, same) - rest.begin());
     const auto picture = rest.first(count);
     rest               = rest.subspan(count);
@@ -109,10 +107,7 @@ void record_lost(Bench& bench, std::span<const Run> runs, const LostRun& lost)
 {
     const auto at = std::ranges::find(runs, lost.run_id, &Run::id);
     if (at == runs.end()) throw_failure("run {} of the search for the targets: {}", lost.run_id, lost.why);
-    const auto is_it = [&](const Run& run) {
-        return lost.whole_picture ? run.scene == at->scene && run.view == at->view && run.size_px == at->size_px
-                                  : run.id == at->id;
-    };
+    const auto is_it = [&](const Run& run) { return lost.whole_picture ? same_picture(run, *at) : run.id == at->id; };
     for (const Run& run : runs) {
         if (!is_it(run)) continue;
         const Technique& technique = find_technique(bench.techniques, run.technique);

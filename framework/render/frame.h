@@ -46,6 +46,9 @@ using PreparedFramePtr = std::shared_ptr<PreparedFrame>;
 /// Uploads the scene and renders its shadow maps.
 GpuScenePtr upload_scene(Gpu& gpu, const Scene& scene);
 
+/// The same scene with its draws elsewhere: vertices and shadow maps anew, in the buffers that are there.
+void move_scene(Gpu& gpu, GpuScene& uploaded, const Scene& moved);
+
 /// Renders the G-buffer; call again for another timing. Throws SpecError when the size exceeds the device's limit.
 GBufferPtr render_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view);
 /// Renders into the same images again; returns milliseconds.

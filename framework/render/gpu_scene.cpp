@@ -200,8 +200,19 @@ GpuScenePtr upload_scene(Gpu& gpu, const Scene& source)
     scene->alpha_mask          = std::ranges::any_of(source.materials, &Material::alpha_mask);
     scene->has_environment_map = !source.environment.radiance.empty();
     upload_environment(gpu, *scene, source);
+    make_shadow_maps(gpu, *scene, source);
     render_shadow_maps(gpu, *scene, source);
     return scene;
+}
+
+void move_scene(Gpu& gpu, GpuScene& uploaded, const Scene& moved)
+{
+    upload(gpu, uploaded.vertices, moved.vertices.data(), moved.vertices.size() * sizeof(Vertex));
+    for (size_t i = 0; i < moved.draws.size(); ++i) {
+        uploaded.draws[i].bounds_min_ws = moved.draws[i].bounds_min_ws;
+        uploaded.draws[i].bounds_max_ws = moved.draws[i].bounds_max_ws;
+    }
+    render_shadow_maps(gpu, uploaded, moved);
 }
 
 FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms,

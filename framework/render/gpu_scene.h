@@ -38,11 +38,12 @@ struct GpuScene {
     std::vector<vk::raii::DescriptorSet> material_sets;
     std::vector<DrawCall>                draws;
     // Of the G-buffer and its second layer, made when one is first drawn: lavapipe keeps memory for every graphics pipeline that it ever made.
-    std::shared_ptr<const DrawPipeline> first_layer_pipeline, second_layer_pipeline, solid_back_pipeline;
-    uint32_t                            light_count = 0;
-    glm::vec3                           ambient{0};
-    bool                                alpha_mask          = false; // some material has one
-    bool                                has_environment_map = false;
+    std::shared_ptr<const DrawPipeline> first_layer_pipeline, second_layer_pipeline, solid_back_pipeline,
+        shadow_pipeline;
+    uint32_t  light_count = 0;
+    glm::vec3 ambient{0};
+    bool      alpha_mask          = false; // some material has one
+    bool      has_environment_map = false;
 };
 
 struct DrawPipelineOptions {
@@ -50,7 +51,7 @@ struct DrawPipelineOptions {
     std::vector<vk::Format> colour_formats;
     bool reversed_depth = true; // the G-buffer's convention; shadow maps use standard depth with a bias
     std::map<std::string, std::string> fragment_defines = {};
-    bool culls = true;
+    bool                               culls            = true;
 };
 DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipelineOptions& options);
 
@@ -66,7 +67,9 @@ struct FrameSet {
 FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms,
                         const vk::raii::BufferView* first_depth = nullptr);
 
-/// Light matrices and shadow maps; called once by upload_scene.
+/// Light matrices, and shadow maps without content.
+void make_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source);
+/// Draws them, with matrices that fit what moved.
 void render_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source);
 
 } // namespace ssrlab

@@ -131,43 +131,62 @@ GpuImage make_shadow_map(Gpu& gpu, size_t layers, const std::string& scene)
     }
 }
 
-} // namespace
+struct ShadowBlocks {
+    std::vector<LightBlock> lights;
+    std::vector<glm::dmat4> matrices; // a layer each
+    std::vector<glm::mat4>  stored;
+};
 
-void render_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source)
+ShadowBlocks shadow_blocks(const Scene& source)
 {
-    const Bounds            bounds = bounds_of(source);
-    std::vector<LightBlock> blocks;
-    std::vector<glm::dmat4> matrices;
+    const Bounds bounds = bounds_of(source);
+    ShadowBlocks blocks;
     for (const Light& light : source.lights) {
         const auto own =
             light.casts_shadow && !source.draws.empty() ? light_matrices(light, bounds) : std::vector<glm::dmat4>{};
-        const int layer = own.empty() ? -1 : static_cast<int>(matrices.size());
-        blocks.push_back({light.position_ws, static_cast<int32_t>(light.type), light.direction_ws, light.range_m,
-                          light.intensity, layer, std::cos(light.inner_angle_rad), std::cos(light.outer_angle_rad)});
-        matrices.insert(matrices.end(), own.begin(), own.end());
+        const int layer = own.empty() ? -1 : static_cast<int>(blocks.matrices.size());
+        blocks.lights.push_back({light.position_ws, static_cast<int32_t>(light.type), light.direction_ws, light.range_m,
+                                 light.intensity, layer, std::cos(light.inner_angle_rad),
+                                 std::cos(light.outer_angle_rad)});
+        blocks.matrices.insert(blocks.matrices.end(), own.begin(), own.end());
     }
-    std::vector<glm::mat4> stored;
     // Vulkan clip space: y points down.
     const glm::dmat4 flip = glm::scale(glm::dmat4(1.0), glm::dvec3(1, -1, 1));
-    for (glm::dmat4& matrix : matrices) stored.emplace_back(matrix = flip * matrix);
-    scene.light_count     = static_cast<uint32_t>(blocks.size());
-    scene.lights          = make_buffer_with<LightBlock>(gpu, blocks);
-    scene.shadow_matrices = make_buffer_with<glm::mat4>(gpu, stored);
-    scene.shadow_map      = make_shadow_map(gpu, matrices.size(), source.name);
-    scene.shadow_sampler  = {gpu.impl->device,
-                             vk::SamplerCreateInfo{.magFilter     = vk::Filter::eLinear,
-                                                   .minFilter     = vk::Filter::eLinear,
-                                                   .addressModeU  = vk::SamplerAddressMode::eClampToEdge,
-                                                   .addressModeV  = vk::SamplerAddressMode::eClampToEdge,
-                                                   .compareEnable = true,
-                                                   .compareOp     = vk::CompareOp::eLessOrEqual}};
-    if (matrices.empty()) return;
-    const DrawPipeline pipeline = make_draw_pipeline(
-        gpu, scene, {.fragment_shader = "gbuffer/shadow.frag", .colour_formats = {}, .reversed_depth = false});
+    for (glm::dmat4& matrix : blocks.matrices) blocks.stored.emplace_back(matrix = flip * matrix);
+    return blocks;
+}
+
+} // namespace
+
+void make_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source)
+{
+    const ShadowBlocks blocks = shadow_blocks(source);
+    scene.light_count         = static_cast<uint32_t>(blocks.lights.size());
+    scene.lights              = make_buffer_with<LightBlock>(gpu, blocks.lights);
+    scene.shadow_matrices     = make_buffer_with<glm::mat4>(gpu, blocks.stored);
+    scene.shadow_map          = make_shadow_map(gpu, blocks.matrices.size(), source.name);
+    scene.shadow_sampler      = {gpu.impl->device,
+                                 vk::SamplerCreateInfo{.magFilter     = vk::Filter::eLinear,
+                                                       .minFilter     = vk::Filter::eLinear,
+                                                       .addressModeU  = vk::SamplerAddressMode::eClampToEdge,
+                                                       .addressModeV  = vk::SamplerAddressMode::eClampToEdge,
+                                                       .compareEnable = true,
+                                                       .compareOp     = vk::CompareOp::eLessOrEqual}};
+}
+
+void render_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source)
+{
+    const ShadowBlocks blocks = shadow_blocks(source);
+    if (blocks.matrices.empty()) return;
+    upload(gpu, scene.lights, blocks.lights.data(), blocks.lights.size() * sizeof(LightBlock));
+    upload(gpu, scene.shadow_matrices, blocks.stored.data(), blocks.stored.size() * sizeof(glm::mat4));
+    if (!scene.shadow_pipeline)
+        scene.shadow_pipeline = std::make_shared<const DrawPipeline>(make_draw_pipeline(
+            gpu, scene, {.fragment_shader = "gbuffer/shadow.frag", .colour_formats = {}, .reversed_depth = false}));
     // The shadow shaders read nothing of the frame's uniforms; any buffer satisfies the layout.
     const FrameSet set = make_frame_set(gpu, scene, scene.lights);
-    for (uint32_t layer = 0; layer < matrices.size(); ++layer)
-        draw_layer(gpu, scene, pipeline, *set.set, layer, matrices[layer]);
+    for (uint32_t layer = 0; layer < blocks.matrices.size(); ++layer)
+        draw_layer(gpu, scene, *scene.shadow_pipeline, *set.set, layer, blocks.matrices[layer]);
 }
 
 } // namespace ssrlab

@@ -103,6 +103,32 @@ Model corridor()
     return model;
 }
 
+/// A box slides and another one turns over a mirror floor; the paths move the camera along its axis, across it, about its own
+/// position and around the boxes.
+Model moving_boxes()
+{
+    Model          model = start_scene();
+    const uint32_t red   = add_checker(model, "sliding box", {0.85F, 0.25F, 0.15F}, {0.9F, 0.8F, 0.6F});
+    const uint32_t green = add_checker(model, "turning box", {0.2F, 0.6F, 0.3F}, {0.85F, 0.9F, 0.7F});
+    add_floor(model, 40, 10, -14);
+    add_wall(model, 40, -14, 6);
+    add(model, "sliding box", red, make_box({-2.5, floor_y_m + 0.5, -6.5}, {-1.5, floor_y_m + 1.5, -5.5}));
+    model.meshes.back().motion.move_m = {0.1, 0, 0};
+    add(model, "turning box", green, make_box({1, floor_y_m + 0.25, -8.5}, {3, floor_y_m + 2.25, -6.5}));
+    model.meshes.back().motion = {.turn_deg = {0, 3, 0}, .pivot_ws = {2, 0, -7.5}};
+    const auto at              = [](glm::dvec3 position_ws, glm::dvec3 target_ws) {
+        return look("", position_ws, target_ws, 60, "");
+    };
+    model.paths = {
+        {"dolly", {at({0, 0.4, 3}, {0, 0.4, -8}), at({0, 0.4, 0}, {0, 0.4, -8})}, 30},
+        {"truck", {at({-1.5, 0.4, 2}, {-1.5, 0, -8}), at({1.5, 0.4, 2}, {1.5, 0, -8})}, 30},
+        {"pan", {at({0, 0.4, 2}, {-3, 0, -8}), at({0, 0.4, 2}, {3, 0, -8})}, 30},
+        {"orbit",
+         {at({-4, 0.6, -1}, {0, -0.4, -7}), at({0, 0.6, 0.5}, {0, -0.4, -7}), at({4, 0.6, -1}, {0, -0.4, -7})},
+         30}};
+    return model;
+}
+
 Model nothing()
 {
     Model model;
@@ -110,7 +136,7 @@ Model nothing()
     return model;
 }
 
-constexpr std::array<BuiltinScene, 13> scenes = {{
+constexpr std::array<BuiltinScene, 14> scenes = {{
     {"mirror_floor_wall", "Mirror floor before a checkered wall 10 m away.", mirror_floor_wall},
     {"sphere_over_mirror", "A sphere that touches a mirror floor.", sphere_over_mirror},
     {"pole_field", "150 thin poles on a mirror floor before a wall.", pole_field},
@@ -123,6 +149,7 @@ constexpr std::array<BuiltinScene, 13> scenes = {{
     {"everything", "Rough and smooth metal, facing mirrors, a masked fence and a sky.", everything},
     {"small_mirror", "A small mirror plate among matte things: a tenth of the picture reflects.", small_mirror},
     {"matte", "The same without the mirror: nothing reflects.", matte},
+    {"moving_boxes", "A sliding and a turning box over a mirror floor, and four camera paths.", moving_boxes},
     {"void", "No triangles: every pixel is background.", nothing},
 }};
 

@@ -158,12 +158,17 @@ Model load_recipe(const std::filesystem::path& file)
         for (const glm::dvec3& position_ws : part.positions_ws) {
             Model copy = model;
             transform(copy, glm::translate(glm::dmat4(1), position_ws));
+            for (Mesh& mesh : copy.meshes) {
+                mesh.motion          = part.motion;
+                mesh.motion.pivot_ws = position_ws;
+            }
             append(scene, std::move(copy));
         }
     }
     refuse_unmatched(recipe, matched, scene);
     scene.lights     = recipe.lights;
     scene.cameras    = recipe.views;
+    scene.paths      = recipe.paths;
     scene.ambient    = recipe.ambient;
     scene.background = recipe.background;
     if (!recipe.environment.empty())

@@ -141,19 +141,9 @@ const Camera& find_camera(const Scene& scene, const std::string& name)
         if (camera.name == name) return camera;
         names += (names.empty() ? "" : ", ") + camera.name;
     }
+    for (const CameraPath& path : scene.paths) names += ", " + path.name;
     if (name == Camera{}.name && !scene.cameras.empty()) return scene.cameras.front();
     throw_spec_error("scene '{}' has no view '{}': its views are {}", scene.name, name, names);
-}
-
-View find_view(const Scene& scene, const std::string& name, glm::ivec2 size_px)
-{
-    const Camera& camera = find_camera(scene, name);
-    if (size_px == glm::ivec2(0)) size_px = camera.size_px;
-    if (!scene.frame) return camera_to_view(camera, size_px);
-    if (size_px != camera.size_px)
-        throw_spec_error("scene '{}' is a frame of {}x{} pixels: it cannot be drawn at {}x{}", scene.name,
-                         camera.size_px.x, camera.size_px.y, size_px.x, size_px.y);
-    return scene.frame->gbuffer.view;
 }
 
 } // namespace ssrlab

@@ -19,6 +19,7 @@ struct Mesh {
     std::vector<uint32_t>   indices;  // three per triangle, all below positions_ws.size()
     bool                    has_normals  = true;
     bool                    has_tangents = false;
+    RigidMotion             motion       = {};
 };
 
 struct ModelLight {
@@ -32,6 +33,7 @@ struct Model {
     std::vector<Texture>     textures;
     std::vector<ModelLight>  lights;
     std::vector<Camera>      cameras;
+    std::vector<CameraPath>  paths;
     std::optional<glm::vec3> ambient;
     std::optional<glm::vec3> background;
     EnvironmentMap           environment;

@@ -68,10 +68,12 @@ void add_draw(Scene& scene, const Mesh& mesh)
         scene.indices.size() + mesh.indices.size() > std::numeric_limits<uint32_t>::max())
         throw_failure("{}: more than 2^32 vertices or indices", scene.name);
     Draw draw;
-    draw.name               = mesh.name;
-    draw.first_index        = static_cast<uint32_t>(scene.indices.size());
-    draw.index_count        = static_cast<uint32_t>(mesh.indices.size());
-    draw.material           = mesh.material;
+    draw.name        = mesh.name;
+    draw.first_index = static_cast<uint32_t>(scene.indices.size());
+    draw.index_count = static_cast<uint32_t>(mesh.indices.size());
+    draw.material    = mesh.material;
+    draw.motion      = mesh.motion;
+    draw.motion.pivot_ws -= scene.origin_ws;
     const auto first_vertex = static_cast<uint32_t>(scene.vertices.size());
     for (size_t i = 0; i < mesh.vertices.size(); ++i) {
         Vertex vertex      = mesh.vertices[i];
@@ -127,6 +129,12 @@ Scene model_to_scene(Model model, const std::string& name)
         camera.position_ws -= scene.origin_ws;
         camera.target_ws -= scene.origin_ws;
     }
+    for (CameraPath& path : model.paths)
+        for (Camera& camera : path.cameras) {
+            camera.position_ws -= scene.origin_ws;
+            camera.target_ws -= scene.origin_ws;
+        }
+    scene.paths = std::move(model.paths);
     make_camera_names_unique(model.cameras);
     scene.cameras = std::move(model.cameras);
     if (model.ambient) scene.ambient = *model.ambient;

@@ -2,6 +2,7 @@
 #include "scene/load_scene.h"
 #include "scene/recipe.h"
 
+#include <algorithm>
 #include <cctype>
 #include <numbers>
 
@@ -60,10 +61,12 @@ Part read_part(TomlTable& table)
                    : std::filesystem::path(part.file.substr(part.file.find(':') + 1)).stem().string());
     if (part.file.starts_with("sweethome3d:")) part.unit_m = sweethome3d_unit_m;
     if (table.has("position")) part.positions_ws = table.vectors("position");
-    part.rotation_deg = table.vector("rotation_deg").value_or(part.rotation_deg);
-    part.z_up         = table.choice("up", {"y", "z"}).value_or(0) == 1;
-    part.unit_m       = table.number("unit_m", 1e-9, 1e9).value_or(part.unit_m);
-    part.height_m     = table.number("height_m", 1e-6, 1e9);
+    part.rotation_deg    = table.vector("rotation_deg").value_or(part.rotation_deg);
+    part.motion.move_m   = table.vector("move_m").value_or(glm::dvec3(0));
+    part.motion.turn_deg = table.vector("turn_deg").value_or(glm::dvec3(0));
+    part.z_up            = table.choice("up", {"y", "z"}).value_or(0) == 1;
+    part.unit_m          = table.number("unit_m", 1e-9, 1e9).value_or(part.unit_m);
+    part.height_m        = table.number("height_m", 1e-6, 1e9);
     if (part.shape) read_shape_keys(table, part);
     if (auto material = table.table("material")) {
         read_change_values(*material, part.change);
@@ -71,6 +74,27 @@ Part read_part(TomlTable& table)
     }
     table.refuse_unknown_keys();
     return part;
+}
+
+CameraPath read_path(TomlTable& table, const std::vector<Camera>& views)
+{
+    CameraPath path;
+    path.name            = table.text("name").value_or("");
+    path.frames_per_view = static_cast<int>(table.number("frames_per_view", 1, 1e6).value_or(30));
+    const auto names     = table.texts("views");
+    table.refuse_unknown_keys();
+    const auto named = [&](const std::string& name) { return std::ranges::find(views, name, &Camera::name); };
+    if (path.name.empty() || named(path.name) != views.end()) table.fail("needs a 'name' that no [[view]] has");
+    if (names.size() < 2) table.fail("views", "must name at least two views");
+    for (const std::string& name : names) {
+        const auto view = named(name);
+        if (view == views.end())
+            table.fail("views", fmt::format("names '{}', which is no [[view]] of this recipe", name));
+        if (!path.cameras.empty() && view->projection != path.cameras.front().projection)
+            table.fail("views", "must be all perspective or all orthographic");
+        path.cameras.push_back(*view);
+    }
+    return path;
 }
 
 ModelLight read_light(TomlTable& table)
@@ -156,6 +180,7 @@ Recipe read_recipe(const std::filesystem::path& file)
     for (TomlTable& table : root.tables("material")) recipe.changes.push_back(read_change(table));
     for (TomlTable& table : root.tables("light")) recipe.lights.push_back(read_light(table));
     for (TomlTable& table : root.tables("view")) recipe.views.push_back(read_view(table));
+    for (TomlTable& table : root.tables("path")) recipe.paths.push_back(read_path(table, recipe.views));
     root.refuse_unknown_keys();
     if (recipe.parts.empty()) root.fail("needs at least one [[part]]");
     return recipe;

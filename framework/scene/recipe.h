@@ -34,6 +34,7 @@ struct Part {
     double                  unit_m = 1;      // metres per unit of the file
     std::optional<double>   height_m;        // final height; overrides unit_m
     glm::dvec3              size_m{1, 1, 1}; // shapes only
+    RigidMotion             motion;          // pivot_ws: relative to each of the positions
     double                  tile_m = 1;
     std::vector<glm::dvec3> tile_colours; // sRGB
     MaterialChange          change;
@@ -46,6 +47,7 @@ struct Recipe {
     std::vector<MaterialChange> changes;
     std::vector<ModelLight>     lights;
     std::vector<Camera>         views;
+    std::vector<CameraPath>     paths;
     std::optional<glm::vec3>    ambient, background;
     std::string                 environment; // where its picture lies, as find_data() takes it; empty: none
     double                      environment_scale = 1;

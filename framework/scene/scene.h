@@ -55,6 +55,22 @@ struct Material {
     TextureUse  base_colour_texture, metallic_roughness_texture, normal_texture, emissive_texture;
 };
 
+/// A rigid motion: in frame n an object is turned by n * turn_deg about the pivot, then moved by n * move_m.
+struct RigidMotion {
+    glm::dvec3 move_m{0};   // per frame
+    glm::dvec3 turn_deg{0}; // per frame, about x, then y, then z
+    glm::dvec3 pivot_ws{0}; // in frame 0
+
+    bool operator==(const RigidMotion&) const = default;
+};
+
+/// A view that moves: straight from one camera to the next.
+struct CameraPath {
+    std::string         name;
+    std::vector<Camera> cameras;             // at least two, of one projection
+    int                 frames_per_view = 1; // from one camera to the next
+};
+
 /// A run of triangles with one material.
 struct Draw {
     std::string name;
@@ -63,6 +79,7 @@ struct Draw {
     uint32_t    material    = 0;
     glm::vec3   bounds_min_ws{std::numeric_limits<float>::infinity()};
     glm::vec3   bounds_max_ws{-std::numeric_limits<float>::infinity()};
+    RigidMotion motion;
 };
 
 enum class LightType : uint8_t { directional, point, spot };
@@ -89,6 +106,7 @@ struct Scene {
     std::vector<Texture>     textures;
     std::vector<Light>       lights;
     std::vector<Camera>      cameras;        // at least one; positions relative to origin_ws
+    std::vector<CameraPath>  paths;          // named like no camera; scene/sequence.h follows them
     glm::vec3                ambient{0.25F}; // radiance arriving equally from everywhere
     glm::vec3                background{0};  // radiance from infinitely far away, where there is no environment map
     EnvironmentMap           environment;    // what is there instead of `background`, if not empty
@@ -113,8 +131,5 @@ glm::vec3 sky_radiance(const Scene& scene, glm::dvec3 direction_ws);
 
 /// The camera of that name; "default" is the first one where none is called so. Throws SpecError listing the known names.
 const Camera& find_camera(const Scene& scene, const std::string& name);
-
-/// That camera's view; size 0x0: the camera's own. Throws SpecError where a frame of another renderer is asked for another view or size.
-View find_view(const Scene& scene, const std::string& name, glm::ivec2 size_px);
 
 } // namespace ssrlab

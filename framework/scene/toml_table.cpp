@@ -115,6 +115,12 @@ std::vector<glm::dvec3> TomlTable::vectors(const char* key)
     return result;
 }
 
+std::vector<std::string> TomlTable::texts(const char* key)
+{
+    const toml::node* node = find(key);
+    return node == nullptr ? std::vector<std::string>() : toml_texts(*file_, *node, key);
+}
+
 std::optional<glm::ivec2> TomlTable::size_px(const char* key)
 {
     const std::optional<std::string> value = text(key);

@@ -19,6 +19,7 @@ public:
 
     bool                       has(const char* key) const;
     std::optional<std::string> text(const char* key);
+    std::vector<std::string>   texts(const char* key); // a list of texts
     std::optional<bool>        flag(const char* key);
     std::optional<double>      number(const char* key, double min, double max);
     std::optional<glm::dvec3>  vector(const char* key);

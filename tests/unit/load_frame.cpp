@@ -6,6 +6,7 @@
 #include "scene/frame_channels.h"
 #include "scene/load_scene.h"
 #include "scene/scene.h"
+#include "scene/sequence.h"
 #include "temp_folder.h"
 
 #include <gmock/gmock.h>
@@ -157,7 +158,8 @@ TEST_F(LoadFrame, ChannelsAreNamedValuedOrTakenFromOtherFiles)
     EXPECT_THAT(refused(head), AllOf(HasSubstr("f.exr: no channel is recognised as depth"), HasSubstr("what.R")));
     EXPECT_THAT(refused(head + "[channels]\ndepth = 'there.R'\n"),
                 HasSubstr("has no channel 'there.R'; it has metallic, roughness"));
-    EXPECT_THAT(refused(head + "[channels]\ndepht = 'what.R'\n"), HasSubstr("f.exr.toml:7: unknown key of channels 'depht'"));
+    EXPECT_THAT(refused(head + "[channels]\ndepht = 'what.R'\n"),
+                HasSubstr("f.exr.toml:7: unknown key of channels 'depht'"));
     const std::string named =
         head + "[channels]\ndepth = 'what.R'\n'lit.R' = 'l.exr:R'\n'lit.G' = 'l.exr:R'\n'lit.B' = 'l.exr:R'\n";
     EXPECT_THAT(refused(named), HasSubstr("l.exr: no such file"));
@@ -229,13 +231,14 @@ TEST_F(LoadFrame, AFrameHasOneViewAtOneSize)
 {
     whole_frame("depth", [](size_t) { return 0.5; });
     const Scene scene = load_scene(write(std::string(camera) + "[depth]\nkind = 'reversed'\n"));
-    EXPECT_EQ(find_view(scene, "default", {0, 0}).size_px, size_px);
-    EXPECT_EQ(find_view(scene, "default", size_px).near_m, near_m);
+    EXPECT_EQ(view_at(scene, "default", {0, 0}, {}).size_px, size_px);
+    EXPECT_EQ(view_at(scene, "default", size_px, {}).near_m, near_m);
     EXPECT_THAT(message_of<SpecError>([&] {
-                    find_view(scene, "default", {16, 9});
+                    view_at(scene, "default", {16, 9}, {});
                 }),
                 HasSubstr("8x6 pixels: it cannot be drawn at 16x9"));
-    EXPECT_THROW(find_view(scene, "side", size_px), SpecError);
+    EXPECT_THROW(view_at(scene, "side", size_px, {}), SpecError);
+    EXPECT_THROW(view_at(scene, "default", size_px, {1, 0}), SpecError) << "no sequence";
 }
 
 } // namespace

@@ -1,0 +1,124 @@
+#include "scene/sequence.h"
+
+#include "core/error.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+#include <numbers>
+
+namespace ssrlab {
+namespace {
+
+bool is_still(const RigidMotion& motion) { return motion.move_m == glm::dvec3(0) && motion.turn_deg == glm::dvec3(0); }
+
+double radical_inverse(int index, int base)
+{
+    double value = 0, digit = 1.0 / base;
+    for (; index > 0; index /= base, digit /= base) value += digit * (index % base);
+    return value;
+}
+
+/// A draw's vertices are its own: no other draw has indices to them.
+void move_draw(Scene& scene, Draw& draw, const glm::dmat4& matrix)
+{
+    const auto first = scene.indices.begin() + draw.first_index, end = first + draw.index_count;
+    const auto [low, high] = std::minmax_element(first, end);
+    const glm::mat3 turn(matrix);
+    draw.bounds_min_ws = Draw{}.bounds_min_ws;
+    draw.bounds_max_ws = Draw{}.bounds_max_ws;
+    for (uint32_t i = *low; i <= *high; ++i) {
+        Vertex& vertex     = scene.vertices[i];
+        vertex.position_ws = glm::vec3(matrix * glm::dvec4(vertex.position_ws, 1));
+        vertex.normal_ws   = turn * vertex.normal_ws;
+        vertex.tangent_ws  = glm::vec4(turn * glm::vec3(vertex.tangent_ws), vertex.tangent_ws.w);
+        draw.bounds_min_ws = glm::min(draw.bounds_min_ws, vertex.position_ws);
+        draw.bounds_max_ws = glm::max(draw.bounds_max_ws, vertex.position_ws);
+    }
+}
+
+Camera between(const Camera& a, const Camera& b, double share)
+{
+    Camera camera      = a;
+    camera.position_ws = glm::mix(a.position_ws, b.position_ws, share);
+    camera.target_ws   = glm::mix(a.target_ws, b.target_ws, share);
+    camera.up_ws       = glm::mix(a.up_ws, b.up_ws, share);
+    camera.fov_y_deg   = glm::mix(a.fov_y_deg, b.fov_y_deg, share);
+    camera.height_m    = glm::mix(a.height_m, b.height_m, share);
+    camera.shift_px    = glm::mix(a.shift_px, b.shift_px, share);
+    return camera;
+}
+
+} // namespace
+
+glm::dmat4 pose(const RigidMotion& motion, int frame)
+{
+    const glm::dvec3 rad    = motion.turn_deg * (frame * std::numbers::pi / 180);
+    glm::dmat4       matrix = glm::translate(glm::dmat4(1), motion.pivot_ws + double(frame) * motion.move_m);
+    matrix                  = glm::rotate(matrix, rad.z, {0, 0, 1});
+    matrix                  = glm::rotate(matrix, rad.y, {0, 1, 0});
+    matrix                  = glm::rotate(matrix, rad.x, {1, 0, 0});
+    return glm::translate(matrix, -motion.pivot_ws);
+}
+
+glm::dmat4 current_to_previous(const RigidMotion& motion, int frame)
+{
+    if (frame == 0 || is_still(motion)) return glm::dmat4(1);
+    return pose(motion, frame - 1) * glm::inverse(pose(motion, frame));
+}
+
+bool anything_moves(const Scene& scene)
+{
+    return std::ranges::any_of(scene.draws, [](const Draw& draw) { return !is_still(draw.motion); });
+}
+
+Scene scene_at(const Scene& scene, int frame)
+{
+    Scene moved = scene;
+    if (frame == 0) return moved;
+    for (Draw& draw : moved.draws)
+        if (!is_still(draw.motion) && draw.index_count > 0) move_draw(moved, draw, pose(draw.motion, frame));
+    return moved;
+}
+
+glm::dvec2 jitter_px(SequenceFrame at)
+{
+    if (at.jitter_phases == 0) return {0, 0};
+    const int index = at.frame % at.jitter_phases + 1;
+    return {radical_inverse(index, 2) - 0.5, radical_inverse(index, 3) - 0.5};
+}
+
+Camera unjittered_camera_at(const Scene& scene, const std::string& view, int frame)
+{
+    const auto path = std::ranges::find(scene.paths, view, &CameraPath::name);
+    if (path == scene.paths.end()) return find_camera(scene, view);
+    const int  last = static_cast<int>(path->cameras.size()) - 1, span = path->frames_per_view;
+    const int  from   = std::min(frame / span, last - 1);
+    const auto part   = std::min(static_cast<double>(frame - from * span) / span, 1.0);
+    Camera     camera = between(path->cameras[size_t(from)], path->cameras[size_t(from) + 1], part);
+    camera.name       = path->name;
+    return camera;
+}
+
+Camera camera_at(const Scene& scene, const std::string& view, SequenceFrame at)
+{
+    Camera camera = unjittered_camera_at(scene, view, at.frame);
+    camera.shift_px += jitter_px(at);
+    return camera;
+}
+
+View view_at(const Scene& scene, const std::string& view, glm::ivec2 size_px, SequenceFrame at)
+{
+    const Camera camera = camera_at(scene, view, at);
+    if (size_px == glm::ivec2(0)) size_px = camera.size_px;
+    if (!scene.frame) return camera_to_view(camera, size_px);
+    if (size_px != camera.size_px)
+        throw_spec_error("scene '{}' is a frame of {}x{} pixels: it cannot be drawn at {}x{}", scene.name,
+                         camera.size_px.x, camera.size_px.y, size_px.x, size_px.y);
+    if (at != SequenceFrame{})
+        throw_spec_error("scene '{}' is one frame of another renderer: it has no further frames and no jitter",
+                         scene.name);
+    return scene.frame->gbuffer.view;
+}
+
+} // namespace ssrlab

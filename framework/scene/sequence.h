@@ -1,0 +1,39 @@
+// Frames that follow each other: where objects and the camera are in each. The same frame is the same to the last bit,
+// whatever was asked for before it.
+#pragma once
+
+#include "scene/scene.h"
+
+namespace ssrlab {
+
+/// Which frame of a sequence.
+struct SequenceFrame {
+    int frame         = 0; // from 0: the scene as it was loaded, the first camera of a path
+    int jitter_phases = 0; // sub-pixel offsets of the camera that repeat after so many frames; 0: none
+
+    bool operator==(const SequenceFrame&) const = default;
+};
+
+inline constexpr int max_frames = 1'000'000, max_jitter_phases = 1024;
+
+/// World of frame 0 to world of this frame.
+glm::dmat4 pose(const RigidMotion& motion, int frame);
+/// World of this frame to world of the one before; the identity for what is still.
+glm::dmat4 current_to_previous(const RigidMotion& motion, int frame);
+
+bool anything_moves(const Scene& scene);
+/// The scene with its vertices where they are in this frame; motions are those of frame 0.
+Scene scene_at(const Scene& scene, int frame);
+
+/// In pixels, each coordinate in [-0.5, 0.5): Halton points to the bases 2 and 3, from index 1 on (J. Halton 1964,
+/// Algorithm 247). 0 without jitter.
+glm::dvec2 jitter_px(SequenceFrame at);
+/// The camera of a view or of a path, without jitter; at the end of a path it stays. Throws SpecError listing the names.
+Camera unjittered_camera_at(const Scene& scene, const std::string& view, int frame);
+/// The same with its jitter in Camera::shift_px.
+Camera camera_at(const Scene& scene, const std::string& view, SequenceFrame at);
+/// That camera's view; size 0x0: the camera's own. Throws SpecError where a frame of another renderer is asked for another view,
+/// size or frame.
+View view_at(const Scene& scene, const std::string& view, glm::ivec2 size_px, SequenceFrame at);
+
+} // namespace ssrlab

@@ -1,0 +1,123 @@
+// Poses, camera paths and jitter against closed forms.
+#include "scene/sequence.h"
+
+#include "core/error.h"
+#include "scene_files.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+namespace ssrlab {
+namespace {
+
+void expect_near(glm::dvec3 got, glm::dvec3 expected, double tolerance)
+{
+    for (int c : {0, 1, 2}) EXPECT_NEAR(got[c], expected[c], tolerance) << "coordinate " << c;
+}
+
+TEST(Sequence, APoseTurnsAboutThePivotAndThenMoves)
+{
+    const RigidMotion motion{.move_m = {0.5, 0, 0}, .turn_deg = {0, 30, 0}, .pivot_ws = {2, 0, -7}};
+    // 90 degrees about y take +x to -z; three moves of half a metre.
+    expect_near(glm::dvec3(pose(motion, 3) * glm::dvec4(3, 1, -7, 1)), {3.5, 1, -8}, 1e-12);
+    const glm::dmat4 back = current_to_previous(motion, 3);
+    expect_near(glm::dvec3(back * pose(motion, 3) * glm::dvec4(3, 1, -7, 1)),
+                glm::dvec3(pose(motion, 2) * glm::dvec4(3, 1, -7, 1)), 1e-12);
+    EXPECT_EQ(current_to_previous(motion, 0), glm::dmat4(1)) << "frame 0 has no frame before it";
+    EXPECT_EQ(current_to_previous(RigidMotion{}, 9), glm::dmat4(1)) << "what is still is so to the last bit";
+}
+
+TEST(Sequence, OnlyWhatMovesChanges)
+{
+    const Scene first = load_scene("builtin:moving_boxes");
+    ASSERT_TRUE(anything_moves(first));
+    const Scene later = scene_at(first, 10);
+    int         moved = 0;
+    for (size_t d = 0; d < first.draws.size(); ++d) {
+        const Draw &     before = first.draws[d], &after = later.draws[d];
+        const glm::dmat4 matrix = pose(before.motion, 10);
+        const bool       still  = before.motion == RigidMotion{.pivot_ws = before.motion.pivot_ws};
+        moved += still ? 0 : 1;
+        for (uint32_t i = before.first_index; i < before.first_index + before.index_count; ++i) {
+            const Vertex &a = first.vertices[first.indices[i]], &b = later.vertices[later.indices[i]];
+            if (still) {
+                ASSERT_EQ(a.position_ws, b.position_ws) << before.name;
+                continue;
+            }
+            expect_near(b.position_ws, glm::dvec3(matrix * glm::dvec4(a.position_ws, 1)), 1e-6);
+            EXPECT_NEAR(glm::length(b.normal_ws), 1, 1e-6);
+        }
+        if (before.name == "sliding box") {
+            EXPECT_NEAR(after.bounds_min_ws.x - before.bounds_min_ws.x, 1, 1e-6);
+        }
+    }
+    EXPECT_EQ(moved, 2);
+    EXPECT_FALSE(anything_moves(load_scene("builtin:stairs")));
+}
+
+TEST(Sequence, APathPassesThroughItsViewsAndStaysAtTheLast)
+{
+    const Scene scene = load_scene("builtin:moving_boxes");
+    const auto  z_of  = [&](int frame) { return camera_at(scene, "dolly", {frame, 0}).position_ws.z; };
+    EXPECT_EQ(z_of(0), 3);
+    EXPECT_NEAR(z_of(10), 2, 1e-12); // 3 m in 30 frames
+    EXPECT_EQ(z_of(30), 0);
+    EXPECT_EQ(z_of(99), 0);
+    EXPECT_EQ(camera_at(scene, "orbit", {30, 0}).position_ws.z, 0.5) << "the second of three views";
+    EXPECT_EQ(camera_at(scene, "default", {7, 0}).position_ws, find_camera(scene, "default").position_ws);
+    EXPECT_THROW(camera_at(scene, "nowhere", {0, 0}), SpecError);
+}
+
+TEST(Sequence, JitterRepeatsAndCoversThePixel)
+{
+    // Halton to the base 2 is 1/2 1/4 3/4 1/8, to the base 3 is 1/3 2/3 1/9 4/9.
+    EXPECT_EQ(jitter_px({5, 0}), glm::dvec2(0));
+    expect_near(glm::dvec3(jitter_px({0, 16}), 0), {0, 1.0 / 3 - 0.5, 0}, 1e-15);
+    expect_near(glm::dvec3(jitter_px({3, 16}), 0), {0.125 - 0.5, 4.0 / 9 - 0.5, 0}, 1e-15);
+    std::set<std::pair<double, double>> seen;
+    glm::dvec2                          sum(0);
+    for (int frame = 0; frame < 16; ++frame) {
+        const glm::dvec2 at = jitter_px({frame, 16});
+        EXPECT_LE(std::max(std::abs(at.x), std::abs(at.y)), 0.5);
+        EXPECT_EQ(at, jitter_px({frame + 32, 16}));
+        seen.emplace(at.x, at.y);
+        sum += at;
+    }
+    EXPECT_EQ(seen.size(), 16U);
+    EXPECT_LT(glm::length(sum) / 16, 0.1) << "the mean is near the pixel's centre";
+}
+
+TEST(Sequence, RecipesMovePartsAndCameras)
+{
+    TempFolder        folder;
+    const std::string recipe = folder.write("moving.toml", R"(
+[[part]]
+shape = "box"
+position = [1, 0, 0]
+turn_deg = [0, 90, 0]
+move_m = [0, 0.25, 0]
+[[view]]
+name = "a"
+position = [0, 1, 5]
+target = [0, 0, 0]
+[[view]]
+name = "b"
+position = [4, 1, 5]
+target = [0, 0, 0]
+[[path]]
+name = "ride"
+views = ["a", "b"]
+frames_per_view = 8
+)");
+    const Scene       scene  = load_scene(recipe);
+    EXPECT_EQ(scene.draws.at(0).motion.pivot_ws, glm::dvec3(1, 0, 0)) << "a part turns about its position";
+    const Draw later = scene_at(scene, 1).draws.at(0);
+    EXPECT_NEAR(later.bounds_min_ws.x, 0.5, 1e-6);
+    EXPECT_NEAR(later.bounds_min_ws.y, 0.25, 1e-6);
+    EXPECT_EQ(camera_at(scene, "ride", {2, 0}).position_ws, glm::dvec3(1, 1, 5));
+}
+
+} // namespace
+} // namespace ssrlab
