@@ -1,5 +1,6 @@
 #include "app/commands.h"
 
+#include "app/python_script.h"
 #include "app/stage.h"
 #include "compare/image_io.h"
 #include "compare/validate_result.h"
@@ -8,11 +9,7 @@
 #include "harness/measured_run.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace ssrlab {
 namespace {
@@ -170,19 +167,7 @@ int plot_results(const std::string& folder)
 {
     const std::filesystem::path table = std::filesystem::path(folder) / "results.csv";
     if (!std::filesystem::exists(table)) throw_spec_error("{}: no such file; ssrlab run writes it", table.string());
-    // Debian's python3 has Debian's matplotlib; another one may come first in PATH.
-    const std::string script = (data_root() / "experiments" / "plot.py").string();
-    std::fflush(nullptr);
-    const pid_t child = ::fork();
-    if (child < 0) throw_failure("the plot script cannot be started: {}", std::strerror(errno));
-    if (child == 0) {
-        ::execl("/usr/bin/python3", "python3", script.c_str(), folder.c_str(), nullptr);
-        ::_exit(127);
-    }
-    int status = 0;
-    if (::waitpid(child, &status, 0) != child) throw_failure("the plot script was lost: {}", std::strerror(errno));
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-        throw_failure("{} failed; it needs /usr/bin/python3 with matplotlib and pandas", script);
+    run_python("experiments/plot.py", {folder});
     return 0;
 }
 

@@ -2,6 +2,7 @@
 #include "app/check_command.h"
 #include "app/commands.h"
 #include "app/plan_command.h"
+#include "app/ray_command.h"
 #include "core/error.h"
 #include "harness/run_experiment.h"
 
@@ -40,7 +41,9 @@ void add_frame_options(CLI::App& command, ssrlab::PictureOptions& options)
 void add_picture_options(CLI::App& command, ssrlab::PictureOptions& options, bool traces)
 {
     command
-        .add_option("SCENE", options.scene, "A .glb or .gltf file, a scene recipe, builtin:NAME (see ssrlab list), or a frame of another renderer (.exr)")
+        .add_option("SCENE", options.scene,
+                    "A .glb or .gltf file, a scene recipe, builtin:NAME (see ssrlab list), or a frame of another "
+                    "renderer (.exr)")
         ->required();
     if (traces) {
         command.add_option("-t,--technique", options.technique, "Technique (see ssrlab list)")->required();
@@ -93,6 +96,20 @@ int main(int argc, char** argv)
     auto* gbuffer = app.add_subcommand("gbuffer", "What the camera sees (.exr)");
     add_picture_options(*gbuffer, picture, false);
     gbuffer->callback([&] { command = [&] { return write_gbuffer(common, picture); }; });
+
+    RayOptions ray;
+    auto*      explained = app.add_subcommand(
+             "ray", "One ray: what each technique looked at, where and why it stopped, and where it should have");
+    explained->add_option("SCENE", ray.picture.scene, "As for render")->required();
+    explained->add_option("--pixel", ray.pixel, "X,Y of the pixel that reflects, from the top left")->required();
+    explained->add_option("-t,--technique", ray.techniques, "Technique; several may be compared")->required();
+    explained->add_option("-p,--parameter", ray.picture.parameters,
+                          "name=value, as for render; for every technique that has it");
+    explained->add_option("--size", ray.picture.size, "WIDTHxHEIGHT in pixels; default: the view's own");
+    explained->add_option("--view", ray.picture.view, "Name of a view of the scene")->capture_default_str();
+    explained->add_option("-o,--output", ray.picture.output, "Also write a picture (.png) or all numbers (.json)");
+    explained->add_flag("--json", ray.json, "Print all numbers as JSON instead of the table");
+    explained->callback([&] { command = [&] { return explain_ray(common, ray); }; });
 
     PlanOptions plan;
     auto*       planned = app.add_subcommand("plan", "Which passes a frame needs, why, and what they cost or save");

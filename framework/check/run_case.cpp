@@ -1,5 +1,6 @@
 #include "check/run_case.h"
 
+#include "check/ray_report.h"
 #include "core/error.h"
 #include "core/stopwatch.h"
 #include "shared.h"
@@ -278,6 +279,9 @@ std::string describe_ray(Gpu& gpu, const Technique& technique, const ParameterVa
             depth_inside_px(ray, v), v.contact >= 0 ? "  touches" : "");
     out += fmt::format("{}: {} after {} iterations\nexactly: {}\n", technique.id, text(outcome), outcome.steps,
                        text(judge.exact_answer(ray)));
+    const RayQuestion question{&technique, values};
+    const RayReport   report = report_ray(gpu, stage.setup, ray, std::span(&question, 1));
+    out += visits_table(report.techniques.front());
     const std::string broken  = judge.broken_invariant(ray, outcome);
     const Judgement   verdict = judge.judge(ray, outcome, claim_of(technique));
     return out + (broken.empty() ? verdict.reason.empty() ? "right, or within what it claims\n" : verdict.reason + "\n"

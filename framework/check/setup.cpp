@@ -67,28 +67,28 @@ View orthographic_view(glm::ivec2 size_px, double height_m, double near_m, doubl
 
 Shape plane(glm::dvec3 point, glm::dvec3 normal)
 {
-    return [=](glm::dvec3 origin, glm::dvec3 direction) -> std::optional<SurfacePoint> {
+    return [=](glm::dvec3 origin, glm::dvec3 direction) -> std::optional<ShapePoint> {
         const double s = glm::dot(point - origin, normal) / glm::dot(direction, normal);
         if (!(s > 0) || s == infinity) return std::nullopt;
-        return SurfacePoint{s, normal};
+        return ShapePoint{s, normal};
     };
 }
 
 Shape sphere(glm::dvec3 centre, double radius)
 {
-    return [=](glm::dvec3 origin, glm::dvec3 direction) -> std::optional<SurfacePoint> {
+    return [=](glm::dvec3 origin, glm::dvec3 direction) -> std::optional<ShapePoint> {
         const glm::dvec3 to_centre = centre - origin;
         const double     a = glm::dot(direction, direction), b = glm::dot(direction, to_centre);
         const double     root = b * b - a * (glm::dot(to_centre, to_centre) - radius * radius);
         const double     s    = (b - std::sqrt(root)) / a;
         if (!(s > 0)) return std::nullopt;
-        return SurfacePoint{s, glm::normalize(origin + s * direction - centre)};
+        return ShapePoint{s, glm::normalize(origin + s * direction - centre)};
     };
 }
 
 Shape box(glm::dvec3 low, glm::dvec3 high)
 {
-    return [=](glm::dvec3 origin, glm::dvec3 direction) -> std::optional<SurfacePoint> {
+    return [=](glm::dvec3 origin, glm::dvec3 direction) -> std::optional<ShapePoint> {
         double s_in = 0, s_out = infinity;
         int    side = -1;
         for (int axis = 0; axis < 3; ++axis) {
@@ -103,7 +103,7 @@ Shape box(glm::dvec3 low, glm::dvec3 high)
         if (side < 0 || s_in >= s_out) return std::nullopt;
         glm::dvec3 normal(0);
         normal[side] = direction[side] > 0 ? -1 : 1;
-        return SurfacePoint{s_in, normal};
+        return ShapePoint{s_in, normal};
     };
 }
 

@@ -26,11 +26,11 @@ View bench_view(glm::ivec2 size_px = {64, 64}, double near_m = 0.1, double fov_y
 View orthographic_view(glm::ivec2 size_px, double height_m, double near_m, double far_m);
 
 /// A surface: where a ray from `origin` along `direction` (view space, -z forward) first meets it, and its normal there.
-struct SurfacePoint {
+struct ShapePoint {
     double     s = 0; // origin + s * direction
     glm::dvec3 normal_vs{0, 0, 1};
 };
-using Shape = std::function<std::optional<SurfacePoint>(glm::dvec3 origin, glm::dvec3 direction)>;
+using Shape = std::function<std::optional<ShapePoint>(glm::dvec3 origin, glm::dvec3 direction)>;
 Shape plane(glm::dvec3 point, glm::dvec3 normal);
 Shape sphere(glm::dvec3 centre, double radius);
 Shape box(glm::dvec3 low, glm::dvec3 high);

@@ -195,7 +195,7 @@ ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch
 
 namespace {
 
-Shader compile_trace(const Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, bool counts)
+Shader compile_trace(const Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Bindings& bindings)
 {
     const Technique& technique = frame.technique;
     const bool       in_double = rays.precision == Precision::float64;
@@ -211,7 +211,8 @@ Shader compile_trace(const Gpu& gpu, const PreparedFrame& frame, const RayBuffer
     source.defines.emplace("STRUCTURES", std::to_string(technique.structures.size()));
     for (const std::string& macro : shader_macros(technique, frame.values)) source.defines.emplace(macro, "1");
     source.defines.merge(store_defines(gpu, rays.hits));
-    if (counts) source.defines.emplace("COUNT_WORK", "1");
+    if (bindings.contains("Work")) source.defines.emplace("COUNT_WORK", "1");
+    if (bindings.contains("Visits")) source.defines.emplace("RECORD_VISITS", "1");
     return compile_shader(source);
 }
 
@@ -233,7 +234,7 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
             make_launch_pass(gpu, rays.count, rays.group_launch, RAYS_PER_GROUP * RAY_GROUPS_PER_WORKGROUP);
     Bindings all = bindings;
     all.merge(structure_bindings(gpu, frame.technique, layer, rays));
-    passes.trace = make_compute_pass(gpu, compile_trace(gpu, frame, rays, bindings.contains("Work")), all, constants);
+    passes.trace = make_compute_pass(gpu, compile_trace(gpu, frame, rays, bindings), all, constants);
     return passes;
 }
 
@@ -258,12 +259,13 @@ void record_ray_structure(const vk::raii::CommandBuffer& commands, const Techniq
 }
 
 TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view,
-                              const Buffer* work)
+                              const Buffer* work, const Buffer* visits)
 {
     const FrameBuffers& buffers  = *frame.buffers;
     Bindings            bindings = bindings_of(buffers, rays);
     bindings.insert({"View", view});
     if (work != nullptr) bindings.insert({"Work", *work});
+    if (visits != nullptr) bindings.insert({"Visits", *visits});
     Constants constants = settings_constants(frame, rays.precision);
     // What is counted is the technique's work on one ray from the centre of each pixel that reflects, whatever the passes.
     const bool counts    = work != nullptr;

@@ -105,9 +105,10 @@ struct PreparedFrame {
     Timestamps                   timestamps;
 };
 
-/// work: steps, depth and pyramid fetches per ray, or null for the pipeline that is timed.
+/// work: steps, depth and pyramid fetches per ray, or null for the pipeline that is timed. visits: what the only ray of the list looks at
+/// (shaders/trace/visits.glsl), or null.
 TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays, const Buffer& view,
-                              const Buffer* work);
+                              const Buffer* work, const Buffer* visits = nullptr);
 /// The technique on a list and the layer that is bound.
 TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, const GBuffer& layer,
                                       const RayBuffers& rays, const Bindings& bindings);

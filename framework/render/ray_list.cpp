@@ -5,6 +5,7 @@
 #include "shared.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 namespace ssrlab {
@@ -14,6 +15,7 @@ struct RayTracer {
     RayBuffers    rays;
     Buffer        view; // in the precision of the trace
     Buffer        work;
+    Buffer        visits; // of the one ray that is recorded, or empty
     TracePasses   passes;
 };
 
@@ -65,9 +67,12 @@ bool in_double(const RayTracer& tracer) { return tracer.rays.precision == Precis
 
 } // namespace
 
-RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Technique& technique,
-                             const ParameterValues& values, const TraceSettings& settings, size_t capacity,
-                             Precision precision)
+namespace {
+
+constexpr uint64_t most_visits = 1 << 16;
+
+RayTracerPtr make_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Technique& technique, const ParameterValues& values,
+                         const TraceSettings& settings, size_t capacity, Precision precision, bool records)
 {
     if (precision == Precision::float64 && !gpu.info.float64)
         throw_failure("the device '{}' has no double precision", gpu.info.name);
@@ -86,8 +91,40 @@ RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Techniqu
     frame.structures     = make_depth_structures(gpu, frame, *gbuffer);
     tracer->rays         = make_ray_buffers(gpu, capacity, precision);
     tracer->work         = make_buffer(gpu, std::max<uint64_t>(capacity, 1) * work_words(technique) * sizeof(uint32_t));
-    tracer->passes       = make_trace_passes(gpu, frame, tracer->rays, tracer->view, &tracer->work);
+    if (records) {
+        tracer->visits      = make_buffer(gpu, sizeof(uint32_t) + most_visits * sizeof(glm::uvec4));
+        const uint32_t none = 0;
+        upload(gpu, tracer->visits, &none, sizeof(none));
+    }
+    tracer->passes =
+        make_trace_passes(gpu, frame, tracer->rays, tracer->view, &tracer->work, records ? &tracer->visits : nullptr);
     return tracer;
+}
+
+} // namespace
+
+RayTracerPtr make_ray_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Technique& technique,
+                             const ParameterValues& values, const TraceSettings& settings, size_t capacity,
+                             Precision precision)
+{
+    return make_tracer(gpu, gbuffer, technique, values, settings, capacity, precision, false);
+}
+
+RecordedRay record_ray(Gpu& gpu, const GBufferPtr& gbuffer, const Technique& technique, const ParameterValues& values,
+                       const TraceSettings& settings, const RayInput& ray)
+{
+    const auto  tracer = make_tracer(gpu, gbuffer, technique, values, settings, 1, Precision::float32, true);
+    RecordedRay recorded{trace_rays(gpu, *tracer, std::span(&ray, 1))[0], {}, 0};
+    const auto  words    = download_as<uint32_t>(gpu, tracer->visits, 1 + 4 * most_visits);
+    recorded.visit_count = words[0];
+    for (size_t i = 0; i < std::min<size_t>(words[0], most_visits); ++i) {
+        const uint32_t* word = &words[1 + 4 * i];
+        recorded.visits.push_back({{static_cast<int>(word[0] & 0xFFFFU), static_cast<int>(word[0] >> 16U)},
+                                   static_cast<int>(word[1]),
+                                   static_cast<double>(std::bit_cast<float>(word[2])),
+                                   static_cast<double>(std::bit_cast<float>(word[3]))});
+    }
+    return recorded;
 }
 
 std::vector<RayInput> set_up_rays(Gpu& gpu, RayTracer& tracer)

@@ -44,6 +44,25 @@ std::vector<RayInput> set_up_rays(Gpu& gpu, RayTracer& tracer);
 /// Builds the structures that the technique reads and traces the list. Values are rounded to the tracer's precision.
 std::vector<RayOutcome> trace_rays(Gpu& gpu, RayTracer& tracer, std::span<const RayInput> rays);
 
+/// A pixel that a ray asked about (level 0), or the cell of a level >= 1 that holds it.
+struct RayVisit {
+    glm::ivec2 pixel{0, 0};
+    int        level = 0;
+    double t_in = -1, t_out = -1; // the interval that was asked about, one sample if equal; negative: all of the cell
+
+    bool operator==(const RayVisit&) const = default;
+};
+
+struct RecordedRay {
+    RayOutcome            outcome;
+    std::vector<RayVisit> visits;          // in order: reads of pixels, and of structures that call record_visit()
+    size_t                visit_count = 0; // more than `visits` has where the record was full
+};
+
+/// Traces one ray, by a pipeline that records what it looks at.
+RecordedRay record_ray(Gpu& gpu, const GBufferPtr& gbuffer, const Technique& technique, const ParameterValues& values,
+                       const TraceSettings& settings, const RayInput& ray);
+
 /// Puts another picture of the same size and projection in the place of the tracer's G-buffer.
 void replace_picture(Gpu& gpu, RayTracer& tracer, const GBufferImage& image);
 

@@ -10,6 +10,7 @@
 #include "api/hash.glsl"
 #include "layout/load_cell.glsl"
 #include "trace/work_counters.glsl"
+#include "trace/visits.glsl"
 
 layout(constant_id = CONSTANT_BEHIND) const int behind_rule = 0; // BEHIND_*
 layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1;
@@ -87,6 +88,7 @@ real3 fetch_normal(ivec2 pixel) { return real3(imageLoad(normal_image, pixel).xy
 uvec2 fetch_pixel(ivec2 pixel)
 {
     count_depth_fetch();
+    record_visit(pixel, 0);
     return load_cell(pixel, 0);
 }
 
@@ -150,6 +152,7 @@ bool ends_at(Ray ray, PixelSurface surface, bool met, real t_in)
 // Does the ray end at this pixel between two t, by a hit or by being stopped?
 bool touches_surface(Ray ray, ivec2 pixel, real t_in, real t_out)
 {
+    note_interval(t_in, t_out);
     PixelSurface surface = surface_at(ray, pixel, fetch_pixel(pixel));
     return ends_at(ray, surface, meets(ray, surface, t_in, t_out), t_in);
 }
@@ -157,6 +160,7 @@ bool touches_surface(Ray ray, ivec2 pixel, real t_in, real t_out)
 // Does it end at this pixel by one sample, at t? There a plane has the thickness of the run.
 bool touches_sample(Ray ray, ivec2 pixel, real t)
 {
+    note_interval(t, t);
     PixelSurface surface = sampled_surface_at(ray, pixel, fetch_pixel(pixel));
     return ends_at(ray, surface, meets(ray, surface, t, t), t);
 }

@@ -17,6 +17,7 @@ CellContent fetch_cell(ivec2 pixel, int level)
     bool leaf = level == 0;
     count_depth_fetch(leaf);
     count_fetch(STRUCTURE_depth_pyramid, !leaf);
+    record_visit(pixel, level);
     uvec2 words = load_cell(pixel, level);
     return CellContent(real(leaf ? depth_in(words, pixel) : 0.0), words);
 }

@@ -11,6 +11,7 @@ int quadtree_top()
 Node fetch_node(ivec2 pixel, int level)
 {
     count_fetch(STRUCTURE_plane_quadtree);
+    record_visit(pixel, level);
     return unpack_node(load_nodes(level_cell_index(pixel, level)));
 }
 

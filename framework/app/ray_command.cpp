@@ -1,0 +1,187 @@
+#include "app/ray_command.h"
+
+#include "app/python_script.h"
+#include "app/stage.h"
+#include "check/ray_report.h"
+#include "core/error.h"
+#include "core/files.h"
+#include "core/pixel_index.h"
+#include "harness/experiment.h"
+#include "truth/reflected_rays.h"
+#include "truth/scene_bvh.h"
+#include "truth/screen_ray.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+
+namespace ssrlab {
+namespace {
+
+glm::ivec2 pixel_option(const std::string& text, glm::ivec2 size_px)
+{
+    glm::ivec2  pixel(-1);
+    const auto  comma = text.find(',');
+    const char* end   = text.data() + text.size();
+    const bool  read  = comma != std::string::npos &&
+                      std::from_chars(text.data(), end, pixel.x).ptr == text.data() + comma &&
+                      std::from_chars(text.data() + comma + 1, end, pixel.y).ptr == end;
+    if (!read) throw_spec_error("--pixel: expected X,Y, got '{}'", text);
+    if (pixel.x < 0 || pixel.y < 0 || pixel.x >= size_px.x || pixel.y >= size_px.y)
+        throw_spec_error("--pixel {}: outside the image of {}x{} pixels", text, size_px.x, size_px.y);
+    return pixel;
+}
+
+bool belongs_to(const Technique& technique, const std::string& pair)
+{
+    const std::string name = pair.substr(0, pair.find('='));
+    return std::ranges::find(all_settings(), name, &Setting::name) != all_settings().end() ||
+           std::ranges::find(technique.parameters, name, &Parameter::name) != technique.parameters.end();
+}
+
+/// A parameter counts for every technique that has it.
+std::vector<RayQuestion> questions_of(const RayOptions& options, const std::vector<Technique>& all,
+                                      FrameSettings& settings)
+{
+    std::vector<RayQuestion> questions;
+    for (const std::string& id : options.techniques) {
+        const Technique&         technique = find_technique(all, id);
+        std::vector<std::string> own;
+        for (const std::string& pair : options.picture.parameters) {
+            const bool of_any = std::ranges::any_of(options.techniques, [&](const std::string& other) {
+                return belongs_to(find_technique(all, other), pair);
+            });
+            if (!of_any || belongs_to(technique, pair)) own.push_back(pair);
+        }
+        const Choice choice = parse_choice(technique, own);
+        settings            = choice.settings;
+        questions.push_back({&technique, choice.values});
+    }
+    return questions;
+}
+
+std::optional<TrueEnd> true_end_of(const Stage& stage, const Setup& setup, glm::ivec2 pixel)
+{
+    if (stage.scene.frame) return std::nullopt;
+    const SceneBvh      bvh(stage.scene);
+    const ReflectedRays reflected(bvh, stage.scene, setup.gbuffer, setup.settings.max_distance_m);
+    const SceneRay      ray = reflected.ray_from(pixel, mirror_direction_vs(setup.gbuffer, pixel));
+    const RayEnd        end = reflected.follow(std::span(&ray, 1))[0];
+    return TrueEnd{end.cls, end.distance_m, end.point_px};
+}
+
+RayInput ray_of_pixel(Stage& stage, const Setup& setup, const RayQuestion& question, glm::ivec2 pixel)
+{
+    if (!reflects(setup.gbuffer, pixel)) {
+        const size_t i = pixel_index(pixel, setup.gbuffer.view.size_px);
+        throw_spec_error("pixel {},{} does not reflect: depth {:g}, metallic {:g}", pixel.x, pixel.y,
+                         setup.gbuffer.depth[i], setup.gbuffer.metallic[i]);
+    }
+    const auto tracer = make_ray_tracer(stage.gpu, stage.gbuffer, *question.technique, question.values, setup.settings,
+                                        pixel_count(setup.gbuffer.view.size_px));
+    for (const RayInput& ray : set_up_rays(stage.gpu, *tracer))
+        if (ray.pixel == pixel) return ray;
+    throw_failure("pixel {},{} has no ray", pixel.x, pixel.y);
+}
+
+void print_report(const RayOptions& options, const RayReport& report)
+{
+    const RayInput& ray = report.ray;
+    std::puts(fmt::format("Ray of pixel ({}, {}) of {}: {:.4g} m, {:.1f} px on screen, crosses {} pixels", ray.pixel.x,
+                          ray.pixel.y, options.picture.scene, ray.length_m, glm::length(glm::dvec2(ray.delta_px_depth)),
+                          report.walk.size())
+                  .c_str());
+    std::puts(("screen truth: " + report.exact_ending).c_str());
+    if (!report.true_end)
+        std::puts("scene truth: not known: a frame of another renderer has no triangles");
+    else if (report.true_end->cls == TruthClass::sky)
+        std::puts("scene truth: sky, the ray meets nothing");
+    else
+        std::puts(fmt::format("scene truth: {}, {:.4g} m along the ray, at ({:.2f}, {:.2f}) px",
+                              truth_class_names[static_cast<size_t>(report.true_end->cls)], report.true_end->distance_m,
+                              report.true_end->point_px.x, report.true_end->point_px.y)
+                      .c_str());
+    for (const TechniqueReport& technique : report.techniques) {
+        std::puts(fmt::format("\n{}: {}\n{}; {} steps, {} depth fetches, {} structure fetches", technique.id,
+                              technique.ending, technique.verdict, technique.outcome.steps,
+                              technique.outcome.depth_fetches, technique.outcome.structure_fetches)
+                      .c_str());
+        std::fputs(visits_table(technique).c_str(), stdout);
+        if (technique.visit_count > technique.visits.size() && technique.visit_count > 65536)
+            std::puts(fmt::format("  the first 65536 of {} visits", technique.visit_count).c_str());
+    }
+}
+
+/// The part of the lit picture around the ray, for the screen view.
+nlohmann::json background_of(const Setup& setup, const RayReport& report)
+{
+    constexpr int    margin_px = 6;
+    const glm::ivec2 size_px   = setup.gbuffer.view.size_px;
+    const glm::dvec2 from = report.ray.origin_px_depth, to = from + glm::dvec2(report.ray.delta_px_depth);
+    const glm::ivec2 first = glm::clamp(glm::ivec2(glm::min(from, to)) - margin_px, glm::ivec2(0), size_px - 1);
+    const glm::ivec2 last  = glm::clamp(glm::ivec2(glm::max(from, to)) + margin_px, glm::ivec2(0), size_px - 1);
+    nlohmann::json   rows  = nlohmann::json::array();
+    for (int y = first.y; y <= last.y; ++y) {
+        nlohmann::json row = nlohmann::json::array();
+        for (int x = first.x; x <= last.x; ++x) {
+            const size_t    i      = pixel_index({x, y}, size_px);
+            const glm::vec3 colour = glm::min(setup.gbuffer.radiance[i] + setup.gbuffer.highlight[i], 1.0F);
+            row.push_back({colour.x, colour.y, colour.z});
+        }
+        rows.push_back(std::move(row));
+    }
+    return {{"first", {first.x, first.y}}, {"rows", std::move(rows)}};
+}
+
+void draw_ray(nlohmann::json json, const Setup& setup, const RayReport& report, const std::filesystem::path& output)
+{
+    json["background"]               = background_of(setup, report);
+    const std::filesystem::path data = output.string() + ".json.tmp";
+    write_file_atomically(data, json.dump());
+    const auto remove = [&] {
+        std::error_code ignored;
+        std::filesystem::remove(data, ignored);
+    };
+    try {
+        run_python("experiments/plot_ray.py", {data.string(), output.string()});
+    } catch (...) {
+        remove();
+        throw;
+    }
+    remove();
+}
+
+} // namespace
+
+int explain_ray(const CommonOptions& common, const RayOptions& options)
+{
+    const std::filesystem::path output    = options.picture.output;
+    const std::string           extension = output.extension().string();
+    if (!output.empty() && extension != ".json" && extension != ".png")
+        throw_spec_error("-o {}: expected .json or .png", options.picture.output);
+    const auto                     techniques = list_techniques(common.technique_dirs);
+    FrameSettings                  settings;
+    const std::vector<RayQuestion> questions = questions_of(options, techniques, settings);
+    Stage                          stage     = prepare_stage(common, options.picture);
+    const Setup                    setup{"", read_gbuffer(stage.gpu, *stage.gbuffer), settings.trace, {}};
+    const glm::ivec2               pixel  = pixel_option(options.pixel, stage.view.size_px);
+    const RayInput                 ray    = ray_of_pixel(stage, setup, questions.front(), pixel);
+    RayReport                      report = report_ray(stage.gpu, setup, ray, questions);
+    report.true_end                       = true_end_of(stage, setup, pixel);
+
+    nlohmann::json json = to_json(report, setup);
+    json["scene"]       = options.picture.scene;
+    json["view"]        = options.picture.view;
+    if (options.json)
+        std::puts(json.dump(1).c_str());
+    else
+        print_report(options, report);
+    if (extension == ".json") write_file_atomically(output, json.dump(1) + "\n");
+    if (extension == ".png") draw_ray(json, setup, report, output);
+    if (!output.empty() && !options.json) std::puts(options.picture.output.c_str());
+    return report_messages(stage);
+}
+
+} // namespace ssrlab

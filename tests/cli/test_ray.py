@@ -1,0 +1,66 @@
+"""One ray explained: table, JSON and picture; techniques from outside the tree; what is refused."""
+import json
+import os
+
+from support import Case, main
+
+MANIFEST = """name    = "Three looks"
+summary = "Looks at three places along the ray."
+limits  = ["point_sampled"]
+[parameters]
+looks = { default = 3, min = 1, max = 9, doc = "Places." }
+"""
+TRACE = """TraceResult trace(Ray ray)
+{
+    bool  found = false;
+    int   taken = 0;
+    real  t     = real(0);
+    ivec2 pixel = ray.start_pixel;
+    while (!found && taken < looks)
+    {
+        ++taken;
+        t     = real(taken) / real(looks + 1);
+        pixel = pixel_at(ray, t);
+        found = pixel != ray.start_pixel && touches_sample(ray, pixel, t);
+    }
+    return found ? hit_at_sample(ray, pixel, t, taken) : miss(ray, taken);
+}
+"""
+RAY = ("ray", "builtin:mirror_floor_wall", "--size", "160x90", "--pixel", "80,60", "-p", "max_distance_m=30")
+
+
+class Test(Case):
+    def test_tells_visits_endings_and_truths(self):
+        text = self.ssrlab(*RAY, "-t", "dda", "-t", "hiz", says=["Ray of pixel (80, 60)", "screen truth: hit at pixel", "scene truth: visible",
+                                                                "dda: hit at pixel", "the hit contract's answer", "opens", "skips"])
+        self.assertEqual(text.count("  hit\n"), 2)
+
+    def test_json_and_picture_of_a_technique_from_outside(self):
+        self.write("mine/three/technique.toml", MANIFEST)
+        self.write("mine/three/trace.glsl", TRACE)
+        out = self.ssrlab("--techniques", "mine", *RAY, "-t", "three", "-t", "dda", "-p", "looks=4", "--json", "-o", "ray.png")
+        ray = json.loads(out)
+        three, dda = ray["techniques"]
+        self.assertEqual((three["technique"], dda["technique"]), ("three", "dda"))
+        self.assertEqual([round(v["t_in"], 5) for v in three["visits"]], [0.2, 0.4, 0.6, 0.8][:len(three["visits"])])
+        self.assertEqual(dda["pixel"], ray["screen_truth"]["pixel"])
+        walk = [v["pixel"] for v in ray["walk"]]
+        self.assertEqual([v["pixel"] for v in dda["visits"]], walk[:len(dda["visits"])])
+        self.assertEqual(dda["visits"][-1]["then"], "hit")
+        self.assertEqual(ray["scene_truth"]["class"], "visible")
+        self.assertGreater(os.path.getsize(self.path("ray.png")), 20000)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["mine", "ray.png"])
+
+    def test_check_shows_the_techniques_own_steps(self):
+        self.ssrlab("check", "hiz", "--case", "one_object_in_the_sky", "--ray", "0:0", says=["level", "then", "hiz: "])
+
+    def test_what_is_refused(self):
+        self.refused(*RAY[:-4], "--pixel", "80", "-t", "dda", code=2, says=["--pixel: expected X,Y, got '80'"])
+        self.refused(*RAY[:-4], "--pixel", "200,3", "-t", "dda", code=2, says=["outside the image of 160x90"])
+        self.refused(*RAY[:-4], "--pixel", "80,2", "-t", "dda", code=2, says=["does not reflect: depth"])
+        self.refused(*RAY, "-t", "dda", "-o", "ray.svg", code=2, says=["expected .json or .png"])
+        self.refused(*RAY, "-t", "dda", "-t", "linear", "-p", "stepps=3", code=2, says=["stepps"])
+
+
+if __name__ == "__main__":
+    main()
