@@ -54,60 +54,30 @@ std::string status_legend()
     return text;
 }
 
+/// The command that makes the same picture, but for the output.
+std::string command_of(const PictureOptions& options, int at_frame)
+{
+    std::string text = "ssrlab render " + options.scene + " --view " + options.view;
+    if (at_frame > 0) text += fmt::format(" --frame {}", at_frame);
+    if (options.at.jitter_phases > 0) text += fmt::format(" --jitter {}", options.at.jitter_phases);
+    if (!options.size.empty()) text += " --size " + options.size;
+    text += " -t " + options.technique;
+    for (const std::string& pair : options.parameters) text += " -p " + pair;
+    return text;
+}
+
+void warn_without_reflections(const CommonOptions& common, const PreparedFrame& frame)
+{
+    if (common.quiet || reflecting_pixels_of(frame) > 0) return;
+    std::fputs("warning: nothing reflects: no pixel of this frame has a metallic value above 0\n", stderr);
+}
+
 } // namespace
-
-int list_everything(const CommonOptions& common)
-{
-    std::puts("Techniques");
-    for (const Technique& technique : list_techniques(common.technique_dirs))
-        std::puts(
-            fmt::format("  {:<16} {}{}", technique.id, technique.summary, technique.exact ? " (exact)" : "").c_str());
-    std::puts("\nScenes (besides any .glb, .gltf or recipe .toml by its path)");
-    for (const SceneListing& scene : list_scenes())
-        std::puts(fmt::format("  {:<26} {}", scene.name, scene.summary).c_str());
-    std::puts("\nDevices");
-    try {
-        for (const GpuInfo& info : list_gpus())
-            std::puts(fmt::format("  {} {} ({}, Vulkan {}, {})", info.index, info.name, info.type, info.api_version,
-                                  info.driver)
-                          .c_str());
-    } catch (const Failure& failure) {
-        std::puts(fmt::format("  none: {}", failure.what()).c_str());
-    }
-    return 0;
-}
-
-int show_technique(const CommonOptions& common, const std::string& id)
-{
-    const auto       techniques = list_techniques(common.technique_dirs);
-    const Technique& technique  = find_technique(techniques, id);
-    std::puts(fmt::format("{} ({})\n{}\n", technique.name, technique.id, technique.summary).c_str());
-    std::puts(technique.exact ? "exact: gives the pixel walk's answer on every ray" : "not exact");
-    std::puts(fmt::format("folder: {}", technique.folder.string()).c_str());
-    for (const Structure& structure : technique.structures)
-        std::puts(
-            fmt::format("structure: {} ({}), {}", structure.id, structure.name, structure.folder.string()).c_str());
-    for (const Accuracy& accuracy : technique.accuracy)
-        std::puts(fmt::format("accuracy: {} (better when {})", accuracy.parameter,
-                              accuracy.higher_is_better ? "higher" : "lower")
-                      .c_str());
-    for (const std::string& citation : technique.cite) std::puts(fmt::format("source: {}", citation).c_str());
-    std::puts("\nParameters");
-    for (const Parameter& parameter : technique.parameters) {
-        const std::string range =
-            parameter.type == ParameterType::choice    ? fmt::format("{}", fmt::join(parameter.choices, " | "))
-            : parameter.type == ParameterType::boolean ? "true | false"
-                                                       : fmt::format("{} … {}", parameter.min, parameter.max);
-        std::puts(fmt::format("  {:<24} {} (default {})\n                           {}", parameter.name, range,
-                              format_parameter(parameter, parameter.default_value), parameter.doc)
-                      .c_str());
-    }
-    return 0;
-}
 
 int render_picture(const CommonOptions& common, const PictureOptions& options)
 {
     check_choice(common, options);
+    require_ending(options.output, {".png", ".exr"});
     Stage stage = prepare_stage(common, options);
     for (int i = 0; i < std::max(options.frames, 1); ++i) {
         if (i > 0) show_frame(stage, options.view, {options.at.frame + i, options.at.jitter_phases});
@@ -115,7 +85,11 @@ int render_picture(const CommonOptions& common, const PictureOptions& options)
         run_frame(stage.gpu, *frame);
         const FrameTimes  times = run_frame(stage.gpu, *frame);
         const std::string file  = options.frames > 0 ? numbered(options.output, options.at.frame + i) : options.output;
-        write_image(file, read_shaded(stage.gpu, *frame));
+        Image             image = read_shaded(stage.gpu, *frame);
+        image.metadata["ssrlab:version"] = SSRLAB_VERSION; // without the commit: the same picture gives the same file
+        image.metadata["ssrlab:command"] = command_of(options, options.at.frame + i);
+        write_image(file, image);
+        warn_without_reflections(common, *frame);
         std::puts(fmt::format("{}: {}x{}, trace {:.2f} ms on {}", file, stage.view.size_px.x, stage.view.size_px.y,
                               times.of("trace"), stage.gpu.info.name)
                       .c_str());
@@ -126,6 +100,7 @@ int render_picture(const CommonOptions& common, const PictureOptions& options)
 int trace_hits(const CommonOptions& common, const PictureOptions& options)
 {
     check_choice(common, options);
+    require_ending(options.output, {".exr"});
     Stage             stage  = prepare_stage(common, options);
     const auto        frame  = prepare(common, options, stage);
     const TraceResult result = count_frame(stage.gpu, *frame);
@@ -157,6 +132,7 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
 int write_gbuffer(const CommonOptions& common, const PictureOptions& options)
 {
     if (!options.size.empty()) size_option(options.size);
+    require_ending(options.output, {".exr"});
     Stage stage = prepare_stage(common, options);
     write_image(options.output, frame_image(read_gbuffer(stage.gpu, *stage.gbuffer)));
     std::puts(options.output.c_str());

@@ -13,6 +13,7 @@ namespace ssrlab {
 struct CommonOptions {
     std::string                        device;
     bool                               validation = false;
+    bool                               quiet      = false; // no warnings, no progress
     std::vector<std::filesystem::path> technique_dirs;
 };
 
@@ -23,8 +24,9 @@ struct PictureOptions {
     int                      frames = 0; // render: so many pictures from frame at.frame on; 0: one, without a number
 };
 
-int list_everything(const CommonOptions& common);
-int show_technique(const CommonOptions& common, const std::string& id);
+int list_everything(const CommonOptions& common, bool json);
+/// A technique, or a setting of [trace] and [passes].
+int show_entry(const CommonOptions& common, const std::string& name, bool json);
 int render_picture(const CommonOptions& common, const PictureOptions& options);
 int trace_hits(const CommonOptions& common, const PictureOptions& options);
 int write_gbuffer(const CommonOptions& common, const PictureOptions& options);

@@ -4,11 +4,14 @@
 #include "app/plan_command.h"
 #include "app/ray_command.h"
 #include "core/error.h"
+#include "core/names.h"
+#include "core/version.h"
 #include "harness/run_experiment.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fcntl.h>
 #include <functional>
@@ -24,6 +27,20 @@ void open_closed_streams()
         ::close(fd);
         return;
     }
+}
+
+/// What is wrong with the first word that is no option, if it is no command.
+std::string unknown_command(const CLI::App& app, int argc, char** argv)
+{
+    std::vector<std::string> known;
+    for (const CLI::App* command : app.get_subcommands(nullptr)) known.push_back(command->get_name());
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        if (word == "--device" || word == "--techniques") ++i;
+        if (word.starts_with("-")) continue;
+        return std::ranges::find(known, word) != known.end() ? "" : ssrlab::unknown_name("command", word, known);
+    }
+    return "";
 }
 
 void add_frame_options(CLI::App& command, ssrlab::PictureOptions& options)
@@ -71,20 +88,24 @@ int main(int argc, char** argv)
     std::string    technique, results;
     app.require_subcommand(1);
     app.fallthrough();
-    app.set_version_flag("--version", SSRLAB_VERSION);
+    app.set_version_flag("--version", version_text());
     app.add_option("--device", common.device,
                    "Vulkan device by index or part of its name; default: a discrete GPU if present, else the first");
     app.add_option("--techniques", common.technique_dirs,
                    "Further technique folders, or folders of them (also $SSRLAB_TECHNIQUES)");
     app.add_flag("--validation", common.validation, "Load the Khronos validation layer; any message fails the command");
 
+    app.add_flag("--quiet", common.quiet, "No warnings and no progress; errors are still said");
+
     std::function<int()> command;
-    app.add_subcommand("list", "Techniques, scenes and devices")->callback([&] {
-        command = [&] { return list_everything(common); };
-    });
-    auto* show = app.add_subcommand("show", "A technique's parameters and sources");
-    show->add_option("TECHNIQUE", technique)->required();
-    show->callback([&] { command = [&] { return show_technique(common, technique); }; });
+    bool                 json = false;
+    auto*                list = app.add_subcommand("list", "Techniques, scenes, settings and devices");
+    list->add_flag("--json", json, "With everything that show says, as JSON");
+    list->callback([&] { command = [&] { return list_everything(common, json); }; });
+    auto* show = app.add_subcommand("show", "A technique's parameters and sources, or a setting's range and default");
+    show->add_option("TECHNIQUE|SETTING", technique)->required();
+    show->add_flag("--json", json, "As JSON");
+    show->callback([&] { command = [&] { return show_entry(common, technique, json); }; });
     auto* render = app.add_subcommand("render", "A picture with reflections (.png or .exr)");
     add_picture_options(*render, picture, true);
     render->add_option("--frames", picture.frames, "Write so many numbered pictures, of this frame and those after it")
@@ -138,6 +159,7 @@ int main(int argc, char** argv)
     sweep->callback([&] {
         command = [&] {
             run.techniques   = common.technique_dirs;
+            run.quiet        = common.quiet;
             run.gpu          = {.device = common.device, .validation = common.validation};
             run.command_line = fmt::format("{}", fmt::join(argv, argv + argc, " "));
             return run_experiment(run);
@@ -165,6 +187,10 @@ int main(int argc, char** argv)
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
+        if (const std::string wrong = unknown_command(app, argc, argv); !wrong.empty()) {
+            std::fprintf(stderr, "ssrlab: %s\n", wrong.c_str());
+            return 2;
+        }
         return app.exit(error) == 0 ? 0 : 2;
     }
     try {

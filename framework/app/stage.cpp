@@ -4,10 +4,19 @@
 #include "core/size.h"
 #include "harness/experiment.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cstdio>
 
 namespace ssrlab {
+
+void require_ending(const std::string& output, const std::vector<std::string>& endings)
+{
+    const std::string ending = std::filesystem::path(output).extension().string();
+    if (std::ranges::find(endings, ending) == endings.end())
+        throw_spec_error("-o {}: expected a file that ends in {}", output, fmt::join(endings, " or "));
+}
 
 glm::ivec2 size_option(const std::string& text)
 {
@@ -24,7 +33,8 @@ Stage prepare_stage(const CommonOptions& common, const PictureOptions& options)
     stage.scene           = scene_at(stage.first, options.at.frame);
     const glm::ivec2 size = options.size.empty() ? glm::ivec2(0) : size_option(options.size);
     stage.view            = view_at(stage.scene, options.view, size, options.at);
-    for (const std::string& warning : stage.scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    if (!common.quiet)
+        for (const std::string& warning : stage.scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
     stage.gpu = open_gpu({.device = common.device, .validation = common.validation});
     if (!stage.scene.frame) stage.uploaded = upload_scene(stage.gpu, stage.scene);
     stage.gbuffer = stage.scene.frame ? upload_gbuffer(stage.gpu, stage.scene.frame->gbuffer)

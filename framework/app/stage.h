@@ -21,6 +21,9 @@ void show_frame(Stage& stage, const std::string& view, SequenceFrame at);
 /// Prints the validation layer's messages; 1 when there are any.
 int report_messages(const Stage& stage);
 
+/// Throws SpecError when the output has another ending: before the work, not after it.
+void require_ending(const std::string& output, const std::vector<std::string>& endings);
+
 /// The value of --size; throws SpecError.
 glm::ivec2 size_option(const std::string& text);
 

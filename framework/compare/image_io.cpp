@@ -92,7 +92,7 @@ void write_image(const fs::path& path, const Image& image)
     require_consistent(path, image);
     const std::string extension = path.extension().string();
     if (extension != ".png" && extension != ".exr") {
-        throw_failure("{}: images are written as .exr or .png, not '{}'", path.string(), extension);
+        throw_spec_error("{}: images are written as .exr or .png, not '{}'", path.string(), extension);
     }
     const bool          png = extension == ".png";
     const TemporaryFile temporary{temporary_path(path)};

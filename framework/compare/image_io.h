@@ -6,7 +6,7 @@
 namespace ssrlab {
 
 /// .exr: float, all channels, linear, metadata as attributes. .png: the first three channels, sRGB-encoded, 8 bit.
-/// Written beside and renamed, so that a partial file never carries the final name. Throws Failure with path and reason.
+/// Written beside and renamed, so that a partial file never carries the final name. Throws Failure with path and reason, SpecError for another ending.
 void write_image(const std::filesystem::path& path, const Image& image);
 
 /// Channels are found by name, so their order in the file does not matter. Throws Failure.

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/version.h"
 #include "scene/load_scene.h"
 
 #include <sys/utsname.h>
@@ -16,26 +17,6 @@ namespace ssrlab {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// First line of what a command prints; empty when it does not run.
-std::string first_line_of(const std::string& command)
-{
-    FILE* pipe = ::popen((command + " 2>/dev/null").c_str(), "re");
-    if (pipe == nullptr) return "";
-    std::array<char, 256> buffer{};
-    std::string           line = std::fgets(buffer.data(), buffer.size(), pipe) == nullptr ? "" : buffer.data();
-    ::pclose(pipe);
-    while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.pop_back();
-    return line;
-}
-
-std::string source_commit()
-{
-    const std::string git    = "git -C '" + data_root().string() + "' ";
-    const std::string commit = first_line_of(git + "rev-parse HEAD");
-    if (commit.empty()) return "not known";
-    return first_line_of(git + "status --porcelain --untracked-files=no").empty() ? commit : commit + " with changes";
-}
 
 std::string now_utc()
 {
@@ -93,7 +74,7 @@ Environment describe_environment(const Experiment& experiment, std::span<const T
     notes["command_line"]  = command_line;
     notes["seed"]          = std::to_string(experiment.measure.seed);
     notes["started"]       = now_utc();
-    notes["commit"]        = source_commit();
+    notes["commit"]        = built_commit();
     notes["version"]       = SSRLAB_VERSION;
     notes["compiler"]      = __VERSION__;
     notes["system"]        = fmt::format("{} {} {}", system.sysname, system.release, system.machine);

@@ -63,8 +63,8 @@ std::string duration_text(double seconds)
     return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
-Progress::Progress(size_t total_runs, double total_cost)
-    : total_runs_(total_runs), total_cost_(total_cost), in_place_(::isatty(STDERR_FILENO) != 0)
+Progress::Progress(size_t total_runs, double total_cost, bool quiet)
+    : total_runs_(total_runs), total_cost_(total_cost), in_place_(::isatty(STDERR_FILENO) != 0), quiet_(quiet)
 {
 }
 
@@ -96,6 +96,7 @@ void Progress::finish_run(const std::string& id, double cost)
 
 void Progress::tick()
 {
+    if (quiet_) return;
     const double interval_s = in_place_ ? 0.2 : 10;
     const bool   complete   = done_runs_ == total_runs_;
     if (!since_print_ || complete || since_print_->seconds() >= interval_s) print();

@@ -18,7 +18,7 @@ std::string duration_text(double seconds); // "3:07", "1:02:09"
 class Progress {
 public:
     /// `total_cost`: the sum of estimated_seconds over all runs to do; the time left scales with what is left of it.
-    Progress(size_t total_runs, double total_cost);
+    Progress(size_t total_runs, double total_cost, bool quiet = false);
 
     /// More runs than were known: a search tries further settings.
     void add_runs(size_t count, double cost);
@@ -38,7 +38,7 @@ private:
     double                   total_cost_, done_cost_ = 0;
     std::string              picture_;
     std::set<std::string>    prepared_; // runs that are not finished
-    bool                     in_place_;
+    bool                     in_place_, quiet_;
     Stopwatch                since_start_;
     std::optional<Stopwatch> since_print_; // empty before the first line
 };

@@ -67,7 +67,7 @@ ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> columns, co
     try {
         lock();
         if (fs::exists(csv_) && !resuming) {
-            throw_failure("{}: already there; continue it with --resume, or choose another folder with -o",
+            throw_spec_error("{}: already there; continue it with --resume, or choose another folder with -o",
                           short_path(csv_));
         }
         remove_partial_files();

@@ -133,7 +133,7 @@ int sweep(const RunOptions& options, SweepState& state)
     std::vector<Run>  pending = runs;
     std::erase_if(pending, [&](const Run& run) { return results.finished().contains(run.id); });
 
-    Progress progress(pending.size(), total_cost(pending, techniques, experiment.measure));
+    Progress progress(pending.size(), total_cost(pending, techniques, experiment.measure), options.quiet);
     Bench    bench{experiment, techniques, gpu, results, progress, state, environment.identity};
     if (continues) record_lost(bench, pending, state.lost);
     if (const std::string trouble = cache_trouble(truth_cache_dir(results.path())); !trouble.empty())

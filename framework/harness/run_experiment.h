@@ -17,6 +17,7 @@ struct RunOptions {
     std::string                        only; // a run id; empty: all runs
     bool                               resume  = false;
     bool                               dry_run = false; // list runs and estimated time, touch nothing
+    bool                               quiet   = false; // no progress
     bool                               yes     = false; // also more than max_runs_unasked
     std::string                        command_line;
 };

@@ -236,6 +236,7 @@ PreparedFramePtr prepare_unculled(Gpu& gpu, const PreparedFrame& planned)
 
 const std::vector<PlannedPass>& plan_of(const PreparedFrame& frame) { return frame.plan; }
 
+size_t reflecting_pixels_of(const PreparedFrame& frame) { return frame.statistics.gbuffer.reflecting_pixels; }
 double counting_s_of(const PreparedFrame& frame) { return frame.counting_s; }
 
 bool plan_skips_work(const PreparedFrame& frame)

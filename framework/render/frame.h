@@ -67,6 +67,8 @@ PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const T
 PreparedFramePtr prepare_unculled(Gpu& gpu, const PreparedFrame& planned);
 /// What runs and why. The frame is still, so the plan's statistics are its own.
 const std::vector<PlannedPass>& plan_of(const PreparedFrame& frame);
+/// Pixels that reflect.
+size_t reflecting_pixels_of(const PreparedFrame& frame);
 /// Seconds of prepare_frame() spent counting hits for the plan.
 double counting_s_of(const PreparedFrame& frame);
 /// Whether the unculled frame would do more. False with pass_set = shading.

@@ -28,7 +28,7 @@ fs::path first_existing(const std::vector<fs::path>& candidates, const std::stri
         if (fs::exists(candidate, error)) return candidate;
         tried += "\n  " + candidate.string();
     }
-    throw_failure("scene data '{}' is not there: run ./experiments/prepare_scenes. Tried:{}", reference, tried);
+    throw_spec_error("scene data '{}' is not there: run ./experiments/prepare_scenes. Tried:{}", reference, tried);
 }
 
 fs::path find_in_package(const std::string& reference)
@@ -60,7 +60,7 @@ fs::path find_data(const std::string& reference, const fs::path& folder)
     if (reference.starts_with(package_prefix)) return find_in_package(reference);
     if (reference.starts_with(sweethome3d_prefix)) return find_sweethome3d(reference);
     fs::path file = fs::path(reference).is_absolute() ? fs::path(reference) : folder / reference;
-    if (!fs::exists(file)) throw_failure("{}: no such file", file.string());
+    if (!fs::exists(file)) throw_spec_error("{}: no such file", file.string());
     return file;
 }
 

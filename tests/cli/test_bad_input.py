@@ -66,7 +66,7 @@ class Test(Case):
             self.refused("render", SCENE, "-t", "linear", "--size", "32x18", "-o", output, code=1, says=["a.png"])
 
     def test_unknown_image_format(self):
-        self.refused("render", SCENE, "-t", "linear", "--size", "32x18", "-o", self.path("a.xyz"), code=1, says=["a.xyz"])
+        self.refused("render", SCENE, "-t", "linear", "--size", "32x18", "-o", self.path("a.xyz"), code=2, says=["a.xyz"])
 
     def test_specification_missing_or_broken(self):
         self.refused("run", self.path("none.toml"), code=2, says=["none.toml"])

@@ -145,7 +145,7 @@ class Test(Case):
         self.ssrlab("run", spec, "-o", "out")
         with open(self.path("out/results.csv"), "rb") as file:
             before = file.read()
-        self.refused("run", spec, "-o", "out", code=1, says=["already there", "--resume"])
+        self.refused("run", spec, "-o", "out", code=2, says=["already there", "--resume"])
         self.ssrlab("run", spec, "-o", "out", "--resume", says=["0 written now"])
         with open(self.path("out/results.csv"), "rb") as file:
             self.assertEqual(file.read(), before)

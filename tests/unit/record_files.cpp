@@ -70,7 +70,7 @@ TEST_F(RecordFiles, NothingIsOverwritten)
         ResultFolder(folder, columns, here, false).append(row_of(1));
     }
     const std::string before = read_file(folder / "results.csv");
-    EXPECT_THAT(message_of<Failure>([&] { ResultFolder(folder, columns, here, false); }),
+    EXPECT_THAT(message_of<SpecError>([&] { ResultFolder(folder, columns, here, false); }),
                 HasSubstr("results.csv: already there; continue it with --resume"));
     EXPECT_EQ(read_file(folder / "results.csv"), before);
 }

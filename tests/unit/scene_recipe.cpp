@@ -203,11 +203,11 @@ TEST(SceneRecipe, MissingDataSaysHowToGetIt)
 {
     TempFolder& folder = folder_with_pyramid();
     EXPECT_THAT(
-        error_of<Failure>(folder.write("a.toml", "[[part]]\nfile = 'package:no-such-package/usr/share/a.obj'\n")),
+        error_of<SpecError>(folder.write("a.toml", "[[part]]\nfile = 'package:no-such-package/usr/share/a.obj'\n")),
         HasSubstr("run ./experiments/prepare_scenes"));
-    EXPECT_THAT(error_of<Failure>(folder.write("a.toml", "[[part]]\nfile = 'sweethome3d:noSuchChair'\n")),
+    EXPECT_THAT(error_of<SpecError>(folder.write("a.toml", "[[part]]\nfile = 'sweethome3d:noSuchChair'\n")),
                 HasSubstr("run ./experiments/prepare_scenes"));
-    EXPECT_THAT(error_of<Failure>(folder.write("a.toml", "[[part]]\nfile = 'none.obj'\n")), HasSubstr("none.obj"));
+    EXPECT_THAT(error_of<SpecError>(folder.write("a.toml", "[[part]]\nfile = 'none.obj'\n")), HasSubstr("none.obj"));
     EXPECT_THAT(error_of<SpecError>(folder.write("a.toml", "[[part]]\nfile = 'package:a/../../b'\n")),
                 HasSubstr("must look like"));
 }

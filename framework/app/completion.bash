@@ -1,0 +1,21 @@
+# Completes commands, techniques, scenes and options of ssrlab in bash. `source` it, or install it where bash-completion looks.
+_ssrlab()
+{
+    local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command="" word
+    for word in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
+        [[ $word != -* ]] && { command=$word; break; }
+    done
+    local names=""
+    if [[ -z $command ]]; then
+        names=$("$1" --help 2> /dev/null | sed -n '/^Subcommands:/,$ s/^  \([a-z]\+\) .*/\1/p')
+    elif [[ $current == -* ]]; then
+        names=$("$1" "$command" --help 2> /dev/null | grep -o -- '--[a-z-]\+' | sort -u)
+    elif [[ $previous == -t || $previous == --technique || $command == show || $command == check ]]; then
+        names=$("$1" list 2> /dev/null | sed -n '/^Techniques/,/^$/ s/^  \([^ ]\+\) .*/\1/p')
+    elif [[ $command =~ ^(render|trace|gbuffer|ray|plan)$ && $previous == "$command" ]]; then
+        names=$("$1" list 2> /dev/null | sed -n '/^Scenes/,/^$/ s/^  \([^ ]\+\) .*/\1/p')
+    fi
+    mapfile -t COMPREPLY < <(compgen -W "$names" -- "$current"; compgen -f -- "$current")
+    type __ltrim_colon_completions &> /dev/null && __ltrim_colon_completions "$current"
+}
+complete -o filenames -F _ssrlab ssrlab

@@ -1,0 +1,164 @@
+// ssrlab list and show: what there is.
+#include "app/commands.h"
+
+#include "core/error.h"
+#include "core/names.h"
+#include "gpu/gpu.h"
+#include "harness/experiment.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace ssrlab {
+namespace {
+
+std::string range_of(const Parameter& parameter)
+{
+    return parameter.type == ParameterType::choice    ? fmt::format("{}", fmt::join(parameter.choices, " | "))
+           : parameter.type == ParameterType::boolean ? "true | false"
+                                                      : fmt::format("{} … {}", parameter.min, parameter.max);
+}
+
+nlohmann::json json_of(const Parameter& parameter)
+{
+    nlohmann::json json{{"name", parameter.name},
+                        {"default", format_parameter(parameter, parameter.default_value)},
+                        {"doc", parameter.doc}};
+    if (parameter.type == ParameterType::choice)
+        json["choices"] = parameter.choices;
+    else if (parameter.type == ParameterType::boolean)
+        json["choices"] = {"false", "true"};
+    else
+        json["min"] = parameter.min, json["max"] = parameter.max;
+    return json;
+}
+
+void print_parameter(const Parameter& parameter)
+{
+    std::puts(fmt::format("  {:<24} {} (default {})\n                           {}", parameter.name,
+                          range_of(parameter), format_parameter(parameter, parameter.default_value), parameter.doc)
+                  .c_str());
+}
+
+nlohmann::json json_of(const Technique& technique)
+{
+    nlohmann::json json{{"name", technique.id},
+                        {"title", technique.name},
+                        {"summary", technique.summary},
+                        {"exact", technique.exact},
+                        {"folder", technique.folder.string()},
+                        {"sources", technique.cite},
+                        {"structures", nlohmann::json::array()},
+                        {"parameters", nlohmann::json::array()}};
+    for (const Structure& structure : technique.structures) json["structures"].push_back(structure.id);
+    for (const Parameter& parameter : technique.parameters) json["parameters"].push_back(json_of(parameter));
+    return json;
+}
+
+int print_technique(const Technique& technique)
+{
+    std::puts(fmt::format("{} ({})\n{}\n", technique.name, technique.id, technique.summary).c_str());
+    std::puts(technique.exact ? "exact: gives the pixel walk's answer on every ray" : "not exact");
+    std::puts(fmt::format("folder: {}", technique.folder.string()).c_str());
+    for (const Structure& structure : technique.structures)
+        std::puts(
+            fmt::format("structure: {} ({}), {}", structure.id, structure.name, structure.folder.string()).c_str());
+    for (const Accuracy& accuracy : technique.accuracy)
+        std::puts(fmt::format("accuracy: {} (better when {})", accuracy.parameter,
+                              accuracy.higher_is_better ? "higher" : "lower")
+                      .c_str());
+    for (const std::string& citation : technique.cite) std::puts(fmt::format("source: {}", citation).c_str());
+    std::puts("\nParameters");
+    for (const Parameter& parameter : technique.parameters) print_parameter(parameter);
+    return 0;
+}
+
+nlohmann::json list_as_json(const std::vector<Technique>& techniques)
+{
+    nlohmann::json json{{"techniques", nlohmann::json::array()},
+                        {"scenes", nlohmann::json::array()},
+                        {"settings", nlohmann::json::array()},
+                        {"devices", nlohmann::json::array()}};
+    for (const Technique& technique : techniques) json["techniques"].push_back(json_of(technique));
+    for (const SceneListing& scene : list_scenes())
+        json["scenes"].push_back({{"name", scene.name}, {"summary", scene.summary}});
+    for (const Setting& setting : all_settings()) {
+        json["settings"].push_back(json_of(setting));
+        json["settings"].back()["table"] = setting.table;
+    }
+    try {
+        for (const GpuInfo& info : list_gpus())
+            json["devices"].push_back({{"index", info.index},
+                                       {"name", info.name},
+                                       {"type", info.type},
+                                       {"vulkan", info.api_version},
+                                       {"driver", info.driver}});
+    } catch (const Failure& failure) {
+        json["no_device"] = failure.what();
+    }
+    return json;
+}
+
+} // namespace
+
+int list_everything(const CommonOptions& common, bool json)
+{
+    const std::vector<Technique> techniques = list_techniques(common.technique_dirs);
+    if (json) {
+        std::puts(list_as_json(techniques).dump(1).c_str());
+        return 0;
+    }
+    std::puts("Techniques");
+    for (const Technique& technique : techniques)
+        std::puts(
+            fmt::format("  {:<16} {}{}", technique.id, technique.summary, technique.exact ? " (exact)" : "").c_str());
+    std::puts("\nScenes (besides any .glb, .gltf, recipe .toml or frame .exr by its path)");
+    for (const SceneListing& scene : list_scenes())
+        std::puts(fmt::format("  {:<26} {}", scene.name, scene.summary).c_str());
+    std::puts("\nSettings (ssrlab show NAME)");
+    for (const char* table : {"trace", "passes"}) {
+        std::string names;
+        for (const Setting& setting : all_settings())
+            if (setting.table == table) names += " " + setting.name;
+        std::puts(fmt::format("  [{}]{}", table, names).c_str());
+    }
+    std::puts("\nDevices");
+    try {
+        for (const GpuInfo& info : list_gpus())
+            std::puts(fmt::format("  {} {} ({}, Vulkan {}, {})", info.index, info.name, info.type, info.api_version,
+                                  info.driver)
+                          .c_str());
+    } catch (const Failure& failure) {
+        std::puts(fmt::format("  none: {}", failure.what()).c_str());
+    }
+    return 0;
+}
+
+int show_entry(const CommonOptions& common, const std::string& name, bool json)
+{
+    const std::vector<Technique> techniques = list_techniques(common.technique_dirs);
+    const auto                   technique  = std::ranges::find(techniques, name, &Technique::id);
+    const auto                   setting    = std::ranges::find(all_settings(), name, &Setting::name);
+    if (technique != techniques.end()) {
+        if (!json) return print_technique(*technique);
+        std::puts(json_of(*technique).dump(1).c_str());
+        return 0;
+    }
+    if (setting == all_settings().end()) {
+        std::vector<std::string> known;
+        for (const Technique& one : techniques) known.push_back(one.id);
+        for (const Setting& one : all_settings()) known.push_back(one.name);
+        throw_spec_error("{}", unknown_name("technique or setting", name, known));
+    }
+    if (json) {
+        std::puts(json_of(*setting).dump(1).c_str());
+        return 0;
+    }
+    std::puts(fmt::format("A setting of [{}] in experiments, and of -p\n", setting->table).c_str());
+    print_parameter(*setting);
+    return 0;
+}
+
+} // namespace ssrlab

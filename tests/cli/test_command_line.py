@@ -1,0 +1,85 @@
+"""Commands, their words and exit codes; an installed program."""
+import json
+import os
+import re
+import signal
+import subprocess
+
+from support import Case, PROGRAM, SOURCE, SWEEP, main
+
+BUILD = os.path.dirname(os.path.dirname(PROGRAM))
+
+
+class Test(Case):
+    def test_a_misspelt_command_is_answered(self):
+        self.refused("rendr", code=2, says=["unknown command 'rendr': did you mean 'render'?"])
+        self.refused("--quiet", "--device", "0", "chek", code=2, says=["did you mean 'check'?"])
+        self.ssrlab(code=2, says=["subcommand is required"])
+        self.ssrlab("render", "--sise", "3x3", code=2)
+
+    def test_settings_are_shown(self):
+        self.ssrlab("show", "thickness_m", says=["[trace]", "default 0.1", "0 … 1000000"])
+        self.ssrlab("show", "gloss", says=["[passes]", "|"])
+        self.refused("show", "thicknes_m", code=2, says=["did you mean 'thickness_m'?"])
+
+    def test_json_says_what_list_and_show_say(self):
+        everything = json.loads(self.ssrlab("list", "--json"))
+        hiz = next(one for one in everything["techniques"] if one["name"] == "hiz")
+        self.assertEqual(json.loads(self.ssrlab("show", "hiz", "--json")), hiz)
+        self.assertTrue(hiz["exact"])
+        self.assertIn("max_steps", [one["name"] for one in hiz["parameters"]])
+        self.assertIn("interior", [one["name"] for one in everything["scenes"]])
+        thickness = next(one for one in everything["settings"] if one["name"] == "thickness_m")
+        self.assertEqual((thickness["table"], thickness["default"]), ("trace", "0.1"))
+
+    def test_version_names_the_commit_that_was_built(self):
+        self.assertRegex(self.ssrlab("--version"), r"^\d+\.\d+\.\d+ \(([0-9a-f]{40}( with changes)?|not known)\)$")
+
+    def test_a_picture_knows_its_command(self):
+        self.ssrlab("render", "builtin:stairs", "--size", "64x36", "-t", "linear", "-p", "steps=9", "-o", "a.exr")
+        with open(self.path("a.exr"), "rb") as file:
+            command = re.search(rb"ssrlab (render builtin:stairs[ -~]*steps=9)", file.read())[1].decode()
+        self.ssrlab(*command.split(), "-o", "b.exr")
+        with open(self.path("a.exr"), "rb") as a, open(self.path("b.exr"), "rb") as b:
+            self.assertEqual(a.read(), b.read())
+
+    def test_nothing_that_reflects_is_a_warning_unless_quiet(self):
+        render = ("render", "builtin:matte", "--size", "64x36", "-t", "hiz", "-o", "a.png")
+        self.ssrlab(*render, says=["warning: nothing reflects"])
+        self.assertNotIn("warning", self.ssrlab("--quiet", *render))
+        self.assertNotIn("warning", self.ssrlab("render", "builtin:stairs", *render[2:]))
+
+    def test_endings_are_refused_before_the_work(self):
+        for command in (("render", "-t", "hiz"), ("trace", "-t", "hiz"), ("gbuffer",)):
+            self.refused(command[0], "builtin:stairs", *command[1:], "-o", "a.gif", code=2, says=["-o a.gif: expected a file that ends in"])
+        self.refused("trace", "builtin:stairs", "-t", "hiz", "-o", "a.png", code=2, says=["ends in .exr"])
+
+    def test_a_sweep_that_is_stopped_ends_with_130_and_a_quiet_one_says_little(self):
+        process = self.start("run", self.write("s.toml", SWEEP), "-o", "out")
+        self.assertEqual(self.stop_in_the_middle(process, signal.SIGINT), 130)
+        text = self.ssrlab("--quiet", "run", "s.toml", "-o", "out", "--resume")
+        self.assertEqual(len(text.splitlines()), 1, text)
+
+    def test_the_installed_program_uses_its_own_data(self):
+        subprocess.run(["cmake", "--install", BUILD, "--prefix", self.path("there")], check=True, stdout=subprocess.DEVNULL)
+        program = self.path("there/bin/ssrlab")
+        shown = subprocess.run([program, "show", "hiz"], check=True, capture_output=True, text=True, cwd="/").stdout
+        self.assertIn(f"folder: {self.path('there/share/ssrlab/techniques/hiz')}", shown)
+        command = [program, "render", "builtin:stairs", "-t", "hiz", "--size", "64x36", "-o", self.path("a.png")]
+        subprocess.run(command, check=True, capture_output=True, cwd="/")
+
+    def test_completion_knows_commands_techniques_and_scenes(self):
+        def completed(*words):
+            script = f"""source {SOURCE}/framework/app/completion.bash
+                COMP_WORDS=({PROGRAM} {' '.join(repr(word) for word in words)}); COMP_CWORD={len(words)}
+                _ssrlab {PROGRAM}; printf '%s\\n' "${{COMPREPLY[@]}}" """
+            return subprocess.run(["bash", "-c", script], check=True, capture_output=True, text=True, cwd=self.folder).stdout.split()
+
+        self.assertEqual(completed("ren"), ["render"])
+        self.assertEqual(completed("render", "thin"), ["thin_yard"])
+        self.assertEqual(completed("render", "thin_yard", "-t", "quad"), ["quadtree"])
+        self.assertEqual(completed("render", "thin_yard", "--si"), ["--size"])
+
+
+if __name__ == "__main__":
+    main()
