@@ -37,8 +37,10 @@ Stage prepare_stage(const CommonOptions& common, const PictureOptions& options)
         for (const std::string& warning : stage.scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
     stage.gpu = open_gpu({.device = common.device, .validation = common.validation});
     if (!stage.scene.frame) stage.uploaded = upload_scene(stage.gpu, stage.scene);
-    stage.gbuffer = stage.scene.frame ? upload_gbuffer(stage.gpu, stage.scene.frame->gbuffer)
-                                      : render_gbuffer(stage.gpu, stage.uploaded, stage.view);
+    stage.gbuffer = stage.scene.frame
+                        ? upload_gbuffer(stage.gpu, stage.scene.frame->gbuffer)
+                        : render_gbuffer(stage.gpu, stage.uploaded, stage.view,
+                                         motion_at(stage.scene, options.view, stage.view.size_px, options.at.frame));
     return stage;
 }
 
@@ -49,7 +51,8 @@ void show_frame(Stage& stage, const std::string& view, SequenceFrame at)
         move_scene(stage.gpu, *stage.uploaded, stage.scene);
     }
     stage.view    = view_at(stage.scene, view, stage.view.size_px, at);
-    stage.gbuffer = render_gbuffer(stage.gpu, stage.uploaded, stage.view);
+    stage.gbuffer = render_gbuffer(stage.gpu, stage.uploaded, stage.view,
+                                   motion_at(stage.scene, view, stage.view.size_px, at.frame));
 }
 
 Choice parse_choice(const Technique& technique, const std::vector<std::string>& pairs)

@@ -19,8 +19,12 @@ struct GBufferImage {
     std::vector<glm::vec3> radiance;    // linear; the part of the lit colour that is the same from every direction
     std::vector<glm::vec3> highlight;   // linear; the part that depends on the view; lit colour = radiance + highlight
     std::vector<uint32_t>  object_id;   // 1 + index of the draw
-    std::vector<glm::vec2> gradient;    // of depth, from one pixel to the next along x and y; NaN: no plane. Empty: not known
-    std::vector<float>     solid_back;  // depth where the solid behind the pixel ends, 0: it is thin. Empty: not known
+    std::vector<glm::vec2>
+                       gradient; // of depth, from one pixel to the next along x and y; NaN: no plane. Empty: not known
+    std::vector<float> solid_back; // depth where the solid behind the pixel ends, 0: it is thin. Empty: not known
+    std::vector<glm::vec2> motion_px =
+        {}; // where the surface was in the frame before, minus where it is, without jitter; NaN: it was
+            // behind the camera. Empty: nothing moved, or no frame came before
 };
 
 } // namespace ssrlab

@@ -84,7 +84,8 @@ Picture make_picture(Bench& bench, const Run& run)
     Picture            picture;
     picture.gbuffer = clocked(bench.counted_s, [&] { // a warm-up
         return loaded.scene.frame ? upload_gbuffer(bench.gpu, loaded.scene.frame->gbuffer)
-                                  : render_gbuffer(bench.gpu, loaded.uploaded, view);
+                                  : render_gbuffer(bench.gpu, loaded.uploaded, view,
+                                                   motion_at(loaded.scene, run.view, run.size_px, run.at.frame));
     });
     if (!loaded.scene.frame) {
         std::vector<double> times_ms;

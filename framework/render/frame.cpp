@@ -133,6 +133,16 @@ void upload_dfg_table(Gpu& gpu, FrameBuffers& buffers)
     upload(gpu, buffers.dfg_table, texels.data(), texels.size() * sizeof(uint32_t));
 }
 
+/// "moving camera, 2 of 5 objects move, no jitter"
+std::string describe_motion(const GBuffer& gbuffer)
+{
+    if (!gbuffer.motion) return "no frame before this one";
+    const FrameMotion& motion   = *gbuffer.motion;
+    const bool         jittered = gbuffer.view.centre_px != motion.view.centre_px;
+    return fmt::format("{} camera, {} of {} objects move, {} jitter", motion.camera_moves ? "moving" : "still",
+                       motion.moving_draws, motion.to_previous_ws.size(), jittered ? "with" : "no");
+}
+
 FrameFacts facts_of(const PreparedFrame& frame)
 {
     const GpuScene* scene = frame.buffers->gbuffer->scene.get();
@@ -143,6 +153,7 @@ FrameFacts facts_of(const PreparedFrame& frame)
     facts.scene           = true;
     facts.environment_map = scene->has_environment_map;
     facts.alpha_mask      = scene->alpha_mask;
+    facts.motion          = describe_motion(*frame.buffers->gbuffer);
     return facts;
 }
 

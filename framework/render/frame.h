@@ -7,7 +7,7 @@
 #include "gpu/gpu.h"
 #include "render/frame_plan.h"
 #include "render/technique.h"
-#include "scene/scene.h"
+#include "scene/sequence.h"
 
 #include <memory>
 #include <optional>
@@ -50,7 +50,9 @@ GpuScenePtr upload_scene(Gpu& gpu, const Scene& scene);
 void move_scene(Gpu& gpu, GpuScene& uploaded, const Scene& moved);
 
 /// Renders the G-buffer; call again for another timing. Throws SpecError when the size exceeds the device's limit.
-GBufferPtr render_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view);
+/// motion: since the frame before; where anything moved, the G-buffer has motion vectors.
+GBufferPtr render_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view,
+                          const std::optional<FrameMotion>& motion = {});
 /// Renders into the same images again; returns milliseconds.
 double rerender_gbuffer(Gpu& gpu, GBuffer& gbuffer);
 /// A G-buffer made elsewhere (another renderer, a test).

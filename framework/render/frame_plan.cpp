@@ -60,8 +60,8 @@ std::vector<std::string> describe_facts(const FrameFacts& facts, const FrameStat
                         percent(trace.mirror_hits, trace.hits)),
             !facts.scene
                 ? std::string("no scene: an imported G-buffer")
-                : fmt::format("environment {}, {} alpha mask, still camera and objects, no jitter",
-                              facts.environment_map ? "map" : "of one colour", facts.alpha_mask ? "an" : "no")};
+                : fmt::format("environment {}, {} alpha mask, {}", facts.environment_map ? "map" : "of one colour",
+                              facts.alpha_mask ? "an" : "no", facts.motion)};
 }
 
 } // namespace ssrlab

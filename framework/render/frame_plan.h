@@ -13,8 +13,9 @@ struct FrameFacts {
     bool                     scene           = false; // the G-buffer was drawn from one
     bool                     environment_map = false; // without a map, one colour arrives from everywhere
     bool                     alpha_mask      = false;
+    std::string              motion          = {};    // what moved since the frame before, as facts_of_plan() says it
     bool                     solids          = false; // the surface model asks where solids end
-    std::vector<std::string> structures; // that the technique reads, in the order in which they are built
+    std::vector<std::string> structures;              // that the technique reads, in the order in which they are built
 };
 
 /// shaders/rays/classification.comp counts these on the G-buffer.

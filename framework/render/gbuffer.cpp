@@ -173,13 +173,20 @@ void record_drawing(const vk::raii::CommandBuffer& commands, const GBuffer& gbuf
     push(commands, gbuffer.background, glm::mat4(glm::inverse(gbuffer.view.world_to_view)));
     dispatch(commands, gbuffer.background, groups_of_8(gbuffer.view.size_px));
     barrier(commands);
+    if (!gbuffer.motion_vectors) return;
+    record_motion_vectors(commands, *gbuffer.motion_vectors);
+    barrier(commands);
 }
 
 } // namespace
 
-GBufferPtr render_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view)
+GBufferPtr render_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view,
+                          const std::optional<FrameMotion>& motion)
 {
     GBufferPtr gbuffer = make_drawn_gbuffer(gpu, scene, view, nullptr);
+    gbuffer->motion    = motion;
+    if (motion && (motion->camera_moves || motion->moving_draws > 0))
+        gbuffer->motion_vectors = make_motion_vectors(gpu, *gbuffer, *motion);
     rerender_gbuffer(gpu, *gbuffer);
     prepare_solid_backs(gpu, *gbuffer);
     return gbuffer;
@@ -279,6 +286,7 @@ GBufferImage read_gbuffer(Gpu& gpu, const GBuffer& gbuffer)
     for (const uint32_t packed : download_as<uint32_t>(gpu, gbuffer.gradient))
         image.gradient.push_back(unpack_gradient(packed));
     image.solid_back = download_as<float>(gpu, gbuffer.solid);
+    if (gbuffer.motion_vectors) image.motion_px = download_as<glm::vec2>(gpu, gbuffer.motion_vectors->vectors_px);
     return image;
 }
 

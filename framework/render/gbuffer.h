@@ -3,30 +3,33 @@
 
 #include "render/depth_buffer.h"
 #include "render/gpu_scene.h"
+#include "render/motion_vectors.h"
 #include "render/structure_passes.h"
 
 namespace ssrlab {
 
 struct GBuffer {
-    View                                view;
-    GpuScenePtr                         scene;        // empty when the G-buffer was made elsewhere
-    GpuImage                            depth_buffer; // D32, what the rasteriser wrote
-    DepthBuffer                         depth;        // what tracers read: background = BACKGROUND_DEPTH
-    GpuImage                            normal;       // RGBA32F: view-space normal, roughness
-    GpuImage                            material;     // RGBA16F: base colour, metallic
-    GpuImage                            radiance;     // RGBA16F: the same from every direction
-    GpuImage                            highlight;    // RGBA16F: depends on the view
-    GpuImage                            object;       // R32UI
-    GpuImage                            gradient;     // R32UI: of depth, core/plane_gradient.h
-    GpuImage                            solid;        // R32F: where the solid behind the pixel ends, 0: thin; solid_backs.h draws it
-    GpuImage                            solid_depth;  // D32, of that pass
-    FrameSet                            solid_set;
-    Buffer                              frame_uniforms;
-    FrameSet                            frame_set;
+    View        view;
+    GpuScenePtr scene;        // empty when the G-buffer was made elsewhere
+    GpuImage    depth_buffer; // D32, what the rasteriser wrote
+    DepthBuffer depth;        // what tracers read: background = BACKGROUND_DEPTH
+    GpuImage    normal;       // RGBA32F: view-space normal, roughness
+    GpuImage    material;     // RGBA16F: base colour, metallic
+    GpuImage    radiance;     // RGBA16F: the same from every direction
+    GpuImage    highlight;    // RGBA16F: depends on the view
+    GpuImage    object;       // R32UI
+    GpuImage    gradient;     // R32UI: of depth, core/plane_gradient.h
+    GpuImage    solid;        // R32F: where the solid behind the pixel ends, 0: thin; solid_backs.h draws it
+    GpuImage    solid_depth;  // D32, of that pass
+    FrameSet    solid_set;
+    Buffer      frame_uniforms;
+    FrameSet    frame_set;
     std::shared_ptr<const DrawPipeline> pipeline;
     vk::raii::Sampler                   sampler = nullptr;
     Buffer                              view_uniforms;
     ComputePass                         background;
+    std::optional<FrameMotion>          motion;         // since the frame before, if there was one
+    std::optional<MotionVectors>        motion_vectors; // if anything moved
     Timestamps                          timestamps;
     std::shared_ptr<StructureBuffers>   structures = std::make_shared<StructureBuffers>(); // on this depth
 };

@@ -36,6 +36,8 @@ Image frame_image(const GBufferImage& source)
     image.metadata["ssrlab:depth"]  = perspective ? "near_m / distance_m" : "(far_m - distance_m) / (far_m - near_m)";
     image.metadata["ssrlab:near_m"] = fmt::format("{:.17g}", view.near_m);
     image.metadata["ssrlab:far_m"]  = perspective ? "inf" : fmt::format("{:.17g}", view.far_m);
+    const bool moved                = !source.motion_px.empty();
+    if (moved) image.channels.insert(image.channels.end(), {"motion_px.x", "motion_px.y"});
     image.values.reserve(source.depth.size() * image.channels.size());
     for (size_t i = 0; i < source.depth.size(); ++i) {
         const glm::vec3 normal = source.normal_vs[i], base = source.base_colour[i], radiance = source.radiance[i],
@@ -64,6 +66,9 @@ Image frame_image(const GBufferImage& source)
                                   gradient.y,
                                   source.solid_back[i]})
             image.values.push_back(value);
+        if (!moved) continue;
+        image.values.push_back(source.motion_px[i].x);
+        image.values.push_back(source.motion_px[i].y);
     }
     return image;
 }

@@ -121,4 +121,20 @@ View view_at(const Scene& scene, const std::string& view, glm::ivec2 size_px, Se
     return scene.frame->gbuffer.view;
 }
 
+std::optional<FrameMotion> motion_at(const Scene& scene, const std::string& view, glm::ivec2 size_px, int frame)
+{
+    if (frame == 0 || scene.frame) return std::nullopt;
+    FrameMotion motion;
+    motion.view          = camera_to_view(unjittered_camera_at(scene, view, frame), size_px);
+    motion.previous_view = camera_to_view(unjittered_camera_at(scene, view, frame - 1), size_px);
+    const View &now = motion.view, &before = motion.previous_view;
+    motion.camera_moves = now.world_to_view != before.world_to_view || now.focal_px != before.focal_px ||
+                          now.centre_px != before.centre_px;
+    for (const Draw& draw : scene.draws) {
+        motion.to_previous_ws.push_back(current_to_previous(draw.motion, frame));
+        motion.moving_draws += is_still(draw.motion) ? 0 : 1;
+    }
+    return motion;
+}
+
 } // namespace ssrlab

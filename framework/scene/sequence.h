@@ -4,6 +4,8 @@
 
 #include "scene/scene.h"
 
+#include <optional>
+
 namespace ssrlab {
 
 /// Which frame of a sequence.
@@ -35,5 +37,16 @@ Camera camera_at(const Scene& scene, const std::string& view, SequenceFrame at);
 /// That camera's view; size 0x0: the camera's own. Throws SpecError where a frame of another renderer is asked for another view,
 /// size or frame.
 View view_at(const Scene& scene, const std::string& view, glm::ivec2 size_px, SequenceFrame at);
+
+/// From one frame to the next.
+struct FrameMotion {
+    View                    view, previous_view; // without jitter
+    std::vector<glm::dmat4> to_previous_ws;      // by draw: world of this frame to world of the one before
+    bool                    camera_moves = false;
+    int                     moving_draws = 0;
+};
+
+/// Nothing for frame 0 and for a frame of another renderer: no frame comes before. `scene` may be in any frame.
+std::optional<FrameMotion> motion_at(const Scene& scene, const std::string& view, glm::ivec2 size_px, int frame);
 
 } // namespace ssrlab

@@ -1,6 +1,7 @@
 // Hard cases, family "motion": the same scene a fraction of a pixel on, doubled, turned over.
 #include "check/hard_case.h"
 #include "core/pixel_index.h"
+#include "scene/sequence.h"
 
 namespace ssrlab {
 namespace {
@@ -19,15 +20,10 @@ HardCase sub_pixel_jitter()
             .answer = "The screen truth in each of 16 phases (Halton 2, 3). How much answers change between phases is "
                       "the sampling's doing; a technique may not add to it.",
             .setups = [] {
-                const auto halton = [](int index, int base) {
-                    double result = 0, f = 1;
-                    for (; index > 0; index /= base) f /= base, result += f * (index % base);
-                    return result;
-                };
                 std::vector<Setup> setups;
                 for (int phase = 1; phase <= 16; ++phase) {
                     View view = bench_view({96, 64});
-                    view.centre_px += glm::dvec2(halton(phase, 2), halton(phase, 3)) - 0.5;
+                    view.centre_px += jitter_px({phase - 1, 16});
                     setups.push_back({fmt::format("phase {}", phase),
                                       picture_of(view, yard()),
                                       {.thickness_m = 0.5, .max_distance_m = 100},
