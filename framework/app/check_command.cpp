@@ -1,5 +1,7 @@
 #include "app/check_command.h"
 
+#include "app/stage.h"
+
 #include "check/report.h"
 #include "check/run_check.h"
 #include "check/stability.h"
@@ -27,7 +29,25 @@ std::vector<Technique> chosen(const CommonOptions& common, const std::string& su
     return below;
 }
 
-int show_ray(Gpu& gpu, const std::vector<Technique>& techniques, const HardCaseOptions& options)
+/// Defaults with what -p says. Settings of the trace belong to the cases.
+std::vector<ParameterValues> values_of(const std::vector<Technique>& techniques, const std::vector<std::string>& pairs)
+{
+    std::vector<ParameterValues> values;
+    for (const Technique& technique : techniques) {
+        values.push_back(default_values(technique));
+        for (const std::string& pair : pairs) {
+            const auto equals = pair.find('=');
+            if (equals == std::string::npos) throw_spec_error("-p {}: expected name=value", pair);
+            const std::string name = pair.substr(0, equals), place = "-p " + pair;
+            values.back()[name] =
+                parse_parameter(find_parameter(technique, name, place), pair.substr(equals + 1), place);
+        }
+    }
+    return values;
+}
+
+int show_ray(Gpu& gpu, const std::vector<Technique>& techniques, const std::vector<ParameterValues>& values,
+             const HardCaseOptions& options)
 {
     const auto  colon = options.ray.find(':');
     size_t      setup = 0, ray = 0;
@@ -37,9 +57,8 @@ int show_ray(Gpu& gpu, const std::vector<Technique>& techniques, const HardCaseO
                       std::from_chars(options.ray.data() + colon + 1, end, ray).ptr == end;
     if (!read || options.only_case.empty())
         throw_spec_error("--ray: expected SETUP:RAY together with --case, got '{}'", options.ray);
-    for (const Technique& technique : techniques)
-        std::puts(
-            describe_ray(gpu, technique, default_values(technique), find_case(options.only_case), setup, ray).c_str());
+    for (size_t i = 0; i < techniques.size(); ++i)
+        std::puts(describe_ray(gpu, techniques[i], values[i], find_case(options.only_case), setup, ray).c_str());
     return 0;
 }
 
@@ -61,22 +80,23 @@ std::string measure_stability(Gpu& gpu, const std::vector<Technique>& techniques
 
 int check_techniques(const CommonOptions& common, const HardCaseOptions& options)
 {
-    const std::vector<Technique> techniques = chosen(common, options.subject);
-    Gpu                          gpu        = open_gpu({.device = common.device, .validation = common.validation});
-    if (!options.ray.empty()) return show_ray(gpu, techniques, options);
+    const std::vector<Technique>       techniques = chosen(common, options.subject);
+    const std::vector<ParameterValues> values     = values_of(techniques, options.parameters);
+    Gpu                                gpu = open_gpu({.device = common.device, .validation = common.validation});
+    if (!options.ray.empty()) return show_ray(gpu, techniques, values, options);
 
     Gpu robust;
     if (!options.quick)
         robust = open_gpu({.device = common.device, .validation = common.validation, .robust_buffer_access = true});
     size_t broken = 0;
     std::puts(table_head().c_str());
-    const auto rows =
-        run_check(gpu, options.quick ? nullptr : &robust,
-                  {techniques, options.only_case, {.double_precision = !options.quick}}, [&](const CaseRow& row) {
-                      broken += row.breaks > 0;
-                      std::printf("%s\n%s", table_line(row).c_str(), table_findings(row).c_str());
-                      std::fflush(stdout);
-                  });
+    const auto               rows = run_check(gpu, options.quick ? nullptr : &robust,
+                                              {techniques, options.only_case, {.double_precision = !options.quick}, values},
+                                              [&](const CaseRow& row) {
+                                    broken += row.breaks > 0;
+                                    std::printf("%s\n%s", table_line(row).c_str(), table_findings(row).c_str());
+                                    std::fflush(stdout);
+                                });
     std::vector<std::string> more = check_refusals();
     if (options.only_case.empty()) std::ranges::copy(check_finds(rows), std::back_inserter(more));
     for (const std::string& line : more) {

@@ -6,12 +6,13 @@
 namespace ssrlab {
 
 struct HardCaseOptions {
-    std::string subject; // a technique's id, a folder of techniques, or empty: the tree's
-    std::string only_case;
-    std::string ray;      // "SETUP:RAY" of only_case: show it instead
-    std::string markdown; // file for the table
-    bool        quick     = false;
-    bool        stability = false; // also measure jitter and depth formats
+    std::string              subject; // a technique's id, a folder of techniques, or empty: the tree's
+    std::string              only_case;
+    std::vector<std::string> parameters; // name=value of every technique that is checked
+    std::string              ray;        // "SETUP:RAY" of only_case: show it instead
+    std::string              markdown;   // file for the table
+    bool                     quick     = false;
+    bool                     stability = false; // also measure jitter and depth formats
 };
 
 /// 0, or 1 when a technique breaks what it claims.

@@ -1,6 +1,7 @@
 // The command line: names and help here, the work in commands.cpp and harness/.
 #include "app/check_command.h"
 #include "app/commands.h"
+#include "app/new_technique.h"
 #include "app/plan_command.h"
 #include "app/ray_command.h"
 #include "core/error.h"
@@ -172,11 +173,17 @@ int main(int argc, char** argv)
         command = [&] { return print_measures(common); };
     });
 
+    auto* begin = app.add_subcommand("new-technique", "A folder to begin with: a tracer that passes check");
+    begin->add_option("FOLDER", results, "Its name becomes the technique's id")->required();
+    begin->callback([&] { command = [&] { return write_new_technique(results); }; });
+
     HardCaseOptions hard_cases;
     auto*           check = app.add_subcommand(
                   "check",
                   "Techniques against the catalogue of hard cases (docs/hard_cases.md); fails when one breaks what it claims");
     check->add_option("TECHNIQUE|DIR", hard_cases.subject, "A technique, or a folder of techniques; default: all");
+    check->add_option("-p,--parameter", hard_cases.parameters,
+                      "name=value of the techniques, instead of the default (see ssrlab show)");
     check->add_option("--case", hard_cases.only_case, "Only this case");
     check->add_option("--ray", hard_cases.ray, "SETUP:RAY of the case: show its way, pixel by pixel");
     check->add_option("--markdown", hard_cases.markdown, "Write the table to this file");

@@ -26,9 +26,11 @@ std::vector<CaseRow> run_check(Gpu& gpu, Gpu* robust, const CheckRequest& reques
     for (const CaseFamily& family : hard_cases())
         for (const HardCase& hard_case : family.cases) {
             if (!request.only_case.empty() && hard_case.name != request.only_case) continue;
-            for (const Technique& technique : request.techniques) {
-                const ParameterValues values = default_values(technique);
-                CaseRow               row = run_case(gpu, technique, values, family.name, hard_case, request.options);
+            for (size_t i = 0; i < request.techniques.size(); ++i) {
+                const Technique&      technique = request.techniques[i];
+                const ParameterValues values =
+                    request.values.empty() ? default_values(technique) : request.values.at(i);
+                CaseRow row = run_case(gpu, technique, values, family.name, hard_case, request.options);
                 if (robust != nullptr && digest_of(*robust, technique, values, hard_case) != row.digest) {
                     ++row.breaks;
                     row.findings.emplace_back(

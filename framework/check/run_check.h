@@ -6,9 +6,10 @@
 namespace ssrlab {
 
 struct CheckRequest {
-    std::vector<Technique> techniques;
-    std::string            only_case; // empty: all
-    CheckOptions           options;
+    std::vector<Technique>       techniques;
+    std::string                  only_case; // empty: all
+    CheckOptions                 options;
+    std::vector<ParameterValues> values = {}; // of each technique; empty: defaults
 };
 
 /// Calls `on_row` after each case. With a `robust` device (robust buffer access on), its answers must be the same bits.

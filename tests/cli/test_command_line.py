@@ -68,6 +68,15 @@ class Test(Case):
         command = [program, "render", "builtin:stairs", "-t", "hiz", "--size", "64x36", "-o", self.path("a.png")]
         subprocess.run(command, check=True, capture_output=True, cwd="/")
 
+    def test_a_new_technique_passes_the_check(self):
+        self.ssrlab("new-technique", "mine/first", says=["ssrlab --techniques mine/first check first"])
+        self.ssrlab("--techniques", "mine/first", "check", "first", "--quick", says=["rows hold what the technique claims"])
+        case = ("--techniques", "mine/first", "check", "first", "--quick", "--case", "one_object_in_the_sky")
+        self.assertNotEqual(re.search(r"first .*", self.ssrlab(*case))[0], re.search(r"first .*", self.ssrlab(*case, "-p", "stride_px=40"))[0])
+        self.refused(*case, "-p", "stride=40", code=2, says=["stride"])
+        self.refused("new-technique", "mine/first", code=2, says=["mine/first: already there"])
+        self.refused("new-technique", "mine/a-b", code=2, says=["'a-b' cannot be a technique's name"])
+
     def test_completion_knows_commands_techniques_and_scenes(self):
         def completed(*words):
             script = f"""source {SOURCE}/framework/app/completion.bash

@@ -1,0 +1,63 @@
+#include "app/new_technique.h"
+
+#include "core/error.h"
+#include "core/files.h"
+#include "core/names.h"
+
+#include <cstdio>
+
+namespace ssrlab {
+namespace {
+
+constexpr const char* manifest = R"(name       = "{0}"
+summary    = "Looks at places a fixed number of pixels apart."
+limits     = ["point_sampled", "tests_whole_steps"] # what it does not claim; docs/writing_a_technique.md
+bounded_by = ["max_steps"]                          # bounds the loop
+
+[parameters]
+stride_px = {{ default = 4.0, min = 1.0, max = 64.0, doc = "Distance between two places on screen." }}
+max_steps = {{ default = 1024, min = 1, max = 60000, doc = "Places before the ray gives up." }}
+)";
+
+constexpr const char* trace = R"(// Place after place along the ray, until one touches a surface.
+TraceResult trace(Ray ray)
+{
+    real  dt = real(stride_px) / max(length(ray.delta.xy), real(stride_px)), t = real(0);
+    ivec2 pixel = ray.start_pixel;
+    bool  found = false;
+    int   taken = 0;
+    while (!found && t + dt <= real(1) && taken < max_steps)
+    {
+        ++taken;
+        t     = real(taken) * dt;
+        pixel = pixel_at(ray, t);
+        found = pixel != ray.start_pixel && touches_surface(ray, pixel, t - dt, t);
+    }
+    if (found) return hit_at(ray, pixel, t - dt, t, taken);
+    if (taken == max_steps) return out_of_steps(taken);
+    return miss(ray, taken);
+}
+)";
+
+} // namespace
+
+int write_new_technique(const std::filesystem::path& folder)
+{
+    const std::string id = folder.filename().string();
+    if (!is_glsl_name(id))
+        throw_spec_error("'{}' cannot be a technique's name: expected letters, digits and underscores", id);
+    if (std::filesystem::exists(folder)) throw_spec_error("{}: already there", folder.string());
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw_failure("{}: cannot be created: {}", folder.string(), error.message());
+    write_file_atomically(folder / "technique.toml", fmt::format(manifest, id));
+    write_file_atomically(folder / "trace.glsl", trace);
+    std::puts(fmt::format("{0}/technique.toml says what it is, {0}/trace.glsl how it traces. Now:\n"
+                          "  ssrlab --techniques {0} check {1}\n"
+                          "  ssrlab --techniques {0} render builtin:stairs -t {1} -o {1}.png",
+                          folder.string(), id)
+                  .c_str());
+    return 0;
+}
+
+} // namespace ssrlab
