@@ -128,7 +128,9 @@ int main(int argc, char** argv)
     explained->add_option("-p,--parameter", ray.picture.parameters,
                           "name=value, as for render; for every technique that has it");
     explained->add_option("--size", ray.picture.size, "WIDTHxHEIGHT in pixels; default: the view's own");
-    explained->add_option("--view", ray.picture.view, "Name of a view of the scene")->capture_default_str();
+    explained->add_option("--view", ray.picture.view, "Name of a view or camera path of the scene")
+        ->capture_default_str();
+    add_frame_options(*explained, ray.picture);
     explained->add_option("-o,--output", ray.picture.output, "Also write a picture (.png) or all numbers (.json)");
     explained->add_flag("--json", ray.json, "Print all numbers as JSON instead of the table");
     explained->callback([&] { command = [&] { return explain_ray(common, ray); }; });

@@ -223,6 +223,25 @@ TEST(Spec, ATechniquesTableMayNameSettingsOfItsOwn)
                 HasSubstr(".toml:3: 'thickness_m' must be a number in [0, "));
 }
 
+TEST(Spec, AFrameOfASequenceIsPartOfARunsIdentity)
+{
+    const auto ids_of = [](const std::string& lines) {
+        std::vector<std::string> ids;
+        for (const auto& run : expand(load_text("scenes = \"a\"\n" + lines + "[techniques.dda]\n"), techniques()))
+            ids.push_back(run.id);
+        return ids;
+    };
+    const auto still = ids_of(""), three = ids_of("frames = 3\n"), jittered = ids_of("jitter_phases = 16\n");
+    ASSERT_EQ(three.size(), 3U);
+    EXPECT_EQ(still, std::vector{three[0]}) << "frame 0 is the still frame";
+    EXPECT_EQ(ids_of("frames = [2, 0]\n"), (std::vector{three[2], three[0]}));
+    EXPECT_NE(three[1], three[2]);
+    EXPECT_NE(jittered, still);
+    EXPECT_EQ(count_runs(load_text("scenes = \"a\"\nframes = 3\n[techniques.dda]\n")), 3);
+    EXPECT_THAT(error_of("scenes = \"a\"\nframes = 0\n[techniques.dda]\n"),
+                HasSubstr(".toml:2: 'frames' must be in [1, "));
+}
+
 TEST(Spec, IdsAreStableAndARunListedTwiceComesOnce)
 {
     const Experiment experiment = load_text("scenes = [\"a\", \"a\"]\nsizes = \"8x8\"\n[[techniques.linear]]\nsteps = "
