@@ -79,7 +79,7 @@ void require_device(const Gpu& gpu, const PreparedFrame& frame)
 Defines precision_defines(const Gpu& gpu, Precision precision)
 {
     if (precision == Precision::float64) return {{"REAL_IS_DOUBLE", "1"}};
-    if (gpu.info.cheap_doubles) return {{"WIDE_IS_DOUBLE", "1"}};
+    if (gpu.info.cheap_doubles) return {{"DF64_IS_DOUBLE", "1"}};
     return {};
 }
 

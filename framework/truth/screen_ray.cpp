@@ -14,7 +14,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 enum class Limit { max_distance, far_plane, near_plane, left, right, top, bottom };
 
-/// The ray stands at origin + k * rate on screen; the limit that ends it is met at k = room / rate.
+/// The ray stands at origin + k * rate on screen; the limit that ends it is met at k = distance / rate.
 struct End {
     double k     = infinity;
     Limit  limit = Limit::max_distance;
@@ -46,16 +46,16 @@ double k_at_distance(const View& view, double metres, double depth, glm::dvec3 d
     // By the larger of the two lengths, so that 0 and infinity are lengths like any other.
     const double distance_m = depth_to_distance(view, depth);
     const bool   far        = metres > distance_m;
-    const double room       = far ? 1 : metres / distance_m,
-                 rate       = size * (far ? distance_m / metres : 1) - room * direction_vs.z;
-    return rate > 0 ? room / rate : infinity;
+    const double distance   = far ? 1 : metres / distance_m,
+                 rate       = size * (far ? distance_m / metres : 1) - distance * direction_vs.z;
+    return rate > 0 ? distance / rate : infinity;
 }
 
 End end_of_ray(const View& view, glm::dvec3 origin, glm::dvec3 rate, double max_distance_k)
 {
     End        end{max_distance_k, Limit::max_distance};
-    const auto limit_by = [&](Limit limit, double room, double speed) {
-        const double k = speed > 0 ? std::max(room, 0.0) / speed : infinity;
+    const auto limit_by = [&](Limit limit, double distance, double speed) {
+        const double k = speed > 0 ? std::max(distance, 0.0) / speed : infinity;
         if (k < end.k) end = {k, limit};
     };
     limit_by(Limit::near_plane, 1 - origin.z, rate.z);

@@ -1,5 +1,5 @@
 // The same in whole numbers: both ends of the ray are put on multiples of 1/65536 px, and t is counted in steps of 1 / (|dx| |dy|), where d is the
-// ray's way in those. So every crossing is a whole number below 2^62 at 16384 px, and none is ever rounded.
+// ray's extent in those. So every crossing is a whole number below 2^62 at 16384 px, and none is ever rounded.
 #define crossing int64_t
 #define crossing2 i64vec2
 
@@ -23,17 +23,17 @@ real crossing_to_t(Grid grid, int64_t t) { return real(double(t) / double(grid.w
 
 Grid make_grid(Ray ray)
 {
-    ivec2 from = ivec2(round(dvec2(ray.origin.xy) * double(steps_per_px)));
-    ivec2 way  = ivec2(round((dvec2(ray.origin.xy) + dvec2(ray.delta.xy)) * double(steps_per_px))) - from;
-    bvec2 flat_axis = equal(way, ivec2(0));
+    ivec2 from  = ivec2(round(dvec2(ray.origin.xy) * double(steps_per_px)));
+    ivec2 delta = ivec2(round((dvec2(ray.origin.xy) + dvec2(ray.delta.xy)) * double(steps_per_px))) - from;
+    bvec2 flat_axis = equal(delta, ivec2(0));
     // A ray stays in the column or row that it does not leave: from the middle, so that it stands on no border.
     ivec2 middle  = ray.start_pixel * steps_per_px + steps_per_px / 2;
-    ivec2 lengths = max(abs(way), ivec2(1));
+    ivec2 lengths = max(abs(delta), ivec2(1));
     Grid  grid;
     grid.origin_steps    = ivec2(flat_axis.x ? middle.x : from.x, flat_axis.y ? middle.y : from.y);
-    grid.inverse_delta.x = flat_axis.x ? int64_t(1) << 32 : int64_t(sign(way.x)) * int64_t(lengths.y);
-    grid.inverse_delta.y = flat_axis.y ? int64_t(1) << 32 : int64_t(sign(way.y)) * int64_t(lengths.x);
-    grid.forward         = ivec2(greaterThanEqual(way, ivec2(0)));
+    grid.inverse_delta.x = flat_axis.x ? int64_t(1) << 32 : int64_t(sign(delta.x)) * int64_t(lengths.y);
+    grid.inverse_delta.y = flat_axis.y ? int64_t(1) << 32 : int64_t(sign(delta.y)) * int64_t(lengths.x);
+    grid.forward         = ivec2(greaterThanEqual(delta, ivec2(0)));
     grid.whole           = int64_t(lengths.x) * int64_t(lengths.y);
     i64vec2 t_image      = border_t(ray, grid, grid.forward * size_px);
     grid.t_end           = min(grid.whole, min(t_image.x, t_image.y));

@@ -16,10 +16,10 @@ struct PackedRay
 #ifdef REAL_IS_DOUBLE
 #include "layout/packed_ray_double.glsl"
 #else
-PackedRay texels_to_ray(uvec4 start, uvec4 way)
+PackedRay texels_to_ray(uvec4 start, uvec4 delta)
 {
     vec4 origin = uintBitsToFloat(start);
-    return PackedRay(origin.xyz, origin.w, uintBitsToFloat(way.xyz), way.w);
+    return PackedRay(origin.xyz, origin.w, uintBitsToFloat(delta.xyz), delta.w);
 }
 
 #define LOAD_RAY(rays, index) texels_to_ray(imageLoad(rays, int(index) * 2), imageLoad(rays, int(index) * 2 + 1))

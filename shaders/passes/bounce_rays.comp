@@ -55,7 +55,7 @@ void main()
     uint    derived  = first + subgroupBallotExclusiveBitCount(ballot);
     real2   centre   = real2(hit) + real(0.5);
     real    depth    = load_depth(hit);
-    Segment segment  = make_segment(centre, depth, mirrored(widen(arriving), normal));
+    Segment segment  = make_segment(centre, depth, mirrored(to_df64(arriving), normal));
     PackedRay next   = segment_to_packed_ray(segment, hit);
     STORE_RAY(DerivedRays, derived, next);
     derived_throughput[derived] = throughput;

@@ -1,5 +1,5 @@
 // A ray in screen space: the segment from a pixel's surface, clipped to the near plane, the image and the maximum distance
-// (docs/hit_contract.md). Set up in wide numbers: its ends are the nearest floats to those of exact numbers, nearly always.
+// (docs/hit_contract.md). Set up in double-floats (df64): its ends are the nearest floats to those of exact numbers, nearly always.
 #include "api/view.glsl"
 #include "rays/double_float.glsl"
 #include "rays/reflecting.glsl"
@@ -26,19 +26,19 @@ real3 normal_at(ivec2 pixel)
 }
 
 // The direction (x, y, -1) of the view ray through a position, or the view axis.
-Wide3 view_direction(real2 position_px)
+Df64x3 view_direction(real2 position_px)
 {
-    if (orthographic != 0) return widen(real3(0, 0, -1));
-    wide x = quotient(sum(widen(position_px.x), -widen(centre_px.x, centre_low_px.x)), widen(focal_px.x, focal_low_px.x));
-    wide y = quotient(sum(widen(position_px.y), -widen(centre_px.y, centre_low_px.y)), widen(focal_px.y, focal_low_px.y));
-    return Wide3(x, -y, widen(real(-1)));
+    if (orthographic != 0) return to_df64(real3(0, 0, -1));
+    df64 x = quotient(sum(to_df64(position_px.x), -to_df64(centre_px.x, centre_low_px.x)), to_df64(focal_px.x, focal_low_px.x));
+    df64 y = quotient(sum(to_df64(position_px.y), -to_df64(centre_px.y, centre_low_px.y)), to_df64(focal_px.y, focal_low_px.y));
+    return Df64x3(x, -y, to_df64(real(-1)));
 }
 
 // Mirror direction, |normal|^2 times as long as `view`.
-Wide3 mirrored(Wide3 view, real3 normal)
+Df64x3 mirrored(Df64x3 view, real3 normal)
 {
-    Wide3 n      = widen(normal);
-    wide  cosine = inner_product(n, view);
+    Df64x3 n      = to_df64(normal);
+    df64   cosine = inner_product(n, view);
     return sum(scaled(inner_product(n, n), view), scaled(-(cosine + cosine), n));
 }
 
@@ -46,17 +46,17 @@ Wide3 mirrored(Wide3 view, real3 normal)
 //   D = (focal.x (r.x + s.x r.z), -focal.y (r.y + s.y r.z), depth r.z)    orthographic: (focal.x r.x, -focal.y r.y, r.z / (far - near))
 // and stands after lambda r at O + k D with k = 1 / (distance / lambda - r.z), orthographic: lambda. No difference of two projected points is
 // taken, infinity is a length like any other, and mirrored rays have exactly mirrored segments.
-Wide3 screen_rate(real2 start_px, real depth, Wide3 direction)
+Df64x3 screen_rate(real2 start_px, real depth, Df64x3 direction)
 {
-    Wide3 slope = view_direction(start_px);
-    wide  x = direction.x, y = direction.y, z = quotient(direction.z, widen(far_m - near_m));
+    Df64x3 slope = view_direction(start_px);
+    df64   x = direction.x, y = direction.y, z = quotient(direction.z, to_df64(far_m - near_m));
     if (orthographic == 0)
     {
         x = sum(x, product(slope.x, direction.z));
         y = sum(y, product(slope.y, direction.z));
-        z = product(widen(depth), direction.z);
+        z = product(to_df64(depth), direction.z);
     }
-    return Wide3(product(widen(focal_px.x, focal_low_px.x), x), -product(widen(focal_px.y, focal_low_px.y), y), z);
+    return Df64x3(product(to_df64(focal_px.x, focal_low_px.x), x), -product(to_df64(focal_px.y, focal_low_px.y), y), z);
 }
 
 #define SIDE_MAX_DISTANCE 0
@@ -67,16 +67,16 @@ Wide3 screen_rate(real2 start_px, real depth, Wide3 direction)
 #define SIDE_TOP 5
 #define SIDE_BOTTOM 6
 
-// k = room / rate. A ray that never gets there has a rate of at most 0.
+// k = distance / rate. A ray that never gets there has a rate of at most 0.
 struct Limit
 {
     int  side;
-    wide room, rate;
+    df64 distance, rate;
 };
 
 real limit_k(Limit limit)
 {
-    return narrow(limit.rate) > real(0) ? max(narrow(limit.room), real(0)) / narrow(limit.rate) : real(uintBitsToFloat(0x7F800000u)); // infinity
+    return to_real(limit.rate) > real(0) ? max(to_real(limit.distance), real(0)) / to_real(limit.rate) : real(uintBitsToFloat(0x7F800000u)); // infinity
 }
 
 Limit nearer(Limit a, Limit b)
@@ -85,35 +85,35 @@ Limit nearer(Limit a, Limit b)
     return a;
 }
 
-real size_of(Wide3 v)
+real size_of(Df64x3 v)
 {
-    real3        a      = narrow(v);
+    real3        a      = to_real(v);
     precise real square = a.x * a.x + a.y * a.y + a.z * a.z;
     return sqrt(square);
 }
 
 // After so many metres. A direction's `size` is its length.
-Limit at_distance(real metres, real distance_m, Wide3 direction, real size)
+Limit at_distance(real metres, real distance_m, Df64x3 direction, real size)
 {
-    if (orthographic != 0) return Limit(SIDE_MAX_DISTANCE, widen(metres), widen(size));
+    if (orthographic != 0) return Limit(SIDE_MAX_DISTANCE, to_df64(metres), to_df64(size));
     // By the larger of the two lengths, so that 0 and infinity are lengths like any other.
-    bool         far  = metres > distance_m;
-    real         room = far ? real(1) : metres / distance_m;
-    precise real rate = size * (far ? distance_m / metres : real(1));
-    return Limit(SIDE_MAX_DISTANCE, widen(room), sum(widen(rate), -product(widen(room), direction.z)));
+    bool         far      = metres > distance_m;
+    real         distance = far ? real(1) : metres / distance_m;
+    precise real rate     = size * (far ? distance_m / metres : real(1));
+    return Limit(SIDE_MAX_DISTANCE, to_df64(distance), sum(to_df64(rate), -product(to_df64(distance), direction.z)));
 }
 
-Segment make_segment(real2 start_px, real depth, Wide3 direction)
+Segment make_segment(real2 start_px, real depth, Df64x3 direction)
 {
-    Wide3 rate       = screen_rate(start_px, depth, direction);
-    real  distance_m = depth_to_distance(depth), size = size_of(direction);
-    Limit limit      = at_distance(max_distance_m, distance_m, direction, size);
-    limit            = nearer(limit, Limit(SIDE_NEAR, sum(widen(real(1)), -widen(depth)), rate.z));
-    if (orthographic != 0) limit = nearer(limit, Limit(SIDE_FAR, widen(depth), -rate.z));
-    limit = nearer(limit, Limit(SIDE_LEFT, widen(start_px.x), -rate.x));
-    limit = nearer(limit, Limit(SIDE_RIGHT, widen(real(size_px.x) - start_px.x), rate.x));
-    limit = nearer(limit, Limit(SIDE_TOP, widen(start_px.y), -rate.y));
-    limit = nearer(limit, Limit(SIDE_BOTTOM, widen(real(size_px.y) - start_px.y), rate.y));
+    Df64x3 rate       = screen_rate(start_px, depth, direction);
+    real   distance_m = depth_to_distance(depth), size = size_of(direction);
+    Limit  limit      = at_distance(max_distance_m, distance_m, direction, size);
+    limit             = nearer(limit, Limit(SIDE_NEAR, sum(to_df64(real(1)), -to_df64(depth)), rate.z));
+    if (orthographic != 0) limit = nearer(limit, Limit(SIDE_FAR, to_df64(depth), -rate.z));
+    limit = nearer(limit, Limit(SIDE_LEFT, to_df64(start_px.x), -rate.x));
+    limit = nearer(limit, Limit(SIDE_RIGHT, to_df64(real(size_px.x) - start_px.x), rate.x));
+    limit = nearer(limit, Limit(SIDE_TOP, to_df64(start_px.y), -rate.y));
+    limit = nearer(limit, Limit(SIDE_BOTTOM, to_df64(real(size_px.y) - start_px.y), rate.y));
 
     Segment segment;
     segment.origin     = real3(start_px, depth);
@@ -122,25 +122,25 @@ Segment make_segment(real2 start_px, real depth, Wide3 direction)
     segment.end_status = limit.side <= SIDE_FAR ? TRACE_PAST_MAX_DISTANCE : TRACE_LEFT_SCREEN;
     if (!(limit_k(limit) > real(0)) || isinf(limit_k(limit))) return segment;
 
-    wide          k    = quotient(limit.room, limit.rate);
-    Wide3         way  = scaled(k, rate);
-    precise real  far  = size * narrow(k);
-    if (orthographic == 0) far = far * near_m / narrow(sum(widen(depth), way.z));
+    df64         k           = quotient(limit.distance, limit.rate);
+    Df64x3       whole_delta = scaled(k, rate);
+    precise real far         = size * to_real(k);
+    if (orthographic == 0) far = far * near_m / to_real(sum(to_df64(depth), whole_delta.z));
     segment.length_m = limit.side == SIDE_MAX_DISTANCE ? max_distance_m : far;
     if (segment.length_m <= ray_offset_m) return segment;
 
     if (ray_offset_m > real(0))
     {
         Limit start       = at_distance(ray_offset_m, distance_m, direction, size);
-        wide  start_k     = quotient(start.room, start.rate);
-        segment.origin    = narrow(sum(widen(segment.origin), scaled(start_k, rate)));
+        df64  start_k     = quotient(start.distance, start.rate);
+        segment.origin    = to_real(sum(to_df64(segment.origin), scaled(start_k, rate)));
         segment.origin.xy = clamp(segment.origin.xy, real2(0), real2(size_px));
         segment.length_m -= ray_offset_m;
-        way = scaled(sum(k, -start_k), rate);
+        whole_delta = scaled(sum(k, -start_k), rate);
     }
     // The end lies exactly on the border that limits the ray, and inside the image on the other axis.
     real2 low = -segment.origin.xy, high = real2(size_px) - segment.origin.xy;
-    real3 delta = narrow(way);
+    real3 delta = to_real(whole_delta);
     delta.xy    = clamp(delta.xy, low, high);
     if (limit.side == SIDE_LEFT) delta.x = low.x;
     if (limit.side == SIDE_RIGHT) delta.x = high.x;
