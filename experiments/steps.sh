@@ -25,6 +25,7 @@ packages=(
     "libxxhash-dev            header:xxhash.h"
     "libgtest-dev             header:gtest/gtest.h"
     "libgmock-dev             header:gmock/gmock.h"
+    "fonts-dejavu-core        file:/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
     "libbenchmark-dev         header:benchmark/benchmark.h"
     "python3-matplotlib       module:matplotlib"
     "python3-pandas           module:pandas"

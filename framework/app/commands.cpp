@@ -8,7 +8,6 @@
 #include "core/files.h"
 #include "harness/measured_run.h"
 
-#include <algorithm>
 #include <cstdio>
 
 namespace ssrlab {
@@ -38,14 +37,6 @@ double most_steps_of(const CommonOptions& common, const PictureOptions& options)
     return declared_steps(technique, parse_choice(technique, options.parameters).values);
 }
 
-/// "pan.png" is "pan_0007.png" in frame 7.
-std::string numbered(const std::string& output, int frame)
-{
-    const std::filesystem::path path(output);
-    return (path.parent_path() / fmt::format("{}_{:04}{}", path.stem().string(), frame, path.extension().string()))
-        .string();
-}
-
 std::string status_legend()
 {
     std::string text;
@@ -54,48 +45,7 @@ std::string status_legend()
     return text;
 }
 
-/// The command that makes the same picture, but for the output.
-std::string command_of(const PictureOptions& options, int at_frame)
-{
-    std::string text = "ssrlab render " + options.scene + " --view " + options.view;
-    if (at_frame > 0) text += fmt::format(" --frame {}", at_frame);
-    if (options.at.jitter_phases > 0) text += fmt::format(" --jitter {}", options.at.jitter_phases);
-    if (!options.size.empty()) text += " --size " + options.size;
-    text += " -t " + options.technique;
-    for (const std::string& pair : options.parameters) text += " -p " + pair;
-    return text;
-}
-
-void warn_without_reflections(const CommonOptions& common, const PreparedFrame& frame)
-{
-    if (common.quiet || reflecting_pixels_of(frame) > 0) return;
-    std::fputs("warning: nothing reflects: no pixel of this frame has a metallic value above 0\n", stderr);
-}
-
 } // namespace
-
-int render_picture(const CommonOptions& common, const PictureOptions& options)
-{
-    check_choice(common, options);
-    require_ending(options.output, {".png", ".exr"});
-    Stage stage = prepare_stage(common, options);
-    for (int i = 0; i < std::max(options.frames, 1); ++i) {
-        if (i > 0) show_frame(stage, options.view, {options.at.frame + i, options.at.jitter_phases});
-        const auto frame = prepare(common, options, stage);
-        run_frame(stage.gpu, *frame);
-        const FrameTimes  times = run_frame(stage.gpu, *frame);
-        const std::string file  = options.frames > 0 ? numbered(options.output, options.at.frame + i) : options.output;
-        Image             image = read_shaded(stage.gpu, *frame);
-        image.metadata["ssrlab:version"] = SSRLAB_VERSION; // without the commit: the same picture gives the same file
-        image.metadata["ssrlab:command"] = command_of(options, options.at.frame + i);
-        write_image(file, image);
-        warn_without_reflections(common, *frame);
-        std::puts(fmt::format("{}: {}x{}, trace {:.2f} ms on {}", file, stage.view.size_px.x, stage.view.size_px.y,
-                              times.of("trace"), stage.gpu.info.name)
-                      .c_str());
-    }
-    return report_messages(stage);
-}
 
 int trace_hits(const CommonOptions& common, const PictureOptions& options)
 {

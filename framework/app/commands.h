@@ -21,13 +21,11 @@ struct PictureOptions {
     std::string              scene, technique, view = "default", size, output;
     std::vector<std::string> parameters; // name=value: the technique's parameters, or settings of [trace] and [passes]
     SequenceFrame            at;
-    int                      frames = 0; // render: so many pictures from frame at.frame on; 0: one, without a number
 };
 
 int list_everything(const CommonOptions& common, bool json);
 /// A technique, or a setting of [trace] and [passes].
 int show_entry(const CommonOptions& common, const std::string& name, bool json);
-int render_picture(const CommonOptions& common, const PictureOptions& options);
 int trace_hits(const CommonOptions& common, const PictureOptions& options);
 int write_gbuffer(const CommonOptions& common, const PictureOptions& options);
 /// Plots, derived rows and report of a results folder, by the plot script.

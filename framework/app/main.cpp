@@ -4,6 +4,7 @@
 #include "app/new_technique.h"
 #include "app/plan_command.h"
 #include "app/ray_command.h"
+#include "app/render_command.h"
 #include "core/error.h"
 #include "core/names.h"
 #include "core/version.h"
@@ -75,6 +76,29 @@ void add_picture_options(CLI::App& command, ssrlab::PictureOptions& options, boo
     command.add_option("-o,--output", options.output, "File to write")->required();
 }
 
+void add_presentation_options(CLI::App& command, ssrlab::RenderOptions& options)
+{
+    command.add_option("--frames", options.frames, "Write so many numbered pictures, of this frame and those after it")
+        ->check(CLI::Range(1, ssrlab::max_frames));
+    command
+        .add_option("--samples", options.samples, "Anti-aliasing: average so many places of the camera within a pixel")
+        ->capture_default_str()
+        ->check(CLI::Range(1, ssrlab::max_samples));
+    command.add_option("--exposure", options.exposure_ev, "Stops by which a .png is brighter")
+        ->capture_default_str()
+        ->check(CLI::Range(-32, 32));
+    command
+        .add_option("--display", options.display,
+                    "How a .png shows radiance: clip (cut at 1), or agx (AgX, which keeps bright colours)")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"clip", "agx"}));
+    auto* truth = command.add_flag("--truth", options.truth, "The true reflection in place of the traced one");
+    command
+        .add_flag("--side-by-side", options.side_by_side,
+                  "Without reflections, with the traced and with the true ones, in one picture with labels")
+        ->excludes(truth);
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -107,11 +131,11 @@ int main(int argc, char** argv)
     show->add_option("TECHNIQUE|SETTING", technique)->required();
     show->add_flag("--json", json, "As JSON");
     show->callback([&] { command = [&] { return show_entry(common, technique, json); }; });
-    auto* render = app.add_subcommand("render", "A picture with reflections (.png or .exr)");
-    add_picture_options(*render, picture, true);
-    render->add_option("--frames", picture.frames, "Write so many numbered pictures, of this frame and those after it")
-        ->check(CLI::Range(1, max_frames));
-    render->callback([&] { command = [&] { return render_picture(common, picture); }; });
+    RenderOptions rendered;
+    auto*         render = app.add_subcommand("render", "A picture with reflections (.png or .exr)");
+    add_picture_options(*render, rendered.picture, true);
+    add_presentation_options(*render, rendered);
+    render->callback([&] { command = [&] { return render_picture(common, rendered); }; });
     auto* trace = app.add_subcommand("trace", "What each ray found and why it stopped (.exr)");
     add_picture_options(*trace, picture, true);
     trace->callback([&] { command = [&] { return trace_hits(common, picture); }; });

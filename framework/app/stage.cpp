@@ -44,13 +44,14 @@ Stage prepare_stage(const CommonOptions& common, const PictureOptions& options)
     return stage;
 }
 
-void show_frame(Stage& stage, const std::string& view, SequenceFrame at)
+void show_frame(Stage& stage, const std::string& view, SequenceFrame at, glm::dvec2 offset_px)
 {
     if (anything_moves(stage.first)) {
         stage.scene = scene_at(stage.first, at.frame);
         move_scene(stage.gpu, *stage.uploaded, stage.scene);
     }
-    stage.view    = view_at(stage.scene, view, stage.view.size_px, at);
+    stage.view = view_at(stage.scene, view, stage.view.size_px, at);
+    stage.view.centre_px += offset_px;
     stage.gbuffer = render_gbuffer(stage.gpu, stage.uploaded, stage.view,
                                    motion_at(stage.scene, view, stage.view.size_px, at.frame));
 }

@@ -16,8 +16,8 @@ struct Stage {
     GBufferPtr  gbuffer;
 };
 Stage prepare_stage(const CommonOptions& common, const PictureOptions& options);
-/// The same view in another frame of the sequence.
-void show_frame(Stage& stage, const std::string& view, SequenceFrame at);
+/// The same view in another frame of the sequence, moved by an offset of at most a pixel.
+void show_frame(Stage& stage, const std::string& view, SequenceFrame at, glm::dvec2 offset_px = {0, 0});
 /// Prints the validation layer's messages; 1 when there are any.
 int report_messages(const Stage& stage);
 

@@ -116,13 +116,7 @@ const std::vector<glm::vec4>& Truths::true_reflection()
 {
     const TraceSettings& settings = made_for();
     if (true_reflection_) return *true_reflection_;
-    const GlossyTruth       truth      = cached_glossy_truth(cache_dir_, *scene_, gbuffer_, settings, {});
-    std::vector<glm::vec4>& reflection = true_reflection_.emplace();
-    for (size_t i = 0; i < truth.rays.size(); ++i)
-        reflection.push_back(truth.rays[i] == 0    ? glm::vec4(0, 0, 0, -1)
-                             : truth.weight[i] > 0 ? glm::vec4(truth.radiance[i] / truth.weight[i], 1)
-                                                   : glm::vec4(0, 0, 0, 1));
-    return reflection;
+    return true_reflection_.emplace(reflection_of(cached_glossy_truth(cache_dir_, *scene_, gbuffer_, settings, {})));
 }
 
 MeasureValues Truths::compare_picture(const Image& picture, const Reference& reference) const

@@ -186,4 +186,15 @@ GlossyTruth glossy_truth(const SceneBvh& bvh, const Scene& scene, const GBufferI
     return truth;
 }
 
+std::vector<glm::vec4> reflection_of(const GlossyTruth& truth)
+{
+    std::vector<glm::vec4> reflection;
+    reflection.reserve(truth.rays.size());
+    for (size_t i = 0; i < truth.rays.size(); ++i)
+        reflection.push_back(truth.rays[i] == 0    ? glm::vec4(0, 0, 0, -1)
+                             : truth.weight[i] > 0 ? glm::vec4(truth.radiance[i] / truth.weight[i], 1)
+                                                   : glm::vec4(0, 0, 0, 1));
+    return reflection;
+}
+
 } // namespace ssrlab

@@ -34,4 +34,7 @@ GlossyTruth empty_glossy_truth(glm::ivec2 size_px);
 GlossyTruth glossy_truth(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer,
                          const TraceSettings& settings, const GlossySettings& glossy, unsigned threads = 0);
 
+/// As a reflection at full weight; weight -1 where nothing reflects.
+std::vector<glm::vec4> reflection_of(const GlossyTruth& truth);
+
 } // namespace ssrlab

@@ -1,0 +1,179 @@
+#include "app/render_command.h"
+
+#include "app/stage.h"
+#include "compare/image_io.h"
+#include "core/error.h"
+#include "harness/quality.h"
+#include "truth/glossy_truth.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+
+namespace ssrlab {
+namespace {
+
+enum class Shows { nothing, traced, truth }; // what stands in the reflections' place
+
+std::vector<Shows> shown_by(const RenderOptions& options)
+{
+    if (options.side_by_side) return {Shows::nothing, Shows::traced, Shows::truth};
+    return {options.truth ? Shows::truth : Shows::traced};
+}
+
+std::string label_of(Shows shows, const std::string& technique)
+{
+    if (shows == Shows::nothing) return "no reflections";
+    return shows == Shows::traced ? "SSR: " + technique : "true reflection";
+}
+
+/// Fails before the work starts rather than after it.
+Choice checked_choice(const Technique& technique, const RenderOptions& options)
+{
+    const bool exr = options.picture.output.ends_with(".exr");
+    require_ending(options.picture.output, {".png", ".exr"});
+    if (!options.picture.size.empty()) size_option(options.picture.size);
+    if (exr && (options.exposure_ev != 0 || options.display != "clip"))
+        throw_spec_error("-o {}: an EXR holds linear radiance; --exposure and --display need a .png",
+                         options.picture.output);
+    return parse_choice(technique, options.picture.parameters);
+}
+
+/// "pan.png" is "pan_0007.png" in frame 7.
+std::string numbered(const std::string& output, int frame)
+{
+    const std::filesystem::path path(output);
+    return (path.parent_path() / fmt::format("{}_{:04}{}", path.stem().string(), frame, path.extension().string()))
+        .string();
+}
+
+/// The command that makes the same picture, but for the output.
+std::string command_of(const RenderOptions& options, int at_frame)
+{
+    const PictureOptions& picture = options.picture;
+    std::string           text    = "ssrlab render " + picture.scene + " --view " + picture.view;
+    if (at_frame > 0) text += fmt::format(" --frame {}", at_frame);
+    if (picture.at.jitter_phases > 0) text += fmt::format(" --jitter {}", picture.at.jitter_phases);
+    if (!picture.size.empty()) text += " --size " + picture.size;
+    text += " -t " + picture.technique;
+    for (const std::string& pair : picture.parameters) text += " -p " + pair;
+    if (options.samples > 1) text += fmt::format(" --samples {}", options.samples);
+    if (options.exposure_ev != 0) text += fmt::format(" --exposure {}", options.exposure_ev);
+    if (options.display != "clip") text += " --display " + options.display;
+    if (options.truth) text += " --truth";
+    if (options.side_by_side) text += " --side-by-side";
+    return text;
+}
+
+void warn_without_reflections(const CommonOptions& common, const PreparedFrame& frame)
+{
+    if (common.quiet || reflecting_pixels_of(frame) > 0) return;
+    std::fputs("warning: nothing reflects: no pixel of this frame has a metallic value above 0\n", stderr);
+}
+
+/// Hammersley points (J. Hammersley 1960), centred: their mean moves the picture by at most half of a sample's share.
+glm::dvec2 sample_offset_px(int sample, int samples)
+{
+    if (samples == 1) return {0, 0};
+    double mirrored = 0, digit = 0.5; // the binary digits of `sample` behind the point, in reverse order
+    for (int rest = sample; rest > 0; rest /= 2, digit /= 2) mirrored += rest % 2 * digit;
+    return glm::dvec2((sample + 0.5) / samples, mirrored + 0.5 / samples) - 0.5;
+}
+
+/// What the truth is made with: the scene's hierarchy is built once.
+class TrueReflections {
+public:
+    TrueReflections(const Stage& stage, int samples) : stage_(stage), samples_(samples) {}
+
+    Image picture(Gpu& gpu, const PreparedFrame& frame, const TraceSettings& settings, int sample)
+    {
+        const GBufferImage gbuffer = read_gbuffer(gpu, *stage_.gbuffer);
+        if (stage_.scene.frame) {
+            const std::optional<Image> given = Truths(stage_.scene, gbuffer, {}).given_picture();
+            if (!given)
+                throw_spec_error("a frame of another renderer has no true reflection, unless it names a picture of it");
+            return *given;
+        }
+        if (!bvh_ || anything_moves(stage_.first)) bvh_ = std::make_unique<SceneBvh>(stage_.scene);
+        // As many rays a pixel in all as one picture has.
+        const int rays = std::max(2, (GlossySettings{}.rays + samples_ - 1) / samples_);
+        return composite_reflection(gpu, frame,
+                                    reflection_of(glossy_truth(*bvh_, stage_.scene, gbuffer, settings,
+                                                               {.rays = rays, .seed = static_cast<uint32_t>(sample)})));
+    }
+
+private:
+    const Stage&              stage_;
+    int                       samples_;
+    std::unique_ptr<SceneBvh> bvh_;
+};
+
+struct Rendered {
+    std::vector<LabelledImage> pictures;
+    double                     trace_ms = 0;
+};
+
+/// Adds the pictures of one place of the camera.
+void add_sample(Stage& stage, PreparedFrame& frame, const RenderOptions& options, const TraceSettings& settings,
+                TrueReflections& truth, int sample, Rendered& rendered)
+{
+    const auto    kinds = shown_by(options);
+    const Display display{options.exposure_ev,
+                          options.display == "agx" ? Display::Transform::agx : Display::Transform::clip};
+    run_frame(stage.gpu, frame);
+    rendered.trace_ms += run_frame(stage.gpu, frame).of("trace") / options.samples;
+    // The traced picture first: the others leave theirs in its buffers.
+    for (const Shows shows : {Shows::traced, Shows::nothing, Shows::truth}) {
+        const auto at = std::ranges::find(kinds, shows);
+        if (at == kinds.end()) continue;
+        Image image;
+        if (shows == Shows::traced) image = read_shaded(stage.gpu, frame);
+        if (shows == Shows::truth) image = truth.picture(stage.gpu, frame, settings, sample);
+        if (shows == Shows::nothing)
+            image = composite_reflection(stage.gpu, frame,
+                                         std::vector(pixel_count(stage.view.size_px), glm::vec4(0, 0, 0, -1)));
+        // Pictures for people are averaged as they are shown, or the edges of very bright things would stay jagged.
+        if (options.picture.output.ends_with(".png")) image = to_display(image, display);
+        add_to(rendered.pictures[static_cast<size_t>(at - kinds.begin())].image, image);
+    }
+}
+
+} // namespace
+
+int render_picture(const CommonOptions& common, const RenderOptions& options)
+{
+    const PictureOptions& picture    = options.picture;
+    const auto            techniques = list_techniques(common.technique_dirs);
+    const Technique&      technique  = find_technique(techniques, picture.technique);
+    const Choice          choice     = checked_choice(technique, options);
+    Stage                 stage      = prepare_stage(common, picture);
+    if (options.samples > 1 && stage.scene.frame)
+        throw_spec_error("--samples: expected 1 for a frame of another renderer, which cannot be rendered anew; got {}",
+                         options.samples);
+    TrueReflections truth(stage, options.samples);
+    for (int i = 0; i < std::max(options.frames, 1); ++i) {
+        Rendered rendered;
+        for (const Shows shows : shown_by(options)) rendered.pictures.push_back({label_of(shows, technique.id), {}});
+        for (int sample = 0; sample < options.samples; ++sample) {
+            if (i > 0 || options.samples > 1)
+                show_frame(stage, picture.view, {picture.at.frame + i, picture.at.jitter_phases},
+                           sample_offset_px(sample, options.samples));
+            const auto frame = prepare_frame(stage.gpu, make_frame_buffers(stage.gpu, stage.gbuffer), technique,
+                                             choice.values, choice.settings);
+            if (sample == 0) warn_without_reflections(common, *frame);
+            add_sample(stage, *frame, options, choice.settings.trace, truth, sample, rendered);
+        }
+        for (LabelledImage& one : rendered.pictures) one.image = mean_of(std::move(one.image), options.samples);
+        Image image = options.side_by_side ? side_by_side(rendered.pictures) : rendered.pictures.front().image;
+        image.metadata["ssrlab:version"] = SSRLAB_VERSION; // without the commit: the same picture gives the same file
+        image.metadata["ssrlab:command"] = command_of(options, picture.at.frame + i);
+        const std::string file = options.frames > 0 ? numbered(picture.output, picture.at.frame + i) : picture.output;
+        write_image(file, image);
+        std::puts(fmt::format("{}: {}x{}, trace {:.2f} ms on {}", file, stage.view.size_px.x, stage.view.size_px.y,
+                              rendered.trace_ms, stage.gpu.info.name)
+                      .c_str());
+    }
+    return report_messages(stage);
+}
+
+} // namespace ssrlab

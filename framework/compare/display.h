@@ -1,0 +1,35 @@
+// Pictures for people: exposure, display transform, and pictures side by side. Measurements use linear radiance instead.
+//
+// agx is the base look of AgX (Troy Sobotka 2022) in the fit by B. Wrensch 2023, "Minimal AgX Implementation": the inset matrix, log2
+// exposure over 16.5 stops around middle grey, a polynomial of degree 6 for the contrast curve, the outset matrix, a power of 2.2.
+#pragma once
+
+#include "core/image.h"
+
+#include <span>
+
+namespace ssrlab {
+
+struct Display {
+    enum class Transform { clip, agx };
+
+    double    exposure_ev = 0; // the radiance is multiplied by 2^exposure_ev
+    Transform transform   = Transform::clip;
+};
+
+/// Linear radiance to linear display light in [0, 1] (sRGB primaries); NaN gives 0. Of three channels.
+Image to_display(const Image& radiance, const Display& display);
+
+/// Mean of pictures of one size, which were added up.
+Image mean_of(Image sum, int count);
+/// sum + image; `sum` may be empty.
+void add_to(Image& sum, const Image& image);
+
+struct LabelledImage {
+    std::string label;
+    Image       image;
+};
+/// From left to right, each below its label; all of one size, three channels. Throws Failure where there is no font.
+Image side_by_side(std::span<const LabelledImage> pictures);
+
+} // namespace ssrlab
