@@ -7,6 +7,8 @@
 #include <tiny_gltf.h>
 
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -21,13 +23,33 @@ inline constexpr int      max_node_depth    = 256;
 inline constexpr size_t   max_node_visits   = 1'000'000;
 inline constexpr size_t   max_triangles     = 100'000'000;
 inline constexpr size_t   max_accessor_rows = 300'000'000;
+inline constexpr size_t   max_poses         = 4'000'000; // baked for animations, 128 bytes each
+
+inline constexpr double gltf_frames_per_second = 30; // animations are in seconds, sequences in frames
+
+enum class Interpolation { step, linear, cubic };
+
+/// Keys of one property of a node.
+struct Track {
+    Interpolation      interpolation = Interpolation::linear;
+    int                components    = 3; // 4: a quaternion x, y, z, w
+    std::vector<float> times_s;           // increasing
+    std::vector<float> values;            // a row for each time; cubic: arriving tangent, value, leaving tangent
+};
+
+struct NodeTracks {
+    std::optional<Track> translation, rotation, scale;
+};
 
 struct Import {
-    std::string           file; // for messages
-    tinygltf::Model       json;
-    Model                 model;
-    size_t                triangles = 0;
-    std::set<std::string> said; // warnings are said once
+    std::string               file; // for messages
+    tinygltf::Model           json;
+    Model                     model;
+    size_t                    triangles = 0;
+    std::map<int, NodeTracks> tracks;     // by node, of those that are animated
+    int                       frames = 1; // until everything has come to rest
+    size_t                    poses  = 0; // that were baked
+    std::set<std::string>     said;       // warnings are said once
 
     void                                          warn(const std::string& text);
     template <typename... Args> [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const;
@@ -46,6 +68,12 @@ int                   component_count(const Import& import, int accessor, const 
 
 /// Adds all textures and materials, and one default material at the end. Returns which materials are left out.
 std::vector<bool> add_materials(Import& import);
+
+/// Fills Import::tracks and Import::frames; refuses keys that are not numbers in order.
+void read_animations(Import& import);
+
+/// Not unit length for a quaternion between cubic keys.
+glm::dvec4 value_at(const Track& track, double time_s);
 
 /// A mesh's primitives as Meshes in the mesh's own space. Draws that cannot be shown are skipped with a warning.
 std::vector<Mesh> read_mesh(Import& import, int mesh, const std::vector<bool>& material_left_out);

@@ -17,6 +17,7 @@ struct Visit {
     int        node  = 0;
     int        depth = 0;
     glm::dmat4 to_world{1};
+    Poses      moving = {}; // node to world in each frame, if it or a node above it is animated
 };
 
 template <size_t count> bool all_finite(const std::vector<double>& values)
@@ -24,10 +25,22 @@ template <size_t count> bool all_finite(const std::vector<double>& values)
     return values.size() == count && std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
 
-glm::dmat4 local_matrix(const Import& import, int node_index)
+/// Tracks stand for the properties that they animate.
+glm::dmat4 local_matrix(const Import& import, int node_index, int frame)
 {
-    const tinygltf::Node& node  = import.json.nodes[static_cast<size_t>(node_index)];
-    const auto            check = [&](const std::vector<double>& values, bool ok, const char* what) {
+    tinygltf::Node node = import.json.nodes[static_cast<size_t>(node_index)];
+    if (const auto found = import.tracks.find(node_index); found != import.tracks.end()) {
+        const auto put = [&](const std::optional<Track>& track, std::vector<double>& property) {
+            if (!track) return;
+            const glm::dvec4 value = value_at(*track, frame / gltf_frames_per_second);
+            property.clear();
+            for (int c = 0; c < track->components; ++c) property.push_back(value[c]);
+        };
+        put(found->second.translation, node.translation);
+        put(found->second.rotation, node.rotation);
+        put(found->second.scale, node.scale);
+    }
+    const auto check = [&](const std::vector<double>& values, bool ok, const char* what) {
         if (!values.empty() && !ok) import.fail("/nodes/{}/{}: wrong length, or not finite", node_index, what);
         return !values.empty();
     };
@@ -50,12 +63,9 @@ glm::dmat4 local_matrix(const Import& import, int node_index)
     return matrix;
 }
 
-void add_camera(Import& import, int camera_index, const std::string& node_name, const glm::dmat4& to_world)
+Camera camera_at(const tinygltf::Camera& source, const std::string& node_name, const glm::dmat4& to_world)
 {
-    if (static_cast<size_t>(camera_index) >= import.json.cameras.size())
-        import.fail("there is no camera {}", camera_index);
-    const tinygltf::Camera& source = import.json.cameras[static_cast<size_t>(camera_index)];
-    Camera                  camera;
+    Camera camera;
     camera.name        = !source.name.empty() ? source.name : node_name;
     camera.position_ws = glm::dvec3(to_world[3]);
     camera.target_ws   = camera.position_ws - glm::normalize(glm::dvec3(to_world[2]));
@@ -69,16 +79,33 @@ void add_camera(Import& import, int camera_index, const std::string& node_name, 
         camera.fov_y_deg = source.perspective.yfov * 180 / std::numbers::pi;
         camera.near_m    = source.perspective.znear;
     }
+    return camera;
+}
+
+void add_camera(Import& import, int camera_index, const std::string& node_name, const Visit& at)
+{
+    if (static_cast<size_t>(camera_index) >= import.json.cameras.size())
+        import.fail("there is no camera {}", camera_index);
+    const tinygltf::Camera& source = import.json.cameras[static_cast<size_t>(camera_index)];
     try {
+        const Camera camera = camera_at(source, node_name, at.to_world);
         camera_to_view(camera, camera.size_px);
         import.model.cameras.push_back(camera);
+        if (!at.moving) return;
+        CameraPath path{camera.name, {}, 1};
+        for (const glm::dmat4& to_world : *at.moving) {
+            path.cameras.push_back(camera_at(source, node_name, to_world));
+            camera_to_view(path.cameras.back(), camera.size_px);
+        }
+        import.model.paths.push_back(std::move(path));
     } catch (const SpecError& error) {
         import.warn(fmt::format("camera {} left out: {}", camera_index, error.what()));
     }
 }
 
-void add_light(Import& import, int light_index, const glm::dmat4& to_world)
+void add_light(Import& import, int light_index, const glm::dmat4& to_world, bool moves)
 {
+    if (moves) import.warn("animated lights are not supported: they stay where they are in frame 0");
     if (light_index < 0 || static_cast<size_t>(light_index) >= import.json.lights.size())
         import.fail("there is no light {}", light_index);
     const tinygltf::Light& source = import.json.lights[static_cast<size_t>(light_index)];
@@ -129,7 +156,35 @@ struct Walk {
     size_t                           visits = 0;
 };
 
-void place_mesh(Import& import, Walk& walk, int mesh_index, const glm::dmat4& to_world)
+bool is_rigid(const glm::dmat4& matrix)
+{
+    constexpr double rounding = 1e-4; // of floats in files, multiplied down the hierarchy
+    const glm::dmat3 linear(matrix), product = glm::transpose(linear) * linear;
+    for (int c : {0, 1, 2})
+        for (int r : {0, 1, 2})
+            if (!(std::abs(product[c][r] - (c == r ? 1 : 0)) < rounding)) return false;
+    return glm::determinant(linear) > 0;
+}
+
+/// What a node's meshes do from frame 0 on. Null where it is not rigid, or nothing.
+Poses rigid_poses(Import& import, const Visit& at)
+{
+    if (!at.moving) return nullptr;
+    const glm::dmat4 back  = glm::inverse(at.to_world);
+    auto             poses = std::make_shared<std::vector<glm::dmat4>>();
+    bool             still = true;
+    for (const glm::dmat4& to_world : *at.moving) {
+        still = still && to_world == at.to_world;
+        poses->push_back(poses->empty() ? glm::dmat4(1) : to_world * back);
+        if (is_rigid(poses->back())) continue;
+        import.warn(fmt::format("node {}: its animation scales or shears, which is not supported: drawn as in frame 0",
+                                at.node));
+        return nullptr;
+    }
+    return still ? nullptr : poses;
+}
+
+void place_mesh(Import& import, Walk& walk, int mesh_index, const glm::dmat4& to_world, const Poses& poses)
 {
     if (static_cast<size_t>(mesh_index) >= import.json.meshes.size()) import.fail("there is no mesh {}", mesh_index);
     if (!walk.meshes.contains(mesh_index))
@@ -138,15 +193,34 @@ void place_mesh(Import& import, Walk& walk, int mesh_index, const glm::dmat4& to
         import.triangles += mesh.indices.size() / 3;
         if (import.triangles > max_triangles) import.fail("more than {} triangles with all instances", max_triangles);
         transform(mesh, to_world);
+        mesh.motion.poses = poses;
         import.model.meshes.push_back(std::move(mesh));
     }
 }
 
 /// To be visited in this order, before all that is pending.
-void put_first(Walk& walk, std::vector<int> nodes, int depth, const glm::dmat4& to_world)
+void put_first(Walk& walk, std::vector<int> nodes, int depth, const glm::dmat4& to_world, const Poses& moving)
 {
     std::ranges::reverse(nodes);
-    for (const int node : nodes) walk.pending.push_back({node, depth, to_world});
+    for (const int node : nodes) walk.pending.push_back({node, depth, to_world, moving});
+}
+
+/// The same visit in the node's own space, in every frame if anything moves it.
+Visit entered(Import& import, const Visit& at)
+{
+    Visit inside    = at;
+    inside.to_world = at.to_world * local_matrix(import, at.node, 0);
+    if (!at.moving && !import.tracks.contains(at.node)) return inside;
+    import.poses += static_cast<size_t>(import.frames);
+    if (import.poses > max_poses)
+        import.fail("animations: more than {} poses: {} frames at {} frames a second, of too many nodes", max_poses,
+                    import.frames, gltf_frames_per_second);
+    auto moving = std::make_shared<std::vector<glm::dmat4>>();
+    for (int frame = 0; frame < import.frames; ++frame)
+        moving->push_back((at.moving ? (*at.moving)[static_cast<size_t>(frame)] : at.to_world) *
+                          local_matrix(import, at.node, frame));
+    inside.moving = moving;
+    return inside;
 }
 
 void visit(Import& import, Walk& walk, const Visit& at)
@@ -158,14 +232,16 @@ void visit(Import& import, Walk& walk, const Visit& at)
                     max_node_depth);
     if (++walk.visits > max_node_visits) import.fail("more than {} nodes with all instances", max_node_visits);
     const tinygltf::Node& node     = import.json.nodes[static_cast<size_t>(at.node)];
-    const glm::dmat4      to_world = at.to_world * local_matrix(import, at.node);
+    const Visit           inside   = entered(import, at);
+    const glm::dmat4&     to_world = inside.to_world;
     if (node.skin >= 0) import.warn("skins are not supported: drawn in the bind pose");
-    if (node.mesh >= 0) place_mesh(import, walk, node.mesh, node.skin >= 0 ? glm::dmat4(1) : to_world);
-    if (node.camera >= 0) add_camera(import, node.camera, node.name, to_world);
+    if (node.mesh >= 0 && node.skin >= 0) place_mesh(import, walk, node.mesh, glm::dmat4(1), nullptr);
+    if (node.mesh >= 0 && node.skin < 0) place_mesh(import, walk, node.mesh, to_world, rigid_poses(import, inside));
+    if (node.camera >= 0) add_camera(import, node.camera, node.name, inside);
     const auto light = node.extensions.find("KHR_lights_punctual");
     if (light != node.extensions.end() && light->second.IsObject() && light->second.Has("light"))
-        add_light(import, light->second.Get("light").GetNumberAsInt(), to_world);
-    put_first(walk, node.children, at.depth + 1, to_world);
+        add_light(import, light->second.Get("light").GetNumberAsInt(), to_world, inside.moving != nullptr);
+    put_first(walk, node.children, at.depth + 1, to_world, inside.moving);
 }
 
 } // namespace
@@ -175,10 +251,10 @@ Model load_gltf(const std::filesystem::path& file)
 {
     gltf::Import import;
     gltf::parse_file(import, file);
-    if (!import.json.animations.empty()) import.warn("animations are not supported: drawn at rest");
+    gltf::read_animations(import);
     gltf::Walk walk;
     walk.material_left_out = gltf::add_materials(import);
-    gltf::put_first(walk, gltf::root_nodes(import), 0, glm::dmat4(1));
+    gltf::put_first(walk, gltf::root_nodes(import), 0, glm::dmat4(1), nullptr);
     while (!walk.pending.empty()) {
         const gltf::Visit next = walk.pending.back();
         walk.pending.pop_back();

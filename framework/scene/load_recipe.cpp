@@ -62,6 +62,7 @@ Model file_to_model(const std::string& name, const std::filesystem::path& folder
     Model model = extension == ".glb" || extension == ".gltf" ? load_gltf(file) : import_model(file);
     model.lights.clear(); // a recipe names its own
     model.cameras.clear();
+    model.paths.clear();
     return model;
 }
 
@@ -155,11 +156,15 @@ Model load_recipe(const std::filesystem::path& file)
         for (size_t i = 0; i < recipe.changes.size(); ++i)
             if (apply(recipe.changes[i], part, model)) matched[i] = true;
         for (Mesh& mesh : model.meshes) mesh.name = fmt::format("{}/{}", part.name, mesh.name);
+        const bool moves = part.motion != RigidMotion{};
+        if (moves && std::ranges::any_of(model.meshes, [](const Mesh& mesh) { return mesh.motion.poses != nullptr; }))
+            throw_spec_error("{}: part '{}' has 'move_m' or 'turn_deg', but its file moves by itself", part.place,
+                             part.name);
         for (const glm::dvec3& position_ws : part.positions_ws) {
             Model copy = model;
             transform(copy, glm::translate(glm::dmat4(1), position_ws));
             for (Mesh& mesh : copy.meshes) {
-                mesh.motion          = part.motion;
+                if (moves) mesh.motion = part.motion;
                 mesh.motion.pivot_ws = position_ws;
             }
             append(scene, std::move(copy));

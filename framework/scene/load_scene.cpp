@@ -35,6 +35,9 @@ Model load_gltf_with_views(const fs::path& file)
     if (fs::exists(views)) {
         // The views beside the scene come first: they are what somebody chose.
         std::vector<Camera> cameras = load_views(views);
+        std::erase_if(model.paths, [&](const CameraPath& path) {
+            return std::ranges::find(cameras, path.name, &Camera::name) != cameras.end();
+        });
         std::ranges::move(model.cameras, std::back_inserter(cameras));
         model.cameras = std::move(cameras);
     }
@@ -141,7 +144,9 @@ const Camera& find_camera(const Scene& scene, const std::string& name)
         if (camera.name == name) return camera;
         names += (names.empty() ? "" : ", ") + camera.name;
     }
-    for (const CameraPath& path : scene.paths) names += ", " + path.name;
+    for (const CameraPath& path : scene.paths)
+        if (std::ranges::find(scene.cameras, path.name, &Camera::name) == scene.cameras.end())
+            names += ", " + path.name;
     if (name == Camera{}.name && !scene.cameras.empty()) return scene.cameras.front();
     throw_spec_error("scene '{}' has no view '{}': its views are {}", scene.name, name, names);
 }

@@ -82,6 +82,15 @@ Bounds bounds_of(const Model& model, const glm::dmat4& matrix)
     return bounds;
 }
 
+Poses transform(const Poses& poses, const glm::dmat4& matrix)
+{
+    if (!poses) return nullptr;
+    const glm::dmat4 back  = glm::inverse(matrix);
+    auto             moved = std::make_shared<std::vector<glm::dmat4>>();
+    for (const glm::dmat4& pose : *poses) moved->push_back(matrix * pose * back);
+    return moved;
+}
+
 void transform(Mesh& mesh, const glm::dmat4& matrix)
 {
     const glm::dmat3 linear      = glm::dmat3(matrix);
@@ -89,6 +98,7 @@ void transform(Mesh& mesh, const glm::dmat4& matrix)
     // A flattening matrix has no inverse; its triangles are dropped later, so any normal will do.
     const glm::dmat3 normal_matrix = determinant != 0 ? glm::inverseTranspose(linear) : linear;
     for (glm::dvec3& position : mesh.positions_ws) position = point(matrix, position);
+    mesh.motion.poses = transform(mesh.motion.poses, matrix);
     for (Vertex& vertex : mesh.vertices) {
         vertex.normal_ws = unit_or(normal_matrix * glm::dvec3(vertex.normal_ws), {0, 1, 0});
         if (vertex.tangent_ws.w != 0) {

@@ -53,9 +53,11 @@ struct Bounds {
 /// Bounds of all usable vertices after `matrix`.
 Bounds bounds_of(const Model& model, const glm::dmat4& matrix = glm::dmat4(1));
 
-/// Moves meshes, lights and cameras; a mirroring matrix also flips the winding, so that fronts stay fronts.
+/// Moves meshes with their poses, lights and cameras; a mirroring matrix also flips the winding, so that fronts stay fronts.
 void transform(Model& model, const glm::dmat4& matrix);
 void transform(Mesh& mesh, const glm::dmat4& matrix);
+/// The same motion of a mesh that is moved by `matrix`.
+Poses transform(const Poses& poses, const glm::dmat4& matrix);
 
 /// Adds everything of `part` to `model`, with indices moved along.
 void append(Model& model, Model part);

@@ -2,6 +2,8 @@
 #include "scene/mesh_repair.h"
 #include "scene/model.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -74,6 +76,8 @@ void add_draw(Scene& scene, const Mesh& mesh)
     draw.material    = mesh.material;
     draw.motion      = mesh.motion;
     draw.motion.pivot_ws -= scene.origin_ws;
+    if (scene.origin_ws != glm::dvec3(0))
+        draw.motion.poses = transform(draw.motion.poses, glm::translate(glm::dmat4(1), -scene.origin_ws));
     const auto first_vertex = static_cast<uint32_t>(scene.vertices.size());
     for (size_t i = 0; i < mesh.vertices.size(); ++i) {
         Vertex vertex      = mesh.vertices[i];

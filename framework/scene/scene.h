@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -55,16 +56,21 @@ struct Material {
     TextureUse  base_colour_texture, metallic_roughness_texture, normal_texture, emissive_texture;
 };
 
-/// A rigid motion: in frame n an object is turned by n * turn_deg about the pivot, then moved by n * move_m.
+/// From world space in frame 0 to world space in each frame; the last one stays.
+using Poses = std::shared_ptr<const std::vector<glm::dmat4>>;
+
+/// A rigid motion: in frame n an object is turned by n * turn_deg about the pivot, then moved by n * move_m. Or, if there are
+/// poses, those.
 struct RigidMotion {
     glm::dvec3 move_m{0};   // per frame
     glm::dvec3 turn_deg{0}; // per frame, about x, then y, then z
     glm::dvec3 pivot_ws{0}; // in frame 0
+    Poses      poses = {};
 
     bool operator==(const RigidMotion&) const = default;
 };
 
-/// A view that moves: straight from one camera to the next.
+/// A view that moves, or a camera that does, if one has this name: straight from one camera to the next.
 struct CameraPath {
     std::string         name;
     std::vector<Camera> cameras;             // at least two, of one projection
@@ -106,7 +112,7 @@ struct Scene {
     std::vector<Texture>     textures;
     std::vector<Light>       lights;
     std::vector<Camera>      cameras;        // at least one; positions relative to origin_ws
-    std::vector<CameraPath>  paths;          // named like no camera; scene/sequence.h follows them
+    std::vector<CameraPath>  paths;          // scene/sequence.h follows them
     glm::vec3                ambient{0.25F}; // radiance arriving equally from everywhere
     glm::vec3                background{0};  // radiance from infinitely far away, where there is no environment map
     EnvironmentMap           environment;    // what is there instead of `background`, if not empty

@@ -10,7 +10,10 @@
 namespace ssrlab {
 namespace {
 
-bool is_still(const RigidMotion& motion) { return motion.move_m == glm::dvec3(0) && motion.turn_deg == glm::dvec3(0); }
+bool is_still(const RigidMotion& motion)
+{
+    return !motion.poses && motion.move_m == glm::dvec3(0) && motion.turn_deg == glm::dvec3(0);
+}
 
 double radical_inverse(int index, int base)
 {
@@ -53,6 +56,7 @@ Camera between(const Camera& a, const Camera& b, double share)
 
 glm::dmat4 pose(const RigidMotion& motion, int frame)
 {
+    if (motion.poses) return (*motion.poses)[std::min(size_t(frame), motion.poses->size() - 1)];
     const glm::dvec3 rad    = motion.turn_deg * (frame * std::numbers::pi / 180);
     glm::dmat4       matrix = glm::translate(glm::dmat4(1), motion.pivot_ws + double(frame) * motion.move_m);
     matrix                  = glm::rotate(matrix, rad.z, {0, 0, 1});
@@ -90,8 +94,12 @@ glm::dvec2 jitter_px(SequenceFrame at)
 
 Camera unjittered_camera_at(const Scene& scene, const std::string& view, int frame)
 {
-    const auto path = std::ranges::find(scene.paths, view, &CameraPath::name);
-    if (path == scene.paths.end()) return find_camera(scene, view);
+    auto path = std::ranges::find(scene.paths, view, &CameraPath::name);
+    if (path == scene.paths.end()) {
+        const Camera& camera = find_camera(scene, view);
+        path                 = std::ranges::find(scene.paths, camera.name, &CameraPath::name);
+        if (path == scene.paths.end()) return camera;
+    }
     const int  last = static_cast<int>(path->cameras.size()) - 1, span = path->frames_per_view;
     const int  from   = std::min(frame / span, last - 1);
     const auto part   = std::min(static_cast<double>(frame - from * span) / span, 1.0);
