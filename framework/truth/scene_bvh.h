@@ -38,6 +38,8 @@ public:
     /// A ray with a value that is not finite, or without direction, meets nothing.
     void intersect(std::span<const SceneRay> rays, std::span<SceneHit> hits) const;
 
+    const Scene& scene() const { return *scene_; }
+
     /// occluded[i] = 1 where anything lies inside [t_min, t_max].
     void occluded(std::span<const SceneRay> rays, Sides sides, std::span<uint8_t> occluded) const;
 

@@ -78,16 +78,21 @@ glm::dvec3 corner_ws(const Scene& scene, const SurfacePoint& point, int i)
 
 float surface_alpha(const Scene& scene, const SurfacePoint& point) { return base_colour(scene, point).a; }
 
+glm::dvec3 shading_normal_ws(const Scene& scene, const SurfacePoint& point)
+{
+    const glm::dvec3 sum    = glm::dvec3(interpolate(scene, point, &Vertex::normal_ws));
+    const double     length = glm::length(sum);
+    return std::isfinite(length) && length > 0 ? sum / length : glm::dvec3(0);
+}
+
 SurfaceMaterial surface_material(const Scene& scene, const SurfacePoint& point)
 {
     const Material& material = scene.materials[scene.draws[point.draw].material];
     SurfaceMaterial result;
-    result.base_colour      = glm::vec3(base_colour(scene, point));
-    result.metallic         = material.metallic * sample(scene, material.metallic_roughness_texture, point).b;
-    result.emissive         = material.emissive * glm::vec3(sample(scene, material.emissive_texture, point));
-    const glm::dvec3 sum    = glm::dvec3(interpolate(scene, point, &Vertex::normal_ws));
-    const double     length = glm::length(sum);
-    if (std::isfinite(length) && length > 0) result.normal_ws = sum / length;
+    result.base_colour = glm::vec3(base_colour(scene, point));
+    result.metallic    = material.metallic * sample(scene, material.metallic_roughness_texture, point).b;
+    result.emissive    = material.emissive * glm::vec3(sample(scene, material.emissive_texture, point));
+    result.normal_ws   = shading_normal_ws(scene, point);
     return result;
 }
 

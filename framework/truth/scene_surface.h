@@ -16,13 +16,16 @@ struct SurfaceMaterial {
     glm::vec3  base_colour{1}; // linear
     float      metallic = 0;
     glm::vec3  emissive{0};  // linear radiance
-    glm::dvec3 normal_ws{0}; // interpolated, without normal map; unit, or 0 when the mesh has none
+    glm::dvec3 normal_ws{0}; // shading_normal_ws()
 };
 
 glm::dvec3 corner_ws(const Scene& scene, const SurfacePoint& point, int corner);
 
 /// Alpha of the base colour: what an alpha mask compares with its cutoff.
 float surface_alpha(const Scene& scene, const SurfacePoint& point);
+
+/// Interpolated, without normal map; unit, or 0 when the mesh has none.
+glm::dvec3 shading_normal_ws(const Scene& scene, const SurfacePoint& point);
 
 SurfaceMaterial surface_material(const Scene& scene, const SurfacePoint& point);
 

@@ -33,4 +33,20 @@ struct SceneTruth {
     std::vector<glm::vec3>  radiance;   // linear
 };
 
+/// Where a pixel's reflection was in the frame before. How it is decided: truth/reprojection_truth.h.
+enum class ReprojectionClass : uint8_t {
+    not_reflecting = 0,
+    seen           = 1, // the same mirror showed the same point
+    hidden         = 2, // it would have, but something was in the way
+    off_screen     = 3, // it would have, outside the image
+    unknown        = 4, // no answer
+};
+
+/// One entry per pixel, row-major.
+struct ReprojectionTruth {
+    glm::ivec2                     size_px{0, 0};
+    std::vector<ReprojectionClass> cls;
+    std::vector<glm::dvec2>        displacement_px; // from the pixel to there, without jitter; undefined unless seen
+};
+
 } // namespace ssrlab
