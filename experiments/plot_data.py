@@ -1,17 +1,12 @@
-"""results.csv as a table, and the style of each technique in every plot."""
-import json
-import os
+"""Results of a folder for plots: rows that succeeded, their styles, what an experiment aims at."""
 import tomllib
 
 import pandas as pd
 
 from pairs import cost_samples
+from plot_styles import chart_styles, styles
+from ssrlab_results import add_derived, inputs_of, is_number, read_environment, read_rows, varying  # noqa: F401
 
-# Okabe and Ito 2008: told apart by the colour-blind; markers and dashes repeat the distinction.
-COLOURS = ["#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#000000", "#F0E442"]
-MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*"]
-DASHES = ["-", "--", ":", "-."]
-PICTURE = ["scene", "view", "width", "height"]
 # Where a specification names no [targets].
 TARGETS = {"recall_1px": [0.90, 0.95, 0.99, 0.995], "screen_recall_1px": [0.90, 0.95, 0.99, 0.995]}
 
@@ -21,69 +16,36 @@ class Results:
 
     def __init__(self, folder):
         self.folder = folder
-        text = {name: str for name in ("run_id", "experiment", "scene", "view", "technique", "outcome", "message", "picture")}
-        self.all_rows = pd.read_csv(os.path.join(folder, "results.csv"), dtype=text, keep_default_na=False,
-                                    na_values=[""])
+        self.all_rows = read_rows(folder)
         self.rows = self.all_rows[self.all_rows.outcome == "ok"].copy()
-        columns = list(self.all_rows.columns)
-        self.inputs = columns[columns.index("technique") + 1:columns.index("trace_ms_median")]
-        path = os.path.join(folder, "environment.json")
-        self.environment = {}
-        if os.path.exists(path):
-            with open(path, encoding="utf-8") as file:
-                self.environment = json.load(file)
+        self.inputs = inputs_of(self.all_rows)
+        self.environment = read_environment(folder)
         self.targets = targets_of(self.environment)
         self.accuracy = accuracy_of(self.environment)
         self.costs = cost_samples(folder)
-        # What a technique costs: its trace and the structures that only it needs.
-        for end in ("median", "ci_low", "ci_high"):
-            column = f"trace_ms_{end}"
-            if column in self.rows:
-                self.rows[f"cost_ms_{end}"] = self.rows[column] + self.rows.structures_ms_median.fillna(0)
-        self.rows["series"] = self._series()
-        self.techniques = list(dict.fromkeys(self.rows.technique.sort_values()))
-        self.styles = self._styles()
+        add_derived(self.rows)
+        self.techniques = sorted(self.rows.technique.unique())
+        series = {name: sorted(self.rows[self.rows.technique == name].series.unique()) for name in self.techniques}
+        self.styles, self.chart_styles = styles(series), chart_styles(series)
 
     def has(self, *columns):
         """Whether every column is there with at least one value."""
         return all(column in self.rows and self.rows[column].notna().any() for column in columns)
 
     def pictures(self):
-        """(title, file-name part, rows) for each scene, view and size."""
-        for (scene, view, width, height), rows in self.rows.groupby(PICTURE, sort=False):
-            name = f"{scene}_{view}_{width}x{height}"
-            safe = "".join(c if c.isalnum() or c in "_-" else "_" for c in name)
-            yield f"{scene}, view {view}, {width}×{height}", safe, rows
+        """(title, file-name part, rows) for each scene, view, size and frame of a sequence."""
+        frame = ["frame"] if self.has("frame") and self.rows.frame.nunique() > 1 else []
+        for key, rows in self.rows.groupby(["scene", "view", "width", "height"] + frame, sort=False):
+            name = "{}_{}_{}x{}".format(*key) + "".join(f"_{number:g}" for number in key[4:])
+            yield rows.frame_name.iloc[0], "".join(c if c.isalnum() or c in "_-" else "_" for c in name), rows
 
     def varying(self, rows):
-        """Inputs that take more than one value within a technique."""
-        return [name for name in self.inputs
-                if (rows.groupby("technique")[name].nunique(dropna=True) > 1).any()]
+        return varying(rows, self.inputs)
 
     def swept(self, rows):
         """Varying inputs that are numbers, those with most values first."""
         names = [name for name in self.varying(rows) if is_number(rows[name])]
         return sorted(names, key=lambda name: -rows[name].nunique())
-
-    def _series(self):
-        """Technique with its varying choices (space, depth_pyramid.kind …): a line in a plot."""
-        rows = self.rows
-        chosen = [name for name in self.varying(rows) if not is_number(rows[name])]
-        labels = []
-        for _, row in rows.iterrows():
-            said = [said_as(name, row[name]) for name in chosen
-                    if pd.notna(row[name]) and rows[rows.technique == row.technique][name].nunique() > 1]
-            labels.append(", ".join([row.technique] + [text for text in said if text]))
-        return labels
-
-    def _styles(self):
-        styles = {}
-        for i, technique in enumerate(self.techniques):
-            series = sorted(self.rows[self.rows.technique == technique].series.unique())
-            for j, name in enumerate(series):
-                styles[name] = dict(color=COLOURS[i % len(COLOURS)], marker=MARKERS[(i + 4 * j) % len(MARKERS)],
-                                    linestyle=DASHES[j % len(DASHES)], alpha=1 - 0.18 * (j % 4))
-        return styles
 
 
 def targets_of(environment):
@@ -100,19 +62,6 @@ def accuracy_of(environment):
         technique, parameter = name.split(".")
         accuracy.setdefault(technique, {})[parameter] = better
     return accuracy
-
-
-def is_number(column):
-    return column.dtype.kind in "if"
-
-
-def said_as(name, value):
-    """True is written as its name, False is not written, a choice is written as itself."""
-    if value in (True, "true", "True"):
-        return name
-    if value in (False, "false", "False"):
-        return ""
-    return str(value)
 
 
 def label_of(results, row, rows):

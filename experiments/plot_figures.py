@@ -12,7 +12,7 @@ LAW_FROM_STEPS = 50  # the report's frame rate is capped below
 
 plt.rcParams.update({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3, "axes.axisbelow": True,
                      "figure.constrained_layout.use": True, "savefig.dpi": 140, "legend.frameon": False,
-                     "axes.spines.top": False, "axes.spines.right": False})
+                     "axes.spines.top": False, "axes.spines.right": False, "svg.fonttype": "none"})
 
 
 def fit_line(x, y):

@@ -1,204 +1,157 @@
-"""report.md and report.html: the same content, written once as a list of blocks."""
-import html
+"""report.html, one file that needs nothing beside it, and report.md, the same in short. Templates: report/."""
+import json
 import os
+import shlex
 
-SHOWN = ["scene", "view", "width", "height", "series", "trace_ms_median", "trace_ms_ci_low", "trace_ms_ci_high",
-         "structures_ms_median", "frame_ms_median", "fps", "fetches_mean", "recall_1px", "precision_1px", "f1_1px", "screen_recall_1px", "screen_precision_1px", "false_hits",
-         "flip_visible", "repeats"]
-MANY_ROWS = 60
-MANY_PICTURES = 24
-MANY_PAIRS = 12
-NOT_REACHED = "target not reached"
+import jinja2
+import pandas as pd
 
-STYLE = """body{font:15px/1.5 system-ui,sans-serif;max-width:76em;margin:2em auto;padding:0 1em;color:#222}
-table{border-collapse:collapse;font-size:13px;margin:1em 0;display:block;overflow-x:auto}
-td,th{border:1px solid #ccc;padding:.2em .6em;text-align:right;white-space:nowrap}td:first-child,th:first-child{text-align:left}
-th{background:#f2f2f2}img{max-width:100%}figure{display:inline-block;width:31%;margin:.5%;vertical-align:top}
-figcaption{font-size:12px;color:#555}.plot{width:100%}.half{width:49.5%;margin-right:.5%}pre{background:#f6f6f6;padding:1em;overflow-x:auto}"""
+import plot_pictures
+import plot_verdict
+from plot_data import describe
+from plot_tables import error_table, failed_table, plan_of, plain_table, ranking_table, row_table, split_of, SPLIT
+from ssrlab_results import unit_of
 
-
-def short(value):
-    if isinstance(value, float):
-        return "" if value != value else f"{value:.4g}"
-    return str(value)
-
-
-def table(rows):
-    """rows: dictionaries with the same keys."""
-    return ("table", list(rows[0]), [[short(value) for value in row.values()] for row in rows])
+TEMPLATES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "report")
+LIBRARY = "/usr/share/javascript/chart.js/chart.min.js"  # Debian's libjs-chart.js
+# Of framework/compare/pictures.cpp.
+AGREEMENT = [("#009e73", "found within 1 px"), ("#f0e442", "hit farther away"), ("#d55e00", "missed"), ("#cc79a7", "hit where nothing is"),
+             ("#6b6b74", "rightly no hit"), ("#000", "does not reflect")]
+RAMP = "#000004, #51127c, #b73779, #fc8961, #fcfdbf"
+ERRORS = {"recall_1px": "1 − recall (scene truth)", "precision_1px": "1 − precision (scene truth)", "f1_1px": "1 − F1 (scene truth)",
+          "flip_visible": "FLIP over visible rays", "screen_recall_1px": "1 − recall (screen truth)",
+          "screen_precision_1px": "1 − precision (screen truth)", "screen_f1_1px": "1 − F1 (screen truth)"}
+COSTS = {"cost_ms_median": "trace + structures, ms", "fetches_mean": "fetches per ray", "steps_mean": "steps per ray"}
 
 
-def blocks(results, plots, tables, summary):
-    """(kind, content …) from top to bottom."""
-    environment = results.environment
-    yield "title", environment.get("title") or os.path.basename(os.path.abspath(results.folder))
-    counts = results.all_rows.outcome.value_counts()
-    yield "text", f"{len(results.all_rows)} runs: " + ", ".join(f"{n} {outcome}" for outcome, n in counts.items()) + "."
+def error_of(row, measure):
+    return row[measure] if measure.startswith("flip") else 1 - row[measure]
+
+
+def plain(value):
+    """For JSON: numbers short, missing values null."""
+    if pd.isna(value):
+        return None
+    if isinstance(value, (int, str)):
+        return value
+    return float(f"{float(value):.5g}") if not hasattr(value, "dtype") or value.dtype.kind == "f" else value.item()
+
+
+def specification_path(results):
+    """As it was given to `ssrlab run`."""
+    words = shlex.split(results.environment.get("command_line", ""))
+    return next((word for word in words if word.endswith(".toml")), "SPECIFICATION.toml")
+
+
+def program(results):
+    words = shlex.split(results.environment.get("command_line", ""))
+    return words[0] if words else "build/bin/ssrlab"
+
+
+def again(results, run):
+    """Measures one run again, in a folder of its own."""
+    words = shlex.split(results.environment.get("command_line", ""))
+    given = [option for name in ("--techniques", "--device") for at, word in enumerate(words[:-1]) if word == name
+             for option in (name, words[at + 1])]
+    return " ".join([program(results)] + [shlex.quote(word) for word in given] + ["run", specification_path(results), "--only", run, "-o", f"again/{run}"])
+
+
+def chart_data(results, chosen):
+    """Everything that the page's script shows: each run with its errors, costs and all values."""
+    dropped = {"run_id", "experiment", "outcome", "message", "series", "frame_name", "scene", "view", "width", "height"}
+    columns = [name for name in results.rows if name not in dropped and results.rows[name].notna().any()]
+    runs, cloud = {}, {}
+    for title, _, rows in results.pictures():
+        for _, row in rows.iterrows():
+            costs = {name: plain(row[name]) for name in COSTS if plot_verdict.has_value(row, name)}
+            runs[row.run_id] = {
+                "frame": title, "series": row.series, "name": describe(results, row, rows), "time": plot_verdict.milliseconds(row),
+                "floor": 0.5 / max(1.0, row.rays), "picture": plain(row.picture) if "picture" in row else None,
+                "costs": {**costs, "fetches": costs.get("fetches_mean")},
+                "errors": {name: plain(error_of(row, name)) for name in ERRORS if plot_verdict.has_value(row, name)},
+                "commands": [["Measure it again:", again(results, row.run_id)]], "values": [plain(row[name]) for name in columns]}
+        for series, line in rows.groupby("series"):
+            # Several numbers vary: a cloud of points, not a line.
+            cloud[series] = cloud.get(series, False) or sum(line[name].nunique() > 1 for name in results.swept(rows)) > 1
+    return {"runs": runs, "columns": columns, "units": [unit_of(name) for name in columns], "errors": ERRORS, "costs": COSTS,
+            "styles": results.chart_styles, "cloud": cloud, "findings": dict(plot_verdict.verdicts(results, chosen))}
+
+
+def with_pictures(results, chosen):
+    """One frame of each scene and view has its pictures inside the file: the largest that is at most 1280 wide."""
+    if chosen.empty:
+        return set()
+    frames = chosen.drop_duplicates("frame_title")
+    frames = frames.assign(large=frames.width > 1280).sort_values(["large", "width"], ascending=[True, False], kind="stable")
+    return set(frames.drop_duplicates(["scene", "view"]).frame_title)
+
+
+def frame_sections(results, chosen):
+    pictured, said = with_pictures(results, chosen), dict(plot_verdict.verdicts(results, chosen))
+    for title, name, rows in results.pictures():
+        part = chosen[chosen.frame_title == title]
+        pictures, left, shape = plot_pictures.shots(results, part, rows) if title in pictured else ([], 0, "")
+        images = [image for shot in pictures for image in shot["images"]]
+        names = [image["name"] for image in images]
+        first_run = next((i for i, image in enumerate(images) if image["kind"] == "picture" and image["name"] not in ("off", "truth")), 0)
+        right = names.index("truth") if "truth" in names else next((i for i, image in enumerate(images) if i != first_run), 0)
+        yield {"title": title, "anchor": name, "verdict": said.get(title, ""), "pictures": pictures, "left": first_run, "right": right,
+               "aspect": shape, "more_pictures": f"{left} more runs have pictures in pictures/." if left > 0 else "",
+               "split": split_of(part), "errors": error_table(part), "plan": plan_of(part), "rows": row_table(results, rows, part)}
+
+
+def about(environment):
     identity = environment.get("identity", {})
-    device_type = environment.get("device_type", "").lower()
-    if device_type == "cpu":
-        yield "text", "The device is a CPU. Compare these times with each other, not with those of a GPU."
-    about = {"device": identity.get("device"), "driver": identity.get("driver"),
-             "processor": identity.get("processor"), "commit": environment.get("commit"),
-             "command": environment.get("command_line"), "started": environment.get("started"),
-             "seed": environment.get("seed"), "system": environment.get("system")}
-    yield table([{"environment": name, "": value} for name, value in about.items() if value])
-
-    failed = results.all_rows[results.all_rows.outcome.isin(["failed", "invalid"])]
-    if len(failed):
-        yield "heading", "Failed runs"
-        yield table([{"run": row.run_id, "technique": row.technique, "scene": row.scene, "message": row.message}
-                     for _, row in failed.head(MANY_ROWS).iterrows()])
-    speedups = summary[summary.kind == "speedup"] if len(summary) else summary
-    if len(speedups):
-        yield "heading", "How many times as fast"
-        yield "text", ("Cheapest settings that reach the target, and their speed-up with its 95 % interval, judged by pairs of frames of "
-                       "the same round. Where the rival's setting was found by search, the interval begins at the neighbour that "
-                       "misses the target. No interval: not known. Against the screen truth exact techniques find all. Against the "
-                       "scene truth every tracer lacks what a single depth buffer does not hold.")
-        yield table(list(headline(summary)))
-    known = summary[(summary.kind == "cheapest_for_target") & summary.value.notna()] if len(summary) else summary
-    if plots:
-        yield "heading", "Plots"
-        for name in plots:
-            yield "plot", f"plots/{name}.png", name.replace("_", " ")
-    for heading, rows in tables.items():
-        yield "heading", heading
-        yield table(rows)
-    targets = known[known.run_id.notna()] if len(known) else known
-    if len(targets):
-        yield "heading", "Cheapest setting for a target"
-        yield "text", ("Time is trace plus the structures that the technique needs. The columns recall, precision and F1 are against "
-                       "the same truth as the target. All derived rows: summary.csv.")
-        yield table([{"scene": row.scene, "size": f"{row.width}×{row.height}", "of": row.measure, "target": row.target,
-                      "setting": row.setting, "recall": row.recall, "precision": row.precision, "F1": row.f1, "ms": row.time_ms,
-                      "fetches": row.fetches_mean} for _, row in targets.iterrows()])
-    if len(results.rows):
-        yield "heading", "Rows"
-        shown = [name for name in SHOWN if results.has(name)]
-        extra = [name for name in results.swept(results.rows) if name not in shown]
-        chosen = results.rows.sort_values(["scene", "width", "series"] + extra).head(MANY_ROWS)
-        yield table([{name: row[name] for name in shown[:5] + extra + shown[5:]} for _, row in chosen.iterrows()])
-        if len(results.rows) > MANY_ROWS:
-            yield "text", f"These are the first {MANY_ROWS} of {len(results.rows)} rows. results.csv has all of them, with every measure."
-    pictures = results.rows[results.rows.picture.notna()] if "picture" in results.rows else results.rows.iloc[:0]
-    if len(pictures):
-        if len(pictures) <= MANY_PAIRS:
-            yield "heading", "Side by side"
-            yield "text", "Each picture is shown beside the one with the most similar settings."
-            for left, right, caption in pairs(results, pictures):
-                yield "pair", left, right, caption
-        yield "heading", "Pictures"
-        for _, row in pictures.head(MANY_PICTURES).iterrows():
-            yield "picture", row.picture, f"{row.scene}, {row.width}×{row.height}: {setting(results, row)}"
-    if environment.get("specification"):
-        yield "heading", "Specification"
-        yield "code", environment["specification"]
+    lines = {"command": environment.get("command_line"), "commit": environment.get("commit"), "device": identity.get("device"),
+             "driver": identity.get("driver"), "processor": identity.get("processor"), "system": environment.get("system"),
+             "started": environment.get("started"), "seed": environment.get("seed")}
+    return [(name, value) for name, value in lines.items() if value]
 
 
-def pairs(results, pictures):
-    """(left, right, what differs): every picture with the closest other one of the same scene, each pair once."""
-    names = ["technique"] + results.varying(pictures)
-    rows = [row for _, row in pictures.sort_values(["scene"] + names).iterrows()]
-
-    def differing(a, b):
-        return [name for name in names if a[name] != b[name] and (a[name] == a[name] or b[name] == b[name])]
-
-    seen = set()
-    for row in rows:
-        others = [other for other in rows if other.scene == row.scene and other.run_id != row.run_id]
-        if not others:
-            continue
-        other = min(others, key=lambda candidate: len(differing(row, candidate)))
-        if (other.run_id, row.run_id) in seen:
-            continue
-        seen.add((row.run_id, other.run_id))
-        changes = ", ".join(f"{name} {short(row[name])} → {short(other[name])}" for name in differing(row, other))
-        yield row.picture, other.picture, f"{row.scene}: {changes}"
+def ranking_text(results, chosen):
+    measure, target = plot_verdict.goal(results)
+    if measure is None:
+        return "No truth was computed, so only times and work are compared: every setting, the fastest first."
+    return (f"Each tracer at its cheapest setting that finds {plot_verdict.goal_text(measure, target)} with an F1 within one point of its best; "
+            f"where none does, at the one that comes nearest. Shares are means over {chosen.frame_title.nunique()} frames, times are "
+            "geometric means of the medians, with those of the interval's ends.")
 
 
-def headline(summary):
-    """One row for each scene and target: the subject's time, and its speed-up over each rival or why there is none."""
-    speedups = summary[summary.kind == "speedup"]
-    keys = ["scene", "view", "width", "height", "measure", "target"]
-    for (scene, view, width, height, measure, target), part in speedups.groupby(keys, sort=False):
-        subject = part.technique.iloc[0]
-        own = summary[(summary.kind == "cheapest_for_target") & (summary.technique == subject)]
-        for key, value in zip(keys, (scene, view, width, height, measure, target)):
-            own = own[own[key] == value]
-        row = {"scene": scene, "view": view, "size": f"{width}×{height}", "of": measure, "target": target,
-               f"{subject}, ms": own.time_ms.iloc[0]}
-        for over in ("dda", "best other", "linear"):
-            one = part[part.over == over]
-            row[f"over {over}"] = NOT_REACHED if one.empty else speedup_text(one.iloc[0])
-        yield row
+def context(results, plots, tables):
+    environment, chosen = results.environment, plot_verdict.picks(results)
+    counts = results.all_rows.outcome.value_counts()
+    device = environment.get("identity", {}).get("device")
+    ranked = plot_verdict.ranking(results, chosen)
+    return {"title": environment.get("title") or os.path.basename(os.path.abspath(results.folder)),
+            "counts": f"{len(results.all_rows)} runs: " + ", ".join(f"{n} {outcome}" for outcome, n in counts.items()) + ".",
+            "device": f"Device: {device}." if device else "", "on_cpu": environment.get("device_type", "").lower() == "cpu",
+            "verdicts": plot_verdict.verdicts(results, chosen), "ranking": ranking_table(ranked), "ranking_text": ranking_text(results, chosen),
+            "has_curve": any(results.has(name) for name in ERRORS), "frames": list(frame_sections(results, chosen)),
+            "failed": failed_table(results, again), "plots": plots, "tables": [(name, plain_table(rows)) for name, rows in tables.items()],
+            "about": about(environment), "again": again(results, "RUN_ID"), "specification": environment.get("specification", ""),
+            "agreement_legend": AGREEMENT, "ramp": RAMP, "split_legend": [{"kind": kind, "said": said} for _, kind, said in SPLIT],
+            "data": chart_data(results, chosen)}
 
 
-def speedup_text(row):
-    bounds = f"[{row.speedup_ci_low:.3g}, {row.speedup_ci_high:.3g}]" if row.verdict != "not known" else "(interval not known)"
-    return f"{row.speedup:.3g} {bounds}× {row.setting}" if row.over != "dda" else f"{row.speedup:.3g} {bounds}×"
+def read(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
 
 
-def setting(results, row):
-    parts = [f"{name} {row[name]:g}" if not isinstance(row[name], (str, bool)) else f"{name} {row[name]}"
-             for name in results.varying(results.rows) if row[name] == row[name]]
-    return ", ".join([row.technique] + parts)
-
-
-def to_markdown(parts):
-    lines = []
-    for kind, *content in parts:
-        if kind == "title":
-            lines.append(f"# {content[0]}")
-        elif kind == "heading":
-            lines.append(f"## {content[0]}")
-        elif kind == "text":
-            lines.append(content[0])
-        elif kind == "table":
-            cells = [[cell.replace("|", "\\|").replace("\n", " ") for cell in row] for row in [content[0]] + content[1]]
-            lines.append("\n".join(["| " + " | ".join(cells[0]) + " |", "|" + "---|" * len(cells[0])] +
-                                   ["| " + " | ".join(row) + " |" for row in cells[1:]]))
-        elif kind in ("plot", "picture"):
-            lines.append(f"![{content[1]}]({content[0]})" + (f"\n*{content[1]}*" if kind == "picture" else ""))
-        elif kind == "pair":
-            lines.append(f"| {content[2]} | |\n|---|---|\n| ![]({content[0]}) | ![]({content[1]}) |")
-        elif kind == "code":
-            lines.append(f"```toml\n{content[0].rstrip()}\n```")
-    return "\n\n".join(lines) + "\n"
-
-
-def to_html(parts):
-    body = []
-    title = ""
-    for kind, *content in parts:
-        safe = [html.escape(part) if isinstance(part, str) else part for part in content]
-        if kind == "title":
-            title = safe[0]
-            body.append(f"<h1>{title}</h1>")
-        elif kind == "heading":
-            body.append(f"<h2>{safe[0]}</h2>")
-        elif kind == "text":
-            body.append(f"<p>{safe[0]}</p>")
-        elif kind == "table":
-            head = "".join(f"<th>{html.escape(name)}</th>" for name in content[0])
-            rows = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>\n" for row in content[1])
-            body.append(f"<table><tr>{head}</tr>\n{rows}</table>")
-        elif kind == "plot":
-            vector = safe[0].replace(".png", ".svg")
-            body.append(f'<p><a href="{vector}"><img class="plot" src="{safe[0]}" alt="{safe[1]}"></a></p>')
-        elif kind == "picture":
-            body.append(f'<figure><a href="{safe[0]}"><img src="{safe[0]}" alt=""></a><figcaption>{safe[1]}</figcaption></figure>')
-        elif kind == "pair":
-            images = "".join(f'<a href="{path}"><img class="half" src="{path}" alt=""></a>' for path in safe[:2])
-            body.append(f"<p>{images}<br>{safe[2]}</p>")
-        elif kind == "code":
-            body.append(f"<pre>{safe[0]}</pre>")
-    text = "\n".join(body)
-    return f'<!doctype html>\n<html lang="en"><meta charset="utf-8"><title>{title}</title>\n<style>{STYLE}</style>\n{text}\n</html>\n'
-
-
-def write(results, plots, tables, summary):
-    parts = list(blocks(results, plots, tables, summary))
-    for name, text in (("report.md", to_markdown(parts)), ("report.html", to_html(parts))):
+def write(results, plots, tables):
+    """plots: [{"name", "alt", "path", "curve"}]. Returns the verdicts."""
+    if not os.path.exists(LIBRARY):
+        raise SystemExit(f"plot.py: {LIBRARY}: no such file; install libjs-chart.js")
+    whole = context(results, plots, tables)
+    # What the interactive curve shows is not shown twice.
+    shown = [{**plot, "src": plot_pictures.data_uri(plot["path"], flat=True, width=1600)} for plot in plots if not plot["curve"]]
+    engine = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=jinja2.select_autoescape(["html.jinja"]),
+                                trim_blocks=True, lstrip_blocks=True)
+    data = json.dumps(whole["data"], ensure_ascii=False, allow_nan=False).replace("</", "<\\/")
+    pages = {"report.html": {**whole, "plots": shown, "data": data, "css": read(os.path.join(TEMPLATES, "report.css")),
+                             "script": read(os.path.join(TEMPLATES, "report.js")), "library": read(LIBRARY)},
+             "report.md": whole}
+    for name, values in pages.items():
         with open(os.path.join(results.folder, name), "w", encoding="utf-8") as file:
-            file.write(text)
+            file.write(engine.get_template(f"{name}.jinja").render(values))
+    return whole["verdicts"]

@@ -1,0 +1,142 @@
+"""Which tracer to choose: the setting of each that is compared, the ranking over all frames, and a sentence for each frame."""
+import numpy as np
+import pandas as pd
+
+from plot_accuracy import ratio_of_rows
+from plot_data import describe
+
+F1_SLACK = 0.01
+MISSES = {"visible_displaced": "hit another point", "missed_not_in_depth": "are not in the depth buffer", "missed_stopped": "are stopped",
+          "missed_stepped_over": "are stepped over", "missed_out_of_steps": "run out of steps",
+          "missed_facing_rule": "are refused by the facing rule"}
+FALSE_HITS = {"false_self": "on the reflector itself", "false_too_thick": "behind a surface that is taken too thick",
+              "false_wrong_surface": "on a surface that the true ray does not meet"}
+
+
+def has_value(row, name):
+    return name in row and pd.notna(row[name])
+
+
+def goal(results):
+    """(measure, target): what a tracer must find to be compared by its time; (None, None) without truths."""
+    for measure in ("screen_recall_1px", "recall_1px"):
+        targets = [value for value in results.targets.get(measure, [0.99]) if value <= 0.99]
+        if targets and results.has(measure):
+            return measure, max(targets)
+    return None, None
+
+
+def goal_text(measure, target):
+    whole = "the depth buffer holds" if measure == "screen_recall_1px" else "the frame shows"
+    return f"{percent(target)} of what {whole}"
+
+
+def percent(share):
+    return f"{100 * share:.3g} %"
+
+
+def milliseconds(row, name="cost_ms"):
+    text = f"{row[f'{name}_median']:.3g} ms"
+    if has_value(row, f"{name}_ci_low") and has_value(row, f"{name}_ci_high"):
+        text += f" [{row[f'{name}_ci_low']:.3g}, {row[f'{name}_ci_high']:.3g}]"
+    return text
+
+
+def pick(rows, measure, target):
+    """The cheapest run that reaches the target with an F1 within one point of the best of those that do; else the nearest to it."""
+    reached = rows[rows[measure] >= target]
+    if reached.empty:
+        reached = rows[rows[measure] >= rows[measure].max() - 1e-3]
+    f1 = next((name for name in ("f1_1px", "screen_f1_1px") if name in reached and reached[name].notna().any()), measure)
+    return reached[reached[f1] >= reached[f1].max() - F1_SLACK].nsmallest(1, "cost_ms_median").index
+
+
+def picks(results):
+    """The compared run of every series on every frame, the best first. Without truths: every setting."""
+    measure, target = goal(results)
+    parts = []
+    for title, _, rows in results.pictures():
+        chosen = rows.assign(frame_title=title, reached=False, setting=[describe(results, row, rows) for _, row in rows.iterrows()])
+        if measure is None:
+            chosen = chosen.assign(label=chosen.setting).drop_duplicates("setting").sort_values("cost_ms_median")
+        else:
+            places = [place for _, part in rows[rows[measure].notna()].groupby("series") for place in pick(part, measure, target)]
+            chosen = chosen.loc[places]
+            chosen = chosen.assign(label=chosen.series, reached=chosen[measure] >= target, missing=(target - chosen[measure]).clip(lower=0))
+            chosen = chosen.sort_values(["missing", "cost_ms_median"])
+        parts.append(chosen)
+    return pd.concat(parts) if parts else results.rows.iloc[:0].assign(label="", frame_title="", reached=False, setting="")
+
+
+def mean_of(part, name):
+    return part[name].mean() if name in part else np.nan
+
+
+def geometric(part, name):
+    return float(np.exp(np.log(part[name]).mean())) if name in part and part[name].notna().all() and (part[name] > 0).all() else np.nan
+
+
+def ranking(results, chosen):
+    """A row a series: means over the frames, geometric for times. Those that reach the target everywhere come first, by time."""
+    measure, _ = goal(results)
+    frames = chosen.frame_title.nunique()
+    rows = []
+    for label, part in chosen.groupby("label", sort=False):
+        rows.append({"label": label, "series": part.series.iloc[0], "technique": part.technique.iloc[0], "frames": len(part), "of": frames,
+                     "reached": int(part.reached.sum()), "screen_recall": mean_of(part, "screen_recall_1px"),
+                     "recall": mean_of(part, "recall_1px"), "precision": mean_of(part, "precision_1px"), "f1": mean_of(part, "f1_1px"),
+                     "false_hits": mean_of(part, "false_hits"), "flip": mean_of(part, "flip_visible"),
+                     "fetches": mean_of(part, "fetches_mean"),
+                     **{name: geometric(part, name) for name in ("cost_ms_median", "cost_ms_ci_low", "cost_ms_ci_high")}})
+    table = pd.DataFrame(rows)
+    if table.empty:
+        return table
+    table["unreached"] = table.of - table.reached if measure else 0
+    nearness = {"screen_recall_1px": "screen_recall", "recall_1px": "recall", None: "label"}[measure]
+    table["nearness"] = -table[nearness].where(table.unreached > 0, 1) if measure else 0
+    return table.sort_values(["unreached", "nearness", "cost_ms_median"]).drop(columns=["nearness"]).reset_index(drop=True)
+
+
+def causes(row, names, floor=0.0005):
+    """The two largest, "7.1 % are not in the depth buffer, 2 % hit another point"."""
+    shares = sorted(((row[name], said) for name, said in names.items() if has_value(row, name) and row[name] >= floor), reverse=True)
+    return ", ".join(f"{percent(share)} {said}" for share, said in shares[:2])
+
+
+def left_wrong(row):
+    """What the chosen tracer still gets wrong, and why: sentences."""
+    sentences = []
+    if has_value(row, "recall_1px"):
+        missed = causes(row, MISSES)
+        sentences.append(f"Of what the frame shows, it does not find {percent(1 - row.recall_1px)}" + (f": {missed}." if missed else "."))
+    if has_value(row, "false_hits"):
+        wrong = causes(row, FALSE_HITS)
+        sentences.append(f"{percent(row.false_hits)} of its rays end in a false hit" + (f": {wrong}." if wrong else "."))
+    return " ".join(sentences)
+
+
+def verdict(results, chosen):
+    """The sentences for one frame; chosen: its picks, the best first."""
+    measure, target = goal(results)
+    if measure is None or chosen.empty:
+        return ""
+    best = chosen.iloc[0]
+    if not best.reached:
+        return (f"No tracer finds {goal_text(measure, target)}. The nearest is {best.setting}: {percent(best[measure])} in "
+                f"{milliseconds(best)}. " + left_wrong(best))
+    text = f"Cheapest tracer that finds {goal_text(measure, target)}: {best.setting}, {milliseconds(best)}"
+    rivals = chosen[chosen.reached & (chosen.technique != best.technique)].drop_duplicates("technique").head(2)
+    faster = []
+    for _, rival in rivals.iterrows():
+        ratio = ratio_of_rows(results, rival, best)
+        interval = f" [{ratio.low:.3g}, {ratio.high:.3g}]" if pd.notna(ratio.low) else ""
+        faster.append(f"{ratio.median:.3g}{interval} times as fast as {rival.setting}")
+    if faster:
+        text += ", " + " and ".join(faster)
+    return f"{text}. {left_wrong(best)}"
+
+
+def verdicts(results, chosen):
+    """[(frame, sentences)]"""
+    said = [(title, verdict(results, part)) for title, part in chosen.groupby("frame_title", sort=False)]
+    return [(title, text) for title, text in said if text]

@@ -1,0 +1,127 @@
+"""Results as a pandas table. One file that needs only pandas: copy it beside your own script, or put experiments/ into PYTHONPATH.
+
+    from ssrlab_results import load
+    rows = load("results/cost_of_accuracy")     # a row a run that succeeded; typed; without columns that never change
+    rows.groupby("technique").cost_ms_median.min()
+    rows.attrs["units"]["cost_ms_median"]            # "ms"
+    rows.attrs["constants"]["thickness_m"]      # 0.1: what was dropped
+
+Added columns: cost_ms_median, cost_ms_ci_low and cost_ms_ci_high are the time of the trace and of the structures that only it needs, with the
+95 % interval of the trace; frame_name is "scene, view, WIDTH×HEIGHT"; series is the technique with the choices that vary, a line of a plot.
+"""
+import json
+import os
+import tomllib
+
+import pandas as pd
+
+TEXT = ["run_id", "experiment", "scene", "view", "technique", "outcome", "message", "picture", "truth_picture", "no_scene_truth", "passes",
+        "passes_skipped"]
+FRAME = ["scene", "view", "width", "height", "frame"]
+# By the end of a column's name, longest first; "" is a count, a share of 1 or a setting's own value.
+UNITS = {"per_million": "rays per million", "_ms_median": "ms", "_ms_mad": "ms", "_ms_ci_low": "ms", "_ms_ci_high": "ms", "_ms": "ms",
+         "_px": "px", "_m": "m", "_db": "dB", "_s": "s", "_share": "share", "recall_1px": "share",
+         "precision_1px": "share", "f1_1px": "share", "recall_4px": "share", "fetches_mean": "fetches", "steps_mean": "steps"}
+
+
+def read_rows(folder):
+    """Every row of results.csv, failed ones too; empty fields are missing values, words stay words."""
+    path = os.path.join(folder, "results.csv")
+    if not os.path.exists(path):
+        raise FileNotFoundError(f"{folder}: holds no results.csv; make one with ssrlab run")
+    return pd.read_csv(path, dtype={name: str for name in TEXT}, keep_default_na=False, na_values=[""])
+
+
+def read_environment(folder):
+    """Device, commit, specification …: environment.json; empty without it."""
+    path = os.path.join(folder, "environment.json")
+    if not os.path.exists(path):
+        return {}
+    with open(path, encoding="utf-8") as file:
+        return json.load(file)
+
+
+def read_samples(folder):
+    """Every timed frame: run_id, round, pass, ms, cpu_ms."""
+    return pd.read_csv(os.path.join(folder, "samples.csv"), dtype={"run_id": str, "pass": str})
+
+
+def specification(folder):
+    """The experiment's TOML file as a dictionary."""
+    return tomllib.loads(read_environment(folder).get("specification", ""))
+
+
+def unit_of(column):
+    """The unit that a column's name says: "trace_ms_median" is in ms."""
+    ends = [end for end in sorted(UNITS, key=len, reverse=True) if column.endswith(end)]
+    return UNITS[ends[0]] if ends else ""
+
+
+def inputs_of(rows):
+    """Settings of a run and parameters of techniques, as results.csv orders them."""
+    columns = list(rows.columns)
+    return columns[columns.index("technique") + 1:columns.index("trace_ms_median")]
+
+
+def is_number(column):
+    return column.dtype.kind in "if"
+
+
+def varying(rows, inputs):
+    """Inputs that take more than one value within a technique."""
+    return [name for name in inputs if (rows.groupby("technique")[name].nunique(dropna=True) > 1).any()]
+
+
+def said_as(name, value):
+    """True is written as its name, False is not written, a choice is written as itself."""
+    if value in (True, "true", "True"):
+        return name
+    if value in (False, "false", "False"):
+        return ""
+    return str(value)
+
+
+def series_of(rows, inputs):
+    """Technique with its varying choices (space, depth_pyramid.kind …): a line in a plot."""
+    chosen = [name for name in varying(rows, inputs) if not is_number(rows[name])]
+    varies = {name: rows.groupby("technique")[name].nunique() > 1 for name in chosen}
+    labels = []
+    for _, row in rows.iterrows():
+        said = [said_as(name, row[name]) for name in chosen if pd.notna(row[name]) and varies[name][row.technique]]
+        labels.append(", ".join([row.technique] + [text for text in said if text]))
+    return labels
+
+
+def add_derived(rows):
+    """Adds cost_ms_*, series and frame_name in place."""
+    structures = rows.structures_ms_median.fillna(0) if "structures_ms_median" in rows else 0
+    for end in ("median", "ci_low", "ci_high"):
+        if f"trace_ms_{end}" in rows:
+            rows[f"cost_ms_{end}"] = rows[f"trace_ms_{end}"] + structures
+    rows["series"] = series_of(rows, inputs_of(rows))
+    rows["frame_name"] = [frame_name(row) for _, row in rows.iterrows()]
+
+
+def frame_name(row):
+    """Scene, view, size; the number of the frame where there is more than the first."""
+    number = f", frame {row.frame:g}" if "frame" in row and row.frame > 0 else ""
+    return f"{row.scene}, view {row['view']}, {row.width}×{row.height}{number}"
+
+
+def load(folder, keep_constants=False, failed=False):
+    """The table of a results folder. attrs: units, constants (dropped columns and their value), inputs, environment."""
+    rows = read_rows(folder)
+    inputs = inputs_of(rows)
+    if not failed:
+        rows = rows[rows.outcome == "ok"].copy()
+    add_derived(rows)
+    constants = {}
+    if not keep_constants and len(rows) > 1:
+        always = {"run_id", "scene", "technique", "series", "frame_name", "cost_ms_median"}
+        same = [name for name in rows if name not in always and (rows[name].isna().all() or rows[name].nunique(dropna=False) == 1)]
+        constants = {name: rows[name].iloc[0] for name in same if pd.notna(rows[name].iloc[0])}
+        rows = rows.drop(columns=same)
+    rows = rows.reset_index(drop=True)
+    rows.attrs = {"units": {name: unit_of(name) for name in rows}, "constants": constants, "environment": read_environment(folder),
+                  "inputs": [name for name in inputs if name in rows]}
+    return rows
