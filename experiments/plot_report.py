@@ -16,8 +16,8 @@ TEMPLATES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "report")
 LIBRARY = "/usr/share/javascript/chart.js/chart.min.js"  # Debian's libjs-chart.js
 # Of framework/compare/pictures.cpp.
 AGREEMENT = [("#009e73", "found within 1 px"), ("#f0e442", "hit farther away"), ("#d55e00", "missed"), ("#cc79a7", "hit where nothing is"),
-             ("#6b6b74", "rightly no hit"), ("#000", "does not reflect")]
-RAMP = "#000004, #51127c, #b73779, #fc8961, #fcfdbf"
+             ("#6b6b74", "rightly no hit"), ("#000000", "does not reflect")]
+RAMP = "#1d1147, #51127c, #b73779, #fc8961, #fcfdbf"
 ERRORS = {"recall_1px": "1 − recall (scene truth)", "precision_1px": "1 − precision (scene truth)", "f1_1px": "1 − F1 (scene truth)",
           "flip_visible": "FLIP over visible rays", "screen_recall_1px": "1 − recall (screen truth)",
           "screen_precision_1px": "1 − precision (screen truth)", "screen_f1_1px": "1 − F1 (screen truth)"}

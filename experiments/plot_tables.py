@@ -38,6 +38,8 @@ def column(name, doc=""):
 
 
 def table(columns, rows, example="hiz"):
+    for i, one in enumerate(columns):
+        one["text"] = all(row["cells"][i]["sort"] is None for row in rows)
     return {"columns": columns, "rows": rows, "example": example}
 
 

@@ -97,6 +97,12 @@ def ranking(results, chosen):
     return table.sort_values(["unreached", "nearness", "cost_ms_median"]).drop(columns=["nearness"]).reset_index(drop=True)
 
 
+def named(row):
+    """"hiz (max_steps 64)": the tracer, and its setting in brackets."""
+    name, comma, setting = row.setting.partition(", ")
+    return f"{name} ({setting})" if comma else name
+
+
 def causes(row, names, floor=0.0005):
     """The two largest, "7.1 % are not in the depth buffer, 2 % hit another point"."""
     shares = sorted(((row[name], said) for name, said in names.items() if has_value(row, name) and row[name] >= floor), reverse=True)
@@ -122,15 +128,15 @@ def verdict(results, chosen):
         return ""
     best = chosen.iloc[0]
     if not best.reached:
-        return (f"No tracer finds {goal_text(measure, target)}. The nearest is {best.setting}: {percent(best[measure])} in "
+        return (f"No tracer finds {goal_text(measure, target)}. The nearest is {named(best)}: {percent(best[measure])} in "
                 f"{milliseconds(best)}. " + left_wrong(best))
-    text = f"Cheapest tracer that finds {goal_text(measure, target)}: {best.setting}, {milliseconds(best)}"
+    text = f"Cheapest tracer that finds {goal_text(measure, target)}: {named(best)}, {milliseconds(best)}"
     rivals = chosen[chosen.reached & (chosen.technique != best.technique)].drop_duplicates("technique").head(2)
     faster = []
     for _, rival in rivals.iterrows():
         ratio = ratio_of_rows(results, rival, best)
         interval = f" [{ratio.low:.3g}, {ratio.high:.3g}]" if pd.notna(ratio.low) else ""
-        faster.append(f"{ratio.median:.3g}{interval} times as fast as {rival.setting}")
+        faster.append(f"{ratio.median:.3g}{interval} times as fast as {named(rival)}")
     if faster:
         text += ", " + " and ".join(faster)
     return f"{text}. {left_wrong(best)}"

@@ -31,6 +31,9 @@ packages=(
     "python3-pandas           module:pandas"
     "python3-scipy            module:scipy"
     "python3-openimageio      module:OpenImageIO"
+    "python3-jinja2           module:jinja2"
+    "python3-pil              module:PIL"
+    "libjs-chart.js           file:/usr/share/javascript/chart.js/chart.min.js"
 )
 
 build=build

@@ -1,5 +1,6 @@
 // Measures that compare pictures with pictures.
 #include "compare/measures.h"
+#include "compare/pictures.h"
 #include "core/error.h"
 #include "core/parallel_rows.h"
 #include "core/pixel_index.h"
@@ -177,6 +178,15 @@ MeasureValues compare_pictures(const Image& tested, const Reference& reference, 
             {"picture_border_rmse", rmse(border)},
             {"picture_visible_rmse", rmse(visible)},
             {"picture_visible_border_rmse", rmse(visible_border)}};
+}
+
+Image flip_of_picture(const Image& tested, const Reference& reference, const SceneTruth& truth)
+{
+    require_comparable(tested, truth);
+    require_comparable(reference.display, truth);
+    const Mask     reflective = reflective_pixels(truth);
+    const FlipView flip       = flip_view_inside(to_display(tested, reflective), reference.flip, reflective);
+    return flip_picture(tested.size_px, flip_error(flip, reference.flip, reflective), reflective);
 }
 
 } // namespace ssrlab

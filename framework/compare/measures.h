@@ -78,6 +78,9 @@ MeasureValues compare_images(const Image& tested, const Reference& reference, co
 MeasureValues compare_pictures(const Image& tested, const Reference& reference, const SceneTruth& scene_truth,
                                const GBufferImage& gbuffer);
 
+/// Where a finished picture differs from that one: FLIP of each reflecting pixel in false colours.
+Image flip_of_picture(const Image& tested, const Reference& reference, const SceneTruth& scene_truth);
+
 /// The reference reflection: the scene truth's radiance where traced, black elsewhere; channels R, G, B.
 Image reference_image(const SceneTruth& scene_truth);
 

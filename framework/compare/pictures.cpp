@@ -1,5 +1,6 @@
 #include "compare/pictures.h"
 
+#include "compare/image_filter.h"
 #include "compare/measures.h"
 #include "core/parallel_rows.h"
 #include "core/pixel_index.h"
@@ -12,11 +13,27 @@ namespace ssrlab {
 namespace {
 
 constexpr glm::vec3 black{0, 0, 0};
-constexpr glm::vec3 green{0.05F, 0.5F, 0.05F};
-constexpr glm::vec3 yellow{1, 0.8F, 0};
-constexpr glm::vec3 red{0.9F, 0.02F, 0.02F};
-constexpr glm::vec3 magenta{0.9F, 0, 0.9F};
-constexpr glm::vec3 grey{0.15F, 0.15F, 0.18F};
+
+glm::vec3 from_srgb(int r, int g, int b)
+{
+    return {srgb_to_linear(float(r) / 255), srgb_to_linear(float(g) / 255), srgb_to_linear(float(b) / 255)};
+}
+
+// Okabe and Ito 2008: told apart by the colour-blind. experiments/plot_report.py has the same for its legend.
+const glm::vec3 green = from_srgb(0x00, 0x9e, 0x73), yellow = from_srgb(0xf0, 0xe4, 0x42),
+                vermilion = from_srgb(0xd5, 0x5e, 0x00), pink = from_srgb(0xcc, 0x79, 0xa7),
+                grey = from_srgb(0x6b, 0x6b, 0x74);
+
+/// Magma (Smith and van der Walt 2015) without its darkest end, which is kept for pixels that have no value. From 0 to 1.
+glm::vec3 ramp_colour(float value)
+{
+    static const std::array<glm::vec3, 5> ramp  = {from_srgb(0x1d, 0x11, 0x47), from_srgb(0x51, 0x12, 0x7c),
+                                                   from_srgb(0xb7, 0x37, 0x79), from_srgb(0xfc, 0x89, 0x61),
+                                                   from_srgb(0xfc, 0xfd, 0xbf)};
+    const float                           place = 4 * std::clamp(value, 0.0F, 1.0F);
+    const auto                            low   = std::min(size_t(place), ramp.size() - 2);
+    return glm::mix(ramp[low], ramp[low + 1], place - float(low));
+}
 
 template <typename ColourOf> Image paint(glm::ivec2 size_px, const ColourOf& colour_of)
 {
@@ -34,19 +51,11 @@ template <typename ColourOf> Image paint(glm::ivec2 size_px, const ColourOf& col
 glm::vec3 agreement_colour(bool hit, bool findable, glm::dvec2 hit_px, glm::dvec2 true_px)
 {
     if (hit && findable) return screen_distance_px(hit_px, true_px) <= within_one_px ? green : yellow;
-    if (findable) return red;
-    return hit ? magenta : grey;
+    if (findable) return vermilion;
+    return hit ? pink : grey;
 }
 
-glm::vec3 heat_colour(uint32_t fetches)
-{
-    if (fetches == 0) return black;
-    constexpr std::array<glm::vec3, 5> ramp = {
-        glm::vec3(0, 0, 0.1F), {0, 0.05F, 1}, {0, 0.8F, 0.8F}, {1, 0.8F, 0}, {0.9F, 0, 0}};
-    const float place = std::min(std::log2(float(fetches)) / 3, 4.0F);
-    const auto  low   = std::min(size_t(place), ramp.size() - 2);
-    return glm::mix(ramp[low], ramp[low + 1], place - float(low));
-}
+glm::vec3 heat_colour(uint32_t fetches) { return fetches == 0 ? black : ramp_colour(std::log2(float(fetches)) / 12); }
 
 } // namespace
 
@@ -76,6 +85,11 @@ Image fetch_heat_map(const TraceResult& tested)
         return heat_colour(tested.depth_fetches.empty() ? tested.steps[i]
                                                         : tested.depth_fetches[i] + structure_fetches_of(tested, i));
     });
+}
+
+Image flip_picture(glm::ivec2 size_px, const std::vector<float>& flip, const std::vector<uint8_t>& mask)
+{
+    return paint(size_px, [&](size_t i) { return mask[i] == 0 ? black : ramp_colour(flip[i]); });
 }
 
 } // namespace ssrlab

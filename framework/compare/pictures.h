@@ -10,14 +10,17 @@ namespace ssrlab {
 /// not traced      black
 /// correct         green    found within 1 px
 /// displaced       yellow   hit farther than 1 px from where it should be
-/// missed          red      no hit where there is one
-/// false           magenta  hit where there is none
+/// missed          orange   no hit where there is one
+/// false           pink     hit where there is none
 /// not answerable  grey     no hit, and none to be found
 Image agreement_picture(const TraceResult& tested, const TraceResult& screen_truth);
 Image agreement_picture(const TraceResult& tested, const SceneTruth& scene_truth);
 
 /// Depth and pyramid fetches of each ray (steps, if fetches were not counted) on a fixed logarithmic scale:
-/// black 0, dark blue 1, blue 8, cyan 64, yellow 512, red 4096 and more.
+/// black 0, dark violet 1, violet 8, pink 64, orange 512, pale yellow 4096 and more.
 Image fetch_heat_map(const TraceResult& tested);
+
+/// FLIP of each pixel inside the mask on the same colours from 0 to 1; black outside.
+Image flip_picture(glm::ivec2 size_px, const std::vector<float>& flip, const std::vector<uint8_t>& mask);
 
 } // namespace ssrlab

@@ -37,6 +37,7 @@ const std::vector<Column> times = {
     {"shade_ms_median", "turning hits into colour and putting the picture together"},
     {"passes", "passes that ran, in their order, each with the median of its GPU time in milliseconds"},
     {"passes_skipped", "passes that did not run, because the frame does not need them or they are off"},
+    {"passes_why", "each pass and why it ran or did not: NAME: reason; NAME: reason"},
     {"saved_ms",
      "time saved by skipping: the unculled frame (skip_unneeded_passes = false) minus the planned one, median over "
      "five pairs; empty if only disabled passes were skipped, or if it was not measured (saved_time = false, "
@@ -57,8 +58,9 @@ const std::vector<Column> counts = {
 
 const std::vector<Column> ending = {
     {"picture", "the reflected picture, relative to this file; beside it NAME_agreement.png (right and wrong in false "
-                "colours) and "
-                "NAME_fetches.png (work per ray)"},
+                "colours), NAME_fetches.png (work per ray) and NAME_flip.png (difference from truth_picture)"},
+    {"truth_picture",
+     "the same picture with the scene truth's reflection; beside it NAME_off.png, without reflections"},
     {"no_scene_truth", "why the measures that need the scene's triangles are empty; empty: they have a value"},
     {"outcome", "ok; no_rays: nothing in the picture reflects; failed: see message; invalid: a ray has an answer that "
                 "cannot be, see message"},

@@ -1,5 +1,6 @@
 #include "harness/environment.h"
 
+#include "compare/measures.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "core/version.h"
@@ -90,6 +91,8 @@ Environment describe_environment(const Experiment& experiment, std::span<const T
                 notes["accuracy"] += (notes["accuracy"].empty() ? "" : " ") + entry;
         }
     }
+    for (const Measure& measure : measures())
+        notes["units"] += fmt::format("{}{}={}", notes["units"].empty() ? "" : "; ", measure.name, measure.unit);
     for (const Parameter& parameter : pass_parameters())
         notes["pass_parameters"] += (notes["pass_parameters"].empty() ? "" : " ") + parameter.name;
     return environment;

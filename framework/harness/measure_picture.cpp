@@ -37,6 +37,7 @@ struct Picture {
     // The picture with the true reflection under the settings of the last run: no technique is in it.
     std::optional<Reference> reference;
     FrameSettings            reference_for;
+    std::string              reference_file; // relative to the results; empty: none was written
 };
 
 const LoadedScene& scene_of(Bench& bench, const std::string& name, int frame)
@@ -168,6 +169,20 @@ Observed observe(Bench& bench, const FrameBuffersPtr& buffers, MeasuredRun& meas
     });
 }
 
+/// The picture with true reflections, and beside it the one without any.
+void write_references(Bench& bench, Picture& picture, const MeasuredRun& measured, const Image& truth)
+{
+    if (!bench.experiment.measure.pictures) return;
+    Run named              = *measured.run;
+    named.technique        = "truth";
+    picture.reference_file = picture_name(named) + ".png";
+    const std::vector<glm::vec4> none(pixel_count(truth.size_px), glm::vec4(0, 0, 0, -1));
+    std::filesystem::create_directories(bench.results.path() / "pictures");
+    write_image(bench.results.path() / picture.reference_file, truth);
+    write_image(bench.results.path() / (picture_name(named) + "_off.png"),
+                composite_reflection(bench.gpu, *measured.frame, none));
+}
+
 /// Makes what judging the run needs, unless the last run had the same settings.
 void make_references(Bench& bench, Picture& picture, const MeasuredRun& measured)
 {
@@ -177,12 +192,13 @@ void make_references(Bench& bench, Picture& picture, const MeasuredRun& measured
     clocked(bench.truths_s, [&] {
         picture.truths->make(settings.trace, image_errors);
         if (!image_errors || (picture.reference && picture.reference_for == settings)) return;
-        if (const std::optional<Image> given = picture.truths->given_picture())
-            picture.reference.emplace(*given);
-        else if (picture.truths->without_scene().empty())
-            picture.reference.emplace(
-                composite_reflection(bench.gpu, *measured.frame, picture.truths->true_reflection()));
+        std::optional<Image> truth = picture.truths->given_picture();
+        if (!truth && picture.truths->without_scene().empty())
+            truth = composite_reflection(bench.gpu, *measured.frame, picture.truths->true_reflection());
+        if (!truth) return;
+        picture.reference.emplace(*truth);
         picture.reference_for = settings;
+        write_references(bench, picture, measured, *truth);
     });
 }
 
@@ -191,10 +207,12 @@ void write_pictures(const std::filesystem::path& path, const Picture& picture, c
 {
     std::filesystem::create_directories(path.parent_path());
     const auto write = [&](const char* ending, const Image& image) { write_image(path.string() + ending, image); };
-    parallel_rows(picture.truths ? 3 : 2, 0, [&](int i) {
+    parallel_rows(4, 0, [&](int i) {
         if (i == 0) write(".png", observed.shaded);
         if (i == 1) write("_fetches.png", fetch_heat_map(observed.counted));
-        if (i == 2) write("_agreement.png", picture.truths->agreement(observed.counted));
+        if (i == 2 && picture.truths) write("_agreement.png", picture.truths->agreement(observed.counted));
+        if (i == 3 && picture.reference)
+            write("_flip.png", picture.truths->flip_of(observed.shaded, *picture.reference));
     });
 }
 
@@ -206,6 +224,7 @@ void judge(const Bench& bench, Picture& picture, MeasuredRun& measured, const Ob
         const std::string name = picture_name(*measured.run);
         write_pictures(bench.results.path() / name, picture, observed);
         measured.row["picture"] = name + ".png";
+        if (!picture.reference_file.empty()) measured.row["truth_picture"] = picture.reference_file;
     }
     add_counts(measured.row, observed.counted);
     if (!picture.truths) return;

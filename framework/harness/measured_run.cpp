@@ -94,10 +94,13 @@ void add_measures(Row& row, const MeasureValues& values)
 
 void add_plan(Row& row, const std::vector<PlannedPass>& plan)
 {
-    std::string skipped;
-    for (const PlannedPass& planned : plan)
+    std::string skipped, why;
+    for (const PlannedPass& planned : plan) {
         if (!planned.runs) skipped += (skipped.empty() ? "" : " ") + planned.id;
+        why += fmt::format("{}{}: {}", why.empty() ? "" : "; ", planned.id, planned.reason);
+    }
     row["passes_skipped"] = skipped;
+    row["passes_why"]     = why;
 }
 
 void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms, int round)

@@ -125,6 +125,12 @@ MeasureValues Truths::compare_picture(const Image& picture, const Reference& ref
     return compare_pictures(picture, reference, scene_truth_, gbuffer_);
 }
 
+Image Truths::flip_of(const Image& picture, const Reference& reference) const
+{
+    made_for();
+    return flip_of_picture(picture, reference, scene_truth_);
+}
+
 MeasureValues Truths::compare(const TraceResult& counted, const TraceResult* twin, const TraceResult* hidden) const
 {
     made_for();

@@ -34,6 +34,9 @@ public:
     /// A finished picture against the one with the true reflection.
     MeasureValues compare_picture(const Image& picture, const Reference& reference) const;
 
+    /// Where they differ, in false colours.
+    Image flip_of(const Image& picture, const Reference& reference) const;
+
     /// The agreement with the scene truth, as a false-colour picture.
     Image agreement(const TraceResult& counted) const;
 

@@ -68,7 +68,7 @@ ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> columns, co
         lock();
         if (fs::exists(csv_) && !resuming) {
             throw_spec_error("{}: already there; continue it with --resume, or choose another folder with -o",
-                          short_path(csv_));
+                             short_path(csv_));
         }
         remove_partial_files();
         if (fs::exists(csv_))

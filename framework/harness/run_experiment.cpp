@@ -9,6 +9,7 @@
 #include "harness/measure_picture.h"
 #include "harness/progress.h"
 #include "harness/record.h"
+#include "harness/search.h"
 #include "harness/stop_signal.h"
 #include "harness/supervise.h"
 #include "scene/load_scene.h"
@@ -43,19 +44,20 @@ void refuse_large_sizes(const Experiment& experiment, const GpuInfo& device)
     }
 }
 
-std::vector<Run> choose(std::vector<Run> runs, const std::string& only)
+/// All runs, or the one with this id: a listed one, or one that the search for targets may add.
+std::vector<Run> choose(std::vector<Run> runs, std::span<const Technique> techniques, const std::string& only)
 {
     if (only.empty()) return runs;
-    std::erase_if(runs, [&](const Run& run) { return run.id != only; });
-    if (runs.empty()) throw_spec_error("no run has the id '{}'; --dry-run lists them", only);
-    return runs;
+    if (const auto listed = std::ranges::find(runs, only, &Run::id); listed != runs.end()) return {*listed};
+    if (const auto probe = find_probe(techniques, runs, only)) return {*probe};
+    throw_spec_error("no run has the id '{}'; --dry-run lists them", only);
 }
 
 std::vector<Run> planned_runs(const RunOptions& options, const Experiment& experiment,
                               std::span<const Technique> techniques)
 {
     refuse_unknown_scenes(experiment);
-    return choose(expand(experiment, techniques, options.yes), options.only);
+    return choose(expand(experiment, techniques, options.yes), techniques, options.only);
 }
 
 double total_cost(std::span<const Run> runs, std::span<const Technique> techniques, const MeasureSettings& measure)

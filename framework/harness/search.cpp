@@ -65,6 +65,19 @@ std::map<std::string, std::vector<const Run*>> lines_of(std::span<const Run> run
     return lines;
 }
 
+/// The run between two values of a line, or between those and what lies halfway, that has this id.
+std::optional<Run> probe_between(const Run& line, const Parameter& parameter, double a, double b, const std::string& id)
+{
+    const auto value = halfway(parameter, a, b);
+    if (!value) return std::nullopt;
+    Run run                    = line;
+    run.values[parameter.name] = *value;
+    run.id                     = run_id(run);
+    if (run.id == id) return run;
+    if (auto found = probe_between(line, parameter, a, *value, id)) return found;
+    return probe_between(line, parameter, *value, b, id);
+}
+
 } // namespace
 
 std::span<const TargetMeasure> target_measures()
@@ -110,6 +123,21 @@ std::vector<Run> next_probes(const Experiment& experiment, std::span<const Techn
         }
     }
     return probes;
+}
+
+std::optional<Run> find_probe(std::span<const Technique> techniques, std::span<const Run> listed, const std::string& id)
+{
+    for (const Technique& technique : techniques)
+        for (const Accuracy& accuracy : technique.accuracy) {
+            const Parameter& parameter = find_parameter(technique, accuracy.parameter, technique.id);
+            for (const auto& [key, line] : lines_of(listed, technique, accuracy.parameter)) {
+                std::set<double> values;
+                for (const Run* run : line) values.insert(run->values.at(parameter.name));
+                for (auto low = values.begin(); low != values.end() && std::next(low) != values.end(); ++low)
+                    if (auto found = probe_between(*line.front(), parameter, *low, *std::next(low), id)) return found;
+            }
+        }
+    return std::nullopt;
 }
 
 } // namespace ssrlab

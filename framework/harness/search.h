@@ -5,6 +5,7 @@
 #include "harness/record.h"
 
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,5 +27,9 @@ inline constexpr double search_ratio = 1.1;
 /// included; `rows`: what is known of them, by id. Empty when there is nothing left to try.
 std::vector<Run> next_probes(const Experiment& experiment, std::span<const Technique> techniques,
                              std::span<const Run> runs, const std::map<std::string, Row>& rows);
+
+/// The run with this id among all that the search may ever add to `listed`; nothing: it never makes such a run.
+std::optional<Run> find_probe(std::span<const Technique> techniques, std::span<const Run> listed,
+                              const std::string& id);
 
 } // namespace ssrlab

@@ -10,12 +10,32 @@ import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 import pairs  # noqa: E402
 import plot_accuracy  # noqa: E402
-import plot_report  # noqa: E402
+import plot_styles  # noqa: E402
+import plot_verdict  # noqa: E402
 from plot_data import Results  # noqa: E402
 
 
 def series(values, first_round=0):
     return pd.Series(values, index=range(first_round, first_round + len(values)), dtype=float)
+
+
+# What people without red and without green cones see, in linear sRGB: Machado, Oliveira and Fernandes 2009, severity 1.
+SIGHTS = [np.eye(3), np.array([[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]]),
+          np.array([[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]])]
+TO_XYZ = np.array([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750], [0.0193339, 0.1191920, 0.9503041]])
+
+
+def to_lab(colour, sight):
+    encoded = np.array([int(colour[i:i + 2], 16) for i in (1, 3, 5)]) / 255
+    linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+    xyz = TO_XYZ @ np.clip(sight @ linear, 0, 1) / np.array([0.95047, 1, 1.08883])
+    root = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16 / 116)
+    return np.array([116 * root[1] - 16, 500 * (root[0] - root[1]), 200 * (root[1] - root[2])])
+
+
+def difference(a, b):
+    """Of two colours in CIELAB, for the eyes that tell them apart least."""
+    return min(np.linalg.norm(to_lab(a, sight) - to_lab(b, sight)) for sight in SIGHTS)
 
 
 class Test(Case):
@@ -92,8 +112,30 @@ class Test(Case):
         self.assertEqual(cheapest.setting["linear_binary"], "not reached")
         self.assertEqual(cheapest.value["linear_binary"], 0.7)
         self.assertEqual(cheapest.missed_by["linear"], "l2")
-        text = plot_report.headline(summary)
-        self.assertIn("22 [20, 22]×", next(text)["over linear"])
+
+    def test_the_verdict_names_the_cheapest_that_reaches_the_target(self):
+        results = self.results()
+        chosen = plot_verdict.picks(results)
+        self.assertEqual(list(chosen.run_id), ["h", "d", "l3", "b"])
+        self.assertEqual(list(chosen.reached), [True, True, True, False])
+        (_, text), = plot_verdict.verdicts(results, chosen)
+        for part in ("finds 99 % of what the depth buffer holds: hiz, 1 ms", "4 [4, 4] times as fast as dda", "22 [22, 22] times as fast as linear (steps 990)"):
+            self.assertIn(part, text)
+        ranked = plot_verdict.ranking(results, chosen)
+        self.assertEqual(list(ranked.label), ["hiz", "dda", "linear", "linear_binary"])
+
+    def test_24_techniques_look_different(self):
+        names = plot_styles.PLACES + [f"mine_{i}" for i in range(plot_styles.SLOTS - len(plot_styles.PLACES))]
+        slots = plot_styles.slots(names)
+        looks = {(plot_styles.look(slot)[0], plot_styles.look(slot)[2]) for slot in slots.values()}
+        self.assertEqual(len(looks), 24)
+        self.assertEqual(plot_styles.slots(["hiz", "mine_3"])["hiz"], slots["hiz"], "a place does not depend on the others")
+        for dark in (0, 1):
+            for one in range(24):
+                for other in range(one):
+                    a, b = plot_styles.look(one), plot_styles.look(other)
+                    if a[2] == b[2]:
+                        self.assertGreater(difference(a[dark], b[dark]), 15, (one, other))
 
     def test_without_samples_the_interval_is_unknown(self):
         self.results()

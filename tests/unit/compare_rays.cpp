@@ -255,8 +255,8 @@ TEST(Pictures, AgreementColours)
     EXPECT_EQ(colour(0), glm::vec3(0));
     EXPECT_TRUE(colour(1).g > colour(1).r && colour(1).g > colour(1).b);         // green
     EXPECT_TRUE(colour(2).r > 0.5F && colour(2).g > 0.5F);                       // yellow
-    EXPECT_TRUE(colour(3).r > 0.5F && colour(3).g < 0.1F && colour(3).b < 0.1F); // red
-    EXPECT_TRUE(colour(4).r > 0.5F && colour(4).b > 0.5F);                       // magenta
+    EXPECT_TRUE(colour(3).r > 0.5F && colour(3).g < 0.2F && colour(3).b < 0.1F); // orange
+    EXPECT_TRUE(colour(4).r > 0.5F && colour(4).b > 1.5F * colour(4).g);         // pink
     EXPECT_TRUE(colour(5).r < 0.2F && colour(5).r > 0);                          // grey
     SceneTruth scene;
     scene.size_px = {6, 1};
@@ -273,9 +273,20 @@ TEST(Pictures, HeatMapGrowsWithFetches)
     result.structure_fetches = {{"depth_pyramid", {0, 0, 0, 0}}};
     const Image image        = fetch_heat_map(result);
     EXPECT_EQ(image.values[0] + image.values[1] + image.values[2], 0);
-    EXPECT_FLOAT_EQ(image.values[5], 0.1F);
-    EXPECT_FLOAT_EQ(image.values[6], 0.9F);
-    EXPECT_EQ(image.values[9], image.values[6]);
+    const auto brightness = [&](size_t i) {
+        return image.values[3 * i] + image.values[3 * i + 1] + image.values[3 * i + 2];
+    };
+    EXPECT_GT(brightness(1), 0);
+    EXPECT_GT(brightness(2), 5 * brightness(1));
+    EXPECT_EQ(brightness(3), brightness(2));
+}
+
+TEST(Pictures, FlipIsBlackOutsideAndGrowsInside)
+{
+    const Image image = flip_picture({3, 1}, {0.5F, 0.1F, 0.9F}, {0, 1, 1});
+    EXPECT_EQ(image.values[0] + image.values[1] + image.values[2], 0);
+    EXPECT_GT(image.values[3], 0);
+    EXPECT_GT(image.values[6], image.values[3]);
 }
 
 } // namespace

@@ -94,6 +94,7 @@ TEST(Rows, EveryEntryOfARowHasAColumn)
     EXPECT_EQ(measured.row.at("inverse_fps_s"), "0.014");
     EXPECT_EQ(measured.row.at("passes"), "trace=4 composite=1.5");
     EXPECT_THAT(measured.row.at("passes_skipped"), testing::HasSubstr("trace"));
+    EXPECT_THAT(measured.row.at("passes_why"), testing::ContainsRegex("trace: [^;]+; "));
     for (const auto& [name, value] : measured.row) EXPECT_THAT(names, testing::Contains(name));
 }
 

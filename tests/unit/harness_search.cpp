@@ -124,5 +124,19 @@ TEST(Search, StaysInsideTheListedRangeAndEndsOnFailures)
     EXPECT_THAT(next_probes(experiment, {&march, 1}, runs, rows), testing::IsEmpty());
 }
 
+TEST(Search, EveryRunThatItAddsIsFoundByItsId)
+{
+    const std::vector<ssrlab::Run> listed = {run_with(16, 1, 0), run_with(256, 1, 0), run_with(4096, 1, 0),
+                                             run_with(16, 4, 0)};
+    const auto                     all    = searched(listed, {{"recall_1px", {0.9, 0.98}, true}}, saturating);
+    ASSERT_GT(all.size(), listed.size() + 3);
+    for (size_t i = listed.size(); i < all.size(); ++i) {
+        const auto found = find_probe({&march, 1}, listed, all[i].id);
+        ASSERT_TRUE(found);
+        EXPECT_EQ(found->values, all[i].values);
+    }
+    EXPECT_FALSE(find_probe({&march, 1}, listed, "r0123456789abcdef"));
+}
+
 } // namespace
 } // namespace ssrlab

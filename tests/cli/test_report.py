@@ -1,0 +1,133 @@
+"""The report in a browser: nothing breaks, everything answers, nothing overflows. Skipped without Chromium."""
+import os
+import re
+import shutil
+import unittest
+
+from support import Case, main
+
+SMALL = """
+title  = "Report"
+scenes = ["builtin:stairs", "builtin:sphere_over_mirror"]
+sizes  = ["96x54"]
+[passes]
+pass_set = "shading"
+[trace]
+max_distance_m = 9
+[techniques.linear]
+steps = [8, 128]
+[techniques.dda]
+[techniques.hiz]
+[measure]
+min_repeats = 6
+max_repeats = 6
+budget_s    = 0
+"""
+
+
+def browser(folder, width, dark=False):
+    """A page of this width, with its console kept; raises SkipTest with the reason."""
+    try:
+        from selenium import webdriver
+        from selenium.webdriver.chrome.options import Options
+        from selenium.webdriver.chrome.service import Service
+    except ImportError:
+        raise unittest.SkipTest("python3-selenium is not installed")
+    if not shutil.which("chromium") or not shutil.which("chromedriver"):
+        raise unittest.SkipTest("chromium or chromium-driver is not installed")
+    options = Options()
+    for one in ("headless=new", "no-sandbox", "disable-gpu", "disable-quic", "no-first-run", "disable-background-networking",
+                "disable-component-update", "disable-sync", "hide-scrollbars", f"user-data-dir={folder}", f"window-size={width},1000"):
+        options.add_argument("--" + one)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    page = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
+    page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": 1000, "deviceScaleFactor": 1, "mobile": False})
+    page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]})
+    page.execute_cdp_cmd("Network.enable", {})
+    page.execute_cdp_cmd("Network.emulateNetworkConditions", {"offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0})
+    return page
+
+
+class Test(Case):
+    def report(self):
+        """Made by a run, and moved away from everything beside it."""
+        self.ssrlab("run", self.write("small.toml", SMALL), "-o", self.path("out"))
+        self.ssrlab("plot", self.path("out"), says=["Cheapest tracer that finds 99 % of what the depth buffer holds"])
+        os.makedirs(self.path("alone"))
+        return shutil.move(self.path("out/report.html"), self.path("alone/report.html"))
+
+    def open(self, path, width, dark=False):
+        page = browser(self.path(f"browser{width}"), width, dark)
+        self.addCleanup(page.quit)
+        page.get("file://" + path)
+        return page
+
+    def test_report_answers_in_a_browser(self):
+        page = self.open(self.report(), 1400)
+        run = page.execute_script
+        self.assertEqual(page.get_log("browser"), [], "console")
+        self.assertEqual(run("return [...document.images].filter(i => i.getAttribute('src') && !(i.complete && i.naturalWidth)).length"), 0, "a picture is missing")
+        self.assertEqual(run("return [...document.images].filter(i => i.closest('.shots, .plot') && !i.alt).length"), 0, "alt texts")
+
+        # Hover shows a setting and its values; a click opens the run with its command.
+        point = run("const p = chart.getDatasetMeta(0).data[0], b = chart.canvas.getBoundingClientRect(); chart.canvas.scrollIntoView({block: 'center'});"
+                    "const c = chart.canvas.getBoundingClientRect(); return [c.left + p.x, c.top + p.y]")
+        for kind in ("mouseMoved", "mousePressed", "mouseReleased"):
+            page.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": kind, "x": point[0], "y": point[1], "button": "left" if kind != "mouseMoved" else "none", "clickCount": 1})
+            if kind == "mouseMoved":
+                self.wait(page, "return chart.tooltip.opacity > 0")
+                self.assertRegex(" ".join(run("return chart.tooltip.body.flatMap(b => b.lines)")), r"\d ms .*fetches a ray")
+        self.wait(page, "return document.getElementById('run').open")
+        self.assertRegex(run("return document.querySelector('#run .command').textContent"), r"run .*small\.toml --only r[0-9a-f]{16} -o again/")
+        run("document.getElementById('run').close()")
+
+        # Other measures and costs.
+        for select, value in (("measure", "screen_f1_1px"), ("measure", "flip_visible"), ("cost", "fetches_mean"), ("cost", "steps_mean")):
+            run(f"const s = document.getElementById('curve-{select}'); s.value = '{value}'; s.dispatchEvent(new Event('change'))")
+            self.assertGreater(run("return chart.data.datasets.reduce((n, set) => n + set.data.length, 0)"), 3, value)
+
+        # The slider moves the border of the right picture, the choice changes it.
+        before = run("return document.querySelector('.stage .right').style.clipPath")
+        run("const s = document.querySelector('.compare input'); s.value = 20; s.dispatchEvent(new Event('input'))")
+        self.assertNotEqual(run("return document.querySelector('.stage .right').style.clipPath"), before)
+        kinds = run("return [...document.querySelectorAll('.choose-right optgroup')].map(g => g.label)")
+        self.assertEqual(set(kinds), {"picture", "agreement", "FLIP", "fetches"})
+        names = run("return [...document.querySelectorAll('.choose-left option')].map(o => o.textContent)")
+        self.assertTrue({"off", "truth", "hiz", "dda"} <= set(names), names)
+
+        # Sorting and filtering.
+        values = ("return [...document.querySelectorAll('#ranking tbody tr')].filter(r => !r.hidden).map(r => r.cells[arguments[0]].dataset.sort)")
+        at = run("return [...document.querySelectorAll('#ranking th')].findIndex(h => h.textContent === 'ms')")
+        for order in (False, True):
+            run("document.querySelectorAll('#ranking th button')[arguments[0]].click()", at)
+            shown = [float(value) for value in run(values, at)]
+            self.assertEqual(shown, sorted(shown, reverse=order))
+        run("const f = document.querySelector('#ranking .filter input'); f.value = 'hiz'; f.dispatchEvent(new Event('input'))")
+        self.assertEqual(len(run(values, at)), 1)
+        self.assertEqual(page.get_log("browser"), [], "console")
+
+    def test_report_fits_a_phone_and_the_dark(self):
+        path = self.report()
+        for width, dark in ((1400, True), (400, False)):
+            page = self.open(path, width, dark)
+            self.assertLessEqual(page.execute_script("return document.documentElement.scrollWidth"), width)
+            self.assertEqual(page.get_log("browser"), [], "console")
+            ground = page.execute_script("return getComputedStyle(document.body).backgroundColor")
+            self.assertEqual(max(map(int, re.findall(r"\d+", ground)[:3])) < 80, dark, ground)
+
+    def test_commands_of_the_report_measure_the_run_again(self):
+        self.report()
+        for row in self.rows():
+            self.assertTrue(os.path.exists(self.path(f"out/{row['truth_picture']}")), row["run_id"])
+        one = self.rows()[-1]["run_id"]
+        self.ssrlab("run", self.path("small.toml"), "--only", one, "-o", self.path("again"))
+        again = self.rows("again")
+        self.assertEqual([row["run_id"] for row in again], [one])
+
+    def wait(self, page, condition):
+        from selenium.webdriver.support.ui import WebDriverWait
+        WebDriverWait(page, 10).until(lambda _: page.execute_script(condition))
+
+
+if __name__ == "__main__":
+    main()
