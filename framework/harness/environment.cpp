@@ -93,7 +93,7 @@ Environment describe_environment(const Experiment& experiment, std::span<const T
     }
     for (const Measure& measure : measures())
         notes["units"] += fmt::format("{}{}={}", notes["units"].empty() ? "" : "; ", measure.name, measure.unit);
-    for (const Parameter& parameter : pass_parameters())
+    for (const Parameter& parameter : all_pass_settings())
         notes["pass_parameters"] += (notes["pass_parameters"].empty() ? "" : " ") + parameter.name;
     return environment;
 }
