@@ -10,9 +10,9 @@ namespace ssrlab {
 
 /// What a frame may take of the frame before it.
 struct HistoryFacts {
-    bool        usable  = false;                        // there is one, and it is of the frame before
-    bool        changes = false;                        // something moved or is jittered since
-    std::string state   = "a single frame: no history"; // what moved, or why there is none
+    bool        usable  = false; // there is one, and it is of the frame before
+    bool        changes = false; // something moved or is jittered since
+    std::string state   = {};    // what moved since, or why nothing is usable; empty: a single frame
 };
 
 /// What is known of scene and technique before anything is drawn.
