@@ -44,6 +44,21 @@ void print_table(const Timed& planned, const Timed& unculled)
                   .c_str());
 }
 
+/// What the frame before leaves; null for frame 0. The stage shows its own frame again afterwards.
+FrameHistoryPtr history_before(Stage& stage, const PictureOptions& options, const Technique& technique,
+                               const Choice& choice)
+{
+    if (options.at.frame == 0) return nullptr;
+    show_frame(stage, options.view, {options.at.frame - 1, options.at.jitter_phases});
+    auto       history = make_history(stage.gpu, stage.view.size_px);
+    const auto frame = prepare_frame(stage.gpu, make_frame_buffers(stage.gpu, stage.gbuffer), technique, choice.values,
+                                     choice.settings, history);
+    run_frame(stage.gpu, *frame);
+    keep_history(stage.gpu, *frame);
+    show_frame(stage, options.view, options.at);
+    return history;
+}
+
 } // namespace
 
 int print_plan(const CommonOptions& common, const PlanOptions& options)
@@ -52,6 +67,7 @@ int print_plan(const CommonOptions& common, const PlanOptions& options)
     const Technique& technique  = find_technique(techniques, options.picture.technique);
     Choice           choice     = parse_choice(technique, options.picture.parameters);
     Stage            stage      = prepare_stage(common, options.picture);
+    const auto       history    = history_before(stage, options.picture, technique, choice);
     const auto       buffers    = make_frame_buffers(stage.gpu, stage.gbuffer);
 
     choice.settings.passes.at("skip_unneeded_passes") = 1;
@@ -59,7 +75,7 @@ int print_plan(const CommonOptions& common, const PlanOptions& options)
         run_frame(stage.gpu, *frame); // warm-up
         return Timed{std::move(frame), {}, {}};
     };
-    Timed      planned       = timed(prepare_frame(stage.gpu, buffers, technique, choice.values, choice.settings));
+    Timed      planned = timed(prepare_frame(stage.gpu, buffers, technique, choice.values, choice.settings, history));
     const auto planned_image = read_shaded(stage.gpu, *planned.frame);
     Timed      unculled      = timed(prepare_unculled(stage.gpu, *planned.frame));
     const bool same          = read_shaded(stage.gpu, *unculled.frame).values == planned_image.values;
