@@ -282,6 +282,52 @@ TEST(History, IsTheSameOnRerun)
     EXPECT_EQ(sequence(1), sequence(3));
 }
 
+// What the history holds at a hit that reflects is what the ray shows; a ray that hits anything else shows nothing of it.
+TEST(History, FurtherBouncesComeFromIt)
+{
+    const Scene           scene   = load_scene("builtin:facing_mirrors");
+    const ParameterValues passes  = with(plain, {strategy("plane"),
+                                                 chosen(BounceMode::history),
+                                                 {"history_weight", 0},
+                                                 chosen(ViewerFade::off),
+                                                 chosen(EdgeFade::off)});
+    const SequencePicture first   = picture_at(scene, "default", {0, 16}, size_px),
+                          picture = picture_at(scene, "default", {1, 16}, size_px);
+    const GBufferImage     image  = read_gbuffer(device(), *picture.gbuffer);
+    std::vector<glm::vec2> vectors_px;
+    TraceResult            hits;
+    const auto             reflection_after = [&](float held) {
+        const FrameHistoryPtr history = make_history(device(), size_px);
+        keep_history(device(), *run_picture(first, passes, history, "dda"));
+        fill(history->reflection, glm::vec4(held, held, held, 1));
+        const auto frame = run_picture(picture, passes, history, "dda");
+        EXPECT_EQ(row_of(*frame, "reprojection").reason, "bounces come from the frame before");
+        EXPECT_FALSE(row_of(*frame, "history").runs);
+        const Reflection reflection = read_colours(picture.buffers->reflection);
+        vectors_px                  = read_reprojection(device(), *frame);
+        hits                        = count_frame(device(), *frame);
+        return reflection;
+    };
+    const Reflection dark = reflection_after(0), bright = reflection_after(9);
+    size_t           brighter = 0, others = 0;
+    for (size_t i = 0; i < dark.size(); ++i) {
+        const size_t    hit      = pixel_index(hits.hit_pixel[i], size_px);
+        const bool      mirrors  = hits.status[i] == TraceStatus::hit && image.metallic[hit] > 0;
+        const glm::vec2 place_px = glm::vec2(hits.hit_pixel[i]) + 0.5F + (mirrors ? vectors_px[hit] : glm::vec2(NAN));
+        const bool      held = place_px.x >= 0 && place_px.y >= 0 && place_px.x < size_px.x && place_px.y < size_px.y;
+        if (!held) {
+            ++others;
+            ASSERT_EQ(bright[i], dark[i]) << "pixel " << i;
+            continue;
+        }
+        ++brighter;
+        // C = C_own + (9 - C_own) beta, with beta = metallic^3.
+        ASSERT_NEAR(bright[i].r - dark[i].r, 9 * std::pow(image.metallic[hit], 3), 0.02) << "pixel " << i;
+    }
+    EXPECT_GT(brighter, 100U);
+    EXPECT_GT(others, 1000U);
+}
+
 // At a lower resolution pixels without rays take the vector of their block's pixel.
 TEST(History, OfALowerResolution)
 {
