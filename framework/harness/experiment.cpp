@@ -126,19 +126,39 @@ double parameter_value(const TomlFile& file, const toml::node& node, const Param
     return value;
 }
 
+/// "smallest.factor" also lies in a table of its own: [passes.smallest].
+const toml::node* find_setting(const TomlFile& file, const toml::table& table, const std::string& name)
+{
+    if (const toml::node* quoted = table.get(name)) return quoted;
+    const size_t      dot   = name.find('.');
+    const toml::node* inner = dot == std::string::npos ? nullptr : table.get(name.substr(0, dot));
+    if (inner == nullptr) return nullptr;
+    return toml_table(file, *inner, name.substr(0, dot)).get(name.substr(dot + 1));
+}
+
+void refuse_unknown_settings(const TomlFile& file)
+{
+    std::map<std::string, std::vector<std::string>> known; // by table, and by table within a table
+    for (const Setting& setting : all_settings()) {
+        known[setting.table].push_back(setting.name);
+        const size_t dot = setting.name.find('.');
+        if (dot == std::string::npos) continue;
+        known[setting.table].push_back(setting.name.substr(0, dot));
+        known[setting.table + "." + setting.name.substr(0, dot)].push_back(setting.name.substr(dot + 1));
+    }
+    for (const auto& [table_name, names] : known)
+        if (const toml::node_view<const toml::node> node = file.root.at_path(table_name); node.is_table())
+            toml_known_keys(file, *node.as_table(), "setting of [" + table_name + "]", names);
+}
+
 ValueLists read_settings(const TomlFile& file)
 {
-    std::map<std::string, std::vector<std::string>> known;
-    for (const Setting& setting : all_settings()) known[setting.table].push_back(setting.name);
-    for (const auto& [table_name, names] : known) {
-        const toml::table* table = optional_table(file, table_name);
-        if (table != nullptr) toml_known_keys(file, *table, "setting of [" + table_name + "]", names);
-    }
+    refuse_unknown_settings(file);
     ValueLists settings;
     for (const Setting& setting : all_settings()) {
         std::vector<double>& values = settings[setting.name];
         const toml::table*   table  = optional_table(file, setting.table);
-        const toml::node*    node   = table == nullptr ? nullptr : table->get(setting.name);
+        const toml::node*    node   = table == nullptr ? nullptr : find_setting(file, *table, setting.name);
         if (node == nullptr) {
             values = {setting.default_value};
             continue;
