@@ -53,6 +53,12 @@ TEST(Fragile, AnEpsilonOfTheImageLosesAxisAlignedRays)
     EXPECT_GT(check("epsilon_uv", "narrow_and_wide").wrong, 1000U);
 }
 
+TEST(Fragile, UnitysLoopLosesWhatItEntersFromBehind)
+{
+    EXPECT_GT(wrong_per_million("unity_hiz", Field::terrain, {641, 359}, {{"max_steps", 2000}}), 1000)
+        << "behind = hit: the walk hits a slab from behind, too";
+}
+
 TEST(Fragile, AnEpsilonCutsCornersMoreOftenTheLargerTheImage)
 {
     EXPECT_EQ(wrong_per_million("dda", Field::poles, {1920, 1080}), 0);
