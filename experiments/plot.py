@@ -17,6 +17,7 @@ except ImportError as error:
 import plot_accuracy
 import plot_effects
 import plot_figures
+import plot_panels
 import plot_report
 import plot_surfaces
 from matplotlib import pyplot as plt
@@ -29,7 +30,9 @@ def draw(results, folder):
     """([{"name", "alt", "path", "curve"}], tables); an alt text says what a plot shows."""
     os.makedirs(folder, exist_ok=True)
     plots, tables = [], {}
-    for make in plot_figures.ALL + plot_accuracy.ALL + plot_effects.ALL + plot_surfaces.ALL:
+    # A specification that names its figures wants these.
+    usual = plot_figures.ALL + plot_accuracy.ALL + plot_effects.ALL + plot_surfaces.ALL
+    for make in plot_panels.ALL if plot_panels.figures_of(results) else usual:
         for name, figure in (make(results, tables) if len(results.rows) else ()):
             for extension in ("png", "svg"):
                 figure.savefig(os.path.join(folder, f"{name}.{extension}"))

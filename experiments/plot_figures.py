@@ -9,6 +9,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator  # noqa: E402
 from plot_data import errors, is_number, known  # noqa: E402
 
 LAW_FROM_STEPS = 50  # the report's frame rate is capped below
+# Frames per second by linear steps on a GTX 1650: the table of the OpenGL report, and the scene here that stands for its scene.
+REPORTED_FPS = {25: 120, 50: 118, 100: 91, 250: 53, 500: 31, 1000: 18, 2500: 9}
+REPORTED_SCENE, REPORTED_AT = "animal_on_metal", 500
 
 plt.rcParams.update({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3, "axes.axisbelow": True,
                      "figure.constrained_layout.use": True, "savefig.dpi": 140, "legend.frameon": False,
@@ -52,6 +55,27 @@ def steps_lines(results, rows):
             yield series, line
 
 
+def without_steps(results, rows, axes):
+    """Flat lines of techniques that take no steps."""
+    for series, line in rows[rows.steps.isna()].groupby("series"):
+        style = dict(results.styles[series], marker="", linestyle=":")
+        axes[0].axhline(line.fps.iloc[0], label=series, **style)
+        axes[1].axhline(line.frame_ms_median.iloc[0], label=f"{series}: {line.frame_ms_median.iloc[0]:.3g} ms", **style)
+
+
+def reported(rows, lines, axes):
+    """The report's own table, scaled so that it meets the linear march here at 500 steps."""
+    ours = [line[line.steps == REPORTED_AT].fps for series, line in lines if series == "linear"]
+    if rows.scene.iloc[0] != REPORTED_SCENE or not ours or ours[0].empty:
+        return False
+    steps, fps = np.array(list(REPORTED_FPS)), np.array(list(REPORTED_FPS.values()), dtype=float)
+    fps *= ours[0].iloc[0] / REPORTED_FPS[REPORTED_AT]
+    style = dict(color="#777777", marker="x", linestyle="--", label=f"OpenGL report, GTX 1650, × {ours[0].iloc[0] / REPORTED_FPS[REPORTED_AT]:.2g}")
+    axes[0].plot(steps, fps, **style)
+    axes[1].plot(steps, 1000 / fps, **style)
+    return True
+
+
 def law_of_steps(results, tables):
     """FPS and 1/FPS against steps, with the fitted line from 50 steps up: figures 11 and 12 of the OpenGL report."""
     if not results.has("steps", "fps"):
@@ -78,6 +102,8 @@ def law_of_steps(results, tables):
             tables.setdefault("Law of steps: frame time = slope · steps + intercept, from 50 steps up", []).append(
                 {"frame": title, "series": series, "slope, ms per step": f"{slope:.4g}",
                  "intercept, ms": f"{intercept:.4g}", "R²": f"{r2:.4f}"})
+        without_steps(results, rows, (left, right))
+        numbered = "s0_fig11_fig12_" if reported(rows, lines, (left, right)) else ""
         left.set(xscale="log", xlabel="steps", ylabel="frames per second", title="FPS")
         log_axis(left.yaxis)
         plain_ticks(left.xaxis, {int(s) for _, line in lines for s in line.steps})
@@ -86,7 +112,7 @@ def law_of_steps(results, tables):
         left.legend()
         right.legend(fontsize=8.5, loc="upper center", bbox_to_anchor=(0.5, -0.16))
         figure.suptitle(title)
-        yield f"fps_steps_{name}", figure
+        yield f"{numbered}fps_steps_{name}", figure
 
 
 def heat(axis, grid, title, colours, low, high, text):

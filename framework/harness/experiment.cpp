@@ -305,9 +305,9 @@ std::vector<Target> read_targets(const TomlFile& file, const MeasureSettings& me
 
 Experiment load_experiment(const std::filesystem::path& path, std::span<const Technique> techniques)
 {
-    static const std::vector<std::string> known = {"name",   "title",      "scenes",        "views",
-                                                   "sizes",  "frames",     "jitter_phases", "trace",
-                                                   "passes", "techniques", "measure",       "targets"};
+    static const std::vector<std::string> known = {"name",    "title",         "scenes", "views",  "sizes",
+                                                   "frames",  "jitter_phases", "trace",  "passes", "techniques",
+                                                   "measure", "targets",       "figures"};
     const TomlFile                        file  = read_toml(path);
     toml_known_keys(file, file.root, "key", known);
     Experiment experiment;
