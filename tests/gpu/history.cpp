@@ -308,21 +308,21 @@ TEST(History, FurtherBouncesComeFromIt)
         hits                        = count_frame(device(), *frame);
         return reflection;
     };
-    const Reflection dark = reflection_after(0), bright = reflection_after(9);
+    const Reflection after_dark = reflection_after(0), after_bright = reflection_after(9);
     size_t           brighter = 0, others = 0;
-    for (size_t i = 0; i < dark.size(); ++i) {
+    for (size_t i = 0; i < after_dark.size(); ++i) {
         const size_t    hit      = pixel_index(hits.hit_pixel[i], size_px);
         const bool      mirrors  = hits.status[i] == TraceStatus::hit && image.metallic[hit] > 0;
         const glm::vec2 place_px = glm::vec2(hits.hit_pixel[i]) + 0.5F + (mirrors ? vectors_px[hit] : glm::vec2(NAN));
         const bool      held = place_px.x >= 0 && place_px.y >= 0 && place_px.x < size_px.x && place_px.y < size_px.y;
         if (!held) {
             ++others;
-            ASSERT_EQ(bright[i], dark[i]) << "pixel " << i;
+            ASSERT_EQ(after_bright[i], after_dark[i]) << "pixel " << i;
             continue;
         }
         ++brighter;
         // C = C_own + (9 - C_own) beta, with beta = metallic^3.
-        ASSERT_NEAR(bright[i].r - dark[i].r, 9 * std::pow(image.metallic[hit], 3), 0.02) << "pixel " << i;
+        ASSERT_NEAR(after_bright[i].r - after_dark[i].r, 9 * std::pow(image.metallic[hit], 3), 0.02) << "pixel " << i;
     }
     EXPECT_GT(brighter, 100U);
     EXPECT_GT(others, 1000U);
