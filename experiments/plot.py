@@ -37,7 +37,7 @@ def draw(results, folder):
             for extension in ("png", "svg"):
                 figure.savefig(os.path.join(folder, f"{name}.{extension}"))
             plt.close(figure)
-            plots.append({"name": name, "alt": getattr(figure, "finding", "") or name.replace("_", " ") + ".",
+            plots.append({"name": name, "alt": (getattr(figure, "finding", "") or name.replace("_", " ")) + ".",
                           "path": os.path.join(folder, f"{name}.png"), "curve": make in INTERACTIVE})
     return plots, tables
 

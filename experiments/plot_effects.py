@@ -86,6 +86,10 @@ def trades(results, tables):
         for axis, (error, where) in zip(axes[0], shown):
             trade(axis, first, points, error, where)
         figure.suptitle(title)
+        error, where = shown[0]
+        label, row = max(points, key=lambda point: first[error] - point[1][error])
+        figure.finding = (f"Milliseconds added against error removed, {title}. {label} removes most {error}: "
+                          f"{first[error] - row[error]:+.4f} for {row.frame_ms_median - first.frame_ms_median:.2f} ms")
         for label, row in points:
             tables.setdefault("Passes: milliseconds added and error removed, relative to the first run", []).append(
                 {"frame": title, "changed": label, "ms added": f"{row.frame_ms_median - first.frame_ms_median:.2f}",

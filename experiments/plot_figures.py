@@ -8,6 +8,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator  # noqa: E402
 
 from plot_data import errors, is_number, known  # noqa: E402
 
+BEST_THICKNESS = "Best thickness: fewest missed points and false hits"
 LAW_FROM_STEPS = 50  # the report's frame rate is capped below
 # Frames per second by linear steps on a GTX 1650: the table of the OpenGL report, and the scene here that stands for its scene.
 REPORTED_FPS = {25: 120, 50: 118, 100: 91, 250: 53, 500: 31, 1000: 18, 2500: 9}
@@ -112,6 +113,8 @@ def law_of_steps(results, tables):
         left.legend()
         right.legend(fontsize=8.5, loc="upper center", bbox_to_anchor=(0.5, -0.16))
         figure.suptitle(title)
+        fits = [line.get_label() for line in right.get_lines() if " ms/step" in str(line.get_label())]
+        figure.finding = f"Frame time against steps, {title}. " + "; ".join(fits)
         yield f"{numbered}fps_steps_{name}", figure
 
 
@@ -179,7 +182,7 @@ def thickness_curves(results, tables):
             for thickness, x, y in zip(part.thickness_m, false, missed):
                 right.annotate(f"{thickness:g}", (x, y), textcoords="offset points", xytext=(4, 4), fontsize=7.5,
                                color=style["color"])
-            tables.setdefault("Best thickness: fewest missed points and false hits", []).append(
+            tables.setdefault(BEST_THICKNESS, []).append(
                 {"frame": title, "series": said, "thickness, m": f"{part.thickness_m[best]:g}",
                  "missed, % of rays": f"{missed[best]:.2f}", "false, % of rays": f"{false[best]:.2f}"})
         left.set(xscale="log", xlabel="thickness, m", ylabel="wrong, % of rays (missed + false)",
@@ -192,6 +195,8 @@ def thickness_curves(results, tables):
         log_axis(right.yaxis)
         left.legend(fontsize=8.5)
         figure.suptitle(title)
+        best = [row for row in tables.get(BEST_THICKNESS, []) if row["frame"] == title]
+        figure.finding = f"Wrong rays against thickness, {title}. Fewest at " + ", ".join(f"{row['thickness, m']} m ({row['series']})" for row in best)
         yield f"thickness_trade_{name}", figure
 
 
@@ -231,6 +236,9 @@ def comparison_bars(results, _):
         top.set_title(f"Time, median and 95 % interval, hollow: not known ({width}×{height}, view {view})")
         bottom.set_title("Work: fetches of depth and structures per traced ray")
         top.legend(ncol=4, loc="upper center", bbox_to_anchor=(0.5, -0.08))
+        fastest = rows.loc[rows.groupby("scene", sort=False).cost_ms_median.idxmin()]
+        figure.finding = (f"Time and fetches of every technique, {width}×{height}. Fastest: " +
+                          ", ".join(f"{row.series} on {row.scene} ({row.cost_ms_median:.3g} ms)" for _, row in fastest.iterrows()))
         yield f"compare_{view}_{width}x{height}", figure
 
 
@@ -260,6 +268,8 @@ def growth(results, tables):
             axis.set_ylim(top=axis.get_ylim()[1] * 4)  # room for the legend
             axis.legend(fontsize=9, loc="upper left")
         figure.suptitle(f"{scene}, view {view}")
+        figure.finding = f"Growth of time with the number of pixels, {scene}. " + ", ".join(
+            str(line.get_label()) for line in axes[0].get_lines() if "pixels^" in str(line.get_label()))
         yield f"growth_{''.join(c if c.isalnum() else '_' for c in scene)}_{view}", figure
 
 

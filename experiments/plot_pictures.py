@@ -21,7 +21,7 @@ def data_uri(path, flat=False, width=WIDEST):
         image = image.resize(size, Image.NEAREST if flat else Image.LANCZOS)
     data = io.BytesIO()
     if flat:
-        image.quantize(32, dither=Image.NONE).convert("RGB").save(data, "WEBP", lossless=True, method=6)
+        image.save(data, "WEBP", lossless=True, method=4)
     else:
         image.save(data, "WEBP", quality=82, method=6)
     return "data:image/webp;base64," + base64.b64encode(data.getvalue()).decode()

@@ -52,6 +52,9 @@ def precision_against_recall(results, tables):
         axis.set(xlabel="recall: visible points found within 1 px, %", ylabel="precision: hits that are right, %",
                  title=f"Surface models: {title}")
         axis.legend(*sorted_legend(axis), fontsize=7.5, loc="best")
+        best = rows.loc[rows.f1_1px.idxmax()]
+        figure.finding = (f"Precision against recall of each surface model, {title}. Best F1: {best.surface}, {best.behind}, "
+                          f"{100 * best.f1_1px:.1f} %")
         yield f"surfaces_precision_recall_{name}", figure
 
 

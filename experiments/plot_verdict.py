@@ -136,7 +136,8 @@ def verdict(results, chosen):
     for _, rival in rivals.iterrows():
         ratio = ratio_of_rows(results, rival, best)
         interval = f" [{ratio.low:.3g}, {ratio.high:.3g}]" if pd.notna(ratio.low) else ""
-        faster.append(f"{ratio.median:.3g}{interval} times as fast as {named(rival)}")
+        shown = "" if pd.isna(ratio.low) or not ratio.low <= 1 <= ratio.high else " (no difference shown)"
+        faster.append(f"{ratio.median:.3g}{interval} times as fast as {named(rival)}{shown}")
     if faster:
         text += ", " + " and ".join(faster)
     return f"{text}. {left_wrong(best)}"

@@ -59,10 +59,18 @@ plan() {
     step_count=$#
 }
 
+# What the finished steps were expected to take, and took: the rest is scaled by it.
+done_expected=0
+done_spent=0
+
+scaled_s() { # seconds
+    ((done_expected >= 60)) && echo $(($1 * done_spent / done_expected)) || echo "$1"
+}
+
 remaining_s() {
     local sum=0 i
     for ((i = step_number; i < step_count; ++i)); do sum=$((sum + expected[i])); done
-    echo "$sum"
+    scaled_s "$sum"
 }
 
 # A line that moves on a terminal, and a line now and then elsewhere.
@@ -71,7 +79,7 @@ show_progress() {
     while sleep 1; do
         spent=$((SECONDS - begun))
         [[ -t 1 ]] || ((spent % 20 == 0)) || continue
-        left=$((expected[step_number - 1] - spent))
+        left=$(($(scaled_s "${expected[step_number - 1]}") - spent))
         left=$(($(remaining_s) + (left > 0 ? left : 0)))
         line=$(tail -c 400 "$log" 2> /dev/null | tr '\r' '\n' | tail -n 1 | tr -cd '[:print:]')
         line="[$step_number/$step_count] $title, $(duration_text $((SECONDS - started))), about $(duration_text $left) left: $line"
@@ -101,6 +109,10 @@ step() {
     monitor=$!
     "$@" > "$log" 2>&1 || code=$?
     stop_monitor
+    if ((code == 0 && expected[step_number - 1] >= 10)); then
+        done_expected=$((done_expected + expected[step_number - 1]))
+        done_spent=$((done_spent + SECONDS - begun))
+    fi
     local note=
     [[ $step_note == yes ]] && note=" ($(tail -n 1 "$log"))"
     ((code == 0)) && echo "[$step_number/$step_count] $title: done in $(duration_text $((SECONDS - begun)))$note"
