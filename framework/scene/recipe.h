@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene/model.h"
+#include "scene/patterns.h"
 #include "scene/toml_table.h"
 
 #include <optional>
@@ -37,6 +38,7 @@ struct Part {
     RigidMotion             motion;          // pivot_ws: relative to each of the positions
     double                  tile_m = 1;
     std::vector<glm::dvec3> tile_colours; // sRGB
+    std::optional<Pattern>  pattern;
     MaterialChange          change;
 };
 
