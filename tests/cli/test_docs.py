@@ -17,6 +17,10 @@ BANNED = ("clear stretch", "clear stretches", "loop that stops", "beam", "beams"
           "current_ray", "leap", "leaps", "sliver", "slivers", "ggx_share", "own_share", "fade_combination", "cross_blur", "hit_light",
           "blur_hole_widening", "effect_set", "launch.comp", "kernel.comp", "stands before", "stand before", "for who", "such as hold")
 MOST_COLUMNS = 100
+# Shaders whose functions a tracer may use, and those of them that only the framework calls.
+API = ("trace_api", "view", "slab", "grid_float", "grid_exact")
+FRAMEWORK_ONLY = {"depth_rounding", "ends_at", "end_at", "fetch_pixel", "meets", "pack_pixel", "unpack_pixel", "unpack_status", "in_second_layer",
+                  "slab_front_of", "slab_back_of", "reaches_slab_back", "scaled_depth"}
 
 
 def read(path):
@@ -124,6 +128,15 @@ class Test(unittest.TestCase):
         code = "\n".join(read(file) for file in files if os.path.basename(file) != os.path.basename(__file__))
         tree = {os.path.basename(file) for file in files}
         self.each_page(lambda _, text: missing_functions(text, code) + missing_source_names(text, tree))
+
+    def test_the_guide_names_every_function_of_the_api(self):
+        code = "\n".join(read(f"shaders/api/{name}.glsl") for name in API)
+        functions = set(re.findall(r"^\w+ +(\w+)\([^;]*?\)\s*\{", code, flags=re.M))
+        self.assertGreater(len(functions), 35)
+        self.assertEqual(FRAMEWORK_ONLY - functions, set(), "no such function")
+        guide = read("docs/writing_a_technique.md")
+        missing = [name for name in sorted(functions - FRAMEWORK_ONLY) if f"{name}(" not in guide]
+        self.assertEqual(missing, [])
 
     def test_lines_are_short(self):
         self.each_page(lambda _, text: long_lines(text), but=TODO)
