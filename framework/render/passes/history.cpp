@@ -29,6 +29,8 @@ RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
     return [&frame, pass](const auto& commands) {
         record_clear_reflection(commands, frame.buffers->filtered); // of tiles that are not listed
         record_clear_reflection(commands, frame.history->kept_reflection);
+        // Beside a reflector nothing is written, and the next frame may still ask there.
+        record_clear(commands, frame.history->kept_facts, {std::array<float, 4>{1, 0, -1, 0}});
         commands.fillBuffer(*frame.history->counts.buffer, 0, VK_WHOLE_SIZE, 0);
         barrier(commands);
         dispatch_indirect(commands, *pass, frame.buffers->tiles.launch);
