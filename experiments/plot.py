@@ -19,6 +19,7 @@ import plot_effects
 import plot_figures
 import plot_panels
 import plot_report
+import plot_sequences
 import plot_surfaces
 from matplotlib import pyplot as plt
 from plot_data import Results
@@ -31,7 +32,7 @@ def draw(results, folder):
     os.makedirs(folder, exist_ok=True)
     plots, tables = [], {}
     # A specification that names its figures wants these.
-    usual = plot_figures.ALL + plot_accuracy.ALL + plot_effects.ALL + plot_surfaces.ALL
+    usual = plot_figures.ALL + plot_accuracy.ALL + plot_effects.ALL + plot_surfaces.ALL + plot_sequences.ALL
     for make in plot_panels.ALL if plot_panels.figures_of(results) else usual:
         for name, figure in (make(results, tables) if len(results.rows) else ()):
             for extension in ("png", "svg"):

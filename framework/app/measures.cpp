@@ -2,7 +2,7 @@
 #include "core/error.h"
 
 #include "compare/measures.h"
-#include "harness/columns.h"
+#include "harness/sequence_state.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -18,6 +18,7 @@ here, which git ignores. `reference/` holds small committed runs to compare with
 | in a results folder | |
 |---|---|
 | `results.csv` | one row per run, in the columns below |
+| `sequence_summary.csv` | of an experiment with several frames: one row per run without its frame, in the columns of the last table |
 | `samples.csv` | every timed frame: run_id, round, pass, ms, cpu_ms; docs/measuring.md says what a round is |
 | `environment.json` | device, driver, commit, command line, seed, specification, and hashes of everything that decides a result |
 | `pictures/` | per run: the reflection, right and wrong rays in false colours, and the work per ray |
@@ -50,6 +51,12 @@ int print_measures(const CommonOptions& common)
         text += fmt::format("| {} | {}{} |\n", code(column.name), is_parameter ? "parameter: " : "", column.meaning);
     }
     text += "\n## Measures\nAlso columns. A share is between 0 and 1.\n\n" + measures_markdown();
+    text += "\n## Summary of a sequence\n`sequence_summary.csv` has the settings and parameters above, and these:\n\n";
+    text += "| column | meaning |\n|---|---|\n";
+    const std::vector<Column> settings = setting_columns(everything, techniques);
+    for (const Column& column : summary_columns(everything, techniques))
+        if (std::ranges::find(settings, column.name, &Column::name) == settings.end())
+            text += fmt::format("| {} | {} |\n", code(column.name), column.meaning);
     std::fputs(text.c_str(), stdout);
     return 0;
 }

@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::string_view contract = "docs/hit_contract.md";
 constexpr std::string_view truth    = "framework/truth/scene_truth.h";
+constexpr std::string_view before   = "framework/truth/reprojection_truth.h";
 constexpr std::string_view own      = "ssrlab";
 
 // px distance = the larger of |dx| and |dy| between two hit points. "Found" = the truth has a point, the technique hits, and
@@ -123,6 +124,24 @@ constexpr auto table = std::to_array<Measure>({
      own},
     {"picture_visible_rmse", "display value", "as picture_rmse, over visible rays alone", own},
     {"picture_visible_border_rmse", "display value", "as picture_border_rmse, over visible rays alone", own},
+
+    {"disocclusion_share", "share",
+     "rays whose reflection the frame before did not show: hidden or outside the image, of rays for which this is "
+     "known",
+     before},
+    {"reprojection_unknown_share", "share",
+     "rays for which it is not known where their reflection was in the frame before (normal maps, curved mirrors "
+     "without one answer), of traced rays",
+     before},
+    {"surface_motion_error_median_px", "px",
+     "median distance between where the surface's motion vector says that a reflection was in the frame before and "
+     "where it was, over rays that hit within 1 px of the true point and whose reflection the frame before showed",
+     before},
+    {"surface_motion_error_p95_px", "px", "95th percentile of the same distances", before},
+    {"flip_share", "share",
+     "rays that hit in this frame or the one before but not in both, or more than 2 px apart without the jitter, of "
+     "rays traced in both; where nothing but jitter moves",
+     own},
 });
 
 } // namespace

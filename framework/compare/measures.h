@@ -81,6 +81,32 @@ MeasureValues compare_pictures(const Image& tested, const Reference& reference, 
 /// Where a finished picture differs from that one: FLIP of each reflecting pixel in false colours.
 Image flip_of_picture(const Image& tested, const Reference& reference, const SceneTruth& scene_truth);
 
+/// disocclusion_share and the next three. `found_px`: by pixel, from the pixel to where its reflection is said to have been, without
+/// jitter; NaN where nothing is said.
+MeasureValues compare_reprojection(std::span<const glm::vec2> found_px, const ReprojectionTruth& truth,
+                                   const TraceResult& traced, const SceneTruth& scene_truth);
+
+/// Where each ray hit, without jitter: what is kept of a frame to compare the next one with it.
+struct HitPlaces {
+    std::vector<glm::vec2> px; // NaN: traced, without hit; infinite: not traced
+};
+HitPlaces hit_places(const TraceResult& traced, glm::dvec2 jitter_px);
+
+struct Flips {
+    size_t flips = 0, rays = 0; // rays traced in both frames
+};
+Flips count_changes(const HitPlaces& before, const HitPlaces& now);
+
+/// By pixel, of the display luma of a sequence's pictures.
+struct TemporalMoments {
+    std::vector<float> sum, sum_of_squares;
+    std::vector<int>   count;
+};
+/// Adds the pixels that reflect.
+void add_picture(TemporalMoments& moments, const Image& linear_radiance, const TraceResult& traced);
+/// Root of the mean variance over time, over pixels that reflect in `frames` pictures, at least two.
+std::optional<double> temporal_rms(const TemporalMoments& moments, int frames);
+
 /// The reference reflection: the scene truth's radiance where traced, black elsewhere; channels R, G, B.
 Image reference_image(const SceneTruth& scene_truth);
 

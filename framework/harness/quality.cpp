@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/parallel_rows.h"
+#include "truth/reprojection_truth.h"
 #include "truth/truth_cache.h"
 
 #include <cerrno>
@@ -117,6 +118,21 @@ const std::vector<glm::vec4>& Truths::true_reflection()
     const TraceSettings& settings = made_for();
     if (true_reflection_) return *true_reflection_;
     return true_reflection_.emplace(reflection_of(cached_glossy_truth(cache_dir_, *scene_, gbuffer_, settings, {})));
+}
+
+void Truths::make_reprojection(const Scene& before, const FrameMotion& motion)
+{
+    if (reprojection_) return;
+    const SceneBvh now(*scene_);
+    reprojection_ = motion.moving_draws == 0 ? reprojection_truth(now, now, gbuffer_, motion)
+                                             : reprojection_truth(now, SceneBvh(before), gbuffer_, motion);
+}
+
+MeasureValues Truths::compare_motion(const TraceResult& counted) const
+{
+    made_for();
+    if (!reprojection_ || gbuffer_.motion_px.empty()) return {};
+    return compare_reprojection(gbuffer_.motion_px, *reprojection_, counted, scene_truth_);
 }
 
 MeasureValues Truths::compare_picture(const Image& picture, const Reference& reference) const

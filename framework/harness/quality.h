@@ -3,7 +3,7 @@
 
 #include "compare/measures.h"
 #include "harness/measured_run.h"
-#include "scene/scene.h"
+#include "scene/sequence.h"
 
 #include <filesystem>
 #include <optional>
@@ -37,6 +37,11 @@ public:
     /// Where they differ, in false colours.
     Image flip_of(const Image& picture, const Reference& reference) const;
 
+    /// Where reflections were one frame earlier; `before` is the scene then. Nothing to do on the second call.
+    void make_reprojection(const Scene& before, const FrameMotion& motion);
+    /// What moved since then, of a G-buffer with motion vectors.
+    MeasureValues compare_motion(const TraceResult& counted) const;
+
     /// The agreement with the scene truth, as a false-colour picture.
     Image agreement(const TraceResult& counted) const;
 
@@ -51,6 +56,7 @@ private:
     SceneTruth                            scene_truth_;
     std::optional<Reference>              reference_;       // with image_errors: the scene truth's reflection
     std::optional<std::vector<glm::vec4>> true_reflection_; // when asked for
+    std::optional<ReprojectionTruth>      reprojection_;    // when asked for
 };
 
 /// $SSRLAB_CACHE, or .truth_cache beside the results folder.
