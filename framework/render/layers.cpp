@@ -36,6 +36,7 @@ void add_layers(Bindings& bindings, std::span<const GBufferPtr> layers)
                          {name("material_image"), layer.material},
                          {name("radiance_image"), layer.radiance},
                          {name("highlight_image"), layer.highlight},
+                         {name("object_image"), layer.object},
                          {name("solid_image"), layer.solid}});
     }
 }
