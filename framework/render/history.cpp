@@ -94,7 +94,7 @@ void keep_history(Gpu& gpu, const PreparedFrame& frame)
                 {"reflection_image", frame.buffers->reflection},
                 {"previous_reflection_image", history.reflection},
                 {"previous_facts_image", history.facts}});
-    ShaderSource source{.file = "passes/keep_history.comp"};
+    ShaderSource source{.file = "gbuffer/keep_history.comp"};
     if (!kept) source.defines.emplace("KEEP_REFLECTION", "1");
     const ComputePass keep = make_compute_pass(gpu, compile_shader(source), all);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
