@@ -14,7 +14,15 @@ namespace {
 
 using testing::HasSubstr;
 
-const FrameFacts with_pyramid{.structures = {"depth_pyramid"}};
+FrameFacts facts_with_pyramid(bool scene = false)
+{
+    FrameFacts facts;
+    facts.scene      = scene;
+    facts.structures = {"depth_pyramid"};
+    return facts;
+}
+
+const FrameFacts with_pyramid = facts_with_pyramid();
 
 /// 1000 pixels in 20 tiles, of which `reflecting` reflect, `rough` of these with roughness.
 FrameStatistics frame(uint32_t reflecting, uint32_t rough, uint32_t hits, uint32_t mirror_hits)
@@ -107,7 +115,7 @@ TEST(Plan, WithoutSkippingEveryPassRunsThatIsNotOff)
 // A second layer and further bounces continue rays one by one, whether the picture calls for them or not.
 TEST(Plan, FurtherRaysNeedOneRayPerPixelAtFullResolution)
 {
-    const FrameFacts      drawn{.scene = true, .structures = {"depth_pyramid"}};
+    const FrameFacts      drawn   = facts_with_pyramid(true);
     const FrameStatistics mirrors = frame(400, 0, 300, 10);
     const auto            plan    = plan_frame(drawn, mirrors, values_with({{"hidden_layer", 1}}));
     EXPECT_EQ(reason(plan, "hidden_layer"), "25 % of 400 rays missed");
