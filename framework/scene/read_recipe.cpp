@@ -46,9 +46,6 @@ void read_shape_keys(TomlTable& table, Part& part)
     part.tile_colours = table.vectors("tile_colours");
     if (!part.tile_colours.empty() && part.tile_colours.size() != 2)
         table.fail("tile_colours", "must be two colours: [[r, g, b], [r, g, b]]");
-    if (const auto pattern = table.choice("pattern", {"wet_asphalt", "marble"}))
-        part.pattern = static_cast<Pattern>(*pattern);
-    if (part.pattern && !part.tile_colours.empty()) table.fail("pattern", "cannot be used with 'tile_colours'");
 }
 
 Part read_part(TomlTable& table)

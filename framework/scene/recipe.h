@@ -2,7 +2,6 @@
 #pragma once
 
 #include "scene/model.h"
-#include "scene/patterns.h"
 #include "scene/toml_table.h"
 
 #include <optional>
@@ -38,7 +37,6 @@ struct Part {
     RigidMotion             motion;          // pivot_ws: relative to each of the positions
     double                  tile_m = 1;
     std::vector<glm::dvec3> tile_colours; // sRGB
-    std::optional<Pattern>  pattern;
     MaterialChange          change;
 };
 
