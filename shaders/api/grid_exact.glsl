@@ -21,10 +21,19 @@ i64vec2 border_t(Ray ray, Grid grid, ivec2 border)
 
 real crossing_to_t(Grid grid, int64_t t) { return real(double(t) / double(grid.whole)); }
 
+// The nearest step, the even one of two: mirrored positions get mirrored steps. round() may break such ties as it likes, and lavapipe's roundEven() of
+// doubles breaks them upward on some processors. A sum is rounded by IEEE 754: 1.5 * 2^52 leaves it no fraction.
+ivec2 nearest_steps(dvec2 position_px)
+{
+    const double  no_fraction = 6755399441055744.0LF;
+    precise dvec2 steps       = (position_px * double(steps_per_px) + no_fraction) - no_fraction;
+    return ivec2(steps);
+}
+
 Grid make_grid(Ray ray)
 {
-    ivec2 from  = ivec2(round(dvec2(ray.origin.xy) * double(steps_per_px)));
-    ivec2 delta = ivec2(round((dvec2(ray.origin.xy) + dvec2(ray.delta.xy)) * double(steps_per_px))) - from;
+    ivec2 from      = nearest_steps(dvec2(ray.origin.xy));
+    ivec2 delta     = nearest_steps(dvec2(ray.origin.xy) + dvec2(ray.delta.xy)) - from;
     bvec2 flat_axis = equal(delta, ivec2(0));
     // A ray stays in the column or row that it does not leave: from the middle, so that it stands on no border.
     ivec2 middle  = ray.start_pixel * steps_per_px + steps_per_px / 2;
