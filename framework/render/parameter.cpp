@@ -11,7 +11,12 @@
 namespace ssrlab {
 namespace {
 
-const std::vector<std::string> parameter_keys = {"default", "min", "max", "choices", "defines", "doc"};
+/// A function: manifests are read before all constants of other files are there.
+const std::vector<std::string>& parameter_keys()
+{
+    static const std::vector<std::string> keys = {"default", "min", "max", "choices", "defines", "doc"};
+    return keys;
+}
 
 std::string expectation(const Parameter& parameter)
 {
@@ -115,7 +120,7 @@ Parameter read_parameter(const TomlFile& file, const toml::key& key, const toml:
                          file.path, key.source().begin.line, parameter.name);
     }
     const toml::table& table = toml_table(file, node, parameter.name);
-    toml_known_keys(file, table, "field of parameter '" + parameter.name + "'", parameter_keys);
+    toml_known_keys(file, table, "field of parameter '" + parameter.name + "'", parameter_keys());
     const std::string owner = "parameter '" + parameter.name + "'";
     parameter.doc           = toml_text(file, manifest_key(file, table, "doc", owner), "doc of " + parameter.name);
     const toml::node& default_node = manifest_key(file, table, "default", owner);
