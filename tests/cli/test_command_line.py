@@ -87,7 +87,7 @@ class Test(Case):
         self.assertEqual(completed("ren"), ["render"])
         self.assertEqual(completed("render", "thin"), ["thin_yard"])
         self.assertEqual(completed("render", "thin_yard", "-t", "quad"), ["quadtree"])
-        self.assertEqual(completed("render", "thin_yard", "--si"), ["--size"])
+        self.assertEqual(completed("render", "thin_yard", "--siz"), ["--size"])
 
 
 if __name__ == "__main__":
