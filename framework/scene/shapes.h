@@ -22,4 +22,7 @@ void multiply_uv(Mesh& mesh, double factor);
 Texture  make_checker_texture(glm::vec3 colour_a, glm::vec3 colour_b);
 Material make_material(const std::string& name, glm::vec3 base_colour, float metallic, float roughness);
 
+/// Reflectance at normal incidence of a dielectric, from its refractive index.
+float ior_to_f0(double ior);
+
 } // namespace ssrlab
