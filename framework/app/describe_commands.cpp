@@ -5,6 +5,7 @@
 #include "core/names.h"
 #include "gpu/gpu.h"
 #include "harness/experiment.h"
+#include "truth/pixel_surface.h"
 
 #include <nlohmann/json.hpp>
 
@@ -75,16 +76,46 @@ int print_technique(const Technique& technique)
     return 0;
 }
 
+nlohmann::json json_of(const Surface& surface)
+{
+    nlohmann::json json{{"name", surface.id},
+                        {"title", surface.name},
+                        {"summary", surface.summary},
+                        {"needs", nlohmann::json::array()},
+                        {"folder", surface.folder.string()},
+                        {"sources", surface.cite}};
+    if (surface.needs_gradient) json["needs"].push_back("gradient");
+    if (surface.needs_solid) json["needs"].push_back("solid");
+    return json;
+}
+
+int print_surface(const Surface& surface)
+{
+    std::puts(fmt::format("{} ({})\n{}\n", surface.name, surface.id, surface.summary).c_str());
+    std::puts(fmt::format("a surface model: -p surface={}, or surface = \"{}\" in [trace] of experiments", surface.id,
+                          surface.id)
+                  .c_str());
+    std::puts(fmt::format("needs of the G-buffer: depth and normal{}{}", surface.needs_gradient ? ", gradient" : "",
+                          surface.needs_solid ? ", solid" : "")
+                  .c_str());
+    std::puts(has_screen_truth(surface.id) ? "screen truth: on the CPU" : "screen truth: dda in double precision");
+    std::puts(fmt::format("folder: {}", surface.folder.string()).c_str());
+    for (const std::string& citation : surface.cite) std::puts(fmt::format("source: {}", citation).c_str());
+    return 0;
+}
+
 nlohmann::json list_as_json(const std::vector<Technique>& techniques)
 {
     nlohmann::json json{{"techniques", nlohmann::json::array()},
+                        {"surfaces", nlohmann::json::array()},
                         {"scenes", nlohmann::json::array()},
                         {"settings", nlohmann::json::array()},
                         {"devices", nlohmann::json::array()}};
     for (const Technique& technique : techniques) json["techniques"].push_back(json_of(technique));
+    for (const Surface& surface : surfaces_of(techniques)) json["surfaces"].push_back(json_of(surface));
     for (const SceneListing& scene : list_scenes())
         json["scenes"].push_back({{"name", scene.name}, {"summary", scene.summary}});
-    for (const Setting& setting : all_settings()) {
+    for (const Setting& setting : all_settings(surfaces_of(techniques))) {
         json["settings"].push_back(json_of(setting));
         json["settings"].back()["table"] = setting.table;
     }
@@ -114,6 +145,9 @@ int list_everything(const CommonOptions& common, bool json)
     for (const Technique& technique : techniques)
         std::puts(
             fmt::format("  {:<16} {}{}", technique.id, technique.summary, technique.exact ? " (exact)" : "").c_str());
+    std::puts("\nSurface models: what a pixel is taken to hold");
+    for (const Surface& surface : surfaces_of(techniques))
+        std::puts(fmt::format("  {:<16} {}", surface.id, surface.summary).c_str());
     std::puts("\nScenes (besides any .glb, .gltf, recipe .toml or frame .exr by its path)");
     for (const SceneListing& scene : list_scenes())
         std::puts(fmt::format("  {:<26} {}", scene.name, scene.summary).c_str());
@@ -138,24 +172,26 @@ int list_everything(const CommonOptions& common, bool json)
 
 int show_entry(const CommonOptions& common, const std::string& name, bool json)
 {
-    const std::vector<Technique> techniques = list_techniques(common.technique_dirs);
-    const auto                   technique  = std::ranges::find(techniques, name, &Technique::id);
-    const auto                   setting    = std::ranges::find(all_settings(), name, &Setting::name);
-    if (technique != techniques.end()) {
-        if (!json) return print_technique(*technique);
-        std::puts(json_of(*technique).dump(1).c_str());
+    const std::vector<Technique>   techniques = list_techniques(common.technique_dirs);
+    const std::span<const Surface> surfaces   = surfaces_of(techniques);
+    const std::vector<Setting>     settings   = all_settings(surfaces);
+    const auto                     print_json = [](const nlohmann::json& entry) {
+        std::puts(entry.dump(1).c_str());
         return 0;
-    }
-    if (setting == all_settings().end()) {
+    };
+    if (const auto found = std::ranges::find(techniques, name, &Technique::id); found != techniques.end())
+        return json ? print_json(json_of(*found)) : print_technique(*found);
+    if (const auto found = std::ranges::find(surfaces, name, &Surface::id); found != surfaces.end())
+        return json ? print_json(json_of(*found)) : print_surface(*found);
+    const auto setting = std::ranges::find(settings, name, &Setting::name);
+    if (setting == settings.end()) {
         std::vector<std::string> known;
         for (const Technique& one : techniques) known.push_back(one.id);
-        for (const Setting& one : all_settings()) known.push_back(one.name);
-        throw_spec_error("{}", unknown_name("technique or setting", name, known));
+        for (const Surface& one : surfaces) known.push_back(one.id);
+        for (const Setting& one : settings) known.push_back(one.name);
+        throw_spec_error("{}", unknown_name("technique, surface model or setting", name, known));
     }
-    if (json) {
-        std::puts(json_of(*setting).dump(1).c_str());
-        return 0;
-    }
+    if (json) return print_json(json_of(*setting));
     std::puts(fmt::format("A setting of [{}] in experiments, and of -p\n", setting->table).c_str());
     print_parameter(*setting);
     return 0;

@@ -92,19 +92,21 @@ int main(int argc, char** argv)
     app.set_version_flag("--version", version_text());
     app.add_option("--device", common.device,
                    "Vulkan device by index or part of its name; default: a discrete GPU if present, else the first");
-    app.add_option("--techniques", common.technique_dirs,
-                   "Further technique folders, or folders of them (also $SSRLAB_TECHNIQUES)");
+    app.add_option(
+        "--techniques", common.technique_dirs,
+        "Further folders of techniques, structures and surface models, or folders of them (also $SSRLAB_TECHNIQUES)");
     app.add_flag("--validation", common.validation, "Load the Khronos validation layer; any message fails the command");
 
     app.add_flag("--quiet", common.quiet, "No warnings and no progress; errors are still said");
 
     std::function<int()> command;
     bool                 json = false;
-    auto*                list = app.add_subcommand("list", "Techniques, scenes, settings and devices");
+    auto*                list = app.add_subcommand("list", "Techniques, surface models, scenes, settings and devices");
     list->add_flag("--json", json, "With everything that show says, as JSON");
     list->callback([&] { command = [&] { return list_everything(common, json); }; });
-    auto* show = app.add_subcommand("show", "A technique's parameters and sources, or a setting's range and default");
-    show->add_option("TECHNIQUE|SETTING", technique)->required();
+    auto* show = app.add_subcommand(
+        "show", "A technique's parameters and sources, what a surface model needs, or a setting's range and default");
+    show->add_option("TECHNIQUE|SURFACE|SETTING", technique)->required();
     show->add_flag("--json", json, "As JSON");
     show->callback([&] { command = [&] { return show_entry(common, technique, json); }; });
     auto* render = app.add_subcommand("render", "A picture with reflections (.png or .exr)");

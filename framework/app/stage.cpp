@@ -57,13 +57,14 @@ void show_frame(Stage& stage, const std::string& view, SequenceFrame at)
 
 Choice parse_choice(const Technique& technique, const std::vector<std::string>& pairs)
 {
-    Choice choice{default_values(technique), {}};
+    const std::vector<Setting> settings = all_settings(technique.surfaces);
+    Choice                     choice{default_values(technique), {}};
     for (const std::string& pair : pairs) {
         const auto equals = pair.find('=');
         if (equals == std::string::npos) throw_spec_error("-p {}: expected name=value", pair);
         const std::string name = pair.substr(0, equals), text = pair.substr(equals + 1), place = "-p " + pair;
-        const auto        setting = std::ranges::find(all_settings(), name, &Setting::name);
-        if (setting == all_settings().end()) {
+        const auto        setting = std::ranges::find(settings, name, &Setting::name);
+        if (setting == settings.end()) {
             choice.values[name] = parse_parameter(find_parameter(technique, name, place), text, place);
             continue;
         }

@@ -55,6 +55,16 @@ std::map<std::string, std::string> describe_identity(const Experiment&          
         for (const Structure& structure : technique.structures)
             identity["structure " + structure.id] = folder_hash(structure.folder);
     }
+    const auto add_surfaces = [&](const ValueLists& settings) {
+        const auto used = settings.find("surface");
+        if (used == settings.end()) return;
+        for (const double value : used->second) {
+            const Surface& surface            = surfaces_of(techniques)[static_cast<size_t>(value)];
+            identity["surface " + surface.id] = folder_hash(surface.folder);
+        }
+    };
+    add_surfaces(experiment.settings);
+    for (const TechniqueSweep& sweep : experiment.techniques) add_surfaces(sweep.settings);
     for (const std::string& scene : experiment.scenes) identity["scene " + scene] = scene_hash(scene);
     return identity;
 }

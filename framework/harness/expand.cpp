@@ -41,10 +41,10 @@ ValueLists settings_of(const Experiment& experiment, const TechniqueSweep& sweep
     return lists;
 }
 
-FrameSettings to_settings(const ParameterValues& values)
+FrameSettings to_settings(std::span<const Setting> all, const ParameterValues& values)
 {
     FrameSettings settings;
-    for (const Setting& setting : all_settings()) setting.set(settings, values.at(setting.name));
+    for (const Setting& setting : all) setting.set(settings, values.at(setting.name));
     return settings;
 }
 
@@ -59,6 +59,7 @@ void refuse_cut_loops(const TechniqueSweep& sweep, const Technique& technique, c
 /// Settings and values do not depend on the picture. Runs with the same settings stand together: they share a truth.
 std::vector<Run> expand_picture(const Experiment& experiment, std::span<const Technique> techniques)
 {
+    const std::vector<Setting>                  all = all_settings(surfaces_of(techniques));
     std::map<ParameterValues, std::vector<Run>> by_settings;
     int                                         number = 0;
     for (const TechniqueSweep& sweep : experiment.techniques) {
@@ -68,7 +69,7 @@ std::vector<Run> expand_picture(const Experiment& experiment, std::span<const Te
         for (const ParameterValues& settings : cross_product(settings_of(experiment, sweep))) {
             for (const ParameterValues& one : values) {
                 by_settings[settings].push_back(
-                    {"", "", "", {0, 0}, to_settings(settings), sweep.id, one, {}, number++});
+                    {"", "", "", {0, 0}, to_settings(all, settings), sweep.id, one, {}, number++});
             }
         }
     }
@@ -99,8 +100,8 @@ std::string run_id(const Run& run)
         identity += fmt::format("frame={}\njitter_phases={}\n", run.at.frame, run.at.jitter_phases);
     // An effect's parameter counts when it is not at its default: a new effect leaves the ids of earlier runs alone.
     for (const Setting& setting : all_settings()) {
-        const double value = setting.get(run.settings);
-        if (setting.table == "trace" || value != setting.default_value)
+        const std::string value = setting.text(run.settings);
+        if (setting.table == "trace" || value != setting.text({}))
             identity += fmt::format("{}={}\n", setting.name, value);
     }
     for (const auto& [name, value] : run.values) identity += fmt::format("{}={}\n", name, value);

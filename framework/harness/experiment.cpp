@@ -126,16 +126,16 @@ double parameter_value(const TomlFile& file, const toml::node& node, const Param
     return value;
 }
 
-ValueLists read_settings(const TomlFile& file)
+ValueLists read_settings(const TomlFile& file, std::span<const Setting> all)
 {
     std::map<std::string, std::vector<std::string>> known;
-    for (const Setting& setting : all_settings()) known[setting.table].push_back(setting.name);
+    for (const Setting& setting : all) known[setting.table].push_back(setting.name);
     for (const auto& [table_name, names] : known) {
         const toml::table* table = optional_table(file, table_name);
         if (table != nullptr) toml_known_keys(file, *table, "setting of [" + table_name + "]", names);
     }
     ValueLists settings;
-    for (const Setting& setting : all_settings()) {
+    for (const Setting& setting : all) {
         std::vector<double>& values = settings[setting.name];
         const toml::table*   table  = optional_table(file, setting.table);
         const toml::node*    node   = table == nullptr ? nullptr : table->get(setting.name);
@@ -157,16 +157,16 @@ bool is_structure(const Technique& technique, const std::string& name)
 }
 
 void read_values(const TomlFile& file, const toml::table& table, const std::string& prefix, const Technique& technique,
-                 TechniqueSweep& sweep)
+                 std::span<const Setting> settings, TechniqueSweep& sweep)
 {
     for (const auto& [key, node] : table) {
         const std::string name = prefix + std::string(key.str());
         if (node.is_table() && is_structure(technique, name)) {
-            read_values(file, *node.as_table(), name + ".", technique, sweep);
+            read_values(file, *node.as_table(), name + ".", technique, settings, sweep);
             continue;
         }
-        const auto setting = std::ranges::find(all_settings(), name, &Setting::name);
-        if (setting != all_settings().end()) {
+        const auto setting = std::ranges::find(settings, name, &Setting::name);
+        if (setting != settings.end()) {
             for (const toml::node* value : values_of(file, node, name)) {
                 sweep.settings[name].push_back(parameter_value(file, *value, *setting));
             }
@@ -180,15 +180,17 @@ void read_values(const TomlFile& file, const toml::table& table, const std::stri
     }
 }
 
-TechniqueSweep read_sweep(const TomlFile& file, const toml::table& table, const Technique& technique)
+TechniqueSweep read_sweep(const TomlFile& file, const toml::table& table, const Technique& technique,
+                          std::span<const Setting> settings)
 {
     TechniqueSweep sweep{technique.id, toml_place(file, table), {}, {}};
-    read_values(file, table, "", technique, sweep);
+    read_values(file, table, "", technique, settings, sweep);
     for (const auto& [name, value] : default_values(technique)) sweep.values.try_emplace(name, std::vector{value});
     return sweep;
 }
 
-std::vector<TechniqueSweep> read_sweeps(const TomlFile& file, std::span<const Technique> techniques)
+std::vector<TechniqueSweep> read_sweeps(const TomlFile& file, std::span<const Technique> techniques,
+                                        std::span<const Setting> settings)
 {
     const toml::table* table = optional_table(file, "techniques");
     if (table == nullptr || table->empty()) {
@@ -204,7 +206,7 @@ std::vector<TechniqueSweep> read_sweeps(const TomlFile& file, std::span<const Te
         }
         for (const toml::node* value : values_of(file, node, "techniques." + technique->id)) {
             const toml::table& one = toml_table(file, *value, "techniques." + technique->id);
-            found.emplace_back(one.source().begin, read_sweep(file, one, *technique));
+            found.emplace_back(one.source().begin, read_sweep(file, one, *technique, settings));
         }
     }
     std::ranges::sort(found, [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -290,7 +292,8 @@ Experiment load_experiment(const std::filesystem::path& path, std::span<const Te
                                                    "passes", "techniques", "measure",       "targets"};
     const TomlFile                        file  = read_toml(path);
     toml_known_keys(file, file.root, "key", known);
-    Experiment experiment;
+    const std::vector<Setting> settings = all_settings(surfaces_of(techniques));
+    Experiment                 experiment;
     experiment.file  = path;
     experiment.text  = file.text;
     experiment.name  = read_name(file, path);
@@ -303,8 +306,8 @@ Experiment load_experiment(const std::filesystem::path& path, std::span<const Te
     experiment.views        = read_texts(file, "views", {"default"});
     experiment.sizes_px     = read_sizes(file);
     experiment.frames       = read_frames(file);
-    experiment.settings     = read_settings(file);
-    experiment.techniques   = read_sweeps(file, techniques);
+    experiment.settings     = read_settings(file, settings);
+    experiment.techniques   = read_sweeps(file, techniques, settings);
     experiment.measure      = read_measure(file);
     experiment.targets      = read_targets(file, experiment.measure);
     return experiment;

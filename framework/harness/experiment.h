@@ -76,11 +76,15 @@ struct Run {
 
 /// A setting of [trace] or [passes]: key in the specification and column of the record, from this one table.
 struct Setting : Parameter {
-    std::string                                 table;
-    std::function<double(const FrameSettings&)> get;
-    std::function<void(FrameSettings&, double)> set;
+    std::string                                      table;
+    std::function<std::string(const FrameSettings&)> text; // its value as a person writes it
+    std::function<void(FrameSettings&, double)>      set;
 };
-std::span<const Setting> all_settings();
+/// `surfaces`: what `surface` may be. Names, texts and ranges of the others do not depend on them.
+std::vector<Setting>     all_settings(std::span<const Surface> surfaces);
+std::span<const Setting> all_settings(); // without any
+/// The surface models that techniques may be traced under.
+std::span<const Surface> surfaces_of(std::span<const Technique> techniques);
 
 inline constexpr int    max_size_px      = 16384;
 inline constexpr double max_runs_unasked = 100000;

@@ -44,9 +44,7 @@ Row identity_row(const Experiment& experiment, const Run& run, const Technique& 
                {"frame", std::to_string(run.at.frame)},
                {"jitter_phases", std::to_string(run.at.jitter_phases)},
                {"technique", run.technique}};
-    for (const Setting& setting : all_settings()) {
-        row[setting.name] = format_parameter(setting, setting.get(run.settings));
-    }
+    for (const Setting& setting : all_settings()) row[setting.name] = setting.text(run.settings);
     for (const Parameter& parameter : technique.parameters) {
         row[parameter.name] = format_parameter(parameter, run.values.at(parameter.name));
     }
@@ -163,8 +161,8 @@ std::string trace_command(const Run& run, const Technique& technique)
     for (const Parameter& parameter : technique.parameters)
         text += fmt::format(" -p {}={}", parameter.name, format_parameter(parameter, run.values.at(parameter.name)));
     for (const Setting& setting : all_settings())
-        if (const double value = setting.get(run.settings); setting.table == "trace" && value != setting.default_value)
-            text += fmt::format(" -p {}={}", setting.name, format_parameter(setting, value));
+        if (const std::string value = setting.text(run.settings); setting.table == "trace" && value != setting.text({}))
+            text += fmt::format(" -p {}={}", setting.name, value);
     return text + " -o hits.exr";
 }
 

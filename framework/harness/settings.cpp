@@ -1,6 +1,7 @@
 // The settings that belong to an experiment, not to a technique.
 #include "harness/experiment.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace ssrlab {
@@ -12,9 +13,11 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 template <typename Field>
 Setting trace_setting(const char* name, ParameterType type, Field TraceSettings::*field, double max, const char* doc)
 {
-    return {{name, type, static_cast<double>(TraceSettings{}.*field), 0, max, {}, doc},
-            "trace",
-            [=](const FrameSettings& settings) { return static_cast<double>(settings.trace.*field); },
+    const Parameter parameter{name, type, static_cast<double>(TraceSettings{}.*field), 0, max, {}, doc};
+    return {parameter, "trace",
+            [=](const FrameSettings& settings) {
+                return format_parameter(parameter, static_cast<double>(settings.trace.*field));
+            },
             [=](FrameSettings& settings, double value) { settings.trace.*field = static_cast<Field>(value); }};
 }
 
@@ -22,18 +25,38 @@ template <typename Choice>
 Setting trace_choice(const char* name, Choice TraceSettings::*field, std::span<const std::string_view> choices,
                      const char* doc)
 {
-    return {{.name          = name,
-             .type          = ParameterType::choice,
-             .default_value = static_cast<double>(TraceSettings{}.*field),
-             .max           = static_cast<double>(choices.size() - 1),
-             .choices       = {choices.begin(), choices.end()},
-             .doc           = doc},
-            "trace",
-            [=](const FrameSettings& settings) { return static_cast<double>(settings.trace.*field); },
-            [=](FrameSettings& settings, double value) { settings.trace.*field = static_cast<Choice>(value); }};
+    return {
+        {.name          = name,
+         .type          = ParameterType::choice,
+         .default_value = static_cast<double>(TraceSettings{}.*field),
+         .max           = static_cast<double>(choices.size() - 1),
+         .choices       = {choices.begin(), choices.end()},
+         .doc           = doc},
+        "trace",
+        [=](const FrameSettings& settings) { return std::string(choices[static_cast<size_t>(settings.trace.*field)]); },
+        [=](FrameSettings& settings, double value) { settings.trace.*field = static_cast<Choice>(value); }};
 }
 
-std::vector<Setting> make_table()
+Setting surface_setting(std::span<const Surface> surfaces)
+{
+    Parameter parameter{.name    = "surface",
+                        .type    = ParameterType::choice,
+                        .max     = static_cast<double>(surfaces.size()) - 1,
+                        .choices = {},
+                        .doc     = "what a pixel holds around its depth: a surface model, see ssrlab list and "
+                                   "docs/hit_contract.md"};
+    std::ranges::transform(surfaces, std::back_inserter(parameter.choices), &Surface::id);
+    const auto usual        = std::ranges::find(parameter.choices, TraceSettings{}.surface);
+    parameter.default_value = static_cast<double>(usual - parameter.choices.begin());
+    return {parameter, "trace", [](const FrameSettings& settings) { return settings.trace.surface; },
+            [choices = parameter.choices](FrameSettings& settings, double value) {
+                settings.trace.surface = choices.at(static_cast<size_t>(value));
+            }};
+}
+
+} // namespace
+
+std::vector<Setting> all_settings(std::span<const Surface> surfaces)
 {
     using enum ParameterType;
     std::vector<Setting> table = {
@@ -50,24 +73,26 @@ std::vector<Setting> make_table()
             "behind", &TraceSettings::behind, behind_names,
             "what becomes of a ray that meets a pixel from a side that the frame does not show: hit, pass (the "
             "ray goes on) or stop (it ends without a hit)"),
-        trace_choice(
-            "surface", &TraceSettings::surface, surface_names,
-            "what a pixel holds around its depth: a box with a thickness, or a plane, see docs/hit_contract.md"),
+        surface_setting(surfaces),
     };
     for (const Parameter& parameter : pass_parameters()) {
         const std::string& name = parameter.name;
-        table.push_back({parameter, "passes", [=](const FrameSettings& s) { return s.passes.at(name); },
+        table.push_back({parameter, "passes",
+                         [=](const FrameSettings& s) { return format_parameter(parameter, s.passes.at(name)); },
                          [=](FrameSettings& s, double value) { s.passes.at(name) = value; }});
     }
     return table;
 }
 
-} // namespace
-
 std::span<const Setting> all_settings()
 {
-    static const std::vector<Setting> table = make_table();
+    static const std::vector<Setting> table = all_settings({});
     return table;
+}
+
+std::span<const Surface> surfaces_of(std::span<const Technique> techniques)
+{
+    return techniques.empty() ? std::span<const Surface>() : std::span(techniques.front().surfaces);
 }
 
 } // namespace ssrlab

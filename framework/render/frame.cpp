@@ -148,7 +148,7 @@ FrameFacts facts_of(const PreparedFrame& frame)
     const GpuScene* scene = frame.buffers->gbuffer->scene.get();
     FrameFacts      facts;
     for (const Structure& structure : frame.technique.structures) facts.structures.push_back(structure.id);
-    facts.solids = frame.settings.trace.surface == SurfaceModel::plane_solid;
+    facts.solids = surface_of(frame).needs_solid;
     if (scene == nullptr) return facts;
     facts.scene           = true;
     facts.environment_map = scene->has_environment_map;

@@ -25,7 +25,6 @@ struct Slab {
 /// Thickness 0 or more: of the back. Less: of a front that lies before the depth.
 Slab slab_of(const View& view, const TraceSettings& trace, double thickness)
 {
-    if (std::isinf(thickness)) return {0, 0, 0};
     if (view.projection == Projection::perspective) {
         if (!trace.thickness_relative) return {thickness / view.near_m, 1, 0};
         return {0, thickness > -1 ? 1 / (1 + thickness) : 1e30, 0};
@@ -46,11 +45,8 @@ static_assert(CONSTANT_FRONT_SCALE == CONSTANT_FRONT_SLOPE + 1 && CONSTANT_FRONT
 
 template <typename Real> void add_slabs(Constants& constants, const View& view, const TraceSettings& trace)
 {
-    const bool   endless   = trace.surface == SurfaceModel::box_infinite;
-    const double thickness = endless ? std::numeric_limits<double>::infinity() : trace.thickness_m;
-    add_slab<Real>(constants, CONSTANT_SLAB_SLOPE, slab_of(view, trace, thickness));
-    if (trace.surface == SurfaceModel::box_two_sided)
-        add_slab<Real>(constants, CONSTANT_FRONT_SLOPE, slab_of(view, trace, -thickness));
+    add_slab<Real>(constants, CONSTANT_SLAB_SLOPE, slab_of(view, trace, trace.thickness_m));
+    add_slab<Real>(constants, CONSTANT_FRONT_SLOPE, slab_of(view, trace, -trace.thickness_m));
 }
 
 template <typename Real> void add_settings(Constants& constants, const View& view, const FrameSettings& settings)
@@ -83,14 +79,19 @@ Defines precision_defines(const Gpu& gpu, Precision precision)
     return {};
 }
 
-void add_surface(ShaderSource& source, SurfaceModel model)
+const Surface& surface_of(const PreparedFrame& frame)
 {
-    const std::filesystem::path folder = shader_folder() / "surfaces" / (has_planes(model) ? "plane" : "box");
-    source.include_files.emplace("surface/meeting.glsl", folder / "meeting.glsl");
-    source.include_files.emplace("surface/held.glsl", folder / "held.glsl");
-    if (has_planes(model)) source.defines.emplace("PIXEL_PLANES", "1");
-    if (model == SurfaceModel::box_two_sided) source.defines.emplace("SURFACE_TWO_SIDED", "1");
-    if (model == SurfaceModel::plane_solid) source.defines.emplace("SURFACE_SOLID", "1");
+    return find_surface(frame.technique.surfaces, frame.settings.trace.surface);
+}
+
+void add_surface(ShaderSource& source, const Surface& surface)
+{
+    source.include_files.emplace("surface/meeting.glsl", surface.folder / "meeting.glsl");
+    source.include_files.emplace("surface/held.glsl", surface.folder / "held.glsl");
+    source.include_folders.push_back(surface.folder);
+    if (surface.needs_gradient) source.defines.emplace("PIXEL_PLANES", "1");
+    if (surface.needs_solid) source.defines.emplace("PIXEL_SOLIDS", "1");
+    for (const std::string& macro : surface.defines) source.defines.emplace(macro, "1");
 }
 
 Defines store_defines(const Gpu& gpu, const Buffer& texels)
@@ -207,7 +208,7 @@ Shader compile_trace(const Gpu& gpu, const PreparedFrame& frame, const RayBuffer
                               {"technique/structures", structure_declarations(technique, nullptr, in_double)}},
             .include_folders = technique_folders(technique)};
     source.include_files.emplace("technique/trace.glsl", technique.folder / "trace.glsl");
-    add_surface(source, frame.settings.trace.surface);
+    add_surface(source, surface_of(frame));
     source.defines.emplace("STRUCTURES", std::to_string(technique.structures.size()));
     for (const std::string& macro : shader_macros(technique, frame.values)) source.defines.emplace(macro, "1");
     source.defines.merge(store_defines(gpu, rays.hits));

@@ -126,8 +126,10 @@ Bindings surface_bindings(const GBuffer& gbuffer);
 Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays);
 /// The number types that shaders/api/real.glsl and rays/double_float.glsl stand for.
 Defines precision_defines(const Gpu& gpu, Precision precision);
-/// The surface model that a shader is composed with (shaders/surfaces/).
-void add_surface(ShaderSource& source, SurfaceModel model);
+/// The surface model of the frame's settings.
+const Surface& surface_of(const PreparedFrame& frame);
+/// Composes a shader with a surface model (shaders/surfaces/README.md).
+void add_surface(ShaderSource& source, const Surface& surface);
 /// For a shader that stores texels of this buffer (shaders/layout/store_texel.glsl): 64 bits at once where the device can.
 Defines store_defines(const Gpu& gpu, const Buffer& texels);
 /// exact: for a shader that is compiled with EXACT_ARITHMETIC, whose slab is in double precision.

@@ -3,9 +3,9 @@
 #include "core/files.h"
 #include "core/names.h"
 #include "render/manifest.h"
+#include "render/plugin_folders.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <set>
 
 namespace ssrlab {
@@ -68,47 +68,8 @@ bool is_technique(const fs::path& folder)
 
 bool is_structure(const fs::path& folder) { return fs::exists(folder / "structure.toml"); }
 
-/// Of a directory of techniques: itself or the folders in it, down to those `deepest` levels farther in.
-std::vector<fs::path> folders_in(const fs::path& dir, bool (*wanted)(const fs::path&), int deepest)
-{
-    if (!fs::is_directory(dir)) throw_spec_error("{}: no such directory of techniques", short_path(dir));
-    std::vector<fs::path> folders;
-    if (wanted(dir)) folders.push_back(fs::weakly_canonical(dir));
-    constexpr auto skip = fs::directory_options::skip_permission_denied;
-    for (auto entry = fs::recursive_directory_iterator(dir, skip); entry != fs::recursive_directory_iterator();
-         ++entry) {
-        if (entry.depth() == deepest) entry.disable_recursion_pending();
-        if (entry->is_directory() && wanted(entry->path())) folders.push_back(entry->path());
-    }
-    std::ranges::sort(folders);
-    return folders;
-}
-
-/// The in-tree directory, then those in $SSRLAB_TECHNIQUES, then the others.
-std::vector<fs::path> technique_dirs(std::span<const fs::path> extra_dirs)
-{
-    std::vector<fs::path> dirs{data_root() / "techniques"};
-    const char*           variable = std::getenv("SSRLAB_TECHNIQUES");
-    const std::string     list     = variable == nullptr ? "" : variable;
-    for (size_t start = 0; start < list.size();) {
-        const size_t end = std::min(list.find(':', start), list.size());
-        if (end > start) dirs.emplace_back(list.substr(start, end - start));
-        start = end + 1;
-    }
-    dirs.insert(dirs.end(), extra_dirs.begin(), extra_dirs.end());
-    return dirs;
-}
-
-/// The same folder may be named twice, two folders of one id may not.
-template <typename Item> void append(std::vector<Item>& items, Item item, const std::string& kind)
-{
-    const auto same = std::ranges::find(items, item.id, &Item::id);
-    if (same == items.end())
-        items.push_back(std::move(item));
-    else if (!fs::equivalent(same->folder, item.folder))
-        throw_spec_error("two {} are called '{}': {} and {}", kind, item.id, short_path(same->folder),
-                         short_path(item.folder));
-}
+/// Not a technique, but what techniques use.
+bool is_addition(const fs::path& folder) { return is_structure(folder) || fs::exists(folder / "surface.toml"); }
 
 } // namespace
 
@@ -124,12 +85,13 @@ std::span<const Limit> known_limits()
     return limits;
 }
 
-Technique load_technique(const fs::path& folder, std::span<const Structure> known)
+Technique load_technique(const fs::path& folder, std::span<const Structure> known, std::span<const Surface> surfaces)
 {
     const TomlFile file = read_toml(folder / "technique.toml");
     Technique      technique;
     technique.folder = folder;
-    technique.id     = read_folder_id(file, folder, "technique");
+    technique.surfaces.assign(surfaces.begin(), surfaces.end());
+    technique.id = read_folder_id(file, folder, "technique");
     toml_known_keys(file, file.root, "key", manifest_keys);
     read_about(file, "the technique", technique);
     if (const toml::node* node = file.root.get("structures"))
@@ -159,21 +121,23 @@ Technique load_technique(const fs::path& folder, std::span<const Structure> know
 std::vector<Structure> list_structures(std::span<const fs::path> extra_dirs)
 {
     std::vector<Structure> structures;
-    for (const fs::path& dir : technique_dirs(extra_dirs))
-        for (const fs::path& folder : folders_in(dir, is_structure, 1))
-            append(structures, load_structure(folder), "structures");
+    for (const fs::path& dir : plugin_dirs(extra_dirs))
+        for (const fs::path& folder : plugin_folders(dir, is_structure, 1))
+            append_plugin(structures, load_structure(folder), "structures");
     return structures;
 }
 
 std::vector<Technique> list_techniques(std::span<const fs::path> extra_dirs)
 {
     const std::vector<Structure> structures = list_structures(extra_dirs);
+    const std::vector<Surface>   surfaces   = list_surfaces(extra_dirs);
     std::vector<Technique>       techniques;
-    for (const fs::path& dir : technique_dirs(extra_dirs)) {
-        const std::vector<fs::path> folders = folders_in(dir, is_technique, 0);
-        if (folders.empty() && folders_in(dir, is_structure, 1).empty())
+    for (const fs::path& dir : plugin_dirs(extra_dirs)) {
+        const std::vector<fs::path> folders = plugin_folders(dir, is_technique, 0);
+        if (folders.empty() && plugin_folders(dir, is_addition, 1).empty())
             throw_spec_error("{}: holds no technique (a folder with technique.toml)", short_path(dir));
-        for (const fs::path& folder : folders) append(techniques, load_technique(folder, structures), "techniques");
+        for (const fs::path& folder : folders)
+            append_plugin(techniques, load_technique(folder, structures, surfaces), "techniques");
     }
     return techniques;
 }

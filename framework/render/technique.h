@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/structure.h"
+#include "render/surface.h"
 
 #include <filesystem>
 #include <span>
@@ -29,6 +30,7 @@ struct Technique {
     std::vector<Parameter>   parameters;              // its own, then those of its structures as "structure.parameter"
     std::filesystem::path    folder;
     std::vector<Accuracy>    accuracy = {};
+    std::vector<Surface>     surfaces = {}; // that it may be traced under: all that were found
 };
 
 /// What a technique that is not exact may declare that it gets wrong. The check holds it to everything else.
@@ -38,7 +40,8 @@ struct Limit {
 std::span<const Limit> known_limits();
 
 /// Reads folder/technique.toml; throws SpecError with file and line. `known`: the structures that it may name.
-Technique load_technique(const std::filesystem::path& folder, std::span<const Structure> known = {});
+Technique load_technique(const std::filesystem::path& folder, std::span<const Structure> known = {},
+                         std::span<const Surface> surfaces = {});
 
 /// The in-tree techniques, then those in $SSRLAB_TECHNIQUES (colon-separated) and `extra_dirs`. Each directory is either one
 /// technique's folder or holds such folders. Throws SpecError when two share an id or a directory does not exist.

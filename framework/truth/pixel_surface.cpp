@@ -4,6 +4,7 @@
 #include "core/pixel_index.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -38,35 +39,50 @@ PixelSurface box_infinite(double depth) { return {.front = depth, .back = -infin
 
 PixelSurface plane(const View& view, double depth, glm::dvec2 gradient)
 {
-    return {.front = depth, .back = depth - plane_tolerance(view, depth), .gradient = gradient, .sides_by_height = true};
+    return {
+        .front = depth, .back = depth - plane_tolerance(view, depth), .gradient = gradient, .sides_by_height = true};
 }
 
 /// The plane of a pixel, or its box where it has no usable plane.
 PixelSurface plane_or_box(const GBufferImage& gbuffer, size_t index, double depth, const TraceSettings& settings)
 {
     const glm::dvec2 gradient(gbuffer.gradient[index]);
-    const bool       usable = std::isfinite(gradient.x) && std::isfinite(gradient.y);
-    PixelSurface surface = usable ? plane(gbuffer.view, depth, gradient) : box(gbuffer.view, depth, settings);
-    surface.sides_by_height = true;
+    const bool       usable  = std::isfinite(gradient.x) && std::isfinite(gradient.y);
+    PixelSurface     surface = usable ? plane(gbuffer.view, depth, gradient) : box(gbuffer.view, depth, settings);
+    surface.sides_by_height  = true;
     return surface;
 }
 
-PixelSurface with_solid(PixelSurface surface, const GBufferImage& gbuffer, size_t index)
+PixelSurface plane_and_solid(const GBufferImage& gbuffer, size_t index, double depth, const TraceSettings& settings)
 {
+    PixelSurface surface = plane_or_box(gbuffer, index, depth, settings);
     if (!gbuffer.solid_back.empty()) surface.solid_back = std::max(double(gbuffer.solid_back[index]), 0.0);
     return surface;
 }
 
-PixelSurface surface_of(const GBufferImage& gbuffer, size_t index, double depth, const TraceSettings& settings)
+/// A surface model as the CPU knows it.
+struct Model {
+    std::string_view id;
+    PixelSurface (*holds)(const GBufferImage&, size_t index, double depth, const TraceSettings&);
+    bool planes = false;
+};
+
+constexpr std::array models = {
+    Model{"box",
+          [](const GBufferImage& g, size_t, double depth, const TraceSettings& s) { return box(g.view, depth, s); }},
+    Model{"box_two_sided", [](const GBufferImage& g, size_t, double depth,
+                              const TraceSettings& s) { return box_two_sided(g.view, depth, s); }},
+    Model{"box_infinite",
+          [](const GBufferImage&, size_t, double depth, const TraceSettings&) { return box_infinite(depth); }},
+    Model{"plane", plane_or_box, true}, Model{"plane_solid", plane_and_solid, true}};
+
+const Model& model_of(const TraceSettings& settings)
 {
-    switch (settings.surface) {
-    case SurfaceModel::box: return box(gbuffer.view, depth, settings);
-    case SurfaceModel::box_two_sided: return box_two_sided(gbuffer.view, depth, settings);
-    case SurfaceModel::box_infinite: return box_infinite(depth);
-    case SurfaceModel::plane: return plane_or_box(gbuffer, index, depth, settings);
-    case SurfaceModel::plane_solid: return with_solid(plane_or_box(gbuffer, index, depth, settings), gbuffer, index);
-    }
-    throw_failure("unknown surface model {}", static_cast<int>(settings.surface));
+    const auto found = std::ranges::find(models, settings.surface, &Model::id);
+    if (found == models.end())
+        throw_failure("the surface model '{}' is not known on the CPU, so there is no screen truth of its own",
+                      settings.surface);
+    return *found;
 }
 
 /// Where a height that is `in` at t_in and changes evenly reaches 0, within the part.
@@ -77,6 +93,8 @@ double root(const RayPart& ray, double in, double out)
 }
 
 } // namespace
+
+bool has_screen_truth(std::string_view surface) { return std::ranges::count(models, surface, &Model::id) > 0; }
 
 double slab_back(const View& view, double depth, const TraceSettings& settings)
 {
@@ -98,7 +116,7 @@ double plane_tolerance(const View& view, double depth)
 void require_surface(const GBufferImage& gbuffer, const TraceSettings& settings)
 {
     const size_t pixels = gbuffer.depth.size(), solids = gbuffer.solid_back.size();
-    if (has_planes(settings.surface) && gbuffer.gradient.size() != pixels)
+    if (model_of(settings).planes && gbuffer.gradient.size() != pixels)
         throw_failure("G-buffer of view '{}': planes need {} gradients, found {}", gbuffer.view.name, pixels,
                       gbuffer.gradient.size());
     if (solids != 0 && solids != pixels)
@@ -110,7 +128,7 @@ std::optional<PixelSurface> pixel_surface(const GBufferImage& gbuffer, size_t in
 {
     const double depth(gbuffer.depth[index]);
     if (!(depth > 0) || !std::isfinite(depth)) return std::nullopt;
-    PixelSurface surface = surface_of(gbuffer, index, depth, settings);
+    PixelSurface surface = model_of(settings).holds(gbuffer, index, depth, settings);
     surface.centre_px    = glm::dvec2(pixel_at(index, gbuffer.view.size_px)) + 0.5;
     return surface;
 }

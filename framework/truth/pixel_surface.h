@@ -5,16 +5,17 @@
 #include "core/trace_result.h"
 
 #include <optional>
+#include <string_view>
 
 namespace ssrlab {
 
 /// A front and a back that slope alike, in depth; behind the back perhaps a solid.
 struct PixelSurface {
     glm::dvec2 centre_px{0, 0};
-    double     front = 0;          // at the centre; +inf: infinitely near
-    double     back  = 0;          // at the centre; -inf: there is none
-    glm::dvec2 gradient{0, 0};     // depth per px; 0: level
-    double     solid_back = 0;     // where the solid ends; 0: there is none
+    double     front = 0;               // at the centre; +inf: infinitely near
+    double     back  = 0;               // at the centre; -inf: there is none
+    glm::dvec2 gradient{0, 0};          // depth per px; 0: level
+    double     solid_back      = 0;     // where the solid ends; 0: there is none
     bool       sides_by_height = false; // met from behind where the ray comes from below; else where the normal says so
 
     double front_at(glm::dvec2 position_px) const { return front + glm::dot(gradient, position_px - centre_px); }
@@ -44,7 +45,10 @@ double slab_front(const View& view, double depth, const TraceSettings& settings)
 /// How far the back of a plane lies below its front.
 double plane_tolerance(const View& view, double depth);
 
-/// Throws Failure unless the G-buffer has what the model needs.
+/// Whether the CPU knows the surface model of that id. A model from elsewhere has none but its shaders.
+bool has_screen_truth(std::string_view surface);
+
+/// Throws Failure unless the CPU knows the model and the G-buffer has what the model needs.
 void require_surface(const GBufferImage& gbuffer, const TraceSettings& settings);
 
 /// Empty on the background.

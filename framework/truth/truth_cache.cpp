@@ -39,7 +39,8 @@ void add(ContentHash& hash, const GBufferImage& gbuffer)
 void add(ContentHash& hash, const TraceSettings& settings)
 {
     hash.add(settings.thickness_m).add(settings.thickness_relative).add(settings.max_distance_m);
-    hash.add(settings.ray_offset_m).add(settings.behind).add(settings.surface);
+    hash.add(settings.ray_offset_m).add(settings.behind);
+    hash.add_bytes(settings.surface.data(), settings.surface.size());
 }
 
 void add(ContentHash& hash, const TextureUse& use) { hash.add(use.texture).add(use.uv_set).add(use.uv_transform); }

@@ -93,7 +93,7 @@ std::string repeat_command(const std::string& scene, const std::string& view, gl
         text += fmt::format(" -p {}={}", p.name, format_parameter(p, values.at(p.name)));
     return text + fmt::format(" -p thickness_m={} -p max_distance_m={} -p surface={} -p behind={} -o hits.exr",
                               settings.thickness_m, settings.max_distance_m,
-                              surface_names[static_cast<size_t>(settings.surface)],
+                              settings.surface,
                               behind_names[static_cast<size_t>(settings.behind)]);
 }
 

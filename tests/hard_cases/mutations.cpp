@@ -24,7 +24,7 @@ public:
         if (!replace_in(folder_ / "mutant/trace.glsl", from, to) &&
             !replace_in(folder_ / "mutant/traversal.glsl", from, to))
             throw std::logic_error("mutation: '" + from + "' is not in " + id);
-        mutant_ = load_technique(folder_ / "mutant", list_structures({}));
+        mutant_ = load_technique(folder_ / "mutant", list_structures({}), list_surfaces({}));
     }
     ~Mutant() { fs::remove_all(folder_); }
     Mutant(const Mutant&)                     = delete;

@@ -7,7 +7,7 @@ Held held_by(ivec2 pixel, float depth, uint gradient)
     held.gradient = vec2(0);
     held.back     = float(slab_back(real(depth)));
     held.back -= abs(held.back) * held_margin + abs(float(slab_shift)) * held_margin;
-#ifdef SURFACE_TWO_SIDED
+#ifdef SLAB_TWO_SIDED
     held.front = float(slab_front(real(depth)));
     held.front += abs(held.front) * held_margin + abs(float(slab_shift)) * held_margin;
 #else

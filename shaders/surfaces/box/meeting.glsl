@@ -1,5 +1,5 @@
-// A pixel as a box: a level front, and a slab behind it. `box_two_sided` (SURFACE_TWO_SIDED) reaches as far before its depth as behind it;
-// `box_infinite` has a slab without an end. shaders/surfaces/README.md says what each function answers.
+// A pixel as a box: a level front, and a slab behind it. `box_two_sided` and `box_infinite` are the same with another slab
+// (api/slab.glsl). shaders/surfaces/README.md says what each function answers.
 struct PixelSurface
 {
     real  depth;

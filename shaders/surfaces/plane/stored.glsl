@@ -1,7 +1,7 @@
 // Planes and solids as the G-buffer stores them.
 #ifndef SSRLAB_STORED_PLANES
 #define SSRLAB_STORED_PLANES
-#ifdef SURFACE_SOLID
+#ifdef PIXEL_SOLIDS
 layout(set = 0, binding = 13, r32f) uniform readonly image2D solid_image;
 #endif
 
@@ -13,7 +13,7 @@ bool has_plane(vec2 gradient) { return (floatBitsToUint(gradient.x) & 0x7FFFFFFF
 // The depth where the solid behind the pixel ends; nearer than everything where there is none.
 float load_solid(ivec2 pixel)
 {
-#ifdef SURFACE_SOLID
+#ifdef PIXEL_SOLIDS
     float solid = imageLoad(solid_image, pixel).x;
     return solid > 0.0 ? solid : 1e30;
 #else

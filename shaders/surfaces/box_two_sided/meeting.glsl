@@ -1,0 +1,1 @@
+#include "surfaces/box/meeting.glsl"

@@ -1,0 +1,1 @@
+#include "surfaces/plane/meeting.glsl"
