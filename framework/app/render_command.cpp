@@ -122,6 +122,7 @@ void add_sample(Stage& stage, PreparedFrame& frame, const RenderOptions& options
                           options.display == "agx" ? Display::Transform::agx : Display::Transform::clip};
     run_frame(stage.gpu, frame);
     rendered.trace_ms += run_frame(stage.gpu, frame).of("trace") / options.samples;
+    if (options.frames > 0) keep_history(stage.gpu, frame); // before other reflections take the place of the traced one
     // The traced picture first: the others leave theirs in its buffers.
     for (const Shows shows : {Shows::traced, Shows::nothing, Shows::truth}) {
         const auto at = std::ranges::find(kinds, shows);
@@ -151,6 +152,10 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
         throw_spec_error("--samples: expected 1 for a frame of another renderer, which cannot be rendered anew; got {}",
                          options.samples);
     TrueReflections truth(stage, options.samples);
+    // Each sample has frames of its own before it.
+    std::vector<FrameHistoryPtr> histories(static_cast<size_t>(options.samples));
+    for (FrameHistoryPtr& history : histories)
+        if (options.frames > 0) history = make_history(stage.gpu, stage.view.size_px);
     for (int i = 0; i < std::max(options.frames, 1); ++i) {
         Rendered rendered;
         for (const Shows shows : shown_by(options)) rendered.pictures.push_back({label_of(shows, technique.id), {}});
@@ -159,7 +164,7 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
                 show_frame(stage, picture.view, {picture.at.frame + i, picture.at.jitter_phases},
                            sample_offset_px(sample, options.samples));
             const auto frame = prepare_frame(stage.gpu, make_frame_buffers(stage.gpu, stage.gbuffer), technique,
-                                             choice.values, choice.settings);
+                                             choice.values, choice.settings, histories[static_cast<size_t>(sample)]);
             if (sample == 0) warn_without_reflections(common, *frame);
             add_sample(stage, *frame, options, choice.settings.trace, truth, sample, rendered);
         }

@@ -90,7 +90,7 @@ Environment describe_environment(const Experiment& experiment, std::span<const T
                 notes["accuracy"] += (notes["accuracy"].empty() ? "" : " ") + entry;
         }
     }
-    for (const Parameter& parameter : pass_parameters())
+    for (const Parameter& parameter : all_pass_settings())
         notes["pass_parameters"] += (notes["pass_parameters"].empty() ? "" : " ") + parameter.name;
     return environment;
 }

@@ -54,8 +54,8 @@ std::vector<Setting> make_table()
             "surface", &TraceSettings::surface, surface_names,
             "what a pixel holds around its depth: a box with a thickness, or a plane, see docs/hit_contract.md"),
     };
-    for (const Parameter& parameter : pass_parameters()) {
-        const std::string& name = parameter.name;
+    for (const Parameter& parameter : all_pass_settings()) {
+        const std::string name = parameter.name;
         table.push_back({parameter, "passes", [=](const FrameSettings& s) { return s.passes.at(name); },
                          [=](FrameSettings& s, double value) { s.passes.at(name) = value; }});
     }

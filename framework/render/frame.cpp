@@ -134,13 +134,30 @@ void upload_dfg_table(Gpu& gpu, FrameBuffers& buffers)
 }
 
 /// "moving camera, 2 of 5 objects move, no jitter"
-std::string describe_motion(const GBuffer& gbuffer)
+std::string describe_motion(const GBuffer& gbuffer, bool jittered)
 {
     if (!gbuffer.motion) return "no frame before this one";
-    const FrameMotion& motion   = *gbuffer.motion;
-    const bool         jittered = gbuffer.view.centre_px != motion.view.centre_px;
+    const FrameMotion& motion = *gbuffer.motion;
     return fmt::format("{} camera, {} of {} objects move, {} jitter", motion.camera_moves ? "moving" : "still",
                        motion.moving_draws, motion.to_previous_ws.size(), jittered ? "with" : "no");
+}
+
+bool is_jittered(const GBuffer& gbuffer)
+{
+    return gbuffer.motion && gbuffer.view.centre_px != gbuffer.motion->view.centre_px;
+}
+
+HistoryFacts history_facts(const PreparedFrame& frame)
+{
+    if (!frame.history) return {};
+    const GBuffer& gbuffer = *frame.buffers->gbuffer;
+    if (const std::string mismatch = history_mismatch(*frame.history, gbuffer); !mismatch.empty())
+        return {.state = mismatch};
+    const FrameMotion& motion = *gbuffer.motion;
+    const bool jittered = is_jittered(gbuffer) || frame.history->view->centre_px != motion.previous_view.centre_px;
+    return {.usable  = true,
+            .changes = motion.camera_moves || motion.moving_draws > 0 || jittered,
+            .state   = describe_motion(gbuffer, jittered)};
 }
 
 FrameFacts facts_of(const PreparedFrame& frame)
@@ -148,13 +165,23 @@ FrameFacts facts_of(const PreparedFrame& frame)
     const GpuScene* scene = frame.buffers->gbuffer->scene.get();
     FrameFacts      facts;
     for (const Structure& structure : frame.technique.structures) facts.structures.push_back(structure.id);
-    facts.solids = frame.settings.trace.surface == SurfaceModel::plane_solid;
+    facts.solids  = frame.settings.trace.surface == SurfaceModel::plane_solid;
+    facts.history = history_facts(frame);
     if (scene == nullptr) return facts;
     facts.scene           = true;
     facts.environment_map = scene->has_environment_map;
     facts.alpha_mask      = scene->alpha_mask;
-    facts.motion          = describe_motion(*frame.buffers->gbuffer);
+    facts.motion          = describe_motion(*frame.buffers->gbuffer, is_jittered(*frame.buffers->gbuffer));
     return facts;
+}
+
+MotionBuffers motion_since(Gpu& gpu, const PreparedFrame& frame)
+{
+    const GBuffer&     gbuffer = *frame.buffers->gbuffer;
+    const FrameMotion& motion  = *gbuffer.motion;
+    return make_motion_buffers(gpu, gbuffer.view, motion,
+                               frame.history->view->centre_px - motion.previous_view.centre_px,
+                               !frame.facts.history.changes);
 }
 
 /// Traces once and counts how the rays ended.
@@ -178,7 +205,8 @@ TraceCounts count_hits(Gpu& gpu, PreparedFrame& frame)
 
 /// counts: what the rays hit; null: to be counted.
 PreparedFramePtr prepare(Gpu& gpu, const FrameBuffersPtr& buffers, const Technique& technique,
-                         const ParameterValues& values, const FrameSettings& settings, const TraceCounts* counts)
+                         const ParameterValues& values, const FrameSettings& settings, const FrameHistoryPtr& history,
+                         const TraceCounts* counts)
 {
     require_bounded(technique, values);
     auto frame        = std::make_shared<PreparedFrame>();
@@ -186,11 +214,13 @@ PreparedFramePtr prepare(Gpu& gpu, const FrameBuffersPtr& buffers, const Techniq
     frame->technique  = technique;
     frame->values     = values;
     frame->settings   = settings;
+    frame->history    = history;
     frame->rays       = rays_for(gpu, *buffers, settings);
     frame->structures = make_depth_structures(gpu, *frame, *buffers->gbuffer);
     frame->trace      = make_trace_passes(gpu, *frame, *frame->rays, buffers->view, nullptr);
 
-    frame->facts      = facts_of(*frame);
+    frame->facts = facts_of(*frame);
+    if (frame->facts.history.usable) frame->motion = motion_since(gpu, *frame);
     frame->statistics = buffers->statistics;
     if (counts != nullptr)
         frame->statistics.trace = *counts;
@@ -233,16 +263,18 @@ FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
 }
 
 PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const Technique& technique,
-                               const ParameterValues& values, const FrameSettings& settings)
+                               const ParameterValues& values, const FrameSettings& settings,
+                               const FrameHistoryPtr& history)
 {
-    return prepare(gpu, buffers, technique, values, settings, nullptr);
+    return prepare(gpu, buffers, technique, values, settings, history, nullptr);
 }
 
 PreparedFramePtr prepare_unculled(Gpu& gpu, const PreparedFrame& planned)
 {
     FrameSettings settings                     = planned.settings;
     settings.passes.at("skip_unneeded_passes") = 0;
-    return prepare(gpu, planned.buffers, planned.technique, planned.values, settings, &planned.statistics.trace);
+    return prepare(gpu, planned.buffers, planned.technique, planned.values, settings, planned.history,
+                   &planned.statistics.trace);
 }
 
 const std::vector<PlannedPass>& plan_of(const PreparedFrame& frame) { return frame.plan; }

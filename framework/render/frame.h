@@ -6,6 +6,7 @@
 #include "core/trace_result.h"
 #include "gpu/gpu.h"
 #include "render/frame_plan.h"
+#include "render/history.h"
 #include "render/technique.h"
 #include "scene/sequence.h"
 
@@ -62,9 +63,11 @@ GBufferImage read_gbuffer(Gpu& gpu, const GBuffer& gbuffer);
 FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer);
 
 /// Plans the frame and compiles what it needs; if passes depend on hits, it traces once.
+/// history: what the frame before left, or null for a single frame.
 /// Throws SpecError with the technique's file and line when its shader does not compile.
 PreparedFramePtr prepare_frame(Gpu& gpu, const FrameBuffersPtr& buffers, const Technique& technique,
-                               const ParameterValues& values, const FrameSettings& settings);
+                               const ParameterValues& values, const FrameSettings& settings,
+                               const FrameHistoryPtr& history = nullptr);
 /// The same frame, unculled: every pass that is not off runs, on every surface. Hits are not counted again.
 PreparedFramePtr prepare_unculled(Gpu& gpu, const PreparedFrame& planned);
 /// What runs and why. The frame is still, so the plan's statistics are its own.

@@ -1,6 +1,7 @@
 // The passes of a frame, as frame.cpp strings them together. Folder-internal.
 #pragma once
 
+#include "render/frame_history.h"
 #include "render/gbuffer.h"
 #include "render/structure_passes.h"
 
@@ -102,6 +103,8 @@ struct PreparedFrame {
     std::vector<RecordFunction>  record_functions;     // of the passes that run
     bool                         hidden_layer = false; // hits may lie in the second layer
     bool                         cone         = false; // rough surfaces look up cones
+    FrameHistoryPtr              history;              // of the frame before, or null
+    MotionBuffers                motion;               // since that frame; empty without a history to use
     Timestamps                   timestamps;
 };
 

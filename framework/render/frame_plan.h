@@ -8,12 +8,20 @@
 
 namespace ssrlab {
 
+/// What a frame may take of the frame before it.
+struct HistoryFacts {
+    bool        usable  = false;                        // there is one, and it is of the frame before
+    bool        changes = false;                        // something moved or is jittered since
+    std::string state   = "a single frame: no history"; // what moved, or why there is none
+};
+
 /// What is known of scene and technique before anything is drawn.
 struct FrameFacts {
     bool                     scene           = false; // the G-buffer was drawn from one
     bool                     environment_map = false; // without a map, one colour arrives from everywhere
     bool                     alpha_mask      = false;
-    std::string              motion          = {};    // what moved since the frame before, as facts_of_plan() says it
+    std::string              motion          = {}; // what moved since the frame before, as facts_of_plan() says it
+    HistoryFacts             history         = {};
     bool                     solids          = false; // the surface model asks where solids end
     std::vector<std::string> structures;              // that the technique reads, in the order in which they are built
 };

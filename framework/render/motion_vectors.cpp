@@ -6,31 +6,43 @@
 namespace ssrlab {
 namespace {
 
-/// shaders/gbuffer/motion_vectors.comp, uniform PreviousView, scalar layout.
+/// shaders/passes/previous_frame.glsl, uniform PreviousView, scalar layout; motion_vectors.comp knows its beginning.
 struct PreviousViewBlock {
-    glm::vec2 focal_px, centre_px, jitter_px;
+    glm::vec2 focal_px, centre_px, jitter_px, previous_jitter_px;
+    float     near_m, far_m;
+    int32_t   takes_history;
 };
 
 } // namespace
 
-MotionVectors make_motion_vectors(Gpu& gpu, const GBuffer& gbuffer, const FrameMotion& motion)
+MotionBuffers make_motion_buffers(Gpu& gpu, const View& view, const FrameMotion& motion, glm::dvec2 previous_jitter_px,
+                                  bool repeats)
 {
     const View&             previous = motion.previous_view;
-    const PreviousViewBlock block{glm::vec2(previous.focal_px), glm::vec2(previous.centre_px),
-                                  glm::vec2(gbuffer.view.centre_px - motion.view.centre_px)};
+    const PreviousViewBlock block{glm::vec2(previous.focal_px),
+                                  glm::vec2(previous.centre_px),
+                                  glm::vec2(view.centre_px - motion.view.centre_px),
+                                  glm::vec2(previous_jitter_px),
+                                  static_cast<float>(previous.near_m),
+                                  static_cast<float>(previous.far_m),
+                                  repeats ? 0 : 1};
     // In double: world positions may be far larger than motions.
     const glm::dmat4       view_to_world = glm::inverse(motion.view.world_to_view);
     std::vector<glm::mat4> to_previous_vs{glm::mat4(previous.world_to_view * view_to_world)};
     for (const glm::dmat4& matrix : motion.to_previous_ws)
         to_previous_vs.emplace_back(previous.world_to_view * matrix * view_to_world);
+    MotionBuffers buffers{make_buffer(gpu, sizeof(block)), make_buffer_with<glm::mat4>(gpu, to_previous_vs)};
+    upload(gpu, buffers.previous_view, &block, sizeof(block));
+    return buffers;
+}
 
+MotionVectors make_motion_vectors(Gpu& gpu, const GBuffer& gbuffer, const FrameMotion& motion)
+{
     MotionVectors vectors;
-    vectors.vectors_px    = make_image(gpu, {.format  = vk::Format::eR32G32Sfloat,
-                                             .size_px = gbuffer.view.size_px,
-                                             .usage   = vk::ImageUsageFlagBits::eStorage});
-    vectors.previous_view = make_buffer(gpu, sizeof(block));
-    upload(gpu, vectors.previous_view, &block, sizeof(block));
-    vectors.objects = make_buffer_with<glm::mat4>(gpu, to_previous_vs);
+    vectors.motion     = make_motion_buffers(gpu, gbuffer.view, motion);
+    vectors.vectors_px = make_image(gpu, {.format  = vk::Format::eR32G32Sfloat,
+                                          .size_px = gbuffer.view.size_px,
+                                          .usage   = vk::ImageUsageFlagBits::eStorage});
     Constants constants;
     constants.add(CONSTANT_ORTHOGRAPHIC, static_cast<int32_t>(gbuffer.view.projection == Projection::orthographic));
     vectors.pass = make_compute_pass(gpu, compile_shader({.file = "gbuffer/motion_vectors.comp"}),
@@ -38,8 +50,8 @@ MotionVectors make_motion_vectors(Gpu& gpu, const GBuffer& gbuffer, const FrameM
                                       {"depth_words", gbuffer.depth.words},
                                       {"object_image", gbuffer.object},
                                       {"motion_image", vectors.vectors_px},
-                                      {"PreviousView", vectors.previous_view},
-                                      {"Objects", vectors.objects}},
+                                      {"PreviousView", vectors.motion.previous_view},
+                                      {"Objects", vectors.motion.objects}},
                                      constants);
     return vectors;
 }

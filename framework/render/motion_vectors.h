@@ -8,12 +8,21 @@ namespace ssrlab {
 
 struct GBuffer;
 
-struct MotionVectors {
-    GpuImage    vectors_px; // RG32F, GBufferImage::motion_px
-    Buffer      previous_view, objects;
-    ComputePass pass;
+/// What shaders need to know of a motion.
+struct MotionBuffers {
+    Buffer previous_view; // shaders/passes/previous_frame.glsl, uniform PreviousView
+    Buffer objects;       // by object: this frame's view space to the previous one's; 0: what stands still
 };
 
+struct MotionVectors {
+    GpuImage      vectors_px; // RG32F, GBufferImage::motion_px
+    MotionBuffers motion;
+    ComputePass   pass;
+};
+
+/// previous_jitter_px: of the frame before. repeats: nothing has changed since.
+MotionBuffers make_motion_buffers(Gpu& gpu, const View& view, const FrameMotion& motion,
+                                  glm::dvec2 previous_jitter_px = {}, bool repeats = false);
 MotionVectors make_motion_vectors(Gpu& gpu, const GBuffer& gbuffer, const FrameMotion& motion);
 void          record_motion_vectors(const vk::raii::CommandBuffer& commands, const MotionVectors& vectors);
 

@@ -68,6 +68,8 @@ bool is_technique(const fs::path& folder)
 
 bool is_structure(const fs::path& folder) { return fs::exists(folder / "structure.toml"); }
 
+bool is_reprojection(const fs::path& folder) { return fs::exists(folder / "reprojection.toml"); }
+
 /// Of a directory of techniques: itself or the folders in it, down to those `deepest` levels farther in.
 std::vector<fs::path> folders_in(const fs::path& dir, bool (*wanted)(const fs::path&), int deepest)
 {
@@ -165,13 +167,22 @@ std::vector<Structure> list_structures(std::span<const fs::path> extra_dirs)
     return structures;
 }
 
+std::vector<Reprojection> list_reprojections(std::span<const fs::path> extra_dirs)
+{
+    std::vector<Reprojection> strategies;
+    for (const fs::path& dir : technique_dirs(extra_dirs))
+        for (const fs::path& folder : folders_in(dir, is_reprojection, 1))
+            append(strategies, load_reprojection(folder), "reprojection strategies");
+    return strategies;
+}
+
 std::vector<Technique> list_techniques(std::span<const fs::path> extra_dirs)
 {
     const std::vector<Structure> structures = list_structures(extra_dirs);
     std::vector<Technique>       techniques;
     for (const fs::path& dir : technique_dirs(extra_dirs)) {
         const std::vector<fs::path> folders = folders_in(dir, is_technique, 0);
-        if (folders.empty() && folders_in(dir, is_structure, 1).empty())
+        if (folders.empty() && folders_in(dir, is_structure, 1).empty() && folders_in(dir, is_reprojection, 1).empty())
             throw_spec_error("{}: holds no technique (a folder with technique.toml)", short_path(dir));
         for (const fs::path& folder : folders) append(techniques, load_technique(folder, structures), "techniques");
     }

@@ -1,6 +1,7 @@
 // A technique is a folder: technique.toml says what it is, trace.glsl how it traces.
 #pragma once
 
+#include "render/reprojection.h"
 #include "render/structure.h"
 
 #include <filesystem>
@@ -43,6 +44,8 @@ Technique load_technique(const std::filesystem::path& folder, std::span<const St
 /// The in-tree techniques, then those in $SSRLAB_TECHNIQUES (colon-separated) and `extra_dirs`. Each directory is either one
 /// technique's folder or holds such folders. Throws SpecError when two share an id or a directory does not exist.
 std::vector<Technique> list_techniques(std::span<const std::filesystem::path> extra_dirs);
+/// The reprojection strategies in the same directories, likewise.
+std::vector<Reprojection> list_reprojections(std::span<const std::filesystem::path> extra_dirs);
 /// The structures in the same directories, also in the folders of techniques.
 std::vector<Structure> list_structures(std::span<const std::filesystem::path> extra_dirs);
 

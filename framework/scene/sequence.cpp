@@ -125,6 +125,7 @@ std::optional<FrameMotion> motion_at(const Scene& scene, const std::string& view
 {
     if (frame == 0 || scene.frame) return std::nullopt;
     FrameMotion motion;
+    motion.frame         = frame;
     motion.view          = camera_to_view(unjittered_camera_at(scene, view, frame), size_px);
     motion.previous_view = camera_to_view(unjittered_camera_at(scene, view, frame - 1), size_px);
     const View &now = motion.view, &before = motion.previous_view;

@@ -14,6 +14,17 @@
 #define CONSTANT_TRACE_BLOCK_PX 9
 #define CONSTANT_RAYS_PER_PIXEL 11
 #define CONSTANT_PASSES 64 // the passes' parameters, in the order of render/passes/all_passes.cpp
+#define CONSTANT_REPROJECTION 256 // those of the reprojection strategy
+
+// What became of a pixel's history (framework/render/history.h, HistoryCounts).
+#define HISTORY_ACCUMULATED 0
+#define HISTORY_UNSEEN 1
+#define HISTORY_OFF_IMAGE 2
+#define HISTORY_OTHER_DEPTH 3
+#define HISTORY_OTHER_NORMAL 4
+#define HISTORY_OTHER_HIT 5
+#define HISTORY_CLAMPED 6
+#define HISTORY_COUNTS 7
 
 // Sub-pixel offsets are centres of a grid of this many cells per side.
 #define OFFSET_CELLS 256

@@ -10,7 +10,22 @@
 
 layout(local_size_x = RAYS_PER_GROUP) in;
 layout(set = 0, binding = 13, rgba16f) uniform writeonly image2D reflection_image;
+
+#ifdef REPROJECTED
+#include "passes/previous_frame.glsl"
+#include "passes/history_lookup.glsl"
+
+vec4 reflection_before(ivec2 pixel)
+{
+    History found;
+    if (find_history(pixel, found) != HISTORY_ACCUMULATED || found.reflection.a <= 0.0) return vec4(0);
+    return vec4(found.reflection.rgb / found.reflection.a, found.reflection.a);
+}
+#else
 layout(set = 0, binding = 17, rgba16f) uniform readonly image2D history_image; // the previous frame's reflection_image
+
+vec4 reflection_before(ivec2 pixel) { return imageLoad(history_image, pixel); }
+#endif
 
 void main()
 {
@@ -23,7 +38,7 @@ void main()
     if (!mirror || !reflects(pixel)) return;
     Found found = found_by(packed_ray(index), listed);
     if (found.weight <= 0.0) return;
-    vec4 history = imageLoad(history_image, hit);
+    vec4 history = reflection_before(hit);
     vec3 colour  = found.light + (history.rgb - found.light) * beta_of(hit, to_camera_vs(hit), history.a);
     imageStore(reflection_image, pixel, vec4(colour * found.attenuation, found.weight));
 }

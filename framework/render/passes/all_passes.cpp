@@ -1,13 +1,16 @@
 #include "render/passes/pass_helpers.h"
+#include "render/reprojection.h"
 
 namespace ssrlab {
 
 std::span<const Pass> all_passes()
 {
     static const std::vector<Pass> passes = {
-        solid_backs_pass(),  classification_pass(),      rays_pass(),         structures_pass(),  trace_pass(),
-        hidden_layer_pass(), colour_downsampling_pass(), cone_pyramid_pass(), hit_colour_pass(),  bounces_pass(),
-        upsampling_pass(),   filter_3x3_pass(),          blur_pass(),         environment_pass(), composite_pass(),
+        solid_backs_pass(),  classification_pass(), rays_pass(),         structures_pass(),
+        trace_pass(),        hidden_layer_pass(),   reprojection_pass(), colour_downsampling_pass(),
+        cone_pyramid_pass(), hit_colour_pass(),     bounces_pass(),      upsampling_pass(),
+        filter_3x3_pass(),   blur_pass(),           environment_pass(),  history_pass(),
+        composite_pass(),
     };
     return passes;
 }
@@ -26,10 +29,18 @@ std::span<const Parameter> pass_parameters()
     return parameters;
 }
 
+std::vector<Parameter> all_pass_settings()
+{
+    std::vector<Parameter> all(pass_parameters().begin(), pass_parameters().end());
+    for (const Reprojection& strategy : all_reprojections())
+        all.insert(all.end(), strategy.parameters.begin(), strategy.parameters.end());
+    return all;
+}
+
 ParameterValues default_pass_values()
 {
     ParameterValues values;
-    for (const Parameter& parameter : pass_parameters()) values[parameter.name] = parameter.default_value;
+    for (const Parameter& parameter : all_pass_settings()) values[parameter.name] = parameter.default_value;
     return values;
 }
 

@@ -68,9 +68,19 @@ RecordFunction direct(Gpu& gpu, PreparedFrame& frame, int count)
     };
 }
 
-/// Every pass stands for the next frame of a still image, so that a run depends on nothing from before it.
+/// From the reflection that the frame before left in its history.
+RecordFunction real_history(Gpu& gpu, PreparedFrame& frame)
+{
+    auto pass = std::make_shared<ComputePass>(
+        make_colour_pass(gpu, frame, "passes/bounce_history.comp", {{"REPROJECTED", "1"}},
+                         history_bindings(*frame.history, frame.motion, *frame.buffers->gbuffer)));
+    return [&frame, pass](const auto& commands) { dispatch_indirect(commands, *pass, frame.rays->launch); };
+}
+
+/// Without one every pass stands for the next frame of a still image.
 RecordFunction history(Gpu& gpu, PreparedFrame& frame, int count)
 {
+    if (frame.facts.history.usable) return real_history(gpu, frame);
     auto pass = std::make_shared<ComputePass>(
         make_colour_pass(gpu, frame, "passes/bounce_history.comp", {}, {{"history_image", frame.buffers->filtered}}));
     return [&frame, pass, count](const auto& commands) {
@@ -88,32 +98,40 @@ RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
                                                                             : direct(gpu, frame, count);
 }
 
-PassDecision decide(const FrameFacts& /*facts*/, const FrameStatistics& statistics, const ParameterValues& values)
+PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
 {
     if (choice<BounceMode>(values) == BounceMode::off) return {PassDecision::off, "bounce_mode = off"};
     if (!one_ray_per_pixel(values)) return {PassDecision::off, "needs one ray per pixel at full resolution"};
     const TraceCounts& trace = statistics.trace;
     if (trace.mirror_hits == 0) return {PassDecision::not_needed, fmt::format("none of {} hits reflects", trace.hits)};
     return {PassDecision::needed,
-            fmt::format("{} of {} hits reflect", percent(trace.mirror_hits, trace.hits), trace.hits)};
+            fmt::format("{} of {} hits reflect{}", percent(trace.mirror_hits, trace.hits), trace.hits,
+                        takes_bounces_from_history(facts, values) ? ", as the frame before shows" : "")};
 }
 
 } // namespace
 
+bool takes_bounces_from_history(const FrameFacts& facts, const ParameterValues& values)
+{
+    return choice<BounceMode>(values) == BounceMode::history && facts.history.usable;
+}
+
 Pass bounces_pass()
 {
-    return {.id             = "bounces",
-            .summary        = "Further bounces between mirrors: continues the rays whose hits reflect, too",
-            .cite           = {"J. Somerville Roberts, Screen Space Reflections"},
-            .parameters     = {choice_parameter(BounceMode::direct,
-                                                "further bounces. off: none; history: from the previous frames' "
-                                                    "reflections as the camera saw them; direct: traced in the mirror "
-                                                    "direction of the arriving ray"),
-                               integer_parameter("bounces", 1, 1, 16,
-                                                 "further bounces, or earlier frames; each adds one level of reflection")},
-            .decide         = decide,
-            .prepare        = prepare,
-            .beyond_shading = true};
+    return {
+        .id             = "bounces",
+        .summary        = "Further bounces between mirrors: continues the rays whose hits reflect, too",
+        .cite           = {"J. Somerville Roberts, Screen Space Reflections"},
+        .parameters     = {choice_parameter(BounceMode::direct,
+                                            "further bounces. off: none; history: from the previous frame's "
+                                                "reflection as the camera saw it, reprojected; direct: traced in the mirror "
+                                                "direction of the arriving ray"),
+                           integer_parameter("bounces", 1, 1, 16,
+                                             "further bounces; with history and no frame before this one, earlier frames "
+                                                 "of a still image; each adds one level of reflection")},
+        .decide         = decide,
+        .prepare        = prepare,
+        .beyond_shading = true};
 }
 
 } // namespace ssrlab

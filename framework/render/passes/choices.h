@@ -29,6 +29,7 @@ PASS_CHOICE(UpsamplingWeights, upsampling_weights, bilinear, depth, depth_normal
 PASS_CHOICE(Filter3x3, filter_3x3, off, box3, median3)
 PASS_CHOICE(Gloss, gloss, off, blur, cone)
 PASS_CHOICE(Reflectance, reflectance, metallic, ggx)
+PASS_CHOICE(HistoryClamping, history_clamping, off, minmax, variance)
 
 #undef PASS_CHOICE
 

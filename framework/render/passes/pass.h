@@ -49,6 +49,7 @@ Pass rays_pass();
 Pass structures_pass();
 Pass trace_pass();
 Pass hidden_layer_pass();
+Pass reprojection_pass();
 Pass colour_downsampling_pass();
 Pass cone_pyramid_pass();
 Pass hit_colour_pass();
@@ -57,12 +58,15 @@ Pass upsampling_pass();
 Pass filter_3x3_pass();
 Pass blur_pass();
 Pass environment_pass();
+Pass history_pass();
 Pass composite_pass();
 
 /// In the order of a frame.
 std::span<const Pass> all_passes();
 /// The parameters of all passes, after those of the plan itself. Names are unique.
 std::span<const Parameter> pass_parameters();
-ParameterValues            default_pass_values();
+/// Those and the parameters of reprojection strategies, named "strategy.parameter".
+std::vector<Parameter> all_pass_settings();
+ParameterValues        default_pass_values();
 
 } // namespace ssrlab

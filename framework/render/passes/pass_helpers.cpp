@@ -69,9 +69,16 @@ bool one_ray_per_pixel(const ParameterValues& values)
 ComputePass make_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader, const Defines& defines,
                       const Bindings& more, uint32_t push_constant_bytes)
 {
+    return make_composed_pass(gpu, frame, {.file = shader, .defines = defines}, more, {}, push_constant_bytes);
+}
+
+ComputePass make_composed_pass(Gpu& gpu, const PreparedFrame& frame, ShaderSource source, const Bindings& more,
+                               std::span<const Parameter> own, uint32_t push_constant_bytes)
+{
     const FrameBuffers& buffers   = *frame.buffers;
     Constants           constants = settings_constants(frame, Precision::float32);
     add_parameters(constants, pass_parameters(), frame.settings.passes, CONSTANT_PASSES);
+    add_parameters(constants, own, frame.settings.passes, CONSTANT_REPROJECTION);
     Bindings bindings = more;
     bindings.merge(bindings_of(buffers, *frame.rays));
     bindings.insert({{"View", buffers.view},
@@ -89,10 +96,7 @@ ComputePass make_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& s
                          {"Lights", scene->lights},
                          {"ShadowMatrices", scene->shadow_matrices},
                          {"shadow_map", {scene->shadow_map, scene->shadow_sampler}}});
-    const ShaderSource source{
-        .file          = shader,
-        .defines       = defines,
-        .include_texts = {{"pass/parameters", parameter_declarations(pass_parameters(), CONSTANT_PASSES)}}};
+    source.include_texts.emplace("pass/parameters", parameter_declarations(pass_parameters(), CONSTANT_PASSES));
     return make_compute_pass(gpu, compile_shader(source), bindings, constants, push_constant_bytes);
 }
 

@@ -23,6 +23,11 @@ PassDecision needed_if_anything_reflects(const FrameFacts& facts, const FrameSta
 PassDecision needed_if_anything_is_rough(const FrameStatistics& statistics);
 PassDecision needed_at_lower_resolution(const FrameFacts& facts, const FrameStatistics& statistics,
                                         const ParameterValues& values);
+/// Where the frame follows another one and something changed since.
+PassDecision needed_for_history(const FrameFacts& facts, const FrameStatistics& statistics,
+                                const ParameterValues& values);
+/// Whether bounce_mode = history finds the frame before in a history.
+bool takes_bounces_from_history(const FrameFacts& facts, const ParameterValues& values);
 /// Passes that continue the rays one by one need this.
 bool one_ray_per_pixel(const ParameterValues& values);
 
@@ -30,6 +35,9 @@ bool one_ray_per_pixel(const ParameterValues& values);
 /// A shader with the parameters of all passes. `more` takes precedence over what the frame binds to the same names.
 ComputePass make_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader, const Defines& defines = {},
                       const Bindings& more = {}, uint32_t push_constant_bytes = 0);
+/// The same of a shader that is composed of several files, with the parameters of a reprojection strategy.
+ComputePass make_composed_pass(Gpu& gpu, const PreparedFrame& frame, ShaderSource source, const Bindings& more,
+                               std::span<const Parameter> own = {}, uint32_t push_constant_bytes = 0);
 /// The same, to be kept by a record function.
 std::shared_ptr<ComputePass> make_shared_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader,
                                               const Defines& defines = {});

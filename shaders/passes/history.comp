@@ -1,0 +1,66 @@
+// Accumulates the reflection over the frames: H = own + (H_before - own) * weight, of colours times their weights. H_before may first be clamped to
+// what the pixel's neighbourhood holds now (B. Karis 2014, High-Quality Temporal Supersampling; variance: M. Salvi 2016, An Excursion in Temporal
+// Supersampling).
+#include "api/view.glsl"
+#include "rays/reflecting.glsl"
+#include "rays/tiles.glsl"
+#include "pass/parameters"
+#include "passes/previous_frame.glsl"
+#include "passes/history_lookup.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 0, binding = 4, rgba16f) uniform readonly image2D reflection_image;
+layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D filtered_image;
+layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D kept_reflection_image; // for the next frame
+layout(set = 0, binding = 7, rgba32f) uniform writeonly image2D kept_facts_image;
+layout(set = 0, binding = 8, scalar) buffer HistoryCounts { uint history_counts[HISTORY_COUNTS]; };
+
+vec4 weighted(vec4 reflection) { return vec4(reflection.rgb * reflection.a, reflection.a); }
+
+vec4 clamped_to_neighbours(ivec2 pixel, vec4 value)
+{
+    vec4  low = vec4(1e30), high = vec4(-1e30), sum = vec4(0), squares = vec4(0);
+    float count = 0.0;
+    for (int i = 0; i < 9; ++i)
+    {
+        ivec2 next   = clamp(pixel + ivec2(i % 3, i / 3) - 1, ivec2(0), size_px - 1);
+        vec4  stored = imageLoad(reflection_image, next);
+        if (stored.a < 0.0) continue;
+        vec4 own = weighted(stored);
+        low      = min(low, own);
+        high     = max(high, own);
+        sum += own;
+        squares += own * own;
+        count += 1.0;
+    }
+    if (history_clamping == history_clamping_minmax) return clamp(value, low, high);
+    vec4 mean = sum / count, deviation = sqrt(max(squares / count - mean * mean, 0.0)) * clamping_deviations;
+    return clamp(value, mean - deviation, mean + deviation);
+}
+
+void main()
+{
+    ivec2 pixel;
+    if (!listed_pixel(pixel) || any(greaterThanEqual(pixel, size_px))) return;
+    vec4 own = imageLoad(reflection_image, pixel);
+    imageStore(filtered_image, pixel, own);
+    if (own.a < 0.0) return;
+    History found;
+    int     outcome = find_history(pixel, found);
+    vec4    now = reprojected(pixel), result = weighted(own);
+    float   frames = 1.0;
+    if (outcome == HISTORY_ACCUMULATED && takes_history != 0)
+    {
+        vec4 before = found.reflection;
+        if (history_clamping != history_clamping_off) before = clamped_to_neighbours(pixel, before);
+        if (before != found.reflection) atomicAdd(history_counts[HISTORY_CLAMPED], 1);
+        // A plain mean until there are enough frames for the weight.
+        float weight = min(found.frames / (found.frames + 1.0), history_weight) * found.share;
+        result       = result + (before - result) * weight;
+        frames       = found.frames * found.share + 1.0;
+        imageStore(filtered_image, pixel, result.a > 0.0 ? vec4(result.rgb / result.a, result.a) : vec4(0));
+    }
+    atomicAdd(history_counts[outcome], 1);
+    imageStore(kept_reflection_image, pixel, result);
+    imageStore(kept_facts_image, pixel, vec4(frames, now.zw, 0));
+}

@@ -1,0 +1,88 @@
+// Where each pixel's reflection was in the frame before, by the strategy that the framework composes in (techniques/reprojections/): the mean over the
+// pixel's rays that hit and were seen.
+#include "layout/workgroups.glsl"
+#include "trace/ray_list.glsl"
+#include "trace/hit_list.glsl"
+#include "api/view.glsl"
+#include "rays/reflecting.glsl"
+#include "pass/parameters"
+#include "passes/previous_frame.glsl"
+#include "api/reprojection_api.glsl"
+#include "reprojection/parameters"
+#include "reprojection/reproject.glsl"
+
+layout(constant_id = CONSTANT_RAY_OFFSET_M) const float ray_offset_m = 0;
+
+layout(local_size_x = RAYS_PER_GROUP) in;
+layout(set = 0, binding = 13, rgba32f) uniform writeonly image2D reprojected_image; // px to where it was, ray length, object that was hit
+#ifdef SECOND_LAYER
+layout(set = 0, binding = 14, r32ui) uniform readonly uimage2D second_object_image;
+#endif
+
+// The surface point that a ray hit, on the plane of its pixel, and its object.
+vec3 hit_vs(PackedRay ray, PackedHit found, out uint object)
+{
+    ivec2 hit   = unpack_pixel(found.pixel);
+    vec3  point = ray.origin + ray.delta * found.t;
+    object      = imageLoad(object_image, hit).x;
+#ifdef SECOND_LAYER
+    if (in_second_layer(found.pixel))
+    {
+        object = imageLoad(second_object_image, hit).x;
+        return px_to_vs(point);
+    }
+#endif
+    float depth = depth_on_plane(load_depth(hit), imageLoad(gradient_image, hit).x, point.xy - vec2(hit) - 0.5);
+    return px_to_vs(vec3(point.xy, depth));
+}
+
+vec2 motion_of(vec3 position_vs, uint object, vec2 px)
+{
+    vec3 position_pvs = carried_pvs(position_vs, object);
+    return orthographic == 0 && position_pvs.z >= 0.0 ? vec2(uintBitsToFloat(0x7FC00000u)) : pvs_to_px(position_pvs) - px;
+}
+
+Reflection reflection_of(PackedRay ray, PackedHit found, out uint hit_object)
+{
+    ivec2 pixel  = unpack_pixel(ray.pixel);
+    vec3  start  = ray_offset_m > 0.0 ? vec3(vec2(pixel) + 0.5, load_depth(pixel)) : ray.origin;
+    uint  object = imageLoad(object_image, pixel).x;
+    Reflection now;
+    now.incidence_vs        = px_to_vs(start);
+    now.incidence_px        = start.xy - jitter_px;
+    now.incidence_motion_px = motion_of(now.incidence_vs, object, now.incidence_px);
+    now.hit_vs              = hit_vs(ray, found, hit_object);
+    now.hit_px              = (ray.origin + ray.delta * found.t).xy - jitter_px;
+    now.hit_motion_px       = motion_of(now.hit_vs, hit_object, now.hit_px);
+    now.normal_vs           = normalize(imageLoad(normal_image, pixel).xyz);
+    now.normal_pvs          = turned_pvs(now.normal_vs, object);
+    now.ray_length_m        = distance(now.incidence_vs, now.hit_vs);
+    return now;
+}
+
+void main()
+{
+    uint first = (work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x) * rays_per_pixel;
+    if (first >= ray_count) return;
+    ivec2 pixel = unpack_pixel(ray_pixel(first));
+    if (!reflects(pixel)) return;
+    vec2  moved_px = vec2(0);
+    float length_m = 0.0;
+    uint  hit_object = 0;
+    int   hits = 0, seen = 0;
+    for (int ray = 0; ray < rays_per_pixel; ++ray)
+    {
+        PackedHit found = packed_hit(first + ray);
+        if (unpack_status(found.pixel) != TRACE_HIT) continue;
+        Reflection  now  = reflection_of(packed_ray(first + ray), found, hit_object);
+        Reprojected then = reproject(now);
+        length_m += now.ray_length_m;
+        ++hits;
+        if (!then.seen) continue;
+        moved_px += then.px - now.incidence_px;
+        ++seen;
+    }
+    if (hits == 0) return;
+    vec2 mean_px = seen > 0 ? moved_px / float(seen) : vec2(uintBitsToFloat(0x7FC00000u));
+    imageStore(reprojected_image, pixel, vec4(mean_px, length_m / float(hits), float(hit_object)));
+}

@@ -1,0 +1,298 @@
+// The reflection accumulated over the frames of a sequence.
+#include "core/pixel_index.h"
+#include "gpu/passes.h"
+#include "gpu/sequence_frames.h"
+
+#include <gmock/gmock.h>
+
+namespace ssrlab::test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr glm::ivec2 size_px{97, 61};
+
+/// No clamping, no rejection.
+const ParameterValues plain{chosen(HistoryClamping::off), {"reject_depth", 0}, {"reject_normal", -1}};
+
+ParameterValues with(ParameterValues values, const ParameterValues& more)
+{
+    for (const auto& [name, value] : more) values[name] = value;
+    return values;
+}
+
+const PlannedPass& row_of(const PreparedFrame& frame, const std::string& id)
+{
+    return *std::ranges::find(plan_of(frame), id, &PlannedPass::id);
+}
+
+std::vector<float> shaded(const PreparedFrame& frame) { return read_shaded(device(), frame).values; }
+
+Scene still_scene()
+{
+    Scene scene = load_scene("builtin:moving_boxes");
+    for (Draw& draw : scene.draws) draw.motion = {};
+    return scene;
+}
+
+// A still camera with jitter: every pixel's reflection was in the same pixel, so as long as the weight allows, the history is the plain
+// mean of all frames so far, of colours times their weights.
+TEST(History, ConvergesToTheMeanOfTheFrames)
+{
+    const Scene             scene   = still_scene();
+    const FrameHistoryPtr   history = make_history(device(), size_px);
+    const ParameterValues   passes  = with(plain, {strategy("surface"), {"history_weight", 0.999}});
+    constexpr int           frames  = 16;
+    std::vector<glm::dvec4> sum(pixel_count(size_px));
+    std::vector<int>        seen(sum.size());
+    for (int frame = 0; frame < frames; ++frame) {
+        const SequencePicture picture = picture_at(scene, "default", {frame, frames}, size_px);
+        const Reflection      own = (run_picture(picture, passes, nullptr), read_colours(picture.buffers->reflection));
+        const auto            run = run_picture(picture, passes, history);
+        const auto            vectors_px = read_reprojection(device(), *run);
+        for (size_t i = 0; i < sum.size(); ++i) {
+            sum[i] += glm::dvec4(glm::vec3(own[i]) * own[i].a, own[i].a);
+            seen[i] += own[i].a >= 0 && (frame == 0 || !std::isnan(vectors_px[i].x)) ? 1 : 0;
+        }
+        EXPECT_EQ(read_history_counts(device(), *run).has_value(), frame > 0);
+        keep_history(device(), *run);
+    }
+    const auto kept  = download_as<glm::vec4>(device(), history->reflection),
+               facts = download_as<glm::vec4>(device(), history->facts);
+    size_t judged    = 0;
+    for (size_t i = 0; i < kept.size(); ++i) {
+        if (seen[i] != frames) continue;
+        ++judged;
+        ASSERT_EQ(facts[i].x, frames);
+        const glm::dvec4 mean = sum[i] / double(frames);
+        for (int c = 0; c < 4; ++c) ASSERT_NEAR(static_cast<double>(kept[i][c]), mean[c], 1e-4) << "pixel " << i;
+    }
+    EXPECT_GT(judged, 1000U);
+}
+
+// After many frames the newest one weighs 1 - history_weight: a step from 0 to 1 is 1 - 0.75^n after n frames.
+TEST(History, WeighsFramesExponentially)
+{
+    const Scene           scene   = still_scene();
+    const FrameHistoryPtr history = make_history(device(), size_px);
+    const ParameterValues passes  = with(plain, {strategy("surface"), {"history_weight", 0.75}});
+    keep_history(device(), *run_picture(picture_at(scene, "default", {0, 16}, size_px), passes, history));
+    const std::vector<glm::vec4> nothing(pixel_count(size_px), glm::vec4(0, 0, 0, 1)),
+        many(nothing.size(), glm::vec4(100, 1, -1, 0));
+    upload(device(), history->reflection, nothing.data(), nothing.size() * sizeof(glm::vec4));
+    upload(device(), history->facts, many.data(), many.size() * sizeof(glm::vec4));
+    const SequencePicture picture = picture_at(scene, "default", {1, 16}, size_px);
+    const Reflection      own     = (run_picture(picture, passes, nullptr), read_colours(picture.buffers->reflection));
+    const auto            run     = run_picture(picture, passes, history);
+    const Reflection      result  = read_colours(picture.buffers->reflection);
+    const auto            vectors_px = read_reprojection(device(), *run);
+    size_t                judged     = 0;
+    for (size_t i = 0; i < own.size(); ++i) {
+        if (std::isnan(vectors_px[i].x)) continue;
+        ++judged;
+        ASSERT_NEAR(result[i].r * result[i].a, 0.25F * own[i].r * own[i].a, 1e-3) << "pixel " << i;
+    }
+    EXPECT_GT(judged, 1000U);
+}
+
+/// Two frames of a jittered sequence; between them the history is changed by hand.
+struct TwoFrames {
+    HistoryCounts counts;
+    Reflection    own, result;
+};
+
+TwoFrames second_after(const std::function<void(FrameHistory&)>& change, const ParameterValues& passes)
+{
+    const Scene           scene   = still_scene();
+    const FrameHistoryPtr history = make_history(device(), size_px);
+    keep_history(device(), *run_picture(picture_at(scene, "default", {0, 16}, size_px), passes, history));
+    change(*history);
+    const SequencePicture picture = picture_at(scene, "default", {1, 16}, size_px);
+    TwoFrames             frames;
+    run_picture(picture, passes, nullptr);
+    frames.own             = read_colours(picture.buffers->reflection);
+    const auto run         = run_picture(picture, passes, history);
+    frames.result          = read_colours(picture.buffers->reflection);
+    frames.counts          = read_history_counts(device(), *run).value();
+    const HistoryCounts& c = frames.counts;
+    EXPECT_EQ(c.accumulated + c.unseen + c.off_image + c.other_depth + c.other_normal + c.other_hit,
+              reflecting_pixels_of(*run));
+    EXPECT_GT(c.accumulated + c.other_depth + c.other_normal + c.other_hit, 1000U);
+    return frames;
+}
+
+template <typename Texel> void fill(GpuImage& image, Texel value)
+{
+    const std::vector<Texel> texels(pixel_count(size_px), value);
+    upload(device(), image, texels.data(), texels.size() * sizeof(Texel));
+}
+
+template <typename Texel, typename Change> void change_texels(GpuImage& image, const Change& change)
+{
+    auto texels = download_as<Texel>(device(), image);
+    for (Texel& texel : texels) change(texel);
+    upload(device(), image, texels.data(), texels.size() * sizeof(Texel));
+}
+
+const auto bright = [](FrameHistory& history) { fill(history.reflection, glm::vec4(100, 100, 100, 1)); };
+
+// A history that is brighter than everything in the frame: clamped between the neighbours' smallest and largest value, it is their
+// largest.
+TEST(History, IsClampedToItsNeighbours)
+{
+    const ParameterValues passes = with(plain, {strategy("surface")});
+    const TwoFrames       off    = second_after(bright, passes);
+    EXPECT_EQ(off.counts.clamped, 0U);
+    const TwoFrames minmax = second_after(bright, with(passes, {chosen(HistoryClamping::minmax)}));
+    const TwoFrames variance =
+        second_after(bright, with(passes, {chosen(HistoryClamping::variance), {"clamping_deviations", 0}}));
+    EXPECT_EQ(minmax.counts.clamped, minmax.counts.accumulated);
+    EXPECT_EQ(variance.counts.clamped, variance.counts.accumulated);
+    size_t changed = 0;
+    for (int y = 1; y < size_px.y - 1; ++y)
+        for (int x = 1; x < size_px.x - 1; ++x) {
+            const size_t i = pixel_index({x, y}, size_px);
+            if (off.result[i] == off.own[i]) continue;
+            ++changed;
+            ASSERT_GT(off.result[i].r, 10) << "without clamping the history shows";
+            float high = 0, low = 1e9F;
+            for (int k = 0; k < 9; ++k) {
+                const glm::vec4 next = minmax.own[pixel_index({x + k % 3 - 1, y + k / 3 - 1}, size_px)];
+                if (next.a < 0) continue;
+                high = std::max(high, next.r * next.a);
+                low  = std::min(low, next.r * next.a);
+            }
+            ASSERT_LE(minmax.result[i].r * minmax.result[i].a, high + 1e-3F);
+            ASSERT_LE(variance.result[i].r * variance.result[i].a, high + 1e-3F);
+            ASSERT_GE(variance.result[i].r * variance.result[i].a, low - 1e-3F);
+        }
+    EXPECT_GT(changed, 1000U);
+}
+
+// Each rejection on its own sees what was changed for it, and the frame stays as it is without a history.
+TEST(History, IsRejectedWhereItIsOfSomethingElse)
+{
+    const ParameterValues passes = with(plain, {strategy("surface")});
+    const auto            nearer = [](FrameHistory& h) { change_texels<float>(h.depth, [](float& d) { d *= 1.5F; }); };
+    const auto turned  = [](FrameHistory& h) { change_texels<glm::vec4>(h.normal, [](glm::vec4& n) { n = -n; }); };
+    const auto others  = [](FrameHistory& h) { change_texels<glm::vec4>(h.facts, [](glm::vec4& f) { f.z = 1000; }); };
+    const auto farther = [](FrameHistory& h) {
+        change_texels<glm::vec4>(h.facts, [](glm::vec4& f) { f.y = 1e9F, f.z = 1; });
+    };
+    const TwoFrames depth = second_after(nearer, with(passes, {{"reject_depth", 0.05}}));
+    EXPECT_EQ(depth.counts.accumulated, 0U);
+    EXPECT_EQ(depth.result, depth.own);
+    const TwoFrames normal = second_after(turned, with(passes, {{"reject_normal", 0.9}}));
+    EXPECT_GT(normal.counts.other_normal, 1000U);
+    EXPECT_EQ(normal.result, normal.own);
+    const TwoFrames hit = second_after(others, with(passes, {{"reject_hit", 1}}));
+    EXPECT_GT(hit.counts.other_hit, 1000U);
+    EXPECT_EQ(hit.result, hit.own);
+    // A ray that was infinitely longer leaves no weight.
+    const auto      both   = [&](FrameHistory& h) { bright(h), farther(h); };
+    const TwoFrames length = second_after(both, with(passes, {{"hit_distance_tolerance", 0.1}}));
+    EXPECT_EQ(length.result, length.own);
+    // Unchanged, all of them let it pass, but at edges.
+    const TwoFrames none =
+        second_after([](FrameHistory&) {}, with(passes, {{"reject_depth", 0.05}, {"reject_normal", 0.9}}));
+    EXPECT_GT(none.counts.accumulated, 20 * (none.counts.other_depth + none.counts.other_normal));
+}
+
+TEST(History, NothingIsLeftOfItAfterACut)
+{
+    const Scene           scene   = load_scene("builtin:moving_boxes");
+    const FrameHistoryPtr history = make_history(device(), size_px);
+    const ParameterValues passes{strategy("plane")};
+    const auto            alone = [&](SequenceFrame at, const char* view) {
+        return shaded(*run_picture(picture_at(scene, view, at, size_px), passes, nullptr));
+    };
+    const auto after = [&](const char* view, SequenceFrame at) {
+        keep_history(device(), *run_picture(picture_at(scene, "truck", {4, 8}, size_px), passes, history));
+        fill(history->reflection, glm::vec4(1000));
+        return run_picture(picture_at(scene, view, at, size_px), passes, history);
+    };
+    EXPECT_NE(shaded(*after("truck", {5, 8})), alone({5, 8}, "truck")) << "no cut: the next frame of the same path";
+    for (const auto& [view, at, reason] :
+         {std::tuple("truck", SequenceFrame{6, 8}, "a cut: frame 6 follows frame 4"),
+          {"truck", SequenceFrame{4, 8}, "a cut: frame 4 follows frame 4"},
+          {"truck", SequenceFrame{0, 8}, "a cut: nothing came before this frame"},
+          {"orbit", SequenceFrame{5, 8}, "a cut: the frame before had another view"}}) {
+        const auto frame = after(view, at);
+        EXPECT_EQ(shaded(*frame), alone(at, view)) << reason;
+        EXPECT_EQ(row_of(*frame, "history").reason, reason);
+    }
+    keep_history(device(), *run_picture(picture_at(scene, "truck", {4, 8}, size_px), passes, history));
+    drop_history(*history);
+    const auto dropped = run_picture(picture_at(scene, "truck", {5, 8}, size_px), passes, history);
+    EXPECT_EQ(shaded(*dropped), alone({5, 8}, "truck"));
+    EXPECT_EQ(row_of(*dropped, "history").reason, "no frame before this one");
+}
+
+// The plan's reasons come from what is known of the motion; where nothing changed, running the passes changes no bit.
+TEST(History, IsPlannedOnlyWhereSomethingChanges)
+{
+    const Scene moving = load_scene("builtin:moving_boxes"), still = still_scene();
+    struct Case {
+        const Scene& scene;
+        const char*  view;
+        int          phases;
+        const char*  reason;
+    };
+    for (const auto& [scene, view, phases, reason] :
+         {Case{still, "default", 0, "still camera, 0 of 4 objects move, no jitter"},
+          Case{still, "default", 16, "still camera, 0 of 4 objects move, with jitter"},
+          Case{moving, "default", 0, "still camera, 2 of 4 objects move, no jitter"},
+          Case{still, "truck", 0, "moving camera, 0 of 4 objects move, no jitter"}}) {
+        const FrameHistoryPtr history = make_history(device(), size_px);
+        keep_history(device(), *run_picture(picture_at(scene, view, {3, phases}, size_px), {}, history));
+        const SequencePicture picture = picture_at(scene, view, {4, phases}, size_px);
+        const auto            planned = run_picture(picture, {}, history);
+        const bool            changes = std::string_view(reason) != "still camera, 0 of 4 objects move, no jitter";
+        for (const char* pass : {"reprojection", "history"}) {
+            EXPECT_EQ(row_of(*planned, pass).runs, changes) << reason;
+            EXPECT_THAT(row_of(*planned, pass).reason, HasSubstr(reason));
+        }
+        const auto planned_image = shaded(*planned);
+        const auto unculled      = prepare_unculled(device(), *planned);
+        run_frame(device(), *unculled);
+        EXPECT_TRUE(row_of(*unculled, "history").runs);
+        EXPECT_EQ(shaded(*unculled), planned_image) << reason;
+        const auto alone = run_picture(picture, {}, nullptr);
+        EXPECT_EQ(shaded(*alone) != planned_image, changes) << reason;
+        EXPECT_FALSE(row_of(*alone, "history").runs);
+        EXPECT_EQ(row_of(*alone, "history").reason, "a single frame: no history");
+    }
+}
+
+// A frame may run again before it is kept, and the whole sequence again: the same bits.
+TEST(History, IsTheSameOnRerun)
+{
+    const Scene scene    = load_scene("builtin:moving_boxes");
+    const auto  sequence = [&](int runs) {
+        const FrameHistoryPtr           history = make_history(device(), size_px);
+        std::vector<std::vector<float>> images;
+        for (int frame = 0; frame < 6; ++frame) {
+            const auto run = run_picture(picture_at(scene, "orbit", {frame, 4}, size_px), {}, history);
+            for (int i = 1; i < runs; ++i) run_frame(device(), *run);
+            images.push_back(shaded(*run));
+            keep_history(device(), *run);
+        }
+        return images;
+    };
+    EXPECT_EQ(sequence(1), sequence(3));
+}
+
+// At a lower resolution pixels without rays take the vector of their block's pixel.
+TEST(History, OfALowerResolution)
+{
+    const Scene           scene   = still_scene();
+    const FrameHistoryPtr history = make_history(device(), size_px);
+    const ParameterValues passes  = with(plain, {strategy("surface"), chosen(TraceResolution::half)});
+    keep_history(device(), *run_picture(picture_at(scene, "default", {0, 16}, size_px), passes, history));
+    const auto          run    = run_picture(picture_at(scene, "default", {1, 16}, size_px), passes, history);
+    const HistoryCounts counts = read_history_counts(device(), *run).value();
+    EXPECT_GT(counts.accumulated, reflecting_pixels_of(*run) / 2);
+}
+
+} // namespace
+} // namespace ssrlab::test
