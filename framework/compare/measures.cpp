@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::string_view contract = "docs/hit_contract.md";
 constexpr std::string_view truth    = "framework/truth/scene_truth.h";
+constexpr std::string_view before   = "framework/truth/reprojection_truth.h";
 constexpr std::string_view own      = "ssrlab";
 
 // px distance = the larger of |dx| and |dy| between two hit points. "Found" = the truth has a point, the technique hits, and
@@ -123,6 +124,34 @@ constexpr auto table = std::to_array<Measure>({
      own},
     {"picture_visible_rmse", "display value", "as picture_rmse, over visible rays alone", own},
     {"picture_visible_border_rmse", "display value", "as picture_border_rmse, over visible rays alone", own},
+
+    {"reprojection_error_median_px", "px",
+     "median distance between where the reprojection says that a reflection was in the frame before and where it was, "
+     "over rays that hit within 1 px of the true point and whose reflection the frame before showed; this and the next "
+     "six where the reprojection ran",
+     before},
+    {"reprojection_error_p95_px", "px", "95th percentile of the same distances", before},
+    {"reprojection_found_share", "share", "of the same rays, those for which the reprojection says something", before},
+    {"reprojection_unknown_share", "share",
+     "rays for which there is no truth of the reprojection (normal maps, curved mirrors without one answer), of traced "
+     "rays",
+     before},
+    {"disocclusion_share", "share",
+     "rays whose reflection the frame before did not show: hidden or outside the image, of rays for which this is "
+     "known",
+     before},
+    {"ghost_rmse", "display value",
+     "as picture_rmse, behind moving edges: over pixels that reflect within 2 px of a disoccluded one", before},
+    {"converged_rmse", "display value",
+     "as picture_rmse, against the mean of the pictures with the true reflection over all phases of the jitter; where "
+     "nothing else moves",
+     own},
+    {"history_share", "share", "pixels that took something of the history, of traced rays", own},
+    {"clamped_share", "share", "of these, pixels whose history the neighbourhood clamped", own},
+    {"flip_share", "share",
+     "rays that hit in this frame or the one before but not in both, or more than 2 px apart without the jitter, of "
+     "rays traced in both; where nothing but jitter moves",
+     own},
 });
 
 } // namespace

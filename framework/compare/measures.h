@@ -78,6 +78,38 @@ MeasureValues compare_images(const Image& tested, const Reference& reference, co
 MeasureValues compare_pictures(const Image& tested, const Reference& reference, const SceneTruth& scene_truth,
                                const GBufferImage& gbuffer);
 
+/// The names that begin with "reprojection_", and disocclusion_share. `found_px`: by pixel, from the pixel to where its reflection
+/// was, without jitter; NaN where nothing is known.
+MeasureValues compare_reprojection(std::span<const glm::vec2> found_px, const ReprojectionTruth& truth,
+                                   const TraceResult& traced, const SceneTruth& scene_truth);
+
+/// ghost_rmse of a finished picture.
+MeasureValues compare_ghosts(const Image& tested, const Reference& reference, const ReprojectionTruth& truth);
+
+/// converged_rmse of a finished picture, over pixels that were traced.
+MeasureValues compare_converged(const Image& tested, const Reference& converged, const TraceResult& traced);
+
+/// Where each ray hit, without jitter: what is kept of a frame to compare the next one with it.
+struct HitPlaces {
+    std::vector<glm::vec2> px; // NaN: traced, without hit; infinite: not traced
+};
+HitPlaces hit_places(const TraceResult& traced, glm::dvec2 jitter_px);
+
+struct Flips {
+    size_t flips = 0, rays = 0; // rays traced in both frames
+};
+Flips count_changes(const HitPlaces& before, const HitPlaces& now);
+
+/// By pixel, of the display luma of a sequence's pictures.
+struct TemporalMoments {
+    std::vector<float> sum, sum_of_squares;
+    std::vector<int>   count;
+};
+/// Adds the pixels that reflect.
+void add_picture(TemporalMoments& moments, const Image& linear_radiance, const TraceResult& traced);
+/// Root of the mean variance over time, over pixels that reflect in `frames` pictures, at least two.
+std::optional<double> temporal_rms(const TemporalMoments& moments, int frames);
+
 /// The reference reflection: the scene truth's radiance where traced, black elsewhere; channels R, G, B.
 Image reference_image(const SceneTruth& scene_truth);
 

@@ -141,6 +141,14 @@ void refuse_same_names(const Experiment& experiment, std::span<const Technique> 
 
 } // namespace
 
+std::vector<Column> setting_columns(const Experiment& experiment, std::span<const Technique> techniques)
+{
+    std::vector<Column> columns = identity;
+    append(columns, settings());
+    append(columns, parameters(experiment, techniques));
+    return columns;
+}
+
 std::vector<Column> result_columns(const Experiment& experiment, std::span<const Technique> techniques)
 {
     std::vector<Column> front = identity;
@@ -153,9 +161,9 @@ std::vector<Column> result_columns(const Experiment& experiment, std::span<const
     append(back, ending);
     refuse_same_names(experiment, techniques, front);
     refuse_same_names(experiment, techniques, back);
-    append(front, parameters(experiment, techniques));
-    append(front, back);
-    return front;
+    std::vector<Column> columns = setting_columns(experiment, techniques);
+    append(columns, back);
+    return columns;
 }
 
 std::vector<std::string> names_of(std::span<const Column> columns)

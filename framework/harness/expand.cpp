@@ -108,10 +108,12 @@ std::string run_id(const Run& run)
     return "r" + content_hash(identity);
 }
 
-bool same_picture(const Run& a, const Run& b)
+bool same_sequence(const Run& a, const Run& b)
 {
-    return a.scene == b.scene && a.view == b.view && a.size_px == b.size_px && a.at == b.at;
+    return a.scene == b.scene && a.view == b.view && a.size_px == b.size_px && a.at.jitter_phases == b.at.jitter_phases;
 }
+
+bool same_picture(const Run& a, const Run& b) { return same_sequence(a, b) && a.at.frame == b.at.frame; }
 
 std::string size_text(glm::ivec2 size_px) { return fmt::format("{}x{}", size_px.x, size_px.y); }
 

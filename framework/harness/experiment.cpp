@@ -256,7 +256,8 @@ MeasureSettings read_measure(const TomlFile& file)
     return measure;
 }
 
-std::vector<Target> read_targets(const TomlFile& file, const MeasureSettings& measure)
+std::vector<Target> read_targets(const TomlFile& file, const MeasureSettings& measure,
+                                 const std::vector<SequenceFrame>& frames)
 {
     std::vector<Target> targets;
     const toml::table*  table = optional_table(file, "targets");
@@ -267,6 +268,10 @@ std::vector<Target> read_targets(const TomlFile& file, const MeasureSettings& me
     if (!measure.truth)
         throw_spec_error("{}: [targets] are judged by the truths: needs truth = true in [measure], got false",
                          toml_place(file, *table));
+    if (std::ranges::any_of(frames, [](const SequenceFrame& at) { return at.frame > 0; }))
+        throw_spec_error(
+            "{}: [targets] are searched on one frame, whose settings nothing follows: expected frames = [0]",
+            toml_place(file, *table));
     for (const TargetMeasure& one : target_measures()) {
         const toml::node* node = table->get(one.name);
         if (node == nullptr) continue;
@@ -306,7 +311,7 @@ Experiment load_experiment(const std::filesystem::path& path, std::span<const Te
     experiment.settings     = read_settings(file);
     experiment.techniques   = read_sweeps(file, techniques);
     experiment.measure      = read_measure(file);
-    experiment.targets      = read_targets(file, experiment.measure);
+    experiment.targets      = read_targets(file, experiment.measure, experiment.frames);
     return experiment;
 }
 

@@ -93,6 +93,8 @@ double count_runs(const Experiment& experiment);
 
 /// Whether two runs share a picture: scene, view, size and frame of the sequence.
 bool same_picture(const Run& a, const Run& b);
+/// The same but for the frame.
+bool same_sequence(const Run& a, const Run& b);
 
 /// Scene by scene, view by view, size by size, frame by frame; a run listed twice comes once. Throws SpecError for a run whose iterations a
 /// driver may cut, and for more than max_runs_unasked runs unless `many` is set.

@@ -8,8 +8,10 @@
 #include "core/parallel_rows.h"
 #include "core/stopwatch.h"
 #include "harness/environment.h"
+#include "harness/picture.h"
 #include "harness/samples.h"
 #include "harness/search.h"
+#include "harness/sequence_frame.h"
 #include "harness/statistics.h"
 #include "harness/stop_signal.h"
 
@@ -24,85 +26,11 @@ namespace {
 
 // Runs that are timed interleaved, and so in pairs: most frames have fewer; few enough that a kill loses little. A search has all of its
 // frame's runs in one batch, since what it compares must be paired.
-constexpr size_t batch_size      = 64;
-constexpr int    gbuffer_repeats = 5;
-
-struct Picture {
-    GBufferPtr            gbuffer;
-    FrameBuffersPtr       buffers;
-    double                gbuffer_ms = 0;
-    int                   round      = 0; // of samples.csv
-    std::optional<Truths> truths;
-
-    // The picture with the true reflection under the settings of the last run: no technique is in it.
-    std::optional<Reference> reference;
-    FrameSettings            reference_for;
-};
-
-const LoadedScene& scene_of(Bench& bench, const std::string& name, int frame)
-{
-    if (bench.scene == nullptr || bench.scene->name != name) {
-        bench.scene.reset(); // before the next one is loaded: one scene in memory at a time
-        auto loaded   = std::make_unique<LoadedScene>();
-        loaded->name  = name;
-        loaded->first = load_scene(name);
-        loaded->scene = loaded->first;
-        if (!loaded->scene.frame) loaded->uploaded = upload_scene(bench.gpu, loaded->scene);
-        for (const std::string& warning : loaded->scene.warnings)
-            bench.progress.say(fmt::format("{}: {}", name, warning));
-        bench.scene = std::move(loaded);
-    }
-    LoadedScene& loaded = *bench.scene;
-    if (loaded.frame != frame && anything_moves(loaded.first)) {
-        loaded.scene = scene_at(loaded.first, frame);
-        move_scene(bench.gpu, *loaded.uploaded, loaded.scene);
-    }
-    loaded.frame = frame;
-    return *bench.scene;
-}
-
-/// Runs a step and adds how long it took.
-template <typename Step> decltype(auto) clocked(double& seconds, const Step& step)
-{
-    struct Adding {
-        double&   seconds;
-        Stopwatch stopwatch;
-        ~Adding() { seconds += stopwatch.seconds(); }
-    } adding{seconds, {}};
-    return step();
-}
+constexpr size_t batch_size = 64;
 
 double cost_of(const Bench& bench, const Run& run)
 {
     return estimated_seconds(run, find_technique(bench.techniques, run.technique), bench.experiment.measure);
-}
-
-Picture make_picture(Bench& bench, const Run& run)
-{
-    const LoadedScene& loaded = scene_of(bench, run.scene, run.at.frame);
-    const View         view   = view_at(loaded.scene, run.view, run.size_px, run.at);
-    Picture            picture;
-    picture.gbuffer = clocked(bench.counted_s, [&] { // a warm-up
-        return loaded.scene.frame ? upload_gbuffer(bench.gpu, loaded.scene.frame->gbuffer)
-                                  : render_gbuffer(bench.gpu, loaded.uploaded, view,
-                                                   motion_at(loaded.scene, run.view, run.size_px, run.at.frame));
-    });
-    if (!loaded.scene.frame) {
-        std::vector<double> times_ms;
-        clocked(bench.timed_s, [&] {
-            for (int i = 0; i < gbuffer_repeats; ++i) times_ms.push_back(rerender_gbuffer(bench.gpu, *picture.gbuffer));
-        });
-        picture.gbuffer_ms = quantile(std::move(times_ms), 0.5);
-    }
-    picture.round   = bench.results.next_round();
-    picture.buffers = make_frame_buffers(bench.gpu, picture.gbuffer);
-    if (bench.experiment.measure.truth) {
-        clocked(bench.truths_s, [&] {
-            picture.truths.emplace(loaded.scene, read_gbuffer(bench.gpu, *picture.gbuffer),
-                                   truth_cache_dir(bench.results.path()));
-        });
-    }
-    return picture;
 }
 
 /// Shaders are read when a run is prepared: one that was edited under a sweep must not end in the same file. Asked after preparing,
@@ -125,6 +53,7 @@ template <typename Step> bool try_step(Bench& bench, MeasuredRun& measured, cons
     } catch (const std::exception& error) {
         refuse_changed_sources(bench);
         finish(bench, *measured.run, failed_row(measured.row, error));
+        lose_history(bench, *measured.run);
         measured.run = nullptr;
         return false;
     }
@@ -140,28 +69,21 @@ std::string picture_name(const Run& run)
     return "pictures/" + name;
 }
 
-/// What a run's frames gave, before anything is said about it.
-struct Observed {
-    Image                      shaded;
-    TraceResult                counted;
-    std::optional<TraceResult> hidden, twin; // the second layer's hits; the same trace in double
-};
-
 /// Everything on the device but the timed repeats: pipelines, warm-up, picture, counts.
 Observed observe(Bench& bench, const FrameBuffersPtr& buffers, MeasuredRun& measured)
 {
     const Run&             run     = *measured.run;
     const MeasureSettings& measure = bench.experiment.measure;
-    measured.frame =
-        prepare_frame(bench.gpu, buffers, find_technique(bench.techniques, run.technique), run.values, run.settings);
+    measured.frame = prepare_frame(bench.gpu, buffers, find_technique(bench.techniques, run.technique), run.values,
+                                   run.settings, history_of(bench, run));
     add_plan(measured.row, plan_of(*measured.frame));
     bench.counted_s += counting_s_of(*measured.frame);
     return clocked(bench.counted_s, [&] {
         for (int i = 0; i < std::max(1, measure.warmup); ++i) run_frame(bench.gpu, *measured.frame);
-        Observed observed{read_shaded(bench.gpu, *measured.frame),
-                          count_frame(bench.gpu, *measured.frame),
-                          read_hidden_hits(bench.gpu, *measured.frame),
-                          {}};
+        Observed observed{read_shaded(bench.gpu, *measured.frame), count_frame(bench.gpu, *measured.frame),
+                          read_hidden_hits(bench.gpu, *measured.frame)};
+        observed.history = read_history_counts(bench.gpu, *measured.frame);
+        if (observed.history) observed.reprojection = read_reprojection(bench.gpu, *measured.frame);
         if (measure.truth && measure.double_twin && bench.gpu.info.float64)
             observed.twin = count_frame(bench.gpu, *measured.frame, Precision::float64);
         return observed;
@@ -241,6 +163,7 @@ void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
     refuse_impossible(bench, *measured.run, observed);
     make_references(bench, picture, measured);
     judge(bench, picture, measured, observed);
+    judge_sequence(bench, picture, measured, observed);
 }
 
 /// The pilot: one warm frame, whose time is not recorded, says how many repeats fit into the budget.
@@ -278,6 +201,7 @@ void repeat_until_final(Bench& bench, Picture& picture, std::vector<MeasuredRun>
                 clocked(bench.timed_s, [&] { add_repeat(bench.gpu, measured, picture.gbuffer_ms, picture.round); });
             });
             if (over(measured) || static_cast<int>(measured.rounds.size()) < measured.repeats) continue;
+            if (!try_step(bench, measured, [&] { leave_history(bench, *measured.run, *measured.frame); })) continue;
             add_times(measured, picture.gbuffer_ms);
             finish(bench, *measured.run, measured.row, samples_text(measured));
             measured.run = nullptr;
@@ -346,17 +270,20 @@ void measure_batch(Bench& bench, Picture& picture, std::span<const Run> runs)
 }
 
 /// The picture, or rows that say why there is none.
-std::optional<Picture> try_picture(Bench& bench, std::span<const Run> runs)
+std::optional<Picture> try_picture(Bench& bench, std::span<const Run> runs, std::span<const Run> replayed = {})
 {
     try {
-        const UnderWay under_way(bench.state, runs.front().id, 0, true);
-        return make_picture(bench, runs.front());
+        const Run&     any = runs.empty() ? replayed.front() : runs.front();
+        const UnderWay under_way(bench.state, any.id, 0, true);
+        return make_picture(bench, any);
     } catch (const std::exception& error) {
         refuse_changed_sources(bench);
         for (const Run& run : runs) {
             const Technique& technique = find_technique(bench.techniques, run.technique);
             finish(bench, run, failed_row(identity_row(bench.experiment, run, technique), error));
+            lose_history(bench, run);
         }
+        for (const Run& run : replayed) lose_history(bench, run);
         return std::nullopt;
     }
 }
@@ -409,20 +336,23 @@ void finish(Bench& bench, const Run& run, const Row& row, std::string_view sampl
     bench.progress.finish_run(run.id, cost_of(bench, run));
 }
 
-void measure_picture(Bench& bench, std::span<const Run> listed)
+void measure_picture(Bench& bench, std::span<const Run> listed, std::span<const Run> replayed)
 {
-    const Run&        first = listed.front();
+    if (listed.empty() && replayed.empty()) return;
+    const Run&        first = listed.empty() ? replayed.front() : listed.front();
     const std::string frame = first.at == SequenceFrame{} ? "" : fmt::format(" frame {}", first.at.frame);
     bench.progress.start_picture(fmt::format("{} {} {}{}", first.scene, first.view, size_text(first.size_px), frame));
     if (!bench.experiment.targets.empty()) return search_and_measure(bench, listed);
     const std::vector<Run> pending = without_row(bench, listed);
-    if (pending.empty()) return;
-    std::optional<Picture> picture = try_picture(bench, pending);
+    if (pending.empty() && replayed.empty()) return;
+    std::optional<Picture> picture = try_picture(bench, pending, replayed);
     for (std::span<const Run> rest(pending); picture && !rest.empty() && stop_requested() == 0;) {
         const auto batch = rest.first(std::min(batch_size, rest.size()));
         rest             = rest.subspan(batch.size());
         measure_batch(bench, *picture, batch);
     }
+    for (const Run& run : replayed)
+        if (picture && stop_requested() == 0) replay(bench, *picture, run);
 }
 
 } // namespace ssrlab

@@ -5,6 +5,7 @@
 #include "harness/progress.h"
 #include "harness/quality.h"
 #include "harness/record.h"
+#include "harness/sequence_state.h"
 #include "harness/supervise.h"
 
 #include <optional>
@@ -21,17 +22,26 @@ struct LoadedScene {
     GpuScenePtr uploaded;
 };
 
+/// The mean over all phases of the jitter of the pictures with the true reflection.
+struct ConvergedPicture {
+    FrameSettings settings; // that it was made with
+    Reference     reference;
+};
+
 /// What all measuring works with.
 struct Bench {
-    const Experiment&                  experiment;
-    std::span<const Technique>         techniques;
-    Gpu&                               gpu;
-    ResultFolder&                      results;
-    Progress&                          progress;
-    SweepState&                        state;
-    std::map<std::string, std::string> identity; // what environment.json says
-    std::mt19937_64                    random{experiment.measure.seed};
-    std::unique_ptr<LoadedScene>       scene = nullptr;
+    const Experiment&                    experiment;
+    std::span<const Technique>           techniques;
+    Gpu&                                 gpu;
+    ResultFolder&                        results;
+    Progress&                            progress;
+    SweepState&                          state;
+    std::map<std::string, std::string>   identity; // what environment.json says
+    std::mt19937_64                      random{experiment.measure.seed};
+    std::unique_ptr<LoadedScene>         scene = nullptr;
+    std::map<std::string, SequenceState> sequences =
+        {}; // of one scene, view and size, by sequence_id(); empty for a single frame
+    std::vector<ConvergedPicture> converged = {}; // of the same; empty where something but jitter moves
     // Wall time of frames that were timed, of those that were judged and counted instead, and of making or reading truths.
     double timed_s = 0, counted_s = 0, truths_s = 0;
 };
@@ -41,6 +51,7 @@ void finish(Bench& bench, const Run& run, const Row& row, std::string_view sampl
 
 /// Appends a row for each run that has none, as soon as it is final, and for those that the search for the experiment's targets adds; a
 /// run that fails is a row with the reason. Returns early, with the rows so far complete, when a stop was requested.
-void measure_picture(Bench& bench, std::span<const Run> runs);
+/// `replayed`: runs whose frame is only carried to the next one of their sequence.
+void measure_picture(Bench& bench, std::span<const Run> runs, std::span<const Run> replayed = {});
 
 } // namespace ssrlab

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/parallel_rows.h"
+#include "truth/reprojection_truth.h"
 #include "truth/truth_cache.h"
 
 #include <cerrno>
@@ -117,6 +118,25 @@ const std::vector<glm::vec4>& Truths::true_reflection()
     const TraceSettings& settings = made_for();
     if (true_reflection_) return *true_reflection_;
     return true_reflection_.emplace(reflection_of(cached_glossy_truth(cache_dir_, *scene_, gbuffer_, settings, {})));
+}
+
+void Truths::make_reprojection(const Scene& before, const FrameMotion& motion)
+{
+    if (reprojection_) return;
+    const SceneBvh now(*scene_);
+    reprojection_ = motion.moving_draws == 0 ? reprojection_truth(now, now, gbuffer_, motion)
+                                             : reprojection_truth(now, SceneBvh(before), gbuffer_, motion);
+}
+
+MeasureValues Truths::compare_history(std::span<const glm::vec2> found_px, const TraceResult& counted) const
+{
+    made_for();
+    return reprojection_ ? compare_reprojection(found_px, *reprojection_, counted, scene_truth_) : MeasureValues{};
+}
+
+MeasureValues Truths::compare_ghosts(const Image& picture, const Reference& reference) const
+{
+    return reprojection_ ? ssrlab::compare_ghosts(picture, reference, *reprojection_) : MeasureValues{};
 }
 
 MeasureValues Truths::compare_picture(const Image& picture, const Reference& reference) const

@@ -3,7 +3,7 @@
 
 #include "compare/measures.h"
 #include "harness/measured_run.h"
-#include "scene/scene.h"
+#include "scene/sequence.h"
 
 #include <filesystem>
 #include <optional>
@@ -34,6 +34,12 @@ public:
     /// A finished picture against the one with the true reflection.
     MeasureValues compare_picture(const Image& picture, const Reference& reference) const;
 
+    /// Where reflections were one frame earlier; `before` is the scene then. Nothing to do on the second call.
+    void make_reprojection(const Scene& before, const FrameMotion& motion);
+    /// The measures of a frame with history. `found_px`: what read_reprojection() gave.
+    MeasureValues compare_history(std::span<const glm::vec2> found_px, const TraceResult& counted) const;
+    MeasureValues compare_ghosts(const Image& picture, const Reference& reference) const;
+
     /// The agreement with the scene truth, as a false-colour picture.
     Image agreement(const TraceResult& counted) const;
 
@@ -48,6 +54,7 @@ private:
     SceneTruth                            scene_truth_;
     std::optional<Reference>              reference_;       // with image_errors: the scene truth's reflection
     std::optional<std::vector<glm::vec4>> true_reflection_; // when asked for
+    std::optional<ReprojectionTruth>      reprojection_;    // when asked for
 };
 
 /// $SSRLAB_CACHE, or .truth_cache beside the results folder.

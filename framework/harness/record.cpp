@@ -68,7 +68,7 @@ ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> columns, co
         lock();
         if (fs::exists(csv_) && !resuming) {
             throw_spec_error("{}: already there; continue it with --resume, or choose another folder with -o",
-                          short_path(csv_));
+                             short_path(csv_));
         }
         remove_partial_files();
         if (fs::exists(csv_))
@@ -251,7 +251,7 @@ void ResultFolder::remove_partial_files() const
         for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
             const std::string name = entry.path().filename().string();
             const bool        text = name.starts_with("environment.json.tmp") || name.starts_with("results.csv.tmp") ||
-                              name.starts_with("samples.csv.tmp");
+                              name.starts_with("samples.csv.tmp") || name.starts_with("sequence_summary.csv.tmp");
             const bool picture = name.starts_with(".") && name.find(".tmp.") != std::string::npos;
             if (text || (picture && folder != folder_)) partial.push_back(entry.path());
         }

@@ -6,7 +6,7 @@
 #include "core/stopwatch.h"
 #include "harness/columns.h"
 #include "harness/environment.h"
-#include "harness/measure_picture.h"
+#include "harness/measure_sequence.h"
 #include "harness/progress.h"
 #include "harness/record.h"
 #include "harness/stop_signal.h"
@@ -83,15 +83,15 @@ int list_runs(const Experiment& experiment, std::span<const Run> runs, std::span
     return 0;
 }
 
-/// Runs of one picture stand together; takes the next such group off the front.
-std::span<const Run> take_picture(std::span<const Run>& rest)
+/// Runs on one scene, view and size stand together, frame by frame; takes the next such group off the front.
+std::span<const Run> take_sequence(std::span<const Run>& rest)
 {
-    const Run& first   = rest.front();
-    const auto same    = [&](const Run& run) { return same_picture(run, first); };
-    const auto count   = static_cast<size_t>(std::ranges::find_if_not(rest, same) - rest.begin());
-    const auto picture = rest.first(count);
-    rest               = rest.subspan(count);
-    return picture;
+    const Run& first    = rest.front();
+    const auto same     = [&](const Run& run) { return same_sequence(run, first); };
+    const auto count    = static_cast<size_t>(std::ranges::find_if_not(rest, same) - rest.begin());
+    const auto sequence = rest.first(count);
+    rest                = rest.subspan(count);
+    return sequence;
 }
 
 /// Of the validation layer, those after the first `reported`.
@@ -140,7 +140,7 @@ int sweep(const RunOptions& options, SweepState& state)
         progress.say("warning: " + trouble);
     size_t reported = 0;
     for (std::span<const Run> rest(runs); !rest.empty() && stop_requested() == 0;) {
-        measure_picture(bench, take_picture(rest));
+        measure_sequence(bench, take_sequence(rest));
         report_messages(bench, reported);
     }
     results.require_unmoved();

@@ -1,0 +1,47 @@
+// One frame of a scene on the device, and what a run's frames on it gave. Folder-internal.
+#pragma once
+
+#include "core/stopwatch.h"
+#include "harness/measure_picture.h"
+
+namespace ssrlab {
+
+struct Picture {
+    GBufferPtr                 gbuffer;
+    FrameBuffersPtr            buffers;
+    double                     gbuffer_ms = 0;
+    int                        round      = 0; // of samples.csv
+    glm::dvec2                 jitter_px{0, 0};
+    std::optional<FrameMotion> motion; // since the frame before
+    std::optional<Truths>      truths;
+
+    // The picture with the true reflection under the settings of the last run: no technique is in it.
+    std::optional<Reference> reference;
+    FrameSettings            reference_for;
+};
+
+/// Loads and uploads a scene unless it is the one that is there, and moves it to the frame.
+const LoadedScene& scene_of(Bench& bench, const std::string& name, int frame);
+Picture            make_picture(Bench& bench, const Run& run);
+
+/// What a run's frames gave, before anything is said about it.
+struct Observed {
+    Image                        shaded;
+    TraceResult                  counted;
+    std::optional<TraceResult>   hidden, twin = {}; // the second layer's hits; the same trace in double
+    std::optional<HistoryCounts> history      = {}; // nothing where the plan has none
+    std::vector<glm::vec2>       reprojection = {};
+};
+
+/// Runs a step and adds how long it took.
+template <typename Step> decltype(auto) clocked(double& seconds, const Step& step)
+{
+    struct Adding {
+        double&   seconds;
+        Stopwatch stopwatch;
+        ~Adding() { seconds += stopwatch.seconds(); }
+    } adding{seconds, {}};
+    return step();
+}
+
+} // namespace ssrlab
