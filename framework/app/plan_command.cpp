@@ -54,7 +54,7 @@ FrameHistoryPtr history_before(Stage& stage, const PictureOptions& options, cons
     const auto frame = prepare_frame(stage.gpu, make_frame_buffers(stage.gpu, stage.gbuffer), technique, choice.values,
                                      choice.settings, history);
     run_frame(stage.gpu, *frame);
-    keep_history(stage.gpu, *frame);
+    keep_history(stage.gpu, *frame, options.at.frame - 1);
     show_frame(stage, options.view, options.at);
     return history;
 }

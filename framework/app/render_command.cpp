@@ -115,14 +115,15 @@ struct Rendered {
 
 /// Adds the pictures of one place of the camera.
 void add_sample(Stage& stage, PreparedFrame& frame, const RenderOptions& options, const TraceSettings& settings,
-                TrueReflections& truth, int sample, Rendered& rendered)
+                TrueReflections& truth, int sample, int number, Rendered& rendered)
 {
     const auto    kinds = shown_by(options);
     const Display display{options.exposure_ev,
                           options.display == "agx" ? Display::Transform::agx : Display::Transform::clip};
     run_frame(stage.gpu, frame);
     rendered.trace_ms += run_frame(stage.gpu, frame).of("trace") / options.samples;
-    if (options.frames > 0) keep_history(stage.gpu, frame); // before other reflections take the place of the traced one
+    if (options.frames > 0)
+        keep_history(stage.gpu, frame, number); // before other reflections take the place of the traced one
     // The traced picture first: the others leave theirs in its buffers.
     for (const Shows shows : {Shows::traced, Shows::nothing, Shows::truth}) {
         const auto at = std::ranges::find(kinds, shows);
@@ -166,7 +167,7 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
             const auto frame = prepare_frame(stage.gpu, make_frame_buffers(stage.gpu, stage.gbuffer), technique,
                                              choice.values, choice.settings, histories[static_cast<size_t>(sample)]);
             if (sample == 0) warn_without_reflections(common, *frame);
-            add_sample(stage, *frame, options, choice.settings.trace, truth, sample, rendered);
+            add_sample(stage, *frame, options, choice.settings.trace, truth, sample, picture.at.frame + i, rendered);
         }
         for (LabelledImage& one : rendered.pictures) one.image = mean_of(std::move(one.image), options.samples);
         Image image = options.side_by_side ? side_by_side(rendered.pictures) : rendered.pictures.front().image;

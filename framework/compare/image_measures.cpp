@@ -180,6 +180,26 @@ MeasureValues compare_pictures(const Image& tested, const Reference& reference, 
             {"picture_visible_border_rmse", rmse(visible_border)}};
 }
 
+MeasureValues compare_ghosts(const Image& tested, const Reference& reference, const ReprojectionTruth& earlier,
+                             const SceneTruth& truth)
+{
+    require_comparable(tested, truth);
+    require_comparable(reference.display, truth);
+    require_same_size(earlier.size_px, truth.size_px);
+    const Mask behind_edges = make_mask(truth.size_px, [&](size_t i) {
+        return truth.cls[i] == TruthClass::visible && earlier.cls[i] == ReprojectionClass::hidden;
+    });
+    return {{"ghosting_rmse", rmse_inside(to_display(tested, behind_edges), reference.display, behind_edges)}};
+}
+
+MeasureValues compare_converged(const Image& tested, const Reference& converged, const SceneTruth& truth)
+{
+    require_comparable(tested, truth);
+    require_comparable(converged.display, truth);
+    const Mask reflective = reflective_pixels(truth);
+    return {{"converged_rmse", rmse_inside(to_display(tested, reflective), converged.display, reflective)}};
+}
+
 Image flip_of_picture(const Image& tested, const Reference& reference, const SceneTruth& truth)
 {
     require_comparable(tested, truth);

@@ -138,6 +138,22 @@ constexpr auto table = std::to_array<Measure>({
      "where it was, over rays that hit within 1 px of the true point and whose reflection the frame before showed",
      before},
     {"surface_motion_error_p95_px", "px", "95th percentile of the same distances", before},
+    {"reprojection_error_median_px", "px",
+     "median distance between where the reprojection says that a reflection was in the frame before and where it was, "
+     "over the same rays, less those for which it says nothing; this and the next two where the reprojection ran",
+     before},
+    {"reprojection_error_p95_px", "px", "95th percentile of the same distances", before},
+    {"reprojection_found_share", "share", "rays for which the reprojection says something, of the same rays", before},
+    {"ghosting_rmse", "display value",
+     "as picture_visible_rmse, behind moving edges: over rays whose reflection was hidden 8 frames before, or at the "
+     "start of a younger sequence",
+     before},
+    {"converged_rmse", "display value",
+     "as picture_rmse, against the mean of the pictures with the true reflection over all phases of the jitter; where "
+     "nothing but jitter moves",
+     own},
+    {"history_share", "share", "pixels that took something of the history, of pixels that reflect", own},
+    {"clamped_share", "share", "of these, pixels whose history the clamping changed", own},
     {"flip_share", "share",
      "rays that hit in this frame or the one before but not in both, or more than 2 px apart without the jitter, of "
      "rays traced in both; where nothing but jitter moves",

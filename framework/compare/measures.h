@@ -81,10 +81,27 @@ MeasureValues compare_pictures(const Image& tested, const Reference& reference, 
 /// Where a finished picture differs from that one: FLIP of each reflecting pixel in false colours.
 Image flip_of_picture(const Image& tested, const Reference& reference, const SceneTruth& scene_truth);
 
-/// disocclusion_share and the next three. `found_px`: by pixel, from the pixel to where its reflection is said to have been, without
-/// jitter; NaN where nothing is said.
+/// disocclusion_share and reprojection_unknown_share.
+MeasureValues count_disocclusions(const ReprojectionTruth& truth);
+
+/// The names that begin with "surface_motion_error". Here and below, `found_px`: by pixel, from the pixel to where its reflection is said
+/// to have been, without jitter; NaN where nothing is said.
+MeasureValues compare_surface_motion(std::span<const glm::vec2> found_px, const ReprojectionTruth& truth,
+                                     const TraceResult& traced, const SceneTruth& scene_truth);
+
+/// The names that begin with "reprojection_error", and reprojection_found_share.
 MeasureValues compare_reprojection(std::span<const glm::vec2> found_px, const ReprojectionTruth& truth,
                                    const TraceResult& traced, const SceneTruth& scene_truth);
+
+/// How many frames a ghost is looked for behind the edge that left it.
+inline constexpr int ghost_frames = 8;
+
+/// ghosting_rmse of a finished picture. `earlier`: the truth of `ghost_frames` frames, or of those since the sequence began.
+MeasureValues compare_ghosts(const Image& tested, const Reference& reference, const ReprojectionTruth& earlier,
+                             const SceneTruth& scene_truth);
+
+/// converged_rmse of a finished picture.
+MeasureValues compare_converged(const Image& tested, const Reference& converged, const SceneTruth& scene_truth);
 
 /// Where each ray hit, without jitter: what is kept of a frame to compare the next one with it.
 struct HitPlaces {

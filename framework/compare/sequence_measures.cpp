@@ -26,29 +26,58 @@ bool is_right(const TraceResult& traced, const SceneTruth& scene_truth, size_t i
            screen_distance_px(glm::dvec2(traced.hit_px_depth[i]), scene_truth.point_px[i]) <= within_one_px;
 }
 
+/// Of rays that were right and whose reflection the frame before showed.
+struct VectorErrors {
+    size_t              rays = 0;
+    std::vector<double> px; // of those with a vector
+};
+
+VectorErrors vector_errors(std::span<const glm::vec2> found_px, const ReprojectionTruth& truth,
+                           const TraceResult& traced, const SceneTruth& scene_truth)
+{
+    require_same_size(traced.size_px, truth.size_px);
+    require_same_size(scene_truth.size_px, truth.size_px);
+    VectorErrors errors;
+    for (size_t i = 0; i < truth.cls.size(); ++i) {
+        if (truth.cls[i] != ReprojectionClass::seen || !is_right(traced, scene_truth, i)) continue;
+        ++errors.rays;
+        const glm::dvec2 found(found_px[i]);
+        if (!std::isnan(found.x)) errors.px.push_back(screen_distance_px(found, truth.displacement_px[i]));
+    }
+    return errors;
+}
+
 } // namespace
+
+MeasureValues count_disocclusions(const ReprojectionTruth& truth)
+{
+    size_t rays = 0, unknown = 0, unseen = 0;
+    for (const ReprojectionClass cls : truth.cls) {
+        rays += cls != ReprojectionClass::not_reflecting;
+        unknown += cls == ReprojectionClass::unknown;
+        unseen += disoccluded(cls);
+    }
+    return {{"reprojection_unknown_share", share(unknown, rays)},
+            {"disocclusion_share", share(unseen, rays - unknown)}};
+}
+
+MeasureValues compare_surface_motion(std::span<const glm::vec2> found_px, const ReprojectionTruth& truth,
+                                     const TraceResult& traced, const SceneTruth& scene_truth)
+{
+    const VectorErrors errors = vector_errors(found_px, truth, traced, scene_truth);
+    if (errors.px.empty()) return {};
+    return {{"surface_motion_error_median_px", quantile(errors.px, 0.5)},
+            {"surface_motion_error_p95_px", quantile(errors.px, 0.95)}};
+}
 
 MeasureValues compare_reprojection(std::span<const glm::vec2> found_px, const ReprojectionTruth& truth,
                                    const TraceResult& traced, const SceneTruth& scene_truth)
 {
-    require_same_size(traced.size_px, truth.size_px);
-    require_same_size(scene_truth.size_px, truth.size_px);
-    std::vector<double> errors_px;
-    size_t              rays = 0, unknown = 0, unseen = 0;
-    for (size_t i = 0; i < truth.cls.size(); ++i) {
-        if (truth.cls[i] == ReprojectionClass::not_reflecting) continue;
-        ++rays;
-        unknown += truth.cls[i] == ReprojectionClass::unknown;
-        unseen += disoccluded(truth.cls[i]);
-        if (truth.cls[i] != ReprojectionClass::seen || !is_right(traced, scene_truth, i)) continue;
-        const glm::dvec2 found(found_px[i]);
-        if (!std::isnan(found.x)) errors_px.push_back(screen_distance_px(found, truth.displacement_px[i]));
-    }
-    MeasureValues values = {{"reprojection_unknown_share", share(unknown, rays)},
-                            {"disocclusion_share", share(unseen, rays - unknown)}};
-    if (errors_px.empty()) return values;
-    values["surface_motion_error_median_px"] = quantile(errors_px, 0.5);
-    values["surface_motion_error_p95_px"]    = quantile(errors_px, 0.95);
+    const VectorErrors errors = vector_errors(found_px, truth, traced, scene_truth);
+    MeasureValues      values = {{"reprojection_found_share", share(errors.px.size(), errors.rays)}};
+    if (errors.px.empty()) return values;
+    values["reprojection_error_median_px"] = quantile(errors.px, 0.5);
+    values["reprojection_error_p95_px"]    = quantile(errors.px, 0.95);
     return values;
 }
 

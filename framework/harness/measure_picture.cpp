@@ -74,14 +74,16 @@ Observed observe(Bench& bench, const FrameBuffersPtr& buffers, MeasuredRun& meas
 {
     const Run&             run     = *measured.run;
     const MeasureSettings& measure = bench.experiment.measure;
-    measured.frame =
-        prepare_frame(bench.gpu, buffers, find_technique(bench.techniques, run.technique), run.values, run.settings);
+    measured.frame = prepare_frame(bench.gpu, buffers, find_technique(bench.techniques, run.technique), run.values,
+                                   run.settings, history_of(bench, run));
     add_plan(measured.row, plan_of(*measured.frame));
     bench.counted_s += counting_s_of(*measured.frame);
     return clocked(bench.counted_s, [&] {
         for (int i = 0; i < std::max(1, measure.warmup); ++i) run_frame(bench.gpu, *measured.frame);
         Observed observed{read_shaded(bench.gpu, *measured.frame), count_frame(bench.gpu, *measured.frame),
                           read_hidden_hits(bench.gpu, *measured.frame)};
+        observed.reprojection = read_reprojection(bench.gpu, *measured.frame);
+        observed.history      = read_history_counts(bench.gpu, *measured.frame);
         if (measure.truth && measure.double_twin && bench.gpu.info.float64)
             observed.twin = count_frame(bench.gpu, *measured.frame, Precision::float64);
         return observed;
@@ -207,7 +209,10 @@ void prepare_comparison(Bench& bench, MeasuredRun& measured)
 /// Timed repeats, every round in another order, until each run has those planned for it or a stop was requested.
 void repeat_until_final(Bench& bench, Picture& picture, std::vector<MeasuredRun>& open)
 {
-    const auto over = [](const MeasuredRun& measured) { return measured.run == nullptr; };
+    const auto over    = [](const MeasuredRun& measured) { return measured.run == nullptr; };
+    const auto is_last = [](const MeasuredRun& measured) {
+        return static_cast<int>(measured.rounds.size()) >= measured.repeats;
+    };
     while (!open.empty() && stop_requested() == 0) {
         std::ranges::shuffle(open, bench.random);
         for (MeasuredRun& measured : open) {
@@ -215,8 +220,9 @@ void repeat_until_final(Bench& bench, Picture& picture, std::vector<MeasuredRun>
             try_step(bench, measured, [&] {
                 const UnderWay under_way(bench.state, measured.run->id, bench.experiment.measure.time_limit_s);
                 clocked(bench.timed_s, [&] { add_repeat(bench.gpu, measured, picture.gbuffer_ms, picture.round); });
+                if (is_last(measured)) leave_history(bench, *measured.run, *measured.frame);
             });
-            if (over(measured) || static_cast<int>(measured.rounds.size()) < measured.repeats) continue;
+            if (over(measured) || !is_last(measured)) continue;
             add_times(measured, picture.gbuffer_ms);
             finish(bench, *measured.run, measured.row, samples_text(measured));
             measured.run = nullptr;

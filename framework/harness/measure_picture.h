@@ -22,6 +22,12 @@ struct LoadedScene {
     GpuScenePtr uploaded;
 };
 
+/// The mean of the pictures with the true reflection over all phases of the jitter.
+struct ConvergedPicture {
+    FrameSettings settings;
+    Reference     picture;
+};
+
 /// What all measuring works with.
 struct Bench {
     const Experiment&                    experiment;
@@ -35,6 +41,7 @@ struct Bench {
     std::unique_ptr<LoadedScene>         scene = nullptr;
     std::map<std::string, SequenceState> sequences =
         {}; // of one scene, view and size, by sequence_id(); empty for a single frame
+    std::vector<ConvergedPicture> converged = {}; // of the same; empty where more than the jitter moves
     // Wall time of frames that were timed, of those that were judged and counted instead, and of making or reading truths.
     double timed_s = 0, counted_s = 0, truths_s = 0;
 };

@@ -44,14 +44,31 @@ bool is_finished(const Bench& bench, const Sequence& sequence, const std::set<st
            (!is_whole(bench, sequence) || summaries.contains(sequence.id));
 }
 
+/// The first one from this frame on that has no row, or the last one: it has the blame if a replayed frame ends the process.
+const Run& next_listed(const Bench& bench, const Sequence& sequence, int frame)
+{
+    const auto next = std::ranges::find_if(sequence.runs, [&](const Run& run) {
+        return run.at.frame > frame && !bench.results.finished().contains(run.id);
+    });
+    return next == sequence.runs.end() ? sequence.runs.back() : *next;
+}
+
 Run in_frame(Run run, int frame)
 {
     run.at.frame = frame;
-    run.id       = run_id(run);
     return run;
 }
 
-void measure_frame(Bench& bench, std::span<const Sequence> sequences, int frame)
+/// Runs whose row says so.
+std::set<std::string> failed_runs(const Bench& bench)
+{
+    std::set<std::string> ids;
+    for (const auto& [id, row] : bench.results.rows())
+        if (row.contains("message") && !row.at("message").empty()) ids.insert(id);
+    return ids;
+}
+
+void measure_frame(Bench& bench, std::span<const Sequence> sequences, const std::set<std::string>& failed, int frame)
 {
     std::vector<Run> listed, replayed;
     for (const Sequence& sequence : sequences) {
@@ -59,8 +76,10 @@ void measure_frame(Bench& bench, std::span<const Sequence> sequences, int frame)
         const auto is_here = std::ranges::find(sequence.runs, frame, [](const Run& run) { return run.at.frame; });
         if (is_here != sequence.runs.end() && !bench.results.finished().contains(is_here->id))
             listed.push_back(*is_here);
+        else if (is_here != sequence.runs.end() && failed.contains(is_here->id))
+            lose_sequence(bench, *is_here); // it would fail again
         else
-            replayed.push_back(in_frame(sequence.runs.front(), frame));
+            replayed.push_back(in_frame(next_listed(bench, sequence, frame), frame));
     }
     measure_picture(bench, listed, replayed);
 }
@@ -98,15 +117,19 @@ void measure_sequence(Bench& bench, std::span<const Run> runs)
 {
     if (!is_sequence(bench.experiment) || is_frame(runs.front().scene)) return measure_each_picture(bench, runs);
     bench.sequences.clear();
+    bench.converged.clear();
     const std::set<std::string> summaries = summarised(bench.results.path());
     std::vector<Sequence>       sequences = sequences_of(runs);
     std::erase_if(sequences, [&](const Sequence& sequence) { return is_finished(bench, sequence, summaries); });
     if (sequences.empty()) return;
     int last = -1;
     for (const Sequence& sequence : sequences) last = std::max(last, sequence.runs.back().at.frame);
-    for (int frame = 0; frame <= last && stop_requested() == 0; ++frame) measure_frame(bench, sequences, frame);
+    make_converged_pictures(bench, runs, last);
+    const std::set<std::string> failed = failed_runs(bench); // before this process
+    for (int frame = 0; frame <= last && stop_requested() == 0; ++frame) measure_frame(bench, sequences, failed, frame);
     if (stop_requested() == 0) summarise_sequences(bench, sequences);
     bench.sequences.clear();
+    bench.converged.clear();
 }
 
 } // namespace ssrlab

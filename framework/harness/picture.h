@@ -27,9 +27,11 @@ Picture            make_picture(Bench& bench, const Run& run);
 
 /// What a run's frames gave, before anything is said about it.
 struct Observed {
-    Image                      shaded;
-    TraceResult                counted;
-    std::optional<TraceResult> hidden, twin = {}; // the second layer's hits; the same trace in double
+    Image                        shaded;
+    TraceResult                  counted;
+    std::optional<TraceResult>   hidden, twin = {}; // the second layer's hits; the same trace in double
+    std::vector<glm::vec2>       reprojection = {}; // empty: the pass did not run
+    std::optional<HistoryCounts> history      = {}; // empty: the pass did not run
 };
 
 /// Runs a step and adds how long it took.

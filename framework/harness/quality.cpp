@@ -120,19 +120,37 @@ const std::vector<glm::vec4>& Truths::true_reflection()
     return true_reflection_.emplace(reflection_of(cached_glossy_truth(cache_dir_, *scene_, gbuffer_, settings, {})));
 }
 
-void Truths::make_reprojection(const Scene& before, const FrameMotion& motion)
+void Truths::make_reprojection(const SceneInTime& before, const SceneInTime& earlier)
 {
-    if (reprojection_) return;
     const SceneBvh now(*scene_);
-    reprojection_ = motion.moving_draws == 0 ? reprojection_truth(now, now, gbuffer_, motion)
-                                             : reprojection_truth(now, SceneBvh(before), gbuffer_, motion);
+    const auto     truth_of = [&](const SceneInTime& then) {
+        return then.motion.moving_draws == 0 ? reprojection_truth(now, now, gbuffer_, then.motion)
+                                                 : reprojection_truth(now, SceneBvh(then.scene), gbuffer_, then.motion);
+    };
+    before_  = truth_of(before);
+    earlier_ = truth_of(earlier);
 }
 
-MeasureValues Truths::compare_motion(const TraceResult& counted) const
+MeasureValues Truths::compare_motion(const TraceResult& counted, std::span<const glm::vec2> found_px) const
 {
     made_for();
-    if (!reprojection_ || gbuffer_.motion_px.empty()) return {};
-    return compare_reprojection(gbuffer_.motion_px, *reprojection_, counted, scene_truth_);
+    if (!before_ || gbuffer_.motion_px.empty()) return {};
+    MeasureValues values = count_disocclusions(*before_);
+    merge(values, compare_surface_motion(gbuffer_.motion_px, *before_, counted, scene_truth_));
+    if (!found_px.empty()) merge(values, compare_reprojection(found_px, *before_, counted, scene_truth_));
+    return values;
+}
+
+MeasureValues Truths::compare_ghosts(const Image& picture, const Reference& reference) const
+{
+    made_for();
+    return earlier_ ? ssrlab::compare_ghosts(picture, reference, *earlier_, scene_truth_) : MeasureValues{};
+}
+
+MeasureValues Truths::compare_converged(const Image& picture, const Reference& converged) const
+{
+    made_for();
+    return ssrlab::compare_converged(picture, converged, scene_truth_);
 }
 
 MeasureValues Truths::compare_picture(const Image& picture, const Reference& reference) const

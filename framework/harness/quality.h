@@ -10,6 +10,12 @@
 
 namespace ssrlab {
 
+/// The scene in a frame before the picture's, and what moved since.
+struct SceneInTime {
+    Scene       scene; // empty if no object moved
+    FrameMotion motion;
+};
+
 /// The truths of one picture, for one trace settings at a time. All but make() throw Failure before it was called.
 class Truths {
 public:
@@ -37,10 +43,13 @@ public:
     /// Where they differ, in false colours.
     Image flip_of(const Image& picture, const Reference& reference) const;
 
-    /// Where reflections were one frame earlier; `before` is the scene then. Nothing to do on the second call.
-    void make_reprojection(const Scene& before, const FrameMotion& motion);
-    /// What moved since then, of a G-buffer with motion vectors.
-    MeasureValues compare_motion(const TraceResult& counted) const;
+    bool has_reprojection() const { return before_.has_value(); }
+    /// Where reflections were in the frame before, and ghost_frames before.
+    void make_reprojection(const SceneInTime& before, const SceneInTime& earlier);
+    /// What moved since the frame before, of a G-buffer with motion vectors. `found_px` as compare_reprojection() has it, or empty.
+    MeasureValues compare_motion(const TraceResult& counted, std::span<const glm::vec2> found_px) const;
+    MeasureValues compare_ghosts(const Image& picture, const Reference& reference) const;
+    MeasureValues compare_converged(const Image& picture, const Reference& converged) const;
 
     /// The agreement with the scene truth, as a false-colour picture.
     Image agreement(const TraceResult& counted) const;
@@ -54,9 +63,9 @@ private:
     std::optional<TraceSettings>          made_for_;
     TraceResult                           screen_truth_;
     SceneTruth                            scene_truth_;
-    std::optional<Reference>              reference_;       // with image_errors: the scene truth's reflection
-    std::optional<std::vector<glm::vec4>> true_reflection_; // when asked for
-    std::optional<ReprojectionTruth>      reprojection_;    // when asked for
+    std::optional<Reference>              reference_;        // with image_errors: the scene truth's reflection
+    std::optional<std::vector<glm::vec4>> true_reflection_;  // when asked for
+    std::optional<ReprojectionTruth>      before_, earlier_; // when asked for
 };
 
 /// $SSRLAB_CACHE, or .truth_cache beside the results folder.

@@ -2,36 +2,102 @@
 
 #include "core/error.h"
 
+#include <algorithm>
+
 namespace ssrlab {
 namespace {
 
+bool anything_moved(const FrameMotion& motion) { return motion.camera_moves || motion.moving_draws > 0; }
+
 MeasureValues watch_sequence(Bench& bench, const Picture& picture, const Run& run, const Observed& observed)
 {
-    const bool moved = picture.motion && (picture.motion->camera_moves || picture.motion->moving_draws > 0);
+    // Behind a cut of the camera everything is elsewhere.
+    const bool moved = picture.motion ? anything_moved(*picture.motion) : run.at.frame > 0;
     return watch(bench.sequences[sequence_id(run)], observed.shaded, observed.counted, picture.jitter_px, moved);
+}
+
+SceneInTime scene_before(const LoadedScene& loaded, const FrameMotion& motion, int frames_back)
+{
+    if (motion.moving_draws == 0) return {{}, motion};
+    return {scene_at(loaded.first, motion.frame - frames_back), motion};
+}
+
+void make_reprojection(Bench& bench, Picture& picture, const Run& run)
+{
+    if (picture.truths->has_reprojection()) return;
+    const LoadedScene&         loaded = *bench.scene;
+    std::optional<FrameMotion> earlier;
+    int                        frames_back = ghost_frames + 1;
+    while (!earlier) earlier = motion_at(loaded.first, run.view, run.size_px, run.at.frame, --frames_back);
+    picture.truths->make_reprojection(scene_before(loaded, *picture.motion, 1),
+                                      scene_before(loaded, *earlier, frames_back));
 }
 
 /// Where something but jitter moved.
 void judge_motion(Bench& bench, Picture& picture, MeasuredRun& measured, const Observed& observed)
 {
-    if (!picture.motion || !picture.truths) return;
-    const FrameMotion& motion = *picture.motion;
-    if (!motion.camera_moves && motion.moving_draws == 0) return;
-    clocked(bench.truths_s, [&] {
-        const LoadedScene& loaded = *bench.scene;
-        if (motion.moving_draws == 0)
-            picture.truths->make_reprojection(loaded.scene, motion);
-        else
-            picture.truths->make_reprojection(scene_at(loaded.first, loaded.frame - 1), motion);
-    });
-    add_measures(measured.row, picture.truths->compare_motion(observed.counted));
+    if (!picture.truths || !picture.motion || !anything_moved(*picture.motion)) return;
+    clocked(bench.truths_s, [&] { make_reprojection(bench, picture, *measured.run); });
+    add_measures(measured.row, picture.truths->compare_motion(observed.counted, observed.reprojection));
+    if (picture.reference)
+        add_measures(measured.row, picture.truths->compare_ghosts(observed.shaded, *picture.reference));
+}
+
+MeasureValues history_measures(const HistoryCounts& counts)
+{
+    const size_t pixels = counts.accumulated + counts.unseen + counts.off_image + counts.other_depth +
+                          counts.other_normal + counts.other_hit;
+    return {{"history_share", share(counts.accumulated, pixels)},
+            {"clamped_share", share(counts.clamped, counts.accumulated)}};
+}
+
+bool nothing_moves(const Scene& scene, const Run& run, int last_frame)
+{
+    for (int frame = 1; frame <= last_frame; ++frame) {
+        const auto motion = motion_at(scene, run.view, run.size_px, frame);
+        if (!motion || anything_moved(*motion)) return false;
+    }
+    return true;
+}
+
+void add_true_picture(Bench& bench, Picture& picture, const Run& run, Image& sum)
+{
+    const Technique&       technique = find_technique(bench.techniques, run.technique);
+    const PreparedFramePtr frame     = prepare_frame(bench.gpu, picture.buffers, technique, run.values, run.settings);
+    run_frame(bench.gpu, *frame);
+    picture.truths->make(run.settings.trace, false);
+    const Image shown = composite_reflection(bench.gpu, *frame, picture.truths->true_reflection());
+    if (sum.values.empty()) return void(sum = shown);
+    for (size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += shown.values[i];
 }
 
 } // namespace
 
+FrameHistoryPtr history_of(Bench& bench, const Run& run)
+{
+    if (!is_sequence(bench.experiment) || bench.scene->first.frame) return nullptr;
+    SequenceState& state = bench.sequences[sequence_id(run)];
+    if (state.failed) throw_failure("a frame before this one failed, so this one has no history");
+    if (!state.history) state.history = make_history(bench.gpu, run.size_px);
+    return state.history;
+}
+
+void leave_history(Bench& bench, const Run& run, PreparedFrame& frame)
+{
+    if (history_of(bench, run) == nullptr) return;
+    clocked(bench.counted_s, [&] {
+        run_frame(bench.gpu, frame);
+        keep_history(bench.gpu, frame, run.at.frame);
+    });
+}
+
 void judge_sequence(Bench& bench, Picture& picture, MeasuredRun& measured, const Observed& observed)
 {
     judge_motion(bench, picture, measured, observed);
+    if (observed.history) add_measures(measured.row, history_measures(*observed.history));
+    const auto converged = std::ranges::find(bench.converged, measured.run->settings, &ConvergedPicture::settings);
+    if (converged != bench.converged.end())
+        add_measures(measured.row, picture.truths->compare_converged(observed.shaded, converged->picture));
     if (is_sequence(bench.experiment))
         add_measures(measured.row, watch_sequence(bench, picture, *measured.run, observed));
 }
@@ -46,16 +112,41 @@ void replay(Bench& bench, const Picture& picture, const Run& run)
 {
     try {
         const UnderWay         under_way(bench.state, run.id, bench.experiment.measure.time_limit_s);
-        const PreparedFramePtr frame = prepare_frame(
-            bench.gpu, picture.buffers, find_technique(bench.techniques, run.technique), run.values, run.settings);
+        const PreparedFramePtr frame =
+            prepare_frame(bench.gpu, picture.buffers, find_technique(bench.techniques, run.technique), run.values,
+                          run.settings, history_of(bench, run));
         clocked(bench.counted_s, [&] {
             run_frame(bench.gpu, *frame);
             watch_sequence(bench, picture, run,
                            {read_shaded(bench.gpu, *frame), count_frame(bench.gpu, *frame), std::nullopt});
         });
+        leave_history(bench, run, *frame);
     } catch (const std::exception& error) {
         bench.progress.say(fmt::format("frame {} of {}: {}", run.at.frame, sequence_id(run), error.what()));
         lose_sequence(bench, run);
+    }
+}
+
+void make_converged_pictures(Bench& bench, std::span<const Run> runs, int last_frame)
+{
+    const MeasureSettings& measure = bench.experiment.measure;
+    const Run&             first   = runs.front();
+    if (!measure.truth || !measure.image_errors || first.at.jitter_phases == 0) return;
+    if (!nothing_moves(scene_of(bench, first.scene, 0).first, first, last_frame)) return;
+    std::vector<std::pair<Run, Image>> sums; // one run of each settings
+    for (const Run& run : runs)
+        if (std::ranges::none_of(sums, [&](const auto& sum) { return sum.first.settings == run.settings; }))
+            sums.emplace_back(run, Image{});
+    for (int phase = 0; phase < first.at.jitter_phases; ++phase) {
+        Run at_phase      = first;
+        at_phase.at.frame = phase;
+        Picture picture   = make_picture(bench, at_phase);
+        for (auto& [run, sum] : sums) add_true_picture(bench, picture, run, sum);
+        bench.progress.tick();
+    }
+    for (auto& [run, sum] : sums) {
+        for (float& value : sum.values) value /= static_cast<float>(first.at.jitter_phases);
+        bench.converged.push_back({run.settings, Reference(sum)});
     }
 }
 

@@ -1,17 +1,26 @@
-// What only a frame among others of a sequence needs: its measures, and frames that are replayed. Folder-internal.
+// What only a frame among others of a sequence needs: its history, its measures, and frames that are replayed. Folder-internal.
 #pragma once
 
 #include "harness/picture.h"
 
 namespace ssrlab {
 
-/// Adds the measures that need the frame before, and remembers this one.
+/// What the run's frame before left; null where frames do not follow each other. Throws Failure where that frame failed.
+FrameHistoryPtr history_of(Bench& bench, const Run& run);
+
+/// The run's next frame finds what this one leaves. Runs share images, so this one runs once more.
+void leave_history(Bench& bench, const Run& run, PreparedFrame& frame);
+
+/// Adds the measures that need the frames before, and remembers this one.
 void judge_sequence(Bench& bench, Picture& picture, MeasuredRun& measured, const Observed& observed);
 
 /// After a frame that failed: what follows does not follow from it.
 void lose_sequence(Bench& bench, const Run& run);
 
-/// Remembers a run's frame for its next one, without a row.
+/// Carries a run to its next frame, without a row.
 void replay(Bench& bench, const Picture& picture, const Run& run);
+
+/// Makes Bench::converged for the settings of these runs, if nothing but jitter moves from their first frame to `last_frame`.
+void make_converged_pictures(Bench& bench, std::span<const Run> runs, int last_frame);
 
 } // namespace ssrlab

@@ -25,6 +25,12 @@ constexpr auto summarised_columns = std::to_array<Summarised>({
     {"reprojection_unknown_share", false},
     {"surface_motion_error_median_px", true},
     {"surface_motion_error_p95_px", true},
+    {"reprojection_error_median_px", true},
+    {"reprojection_error_p95_px", true},
+    {"reprojection_found_share", false},
+    {"ghosting_rmse", false},
+    {"history_share", false},
+    {"clamped_share", false},
     {"picture_rmse", false},
     {"trace_ms_median", true},
     {"frame_ms_median", true},
@@ -96,6 +102,7 @@ std::vector<Column> summary_columns(const Experiment& experiment, std::span<cons
     columns.push_back({"temporal_rms", "standard deviation over time of the display luma of the finished picture, root "
                                        "mean square over pixels that reflect in every frame; where nothing but jitter "
                                        "moves"});
+    columns.push_back({"converged_rmse_last", "converged_rmse of the last frame"});
     for (const Summarised& what : summarised_columns)
         columns.push_back(
             {what.column, fmt::format("{} over the frames of {}", what.median ? "median" : "mean", what.column)});
@@ -113,6 +120,7 @@ Row summary_row(const Row& identity, std::span<const Row> frames, const Sequence
         if (frame.contains("outcome") && frame.at("outcome") == "ok") good.push_back(frame);
     row["frames"] = std::to_string(good.size());
     for (const Summarised& what : summarised_columns) row[what.column] = summary_of(good, what);
+    if (!good.empty()) row["converged_rmse_last"] = text_of(value_of(good.back(), "converged_rmse"));
     if (state.failed) return row;
     row["flip_rate"] = text_of(share(state.flips.flips, state.flips.rays));
     if (!state.moved) row["temporal_rms"] = text_of(temporal_rms(state.moments, state.pictures));

@@ -4,6 +4,7 @@
 #include "compare/measures.h"
 #include "harness/columns.h"
 #include "harness/record.h"
+#include "render/history.h"
 
 #include <span>
 
@@ -11,7 +12,8 @@ namespace ssrlab {
 
 /// Of one technique with one set of values and settings, while the frames of a sequence follow each other.
 struct SequenceState {
-    std::optional<HitPlaces> places; // of the last frame
+    FrameHistoryPtr          history; // what the last frame left
+    std::optional<HitPlaces> places;  // of the last frame
     Flips                    flips;
     TemporalMoments          moments;
     int                      pictures = 0;
@@ -19,7 +21,7 @@ struct SequenceState {
     bool                     failed   = false; // in some frame: what comes after it does not follow from it
 };
 
-/// Whether frames are compared with those before them, and every sequence has a summary. A search for targets looks at each frame alone.
+/// Whether frames follow each other: each has a history, and every sequence a summary. A search for targets looks at each frame alone.
 bool is_sequence(const Experiment& experiment);
 
 /// The short hash of a run without its frame.

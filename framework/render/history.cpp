@@ -1,10 +1,7 @@
-#include "core/pixel_index.h"
 #include "render/frame_passes.h"
 #include "shared.h"
 
 #include <fmt/format.h>
-
-#include <limits>
 
 namespace ssrlab {
 namespace {
@@ -79,7 +76,7 @@ Bindings history_bindings(const FrameHistory& history, const MotionBuffers& moti
             {"previous_facts_image", history.facts},   {"reprojected_image", history.reprojected}};
 }
 
-void keep_history(Gpu& gpu, const PreparedFrame& frame)
+void keep_history(Gpu& gpu, const PreparedFrame& frame, int number)
 {
     if (!frame.history) throw std::logic_error("keep_history: the frame was prepared without a history");
     FrameHistory& history = *frame.history;
@@ -107,16 +104,15 @@ void keep_history(Gpu& gpu, const PreparedFrame& frame)
         barrier(commands);
     });
     history.view  = gbuffer.view;
-    history.frame = gbuffer.motion ? gbuffer.motion->frame : 0;
+    history.frame = number;
 }
 
 std::vector<glm::vec2> read_reprojection(Gpu& gpu, const PreparedFrame& frame)
 {
-    constexpr float        nan = std::numeric_limits<float>::quiet_NaN();
-    std::vector<glm::vec2> vectors_px(pixel_count(frame.buffers->gbuffer->view.size_px), glm::vec2(nan));
+    std::vector<glm::vec2> vectors_px;
     if (!planned(frame, "reprojection")) return vectors_px;
-    const auto texels = download_as<glm::vec4>(gpu, frame.history->reprojected);
-    std::ranges::transform(texels, vectors_px.begin(), [](const glm::vec4& texel) { return glm::vec2(texel); });
+    for (const glm::vec4& texel : download_as<glm::vec4>(gpu, frame.history->reprojected))
+        vectors_px.emplace_back(texel);
     return vectors_px;
 }
 

@@ -18,13 +18,13 @@ using FrameHistoryPtr = std::shared_ptr<FrameHistory>;
 /// Holds nothing yet. Made once for a sequence of frames with one technique and one set of values.
 FrameHistoryPtr make_history(Gpu& gpu, glm::ivec2 size_px);
 /// After run_frame(): this frame is what the next one finds in the history that it was prepared with. Until then the frame may be run
-/// again and gives the same bits.
-void keep_history(Gpu& gpu, const PreparedFrame& frame);
+/// again and gives the same bits. `number`: of the frame in its sequence.
+void keep_history(Gpu& gpu, const PreparedFrame& frame, int number);
 /// A cut: the next frame finds nothing.
 void drop_history(FrameHistory& history);
 
 /// By pixel: from the pixel to where its reflection was in the frame before, in pixels, without the jitter of either frame. NaN where
-/// nothing was hit or seen, and everywhere if the plan has no reprojection.
+/// nothing was hit or seen. Empty if the plan has no reprojection.
 std::vector<glm::vec2> read_reprojection(Gpu& gpu, const PreparedFrame& frame);
 
 /// What became of each reflecting pixel's history; each is one of the first six.

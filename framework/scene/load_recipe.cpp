@@ -50,6 +50,11 @@ Model shape_to_model(const Part& part)
         model.materials[0].base_colour                 = glm::vec4(1);
         model.materials[0].base_colour_texture.texture = 0;
         multiply_uv(mesh, 0.5 / part.tile_m); // a repeat is two tiles wide
+    } else if (part.ripple_m) {
+        model.textures.push_back(make_wave_normals());
+        model.materials[0].normal_texture.texture = 0;
+        model.materials[0].normal_scale           = static_cast<float>(part.ripple_slope);
+        multiply_uv(mesh, 1 / *part.ripple_m);
     }
     model.meshes.push_back(std::move(mesh));
     return model;

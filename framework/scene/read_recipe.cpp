@@ -46,6 +46,10 @@ void read_shape_keys(TomlTable& table, Part& part)
     part.tile_colours = table.vectors("tile_colours");
     if (!part.tile_colours.empty() && part.tile_colours.size() != 2)
         table.fail("tile_colours", "must be two colours: [[r, g, b], [r, g, b]]");
+    part.ripple_m     = table.number("ripple_m", 1e-3, 1e6);
+    part.ripple_slope = table.number("ripple_slope", 0, 10).value_or(part.ripple_slope);
+    if (part.ripple_m && !part.tile_colours.empty())
+        table.fail("ripple_m", "cannot stand beside tile_colours: both say how often textures repeat");
 }
 
 Part read_part(TomlTable& table)
@@ -82,6 +86,7 @@ CameraPath read_path(TomlTable& table, const std::vector<Camera>& views)
     path.name            = table.text("name").value_or("");
     path.frames_per_view = static_cast<int>(table.number("frames_per_view", 1, 1e6).value_or(30));
     const auto names     = table.texts("views");
+    const auto cuts      = table.has("cuts") ? table.texts("cuts") : std::vector<std::string>();
     table.refuse_unknown_keys();
     const auto named = [&](const std::string& name) { return std::ranges::find(views, name, &Camera::name); };
     if (path.name.empty() || named(path.name) != views.end()) table.fail("needs a 'name' that no [[view]] has");
@@ -93,6 +98,12 @@ CameraPath read_path(TomlTable& table, const std::vector<Camera>& views)
         if (!path.cameras.empty() && view->projection != path.cameras.front().projection)
             table.fail("views", "must be all perspective or all orthographic");
         path.cameras.push_back(*view);
+    }
+    for (const std::string& name : cuts) {
+        const auto place = std::ranges::find(names, name);
+        if (place == names.begin() || place == names.end() || std::ranges::count(names, name) > 1)
+            table.fail("cuts", fmt::format("names '{}', which is not one of the 'views' after the first", name));
+        path.cuts.push_back(static_cast<size_t>(place - names.begin()));
     }
     return path;
 }

@@ -37,6 +37,8 @@ struct Part {
     RigidMotion             motion;          // pivot_ws: relative to each of the positions
     double                  tile_m = 1;
     std::vector<glm::dvec3> tile_colours; // sRGB
+    std::optional<double>   ripple_m;     // a normal map with waves of this length
+    double                  ripple_slope = 0.1;
     MaterialChange          change;
 };
 

@@ -73,8 +73,9 @@ struct RigidMotion {
 /// A view that moves, or a camera that does, if one has this name: straight from one camera to the next.
 struct CameraPath {
     std::string         name;
-    std::vector<Camera> cameras;             // at least two, of one projection
-    int                 frames_per_view = 1; // from one camera to the next
+    std::vector<Camera> cameras;              // at least two, of one projection
+    int                 frames_per_view = 1;  // from one camera to the next
+    std::vector<size_t> cuts            = {}; // of `cameras`: the frame after the camera before it shows this one
 };
 
 /// A run of triangles with one material.

@@ -52,6 +52,35 @@ Camera between(const Camera& a, const Camera& b, double share)
     return camera;
 }
 
+/// The path that a view is, or nothing.
+const CameraPath* find_path(const Scene& scene, const std::string& view)
+{
+    auto path = std::ranges::find(scene.paths, view, &CameraPath::name);
+    if (path == scene.paths.end())
+        path = std::ranges::find(scene.paths, find_camera(scene, view).name, &CameraPath::name);
+    return path == scene.paths.end() ? nullptr : &*path;
+}
+
+/// From the camera before this one.
+int frames_to(const CameraPath& path, size_t camera)
+{
+    return std::ranges::find(path.cuts, camera) == path.cuts.end() ? path.frames_per_view : 1;
+}
+
+/// Whether the view jumps to one of these frames.
+bool is_cut_between(const Scene& scene, const std::string& view, int after_frame, int frame)
+{
+    const CameraPath* path = find_path(scene, view);
+    if (path == nullptr) return false;
+    int at = 0;
+    for (size_t camera = 1; camera < path->cameras.size(); ++camera) {
+        at += frames_to(*path, camera);
+        const bool is_cut = std::ranges::find(path->cuts, camera) != path->cuts.end();
+        if (is_cut && at > after_frame && at <= frame) return true;
+    }
+    return false;
+}
+
 } // namespace
 
 glm::dmat4 pose(const RigidMotion& motion, int frame)
@@ -65,10 +94,10 @@ glm::dmat4 pose(const RigidMotion& motion, int frame)
     return glm::translate(matrix, -motion.pivot_ws);
 }
 
-glm::dmat4 current_to_previous(const RigidMotion& motion, int frame)
+glm::dmat4 current_to_previous(const RigidMotion& motion, int frame, int frames_back)
 {
-    if (frame == 0 || is_still(motion)) return glm::dmat4(1);
-    return pose(motion, frame - 1) * glm::inverse(pose(motion, frame));
+    if (frame < frames_back || is_still(motion)) return glm::dmat4(1);
+    return pose(motion, frame - frames_back) * glm::inverse(pose(motion, frame));
 }
 
 bool anything_moves(const Scene& scene)
@@ -94,17 +123,14 @@ glm::dvec2 jitter_px(SequenceFrame at)
 
 Camera unjittered_camera_at(const Scene& scene, const std::string& view, int frame)
 {
-    auto path = std::ranges::find(scene.paths, view, &CameraPath::name);
-    if (path == scene.paths.end()) {
-        const Camera& camera = find_camera(scene, view);
-        path                 = std::ranges::find(scene.paths, camera.name, &CameraPath::name);
-        if (path == scene.paths.end()) return camera;
-    }
-    const int  last = static_cast<int>(path->cameras.size()) - 1, span = path->frames_per_view;
-    const int  from   = std::min(frame / span, last - 1);
-    const auto part   = std::min(static_cast<double>(frame - from * span) / span, 1.0);
-    Camera     camera = between(path->cameras[size_t(from)], path->cameras[size_t(from) + 1], part);
-    camera.name       = path->name;
+    const CameraPath* path = find_path(scene, view);
+    if (path == nullptr) return find_camera(scene, view);
+    int    start = 0;
+    size_t to    = 1;
+    while (to + 1 < path->cameras.size() && frame >= start + frames_to(*path, to)) start += frames_to(*path, to++);
+    const double part   = std::min(double(frame - start) / frames_to(*path, to), 1.0);
+    Camera       camera = between(path->cameras[to - 1], path->cameras[to], part);
+    camera.name         = path->name;
     return camera;
 }
 
@@ -129,18 +155,20 @@ View view_at(const Scene& scene, const std::string& view, glm::ivec2 size_px, Se
     return scene.frame->gbuffer.view;
 }
 
-std::optional<FrameMotion> motion_at(const Scene& scene, const std::string& view, glm::ivec2 size_px, int frame)
+std::optional<FrameMotion> motion_at(const Scene& scene, const std::string& view, glm::ivec2 size_px, int frame,
+                                     int frames_back)
 {
-    if (frame == 0 || scene.frame) return std::nullopt;
+    const int earlier = frame - frames_back;
+    if (earlier < 0 || scene.frame || is_cut_between(scene, view, earlier, frame)) return std::nullopt;
     FrameMotion motion;
     motion.frame         = frame;
     motion.view          = camera_to_view(unjittered_camera_at(scene, view, frame), size_px);
-    motion.previous_view = camera_to_view(unjittered_camera_at(scene, view, frame - 1), size_px);
+    motion.previous_view = camera_to_view(unjittered_camera_at(scene, view, earlier), size_px);
     const View &now = motion.view, &before = motion.previous_view;
     motion.camera_moves = now.world_to_view != before.world_to_view || now.focal_px != before.focal_px ||
                           now.centre_px != before.centre_px;
     for (const Draw& draw : scene.draws) {
-        motion.to_previous_ws.push_back(current_to_previous(draw.motion, frame));
+        motion.to_previous_ws.push_back(current_to_previous(draw.motion, frame, frames_back));
         motion.moving_draws += is_still(draw.motion) ? 0 : 1;
     }
     return motion;

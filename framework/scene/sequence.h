@@ -20,8 +20,8 @@ inline constexpr int max_frames = 1'000'000, max_jitter_phases = 1024;
 
 /// World of frame 0 to world of this frame.
 glm::dmat4 pose(const RigidMotion& motion, int frame);
-/// World of this frame to world of the one before; the identity for what is still.
-glm::dmat4 current_to_previous(const RigidMotion& motion, int frame);
+/// World of this frame to world of an earlier one; the identity for what is still.
+glm::dmat4 current_to_previous(const RigidMotion& motion, int frame, int frames_back = 1);
 
 bool anything_moves(const Scene& scene);
 /// The scene with its vertices where they are in this frame; motions are those of frame 0.
@@ -38,7 +38,7 @@ Camera camera_at(const Scene& scene, const std::string& view, SequenceFrame at);
 /// size or frame.
 View view_at(const Scene& scene, const std::string& view, glm::ivec2 size_px, SequenceFrame at);
 
-/// From one frame to the next.
+/// From one frame to a later one, usually the next.
 struct FrameMotion {
     int                     frame = 0;           // to this one
     View                    view, previous_view; // without jitter
@@ -47,7 +47,8 @@ struct FrameMotion {
     int                     moving_draws = 0;
 };
 
-/// Nothing for frame 0 and for a frame of another renderer: no frame comes before. `scene` may be in any frame.
-std::optional<FrameMotion> motion_at(const Scene& scene, const std::string& view, glm::ivec2 size_px, int frame);
+/// Nothing for frame 0, across a cut of the camera and for a frame of another renderer: no frame comes before. `scene` may be in any frame.
+std::optional<FrameMotion> motion_at(const Scene& scene, const std::string& view, glm::ivec2 size_px, int frame,
+                                     int frames_back = 1);
 
 } // namespace ssrlab

@@ -140,6 +140,21 @@ Texture make_checker_texture(glm::vec3 colour_a, glm::vec3 colour_b)
     return texture;
 }
 
+Texture make_wave_normals()
+{
+    constexpr int side_px = 64;
+    Texture       texture;
+    texture.size_px    = {side_px, side_px};
+    const auto slope   = [](int i) { return std::cos(2 * std::numbers::pi * (i + 0.5) / side_px); };
+    const auto to_byte = [](double value) { return static_cast<uint8_t>(std::lround(127.5 * value + 127.5)); };
+    for (int y = 0; y < side_px; ++y)
+        for (int x = 0; x < side_px; ++x) {
+            const glm::dvec3 normal = glm::normalize(glm::dvec3(slope(x), slope(y), 1));
+            texture.rgba.insert(texture.rgba.end(), {to_byte(normal.x), to_byte(normal.y), to_byte(normal.z), 255});
+        }
+    return texture;
+}
+
 Material make_material(const std::string& name, glm::vec3 base_colour, float metallic, float roughness)
 {
     Material material;

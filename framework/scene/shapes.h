@@ -19,7 +19,9 @@ Mesh make_teapot(int patch_steps);
 void multiply_uv(Mesh& mesh, double factor);
 
 /// Two by two squares of two sRGB colours; one repeat is 1 in u and v.
-Texture  make_checker_texture(glm::vec3 colour_a, glm::vec3 colour_b);
+Texture make_checker_texture(glm::vec3 colour_a, glm::vec3 colour_b);
+/// A normal map: one wave along u and one along v, each with a largest slope of 1.
+Texture  make_wave_normals();
 Material make_material(const std::string& name, glm::vec3 base_colour, float metallic, float roughness);
 
 } // namespace ssrlab

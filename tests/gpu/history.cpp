@@ -55,7 +55,7 @@ TEST(History, ConvergesToTheMeanOfTheFrames)
             seen[i] += own[i].a >= 0 && (frame == 0 || !std::isnan(vectors_px[i].x)) ? 1 : 0;
         }
         EXPECT_EQ(read_history_counts(device(), *run).has_value(), frame > 0);
-        keep_history(device(), *run);
+        keep_history(device(), *run, frame);
     }
     const auto kept  = download_as<glm::vec4>(device(), history->reflection),
                facts = download_as<glm::vec4>(device(), history->facts);
@@ -76,7 +76,7 @@ TEST(History, WeighsFramesExponentially)
     const Scene           scene   = still_scene();
     const FrameHistoryPtr history = make_history(device(), size_px);
     const ParameterValues passes  = with(plain, {strategy("surface"), {"history_weight", 0.75}});
-    keep_history(device(), *run_picture(picture_at(scene, "default", {0, 16}, size_px), passes, history));
+    keep_history(device(), *run_picture(picture_at(scene, "default", {0, 16}, size_px), passes, history), 0);
     const std::vector<glm::vec4> nothing(pixel_count(size_px), glm::vec4(0, 0, 0, 1)),
         many(nothing.size(), glm::vec4(100, 1, -1, 0));
     upload(device(), history->reflection, nothing.data(), nothing.size() * sizeof(glm::vec4));
@@ -105,7 +105,7 @@ TwoFrames second_after(const std::function<void(FrameHistory&)>& change, const P
 {
     const Scene           scene   = still_scene();
     const FrameHistoryPtr history = make_history(device(), size_px);
-    keep_history(device(), *run_picture(picture_at(scene, "default", {0, 16}, size_px), passes, history));
+    keep_history(device(), *run_picture(picture_at(scene, "default", {0, 16}, size_px), passes, history), 0);
     change(*history);
     const SequencePicture picture = picture_at(scene, "default", {1, 16}, size_px);
     TwoFrames             frames;
@@ -207,7 +207,7 @@ TEST(History, NothingIsLeftOfItAfterACut)
         return shaded(*run_picture(picture_at(scene, view, at, size_px), passes, nullptr));
     };
     const auto after = [&](const char* view, SequenceFrame at) {
-        keep_history(device(), *run_picture(picture_at(scene, "truck", {4, 8}, size_px), passes, history));
+        keep_history(device(), *run_picture(picture_at(scene, "truck", {4, 8}, size_px), passes, history), 4);
         fill(history->reflection, glm::vec4(1000));
         return run_picture(picture_at(scene, view, at, size_px), passes, history);
     };
@@ -221,7 +221,7 @@ TEST(History, NothingIsLeftOfItAfterACut)
         EXPECT_EQ(shaded(*frame), alone(at, view)) << reason;
         EXPECT_EQ(row_of(*frame, "history").reason, reason);
     }
-    keep_history(device(), *run_picture(picture_at(scene, "truck", {4, 8}, size_px), passes, history));
+    keep_history(device(), *run_picture(picture_at(scene, "truck", {4, 8}, size_px), passes, history), 4);
     drop_history(*history);
     const auto dropped = run_picture(picture_at(scene, "truck", {5, 8}, size_px), passes, history);
     EXPECT_EQ(shaded(*dropped), alone({5, 8}, "truck"));
@@ -244,7 +244,7 @@ TEST(History, IsPlannedOnlyWhereSomethingChanges)
           Case{moving, "default", 0, "still camera, 2 of 4 objects move, no jitter"},
           Case{still, "truck", 0, "moving camera, 0 of 4 objects move, no jitter"}}) {
         const FrameHistoryPtr history = make_history(device(), size_px);
-        keep_history(device(), *run_picture(picture_at(scene, view, {3, phases}, size_px), {}, history));
+        keep_history(device(), *run_picture(picture_at(scene, view, {3, phases}, size_px), {}, history), 3);
         const SequencePicture picture = picture_at(scene, view, {4, phases}, size_px);
         const auto            planned = run_picture(picture, {}, history);
         const bool            changes = std::string_view(reason) != "still camera, 0 of 4 objects move, no jitter";
@@ -275,7 +275,7 @@ TEST(History, IsTheSameOnRerun)
             const auto run = run_picture(picture_at(scene, "orbit", {frame, 4}, size_px), {}, history);
             for (int i = 1; i < runs; ++i) run_frame(device(), *run);
             images.push_back(shaded(*run));
-            keep_history(device(), *run);
+            keep_history(device(), *run, frame);
         }
         return images;
     };
@@ -298,7 +298,7 @@ TEST(History, FurtherBouncesComeFromIt)
     TraceResult            hits;
     const auto             reflection_after = [&](float held) {
         const FrameHistoryPtr history = make_history(device(), size_px);
-        keep_history(device(), *run_picture(first, passes, history, "dda"));
+        keep_history(device(), *run_picture(first, passes, history, "dda"), 0);
         fill(history->reflection, glm::vec4(held, held, held, 1));
         const auto frame = run_picture(picture, passes, history, "dda");
         EXPECT_EQ(row_of(*frame, "reprojection").reason, "bounces come from the frame before");
@@ -334,7 +334,7 @@ TEST(History, OfALowerResolution)
     const Scene           scene   = still_scene();
     const FrameHistoryPtr history = make_history(device(), size_px);
     const ParameterValues passes  = with(plain, {strategy("surface"), chosen(TraceResolution::half)});
-    keep_history(device(), *run_picture(picture_at(scene, "default", {0, 16}, size_px), passes, history));
+    keep_history(device(), *run_picture(picture_at(scene, "default", {0, 16}, size_px), passes, history), 0);
     const auto          run    = run_picture(picture_at(scene, "default", {1, 16}, size_px), passes, history);
     const HistoryCounts counts = read_history_counts(device(), *run).value();
     EXPECT_GT(counts.accumulated, reflecting_pixels_of(*run) / 2);

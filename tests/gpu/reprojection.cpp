@@ -31,7 +31,7 @@ SecondFrame second_frame(const Scene& scene, const std::string& view, const std:
         if (frame == 1)
             return {read_gbuffer(device(), *picture.gbuffer), read_reprojection(device(), *run),
                     count_frame(device(), *run)};
-        keep_history(device(), *run);
+        keep_history(device(), *run, frame);
     }
     return {};
 }

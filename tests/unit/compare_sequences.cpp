@@ -61,11 +61,53 @@ TEST(SequenceMeasures, DistancesFromWhereReflectionsWere)
     scene.size_px = {6, 1};
     scene.cls.assign(6, TruthClass::visible);
     for (double column : {1., 2., 30., 4., 5., 6.}) scene.point_px.emplace_back(column, 0.5);
-    MeasureValues values = compare_reprojection(found, truth, traced, scene);
+    MeasureValues values = count_disocclusions(truth);
     EXPECT_EQ(values["reprojection_unknown_share"], 1.0 / 6);
     EXPECT_EQ(values["disocclusion_share"], 1.0 / 5);
-    EXPECT_EQ(values["surface_motion_error_median_px"], 2.0);
-    EXPECT_NEAR(*values["surface_motion_error_p95_px"], 2.9, 1e-12);
+    MeasureValues surface = compare_surface_motion(found, truth, traced, scene);
+    EXPECT_EQ(surface["surface_motion_error_median_px"], 2.0);
+    EXPECT_NEAR(*surface["surface_motion_error_p95_px"], 2.9, 1e-12);
+    MeasureValues reprojection = compare_reprojection(found, truth, traced, scene);
+    EXPECT_EQ(reprojection["reprojection_error_median_px"], 2.0);
+    EXPECT_NEAR(*reprojection["reprojection_error_p95_px"], 2.9, 1e-12);
+    EXPECT_EQ(reprojection["reprojection_found_share"], 2.0 / 3);
+}
+
+/// Grey pixels side by side whose sRGB-encoded values are these: sRGB is linear / 12.92 up to 0.04045.
+Image shown_as(const std::vector<float>& display)
+{
+    Image image{{static_cast<int>(display.size()), 1}, {"R", "G", "B"}, {}, {}};
+    for (const float value : display) image.values.insert(image.values.end(), 3, value / 12.92F);
+    return image;
+}
+
+// A ghost counts where the true point is visible now and its reflection was hidden earlier: of five pixels the first two. They are off
+// by 0.03 and 0.01, so the root of the mean square is the root of 0.0005.
+TEST(SequenceMeasures, GhostsAreLookedForBehindMovingEdges)
+{
+    using enum ReprojectionClass;
+    const ReprojectionTruth earlier{{5, 1}, {hidden, hidden, seen, off_screen, hidden}, std::vector<glm::dvec2>(5)};
+    SceneTruth              scene;
+    scene.size_px = {5, 1};
+    scene.cls.assign(5, TruthClass::visible);
+    scene.cls[4]           = TruthClass::hidden;
+    const Image     tested = shown_as({0.03F, 0.02F, 0.04F, 0.04F, 0.04F});
+    const Reference reference(shown_as({0, 0.01F, 0, 0, 0}));
+    EXPECT_NEAR(compare_ghosts(tested, reference, earlier, scene).at("ghosting_rmse").value(), std::sqrt(0.0005), 1e-6);
+    scene.cls.assign(5, TruthClass::hidden);
+    EXPECT_FALSE(compare_ghosts(tested, reference, earlier, scene).at("ghosting_rmse"));
+}
+
+// Three of four pixels reflect; they are off by 0.01, 0.02 and 0.02: the root of 0.0003.
+TEST(SequenceMeasures, DistanceFromTheConvergedPicture)
+{
+    SceneTruth scene;
+    scene.size_px = {4, 1};
+    scene.cls.assign(4, TruthClass::sky);
+    scene.cls[3] = TruthClass::not_traced;
+    const Reference     converged(shown_as({0.02F, 0.02F, 0, 0}));
+    const MeasureValues values = compare_converged(shown_as({0.03F, 0, 0.02F, 0.04F}), converged, scene);
+    EXPECT_NEAR(values.at("converged_rmse").value(), std::sqrt(0.0003), 1e-6);
 }
 
 } // namespace

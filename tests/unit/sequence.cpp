@@ -70,6 +70,47 @@ TEST(Sequence, APathPassesThroughItsViewsAndStaysAtTheLast)
     EXPECT_THROW(camera_at(scene, "nowhere", {0, 0}), SpecError);
 }
 
+TEST(Sequence, MotionOverSeveralFramesIsTheirProduct)
+{
+    const Scene scene = load_scene("builtin:moving_boxes");
+    const auto  three = motion_at(scene, "truck", {64, 36}, 7, 3).value();
+    EXPECT_EQ(three.previous_view.world_to_view, motion_at(scene, "truck", {64, 36}, 5)->previous_view.world_to_view);
+    for (size_t d = 0; d < scene.draws.size(); ++d) {
+        const RigidMotion& motion = scene.draws[d].motion;
+        const glm::dvec4   point(3, 1, -7, 1);
+        const glm::dmat4   steps =
+            current_to_previous(motion, 5) * current_to_previous(motion, 6) * current_to_previous(motion, 7);
+        expect_near(glm::dvec3(three.to_previous_ws[d] * point), glm::dvec3(steps * point), 1e-12);
+    }
+    EXPECT_FALSE(motion_at(scene, "truck", {64, 36}, 2, 3)) << "nothing comes before frame 0";
+}
+
+// a to b in four frames, then c at once, then to d.
+TEST(Sequence, ACutJumps)
+{
+    TempFolder folder;
+    const auto recipe = [&](const std::string& cuts) {
+        std::string text = "[[part]]\nshape = \"box\"\n";
+        for (const char* view : {"a", "b", "c", "d"})
+            text += fmt::format("[[view]]\nname = \"{}\"\nposition = [{}, 1, 5]\ntarget = [0, 0, 0]\n", view,
+                                8 * (view[0] - 'a'));
+        return folder.write("cut.toml", text +
+                                            "[[path]]\nname = \"shot\"\nviews = [\"a\", \"b\", \"c\", "
+                                            "\"d\"]\nframes_per_view = 4\ncuts = [\"" +
+                                            cuts + "\"]\n");
+    };
+    const Scene         scene = load_scene(recipe("c"));
+    const auto          x_of  = [&](int frame) { return camera_at(scene, "shot", {frame, 0}).position_ws.x; };
+    std::vector<double> x;
+    for (int frame = 0; frame < 11; ++frame) x.push_back(x_of(frame));
+    EXPECT_EQ(x, (std::vector<double>{0, 2, 4, 6, 8, 16, 18, 20, 22, 24, 24}));
+    for (int frame = 1; frame < 11; ++frame)
+        EXPECT_EQ(motion_at(scene, "shot", {64, 36}, frame).has_value(), frame != 5);
+    EXPECT_FALSE(motion_at(scene, "shot", {64, 36}, 7, 3)) << "from frame 4 to 7 there is a cut";
+    EXPECT_TRUE(motion_at(scene, "shot", {64, 36}, 7, 2));
+    for (const char* wrong : {"a", "e"}) EXPECT_THROW(load_scene(recipe(wrong)), SpecError);
+}
+
 TEST(Sequence, JitterRepeatsAndCoversThePixel)
 {
     // Halton to the base 2 is 1/2 1/4 3/4 1/8, to the base 3 is 1/3 2/3 1/9 4/9.
