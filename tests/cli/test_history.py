@@ -1,7 +1,10 @@
 """Frames of a sequence with their history."""
 import csv
+import os
+import subprocess
 
-from support import Case, main
+from PIL import Image
+from support import SOURCE, Case, main
 
 SWEEP = """
 scenes = ["builtin:moving_boxes"]
@@ -141,6 +144,18 @@ class Test(Case):
             self.assertEqual(same, frame in (0, 4), frame)
         why = next(row["passes_why"] for row in self.rows() if row["frame"] == "4" and row["history_weight"] == "0.9")
         self.assertIn("a cut: nothing came before this frame", why)
+
+    def test_frames_become_an_animation(self):
+        for strategy in ("surface", "plane"):
+            self.ssrlab("render", *ORBIT, "--frames", "3", "-p", f"reprojection={strategy}", "-o", f"{strategy}.png")
+        animate = [os.path.join(SOURCE, "experiments", "animate"), self.path("surface.png"), self.path("plane.png")]
+        for ending in ("webp", "png"):
+            subprocess.run([*animate, "-o", self.path(f"both.{ending}")], check=True, stdout=subprocess.DEVNULL)
+            with Image.open(self.path(f"both.{ending}")) as shown:
+                self.assertEqual((shown.n_frames, shown.width), (3, 2 * 96))
+        nothing = subprocess.run([animate[0], self.path("none.png"), "-o", self.path("x.webp")], capture_output=True, text=True)
+        self.assertNotEqual(nothing.returncode, 0)
+        self.assertIn("none_0000.png", nothing.stderr)
 
     def test_the_plan_says_what_changed(self):
         moves = "moving camera, 2 of 4 objects move, no jitter"
