@@ -74,7 +74,7 @@ std::optional<TrueEnd> true_end_of(const Stage& stage, const Setup& setup, glm::
 
 RayInput ray_of_pixel(Stage& stage, const Setup& setup, const RayQuestion& question, glm::ivec2 pixel)
 {
-    if (!reflects(setup.gbuffer, pixel)) {
+    if (!reflects(setup.gbuffer, pixel, setup.settings)) {
         const size_t i = pixel_index(pixel, setup.gbuffer.view.size_px);
         throw_spec_error("pixel {},{} does not reflect: depth {:g}, metallic {:g}", pixel.x, pixel.y,
                          setup.gbuffer.depth[i], setup.gbuffer.metallic[i]);

@@ -68,7 +68,7 @@ std::string command_of(const RenderOptions& options, int at_frame)
 void warn_without_reflections(const CommonOptions& common, const PreparedFrame& frame)
 {
     if (common.quiet || reflecting_pixels_of(frame) > 0) return;
-    std::fputs("warning: nothing reflects: no pixel of this frame has a metallic value above 0\n", stderr);
+    std::fputs("warning: nothing reflects: no pixel of this frame is metal, or smooth enough to reflect\n", stderr);
 }
 
 /// Hammersley points (J. Hammersley 1960), centred: their mean moves the picture by at most half of a sample's share.
@@ -85,7 +85,7 @@ class TrueReflections {
 public:
     TrueReflections(const Stage& stage, int samples) : stage_(stage), samples_(samples) {}
 
-    Image picture(Gpu& gpu, const PreparedFrame& frame, const TraceSettings& settings, int sample)
+    Image picture(Gpu& gpu, const TraceSettings& settings, int sample)
     {
         const GBufferImage gbuffer = read_gbuffer(gpu, *stage_.gbuffer);
         if (stage_.scene.frame) {
@@ -97,9 +97,9 @@ public:
         if (!bvh_ || anything_moves(stage_.first)) bvh_ = std::make_unique<SceneBvh>(stage_.scene);
         // As many rays a pixel in all as one picture has.
         const int rays = std::max(2, (GlossySettings{}.rays + samples_ - 1) / samples_);
-        return composite_reflection(gpu, frame,
-                                    reflection_of(glossy_truth(*bvh_, stage_.scene, gbuffer, settings,
-                                                               {.rays = rays, .seed = static_cast<uint32_t>(sample)})));
+        return true_picture(
+            glossy_truth(*bvh_, stage_.scene, gbuffer, settings, {.rays = rays, .seed = static_cast<uint32_t>(sample)}),
+            gbuffer, stage_.scene.ambient);
     }
 
 private:
@@ -130,7 +130,7 @@ void add_sample(Stage& stage, PreparedFrame& frame, const RenderOptions& options
         if (at == kinds.end()) continue;
         Image image;
         if (shows == Shows::traced) image = read_shaded(stage.gpu, frame);
-        if (shows == Shows::truth) image = truth.picture(stage.gpu, frame, settings, sample);
+        if (shows == Shows::truth) image = truth.picture(stage.gpu, settings, sample);
         if (shows == Shows::nothing)
             image = composite_reflection(stage.gpu, frame,
                                          std::vector(pixel_count(stage.view.size_px), glm::vec4(0, 0, 0, -1)));

@@ -19,6 +19,7 @@ GBufferImage empty_picture(const View& view)
     image.normal_vs.assign(count, glm::vec3(0, 0, 1));
     image.roughness.assign(count, 0.0F);
     image.metallic.assign(count, 1.0F);
+    image.dielectric_f0.assign(count, 0.0F); // what is no metal does not reflect
     image.base_colour.assign(count, glm::vec3(1));
     image.radiance.assign(count, glm::vec3(0));
     image.highlight.assign(count, glm::vec3(0));

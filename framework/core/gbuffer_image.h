@@ -8,13 +8,16 @@
 
 namespace ssrlab {
 
+/// Reflectance at normal incidence of glass, paint, stone: a refractive index of 1.5.
+inline constexpr float common_dielectric_f0 = 0.04F;
+
 /// All arrays are row-major, size_px.x * size_px.y long. Background pixels have depth 0 and object_id 0.
 struct GBufferImage {
     View                   view;
     std::vector<float>     depth;       // as view.h defines it
     std::vector<glm::vec3> normal_vs;   // shading normal, unit length; 0 on the background
     std::vector<float>     roughness;   // 0..1
-    std::vector<float>     metallic;    // 0..1; a pixel with metallic > 0 reflects
+    std::vector<float>     metallic;    // 0..1
     std::vector<glm::vec3> base_colour; // linear
     std::vector<glm::vec3> radiance;    // linear; the part of the lit colour that is the same from every direction
     std::vector<glm::vec3> highlight;   // linear; the part that depends on the view; lit colour = radiance + highlight
@@ -25,6 +28,13 @@ struct GBufferImage {
     std::vector<glm::vec2> motion_px =
         {}; // where the surface was in the frame before, minus where it is, without jitter; NaN: it was
             // behind the camera. Empty: nothing moved, or no frame came before
+    std::vector<float> dielectric_f0 =
+        {}; // reflectance at normal incidence of what is not metal. Empty: common_dielectric_f0
 };
+
+inline float dielectric_f0_at(const GBufferImage& gbuffer, size_t i)
+{
+    return gbuffer.dielectric_f0.empty() ? common_dielectric_f0 : gbuffer.dielectric_f0[i];
+}
 
 } // namespace ssrlab

@@ -103,6 +103,16 @@ struct TraceSettings {
     double       ray_offset_m       = 0;     // the ray starts so far along its direction
     Behind       behind             = Behind::hit;
     SurfaceModel surface = SurfaceModel::box; // thickness is of the boxes, and of pixels without a usable plane
+    // Metals reflect. So does what is not metal and reflects at least so much at normal incidence, up to a roughness.
+    double dielectric_min_f0        = 0.02;
+    double dielectric_max_roughness = 0.4;
+
+    /// Whether a surface of this material reflects; the shaders compare the same floats (shaders/rays/reflecting.glsl).
+    bool material_reflects(float metallic, float dielectric_f0, float roughness) const
+    {
+        return metallic > 0 ||
+               (dielectric_f0 >= float(dielectric_min_f0) && roughness <= float(dielectric_max_roughness));
+    }
 
     bool operator==(const TraceSettings&) const = default;
 };

@@ -112,13 +112,13 @@ void make_references(Bench& bench, Picture& picture, const MeasuredRun& measured
     if (!picture.truths) return;
     clocked(bench.truths_s, [&] {
         picture.truths->make(settings.trace, image_errors);
-        if (!image_errors || (picture.reference && picture.reference_for == settings)) return;
+        if (!image_errors || (picture.reference && picture.reference_for == settings.trace)) return;
         std::optional<Image> truth = picture.truths->given_picture();
         if (!truth && picture.truths->without_scene().empty())
-            truth = composite_reflection(bench.gpu, *measured.frame, picture.truths->true_reflection());
+            truth = picture.truths->true_picture();
         if (!truth) return;
         picture.reference.emplace(*truth);
-        picture.reference_for = settings;
+        picture.reference_for = settings.trace;
         write_references(bench, picture, measured, *truth);
     });
 }

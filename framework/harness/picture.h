@@ -15,9 +15,9 @@ struct Picture {
     std::optional<FrameMotion> motion; // since the frame before
     std::optional<Truths>      truths;
 
-    // The picture with the true reflection under the settings of the last run: no technique is in it.
+    // The picture with the true reflections under the trace settings of the last run.
     std::optional<Reference> reference;
-    FrameSettings            reference_for;
+    TraceSettings            reference_for;
     std::string              reference_file; // relative to the results; empty: none was written
 };
 

@@ -56,10 +56,12 @@ Truths::Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path c
 void Truths::make(const TraceSettings& settings, bool image_errors)
 {
     if (made_for_ == settings) return;
-    // Of all settings, the scene truth depends on the maximum distance alone.
-    const bool same_scene_truth = made_for_ && made_for_->max_distance_m == settings.max_distance_m;
+    // Of all settings, the scene truth depends on the maximum distance and on what reflects.
+    const bool same_scene_truth = made_for_ && made_for_->max_distance_m == settings.max_distance_m &&
+                                  made_for_->dielectric_min_f0 == settings.dielectric_min_f0 &&
+                                  made_for_->dielectric_max_roughness == settings.dielectric_max_roughness;
     made_for_.reset();
-    true_reflection_.reset();
+    true_picture_.reset();
     screen_truth_ = cached_screen_truth(cache_dir_, gbuffer_, settings);
     if (scene_->frame) {
         // All that is known: which pixels reflect.
@@ -113,11 +115,13 @@ std::optional<Image> Truths::given_picture() const
     return image;
 }
 
-const std::vector<glm::vec4>& Truths::true_reflection()
+const Image& Truths::true_picture()
 {
     const TraceSettings& settings = made_for();
-    if (true_reflection_) return *true_reflection_;
-    return true_reflection_.emplace(reflection_of(cached_glossy_truth(cache_dir_, *scene_, gbuffer_, settings, {})));
+    if (!true_picture_)
+        true_picture_ = ssrlab::true_picture(cached_glossy_truth(cache_dir_, *scene_, gbuffer_, settings, {}), gbuffer_,
+                                             scene_->ambient);
+    return *true_picture_;
 }
 
 void Truths::make_reprojection(const SceneInTime& before, const SceneInTime& earlier)

@@ -29,8 +29,8 @@ public:
     /// Every measure of `counted`. `twin` is the same trace in double, `hidden` what was found in the second layer; or null.
     MeasureValues compare(const TraceResult& counted, const TraceResult* twin, const TraceResult* hidden) const;
 
-    /// The reflection of the glossy scene truth (many rays where it is rough), at full weight; weight -1 where nothing reflects.
-    const std::vector<glm::vec4>& true_reflection();
+    /// The picture with the true reflections (truth/glossy_truth.h). Needs a scene truth.
+    const Image& true_picture();
 
     /// Why there is no scene truth: a frame of another renderer has no triangles. Empty: there is one.
     std::string without_scene() const;
@@ -64,7 +64,7 @@ private:
     TraceResult                           screen_truth_;
     SceneTruth                            scene_truth_;
     std::optional<Reference>              reference_;        // with image_errors: the scene truth's reflection
-    std::optional<std::vector<glm::vec4>> true_reflection_;  // when asked for
+    std::optional<Image>                  true_picture_;     // when asked for
     std::optional<ReprojectionTruth>      before_, earlier_; // when asked for
 };
 

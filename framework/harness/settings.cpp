@@ -46,6 +46,12 @@ std::vector<Setting> make_table()
                       "length of the ray in view space"),
         trace_setting("ray_offset_m", real, &TraceSettings::ray_offset_m, 1e6,
                       "how far along its direction the ray starts"),
+        trace_setting(
+            "dielectric_min_f0", real, &TraceSettings::dielectric_min_f0, 1,
+            "surfaces that are not metal reflect if their reflectance at normal incidence is at least this; 1: "
+            "only metals reflect"),
+        trace_setting("dielectric_max_roughness", real, &TraceSettings::dielectric_max_roughness, 1,
+                      "surfaces that are not metal reflect up to this roughness"),
         trace_choice(
             "behind", &TraceSettings::behind, behind_names,
             "what becomes of a ray that meets a pixel from a side that the frame does not show: hit, pass (the "

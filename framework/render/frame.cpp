@@ -90,27 +90,38 @@ RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision)
 namespace {
 
 /// Counts on the device: the number of reflecting pixels decides how large the ray list is.
-FrameStatistics count_gbuffer(Gpu& gpu, const FrameBuffers& buffers)
+FrameStatistics count_gbuffer(Gpu& gpu, const FrameBuffers& buffers, const TraceSettings& settings)
 {
-    const glm::ivec2 size_px = buffers.gbuffer->view.size_px;
-    const glm::uvec3 tiles   = groups_of_8(size_px);
+    const View&      view  = buffers.gbuffer->view;
+    const glm::uvec3 tiles = groups_of_8(view.size_px);
     FrameStatistics  statistics;
-    statistics.pixels = static_cast<uint32_t>(size_px.x) * static_cast<uint32_t>(size_px.y);
+    statistics.pixels = static_cast<uint32_t>(view.size_px.x) * static_cast<uint32_t>(view.size_px.y);
     statistics.tiles  = tiles.x * tiles.y;
     Bindings bindings = surface_bindings(*buffers.gbuffer);
     bindings.insert(
         {{"View", buffers.view}, {"TileMasks", buffers.tiles.masks}, {"PictureStatistics", buffers.tiles.statistics}});
+    Constants constants;
+    add_reflecting(constants, settings);
     const ComputePass classification =
-        make_compute_pass(gpu, compile_shader({.file = "rays/classification.comp"}), bindings);
+        make_compute_pass(gpu, compile_shader({.file = "rays/classification.comp"}), bindings, constants);
     submit(gpu, [&](const auto& commands) { record_marking(commands, classification, buffers); });
     statistics.gbuffer = download_as<GBufferCounts>(gpu, buffers.tiles.statistics, 1)[0];
     return statistics;
 }
 
-std::shared_ptr<RayBuffers> rays_for(Gpu& gpu, FrameBuffers& buffers, const FrameSettings& settings)
+/// Counted once for each rule of what reflects.
+const FrameStatistics& statistics_for(Gpu& gpu, FrameBuffers& buffers, const TraceSettings& settings)
 {
-    const GBufferCounts& counts = buffers.statistics.gbuffer;
-    const size_t         pixels =
+    const std::pair rule(settings.dielectric_min_f0, settings.dielectric_max_roughness);
+    const auto      known = buffers.statistics.find(rule);
+    if (known != buffers.statistics.end()) return known->second;
+    return buffers.statistics.emplace(rule, count_gbuffer(gpu, buffers, settings)).first->second;
+}
+
+std::shared_ptr<RayBuffers> rays_for(Gpu& gpu, FrameBuffers& buffers, const GBufferCounts& counts,
+                                     const FrameSettings& settings)
+{
+    const size_t pixels =
         settings.passes.at("skip_unneeded_passes") == 0 ? counts.surface_pixels : counts.reflecting_pixels;
     const size_t                 capacity = pixels * static_cast<size_t>(settings.passes.at("rays_per_pixel"));
     std::shared_ptr<RayBuffers>& rays     = buffers.rays[capacity];
@@ -165,8 +176,11 @@ FrameFacts facts_of(const PreparedFrame& frame)
     const GpuScene* scene = frame.buffers->gbuffer->scene.get();
     FrameFacts      facts;
     for (const Structure& structure : frame.technique.structures) facts.structures.push_back(structure.id);
-    facts.solids  = frame.settings.trace.surface == SurfaceModel::plane_solid;
-    facts.history = history_facts(frame);
+    facts.solids               = frame.settings.trace.surface == SurfaceModel::plane_solid;
+    facts.history              = history_facts(frame);
+    const TraceSettings& trace = frame.settings.trace;
+    facts.reflectors           = fmt::format("; metals, and what else has an F0 of {} or more up to roughness {}",
+                                             trace.dielectric_min_f0, trace.dielectric_max_roughness);
     if (scene == nullptr) return facts;
     facts.scene           = true;
     facts.environment_map = scene->has_environment_map;
@@ -209,19 +223,21 @@ PreparedFramePtr prepare(Gpu& gpu, const FrameBuffersPtr& buffers, const Techniq
                          const TraceCounts* counts)
 {
     require_bounded(technique, values);
-    auto frame        = std::make_shared<PreparedFrame>();
-    frame->buffers    = buffers;
-    frame->technique  = technique;
-    frame->values     = values;
-    frame->settings   = settings;
-    frame->history    = history;
-    frame->rays       = rays_for(gpu, *buffers, settings);
+    auto frame       = std::make_shared<PreparedFrame>();
+    frame->buffers   = buffers;
+    frame->technique = technique;
+    frame->values    = values;
+    frame->settings  = settings;
+    frame->history   = history;
+    if (!buffers->gbuffer->scene && choice<HitShading>(settings.passes) == HitShading::mirrored) // there are no lights
+        frame->settings.passes.insert_or_assign("hit_shading", choice_value(HitShading::lit));
+    frame->statistics = statistics_for(gpu, *buffers, settings.trace);
+    frame->rays       = rays_for(gpu, *buffers, frame->statistics.gbuffer, settings);
     frame->structures = make_depth_structures(gpu, *frame, *buffers->gbuffer);
     frame->trace      = make_trace_passes(gpu, *frame, *frame->rays, buffers->view, nullptr);
 
     frame->facts = facts_of(*frame);
     if (frame->facts.history.usable) frame->motion = motion_since(gpu, *frame);
-    frame->statistics = buffers->statistics;
     if (counts != nullptr)
         frame->statistics.trace = *counts;
     else if (choice<PassSet>(settings.passes) != PassSet::shading && frame->statistics.gbuffer.reflecting_pixels > 0) {
@@ -252,13 +268,15 @@ FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer)
     buffers->gbuffer        = gbuffer;
     buffers->view           = upload_view(gpu, gbuffer->view, Precision::float32);
     buffers->tiles          = make_tile_buffers(gpu, gbuffer->view.size_px);
-    buffers->statistics     = count_gbuffer(gpu, *buffers);
     buffers->reflection     = image(colour, size_px);
     buffers->filtered       = image(colour, size_px);
     buffers->small_colour   = image(colour, half_size_px);
     buffers->block_pixel    = image(vk::Format::eR32Uint, half_size_px);
     buffers->shaded         = image(colour, size_px);
     upload_dfg_table(gpu, *buffers);
+    const glm::vec3 ambient = gbuffer->scene ? gbuffer->scene->ambient : glm::vec3(0);
+    buffers->ambient        = make_buffer(gpu, 16);
+    upload(gpu, buffers->ambient, &ambient, sizeof(ambient));
     return buffers;
 }
 
@@ -321,7 +339,7 @@ TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision)
     if (precision == Precision::float64 && !gpu.info.float64)
         throw_failure("the device '{}' has no double precision", gpu.info.name);
     const GBuffer&   gbuffer = *frame.buffers->gbuffer;
-    const RayBuffers rays    = make_ray_buffers(gpu, frame.buffers->statistics.gbuffer.reflecting_pixels, precision);
+    const RayBuffers rays    = make_ray_buffers(gpu, frame.statistics.gbuffer.reflecting_pixels, precision);
     const Buffer     work =
         make_buffer(gpu, std::max<uint64_t>(rays.capacity, 1) * work_words(frame.technique) * sizeof(uint32_t));
     const Buffer      view   = upload_view(gpu, gbuffer.view, precision);

@@ -53,12 +53,23 @@ template <typename Real> void add_slabs(Constants& constants, const View& view, 
         add_slab<Real>(constants, CONSTANT_FRONT_SLOPE, slab_of(view, trace, -thickness));
 }
 
+} // namespace
+
+void add_reflecting(Constants& constants, const TraceSettings& settings)
+{
+    constants.add(CONSTANT_DIELECTRIC_MIN_F0, static_cast<float>(settings.dielectric_min_f0));
+    constants.add(CONSTANT_DIELECTRIC_MAX_ROUGHNESS, static_cast<float>(settings.dielectric_max_roughness));
+}
+
+namespace {
+
 template <typename Real> void add_settings(Constants& constants, const View& view, const FrameSettings& settings)
 {
     constants.add(CONSTANT_MAX_DISTANCE_M, static_cast<Real>(settings.trace.max_distance_m));
     constants.add(CONSTANT_RAY_OFFSET_M, static_cast<Real>(settings.trace.ray_offset_m));
     constants.add(CONSTANT_BEHIND, static_cast<int32_t>(settings.trace.behind));
     constants.add(CONSTANT_ORTHOGRAPHIC, static_cast<int32_t>(view.projection == Projection::orthographic));
+    add_reflecting(constants, settings.trace);
 }
 
 /// Throws Failure where the choice of a parameter needs what the device does not have.
@@ -166,10 +177,10 @@ TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
 
 Bindings surface_bindings(const GBuffer& gbuffer)
 {
-    return {{"depth_words", gbuffer.depth.words}, {"depth_cells", gbuffer.depth.cells},
-            {"cell_pairs", gbuffer.depth.pairs},  {"StoredCells", {gbuffer.depth.cells, gbuffer.depth.pairs}},
-            {"normal_image", gbuffer.normal},     {"material_image", gbuffer.material},
-            {"solid_image", gbuffer.solid}};
+    return {{"depth_words", gbuffer.depth.words},     {"depth_cells", gbuffer.depth.cells},
+            {"cell_pairs", gbuffer.depth.pairs},      {"StoredCells", {gbuffer.depth.cells, gbuffer.depth.pairs}},
+            {"normal_image", gbuffer.normal},         {"material_image", gbuffer.material},
+            {"dielectric_image", gbuffer.dielectric}, {"solid_image", gbuffer.solid}};
 }
 
 Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
@@ -272,6 +283,7 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
     const auto of_passes = [&](const char* name) { return static_cast<int32_t>(frame.settings.passes.at(name)); };
     constants.add(CONSTANT_EVERY_SURFACE, !counts && of_passes("skip_unneeded_passes") == 0 ? 1 : 0);
     constants.add(CONSTANT_RAYS_PER_PIXEL, counts ? 1 : of_passes("rays_per_pixel"));
+    constants.add(CONSTANT_LOBE_RAYS, !counts && draws_lobe_rays(frame.settings.passes) ? 1 : 0);
     constants.add(CONSTANT_TRACE_BLOCK_PX, counts ? 1 : trace_block_px(frame.settings.passes));
     TracePasses passes;
     passes.classification =

@@ -51,6 +51,12 @@ struct ConePyramid {
     GpuImage ranges; // RG32F: nearest and farthest distance in metres
 };
 
+/// What each ray of a rough pixel brought back, ray after ray, each an image high (shaders/passes/ray_reuse.comp).
+struct LobeRayImages {
+    GpuImage light; // RGBA16F: colour, weight; with one ray per pixel the reflection takes its place
+    GpuImage end;   // RGBA32F: the point in view space, and the density of the ray's direction
+};
+
 /// The tiles to trace (shaders/rays/classification.comp) and the counts for the plan.
 struct TileBuffers {
     Buffer masks, count, tiles, launch, statistics;
@@ -58,20 +64,22 @@ struct TileBuffers {
 TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px);
 
 struct FrameBuffers {
-    GBufferPtr                                                     gbuffer;
-    Buffer                                                         view; // float
-    TileBuffers                                                    tiles;
-    FrameStatistics                                                statistics; // of the picture; nothing is traced yet
-    std::map<size_t, std::shared_ptr<RayBuffers>>                  rays;       // by capacity; float
-    GBufferPtr                                                     second_layer; // empty until a frame asks for it
-    std::shared_ptr<ConePyramid>                                   cone;         // empty until a frame asks for it
+    GBufferPtr                                           gbuffer;
+    Buffer                                               view; // float
+    TileBuffers                                          tiles;
+    std::map<std::pair<double, double>, FrameStatistics> statistics;   // by what reflects; nothing is traced yet
+    std::map<size_t, std::shared_ptr<RayBuffers>>        rays;         // by capacity; float
+    GBufferPtr                                           second_layer; // empty until a frame asks for it
+    std::shared_ptr<ConePyramid>                         cone;         // empty until a frame asks for it
     std::map<std::pair<size_t, int>, std::shared_ptr<DerivedRays>> derived_rays; // by capacity, and which of two
+    std::map<int, std::shared_ptr<LobeRayImages>>                  lobe_rays;    // by rays per pixel
     GpuImage          reflection;   // RGBA16F: colour, weight; weight < 0 where no ray started
     GpuImage          filtered;     // RGBA16F: a reflection that a filter is writing, or an earlier one
     GpuImage          small_colour; // RGBA16F, half size or less: lit colour as rays at a lower resolution find it
     GpuImage          block_pixel;  // R32UI, half size or less: which pixel of a block has rays, or NO_PIXEL
     GpuImage          shaded;       // RGBA16F
     GpuImage          dfg_table;    // RG16F: dfg_table()
+    Buffer            ambient;      // vec3: the scene's ambient radiance, or 0
     vk::raii::Sampler dfg_sampler = nullptr;
 };
 
@@ -133,6 +141,8 @@ Defines precision_defines(const Gpu& gpu, Precision precision);
 void add_surface(ShaderSource& source, SurfaceModel model);
 /// For a shader that stores texels of this buffer (shaders/layout/store_texel.glsl): 64 bits at once where the device can.
 Defines store_defines(const Gpu& gpu, const Buffer& texels);
+/// What shaders/rays/reflecting.glsl asks.
+void add_reflecting(Constants& constants, const TraceSettings& settings);
 /// exact: for a shader that is compiled with EXACT_ARITHMETIC, whose slab is in double precision.
 Constants settings_constants(const PreparedFrame& frame, Precision precision, bool exact = false);
 /// One constant per parameter from `id` on, under its own name, and names for the choices: PARAMETER_CHOICE.

@@ -53,9 +53,9 @@ std::vector<std::string> describe_facts(const FrameFacts& facts, const FrameStat
 {
     const GBufferCounts& gbuffer = statistics.gbuffer;
     const TraceCounts&   trace   = statistics.trace;
-    return {fmt::format("{} of {} pixels reflect ({}), in {} of {} tiles; {}", gbuffer.reflecting_pixels,
+    return {fmt::format("{} of {} pixels reflect ({}), in {} of {} tiles; {}{}", gbuffer.reflecting_pixels,
                         statistics.pixels, percent(gbuffer.reflecting_pixels, statistics.pixels),
-                        gbuffer.reflecting_tiles, statistics.tiles, roughness_range(gbuffer)),
+                        gbuffer.reflecting_tiles, statistics.tiles, roughness_range(gbuffer), facts.reflectors),
             fmt::format("{} rays: {} hit a surface, {} of these a mirror", trace.rays, percent(trace.hits, trace.rays),
                         percent(trace.mirror_hits, trace.hits)),
             !facts.scene

@@ -56,6 +56,7 @@ GBufferPtr make_gbuffer(Gpu& gpu, const View& view)
     gbuffer->depth                   = make_depth_buffer(gpu, view.size_px);
     gbuffer->normal                  = image(Format::eR32G32B32A32Sfloat, target);
     gbuffer->material                = image(Format::eR16G16B16A16Sfloat, target);
+    gbuffer->dielectric              = image(Format::eR32Sfloat, target);
     gbuffer->radiance                = image(Format::eR16G16B16A16Sfloat, target);
     gbuffer->highlight               = image(Format::eR16G16B16A16Sfloat, target);
     gbuffer->object                  = image(Format::eR32Uint, target);
@@ -102,7 +103,8 @@ void record_rasterisation(const vk::raii::CommandBuffer& commands, const GBuffer
         cleared_attachment(gbuffer.radiance, colour(glm::vec4(0))),
         cleared_attachment(gbuffer.highlight, colour(glm::vec4(0))),
         cleared_attachment(gbuffer.object, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}}),
-        cleared_attachment(gbuffer.gradient, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}})};
+        cleared_attachment(gbuffer.gradient, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}}),
+        cleared_attachment(gbuffer.dielectric, colour(glm::vec4(0)))};
     // Reversed depth: background is 0.
     const auto       depth = cleared_attachment(gbuffer.depth_buffer, vk::ClearDepthStencilValue{0.0F, 0});
     const glm::ivec2 size  = gbuffer.view.size_px;
@@ -126,7 +128,8 @@ std::shared_ptr<const DrawPipeline> layer_pipeline(Gpu& gpu, GpuScene& scene, co
         DrawPipelineOptions options{.fragment_shader = "gbuffer/gbuffer.frag",
                                     .colour_formats  = {gbuffer.normal.format, gbuffer.material.format,
                                                         gbuffer.radiance.format, gbuffer.highlight.format,
-                                                        gbuffer.object.format, gbuffer.gradient.format}};
+                                                        gbuffer.object.format, gbuffer.gradient.format,
+                                                        gbuffer.dielectric.format}};
         if (second) options.fragment_defines = {{"SECOND_LAYER", "1"}};
         pipeline = std::make_shared<const DrawPipeline>(make_draw_pipeline(gpu, scene, options));
     }
@@ -232,11 +235,13 @@ void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image)
         throw std::logic_error("upload_surfaces: depth does not match the view's size");
     std::vector<glm::vec4> normal(count);
     std::vector<HalfTexel> material(count);
+    std::vector<float>     dielectric(count);
     for (size_t i = 0; i < count; ++i) {
-        normal[i]   = {image.normal_vs[i], image.roughness[i]};
-        material[i] = to_half({image.base_colour[i], image.metallic[i]});
+        normal[i]     = {image.normal_vs[i], image.roughness[i]};
+        material[i]   = to_half({image.base_colour[i], image.metallic[i]});
+        dielectric[i] = dielectric_f0_at(image, i);
     }
-    GBufferImage planes{image.view, image.depth, image.normal_vs, {}, {}, {}, {}, {}, {}, image.gradient, {}};
+    GBufferImage planes{image.view, image.depth, image.normal_vs, {}, {}, {}, {}, {}, {}, image.gradient, {}, {}, {}};
     complete_gradients(planes);
     std::vector<uint32_t> gradients;
     for (const glm::vec2& gradient : planes.gradient) gradients.push_back(pack_gradient(gradient));
@@ -247,6 +252,7 @@ void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image)
     write_depth(gpu, gbuffer.depth, usable_depth(image.depth), gradients);
     upload(gpu, gbuffer.normal, normal.data(), count * sizeof(glm::vec4));
     upload(gpu, gbuffer.material, material.data(), count * sizeof(HalfTexel));
+    upload(gpu, gbuffer.dielectric, dielectric.data(), count * sizeof(float));
 }
 
 GBufferPtr upload_gbuffer(Gpu& gpu, const GBufferImage& image)
@@ -285,7 +291,8 @@ GBufferImage read_gbuffer(Gpu& gpu, const GBuffer& gbuffer)
     image.object_id = download_as<uint32_t>(gpu, gbuffer.object);
     for (const uint32_t packed : download_as<uint32_t>(gpu, gbuffer.gradient))
         image.gradient.push_back(unpack_gradient(packed));
-    image.solid_back = download_as<float>(gpu, gbuffer.solid);
+    image.solid_back    = download_as<float>(gpu, gbuffer.solid);
+    image.dielectric_f0 = download_as<float>(gpu, gbuffer.dielectric);
     if (gbuffer.motion_vectors) image.motion_px = download_as<glm::vec2>(gpu, gbuffer.motion_vectors->vectors_px);
     return image;
 }

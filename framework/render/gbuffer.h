@@ -15,6 +15,7 @@ struct GBuffer {
     DepthBuffer depth;        // what tracers read: background = BACKGROUND_DEPTH
     GpuImage    normal;       // RGBA32F: view-space normal, roughness
     GpuImage    material;     // RGBA16F: base colour, metallic
+    GpuImage    dielectric;   // R32F: reflectance at normal incidence of what is not metal
     GpuImage    radiance;     // RGBA16F: the same from every direction
     GpuImage    highlight;    // RGBA16F: depends on the view
     GpuImage    object;       // R32UI
@@ -39,7 +40,7 @@ vk::RenderingAttachmentInfo cleared_attachment(const GpuImage& image, vk::ClearV
 
 /// Depth as tracers read it: what shaders/gbuffer/background.comp makes of a depth buffer.
 std::vector<float> usable_depth(std::span<const float> depth);
-/// Depth, normal, roughness, base colour and metallic of a picture of the same size.
+/// Depth, normal and material of a picture of the same size.
 void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image);
 
 /// What a scene's G-buffer hides: the same images again, of the nearest surfaces that lie more than the separation behind it.

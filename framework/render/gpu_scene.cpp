@@ -1,6 +1,9 @@
 #include "render/gpu_scene.h"
 
 #include "core/error.h"
+#include "scene/prefiltered_environment.h"
+
+#include <glm/gtc/packing.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,13 +17,14 @@ struct MaterialBlock {
     glm::vec3  emissive;
     float      metallic;
     float      roughness;
+    float      dielectric_f0;
     float      normal_scale;
     float      alpha_cutoff;
     int32_t    double_sided;
     glm::ivec4 uv_set;
     glm::mat3  uv_transform[4];
 };
-static_assert(sizeof(MaterialBlock) == 208);
+static_assert(sizeof(MaterialBlock) == 212);
 
 constexpr uint32_t textures_per_material = 4;
 
@@ -36,6 +40,7 @@ MaterialBlock to_block(const Material& material)
                         material.emissive,
                         material.metallic,
                         material.roughness,
+                        material.dielectric_f0,
                         material.normal_scale,
                         material.alpha_mask ? material.alpha_cutoff : -1.0F,
                         material.double_sided,
@@ -113,6 +118,7 @@ void upload_environment(Gpu& gpu, GpuScene& scene, const Scene& source)
                                                  .usage   = vk::ImageUsageFlagBits::eSampled});
     scene.environment_sampler = {gpu.impl->device, vk::SamplerCreateInfo{}};
     upload(gpu, scene.environment_map, texels.data(), texels.size() * sizeof(glm::vec4));
+    scene.environment = source.environment;
 }
 
 Texture white_texture()
@@ -203,6 +209,21 @@ GpuScenePtr upload_scene(Gpu& gpu, const Scene& source)
     make_shadow_maps(gpu, *scene, source);
     render_shadow_maps(gpu, *scene, source);
     return scene;
+}
+
+const GpuImage& blurred_environment(Gpu& gpu, GpuScene& scene)
+{
+    if (!scene.has_environment_map) return scene.environment_map;
+    if (!scene.blurred_environment) {
+        const EnvironmentMap  levels = prefilter_environment(scene.environment);
+        std::vector<uint64_t> texels;
+        for (const glm::vec3& radiance : levels.radiance) texels.push_back(glm::packHalf4x16(glm::vec4(radiance, 1)));
+        scene.blurred_environment = make_image(gpu, {.format  = vk::Format::eR16G16B16A16Sfloat,
+                                                     .size_px = levels.size_px,
+                                                     .usage   = vk::ImageUsageFlagBits::eSampled});
+        upload(gpu, *scene.blurred_environment, texels.data(), texels.size() * sizeof(uint64_t));
+    }
+    return *scene.blurred_environment;
 }
 
 void move_scene(Gpu& gpu, GpuScene& uploaded, const Scene& moved)

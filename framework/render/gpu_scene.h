@@ -32,9 +32,11 @@ struct GpuScene {
     GpuImage                             shadow_map; // one layer per directional or spot light, six per point light
     GpuImage                             environment_map; // RGBA32F; one texel of Scene::background where there is none
     vk::raii::Sampler                    environment_sampler = nullptr;
-    vk::raii::DescriptorSetLayout        frame_layout        = nullptr; // set 0
-    vk::raii::DescriptorSetLayout        material_layout     = nullptr; // set 1
-    vk::raii::DescriptorPool             pool                = nullptr;
+    EnvironmentMap                       environment;               // on the host; empty where there is none
+    std::optional<GpuImage>              blurred_environment;       // RGBA16F, when a frame first needs it
+    vk::raii::DescriptorSetLayout        frame_layout    = nullptr; // set 0
+    vk::raii::DescriptorSetLayout        material_layout = nullptr; // set 1
+    vk::raii::DescriptorPool             pool            = nullptr;
     std::vector<vk::raii::DescriptorSet> material_sets;
     std::vector<DrawCall>                draws;
     // Of the G-buffer and its second layer, made when one is first drawn: lavapipe keeps memory for every graphics pipeline that it ever made.
@@ -66,6 +68,9 @@ struct FrameSet {
 };
 FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms,
                         const vk::raii::BufferView* first_depth = nullptr);
+
+/// The environment as rough surfaces reflect it; without a map, the one colour that there is.
+const GpuImage& blurred_environment(Gpu& gpu, GpuScene& scene);
 
 /// Light matrices, and shadow maps without content.
 void make_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source);

@@ -22,13 +22,14 @@ Image frame_image(const GBufferImage& source)
 {
     const View& view        = source.view;
     const bool  perspective = view.projection == Projection::perspective;
-    Image       image{view.size_px,
-                {"depth",         "normal_vs.x",   "normal_vs.y",   "normal_vs.z", "roughness",   "metallic",
-                       "base_colour.R", "base_colour.G", "base_colour.B", "R",           "G",           "B",
-                       "radiance.R",    "radiance.G",    "radiance.B",    "highlight.R", "highlight.G", "highlight.B",
-                       "object_id",     "gradient.x",    "gradient.y",    "solid_back"},
-                {},
-                {}};
+    Image       image{
+        view.size_px,
+        {"depth",         "normal_vs.x",   "normal_vs.y", "normal_vs.z", "roughness", "metallic",   "base_colour.R",
+               "base_colour.G", "base_colour.B", "R",           "G",           "B",         "radiance.R", "radiance.G",
+               "radiance.B",    "highlight.R",   "highlight.G", "highlight.B", "object_id", "gradient.x", "gradient.y",
+               "solid_back",    "dielectric_f0"},
+        {},
+        {}};
     image.metadata["ssrlab:world_to_view"] = matrix_text(view.world_to_view);
     image.metadata["ssrlab:view_to_clip"]  = matrix_text(view_to_clip(view));
     image.metadata["ssrlab:focal_px"]      = pair_text(view.focal_px);
@@ -64,7 +65,8 @@ Image frame_image(const GBufferImage& source)
                                   static_cast<float>(source.object_id[i]),
                                   gradient.x,
                                   gradient.y,
-                                  source.solid_back[i]})
+                                  source.solid_back[i],
+                                  dielectric_f0_at(source, i)})
             image.values.push_back(value);
         if (!moved) continue;
         image.values.push_back(source.motion_px[i].x);

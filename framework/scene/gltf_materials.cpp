@@ -124,6 +124,49 @@ float unit_range(double value, float otherwise)
     return std::isfinite(value) ? static_cast<float>(std::clamp(value, 0.0, 1.0)) : otherwise;
 }
 
+/// KHR_materials_ior and KHR_materials_specular: one number, reflectance at normal incidence.
+float dielectric_f0_of(Import& import, const tinygltf::Material& source, const std::string& where)
+{
+    float      f0  = common_dielectric_f0;
+    const auto ior = source.extensions.find("KHR_materials_ior");
+    if (ior != source.extensions.end()) {
+        const double index = number_in(ior->second, "ior", 1.5);
+        f0                 = index == 0 ? 1.0F : ior_to_f0(std::clamp(index, 1.0, 10.0)); // 0 means: all is reflected
+    }
+    const auto specular = source.extensions.find("KHR_materials_specular");
+    if (specular == source.extensions.end()) return f0;
+    const tinygltf::Value& values = specular->second;
+    double                 colour = 1;
+    if (values.Has("specularColorFactor") && values.Get("specularColorFactor").IsArray()) {
+        const tinygltf::Value& factors = values.Get("specularColorFactor");
+        colour                         = 0;
+        for (size_t c = 0; c < factors.ArrayLen(); ++c)
+            if (factors.Get(int(c)).IsNumber()) colour = std::max(colour, factors.Get(int(c)).GetNumberAsDouble());
+    }
+    if (values.Has("specularTexture") || values.Has("specularColorTexture"))
+        import.warn(fmt::format("{}: textures of KHR_materials_specular are not supported; factors count", where));
+    return unit_range(std::min(static_cast<double>(f0) * std::max(colour, 0.0), 1.0) *
+                          std::clamp(number_in(values, "specularFactor", 1), 0.0, 1.0),
+                      f0);
+}
+
+/// KHR_materials_clearcoat: a pixel has one lobe. The coat's replaces that of what is not metal; a metal keeps its own.
+void add_clearcoat(Import& import, const tinygltf::Material& source, const std::string& where, Material& material)
+{
+    const auto coat = source.extensions.find("KHR_materials_clearcoat");
+    if (coat == source.extensions.end()) return;
+    const auto factor = unit_range(number_in(coat->second, "clearcoatFactor", 0), 0);
+    if (factor == 0) return;
+    if (material.metallic > 0.5F) {
+        import.warn(fmt::format("{}: clear coat over metal is not supported; coat left out", where));
+        return;
+    }
+    const auto roughness = unit_range(number_in(coat->second, "clearcoatRoughnessFactor", 0), 0);
+    material.roughness += (roughness - material.roughness) * factor;
+    material.metallic_roughness_texture = {};
+    material.dielectric_f0 += (common_dielectric_f0 - material.dielectric_f0) * factor;
+}
+
 Material convert(Import& import, Textures& textures, const tinygltf::Material& source, const std::string& where)
 {
     const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
@@ -150,6 +193,8 @@ Material convert(Import& import, Textures& textures, const tinygltf::Material& s
     material.metallic_roughness_texture = texture_use(import, textures, pbr.metallicRoughnessTexture, false, where);
     material.normal_texture             = texture_use(import, textures, source.normalTexture, false, where);
     material.emissive_texture           = texture_use(import, textures, source.emissiveTexture, true, where);
+    material.dielectric_f0              = dielectric_f0_of(import, source, where);
+    add_clearcoat(import, source, where, material);
     if (source.extensions.contains("KHR_materials_unlit")) {
         // Unlit shows its base colour whatever the light: that is emission and nothing else.
         material.emissive         = glm::vec3(material.base_colour);
@@ -157,6 +202,7 @@ Material convert(Import& import, Textures& textures, const tinygltf::Material& s
         material.base_colour      = {0, 0, 0, material.base_colour.a};
         material.metallic         = 0;
         material.roughness        = 1;
+        material.dielectric_f0    = 0;
     }
     return material;
 }

@@ -12,8 +12,6 @@ namespace ssrlab {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double dielectric_f0 = 0.04; // of the metallic workflow
-
 /// Distance along the view axis per distance along the pixel's ray.
 double axis_share(const View& view, glm::ivec2 pixel)
 {
@@ -167,8 +165,7 @@ void read_metallic(FrameSource& source)
     const FramePlane green = need_plane(source, "specular.G"), blue = need_plane(source, "specular.B");
     for (size_t i = 0; i < red->values.size(); ++i) {
         const float f0 = std::max({share_at(source, *red, i), share_at(source, green, i), share_at(source, blue, i)});
-        metallic.push_back(
-            std::max(0.0F, static_cast<float>((static_cast<double>(f0) - dielectric_f0) / (1 - dielectric_f0))));
+        metallic.push_back(std::max(0.0F, (f0 - common_dielectric_f0) / (1 - common_dielectric_f0)));
     }
 }
 
@@ -208,6 +205,8 @@ void read_own(FrameSource& source)
     for (size_t i = 0; x && y && i < gbuffer.depth.size(); ++i)
         gbuffer.gradient.emplace_back(x->values[i], y->values[i]);
     if (const auto back = find_plane(source, "solid_back")) gbuffer.solid_back = back->values;
+    if (const auto f0 = find_plane(source, "dielectric_f0"))
+        for (size_t i = 0; i < gbuffer.depth.size(); ++i) gbuffer.dielectric_f0.push_back(share_at(source, *f0, i));
 }
 
 } // namespace

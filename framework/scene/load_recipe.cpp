@@ -116,6 +116,7 @@ void apply(const MaterialChange& change, Material& material)
     if (dropped || change.metallic || change.roughness) material.metallic_roughness_texture = {};
     if (change.metallic) material.metallic = static_cast<float>(*change.metallic);
     if (change.roughness) material.roughness = static_cast<float>(*change.roughness);
+    if (change.ior) material.dielectric_f0 = ior_to_f0(*change.ior);
     if (change.base_colour) material.base_colour = {glm::vec3(*change.base_colour), material.base_colour.a};
     if (change.emissive) material.emissive = *change.emissive;
     if (change.double_sided) material.double_sided = *change.double_sided;

@@ -30,9 +30,9 @@ bool same(const TextureUse& a, const TextureUse& b)
 bool same(const Material& a, const Material& b)
 {
     return a.name == b.name && a.base_colour == b.base_colour && a.metallic == b.metallic &&
-           a.roughness == b.roughness && a.emissive == b.emissive && a.normal_scale == b.normal_scale &&
-           a.double_sided == b.double_sided && a.alpha_mask == b.alpha_mask && a.alpha_cutoff == b.alpha_cutoff &&
-           same(a.base_colour_texture, b.base_colour_texture) &&
+           a.dielectric_f0 == b.dielectric_f0 && a.roughness == b.roughness && a.emissive == b.emissive &&
+           a.normal_scale == b.normal_scale && a.double_sided == b.double_sided && a.alpha_mask == b.alpha_mask &&
+           a.alpha_cutoff == b.alpha_cutoff && same(a.base_colour_texture, b.base_colour_texture) &&
            same(a.metallic_roughness_texture, b.metallic_roughness_texture) &&
            same(a.normal_texture, b.normal_texture) && same(a.emissive_texture, b.emissive_texture);
 }

@@ -18,6 +18,7 @@ void read_change_values(TomlTable& table, MaterialChange& change)
     change.place         = table.place();
     change.metallic      = table.number("metallic", 0, 1);
     change.roughness     = table.number("roughness", 0, 1);
+    change.ior           = table.number("ior", 1, 10);
     change.base_colour   = table.colour("base_colour");
     change.emissive      = table.colour("emissive");
     change.drop_textures = table.flag("drop_textures").value_or(false);

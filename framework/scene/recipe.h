@@ -14,7 +14,7 @@ struct MaterialChange {
     std::string               name = "*"; // a pattern with * and ?
     std::string               part = "*";
     std::string               place; // file:line
-    std::optional<double>     metallic, roughness;
+    std::optional<double>     metallic, roughness, ior;
     std::optional<glm::dvec3> base_colour, emissive;
     bool                      drop_textures = false;
     bool                      leave_out     = false;

@@ -1,6 +1,7 @@
 // What exists: triangles, materials, lights and cameras, flattened and in metres.
 #pragma once
 
+#include "core/gbuffer_image.h"
 #include "core/view.h"
 #include "scene/environment.h"
 #include "scene/load_frame.h"
@@ -46,9 +47,10 @@ struct TextureUse {
 struct Material {
     std::string name;
     glm::vec4   base_colour{1, 1, 1, 1}; // linear
-    float       metallic  = 1;
-    float       roughness = 1;
-    glm::vec3   emissive{0, 0, 0}; // linear radiance factor
+    float       metallic      = 1;
+    float       roughness     = 1;
+    float       dielectric_f0 = common_dielectric_f0; // reflectance at normal incidence where it is not metal
+    glm::vec3   emissive{0, 0, 0};                    // linear radiance factor
     float       normal_scale = 1;
     bool        double_sided = false;
     bool        alpha_mask   = false; // discard where alpha < alpha_cutoff

@@ -155,6 +155,12 @@ Texture make_wave_normals()
     return texture;
 }
 
+float ior_to_f0(double ior)
+{
+    const double r = (ior - 1) / (ior + 1);
+    return static_cast<float>(r * r);
+}
+
 Material make_material(const std::string& name, glm::vec3 base_colour, float metallic, float roughness)
 {
     Material material;

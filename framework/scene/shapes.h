@@ -24,4 +24,7 @@ Texture make_checker_texture(glm::vec3 colour_a, glm::vec3 colour_b);
 Texture  make_wave_normals();
 Material make_material(const std::string& name, glm::vec3 base_colour, float metallic, float roughness);
 
+/// Reflectance at normal incidence of a dielectric, from its refractive index.
+float ior_to_f0(double ior);
+
 } // namespace ssrlab

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace ssrlab {
 namespace {
@@ -26,129 +25,153 @@ glm::uvec4 hash(glm::uvec4 v)
     return v;
 }
 
-/// Two numbers in [0, 1).
-glm::dvec2 random(glm::ivec2 pixel, int ray, uint32_t seed)
+/// Two numbers in [0, 1) for each ray of each pixel and each of its bounces.
+glm::dvec2 random(glm::ivec2 pixel, int ray, int bounce, uint32_t seed)
 {
-    return glm::dvec2(glm::uvec2(hash({uint32_t(pixel.x), uint32_t(pixel.y), uint32_t(ray), seed}))) * 0x1p-32;
+    const glm::uvec4 key{uint32_t(pixel.x), uint32_t(pixel.y), uint32_t(ray) + (uint32_t(bounce) << 20U), seed};
+    return glm::dvec2(glm::uvec2(hash(key))) * 0x1p-32;
 }
 
-/// Columns: tangent, bitangent, normal.
-glm::dmat3 frame_about(glm::dvec3 normal)
-{
-    const glm::dvec3 other   = std::abs(normal.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-    const glm::dvec3 tangent = glm::normalize(glm::cross(other, normal));
-    return {tangent, glm::cross(normal, tangent), normal};
-}
-
-/// In the frame of the normal (z); `view` is a unit vector with z > 0. Heitz 2018, listing 1.
-glm::dvec3 visible_normal(glm::dvec3 view, double alpha, glm::dvec2 u)
-{
-    const glm::dvec3 stretched = glm::normalize(glm::dvec3(alpha * view.x, alpha * view.y, view.z));
-    const double     r = std::sqrt(u.x), phi = 2 * std::numbers::pi * u.y;
-    const double     a = r * std::cos(phi), share = 0.5 * (1 + stretched.z);
-    const glm::dvec3 across(-stretched.y, stretched.x, 0);
-    const glm::dvec3 t1 = glm::length(across) > 0 ? glm::normalize(across) : glm::dvec3(1, 0, 0);
-    const glm::dvec3 t2 = glm::cross(stretched, t1);
-    const double     b  = (1 - share) * std::sqrt(1 - a * a) + share * r * std::sin(phi);
-    const glm::dvec3 h  = a * t1 + b * t2 + std::sqrt(std::max(0.0, 1 - a * a - b * b)) * stretched;
-    return glm::normalize(glm::dvec3(alpha * h.x, alpha * h.y, std::max(0.0, h.z)));
-}
-
-/// Smith's Lambda of GGX; Heitz 2014, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 3(2).
-double lambda(double cosine, double alpha)
-{
-    const double tangent2 = 1 / (cosine * cosine) - 1;
-    return 0.5 * (std::sqrt(1 + alpha * alpha * tangent2) - 1);
-}
-
-struct Sample {
-    glm::dvec3 direction_vs{0};
-    double     weight = 0;
-};
-
-/// The lobe of one pixel.
-class Lobe {
-public:
-    Lobe(const GBufferImage& gbuffer, glm::ivec2 pixel, double roughness) : alpha_(roughness * roughness)
-    {
-        const glm::dvec3 to_eye_vs = gbuffer.view.projection == Projection::perspective
-                                         ? -glm::normalize(pixel_point_vs(gbuffer, pixel))
-                                         : glm::dvec3(0, 0, 1);
-        // The normal that mirrors the eye into the mirror direction, on the eye's side (mirroring does not know sides).
-        const glm::dvec3 sum    = to_eye_vs + mirror_direction_vs(gbuffer, pixel);
-        const double     length = glm::length(sum);
-        const size_t     i      = pixel_index(pixel, gbuffer.view.size_px);
-        const glm::dvec3 stored = glm::normalize(glm::dvec3(gbuffer.normal_vs[i]));
-        frame_                  = frame_about(length > grazing ? sum / length : stored);
-        view_                   = glm::transpose(frame_) * to_eye_vs;
-        view_.z                 = std::max(view_.z, grazing);
-    }
-
-    Sample sample(glm::dvec2 u) const
-    {
-        const glm::dvec3 half  = visible_normal(glm::normalize(view_), alpha_, u);
-        const glm::dvec3 light = 2 * glm::dot(view_, half) * half - view_;
-        if (!(light.z > 0)) return {};
-        const double to_view = 1 + lambda(view_.z, alpha_);
-        return {glm::normalize(frame_ * light), to_view / (to_view + lambda(light.z, alpha_))};
-    }
-
-private:
-    static constexpr double grazing = 1e-6;
-
-    double     alpha_;
-    glm::dmat3 frame_{1};
-    glm::dvec3 view_{0};
+/// A ray under way, and what the light at its end will count for.
+struct Path {
+    size_t     sample = 0;
+    glm::dvec3 throughput{1};
+    double     roughness = 0; // the largest so far
 };
 
 /// The rays of one row, pixel after pixel.
-struct RowRays {
-    std::vector<SceneRay> rays;    // with weight 0 left out
-    std::vector<double>   weights; // of `rays`
-    std::vector<size_t>   pixels;  // that reflect
-    std::vector<size_t>   ends;    // of each pixel's rays in `rays`
+struct RowPaths {
+    std::vector<glm::ivec2> pixels;  // that reflect
+    std::vector<size_t>     ends;    // of each pixel's samples
+    std::vector<glm::dvec3> weights; // of each sample; 0: below the horizon
+    std::vector<glm::dvec3> light;   // of each sample
+    std::vector<int>        numbers; // of each sample among its pixel's
+    std::vector<size_t>     owners;  // of each sample in `pixels`
+    std::vector<Path>       paths;   // that go on
+    std::vector<SceneRay>   rays;    // of those
 };
 
-void add_pixel(const ReflectedRays& reflected, const GBufferImage& gbuffer, glm::ivec2 pixel,
-               const GlossySettings& settings, GlossyTruth& truth, RowRays& row)
-{
-    const size_t i   = pixel_index(pixel, gbuffer.view.size_px);
-    const auto   add = [&](const Sample& sample) {
-        row.rays.push_back(reflected.ray_from(pixel, sample.direction_vs));
-        row.weights.push_back(sample.weight);
-    };
-    const bool mirror = !(gbuffer.roughness[i] >= mirror_roughness);
-    truth.rays[i]     = mirror ? 1 : uint32_t(settings.rays);
-    if (mirror) add({mirror_direction_vs(gbuffer, pixel), 1});
-    if (!mirror) {
-        const Lobe lobe(gbuffer, pixel, std::min(double(gbuffer.roughness[i]), 1.0));
-        for (int k = 0; k < settings.rays; ++k)
-            if (const Sample sample = lobe.sample(random(pixel, k, settings.seed)); sample.weight > 0) add(sample);
+class PathTracer {
+public:
+    PathTracer(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer, const TraceSettings& settings,
+               const GlossySettings& glossy)
+        : bvh_(bvh), scene_(scene), gbuffer_(gbuffer), settings_(settings), glossy_(glossy),
+          reflected_(bvh, scene, gbuffer, settings.max_distance_m)
+    {
     }
-    row.pixels.push_back(i);
-    row.ends.push_back(row.rays.size());
-}
 
-/// Mean and standard error of one pixel; rays below the horizon count as 0.
-void reduce(std::span<const RayEnd> ends, std::span<const double> weights, size_t i, GlossyTruth& truth)
-{
-    const double count = truth.rays[i];
-    glm::dvec3   sum(0), squares(0);
-    double       weight = 0;
-    for (size_t k = 0; k < ends.size(); ++k) {
-        sum += weights[k] * glm::dvec3(ends[k].radiance);
-        weight += weights[k];
+    void fill_row(int y, GlossyTruth& truth) const
+    {
+        RowPaths row;
+        for (int x = 0; x < truth.size_px.x; ++x)
+            if (reflects(gbuffer_, {x, y}, settings_)) add_pixel({x, y}, truth, row);
+        for (int bounce = 0; !row.rays.empty(); ++bounce) advance(row, bounce);
+        for (size_t p = 0, first = 0; p < row.pixels.size(); first = row.ends[p++])
+            reduce(row, first, row.ends[p], pixel_index(row.pixels[p], truth.size_px), truth);
     }
-    const glm::dvec3 mean = sum / count;
-    for (size_t k = 0; k < ends.size(); ++k) {
-        const glm::dvec3 off = weights[k] * glm::dvec3(ends[k].radiance) - mean;
-        squares += off * off;
+
+private:
+    void add_pixel(glm::ivec2 pixel, GlossyTruth& truth, RowPaths& row) const
+    {
+        const size_t     i         = pixel_index(pixel, truth.size_px);
+        const double     roughness = double(gbuffer_.roughness[i]);
+        const glm::dvec3 to_eye_vs = gbuffer_.view.projection == Projection::perspective
+                                         ? -glm::normalize(pixel_point_vs(gbuffer_, pixel))
+                                         : glm::dvec3(0, 0, 1);
+        // The normal that mirrors the eye into the mirror direction, on the eye's side (mirroring does not know sides).
+        const glm::dvec3 mirror_vs = mirror_direction_vs(gbuffer_, pixel), sum = to_eye_vs + mirror_vs;
+        const glm::dvec3 stored    = glm::normalize(glm::dvec3(gbuffer_.normal_vs[i]));
+        const glm::dvec3 normal_vs = glm::length(sum) > 1e-6 ? glm::normalize(sum) : stored;
+        const glm::dvec3 f0 =
+            f0_of(gbuffer_.base_colour[i], double(gbuffer_.metallic[i]), double(dielectric_f0_at(gbuffer_, i)));
+        const Lobe lobe(normal_vs, to_eye_vs, std::isfinite(roughness) ? roughness : 0);
+        truth.rays[i] = lobe.is_mirror() ? 1 : uint32_t(glossy_.rays);
+        for (int k = 0; k < int(truth.rays[i]); ++k) {
+            LobeSample sample = lobe.sample(random(pixel, k, 0, glossy_.seed));
+            if (lobe.is_mirror()) sample.direction = mirror_vs; // the scene truth's, to the last bit
+            const size_t number = row.weights.size();
+            row.weights.push_back(sample.weight > 0 ? sample.weight * fresnel(f0, sample.cos_half) : glm::dvec3(0));
+            row.light.emplace_back(0);
+            row.numbers.push_back(k);
+            row.owners.push_back(row.pixels.size());
+            if (!(sample.weight > 0)) continue;
+            row.paths.push_back({number, glm::dvec3(1), roughness});
+            row.rays.push_back(reflected_.ray_from(pixel, sample.direction));
+        }
+        row.pixels.push_back(pixel);
+        row.ends.push_back(row.weights.size());
     }
-    squares += (count - double(ends.size())) * mean * mean;
-    truth.radiance[i] = glm::vec3(mean);
-    truth.weight[i]   = float(weight / count);
-    if (count > 1) truth.standard_error[i] = glm::vec3(glm::sqrt(squares / (count - 1) / count));
-}
+
+    /// What every ray meets, and the rays that go on from there.
+    void advance(RowPaths& row, int bounce) const
+    {
+        const std::vector<RayEnd>   ends  = reflected_.follow(row.rays);
+        const std::vector<Path>     paths = std::move(row.paths);
+        const std::vector<SceneRay> rays  = std::move(row.rays);
+        row.paths.clear();
+        row.rays.clear();
+        for (size_t k = 0; k < ends.size(); ++k) arrive(row, paths[k], rays[k], ends[k], bounce);
+    }
+
+    void arrive(RowPaths& row, Path path, const SceneRay& ray, const RayEnd& end, int bounce) const
+    {
+        glm::dvec3& light = row.light[path.sample];
+        if (end.cls == TruthClass::sky) {
+            light += path.throughput * glm::dvec3(end.radiance);
+            return;
+        }
+        const SurfaceMaterial material  = surface_material(scene_, end.hit.surface);
+        const glm::dvec3      point_ws  = ray.origin_ws + end.hit.t * ray.direction_ws;
+        const glm::dvec3      to_eye_ws = -glm::normalize(ray.direction_ws);
+        const double          roughness = std::max(double(material.roughness), path.roughness);
+        light +=
+            path.throughput * glm::dvec3(shade_highlight(bvh_, scene_, end.hit, point_ws, ray.direction_ws, roughness));
+        const bool goes_on = bounce < glossy_.bounces &&
+                             settings_.material_reflects(material.metallic, material.dielectric_f0, material.roughness);
+        if (!goes_on) {
+            light += path.throughput * glm::dvec3(end.radiance);
+            return;
+        }
+        const glm::ivec2 pixel = row.pixels[row.owners[path.sample]];
+        const Lobe       lobe(seen_normal_ws(material, end.hit, ray.direction_ws), to_eye_ws, roughness);
+        const LobeSample sample = lobe.sample(random(pixel, row.numbers[path.sample], bounce + 1, glossy_.seed));
+        const glm::dvec3 f0 = f0_of(material.base_colour, double(material.metallic), double(material.dielectric_f0));
+        const glm::dvec3 weight   = sample.weight * fresnel(f0, sample.cos_half);
+        const glm::dvec3 stand_in = glm::dvec3(scene_.ambient * material.base_colour) * double(material.metallic);
+        const glm::dvec3 below    = glm::max(glm::dvec3(end.radiance) - stand_in, 0.0);
+        light += path.throughput * (1.0 - weight) * below; // its mean over the lobe is that of the albedo
+        if (!(sample.weight > 0)) return;
+        row.paths.push_back({path.sample, path.throughput * weight, roughness});
+        row.rays.push_back({point_ws, sample.direction, self_hit_share * std::max(1.0, end.hit.t),
+                            std::numeric_limits<double>::infinity()});
+    }
+
+    /// Mean and standard error of one pixel's samples.
+    static void reduce(const RowPaths& row, size_t first, size_t last, size_t i, GlossyTruth& truth)
+    {
+        const auto count = double(last - first);
+        glm::dvec3 sum(0), squares(0), weight(0);
+        for (size_t k = first; k < last; ++k) {
+            sum += row.weights[k] * row.light[k];
+            weight += row.weights[k];
+        }
+        const glm::dvec3 mean = sum / count;
+        for (size_t k = first; k < last; ++k) {
+            const glm::dvec3 off = row.weights[k] * row.light[k] - mean;
+            squares += off * off;
+        }
+        truth.radiance[i] = glm::vec3(mean);
+        truth.albedo[i]   = glm::vec3(weight / count);
+        if (count > 1) truth.standard_error[i] = glm::vec3(glm::sqrt(squares / (count - 1) / count));
+    }
+
+    const SceneBvh&       bvh_;
+    const Scene&          scene_;
+    const GBufferImage&   gbuffer_;
+    const TraceSettings&  settings_;
+    const GlossySettings& glossy_;
+    ReflectedRays         reflected_;
+};
 
 } // namespace
 
@@ -160,7 +183,7 @@ GlossyTruth empty_glossy_truth(glm::ivec2 size_px)
     truth.rays.resize(count);
     truth.radiance.resize(count);
     truth.standard_error.resize(count);
-    truth.weight.resize(count);
+    truth.albedo.resize(count);
     return truth;
 }
 
@@ -168,33 +191,32 @@ GlossyTruth glossy_truth(const SceneBvh& bvh, const Scene& scene, const GBufferI
                          const TraceSettings& settings, const GlossySettings& glossy, unsigned threads)
 {
     require_radiance(gbuffer);
-    if (gbuffer.roughness.size() != gbuffer.depth.size())
-        throw_failure("G-buffer of view '{}': expected {} values of roughness, found {}", gbuffer.view.name,
-                      gbuffer.depth.size(), gbuffer.roughness.size());
+    for (const auto& [name, count] :
+         {std::pair("roughness", gbuffer.roughness.size()), std::pair("base_colour", gbuffer.base_colour.size())})
+        if (count != gbuffer.depth.size())
+            throw_failure("G-buffer of view '{}': expected {} values of {}, found {}", gbuffer.view.name,
+                          gbuffer.depth.size(), name, count);
     if (glossy.rays < 2) throw_failure("glossy truth: expected at least 2 rays a pixel, got {}", glossy.rays);
-    GlossyTruth         truth = empty_glossy_truth(gbuffer.view.size_px);
-    const ReflectedRays reflected(bvh, scene, gbuffer, settings.max_distance_m);
-    parallel_rows(truth.size_px.y, threads, [&](int y) {
-        RowRays row;
-        for (int x = 0; x < truth.size_px.x; ++x)
-            if (reflects(gbuffer, {x, y})) add_pixel(reflected, gbuffer, {x, y}, glossy, truth, row);
-        const std::vector<RayEnd> ends = reflected.follow(row.rays);
-        for (size_t p = 0, first = 0; p < row.pixels.size(); first = row.ends[p++])
-            reduce(std::span(ends).subspan(first, row.ends[p] - first),
-                   std::span(row.weights).subspan(first, row.ends[p] - first), row.pixels[p], truth);
-    });
+    GlossyTruth      truth = empty_glossy_truth(gbuffer.view.size_px);
+    const PathTracer tracer(bvh, scene, gbuffer, settings, glossy);
+    parallel_rows(truth.size_px.y, threads, [&](int y) { tracer.fill_row(y, truth); });
     return truth;
 }
 
-std::vector<glm::vec4> reflection_of(const GlossyTruth& truth)
+Image true_picture(const GlossyTruth& truth, const GBufferImage& gbuffer, glm::vec3 ambient)
 {
-    std::vector<glm::vec4> reflection;
-    reflection.reserve(truth.rays.size());
-    for (size_t i = 0; i < truth.rays.size(); ++i)
-        reflection.push_back(truth.rays[i] == 0    ? glm::vec4(0, 0, 0, -1)
-                             : truth.weight[i] > 0 ? glm::vec4(truth.radiance[i] / truth.weight[i], 1)
-                                                   : glm::vec4(0, 0, 0, 1));
-    return reflection;
+    Image image{truth.size_px, {"R", "G", "B"}, {}, {}};
+    image.values.reserve(3 * truth.rays.size());
+    for (size_t i = 0; i < truth.rays.size(); ++i) {
+        glm::vec3 colour = gbuffer.radiance[i];
+        if (truth.rays[i] > 0) {
+            const glm::vec3 stand_in = gbuffer.metallic[i] * ambient * gbuffer.base_colour[i];
+            colour                   = (1.0F - truth.albedo[i]) * glm::max(colour - stand_in, 0.0F) + truth.radiance[i];
+        }
+        colour += gbuffer.highlight[i];
+        image.values.insert(image.values.end(), {colour.r, colour.g, colour.b});
+    }
+    return image;
 }
 
 } // namespace ssrlab

@@ -1,22 +1,27 @@
-// Glossy scene truth: what a rough surface reflects, by many rays a pixel.
+// Glossy truth: what every pixel that reflects truly reflects, and the finished picture that follows from it. Nothing of it is shared
+// with the shaders that it judges.
 //
-// Half vectors h are drawn from the GGX distribution of normals that are visible from the viewer v (Heitz 2018, "Sampling the GGX
-// Distribution of Visible Normals", JCGT 7(4)) around the shading normal, with alpha = roughness^2. A ray leaves along l, the mirror
-// image of v at h, and counts with G2(v, l) / G1(v) of Smith's height-correlated masking (Heitz 2014); below the shading horizon
-// with 0. So the mean is the integral of radiance * D G2 / (4 n.v): the reflection without Fresnel's factor, which belongs to the
-// compositing. Below mirror_roughness it is the mirror ray alone, and the scene truth's radiance to the last bit.
+// From each such pixel many rays leave through the scene, by the lobe of truth/ggx_lobe.h around the shading normal. Where a ray meets
+// a surface that reflects, too, it goes on from there in the same way, one ray for each. A surface sends back
+//   (1 - albedo) * (what comes from below its surface: diffuse light and emission) + highlights of the lights + its own reflection.
+// What comes from below is the scene truth's radiance (scene_truth.h) without metal's share of the ambient light, which there stands
+// in for a metal's reflection; after the last bounce it stands in again. Lights are points, so that the highlights of a smooth surface
+// have no size: a path takes all surfaces to be at least as rough as the roughest one that it came from (A. Kaplanyan, C. Dachsbacher
+// 2013, "Path Space Regularization for Holistic and Robust Light Transport"), and at least of roughness 0.05, as the shaders do.
+//
 // Rays follow the rules of scene_truth.h; random numbers are a hash of pixel, ray and seed, so the result is always the same.
 #pragma once
 
+#include "core/image.h"
+#include "truth/ggx_lobe.h"
 #include "truth/scene_truth.h"
 
 namespace ssrlab {
 
-inline constexpr float mirror_roughness = 0.02F;
-
 struct GlossySettings {
-    int      rays = 64; // a pixel, at least 2
-    uint32_t seed = 0;
+    int      rays    = 64; // a pixel, at least 2
+    int      bounces = 3;  // further ones
+    uint32_t seed    = 0;
 };
 
 /// One entry per pixel, row-major; all 0 where nothing was traced.
@@ -25,7 +30,7 @@ struct GlossyTruth {
     std::vector<uint32_t>  rays;           // that were traced: 0, 1 (mirror) or GlossySettings::rays
     std::vector<glm::vec3> radiance;       // linear, mean of weight * radiance
     std::vector<glm::vec3> standard_error; // of that mean
-    std::vector<float>     weight;         // mean weight; radiance / weight is the weighted mean, as a blur gives it
+    std::vector<glm::vec3> albedo;         // mean weight: the share of light that is reflected
 };
 
 GlossyTruth empty_glossy_truth(glm::ivec2 size_px);
@@ -34,7 +39,7 @@ GlossyTruth empty_glossy_truth(glm::ivec2 size_px);
 GlossyTruth glossy_truth(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer,
                          const TraceSettings& settings, const GlossySettings& glossy, unsigned threads = 0);
 
-/// As a reflection at full weight; weight -1 where nothing reflects.
-std::vector<glm::vec4> reflection_of(const GlossyTruth& truth);
+/// The G-buffer's own light with the true reflections; linear, channels R, G, B.
+Image true_picture(const GlossyTruth& truth, const GBufferImage& gbuffer, glm::vec3 ambient);
 
 } // namespace ssrlab

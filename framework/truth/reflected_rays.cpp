@@ -109,7 +109,10 @@ std::vector<RayEnd> ReflectedRays::follow(std::span<const SceneRay> rays) const
     bvh_.occluded(sight_rays, Sides::as_rasterised, blocked);
     for (size_t c = 0; c < candidates.size(); ++c)
         if (blocked[c] != 0) ends[candidates[c]].cls = TruthClass::hidden;
-    for (size_t k = 0; k < rays.size(); ++k) ends[k].radiance = radiance(rays[k], hits[k], ends[k]);
+    for (size_t k = 0; k < rays.size(); ++k) {
+        ends[k].radiance = radiance(rays[k], hits[k], ends[k]);
+        ends[k].hit      = hits[k];
+    }
     return ends;
 }
 

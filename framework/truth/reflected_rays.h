@@ -19,6 +19,7 @@ struct RayEnd {
     glm::dvec3 point_vs{0};    // 0 for sky
     glm::dvec2 point_px{0};    // 0 where there is none
     glm::vec3  radiance{0};    // linear
+    SceneHit   hit;            // undefined for sky
 };
 
 /// Keeps references; scene_truth.h says what the classes and the radiance mean.

@@ -1,3 +1,4 @@
+#include "truth/ggx_lobe.h"
 #include "truth/scene_truth.h"
 
 #include <algorithm>
@@ -48,27 +49,70 @@ bool in_shadow(const SceneBvh& bvh, glm::dvec3 point_ws, const Arriving& light, 
     return blocked[0] != 0;
 }
 
+/// What every light that reaches the point gives.
+template <typename Add>
+void for_each_light(const SceneBvh& bvh, const Scene& scene, const SceneHit& hit, glm::dvec3 point_ws,
+                    glm::dvec3 direction_ws, glm::dvec3 normal_ws, const Add& add)
+{
+    const double     side      = glm::dot(hit.normal_ws, direction_ws) > 0 ? -1 : 1;
+    const double     offset_m  = self_hit_share * std::max(1.0, hit.t);
+    const glm::dvec3 lifted_ws = point_ws + offset_m * side * glm::normalize(hit.normal_ws);
+    for (const Light& light : scene.lights) {
+        const Arriving arriving = arriving_light(light, point_ws);
+        const double   cosine   = glm::dot(normal_ws, arriving.to_light_ws);
+        if (!(cosine > 0) || arriving.irradiance == glm::vec3(0)) continue;
+        add(arriving, float(cosine),
+            [&] { return light.casts_shadow && in_shadow(bvh, lifted_ws, arriving, offset_m); });
+    }
+}
+
+/// GGX, Walter et al. 2007, times the cosine to the light.
+glm::dvec3 ggx(glm::dvec3 normal, glm::dvec3 to_eye, glm::dvec3 to_light, glm::dvec3 f0, double roughness)
+{
+    const glm::dvec3 half = glm::normalize(to_eye + to_light);
+    const double     n_v = std::max(glm::dot(normal, to_eye), 1e-4), n_l = glm::dot(normal, to_light),
+                 n_h = std::max(glm::dot(normal, half), 0.0), alpha2 = std::pow(std::max(roughness, 0.05), 4);
+    const auto   root   = [&](double cosine) { return std::sqrt(alpha2 + (1 - alpha2) * cosine * cosine); };
+    const double spread = n_h * n_h * (alpha2 - 1) + 1, visibility = 0.5 / (n_l * root(n_v) + n_v * root(n_l));
+    return fresnel(f0, glm::dot(to_eye, half)) * (alpha2 / (std::numbers::pi * spread * spread) * visibility * n_l);
+}
+
 } // namespace
+
+glm::dvec3 seen_normal_ws(const SurfaceMaterial& material, const SceneHit& hit, glm::dvec3 direction_ws)
+{
+    // The interpolated normal follows the triangle's.
+    const double side = glm::dot(hit.normal_ws, direction_ws) > 0 ? -1 : 1;
+    return material.normal_ws == glm::dvec3(0) ? side * glm::normalize(hit.normal_ws) : side * material.normal_ws;
+}
+
+glm::vec3 shade_highlight(const SceneBvh& bvh, const Scene& scene, const SceneHit& hit, glm::dvec3 point_ws,
+                          glm::dvec3 direction_ws, double roughness)
+{
+    constexpr double      negligible = 5e-4; // not worth a shadow ray
+    const SurfaceMaterial material   = surface_material(scene, hit.surface);
+    const glm::dvec3      normal_ws  = seen_normal_ws(material, hit, direction_ws);
+    const glm::dvec3      f0 = f0_of(material.base_colour, double(material.metallic), double(material.dielectric_f0));
+    glm::vec3             sum(0);
+    for_each_light(bvh, scene, hit, point_ws, direction_ws, normal_ws,
+                   [&](const Arriving& arriving, float /*cosine*/, const auto& shadowed) {
+                       const glm::dvec3 light =
+                           glm::dvec3(arriving.irradiance) *
+                           ggx(normal_ws, -glm::normalize(direction_ws), arriving.to_light_ws, f0, roughness);
+                       if (std::max({light.x, light.y, light.z}) > negligible && !shadowed()) sum += glm::vec3(light);
+                   });
+    return sum;
+}
 
 glm::vec3 shade_point(const SceneBvh& bvh, const Scene& scene, const SceneHit& hit, glm::dvec3 point_ws,
                       glm::dvec3 direction_ws)
 {
     const SurfaceMaterial material = surface_material(scene, hit.surface);
-    // The side that the ray sees; the interpolated normal follows the triangle's.
-    const double     side        = glm::dot(hit.normal_ws, direction_ws) > 0 ? -1 : 1;
-    const glm::dvec3 triangle_ws = side * glm::normalize(hit.normal_ws);
-    const glm::dvec3 normal_ws   = material.normal_ws == glm::dvec3(0) ? triangle_ws : side * material.normal_ws;
-    const double     offset_m    = self_hit_share * std::max(1.0, hit.t);
-    const glm::dvec3 lifted_ws   = point_ws + offset_m * triangle_ws;
-
-    glm::vec3 irradiance(0);
-    for (const Light& light : scene.lights) {
-        const Arriving arriving = arriving_light(light, point_ws);
-        const double   cosine   = glm::dot(normal_ws, arriving.to_light_ws);
-        if (!(cosine > 0) || arriving.irradiance == glm::vec3(0)) continue;
-        if (light.casts_shadow && in_shadow(bvh, lifted_ws, arriving, offset_m)) continue;
-        irradiance += arriving.irradiance * float(cosine);
-    }
+    glm::vec3             irradiance(0);
+    for_each_light(bvh, scene, hit, point_ws, direction_ws, seen_normal_ws(material, hit, direction_ws),
+                   [&](const Arriving& arriving, float cosine, const auto& shadowed) {
+                       if (!shadowed()) irradiance += arriving.irradiance * cosine;
+                   });
     const glm::vec3 diffuse = material.base_colour * (1 - material.metallic) * (1 / std::numbers::pi_v<float>);
     return diffuse * irradiance + scene.ambient * material.base_colour + material.emissive;
 }

@@ -7,13 +7,14 @@
 namespace ssrlab {
 namespace {
 
-void fill_row(const ReflectedRays& reflected, const GBufferImage& gbuffer, int y, SceneTruth& truth)
+void fill_row(const ReflectedRays& reflected, const GBufferImage& gbuffer, const TraceSettings& settings, int y,
+              SceneTruth& truth)
 {
     std::vector<SceneRay> rays;
     std::vector<size_t>   pixels;
     const int             width = gbuffer.view.size_px.x;
     for (int x = 0; x < width; ++x) {
-        if (!reflects(gbuffer, {x, y})) continue;
+        if (!reflects(gbuffer, {x, y}, settings)) continue;
         rays.push_back(reflected.ray_from({x, y}, mirror_direction_vs(gbuffer, {x, y})));
         pixels.push_back(pixel_index({x, y}, gbuffer.view.size_px));
     }
@@ -49,7 +50,7 @@ SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferIma
     require_radiance(gbuffer);
     SceneTruth          truth = empty_scene_truth(gbuffer.view.size_px);
     const ReflectedRays reflected(bvh, scene, gbuffer, settings.max_distance_m);
-    parallel_rows(truth.size_px.y, threads, [&](int y) { fill_row(reflected, gbuffer, y, truth); });
+    parallel_rows(truth.size_px.y, threads, [&](int y) { fill_row(reflected, gbuffer, settings, y, truth); });
     return truth;
 }
 

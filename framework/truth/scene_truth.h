@@ -39,4 +39,11 @@ SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferIma
 glm::vec3 shade_point(const SceneBvh& bvh, const Scene& scene, const SceneHit& hit, glm::dvec3 point_ws,
                       glm::dvec3 direction_ws);
 
+/// Its highlights, at the given roughness: GGX with shadow rays, seen against the direction.
+glm::vec3 shade_highlight(const SceneBvh& bvh, const Scene& scene, const SceneHit& hit, glm::dvec3 point_ws,
+                          glm::dvec3 direction_ws, double roughness);
+
+/// The shading normal on the side that a ray in this direction sees.
+glm::dvec3 seen_normal_ws(const SurfaceMaterial& material, const SceneHit& hit, glm::dvec3 direction_ws);
+
 } // namespace ssrlab

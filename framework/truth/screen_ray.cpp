@@ -91,11 +91,13 @@ void require_complete(const GBufferImage& gbuffer)
     }
 }
 
-bool reflects(const GBufferImage& gbuffer, glm::ivec2 pixel)
+bool reflects(const GBufferImage& gbuffer, glm::ivec2 pixel, const TraceSettings& settings)
 {
-    const size_t    i      = pixel_index(pixel, gbuffer.view.size_px);
-    const glm::vec3 normal = gbuffer.normal_vs[i];
-    return gbuffer.depth[i] > 0 && std::isfinite(gbuffer.depth[i]) && gbuffer.metallic[i] > 0 &&
+    const size_t    i         = pixel_index(pixel, gbuffer.view.size_px);
+    const glm::vec3 normal    = gbuffer.normal_vs[i];
+    const float     roughness = gbuffer.roughness.empty() ? 0 : gbuffer.roughness[i];
+    return gbuffer.depth[i] > 0 && std::isfinite(gbuffer.depth[i]) &&
+           settings.material_reflects(gbuffer.metallic[i], dielectric_f0_at(gbuffer, i), roughness) &&
            std::isfinite(normal.x) && std::isfinite(normal.y) && std::isfinite(normal.z) && normal != glm::vec3(0);
 }
 
@@ -127,7 +129,7 @@ glm::dvec3 mirror_direction_vs(const GBufferImage& gbuffer, glm::ivec2 pixel)
 
 ScreenRay make_screen_ray(const GBufferImage& gbuffer, glm::ivec2 pixel, const TraceSettings& settings)
 {
-    if (!reflects(gbuffer, pixel)) return {};
+    if (!reflects(gbuffer, pixel, settings)) return {};
     return make_screen_ray(gbuffer, pixel, mirrored_vs(gbuffer, pixel), settings);
 }
 

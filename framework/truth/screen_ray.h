@@ -17,8 +17,8 @@ struct ScreenRay {
     glm::dvec3  direction_vs{0};                      // unit
 };
 
-/// True for a pixel with finite depth > 0, metallic > 0 and a normal that is finite and not zero.
-bool reflects(const GBufferImage& gbuffer, glm::ivec2 pixel);
+/// Section "Which pixels reflect": finite depth > 0, a normal that is finite and not zero, and a material that reflects.
+bool reflects(const GBufferImage& gbuffer, glm::ivec2 pixel, const TraceSettings& settings = {});
 
 /// The view-space point at the pixel's centre and depth.
 glm::dvec3 pixel_point_vs(const GBufferImage& gbuffer, glm::ivec2 pixel);

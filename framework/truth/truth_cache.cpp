@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Raise when the code computes another truth from the same input, or writes it in another form.
-constexpr uint32_t format_version = 2;
+constexpr uint32_t format_version = 3;
 
 struct Header {
     std::array<char, 8> magic{'S', 'S', 'R', 'T', 'R', 'U', 'T', 'H'};
@@ -33,11 +33,20 @@ void add(ContentHash& hash, const GBufferImage& gbuffer)
     const View& view = gbuffer.view;
     hash.add(view.size_px).add(view.projection).add(view.world_to_view).add(view.focal_px).add(view.centre_px);
     hash.add(view.near_m).add(view.far_m).add(gbuffer.depth).add(gbuffer.normal_vs).add(gbuffer.metallic);
+    hash.add(gbuffer.roughness.size()).add(gbuffer.roughness);
+    hash.add(gbuffer.dielectric_f0.size()).add(gbuffer.dielectric_f0);
     hash.add(gbuffer.gradient.size()).add(gbuffer.gradient).add(gbuffer.solid_back.size()).add(gbuffer.solid_back);
+}
+
+/// What decides which pixels reflect.
+void add_reflecting(ContentHash& hash, const TraceSettings& settings)
+{
+    hash.add(settings.dielectric_min_f0).add(settings.dielectric_max_roughness);
 }
 
 void add(ContentHash& hash, const TraceSettings& settings)
 {
+    add_reflecting(hash, settings);
     hash.add(settings.thickness_m).add(settings.thickness_relative).add(settings.max_distance_m);
     hash.add(settings.ray_offset_m).add(settings.behind).add(settings.surface);
 }
@@ -54,6 +63,8 @@ void add(ContentHash& hash, const Scene& scene)
     for (const Material& m : scene.materials) {
         hash.add(m.base_colour)
             .add(m.metallic)
+            .add(m.roughness)
+            .add(m.dielectric_f0)
             .add(m.emissive)
             .add(m.double_sided)
             .add(m.alpha_mask)
@@ -173,7 +184,7 @@ template <typename Pass> void pass_values(Pass& pass, GlossyTruth& truth)
         if (truth.rays[i] == 0) continue;
         pass(truth.radiance[i]);
         pass(truth.standard_error[i]);
-        pass(truth.weight[i]);
+        pass(truth.albedo[i]);
     }
 }
 
@@ -220,7 +231,8 @@ SceneTruth cached_scene_truth(const fs::path& cache_dir, const Scene& scene, con
     require_complete(gbuffer);
     ContentHash hash;
     add(hash.add(format_version), gbuffer);
-    hash.add(gbuffer.radiance).add(settings.max_distance_m); // of the settings, only this one matters
+    hash.add(gbuffer.radiance).add(settings.max_distance_m);
+    add_reflecting(hash, settings); // of the settings, only these matter
     add(hash, scene);
     return cached<SceneTruth>(cache_dir / fmt::format("scene_{}.truth", hash.hex()), gbuffer.view.size_px,
                               [&] { return scene_truth(SceneBvh(scene), scene, gbuffer, settings, threads); });
@@ -232,7 +244,9 @@ GlossyTruth cached_glossy_truth(const fs::path& cache_dir, const Scene& scene, c
     require_complete(gbuffer);
     ContentHash hash;
     add(hash.add(format_version), gbuffer);
-    hash.add(gbuffer.radiance).add(gbuffer.roughness).add(settings.max_distance_m).add(glossy.rays).add(glossy.seed);
+    hash.add(gbuffer.radiance).add(gbuffer.base_colour).add(settings.max_distance_m);
+    hash.add(glossy.rays).add(glossy.bounces).add(glossy.seed);
+    add_reflecting(hash, settings);
     add(hash, scene);
     return cached<GlossyTruth>(cache_dir / fmt::format("glossy_{}.truth", hash.hex()), gbuffer.view.size_px, [&] {
         return glossy_truth(SceneBvh(scene), scene, gbuffer, settings, glossy, threads);

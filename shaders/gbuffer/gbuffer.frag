@@ -32,6 +32,7 @@ layout(location = 2) out vec4 radiance;             // the same from every direc
 layout(location = 3) out vec4 highlight;            // depends on the view
 layout(location = 4) out uint object;
 layout(location = 5) out uint gradient; // of depth, as framework/core/plane_gradient.h packs it
+layout(location = 6) out float dielectric_f0;
 
 vec3 shading_normal(Material material, Coordinates at)
 {
@@ -83,7 +84,7 @@ void main()
     vec3  normal    = shading_normal(material, at);
     vec3  to_eye    = orthographic != 0 ? -view_axis_ws : normalize(eye_ws - position_ws);
     vec3  diffuse_light, highlights;
-    light_surface(Surface(position_ws, normal, base.rgb, metallic, roughness), light_count, to_eye, diffuse_light, highlights);
+    light_surface(Surface(position_ws, normal, base.rgb, metallic, roughness, material.dielectric_f0), light_count, to_eye, diffuse_light, highlights);
     vec3 emissive = material.emissive * sample_texture(emissive_texture, material, 3, at).rgb;
 
     normal_and_roughness = vec4(mat3(world_to_view) * normal, roughness);
@@ -91,5 +92,6 @@ void main()
     radiance             = vec4(base.rgb * ((1.0 - metallic) / pi * diffuse_light + ambient) + emissive, 1.0);
     highlight            = vec4(highlights, 1.0);
     object               = object_id;
+    dielectric_f0        = material.dielectric_f0;
     gradient             = packed_gradient(gl_FragCoord.z, depth_slope);
 }

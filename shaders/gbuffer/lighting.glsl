@@ -57,6 +57,9 @@ vec3 arriving(Light light, vec3 position_ws, out vec3 to_light)
     return light.intensity * (window * cone / (distance_m * distance_m));
 }
 
+// Below 2 % nothing reflects at normal incidence: such a value says that there is no reflection.
+float grazing_reflectance(vec3 f0) { return min(1.0, 50.0 * max(max(f0.r, f0.g), f0.b)); }
+
 vec3 specular(vec3 normal, vec3 to_eye, vec3 to_light, vec3 f0, float roughness)
 {
     vec3  halfway = normalize(to_eye + to_light);
@@ -65,20 +68,20 @@ vec3 specular(vec3 normal, vec3 to_eye, vec3 to_light, vec3 f0, float roughness)
     float d   = n_h * n_h * (alpha2 - 1.0) + 1.0;
     float ggx = alpha2 / (pi * d * d);
     float visibility = 0.5 / max(n_l * sqrt(n_v * n_v * (1.0 - alpha2) + alpha2) + n_v * sqrt(n_l * n_l * (1.0 - alpha2) + alpha2), 1e-6);
-    vec3  fresnel = f0 + (1.0 - f0) * pow(1.0 - max(dot(to_eye, halfway), 0.0), 5.0);
+    vec3  fresnel = f0 + (grazing_reflectance(f0) - f0) * pow(1.0 - max(dot(to_eye, halfway), 0.0), 5.0);
     return ggx * visibility * fresnel;
 }
 
 struct Surface
 {
     vec3  position_ws, normal_ws, base_colour;
-    float metallic, roughness;
+    float metallic, roughness, dielectric_f0;
 };
 
 // Both parts of the light that leaves a surface: irradiance for the diffuse one, radiance toward the eye for the specular one.
 void light_surface(Surface surface, int light_count, vec3 to_eye_ws, out vec3 irradiance, out vec3 highlights)
 {
-    vec3 f0    = mix(vec3(0.04), surface.base_colour, surface.metallic);
+    vec3 f0    = mix(vec3(surface.dielectric_f0), surface.base_colour, surface.metallic);
     irradiance = highlights = vec3(0);
     for (int i = 0; i < light_count; ++i)
     {

@@ -5,6 +5,7 @@ struct Material
     vec3  emissive;      // linear radiance
     float metallic;
     float roughness;
+    float dielectric_f0; // reflectance at normal incidence where it is not metal
     float normal_scale;
     float alpha_cutoff;  // < 0: no alpha mask
     int   double_sided;

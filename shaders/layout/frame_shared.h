@@ -13,6 +13,9 @@
 #define CONSTANT_ITEMS_PER_GROUP 8
 #define CONSTANT_TRACE_BLOCK_PX 9
 #define CONSTANT_RAYS_PER_PIXEL 11
+#define CONSTANT_DIELECTRIC_MIN_F0 15
+#define CONSTANT_DIELECTRIC_MAX_ROUGHNESS 16
+#define CONSTANT_LOBE_RAYS 17
 #define CONSTANT_PASSES 64 // the passes' parameters, in the order of render/passes/all_passes.cpp
 #define CONSTANT_REPROJECTION 256 // those of the reprojection strategy
 

@@ -1,7 +1,7 @@
-// How much of a reflector's colour its reflection is: beta = reflectance * weight of the reflection. After view.glsl, reflecting.glsl and
-// pass/parameters. J. Somerville Roberts, "Screen Space Reflections".
-
+// What a reflector shows with its reflection. After view.glsl, reflecting.glsl and pass/parameters.
 #include "passes/directional_albedo.glsl"
+
+layout(set = 0, binding = 62, scalar) uniform Ambient { vec3 ambient; }; // 0 where there is no scene
 
 vec3 to_camera_vs(ivec2 pixel)
 {
@@ -9,18 +9,26 @@ vec3 to_camera_vs(ivec2 pixel)
     return orthographic != 0 ? vec3(0, 0, 1) : -normalize(position_vs);
 }
 
+// reflectance = metallic: J. Somerville Roberts, "Screen Space Reflections". ggx: the directional albedo.
 vec3 reflectance_of(ivec2 pixel, vec3 to_eye_vs)
 {
     vec4 material = imageLoad(material_image, pixel);
     if (reflectance == reflectance_metallic)
         return vec3(metallic_exponent > 0.0 ? pow(material.a, metallic_exponent) : 1.0);
     vec4 normal = imageLoad(normal_image, pixel);
-    vec2 terms  = dfg(normal.w, max(dot(normalize(normal.xyz), to_eye_vs), 0.0));
-    return clamp(mix(vec3(0.04), material.rgb, material.a) * terms.x + terms.y, 0.0, 1.0);
+    vec3 f0     = mix(vec3(imageLoad(dielectric_image, pixel).x), material.rgb, material.a);
+    return directional_albedo(f0, normal.w, abs(dot(normalize(normal.xyz), to_eye_vs)));
 }
 
-vec3 beta_of(ivec2 reflector, vec3 to_eye_vs, float weight)
+// own: the reflector's light that is equal in every direction; highlight: the rest of it. With metallic the reflection takes the place of
+// both, by its weight. With ggx it takes the place of the ambient light that stands in for it on metals, and dims what comes from below the
+// surface by what it reflects itself: energy is split, not added.
+vec3 with_reflection(ivec2 reflector, vec3 to_eye_vs, vec3 own, vec3 highlight, vec3 reflected, float weight)
 {
-    if (weight <= 0.0) return vec3(0);
-    return reflectance_of(reflector, to_eye_vs) * weight;
+    if (weight <= 0.0) return own + highlight;
+    vec3 share = reflectance_of(reflector, to_eye_vs);
+    if (reflectance == reflectance_metallic) return own + highlight + (reflected - own - highlight) * share * weight;
+    vec4 material = imageLoad(material_image, reflector);
+    vec3 below    = max(own - material.a * material.rgb * ambient, 0.0);
+    return own + highlight + (below * (1.0 - share) + reflected * share - own) * weight;
 }

@@ -3,7 +3,9 @@
 #include "api/view.glsl"
 #include "rays/reflecting.glsl"
 #include "pass/parameters"
+#include "passes/blocks.glsl"
 #include "rays/tiles.glsl"
+#include "layout/frame_shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 #ifdef ALONG_X
@@ -20,12 +22,21 @@ layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D reflection_image
 const ivec2 axis = ivec2(0, 1);
 #endif
 
-const int taps_a_side = 16;
+#ifdef BLOCKS
+// At the resolution of the rays: a step is a block, and only the pixels that were traced are read and written.
+layout(set = 0, binding = 6, r32ui) uniform readonly uimage2D block_pixel_image;
+const int step_px = block_px;
+#else
+const int step_px = 1;
+#endif
 
-float radius_px(ivec2 pixel, bool hole)
+const int taps_a_side = 64;
+
+// In steps.
+float blur_radius(ivec2 pixel, bool hole)
 {
     float roughness = imageLoad(normal_image, pixel).w;
-    return max(0.0, blur_bias + blur_scale * roughness) * float(size_px.y) * (hole ? hole_blur_scale : 1.0);
+    return max(0.0, blur_bias + blur_scale * roughness) * float(size_px.y) / float(step_px) * (hole ? hole_blur_scale : 1.0);
 }
 
 struct Sum
@@ -34,9 +45,14 @@ struct Sum
     float weight, trusted;
 };
 
-vec4 reflection_at(ivec2 pixel)
+vec4 reflection_at(ivec2 place)
 {
-    return imageLoad(SOURCE, clamp(pixel, ivec2(0), size_px - 1));
+#ifdef BLOCKS
+    uint traced = imageLoad(block_pixel_image, clamp(place, ivec2(0), (size_px - 1) / block_px)).x;
+    return traced == NO_PIXEL ? vec4(0, 0, 0, -1) : imageLoad(SOURCE, unpack_pixel(traced));
+#else
+    return imageLoad(SOURCE, clamp(place, ivec2(0), size_px - 1));
+#endif
 }
 
 void add(inout Sum sum, vec4 sampled, float gauss)
@@ -53,10 +69,11 @@ void main()
     ivec2 pixel;
     if (!listed_pixel(pixel) || any(greaterThanEqual(pixel, size_px))) return;
     vec4  own    = imageLoad(SOURCE, pixel);
-    float radius = own.a < 0.0 ? 0.0 : radius_px(pixel, own.a == 0.0);
-    // Half a pixel reaches no neighbour: what is smooth stays as it is, to the last bit.
+    float radius = own.a < 0.0 ? 0.0 : blur_radius(pixel, own.a == 0.0);
+    // Half a step reaches no neighbour: what is smooth stays as it is, to the last bit.
     int   taps = radius < 0.5 ? 0 : min(taps_a_side, int(ceil(radius)));
-    float stride_px = radius / float(max(taps, 1));
+    float stride = radius / float(max(taps, 1));
+    ivec2 place  = pixel / step_px;
     // exp(-(2 i / taps)^2 / 2), as the radius is two standard deviations, by products: K. Turkowski 2007, GPU Gems 3, chapter 40.
     float gauss = 1.0, factor = exp(-2.0 / float(max(taps * taps, 1))), ratio = factor * factor;
     Sum   sum = Sum(vec3(0), 0.0, 0.0);
@@ -65,9 +82,9 @@ void main()
     {
         gauss *= factor;
         factor *= ratio;
-        ivec2 offset = axis * int(round(float(i) * stride_px));
-        add(sum, reflection_at(pixel - offset), gauss);
-        add(sum, reflection_at(pixel + offset), gauss);
+        ivec2 offset = axis * int(round(float(i) * stride));
+        add(sum, reflection_at(place - offset), gauss);
+        add(sum, reflection_at(place + offset), gauss);
     }
     vec4 blurred = sum.trusted > 0.0 ? vec4(sum.colour / sum.trusted, sum.trusted / sum.weight) : vec4(0);
     imageStore(TARGET, pixel, taps == 0 ? own : blurred);

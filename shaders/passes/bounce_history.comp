@@ -39,6 +39,6 @@ void main()
     Found found = found_by(packed_ray(index), listed);
     if (found.weight <= 0.0) return;
     vec4 history = reflection_before(hit);
-    vec3 colour  = found.light + (history.rgb - found.light) * beta_of(hit, to_camera_vs(hit), history.a);
+    vec3 colour  = with_reflection(hit, to_camera_vs(hit), found.light, vec3(0), history.rgb, history.a);
     imageStore(reflection_image, pixel, vec4(colour * found.attenuation, found.weight));
 }

@@ -25,7 +25,11 @@ vec3 throughput_of(uint index, PackedHit hit)
 #else
     if (!reflects(unpack_pixel(ray_pixel(index)))) return vec3(0);
     Found found = found_by(packed_ray(index), hit);
+#if defined(LOBE_RAYS) && defined(ENVIRONMENT)
+    return vec3(found.weight * found.attenuation); // the rest is the environment's
+#else
     return vec3(found.weight > 0.0 ? found.attenuation : 0.0);
+#endif
 #endif
 }
 

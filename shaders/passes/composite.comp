@@ -1,4 +1,4 @@
-// The picture: C = C_own + (C_reflected - C_own) * beta.
+// The picture: each surface's own light with its reflection.
 #include "api/view.glsl"
 #include "rays/reflecting.glsl"
 #include "pass/parameters"
@@ -14,8 +14,8 @@ void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, imageSize(shaded_image)))) return;
-    vec3 colour     = imageLoad(radiance_image, pixel).rgb + imageLoad(highlight_image, pixel).rgb;
     vec4 reflection = imageLoad(reflection_image, pixel);
-    if (reflection.a > 0.0) colour += (reflection.rgb - colour) * beta_of(pixel, to_camera_vs(pixel), reflection.a);
+    vec3 own = imageLoad(radiance_image, pixel).rgb, highlight = imageLoad(highlight_image, pixel).rgb, colour = own + highlight;
+    if (reflection.a > 0.0) colour = with_reflection(pixel, to_camera_vs(pixel), own, highlight, reflection.rgb, reflection.a);
     imageStore(shaded_image, pixel, vec4(colour, 1));
 }

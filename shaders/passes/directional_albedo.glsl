@@ -1,4 +1,4 @@
-// The split-sum table: the directional albedo of a GGX surface is f0 * x + y (render/directional_albedo.h).
+// The split-sum table: the directional albedo of a GGX surface is f0 * x + f90 * y (render/directional_albedo.h).
 #include "layout/frame_shared.h"
 layout(set = 0, binding = 36) uniform sampler2D dfg_table;
 
@@ -6,4 +6,11 @@ vec2 dfg(float roughness, float cosine)
 {
     const float entries = float(DFG_TABLE_ENTRIES);
     return textureLod(dfg_table, (vec2(sqrt(cosine), roughness) * (entries - 1.0) + 0.5) / entries, 0.0).xy;
+}
+
+vec3 directional_albedo(vec3 f0, float roughness, float cosine)
+{
+    float f90   = min(1.0, 50.0 * max(max(f0.r, f0.g), f0.b)); // as gbuffer/lighting.glsl
+    vec2  terms = dfg(roughness, min(cosine, 1.0));
+    return clamp(f0 * terms.x + f90 * terms.y, 0.0, 1.0);
 }

@@ -6,6 +6,9 @@
 #include "rays/reflecting.glsl"
 #include "pass/parameters"
 #include "passes/ray_colour.glsl"
+#ifdef LOBE_RAYS
+#include "passes/lobe_rays.glsl"
+#endif
 
 layout(local_size_x = RAYS_PER_GROUP) in;
 
@@ -46,6 +49,16 @@ void main()
     if (first >= ray_count) return;
     ivec2 pixel = unpack_pixel(ray_pixel(first));
     if (!reflects(pixel)) return;
+#ifdef LOBE_RAYS
+    vec4 mean = vec4(0);
+    for (int ray = 0; ray < rays_per_pixel; ++ray)
+    {
+        vec4 light = lobe_ray_light(first + ray, pixel, ray);
+        mean += vec4(light.rgb * light.a, light.a);
+    }
+    if (rays_per_pixel > 1) imageStore(reflection_image, pixel, mean.a > 0.0 ? vec4(mean.rgb / mean.a, mean.a / float(rays_per_pixel)) : vec4(0));
+#else
     imageStore(reflection_image, pixel, rays_per_pixel > 1 ? mean_reflection(first) : reflection_of(first, packed_hit(first)));
+#endif
     if (block_px > 1) imageStore(block_pixel_image, pixel / block_px, uvec4(pack_pixel(pixel, 0)));
 }

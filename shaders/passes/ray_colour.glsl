@@ -11,6 +11,7 @@ layout(set = 0, binding = 27, rgba32f) uniform readonly image2D second_normal_im
 layout(set = 0, binding = 28, rgba16f) uniform readonly image2D second_material_image;
 layout(set = 0, binding = 29, rgba16f) uniform readonly image2D second_radiance_image;
 layout(set = 0, binding = 30, rgba16f) uniform readonly image2D second_highlight_image;
+layout(set = 0, binding = 61, r32f) uniform readonly image2D second_dielectric_image;
 #define LOAD_LAYER(name, place, second) ((second) ? imageLoad(second_##name, place) : imageLoad(name, place))
 #else
 #define LOAD_LAYER(name, place, second) imageLoad(name, place)
@@ -31,30 +32,24 @@ struct Found
 #ifdef CONE
 #include "passes/cone.glsl"
 #endif
-// The highlight of a surface as the reflector sees it, if that is asked for.
+// The highlight of a surface as the reflector sees it, if that is asked for; at least as rough as the reflector, which blurs it.
 #ifdef MIRRORED_LIGHT
 #define LIGHTS_BINDING 31
 #include "gbuffer/lighting.glsl"
-layout(set = 0, binding = 34, scalar) uniform Frame // the beginning of gbuffer.frag's
-{
-    mat4  world_to_view;
-    vec3  eye_ws;
-    int   frame_orthographic;
-    vec3  view_axis_ws;
-    int   light_count;
-};
+#include "passes/scene_frame.glsl"
 
-vec3 highlight_along(ivec2 pixel, bool second, vec3 position_vs, vec3 direction_vs)
+vec3 highlight_along(ivec2 pixel, bool second, vec3 position_vs, vec3 direction_vs, float roughness)
 {
     mat3 view_to_world = transpose(mat3(world_to_view));
     vec4 normal        = LOAD_LAYER(normal_image, pixel, second), material = LOAD_LAYER(material_image, pixel, second);
+    float dielectric   = LOAD_LAYER(dielectric_image, pixel, second).x;
     vec3 position_ws   = view_to_world * (position_vs - world_to_view[3].xyz), irradiance, highlights;
-    light_surface(Surface(position_ws, view_to_world * normal.xyz, material.rgb, material.a, normal.w), light_count,
+    light_surface(Surface(position_ws, view_to_world * normal.xyz, material.rgb, material.a, max(normal.w, roughness), dielectric), light_count,
                   view_to_world * -direction_vs, irradiance, highlights);
     return highlights;
 }
 #else
-vec3 highlight_along(ivec2 pixel, bool second, vec3 position_vs, vec3 direction_vs)
+vec3 highlight_along(ivec2 pixel, bool second, vec3 position_vs, vec3 direction_vs, float roughness)
 {
     return vec3(0);
 }
@@ -104,6 +99,11 @@ float edge_weight(vec2 uv)
     if (edge_fade == edge_fade_manhattan) return clamp(1.0 - abs(offset.x) - abs(offset.y), 0.0, 1.0); // J. Somerville Roberts
     if (edge_fade == edge_fade_linear) return 1.0 - radial;
     if (edge_fade == edge_fade_squared) return 1.0 - radial * radial; // Litheon 2012
+    if (edge_fade == edge_fade_border)
+    {
+        vec2 inside_px = (0.5 - abs(offset)) * vec2(size_px);
+        return smoothstep(0.0, edge_fade_width * float(size_px.y), min(inside_px.x, inside_px.y));
+    }
     return 1.0;
 }
 
@@ -151,7 +151,7 @@ Found found_by(PackedRay ray, PackedHit found)
     ivec2 reflector = unpack_pixel(ray.pixel);
     if (!second) light = cone_light(vec2(reflector) + 0.5, point.xy, imageLoad(normal_image, reflector).w, light);
 #endif
-    light += highlight_along(hit, second, surface_vs, direction);
+    light += highlight_along(hit, second, surface_vs, direction, imageLoad(normal_image, unpack_pixel(ray.pixel)).w);
     return Found(light, attenuation_at(distance(px_to_vs(point), origin_vs)),
                  weight_of(-direction.z, point.xy / vec2(size_px), depth_step_weight(hit, second)));
 }

@@ -34,9 +34,8 @@ Surface surface_at(ivec2 pixel)
     surface.position_vs  = px_to_vs(vec3(vec2(pixel) + 0.5, load_depth(pixel)));
     surface.normal_vs    = normalize(normal.xyz);
     float cosine         = max(0.0, -dot(surface.normal_vs, view_direction(surface.position_vs)));
-    float f0             = mix(0.04, dot(material.rgb, vec3(0.2126, 0.7152, 0.0722)), material.a);
-    vec2 terms           = dfg(normal.w, cosine);
-    surface.reflectivity = f0 * terms.x + terms.y;
+    float f0             = mix(imageLoad(dielectric_image, pixel).x, dot(material.rgb, vec3(0.2126, 0.7152, 0.0722)), material.a);
+    surface.reflectivity = directional_albedo(vec3(f0), normal.w, cosine).x;
     return surface;
 }
 
@@ -44,13 +43,13 @@ Surface surface_at(ivec2 pixel)
 float similarity(Surface a, Surface b)
 {
     float weight = 1.0;
-    if (upsampling_weights >= upsampling_weights_depth)
+    if (upsampling_depth)
     {
         float step_m = abs(dot(a.normal_vs, b.position_vs - a.position_vs));
         weight *= exp(-step_m / (upsampling_depth_tolerance * -a.position_vs.z));
     }
-    if (upsampling_weights >= upsampling_weights_depth_normal) weight *= pow(max(0.0, dot(a.normal_vs, b.normal_vs)), 32.0);
-    if (upsampling_weights >= upsampling_weights_reflectivity)
+    if (upsampling_normal) weight *= pow(max(0.0, dot(a.normal_vs, b.normal_vs)), 32.0);
+    if (upsampling_reflectivity)
         weight *= exp(-abs(a.reflectivity - b.reflectivity) / upsampling_reflectivity_tolerance);
     return weight;
 }
@@ -79,7 +78,7 @@ vec4 upsampled(ivec2 pixel)
             vec4  traced = imageLoad(reflection_image, from);
             float alike  = similarity(own, surface_at(from));
             vec2  near   = mix(1.0 - share, share, vec2(step));
-            float weight = near.x * near.y * alike;
+            float weight = (upsampling_distance ? near.x * near.y : 1.0) * alike;
             sum += weight * vec4(traced.rgb * traced.a, traced.a);
             total += weight;
             closest = alike > best ? traced : closest;

@@ -51,7 +51,7 @@ void main()
         vec4  normal  = imageLoad(normal_image, pixel);
         bool  inside  = all(lessThan(pixel, size_px));
         bool  surface = inside && is_surface(load_depth(pixel), normal.xyz);
-        bool  mirror  = surface && is_metallic(pixel);
+        bool  mirror  = surface && material_reflects(pixel);
         surfaces += uint(surface);
         mirrors += uint(mirror);
         int bin = roughness_bin(normal.w);

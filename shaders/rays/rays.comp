@@ -2,12 +2,14 @@
 // the list. By the passes' parameters there may be several rays per pixel, one after the other in the list.
 #include "rays/segment.glsl"
 #include "api/hash.glsl"
+#include "rays/lobe.glsl"
 #include "rays/tiles.glsl"
 #include "layout/frame_shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = CONSTANT_RAYS_PER_PIXEL) const int rays_per_pixel = 1;
+layout(constant_id = CONSTANT_LOBE_RAYS) const int lobe_rays = 0; // rough surfaces: drawn from the lobe, else the mirror ray
 
 STORED_TEXELS_4(5, Rays)
 layout(set = 0, binding = 11, r32ui) uniform readonly uimageBuffer TileMasks; // two words a tile: bit x + 8 y
@@ -36,6 +38,22 @@ real plane_depth(ivec2 pixel, real depth, real3 normal, real2 start_px)
     return usable ? start_depth : real(0);
 }
 
+// The normal at which a rough surface's ray mirrors the view direction. Directions below the horizon are drawn again.
+real3 drawn_normal(ivec2 pixel, int ray, real3 normal)
+{
+    float roughness = imageLoad(normal_image, pixel).w;
+    if (!(roughness >= mirror_roughness)) return normal;
+    vec3 to_eye = orthographic != 0 ? vec3(0, 0, 1) : -normalize(vec3(px_to_slope(real2(pixel) + real(0.5)), -1.0));
+    vec3 facing = normalize(vec3(normal));
+    facing      = dot(facing, to_eye) < 0.0 ? -facing : facing;
+    for (int attempt = 0; attempt < 4; ++attempt)
+    {
+        vec3 drawn = drawn_half_vector(facing, to_eye, roughness * roughness, lobe_random(pixel, ray, rays_per_pixel, attempt));
+        if (dot(facing, reflect(-to_eye, drawn)) > 0.0) return real3(drawn);
+    }
+    return normal;
+}
+
 void main()
 {
     ivec2 pixel;
@@ -55,14 +73,14 @@ void main()
     {
         real2 start_px    = real2(pixel) + real(0.5);
         real  start_depth = depth;
-        if (rays_per_pixel > 1)
+        if (rays_per_pixel > 1 && lobe_rays == 0)
         {
             real2 offset_px    = offset_start(pixel, ray);
             real  offset_depth = plane_depth(pixel, depth, normal, offset_px);
             start_px           = offset_depth > real(0) ? offset_px : start_px;
             start_depth        = offset_depth > real(0) ? offset_depth : depth;
         }
-        Segment   segment = make_segment(start_px, start_depth, mirrored(view_direction(start_px), normal));
+        Segment   segment = make_segment(start_px, start_depth, mirrored(view_direction(start_px), lobe_rays != 0 ? drawn_normal(pixel, ray, normal) : normal));
         PackedRay listed  = segment_to_packed_ray(segment, pixel);
         STORE_RAY(Rays, index + ray, listed);
     }

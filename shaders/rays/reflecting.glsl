@@ -1,7 +1,12 @@
-// Which pixels reflect: those with a surface, a usable normal and some metal. After view.glsl.
+// Which pixels reflect: those with a surface, a usable normal and a material that reflects. After view.glsl.
 #include "layout/load_depth.glsl"
-layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image;   // xyz = view-space normal, w = roughness
-layout(set = 0, binding = 3, rgba16f) uniform readonly image2D material_image; // rgb = base colour, a = metallic
+#include "layout/frame_shared.h"
+layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image;    // xyz = view-space normal, w = roughness
+layout(set = 0, binding = 3, rgba16f) uniform readonly image2D material_image;  // rgb = base colour, a = metallic
+layout(set = 0, binding = 60, r32f) uniform readonly image2D dielectric_image;  // reflectance at normal incidence of what is not metal
+
+layout(constant_id = CONSTANT_DIELECTRIC_MIN_F0) const float dielectric_min_f0 = 0.0;
+layout(constant_id = CONSTANT_DIELECTRIC_MAX_ROUGHNESS) const float dielectric_max_roughness = 0.0;
 
 bool is_surface(float depth, vec3 normal)
 {
@@ -13,12 +18,14 @@ bool has_surface(ivec2 pixel)
     return is_surface(load_depth(pixel), imageLoad(normal_image, pixel).xyz);
 }
 
-bool is_metallic(ivec2 pixel)
+// core/trace_result.h compares the same floats.
+bool material_reflects(ivec2 pixel)
 {
-    return imageLoad(material_image, pixel).a > 0.0;
+    return imageLoad(material_image, pixel).a > 0.0 || (imageLoad(dielectric_image, pixel).x >= dielectric_min_f0 &&
+                                                        imageLoad(normal_image, pixel).w <= dielectric_max_roughness);
 }
 
 bool reflects(ivec2 pixel)
 {
-    return has_surface(pixel) && is_metallic(pixel);
+    return has_surface(pixel) && material_reflects(pixel);
 }

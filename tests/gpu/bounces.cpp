@@ -43,7 +43,7 @@ GBufferImage coloured_mirrors(glm::ivec2 size_px)
 
 ParameterValues bouncing(BounceMode mode, int bounces, const ParameterValues& changed = {})
 {
-    ParameterValues passes   = default_pass_values();
+    ParameterValues passes   = report_passes();
     passes.at("bounces")     = bounces;
     passes.at("bounce_mode") = choice_value(mode);
     for (const auto& [name, value] : changed) passes.at(name) = value;

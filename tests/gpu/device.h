@@ -28,6 +28,17 @@ Picture make_picture(const Scene& scene, const Camera& camera, glm::ivec2 size_p
 /// A G-buffer made by hand. Picture::image is what the device holds of it (unusable depth has become background).
 Picture make_picture(const GBufferImage& gbuffer);
 
+/// The passes as J. Somerville Roberts' report has them: metallic ^ 3, and fades toward the viewer and the edges.
+inline ParameterValues report_passes()
+{
+    ParameterValues passes = default_pass_values();
+    for (const auto& [name, value] :
+         ParameterValues{chosen(Reflectance::metallic), chosen(ViewerFade::linear), chosen(EdgeFade::manhattan),
+                         chosen(HitShading::diffuse), chosen(Gloss::blur)})
+        passes.at(name) = value;
+    return passes;
+}
+
 TraceResult trace(const Picture& picture, const Technique& technique, const ParameterValues& values,
                   const TraceSettings& settings, Precision precision = Precision::float32);
 

@@ -9,15 +9,22 @@ namespace ssrlab::test {
 namespace {
 
 using enum TraceResolution;
-using enum UpsamplingWeights;
 
 constexpr glm::vec4 red{1, 0, 0, 1}, blue{0, 0, 1, 1};
 
+/// Distance, and whichever of the other weights are named.
+using Weights          = std::vector<const char*>;
+const Weights bilinear = {}, depth = {"upsampling_depth"}, normal = {"upsampling_normal"},
+              reflectivity = {"upsampling_reflectivity"}, depth_normal = {"upsampling_depth", "upsampling_normal"};
+
 /// Traces, so that the blocks name their pixels, then puts `traced` in their place and up-samples.
 template <typename Traced>
-Reflection upsample(const Picture& picture, TraceResolution resolution, UpsamplingWeights weights, const Traced& traced)
+Reflection upsample(const Picture& picture, TraceResolution resolution, const Weights& weights, const Traced& traced)
 {
-    const auto frame = frame_with(picture, {chosen(resolution), chosen(weights)});
+    ParameterValues passes = {
+        chosen(resolution), {"upsampling_depth", 0}, {"upsampling_normal", 0}, {"upsampling_reflectivity", 0}};
+    for (const char* weight : weights) passes.at(weight) = 1;
+    const auto frame = frame_with(picture, passes);
     run_frame(device(), *frame);
     Reflection reflection(picture.image.depth.size(), nothing_reflects);
     for (const uint32_t block : download_as<uint32_t>(device(), picture.buffers->block_pixel)) {
@@ -37,7 +44,7 @@ TEST(Upsampling, KeepsALinearRamp)
         return glm::vec4(static_cast<float>(p.x) / 64, static_cast<float>(p.y) / 48, 0.25F, 1);
     };
     for (const TraceResolution resolution : {half, quarter})
-        for (const UpsamplingWeights weights : {bilinear, depth, depth_normal}) {
+        for (const Weights& weights : {bilinear, depth, depth_normal}) {
             const Reflection found = upsample(picture, resolution, weights, ramp);
             // Outside the first and last traced rows and columns there is nothing to interpolate with.
             for (int y = 2; y < 44; ++y)
@@ -56,7 +63,7 @@ template <typename Change> Picture two_surfaces(const Change& change_right)
     return make_picture(image);
 }
 
-Reflection upsample_two(const Picture& picture, UpsamplingWeights weights)
+Reflection upsample_two(const Picture& picture, const Weights& weights)
 {
     return upsample(picture, half, weights, [](glm::ivec2 p) { return p.x < 31 ? red : blue; });
 }
@@ -66,7 +73,7 @@ TEST(Upsampling, StopsAtTheBorderOfWhatItsWeightsSee)
     const Picture rough = two_surfaces([](auto& image, int x, int y) { image.roughness[at(image, x, y)] = 0.9F; });
     const Picture far   = two_surfaces([](auto& image, int x, int y) { set_pixel(image, x, y, 6, {0, 0, 1}, 1); });
     const Picture bent  = two_surfaces([](auto& image, int x, int y) { set_pixel(image, x, y, 5, {0.8, 0, 0.6}, 1); });
-    const auto    share_of_red = [](const Picture& picture, UpsamplingWeights weights) {
+    const auto    share_of_red = [](const Picture& picture, const Weights& weights) {
         const Reflection found = upsample_two(picture, weights);
         for (int x = 0; x < 30; ++x) EXPECT_EQ(found[at(picture.image, x, 8)], red);
         for (int x = 32; x < 64; ++x) EXPECT_EQ(found[at(picture.image, x, 8)], blue);
@@ -77,7 +84,10 @@ TEST(Upsampling, StopsAtTheBorderOfWhatItsWeightsSee)
     for (const Picture& picture : {rough, far, bent}) EXPECT_NEAR(share_of_red(picture, bilinear), 0.5, 1e-3);
     EXPECT_NEAR(share_of_red(rough, depth_normal), 0.5, 1e-3);
     EXPECT_LT(share_of_red(rough, reflectivity), 0.01);
-    EXPECT_LT(share_of_red(bent, depth_normal), 0.01);
+    EXPECT_LT(share_of_red(bent, normal), 0.01);
+    // Each on its own: what the others see is nothing to it.
+    EXPECT_NEAR(share_of_red(far, normal), 0.5, 1e-3);
+    EXPECT_NEAR(share_of_red(far, reflectivity), 0.5, 1e-3);
     EXPECT_LT(share_of_red(far, depth), 0.01);
 }
 

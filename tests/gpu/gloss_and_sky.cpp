@@ -1,5 +1,6 @@
 // Blur by roughness, the environment, the directional albedo, and hits lit as their reflector sees them.
 #include "gpu/passes.h"
+#include "scene/prefiltered_environment.h"
 #include "scene/scene.h"
 #include "truth/screen_ray.h"
 
@@ -92,11 +93,12 @@ TEST(Blur, NothingComesFromPixelsThatDoNotReflect)
         for (int c = 0; c < 4; ++c) ASSERT_NEAR(found[i][c], halves[i][c], 1e-3) << i;
 }
 
+// A mirror reflects the map itself; what is rough, its mean over the lobe: between the levels on either side of its roughness.
 TEST(EnvironmentFallback, IsTheSkyInTheMirrorDirectionBlendedByTheWeight)
 {
     const Scene   scene   = load_scene("builtin:everything");
     const Picture picture = make_picture(scene, find_camera(scene, "default"), {161, 91});
-    const auto    frame   = frame_with(picture, {});
+    const auto    frame   = frame_with(picture, {chosen(Gloss::off)});
     Reflection    before(picture.image.depth.size(), nothing_reflects);
     for (size_t i = 0; i < before.size(); ++i)
         if (picture.image.metallic[i] > 0) before[i] = {2, 1, 0.5F, static_cast<float>(i % 3) / 2};
@@ -104,20 +106,53 @@ TEST(EnvironmentFallback, IsTheSkyInTheMirrorDirectionBlendedByTheWeight)
     run_pass(*frame, environment_pass());
     const Reflection after         = read_colours(picture.buffers->reflection);
     const glm::dmat3 view_to_world = glm::transpose(glm::dmat3(picture.view.world_to_view));
-    size_t           blended       = 0;
+    size_t           sharp = 0, rough = 0;
     for (size_t i = 0; i < before.size(); ++i) {
         if (before[i].a < 0 || before[i].a == 1) {
             ASSERT_EQ(after[i], before[i]) << i;
             continue;
         }
+        ASSERT_EQ(after[i].a, 1);
+        rough += picture.image.roughness[i] > 0;
+        if (picture.image.roughness[i] > 0) continue;
         const glm::ivec2 pixel(static_cast<int>(i) % 161, static_cast<int>(i) / 161);
         const glm::vec3  sky(sky_radiance(scene, view_to_world * mirror_direction_vs(picture.image, pixel)));
         const glm::vec3  expected = sky + (glm::vec3(before[i]) - sky) * before[i].a;
         for (int c = 0; c < 3; ++c) ASSERT_NEAR(after[i][c], expected[c], 0.01F * expected[c] + 0.01F) << i;
-        ASSERT_EQ(after[i].a, 1);
-        ++blended;
+        ++sharp;
     }
-    EXPECT_GT(blended, 1000U);
+    EXPECT_GT(sharp, 300U);
+    EXPECT_GT(rough, 1000U);
+}
+
+// A wall that faces the camera, in a sky that is 1 + y: its mean over a lobe about the direction d is 1 + c d.y, c the lobe's mean cosine.
+TEST(EnvironmentFallback, IsBlurredByTheLobeOfTheRoughness)
+{
+    constexpr double pi       = std::numbers::pi;
+    Scene            scene    = load_scene("builtin:stairs");
+    scene.environment.size_px = {256, 128};
+    scene.environment.radiance.clear();
+    for (int y = 0; y < 128; ++y)
+        for (int x = 0; x < 256; ++x)
+            scene.environment.radiance.emplace_back(1 + std::sin(pi * (0.5 - (y + 0.5) / 128)));
+    const EnvironmentMap levels = prefilter_environment(scene.environment);
+    for (int k = 0; k < environment_levels; ++k) {
+        const double alpha2 = std::pow(environment_level_roughness(k), 4);
+        double       sum = 0, weights = 0;
+        for (int i = 0; i < 20000; ++i) {
+            const double angle = 0.5 * pi * (i + 0.5) / 20000, cosine = std::cos(angle);
+            const double spread = std::pow(std::cos(0.5 * angle), 2) * (alpha2 - 1) + 1;
+            // D G2 sin / 4: n = v, so Lambda(v) = 0.
+            const double weight = alpha2 / (spread * spread) * std::sin(angle) * 2 /
+                                  (1 + std::sqrt(1 + alpha2 * (1 / (cosine * cosine) - 1)));
+            sum += weight * cosine;
+            weights += weight;
+        }
+        for (const int y : {20, 64, 100})
+            EXPECT_NEAR(double(levels.radiance[size_t(k * 128 + y) * 256 + 77].g),
+                        1 + sum / weights * std::sin(pi * (0.5 - (y + 0.5) / 128)), 0.02)
+                << "level " << k << ", row " << y;
+    }
 }
 
 /// The directional albedo of a GGX surface, by quadrature over its half vectors (B. Karis 2013, Real Shading in Unreal Engine 4).

@@ -30,6 +30,7 @@ void expect_same(const GBufferImage& a, const GBufferImage& b)
     expect_same_bits(a.normal_vs, b.normal_vs, "normal");
     expect_same_bits(a.roughness, b.roughness, "roughness");
     expect_same_bits(a.metallic, b.metallic, "metallic");
+    expect_same_bits(a.dielectric_f0, b.dielectric_f0, "dielectric_f0");
     expect_same_bits(a.base_colour, b.base_colour, "base colour");
     expect_same_bits(a.radiance, b.radiance, "radiance");
     expect_same_bits(a.highlight, b.highlight, "highlight");

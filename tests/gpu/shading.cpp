@@ -33,6 +33,8 @@ double viewer_weight(ViewerFade fade, double away, double start)
     return std::clamp((away - start) / (1 - start), 0.0, 1.0);
 }
 
+constexpr double border_width = 0.1;
+
 double edge_weight(EdgeFade fade, glm::dvec2 offset)
 {
     const double radial = std::clamp(2 * glm::length(offset), 0.0, 1.0);
@@ -40,6 +42,11 @@ double edge_weight(EdgeFade fade, glm::dvec2 offset)
     case EdgeFade::off: return 1;
     case EdgeFade::manhattan: return std::clamp(1 - std::abs(offset.x) - std::abs(offset.y), 0.0, 1.0);
     case EdgeFade::linear: return 1 - radial;
+    case EdgeFade::border: {
+        const double inside =
+            std::clamp((0.5 - std::max(std::abs(offset.x), std::abs(offset.y))) / border_width, 0.0, 1.0);
+        return inside * inside * (3 - 2 * inside);
+    }
     case EdgeFade::squared: break;
     }
     return 1 - radial * radial;
@@ -66,7 +73,8 @@ TEST_P(Shading, IsTheFormulaAtEveryPixel)
 {
     const Picture       picture = make_picture(coloured());
     const TraceSettings settings{.thickness_m = 0.5, .max_distance_m = 50};
-    ParameterValues     passes = default_pass_values();
+    ParameterValues     passes   = report_passes();
+    passes.at("edge_fade_width") = border_width;
     for (const auto& [name, value] : GetParam()) passes.at(name) = value;
     const auto frame =
         prepare_frame(device(), picture.buffers, technique("hiz"), values_of(technique("hiz")), {settings, passes});
@@ -96,6 +104,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(ParameterValues{},
                     ParameterValues{{"metallic_exponent", 0}, chosen(ViewerFade::off), chosen(EdgeFade::off)},
                     ParameterValues{chosen(ViewerFade::off), chosen(EdgeFade::off)},
+                    ParameterValues{chosen(ViewerFade::off), chosen(EdgeFade::border)},
                     ParameterValues{{"metallic_exponent", 1.5}, chosen(ViewerFade::off), chosen(EdgeFade::off)},
                     ParameterValues{{"metallic_exponent", 0}, chosen(ViewerFade::linear), chosen(EdgeFade::off)},
                     ParameterValues{{"metallic_exponent", 0}, chosen(ViewerFade::cut), chosen(EdgeFade::manhattan)},

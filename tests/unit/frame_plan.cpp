@@ -58,7 +58,7 @@ std::string reason(const std::vector<PlannedPass>& plan, const std::string& pass
 
 TEST(Plan, WithoutAnythingThatReflectsNothingIsTraced)
 {
-    const auto plan = plan_frame(with_pyramid, frame(0, 0, 0, 0), default_pass_values());
+    const auto plan = plan_frame(with_pyramid, frame(0, 0, 0, 0), values_with({chosen(Gloss::blur)}));
     EXPECT_EQ(running(plan), std::set<std::string>{"composite"});
     for (const char* pass : {"classification", "rays", "depth_pyramid", "trace", "hit_colour", "blur"})
         EXPECT_EQ(reason(plan, pass), "no pixel reflects") << pass;
@@ -66,7 +66,7 @@ TEST(Plan, WithoutAnythingThatReflectsNothingIsTraced)
 
 TEST(Plan, ASmoothPictureInWhichEveryRayHitsNeedsTraceAndShadingAlone)
 {
-    const auto plan = plan_frame(with_pyramid, frame(400, 0, 400, 0), default_pass_values());
+    const auto plan = plan_frame(with_pyramid, frame(400, 0, 400, 0), values_with({chosen(Gloss::blur)}));
     EXPECT_EQ(running(plan),
               (std::set<std::string>{"classification", "rays", "depth_pyramid", "trace", "hit_colour", "composite"}));
     EXPECT_EQ(reason(plan, "trace"), "400 pixels reflect (40 %)");
@@ -76,7 +76,7 @@ TEST(Plan, ASmoothPictureInWhichEveryRayHitsNeedsTraceAndShadingAlone)
 
 TEST(Plan, TheNumberThatDecidedIsInTheReason)
 {
-    const auto plan = plan_frame(with_pyramid, frame(400, 100, 350, 10), default_pass_values());
+    const auto plan = plan_frame(with_pyramid, frame(400, 100, 350, 10), values_with({chosen(Gloss::blur)}));
     EXPECT_TRUE(running(plan).contains("blur"));
     EXPECT_THAT(reason(plan, "blur"), HasSubstr("25 %"));
 }
@@ -93,6 +93,32 @@ TEST(Plan, GlossIsDoneOneWay)
         running(plan_frame(with_pyramid, smooth, values_with({chosen(Gloss::cone)}))).contains("cone_pyramid"));
 }
 
+TEST(Plan, LobesAreDrawnAndReusedWhereAnythingIsRough)
+{
+    const FrameFacts drawn{.scene = true, .structures = {"depth_pyramid"}};
+    const auto       plan = plan_frame(drawn, frame(400, 100, 350, 10), values_with({chosen(Gloss::stochastic)}));
+    EXPECT_TRUE(running(plan).contains("ray_reuse"));
+    EXPECT_FALSE(running(plan).contains("blur") || running(plan).contains("environment"));
+    EXPECT_THAT(reason(plan, "ray_reuse"), HasSubstr("25 %"));
+    EXPECT_FALSE(running(plan_frame(drawn, frame(400, 0, 350, 10), values_with({chosen(Gloss::stochastic)})))
+                     .contains("ray_reuse"));
+}
+
+// S3's order: the blur works on what was traced, and up-sampling comes after it.
+TEST(Plan, TheBlurComesBeforeUpsamplingWhereItIsToldTo)
+{
+    const ParameterValues s3   = {chosen(Gloss::blur), chosen(BlurOrder::before_upsampling),
+                                  chosen(TraceResolution::half)};
+    const auto            plan = plan_frame({}, frame(400, 100, 350, 10), values_with(s3));
+    EXPECT_TRUE(running(plan).contains("ray_blur"));
+    EXPECT_FALSE(running(plan).contains("blur"));
+    const auto place = [&](const char* id) { return std::ranges::find(plan, id, &PlannedPass::id); };
+    EXPECT_LT(place("ray_blur"), place("upsampling"));
+    const auto full = plan_frame({}, frame(400, 100, 350, 10),
+                                 values_with({chosen(Gloss::blur), chosen(BlurOrder::before_upsampling)}));
+    EXPECT_TRUE(running(full).contains("blur") && !running(full).contains("ray_blur"));
+}
+
 TEST(Plan, TechniquesWithoutAPyramidBuildNone)
 {
     const auto plan = plan_frame({}, frame(400, 0, 400, 0), values_with({{"skip_unneeded_passes", 0}}));
@@ -102,8 +128,8 @@ TEST(Plan, TechniquesWithoutAPyramidBuildNone)
 // Switched off stays off; not needed runs.
 TEST(Plan, WithoutSkippingEveryPassRunsThatIsNotOff)
 {
-    const auto unculled =
-        running(plan_frame(with_pyramid, frame(0, 0, 0, 0), values_with({{"skip_unneeded_passes", 0}})));
+    const auto unculled = running(
+        plan_frame(with_pyramid, frame(0, 0, 0, 0), values_with({{"skip_unneeded_passes", 0}, chosen(Gloss::blur)})));
     EXPECT_TRUE(unculled.contains("trace"));
     EXPECT_TRUE(unculled.contains("blur"));
     const auto shading = running(plan_frame(with_pyramid, frame(400, 100, 300, 10),
@@ -188,11 +214,11 @@ TEST(PassChoices, AreEnumsByTheNamesOfTheParameter)
         EXPECT_EQ(parameter->choices.size(), count) << name;
         EXPECT_EQ(parse_parameter(*parameter, choice, "here"), value) << name;
     };
-    is("gloss", 3, "cone", choice_value(Gloss::cone));
+    is("gloss", 4, "cone", choice_value(Gloss::cone));
     is("filter_3x3", 3, "median3", choice_value(Filter3x3::median3));
-    is("upsampling_weights", 4, "depth_normal", choice_value(UpsamplingWeights::depth_normal));
+    is("blur_order", 2, "before_upsampling", choice_value(BlurOrder::before_upsampling));
     is("pass_set", 2, "all", choice_value(PassSet::all));
-    EXPECT_EQ(choice<Gloss>(default_pass_values()), Gloss::blur);
+    EXPECT_EQ(choice<Gloss>(default_pass_values()), Gloss::stochastic);
     EXPECT_EQ(choice<BounceMode>(values_with({chosen(BounceMode::history)})), BounceMode::history);
 }
 

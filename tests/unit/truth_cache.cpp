@@ -143,7 +143,7 @@ TEST_F(TruthCache, GlossyTruthReadsWhatItWrote)
         EXPECT_EQ(cached.rays, computed.rays);
         EXPECT_EQ(cached.radiance, computed.radiance);
         EXPECT_EQ(cached.standard_error, computed.standard_error);
-        EXPECT_EQ(cached.weight, computed.weight);
+        EXPECT_EQ(cached.albedo, computed.albedo);
     }
     EXPECT_EQ(files().size(), 1U);
     cached_glossy_truth(folder_, scene, gbuffer, {}, {.rays = 9});

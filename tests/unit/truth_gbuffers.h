@@ -31,6 +31,7 @@ inline GBufferImage empty_gbuffer(const View& view)
     gbuffer.roughness.resize(count);
     gbuffer.metallic.resize(count);
     gbuffer.base_colour.resize(count);
+    gbuffer.dielectric_f0.resize(count); // what is no metal does not reflect
     gbuffer.radiance.resize(count);
     gbuffer.highlight.resize(count);
     gbuffer.object_id.resize(count);

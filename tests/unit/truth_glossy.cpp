@@ -25,6 +25,7 @@ GBufferImage tilted_plane(double angle, float roughness, glm::ivec2 size_px = {6
     for (int y = 0; y < size_px.y; ++y)
         for (int x = 0; x < size_px.x; ++x) set_pixel(gbuffer, x, y, 5, {0, std::sin(angle), std::cos(angle)}, 1);
     std::ranges::fill(gbuffer.roughness, roughness);
+    std::ranges::fill(gbuffer.base_colour, glm::vec3(1)); // Fresnel's factor is 1
     return gbuffer;
 }
 
@@ -48,10 +49,10 @@ double albedo_by_quadrature(double angle, double alpha)
     return 2 * sum * (0.5 * pi / rows) * (pi / columns);
 }
 
-double mean_of(const std::vector<float>& values)
+double mean_of(const std::vector<glm::vec3>& values)
 {
     double sum = 0;
-    for (const float value : values) sum += double(value);
+    for (const glm::vec3& value : values) sum += double(value.g);
     return sum / double(values.size());
 }
 
@@ -65,26 +66,73 @@ TEST(GlossyTruth, WhiteSurroundingsGiveTheAlbedo)
             const GBufferImage gbuffer = tilted_plane(angle, roughness);
             const GlossyTruth  truth   = glossy_truth(SceneBvh(scene), scene, gbuffer, {}, {});
             const double       alpha   = double(roughness) * double(roughness);
-            EXPECT_NEAR(mean_of(truth.weight), albedo_by_quadrature(angle, alpha), 2e-3) << roughness << ' ' << angle;
-            for (size_t i = 0; i < truth.weight.size(); ++i) ASSERT_NEAR(truth.radiance[i].g, truth.weight[i], 1e-6F);
+            EXPECT_NEAR(mean_of(truth.albedo), albedo_by_quadrature(angle, alpha), 2e-3) << roughness << ' ' << angle;
+            for (size_t i = 0; i < truth.albedo.size(); ++i) ASSERT_NEAR(truth.radiance[i].g, truth.albedo[i].g, 1e-6F);
         }
 }
 
-// Whatever the lobe, each ray meets the same glow.
-TEST(GlossyTruth, InsideAGlowingBallEverythingGlows)
+// Whatever the lobe, each ray meets the same glow; also where the ball reflects its own glow: what it reflects, it holds back.
+class GlowingBall : public testing::TestWithParam<float> {}; // roughness; 1: it does not reflect
+
+TEST_P(GlowingBall, EverythingInsideGlows)
 {
     Scene scene;
-    scene.ambient                  = glm::vec3(0);
-    const uint32_t ball            = add_material(scene, {0, 0, 0}, 0);
-    scene.materials[ball].emissive = {0.25F, 0.5F, 2};
+    scene.ambient                   = glm::vec3(0);
+    const uint32_t ball             = add_material(scene, {0.5F, 0.6F, 0.7F}, GetParam() < 1 ? 1 : 0);
+    scene.materials[ball].roughness = GetParam();
+    scene.materials[ball].emissive  = {0.25F, 0.5F, 2};
     add_sphere(scene, ball, {0, 0, -5}, 20, 32);
     const GBufferImage gbuffer = tilted_plane(0.3, 0.6F, {16, 16});
     const GlossyTruth  truth   = glossy_truth(SceneBvh(scene), scene, gbuffer, {}, {});
-    for (size_t i = 0; i < truth.weight.size(); ++i) {
-        ASSERT_GT(truth.weight[i], 0.5F);
-        ASSERT_NEAR(truth.radiance[i].b / truth.weight[i], 2, 1e-5F);
-        ASSERT_NEAR(truth.radiance[i].r / truth.weight[i], 0.25F, 1e-6F);
+    for (size_t i = 0; i < truth.albedo.size(); ++i) {
+        ASSERT_GT(truth.albedo[i].g, 0.5F);
+        ASSERT_NEAR(truth.radiance[i].b / truth.albedo[i].b, 2, 1e-5F);
+        ASSERT_NEAR(truth.radiance[i].r / truth.albedo[i].r, 0.25F, 1e-6F);
     }
+}
+
+INSTANTIATE_TEST_SUITE_P(Roughness, GlowingBall, testing::Values(0.0F, 0.3F, 0.7F, 1.0F));
+
+double mean_of(const Image& picture)
+{
+    double sum = 0;
+    for (const float value : picture.values) sum += double(value);
+    return sum / double(picture.values.size());
+}
+
+/// A plane of that material in surroundings of radiance 1, which its own light knows as the ambient one.
+Image plane_in_white(GBufferImage gbuffer, float base, float metallic, float dielectric_f0)
+{
+    Scene scene;
+    scene.background = scene.ambient = glm::vec3(1);
+    std::ranges::fill(gbuffer.base_colour, glm::vec3(base));
+    std::ranges::fill(gbuffer.metallic, metallic);
+    std::ranges::fill(gbuffer.dielectric_f0, dielectric_f0);
+    std::ranges::fill(gbuffer.radiance, glm::vec3(base));
+    const TraceSettings settings{.dielectric_max_roughness = 1};
+    return true_picture(glossy_truth(SceneBvh(scene), scene, gbuffer, settings, {}), gbuffer, scene.ambient);
+}
+
+// The white furnace: a white dielectric gives back all that arrives, a white metal its directional albedo, since single scattering
+// loses the rest.
+TEST(TruePicture, SplitsEnergyInAWhiteFurnace)
+{
+    for (const float roughness : {0.0F, 0.3F, 0.7F})
+        for (const double angle : {0.0, 1.2}) {
+            const GBufferImage gbuffer = tilted_plane(angle, roughness, {32, 32});
+            EXPECT_NEAR(mean_of(plane_in_white(gbuffer, 1, 0, 0.04F)), 1, 1e-5) << roughness << ' ' << angle;
+            const double albedo =
+                roughness > 0 ? albedo_by_quadrature(angle, double(roughness) * double(roughness)) : 1;
+            EXPECT_NEAR(mean_of(plane_in_white(gbuffer, 1, 1, 0.04F)), albedo, 4e-3) << roughness << ' ' << angle;
+        }
+}
+
+TEST(TruePicture, ABlackSmoothDielectricReflectsItsF0AtNormalIncidence)
+{
+    for (const float f0 : {0.02F, 0.04F, 0.17F}) // water, glass, diamond
+        EXPECT_NEAR(mean_of(plane_in_white(tilted_plane(0, 0, {8, 8}), 0, 0, f0)), double(f0), 1e-6);
+    // At 60 degrees, by Schlick: 0.04 + 0.96 (1 - 0.5)^5.
+    EXPECT_NEAR(mean_of(plane_in_white(tilted_plane(std::numbers::pi / 3, 0, {8, 8}), 0, 0, 0.04F)), 0.07, 1e-6);
 }
 
 /// Mirror floor, wall with posts before it, and light: some of it on screen.
@@ -101,6 +149,7 @@ struct Room {
         for (const double x_m : {-3.0, 3.0}) add_quad(scene, post, {x_m - 0.5, -1, -6}, {1, 0, 0}, {0, 3, 0});
         scene.lights.push_back({});
         std::ranges::fill(gbuffer.roughness, roughness);
+        std::ranges::fill(gbuffer.base_colour, glm::vec3(1));
         for (size_t i = 0; i < gbuffer.radiance.size(); ++i)
             gbuffer.radiance[i] = glm::vec3(0.2F + 0.01F * float(pixel_at(i, gbuffer.view.size_px).y), 0.4F, 0.1F);
     }
@@ -113,7 +162,8 @@ struct Room {
 TEST(GlossyTruth, SmoothIsTheSceneTruthToTheLastBit)
 {
     for (const float roughness : {0.0F, 0.0199F}) {
-        const Room        room(roughness);
+        Room room(roughness);
+        room.scene.lights.clear(); // whose highlights the scene truth does not have
         const SceneTruth  mirror = scene_truth(SceneBvh(room.scene), room.scene, room.gbuffer, {});
         const GlossyTruth truth  = room.truth();
         EXPECT_EQ(truth.radiance, mirror.radiance);
@@ -125,7 +175,8 @@ TEST(GlossyTruth, SmoothIsTheSceneTruthToTheLastBit)
 // The next lobe is a twentieth of a degree wide: almost the mirror.
 TEST(GlossyTruth, NearlySmoothIsNearlyTheMirror)
 {
-    const Room        room(mirror_roughness);
+    Room room(mirror_roughness);
+    room.scene.lights.clear();
     const SceneTruth  mirror = scene_truth(SceneBvh(room.scene), room.scene, room.gbuffer, {});
     const GlossyTruth truth  = room.truth();
     size_t            far = 0, traced = 0;

@@ -33,7 +33,9 @@ Bounce make_bounce(Gpu& gpu, const PreparedFrame& frame, const DerivedRays* from
     bounce.set_up    = make_colour_pass(gpu, frame, "passes/bounce_rays.comp", defines, arriving);
     bounce.launch    = make_launch_pass(gpu, bounce.rays->rays.count, bounce.rays->rays.launch, RAYS_PER_GROUP);
     bounce.technique = make_technique_passes(gpu, frame, *buffers.gbuffer, bounce.rays->rays, traced);
-    bounce.colour    = make_colour_pass(gpu, frame, "passes/bounce_colour.comp", {}, traced);
+    Defines colour_defines;
+    add_environment(gpu, frame, colour_defines, traced);
+    bounce.colour = make_colour_pass(gpu, frame, "passes/bounce_colour.comp", colour_defines, traced);
     return bounce;
 }
 

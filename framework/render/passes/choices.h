@@ -21,13 +21,13 @@ PASS_CHOICE(PassSet, pass_set, all, shading)
 PASS_CHOICE(TraceResolution, trace_resolution, full, half, quarter)
 PASS_CHOICE(HitShading, hit_shading, diffuse, lit, mirrored)
 PASS_CHOICE(ViewerFade, viewer_fade, off, linear, cut, smooth)
-PASS_CHOICE(EdgeFade, edge_fade, off, manhattan, linear, squared)
+PASS_CHOICE(EdgeFade, edge_fade, off, manhattan, linear, squared, border)
 PASS_CHOICE(FadeOperator, fade_operator, product, minimum)
 PASS_CHOICE(Attenuation, attenuation, off, inverse, inverse_square)
 PASS_CHOICE(BounceMode, bounce_mode, off, history, direct)
-PASS_CHOICE(UpsamplingWeights, upsampling_weights, bilinear, depth, depth_normal, reflectivity)
+PASS_CHOICE(BlurOrder, blur_order, after_upsampling, before_upsampling)
 PASS_CHOICE(Filter3x3, filter_3x3, off, box3, median3)
-PASS_CHOICE(Gloss, gloss, off, blur, cone)
+PASS_CHOICE(Gloss, gloss, off, blur, cone, stochastic)
 PASS_CHOICE(Reflectance, reflectance, metallic, ggx)
 PASS_CHOICE(HistoryClamping, history_clamping, off, minmax, variance)
 
@@ -46,6 +46,12 @@ template <typename Enum> constexpr double choice_value(Enum chosen) { return sta
 template <typename Enum> ParameterValues::value_type chosen(Enum value)
 {
     return {std::string(choice_names(value).parameter), choice_value(value)};
+}
+
+/// Whether the rays of rough surfaces are drawn from their lobes; the pass ray_reuse makes reflections of them.
+inline bool draws_lobe_rays(const ParameterValues& values)
+{
+    return choice<Gloss>(values) == Gloss::stochastic && choice<PassSet>(values) == PassSet::all;
 }
 
 /// Side in pixels of the blocks in which one pixel has rays.

@@ -10,6 +10,7 @@ PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, 
     if (!facts.scene) return {PassDecision::off, "an imported G-buffer has no environment"};
     const TraceCounts& trace = statistics.trace;
     if (statistics.gbuffer.reflecting_pixels == 0) return {PassDecision::not_needed, "no pixel reflects"};
+    if (draws_lobe_rays(values)) return {PassDecision::not_needed, "gloss = stochastic: each ray looks it up"};
     if (trace.hits < trace.rays)
         return {PassDecision::needed,
                 fmt::format("{} of the rays missed", percent(trace.rays - trace.hits, trace.rays))};
@@ -21,9 +22,11 @@ PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, 
 
 RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
 {
-    return [&frame, pass = make_shared_pass(gpu, frame, "passes/environment.comp")](const auto& commands) {
-        dispatch_indirect(commands, *pass, frame.buffers->tiles.launch);
-    };
+    Defines  defines;
+    Bindings bindings;
+    add_environment(gpu, frame, defines, bindings);
+    auto pass = std::make_shared<ComputePass>(make_pass(gpu, frame, "passes/environment.comp", defines, bindings));
+    return [&frame, pass](const auto& commands) { dispatch_indirect(commands, *pass, frame.buffers->tiles.launch); };
 }
 
 } // namespace

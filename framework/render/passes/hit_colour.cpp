@@ -18,16 +18,22 @@ RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
 std::vector<Parameter> parameters()
 {
     return {
-        choice_parameter(HitShading::diffuse,
-                         "light of the hit surface. diffuse: the view-independent part; lit: with highlights as the "
-                         "camera sees them; mirrored: with highlights as the reflector sees them"),
-        choice_parameter(ViewerFade::linear,
+        choice_parameter(
+            HitShading::mirrored,
+            "light of the hit surface. diffuse: the view-independent part; lit: with highlights as the "
+            "camera sees them; mirrored: with highlights as the reflector sees them; a frame without a scene has "
+            "no lights, and is lit"),
+        choice_parameter(ViewerFade::off,
                          "weight of reflections that point toward the viewer, with a = -R.z. linear: a; cut: 1; both "
                          "are 0 where a is below 0; smooth: (a - viewer_fade_start) / (1 - viewer_fade_start)"),
         real_parameter("viewer_fade_start", 0, -1, 0.99, "a = -R.z at which viewer_fade = smooth starts"),
-        choice_parameter(EdgeFade::manhattan,
-                         "weight of hits by their distance r from the image's centre. manhattan: 1 - |u-1/2| - "
-                         "|v-1/2|; linear: 1 - 2r; squared: 1 - (2r)^2"),
+        choice_parameter(
+            EdgeFade::border,
+            "weight of hits by where they are. By their distance r from the image's centre: manhattan: 1 - "
+            "|u-1/2| - |v-1/2|; linear: 1 - 2r; squared: 1 - (2r)^2. border: 1, and smoothly down to 0 at the "
+            "image's border over edge_fade_width"),
+        real_parameter("edge_fade_width", 0.04, 1e-4, 1,
+                       "width of edge_fade = border, as a share of the image's height"),
         real_parameter("depth_step_fade_m", 0, 0, 1e6,
                        "depth difference to a neighbouring pixel at which a hit's weight reaches 0; 0: no such fade"),
         choice_parameter(FadeOperator::product, "how the fades are combined into one weight"),

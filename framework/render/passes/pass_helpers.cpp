@@ -1,7 +1,5 @@
 #include "render/passes/pass_helpers.h"
 
-#include "core/error.h"
-
 namespace ssrlab {
 
 Parameter boolean_parameter(const char* name, bool fallback, const char* doc)
@@ -89,6 +87,7 @@ ComputePass make_composed_pass(Gpu& gpu, const PreparedFrame& frame, ShaderSourc
                      {"small_colour_image", buffers.small_colour},
                      {"block_pixel_image", buffers.block_pixel},
                      {"shaded_image", buffers.shaded},
+                     {"Ambient", buffers.ambient},
                      {"dfg_table", {buffers.dfg_table, buffers.dfg_sampler}}});
     if (const GpuScene* scene = buffers.gbuffer->scene.get())
         bindings.insert({{"Frame", buffers.gbuffer->frame_uniforms},
@@ -110,8 +109,6 @@ ComputePass make_colour_pass(Gpu& gpu, const PreparedFrame& frame, const std::st
                              Bindings more)
 {
     if (choice<HitShading>(frame.settings.passes) == HitShading::mirrored) {
-        if (!frame.buffers->gbuffer->scene)
-            throw_spec_error("hit_shading = mirrored needs the scene's lights; this G-buffer came without a scene");
         defines.emplace("MIRRORED_LIGHT", "1");
     }
     if (frame.hidden_layer) {
@@ -119,15 +116,32 @@ ComputePass make_colour_pass(Gpu& gpu, const PreparedFrame& frame, const std::st
         defines.emplace("SECOND_LAYER", "1");
         more.insert({{"second_depth_words", layer.depth.words},
                      {"second_normal_image", layer.normal},
+                     {"second_dielectric_image", layer.dielectric},
                      {"second_material_image", layer.material},
                      {"second_radiance_image", layer.radiance},
                      {"second_highlight_image", layer.highlight}});
+    }
+    if (draws_lobe_rays(frame.settings.passes)) {
+        defines.emplace("LOBE_RAYS", "1");
+        more.merge(lobe_ray_bindings(gpu, frame));
+        add_environment(gpu, frame, defines, more);
     }
     if (frame.cone) {
         defines.emplace("CONE", "1");
         more.insert({"cone_pyramid", frame.buffers->cone->cells});
     }
     return make_pass(gpu, frame, shader, defines, more);
+}
+
+void add_environment(Gpu& gpu, const PreparedFrame& frame, Defines& defines, Bindings& bindings)
+{
+    GpuScene* scene = frame.buffers->gbuffer->scene.get();
+    if (scene == nullptr || frame.settings.passes.at("environment_fallback") == 0) return;
+    const GBufferCounts& counts = frame.statistics.gbuffer;
+    const bool           smooth = counts.roughness_pixels[0] == counts.reflecting_pixels; // looks up the map alone
+    const GpuImage&      levels = smooth ? scene->environment_map : blurred_environment(gpu, *scene);
+    defines.emplace("ENVIRONMENT", "1");
+    bindings.insert({"environment_levels", {levels, scene->environment_sampler}});
 }
 
 void record_copy(const vk::raii::CommandBuffer& commands, const GpuImage& source, const GpuImage& target)

@@ -41,9 +41,14 @@ ComputePass make_composed_pass(Gpu& gpu, const PreparedFrame& frame, ShaderSourc
 /// The same, to be kept by a record function.
 std::shared_ptr<ComputePass> make_shared_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader,
                                               const Defines& defines = {});
-/// A shader that includes passes/ray_colour.glsl. Throws SpecError for hit_shading = mirrored without a scene.
+/// A shader that includes passes/ray_colour.glsl.
 ComputePass make_colour_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader, Defines defines = {},
                              Bindings more = {});
+
+/// With gloss = stochastic: what each ray found and where (passes/ray_reuse.comp).
+Bindings lobe_ray_bindings(Gpu& gpu, const PreparedFrame& frame);
+/// For a shader that looks up the environment (passes/environment_lobe.glsl), if the frame has one and falls back on it.
+void add_environment(Gpu& gpu, const PreparedFrame& frame, Defines& defines, Bindings& bindings);
 
 // Commands.
 void record_copy(const vk::raii::CommandBuffer& commands, const GpuImage& source, const GpuImage& target);

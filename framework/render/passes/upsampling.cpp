@@ -15,21 +15,26 @@ RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
 
 Pass upsampling_pass()
 {
-    return {
-        .id         = "upsampling",
-        .summary    = "Gives each pixel without rays the reflections of the 2 x 2 traced pixels around it",
-        .cite       = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling",
-                       "B. Karis 2014, Physically Based Shading on Mobile"},
-        .parameters = {choice_parameter(UpsamplingWeights::reflectivity,
-                                        "weights of the four neighbours; each choice adds a factor to the one before. "
-                                        "reflectivity: the directional albedo. If all weights are zero, the most "
-                                        "similar neighbour is used"),
-                       real_parameter("upsampling_depth_tolerance", 0.01, 1e-6, 1e6,
-                                      "depth difference, as a share of the distance, at which the weight is 1/e"),
-                       real_parameter("upsampling_reflectivity_tolerance", 0.05, 1e-6, 1e6,
-                                      "difference of reflectivity at which the weight is 1/e")},
-        .decide     = needed_at_lower_resolution,
-        .prepare    = prepare};
+    return {.id         = "upsampling",
+            .summary    = "Gives each pixel without rays the reflections of the 2 x 2 traced pixels around it",
+            .cite       = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling",
+                           "B. Karis 2014, Physically Based Shading on Mobile"},
+            .parameters = {boolean_parameter(
+                               "upsampling_distance", true,
+                               "the four neighbours weigh by their distance (bilinear). If all weights are zero, "
+                               "the most similar neighbour is used"),
+                           boolean_parameter("upsampling_depth", true,
+                                             "the four neighbours weigh by their distance from the pixel's plane"),
+                           boolean_parameter("upsampling_normal", true,
+                                             "the four neighbours weigh by their normal's cosine ^ 32"),
+                           boolean_parameter("upsampling_reflectivity", true,
+                                             "the four neighbours weigh by their reflectivity, the directional albedo"),
+                           real_parameter("upsampling_depth_tolerance", 0.01, 1e-6, 1e6,
+                                          "depth difference, as a share of the distance, at which the weight is 1/e"),
+                           real_parameter("upsampling_reflectivity_tolerance", 0.05, 1e-6, 1e6,
+                                          "difference of reflectivity at which the weight is 1/e")},
+            .decide     = needed_at_lower_resolution,
+            .prepare    = prepare};
 }
 
 } // namespace ssrlab

@@ -1,0 +1,71 @@
+// The reflection of a rough pixel from its own ray and those of its neighbours: each counts by the pixel's own BRDF toward what the ray
+// found, over the density with which the neighbour drew it, and the sum is divided by the sum of these ratios.
+// T. Stachowiak 2015, "Stochastic Screen-Space Reflections", Advances in Real-Time Rendering, SIGGRAPH.
+#include "api/view.glsl"
+#include "api/hash.glsl"
+#include "rays/reflecting.glsl"
+#include "rays/lobe.glsl"
+#include "pass/parameters"
+#include "passes/blocks.glsl"
+#include "rays/tiles.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 0, binding = 4, rgba16f) uniform readonly image2D reflection_image;
+layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D filtered_image;
+layout(set = 0, binding = 6, r32ui) uniform readonly uimage2D block_pixel_image;
+layout(set = 0, binding = 7, rgba16f) uniform readonly image2D ray_light_image; // of each ray: colour, weight; ray after ray, an image high
+layout(set = 0, binding = 8, rgba32f) uniform readonly image2D ray_end_image;   // what it met, in view space; the density of its direction
+
+const float largest_ratio = 8.0; // a ray that its own pixel hardly ever draws must not decide
+
+#include "passes/reflector.glsl"
+
+// The pixel that was traced in place of this one.
+ivec2 traced_pixel(ivec2 pixel)
+{
+    if (block_px == 1) return pixel;
+    uint found = imageLoad(block_pixel_image, pixel / block_px).x;
+    return found == NO_PIXEL ? ivec2(-1) : unpack_pixel(found);
+}
+
+// Evenly over a disk, the pixel itself first: H. Vogel 1979, "A better way to construct the sunflower head".
+ivec2 neighbour(ivec2 pixel, int i, float radius_px, float turn)
+{
+    float distance_px = radius_px * sqrt(float(i) / float(reuse_neighbours)), angle = turn + 2.3999632 * float(i);
+    return pixel + ivec2(round(distance_px * vec2(cos(angle), sin(angle))));
+}
+
+void main()
+{
+    ivec2 pixel;
+    if (!listed_pixel(pixel) || any(greaterThanEqual(pixel, size_px)) || !reflects(pixel)) return;
+    float roughness = imageLoad(normal_image, pixel).w;
+    vec4  own_light = imageLoad(reflection_image, pixel);
+    imageStore(filtered_image, pixel, own_light);
+    if (!(roughness >= mirror_roughness)) return;
+
+    Reflector own    = reflector_at(pixel);
+    float radius_px  = max(float(block_px) * 1.5, reuse_radius * roughness * float(size_px.y));
+    float turn       = 6.2831853 * float(pcg(uint(pixel.x) + pcg(uint(pixel.y)))) / 4294967296.0;
+    vec4  sum        = vec4(0);
+    float total      = 0.0;
+    for (int i = 0; i < reuse_neighbours; ++i)
+    {
+        ivec2 place = neighbour(pixel, i, radius_px, turn);
+        if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size_px))) continue;
+        place = traced_pixel(place);
+        if (place.x < 0) continue;
+        float alike = same_surface(own, place);
+        for (int ray = 0; ray < rays_per_pixel; ++ray)
+        {
+            ivec2 texel = place + ivec2(0, ray * size_px.y);
+            vec4  light = imageLoad(ray_light_image, texel), end = imageLoad(ray_end_image, texel);
+            vec3  to_light = normalize(end.xyz - own.position_vs);
+            if (light.a < 0.0 || !(end.w > 0.0) || !(dot(own.normal_vs, to_light) > 0.0)) continue;
+            float ratio = alike * min(lobe_value(own.normal_vs, own.to_eye_vs, to_light, own.alpha) / end.w, largest_ratio);
+            sum += ratio * vec4(light.rgb * light.a, light.a);
+            total += ratio;
+        }
+    }
+    if (total > 0.0) imageStore(filtered_image, pixel, sum.a > 0.0 ? vec4(sum.rgb / sum.a, sum.a / total) : vec4(0));
+}

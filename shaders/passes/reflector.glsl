@@ -1,0 +1,27 @@
+// A pixel as a rough reflector, and whether another pixel lies on its surface. After rays/reflecting.glsl and pass/parameters.
+struct Reflector
+{
+    vec3  position_vs, normal_vs, to_eye_vs;
+    float alpha;
+};
+
+Reflector reflector_at(ivec2 pixel)
+{
+    vec4      stored = imageLoad(normal_image, pixel);
+    Reflector own;
+    own.position_vs = px_to_vs(vec3(vec2(pixel) + 0.5, load_depth(pixel)));
+    own.to_eye_vs   = orthographic != 0 ? vec3(0, 0, 1) : -normalize(own.position_vs);
+    own.normal_vs   = normalize(stored.xyz);
+    own.normal_vs   = dot(own.normal_vs, own.to_eye_vs) < 0.0 ? -own.normal_vs : own.normal_vs;
+    own.alpha       = stored.w * stored.w;
+    return own;
+}
+
+// Of another pixel's rays: 0 where it lies off the plane of this one.
+float same_surface(Reflector own, ivec2 other)
+{
+    float depth = load_depth(other);
+    if (depth <= 0.0) return 0.0;
+    float step_m = abs(dot(own.normal_vs, px_to_vs(vec3(vec2(other) + 0.5, depth)) - own.position_vs));
+    return exp(-step_m / (reuse_depth_tolerance * depth_to_distance(depth)));
+}

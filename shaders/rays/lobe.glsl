@@ -1,0 +1,50 @@
+// The GGX lobe of a rough surface, whose half vectors are drawn from the normals that are visible to the eye. After api/hash.glsl.
+// J. Dupuy, A. Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps"; E. Heitz 2014, "Understanding the Masking-Shadowing Function
+// in Microfacet-Based BRDFs".
+#include "rays/lobe_threshold.glsl"
+
+float smith_lambda(float cosine, float alpha)
+{
+    return 0.5 * (sqrt(1.0 + alpha * alpha * (1.0 / (cosine * cosine) - 1.0)) - 1.0);
+}
+
+// D / (4 n.v): what the density of a drawn direction and the BRDF times its cosine, without Fresnel's factor, share.
+float lobe_common(vec3 normal, vec3 to_eye, vec3 to_light, float alpha)
+{
+    float n_h = dot(normal, normalize(to_eye + to_light)), spread = n_h * n_h * (alpha * alpha - 1.0) + 1.0;
+    return alpha * alpha / (3.14159265 * spread * spread * 4.0 * max(dot(normal, to_eye), 1e-4));
+}
+
+float lobe_density(vec3 normal, vec3 to_eye, vec3 to_light, float alpha)
+{
+    return lobe_common(normal, to_eye, to_light, alpha) / (1.0 + smith_lambda(max(dot(normal, to_eye), 1e-4), alpha));
+}
+
+float lobe_value(vec3 normal, vec3 to_eye, vec3 to_light, float alpha)
+{
+    float masked = smith_lambda(max(dot(normal, to_eye), 1e-4), alpha) + smith_lambda(max(dot(normal, to_light), 1e-4), alpha);
+    return lobe_common(normal, to_eye, to_light, alpha) / (1.0 + masked);
+}
+
+vec3 drawn_half_vector(vec3 normal, vec3 to_eye, float alpha, vec2 random)
+{
+    vec3 other   = abs(normal.z) < 0.9 ? vec3(0, 0, 1) : vec3(1, 0, 0);
+    vec3 tangent = normalize(cross(other, normal));
+    mat3 frame   = mat3(tangent, cross(normal, tangent), normal);
+    vec3 view    = to_eye * frame;
+    vec3 stretched = normalize(vec3(alpha * view.xy, max(view.z, 1e-4)));
+    float z = 1.0 - random.x * (1.0 + stretched.z), sine = sqrt(clamp(1.0 - z * z, 0.0, 1.0)), turn = 6.2831853 * random.y;
+    vec3 cap = vec3(sine * cos(turn), sine * sin(turn), z) + stretched;
+    return frame * normalize(vec3(alpha * cap.xy, max(cap.z, 0.0)));
+}
+
+// Two numbers in [0, 1). The rays of 4 x 4 pixels are one well spread set, since neighbours use each other's: R2 of M. Roberts 2018, "The
+// Unreasonable Effectiveness of Quasirandom Sequences", in the order of a Bayer matrix.
+vec2 lobe_random(ivec2 pixel, int ray, int rays, int attempt)
+{
+    int  x = pixel.x & 3, y = pixel.y & 3, mixed = x ^ y;
+    int  place = (mixed & 1) << 3 | (y & 1) << 2 | (mixed & 2) | y >> 1;
+    uint block = pcg(uint(pixel.x >> 2) + pcg(uint(pixel.y >> 2) + pcg(uint(attempt))));
+    vec2 shift = vec2(block & 0xFFFFu, block >> 16) / 65536.0;
+    return fract(shift + float(place * rays + ray + 1) * vec2(0.75487767, 0.56984029));
+}
