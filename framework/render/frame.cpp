@@ -204,7 +204,10 @@ TraceCounts count_hits(Gpu& gpu, PreparedFrame& frame)
     const Buffer counts   = make_buffer(gpu, 16);
     Bindings     bindings = bindings_of(*frame.buffers, *frame.rays);
     bindings.insert({{"View", frame.buffers->view}, {"TraceStatistics", counts}});
-    const ComputePass count = make_compute_pass(gpu, compile_shader({.file = "trace/trace_statistics.comp"}), bindings);
+    Constants constants;
+    add_reflecting(constants, frame.settings.trace);
+    const ComputePass count =
+        make_compute_pass(gpu, compile_shader({.file = "trace/trace_statistics.comp"}), bindings, constants);
     submit(gpu, [&](const auto& commands) {
         commands.fillBuffer(*counts.buffer, 0, VK_WHOLE_SIZE, 0);
         record_rays(commands, frame.trace, *frame.buffers);

@@ -141,6 +141,11 @@ private:
         const glm::dvec3 below    = glm::max(glm::dvec3(end.radiance) - stand_in, 0.0);
         light += path.throughput * (1.0 - weight) * below; // its mean over the lobe is that of the albedo
         if (!(sample.weight > 0)) return;
+        const double side = glm::dot(end.hit.normal_ws, ray.direction_ws) > 0 ? -1 : 1;
+        if (side * glm::dot(end.hit.normal_ws, sample.direction) <= 0) {
+            light += path.throughput * weight * glm::dvec3(end.radiance); // interpolated normals lead into the triangle
+            return;
+        }
         row.paths.push_back({path.sample, path.throughput * weight, roughness});
         row.rays.push_back({point_ws, sample.direction, self_hit_share * std::max(1.0, end.hit.t),
                             std::numeric_limits<double>::infinity()});

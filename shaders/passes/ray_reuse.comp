@@ -54,7 +54,7 @@ void main()
         ivec2 place = neighbour(pixel, i, radius_px, turn);
         if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size_px))) continue;
         place = traced_pixel(place);
-        if (place.x < 0) continue;
+        if (place.x < 0 || !reflects(place)) continue;
         float alike = same_surface(own, place);
         for (int ray = 0; ray < rays_per_pixel; ++ray)
         {

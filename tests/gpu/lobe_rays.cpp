@@ -13,7 +13,7 @@ GBufferImage floor_before_glow(float roughness)
     for (size_t i = 0; i < image.depth.size(); ++i) {
         image.base_colour[i] = glm::vec3(1);
         if (image.metallic[i] > 0) image.roughness[i] = roughness;
-        if (image.metallic[i] == 0) image.radiance[i] = {0.25F, 0.5F, 1};
+        image.radiance[i] = {0.25F, 0.5F, 1}; // the floor's, too: grazing rays meet its boxes
     }
     return image;
 }

@@ -33,7 +33,7 @@ double viewer_weight(ViewerFade fade, double away, double start)
     return std::clamp((away - start) / (1 - start), 0.0, 1.0);
 }
 
-constexpr double border_width = 0.1;
+constexpr double border_width = 0.3;
 
 double edge_weight(EdgeFade fade, glm::dvec2 offset)
 {

@@ -95,8 +95,8 @@ TEST(Plan, GlossIsDoneOneWay)
 
 TEST(Plan, LobesAreDrawnAndReusedWhereAnythingIsRough)
 {
-    const FrameFacts drawn{.scene = true, .structures = {"depth_pyramid"}};
-    const auto       plan = plan_frame(drawn, frame(400, 100, 350, 10), values_with({chosen(Gloss::stochastic)}));
+    const FrameFacts drawn = facts_with_pyramid(true);
+    const auto       plan  = plan_frame(drawn, frame(400, 100, 350, 10), values_with({chosen(Gloss::stochastic)}));
     EXPECT_TRUE(running(plan).contains("ray_reuse"));
     EXPECT_FALSE(running(plan).contains("blur") || running(plan).contains("environment"));
     EXPECT_THAT(reason(plan, "ray_reuse"), HasSubstr("25 %"));

@@ -81,6 +81,7 @@ TEST_P(GlowingBall, EverythingInsideGlows)
     const uint32_t ball             = add_material(scene, {0.5F, 0.6F, 0.7F}, GetParam() < 1 ? 1 : 0);
     scene.materials[ball].roughness = GetParam();
     scene.materials[ball].emissive  = {0.25F, 0.5F, 2};
+    scene.background                = scene.materials[ball].emissive; // seen through edges between triangles
     add_sphere(scene, ball, {0, 0, -5}, 20, 32);
     const GBufferImage gbuffer = tilted_plane(0.3, 0.6F, {16, 16});
     const GlossyTruth  truth   = glossy_truth(SceneBvh(scene), scene, gbuffer, {}, {});
