@@ -48,7 +48,8 @@ void main()
     float radius_px  = max(float(block_px) * 1.5, reuse_radius * roughness * float(size_px.y));
     float turn       = 6.2831853 * float(pcg(uint(pixel.x) + pcg(uint(pixel.y)))) / 4294967296.0;
     vec4  sum        = vec4(0);
-    float total      = 0.0;
+    vec3  brightest  = vec3(0);
+    float total = 0.0, most = 0.0, next = 0.0;
     for (int i = 0; i < reuse_neighbours; ++i)
     {
         ivec2 place = neighbour(pixel, i, radius_px, turn);
@@ -65,7 +66,13 @@ void main()
             float ratio = alike * min(lobe_value(own.normal_vs, own.to_eye_vs, to_light, own.alpha) / end.w, largest_ratio);
             sum += ratio * vec4(light.rgb * light.a, light.a);
             total += ratio;
+            float bright = light.a * dot(light.rgb, vec3(0.2126, 0.7152, 0.0722));
+            if (bright > most) brightest = ratio * light.a * light.rgb;
+            next = max(next, min(bright, most));
+            most = max(most, bright);
         }
     }
+    // One ray that alone met something bright is a speck: it counts for no more than the next brightest.
+    if (most > 0.0) sum.rgb -= brightest * (1.0 - next / most);
     if (total > 0.0) imageStore(filtered_image, pixel, sum.a > 0.0 ? vec4(sum.rgb / sum.a, sum.a / total) : vec4(0));
 }

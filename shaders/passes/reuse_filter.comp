@@ -1,5 +1,6 @@
 // What rough pixels reflect, averaged over neighbours of the same surface and roughness: the noise that is left after passes/ray_reuse.comp.
-// The kernel is half as wide as the disk from which that takes rays. Mirrors stay as they are, to the last bit.
+// DENSE is the first of two: over the pixels next to each other, then in steps. The kernel is half as wide as the disk from which that
+// takes rays. Mirrors stay as they are, to the last bit.
 #include "api/view.glsl"
 #include "rays/reflecting.glsl"
 #include "rays/lobe_threshold.glsl"
@@ -23,10 +24,13 @@ void main()
     imageStore(reflection_image, pixel, value);
     if (value.a < 0.0 || !(roughness >= mirror_roughness)) return;
 
-    Reflector own       = reflector_at(pixel);
+    Reflector own        = reflector_at(pixel);
     float     spacing_px = 0.25 * reuse_radius * roughness * float(size_px.y);
-    vec4      sum       = vec4(0);
-    float     total     = 0.0;
+    vec4      sum        = vec4(0);
+    float     total      = 0.0;
+#ifdef DENSE
+    spacing_px = min(spacing_px, 1.0);
+#endif
     for (int i = 0; i < 25; ++i)
     {
         ivec2 step  = ivec2(i % 5, i / 5) - 2;

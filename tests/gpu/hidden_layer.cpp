@@ -46,7 +46,7 @@ Camera level_camera(Projection projection = Projection::perspective)
 
 ParameterValues passes_with(const ParameterValues& changed)
 {
-    ParameterValues passes            = default_pass_values();
+    ParameterValues passes            = report_passes();
     passes.at("hidden_layer")         = 1;
     passes.at("gloss")                = choice_value(Gloss::off); // each pixel shows what its own ray found
     passes.at("environment_fallback") = 0;

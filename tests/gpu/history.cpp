@@ -287,6 +287,7 @@ TEST(History, FurtherBouncesComeFromIt)
 {
     const Scene           scene   = load_scene("builtin:facing_mirrors");
     const ParameterValues passes  = with(plain, {strategy("plane"),
+                                                 chosen(Reflectance::metallic),
                                                  chosen(BounceMode::history),
                                                  {"history_weight", 0},
                                                  chosen(ViewerFade::off),

@@ -46,7 +46,7 @@ TEST(SeveralRays, StartOnThePixelsPlaneAndStandTogether)
     constexpr size_t per_pixel = 8;
     for (const View& view : {bench_view({161, 91}), orthographic_view({161, 91})}) {
         const Picture picture = make_picture(random_gbuffer(view, 5));
-        const auto    frame   = frame_with(picture, {{"rays_per_pixel", per_pixel}});
+        const auto    frame   = frame_with(picture, {{"rays_per_pixel", per_pixel}, chosen(Gloss::off)});
         const auto    rays    = rays_of(*frame);
         ASSERT_EQ(rays.size(), per_pixel * count_reflecting(picture.image));
         size_t at_centre = 0, directions = 0;
@@ -92,7 +92,7 @@ TEST(SeveralRays, StartAtTheCentreWhereThePlaneIsSeenEdgeOn)
     GBufferImage image = metal_wall({32, 32});
     for (glm::vec3& normal : image.normal_vs) normal = glm::normalize(glm::vec3(0, 1, 1e-4));
     const Picture picture = make_picture(image);
-    const auto    frame   = frame_with(picture, {{"rays_per_pixel", 4}});
+    const auto    frame   = frame_with(picture, {{"rays_per_pixel", 4}, chosen(Gloss::off)});
     size_t        centred = 0, edge_on = 0;
     for (const Ray& ray : rays_of(*frame)) {
         // Seen under less than 1/70 of a pixel's angle: beside the middle rows every offset doubles or halves the distance.
@@ -136,7 +136,7 @@ TEST(SeveralRays, CountWhenMoreThanHalfOfThemHit)
     const auto           hit = [](int x) { return glm::ivec2(x, 0); };
     const auto           run = [&](double per_pixel, const std::vector<std::vector<glm::ivec2>>& ends) {
         const auto frame =
-            frame_with(picture, {{"rays_per_pixel", per_pixel}, chosen(ViewerFade::off), chosen(EdgeFade::off)});
+            frame_with(picture, {{"rays_per_pixel", per_pixel}, chosen(Gloss::off), chosen(EdgeFade::off)});
         std::vector<glm::ivec2> pixels, hits;
         for (size_t i = 0; i < ends.size(); ++i)
             for (const glm::ivec2& end : ends[i]) {

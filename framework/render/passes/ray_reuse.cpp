@@ -15,12 +15,17 @@ RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
 {
     auto reuse = std::make_shared<ComputePass>(
         make_pass(gpu, frame, "passes/ray_reuse.comp", {}, lobe_ray_bindings(gpu, frame)));
-    auto filter = make_shared_pass(gpu, frame, "passes/reuse_filter.comp");
-    return [&frame, reuse, filter](const auto& commands) {
+    auto dense = make_shared_pass(gpu, frame, "passes/reuse_filter.comp", {{"DENSE", "1"}});
+    auto wide  = make_shared_pass(gpu, frame, "passes/reuse_filter.comp");
+    return [&frame, reuse, dense, wide](const auto& commands) {
         record_clear_reflection(commands, frame.buffers->filtered); // of tiles that are not listed
         dispatch_indirect(commands, *reuse, frame.buffers->tiles.launch);
         barrier(commands);
-        dispatch_indirect(commands, *filter, frame.buffers->tiles.launch);
+        dispatch_indirect(commands, *dense, frame.buffers->tiles.launch);
+        barrier(commands);
+        record_copy(commands, frame.buffers->reflection, frame.buffers->filtered);
+        barrier(commands);
+        dispatch_indirect(commands, *wide, frame.buffers->tiles.launch);
     };
 }
 
@@ -29,19 +34,20 @@ RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
 Pass ray_reuse_pass()
 {
     return {
-        .id         = "ray_reuse",
-        .summary    = "Makes each rough pixel's reflection of its own and its neighbours' rays, weighted by its BRDF, and filters them",
-        .cite       = {"T. Stachowiak 2015, Stochastic Screen-Space Reflections (SIGGRAPH)"},
-        .parameters = {integer_parameter("reuse_neighbours", 32, 1, 256,
-                                         "pixels whose rays a rough pixel uses, itself among them"),
-                       real_parameter("reuse_radius", 0.1, 0, 1,
-                                      "radius of these pixels' disk at roughness 1, as a share of the image's height"),
-                       real_parameter(
-                           "reuse_depth_tolerance", 0.01, 1e-6, 1e6,
-                           "distance from the pixel's plane, as a share of the view distance, at which another "
-                           "pixel's rays weigh 1/e")},
-        .decide     = decide,
-        .prepare    = prepare,
+        .id      = "ray_reuse",
+        .summary = "Makes each rough pixel's reflection of its own and its neighbours' rays, weighted by its BRDF, and "
+                   "filters them",
+        .cite    = {"T. Stachowiak 2015, Stochastic Screen-Space Reflections (SIGGRAPH)"},
+        .parameters     = {integer_parameter("reuse_neighbours", 32, 1, 256,
+                                             "pixels whose rays a rough pixel uses, itself among them"),
+                           real_parameter("reuse_radius", 0.1, 0, 1,
+                                          "radius of these pixels' disk at roughness 1, as a share of the image's height"),
+                           real_parameter(
+                               "reuse_depth_tolerance", 0.01, 1e-6, 1e6,
+                               "distance from the pixel's plane, as a share of the view distance, at which another "
+                                   "pixel's rays weigh 1/e")},
+        .decide         = decide,
+        .prepare        = prepare,
         .beyond_shading = true};
 }
 
