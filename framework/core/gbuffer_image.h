@@ -25,6 +25,9 @@ struct GBufferImage {
     std::vector<glm::vec2> motion_px =
         {}; // where the surface was in the frame before, minus where it is, without jitter; NaN: it was
             // behind the camera. Empty: nothing moved, or no frame came before
+    std::vector<GBufferImage> layers =
+        {}; // what lies behind this one, the nearest first: of each pixel the next surface
+            // that faces the camera. As many as are known
 };
 
 } // namespace ssrlab

@@ -2,6 +2,7 @@
 #include "core/stopwatch.h"
 #include "render/directional_albedo.h"
 #include "render/frame_passes.h"
+#include "render/layers.h"
 #include "shared.h"
 
 #include <glm/gtc/packing.hpp>
@@ -166,6 +167,7 @@ FrameFacts facts_of(const PreparedFrame& frame)
     FrameFacts      facts;
     for (const Structure& structure : frame.technique.structures) facts.structures.push_back(structure.id);
     facts.solids  = frame.settings.trace.surface == SurfaceModel::plane_solid;
+    facts.layers  = frame.settings.trace.layers;
     facts.history = history_facts(frame);
     if (scene == nullptr) return facts;
     facts.scene           = true;
@@ -209,12 +211,13 @@ PreparedFramePtr prepare(Gpu& gpu, const FrameBuffersPtr& buffers, const Techniq
                          const TraceCounts* counts)
 {
     require_bounded(technique, values);
-    auto frame        = std::make_shared<PreparedFrame>();
-    frame->buffers    = buffers;
-    frame->technique  = technique;
-    frame->values     = values;
-    frame->settings   = settings;
-    frame->history    = history;
+    auto frame       = std::make_shared<PreparedFrame>();
+    frame->buffers   = buffers;
+    frame->technique = technique;
+    frame->values    = values;
+    frame->settings  = settings;
+    frame->history   = history;
+    prepare_layers(gpu, *buffers->gbuffer, settings.trace);
     frame->rays       = rays_for(gpu, *buffers, settings);
     frame->structures = make_depth_structures(gpu, *frame, *buffers->gbuffer);
     frame->trace      = make_trace_passes(gpu, *frame, *frame->rays, buffers->view, nullptr);

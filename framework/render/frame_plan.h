@@ -23,6 +23,7 @@ struct FrameFacts {
     std::string              motion          = {}; // what moved since the frame before, as facts_of_plan() says it
     HistoryFacts             history         = {};
     bool                     solids          = false; // the surface model asks where solids end
+    int                      layers          = 1;     // that a pixel holds
     std::vector<std::string> structures;              // that the technique reads, in the order in which they are built
 };
 

@@ -10,11 +10,30 @@ const float held_reach_px = 0.5 + 1.0 / 64;
 
 // gradient: the second word of a pixel with its plane (layout/plane_places.glsl).
 #include "surface/held.glsl"
+#if LAYERS > 1
+#include "layout/load_layers.glsl"
+#endif
 
-// The nearest and the farthest depth that the pixel holds.
-vec2 held_depths(ivec2 pixel, float depth, uint gradient)
+// The nearest and the farthest depth that the pixel holds in one layer.
+vec2 held_depths(ivec2 pixel, int layer, float depth, uint gradient)
 {
-    Held  held   = held_by(pixel, depth, gradient);
+    Held  held   = held_by(pixel, layer, depth, gradient);
     float spread = (abs(held.gradient.x) + abs(held.gradient.y)) * held_reach_px;
     return vec2(held.front + spread, held.back - spread);
+}
+
+// In all layers. depth, gradient: of the first one.
+vec2 held_depths(ivec2 pixel, float depth, uint gradient)
+{
+    vec2 held = held_depths(pixel, 0, depth, gradient);
+#if LAYERS > 1
+    for (int layer = 1; layer < LAYERS; ++layer)
+    {
+        uvec2 words   = load_layer(pixel, layer);
+        float deeper  = uintBitsToFloat(words.x);
+        vec2  further = held_depths(pixel, layer, deeper, words.y);
+        if (deeper > 0.0) held = vec2(max(held.x, further.x), min(held.y, further.y));
+    }
+#endif
+    return held;
 }

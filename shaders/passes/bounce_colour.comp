@@ -29,7 +29,7 @@ void main()
     vec2 centre     = vec2(reflector) + 0.5;
     vec3 surface_vs = px_to_vs(vec3(centre, load_depth(reflector)));
     vec3 arrived_vs = reflect(ray_direction(ray), normalize(imageLoad(normal_image, reflector).xyz));
-    vec3 own        = surface_light(reflector, false, centre) + highlight_along(reflector, false, surface_vs, arrived_vs);
+    vec3 own        = surface_light(reflector, 0, centre) + highlight_along(reflector, 0, surface_vs, arrived_vs);
     vec3 throughput = ray_throughput[index] * beta_of(reflector, -arrived_vs, found.weight);
     ray_throughput[index] = throughput * found.attenuation;
     vec4 reflection = imageLoad(reflection_image, target);

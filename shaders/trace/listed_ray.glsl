@@ -26,13 +26,18 @@ Ray load_ray(uint index)
     return ray;
 }
 
-bool has_place(TraceResult result) { return result.status == TRACE_HIT || result.status == TRACE_STOPPED; }
+bool has_place(TraceResult result)
+{
+    int status = number_to_status(result.status);
+    return status == TRACE_HIT || status == TRACE_STOPPED;
+}
 
 // Neither an unknown status, nor a hit off the image: packed, they would turn into another answer.
 bool is_answer(TraceResult result)
 {
     bool on_image = all(greaterThanEqual(result.pixel, ivec2(0))) && all(lessThan(result.pixel, size_px));
-    return result.status > TRACE_NOT_TRACED && result.status <= TRACE_STOPPED && (on_image || !has_place(result));
+    bool known    = result.status > TRACE_NOT_TRACED && (result.status <= TRACE_STOPPED || has_place(result)) && number_to_layer(result.status) < LAYERS;
+    return known && (on_image || !has_place(result));
 }
 
 // own_lane: that of the ray (trace/work_counters.glsl).

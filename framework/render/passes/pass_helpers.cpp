@@ -1,6 +1,7 @@
 #include "render/passes/pass_helpers.h"
 
 #include "core/error.h"
+#include "render/layers.h"
 
 namespace ssrlab {
 
@@ -114,15 +115,8 @@ ComputePass make_colour_pass(Gpu& gpu, const PreparedFrame& frame, const std::st
             throw_spec_error("hit_shading = mirrored needs the scene's lights; this G-buffer came without a scene");
         defines.emplace("MIRRORED_LIGHT", "1");
     }
-    if (frame.hidden_layer) {
-        const GBuffer& layer = *frame.buffers->second_layer;
-        defines.emplace("SECOND_LAYER", "1");
-        more.insert({{"second_depth_words", layer.depth.words},
-                     {"second_normal_image", layer.normal},
-                     {"second_material_image", layer.material},
-                     {"second_radiance_image", layer.radiance},
-                     {"second_highlight_image", layer.highlight}});
-    }
+    defines.emplace("LAYERS", std::to_string(frame.hidden_layer ? 2 : frame.settings.trace.layers));
+    if (frame.hidden_layer) add_layers(more, std::span(&frame.buffers->second_layer, 1));
     if (frame.cone) {
         defines.emplace("CONE", "1");
         more.insert({"cone_pyramid", frame.buffers->cone->cells});
