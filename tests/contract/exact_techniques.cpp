@@ -162,13 +162,14 @@ TEST_P(ExactTechniques, EqualThePixelWalkAndTheScreenTruth)
     for (const Technique& t : list_techniques({})) {
         if (!t.exact || t.id == "dda") continue;
         for (const ParameterValues& values : variants(t, c))
-            EXPECT_EQ(count_differences(trace(picture, t, values, settings), walk, true, first), 0U)
+            EXPECT_EQ(count_differences(trace(picture, t, values, settings), walk, bit_equal_t, first), 0U)
                 << first << "\n"
                 << repeat_command(c.scene, c.view, c.size_px, t, values, settings);
     }
     expect_rounding_only(picture, settings, truth, walk);
     if (c.size_px.x > 700 || !device().info.float64) return;
-    EXPECT_EQ(count_differences(trace(picture, dda, values_of(dda), settings, Precision::float64), truth, false, first),
+    EXPECT_EQ(count_differences(trace(picture, dda, values_of(dda), settings, Precision::float64), truth,
+                                double_twins_t, first),
               0U)
         << "double twin: " << first;
 }
@@ -219,14 +220,14 @@ TEST_P(ExactTechniquesOnModels, EqualThePixelWalkWhateverAPixelHolds)
         for (const Technique& t : list_techniques({})) {
             if (!t.exact || t.id == "dda") continue;
             const ParameterValues values = values_of(t);
-            EXPECT_EQ(count_differences(trace(picture, t, values, settings), walk, true, first), 0U)
+            EXPECT_EQ(count_differences(trace(picture, t, values, settings), walk, bit_equal_t, first), 0U)
                 << first << "\n"
                 << repeat_command(c.scene, c.view, c.size_px, t, values, settings);
         }
         const TraceResult truth = screen_truth(picture.image, settings);
         const auto        rays  = static_cast<double>(
             std::ranges::count_if(truth.status, [](TraceStatus s) { return s != TraceStatus::not_traced; }));
-        const size_t near_ties = count_differences(walk, truth, false, first);
+        const size_t near_ties = count_differences(walk, truth, any_t, first);
         // Other views than the default one have ties at exact corners, see expect_rounding_only().
         if (c.view == "default") {
             EXPECT_LE(static_cast<double>(near_ties), std::max(2e-4 * rays, 2.0))
@@ -234,9 +235,9 @@ TEST_P(ExactTechniquesOnModels, EqualThePixelWalkWhateverAPixelHolds)
                 << repeat_command(c.scene, c.view, c.size_px, dda, values_of(dda), settings);
         }
         if (large || !device().info.float64) continue;
-        EXPECT_EQ(
-            count_differences(trace(picture, dda, values_of(dda), settings, Precision::float64), truth, false, first),
-            0U)
+        EXPECT_EQ(count_differences(trace(picture, dda, values_of(dda), settings, Precision::float64), truth,
+                                    double_twins_t, first),
+                  0U)
             << "double twin: " << first << "\n"
             << repeat_command(c.scene, c.view, c.size_px, dda, values_of(dda), settings);
     }
@@ -270,7 +271,7 @@ TEST(FrontPackets, ChangeNoAnswerOfATraversalThatStopsAtTheFirstOccluder)
         const TraceResult walked  = trace(picture, walks, values, settings);
         std::string       first;
         const auto        differs = [&](const Technique& t) {
-            return count_differences(trace(picture, t, values, settings), walked, true, first);
+            return count_differences(trace(picture, t, values, settings), walked, bit_equal_t, first);
         };
         EXPECT_GT(differs(behind), 100U) << scene << " " << view;
         EXPECT_EQ(differs(stops), 0U) << first << "\n"

@@ -4,6 +4,7 @@
 #include "core/pixel_index.h"
 #include "render/gbuffer.h"
 
+#include <cmath>
 #include <map>
 
 namespace ssrlab::test {
@@ -98,14 +99,14 @@ std::string repeat_command(const std::string& scene, const std::string& view, gl
                        behind_names[static_cast<size_t>(settings.behind)], settings.layers);
 }
 
-size_t count_differences(const TraceResult& a, const TraceResult& b, bool compare_t, std::string& first)
+size_t count_differences(const TraceResult& a, const TraceResult& b, double t_tolerance, std::string& first)
 {
     size_t differences = 0;
     for (size_t i = 0; i < a.status.size(); ++i) {
         const bool both_end = has_place(a.status[i]) && has_place(b.status[i]);
         if (a.status[i] == b.status[i] &&
             (!both_end || (a.hit_pixel[i] == b.hit_pixel[i] && a.hit_layer[i] == b.hit_layer[i] &&
-                           (!compare_t || a.hit_t[i] == b.hit_t[i]))))
+                           std::abs(a.hit_t[i] - b.hit_t[i]) <= t_tolerance)))
             continue;
         if (differences++ > 0) continue;
         first = fmt::format(

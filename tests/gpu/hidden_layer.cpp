@@ -203,7 +203,7 @@ TEST(HiddenLayerWalk, HizFindsThereWhatThePixelWalkFinds)
     };
     const TraceResult walk = found("dda");
     std::string       first;
-    EXPECT_EQ(count_differences(found("hiz"), walk, true, first), 0U) << first;
+    EXPECT_EQ(count_differences(found("hiz"), walk, bit_equal_t, first), 0U) << first;
     EXPECT_GT(std::ranges::count(walk.status, TraceStatus::hit), 1000);
 }
 

