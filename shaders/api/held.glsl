@@ -10,9 +10,6 @@ const float held_reach_px = 0.5 + 1.0 / 64;
 
 // gradient: the second word of a pixel with its plane (layout/plane_places.glsl).
 #include "surface/held.glsl"
-#if LAYERS > 1
-#include "layout/load_layers.glsl"
-#endif
 
 // The nearest and the farthest depth that the pixel holds in one layer.
 vec2 held_depths(ivec2 pixel, int layer, float depth, uint gradient)
@@ -23,17 +20,8 @@ vec2 held_depths(ivec2 pixel, int layer, float depth, uint gradient)
 }
 
 // In all layers. depth, gradient: of the first one.
-vec2 held_depths(ivec2 pixel, float depth, uint gradient)
-{
-    vec2 held = held_depths(pixel, 0, depth, gradient);
 #if LAYERS > 1
-    for (int layer = 1; layer < LAYERS; ++layer)
-    {
-        uvec2 words   = load_layer(pixel, layer);
-        float deeper  = uintBitsToFloat(words.x);
-        vec2  further = held_depths(pixel, layer, deeper, words.y);
-        if (deeper > 0.0) held = vec2(max(held.x, further.x), min(held.y, further.y));
-    }
+#include "api/held_layers.glsl"
+#else
+vec2 held_depths(ivec2 pixel, float depth, uint gradient) { return held_depths(pixel, 0, depth, gradient); }
 #endif
-    return held;
-}

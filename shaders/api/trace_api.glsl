@@ -9,10 +9,6 @@
 #include "api/slab.glsl"
 #include "api/hash.glsl"
 #include "layout/load_cell.glsl"
-#if LAYERS > 1
-#extension GL_EXT_control_flow_attributes : require
-#include "layout/load_layers.glsl"
-#endif
 #include "trace/work_counters.glsl"
 #include "trace/visits.glsl"
 
@@ -88,14 +84,6 @@ real random_of(ivec2 pixel) { return real(pcg(pcg(uint(pixel.x)) + uint(pixel.y)
 // Normal of a pixel in view space; not counted.
 real3 fetch_normal(ivec2 pixel) { return real3(imageLoad(normal_image, pixel).xyz); }
 
-real3 fetch_normal(ivec2 pixel, int layer)
-{
-#if LAYERS > 1
-    if (layer > 0) return real3(load_layer_normal(pixel, layer));
-#endif
-    return fetch_normal(pixel);
-}
-
 // What is stored of a pixel, for surface_at(); counted.
 uvec2 fetch_pixel(ivec2 pixel)
 {
@@ -103,18 +91,6 @@ uvec2 fetch_pixel(ivec2 pixel)
     record_visit(pixel, 0);
     return load_cell(pixel, 0);
 }
-
-#if LAYERS > 1
-// The same of a layer behind the first; counted.
-uvec2 fetch_layer(ivec2 pixel, int layer)
-{
-    count_depth_fetch();
-    return load_layer(pixel, layer);
-}
-
-// Of any layer; not counted.
-uvec2 load_pixel(ivec2 pixel, int layer) { return layer == 0 ? load_cell(pixel, 0) : load_layer(pixel, layer); }
-#endif
 
 // Depth of a pixel, BACKGROUND_DEPTH where there is nothing; counted.
 real fetch_depth(ivec2 pixel) { return real(depth_in(fetch_pixel(pixel), pixel)); }
@@ -152,6 +128,11 @@ bool interval_touches(real depth, real2 interval)
 #include "api/grid_float.glsl"
 #endif
 
+#if LAYERS > 1
+#include "trace/fetch_layers.glsl"
+#else
+real3 fetch_normal(ivec2 pixel, int layer) { return fetch_normal(pixel); }
+#endif
 
 // What a pixel holds in a layer, by the run's surface model (shaders/surfaces/README.md):
 //   PixelSurface surface_at(Ray, ivec2 pixel, int layer, uvec2 words)          words: fetch_pixel()
@@ -176,11 +157,11 @@ bool ends_at(Ray ray, PixelSurface surface, bool met, real t_in)
 #if LAYERS > 1
 #include "trace/layers.glsl"
 #else
-bool touches_layers(Ray ray, ivec2 pixel, real t_in, real t_out) { return false; }
-bool touches_layers(Ray ray, Grid grid, ivec2 pixel, crossing t_in, crossing t_out) { return false; }
-bool samples_layers(Ray ray, ivec2 pixel, real t) { return false; }
-int  met_layer(Ray ray, ivec2 pixel, real t_in, real t_out) { return 0; }
-int  sampled_layer(Ray ray, ivec2 pixel, real t) { return 0; }
+bool  touches_layers(Ray ray, ivec2 pixel, real t_in, real t_out) { return false; }
+bool  touches_layers(Ray ray, Grid grid, ivec2 pixel, crossing t_in, crossing t_out) { return false; }
+bool  samples_layers(Ray ray, ivec2 pixel, real t) { return false; }
+int   met_layer(Ray ray, ivec2 pixel, real t_in, real t_out) { return 0; }
+int   sampled_layer(Ray ray, ivec2 pixel, real t) { return 0; }
 uvec2 fetch_met(ivec2 pixel, int layer) { return fetch_pixel(pixel); }
 #endif
 

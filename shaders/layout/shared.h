@@ -25,28 +25,11 @@
 #define PIXEL_BITS 14
 #define MAX_IMAGE_PX (1 << PIXEL_BITS)
 
-// How a ray ended, as that number: its status, but that of a hit or a stop in a layer behind the first tells the layer, too.
+// How a ray ended, as that number: its status (0 ... 7), but that of a hit or a stop in a layer behind the first tells the layer, too.
 #define MAX_LAYERS 4
-#define TRACE_HIT_BEHIND 8                                       // in layer 1, in layer 2, ...
-#define TRACE_STOPPED_BEHIND (TRACE_HIT_BEHIND + MAX_LAYERS - 1) // likewise
-#define TRACE_NUMBERS_END (TRACE_STOPPED_BEHIND + MAX_LAYERS - 1)
-SHARED_FUNCTION int number_to_layer(int number)
-{
-    return number < TRACE_HIT_BEHIND
-               ? 0
-               : number - (number < TRACE_STOPPED_BEHIND ? TRACE_HIT_BEHIND : TRACE_STOPPED_BEHIND) + 1;
-}
-SHARED_FUNCTION int number_to_status(int number)
-{
-    return number < TRACE_HIT_BEHIND || number >= TRACE_NUMBERS_END ? number
-           : number < TRACE_STOPPED_BEHIND                          ? TRACE_HIT
-                                                                    : TRACE_STOPPED;
-}
-// status: TRACE_HIT or TRACE_STOPPED.
-SHARED_FUNCTION int status_to_number(int status, int layer)
-{
-    return layer == 0 ? status : layer - 1 + (status == TRACE_HIT ? TRACE_HIT_BEHIND : TRACE_STOPPED_BEHIND);
-}
+SHARED_FUNCTION int number_to_layer(int number) { return number < 8 ? 0 : (number >> 1) - 3; }
+SHARED_FUNCTION int number_to_status(int number) { return number < 8 ? number : (number & 1) == 0 ? TRACE_HIT : TRACE_STOPPED; }
+SHARED_FUNCTION int status_to_number(int status, int layer) { return layer == 0 ? status : 6 + 2 * layer + (status == TRACE_HIT ? 0 : 1); }
 
 // Rays are traced in groups of this many; a launch is a grid no wider than so many groups.
 #define RAYS_PER_GROUP 64

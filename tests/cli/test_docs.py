@@ -19,7 +19,7 @@ BANNED = ("clear stretch", "clear stretches", "loop that stops", "beam", "beams"
 MOST_COLUMNS = 100
 # Shaders whose functions a tracer may use, and those of them that only the framework calls.
 API = ("trace_api", "view", "slab", "grid_float", "grid_exact")
-FRAMEWORK_ONLY = {"depth_rounding", "ends_at", "end_at", "fetch_pixel", "meets", "pack_pixel", "unpack_pixel", "unpack_status", "in_second_layer",
+FRAMEWORK_ONLY = {"depth_rounding", "ends_at", "end_at", "fetch_pixel", "meets", "pack_pixel", "unpack_pixel", "unpack_status",
                   "slab_front_of", "slab_back_of", "reaches_slab_back", "scaled_depth", "nearest_steps"}
 
 

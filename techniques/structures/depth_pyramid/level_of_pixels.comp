@@ -1,28 +1,19 @@
 // Level 1 of the depth pyramid, from pixels.
 #include "make_cells.glsl"
+#if LAYERS > 1
+#include "pixels_behind.glsl"
+#else
+Range range_behind(ivec2 first) { return nothing; }
+uint  bins_behind(ivec2 first, uvec2 cell) { return 0u; }
+#endif
 
 // The cell of two pixels and the two below them: their depths, and their gradients.
 uvec2 cell_of_pixels(ivec2 first, uvec4 depths, uvec4 gradients)
 {
     Range a = pixel_range(first, 0, depths.x, gradients.x), b = pixel_range(first + ivec2(1, 0), 0, depths.y, gradients.y);
     Range c = pixel_range(first + ivec2(0, 1), 0, depths.z, gradients.z), d = pixel_range(first + 1, 0, depths.w, gradients.w);
-    Range whole = unite(unite(a, b), unite(c, d));
-#if LAYERS > 1
-    Range behind[4 * (LAYERS - 1)];
-    for (int i = 0; i < 4 * (LAYERS - 1); ++i)
-    {
-        ivec2 pixel = first + ivec2(i & 1, i >> 1 & 1);
-        int   layer = 1 + i / 4;
-        uvec2 words = all(lessThan(pixel, size_px)) ? load_layer(pixel, layer) : uvec2(0);
-        behind[i]   = pixel_range(pixel, layer, words.x, words.y);
-        whole       = unite(whole, behind[i]);
-    }
-#endif
-    uvec2 cell = cell_of_range(whole);
-    cell.y     = bins_of_pixel(cell, a) | bins_of_pixel(cell, b) | bins_of_pixel(cell, c) | bins_of_pixel(cell, d);
-#if LAYERS > 1
-    for (int i = 0; i < 4 * (LAYERS - 1); ++i) cell.y |= bins_of_pixel(cell, behind[i]);
-#endif
+    uvec2 cell = cell_of_range(unite(range_behind(first), unite(unite(a, b), unite(c, d))));
+    cell.y     = bins_of_pixel(cell, a) | bins_of_pixel(cell, b) | bins_of_pixel(cell, c) | bins_of_pixel(cell, d) | bins_behind(first, cell);
     return finished(cell);
 }
 
