@@ -33,12 +33,7 @@ void add_planes(GBufferImage& image, uint32_t seed)
     const auto                            slope = [&](float depth) {
         return depth * std::exp2(exponent(engine)) * (unit(engine) < 0.5F ? -1.0F : 1.0F);
     };
-    const size_t count = image.depth.size();
-    image.normal_vs.assign(count, glm::vec3(0, 0, 1));
-    image.roughness.assign(count, 0);
-    image.metallic.assign(count, 1);
-    for (auto* colours : {&image.base_colour, &image.radiance, &image.highlight}) colours->assign(count, glm::vec3(0));
-    image.object_id.assign(count, 1);
+    complete_field(image);
     for (const float depth : image.depth) {
         const bool      none = unit(engine) < 0.05F;
         const glm::vec2 gradient(none ? std::numeric_limits<float>::quiet_NaN() : slope(depth), slope(depth));
