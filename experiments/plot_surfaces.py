@@ -66,7 +66,7 @@ def f1_against_time(results, tables):
     rows = rows[rows.technique == rows.technique.iloc[0]]
     figure, axis = plt.subplots(figsize=(7.2, 5.2))
     for surface, behind, line in models_of(rows):
-        solid_ms = line.passes.str.extract(r"solid_backs=([0-9.e+-]+)")[0].astype(float).fillna(0)
+        solid_ms = pass_ms(line, "solid_backs")
         axis.plot(line.cost_ms_median + solid_ms, 100 * line.f1_1px, **{**style_of(surface, behind), "linestyle": "none"})
         for (_, row), more in zip(line.iterrows(), solid_ms):
             axis.annotate(row.scene.split("_")[0], (row.cost_ms_median + more, 100 * row.f1_1px), textcoords="offset points",
@@ -96,17 +96,56 @@ def f1_against_size(results, tables):
     yield "surfaces_f1_size", figure
 
 
+def rungs_of(rows):
+    """Surface models with their layers in the order of the ladder, as (label, rows)."""
+    keys = ["surface", "behind", "layers"]
+    rungs = sorted(rows.groupby(keys, sort=False), key=lambda rung: (list(STYLES).index(rung[0][0]), rung[0][2], rung[0][1]))
+    return [(f"{surface}, {behind}" + (f",\n{layers} layers" if layers > 1 else ""), rung) for (surface, behind, layers), rung in rungs]
+
+
+def pass_ms(rows, name):
+    return rows.passes.str.extract(rf"(?:^| ){name}=([0-9.e+-]+)")[0].astype(float).fillna(0)
+
+
+def ladder_of_layers(results, tables):
+    """What each step of the ladder finds, and the time that it takes."""
+    if not has_models(results) or not results.has("layers", "hidden_too_recall_1px") or results.rows.layers.nunique() < 2:
+        return
+    rungs = rungs_of(results.rows)
+    figure, (found, cost) = plt.subplots(2, 1, figsize=(8.4, 7.2), sharex=True)
+    places = range(len(rungs))
+    for number, scene in enumerate(dict.fromkeys(results.rows.scene)):
+        values = [100 * rows[rows.scene == scene].hidden_too_f1_1px.mean() for _, rows in rungs]
+        colour = list(STYLES.values())[number % len(STYLES)]
+        found.plot(places, values, color=colour[0], marker=colour[1], lw=1.2, label=scene)
+    found.set(ylabel="F1 over visible and hidden rays, %", title="The ladder of surface models")
+    found.legend(fontsize=8)
+    parts = {"trace": [rows.trace_ms_median for _, rows in rungs], "structures": [rows.structures_ms_median for _, rows in rungs],
+             "backs of solids": [pass_ms(rows, "solid_backs") for _, rows in rungs],
+             "layers": [pass_ms(rows, "layers") for _, rows in rungs]}
+    below = [0.0] * len(rungs)
+    for colour, (name, columns) in zip(("#0072B2", "#56B4E9", "#E69F00", "#009E73"), parts.items()):
+        heights = [column.mean() for column in columns]
+        cost.bar(places, heights, bottom=below, width=0.6, color=colour, label=name)
+        below = [a + b for a, b in zip(below, heights)]
+    cost.set(ylabel="ms a frame, mean of the scenes")
+    cost.set_xticks(list(places), [label for label, _ in rungs])
+    cost.legend(fontsize=8)
+    figure.finding = "F1 over visible and hidden rays, and the time of each part, from boxes to planes with solids in layers"
+    yield "surfaces_ladder", figure
+
+
 def ladder(results):
     """A row a scene, size and model, at the thickness with the best F1: what surfaces.csv holds."""
     if not has_models(results):
         return []
     rows = results.rows.copy()
-    rows["solid_backs_ms"] = rows.passes.str.extract(r"solid_backs=([0-9.e+-]+)")[0].astype(float).fillna(0)
-    keys = ["scene", "view", "width", "height", "technique", "surface", "behind"]
+    rows["solid_backs_ms"] = pass_ms(rows, "solid_backs")
+    keys = ["scene", "view", "width", "height", "technique", "surface", "behind"] + ["layers"] * ("layers" in rows)
     best = rows.loc[rows.groupby(keys, sort=False).f1_1px.idxmax()]
-    shown = ["thickness_m", "recall_1px", "precision_1px", "f1_1px", "stopped_share", "stopped_right_share", "false_hits",
+    shown = ["thickness_m", "recall_1px", "precision_1px", "f1_1px", "hidden_too_recall_1px", "hidden_too_precision_1px", "hidden_too_f1_1px", "stopped_share", "stopped_right_share", "false_hits",
              "steps_mean", "trace_ms_median", "structures_ms_median", "solid_backs_ms"]
     return best[keys + [name for name in shown if name in best]]
 
 
-ALL = [precision_against_recall, f1_against_time, f1_against_size]
+ALL = [precision_against_recall, f1_against_time, f1_against_size, ladder_of_layers]

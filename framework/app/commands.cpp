@@ -55,7 +55,7 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
     const auto        frame  = prepare(common, options, stage);
     const TraceResult result = count_frame(stage.gpu, *frame);
     Image             image{result.size_px,
-                {"hit.x", "hit.y", "hit.t", "hit.z", "pixel.x", "pixel.y", "status", "steps", "depth_fetches",
+                {"hit.x", "hit.y", "hit.t", "hit.z", "pixel.x", "pixel.y", "layer", "status", "steps", "depth_fetches",
                              "structure_fetches"},
                 {},
                 {}};
@@ -69,8 +69,9 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
         const glm::dvec2 pixel = hit ? glm::dvec2(result.hit_pixel[i]) : glm::dvec2(0);
         for (const double value :
              {point.x, point.y, hit ? result.hit_t[i] : 0.0, point.z, pixel.x, pixel.y,
-              static_cast<double>(result.status[i]), static_cast<double>(result.steps[i]),
-              static_cast<double>(result.depth_fetches[i]), static_cast<double>(structure_fetches_of(result, i))})
+              hit ? static_cast<double>(result.hit_layer[i]) : 0.0, static_cast<double>(result.status[i]),
+              static_cast<double>(result.steps[i]), static_cast<double>(result.depth_fetches[i]),
+              static_cast<double>(structure_fetches_of(result, i))})
             image.values.push_back(static_cast<float>(value));
     }
     write_image(options.output, image);

@@ -7,6 +7,7 @@
 #include "core/files.h"
 #include "core/pixel_index.h"
 #include "harness/experiment.h"
+#include "render/layers.h"
 #include "truth/reflected_rays.h"
 #include "truth/scene_bvh.h"
 #include "truth/screen_ray.h"
@@ -165,11 +166,12 @@ int explain_ray(const CommonOptions& common, const RayOptions& options)
     FrameSettings                  settings;
     const std::vector<RayQuestion> questions = questions_of(options, techniques, settings);
     Stage                          stage     = prepare_stage(common, options.picture);
-    const Setup                    setup{"", read_gbuffer(stage.gpu, *stage.gbuffer), settings.trace, {}};
-    const glm::ivec2               pixel  = pixel_option(options.pixel, stage.view.size_px);
-    const RayInput                 ray    = ray_of_pixel(stage, setup, questions.front(), pixel);
-    RayReport                      report = report_ray(stage.gpu, setup, ray, questions);
-    report.true_end                       = true_end_of(stage, setup, pixel);
+    prepare_layers(stage.gpu, *stage.gbuffer, settings.trace);
+    const Setup      setup{"", read_gbuffer(stage.gpu, *stage.gbuffer), settings.trace, {}};
+    const glm::ivec2 pixel  = pixel_option(options.pixel, stage.view.size_px);
+    const RayInput   ray    = ray_of_pixel(stage, setup, questions.front(), pixel);
+    RayReport        report = report_ray(stage.gpu, setup, ray, questions);
+    report.true_end         = true_end_of(stage, setup, pixel);
 
     nlohmann::json json = to_json(report, setup);
     json["scene"]       = options.picture.scene;

@@ -78,7 +78,7 @@ bool Judge::may_touch(const RayInput& ray, const Visit& v, double more_t) const
 {
     const Range t = part_in_pixel(ray, v.pixel, sliver_px);
     if (t.empty()) return false;
-    const Visit wider = visit(ray, v.pixel, std::max(t.from - more_t, 0.0), std::min(t.to + more_t, 1.0));
+    const Visit wider = visit(ray, v.pixel, v.layer, std::max(t.from - more_t, 0.0), std::min(t.to + more_t, 1.0));
     return wider.contact >= -depth_rounding(ray, wider);
 }
 
@@ -107,7 +107,8 @@ std::string Judge::unsound_side(const RayInput& ray, const RayOutcome& outcome, 
 {
     if (setup_.settings.behind == Behind::hit) return {};
     const std::vector<Visit> visits = walk(ray);
-    const auto               own = std::ranges::find_if(visits, [&](const Visit& v) { return v.pixel == wide.pixel; });
+    const auto               own =
+        std::ranges::find_if(visits, [&](const Visit& v) { return v.pixel == wide.pixel && v.layer == wide.layer; });
     // A pixel that only rounding puts on the ray's way may be entered anywhere.
     const Claim anywhere{.may_miss_between_samples = true};
     const Sides possible = claim.may_hit_within_a_step || claim.may_miss_between_samples || own == visits.end()
@@ -130,8 +131,10 @@ std::string Judge::unsound_hit(const RayInput& ray, const RayOutcome& outcome, c
     if (t.empty() || !on_image(setup_.gbuffer, outcome.hit_pixel))
         return fmt::format("{}, a pixel that the ray does not cross", name(outcome));
     const double step = claim.may_hit_within_a_step && outcome.steps > 0 ? outcome.t / outcome.steps : 0;
-    const Visit  v    = visit(ray, outcome.hit_pixel, std::max(t.from - step, 0.0), std::min(t.to + step, 1.0),
-                              claim.may_miss_between_samples);
+    if (outcome.hit_layer >= layer_count(setup_.gbuffer, setup_.settings))
+        return fmt::format("{} and layer {}, which is not there", name(outcome), outcome.hit_layer);
+    const Visit v = visit(ray, outcome.hit_pixel, outcome.hit_layer, std::max(t.from - step, 0.0),
+                          std::min(t.to + step, 1.0), claim.may_miss_between_samples);
     if (!(v.contact >= -depth_rounding(ray, v)))
         return fmt::format("{}, where the ray's depth {:.9g} … {:.9g} does not meet the slab {:.9g} … {:.9g}",
                            name(outcome), v.z_in, v.z_out, v.surface.front, v.surface.back);

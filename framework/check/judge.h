@@ -44,9 +44,10 @@ struct Visit {
     PixelSurface surface;           // background: front <= 0
     double       over_back_in  = 0; // how far above the surface's back the ray enters and leaves, in depth
     double       over_back_out = 0;
-    double       sampled_more  = 0; // how much farther the back lies for one sample than for an interval
+    double       sampled_more  = 0;  // how much farther the back lies for one sample than for an interval
     double       contact       = 0;  // depth by which the ray overlaps what the pixel holds; negative: a gap
     double       facing        = -1; // cosine between normal and ray; -1 where it makes no difference
+    int          layer         = 0;  // of the pixel
     bool         passes_behind() const { return surface.front > 0 && contact < 0 && over_back_in < 0; }
 };
 
@@ -60,7 +61,7 @@ public:
     /// Keeps a reference to the setup. Throws Failure if its G-buffer lacks what its surface model needs.
     explicit Judge(const Setup& setup);
 
-    /// All pixels of the walk, the start pixel excluded.
+    /// All pixels of the walk, the start pixel excluded, each layer of a pixel by itself.
     std::vector<Visit> walk(const RayInput& ray) const;
     /// The hit contract in double precision.
     RayOutcome exact_answer(const RayInput& ray) const;
@@ -76,7 +77,8 @@ private:
     };
 
     /// sampled: by points, for which a plane has the thickness of the run.
-    Visit visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_out, bool sampled = false) const;
+    Visit       visit(const RayInput& ray, glm::ivec2 pixel, int layer, double t_in, double t_out,
+                      bool sampled = false) const;
     double      depth_rounding(const RayInput& ray, const Visit& visit) const;
     bool        surely_touches(const RayInput& ray, const Visit& visit) const;
     bool        surely_ends_ray(const RayInput& ray, const Visit& visit) const;

@@ -103,8 +103,9 @@ std::vector<VisitReport> describe(const Setup& setup, const RayInput& ray, const
 std::string ending_of(const Setup& setup, const RayInput& ray, const RayOutcome& outcome)
 {
     const std::string at =
-        fmt::format("pixel ({}, {}), t {:.6f}, {:.3f} px on screen, {:.4g} m from the camera", outcome.hit_pixel.x,
-                    outcome.hit_pixel.y, outcome.t, outcome.t * glm::length(glm::dvec2(ray.delta_px_depth)),
+        fmt::format("pixel ({}, {}){}, t {:.6f}, {:.3f} px on screen, {:.4g} m from the camera", outcome.hit_pixel.x,
+                    outcome.hit_pixel.y, outcome.hit_layer > 0 ? fmt::format(", layer {}", outcome.hit_layer) : "",
+                    outcome.t, outcome.t * glm::length(glm::dvec2(ray.delta_px_depth)),
                     metres(setup.gbuffer.view, ray.origin_px_depth.z + outcome.t * ray.delta_px_depth.z));
     switch (outcome.status) {
     case TraceStatus::hit: return "hit at " + at;
@@ -137,6 +138,7 @@ nlohmann::json to_json(const RayOutcome& outcome, const std::string& ending)
     nlohmann::json json{{"status", status_name(outcome.status)}, {"ending", ending}};
     if (has_place(outcome.status)) {
         json["pixel"] = {outcome.hit_pixel.x, outcome.hit_pixel.y};
+        json["layer"] = outcome.hit_layer;
         json["t"]     = number(outcome.t);
     }
     return json;
@@ -173,7 +175,7 @@ RayReport report_ray(Gpu& gpu, const Setup& setup, const RayInput& ray, std::spa
     report.exact        = judge.exact_answer(ray);
     report.exact_ending = ending_of(setup, ray, report.exact);
     for (const Visit& visit : judge.walk(ray))
-        report.walk.push_back(describe(setup, ray, {visit.pixel, 0, visit.t_in, visit.t_out}));
+        if (visit.layer == 0) report.walk.push_back(describe(setup, ray, {visit.pixel, 0, visit.t_in, visit.t_out}));
     for (const RayQuestion& question : questions) {
         const RecordedRay recorded =
             record_ray(gpu, gbuffer, *question.technique, question.values, setup.settings, ray);

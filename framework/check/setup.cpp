@@ -178,6 +178,8 @@ Setup mirrored(const Setup& setup, int axis)
     if (!setup.gbuffer.solid_back.empty()) mirror_pixels(result.gbuffer.solid_back, view.size_px, axis);
     for (glm::vec3& normal : result.gbuffer.normal_vs) normal[axis] = -normal[axis];
     for (glm::vec2& gradient : result.gbuffer.gradient) gradient[axis] = -gradient[axis];
+    for (GBufferImage& layer : result.gbuffer.layers)
+        layer = mirrored(Setup{"", std::move(layer), {}, {}}, axis).gbuffer;
     for (RayInput& ray : result.rays) {
         ray.origin_px_depth[axis] = size - ray.origin_px_depth[axis];
         ray.delta_px_depth[axis]  = -ray.delta_px_depth[axis];

@@ -59,15 +59,17 @@ double depth_inside_px(const RayInput& ray, const Visit& visit)
     return inside(0.5 * (from + to));
 }
 
-Visit Judge::visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_out, bool sampled) const
+Visit Judge::visit(const RayInput& ray, glm::ivec2 pixel, int layer, double t_in, double t_out, bool sampled) const
 {
-    const size_t  index = pixel_index(pixel, setup_.gbuffer.view.size_px);
-    const RayPart part{ray.origin_px_depth, ray.delta_px_depth, t_in, t_out};
-    const auto    in = part.at(t_in), out = part.at(t_out);
-    Visit         visit{pixel, t_in, t_out, in.z, out.z, {}};
+    const GBufferImage& image = layer_of(setup_.gbuffer, layer);
+    const size_t        index = pixel_index(pixel, image.view.size_px);
+    const RayPart       part{ray.origin_px_depth, ray.delta_px_depth, t_in, t_out};
+    const auto          in = part.at(t_in), out = part.at(t_out);
+    Visit               visit{pixel, t_in, t_out, in.z, out.z, {}};
     visit.contact    = -infinity;
-    const auto found = pixel_surface(setup_.gbuffer, index, setup_.settings);
-    if (!found || setup_.gbuffer.depth[index] > 1) return visit;
+    visit.layer      = layer;
+    const auto found = pixel_surface(image, index, setup_.settings);
+    if (!found || image.depth[index] > 1) return visit;
     const PixelSurface& surface = visit.surface = *found;
 
     const glm::dvec2 from(in), to(out);
@@ -75,13 +77,12 @@ Visit Judge::visit(const RayInput& ray, glm::ivec2 pixel, double t_in, double t_
     visit.over_back_out     = out.z - surface.back_at(to);
     const double over_front = std::min(in.z - surface.front_at(from), out.z - surface.front_at(to));
     const double in_solid   = surface.solid_back > 0 ? std::max(in.z, out.z) - surface.solid_back : -infinity;
-    const double slab =
-        slab_back(setup_.gbuffer.view, static_cast<double>(setup_.gbuffer.depth[index]), setup_.settings);
+    const double slab       = slab_back(image.view, static_cast<double>(image.depth[index]), setup_.settings);
     if (sampled) visit.sampled_more = std::max(surface.back - slab, 0.0);
     const double over_back = std::max(visit.over_back_in, visit.over_back_out) + visit.sampled_more;
     visit.contact          = std::min(-over_front, std::max(over_back, in_solid));
     if (setup_.settings.behind != Behind::hit)
-        visit.facing = cosine(glm::dvec3(setup_.gbuffer.normal_vs[index]), direction_vs(setup_.gbuffer.view, ray));
+        visit.facing = cosine(glm::dvec3(image.normal_vs[index]), direction_vs(image.view, ray));
     return visit;
 }
 
@@ -106,7 +107,8 @@ std::vector<Visit> Judge::walk(const RayInput& ray) const
         for (int axis : {0, 1}) pixel[axis] += t[axis] <= t_in ? step[axis] : 0;
         if (!on_image(setup_.gbuffer, pixel)) break;
         t = {border_t(0), border_t(1)};
-        visits.push_back(visit(ray, pixel, t_in, std::min({t.x, t.y, 1.0})));
+        for (int layer = 0; layer < layer_count(setup_.gbuffer, setup_.settings); ++layer)
+            visits.push_back(visit(ray, pixel, layer, t_in, std::min({t.x, t.y, 1.0})));
     }
     return visits;
 }
@@ -116,19 +118,22 @@ RayOutcome Judge::exact_answer(const RayInput& ray) const
     RayOutcome answer;
     answer.status = ray.end_status;
     for (const Visit& v : walk(ray)) {
-        ++answer.steps;
+        const bool ended = has_place(answer.status);
+        if (ended && v.pixel != answer.hit_pixel) break;
+        answer.steps += v.layer == 0;
         if (!(v.contact >= 0)) continue;
         const Meeting meeting = meet(v.surface, {ray.origin_px_depth, ray.delta_px_depth, v.t_in, v.t_out}, v.facing);
         if (!meeting.meets) continue;
         const bool behind = meeting.from_behind && setup_.settings.behind != Behind::hit;
         if (behind && setup_.settings.behind == Behind::pass) {
-            answer.status = TraceStatus::facing_away;
+            if (!ended) answer.status = TraceStatus::facing_away;
             continue;
         }
+        if (ended && meeting.t >= answer.t) continue; // a layer in front of it is met no later
         answer.status    = behind ? TraceStatus::stopped : TraceStatus::hit;
         answer.hit_pixel = v.pixel;
         answer.t         = meeting.t;
-        break;
+        answer.hit_layer = static_cast<uint8_t>(v.layer);
     }
     return answer;
 }

@@ -68,12 +68,14 @@ enum class FalseHit { self, too_thick, wrong_surface };
 
 FalseHit false_hit_cause(const TraceResult& tested, const GBufferImage& gbuffer, size_t i)
 {
-    const View&      view      = gbuffer.view;
-    const glm::ivec2 pixel     = pixel_at(i, view.size_px);
-    const glm::ivec2 hit_pixel = tested.hit_pixel[i];
-    const size_t     h         = pixel_index(hit_pixel, view.size_px);
-    const double     surface   = double(gbuffer.depth[h]);
-    if (gbuffer.object_id[h] == gbuffer.object_id[i]) {
+    const View&         view      = gbuffer.view;
+    const glm::ivec2    pixel     = pixel_at(i, view.size_px);
+    const glm::ivec2    hit_pixel = tested.hit_pixel[i];
+    const size_t        h         = pixel_index(hit_pixel, view.size_px);
+    const int           layer     = tested.hit_layer[i];
+    const GBufferImage& met       = layer == 0 ? gbuffer : gbuffer.layers[size_t(layer) - 1];
+    const double        surface   = double(met.depth[h]);
+    if (met.object_id[h] == gbuffer.object_id[i]) {
         const glm::dvec3 from_vs = px_to_vs(view, glm::dvec2(pixel) + 0.5, double(gbuffer.depth[i]));
         const glm::dvec3 to_vs   = px_to_vs(view, glm::dvec2(hit_pixel) + 0.5, surface);
         const glm::dvec3 normal  = glm::normalize(glm::dvec3(gbuffer.normal_vs[i]));
@@ -142,7 +144,7 @@ MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth
     std::array<size_t, truth_class_names.size()> of_class{};
     size_t                                       rays = 0, hit_count = 0, found_1px = 0, found_4px = 0, displaced = 0;
     size_t                                       stepped_over = 0, out_of_steps = 0, facing_rule = 0, not_in_depth = 0;
-    size_t                                       stopped = 0, missed_stopped = 0;
+    size_t                                       stopped = 0, missed_stopped = 0, found_hidden = 0;
     std::array<size_t, 3>                        false_hits{};
     for (size_t i = 0; i < truth.cls.size(); ++i) {
         if (truth.cls[i] == TruthClass::not_traced) continue;
@@ -151,6 +153,9 @@ MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth
         const bool visible = truth.cls[i] == TruthClass::visible;
         const bool found   = finds(tested, truth, i, within_one_px);
         found_1px += found;
+        // Where something stands before the true point, the pixel's first layer is that.
+        found_hidden += truth.cls[i] == TruthClass::hidden && hits(tested, i) && tested.hit_layer[i] > 0 &&
+                        distance_to_truth_px(tested, truth, i) <= within_one_px;
         found_4px += finds(tested, truth, i, within_four_px);
         const bool stops = tested.status[i] == TraceStatus::stopped;
         stopped += stops;
@@ -168,8 +173,9 @@ MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth
                 ++(finds(screen_truth, truth, i, within_one_px) ? stepped_over : not_in_depth);
         }
     }
-    const size_t  visible = of_class[size_t(TruthClass::visible)];
-    const size_t  wrong   = std::accumulate(false_hits.begin(), false_hits.end(), size_t(0));
+    const size_t  visible   = of_class[size_t(TruthClass::visible)];
+    const size_t  found_all = found_1px + found_hidden, on_screen = visible + of_class[size_t(TruthClass::hidden)];
+    const size_t  wrong = std::accumulate(false_hits.begin(), false_hits.end(), size_t(0));
     MeasureValues values{{"traced_rays", double(rays)},
                          {"recall_1px", share(found_1px, visible)},
                          {"recall_4px", share(found_4px, visible)},
@@ -182,6 +188,9 @@ MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth
                          {"missed_not_in_depth", share(not_in_depth, visible)},
                          {"precision_1px", share(found_1px, hit_count)},
                          {"f1_1px", share(2 * found_1px, visible + hit_count)},
+                         {"hidden_too_recall_1px", share(found_all, on_screen)},
+                         {"hidden_too_precision_1px", share(found_all, hit_count)},
+                         {"hidden_too_f1_1px", share(2 * found_all, on_screen + hit_count)},
                          {"false_hits", share(wrong, rays)},
                          {"false_self", share(false_hits[size_t(FalseHit::self)], rays)},
                          {"false_too_thick", share(false_hits[size_t(FalseHit::too_thick)], rays)},

@@ -30,6 +30,9 @@ struct GBufferImage {
             // behind the camera. Empty: nothing moved, or no frame came before
     std::vector<float> dielectric_f0 =
         {}; // reflectance at normal incidence of what is not metal. Empty: common_dielectric_f0
+    std::vector<GBufferImage> layers =
+        {}; // what lies behind this one, the nearest first: of each pixel the next surface
+            // that faces the camera. As many as are known
 };
 
 inline float dielectric_f0_at(const GBufferImage& gbuffer, size_t i)

@@ -48,6 +48,7 @@ struct TraceResult {
     glm::ivec2               size_px{0, 0};
     std::vector<TraceStatus> status;
     std::vector<glm::ivec2>  hit_pixel;    // the pixel that was met; undefined unless hit or stopped
+    std::vector<uint8_t>     hit_layer;    // of it, in which layer; 0: the first
     std::vector<glm::dvec3>  hit_px_depth; // x, y in pixels, depth; on the ray, inside hit_pixel; undefined likewise
     std::vector<double>
         hit_t; // 0 at the reflecting pixel, 1 at the end of the clipped screen segment; undefined likewise
@@ -64,6 +65,7 @@ inline TraceResult make_trace_result(glm::ivec2 size_px, bool counted)
     result.size_px = size_px;
     result.status.assign(count, TraceStatus::not_traced);
     result.hit_pixel.resize(count);
+    result.hit_layer.resize(count);
     result.hit_px_depth.resize(count);
     result.hit_t.resize(count);
     result.steps.resize(count);
@@ -103,6 +105,7 @@ struct TraceSettings {
     double       ray_offset_m       = 0;     // the ray starts so far along its direction
     Behind       behind             = Behind::hit;
     SurfaceModel surface = SurfaceModel::box; // thickness is of the boxes, and of pixels without a usable plane
+    int          layers  = 1;                 // that a pixel holds, at most: the first, and those behind it
     // Metals reflect. So does what is not metal and reflects at least so much at normal incidence, up to a roughness.
     double dielectric_min_f0        = 0.02;
     double dielectric_max_roughness = 0.4;

@@ -3,6 +3,8 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "gpu/disk_cache.h"
+#include "gpu/shader_errors.h"
+#include "gpu/shader_includes.h"
 
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
@@ -10,16 +12,11 @@
 
 #include <sys/stat.h>
 
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cstring>
 #include <functional>
 #include <iterator>
-#include <list>
-#include <memory>
 #include <mutex>
-#include <regex>
 #include <span>
 #include <sstream>
 
@@ -27,84 +24,6 @@ namespace ssrlab {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The file of that name in a folder; empty: none. A link does not lead out of it.
-fs::path file_in(const fs::path& folder, const std::string& name)
-{
-    const fs::path path = folder / name;
-    if (!fs::is_regular_file(path)) return {};
-    const fs::path way = fs::canonical(path).lexically_relative(fs::canonical(folder));
-    return *way.begin() == ".." ? fs::path() : path;
-}
-
-/// Is this folder that one, or inside it?
-bool lies_in(const fs::path& folder, const fs::path& other)
-{
-    const fs::path from_other = fs::weakly_canonical(folder).lexically_relative(fs::weakly_canonical(other));
-    return !from_other.empty() && *from_other.begin() != "..";
-}
-
-/// Resolves includes: virtual names first, then files of the source's folders, then those of the project.
-class Includer : public glslang::TShader::Includer {
-public:
-    explicit Includer(const ShaderSource& source) : source_(source) {}
-
-    IncludeResult* includeLocal(const char* name, const char* from, size_t depth) override
-    {
-        constexpr size_t max_depth = 32;
-        if (depth > max_depth) return refused("includes are nested more than 32 deep");
-        if (const auto text = source_.include_texts.find(name); text != source_.include_texts.end())
-            return found(name, text->second);
-        if (const auto file = source_.include_files.find(name); file != source_.include_files.end())
-            return found(file->second.string(), read_file(file->second));
-        if (fs::path(name).is_absolute() || std::ranges::count(fs::path(name), "..") > 0)
-            return refused("may only name files of its own folder or of the project's shaders, without '..'");
-        const std::vector<fs::path> files = candidates(name, fs::path(from).parent_path());
-        if (files.empty()) return refused("no such file in its own folder or among the project's shaders");
-        // One would silently stand for the other: for the trace API, say.
-        if (files.size() > 1) return refused("may be " + files[0].string() + " or " + files[1].string());
-        return found(files[0].string(), read_file(files[0]));
-    }
-    IncludeResult* includeSystem(const char* name, const char* from, size_t depth) override
-    {
-        return includeLocal(name, from, depth);
-    }
-    void releaseInclude(IncludeResult*) override {}
-
-private:
-    /// Beside the including file, else in the source's folders; and always those of the project.
-    std::vector<fs::path> candidates(const std::string& name, const fs::path& beside) const
-    {
-        std::vector<fs::path> files;
-        const auto            add = [&](const fs::path& folder) {
-            const fs::path path = file_in(folder, name);
-            const auto     same = [&](const fs::path& file) { return fs::equivalent(file, path); };
-            if (!path.empty() && std::ranges::none_of(files, same)) files.push_back(path);
-        };
-        std::vector<fs::path> own = source_.include_folders;
-        own.push_back(shader_folder());
-        own.push_back(technique_folder());
-        if (std::ranges::any_of(own, [&](const fs::path& folder) { return lies_in(beside, folder); })) add(beside);
-        if (files.empty())
-            for (const fs::path& folder : source_.include_folders) add(folder);
-        add(shader_folder());
-        add(technique_folder());
-        return files;
-    }
-    IncludeResult* found(const std::string& shown, std::string text) { return keep(shown, std::move(text)); }
-    /// Without a name, the text becomes the error.
-    IncludeResult* refused(std::string why) { return keep("", std::move(why)); }
-    IncludeResult* keep(const std::string& shown, std::string text)
-    {
-        texts_.push_back(std::move(text));
-        results_.push_back(std::make_unique<IncludeResult>(shown, texts_.back().data(), texts_.back().size(), nullptr));
-        return results_.back().get();
-    }
-
-    const ShaderSource&                       source_;
-    std::list<std::string>                    texts_;
-    std::list<std::unique_ptr<IncludeResult>> results_;
-};
 
 EShLanguage language_of(ShaderStage stage)
 {
@@ -114,61 +33,6 @@ EShLanguage language_of(ShaderStage stage)
     case ShaderStage::compute: return EShLangCompute;
     }
     return EShLangCompute;
-}
-
-/// Comments turned into blanks; lines stay lines.
-std::string without_comments(std::string text)
-{
-    for (size_t i = 0; i + 1 < text.size(); ++i) {
-        if (text[i] != '/' || (text[i + 1] != '/' && text[i + 1] != '*')) continue;
-        const bool   line = text[i + 1] == '/';
-        const size_t end  = std::min(text.find(line ? "\n" : "*/", i + 2), text.size() - 1) + (line ? 0 : 1);
-        for (; i <= std::min(end, text.size() - 1); ++i)
-            if (text[i] != '\n') text[i] = ' ';
-    }
-    return text;
-}
-
-/// The line of the first '{' that is not closed; 0: none.
-int unclosed_brace(const std::string& text)
-{
-    std::vector<int> open;
-    int              line = 1;
-    for (const char c : without_comments(text)) {
-        line += c == '\n';
-        if (c == '{') open.push_back(line);
-        if (c == '}' && !open.empty()) open.pop_back();
-    }
-    return open.empty() ? 0 : open.front();
-}
-
-/// "path:12: 'x' : undeclared identifier". The project's shaders have no errors of their own: what is found in them is
-/// missing from the plug-in's file.
-std::string error_text(const std::string& error, const ShaderSource& source)
-{
-    if (source.include_files.empty() || !error.starts_with(shader_folder().string())) return error;
-    for (const auto& [name, file] : source.include_files)
-        if (const int line = unclosed_brace(read_file(file)); line > 0)
-            return fmt::format("{}:{}: this '{{' is never closed", file.string(), line);
-    const fs::path& file  = source.include_files.rbegin()->second;
-    const auto      lines = std::max<std::ptrdiff_t>(std::ranges::count(read_file(file), '\n'), 1);
-    return fmt::format("{}:{}: {} (found where the file is used: {})", file.string(), lines,
-                       std::regex_replace(error, std::regex("^[^:]*:[0-9]+: "), ""), error.substr(0, error.find(": ")));
-}
-
-/// One line for each error of a log.
-std::string errors_in(const std::string& log, const ShaderSource& source)
-{
-    std::istringstream       lines(log);
-    std::vector<std::string> errors;
-    for (std::string line; std::getline(lines, line);) {
-        constexpr std::string_view prefix = "ERROR: ";
-        // The compiler's last line counts its errors.
-        if (!line.starts_with(prefix) || line.ends_with("No code generated.")) continue;
-        const std::string error = error_text(line.substr(prefix.size()), source);
-        if (std::ranges::count(errors, error) == 0) errors.push_back(error);
-    }
-    return errors.empty() ? log : fmt::format("{}", fmt::join(errors, "\n"));
 }
 
 void collect_bindings(const glslang::TProgram& program, Shader& shader)
@@ -283,14 +147,14 @@ Shader compile(const ShaderSource& source)
     stage.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, 100);
     stage.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
     stage.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
-    Includer includer(source);
+    ShaderIncluder includer(source);
     // Cascading: it goes on after the first error.
     const auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules | EShMsgCascadingErrors);
     if (!stage.parse(GetDefaultResources(), 460, ECoreProfile, false, false, messages, includer))
-        throw SpecError(errors_in(stage.getInfoLog(), source));
+        throw SpecError(shader_errors_in(stage.getInfoLog(), source));
     glslang::TProgram program;
     program.addShader(&stage);
-    if (!program.link(messages)) throw_spec_error("{}: {}", shown, errors_in(program.getInfoLog(), source));
+    if (!program.link(messages)) throw_spec_error("{}: {}", shown, shader_errors_in(program.getInfoLog(), source));
     program.buildReflection(EShReflectionSeparateBuffers);
 
     Shader shader;

@@ -111,6 +111,8 @@ void make_references(Bench& bench, Picture& picture, const MeasuredRun& measured
     const bool           image_errors = bench.experiment.measure.image_errors;
     if (!picture.truths) return;
     clocked(bench.truths_s, [&] {
+        if (picture.truths->known_layers() < static_cast<size_t>(settings.trace.layers))
+            picture.truths->know_layers(read_gbuffer(bench.gpu, *picture.gbuffer).layers);
         picture.truths->make(settings.trace, image_errors);
         if (!image_errors || (picture.reference && picture.reference_for == settings.trace)) return;
         std::optional<Image> truth = picture.truths->given_picture();

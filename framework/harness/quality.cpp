@@ -6,6 +6,8 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/parallel_rows.h"
+#include "core/pixel_index.h"
+#include "truth/pixel_surface.h"
 #include "truth/reprojection_truth.h"
 #include "truth/truth_cache.h"
 
@@ -38,8 +40,8 @@ Image reflected_image(const TraceResult& result, const GBufferImage& gbuffer, gl
     parallel_pixels(result.size_px.x, result.size_px.y, [&](size_t i) {
         glm::vec3 colour(0);
         if (result.status[i] == TraceStatus::hit) {
-            const glm::ivec2 pixel = result.hit_pixel[i];
-            colour                 = gbuffer.radiance[static_cast<size_t>(pixel.y) * result.size_px.x + pixel.x];
+            const size_t pixel = pixel_index(result.hit_pixel[i], result.size_px);
+            colour             = layer_of(gbuffer, result.hit_layer[i]).radiance[pixel];
         } else if (result.status[i] != TraceStatus::not_traced) {
             colour = background;
         }

@@ -22,6 +22,10 @@ public:
     /// Keeps a reference to `scene`.
     Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path cache_dir);
 
+    /// Of the picture's layers behind the first, all that settings of make() ask for.
+    void   know_layers(std::vector<GBufferImage> layers) { gbuffer_.layers = std::move(layers); }
+    size_t known_layers() const { return gbuffer_.layers.size() + 1; }
+
     /// Makes the truths for these settings, or reads them from the cache, unless they are those of the last call; with what errors of
     /// images are measured against, or without.
     void make(const TraceSettings& settings, bool image_errors);

@@ -1,6 +1,8 @@
 // The settings that belong to an experiment, not to a technique.
 #include "harness/experiment.h"
 
+#include "shared.h"
+
 #include <limits>
 
 namespace ssrlab {
@@ -10,9 +12,10 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Trace settings hold for all techniques alike; `field` is a member of TraceSettings.
 template <typename Field>
-Setting trace_setting(const char* name, ParameterType type, Field TraceSettings::*field, double max, const char* doc)
+Setting trace_setting(const char* name, ParameterType type, Field TraceSettings::*field, double max, const char* doc,
+                      double min = 0)
 {
-    return {{name, type, static_cast<double>(TraceSettings{}.*field), 0, max, {}, doc},
+    return {{name, type, static_cast<double>(TraceSettings{}.*field), min, max, {}, doc},
             "trace",
             [=](const FrameSettings& settings) { return static_cast<double>(settings.trace.*field); },
             [=](FrameSettings& settings, double value) { settings.trace.*field = static_cast<Field>(value); }};
@@ -59,6 +62,9 @@ std::vector<Setting> make_table()
         trace_choice(
             "surface", &TraceSettings::surface, surface_names,
             "what a pixel holds around its depth: a box with a thickness, or a plane, see docs/hit_contract.md"),
+        trace_setting("layers", integer, &TraceSettings::layers, MAX_LAYERS,
+                      "surfaces that a pixel holds, one behind the other: the first, and the next that face the camera",
+                      1),
     };
     for (const Parameter& parameter : all_pass_settings()) {
         const std::string name = parameter.name;

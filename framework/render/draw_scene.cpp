@@ -39,8 +39,8 @@ DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipel
         {.file = options.fragment_shader, .stage = ShaderStage::fragment, .defines = options.fragment_defines});
     const auto vertex_module = make_module(gpu, vertex), fragment_module = make_module(gpu, fragment);
 
-    DrawPipeline                  result;
-    result.culls = options.culls;
+    DrawPipeline result;
+    result.culling                          = options.culling;
     const vk::DescriptorSetLayout layouts[] = {*scene.frame_layout, *scene.material_layout};
     const vk::PushConstantRange   range{vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0,
                                       sizeof(DrawPush)};
@@ -117,7 +117,9 @@ void draw_scene(const vk::raii::CommandBuffer& commands, const GpuScene& scene, 
     for (const GpuScene::DrawCall& draw : scene.draws) {
         if (draw.index_count == 0 || outside(draw, world_to_clip)) continue;
         const DrawPush push{glm::mat4(world_to_clip), draw.material, draw.object_id};
-        commands.setCullMode(draw.double_sided || !pipeline.culls ? vk::CullModeFlagBits::eNone : vk::CullModeFlagBits::eBack);
+        const bool     culls =
+            pipeline.culling == Culling::back_faces || (pipeline.culling == Culling::by_material && !draw.double_sided);
+        commands.setCullMode(culls ? vk::CullModeFlagBits::eBack : vk::CullModeFlagBits::eNone);
         commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *pipeline.layout, 1,
                                     *scene.material_sets[draw.material], nullptr);
         commands.pushConstants<DrawPush>(

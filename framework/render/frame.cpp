@@ -2,6 +2,7 @@
 #include "core/stopwatch.h"
 #include "render/directional_albedo.h"
 #include "render/frame_passes.h"
+#include "render/layers.h"
 #include "shared.h"
 
 #include <glm/gtc/packing.hpp>
@@ -177,6 +178,7 @@ FrameFacts facts_of(const PreparedFrame& frame)
     FrameFacts      facts;
     for (const Structure& structure : frame.technique.structures) facts.structures.push_back(structure.id);
     facts.solids               = frame.settings.trace.surface == SurfaceModel::plane_solid;
+    facts.layers               = frame.settings.trace.layers;
     facts.history              = history_facts(frame);
     const TraceSettings& trace = frame.settings.trace;
     facts.reflectors           = fmt::format("; metals, and what else has an F0 of {} or more up to roughness {}",
@@ -235,6 +237,7 @@ PreparedFramePtr prepare(Gpu& gpu, const FrameBuffersPtr& buffers, const Techniq
     if (!buffers->gbuffer->scene && choice<HitShading>(settings.passes) == HitShading::mirrored) // there are no lights
         frame->settings.passes.insert_or_assign("hit_shading", choice_value(HitShading::lit));
     frame->statistics = statistics_for(gpu, *buffers, settings.trace);
+    prepare_layers(gpu, *buffers->gbuffer, settings.trace);
     frame->rays       = rays_for(gpu, *buffers, frame->statistics.gbuffer, settings);
     frame->structures = make_depth_structures(gpu, *frame, *buffers->gbuffer);
     frame->trace      = make_trace_passes(gpu, *frame, *frame->rays, buffers->view, nullptr);

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/pixel_index.h"
+#include "render/layers.h"
 #include "shared.h"
 
 #include <glm/gtc/packing.hpp>
@@ -94,14 +95,16 @@ Defines precision_defines(const Gpu& gpu, Precision precision)
     return {};
 }
 
-void add_surface(ShaderSource& source, SurfaceModel model)
+void add_surface(ShaderSource& source, const TraceSettings& settings)
 {
+    const SurfaceModel          model  = settings.surface;
     const std::filesystem::path folder = shader_folder() / "surfaces" / (has_planes(model) ? "plane" : "box");
     source.include_files.emplace("surface/meeting.glsl", folder / "meeting.glsl");
     source.include_files.emplace("surface/held.glsl", folder / "held.glsl");
     if (has_planes(model)) source.defines.emplace("PIXEL_PLANES", "1");
     if (model == SurfaceModel::box_two_sided) source.defines.emplace("SURFACE_TWO_SIDED", "1");
     if (model == SurfaceModel::plane_solid) source.defines.emplace("SURFACE_SOLID", "1");
+    source.defines.emplace("LAYERS", std::to_string(settings.layers));
 }
 
 Defines store_defines(const Gpu& gpu, const Buffer& texels)
@@ -177,10 +180,13 @@ TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
 
 Bindings surface_bindings(const GBuffer& gbuffer)
 {
-    return {{"depth_words", gbuffer.depth.words},     {"depth_cells", gbuffer.depth.cells},
-            {"cell_pairs", gbuffer.depth.pairs},      {"StoredCells", {gbuffer.depth.cells, gbuffer.depth.pairs}},
-            {"normal_image", gbuffer.normal},         {"material_image", gbuffer.material},
-            {"dielectric_image", gbuffer.dielectric}, {"solid_image", gbuffer.solid}};
+    Bindings bindings{
+        {"depth_words", gbuffer.depth.words},     {"depth_cells", gbuffer.depth.cells},
+        {"cell_pairs", gbuffer.depth.pairs},      {"StoredCells", {gbuffer.depth.cells, gbuffer.depth.pairs}},
+        {"normal_image", gbuffer.normal},         {"material_image", gbuffer.material},
+        {"dielectric_image", gbuffer.dielectric}, {"solid_image", gbuffer.solid}};
+    add_layers(bindings, gbuffer.layers);
+    return bindings;
 }
 
 Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays)
@@ -218,7 +224,7 @@ Shader compile_trace(const Gpu& gpu, const PreparedFrame& frame, const RayBuffer
                               {"technique/structures", structure_declarations(technique, nullptr, in_double)}},
             .include_folders = technique_folders(technique)};
     source.include_files.emplace("technique/trace.glsl", technique.folder / "trace.glsl");
-    add_surface(source, frame.settings.trace.surface);
+    add_surface(source, frame.settings.trace);
     source.defines.emplace("STRUCTURES", std::to_string(technique.structures.size()));
     for (const std::string& macro : shader_macros(technique, frame.values)) source.defines.emplace(macro, "1");
     source.defines.merge(store_defines(gpu, rays.hits));
@@ -348,10 +354,13 @@ glm::ivec2 unpack_pixel(uint32_t packed)
 
 TraceStatus unpack_status(uint32_t packed)
 {
-    return static_cast<TraceStatus>((packed >> (2 * PIXEL_BITS)) & (TRACE_SECOND_LAYER - 1));
+    return static_cast<TraceStatus>(number_to_status(static_cast<int>(packed >> (2 * PIXEL_BITS))));
 }
 
-bool in_second_layer(uint32_t packed) { return ((packed >> (2 * PIXEL_BITS)) & TRACE_SECOND_LAYER) != 0; }
+uint8_t unpack_layer(uint32_t packed)
+{
+    return static_cast<uint8_t>(number_to_layer(static_cast<int>(packed >> (2 * PIXEL_BITS))));
+}
 
 size_t work_words(const Technique& technique) { return 2 + std::max<size_t>(technique.structures.size(), 1); }
 
@@ -375,6 +384,7 @@ TraceResult read_result(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& 
         const size_t     index     = pixel_index(pixel, size_px);
         result.status[index]       = unpack_status(hits[i].pixel);
         result.hit_pixel[index]    = unpack_pixel(hits[i].pixel);
+        result.hit_layer[index]    = unpack_layer(hits[i].pixel);
         result.hit_t[index]        = static_cast<double>(hits[i].t);
         result.hit_px_depth[index] = glm::dvec3(listed[i].origin) + result.hit_t[index] * glm::dvec3(listed[i].delta);
         if (work == nullptr) continue;

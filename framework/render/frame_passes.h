@@ -137,8 +137,8 @@ Bindings surface_bindings(const GBuffer& gbuffer);
 Bindings bindings_of(const FrameBuffers& buffers, const RayBuffers& rays);
 /// The number types that shaders/api/real.glsl and rays/double_float.glsl stand for.
 Defines precision_defines(const Gpu& gpu, Precision precision);
-/// The surface model that a shader is composed with (shaders/surfaces/).
-void add_surface(ShaderSource& source, SurfaceModel model);
+/// The surface model and the layers that a shader is composed with (shaders/surfaces/).
+void add_surface(ShaderSource& source, const TraceSettings& settings);
 /// For a shader that stores texels of this buffer (shaders/layout/store_texel.glsl): 64 bits at once where the device can.
 Defines store_defines(const Gpu& gpu, const Buffer& texels);
 /// What shaders/rays/reflecting.glsl asks.
@@ -164,7 +164,7 @@ uint32_t   pack_pixel(glm::ivec2 pixel, int number);
 glm::ivec2 unpack_pixel(uint32_t packed);
 /// How a ray ended, in whichever layer.
 TraceStatus unpack_status(uint32_t packed);
-bool        in_second_layer(uint32_t packed);
+uint8_t     unpack_layer(uint32_t packed);
 /// The list of rays as it is on the device.
 template <typename Real> std::vector<PackedRay<Real>> read_list(Gpu& gpu, const RayBuffers& rays)
 {

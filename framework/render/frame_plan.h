@@ -24,6 +24,7 @@ struct FrameFacts {
     HistoryFacts             history         = {};
     bool                     solids          = false; // the surface model asks where solids end
     std::string              reflectors      = {};    // what reflects, as facts_of_plan() says it
+    int                      layers          = 1;     // that a pixel holds
     std::vector<std::string> structures;              // that the technique reads, in the order in which they are built
 };
 

@@ -39,7 +39,8 @@ glm::vec4 from_half(const HalfTexel& h)
     return {glm::unpackHalf1x16(h[0]), glm::unpackHalf1x16(h[1]), glm::unpackHalf1x16(h[2]), glm::unpackHalf1x16(h[3])};
 }
 
-/// The images of a view, without content.
+} // namespace
+
 GBufferPtr make_gbuffer(Gpu& gpu, const View& view)
 {
     if (view.size_px.x > MAX_IMAGE_PX || view.size_px.y > MAX_IMAGE_PX)
@@ -64,6 +65,8 @@ GBufferPtr make_gbuffer(Gpu& gpu, const View& view)
     gbuffer->solid                   = image(Format::eR32Sfloat, target);
     return gbuffer;
 }
+
+namespace {
 
 void fill_frame_uniforms(Gpu& gpu, GBuffer& gbuffer)
 {
@@ -121,23 +124,29 @@ void record_rasterisation(const vk::raii::CommandBuffer& commands, const GBuffer
     commands.endRendering();
 }
 
-std::shared_ptr<const DrawPipeline> layer_pipeline(Gpu& gpu, GpuScene& scene, const GBuffer& gbuffer, bool second)
+/// Which surfaces a G-buffer shows: the nearest, the nearest so far behind another G-buffer, or the next that face the camera.
+enum class Shows { first, far_behind, next };
+
+std::shared_ptr<const DrawPipeline> layer_pipeline(Gpu& gpu, GpuScene& scene, const GBuffer& gbuffer, Shows shows)
 {
-    std::shared_ptr<const DrawPipeline>& pipeline = second ? scene.second_layer_pipeline : scene.first_layer_pipeline;
+    std::shared_ptr<const DrawPipeline>& pipeline = shows == Shows::first        ? scene.first_layer_pipeline
+                                                    : shows == Shows::far_behind ? scene.second_layer_pipeline
+                                                                                 : scene.layer_pipeline;
     if (!pipeline) {
         DrawPipelineOptions options{.fragment_shader = "gbuffer/gbuffer.frag",
                                     .colour_formats  = {gbuffer.normal.format, gbuffer.material.format,
                                                         gbuffer.radiance.format, gbuffer.highlight.format,
                                                         gbuffer.object.format, gbuffer.gradient.format,
                                                         gbuffer.dielectric.format}};
-        if (second) options.fragment_defines = {{"SECOND_LAYER", "1"}};
+        if (shows != Shows::first) options.fragment_defines = {{"PEELED", "1"}};
+        if (shows == Shows::next) options.culling = Culling::back_faces;
         pipeline = std::make_shared<const DrawPipeline>(make_draw_pipeline(gpu, scene, options));
     }
     return pipeline;
 }
 
-/// Ready to be drawn. first: the layer that lies before this one, or null.
-GBufferPtr make_drawn_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view, const GBuffer* first)
+/// Ready to be drawn. before: the G-buffer that lies before this one; null: none.
+GBufferPtr make_drawn_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view, Shows shows, const GBuffer* before)
 {
     GBufferPtr gbuffer = make_gbuffer(gpu, view);
     gbuffer->scene     = scene;
@@ -147,8 +156,8 @@ GBufferPtr make_drawn_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& vi
                          .usage = vk::ImageUsageFlagBits::eDepthStencilAttachment | vk::ImageUsageFlagBits::eSampled});
     fill_frame_uniforms(gpu, *gbuffer);
     gbuffer->frame_set =
-        make_frame_set(gpu, *scene, gbuffer->frame_uniforms, first == nullptr ? nullptr : &first->depth.words);
-    gbuffer->pipeline      = layer_pipeline(gpu, *scene, *gbuffer, first != nullptr);
+        make_frame_set(gpu, *scene, gbuffer->frame_uniforms, before == nullptr ? nullptr : &before->depth.words);
+    gbuffer->pipeline      = layer_pipeline(gpu, *scene, *gbuffer, shows);
     gbuffer->sampler       = {gpu.impl->device, vk::SamplerCreateInfo{}};
     gbuffer->view_uniforms = upload_view(gpu, view, Precision::float32);
     Constants constants;
@@ -168,6 +177,8 @@ GBufferPtr make_drawn_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& vi
     return gbuffer;
 }
 
+} // namespace
+
 void record_drawing(const vk::raii::CommandBuffer& commands, const GBuffer& gbuffer)
 {
     barrier(commands);
@@ -181,12 +192,10 @@ void record_drawing(const vk::raii::CommandBuffer& commands, const GBuffer& gbuf
     barrier(commands);
 }
 
-} // namespace
-
 GBufferPtr render_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view,
                           const std::optional<FrameMotion>& motion)
 {
-    GBufferPtr gbuffer = make_drawn_gbuffer(gpu, scene, view, nullptr);
+    GBufferPtr gbuffer = make_drawn_gbuffer(gpu, scene, view, Shows::first, nullptr);
     gbuffer->motion    = motion;
     if (motion && (motion->camera_moves || motion->moving_draws > 0))
         gbuffer->motion_vectors = make_motion_vectors(gpu, *gbuffer, *motion);
@@ -197,7 +206,12 @@ GBufferPtr render_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view,
 
 GBufferPtr make_second_layer(Gpu& gpu, const GBuffer& first)
 {
-    return make_drawn_gbuffer(gpu, first.scene, first.view, &first);
+    return make_drawn_gbuffer(gpu, first.scene, first.view, Shows::far_behind, &first);
+}
+
+GBufferPtr make_next_layer(Gpu& gpu, const GBuffer& before)
+{
+    return make_drawn_gbuffer(gpu, before.scene, before.view, Shows::next, &before);
 }
 
 void record_second_layer(const vk::raii::CommandBuffer& commands, const GBuffer& second, double separation_m)
@@ -253,6 +267,8 @@ void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image)
     upload(gpu, gbuffer.normal, normal.data(), count * sizeof(glm::vec4));
     upload(gpu, gbuffer.material, material.data(), count * sizeof(HalfTexel));
     upload(gpu, gbuffer.dielectric, dielectric.data(), count * sizeof(float));
+    for (size_t i = 0; i < std::min(gbuffer.layers.size(), image.layers.size()); ++i)
+        upload_surfaces(gpu, *gbuffer.layers[i], image.layers[i]);
 }
 
 GBufferPtr upload_gbuffer(Gpu& gpu, const GBufferImage& image)
@@ -268,6 +284,7 @@ GBufferPtr upload_gbuffer(Gpu& gpu, const GBufferImage& image)
     upload(gpu, gbuffer->radiance, radiance.data(), count * sizeof(HalfTexel));
     upload(gpu, gbuffer->highlight, highlight.data(), count * sizeof(HalfTexel));
     upload(gpu, gbuffer->object, image.object_id.data(), count * sizeof(uint32_t));
+    for (const GBufferImage& layer : image.layers) gbuffer->layers.push_back(upload_gbuffer(gpu, layer));
     return gbuffer;
 }
 
@@ -294,6 +311,7 @@ GBufferImage read_gbuffer(Gpu& gpu, const GBuffer& gbuffer)
     image.solid_back    = download_as<float>(gpu, gbuffer.solid);
     image.dielectric_f0 = download_as<float>(gpu, gbuffer.dielectric);
     if (gbuffer.motion_vectors) image.motion_px = download_as<glm::vec2>(gpu, gbuffer.motion_vectors->vectors_px);
+    for (const GBufferPtr& layer : gbuffer.layers) image.layers.push_back(read_gbuffer(gpu, *layer));
     return image;
 }
 

@@ -33,6 +33,7 @@ struct GBuffer {
     std::optional<MotionVectors>        motion_vectors; // if anything moved
     Timestamps                          timestamps;
     std::shared_ptr<StructureBuffers>   structures = std::make_shared<StructureBuffers>(); // on this depth
+    std::vector<GBufferPtr>             layers; // behind this one, the nearest first; layers.h makes and draws them
 };
 
 /// An image to draw into, cleared first.
@@ -47,5 +48,12 @@ void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image);
 /// `first` must outlive it.
 GBufferPtr make_second_layer(Gpu& gpu, const GBuffer& first);
 void       record_second_layer(const vk::raii::CommandBuffer& commands, const GBuffer& second, double separation_m);
+
+/// The images of a view, without content.
+GBufferPtr make_gbuffer(Gpu& gpu, const View& view);
+/// The next layer behind one that was drawn from a scene: the same images, of the nearest surfaces behind it that face the camera.
+/// `before` must outlive it.
+GBufferPtr make_next_layer(Gpu& gpu, const GBuffer& before);
+void       record_drawing(const vk::raii::CommandBuffer& commands, const GBuffer& gbuffer);
 
 } // namespace ssrlab

@@ -13,10 +13,13 @@ struct DrawPush {
     uint32_t  object_id;
 };
 
+/// Which sides of triangles are left out.
+enum class Culling : uint8_t { by_material /* back faces, but of double-sided materials none */, back_faces, nothing };
+
 struct DrawPipeline {
     vk::raii::PipelineLayout layout   = nullptr;
     vk::raii::Pipeline       pipeline = nullptr;
-    bool                     culls    = true; // back faces, but for double-sided materials
+    Culling                  culling  = Culling::by_material;
 };
 
 struct GpuScene {
@@ -39,9 +42,9 @@ struct GpuScene {
     vk::raii::DescriptorPool             pool            = nullptr;
     std::vector<vk::raii::DescriptorSet> material_sets;
     std::vector<DrawCall>                draws;
-    // Of the G-buffer and its second layer, made when one is first drawn: lavapipe keeps memory for every graphics pipeline that it ever made.
-    std::shared_ptr<const DrawPipeline> first_layer_pipeline, second_layer_pipeline, solid_back_pipeline,
-        shadow_pipeline;
+    // Of the G-buffer and what lies behind it, made when one is first drawn: lavapipe keeps memory for every graphics pipeline that it ever made.
+    std::shared_ptr<const DrawPipeline> first_layer_pipeline, second_layer_pipeline, layer_pipeline,
+        solid_back_pipeline, shadow_pipeline;
     uint32_t  light_count = 0;
     glm::vec3 ambient{0};
     bool      alpha_mask          = false; // some material has one
@@ -53,7 +56,7 @@ struct DrawPipelineOptions {
     std::vector<vk::Format> colour_formats;
     bool reversed_depth = true; // the G-buffer's convention; shadow maps use standard depth with a bias
     std::map<std::string, std::string> fragment_defines = {};
-    bool                               culls            = true;
+    Culling                            culling          = Culling::by_material;
 };
 DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipelineOptions& options);
 

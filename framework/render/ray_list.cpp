@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "render/frame_passes.h"
+#include "render/layers.h"
 #include "shared.h"
 
 #include <algorithm>
@@ -55,10 +56,11 @@ template <typename Real> std::vector<RayOutcome> read_outcomes(Gpu& gpu, const R
                        static_cast<double>(hits[i].t),
                        own[0],
                        own[1],
-                       std::accumulate(own.begin() + 2, own.begin() + 2 + structures, 0U)};
+                       std::accumulate(own.begin() + 2, own.begin() + 2 + structures, 0U),
+                       unpack_layer(hits[i].pixel)};
         if (outcomes[i].status == TraceStatus::impossible)
             outcomes[i] = {
-                TraceStatus::impossible, {static_cast<int>(own[1]), static_cast<int>(own[2])}, 0, own[0], 0, 0};
+                TraceStatus::impossible, {static_cast<int>(own[1]), static_cast<int>(own[2])}, 0, own[0], 0, 0, 0};
     }
     return outcomes;
 }
@@ -77,6 +79,7 @@ RayTracerPtr make_tracer(Gpu& gpu, const GBufferPtr& gbuffer, const Technique& t
     if (precision == Precision::float64 && !gpu.info.float64)
         throw_failure("the device '{}' has no double precision", gpu.info.name);
     require_bounded(technique, values);
+    prepare_layers(gpu, *gbuffer, settings);
     auto tracer          = std::make_shared<RayTracer>();
     auto buffers         = std::make_shared<FrameBuffers>();
     buffers->gbuffer     = gbuffer;

@@ -24,6 +24,7 @@ struct RayOutcome {
     uint32_t    steps             = 0;
     uint32_t    depth_fetches     = 0;
     uint32_t    structure_fetches = 0; // without those for a whole group of rays
+    uint8_t     hit_layer         = 0; // of hit_pixel; 0: the first
 
     bool operator==(const RayOutcome&) const = default;
 };

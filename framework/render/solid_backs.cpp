@@ -9,8 +9,9 @@ void prepare_solid_backs(Gpu& gpu, GBuffer& gbuffer)
     if (!gbuffer.scene || static_cast<bool>(*gbuffer.solid_set.set)) return;
     GpuScene& scene = *gbuffer.scene;
     if (!scene.solid_back_pipeline) {
-        const DrawPipelineOptions options{
-            .fragment_shader = "gbuffer/solid_back.frag", .colour_formats = {gbuffer.solid.format}, .culls = false};
+        const DrawPipelineOptions options{.fragment_shader = "gbuffer/solid_back.frag",
+                                          .colour_formats  = {gbuffer.solid.format},
+                                          .culling         = Culling::nothing};
         scene.solid_back_pipeline = std::make_shared<const DrawPipeline>(make_draw_pipeline(gpu, scene, options));
     }
     gbuffer.solid_depth = make_image(gpu, {.format  = vk::Format::eD32Sfloat,

@@ -151,7 +151,7 @@ StructureDispatch make_dispatch(Gpu& gpu, const PreparedFrame& frame, const Stru
                                 const Bindings& bindings)
 {
     ShaderSource source = shader_of(frame.technique, structure, pass, rays.precision == Precision::float64);
-    add_surface(source, frame.settings.trace.surface);
+    add_surface(source, frame.settings.trace);
     source.defines.merge(precision_defines(gpu, is_per_ray(pass) ? rays.precision : Precision::float32));
     source.defines.merge(store_defines_of(gpu, structure, layer, rays));
     if (is_per_ray(pass) && bindings.contains("Work")) source.defines.emplace("COUNT_WORK", "1");

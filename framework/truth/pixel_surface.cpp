@@ -38,16 +38,17 @@ PixelSurface box_infinite(double depth) { return {.front = depth, .back = -infin
 
 PixelSurface plane(const View& view, double depth, glm::dvec2 gradient)
 {
-    return {.front = depth, .back = depth - plane_tolerance(view, depth), .gradient = gradient, .sides_by_height = true};
+    return {
+        .front = depth, .back = depth - plane_tolerance(view, depth), .gradient = gradient, .sides_by_height = true};
 }
 
 /// The plane of a pixel, or its box where it has no usable plane.
 PixelSurface plane_or_box(const GBufferImage& gbuffer, size_t index, double depth, const TraceSettings& settings)
 {
     const glm::dvec2 gradient(gbuffer.gradient[index]);
-    const bool       usable = std::isfinite(gradient.x) && std::isfinite(gradient.y);
-    PixelSurface surface = usable ? plane(gbuffer.view, depth, gradient) : box(gbuffer.view, depth, settings);
-    surface.sides_by_height = true;
+    const bool       usable  = std::isfinite(gradient.x) && std::isfinite(gradient.y);
+    PixelSurface     surface = usable ? plane(gbuffer.view, depth, gradient) : box(gbuffer.view, depth, settings);
+    surface.sides_by_height  = true;
     return surface;
 }
 
@@ -104,6 +105,25 @@ void require_surface(const GBufferImage& gbuffer, const TraceSettings& settings)
     if (solids != 0 && solids != pixels)
         throw_failure("G-buffer of view '{}': expected {} far sides of solids or none, found {}", gbuffer.view.name,
                       pixels, solids);
+    for (int layer = 1; layer < layer_count(gbuffer, settings); ++layer) {
+        const GBufferImage& behind = layer_of(gbuffer, layer);
+        if (behind.depth.size() != pixels || behind.normal_vs.size() != pixels)
+            throw_failure("G-buffer of view '{}': layer {} needs {} depths and normals, found {} and {}",
+                          gbuffer.view.name, layer, pixels, behind.depth.size(), behind.normal_vs.size());
+        TraceSettings alone = settings;
+        alone.layers        = 1;
+        require_surface(behind, alone);
+    }
+}
+
+int layer_count(const GBufferImage& gbuffer, const TraceSettings& settings)
+{
+    return std::min(settings.layers, static_cast<int>(gbuffer.layers.size()) + 1);
+}
+
+const GBufferImage& layer_of(const GBufferImage& gbuffer, int layer)
+{
+    return layer == 0 ? gbuffer : gbuffer.layers[static_cast<size_t>(layer) - 1];
 }
 
 std::optional<PixelSurface> pixel_surface(const GBufferImage& gbuffer, size_t index, const TraceSettings& settings)

@@ -11,10 +11,10 @@ namespace ssrlab {
 /// A front and a back that slope alike, in depth; behind the back perhaps a solid.
 struct PixelSurface {
     glm::dvec2 centre_px{0, 0};
-    double     front = 0;          // at the centre; +inf: infinitely near
-    double     back  = 0;          // at the centre; -inf: there is none
-    glm::dvec2 gradient{0, 0};     // depth per px; 0: level
-    double     solid_back = 0;     // where the solid ends; 0: there is none
+    double     front = 0;               // at the centre; +inf: infinitely near
+    double     back  = 0;               // at the centre; -inf: there is none
+    glm::dvec2 gradient{0, 0};          // depth per px; 0: level
+    double     solid_back      = 0;     // where the solid ends; 0: there is none
     bool       sides_by_height = false; // met from behind where the ray comes from below; else where the normal says so
 
     double front_at(glm::dvec2 position_px) const { return front + glm::dot(gradient, position_px - centre_px); }
@@ -47,8 +47,13 @@ double plane_tolerance(const View& view, double depth);
 /// Throws Failure unless the G-buffer has what the model needs.
 void require_surface(const GBufferImage& gbuffer, const TraceSettings& settings);
 
-/// Empty on the background.
+/// In the G-buffer's own layer. Empty on the background.
 std::optional<PixelSurface> pixel_surface(const GBufferImage& gbuffer, size_t index, const TraceSettings& settings);
+
+/// How many layers a pixel holds at most: those that the settings ask for and the G-buffer has.
+int layer_count(const GBufferImage& gbuffer, const TraceSettings& settings);
+/// One of them; 0: the G-buffer itself.
+const GBufferImage& layer_of(const GBufferImage& gbuffer, int layer);
 
 /// `facing`: the sign of normal · direction; it says from which side a box is met.
 Meeting meet(const PixelSurface& surface, const RayPart& ray, double facing);

@@ -39,6 +39,7 @@ void store(const WalkResult& found, size_t i, TraceResult& result)
     result.status[i]       = found.status;
     result.steps[i]        = found.pixels;
     result.hit_pixel[i]    = found.hit_pixel;
+    result.hit_layer[i]    = static_cast<uint8_t>(found.hit_layer);
     result.hit_px_depth[i] = found.hit_px_depth;
     result.hit_t[i]        = found.hit_t;
 }
@@ -61,31 +62,38 @@ ScreenWalk::ScreenWalk(const GBufferImage& gbuffer, const TraceSettings& setting
     require_surface(gbuffer, settings);
     constexpr float infinite = std::numeric_limits<float>::infinity();
     for (size_t i = 0; i < cells_.size(); ++i) {
-        const auto surface = pixel_surface(gbuffer, i, settings);
-        if (!surface) {
-            cells_[i] = {-infinite, 0};
-            continue;
+        cells_[i] = {-infinite, infinite};
+        for (int layer = 0; layer < layer_count(gbuffer, settings); ++layer) {
+            const auto surface = pixel_surface(layer_of(gbuffer, layer), i, settings);
+            if (!surface) continue;
+            const auto [nearest, farthest] = depth_range(*surface);
+            cells_[i].front                = std::max(cells_[i].front, std::nextafter(float(nearest), infinite));
+            cells_[i].back                 = std::min(cells_[i].back, std::nextafter(float(farthest), -infinite));
         }
-        const auto [nearest, farthest] = depth_range(*surface);
-        cells_[i] = {std::nextafter(float(nearest), infinite), std::nextafter(float(farthest), -infinite)};
     }
 }
 
 /// What the ray meets there, and how it ends if it ends there. False: it goes on.
 bool ScreenWalk::ends_at(size_t index, const RayPart& part, glm::dvec3 direction_vs, WalkResult& found) const
 {
-    const auto surface = pixel_surface(gbuffer_, index, settings_);
-    const auto meeting = meet(*surface, part, glm::dot(glm::dvec3(gbuffer_.normal_vs[index]), direction_vs));
-    if (!meeting.meets) return false;
-    if (meeting.from_behind && settings_.behind == Behind::pass) {
-        found.status = TraceStatus::facing_away;
-        return false;
+    Meeting first{.t = infinity};
+    for (int layer = 0; layer < layer_count(gbuffer_, settings_); ++layer) {
+        const GBufferImage& image   = layer_of(gbuffer_, layer);
+        const auto          surface = pixel_surface(image, index, settings_);
+        if (!surface) continue;
+        const Meeting meeting = meet(*surface, part, glm::dot(glm::dvec3(image.normal_vs[index]), direction_vs));
+        const bool    passes  = meeting.from_behind && settings_.behind == Behind::pass;
+        if (meeting.meets && passes) found.status = TraceStatus::facing_away;
+        if (!meeting.meets || passes || meeting.t >= first.t) continue;
+        first           = meeting;
+        found.hit_layer = layer;
     }
-    const bool stops   = meeting.from_behind && settings_.behind == Behind::stop;
+    if (!first.meets) return false;
+    const bool stops   = first.from_behind && settings_.behind == Behind::stop;
     found.status       = stops ? TraceStatus::stopped : TraceStatus::hit;
     found.hit_pixel    = pixel_at(index, gbuffer_.view.size_px);
-    found.hit_t        = meeting.t;
-    found.hit_px_depth = part.at(meeting.t);
+    found.hit_t        = first.t;
+    found.hit_px_depth = part.at(first.t);
     const glm::dvec2 low(found.hit_pixel);
     found.hit_px_depth.x = std::clamp(found.hit_px_depth.x, low.x, low.x + 1);
     found.hit_px_depth.y = std::clamp(found.hit_px_depth.y, low.y, low.y + 1);

@@ -11,11 +11,12 @@
 
 namespace ssrlab {
 
-/// What one ray found. The last three fields are undefined unless hit or stopped.
+/// What one ray found. The last four fields are undefined unless hit or stopped.
 struct WalkResult {
     TraceStatus status = TraceStatus::not_traced;
     uint32_t    pixels = 0; // visited; the start pixel is not one of them
     glm::ivec2  hit_pixel{0, 0};
+    int         hit_layer = 0;
     glm::dvec3  hit_px_depth{0};
     double      hit_t = 0;
 };
@@ -28,7 +29,7 @@ public:
     WalkResult walk(const ScreenRay& ray) const;
 
 private:
-    /// All depths of what a pixel holds, rounded outward to float: it rejects a pixel for certain, and small cells keep the walk in
+    /// All depths of what a pixel holds, in all its layers, rounded outward to float: it rejects a pixel for certain, and small cells keep the walk in
     /// the cache. front = -inf on the background, so that nothing meets it.
     struct Cell {
         float front;

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Raise when the code computes another truth from the same input, or writes it in another form.
-constexpr uint32_t format_version = 4;
+constexpr uint32_t format_version = 5;
 
 struct Header {
     std::array<char, 8> magic{'S', 'S', 'R', 'T', 'R', 'U', 'T', 'H'};
@@ -48,7 +48,7 @@ void add(ContentHash& hash, const TraceSettings& settings)
 {
     add_reflecting(hash, settings);
     hash.add(settings.thickness_m).add(settings.thickness_relative).add(settings.max_distance_m);
-    hash.add(settings.ray_offset_m).add(settings.behind).add(settings.surface);
+    hash.add(settings.ray_offset_m).add(settings.behind).add(settings.surface).add(settings.layers);
 }
 
 void add(ContentHash& hash, const TextureUse& use) { hash.add(use.texture).add(use.uv_set).add(use.uv_transform); }
@@ -156,6 +156,7 @@ template <typename Pass> void pass_values(Pass& pass, TraceResult& result)
         if (result.status[i] != TraceStatus::not_traced) pass(result.steps[i]);
         if (result.status[i] != TraceStatus::hit) continue;
         pass(result.hit_pixel[i]);
+        pass(result.hit_layer[i]);
         pass(result.hit_px_depth[i]);
         pass(result.hit_t[i]);
     }
@@ -220,6 +221,7 @@ TraceResult cached_screen_truth(const fs::path& cache_dir, const GBufferImage& g
     require_complete(gbuffer);
     ContentHash hash;
     add(hash.add(format_version), gbuffer);
+    for (int layer = 1; layer < layer_count(gbuffer, settings); ++layer) add(hash, layer_of(gbuffer, layer));
     add(hash, settings);
     return cached<TraceResult>(cache_dir / fmt::format("screen_{}.truth", hash.hex()), gbuffer.view.size_px,
                                [&] { return screen_truth(gbuffer, settings, threads); });

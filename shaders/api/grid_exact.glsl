@@ -21,8 +21,8 @@ i64vec2 border_t(Ray ray, Grid grid, ivec2 border)
 
 real crossing_to_t(Grid grid, int64_t t) { return real(double(t) / double(grid.whole)); }
 
-// The nearest step, the even one of two: mirrored positions get mirrored steps. round() may break such ties as it likes, and lavapipe's roundEven() of
-// doubles breaks them upward on some processors. A sum is rounded by IEEE 754: 1.5 * 2^52 leaves it no fraction.
+// The nearest step, the even one of two: mirrored positions get mirrored steps. round() may break such ties as it likes, and roundEven() of
+// doubles breaks them upward on some CPU devices. A sum is rounded by IEEE 754: 1.5 * 2^52 leaves it no fraction.
 ivec2 nearest_steps(dvec2 position_px)
 {
     const double  no_fraction = 6755399441055744.0LF;

@@ -11,10 +11,17 @@ const float held_reach_px = 0.5 + 1.0 / 64;
 // gradient: the second word of a pixel with its plane (layout/plane_places.glsl).
 #include "surface/held.glsl"
 
-// The nearest and the farthest depth that the pixel holds.
-vec2 held_depths(ivec2 pixel, float depth, uint gradient)
+// The nearest and the farthest depth that the pixel holds in one layer.
+vec2 held_depths(ivec2 pixel, int layer, float depth, uint gradient)
 {
-    Held  held   = held_by(pixel, depth, gradient);
+    Held  held   = held_by(pixel, layer, depth, gradient);
     float spread = (abs(held.gradient.x) + abs(held.gradient.y)) * held_reach_px;
     return vec2(held.front + spread, held.back - spread);
 }
+
+// In all layers. depth, gradient: of the first one.
+#if LAYERS > 1
+#include "api/held_layers.glsl"
+#else
+vec2 held_depths(ivec2 pixel, float depth, uint gradient) { return held_depths(pixel, 0, depth, gradient); }
+#endif

@@ -29,7 +29,7 @@ struct Ray
 
 struct TraceResult
 {
-    int   status; // TRACE_*
+    int   status; // TRACE_*, of a layer behind the first as status_to_number() says
     ivec2 pixel;  // the pixel that was met; undefined unless TRACE_HIT or TRACE_STOPPED
     real  t;      // where the ray first meets what that pixel holds; undefined likewise
     int   steps;  // loop iterations
@@ -128,10 +128,15 @@ bool interval_touches(real depth, real2 interval)
 #include "api/grid_float.glsl"
 #endif
 
+#if LAYERS > 1
+#include "trace/fetch_layers.glsl"
+#else
+real3 fetch_normal(ivec2 pixel, int layer) { return fetch_normal(pixel); }
+#endif
 
-// What a pixel holds, by the run's surface model (shaders/surfaces/README.md):
-//   PixelSurface surface_at(Ray, ivec2 pixel, uvec2 words)      words: fetch_pixel()
-//   PixelSurface sampled_surface_at(Ray, ivec2 pixel, uvec2 words)  for one sample instead of an interval
+// What a pixel holds in a layer, by the run's surface model (shaders/surfaces/README.md):
+//   PixelSurface surface_at(Ray, ivec2 pixel, int layer, uvec2 words)          words: fetch_pixel()
+//   PixelSurface sampled_surface_at(Ray, ivec2 pixel, int layer, uvec2 words)  for one sample instead of an interval
 //   bool meets(Ray, PixelSurface, real t_in, real t_out)        does the ray meet it between the two
 //   bool from_behind(Ray, PixelSurface, real t_in)              from the side that the frame does not show, if it meets it
 //   real contact_t(Ray, PixelSurface, real t_in, real t_out)    where, if it meets it
@@ -149,27 +154,39 @@ bool ends_at(Ray ray, PixelSurface surface, bool met, real t_in)
     return !passes;
 }
 
+#if LAYERS > 1
+#include "trace/layers.glsl"
+#else
+bool  touches_layers(Ray ray, ivec2 pixel, real t_in, real t_out) { return false; }
+bool  touches_layers(Ray ray, Grid grid, ivec2 pixel, crossing t_in, crossing t_out) { return false; }
+bool  samples_layers(Ray ray, ivec2 pixel, real t) { return false; }
+int   met_layer(Ray ray, ivec2 pixel, real t_in, real t_out) { return 0; }
+int   sampled_layer(Ray ray, ivec2 pixel, real t) { return 0; }
+uvec2 fetch_met(ivec2 pixel, int layer) { return fetch_pixel(pixel); }
+#endif
+
 // Does the ray end at this pixel between two t, by a hit or by being stopped?
 bool touches_surface(Ray ray, ivec2 pixel, real t_in, real t_out)
 {
     note_interval(t_in, t_out);
-    PixelSurface surface = surface_at(ray, pixel, fetch_pixel(pixel));
-    return ends_at(ray, surface, meets(ray, surface, t_in, t_out), t_in);
+    PixelSurface surface = surface_at(ray, pixel, 0, fetch_pixel(pixel));
+    return ends_at(ray, surface, meets(ray, surface, t_in, t_out), t_in) || touches_layers(ray, pixel, t_in, t_out);
 }
 
 // Does it end at this pixel by one sample, at t? There a plane has the thickness of the run.
 bool touches_sample(Ray ray, ivec2 pixel, real t)
 {
     note_interval(t, t);
-    PixelSurface surface = sampled_surface_at(ray, pixel, fetch_pixel(pixel));
-    return ends_at(ray, surface, meets(ray, surface, t, t), t);
+    PixelSurface surface = sampled_surface_at(ray, pixel, 0, fetch_pixel(pixel));
+    return ends_at(ray, surface, meets(ray, surface, t, t), t) || samples_layers(ray, pixel, t);
 }
 
 // The same between two crossings.
 bool touches_surface(Ray ray, Grid grid, ivec2 pixel, crossing t_in, crossing t_out)
 {
-    PixelSurface surface = surface_at(ray, pixel, fetch_pixel(pixel));
-    return ends_at(ray, surface, meets(ray, grid, surface, t_in, t_out), crossing_to_t(grid, t_in));
+    PixelSurface surface = surface_at(ray, pixel, 0, fetch_pixel(pixel));
+    bool         ends    = ends_at(ray, surface, meets(ray, grid, surface, t_in, t_out), crossing_to_t(grid, t_in));
+    return ends || touches_layers(ray, grid, pixel, t_in, t_out);
 }
 
 // Where the ray leaves the cell whose borders it crosses at t_border, or ends. A select, not min(): no number is NaN.
@@ -186,31 +203,33 @@ ivec2 cross_borders(Grid grid, ivec2 cell, crossing2 t_border, crossing t)
 }
 
 // ---- Results
-// The ray ends at a pixel that touches_surface() said it does, at this t; t_in: where that interval began.
-TraceResult end_at(Ray ray, PixelSurface surface, ivec2 pixel, real t_in, real t, int steps)
+// The ray ends at a layer of a pixel, where touches_surface() said it does, at this t; t_in: where that interval began.
+TraceResult end_at(Ray ray, PixelSurface surface, ivec2 pixel, int layer, real t_in, real t, int steps)
 {
     bool stopped = behind_rule == BEHIND_STOP && from_behind(ray, surface, t_in);
-    return TraceResult(stopped ? TRACE_STOPPED : TRACE_HIT, pixel, t, steps);
+    return TraceResult(status_to_number(stopped ? TRACE_STOPPED : TRACE_HIT, layer), pixel, t, steps);
 }
 
 // A hit (or stop) at one sample, which touches_sample() found.
 TraceResult hit_at_sample(Ray ray, ivec2 pixel, real t, int steps)
 {
-    return end_at(ray, sampled_surface_at(ray, pixel, fetch_pixel(pixel)), pixel, t, t, steps);
+    int layer = sampled_layer(ray, pixel, t);
+    return end_at(ray, sampled_surface_at(ray, pixel, layer, fetch_met(pixel, layer)), pixel, layer, t, t, steps);
 }
 
 // A hit (or stop) at the end of an interval [t_in, t] between two samples.
 TraceResult hit_at(Ray ray, ivec2 pixel, real t_in, real t, int steps)
 {
-    PixelSurface surface = surface_at(ray, pixel, fetch_pixel(pixel));
-    return end_at(ray, surface, pixel, t_in, t, steps);
+    int layer = met_layer(ray, pixel, t_in, t);
+    return end_at(ray, surface_at(ray, pixel, layer, fetch_met(pixel, layer)), pixel, layer, t_in, t, steps);
 }
 
 // A hit (or stop) somewhere in [t_in, t_out]: at the point where the ray first meets what the pixel holds.
 TraceResult hit_between(Ray ray, ivec2 pixel, real t_in, real t_out, int steps)
 {
-    PixelSurface surface = surface_at(ray, pixel, fetch_pixel(pixel));
-    return end_at(ray, surface, pixel, t_in, contact_t(ray, surface, t_in, t_out), steps);
+    int          layer   = met_layer(ray, pixel, t_in, t_out);
+    PixelSurface surface = surface_at(ray, pixel, layer, fetch_met(pixel, layer));
+    return end_at(ray, surface, pixel, layer, t_in, contact_t(ray, surface, t_in, t_out), steps);
 }
 
 // Nothing was hit: the ray ends as its segment says, or as one that met something from behind and passed.

@@ -41,6 +41,6 @@ uint pack_pixel(ivec2 pixel, int number) { return uint(pixel.x) | uint(pixel.y) 
 ivec2 unpack_pixel(uint packed) { return ivec2(packed, packed >> PIXEL_BITS) & (MAX_IMAGE_PX - 1); }
 
 // How a ray ended, in whichever layer.
-int unpack_status(uint packed) { return int(packed >> (2 * PIXEL_BITS)) & (TRACE_SECOND_LAYER - 1); }
+int unpack_status(uint packed) { return number_to_status(int(packed >> (2 * PIXEL_BITS))); }
 
-bool in_second_layer(uint packed) { return (int(packed >> (2 * PIXEL_BITS)) & TRACE_SECOND_LAYER) != 0; }
+int unpack_layer(uint packed) { return number_to_layer(int(packed >> (2 * PIXEL_BITS))); }

@@ -10,13 +10,13 @@ layout(set = 0, binding = 0, scalar) uniform Frame
     vec3  view_axis_ws;    // orthographic: direction of view
     int   light_count;
     vec3  ambient;
-    float layer_separation; // second layer: at least so far behind the first; in units of the near distance, or of the depth range
+    float layer_separation; // peeled: at least so far behind the layer before; in units of the near distance, or of the depth range
     ivec2 size_px;
 };
 #define LIGHTS_BINDING 2
 #include "gbuffer/lighting.glsl"
-#ifdef SECOND_LAYER
-#define DEPTH_BINDING 5 // the first layer's
+#ifdef PEELED
+#define DEPTH_BINDING 5 // of the layer before this one
 #include "layout/load_depth.glsl"
 #endif
 
@@ -48,14 +48,17 @@ vec3 shading_normal(Material material, Coordinates at)
     return material.double_sided != 0 && !gl_FrontFacing ? -normal : normal;
 }
 
-#ifdef SECOND_LAYER
-// Depth peeling: the nearest of all that lies behind what the first layer shows. C. Everitt 2001, Interactive Order-Independent
+#ifdef PEELED
+// Of depth: what lies nearer behind a surface is the same surface.
+const float same_surface = 1.0 / 65536.0;
+
+// Depth peeling: the nearest of all that lies behind what the layer before shows. C. Everitt 2001, Interactive Order-Independent
 // Transparency; with a minimum separation as M. Mara et al. 2016, Deep G-Buffers for Stable Global Illumination Approximation.
 bool is_peeled_off()
 {
-    float first = load_depth(ivec2(gl_FragCoord.xy));
-    float limit = orthographic != 0 ? first - layer_separation : first / (1.0 + layer_separation * first);
-    return first <= 0.0 || gl_FragCoord.z >= limit;
+    float before = load_depth(ivec2(gl_FragCoord.xy));
+    float limit  = orthographic != 0 ? before - layer_separation : before / (1.0 + layer_separation * before);
+    return before <= 0.0 || gl_FragCoord.z >= min(limit, before - before * same_surface);
 }
 #endif
 
@@ -75,7 +78,7 @@ void main()
     Material    material = materials[material_index];
     vec4        base     = base_colour_of(material, at, vertex_colour);
     if (material.alpha_cutoff >= 0.0 && base.a < material.alpha_cutoff) discard;
-#ifdef SECOND_LAYER
+#ifdef PEELED
     if (is_peeled_off()) discard;
 #endif
     vec4  metallic_roughness = sample_texture(metallic_roughness_texture, material, 1, at);

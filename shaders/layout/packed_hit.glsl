@@ -11,10 +11,7 @@ struct PackedHit
 };
 
 #ifdef REAL_IS_DOUBLE
-#define HIT_FORMAT rgba32ui
-#define STORED_HITS STORED_TEXELS_4
-uvec4 hit_to_texel(PackedHit hit) { return uvec4(hit.pixel, 0, unpackDouble2x32(hit.t)); }
-PackedHit texel_to_hit(uvec4 texel) { return PackedHit(texel.x, packDouble2x32(texel.zw)); }
+#include "layout/packed_hit_double.glsl"
 #else
 #define HIT_FORMAT rg32ui
 #define STORED_HITS STORED_TEXELS_2

@@ -15,12 +15,21 @@
 #define TRACE_STOPPED 6
 #define TRACE_IMPOSSIBLE 7
 
-// What a ray found in the second depth layer has this added to its status.
-#define TRACE_SECOND_LAYER 8
+#ifdef __cplusplus
+#define SHARED_FUNCTION inline
+#else
+#define SHARED_FUNCTION
+#endif
 
 // A pixel and a small number in one uint: x in bits 0..13, y in 14..27, the number in 28..31.
 #define PIXEL_BITS 14
 #define MAX_IMAGE_PX (1 << PIXEL_BITS)
+
+// How a ray ended, as that number: its status (0 ... 7), but that of a hit or a stop in a layer behind the first tells the layer, too.
+#define MAX_LAYERS 4
+SHARED_FUNCTION int number_to_layer(int number) { return number < 8 ? 0 : (number >> 1) - 3; }
+SHARED_FUNCTION int number_to_status(int number) { return number < 8 ? number : (number & 1) == 0 ? TRACE_HIT : TRACE_STOPPED; }
+SHARED_FUNCTION int status_to_number(int status, int layer) { return layer == 0 ? status : 6 + 2 * layer + (status == TRACE_HIT ? 0 : 1); }
 
 // Rays are traced in groups of this many; a launch is a grid no wider than so many groups.
 #define RAYS_PER_GROUP 64
@@ -54,12 +63,6 @@
 // picture's height, and the cells above a row lie in the row of half its number. Level 0 holds two pixels in the place of a cell. All lies
 // in strips of 2^STRIP_BITS cells' width: a row of one is a cache line, and what a ray meets on its way up or down the picture follows in memory.
 #define STRIP_BITS 3
-
-#ifdef __cplusplus
-#define SHARED_FUNCTION inline
-#else
-#define SHARED_FUNCTION
-#endif
 
 // With a row below the picture, which holds background as all beside it does; odd, so that the strips' cache lines do not compete for the same
 // places.

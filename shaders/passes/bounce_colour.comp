@@ -34,7 +34,7 @@ void main()
     vec2 centre     = vec2(reflector) + 0.5;
     vec3 surface_vs = px_to_vs(vec3(centre, load_depth(reflector)));
     vec3 arrived_vs = reflect(reflected_vs, normal_vs);
-    vec3 own        = surface_light(reflector, false, centre), highlight = highlight_along(reflector, false, surface_vs, arrived_vs, 0.0);
+    vec3 own        = surface_light(reflector, 0, centre), highlight = highlight_along(reflector, 0, surface_vs, arrived_vs, 0.0);
     vec3 throughput = ray_throughput[index];
     ray_throughput[index] = throughput * reflectance_of(reflector, -arrived_vs) * found.weight * found.attenuation;
     vec4 reflection = imageLoad(reflection_image, target);

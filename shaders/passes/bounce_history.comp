@@ -34,7 +34,7 @@ void main()
     ivec2 pixel  = unpack_pixel(ray_pixel(index));
     PackedHit listed = packed_hit(index);
     ivec2 hit    = unpack_pixel(listed.pixel);
-    bool  mirror = unpack_status(listed.pixel) == TRACE_HIT && !in_second_layer(listed.pixel) && reflects(hit);
+    bool  mirror = unpack_status(listed.pixel) == TRACE_HIT && unpack_layer(listed.pixel) == 0 && reflects(hit);
     if (!mirror || !reflects(pixel)) return;
     Found found = found_by(packed_ray(index), listed);
     if (found.weight <= 0.0) return;

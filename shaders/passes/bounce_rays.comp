@@ -39,7 +39,7 @@ void main()
     PackedHit listed = PackedHit(0, real(0));
     if (index < ray_count) listed = packed_hit(index);
     ivec2 hit      = unpack_pixel(listed.pixel);
-    bool  follows  = unpack_status(listed.pixel) == TRACE_HIT && !in_second_layer(listed.pixel) && reflects(hit);
+    bool  follows  = unpack_status(listed.pixel) == TRACE_HIT && unpack_layer(listed.pixel) == 0 && reflects(hit);
     real3 arriving = real3(0), normal = real3(0);
     vec3  throughput = vec3(0);
     if (follows)

@@ -5,21 +5,36 @@
 layout(set = 0, binding = 11, rgba16f) uniform readonly image2D radiance_image;
 layout(set = 0, binding = 12, rgba16f) uniform readonly image2D highlight_image;
 layout(set = 0, binding = 14, rgba16f) uniform readonly image2D small_colour_image;
-#ifdef SECOND_LAYER
-layout(set = 0, binding = 26, r32f) uniform readonly imageBuffer second_depth_words;
-layout(set = 0, binding = 27, rgba32f) uniform readonly image2D second_normal_image;
-layout(set = 0, binding = 28, rgba16f) uniform readonly image2D second_material_image;
-layout(set = 0, binding = 29, rgba16f) uniform readonly image2D second_radiance_image;
-layout(set = 0, binding = 30, rgba16f) uniform readonly image2D second_highlight_image;
-layout(set = 0, binding = 61, r32f) uniform readonly image2D second_dielectric_image;
-#define LOAD_LAYER(name, place, second) ((second) ? imageLoad(second_##name, place) : imageLoad(name, place))
+#define DECLARE_COLOURS(number, place)                                                                     \
+    layout(set = 0, binding = place, r32f) uniform readonly imageBuffer layer_##number##_depth_words;         \
+    layout(set = 0, binding = place + 1, rgba32f) uniform readonly image2D layer_##number##_normal_image;   \
+    layout(set = 0, binding = place + 2, rgba16f) uniform readonly image2D layer_##number##_material_image; \
+    layout(set = 0, binding = place + 3, rgba16f) uniform readonly image2D layer_##number##_radiance_image; \
+    layout(set = 0, binding = place + 4, rgba16f) uniform readonly image2D layer_##number##_highlight_image; \
+    layout(set = 0, binding = place + 5, r32f) uniform readonly image2D layer_##number##_dielectric_image;
+#define OF_LAYER(number, name, place, layer, otherwise) ((layer) == number ? imageLoad(layer_##number##_##name, place) : otherwise)
+#if LAYERS > 3
+DECLARE_COLOURS(3, 82)
+#define LOAD_FROM_3(name, place, layer) OF_LAYER(3, name, place, layer, imageLoad(name, place))
 #else
-#define LOAD_LAYER(name, place, second) imageLoad(name, place)
+#define LOAD_FROM_3(name, place, layer) imageLoad(name, place)
+#endif
+#if LAYERS > 2
+DECLARE_COLOURS(2, 76)
+#define LOAD_FROM_2(name, place, layer) OF_LAYER(2, name, place, layer, LOAD_FROM_3(name, place, layer))
+#else
+#define LOAD_FROM_2(name, place, layer) LOAD_FROM_3(name, place, layer)
+#endif
+#if LAYERS > 1
+DECLARE_COLOURS(1, 70)
+#define LOAD_LAYER(name, place, layer) OF_LAYER(1, name, place, layer, LOAD_FROM_2(name, place, layer))
+#else
+#define LOAD_LAYER(name, place, layer) LOAD_FROM_2(name, place, layer)
 #endif
 
-float layer_depth(ivec2 pixel, bool second)
+float layer_depth(ivec2 pixel, int layer)
 {
-    return LOAD_LAYER(depth_words, depth_word(pixel), second).x;
+    return LOAD_LAYER(depth_words, depth_word(pixel), layer).x;
 }
 
 struct Found
@@ -38,18 +53,18 @@ struct Found
 #include "gbuffer/lighting.glsl"
 #include "passes/scene_frame.glsl"
 
-vec3 highlight_along(ivec2 pixel, bool second, vec3 position_vs, vec3 direction_vs, float roughness)
+vec3 highlight_along(ivec2 pixel, int layer, vec3 position_vs, vec3 direction_vs, float roughness)
 {
     mat3 view_to_world = transpose(mat3(world_to_view));
-    vec4 normal        = LOAD_LAYER(normal_image, pixel, second), material = LOAD_LAYER(material_image, pixel, second);
-    float dielectric   = LOAD_LAYER(dielectric_image, pixel, second).x;
+    vec4 normal        = LOAD_LAYER(normal_image, pixel, layer), material = LOAD_LAYER(material_image, pixel, layer);
+    float dielectric   = LOAD_LAYER(dielectric_image, pixel, layer).x;
     vec3 position_ws   = view_to_world * (position_vs - world_to_view[3].xyz), irradiance, highlights;
     light_surface(Surface(position_ws, view_to_world * normal.xyz, material.rgb, material.a, max(normal.w, roughness), dielectric), light_count,
                   view_to_world * -direction_vs, irradiance, highlights);
     return highlights;
 }
 #else
-vec3 highlight_along(ivec2 pixel, bool second, vec3 position_vs, vec3 direction_vs, float roughness)
+vec3 highlight_along(ivec2 pixel, int layer, vec3 position_vs, vec3 direction_vs, float roughness)
 {
     return vec3(0);
 }
@@ -69,11 +84,11 @@ vec3 blurred_light(vec2 point_px)
 
 // The part of a surface's light that rays bring back from wherever they come: of the pixel, or about point_px where rays have a lower
 // resolution.
-vec3 surface_light(ivec2 pixel, bool second, vec2 point_px)
+vec3 surface_light(ivec2 pixel, int layer, vec2 point_px)
 {
     if (block_px > 1 && downsample_cross_blur) return blurred_light(point_px);
-    vec3 light = LOAD_LAYER(radiance_image, pixel, second).rgb;
-    if (hit_shading == hit_shading_lit) light += LOAD_LAYER(highlight_image, pixel, second).rgb;
+    vec3 light = LOAD_LAYER(radiance_image, pixel, layer).rgb;
+    if (hit_shading == hit_shading_lit) light += LOAD_LAYER(highlight_image, pixel, layer).rgb;
     return light;
 }
 
@@ -108,14 +123,14 @@ float edge_weight(vec2 uv)
 }
 
 // Litheon's proposal: where the depths about the hit jump, the hit is doubtful.
-float depth_step_weight(ivec2 pixel, bool second)
+float depth_step_weight(ivec2 pixel, int layer)
 {
     if (depth_step_fade_m <= 0.0) return 1.0;
-    float own_m = depth_to_distance(layer_depth(pixel, second)), largest_m = 0.0;
+    float own_m = depth_to_distance(layer_depth(pixel, layer)), largest_m = 0.0;
     for (int i = 0; i < 4; ++i)
     {
         ivec2 next  = clamp(pixel + ivec2((i & 1) * (i - 2), (1 - (i & 1)) * (i - 1)), ivec2(0), size_px - 1);
-        float depth = layer_depth(next, second);
+        float depth = layer_depth(next, layer);
         largest_m   = max(largest_m, depth > 0.0 ? abs(depth_to_distance(depth) - own_m) : depth_step_fade_m);
     }
     return 1.0 - clamp(largest_m / depth_step_fade_m, 0.0, 1.0);
@@ -140,18 +155,18 @@ Found found_by(PackedRay ray, PackedHit found)
 {
     if (unpack_status(found.pixel) != TRACE_HIT) return Found(vec3(0), 0.0, 0.0);
     ivec2 hit       = unpack_pixel(found.pixel);
-    bool  second    = in_second_layer(found.pixel);
+    int   layer     = unpack_layer(found.pixel);
     vec3  point     = ray.origin + ray.delta * found.t;
     vec3  direction = ray_direction(ray), origin_vs = px_to_vs(ray.origin);
-    vec3  surface_vs = px_to_vs(vec3(vec2(hit) + 0.5, layer_depth(hit, second)));
+    vec3  surface_vs = px_to_vs(vec3(vec2(hit) + 0.5, layer_depth(hit, layer)));
     // A. Biro: a surface that is met elsewhere than where the ray goes is the wrong one.
     if (dot(direction, normalize(surface_vs - origin_vs)) < min_direction_cosine) return Found(vec3(0), 0.0, 0.0);
-    vec3 light = surface_light(hit, second, point.xy);
+    vec3 light = surface_light(hit, layer, point.xy);
 #ifdef CONE
     ivec2 reflector = unpack_pixel(ray.pixel);
-    if (!second) light = cone_light(vec2(reflector) + 0.5, point.xy, imageLoad(normal_image, reflector).w, light);
+    if (layer == 0) light = cone_light(vec2(reflector) + 0.5, point.xy, imageLoad(normal_image, reflector).w, light);
 #endif
-    light += highlight_along(hit, second, surface_vs, direction, imageLoad(normal_image, unpack_pixel(ray.pixel)).w);
+    light += highlight_along(hit, layer, surface_vs, direction, imageLoad(normal_image, unpack_pixel(ray.pixel)).w);
     return Found(light, attenuation_at(distance(px_to_vs(point), origin_vs)),
-                 weight_of(-direction.z, point.xy / vec2(size_px), depth_step_weight(hit, second)));
+                 weight_of(-direction.z, point.xy / vec2(size_px), depth_step_weight(hit, layer)));
 }

@@ -15,8 +15,14 @@ layout(constant_id = CONSTANT_RAY_OFFSET_M) const float ray_offset_m = 0;
 
 layout(local_size_x = RAYS_PER_GROUP) in;
 layout(set = 0, binding = 13, rgba32f) uniform writeonly image2D reprojected_image; // px to where it was, ray length, object that was hit
-#ifdef SECOND_LAYER
-layout(set = 0, binding = 14, r32ui) uniform readonly uimage2D second_object_image;
+#if LAYERS > 1
+layout(set = 0, binding = 90, r32ui) uniform readonly uimage2D layer_1_object_image;
+#endif
+#if LAYERS > 2
+layout(set = 0, binding = 91, r32ui) uniform readonly uimage2D layer_2_object_image;
+#endif
+#if LAYERS > 3
+layout(set = 0, binding = 92, r32ui) uniform readonly uimage2D layer_3_object_image;
 #endif
 
 // The surface point that a ray hit, on the plane of its pixel, and its object.
@@ -25,12 +31,16 @@ vec3 hit_vs(PackedRay ray, PackedHit found, out uint object)
     ivec2 hit   = unpack_pixel(found.pixel);
     vec3  point = ray.origin + ray.delta * found.t;
     object      = imageLoad(object_image, hit).x;
-#ifdef SECOND_LAYER
-    if (in_second_layer(found.pixel))
-    {
-        object = imageLoad(second_object_image, hit).x;
-        return px_to_vs(point);
-    }
+#if LAYERS > 1
+    int layer = unpack_layer(found.pixel);
+    if (layer == 1) object = imageLoad(layer_1_object_image, hit).x;
+#if LAYERS > 2
+    if (layer == 2) object = imageLoad(layer_2_object_image, hit).x;
+#endif
+#if LAYERS > 3
+    if (layer == 3) object = imageLoad(layer_3_object_image, hit).x;
+#endif
+    if (layer > 0) return px_to_vs(point);
 #endif
     float depth = depth_on_plane(load_depth(hit), imageLoad(gradient_image, hit).x, point.xy - vec2(hit) - 0.5);
     return px_to_vs(vec3(point.xy, depth));

@@ -15,6 +15,6 @@ void main()
     if (index >= derived_count) return;
     PackedHit hit = texel_to_hit(imageLoad(DerivedHits, int(index)));
     if (unpack_status(hit.pixel) != TRACE_HIT) return;
-    hit.pixel |= uint(TRACE_SECOND_LAYER) << (2 * PIXEL_BITS);
+    hit.pixel = pack_pixel(unpack_pixel(hit.pixel), status_to_number(TRACE_HIT, 1));
     STORE_TEXEL(Hits, derived_source[index], hit_to_texel(hit));
 }

@@ -1,5 +1,5 @@
 // Marks in each tile of 8 x 8 pixels those to trace, and counts what the plan of the frame asks about. A tile per invocation: what its pixels
-// share needs neither shared memory nor an atomic per pixel, which lavapipe runs lane by lane.
+// share needs neither shared memory nor an atomic per pixel, which CPU devices run lane by lane.
 #include "api/view.glsl"
 #include "rays/reflecting.glsl"
 #include "layout/frame_shared.h"

@@ -4,10 +4,6 @@
 #include "layout/workgroups.glsl"
 
 STORED_HITS(9, Hits)
-#ifdef COUNT_WORK
-layout(set = 0, binding = 11, scalar) buffer Work { uint work[]; }; // of each ray: steps, depth fetches, fetches of each structure; of no answer its status and pixel
-#define WORK_WORDS (2 + max(STRUCTURES, 1))
-#endif
 
 Ray load_ray(uint index)
 {
@@ -26,14 +22,21 @@ Ray load_ray(uint index)
     return ray;
 }
 
-bool has_place(TraceResult result) { return result.status == TRACE_HIT || result.status == TRACE_STOPPED; }
+bool has_place(TraceResult result) { return result.status == TRACE_HIT || result.status == TRACE_STOPPED || number_to_layer(result.status) > 0; }
 
 // Neither an unknown status, nor a hit off the image: packed, they would turn into another answer.
 bool is_answer(TraceResult result)
 {
     bool on_image = all(greaterThanEqual(result.pixel, ivec2(0))) && all(lessThan(result.pixel, size_px));
-    return result.status > TRACE_NOT_TRACED && result.status <= TRACE_STOPPED && (on_image || !has_place(result));
+    bool known    = result.status > TRACE_NOT_TRACED && result.status != TRACE_IMPOSSIBLE && number_to_layer(result.status) < LAYERS;
+    return known && (on_image || !has_place(result));
 }
+
+#ifdef COUNT_WORK
+#include "trace/stored_work.glsl"
+#else
+void store_work(uint index, TraceResult result, bool answers, int own_lane) {}
+#endif
 
 // own_lane: that of the ray (trace/work_counters.glsl).
 void store_result(uint index, TraceResult result, int own_lane)
@@ -41,12 +44,5 @@ void store_result(uint index, TraceResult result, int own_lane)
     bool  answers = is_answer(result);
     ivec2 pixel   = answers && has_place(result) ? result.pixel : ivec2(0);
     STORE_TEXEL(Hits, index, hit_to_texel(PackedHit(pack_pixel(pixel, answers ? result.status : TRACE_IMPOSSIBLE), result.t)));
-#ifdef COUNT_WORK
-    uint first = index * WORK_WORDS;
-    work[first]     = answers ? result.steps : result.status;
-    work[first + 1] = answers ? depth_fetches[own_lane] : result.pixel.x;
-    work[first + 2] = result.pixel.y; // overwritten, but for what is no answer
-    for (int structure = 0; answers && structure < STRUCTURES; ++structure)
-        work[first + 2 + structure] = structure_fetches[LANES * structure + own_lane];
-#endif
+    store_work(index, result, answers, own_lane);
 }

@@ -20,7 +20,7 @@ void main()
     bool traced = index < ray_count && reflects(unpack_pixel(ray_pixel(index)));
     uint found  = traced ? packed_hit(index).pixel : 0;
     bool hit    = traced && unpack_status(found) == TRACE_HIT;
-    bool mirror = hit && reflects(unpack_pixel(found));
+    bool mirror = hit && unpack_layer(found) == 0 && reflects(unpack_pixel(found));
     uint traced_count = subgroupAdd(uint(traced)), hit_count = subgroupAdd(uint(hit)), mirror_count = subgroupAdd(uint(mirror));
     if (!subgroupElect()) return;
     atomicAdd(rays, traced_count);

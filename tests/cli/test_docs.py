@@ -2,6 +2,7 @@
 import glob
 import os
 import re
+import subprocess
 import unittest
 
 from support import SOURCE
@@ -17,9 +18,12 @@ BANNED = ("clear stretch", "clear stretches", "loop that stops", "beam", "beams"
           "current_ray", "leap", "leaps", "sliver", "slivers", "ggx_share", "own_share", "fade_combination", "cross_blur", "hit_light",
           "blur_hole_widening", "effect_set", "launch.comp", "kernel.comp", "stands before", "stand before", "for who", "such as hold")
 MOST_COLUMNS = 100
+# Of code, without comments and empty lines, in the shader files that have to be read to understand a technique.
+MOST_LINES_TO_READ = {"dda": 600, "hiz": 800}
 # Shaders whose functions a tracer may use, and those of them that only the framework calls.
 API = ("trace_api", "view", "slab", "grid_float", "grid_exact")
-FRAMEWORK_ONLY = {"depth_rounding", "ends_at", "end_at", "fetch_pixel", "meets", "pack_pixel", "unpack_pixel", "unpack_status", "in_second_layer",
+FRAMEWORK_ONLY = {"depth_rounding", "ends_at", "end_at", "fetch_met", "fetch_pixel", "met_layer", "sampled_layer", "samples_layers",
+                  "touches_layers", "unpack_layer", "meets", "pack_pixel", "unpack_pixel", "unpack_status",
                   "slab_front_of", "slab_back_of", "reaches_slab_back", "scaled_depth", "nearest_steps"}
 
 
@@ -152,6 +156,14 @@ class Test(unittest.TestCase):
         for term, meaning, place in rows:
             self.assertRegex(meaning, r"^[A-Z].*\.$", term)
             self.assertRegex(place, r"^(`[^`]+`|\[[^]]+\]\([^)]+\))$", term)
+
+    def test_what_an_author_has_to_read_stays_short(self):
+        printed = subprocess.run([os.path.join(SOURCE, "experiments/include_closure"), "dda", "hiz"], check=True, capture_output=True,
+                                 text=True).stdout
+        lines = {name: int(count) for name, count in re.findall(r"^(\w+): (\d+) lines of code", printed, flags=re.M)}
+        self.assertEqual(set(lines), {"dda", "hiz"}, printed)
+        for name, most in MOST_LINES_TO_READ.items():
+            self.assertLessEqual(lines[name], most, printed)
 
     def test_what_is_wrong_is_found(self):
         page = "docs/hard_cases.md"

@@ -104,7 +104,7 @@ void expect_contract(const Case& c, const Picture& picture, const Technique& tec
     }
     EXPECT_EQ(wrong, 0U) << repeat;
     std::string first;
-    EXPECT_EQ(count_differences(result, again, true, first), 0U) << "the second run differs: " << first << "\n"
+    EXPECT_EQ(count_differences(result, again, bit_equal_t, first), 0U) << "the second run differs: " << first << "\n"
                                                                  << repeat;
     EXPECT_TRUE(result.steps == again.steps && result.depth_fetches == again.depth_fetches &&
                 result.structure_fetches == again.structure_fetches)

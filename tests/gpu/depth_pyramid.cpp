@@ -207,13 +207,14 @@ TEST(UnusableDepth, IsBackgroundAndChangesNothingElse)
     std::string first;
     for (const char* id : {"dda", "hiz", "linear", "linear_binary"}) {
         const Technique& t = technique(id);
-        EXPECT_EQ(count_differences(trace(good, t, values_of(t), settings), trace(bad, t, values_of(t), settings), true,
-                                    first),
+        EXPECT_EQ(count_differences(trace(good, t, values_of(t), settings), trace(bad, t, values_of(t), settings),
+                                    bit_equal_t, first),
                   0U)
             << id << ": " << first;
     }
     EXPECT_EQ(count_differences(trace(bad, technique("hiz"), values_of(technique("hiz")), settings),
-                                trace(bad, technique("dda"), values_of(technique("dda")), settings), true, first),
+                                trace(bad, technique("dda"), values_of(technique("dda")), settings), bit_equal_t,
+                                first),
               0U)
         << first;
 }

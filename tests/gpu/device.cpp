@@ -4,6 +4,7 @@
 #include "core/pixel_index.h"
 #include "render/gbuffer.h"
 
+#include <cmath>
 #include <map>
 
 namespace ssrlab::test {
@@ -91,19 +92,21 @@ std::string repeat_command(const std::string& scene, const std::string& view, gl
                                    size_px.y, technique.id);
     for (const Parameter& p : technique.parameters)
         text += fmt::format(" -p {}={}", p.name, format_parameter(p, values.at(p.name)));
-    return text + fmt::format(" -p thickness_m={} -p max_distance_m={} -p surface={} -p behind={} -o hits.exr",
-                              settings.thickness_m, settings.max_distance_m,
-                              surface_names[static_cast<size_t>(settings.surface)],
-                              behind_names[static_cast<size_t>(settings.behind)]);
+    return text +
+           fmt::format(" -p thickness_m={} -p max_distance_m={} -p surface={} -p behind={} -p layers={} -o hits.exr",
+                       settings.thickness_m, settings.max_distance_m,
+                       surface_names[static_cast<size_t>(settings.surface)],
+                       behind_names[static_cast<size_t>(settings.behind)], settings.layers);
 }
 
-size_t count_differences(const TraceResult& a, const TraceResult& b, bool compare_t, std::string& first)
+size_t count_differences(const TraceResult& a, const TraceResult& b, double t_tolerance, std::string& first)
 {
     size_t differences = 0;
     for (size_t i = 0; i < a.status.size(); ++i) {
         const bool both_end = has_place(a.status[i]) && has_place(b.status[i]);
         if (a.status[i] == b.status[i] &&
-            (!both_end || (a.hit_pixel[i] == b.hit_pixel[i] && (!compare_t || a.hit_t[i] == b.hit_t[i]))))
+            (!both_end || (a.hit_pixel[i] == b.hit_pixel[i] && a.hit_layer[i] == b.hit_layer[i] &&
+                           std::abs(a.hit_t[i] - b.hit_t[i]) <= t_tolerance)))
             continue;
         if (differences++ > 0) continue;
         first = fmt::format(

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace ssrlab::test {
 
 Gpu& device();
@@ -46,7 +48,9 @@ TraceResult trace(const Picture& picture, const Technique& technique, const Para
 std::string repeat_command(const std::string& scene, const std::string& view, glm::ivec2 size_px,
                            const Technique& technique, const ParameterValues& values, const TraceSettings& settings);
 
-/// Rays whose status, hit pixel or (if asked) hit t differ; `first` describes the first of them.
-size_t count_differences(const TraceResult& a, const TraceResult& b, bool compare_t, std::string& first);
+/// How far apart two t may be to count as the same.
+constexpr double bit_equal_t = 0, double_twins_t = 1e-9, any_t = std::numeric_limits<double>::infinity();
+/// Rays whose status, hit pixel, layer or hit t differ; `first` describes the first of them.
+size_t count_differences(const TraceResult& a, const TraceResult& b, double t_tolerance, std::string& first);
 
 } // namespace ssrlab::test

@@ -17,7 +17,7 @@ TEST_P(FrameRuns, TimesAreThereAndResultsAreTheCountedOnes)
     const auto          frame = prepare_frame(device(), picture.buffers, t, values_of(t), {settings});
     const TraceResult   first = count_frame(device(), *frame), second = count_frame(device(), *frame);
     std::string         text;
-    EXPECT_EQ(count_differences(first, second, true, text), 0U) << text;
+    EXPECT_EQ(count_differences(first, second, bit_equal_t, text), 0U) << text;
     EXPECT_EQ(first.steps, second.steps);
     EXPECT_EQ(first.depth_fetches, second.depth_fetches);
     EXPECT_EQ(first.structure_fetches, second.structure_fetches);
@@ -31,7 +31,7 @@ TEST_P(FrameRuns, TimesAreThereAndResultsAreTheCountedOnes)
         }
         for (const Structure& structure : t.structures) EXPECT_GE(times.of(structure.id), 1e-4) << structure.id;
         const TraceResult timed = read_result<float>(device(), *frame, *frame->rays, nullptr);
-        EXPECT_EQ(count_differences(timed, first, true, text), 0U) << "run " << run << ": " << text;
+        EXPECT_EQ(count_differences(timed, first, bit_equal_t, text), 0U) << "run " << run << ": " << text;
         const auto pixels = read_shaded(device(), *frame).values;
         if (run == 0) shaded = pixels;
         EXPECT_EQ(pixels, shaded) << "run " << run;

@@ -63,7 +63,7 @@ TEST(OwnFrames, ExportImportAndTraceGiveTheSameBitsOnEveryShippedScene)
             const ParameterValues values = values_of(technique("hiz"));
             std::string           first;
             EXPECT_EQ(count_differences(trace(drawn, technique("hiz"), values, settings),
-                                        trace(imported, technique("hiz"), values, settings), true, first),
+                                        trace(imported, technique("hiz"), values, settings), bit_equal_t, first),
                       0)
                 << first;
         }

@@ -222,7 +222,7 @@ TEST_P(Skipping, LeavesEveryBit)
     EXPECT_EQ(read_shaded(device(), *unculled).values, expected.values);
     const auto  plain = frame_with(picture, {}, "hiz");
     std::string first;
-    EXPECT_EQ(count_differences(count_frame(device(), *planned), count_frame(device(), *plain), true, first), 0U)
+    EXPECT_EQ(count_differences(count_frame(device(), *planned), count_frame(device(), *plain), bit_equal_t, first), 0U)
         << first;
 }
 

@@ -55,11 +55,7 @@ GBufferImage picture_of(const Wall& wall)
 {
     GBufferImage image = make_field(Field::poles, size_px, 1).gbuffer;
     const size_t count = image.depth.size();
-    image.normal_vs.assign(count, glm::vec3(0, 0, 1));
-    image.roughness.assign(count, 0);
-    image.metallic.assign(count, 1);
-    for (auto* colours : {&image.base_colour, &image.radiance, &image.highlight}) colours->assign(count, glm::vec3(0));
-    image.object_id.assign(count, 1);
+    complete_field(image);
     image.gradient.clear();
     for (size_t i = 0; i < count; ++i) {
         const glm::dvec2 centre = glm::dvec2(pixel_at(i, size_px)) + 0.5;

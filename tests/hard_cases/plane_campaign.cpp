@@ -33,12 +33,7 @@ void add_planes(GBufferImage& image, uint32_t seed)
     const auto                            slope = [&](float depth) {
         return depth * std::exp2(exponent(engine)) * (unit(engine) < 0.5F ? -1.0F : 1.0F);
     };
-    const size_t count = image.depth.size();
-    image.normal_vs.assign(count, glm::vec3(0, 0, 1));
-    image.roughness.assign(count, 0);
-    image.metallic.assign(count, 1);
-    for (auto* colours : {&image.base_colour, &image.radiance, &image.highlight}) colours->assign(count, glm::vec3(0));
-    image.object_id.assign(count, 1);
+    complete_field(image);
     for (const float depth : image.depth) {
         const bool      none = unit(engine) < 0.05F;
         const glm::vec2 gradient(none ? std::numeric_limits<float>::quiet_NaN() : slope(depth), slope(depth));
@@ -47,13 +42,29 @@ void add_planes(GBufferImage& image, uint32_t seed)
     }
 }
 
+/// Layers behind a picture: other planes at random depths, in every second pixel of the layer before.
+void add_layers(GBufferImage& image, int count)
+{
+    std::mt19937                          engine(99);
+    std::uniform_real_distribution<float> unit(0, 1);
+    GBufferImage                          layer = image;
+    for (int i = 1; i < count; ++i) {
+        for (float& depth : layer.depth) depth = unit(engine) < 0.5F ? 0 : depth * (0.3F + 0.699F * unit(engine));
+        layer.gradient.clear();
+        layer.solid_back.clear();
+        add_planes(layer, 100 + static_cast<uint32_t>(i));
+        image.layers.push_back(layer);
+    }
+}
+
 struct Count {
-    size_t rays = 0, hits = 0, stops = 0, differ = 0, judged = 0, wrong = 0, near_ties = 0;
+    size_t rays = 0, hits = 0, stops = 0, behind = 0, differ = 0, judged = 0, wrong = 0, near_ties = 0;
 };
 
 bool same_bits(const RayOutcome& a, const RayOutcome& b)
 {
-    return a.status == b.status && (!has_place(a.status) || (a.hit_pixel == b.hit_pixel && a.t == b.t));
+    return a.status == b.status &&
+           (!has_place(a.status) || (a.hit_pixel == b.hit_pixel && a.hit_layer == b.hit_layer && a.t == b.t));
 }
 
 class PlaneCampaign : public testing::TestWithParam<glm::ivec2> {};
@@ -61,13 +72,15 @@ class PlaneCampaign : public testing::TestWithParam<glm::ivec2> {};
 /// One field of pixels under one model and one rule.
 class PlaneField {
 public:
-    PlaneField(Field field, glm::ivec2 size_px, SurfaceModel surface, Behind behind)
+    PlaneField(Field field, glm::ivec2 size_px, SurfaceModel surface, Behind behind, int layers)
         : setup_(make_field(field, size_px, 1))
     {
         setup_.settings         = campaign_settings;
         setup_.settings.surface = surface;
         setup_.settings.behind  = behind;
+        setup_.settings.layers  = layers;
         add_planes(setup_.gbuffer, 77);
+        add_layers(setup_.gbuffer, layers);
         gbuffer_ = upload_gbuffer(device(), setup_.gbuffer);
         for (const double exact : {0.0, 1.0})
             for (const char* id : {"dda", "hiz", "quadtree"}) tracers_[exact > 0].push_back(make(id, exact));
@@ -87,6 +100,7 @@ public:
             for (const RayOutcome& found : walk) {
                 count.hits += found.status == TraceStatus::hit;
                 count.stops += found.status == TraceStatus::stopped;
+                count.behind += found.hit_layer > 0;
             }
             if (judged) judge(rays, walk, count, first);
         }
@@ -120,25 +134,32 @@ private:
 
 TEST_P(PlaneCampaign, RandomPlanesAndSolids)
 {
-    constexpr std::pair<SurfaceModel, Behind> models[] = {{SurfaceModel::plane, Behind::hit},
-                                                          {SurfaceModel::plane, Behind::pass},
-                                                          {SurfaceModel::plane_solid, Behind::stop}};
-    const size_t rays = planned_rays() / (std::size(plane_sizes) * std::size(all_fields) * std::size(models));
-    Count        count;
-    std::string  first;
+    struct Model {
+        SurfaceModel surface;
+        Behind       behind;
+        int          layers = 1;
+    };
+    constexpr Model models[] = {{SurfaceModel::plane, Behind::hit},        {SurfaceModel::plane, Behind::pass},
+                                {SurfaceModel::plane_solid, Behind::stop}, {SurfaceModel::plane_solid, Behind::stop, 2},
+                                {SurfaceModel::box, Behind::pass, 2},      {SurfaceModel::plane, Behind::hit, 4}};
+    const size_t    rays     = planned_rays() / (std::size(plane_sizes) * std::size(all_fields) * std::size(models));
+    Count           count;
+    std::string     first;
     for (const Field field : all_fields)
-        for (const auto& [surface, behind] : models) {
-            PlaneField tested(field, GetParam(), surface, behind);
+        for (const auto& [surface, behind, layers] : models) {
+            PlaneField tested(field, GetParam(), surface, behind, layers);
             for (size_t done = 0; done < rays; done += batch) {
                 const auto seed = static_cast<uint32_t>(done / batch + 31 * static_cast<size_t>(field));
                 tested.run(random_rays(GetParam(), std::min(batch, rays - done), seed), done == 0, count, first);
             }
         }
-    fmt::print("{} x {}: {} rays, {} hits, {} stopped, {} differ; {} judged, {} wrong, {} near ties\n", GetParam().x,
-               GetParam().y, count.rays, count.hits, count.stops, count.differ, count.judged, count.wrong,
-               count.near_ties);
+    fmt::print("{} x {}: {} rays, {} hits, {} stopped, {} of both behind the first layer, {} differ; {} judged, {} "
+               "wrong, {} near ties\n",
+               GetParam().x, GetParam().y, count.rays, count.hits, count.stops, count.behind, count.differ,
+               count.judged, count.wrong, count.near_ties);
     EXPECT_GT(count.hits, count.rays / 100);
     EXPECT_GT(count.stops, count.rays / 1000);
+    EXPECT_GT(count.behind, count.rays / 1000);
     EXPECT_EQ(count.differ, 0U);
     EXPECT_EQ(count.wrong, 0U) << first;
     EXPECT_LE(count.near_ties, count.judged / 1000);

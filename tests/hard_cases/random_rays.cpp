@@ -161,4 +161,14 @@ std::vector<RayInput> random_rays(glm::ivec2 size_px, size_t count, uint32_t see
     return rays;
 }
 
+void complete_field(GBufferImage& image)
+{
+    const size_t count = image.depth.size();
+    image.normal_vs.assign(count, glm::vec3(0, 0, 1));
+    image.roughness.assign(count, 0);
+    image.metallic.assign(count, 1);
+    for (auto* colours : {&image.base_colour, &image.radiance, &image.highlight}) colours->assign(count, glm::vec3(0));
+    image.object_id.assign(count, 1);
+}
+
 } // namespace ssrlab::test

@@ -19,6 +19,9 @@ inline constexpr Field all_fields[] = {Field::poles, Field::sparse_poles, Field:
 /// A picture without rays. Only its depth matters.
 Setup make_field(Field field, glm::ivec2 size_px, uint32_t seed);
 
+/// What an upload needs besides depth: black mirrors that face the camera.
+void complete_field(GBufferImage& image);
+
 /// Rays of all classes in turn: any direction, axis-aligned with either sign of zero, diagonal, rational slopes, almost axis-aligned,
 /// level in depth, steep in depth, shorter than two pixels, along borders and through corners.
 std::vector<RayInput> random_rays(glm::ivec2 size_px, size_t count, uint32_t seed);

@@ -22,6 +22,7 @@ TraceResult row_of(int count)
     result.size_px = {count, 1};
     result.status.assign(size_t(count), TraceStatus::left_screen);
     result.hit_pixel.resize(size_t(count));
+    result.hit_layer.resize(size_t(count));
     result.hit_px_depth.resize(size_t(count));
     result.hit_t.resize(size_t(count));
     result.steps.assign(size_t(count), 3);

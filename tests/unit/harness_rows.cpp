@@ -124,6 +124,7 @@ TEST(Rows, CountsOfAResultWithKnownFigures)
                        {},
                        {},
                        {},
+                       {},
                        {0, 10, 20, 30, 40},
                        {0, 1, 2, 3, 4},
                        {{"depth_pyramid", {0, 9, 8, 7, 6}}}};
@@ -148,7 +149,7 @@ TEST(Rows, CountsOfAResultWithKnownFigures)
 TEST(Rows, NothingToTraceIsAnOutcome)
 {
     Row row;
-    add_counts(row, {{1, 1}, {TraceStatus::not_traced}, {{}}, {{}}, {0}, {0}, {0}, {{"depth_pyramid", {0}}}});
+    add_counts(row, {{1, 1}, {TraceStatus::not_traced}, {{}}, {0}, {{}}, {0}, {0}, {0}, {{"depth_pyramid", {0}}}});
     EXPECT_EQ(row.at("outcome"), "no_rays");
     EXPECT_EQ(row.at("rays"), "0");
     EXPECT_FALSE(row.contains("steps_mean"));

@@ -287,6 +287,79 @@ TEST(SurfaceModels, MirrorFloorDoesNotMeetItself)
     }
 }
 
+/// A table top at y = 0 from Z = 2 on, over a floor at y = -1, seen level from y = 0.5; from row 32 down every pixel shows the top.
+GBufferImage table_over_floor()
+{
+    const auto level_plane = [](double y_m) {
+        GBufferImage gbuffer = empty_gbuffer(bench_view({64, 64}));
+        gbuffer.gradient.resize(gbuffer.depth.size());
+        for (int y = 32; y < 64; ++y)
+            for (int x = 0; x < 64; ++x) {
+                set_pixel(gbuffer, x, y, 32 * -y_m / (y + 0.5 - 32), {0, 1, 0}, 1);
+                gbuffer.gradient[at(gbuffer, x, y)] = {0, float(0.1 / (32 * -y_m))};
+            }
+        return gbuffer;
+    };
+    GBufferImage gbuffer = level_plane(-0.5);
+    gbuffer.layers.push_back(level_plane(-1.5));
+    return gbuffer;
+}
+
+/// Down a column of the picture, from below the table's top to below the floor: depth over it is that of 1.0 m below the eye, then 2.0 m.
+ScreenRay ray_below_the_table(const View& view)
+{
+    ScreenRay ray;
+    ray.traced          = true;
+    ray.start_pixel     = {20, 40};
+    ray.origin_px_depth = {20.5, 40.5, distance_to_depth(view, 32 * 1.0 / 8.5)};
+    ray.delta_px_depth  = glm::dvec3(20.5, 60.5, distance_to_depth(view, 32 * 2.0 / 28.5)) - ray.origin_px_depth;
+    ray.end_status      = TraceStatus::left_screen;
+    ray.direction_vs    = {0, -1, 0};
+    return ray;
+}
+
+// With one layer the ray goes on below the table; with two it hits the floor where it crosses its plane.
+TEST(Layers, RayBelowATableHitsTheFloor)
+{
+    const GBufferImage gbuffer = table_over_floor();
+    const ScreenRay    ray     = ray_below_the_table(gbuffer.view);
+    TraceSettings      settings{.behind = Behind::hit, .surface = SurfaceModel::plane};
+    EXPECT_EQ(ScreenWalk(gbuffer, settings).walk(ray).status, TraceStatus::left_screen);
+    settings.layers        = 2;
+    const WalkResult found = ScreenWalk(gbuffer, settings).walk(ray);
+    // Depth of the floor at row r below the horizon is 0.1 r / 48.
+    const double over_in  = ray.origin_px_depth.z - 0.1 * 8.5 / 48,
+                 over_out = ray.origin_px_depth.z + ray.delta_px_depth.z - 0.1 * 28.5 / 48;
+    ASSERT_EQ(found.status, TraceStatus::hit);
+    EXPECT_EQ(found.hit_layer, 1);
+    EXPECT_NEAR(found.hit_t, over_in / (over_in - over_out), 1e-5);
+    settings.layers = 4; // more than there are
+    EXPECT_EQ(ScreenWalk(gbuffer, settings).walk(ray).hit_t, found.hit_t);
+}
+
+// Of two layers that a ray meets in a pixel the one that it meets first ends it; at the same t the one in front.
+TEST(Layers, TheFirstContactEndsTheRay)
+{
+    GBufferImage        gbuffer = table_over_floor();
+    const ScreenRay     ray     = ray_below_the_table(gbuffer.view);
+    const TraceSettings settings{.behind = Behind::hit, .surface = SurfaceModel::plane, .layers = 2};
+    gbuffer.layers[0].layers = {};
+    const WalkResult floor   = ScreenWalk(gbuffer, settings).walk(ray);
+    // The same floor as a third layer, a little higher: the ray crosses it earlier in the same pixel.
+    GBufferImage higher = gbuffer.layers[0];
+    for (float& depth : higher.depth) depth *= 1.001F;
+    TraceSettings three = settings;
+    three.layers        = 3;
+    gbuffer.layers.push_back(higher);
+    const WalkResult first = ScreenWalk(gbuffer, three).walk(ray);
+    EXPECT_EQ(first.hit_layer, 2);
+    EXPECT_LT(first.hit_t, floor.hit_t);
+    gbuffer.layers[1]    = gbuffer.layers[0];
+    const WalkResult tie = ScreenWalk(gbuffer, three).walk(ray);
+    EXPECT_EQ(tie.hit_layer, 1);
+    EXPECT_EQ(tie.hit_t, floor.hit_t);
+}
+
 using Real = long double;
 struct Range {
     Real from = 0, to = 0;

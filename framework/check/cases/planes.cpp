@@ -226,12 +226,42 @@ HardCase no_usable_plane()
             }};
 }
 
+HardCase wall_behind_a_wall()
+{
+    return {.name   = "wall_behind_a_wall",
+            .breaks = "what stands behind something is not there, or the ray takes the surface in front of it",
+            .answer = "Right of column 48 a wall at Z = 4, and in the layer behind it one at Z = 6, each 1 m thick. "
+                      "Level rays at Z = 4.5 hit the first, at Z = 6.5 the second, at 5.5 and 7.5 neither.",
+            .setups =
+                [] {
+                    const auto wall_at = [](double distance_m) {
+                        GBufferImage picture =
+                            picture_of(bench_view({97, 64}), [=](glm::ivec2 p) { return p.x > 48 ? distance_m : 0.0; });
+                        complete_gradients(picture);
+                        return picture;
+                    };
+                    Setup setup{{}, wall_at(4), with(SurfaceModel::box, Behind::hit), {}};
+                    setup.settings.layers = 2;
+                    setup.gbuffer.layers.push_back(wall_at(6));
+                    for (int y = 0; y < 64; ++y)
+                        for (const double z : {4.5, 5.5, 6.5, 7.5})
+                            setup.rays.push_back(level_ray(setup.gbuffer.view, {10.5, y + 0.5}, {80, 0}, z));
+                    return std::vector{setup};
+                },
+            .expected = [](const Setup& setup, const RayInput& ray) -> std::optional<Expected> {
+                const double z = depth_to_distance(setup.gbuffer.view, ray.origin_px_depth.z);
+                if (std::lround(z * 2) % 4 == 3) return Expected{.status = ray.end_status};
+                return Expected{.pixel = glm::ivec2(49, ray.pixel.y), .t = 38.5 / 80};
+            }};
+}
+
 } // namespace
 
 CaseFamily plane_cases()
 {
     return {"planes",
-            {watertight_plane(), plane_from_below(), mirror_alone(), solid_from_its_side(), no_usable_plane()}};
+            {watertight_plane(), plane_from_below(), mirror_alone(), solid_from_its_side(), no_usable_plane(),
+             wall_behind_a_wall()}};
 }
 
 } // namespace ssrlab

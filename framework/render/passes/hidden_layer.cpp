@@ -27,6 +27,7 @@ TechniquePasses make_layer_passes(Gpu& gpu, const PreparedFrame& frame, const Ra
 PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
 {
     if (values.at("hidden_layer") == 0) return {PassDecision::off, "hidden_layer = false"};
+    if (facts.layers > 1) return {PassDecision::off, "layers > 1: the walk knows what is hidden"};
     if (!facts.scene) return {PassDecision::off, "no scene to draw again"};
     if (!one_ray_per_pixel(values)) return {PassDecision::off, "needs one ray per pixel at full resolution"};
     const TraceCounts& trace  = statistics.trace;
@@ -43,10 +44,10 @@ RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
 {
     FrameBuffers& buffers = *frame.buffers;
     if (!buffers.second_layer) buffers.second_layer = make_second_layer(gpu, *buffers.gbuffer);
-    frame.hidden_layer     = true;
-    auto own               = std::make_shared<HiddenLayer>();
-    own->layer             = buffers.second_layer;
-    const bool solids      = frame.settings.trace.surface == SurfaceModel::plane_solid;
+    frame.hidden_layer = true;
+    auto own           = std::make_shared<HiddenLayer>();
+    own->layer         = buffers.second_layer;
+    const bool solids  = frame.settings.trace.surface == SurfaceModel::plane_solid;
     if (solids) prepare_solid_backs(gpu, *own->layer);
     own->missed            = derived_rays(gpu, frame, 0);
     own->structures        = make_depth_structures(gpu, frame, *own->layer);
@@ -104,7 +105,7 @@ std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame
     const auto        listed  = read_list<float>(gpu, rays);
     const auto        hits    = download_as<PackedHit<float>>(gpu, rays.hits, listed.size());
     for (size_t i = 0; i < listed.size(); ++i) {
-        if (in_second_layer(hits[i].pixel)) continue;
+        if (unpack_layer(hits[i].pixel) > 0) continue;
         const glm::ivec2 pixel                     = unpack_pixel(listed[i].pixel);
         result.status[pixel_index(pixel, size_px)] = TraceStatus::not_traced;
     }

@@ -43,6 +43,7 @@ struct Pass {
     RecordFunction (*prepare_structure)(PreparedFrame&, const std::string& structure) = nullptr;
 };
 
+Pass layers_pass();
 Pass solid_backs_pass();
 Pass classification_pass();
 Pass rays_pass();

@@ -1,5 +1,7 @@
 #include "render/passes/pass_helpers.h"
 
+#include "render/layers.h"
+
 namespace ssrlab {
 
 Parameter boolean_parameter(const char* name, bool fallback, const char* doc)
@@ -111,16 +113,8 @@ ComputePass make_colour_pass(Gpu& gpu, const PreparedFrame& frame, const std::st
     if (choice<HitShading>(frame.settings.passes) == HitShading::mirrored) {
         defines.emplace("MIRRORED_LIGHT", "1");
     }
-    if (frame.hidden_layer) {
-        const GBuffer& layer = *frame.buffers->second_layer;
-        defines.emplace("SECOND_LAYER", "1");
-        more.insert({{"second_depth_words", layer.depth.words},
-                     {"second_normal_image", layer.normal},
-                     {"second_dielectric_image", layer.dielectric},
-                     {"second_material_image", layer.material},
-                     {"second_radiance_image", layer.radiance},
-                     {"second_highlight_image", layer.highlight}});
-    }
+    defines.emplace("LAYERS", std::to_string(frame.hidden_layer ? 2 : frame.settings.trace.layers));
+    if (frame.hidden_layer) add_layers(more, std::span(&frame.buffers->second_layer, 1));
     if (draws_lobe_rays(frame.settings.passes)) {
         defines.emplace("LOBE_RAYS", "1");
         more.merge(lobe_ray_bindings(gpu, frame));

@@ -1,5 +1,6 @@
 // Where each reflection was in the frame before.
 #include "render/reprojection.h"
+#include "render/layers.h"
 #include "render/passes/pass_helpers.h"
 
 #include <algorithm>
@@ -25,10 +26,9 @@ RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
     source.include_texts = {{"reprojection/parameters", parameter_declarations(bare, CONSTANT_REPROJECTION)}};
     source.include_files = {{"reprojection/reproject.glsl", strategy.folder / "reproject.glsl"}};
     Bindings more        = history_bindings(*frame.history, frame.motion, *frame.buffers->gbuffer);
-    if (frame.hidden_layer) {
-        source.defines.emplace("SECOND_LAYER", "1");
-        more.insert({"second_object_image", frame.buffers->second_layer->object});
-    }
+    source.defines.emplace("LAYERS", std::to_string(frame.hidden_layer ? 2 : frame.settings.trace.layers));
+    add_layers(more, frame.hidden_layer ? std::span<const GBufferPtr>(&frame.buffers->second_layer, 1)
+                                        : std::span<const GBufferPtr>(frame.buffers->gbuffer->layers));
     auto pass = std::make_shared<ComputePass>(make_composed_pass(gpu, frame, source, more, strategy.parameters));
     return [&frame, pass](const auto& commands) {
         constexpr float nan = std::numeric_limits<float>::quiet_NaN();

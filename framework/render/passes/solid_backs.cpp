@@ -1,6 +1,6 @@
 // Where solids end, for the surface model that asks.
-#include "render/passes/pass_helpers.h"
 #include "render/solid_backs.h"
+#include "render/passes/pass_helpers.h"
 
 namespace ssrlab {
 namespace {
@@ -15,7 +15,12 @@ PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, 
 
 RecordFunction prepare(Gpu& /*gpu*/, PreparedFrame& frame)
 {
-    return [&](const auto& commands) { record_solid_backs(commands, *frame.buffers->gbuffer); };
+    return [&](const auto& commands) {
+        const GBuffer& gbuffer = *frame.buffers->gbuffer;
+        record_solid_backs(commands, gbuffer);
+        for (int i = 0; i + 1 < frame.settings.trace.layers; ++i)
+            record_solid_backs(commands, *gbuffer.layers[static_cast<size_t>(i)]);
+    };
 }
 
 } // namespace
@@ -23,7 +28,7 @@ RecordFunction prepare(Gpu& /*gpu*/, PreparedFrame& frame)
 Pass solid_backs_pass()
 {
     return {.id      = "solid_backs",
-            .summary = "Draws the nearest surface behind the G-buffer's, to know where solids end",
+            .summary = "Draws the nearest surface behind each of the G-buffer's layers, to know where solids end",
             .cite    = {"D. Gustafsson 2017, Screen space path tracing (Voxagon blog)"},
             .decide  = decide,
             .prepare = prepare};

@@ -1,7 +1,7 @@
 // What a box holds, rounded outward: wider than any rounding of the hit test on the pixel itself.
 const float held_margin = 1.0 / 1048576.0;
 
-Held held_by(ivec2 pixel, float depth, uint gradient)
+Held held_by(ivec2 pixel, int layer, float depth, uint gradient)
 {
     Held held;
     held.gradient = vec2(0);

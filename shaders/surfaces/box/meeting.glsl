@@ -4,11 +4,12 @@ struct PixelSurface
 {
     real  depth;
     ivec2 pixel;
+    int   layer;
 };
 
-PixelSurface surface_at(Ray ray, ivec2 pixel, uvec2 words) { return PixelSurface(real(depth_in(words, pixel)), pixel); }
+PixelSurface surface_at(Ray ray, ivec2 pixel, int layer, uvec2 words) { return PixelSurface(real(depth_in(words, pixel)), pixel, layer); }
 
-PixelSurface sampled_surface_at(Ray ray, ivec2 pixel, uvec2 words) { return surface_at(ray, pixel, words); }
+PixelSurface sampled_surface_at(Ray ray, ivec2 pixel, int layer, uvec2 words) { return surface_at(ray, pixel, layer, words); }
 
 bool meets(Ray ray, PixelSurface surface, real t_in, real t_out)
 {
@@ -18,7 +19,7 @@ bool meets(Ray ray, PixelSurface surface, real t_in, real t_out)
 // It meets a side that faces away.
 bool from_behind(Ray ray, PixelSurface surface, real t_in)
 {
-    return !(dot(fetch_normal(surface.pixel), direction_vs(ray)) < real(0));
+    return !(dot(fetch_normal(surface.pixel, surface.layer), direction_vs(ray)) < real(0));
 }
 
 real contact_t(Ray ray, PixelSurface surface, real t_in, real t_out)

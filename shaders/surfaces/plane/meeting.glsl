@@ -9,7 +9,7 @@ struct PixelSurface
     real solid;       // the depth where the solid ends; nearer than everything without one
 };
 
-PixelSurface surface_at(Ray ray, ivec2 pixel, uvec2 words)
+PixelSurface surface_at(Ray ray, ivec2 pixel, int layer, uvec2 words)
 {
     real  depth    = real(depth_in(words, pixel));
     vec2  stored   = unpack_gradient(words.y);
@@ -18,13 +18,13 @@ PixelSurface surface_at(Ray ray, ivec2 pixel, uvec2 words)
     real2 from_centre = ray.origin.xy - (real2(pixel) + real(0.5));
     precise real start = (ray.origin.z - depth) - (gradient.x * from_centre.x + gradient.y * from_centre.y);
     precise real rate  = ray.delta.z - (gradient.x * ray.delta.x + gradient.y * ray.delta.y);
-    return PixelSurface(start, rate, usable ? -plane_tolerance(depth) : slab_back(depth) - depth, real(load_solid(pixel)));
+    return PixelSurface(start, rate, usable ? -plane_tolerance(depth) : slab_back(depth) - depth, real(load_solid(pixel, layer)));
 }
 
 // One sample sees no crossing: it needs a thickness, the run's.
-PixelSurface sampled_surface_at(Ray ray, ivec2 pixel, uvec2 words)
+PixelSurface sampled_surface_at(Ray ray, ivec2 pixel, int layer, uvec2 words)
 {
-    PixelSurface surface = surface_at(ray, pixel, words);
+    PixelSurface surface = surface_at(ray, pixel, layer, words);
     real         depth   = real(depth_in(words, pixel));
     surface.back         = min(surface.back, slab_back(depth) - depth);
     return surface;
@@ -60,6 +60,8 @@ real contact_t(Ray ray, PixelSurface surface, real t_in, real t_out)
 #ifdef SURFACE_SOLID
     if (height < surface.back)
     {
+        // Only a back that the ray reaches counts: one that it leaves lies before t_in.
+        if (height_at(surface, t_out) < surface.back) t = t_out;
         precise real t_solid = (surface.solid - ray.origin.z) / ray.delta.z;
         bool inside = depth_at(ray, t_in) >= surface.solid;
         if (inside) t = t_in;

@@ -29,6 +29,28 @@ const float on_plane = 1.0 / 4096, most_bent = 1.0 / 100000;
 int sample_row(int number) { return (2 * number + 1) * side_px / (2 * sample_rows); }
 int sample_quad(int number) { return sample_row(number) / 4; }
 
+// Floats as integers, whose min() and max() cost less: the bits of those above 0 order like the floats, those of background are greater than any.
+// Fronts below 0 keep a plane at 0, which is above them; nothing at all leaves it below everything.
+const uint nothing = 0x7149F2CAu; // floatBitsToUint(none)
+const int  no_front = 0x80000000;
+
+// The key of a pixel, or of one of its layers, that stands so much nearer than the base plane that it is an occluder; else `nothing`.
+uint occluder_bits(Held held, float depth, float plane_rise, float stands)
+{
+#ifdef IN_FRONT
+    return nothing;
+#else
+    float key = back_key(held, depth);
+    return key > 0.0 && key - plane_rise > stands ? floatBitsToUint(key) : nothing;
+#endif
+}
+
+// The front of one that is no occluder, above a plane of this gradient.
+int height_bits(Held held, float depth, float plane_rise, vec2 gradient, uint occluder)
+{
+    return occluder == nothing && depth > 0.0 ? floatBitsToInt(front_above(held, gradient) - plane_rise) : no_front;
+}
+
 void main()
 {
     ivec2 patches = ((size_px - 1) >> PATCH_BITS) + 1, place = ivec2(gl_GlobalInvocationID.xy);
@@ -91,10 +113,6 @@ void main()
     float nearest = key_of_back(base);
     bool  passes  = base < none && nearest >= base;
     float stands  = passes ? corner + nearest - base : none;
-    // Floats as integers, whose min() and max() cost less: the bits of those above 0 order like the floats, those of background are greater than any.
-    // Fronts below 0 keep a plane at 0, which is above them; nothing at all leaves it below everything.
-    const uint nothing = floatBitsToUint(none);
-    const int  no_front = 0x80000000;
     uint before = nothing;
     int  height = no_front;
     // Down the columns, so that reads of different cache lines are under way at once.
@@ -111,15 +129,20 @@ void main()
             for (int k = 0; k < 4; ++k)
             {
                 ivec2 pixel = first + ivec2(4 * column + k, y);
-                Held  held  = held_by(pixel, depth[k], gradients[k]);
-                float key   = back_key(held, depth[k]);
-                #ifdef IN_FRONT
-                bool is_before = false;
-#else
-                bool is_before = key > 0.0 && key - plane_rise[k] > stands;
+                Held held  = held_by(pixel, 0, depth[k], gradients[k]);
+                befores[k] = occluder_bits(held, depth[k], plane_rise[k], stands);
+                heights[k] = height_bits(held, depth[k], plane_rise[k], gradient, befores[k]);
+#if LAYERS > 1
+                for (int layer = 1; layer < LAYERS; ++layer)
+                {
+                    uvec2 words   = pixel.x < size_px.x ? load_layer(pixel, layer) : uvec2(0);
+                    float further = uintBitsToFloat(words.x);
+                    Held  behind  = held_by(pixel, layer, further, words.y);
+                    uint  key     = occluder_bits(behind, further, plane_rise[k], stands);
+                    befores[k]    = min(befores[k], key);
+                    heights[k]    = max(heights[k], height_bits(behind, further, plane_rise[k], gradient, key));
+                }
 #endif
-                befores[k]     = is_before ? floatBitsToUint(key) : nothing;
-                heights[k]     = !is_before && depth[k] > 0.0 ? floatBitsToInt(front_above(held, gradient) - plane_rise[k]) : no_front;
             }
             before = min(before, min(min(befores.x, befores.y), min(befores.z, befores.w)));
             height = max(height, max(max(heights.x, heights.y), max(heights.z, heights.w)));

@@ -1,13 +1,19 @@
 // Level 1 of the depth pyramid, from pixels.
 #include "make_cells.glsl"
+#if LAYERS > 1
+#include "pixels_behind.glsl"
+#else
+Range range_behind(ivec2 first) { return nothing; }
+uint  bins_behind(ivec2 first, uvec2 cell) { return 0u; }
+#endif
 
 // The cell of two pixels and the two below them: their depths, and their gradients.
 uvec2 cell_of_pixels(ivec2 first, uvec4 depths, uvec4 gradients)
 {
-    Range a = pixel_range(first, depths.x, gradients.x), b = pixel_range(first + ivec2(1, 0), depths.y, gradients.y);
-    Range c = pixel_range(first + ivec2(0, 1), depths.z, gradients.z), d = pixel_range(first + 1, depths.w, gradients.w);
-    uvec2 cell = cell_of_range(unite(unite(a, b), unite(c, d)));
-    cell.y     = bins_of_pixel(cell, a) | bins_of_pixel(cell, b) | bins_of_pixel(cell, c) | bins_of_pixel(cell, d);
+    Range a = pixel_range(first, 0, depths.x, gradients.x), b = pixel_range(first + ivec2(1, 0), 0, depths.y, gradients.y);
+    Range c = pixel_range(first + ivec2(0, 1), 0, depths.z, gradients.z), d = pixel_range(first + 1, 0, depths.w, gradients.w);
+    uvec2 cell = cell_of_range(unite(range_behind(first), unite(unite(a, b), unite(c, d))));
+    cell.y     = bins_of_pixel(cell, a) | bins_of_pixel(cell, b) | bins_of_pixel(cell, c) | bins_of_pixel(cell, d) | bins_behind(first, cell);
     return finished(cell);
 }
 

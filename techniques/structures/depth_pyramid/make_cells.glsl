@@ -19,12 +19,12 @@ struct Range
 };
 const Range nothing = Range(0, 0x7FFFFFFF);
 
-// bits: of its depth; around the picture there is background.
-Range pixel_range(ivec2 pixel, uint bits, uint gradient)
+// Of one layer. bits: of its depth; around the picture there is background.
+Range pixel_range(ivec2 pixel, int layer, uint bits, uint gradient)
 {
     float depth = uintBitsToFloat(bits);
     if (!(depth > 0.0)) return nothing;
-    vec2 held = held_depths(pixel, depth, gradient);
+    vec2 held = held_depths(pixel, layer, depth, gradient);
     return Range(floatBitsToInt(held.x), depth_pyramid_kind == depth_pyramid_kind_nearest ? 0 : max(floatBitsToInt(held.y), 0));
 }
 

@@ -29,9 +29,9 @@ bool touches_cell(Ray ray, Grid grid, ivec2 pixel, int level, CellContent conten
     vec2 covered = covered_depths(ray, grid, t_in, t_out);
     // Both answers, then a choice: cheaper than a branch.
     // A cell's words may be no usable numbers; as floats some of them would make the arithmetic slow.
-    PixelSurface surface = surface_at(ray, pixel, leaf ? content.cell : uvec2(0));
+    PixelSurface surface = surface_at(ray, pixel, 0, leaf ? content.cell : uvec2(0));
     bool pixel_met = meets(ray, grid, surface, t_in, t_out), cell_touched = cell_may_touch(content.cell, covered.x, covered.y);
-    return leaf ? ends_at(ray, surface, pixel_met, crossing_to_t(grid, t_in)) : cell_touched;
+    return leaf ? ends_at(ray, surface, pixel_met, crossing_to_t(grid, t_in)) || touches_layers(ray, grid, pixel, t_in, t_out) : cell_touched;
 }
 
 // The nearest depth of that cell: no pixel of it is nearer. Negative or 0 where there is nothing.

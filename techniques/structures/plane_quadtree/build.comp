@@ -9,28 +9,33 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { int level; };
 
-// What the pixel holds. What reaches behind depth 0 has no end: no ray passes behind it.
-Node node_of_pixel(ivec2 pixel, uvec2 words)
+// What the pixel holds in a layer. What reaches behind depth 0 has no end: no ray passes behind it.
+Node node_of_pixel(ivec2 pixel, int layer, uvec2 words)
 {
     float depth = depth_in(words, pixel);
     if (!(depth > 0.0)) return empty_node;
-    vec2 held = held_depths(pixel, depth, words.y);
+    vec2 held = held_depths(pixel, layer, depth, words.y);
     return Node(vec2(0), held.y > 0.0 ? held.y : -no_end, min(held.x, no_end), ~0u);
 }
 
-// A part of the cell: of level 1 and 2 a pixel, of those above a quarter, which is a node of the level below.
-Node load_part(ivec2 pixel, int part_level)
+// A part of the cell: of level 1 and 2 a pixel in a layer, of those above a quarter, which is a node of the level below.
+Node load_part(ivec2 pixel, int part_level, int layer)
 {
     if (any(greaterThanEqual(pixel, size_px))) return empty_node;
-    if (part_level == 0) return node_of_pixel(pixel, load_cell(pixel, 0));
+#if LAYERS > 1
+    if (layer > 0) return node_of_pixel(pixel, layer, load_layer(pixel, layer));
+#endif
+    if (part_level == 0) return node_of_pixel(pixel, 0, load_cell(pixel, 0));
     return unpack_node(load_nodes(level_cell_index(pixel, part_level)));
 }
 
-int   part_level = level <= 2 ? 0 : level - 1, across = 1 << (level - part_level), parts_count = across * across;
+// Parts lie layer by layer, as many a layer as there are places.
+int   part_level = level <= 2 ? 0 : level - 1, across = 1 << (level - part_level), places = across * across;
+int   parts_count = places * (part_level == 0 ? LAYERS : 1);
 float part_px    = float(1 << part_level);
-Node  parts[16];
+Node  parts[16 * LAYERS];
 
-ivec2 place_of(int i) { return ivec2(i & (across - 1), i / across); }
+ivec2 place_of(int i) { return ivec2(i & (across - 1), i / across & (across - 1)); }
 
 // From the centre of the cell to that of a part.
 vec2 offset_px(int i) { return part_px * (vec2(place_of(i)) - float(across - 1) / 2); }
@@ -105,12 +110,12 @@ void main()
     int count = 0;
     for (int i = 0; i < parts_count; ++i)
     {
-        parts[i] = load_part(first + (place_of(i) << part_level), part_level);
-        count += int(parts[i].bins != 0u);
+        parts[i] = load_part(first + (place_of(i) << part_level), part_level, i / places);
+        count += int(i < places && parts[i].bins != 0u);
     }
     // A plane through four pixels is no tighter than a level one. Above those, parents keep to their quarters' mean: a plane of another gradient would
     // have to hold theirs.
-    bool fits     = level == 2 ? count == parts_count : level > 2 && count > 0;
+    bool fits     = level == 2 ? count == places : level > 2 && count > 0;
     vec2 gradient = level == 2 ? slope_of_pixels() : mean_gradient(count);
     Node node = node_around(vec2(0));
     if (fits && plane_quadtree_planes == plane_quadtree_planes_fitted)

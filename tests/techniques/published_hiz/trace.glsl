@@ -40,6 +40,6 @@ TraceResult trace(Ray ray)
     uvec2 words = fetch_pixel(pixel);
     real  depth = real(depth_in(words, pixel));
     bool touched = interval_touches(depth, depth_interval(ray, position.z, min(position.z, depth)));
-    bool hit = t <= real(1) && pixel != ray.start_pixel && ends_at(ray, surface_at(ray, pixel, words), touched, t);
+    bool hit = t <= real(1) && pixel != ray.start_pixel && ends_at(ray, surface_at(ray, pixel, 0, words), touched, t);
     return hit ? hit_at(ray, pixel, t, t, visited) : miss(ray, visited);
 }

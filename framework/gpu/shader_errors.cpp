@@ -1,0 +1,72 @@
+#include "gpu/shader_errors.h"
+
+#include "core/files.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <regex>
+#include <sstream>
+
+namespace ssrlab {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Comments turned into blanks; lines stay lines.
+std::string without_comments(std::string text)
+{
+    for (size_t i = 0; i + 1 < text.size(); ++i) {
+        if (text[i] != '/' || (text[i + 1] != '/' && text[i + 1] != '*')) continue;
+        const bool   line = text[i + 1] == '/';
+        const size_t end  = std::min(text.find(line ? "\n" : "*/", i + 2), text.size() - 1) + (line ? 0 : 1);
+        for (; i <= std::min(end, text.size() - 1); ++i)
+            if (text[i] != '\n') text[i] = ' ';
+    }
+    return text;
+}
+
+/// The line of the first '{' that is not closed; 0: none.
+int unclosed_brace(const std::string& text)
+{
+    std::vector<int> open;
+    int              line = 1;
+    for (const char c : without_comments(text)) {
+        line += c == '\n';
+        if (c == '{') open.push_back(line);
+        if (c == '}' && !open.empty()) open.pop_back();
+    }
+    return open.empty() ? 0 : open.front();
+}
+
+/// "path:12: 'x' : undeclared identifier". The project's shaders have no errors of their own: what is found in them is
+/// missing from the plug-in's file.
+std::string error_text(const std::string& error, const ShaderSource& source)
+{
+    if (source.include_files.empty() || !error.starts_with(shader_folder().string())) return error;
+    for (const auto& [name, file] : source.include_files)
+        if (const int line = unclosed_brace(read_file(file)); line > 0)
+            return fmt::format("{}:{}: this '{{' is never closed", file.string(), line);
+    const fs::path& file  = source.include_files.rbegin()->second;
+    const auto      lines = std::max<std::ptrdiff_t>(std::ranges::count(read_file(file), '\n'), 1);
+    return fmt::format("{}:{}: {} (found where the file is used: {})", file.string(), lines,
+                       std::regex_replace(error, std::regex("^[^:]*:[0-9]+: "), ""), error.substr(0, error.find(": ")));
+}
+
+} // namespace
+
+std::string shader_errors_in(const std::string& log, const ShaderSource& source)
+{
+    std::istringstream       lines(log);
+    std::vector<std::string> errors;
+    for (std::string line; std::getline(lines, line);) {
+        constexpr std::string_view prefix = "ERROR: ";
+        // The compiler's last line counts its errors.
+        if (!line.starts_with(prefix) || line.ends_with("No code generated.")) continue;
+        const std::string error = error_text(line.substr(prefix.size()), source);
+        if (std::ranges::count(errors, error) == 0) errors.push_back(error);
+    }
+    return errors.empty() ? log : fmt::format("{}", fmt::join(errors, "\n"));
+}
+
+} // namespace ssrlab
