@@ -99,9 +99,10 @@ def reprojection_errors(results, tables):
             axis.set(title=scene, ylabel=label)
             axis.set_xticks(range(len(views)), ["objects only" if view == "default" else view for view in views])
             axis.grid(axis="y", alpha=0.3)
-    axes[0][2].legend(fontsize=7, ncols=2)
+    handles, labels = axes[0][2].get_legend_handles_labels()
+    figure.legend(handles, labels, fontsize=8, ncols=len(labels), loc="lower center")
     figure.suptitle("Where a reflection was in the frame before: strategies against the truth")
-    figure.tight_layout()
+    figure.tight_layout(rect=(0, 0.05, 1, 1))
     yield "reprojection_errors", figure
 
 
@@ -129,7 +130,7 @@ def clamped_history(results, tables):
         axis.set_xscale("symlog", linthresh=0.5)
         axis.set_xticks(sorted(rows.waves_per_m.unique()), [f"{value:g}" for value in sorted(rows.waves_per_m.unique())])
         axis.set(title=clamping, xlabel="waves per metre in the normal map")
-        axis.set_ylim(bottom=0)
+        axis.set_ylim(0, 108 * rows.clamped_share.max())
         axis.grid(alpha=0.3)
     axes[0][0].set_ylabel("accumulated pixels that clamping changed, %")
     axes[0][-1].legend(fontsize=8)
@@ -157,7 +158,6 @@ def convergence(results, tables):
         axis.set(title=f"{number:g} waves per metre", xlabel="frames", xscale="log")
         axis.set_xticks(sorted(rows.frame.unique() + 1), [f"{frame + 1:g}" for frame in sorted(rows.frame.unique())])
         axis.minorticks_off()
-        axis.set_ylim(bottom=0)
         axis.grid(alpha=0.3)
     axes[0][0].set_ylabel("RMSE against the converged picture")
     axes[0][-1].legend(fontsize=8)
