@@ -61,15 +61,15 @@ public:
 private:
     const TraceSettings& made_for() const;
 
-    const Scene*                          scene_;
-    GBufferImage                          gbuffer_;
-    std::filesystem::path                 cache_dir_;
-    std::optional<TraceSettings>          made_for_;
-    TraceResult                           screen_truth_;
-    SceneTruth                            scene_truth_;
-    std::optional<Reference>              reference_;        // with image_errors: the scene truth's reflection
-    std::optional<Image>                  true_picture_;     // when asked for
-    std::optional<ReprojectionTruth>      before_, earlier_; // when asked for
+    const Scene*                     scene_;
+    GBufferImage                     gbuffer_;
+    std::filesystem::path            cache_dir_;
+    std::optional<TraceSettings>     made_for_;
+    TraceResult                      screen_truth_;
+    SceneTruth                       scene_truth_;
+    std::optional<Reference>         reference_;        // with image_errors: the scene truth's reflection
+    std::optional<Image>             true_picture_;     // when asked for
+    std::optional<ReprojectionTruth> before_, earlier_; // when asked for
 };
 
 /// $SSRLAB_CACHE, or .truth_cache beside the results folder.

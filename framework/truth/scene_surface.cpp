@@ -89,13 +89,13 @@ SurfaceMaterial surface_material(const Scene& scene, const SurfacePoint& point)
 {
     const Material& material = scene.materials[scene.draws[point.draw].material];
     SurfaceMaterial result;
-    const glm::vec4 gloss   = sample(scene, material.metallic_roughness_texture, point);
-    result.base_colour      = glm::vec3(base_colour(scene, point));
-    result.metallic         = material.metallic * gloss.b;
-    result.roughness        = std::clamp(material.roughness * gloss.g, 0.0F, 1.0F);
-    result.dielectric_f0    = material.dielectric_f0;
-    result.emissive         = material.emissive * glm::vec3(sample(scene, material.emissive_texture, point));
-    result.normal_ws        = shading_normal_ws(scene, point);
+    const glm::vec4 gloss = sample(scene, material.metallic_roughness_texture, point);
+    result.base_colour    = glm::vec3(base_colour(scene, point));
+    result.metallic       = material.metallic * gloss.b;
+    result.roughness      = std::clamp(material.roughness * gloss.g, 0.0F, 1.0F);
+    result.dielectric_f0  = material.dielectric_f0;
+    result.emissive       = material.emissive * glm::vec3(sample(scene, material.emissive_texture, point));
+    result.normal_ws      = shading_normal_ws(scene, point);
     return result;
 }
 
