@@ -116,8 +116,7 @@ void make_references(Bench& bench, Picture& picture, const MeasuredRun& measured
         picture.truths->make(settings.trace, image_errors);
         if (!image_errors || (picture.reference && picture.reference_for == settings.trace)) return;
         std::optional<Image> truth = picture.truths->given_picture();
-        if (!truth && picture.truths->without_scene().empty())
-            truth = picture.truths->true_picture();
+        if (!truth && picture.truths->without_scene().empty()) truth = picture.truths->true_picture();
         if (!truth) return;
         picture.reference.emplace(*truth);
         picture.reference_for = settings.trace;

@@ -63,7 +63,8 @@ std::string broken(const Picture& picture, const Technique& technique, const Tra
         return "traced where nothing reflects, or the reverse";
     if (result.steps[i] > most_steps)
         return fmt::format("{} steps, at most {} were declared", result.steps[i], most_steps);
-    if (settings.behind != Behind::pass && result.status[i] == TraceStatus::facing_away) return "facing_away, but no ray may pass";
+    if (settings.behind != Behind::pass && result.status[i] == TraceStatus::facing_away)
+        return "facing_away, but no ray may pass";
     if (!std::isfinite(result.hit_t[i])) return fmt::format("t = {}", result.hit_t[i]);
     if (result.status[i] != TraceStatus::hit) return "";
 
@@ -105,7 +106,7 @@ void expect_contract(const Case& c, const Picture& picture, const Technique& tec
     EXPECT_EQ(wrong, 0U) << repeat;
     std::string first;
     EXPECT_EQ(count_differences(result, again, bit_equal_t, first), 0U) << "the second run differs: " << first << "\n"
-                                                                 << repeat;
+                                                                        << repeat;
     EXPECT_TRUE(result.steps == again.steps && result.depth_fetches == again.depth_fetches &&
                 result.structure_fetches == again.structure_fetches)
         << "the second run counts other work\n"
