@@ -177,10 +177,11 @@ GBufferPtr upload_depth(Gpu& gpu, const View& view, std::span<const float> depth
     const auto image = [&](vk::Format format, glm::ivec2 size_px) {
         return make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
     };
-    gbuffer->depth    = make_depth_buffer(gpu, view.size_px);
-    gbuffer->normal   = image(vk::Format::eR32G32B32A32Sfloat, {1, 1});
-    gbuffer->material = image(vk::Format::eR16G16B16A16Sfloat, {1, 1});
-    gbuffer->solid    = image(vk::Format::eR32Sfloat, {1, 1});
+    gbuffer->depth      = make_depth_buffer(gpu, view.size_px);
+    gbuffer->normal     = image(vk::Format::eR32G32B32A32Sfloat, {1, 1});
+    gbuffer->material   = image(vk::Format::eR16G16B16A16Sfloat, {1, 1});
+    gbuffer->dielectric = image(vk::Format::eR32Sfloat, {1, 1});
+    gbuffer->solid      = image(vk::Format::eR32Sfloat, {1, 1});
     write_depth(gpu, gbuffer->depth, usable_depth(depth), {});
     return gbuffer;
 }

@@ -238,15 +238,21 @@ TEST(Measures, TableIsCompleteAndUnique)
     all.merge(compare_images(reference_image(test.truth), reference, test.truth));
     all.merge(compare_pictures(reference_image(test.truth), reference, test.truth, test.gbuffer));
     set_hit(test.tested, 0, 12.5); // found, so that its vector counts
-    test.truth.cls[0]            = TruthClass::visible;
-    const size_t            rays = test.tested.status.size();
-    const ReprojectionTruth unmoved{test.tested.size_px, std::vector(rays, ReprojectionClass::seen),
+    test.truth.cls[0]                 = TruthClass::visible;
+    const size_t                 rays = test.tested.status.size();
+    const ReprojectionTruth      unmoved{test.tested.size_px, std::vector(rays, ReprojectionClass::seen),
                                     std::vector<glm::dvec2>(rays)};
-    all.merge(compare_reprojection(std::vector<glm::vec2>(rays), unmoved, test.tested, test.truth));
+    const std::vector<glm::vec2> unmoved_px(rays);
+    all.merge(count_disocclusions(unmoved));
+    all.merge(compare_surface_motion(unmoved_px, unmoved, test.tested, test.truth));
+    all.merge(compare_reprojection(unmoved_px, unmoved, test.tested, test.truth));
+    all.merge(compare_ghosts(reference_image(test.truth), reference, unmoved, test.truth));
+    all.merge(compare_converged(reference_image(test.truth), reference, test.truth));
     std::set<std::string_view> filled;
     for (const auto& [name, value] : all) filled.insert(name);
-    filled.insert("steps_max");  // only with rays
-    filled.insert("flip_share"); // of two frames
+    filled.insert({"steps_max"});                      // only with rays
+    filled.insert({"flip_share"});                     // of two frames
+    filled.insert({"history_share", "clamped_share"}); // counted by the pass
     std::vector<std::string_view> on_one_side;
     std::ranges::set_symmetric_difference(filled, names, std::back_inserter(on_one_side));
     EXPECT_THAT(on_one_side, testing::IsEmpty());
