@@ -57,7 +57,7 @@ class Test(Case):
     def test_trace_has_every_channel_and_the_legend(self):
         self.ssrlab("trace", SCENE, "-t", "hiz", "-p", "max_distance_m=9", "--size", "161x91", "-o", self.path("h.exr"))
         channels, spec = self.read("h.exr")
-        self.assertEqual(set(channels), {"hit.x", "hit.y", "hit.t", "hit.z", "pixel.x", "pixel.y", "status", "steps", "depth_fetches", "structure_fetches"})
+        self.assertEqual(set(channels), {"hit.x", "hit.y", "hit.t", "hit.z", "layer", "pixel.x", "pixel.y", "status", "steps", "depth_fetches", "structure_fetches"})
         self.assertEqual(spec.getattribute("ssrlab:status_names"), STATUS_NAMES)
         hit = channels["status"] == 1
         self.assertGreater(hit.sum(), 0)
