@@ -30,9 +30,11 @@ def error_of(row, measure):
 
 
 def plain(value):
-    """For JSON: numbers short, missing values null."""
+    """For JSON: numbers short, missing values null. An unlimited setting is a word: JSON knows no infinity."""
     if pd.isna(value):
         return None
+    if isinstance(value, float) and math.isinf(value):
+        return str(float(value))
     if isinstance(value, (int, str)):
         return value
     return float(f"{float(value):.5g}") if not hasattr(value, "dtype") or value.dtype.kind == "f" else value.item()
@@ -139,15 +141,6 @@ def read(path):
         return file.read()
 
 
-def finite(value):
-    """The same with None for numbers that JSON does not know: charts leave these out."""
-    if isinstance(value, dict):
-        return {key: finite(one) for key, one in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [finite(one) for one in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
 def write(results, plots, tables):
     """plots: [{"name", "alt", "path", "curve"}]. Returns the verdicts."""
     if not os.path.exists(LIBRARY):
@@ -160,7 +153,7 @@ def write(results, plots, tables):
     shown = [{**plot, "src": plot_pictures.data_uri(plot["path"], flat=True, width=1600)} for plot in plots if not plot["curve"]]
     engine = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=jinja2.select_autoescape(["html.jinja"]),
                                 trim_blocks=True, lstrip_blocks=True)
-    data = json.dumps(finite(whole["data"]), ensure_ascii=False, allow_nan=False).replace("</", "<\\/")
+    data = json.dumps(whole["data"], ensure_ascii=False, allow_nan=False).replace("</", "<\\/")
     pages = {"report.html": {**whole, "plots": shown, "data": data, "css": read(os.path.join(TEMPLATES, "report.css")),
                              "script": read(os.path.join(TEMPLATES, "report.js")), "library": read(LIBRARY)},
              "report.md": whole}

@@ -115,6 +115,13 @@ class Test(Case):
             ground = page.execute_script("return getComputedStyle(document.body).backgroundColor")
             self.assertEqual(max(map(int, re.findall(r"\d+", ground)[:3])) < 80, dark, ground)
 
+    def test_an_unlimited_setting_is_shown(self):
+        far = SMALL.replace("max_distance_m = 9", "max_distance_m = inf").replace("= 6\n", "= 1\n")
+        self.ssrlab("run", self.write("far.toml", far), "-o", self.path("far"))
+        self.ssrlab("plot", self.path("far"))
+        with open(self.path("far/report.html"), encoding="utf-8") as file:
+            self.assertIn('"inf"', file.read())
+
     def test_commands_of_the_report_measure_the_run_again(self):
         self.report()
         for row in self.rows():
