@@ -5,16 +5,27 @@ import pandas as pd
 from matplotlib import pyplot as plt
 
 
-def read_summary(results):
-    """sequence_summary.csv, or nothing."""
+def read_summary(results, column):
+    """sequence_summary.csv, or nothing where no row has this column's value."""
     path = os.path.join(results.folder, "sequence_summary.csv")
-    return pd.read_csv(path, keep_default_na=False, na_values=[""]) if os.path.exists(path) else pd.DataFrame()
+    summary = pd.read_csv(path, keep_default_na=False, na_values=[""]) if os.path.exists(path) else pd.DataFrame()
+    return summary if column in summary and summary[column].notna().any() else pd.DataFrame()
+
+
+def finish(figure, axes, label, title):
+    """A row of axes that share what lies up."""
+    for axis in axes:
+        axis.grid(alpha=0.3)
+    axes[0].set_ylabel(label)
+    axes[-1].legend(fontsize=8)
+    figure.suptitle(title)
+    figure.tight_layout()
 
 
 def flips_under_jitter(results, tables):
     """Flip rate against steps: a technique with steps is a line, one without is level."""
-    summary = read_summary(results)
-    if "flip_rate" not in summary or summary.flip_rate.isna().all() or "steps" not in summary:
+    summary = read_summary(results, "flip_rate")
+    if summary.empty or "steps" not in summary:
         return
     scenes = list(dict.fromkeys(summary.scene))
     figure, axes = plt.subplots(1, len(scenes), figsize=(4.6 * len(scenes), 4.2), squeeze=False, sharey=True)
@@ -30,18 +41,14 @@ def flips_under_jitter(results, tables):
                              color=colour, lw=1.8, label=technique)
         axis.set(xscale="log", xlabel="steps", title=scene)
         axis.set_ylim(bottom=0)
-        axis.grid(alpha=0.3)
-    axes[0][0].set_ylabel("rays that flip from one phase to the next, %")
-    axes[0][-1].legend(fontsize=8)
-    figure.suptitle("Flips of raw hits under sub-pixel jitter")
-    figure.tight_layout()
+    finish(figure, axes[0], "rays that flip from one phase to the next, %", "Flips of raw hits under sub-pixel jitter")
     yield "jitter_flips", figure
 
 
 def motion_errors(results, tables):
     """By view: median and 95th percentile of the surface motion's error, and what no reprojection can find."""
-    summary = read_summary(results)
-    if "surface_motion_error_median_px" not in summary or summary.surface_motion_error_median_px.isna().all():
+    summary = read_summary(results, "surface_motion_error_median_px")
+    if summary.empty:
         return
     rows = summary[summary.surface_motion_error_median_px.notna()].reset_index(drop=True)
     labels = rows.view if rows.scene.nunique() == 1 else rows.scene + ", " + rows.view
@@ -67,8 +74,8 @@ COLOURS = ["#D55E00", "#E69F00", "#CC79A7", "#8A6D00", "#0072B2", "#009E73", "#5
 
 def reprojection_errors(results, tables):
     """By view: error and ghosts of each strategy, and the ghosts without any history."""
-    summary = read_summary(results)
-    if "reprojection_error_median_px" not in summary or summary.reprojection_error_median_px.isna().all():
+    summary = read_summary(results, "reprojection_error_median_px")
+    if summary.empty:
         return
     rows = summary[summary.reprojection_error_median_px.notna()]
     strategies = sorted(rows.reprojection.unique(), key=lambda name: (STRATEGIES + [name]).index(name))
@@ -114,8 +121,8 @@ def rippled(summary):
 
 def clamped_history(results, tables):
     """Share of clamped pixels against the frequency of the normal map."""
-    summary = read_summary(results)
-    if "clamped_share" not in summary or summary.clamped_share.isna().all():
+    summary = read_summary(results, "clamped_share")
+    if summary.empty:
         return
     rows = rippled(summary[summary.clamped_share.notna() & (summary.history_clamping != "off")])
     if not len(rows):
@@ -131,11 +138,7 @@ def clamped_history(results, tables):
         axis.set_xticks(sorted(rows.waves_per_m.unique()), [f"{value:g}" for value in sorted(rows.waves_per_m.unique())])
         axis.set(title=clamping, xlabel="waves per metre in the normal map")
         axis.set_ylim(0, 108 * rows.clamped_share.max())
-        axis.grid(alpha=0.3)
-    axes[0][0].set_ylabel("accumulated pixels that clamping changed, %")
-    axes[0][-1].legend(fontsize=8)
-    figure.suptitle("Clamping against detail")
-    figure.tight_layout()
+    finish(figure, axes[0], "accumulated pixels that clamping changed, %", "Clamping against detail")
     yield "clamped_history", figure
 
 
@@ -158,11 +161,7 @@ def convergence(results, tables):
         axis.set(title=f"{number:g} waves per metre", xlabel="frames", xscale="log")
         axis.set_xticks(sorted(rows.frame.unique() + 1), [f"{frame + 1:g}" for frame in sorted(rows.frame.unique())])
         axis.minorticks_off()
-        axis.grid(alpha=0.3)
-    axes[0][0].set_ylabel("RMSE against the converged picture")
-    axes[0][-1].legend(fontsize=8)
-    figure.suptitle("Accumulated reflections under jitter")
-    figure.tight_layout()
+    finish(figure, axes[0], "RMSE against the converged picture", "Accumulated reflections under jitter")
     yield "convergence", figure
 
 
