@@ -24,7 +24,7 @@ struct LoadedScene {
 
 /// The mean of the pictures with the true reflection over all phases of the jitter.
 struct ConvergedPicture {
-    FrameSettings settings;
+    TraceSettings settings; // what it depends on, of all
     Reference     picture;
 };
 

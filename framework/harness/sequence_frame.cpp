@@ -60,9 +60,9 @@ bool nothing_moves(const Scene& scene, const Run& run, int last_frame)
     return true;
 }
 
-void add_true_picture(Picture& picture, const Run& run, Image& sum)
+void add_true_picture(Picture& picture, const TraceSettings& settings, Image& sum)
 {
-    picture.truths->make(run.settings.trace, false);
+    picture.truths->make(settings, false);
     const Image& shown = picture.truths->true_picture();
     if (sum.values.empty()) return void(sum = shown);
     for (size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += shown.values[i];
@@ -92,7 +92,8 @@ void judge_sequence(Bench& bench, Picture& picture, MeasuredRun& measured, const
 {
     judge_motion(bench, picture, measured, observed);
     if (observed.history) add_measures(measured.row, history_measures(*observed.history));
-    const auto converged = std::ranges::find(bench.converged, measured.run->settings, &ConvergedPicture::settings);
+    const auto converged =
+        std::ranges::find(bench.converged, measured.run->settings.trace, &ConvergedPicture::settings);
     if (converged != bench.converged.end())
         add_measures(measured.row, picture.truths->compare_converged(observed.shaded, converged->picture));
     if (is_sequence(bench.experiment))
@@ -130,20 +131,20 @@ void make_converged_pictures(Bench& bench, std::span<const Run> runs, int last_f
     const Run&             first   = runs.front();
     if (!measure.truth || !measure.image_errors || first.at.jitter_phases == 0) return;
     if (!nothing_moves(scene_of(bench, first.scene, 0).first, first, last_frame)) return;
-    std::vector<std::pair<Run, Image>> sums; // one run of each settings
+    std::vector<std::pair<TraceSettings, Image>> sums;
     for (const Run& run : runs)
-        if (std::ranges::none_of(sums, [&](const auto& sum) { return sum.first.settings == run.settings; }))
-            sums.emplace_back(run, Image{});
+        if (std::ranges::none_of(sums, [&](const auto& sum) { return sum.first == run.settings.trace; }))
+            sums.emplace_back(run.settings.trace, Image{});
     for (int phase = 0; phase < first.at.jitter_phases; ++phase) {
         Run at_phase      = first;
         at_phase.at.frame = phase;
         Picture picture   = make_picture(bench, at_phase);
-        for (auto& [run, sum] : sums) add_true_picture(picture, run, sum);
+        for (auto& [settings, sum] : sums) add_true_picture(picture, settings, sum);
         bench.progress.tick();
     }
-    for (auto& [run, sum] : sums) {
+    for (auto& [settings, sum] : sums) {
         for (float& value : sum.values) value /= static_cast<float>(first.at.jitter_phases);
-        bench.converged.push_back({run.settings, Reference(sum)});
+        bench.converged.push_back({settings, Reference(sum)});
     }
 }
 
