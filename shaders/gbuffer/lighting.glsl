@@ -57,8 +57,7 @@ vec3 arriving(Light light, vec3 position_ws, out vec3 to_light)
     return light.intensity * (window * cone / (distance_m * distance_m));
 }
 
-// Below 2 % nothing reflects at normal incidence: such a value says that there is no reflection.
-float grazing_reflectance(vec3 f0) { return min(1.0, 50.0 * max(max(f0.r, f0.g), f0.b)); }
+#include "gbuffer/grazing.glsl"
 
 vec3 specular(vec3 normal, vec3 to_eye, vec3 to_light, vec3 f0, float roughness)
 {

@@ -1,13 +1,10 @@
 // What a reflector shows with its reflection. After view.glsl, reflecting.glsl and pass/parameters.
+#include "passes/camera.glsl"
 #include "passes/directional_albedo.glsl"
 
 layout(set = 0, binding = 62, scalar) uniform Ambient { vec3 ambient; }; // 0 where there is no scene
 
-vec3 to_camera_vs(ivec2 pixel)
-{
-    vec3 position_vs = px_to_vs(vec3(vec2(pixel) + 0.5, load_depth(pixel)));
-    return orthographic != 0 ? vec3(0, 0, 1) : -normalize(position_vs);
-}
+vec3 to_camera_vs(ivec2 pixel) { return to_camera_vs(px_to_vs(vec3(vec2(pixel) + 0.5, load_depth(pixel)))); }
 
 // reflectance = metallic: J. Somerville Roberts, "Screen Space Reflections". ggx: the directional albedo.
 vec3 reflectance_of(ivec2 pixel, vec3 to_eye_vs)

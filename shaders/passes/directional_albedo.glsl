@@ -1,5 +1,6 @@
 // The split-sum table: the directional albedo of a GGX surface is f0 * x + f90 * y (render/directional_albedo.h).
 #include "layout/frame_shared.h"
+#include "gbuffer/grazing.glsl"
 layout(set = 0, binding = 36) uniform sampler2D dfg_table;
 
 vec2 dfg(float roughness, float cosine)
@@ -10,7 +11,6 @@ vec2 dfg(float roughness, float cosine)
 
 vec3 directional_albedo(vec3 f0, float roughness, float cosine)
 {
-    float f90   = min(1.0, 50.0 * max(max(f0.r, f0.g), f0.b)); // as gbuffer/lighting.glsl
-    vec2  terms = dfg(roughness, min(cosine, 1.0));
-    return clamp(f0 * terms.x + f90 * terms.y, 0.0, 1.0);
+    vec2 terms = dfg(roughness, min(cosine, 1.0));
+    return clamp(f0 * terms.x + grazing_reflectance(f0) * terms.y, 0.0, 1.0);
 }

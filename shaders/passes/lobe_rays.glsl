@@ -1,6 +1,7 @@
 // What the rays of a rough pixel's lobe bring back, kept ray by ray for passes/ray_reuse.comp. After passes/ray_colour.glsl.
 #include "api/hash.glsl"
 #include "rays/lobe.glsl"
+#include "passes/reflector.glsl"
 #ifdef ENVIRONMENT
 #include "passes/environment_lobe.glsl"
 #endif
@@ -16,21 +17,19 @@ vec4 lobe_ray_light(uint index, ivec2 pixel, int number)
     PackedRay ray       = packed_ray(index);
     PackedHit hit       = packed_hit(index);
     Found     found     = found_by(ray, hit);
-    vec3      direction = ray_direction(ray), origin_vs = px_to_vs(ray.origin), to_eye_vs;
-    vec4      stored    = imageLoad(normal_image, pixel);
-    vec3      normal_vs = normalize(stored.xyz);
-    to_eye_vs = orthographic != 0 ? vec3(0, 0, 1) : -normalize(px_to_vs(vec3(vec2(pixel) + 0.5, load_depth(pixel))));
-    normal_vs = dot(normal_vs, to_eye_vs) < 0.0 ? -normal_vs : normal_vs;
+    vec3      direction = ray_direction(ray), origin_vs = px_to_vs(ray.origin);
+    Reflector own       = reflector_at(pixel);
+    float     roughness = imageLoad(normal_image, pixel).w;
 
     vec4 light = vec4(found.light * found.attenuation, found.weight);
 #ifdef ENVIRONMENT
     // Blurred by half the lobe's width: a ray stands for its share of the lobe.
-    if (light.a < 1.0) light.rgb = mix(environment_lobe(direction, direction, 0.7 * stored.w), light.rgb, light.a);
+    if (light.a < 1.0) light.rgb = mix(environment_lobe(direction, direction, 0.7 * roughness), light.rgb, light.a);
     light.a = 1.0;
 #endif
     bool  hits    = unpack_status(hit.pixel) == TRACE_HIT;
     vec3  end_vs  = hits ? px_to_vs(ray.origin + ray.delta * hit.t) : origin_vs + direction * ray_far_m;
-    float density = stored.w >= mirror_roughness ? lobe_density(normal_vs, to_eye_vs, direction, stored.w * stored.w) : 0.0;
+    float density = roughness >= mirror_roughness ? lobe_density(own.normal_vs, own.to_eye_vs, direction, own.alpha) : 0.0;
     imageStore(ray_light_image, pixel + ivec2(0, number * size_px.y), light);
     imageStore(ray_end_image, pixel + ivec2(0, number * size_px.y), vec4(end_vs, density));
     return light;

@@ -5,6 +5,7 @@
 #include "rays/reflecting.glsl"
 #include "pass/parameters"
 #include "passes/blocks.glsl"
+#include "passes/camera.glsl"
 #include "passes/directional_albedo.glsl"
 #include "rays/tiles.glsl"
 #include "layout/frame_shared.h"
@@ -21,11 +22,6 @@ struct Surface
     float reflectivity;
 };
 
-vec3 view_direction(vec3 position_vs)
-{
-    return orthographic == 0 ? normalize(position_vs) : vec3(0, 0, -1);
-}
-
 Surface surface_at(ivec2 pixel)
 {
     vec4 normal   = imageLoad(normal_image, pixel);
@@ -33,7 +29,7 @@ Surface surface_at(ivec2 pixel)
     Surface surface;
     surface.position_vs  = px_to_vs(vec3(vec2(pixel) + 0.5, load_depth(pixel)));
     surface.normal_vs    = normalize(normal.xyz);
-    float cosine         = max(0.0, -dot(surface.normal_vs, view_direction(surface.position_vs)));
+    float cosine         = max(0.0, dot(surface.normal_vs, to_camera_vs(surface.position_vs)));
     float f0             = mix(imageLoad(dielectric_image, pixel).x, dot(material.rgb, vec3(0.2126, 0.7152, 0.0722)), material.a);
     surface.reflectivity = directional_albedo(vec3(f0), normal.w, cosine).x;
     return surface;
