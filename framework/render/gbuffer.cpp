@@ -255,7 +255,11 @@ void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image)
         material[i]   = to_half({image.base_colour[i], image.metallic[i]});
         dielectric[i] = dielectric_f0_at(image, i);
     }
-    GBufferImage planes{image.view, image.depth, image.normal_vs, {}, {}, {}, {}, {}, {}, image.gradient, {}, {}, {}};
+    GBufferImage planes;
+    planes.view      = image.view;
+    planes.depth     = image.depth;
+    planes.normal_vs = image.normal_vs;
+    planes.gradient  = image.gradient;
     complete_gradients(planes);
     std::vector<uint32_t> gradients;
     for (const glm::vec2& gradient : planes.gradient) gradients.push_back(pack_gradient(gradient));

@@ -13,6 +13,20 @@ namespace ssrlab::test {
 using Reflection = std::vector<glm::vec4>;
 inline constexpr glm::vec4 nothing_reflects{0, 0, 0, -1};
 
+/// Of 64 x 64 pixels: the left half must be the same to the last bit; how many pixels of the right half differ.
+inline size_t changes_on_the_right_alone(const Reflection& found, const Reflection& before)
+{
+    size_t changed = 0;
+    for (size_t i = 0; i < 64 * 64; ++i) {
+        const size_t x = i % 64;
+        if (x < 32)
+            EXPECT_EQ(found[i], before[i]) << x << ", " << i / 64;
+        else
+            changed += found[i] != before[i];
+    }
+    return changed;
+}
+
 inline PreparedFramePtr frame_with(const Picture& picture, const ParameterValues& passes,
                                    const std::string& technique_id = "dda")
 {
