@@ -7,7 +7,8 @@ import pandas as pd
 
 MEASURES = {"recall_1px": "recall", "precision_1px": "precision", "hit_share": "hits", "picture_rmse": "picture RMSE",
             "picture_visible_border_rmse": "at borders"}
-SHOWN = {"off": "no reflections", "truth": "true reflection", "agreement": "green right, yellow displaced, orange missed, pink false"}
+SHOWN = {"off": "no reflections", "truth": "true reflection", "agreement": "green right, yellow displaced, orange missed, pink false",
+         "causes": "why rays are wrong"}
 
 
 def is_value(cell, value):

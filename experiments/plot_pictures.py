@@ -9,7 +9,7 @@ from plot_verdict import has_value, milliseconds, percent
 
 WIDEST = 640
 MANY = 10  # per frame
-KINDS = {"picture": "", "agreement": "_agreement", "FLIP": "_flip", "fetches": "_fetches"}
+KINDS = {"picture": "", "agreement": "_agreement", "causes": "_causes", "FLIP": "_flip", "fetches": "_fetches"}
 
 
 def data_uri(path, flat=False, width=WIDEST):
@@ -44,6 +44,8 @@ def finding(row, kind):
         return f"finds {percent(row.recall_1px)} of what the frame shows, {percent(row.false_hits)} of the rays end in a false hit"
     if kind == "agreement" and has_value(row, "screen_recall_1px"):
         return f"finds {percent(row.screen_recall_1px)} of what the depth buffer holds"
+    if kind == "causes" and has_value(row, "wrong_rays"):
+        return f"{percent(row.wrong_rays)} of the rays are wrong"
     if kind == "FLIP" and has_value(row, "picture_flip"):
         return f"mean FLIP against the truth {row.picture_flip:.3g}"
     if kind == "fetches":
@@ -56,7 +58,7 @@ def shot(name, images, run="", series=""):
 
 
 def image(path, kind, name, alt):
-    return {"src": data_uri(path, flat=kind == "agreement"), "kind": kind, "name": name, "alt": alt}
+    return {"src": data_uri(path, flat=kind in ("agreement", "causes")), "kind": kind, "name": name, "alt": alt}
 
 
 def interesting(chosen):

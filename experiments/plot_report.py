@@ -18,6 +18,8 @@ LIBRARY = "/usr/share/javascript/chart.js/chart.min.js"  # Debian's libjs-chart.
 # Of framework/compare/pictures.cpp.
 AGREEMENT = [("#009e73", "found within 1 px"), ("#f0e442", "hit farther away"), ("#d55e00", "missed"), ("#cc79a7", "hit where nothing is"),
              ("#6b6b74", "rightly no hit"), ("#000000", "does not reflect")]
+CAUSES = [("#e69f00", "own surface"), ("#56b4e9", "not shown"), ("#f0e442", "thin"), ("#cc79a7", "silhouette"), ("#009e73", "edge"),
+          ("#d55e00", "stopped"), ("#ffffff", "other"), ("#6b6b74", "right")]
 RAMP = "#1d1147, #51127c, #b73779, #fc8961, #fcfdbf"
 ERRORS = {"recall_1px": "1 − recall (scene truth)", "precision_1px": "1 − precision (scene truth)", "f1_1px": "1 − F1 (scene truth)",
           "flip_visible": "FLIP over visible rays", "screen_recall_1px": "1 − recall (screen truth)",
@@ -132,7 +134,7 @@ def context(results, plots, tables):
             "has_curve": any(results.has(name) for name in ERRORS), "frames": list(frame_sections(results, chosen)),
             "failed": failed_table(results, again), "plots": plots, "tables": [(name, plain_table(rows)) for name, rows in tables.items()],
             "about": about(environment), "again": again(results, "RUN_ID"), "specification": environment.get("specification", ""),
-            "agreement_legend": AGREEMENT, "ramp": RAMP, "split_legend": [{"kind": kind, "said": said} for _, kind, said in SPLIT],
+            "agreement_legend": AGREEMENT, "causes_legend": CAUSES, "ramp": RAMP, "split_legend": [{"kind": kind, "said": said} for _, kind, said in SPLIT],
             "data": chart_data(results, chosen)}
 
 

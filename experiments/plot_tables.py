@@ -101,7 +101,14 @@ def error_table(chosen):
               ("error_screen_to_double", "screen → double", "what the tracer skips"), ("error_double_to_float", "double → float", "rounding"),
               ("false_hits", "false", "false hits, of all rays"), ("false_self", "false: itself", "on the reflector itself"),
               ("false_too_thick", "false: too thick", "a thinner slab would let the ray pass"),
-              ("false_wrong_surface", "false: other surface", "a front that the true ray does not meet")]
+              ("false_wrong_surface", "false: other surface", "a front that the true ray does not meet"),
+              ("wrong_rays", "wrong", "wrong rays, of all rays; the next columns are their causes, and sum to it"),
+              ("wrong_own_surface", "own surface", "the ray starts below its own surface or meets it"),
+              ("wrong_not_shown", "not shown", "the frame does not show the true point"),
+              ("wrong_thin", "thin", "no pixel around the true point holds it"),
+              ("wrong_silhouette", "silhouette", "at a pixel whose neighbour lies far off its plane"),
+              ("wrong_edge", "edge", "at a pixel where two planes meet"),
+              ("wrong_stopped", "stopped", "stopped in the midst of a plane"), ("wrong_other", "other", "none of these")]
     wanted = [one for one in wanted if one[0] in chosen and chosen[one[0]].notna().any()]
     if not wanted:
         return table([], [])

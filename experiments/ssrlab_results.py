@@ -15,7 +15,7 @@ import tomllib
 
 import pandas as pd
 
-TEXT = ["run_id", "experiment", "scene", "view", "technique", "outcome", "message", "picture", "truth_picture", "no_scene_truth", "passes",
+TEXT = ["run_id", "experiment", "scene", "view", "technique", "outcome", "message", "picture", "truth_picture", "no_scene_truth", "no_screen_truth", "passes",
         "passes_skipped"]
 FRAME = ["scene", "view", "width", "height", "frame"]
 # By the end of a column's name, longest first; "" is a count, a share of 1 or a setting's own value.

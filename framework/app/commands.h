@@ -24,7 +24,7 @@ struct PictureOptions {
 };
 
 int list_everything(const CommonOptions& common, bool json);
-/// A technique, or a setting of [trace] and [passes].
+/// A technique, a surface model, or a setting of [trace] and [passes].
 int show_entry(const CommonOptions& common, const std::string& name, bool json);
 int trace_hits(const CommonOptions& common, const PictureOptions& options);
 int write_gbuffer(const CommonOptions& common, const PictureOptions& options);

@@ -10,7 +10,9 @@ _ssrlab()
         names=$("$1" --help 2> /dev/null | sed -n '/^Subcommands:/,$ s/^  \([a-z]\+\) .*/\1/p')
     elif [[ $current == -* ]]; then
         names=$("$1" "$command" --help 2> /dev/null | grep -o -- '--[a-z-]\+' | sort -u)
-    elif [[ $previous == -t || $previous == --technique || $command == show || $command == check ]]; then
+    elif [[ $command == show ]]; then
+        names=$("$1" list 2> /dev/null | sed -n '/^\(Techniques\|Surface models\)/,/^$/ s/^  \([^ ]\+\) .*/\1/p')
+    elif [[ $previous == -t || $previous == --technique || $command == check ]]; then
         names=$("$1" list 2> /dev/null | sed -n '/^Techniques/,/^$/ s/^  \([^ ]\+\) .*/\1/p')
     elif [[ $command =~ ^(render|trace|gbuffer|ray|plan)$ && $previous == "$command" ]]; then
         names=$("$1" list 2> /dev/null | sed -n '/^Scenes/,/^$/ s/^  \([^ ]\+\) .*/\1/p')

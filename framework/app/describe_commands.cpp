@@ -5,6 +5,7 @@
 #include "core/names.h"
 #include "gpu/gpu.h"
 #include "harness/experiment.h"
+#include "truth/pixel_surface.h"
 
 #include <nlohmann/json.hpp>
 
@@ -75,13 +76,57 @@ int print_technique(const Technique& technique)
     return 0;
 }
 
+std::vector<std::string> needs_of(const Surface& surface)
+{
+    std::vector<std::string> needs;
+    if (surface.needs_gradient) needs.emplace_back("gradient");
+    if (surface.needs_solid) needs.emplace_back("solid");
+    return needs;
+}
+
+nlohmann::json json_of(const Surface& surface)
+{
+    return {{"name", surface.id},
+            {"title", surface.name},
+            {"summary", surface.summary},
+            {"needs", needs_of(surface)},
+            {"screen_truth", has_screen_truth(surface.id)},
+            {"folder", surface.folder.string()},
+            {"sources", surface.cite}};
+}
+
+int print_surface(const Surface& surface)
+{
+    std::puts(fmt::format("{} ({})\n{}\n", surface.name, surface.id, surface.summary).c_str());
+    std::puts(fmt::format("a surface model: -p surface={}, in experiments surface = \"{}\" in [trace]", surface.id,
+                          surface.id)
+                  .c_str());
+    std::puts(fmt::format("needs of the G-buffer, besides depth and normal: {}",
+                          needs_of(surface).empty() ? "nothing" : fmt::format("{}", fmt::join(needs_of(surface), ", ")))
+                  .c_str());
+    std::puts(has_screen_truth(surface.id) ? "screen truth: yes"
+                                           : "screen truth: none, the model is known by its shaders alone");
+    std::puts(fmt::format("folder: {}", surface.folder.string()).c_str());
+    for (const std::string& citation : surface.cite) std::puts(fmt::format("source: {}", citation).c_str());
+    return 0;
+}
+
+int print_setting(const Setting& setting)
+{
+    std::puts(fmt::format("A setting of [{}] in experiments, and of -p\n", setting.table).c_str());
+    print_parameter(setting);
+    return 0;
+}
+
 nlohmann::json list_as_json(const std::vector<Technique>& techniques)
 {
     nlohmann::json json{{"techniques", nlohmann::json::array()},
+                        {"surfaces", nlohmann::json::array()},
                         {"scenes", nlohmann::json::array()},
                         {"settings", nlohmann::json::array()},
                         {"devices", nlohmann::json::array()}};
     for (const Technique& technique : techniques) json["techniques"].push_back(json_of(technique));
+    for (const Surface& surface : all_surfaces()) json["surfaces"].push_back(json_of(surface));
     for (const SceneListing& scene : list_scenes())
         json["scenes"].push_back({{"name", scene.name}, {"summary", scene.summary}});
     for (const Setting& setting : all_settings()) {
@@ -114,6 +159,9 @@ int list_everything(const CommonOptions& common, bool json)
     for (const Technique& technique : techniques)
         std::puts(
             fmt::format("  {:<16} {}{}", technique.id, technique.summary, technique.exact ? " (exact)" : "").c_str());
+    std::puts("\nSurface models: what a pixel is taken to hold");
+    for (const Surface& surface : all_surfaces())
+        std::puts(fmt::format("  {:<16} {}", surface.id, surface.summary).c_str());
     std::puts("\nScenes (besides any .glb, .gltf, recipe .toml or frame .exr by its path)");
     for (const SceneListing& scene : list_scenes())
         std::puts(fmt::format("  {:<26} {}", scene.name, scene.summary).c_str());
@@ -139,26 +187,22 @@ int list_everything(const CommonOptions& common, bool json)
 int show_entry(const CommonOptions& common, const std::string& name, bool json)
 {
     const std::vector<Technique> techniques = list_techniques(common.technique_dirs);
-    const auto                   technique  = std::ranges::find(techniques, name, &Technique::id);
-    const auto                   setting    = std::ranges::find(all_settings(), name, &Setting::name);
-    if (technique != techniques.end()) {
-        if (!json) return print_technique(*technique);
-        std::puts(json_of(*technique).dump(1).c_str());
+    const auto                   show       = [&](const auto& entry, const auto& print) {
+        if (!json) return print(entry);
+        std::puts(json_of(entry).dump(1).c_str());
         return 0;
-    }
-    if (setting == all_settings().end()) {
-        std::vector<std::string> known;
-        for (const Technique& one : techniques) known.push_back(one.id);
-        for (const Setting& one : all_settings()) known.push_back(one.name);
-        throw_spec_error("{}", unknown_name("technique or setting", name, known));
-    }
-    if (json) {
-        std::puts(json_of(*setting).dump(1).c_str());
-        return 0;
-    }
-    std::puts(fmt::format("A setting of [{}] in experiments, and of -p\n", setting->table).c_str());
-    print_parameter(*setting);
-    return 0;
+    };
+    if (const auto found = std::ranges::find(techniques, name, &Technique::id); found != techniques.end())
+        return show(*found, print_technique);
+    if (const auto found = std::ranges::find(all_surfaces(), name, &Surface::id); found != all_surfaces().end())
+        return show(*found, print_surface);
+    if (const auto found = std::ranges::find(all_settings(), name, &Setting::name); found != all_settings().end())
+        return show(*found, print_setting);
+    std::vector<std::string> known;
+    for (const Technique& one : techniques) known.push_back(one.id);
+    for (const Surface& one : all_surfaces()) known.push_back(one.id);
+    for (const Setting& one : all_settings()) known.push_back(one.name);
+    throw_spec_error("{}", unknown_name("technique, surface model or setting", name, known));
 }
 
 } // namespace ssrlab

@@ -32,7 +32,7 @@ void open_closed_streams()
     }
 }
 
-/// Reprojection strategies are settings, and those are known before a command reads its options: $SSRLAB_TECHNIQUES
+/// Reprojection strategies and surface models are settings, and those are known before a command reads its options: $SSRLAB_TECHNIQUES
 /// names the folders of --techniques, too.
 void name_in_environment(const std::vector<std::filesystem::path>& technique_dirs)
 {
@@ -103,6 +103,11 @@ void add_presentation_options(CLI::App& command, ssrlab::RenderOptions& options)
                     "How a .png shows radiance: clip (cut at 1), or agx (AgX, which keeps bright colours)")
         ->capture_default_str()
         ->check(CLI::IsMember({"clip", "agx"}));
+    command
+        .add_option("--show", options.show,
+                    "False colours in place of the picture (docs/reading_the_report.md): agreement (right and wrong "
+                    "rays), causes (why rays are wrong), fetches (work per ray)")
+        ->check(CLI::IsMember({"agreement", "causes", "fetches"}));
     auto* truth = command.add_flag("--truth", options.truth, "The true reflection in place of the traced one");
     command
         .add_flag("--side-by-side", options.side_by_side,
@@ -127,19 +132,22 @@ int main(int argc, char** argv)
     app.set_version_flag("--version", version_text());
     app.add_option("--device", common.device,
                    "Vulkan device by index or part of its name; default: a discrete GPU if present, else the first");
-    app.add_option("--techniques", common.technique_dirs,
-                   "Further technique folders, or folders of them (also $SSRLAB_TECHNIQUES)");
+    app.add_option(
+        "--techniques", common.technique_dirs,
+        "Further folders of techniques, structures, reprojections and surface models, or folders of them (also "
+        "$SSRLAB_TECHNIQUES)");
     app.add_flag("--validation", common.validation, "Load the Khronos validation layer; any message fails the command");
 
     app.add_flag("--quiet", common.quiet, "No warnings and no progress; errors are still said");
 
     std::function<int()> command;
     bool                 json = false;
-    auto*                list = app.add_subcommand("list", "Techniques, scenes, settings and devices");
+    auto*                list = app.add_subcommand("list", "Techniques, surface models, scenes, settings and devices");
     list->add_flag("--json", json, "With everything that show says, as JSON");
     list->callback([&] { command = [&] { return list_everything(common, json); }; });
-    auto* show = app.add_subcommand("show", "A technique's parameters and sources, or a setting's range and default");
-    show->add_option("TECHNIQUE|SETTING", technique)->required();
+    auto* show = app.add_subcommand(
+        "show", "A technique's parameters and sources, what a surface model needs, or a setting's range and default");
+    show->add_option("TECHNIQUE|SURFACE|SETTING", technique)->required();
     show->add_flag("--json", json, "As JSON");
     show->callback([&] { command = [&] { return show_entry(common, technique, json); }; });
     RenderOptions rendered;

@@ -2,9 +2,12 @@
 
 #include "app/stage.h"
 #include "compare/image_io.h"
+#include "compare/pictures.h"
 #include "core/error.h"
 #include "harness/quality.h"
 #include "truth/glossy_truth.h"
+#include "truth/scene_truth.h"
+#include "truth/screen_truth.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -33,6 +36,11 @@ Choice checked_choice(const Technique& technique, const RenderOptions& options)
     const bool exr = options.picture.output.ends_with(".exr");
     require_ending(options.picture.output, {".png", ".exr"});
     if (!options.picture.size.empty()) size_option(options.picture.size);
+    if (!options.show.empty() && (options.truth || options.side_by_side || options.samples > 1 || options.frames > 0 ||
+                                  options.exposure_ev != 0 || options.display != "clip"))
+        throw_spec_error("--show {}: shows the rays of one frame; expected none of --truth, --side-by-side, --samples, "
+                         "--frames, --exposure and --display",
+                         options.show);
     if (exr && (options.exposure_ev != 0 || options.display != "clip"))
         throw_spec_error("-o {}: an EXR holds linear radiance; --exposure and --display need a .png",
                          options.picture.output);
@@ -60,6 +68,7 @@ std::string command_of(const RenderOptions& options, int at_frame)
     if (options.samples > 1) text += fmt::format(" --samples {}", options.samples);
     if (options.exposure_ev != 0) text += fmt::format(" --exposure {}", options.exposure_ev);
     if (options.display != "clip") text += " --display " + options.display;
+    if (!options.show.empty()) text += " --show " + options.show;
     if (options.truth) text += " --truth";
     if (options.side_by_side) text += " --side-by-side";
     return text;
@@ -107,6 +116,21 @@ private:
     int                       samples_;
     std::unique_ptr<SceneBvh> bvh_;
 };
+
+/// How right the rays are, how wrong, or how hard.
+Image false_colours(Stage& stage, PreparedFrame& frame, const TraceSettings& settings, const std::string& show)
+{
+    const TraceResult counted = count_frame(stage.gpu, frame);
+    if (show == "fetches") return fetch_heat_map(counted);
+    const GBufferImage gbuffer = read_gbuffer(stage.gpu, *stage.gbuffer); // with the layers that were traced
+    if (!stage.scene.frame) {
+        const SceneTruth truth = scene_truth(SceneBvh(stage.scene), stage.scene, gbuffer, settings);
+        return show == "causes" ? causes_picture(counted, truth, gbuffer) : agreement_picture(counted, truth);
+    }
+    if (show == "causes")
+        throw_spec_error("--show causes: needs the scene's triangles, which a frame of another renderer does not have");
+    return agreement_picture(counted, screen_truth(gbuffer, settings));
+}
 
 struct Rendered {
     std::vector<LabelledImage> pictures;
@@ -167,7 +191,11 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
             const auto frame = prepare_frame(stage.gpu, make_frame_buffers(stage.gpu, stage.gbuffer), technique,
                                              choice.values, choice.settings, histories[static_cast<size_t>(sample)]);
             if (sample == 0) warn_without_reflections(common, *frame);
-            add_sample(stage, *frame, options, choice.settings.trace, truth, sample, picture.at.frame + i, rendered);
+            if (!options.show.empty())
+                rendered.pictures.front().image = false_colours(stage, *frame, choice.settings.trace, options.show);
+            else
+                add_sample(stage, *frame, options, choice.settings.trace, truth, sample, picture.at.frame + i,
+                           rendered);
         }
         for (LabelledImage& one : rendered.pictures) one.image = mean_of(std::move(one.image), options.samples);
         Image image = options.side_by_side ? side_by_side(rendered.pictures) : rendered.pictures.front().image;

@@ -11,6 +11,7 @@ namespace {
 constexpr std::string_view contract = "docs/hit_contract.md";
 constexpr std::string_view truth    = "framework/truth/scene_truth.h";
 constexpr std::string_view before   = "framework/truth/reprojection_truth.h";
+constexpr std::string_view causes   = "framework/compare/causes.h";
 constexpr std::string_view own      = "ssrlab";
 
 // px distance = the larger of |dx| and |dy| between two hit points. "Found" = the truth has a point, the technique hits, and
@@ -72,6 +73,30 @@ constexpr auto table = std::to_array<Measure>({
      own},
     {"false_wrong_surface", "share", "all other false hits: a front that the true ray does not meet, of traced rays",
      own},
+    {"wrong_rays", "share",
+     "rays that miss a visible true point, or hit farther than 1 px from it, or hit where no visible point is (a "
+     "hidden one counts where it is "
+     "met in a layer behind the first), of traced rays",
+     truth},
+    {"wrong_own_surface", "share",
+     "wrong rays whose mirror direction leads below the plane of their own pixel, or that end on their own object in "
+     "that plane; this and the "
+     "next six sum to wrong_rays, of traced rays",
+     causes},
+    {"wrong_not_shown", "share",
+     "wrong rays that hit something behind their true point, which the frame does not show, of traced rays", causes},
+    {"wrong_thin", "share",
+     "wrong rays that pass a visible true point that no pixel within 3 x 3 holds, of traced rays", causes},
+    {"wrong_silhouette", "share",
+     "wrong rays at a pixel whose neighbour lies more than 1/32 of the distance off its plane, or whose true point a "
+     "neighbour holds, of "
+     "traced rays",
+     causes},
+    {"wrong_edge", "share",
+     "wrong rays at a pixel whose neighbour lies more than 1/256 of the distance off its plane, of traced rays",
+     causes},
+    {"wrong_stopped", "share", "wrong rays that were stopped in the midst of a plane, of traced rays", causes},
+    {"wrong_other", "share", "all other wrong rays, of traced rays", causes},
     {"truth_visible", "share", "rays whose true point this frame shows, of traced rays", truth},
     {"truth_hidden", "share", "rays whose true point lies behind something on screen, of traced rays", truth},
     {"truth_off_screen", "share", "rays whose true point is outside the image, of traced rays", truth},

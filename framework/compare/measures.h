@@ -45,9 +45,9 @@ std::string measures_markdown();
 /// The names that begin with "screen_", and traced_rays.
 MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResult& screen_truth);
 
-/// recall, precision, false hits and misses by cause, and the share of each class.
+/// recall, precision, false hits and misses by cause, and the share of each class. Without a screen truth (null), what needs it stays empty.
 MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth& scene_truth,
-                                     const TraceResult& screen_truth, const GBufferImage& gbuffer);
+                                     const TraceResult* screen_truth, const GBufferImage& gbuffer);
 
 /// What the pass hidden_layer adds: `first` and `second` are what the rays found in each depth layer.
 MeasureValues compare_hidden_layer(const TraceResult& first, const TraceResult& second, const SceneTruth& scene_truth);
@@ -60,7 +60,7 @@ std::optional<double> count_flips(const TraceResult& float_result, const TraceRe
 
 /// flips_per_million and the three errors of the split. Pointers may be null: what needs them stays empty.
 MeasureValues split_error(const TraceResult& float_result, const TraceResult* double_result,
-                          const TraceResult& screen_truth, const SceneTruth* scene_truth);
+                          const TraceResult* screen_truth, const SceneTruth* scene_truth);
 
 /// What pictures are judged by, with all that the measures need of it: it may judge many. Throws Failure unless it has three channels.
 struct Reference {

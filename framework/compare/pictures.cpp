@@ -1,5 +1,6 @@
 #include "compare/pictures.h"
 
+#include "compare/causes.h"
 #include "compare/image_filter.h"
 #include "compare/measures.h"
 #include "core/parallel_rows.h"
@@ -22,7 +23,8 @@ glm::vec3 from_srgb(int r, int g, int b)
 // Okabe and Ito 2008: told apart by the colour-blind. experiments/plot_report.py has the same for its legend.
 const glm::vec3 green = from_srgb(0x00, 0x9e, 0x73), yellow = from_srgb(0xf0, 0xe4, 0x42),
                 vermilion = from_srgb(0xd5, 0x5e, 0x00), pink = from_srgb(0xcc, 0x79, 0xa7),
-                grey = from_srgb(0x6b, 0x6b, 0x74);
+                grey = from_srgb(0x6b, 0x6b, 0x74), orange = from_srgb(0xe6, 0x9f, 0x00),
+                sky_blue = from_srgb(0x56, 0xb4, 0xe9), white = from_srgb(0xff, 0xff, 0xff);
 
 /// Magma (Smith and van der Walt 2015) without its darkest end, which is kept for pixels that have no value. From 0 to 1.
 glm::vec3 ramp_colour(float value)
@@ -77,6 +79,16 @@ Image agreement_picture(const TraceResult& tested, const SceneTruth& truth)
         return agreement_colour(tested.status[i] == TraceStatus::hit, truth.cls[i] == TruthClass::visible,
                                 glm::dvec2(tested.hit_px_depth[i]), truth.point_px[i]);
     });
+}
+
+Image causes_picture(const TraceResult& tested, const SceneTruth& truth, const GBufferImage& gbuffer)
+{
+    // In the order of WrongCause.
+    const std::array<glm::vec3, wrong_cause_names.size()> colours = {grey, orange, sky_blue,  yellow,
+                                                                     pink, green,  vermilion, white};
+    const std::vector<WrongCause>                         causes  = wrong_causes(tested, truth, gbuffer);
+    return paint(tested.size_px,
+                 [&](size_t i) { return truth.cls[i] == TruthClass::not_traced ? black : colours[size_t(causes[i])]; });
 }
 
 Image fetch_heat_map(const TraceResult& tested)

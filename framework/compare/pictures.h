@@ -1,6 +1,7 @@
 // Pictures that show where a technique errs and where it works hard. Colours are linear.
 #pragma once
 
+#include "core/gbuffer_image.h"
 #include "core/image.h"
 #include "core/trace_result.h"
 #include "truth/truth_class.h"
@@ -15,6 +16,10 @@ namespace ssrlab {
 /// not answerable  grey     no hit, and none to be found
 Image agreement_picture(const TraceResult& tested, const TraceResult& screen_truth);
 Image agreement_picture(const TraceResult& tested, const SceneTruth& scene_truth);
+
+/// Why rays are wrong (compare/causes.h):
+/// own surface orange, not shown light blue, thin yellow, silhouette pink, edge green, stopped vermilion, other white; right grey
+Image causes_picture(const TraceResult& tested, const SceneTruth& scene_truth, const GBufferImage& gbuffer);
 
 /// Depth and pyramid fetches of each ray (steps, if fetches were not counted) on a fixed logarithmic scale:
 /// black 0, dark violet 1, violet 8, pink 64, orange 512, pale yellow 4096 and more.

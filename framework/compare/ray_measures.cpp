@@ -1,4 +1,5 @@
 // Measures that compare rays with rays.
+#include "compare/causes.h"
 #include "compare/measures.h"
 #include "compare/validate_result.h"
 #include "core/pixel_index.h"
@@ -12,8 +13,7 @@
 namespace ssrlab {
 namespace {
 
-constexpr double self_hit_sine = 0.01;
-constexpr double behind_share  = 0.001;
+constexpr double behind_share = 0.001;
 
 bool traced(const TraceResult& result, size_t i) { return result.status[i] != TraceStatus::not_traced; }
 bool hits(const TraceResult& result, size_t i) { return result.status[i] == TraceStatus::hit; }
@@ -135,10 +135,10 @@ MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResu
 }
 
 MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth& truth,
-                                     const TraceResult& screen_truth, const GBufferImage& gbuffer)
+                                     const TraceResult* screen_truth, const GBufferImage& gbuffer)
 {
     require_same_size(tested.size_px, truth.size_px);
-    require_same_size(tested.size_px, screen_truth.size_px);
+    if (screen_truth != nullptr) require_same_size(tested.size_px, screen_truth->size_px);
     require_same_size(tested.size_px, gbuffer.view.size_px);
     require_possible(tested);
     std::array<size_t, truth_class_names.size()> of_class{};
@@ -170,7 +170,8 @@ MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth
             else if (tested.status[i] == TraceStatus::facing_away)
                 ++facing_rule;
             else
-                ++(finds(screen_truth, truth, i, within_one_px) ? stepped_over : not_in_depth);
+                ++(screen_truth != nullptr && finds(*screen_truth, truth, i, within_one_px) ? stepped_over
+                                                                                            : not_in_depth);
         }
     }
     const size_t  visible   = of_class[size_t(TruthClass::visible)];
@@ -195,6 +196,8 @@ MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth
                          {"false_self", share(false_hits[size_t(FalseHit::self)], rays)},
                          {"false_too_thick", share(false_hits[size_t(FalseHit::too_thick)], rays)},
                          {"false_wrong_surface", share(false_hits[size_t(FalseHit::wrong_surface)], rays)}};
+    if (screen_truth == nullptr)
+        for (const char* name : {"missed_stepped_over", "missed_not_in_depth"}) values[name].reset();
     for (const Measure& measure : measures()) {
         if (!measure.name.starts_with("truth_")) continue;
         const auto cls       = std::find(truth_class_names.begin(), truth_class_names.end(), measure.name.substr(6));
@@ -237,15 +240,17 @@ std::optional<double> count_flips(const TraceResult& a, const TraceResult& b)
 }
 
 MeasureValues split_error(const TraceResult& float_result, const TraceResult* double_result,
-                          const TraceResult& screen_truth, const SceneTruth* scene_truth)
+                          const TraceResult* screen_truth, const SceneTruth* scene_truth)
 {
     const auto error = [](std::optional<double> recall) { return recall ? std::optional(1 - *recall) : std::nullopt; };
     MeasureValues values;
-    if (scene_truth != nullptr) values["error_scene_to_screen"] = error(recall_against(screen_truth, *scene_truth));
+    if (screen_truth != nullptr && scene_truth != nullptr)
+        values["error_scene_to_screen"] = error(recall_against(*screen_truth, *scene_truth));
+    if (screen_truth != nullptr && double_result != nullptr)
+        values["error_screen_to_double"] = error(recall_against(*double_result, *screen_truth));
     if (double_result != nullptr) {
-        values["flips_per_million"]      = count_flips(float_result, *double_result);
-        values["error_screen_to_double"] = error(recall_against(*double_result, screen_truth));
-        values["error_double_to_float"]  = error(recall_against(float_result, *double_result));
+        values["flips_per_million"]     = count_flips(float_result, *double_result);
+        values["error_double_to_float"] = error(recall_against(float_result, *double_result));
     }
     return values;
 }

@@ -83,29 +83,20 @@ inline uint32_t structure_fetches_of(const TraceResult& result, size_t pixel)
     return sum;
 }
 
-/// What a pixel holds around its depth sample (docs/hit_contract.md). The order is that of `surface_names` and of shaders/layout/shared.h.
-enum class SurfaceModel : uint8_t { box, box_two_sided, box_infinite, plane, plane_solid };
-inline constexpr std::array<std::string_view, 5> surface_names = {"box", "box_two_sided", "box_infinite", "plane",
-                                                                  "plane_solid"};
-/// Whether pixels hold sloped planes, so that a G-buffer must have gradients.
-inline bool has_planes(SurfaceModel model)
-{
-    return model == SurfaceModel::plane || model == SurfaceModel::plane_solid;
-}
-
 /// What becomes of a ray that meets a pixel from a side that the frame does not show.
 enum class Behind : uint8_t { hit, pass, stop };
 inline constexpr std::array<std::string_view, 3> behind_names = {"hit", "pass", "stop"};
 
 /// The hit contract's settings: they belong to the experiment, never to a technique.
 struct TraceSettings {
-    double       thickness_m        = 0.1;   // the slab of a pixel reaches from its distance to distance + thickness
-    bool         thickness_relative = false; // thickness is then a fraction of the distance
-    double       max_distance_m     = 1e9;   // length of the ray in view space; may be +inf
-    double       ray_offset_m       = 0;     // the ray starts so far along its direction
-    Behind       behind             = Behind::hit;
-    SurfaceModel surface = SurfaceModel::box; // thickness is of the boxes, and of pixels without a usable plane
-    int          layers  = 1;                 // that a pixel holds, at most: the first, and those behind it
+    double           thickness_m        = 0.1; // the slab of a pixel reaches from its distance to distance + thickness
+    bool             thickness_relative = false; // thickness is then a fraction of the distance
+    double           max_distance_m     = 1e9;   // length of the ray in view space; may be +inf
+    double           ray_offset_m       = 0;     // the ray starts so far along its direction
+    Behind           behind             = Behind::hit;
+    std::string_view surface =
+        "box";      // id of the surface model: what a pixel holds around its depth sample. A literal, or Surface::id
+    int layers = 1; // that a pixel holds, at most: the first, and those behind it
     // Metals reflect. So does what is not metal and reflects at least so much at normal incidence, up to a roughness.
     double dielectric_min_f0        = 0.02;
     double dielectric_max_roughness = 0.4;

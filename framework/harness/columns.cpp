@@ -58,9 +58,11 @@ const std::vector<Column> counts = {
 
 const std::vector<Column> ending = {
     {"picture", "the reflected picture, relative to this file; beside it NAME_agreement.png (right and wrong in false "
-                "colours), NAME_fetches.png (work per ray) and NAME_flip.png (difference from truth_picture)"},
+                "colours), NAME_causes.png (why rays are wrong), NAME_fetches.png (work per ray) and NAME_flip.png "
+                "(difference from truth_picture)"},
     {"truth_picture",
      "the same picture with the scene truth's reflection; beside it NAME_off.png, without reflections"},
+    {"no_screen_truth", "why the measures that need the screen truth are empty; empty: they have a value"},
     {"no_scene_truth", "why the measures that need the scene's triangles are empty; empty: they have a value"},
     {"outcome", "ok; no_rays: nothing in the picture reflects; failed: see message; invalid: a ray has an answer that "
                 "cannot be, see message"},

@@ -56,6 +56,16 @@ std::map<std::string, std::string> describe_identity(const Experiment&          
         for (const Structure& structure : technique.structures)
             identity["structure " + structure.id] = folder_hash(structure.folder);
     }
+    const auto add_surfaces = [&](const ValueLists& settings) {
+        const auto values = settings.find("surface");
+        if (values == settings.end()) return;
+        for (const double value : values->second) {
+            const Surface& surface            = all_surfaces()[static_cast<size_t>(value)];
+            identity["surface " + surface.id] = folder_hash(surface.shaders);
+        }
+    };
+    add_surfaces(experiment.settings);
+    for (const TechniqueSweep& sweep : experiment.techniques) add_surfaces(sweep.settings);
     for (const std::string& scene : experiment.scenes) identity["scene " + scene] = scene_hash(scene);
     return identity;
 }

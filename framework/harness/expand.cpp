@@ -101,7 +101,7 @@ std::string run_id(const Run& run)
     for (const Setting& setting : all_settings()) {
         const double value = setting.get(run.settings);
         if (setting.table == "trace" || value != setting.default_value)
-            identity += fmt::format("{}={}\n", setting.name, value);
+            identity += fmt::format("{}={}\n", setting.name, format_parameter(setting, value));
     }
     for (const auto& [name, value] : run.values) identity += fmt::format("{}={}\n", name, value);
     // The letter keeps spreadsheets from reading 12e4… as a number.

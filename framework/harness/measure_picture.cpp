@@ -129,10 +129,13 @@ void write_pictures(const std::filesystem::path& path, const Picture& picture, c
 {
     std::filesystem::create_directories(path.parent_path());
     const auto write = [&](const char* ending, const Image& image) { write_image(path.string() + ending, image); };
-    parallel_rows(4, 0, [&](int i) {
+    parallel_rows(5, 0, [&](int i) {
         if (i == 0) write(".png", observed.shaded);
         if (i == 1) write("_fetches.png", fetch_heat_map(observed.counted));
-        if (i == 2 && picture.truths) write("_agreement.png", picture.truths->agreement(observed.counted));
+        if (i == 2 && picture.truths)
+            if (const auto agreement = picture.truths->agreement(observed.counted)) write("_agreement.png", *agreement);
+        if (i == 4 && picture.truths)
+            if (const auto causes = picture.truths->causes(observed.counted)) write("_causes.png", *causes);
         if (i == 3 && picture.reference)
             write("_flip.png", picture.truths->flip_of(observed.shaded, *picture.reference));
     });
@@ -151,7 +154,8 @@ void judge(const Bench& bench, Picture& picture, MeasuredRun& measured, const Ob
     add_counts(measured.row, observed.counted);
     if (!picture.truths) return;
     const auto pointer = [](const std::optional<TraceResult>& result) { return result ? &*result : nullptr; };
-    measured.row["no_scene_truth"] = picture.truths->without_scene();
+    measured.row["no_scene_truth"]  = picture.truths->without_scene();
+    measured.row["no_screen_truth"] = Truths::without_screen(measured.run->settings.trace);
     add_measures(measured.row,
                  picture.truths->compare(observed.counted, pointer(observed.twin), pointer(observed.hidden)));
     if (measure.image_errors && picture.reference)

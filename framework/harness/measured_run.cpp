@@ -160,6 +160,8 @@ std::string trace_command(const Run& run, const Technique& technique)
     const std::filesystem::path in_tree = data_root() / "techniques";
     std::string                 text    = "ssrlab trace " + run.scene;
     if (technique.folder.parent_path() != in_tree) text += " --techniques " + short_path(technique.folder);
+    const std::filesystem::path& surface = find_surface(run.settings.trace.surface).folder;
+    if (surface.parent_path() != data_root() / "shaders/surfaces") text += " --techniques " + short_path(surface);
     text += fmt::format(" --view {} --size {} -t {}", run.view, size_text(run.size_px), technique.id);
     if (run.at.frame != 0) text += fmt::format(" --frame {}", run.at.frame);
     if (run.at.jitter_phases != 0) text += fmt::format(" --jitter {}", run.at.jitter_phases);

@@ -1,5 +1,6 @@
 #include "harness/quality.h"
 
+#include "compare/causes.h"
 #include "compare/image_io.h"
 #include "compare/pictures.h"
 #include "compare/validate_result.h"
@@ -9,6 +10,7 @@
 #include "core/pixel_index.h"
 #include "truth/pixel_surface.h"
 #include "truth/reprojection_truth.h"
+#include "truth/screen_ray.h"
 #include "truth/truth_cache.h"
 
 #include <cerrno>
@@ -64,12 +66,14 @@ void Truths::make(const TraceSettings& settings, bool image_errors)
                                   made_for_->dielectric_max_roughness == settings.dielectric_max_roughness;
     made_for_.reset();
     true_picture_.reset();
-    screen_truth_ = cached_screen_truth(cache_dir_, gbuffer_, settings);
+    screen_truth_.reset();
+    if (without_screen(settings).empty()) screen_truth_ = cached_screen_truth(cache_dir_, gbuffer_, settings);
     if (scene_->frame) {
         // All that is known: which pixels reflect.
         scene_truth_ = empty_scene_truth(gbuffer_.view.size_px);
         for (size_t i = 0; i < scene_truth_.cls.size(); ++i)
-            if (screen_truth_.status[i] != TraceStatus::not_traced) scene_truth_.cls[i] = TruthClass::hidden;
+            if (reflects(gbuffer_, pixel_at(i, scene_truth_.size_px), settings))
+                scene_truth_.cls[i] = TruthClass::hidden;
     } else if (!same_scene_truth) {
         reference_.reset();
         scene_truth_ = cached_scene_truth(cache_dir_, *scene_, gbuffer_, settings);
@@ -84,10 +88,23 @@ const TraceSettings& Truths::made_for() const
     return *made_for_;
 }
 
-Image Truths::agreement(const TraceResult& counted) const
+std::optional<Image> Truths::agreement(const TraceResult& counted) const
 {
     made_for();
-    return scene_->frame ? agreement_picture(counted, screen_truth_) : agreement_picture(counted, scene_truth_);
+    if (!scene_->frame) return agreement_picture(counted, scene_truth_);
+    return screen_truth_ ? std::optional(agreement_picture(counted, *screen_truth_)) : std::nullopt;
+}
+
+std::optional<Image> Truths::causes(const TraceResult& counted) const
+{
+    made_for();
+    return scene_->frame ? std::nullopt : std::optional(causes_picture(counted, scene_truth_, gbuffer_));
+}
+
+std::string Truths::without_screen(const TraceSettings& settings)
+{
+    if (has_screen_truth(settings.surface)) return "";
+    return fmt::format("the surface model {} is known by its shaders alone", settings.surface);
 }
 
 std::string Truths::without_scene() const
@@ -174,13 +191,12 @@ Image Truths::flip_of(const Image& picture, const Reference& reference) const
 MeasureValues Truths::compare(const TraceResult& counted, const TraceResult* twin, const TraceResult* hidden) const
 {
     made_for();
-    MeasureValues values = compare_to_screen_truth(counted, screen_truth_);
-    if (scene_->frame) {
-        merge(values, split_error(counted, twin, screen_truth_, nullptr));
-        return values;
-    }
-    merge(values, compare_to_scene_truth(counted, scene_truth_, screen_truth_, gbuffer_));
-    merge(values, split_error(counted, twin, screen_truth_, &scene_truth_));
+    const TraceResult* screen = screen_truth_ ? &*screen_truth_ : nullptr;
+    MeasureValues      values = split_error(counted, twin, screen, scene_->frame ? nullptr : &scene_truth_);
+    if (screen != nullptr) merge(values, compare_to_screen_truth(counted, *screen));
+    if (scene_->frame) return values;
+    merge(values, compare_to_scene_truth(counted, scene_truth_, screen, gbuffer_));
+    merge(values, count_causes(counted, scene_truth_, gbuffer_));
     if (hidden != nullptr) merge(values, compare_hidden_layer(counted, *hidden, scene_truth_));
     if (reference_)
         merge(values,

@@ -36,6 +36,8 @@ public:
     /// The picture with the true reflections (truth/glossy_truth.h). Needs a scene truth.
     const Image& true_picture();
 
+    /// Why there is no screen truth of these settings. Empty: there is one.
+    static std::string without_screen(const TraceSettings& settings);
     /// Why there is no scene truth: a frame of another renderer has no triangles. Empty: there is one.
     std::string without_scene() const;
     /// The picture of true reflections that comes with such a frame, if one does. Throws where it has another size.
@@ -55,8 +57,10 @@ public:
     MeasureValues compare_ghosts(const Image& picture, const Reference& reference) const;
     MeasureValues compare_converged(const Image& picture, const Reference& converged) const;
 
-    /// The agreement with the scene truth, as a false-colour picture.
-    Image agreement(const TraceResult& counted) const;
+    /// The agreement with the scene truth, of a frame without triangles with the screen truth, as a false-colour picture. Empty without both.
+    std::optional<Image> agreement(const TraceResult& counted) const;
+    /// Why rays are wrong, likewise. Empty without a scene truth.
+    std::optional<Image> causes(const TraceResult& counted) const;
 
 private:
     const TraceSettings& made_for() const;
@@ -65,7 +69,7 @@ private:
     GBufferImage                     gbuffer_;
     std::filesystem::path            cache_dir_;
     std::optional<TraceSettings>     made_for_;
-    TraceResult                      screen_truth_;
+    std::optional<TraceResult>       screen_truth_; // empty: the surface model has none
     SceneTruth                       scene_truth_;
     std::optional<Reference>         reference_;        // with image_errors: the scene truth's reflection
     std::optional<Image>             true_picture_;     // when asked for

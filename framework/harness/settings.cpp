@@ -3,6 +3,8 @@
 
 #include "shared.h"
 
+#include <algorithm>
+#include <iterator>
 #include <limits>
 
 namespace ssrlab {
@@ -36,6 +38,26 @@ Setting trace_choice(const char* name, Choice TraceSettings::*field, std::span<c
             [=](FrameSettings& settings, double value) { settings.trace.*field = static_cast<Choice>(value); }};
 }
 
+Setting surface_setting()
+{
+    const std::span<const Surface> surfaces = all_surfaces();
+    Parameter                      parameter{.name    = "surface",
+                                             .type    = ParameterType::choice,
+                                             .max     = static_cast<double>(surfaces.size() - 1),
+                                             .choices = {},
+                                             .doc = "what a pixel holds around its depth: a surface model (ssrlab show NAME), see "
+                                                    "docs/hit_contract.md"};
+    std::ranges::transform(surfaces, std::back_inserter(parameter.choices), &Surface::id);
+    const auto number_of = [=](const TraceSettings& trace) {
+        return static_cast<double>(&find_surface(trace.surface) - surfaces.data());
+    };
+    parameter.default_value = number_of({});
+    return {parameter, "trace", [=](const FrameSettings& settings) { return number_of(settings.trace); },
+            [=](FrameSettings& settings, double value) {
+                settings.trace.surface = surfaces[static_cast<size_t>(value)].id;
+            }};
+}
+
 std::vector<Setting> make_table()
 {
     using enum ParameterType;
@@ -59,9 +81,7 @@ std::vector<Setting> make_table()
             "behind", &TraceSettings::behind, behind_names,
             "what becomes of a ray that meets a pixel from a side that the frame does not show: hit, pass (the "
             "ray goes on) or stop (it ends without a hit)"),
-        trace_choice(
-            "surface", &TraceSettings::surface, surface_names,
-            "what a pixel holds around its depth: a box with a thickness, or a plane, see docs/hit_contract.md"),
+        surface_setting(),
         trace_setting("layers", integer, &TraceSettings::layers, MAX_LAYERS,
                       "surfaces that a pixel holds, one behind the other: the first, and the next that face the camera",
                       1),

@@ -177,7 +177,7 @@ FrameFacts facts_of(const PreparedFrame& frame)
     const GpuScene* scene = frame.buffers->gbuffer->scene.get();
     FrameFacts      facts;
     for (const Structure& structure : frame.technique.structures) facts.structures.push_back(structure.id);
-    facts.solids               = frame.settings.trace.surface == SurfaceModel::plane_solid;
+    facts.solids               = find_surface(frame.settings.trace.surface).needs_solid;
     facts.layers               = frame.settings.trace.layers;
     facts.history              = history_facts(frame);
     const TraceSettings& trace = frame.settings.trace;

@@ -1,6 +1,7 @@
 #include "render/frame_passes.h"
 
 #include "core/error.h"
+#include "core/files.h"
 #include "core/pixel_index.h"
 #include "render/layers.h"
 #include "shared.h"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace ssrlab {
 namespace {
@@ -26,7 +26,7 @@ struct Slab {
 /// Thickness 0 or more: of the back. Less: of a front that lies before the depth.
 Slab slab_of(const View& view, const TraceSettings& trace, double thickness)
 {
-    if (std::isinf(thickness)) return {0, 0, 0};
+    if (std::isinf(thickness)) return {0, thickness > 0 ? 0 : 1e30, 0};
     if (view.projection == Projection::perspective) {
         if (!trace.thickness_relative) return {thickness / view.near_m, 1, 0};
         return {0, thickness > -1 ? 1 / (1 + thickness) : 1e30, 0};
@@ -47,11 +47,8 @@ static_assert(CONSTANT_FRONT_SCALE == CONSTANT_FRONT_SLOPE + 1 && CONSTANT_FRONT
 
 template <typename Real> void add_slabs(Constants& constants, const View& view, const TraceSettings& trace)
 {
-    const bool   endless   = trace.surface == SurfaceModel::box_infinite;
-    const double thickness = endless ? std::numeric_limits<double>::infinity() : trace.thickness_m;
-    add_slab<Real>(constants, CONSTANT_SLAB_SLOPE, slab_of(view, trace, thickness));
-    if (trace.surface == SurfaceModel::box_two_sided)
-        add_slab<Real>(constants, CONSTANT_FRONT_SLOPE, slab_of(view, trace, -thickness));
+    add_slab<Real>(constants, CONSTANT_SLAB_SLOPE, slab_of(view, trace, trace.thickness_m));
+    add_slab<Real>(constants, CONSTANT_FRONT_SLOPE, slab_of(view, trace, -trace.thickness_m));
 }
 
 } // namespace
@@ -73,16 +70,20 @@ template <typename Real> void add_settings(Constants& constants, const View& vie
     add_reflecting(constants, settings.trace);
 }
 
-/// Throws Failure where the choice of a parameter needs what the device does not have.
-void require_device(const Gpu& gpu, const PreparedFrame& frame)
+/// Throws where the choice of a parameter needs what the device or the surface model does not have.
+void require_exact_arithmetic(const Gpu& gpu, const PreparedFrame& frame)
 {
-    if (gpu.info.int64 && gpu.info.float64) return;
+    const Surface& surface = find_surface(frame.settings.trace.surface);
     for (const Parameter& parameter : frame.technique.parameters) {
         const std::string chosen = format_parameter(parameter, frame.values.at(parameter.name));
         const auto        define = parameter.defines.find(chosen);
-        if (define != parameter.defines.end() && define->second == exact_arithmetic)
+        if (define == parameter.defines.end() || define->second != exact_arithmetic) continue;
+        if (!gpu.info.int64 || !gpu.info.float64)
             throw_failure("{} = {} needs 64-bit integers and doubles in shaders; the device '{}' has no {}",
                           parameter.name, chosen, gpu.info.name, gpu.info.int64 ? "shaderFloat64" : "shaderInt64");
+        if (!std::filesystem::exists(surface.shaders / "meeting_exact.glsl"))
+            throw_spec_error("{} = {} needs a surface model with meeting_exact.glsl, which {} does not have",
+                             parameter.name, chosen, short_path(surface.folder));
     }
 }
 
@@ -97,13 +98,14 @@ Defines precision_defines(const Gpu& gpu, Precision precision)
 
 void add_surface(ShaderSource& source, const TraceSettings& settings)
 {
-    const SurfaceModel          model  = settings.surface;
-    const std::filesystem::path folder = shader_folder() / "surfaces" / (has_planes(model) ? "plane" : "box");
-    source.include_files.emplace("surface/meeting.glsl", folder / "meeting.glsl");
-    source.include_files.emplace("surface/held.glsl", folder / "held.glsl");
-    if (has_planes(model)) source.defines.emplace("PIXEL_PLANES", "1");
-    if (model == SurfaceModel::box_two_sided) source.defines.emplace("SURFACE_TWO_SIDED", "1");
-    if (model == SurfaceModel::plane_solid) source.defines.emplace("SURFACE_SOLID", "1");
+    const Surface& surface = find_surface(settings.surface);
+    for (const char* part : {"meeting.glsl", "meeting_exact.glsl", "held.glsl"})
+        if (std::filesystem::exists(surface.shaders / part)) // only the exact one may be missing
+            source.include_files.emplace(fmt::format("surface/{}", part), surface.shaders / part);
+    source.include_folders.push_back(surface.shaders);
+    if (surface.needs_gradient) source.defines.emplace("PIXEL_PLANES", "1");
+    if (surface.needs_solid) source.defines.emplace("SURFACE_SOLID", "1");
+    for (const std::string& macro : surface.defines) source.defines.emplace(macro, "1");
     source.defines.emplace("LAYERS", std::to_string(settings.layers));
 }
 
@@ -239,7 +241,7 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
                                       const RayBuffers& rays, const Bindings& bindings)
 {
     const std::vector<std::string> macros = shader_macros(frame.technique, frame.values);
-    require_device(gpu, frame);
+    if (std::ranges::count(macros, exact_arithmetic) > 0) require_exact_arithmetic(gpu, frame);
     Constants constants = settings_constants(frame, rays.precision, std::ranges::count(macros, exact_arithmetic) > 0);
     add_parameters(constants, frame.technique.parameters, frame.values, CONSTANT_PARAMETERS);
 

@@ -2,6 +2,7 @@
 
 #include "core/files.h"
 #include "core/names.h"
+#include "gpu/shader.h"
 #include "render/manifest.h"
 
 #include <algorithm>
@@ -69,6 +70,14 @@ bool is_technique(const fs::path& folder)
 bool is_structure(const fs::path& folder) { return fs::exists(folder / "structure.toml"); }
 
 bool is_reprojection(const fs::path& folder) { return fs::exists(folder / "reprojection.toml"); }
+
+bool is_surface(const fs::path& folder) { return fs::exists(folder / "surface.toml"); }
+
+/// No technique, but what belongs beside techniques.
+bool is_addition(const fs::path& folder)
+{
+    return is_structure(folder) || is_reprojection(folder) || is_surface(folder);
+}
 
 /// Of a directory of techniques: itself or the folders in it, down to those `deepest` levels farther in.
 std::vector<fs::path> folders_in(const fs::path& dir, bool (*wanted)(const fs::path&), int deepest)
@@ -176,13 +185,24 @@ std::vector<Reprojection> list_reprojections(std::span<const fs::path> extra_dir
     return strategies;
 }
 
+std::vector<Surface> list_surfaces(std::span<const fs::path> extra_dirs)
+{
+    std::vector<fs::path> dirs = technique_dirs(extra_dirs);
+    dirs.insert(dirs.begin(), shader_folder() / "surfaces");
+    std::vector<Surface> surfaces;
+    for (const fs::path& dir : dirs)
+        for (const fs::path& folder : folders_in(dir, is_surface, 1))
+            append(surfaces, load_surface(folder), "surface models");
+    return surfaces;
+}
+
 std::vector<Technique> list_techniques(std::span<const fs::path> extra_dirs)
 {
     const std::vector<Structure> structures = list_structures(extra_dirs);
     std::vector<Technique>       techniques;
     for (const fs::path& dir : technique_dirs(extra_dirs)) {
         const std::vector<fs::path> folders = folders_in(dir, is_technique, 0);
-        if (folders.empty() && folders_in(dir, is_structure, 1).empty() && folders_in(dir, is_reprojection, 1).empty())
+        if (folders.empty() && folders_in(dir, is_addition, 1).empty())
             throw_spec_error("{}: holds no technique (a folder with technique.toml)", short_path(dir));
         for (const fs::path& folder : folders) append(techniques, load_technique(folder, structures), "techniques");
     }

@@ -3,6 +3,7 @@
 
 #include "render/reprojection.h"
 #include "render/structure.h"
+#include "render/surface.h"
 
 #include <filesystem>
 #include <span>
@@ -46,6 +47,8 @@ Technique load_technique(const std::filesystem::path& folder, std::span<const St
 std::vector<Technique> list_techniques(std::span<const std::filesystem::path> extra_dirs);
 /// The reprojection strategies in the same directories, likewise.
 std::vector<Reprojection> list_reprojections(std::span<const std::filesystem::path> extra_dirs);
+/// The surface models of the project, then those in the same directories.
+std::vector<Surface> list_surfaces(std::span<const std::filesystem::path> extra_dirs);
 /// The structures in the same directories, also in the folders of techniques.
 std::vector<Structure> list_structures(std::span<const std::filesystem::path> extra_dirs);
 

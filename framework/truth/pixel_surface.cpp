@@ -4,6 +4,7 @@
 #include "core/pixel_index.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -24,17 +25,21 @@ double shifted(const View& view, double depth, double thickness, bool relative)
     return divisor > 0 ? depth / divisor : infinity;
 }
 
-PixelSurface box(const View& view, double depth, const TraceSettings& settings)
+PixelSurface box(const GBufferImage& gbuffer, size_t /*index*/, double depth, const TraceSettings& settings)
 {
-    return {.front = depth, .back = slab_back(view, depth, settings)};
+    return {.front = depth, .back = slab_back(gbuffer.view, depth, settings)};
 }
 
-PixelSurface box_two_sided(const View& view, double depth, const TraceSettings& settings)
+PixelSurface box_two_sided(const GBufferImage& gbuffer, size_t /*index*/, double depth, const TraceSettings& settings)
 {
-    return {.front = slab_front(view, depth, settings), .back = slab_back(view, depth, settings)};
+    return {.front = slab_front(gbuffer.view, depth, settings), .back = slab_back(gbuffer.view, depth, settings)};
 }
 
-PixelSurface box_infinite(double depth) { return {.front = depth, .back = -infinity}; }
+PixelSurface box_infinite(const GBufferImage& /*gbuffer*/, size_t /*index*/, double depth,
+                          const TraceSettings& /*settings*/)
+{
+    return {.front = depth, .back = -infinity};
+}
 
 PixelSurface plane(const View& view, double depth, glm::dvec2 gradient)
 {
@@ -47,27 +52,34 @@ PixelSurface plane_or_box(const GBufferImage& gbuffer, size_t index, double dept
 {
     const glm::dvec2 gradient(gbuffer.gradient[index]);
     const bool       usable  = std::isfinite(gradient.x) && std::isfinite(gradient.y);
-    PixelSurface     surface = usable ? plane(gbuffer.view, depth, gradient) : box(gbuffer.view, depth, settings);
+    PixelSurface     surface = usable ? plane(gbuffer.view, depth, gradient) : box(gbuffer, index, depth, settings);
     surface.sides_by_height  = true;
     return surface;
 }
 
-PixelSurface with_solid(PixelSurface surface, const GBufferImage& gbuffer, size_t index)
+PixelSurface plane_and_solid(const GBufferImage& gbuffer, size_t index, double depth, const TraceSettings& settings)
 {
+    PixelSurface surface = plane_or_box(gbuffer, index, depth, settings);
     if (!gbuffer.solid_back.empty()) surface.solid_back = std::max(double(gbuffer.solid_back[index]), 0.0);
     return surface;
 }
 
-PixelSurface surface_of(const GBufferImage& gbuffer, size_t index, double depth, const TraceSettings& settings)
+struct Model {
+    std::string_view id;
+    PixelSurface (*held_by)(const GBufferImage&, size_t index, double depth, const TraceSettings&);
+    bool needs_gradients = false;
+};
+constexpr std::array models = {Model{"box", box}, Model{"box_two_sided", box_two_sided},
+                               Model{"box_infinite", box_infinite}, Model{"plane", plane_or_box, true},
+                               Model{"plane_solid", plane_and_solid, true}};
+
+const Model& model_of(const TraceSettings& settings)
 {
-    switch (settings.surface) {
-    case SurfaceModel::box: return box(gbuffer.view, depth, settings);
-    case SurfaceModel::box_two_sided: return box_two_sided(gbuffer.view, depth, settings);
-    case SurfaceModel::box_infinite: return box_infinite(depth);
-    case SurfaceModel::plane: return plane_or_box(gbuffer, index, depth, settings);
-    case SurfaceModel::plane_solid: return with_solid(plane_or_box(gbuffer, index, depth, settings), gbuffer, index);
-    }
-    throw_failure("unknown surface model {}", static_cast<int>(settings.surface));
+    const auto found = std::ranges::find(models, settings.surface, &Model::id);
+    if (found == models.end())
+        throw_spec_error("surface = \"{}\": a model from outside the tree has no screen truth, which this needs",
+                         settings.surface);
+    return *found;
 }
 
 /// Where a height that is `in` at t_in and changes evenly reaches 0, within the part.
@@ -78,6 +90,8 @@ double root(const RayPart& ray, double in, double out)
 }
 
 } // namespace
+
+bool has_screen_truth(std::string_view surface) { return std::ranges::count(models, surface, &Model::id) > 0; }
 
 double slab_back(const View& view, double depth, const TraceSettings& settings)
 {
@@ -99,7 +113,7 @@ double plane_tolerance(const View& view, double depth)
 void require_surface(const GBufferImage& gbuffer, const TraceSettings& settings)
 {
     const size_t pixels = gbuffer.depth.size(), solids = gbuffer.solid_back.size();
-    if (has_planes(settings.surface) && gbuffer.gradient.size() != pixels)
+    if (model_of(settings).needs_gradients && gbuffer.gradient.size() != pixels)
         throw_failure("G-buffer of view '{}': planes need {} gradients, found {}", gbuffer.view.name, pixels,
                       gbuffer.gradient.size());
     if (solids != 0 && solids != pixels)
@@ -130,7 +144,7 @@ std::optional<PixelSurface> pixel_surface(const GBufferImage& gbuffer, size_t in
 {
     const double depth(gbuffer.depth[index]);
     if (!(depth > 0) || !std::isfinite(depth)) return std::nullopt;
-    PixelSurface surface = surface_of(gbuffer, index, depth, settings);
+    PixelSurface surface = model_of(settings).held_by(gbuffer, index, depth, settings);
     surface.centre_px    = glm::dvec2(pixel_at(index, gbuffer.view.size_px)) + 0.5;
     return surface;
 }

@@ -5,6 +5,7 @@
 #include "core/trace_result.h"
 
 #include <optional>
+#include <string_view>
 
 namespace ssrlab {
 
@@ -44,7 +45,10 @@ double slab_front(const View& view, double depth, const TraceSettings& settings)
 /// How far the back of a plane lies below its front.
 double plane_tolerance(const View& view, double depth);
 
-/// Throws Failure unless the G-buffer has what the model needs.
+/// Whether the surface model of that id is known here, apart from its shaders. A model from outside the tree is not.
+bool has_screen_truth(std::string_view surface);
+
+/// Throws SpecError unless the model is known here, and Failure unless the G-buffer has what it needs.
 void require_surface(const GBufferImage& gbuffer, const TraceSettings& settings);
 
 /// In the G-buffer's own layer. Empty on the background.

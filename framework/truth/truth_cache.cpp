@@ -48,7 +48,8 @@ void add(ContentHash& hash, const TraceSettings& settings)
 {
     add_reflecting(hash, settings);
     hash.add(settings.thickness_m).add(settings.thickness_relative).add(settings.max_distance_m);
-    hash.add(settings.ray_offset_m).add(settings.behind).add(settings.surface).add(settings.layers);
+    hash.add(settings.ray_offset_m).add(settings.behind).add(settings.layers);
+    hash.add_bytes(settings.surface.data(), settings.surface.size());
 }
 
 void add(ContentHash& hash, const TextureUse& use) { hash.add(use.texture).add(use.uv_set).add(use.uv_transform); }

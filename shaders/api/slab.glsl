@@ -3,15 +3,20 @@
 //   perspective   absolute: slope = thickness / near        relative: scale = 1 / (1 + thickness)
 //   orthographic  absolute: shift = thickness / (far - near)  relative: scale = 1 + thickness, shift = thickness * far / (far - near)
 //   infinite thickness: scale = 0
+// SURFACE_ENDLESS and SURFACE_TWO_SIDED are what a surface model's manifest defines.
 #include "layout/shared.h"
 #ifdef EXACT_ARITHMETIC
 #define slab_real double // the same slab whatever the number type of the trace
 #else
 #define slab_real real
 #endif
+#ifdef SURFACE_ENDLESS
+const slab_real slab_slope = 0, slab_scale = 0, slab_shift = 0;
+#else
 layout(constant_id = CONSTANT_SLAB_SLOPE) const slab_real slab_slope = 0;
 layout(constant_id = CONSTANT_SLAB_SCALE) const slab_real slab_scale = 1;
 layout(constant_id = CONSTANT_SLAB_SHIFT) const slab_real slab_shift = 0;
+#endif
 
 #ifdef SURFACE_TWO_SIDED
 #include "api/slab_two_sided.glsl"

@@ -121,13 +121,6 @@ bool interval_touches(real depth, real2 interval)
     return in_front && reached;
 }
 
-// ---- Walking by borders. `crossing` is the t of one: a real, or a count of exact steps (arithmetic = exact).
-#ifdef EXACT_ARITHMETIC
-#include "api/grid_exact.glsl"
-#else
-#include "api/grid_float.glsl"
-#endif
-
 #if LAYERS > 1
 #include "trace/fetch_layers.glsl"
 #else
@@ -141,7 +134,13 @@ real3 fetch_normal(ivec2 pixel, int layer) { return fetch_normal(pixel); }
 //   bool from_behind(Ray, PixelSurface, real t_in)              from the side that the frame does not show, if it meets it
 //   real contact_t(Ray, PixelSurface, real t_in, real t_out)    where, if it meets it
 #include "surface/meeting.glsl"
-#ifndef EXACT_ARITHMETIC
+
+// ---- Walking by borders. `crossing` is the t of one: a real, or a count of exact steps (arithmetic = exact).
+#ifdef EXACT_ARITHMETIC
+#include "api/grid_exact.glsl"
+#include "surface/meeting_exact.glsl"
+#else
+#include "api/grid_float.glsl"
 bool meets(Ray ray, Grid grid, PixelSurface surface, real t_in, real t_out) { return meets(ray, surface, t_in, t_out); }
 #endif
 

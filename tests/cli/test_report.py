@@ -91,7 +91,7 @@ class Test(Case):
         run("const s = document.querySelector('.compare input'); s.value = 20; s.dispatchEvent(new Event('input'))")
         self.assertNotEqual(run("return document.querySelector('.stage .right').style.clipPath"), before)
         kinds = run("return [...document.querySelectorAll('.choose-right optgroup')].map(g => g.label)")
-        self.assertEqual(set(kinds), {"picture", "agreement", "FLIP", "fetches"})
+        self.assertEqual(set(kinds), {"picture", "agreement", "causes", "FLIP", "fetches"})
         names = run("return [...document.querySelectorAll('.choose-left option')].map(o => o.textContent)")
         self.assertTrue({"off", "truth", "hiz", "dda"} <= set(names), names)
 

@@ -27,7 +27,8 @@ class Test(Case):
     def test_examples_are_found(self):
         self.assertEqual(set(self.blocks), {f"mine/{name}" for name in (
             "tile_fronts/structure.toml", "tile_fronts/build.comp", "tile_fronts/read.glsl",
-            "tile_walk/technique.toml", "tile_walk/trace.glsl")})
+            "tile_walk/technique.toml", "tile_walk/trace.glsl",
+            "sloped_slab/surface.toml", "sloped_slab/meeting.glsl", "sloped_slab/held.glsl")})
 
     def test_it_is_listed_and_shown(self):
         self.ssrlab("--techniques", "mine", "list", says=["tile_walk", "reads a pixel only"])

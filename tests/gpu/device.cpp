@@ -95,8 +95,7 @@ std::string repeat_command(const std::string& scene, const std::string& view, gl
     return text +
            fmt::format(" -p thickness_m={} -p max_distance_m={} -p dielectric_min_f0={} -p surface={} -p behind={} "
                        "-p layers={} -o hits.exr",
-                       settings.thickness_m, settings.max_distance_m, settings.dielectric_min_f0,
-                       surface_names[static_cast<size_t>(settings.surface)],
+                       settings.thickness_m, settings.max_distance_m, settings.dielectric_min_f0, settings.surface,
                        behind_names[static_cast<size_t>(settings.behind)], settings.layers);
 }
 

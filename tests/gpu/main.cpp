@@ -1,5 +1,8 @@
 // Runs the GPU tests; a test during which the validation layer said anything has failed.
+#include "core/files.h"
 #include "gpu/device.h"
+
+#include <cstdlib>
 
 namespace {
 
@@ -18,6 +21,8 @@ class FailOnValidationMessages : public testing::EmptyTestEventListener {
 int main(int argc, char** argv)
 {
     testing::InitGoogleTest(&argc, argv);
+    // Surface models are found once per program.
+    ::setenv("SSRLAB_TECHNIQUES", (ssrlab::data_root() / "tests/techniques/sloped_slab").c_str(), 1);
     // Before the printer, so that the test it prints as failed is the right one.
     auto& listeners = testing::UnitTest::GetInstance()->listeners();
     auto* printer   = listeners.Release(listeners.default_result_printer());

@@ -97,7 +97,7 @@ Leaks count_leaks(Shape shape, const char* name)
     for (int i = 0; i < surfaces; ++i) {
         const Wall    wall{shape, random_plane(random), random_plane(random)};
         TraceSettings settings   = campaign_settings;
-        settings.surface         = SurfaceModel::plane;
+        settings.surface         = "plane";
         settings.behind          = Behind::stop;
         const GBufferPtr gbuffer = upload_gbuffer(device(), picture_of(wall));
         const auto       rays    = crossing_rays(wall, random);

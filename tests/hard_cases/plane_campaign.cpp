@@ -72,7 +72,7 @@ class PlaneCampaign : public testing::TestWithParam<glm::ivec2> {};
 /// One field of pixels under one model and one rule.
 class PlaneField {
 public:
-    PlaneField(Field field, glm::ivec2 size_px, SurfaceModel surface, Behind behind, int layers)
+    PlaneField(Field field, glm::ivec2 size_px, std::string_view surface, Behind behind, int layers)
         : setup_(make_field(field, size_px, 1))
     {
         setup_.settings         = campaign_settings;
@@ -135,16 +135,15 @@ private:
 TEST_P(PlaneCampaign, RandomPlanesAndSolids)
 {
     struct Model {
-        SurfaceModel surface;
-        Behind       behind;
-        int          layers = 1;
+        std::string_view surface;
+        Behind           behind;
+        int              layers = 1;
     };
-    constexpr Model models[] = {{SurfaceModel::plane, Behind::hit},        {SurfaceModel::plane, Behind::pass},
-                                {SurfaceModel::plane_solid, Behind::stop}, {SurfaceModel::plane_solid, Behind::stop, 2},
-                                {SurfaceModel::box, Behind::pass, 2},      {SurfaceModel::plane, Behind::hit, 4}};
-    const size_t    rays     = planned_rays() / (std::size(plane_sizes) * std::size(all_fields) * std::size(models));
-    Count           count;
-    std::string     first;
+    const Model  models[] = {{"plane", Behind::hit},           {"plane", Behind::pass},  {"plane_solid", Behind::stop},
+                             {"plane_solid", Behind::stop, 2}, {"box", Behind::pass, 2}, {"plane", Behind::hit, 4}};
+    const size_t rays     = planned_rays() / (std::size(plane_sizes) * std::size(all_fields) * std::size(models));
+    Count        count;
+    std::string  first;
     for (const Field field : all_fields)
         for (const auto& [surface, behind, layers] : models) {
             PlaneField tested(field, GetParam(), surface, behind, layers);

@@ -1,4 +1,5 @@
 // Ray measures and pictures on hand-made results of a few pixels, with exact shares.
+#include "compare/causes.h"
 #include "compare/measures.h"
 #include "compare/pictures.h"
 #include "core/error.h"
@@ -112,9 +113,10 @@ TEST(RayMeasures, NothingTracedHasNoValues)
     scene.radiance.resize(4);
     MeasureValues all = no_measures();
     merge(all, compare_to_screen_truth(none, none));
-    merge(all, compare_to_scene_truth(none, scene, none, empty_gbuffer(bench_view({4, 1}))));
+    merge(all, compare_to_scene_truth(none, scene, &none, empty_gbuffer(bench_view({4, 1}))));
+    merge(all, count_causes(none, scene, empty_gbuffer(bench_view({4, 1}))));
     merge(all, compare_hidden_layer(none, none, scene));
-    merge(all, split_error(none, &none, none, &scene));
+    merge(all, split_error(none, &none, &none, &scene));
     merge(all, count_work(none));
     merge(all, compare_images(reference_image(scene), Reference(reference_image(scene)), scene));
     for (const auto& [name, value] : all) {
@@ -158,7 +160,7 @@ TEST(RayMeasures, AgainstSceneTruth)
     tested.status[4] = TraceStatus::facing_away;
     set_hit(tested, 6, 9.5, 0.1 / 1.5); // ray at Z = 1.5 behind the surface at Z = 1: slab too thick
     set_hit(tested, 7, 3.5, 0.05);      // object 1, in its own plane: a self-hit
-    const MeasureValues values = compare_to_scene_truth(tested, truth, screen, gbuffer);
+    const MeasureValues values = compare_to_scene_truth(tested, truth, &screen, gbuffer);
     EXPECT_EQ(values.at("traced_rays"), 8);
     EXPECT_EQ(values.at("recall_1px"), 1 / 6.0);
     EXPECT_EQ(values.at("recall_4px"), 2 / 6.0);
@@ -179,6 +181,11 @@ TEST(RayMeasures, AgainstSceneTruth)
     EXPECT_EQ(values.at("truth_hidden"), 1 / 8.0);
     EXPECT_EQ(values.at("truth_sky"), 1 / 8.0);
     EXPECT_EQ(values.at("truth_off_screen"), 0);
+    // Without a screen truth the two causes that it tells apart are not known, and nothing else changes.
+    for (const auto& [name, value] : compare_to_scene_truth(tested, truth, nullptr, gbuffer)) {
+        const bool unknown = name == "missed_stepped_over" || name == "missed_not_in_depth";
+        EXPECT_EQ(value, unknown ? std::nullopt : values.at(name)) << name;
+    }
 }
 
 TEST(RayMeasures, SplitAndFlips)
@@ -190,13 +197,17 @@ TEST(RayMeasures, SplitAndFlips)
     for (size_t i = 0; i < 3; ++i) set_hit(screen, i, 12.25); // 3 of 4 visible
     for (size_t i = 0; i < 2; ++i) set_hit(twin, i, 12.75);   // 2 of 3
     set_hit(tested, 0, 14.5);                                 // 0 of 2: displaced, missed
-    const MeasureValues values = split_error(tested, &twin, screen, &truth);
+    const MeasureValues values = split_error(tested, &twin, &screen, &truth);
     EXPECT_DOUBLE_EQ(values.at("error_scene_to_screen").value(), 1 / 4.0);
     EXPECT_DOUBLE_EQ(values.at("error_screen_to_double").value(), 1 / 3.0);
     EXPECT_DOUBLE_EQ(values.at("error_double_to_float").value(), 1);
     EXPECT_DOUBLE_EQ(values.at("flips_per_million").value(), 2e6 / 16);
     EXPECT_EQ(count_flips(twin, twin), 0);
-    EXPECT_TRUE(split_error(tested, nullptr, screen, nullptr).empty());
+    EXPECT_TRUE(split_error(tested, nullptr, &screen, nullptr).empty());
+    const MeasureValues alone = split_error(tested, &twin, nullptr, &truth);
+    EXPECT_EQ(alone.size(), 2U);
+    EXPECT_EQ(alone.at("error_double_to_float"), values.at("error_double_to_float"));
+    EXPECT_EQ(alone.at("flips_per_million"), values.at("flips_per_million"));
 }
 
 TEST(RayMeasures, WorkIsCountedPerTracedRay)
@@ -229,9 +240,10 @@ TEST(Measures, TableIsCompleteAndUnique)
     // Every value that a function returns has its row, and every row a function.
     SceneCase     test;
     MeasureValues all = compare_to_screen_truth(test.tested, test.screen);
-    all.merge(compare_to_scene_truth(test.tested, test.truth, test.screen, test.gbuffer));
+    all.merge(compare_to_scene_truth(test.tested, test.truth, &test.screen, test.gbuffer));
+    all.merge(count_causes(test.tested, test.truth, test.gbuffer));
     all.merge(compare_hidden_layer(test.tested, test.screen, test.truth));
-    all.merge(split_error(test.tested, &test.tested, test.screen, &test.truth));
+    all.merge(split_error(test.tested, &test.tested, &test.screen, &test.truth));
     all.merge(count_work(test.tested));
     test.truth.radiance.resize(16);
     const Reference reference(reference_image(test.truth));

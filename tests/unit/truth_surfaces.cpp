@@ -16,8 +16,7 @@ using namespace test;
 constexpr double infinity  = std::numeric_limits<double>::infinity();
 constexpr float  quiet_nan = std::numeric_limits<float>::quiet_NaN();
 
-constexpr std::array all_models = {SurfaceModel::box, SurfaceModel::box_two_sided, SurfaceModel::box_infinite,
-                                   SurfaceModel::plane, SurfaceModel::plane_solid};
+constexpr std::array all_models = {"box", "box_two_sided", "box_infinite", "plane", "plane_solid"};
 
 View orthographic_view(glm::ivec2 size_px)
 {
@@ -57,8 +56,8 @@ ScreenRay ray_through(double z_in, double z_out)
     return ray;
 }
 
-WalkResult answer(const GBufferImage& gbuffer, const ScreenRay& ray, SurfaceModel surface, Behind behind = Behind::stop,
-                  double thickness_m = 1)
+WalkResult answer(const GBufferImage& gbuffer, const ScreenRay& ray, std::string_view surface,
+                  Behind behind = Behind::stop, double thickness_m = 1)
 {
     TraceSettings settings;
     settings.surface     = surface;
@@ -81,15 +80,15 @@ TEST(SurfaceModels, TwoSidedBoxBeginsBeforeItsPixel)
 {
     const GBufferImage gbuffer = single_pixel(1 / 32.0, {0, 0});
     const ScreenRay    level = ray_through(1 / 28.0, 1 / 28.0), nearer = ray_through(1 / 23.0, 1 / 23.0);
-    EXPECT_EQ(answer(gbuffer, level, SurfaceModel::box).status, TraceStatus::left_screen);
-    expect_at(answer(gbuffer, level, SurfaceModel::box_two_sided), TraceStatus::hit, t_in);
-    EXPECT_EQ(answer(gbuffer, nearer, SurfaceModel::box_two_sided).status, TraceStatus::left_screen);
-    expect_at(answer(gbuffer, ray_through(1 / 20.0, 1 / 20.0 - 2 * (1 / 20.0 - 1 / 24.0)), SurfaceModel::box_two_sided),
+    EXPECT_EQ(answer(gbuffer, level, "box").status, TraceStatus::left_screen);
+    expect_at(answer(gbuffer, level, "box_two_sided"), TraceStatus::hit, t_in);
+    EXPECT_EQ(answer(gbuffer, nearer, "box_two_sided").status, TraceStatus::left_screen);
+    expect_at(answer(gbuffer, ray_through(1 / 20.0, 1 / 20.0 - 2 * (1 / 20.0 - 1 / 24.0)), "box_two_sided"),
               TraceStatus::hit, t_middle);
     // As far before the pixel as the eye is: everything in front of it.
     for (const double thickness_m : {4.0, 5.0, infinity})
-        expect_at(answer(gbuffer, ray_through(0.9, 0.9), SurfaceModel::box_two_sided, Behind::stop, thickness_m),
-                  TraceStatus::hit, t_in);
+        expect_at(answer(gbuffer, ray_through(0.9, 0.9), "box_two_sided", Behind::stop, thickness_m), TraceStatus::hit,
+                  t_in);
     TraceSettings relative;
     relative.thickness_relative = true;
     relative.thickness_m        = 0.25;
@@ -107,10 +106,9 @@ TEST(SurfaceModels, TwoSidedBoxBeginsBeforeItsPixel)
 TEST(SurfaceModels, InfiniteBoxHoldsEverythingBehindIt)
 {
     const GBufferImage gbuffer = single_pixel(1 / 32.0, {0, 0});
-    expect_at(answer(gbuffer, ray_through(0, 0), SurfaceModel::box_infinite), TraceStatus::hit, t_in);
-    expect_at(answer(gbuffer, ray_through(1 / 32.0, 1 / 32.0), SurfaceModel::box_infinite), TraceStatus::hit, t_in);
-    EXPECT_EQ(answer(gbuffer, ray_through(1 / 31.0, 1 / 31.0), SurfaceModel::box_infinite).status,
-              TraceStatus::left_screen);
+    expect_at(answer(gbuffer, ray_through(0, 0), "box_infinite"), TraceStatus::hit, t_in);
+    expect_at(answer(gbuffer, ray_through(1 / 32.0, 1 / 32.0), "box_infinite"), TraceStatus::hit, t_in);
+    EXPECT_EQ(answer(gbuffer, ray_through(1 / 31.0, 1 / 31.0), "box_infinite").status, TraceStatus::left_screen);
 }
 
 TEST(SurfaceModels, BoxIsMetFromBehindWhereItsNormalFacesAway)
@@ -119,12 +117,12 @@ TEST(SurfaceModels, BoxIsMetFromBehindWhereItsNormalFacesAway)
     const ScreenRay ray     = ray_through(1 / 36.0, 1 / 36.0);
     for (const glm::vec3& away : {glm::vec3(0, 0, -1), {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {quiet_nan, 0, 0}}) {
         gbuffer.normal_vs[at(gbuffer, 4, 1)] = away;
-        expect_at(answer(gbuffer, ray, SurfaceModel::box, Behind::hit), TraceStatus::hit, t_in);
-        expect_at(answer(gbuffer, ray, SurfaceModel::box, Behind::stop), TraceStatus::stopped, t_in);
-        EXPECT_EQ(answer(gbuffer, ray, SurfaceModel::box, Behind::pass).status, TraceStatus::facing_away);
+        expect_at(answer(gbuffer, ray, "box", Behind::hit), TraceStatus::hit, t_in);
+        expect_at(answer(gbuffer, ray, "box", Behind::stop), TraceStatus::stopped, t_in);
+        EXPECT_EQ(answer(gbuffer, ray, "box", Behind::pass).status, TraceStatus::facing_away);
     }
     gbuffer.normal_vs[at(gbuffer, 4, 1)] = {-1, 0, 0};
-    expect_at(answer(gbuffer, ray, SurfaceModel::box, Behind::stop), TraceStatus::hit, t_in);
+    expect_at(answer(gbuffer, ray, "box", Behind::stop), TraceStatus::hit, t_in);
 }
 
 // The plane rises by 1/64 a pixel: from 1/32 - 1/128 at the entry to 1/32 + 1/128 at the exit.
@@ -133,7 +131,7 @@ TEST(SurfaceModels, SlopingPlaneIsMetWhereItIs)
     constexpr double   d = 1 / 32.0, half = 1 / 128.0, e = d / 1024;
     const GBufferImage gbuffer = single_pixel(d, {float(2 * half), 0});
     const auto         meets   = [&](double z_in, double z_out, Behind behind = Behind::stop) {
-        return answer(gbuffer, ray_through(z_in, z_out), SurfaceModel::plane, behind);
+        return answer(gbuffer, ray_through(z_in, z_out), "plane", behind);
     };
     expect_at(meets(d, d), TraceStatus::hit, t_middle);                   // level, from above
     expect_at(meets(d - half, d + half), TraceStatus::hit, t_in);         // in the front itself
@@ -159,8 +157,7 @@ TEST(SurfaceModels, PlaneIsTakenAtTheRaysPlaceInThePixel)
             ScreenRay ray         = ray_through(front + above, front + above);
             ray.origin_px_depth.y = y;
             const bool hits       = above == -1e-6;
-            EXPECT_EQ(answer(gbuffer, ray, SurfaceModel::plane).status,
-                      hits ? TraceStatus::hit : TraceStatus::left_screen);
+            EXPECT_EQ(answer(gbuffer, ray, "plane").status, hits ? TraceStatus::hit : TraceStatus::left_screen);
         }
     }
 }
@@ -174,9 +171,9 @@ TEST(SurfaceModels, PlaneAtAPixelsCorner)
     ray.start_pixel            = {3, 0};
     ray.origin_px_depth        = {3.5, 0.5, d + 1 / 64.0};
     ray.delta_px_depth         = {2, 2, 0};
-    expect_at(answer(gbuffer, ray, SurfaceModel::plane), TraceStatus::hit, 0.75);
+    expect_at(answer(gbuffer, ray, "plane"), TraceStatus::hit, 0.75);
     ray.origin_px_depth.z = std::nextafter(d + 1 / 64.0, 1);
-    EXPECT_EQ(answer(gbuffer, ray, SurfaceModel::plane).status, TraceStatus::left_screen);
+    EXPECT_EQ(answer(gbuffer, ray, "plane").status, TraceStatus::left_screen);
 }
 
 TEST(SurfaceModels, SolidReachesFromTheBackToItsFarSide)
@@ -184,7 +181,7 @@ TEST(SurfaceModels, SolidReachesFromTheBackToItsFarSide)
     constexpr double   d = 1 / 32.0, b = 1 / 64.0;
     const GBufferImage gbuffer = single_pixel(d, {0, 0}, float(b));
     const auto         meets   = [&](double z_in, double z_out, Behind behind = Behind::stop) {
-        return answer(gbuffer, ray_through(z_in, z_out), SurfaceModel::plane_solid, behind);
+        return answer(gbuffer, ray_through(z_in, z_out), "plane_solid", behind);
     };
     expect_at(meets(0.02, 0.02), TraceStatus::stopped, t_in);          // inside
     expect_at(meets(0.02, 0.02, Behind::hit), TraceStatus::hit, t_in); // as a hit
@@ -194,10 +191,10 @@ TEST(SurfaceModels, SolidReachesFromTheBackToItsFarSide)
     expect_at(meets(b - 0.001, b + 0.001), TraceStatus::stopped, t_middle); // from behind it
     expect_at(meets(b - 0.001, d + 0.001), TraceStatus::stopped, t_in + (t_out - t_in) * 0.001 / (d - b + 0.002));
     expect_at(meets(d + 0.001, d - 0.001), TraceStatus::hit, t_middle); // the front as ever
-    EXPECT_EQ(answer(gbuffer, ray_through(0.02, 0.02), SurfaceModel::plane).status, TraceStatus::left_screen);
+    EXPECT_EQ(answer(gbuffer, ray_through(0.02, 0.02), "plane").status, TraceStatus::left_screen);
     GBufferImage unknown = gbuffer;
     unknown.solid_back.clear();
-    EXPECT_EQ(answer(unknown, ray_through(0.02, 0.02), SurfaceModel::plane_solid).status, TraceStatus::left_screen);
+    EXPECT_EQ(answer(unknown, ray_through(0.02, 0.02), "plane_solid").status, TraceStatus::left_screen);
 }
 
 TEST(SurfaceModels, PixelWithoutUsablePlaneHoldsItsBox)
@@ -206,15 +203,15 @@ TEST(SurfaceModels, PixelWithoutUsablePlaneHoldsItsBox)
          {glm::vec2(quiet_nan), {quiet_nan, 0}, {0, std::numeric_limits<float>::infinity()}}) {
         const GBufferImage gbuffer = single_pixel(1 / 32.0, gradient, 1 / 64.0F);
         const ScreenRay    in_slab = ray_through(1 / 36.0, 1 / 36.0), in_solid = ray_through(1 / 50.0, 1 / 50.0);
-        for (const SurfaceModel model : {SurfaceModel::plane, SurfaceModel::plane_solid})
+        for (const std::string_view model : {"plane", "plane_solid"})
             expect_at(answer(gbuffer, in_slab, model), TraceStatus::hit, t_in);
-        EXPECT_EQ(answer(gbuffer, in_solid, SurfaceModel::plane).status, TraceStatus::left_screen);
-        expect_at(answer(gbuffer, in_solid, SurfaceModel::plane_solid), TraceStatus::stopped, t_in);
+        EXPECT_EQ(answer(gbuffer, in_solid, "plane").status, TraceStatus::left_screen);
+        expect_at(answer(gbuffer, in_solid, "plane_solid"), TraceStatus::stopped, t_in);
     }
     GBufferImage without = single_pixel(1 / 32.0, {0, 0});
     without.gradient.clear();
-    EXPECT_THROW(answer(without, ray_through(0, 0), SurfaceModel::plane), Failure);
-    EXPECT_EQ(answer(without, ray_through(1, 1), SurfaceModel::box).status, TraceStatus::left_screen);
+    EXPECT_THROW(answer(without, ray_through(0, 0), "plane"), Failure);
+    EXPECT_EQ(answer(without, ray_through(1, 1), "box").status, TraceStatus::left_screen);
 }
 
 TEST(SurfaceModels, OrthographicToleranceIsOfTheDistance)
@@ -224,9 +221,8 @@ TEST(SurfaceModels, OrthographicToleranceIsOfTheDistance)
     const GBufferImage gbuffer = single_pixel(0.5, {0, 0}, 0, view);
     const double       e       = 0.75 / 1024;
     EXPECT_DOUBLE_EQ(plane_tolerance(view, 0.5), e);
-    expect_at(answer(gbuffer, ray_through(0.5 - e, 0.5 - e), SurfaceModel::plane), TraceStatus::hit, t_in);
-    EXPECT_EQ(answer(gbuffer, ray_through(0.5 - 1.001 * e, 0.5 - 1.001 * e), SurfaceModel::plane).status,
-              TraceStatus::left_screen);
+    expect_at(answer(gbuffer, ray_through(0.5 - e, 0.5 - e), "plane"), TraceStatus::hit, t_in);
+    EXPECT_EQ(answer(gbuffer, ray_through(0.5 - 1.001 * e, 0.5 - 1.001 * e), "plane").status, TraceStatus::left_screen);
 }
 
 /// Between a mirror floor at y = -1 and a ceiling at y = 1, 64 x 64 pixels: depth rises by 1/320 a row on both.
@@ -250,9 +246,9 @@ TEST(SurfaceModels, CeilingReflectsWithoutAGap)
     const GBufferImage gbuffer = floor_and_ceiling();
     TraceSettings      settings;
     settings.behind          = Behind::stop;
-    settings.surface         = SurfaceModel::plane;
+    settings.surface         = "plane";
     const TraceResult planes = screen_truth(gbuffer, settings);
-    settings.surface         = SurfaceModel::box;
+    settings.surface         = "box";
     settings.thickness_m     = 0.1;
     const TraceResult boxes  = screen_truth(gbuffer, settings);
     int               gaps   = 0;
@@ -278,7 +274,7 @@ TEST(SurfaceModels, MirrorFloorDoesNotMeetItself)
             gbuffer.gradient.push_back({0, gbuffer.depth[i] > 0 ? float(0.1 / gbuffer.view.focal_px.y) : quiet_nan});
         for (const Behind behind : {Behind::hit, Behind::stop}) {
             TraceSettings settings;
-            settings.surface         = SurfaceModel::plane;
+            settings.surface         = "plane";
             settings.behind          = behind;
             const TraceResult result = screen_truth(gbuffer, settings);
             for (const TraceStatus status : result.status)
@@ -323,7 +319,7 @@ TEST(Layers, RayBelowATableHitsTheFloor)
 {
     const GBufferImage gbuffer = table_over_floor();
     const ScreenRay    ray     = ray_below_the_table(gbuffer.view);
-    TraceSettings      settings{.behind = Behind::hit, .surface = SurfaceModel::plane};
+    TraceSettings      settings{.behind = Behind::hit, .surface = "plane"};
     EXPECT_EQ(ScreenWalk(gbuffer, settings).walk(ray).status, TraceStatus::left_screen);
     settings.layers        = 2;
     const WalkResult found = ScreenWalk(gbuffer, settings).walk(ray);
@@ -342,7 +338,7 @@ TEST(Layers, TheFirstContactEndsTheRay)
 {
     GBufferImage        gbuffer = table_over_floor();
     const ScreenRay     ray     = ray_below_the_table(gbuffer.view);
-    const TraceSettings settings{.behind = Behind::hit, .surface = SurfaceModel::plane, .layers = 2};
+    const TraceSettings settings{.behind = Behind::hit, .surface = "plane", .layers = 2};
     gbuffer.layers[0].layers = {};
     const WalkResult floor   = ScreenWalk(gbuffer, settings).walk(ray);
     // The same floor as a third layer, a little higher: the ray crosses it earlier in the same pixel.
@@ -456,15 +452,15 @@ TEST(SurfaceModels, EqualTheirDefinitionAsSetsOfPoints)
 {
     for (const View& view : {bench_view({41, 37}), orthographic_view({41, 37})}) {
         const GBufferImage gbuffer = random_planes(view, 7);
-        for (const SurfaceModel surface : all_models) {
+        for (const std::string_view surface : all_models) {
             for (const Behind behind : {Behind::hit, Behind::pass, Behind::stop}) {
                 TraceSettings settings;
                 settings.surface              = surface;
                 settings.behind               = behind;
                 const std::array<int, 8> seen = compare_with_sets(gbuffer, settings);
-                EXPECT_GT(seen[size_t(TraceStatus::hit)], 100) << int(surface);
-                EXPECT_EQ(seen[size_t(TraceStatus::stopped)] > 20, behind == Behind::stop) << int(surface);
-                EXPECT_EQ(seen[size_t(TraceStatus::facing_away)] > 0, behind == Behind::pass) << int(surface);
+                EXPECT_GT(seen[size_t(TraceStatus::hit)], 100) << surface;
+                EXPECT_EQ(seen[size_t(TraceStatus::stopped)] > 20, behind == Behind::stop) << surface;
+                EXPECT_EQ(seen[size_t(TraceStatus::facing_away)] > 0, behind == Behind::pass) << surface;
             }
         }
     }

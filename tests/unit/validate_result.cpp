@@ -90,7 +90,7 @@ TEST(ValidateResult, NothingIsMeasuredByAnImpossibleResult)
     for (const TraceResult& result : {off, unknown}) {
         Row row;
         EXPECT_THROW(compare_to_screen_truth(result, sound()), InvalidResult);
-        EXPECT_THROW(compare_to_scene_truth(result, scene, sound(), gbuffer), InvalidResult);
+        EXPECT_THROW(compare_to_scene_truth(result, scene, nullptr, gbuffer), InvalidResult);
         EXPECT_THROW(reflected_image(result, gbuffer, {}), InvalidResult);
         EXPECT_THROW(add_counts(row, result), InvalidResult);
     }

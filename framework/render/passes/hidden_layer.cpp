@@ -47,7 +47,7 @@ RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
     frame.hidden_layer = true;
     auto own           = std::make_shared<HiddenLayer>();
     own->layer         = buffers.second_layer;
-    const bool solids  = frame.settings.trace.surface == SurfaceModel::plane_solid;
+    const bool solids  = find_surface(frame.settings.trace.surface).needs_solid;
     if (solids) prepare_solid_backs(gpu, *own->layer);
     own->missed            = derived_rays(gpu, frame, 0);
     own->structures        = make_depth_structures(gpu, frame, *own->layer);

@@ -10,7 +10,7 @@ PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, 
     if (!facts.solids) return {PassDecision::off, "the surface model has no solids"};
     if (!facts.scene) return {PassDecision::off, "no scene to draw again: solids as the frame came with them"};
     if (statistics.gbuffer.reflecting_pixels == 0) return {PassDecision::not_needed, "no pixel reflects"};
-    return {PassDecision::needed, "surface = plane_solid"};
+    return {PassDecision::needed, "the surface model has solids"};
 }
 
 RecordFunction prepare(Gpu& /*gpu*/, PreparedFrame& frame)

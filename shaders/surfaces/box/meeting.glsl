@@ -30,7 +30,3 @@ real contact_t(Ray ray, PixelSurface surface, real t_in, real t_out)
     precise real t_face = (face - ray.origin.z) / ray.delta.z;
     return inside || ray.delta.z == real(0) ? t_in : clamp(t_face, t_in, t_out);
 }
-
-#ifdef EXACT_ARITHMETIC
-#include "surfaces/box/meeting_exact.glsl"
-#endif

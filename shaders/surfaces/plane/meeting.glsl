@@ -70,7 +70,3 @@ real contact_t(Ray ray, PixelSurface surface, real t_in, real t_out)
 #endif
     return t;
 }
-
-#ifdef EXACT_ARITHMETIC
-#include "surfaces/plane/meeting_exact.glsl"
-#endif
