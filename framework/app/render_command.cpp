@@ -203,8 +203,9 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
         image.metadata["ssrlab:command"] = command_of(options, picture.at.frame + i);
         const std::string file = options.frames > 0 ? numbered(picture.output, picture.at.frame + i) : picture.output;
         write_image(file, image);
-        std::puts(fmt::format("{}: {}x{}, trace {:.2f} ms on {}", file, stage.view.size_px.x, stage.view.size_px.y,
-                              rendered.trace_ms, stage.gpu.info.name)
+        const std::string timed = options.show.empty() ? fmt::format(", trace {:.2f} ms", rendered.trace_ms) : "";
+        std::puts(fmt::format("{}: {}x{}{} on {}", file, stage.view.size_px.x, stage.view.size_px.y, timed,
+                              stage.gpu.info.name)
                       .c_str());
     }
     return report_messages(stage);
