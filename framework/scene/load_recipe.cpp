@@ -37,13 +37,28 @@ Mesh make_shape(const Part& part)
     return {};
 }
 
+void add_pattern(Model& model, Mesh& mesh, const Part& part)
+{
+    PatternTextures textures = make_pattern(*part.pattern);
+    model.textures.push_back(std::move(textures.base_colour));
+    model.textures.push_back(std::move(textures.gloss));
+    Material& material   = model.materials[0];
+    material.base_colour = glm::vec4(1);
+    material.metallic = material.roughness      = 1;
+    material.base_colour_texture.texture        = 0;
+    material.metallic_roughness_texture.texture = 1;
+    multiply_uv(mesh, 1 / part.tile_m);
+}
+
 Model shape_to_model(const Part& part)
 {
     Model model;
     Mesh  mesh = make_shape(part);
     mesh.name  = part.name;
     model.materials.push_back(make_material(part.name, glm::vec3(0.7F), 0, 0.8F));
-    if (part.shape == Shape::checker_floor || !part.tile_colours.empty()) {
+    if (part.pattern) {
+        add_pattern(model, mesh, part);
+    } else if (part.shape == Shape::checker_floor || !part.tile_colours.empty()) {
         const glm::vec3 light = part.tile_colours.empty() ? glm::vec3(0.8F) : glm::vec3(part.tile_colours[0]);
         const glm::vec3 dark  = part.tile_colours.empty() ? glm::vec3(0.35F) : glm::vec3(part.tile_colours[1]);
         model.textures.push_back(make_checker_texture(light, dark));

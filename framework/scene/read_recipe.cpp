@@ -51,6 +51,10 @@ void read_shape_keys(TomlTable& table, Part& part)
     part.ripple_slope = table.number("ripple_slope", 0, 10).value_or(part.ripple_slope);
     if (part.ripple_m && !part.tile_colours.empty())
         table.fail("ripple_m", "cannot stand beside tile_colours: both say how often textures repeat");
+    if (const auto pattern = table.choice("pattern", {"wet_asphalt", "marble"}))
+        part.pattern = static_cast<Pattern>(*pattern);
+    if (part.pattern && (part.ripple_m || !part.tile_colours.empty()))
+        table.fail("pattern", "cannot stand beside tile_colours or ripple_m: all say how often textures repeat");
 }
 
 Part read_part(TomlTable& table)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene/model.h"
+#include "scene/patterns.h"
 #include "scene/toml_table.h"
 
 #include <optional>
@@ -39,6 +40,7 @@ struct Part {
     std::vector<glm::dvec3> tile_colours; // sRGB
     std::optional<double>   ripple_m;     // a normal map with waves of this length
     double                  ripple_slope = 0.1;
+    std::optional<Pattern>  pattern;
     MaterialChange          change;
 };
 

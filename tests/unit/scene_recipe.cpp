@@ -164,8 +164,25 @@ TEST(SceneRecipe, LightsViewsAndColours)
     EXPECT_VEC_NEAR(scene.draws[0].bounds_max_ws - scene.draws[0].bounds_min_ws, glm::vec3(1, 2, 3), 1e-6F);
 }
 
+TEST(SceneRecipe, PatternsRepeatByTheMetre)
+{
+    const Scene scene = load_text("[[part]]\nshape = 'plane'\nsize_m = [6, 0, 4]\npattern = 'marble'\ntile_m = 2\n");
+    const Material& material = material_named(scene, "plane");
+    ASSERT_GE(material.base_colour_texture.texture, 0);
+    ASSERT_GE(material.metallic_roughness_texture.texture, 0);
+    EXPECT_NE(material.base_colour_texture.texture, material.metallic_roughness_texture.texture);
+    float most = 0;
+    for (const Vertex& vertex : scene.vertices) most = std::max({most, std::abs(vertex.uv0.x), std::abs(vertex.uv0.y)});
+    EXPECT_FLOAT_EQ(most, 3);
+}
+
 TEST(SceneRecipe, MistakesNameFileLineAndWhatIsAccepted)
 {
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\npattern = 'silk'\n"), HasSubstr("recipe.toml:3: "));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\npattern = 'marble'\ntile_colours = [[0, 0, 0], [1, 1, 1]]\n"),
+                HasSubstr("'pattern' cannot stand beside tile_colours or ripple_m"));
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\npattern = 'marble'\nripple_m = 1\n"),
+                HasSubstr("'pattern' cannot stand beside tile_colours or ripple_m"));
     EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nhieght_m = 1\n"),
                 HasSubstr("recipe.toml:3: unknown key of [[part]] 'hieght_m': did you mean 'height_m'? (known: "));
     EXPECT_THAT(mistake("sumary = 'x'\n[[part]]\nshape = 'box'\n"),
@@ -236,8 +253,7 @@ TEST(SceneRecipe, ShippedRecipesAreWellFormed)
 {
     for (const SceneListing& listing : list_scenes()) {
         if (listing.name.starts_with("builtin:")) continue;
-        const Recipe recipe =
-            read_recipe(data_root() / "experiments/scenes" / (listing.name + ".toml"));
+        const Recipe recipe = read_recipe(data_root() / "experiments/scenes" / (listing.name + ".toml"));
         EXPECT_FALSE(listing.summary.empty()) << listing.name;
         EXPECT_GE(recipe.views.size(), 2U) << listing.name;
         EXPECT_EQ(recipe.views.at(0).name, "default") << listing.name;

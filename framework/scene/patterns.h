@@ -1,0 +1,19 @@
+// Surfaces that a plain colour cannot show: procedural textures of base colour and gloss that repeat without a seam.
+#pragma once
+
+#include "scene/scene.h"
+
+namespace ssrlab {
+
+enum class Pattern : unsigned {
+    wet_asphalt, // dark grain of roughness 0.5 to 0.85, and puddles of roughness 0.02 over two fifths of it
+    marble,      // slabs, two by two to a repeat, light and dark by turns, with veins; roughness 0.05, joints 0.6
+};
+
+/// Green of `gloss` is roughness, blue is metallic (0).
+struct PatternTextures {
+    Texture base_colour, gloss;
+};
+PatternTextures make_pattern(Pattern pattern);
+
+} // namespace ssrlab
