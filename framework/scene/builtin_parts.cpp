@@ -105,7 +105,7 @@ Model start_scene(std::vector<Camera> cameras)
     return model;
 }
 
-void add_sky(Model& model) { model.environment = make_sky(-glm::dvec3(sun_direction_ws)); }
+void add_sky(Model& model) { model.environment = make_sky({}, -glm::dvec3(sun_direction_ws)); }
 
 uint32_t add_metal(Model& model, const char* name, glm::vec3 base_colour, float roughness)
 {

@@ -37,15 +37,17 @@ double smooth_step(double from, double to, double value)
     return x * x * (3 - 2 * x);
 }
 
-glm::vec3 sky_colour(glm::dvec3 direction_ws, glm::dvec3 to_sun_ws)
+glm::dvec3 sky_colour(const SkyColours& colours, double height)
 {
-    const glm::dvec3 zenith(0.1, 0.25, 0.62), horizon(0.62, 0.7, 0.78), haze(0.3, 0.28, 0.26), sun(7, 6, 4.6);
-    const double     height = direction_ws.y;
-    const glm::dvec3 above  = glm::mix(horizon, zenith, std::sqrt(std::max(height, 0.0)));
-    const glm::dvec3 sky    = glm::mix(haze, above, smooth_step(-0.06, 0.02, height));
-    const double     cosine = std::clamp(glm::dot(direction_ws, to_sun_ws), -1.0, 1.0);
-    const double     off    = std::acos(cosine) * 180 / pi;
-    return glm::vec3(sky + sun * (1 - smooth_step(sun_radius_deg - sun_edge_deg, sun_radius_deg, off)));
+    const glm::dvec3 above = glm::mix(colours.horizon, colours.zenith, std::sqrt(std::max(height, 0.0)));
+    return glm::mix(colours.ground, above, smooth_step(-0.06, 0.02, height));
+}
+
+glm::dvec3 sun_colour(glm::dvec3 direction_ws, glm::dvec3 to_sun_ws)
+{
+    const double cosine = std::clamp(glm::dot(direction_ws, to_sun_ws), -1.0, 1.0);
+    const double off    = std::acos(cosine) * 180 / pi;
+    return glm::dvec3(7, 6, 4.6) * (1 - smooth_step(sun_radius_deg - sun_edge_deg, sun_radius_deg, off));
 }
 
 } // namespace
@@ -112,14 +114,15 @@ EnvironmentMap load_environment(const std::filesystem::path& file, double scale,
     return map;
 }
 
-EnvironmentMap make_sky(glm::dvec3 to_sun_ws)
+EnvironmentMap make_sky(const SkyColours& colours, std::optional<glm::dvec3> to_sun_ws)
 {
     EnvironmentMap map;
     map.size_px = {2 * sky_height_px, sky_height_px};
     for (int y = 0; y < map.size_px.y; ++y)
         for (int x = 0; x < map.size_px.x; ++x) {
-            const glm::dvec2 uv = (glm::dvec2(x, y) + 0.5) / glm::dvec2(map.size_px);
-            map.radiance.push_back(sky_colour(uv_to_direction(uv), glm::normalize(to_sun_ws)));
+            const glm::dvec3 direction_ws = uv_to_direction((glm::dvec2(x, y) + 0.5) / glm::dvec2(map.size_px));
+            const glm::dvec3 sun = to_sun_ws ? sun_colour(direction_ws, glm::normalize(*to_sun_ws)) : glm::dvec3(0);
+            map.radiance.emplace_back(sky_colour(colours, direction_ws.y) + sun);
         }
     return map;
 }

@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,12 @@ glm::vec3 environment_radiance(const EnvironmentMap& map, glm::dvec3 direction_w
 /// precision is clamped and counted in `warnings`. Throws Failure that says what was expected and what was found.
 EnvironmentMap load_environment(const std::filesystem::path& file, double scale, std::vector<std::string>& warnings);
 
-/// A sky that needs no file: a smooth gradient over the horizon, haze below it, and a sun of 4 degrees radius.
-EnvironmentMap make_sky(glm::dvec3 to_sun_ws);
+/// Radiance straight up, level, and below.
+struct SkyColours {
+    glm::dvec3 zenith{0.1, 0.25, 0.62}, horizon{0.62, 0.7, 0.78}, ground{0.3, 0.28, 0.26};
+};
+
+/// A sky that needs no file: a smooth gradient over the horizon, one colour below it, and perhaps a sun of 4 degrees radius.
+EnvironmentMap make_sky(const SkyColours& colours, std::optional<glm::dvec3> to_sun_ws = {});
 
 } // namespace ssrlab

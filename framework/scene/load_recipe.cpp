@@ -200,6 +200,7 @@ Model load_recipe(const std::filesystem::path& file)
     if (!recipe.environment.empty())
         scene.environment = load_environment(find_data(recipe.environment, file.parent_path()),
                                              recipe.environment_scale, scene.warnings);
+    if (recipe.sky) scene.environment = make_sky(*recipe.sky);
     return scene;
 }
 

@@ -155,6 +155,18 @@ void read_environment(TomlTable& root, Recipe& recipe)
     recipe.environment = *reference;
 }
 
+void read_sky(TomlTable& root, Recipe& recipe)
+{
+    auto table = root.table("sky");
+    if (!table) return;
+    if (!recipe.environment.empty() || recipe.background)
+        root.fail("sky", "cannot stand beside environment or background: all say what is there without a surface");
+    const auto zenith = table->colour("zenith"), horizon = table->colour("horizon"), ground = table->colour("ground");
+    table->refuse_unknown_keys();
+    if (!zenith || !horizon) table->fail("needs 'zenith' and 'horizon'");
+    recipe.sky = SkyColours{*zenith, *horizon, ground.value_or(*horizon)};
+}
+
 } // namespace
 
 bool matches(const std::string& pattern, const std::string& text)
@@ -192,6 +204,7 @@ Recipe read_recipe(const std::filesystem::path& file)
     if (const auto ambient = root.colour("ambient")) recipe.ambient = glm::vec3(*ambient);
     if (const auto background = root.colour("background")) recipe.background = glm::vec3(*background);
     read_environment(root, recipe);
+    read_sky(root, recipe);
     for (TomlTable& table : root.tables("part")) recipe.parts.push_back(read_part(table));
     for (TomlTable& table : root.tables("material")) recipe.changes.push_back(read_change(table));
     for (TomlTable& table : root.tables("light")) recipe.lights.push_back(read_light(table));

@@ -54,6 +54,7 @@ struct Recipe {
     std::vector<CameraPath>     paths;
     std::optional<glm::vec3>    ambient, background;
     std::string                 environment; // where its picture lies, as find_data() takes it; empty: none
+    std::optional<SkyColours>   sky;         // or this
     double                      environment_scale = 1;
 };
 

@@ -92,6 +92,17 @@ TEST(SceneEnvironment, WithoutAMapTheSkyIsTheBackground)
     EXPECT_EQ(sky_radiance(scene, {0.3, 0.2, 0.9}), scene.background);
 }
 
+TEST(SceneEnvironment, ADeclaredSkyHasItsColours)
+{
+    const EnvironmentMap map = make_sky({.zenith = {0, 0, 1}, .horizon = {1, 1, 1}, .ground = {0.2, 0.1, 0}});
+    ASSERT_VEC_NEAR(environment_radiance(map, {0, 1, 0}), glm::vec3(0, 0, 1), 0.01F);
+    ASSERT_VEC_NEAR(environment_radiance(map, {0, -1, 0}), glm::vec3(0.2F, 0.1F, 0), 1e-6F);
+    // Between them the square root of the height, so most of the change is near the horizon.
+    ASSERT_VEC_NEAR(environment_radiance(map, {0.8, 0.36, 0.48}), glm::vec3(0.4F, 0.4F, 1), 0.01F);
+    for (int i = 0; i < 100; ++i)
+        ASSERT_EQ(environment_radiance(map, {std::sin(i), -0.3, std::cos(i)}), glm::vec3(0.2F, 0.1F, 0));
+}
+
 class EnvironmentFiles : public testing::Test {
 protected:
     std::string recipe(const std::string& lines) const
@@ -114,6 +125,18 @@ TEST_F(EnvironmentFiles, AreReadScaledAndPutIntoTheScene)
             ASSERT_VEC_NEAR(scene.environment.radiance[i],
                             2.0F * glm::vec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]), 0.07F);
     }
+}
+
+TEST_F(EnvironmentFiles, ASkyOfARecipeTakesTheirPlace)
+{
+    const Scene scene = load_scene(recipe("sky = { zenith = [0, 0, 1], horizon = 0.5 }"));
+    ASSERT_VEC_NEAR(sky_radiance(scene, {0, -1, 0}), glm::vec3(0.5F), 1e-6F) << "the ground is as the horizon";
+    ASSERT_VEC_NEAR(sky_radiance(scene, {0, 1, 0}), glm::vec3(0, 0, 1), 0.01F);
+    EXPECT_THAT(error_of<SpecError>(recipe("background = 1\nsky = { zenith = 1, horizon = 1 }")),
+                testing::AllOf(HasSubstr("scene.toml:2"), HasSubstr("'sky' cannot stand beside")));
+    EXPECT_THAT(error_of<SpecError>(recipe("sky = { zenith = 1 }")),
+                testing::AllOf(HasSubstr("scene.toml:1"), HasSubstr("'horizon'")));
+    EXPECT_THAT(error_of<SpecError>(recipe("sky = { zenith = 1, horizon = 1, sun = 1 }")), HasSubstr("'sun'"));
 }
 
 TEST_F(EnvironmentFiles, ClampWhatNoPictureCanHold)
