@@ -13,14 +13,15 @@ GBufferImage floor_before_glow(float roughness)
     for (size_t i = 0; i < image.depth.size(); ++i) {
         image.base_colour[i] = glm::vec3(1);
         if (image.metallic[i] > 0) image.roughness[i] = roughness;
-        image.radiance[i] = {0.25F, 0.5F, 1}; // the floor's, too: grazing rays meet its boxes
+        image.radiance[i] = image.metallic[i] > 0 ? glm::vec3(8, 0, 0) : glm::vec3(0.25F, 0.5F, 1);
     }
     return image;
 }
 
+/// Pixels hold planes: no ray meets its own floor.
 Reflection reflection_with(const Picture& picture, const ParameterValues& passes)
 {
-    const auto frame = frame_with(picture, passes, "hiz");
+    const auto frame = frame_with(picture, passes, "hiz", SurfaceModel::plane);
     run_frame(device(), *frame);
     return read_colours(picture.buffers->reflection);
 }

@@ -28,9 +28,9 @@ inline size_t changes_on_the_right_alone(const Reflection& found, const Reflecti
 }
 
 inline PreparedFramePtr frame_with(const Picture& picture, const ParameterValues& passes,
-                                   const std::string& technique_id = "dda")
+                                   const std::string& technique_id = "dda", SurfaceModel surface = {})
 {
-    FrameSettings settings{.trace = {.thickness_m = 0.5, .max_distance_m = 50}};
+    FrameSettings settings{.trace = {.thickness_m = 0.5, .max_distance_m = 50, .surface = surface}};
     for (const auto& [name, value] : passes) settings.passes.at(name) = value;
     const Technique& chosen = technique(technique_id);
     return prepare_frame(device(), picture.buffers, chosen, values_of(chosen), settings);

@@ -81,15 +81,19 @@ TEST_P(GlowingBall, EverythingInsideGlows)
     const uint32_t ball             = add_material(scene, {0.5F, 0.6F, 0.7F}, GetParam() < 1 ? 1 : 0);
     scene.materials[ball].roughness = GetParam();
     scene.materials[ball].emissive  = {0.25F, 0.5F, 2};
-    scene.background                = scene.materials[ball].emissive; // seen through edges between triangles
+    scene.background                = glm::vec3(1000); // outside
     add_sphere(scene, ball, {0, 0, -5}, 20, 32);
     const GBufferImage gbuffer = tilted_plane(0.3, 0.6F, {16, 16});
     const GlossyTruth  truth   = glossy_truth(SceneBvh(scene), scene, gbuffer, {}, {});
+    size_t             leaks   = 0;
     for (size_t i = 0; i < truth.albedo.size(); ++i) {
         ASSERT_GT(truth.albedo[i].g, 0.5F);
-        ASSERT_NEAR(truth.radiance[i].b / truth.albedo[i].b, 2, 1e-5F);
-        ASSERT_NEAR(truth.radiance[i].r / truth.albedo[i].r, 0.25F, 1e-6F);
+        const glm::vec3 off = truth.radiance[i] / truth.albedo[i] - scene.materials[ball].emissive;
+        leaks += off.r > 1e-6F || off.b > 1e-5F; // a path through the edge between two triangles sees the background
+        ASSERT_GT(off.r, -1e-6F);
+        ASSERT_GT(off.b, -1e-5F);
     }
+    EXPECT_LE(leaks, 2U) << "of 256 pixels";
 }
 
 INSTANTIATE_TEST_SUITE_P(Roughness, GlowingBall, testing::Values(0.0F, 0.3F, 0.7F, 1.0F));
