@@ -95,9 +95,7 @@ void add_presentation_options(CLI::App& command, ssrlab::RenderOptions& options)
         .add_option("--samples", options.samples, "Anti-aliasing: average so many places of the camera within a pixel")
         ->capture_default_str()
         ->check(CLI::Range(1, ssrlab::max_samples));
-    command.add_option("--exposure", options.exposure_ev, "Stops by which a .png is brighter")
-        ->capture_default_str()
-        ->check(CLI::Range(-32, 32));
+    command.add_option("--exposure", options.exposure_ev, "Stops by which a .png is brighter")->capture_default_str();
     command
         .add_option("--display", options.display,
                     "How a .png shows radiance: clip (cut at 1), or agx (AgX, which keeps bright colours)")

@@ -10,11 +10,14 @@
 #include "truth/screen_truth.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <numeric>
 
 namespace ssrlab {
 namespace {
+
+constexpr double most_stops = 32;
 
 enum class Shows { nothing, traced, truth }; // what stands in the reflections' place
 
@@ -41,6 +44,8 @@ Choice checked_choice(const Technique& technique, const RenderOptions& options)
         throw_spec_error("--show {}: shows the rays of one frame; expected none of --truth, --side-by-side, --samples, "
                          "--frames, --exposure and --display",
                          options.show);
+    if (!(std::abs(options.exposure_ev) <= most_stops)) // NaN, too
+        throw_spec_error("--exposure {}: expected stops from -{} to {}", options.exposure_ev, most_stops, most_stops);
     if (exr && (options.exposure_ev != 0 || options.display != "clip"))
         throw_spec_error("-o {}: an EXR holds linear radiance; --exposure and --display need a .png",
                          options.picture.output);

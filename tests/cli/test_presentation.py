@@ -47,6 +47,12 @@ class Test(Case):
         self.assertGreater(inside.sum(), 100)
         self.assertLess(abs(brighter[inside] / plain[inside] - 2).max(), 0.1)
 
+    def test_exposure_takes_parts_of_a_stop(self):
+        half, whole = self.render("a.png", "--exposure", "0.5"), self.render("b.png", "--exposure", "1")
+        self.assertIn("--exposure 1", self.command)
+        self.assertLess(half.mean(), whole.mean())
+        self.assertLess(self.render("c.png").mean(), half.mean())
+
     def test_agx_darkens_what_would_clip(self):
         clipped, agx = self.render("a.png", "--exposure", "3"), self.render("b.png", "--exposure", "3", "--display", "agx")
         self.assertIn("--display agx", self.command)

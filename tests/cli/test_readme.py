@@ -32,15 +32,33 @@ class Test(Case):
     def test_technique_passes_the_hard_cases(self):
         self.ssrlab("--techniques", "mine", "check", "strides")
 
-    def test_picture_is_what_its_command_makes(self):
-        """Within what another compiler or driver may change: 99 % of the values within 2 of 255."""
+    def commands(self):
+        """The pictures' commands, by the file that they write."""
         with open(os.path.join(SOURCE, "README.md"), encoding="utf-8") as file:
-            command, output = re.search(r"^build/bin/ssrlab (render .* -o (\S+\.png))$", file.read(), re.M).groups()
-        self.ssrlab(*command.split())
+            text = file.read()
+        shown = re.findall(r"\]\(docs/images/(\S+)\)", text)
+        commands = re.findall(r"^build/bin/ssrlab (render .* -o (\S+\.png))$", text.replace("\\\n", ""), re.M)
+        return {output: command.split() for command, output in commands if output in shown}
+
+    def check_picture(self, output):
+        """Within what another compiler or driver may change: 99 % of the values within 2 of 255."""
+        self.ssrlab(*self.commands()[output])
         made, shown = (imageio_read(path) for path in (self.path(output), os.path.join(SOURCE, "docs/images", output)))
         self.assertEqual(made.shape, shown.shape)
         near = (abs(made.astype(int) - shown.astype(int)) <= 2).mean()
         self.assertGreater(near, 0.99, "make it again with README's command")
+
+    def test_every_picture_is_checked(self):
+        self.assertEqual(set(self.commands()), {"wet_street.png", "forest_clearing.png", "thin_yard.png"})
+
+    def test_wet_street_is_what_its_command_makes(self):
+        self.check_picture("wet_street.png")
+
+    def test_forest_clearing_is_what_its_command_makes(self):
+        self.check_picture("forest_clearing.png")
+
+    def test_thin_yard_is_what_its_command_makes(self):
+        self.check_picture("thin_yard.png")
 
     def test_experiment_runs_with_the_technique(self):
         small = self.blocks["mine.toml"].replace("320x180", "48x27").replace("640x360", "64x36").replace("= 1\n", "= 0.1\n")

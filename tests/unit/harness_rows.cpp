@@ -80,7 +80,7 @@ TEST(Rows, EveryEntryOfARowHasAColumn)
     EXPECT_EQ(measured.row.at("steps"), "25");
     EXPECT_EQ(measured.row.at("thickness_m"), "0.1");
     EXPECT_EQ(measured.row.at("max_distance_m"), "1000000000");
-    EXPECT_EQ(measured.row.at("edge_fade"), "border");
+    EXPECT_EQ(measured.row.at("edge_fade"), "off");
     measured.pass_order = {"trace", "composite"};
     measured.pass_ms    = {{"trace", std::vector<double>(7, 4.0)}, {"composite", std::vector<double>(7, 1.5)}};
     measured.trace_ms   = {1, 2, 3, 4, 5, 6, 7};

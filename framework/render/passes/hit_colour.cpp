@@ -28,7 +28,7 @@ std::vector<Parameter> parameters()
                          "are 0 where a is below 0; smooth: (a - viewer_fade_start) / (1 - viewer_fade_start)"),
         real_parameter("viewer_fade_start", 0, -1, 0.99, "a = -R.z at which viewer_fade = smooth starts"),
         choice_parameter(
-            EdgeFade::border,
+            EdgeFade::off,
             "weight of hits by where they are. By their distance r from the image's centre: manhattan: 1 - "
             "|u-1/2| - |v-1/2|; linear: 1 - 2r; squared: 1 - (2r)^2. border: 1, and smoothly down to 0 at the "
             "image's border over edge_fade_width"),
@@ -40,7 +40,7 @@ std::vector<Parameter> parameters()
         real_parameter("base_colour_min_weight", 0, 0, 1, "smallest weight of the reflector's own colour"),
         choice_parameter(Attenuation::off,
                          "falloff of reflected light with the ray's length d in metres: none, 1/d or 1/d^2; at most 1"),
-        real_parameter("min_direction_cosine", -1, -1, 1,
+        real_parameter("min_direction_cosine", 0, -1, 1,
                        "smallest cosine between the ray and the direction to the hit surface; below it the hit counts "
                        "as a miss; -1: every hit counts")};
 }

@@ -40,10 +40,10 @@ Pass ray_reuse_pass()
         .cite    = {"T. Stachowiak 2015, Stochastic Screen-Space Reflections (SIGGRAPH)"},
         .parameters     = {integer_parameter("reuse_neighbours", 32, 1, 256,
                                              "pixels whose rays a rough pixel uses, itself among them"),
-                           real_parameter("reuse_radius", 0.1, 0, 1,
+                           real_parameter("reuse_radius", 0.15, 0, 1,
                                           "radius of these pixels' disk at roughness 1, as a share of the image's height"),
                            real_parameter(
-                               "reuse_depth_tolerance", 0.01, 1e-6, 1e6,
+                               "reuse_depth_tolerance", 0.001, 1e-6, 1e6,
                                "distance from the pixel's plane, as a share of the view distance, at which another "
                                    "pixel's rays weigh 1/e")},
         .decide         = decide,

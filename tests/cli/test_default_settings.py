@@ -1,0 +1,92 @@
+"""The defaults are what measures best: the committed rows of experiments/defaults.toml, the page's tables, and the program's defaults agree."""
+import csv
+import glob
+import json
+import os
+import subprocess
+import tomllib
+
+from support import SOURCE, Case, main
+
+SCRIPT = os.path.join(SOURCE, "experiments/default_settings")
+REFERENCE = os.path.join(SOURCE, "results/reference/lavapipe/defaults")
+PAGE = os.path.join(SOURCE, "docs/effects.md")
+
+
+def rows_of(folder):
+    with open(os.path.join(folder, "results.csv"), encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+class Test(Case):
+    def script(self, *arguments):
+        return subprocess.run([SCRIPT, *arguments], capture_output=True, text=True)
+
+    def test_no_change_beats_the_defaults_and_the_page_says_so(self):
+        done = self.script(REFERENCE, "--check", PAGE)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_every_recipe_is_measured(self):
+        with open(os.path.join(SOURCE, "experiments/defaults.toml"), "rb") as file:
+            scenes = set(tomllib.load(file)["scenes"])
+        shipped = {os.path.basename(path)[:-5] for path in glob.glob(os.path.join(SOURCE, "experiments/scenes/*.toml"))}
+        self.assertGreater(len(shipped), 8)
+        self.assertEqual(shipped - scenes, set())
+        self.assertEqual(scenes, {row["scene"] for row in rows_of(REFERENCE)})
+
+    def test_the_first_run_has_the_defaults_of_the_program(self):
+        settings = json.loads(self.ssrlab("list", "--json"))["settings"]
+        first = [row for row in rows_of(REFERENCE) if row["run_number"] == "0"]
+        checked = 0
+        for setting in settings:
+            # A setting may be newer than the rows.
+            if setting["table"] != "passes" or setting["name"] not in first[0]:
+                continue
+            for row in first:
+                measured, expected = row[setting["name"]], setting["default"]
+                with self.subTest(setting=setting["name"], scene=row["scene"]):
+                    if "min" in setting:
+                        self.assertEqual(float(measured), float(expected))
+                    else:
+                        self.assertEqual(measured, expected)
+                checked += 1
+        self.assertGreater(checked, 20 * len(first))
+
+    def rows_folder(self, *rows):
+        """Of scene, run number, gloss, RMSE and FLIP."""
+        names = ["run_id", "scene", "run_number", "technique", "gloss", "trace_ms_median", "outcome", "picture_rmse", "picture_flip"]
+        lines = [",".join(names)]
+        for i, (scene, number, gloss, rmse, flip) in enumerate(rows):
+            lines.append(f"r{i},{scene},{number},hiz,{gloss},1,ok,{rmse},{flip}")
+        self.write("rows/environment.json", json.dumps({"pass_parameters": "gloss"}))
+        return os.path.dirname(self.write("rows/results.csv", "\n".join(lines) + "\n"))
+
+    def test_means_are_geometric(self):
+        done = self.script(self.rows_folder(("a", 0, "off", 0.1, 0.1), ("a", 1, "blur", 0.2, 0.1), ("b", 0, "off", 0.1, 0.2),
+                                       ("b", 1, "blur", 0.1, 0.4)))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        # RMSE 2 and 1, FLIP 1 and 2: each has the mean root 2.
+        self.assertIn('| `gloss = "blur"` | 1.414 | 1.414 | 0 |', done.stdout)
+
+    def test_a_better_change_is_an_error(self):
+        done = self.script(self.rows_folder(("a", 0, "off", 0.1, 0.1), ("a", 1, "blur", 0.2, 0.09)))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn('gloss = "blur"', done.stderr)
+
+    def test_another_table_on_the_page_is_an_error(self):
+        rows = self.rows_folder(("a", 0, "off", 0.1, 0.1), ("a", 1, "blur", 0.2, 0.1))
+        page = self.write("page.md", "# A\n<!-- experiments/default_settings: begin -->\nold\n<!-- experiments/default_settings: end -->\n")
+        self.assertEqual(self.script(rows, "--check", page).returncode, 1)
+        self.assertEqual(self.script(rows, "--write", page).returncode, 0)
+        self.assertEqual(self.script(rows, "--check", page).returncode, 0)
+        with open(page, encoding="utf-8") as file:
+            self.assertIn("# A\n<!-- experiments/default_settings: begin -->\n| changed, mean of 1 scenes |", file.read())
+
+    def test_a_change_that_some_scenes_lack_is_refused(self):
+        done = self.script(self.rows_folder(("a", 0, "off", 0.1, 0.1), ("a", 1, "blur", 0.2, 0.1), ("b", 0, "off", 0.1, 0.2)))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("expected one for each of 2 scenes", done.stderr)
+
+
+if __name__ == "__main__":
+    main()
