@@ -9,10 +9,12 @@ struct Reflection
     vec2  incidence_px;        // where the ray started
     vec2  incidence_motion_px; // where that surface was in the frame before, minus where it is; NaN: behind the camera
     vec3  incidence_vs;
+    vec3  incidence_pvs;       // the same point of the surface in the frame before, carried there by camera and object
     vec2  hit_px;              // where the ray hit, and the surface there
     vec2  hit_motion_px;
     vec3  hit_vs;
-    vec3  normal_vs;           // of the reflector, unit length
+    vec3  hit_pvs;             // as incidence_pvs
+    vec3  normal_vs;           // of the mirror in which the eye sees the hit: the reflector's, or one drawn from a rough one's lobe; unit length
     vec3  normal_pvs;          // the same normal in the frame before: turned with the camera and with the reflector
     float ray_length_m;        // from incidence to hit
 };

@@ -46,7 +46,7 @@ void main()
 
     Reflector own    = reflector_at(pixel);
     float radius_px  = max(float(block_px) * 1.5, reuse_radius * roughness * float(size_px.y));
-    float turn       = 6.2831853 * float(pcg(uint(pixel.x) + pcg(uint(pixel.y)))) / 4294967296.0;
+    float turn       = 6.2831853 * float(pcg(uint(pixel.x) + pcg(uint(pixel.y) + offset_seed()))) / 4294967296.0;
     vec4  sum        = vec4(0);
     vec3  brightest  = vec3(0);
     float total = 0.0, most = 0.0, next = 0.0;

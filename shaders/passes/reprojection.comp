@@ -5,6 +5,8 @@
 #include "trace/hit_list.glsl"
 #include "api/view.glsl"
 #include "rays/reflecting.glsl"
+#include "rays/lobe_threshold.glsl"
+#include "passes/camera.glsl"
 #include "pass/parameters"
 #include "passes/previous_frame.glsl"
 #include "api/reprojection_api.glsl"
@@ -46,10 +48,21 @@ vec3 hit_vs(PackedRay ray, PackedHit found, out uint object)
     return px_to_vs(vec3(point.xy, depth));
 }
 
-vec2 motion_of(vec3 position_vs, uint object, vec2 px)
+// NaN: behind the camera.
+vec2 motion_of(vec3 position_pvs, vec2 px)
 {
-    vec3 position_pvs = carried_pvs(position_vs, object);
     return orthographic == 0 && position_pvs.z >= 0.0 ? vec2(uintBitsToFloat(0x7FC00000u)) : pvs_to_px(position_pvs) - px;
+}
+
+// At which a ray was mirrored: the surface's, or with rays drawn from a rough surface's lobe the one drawn.
+vec3 mirroring_normal(ivec2 pixel, PackedRay ray, vec3 incidence_vs)
+{
+    vec4 normal = imageLoad(normal_image, pixel);
+#ifdef LOBE_RAYS
+    if (normal.w >= mirror_roughness)
+        return normalize(normalize(px_to_direction_vs(ray.origin, ray.origin + ray.delta)) + to_camera_vs(incidence_vs));
+#endif
+    return normalize(normal.xyz);
 }
 
 Reflection reflection_of(PackedRay ray, PackedHit found, out uint hit_object)
@@ -60,11 +73,13 @@ Reflection reflection_of(PackedRay ray, PackedHit found, out uint hit_object)
     Reflection now;
     now.incidence_vs        = px_to_vs(start);
     now.incidence_px        = start.xy - jitter_px;
-    now.incidence_motion_px = motion_of(now.incidence_vs, object, now.incidence_px);
+    now.incidence_pvs       = carried_pvs(now.incidence_vs, object);
+    now.incidence_motion_px = motion_of(now.incidence_pvs, now.incidence_px);
     now.hit_vs              = hit_vs(ray, found, hit_object);
     now.hit_px              = (ray.origin + ray.delta * found.t).xy - jitter_px;
-    now.hit_motion_px       = motion_of(now.hit_vs, hit_object, now.hit_px);
-    now.normal_vs           = normalize(imageLoad(normal_image, pixel).xyz);
+    now.hit_pvs             = carried_pvs(now.hit_vs, hit_object);
+    now.hit_motion_px       = motion_of(now.hit_pvs, now.hit_px);
+    now.normal_vs           = mirroring_normal(pixel, ray, now.incidence_vs);
     now.normal_pvs          = turned_pvs(now.normal_vs, object);
     now.ray_length_m        = distance(now.incidence_vs, now.hit_vs);
     return now;

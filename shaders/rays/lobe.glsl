@@ -38,13 +38,21 @@ vec3 drawn_half_vector(vec3 normal, vec3 to_eye, float alpha, vec2 random)
     return frame * normalize(vec3(alpha * cap.xy, max(cap.z, 0.0)));
 }
 
+// Random numbers follow the image's sub-pixel offset: a jittered frame draws others than the one before, so that the mean over the frames has less
+// noise. 0 without an offset. In float, so that the double twin draws the same.
+uint offset_seed()
+{
+    uvec2 bits = floatBitsToUint(fract(2.0 * vec2(centre_px)));
+    return bits.x ^ bits.y * 747796405u;
+}
+
 // Two numbers in [0, 1). The rays of 4 x 4 pixels are one well spread set, since neighbours use each other's: R2 of M. Roberts 2018, "The
 // Unreasonable Effectiveness of Quasirandom Sequences", in the order of a Bayer matrix.
 vec2 lobe_random(ivec2 pixel, int ray, int rays, int attempt)
 {
     int  x = pixel.x & 3, y = pixel.y & 3, mixed = x ^ y;
     int  place = (mixed & 1) << 3 | (y & 1) << 2 | (mixed & 2) | y >> 1;
-    uint block = pcg(uint(pixel.x >> 2) + pcg(uint(pixel.y >> 2) + pcg(uint(attempt))));
+    uint block = pcg(uint(pixel.x >> 2) + pcg(uint(pixel.y >> 2) + pcg(uint(attempt) + offset_seed())));
     vec2 shift = vec2(block & 0xFFFFu, block >> 16) / 65536.0;
     return fract(shift + float(place * rays + ray + 1) * vec2(0.75487767, 0.56984029));
 }

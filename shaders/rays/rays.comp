@@ -18,7 +18,7 @@ layout(set = 0, binding = 11, r32ui) uniform readonly uimageBuffer TileMasks; //
 // centre and runs sideways is behind its neighbour's slab face, which ray_offset_m > 0 avoids.
 real2 offset_start(ivec2 pixel, int ray)
 {
-    uint  random = pcg(uint(pixel.x) + pcg(uint(pixel.y) + pcg(uint(ray))));
+    uint  random = pcg(uint(pixel.x) + pcg(uint(pixel.y) + pcg(uint(ray) + offset_seed())));
     uvec2 cell   = uvec2(random, random >> 16) % OFFSET_CELLS;
     return real2(pixel) + (real2(cell) + real(0.5)) / real(OFFSET_CELLS);
 }

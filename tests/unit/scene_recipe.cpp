@@ -176,6 +176,30 @@ TEST(SceneRecipe, PatternsRepeatByTheMetre)
     EXPECT_FLOAT_EQ(most, 3);
 }
 
+// A wave is a repeat of the texture, whose normals lean by at most the slope: by as much to both sides.
+TEST(SceneRecipe, RipplesAreANormalMapOfWaves)
+{
+    const Scene scene = load_text("[[part]]\nshape = 'box'\nsize_m = [4, 1, 2]\nripple_m = 0.5\nripple_slope = 0.2\n");
+    const Material& material = scene.materials[scene.draws[0].material];
+    ASSERT_EQ(material.normal_texture.texture, 0);
+    EXPECT_FLOAT_EQ(material.normal_scale, 0.2F);
+    glm::vec2 least(1e9F), most(-1e9F);
+    for (const Vertex& vertex : scene.vertices)
+        if (vertex.normal_ws.y > 0.5F) least = glm::min(least, vertex.uv0), most = glm::max(most, vertex.uv0);
+    EXPECT_VEC_NEAR(glm::vec3(most - least, 0), glm::vec3(8, 4, 0), 1e-5F);
+    glm::vec3 mean(0);
+    for (size_t i = 0; i < scene.textures[0].rgba.size(); i += 4) {
+        const uint8_t* texel  = &scene.textures[0].rgba[i];
+        const auto     normal = glm::vec3(texel[0], texel[1], texel[2]) / 127.5F - 1.0F;
+        EXPECT_LE(std::max(std::abs(normal.x), std::abs(normal.y)), normal.z + 0.02F);
+        mean += normal;
+    }
+    EXPECT_NEAR(mean.x / mean.z, 0, 0.01);
+    EXPECT_NEAR(mean.y / mean.z, 0, 0.01);
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nripple_m = 1\ntile_colours = [[1, 1, 1], [0, 0, 0]]\n"),
+                HasSubstr("recipe.toml:3: [[part]]: 'ripple_m' cannot stand beside tile_colours"));
+}
+
 TEST(SceneRecipe, MistakesNameFileLineAndWhatIsAccepted)
 {
     EXPECT_THAT(mistake("[[part]]\nshape = 'box'\npattern = 'silk'\n"), HasSubstr("recipe.toml:3: "));

@@ -27,6 +27,7 @@ RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
     source.include_files = {{"reprojection/reproject.glsl", strategy.folder / "reproject.glsl"}};
     Bindings more        = history_bindings(*frame.history, frame.motion, *frame.buffers->gbuffer);
     source.defines.emplace("LAYERS", std::to_string(frame.hidden_layer ? 2 : frame.settings.trace.layers));
+    if (draws_lobe_rays(frame.settings.passes)) source.defines.emplace("LOBE_RAYS", "1");
     add_layers(more, frame.hidden_layer ? std::span<const GBufferPtr>(&frame.buffers->second_layer, 1)
                                         : std::span<const GBufferPtr>(frame.buffers->gbuffer->layers));
     auto pass = std::make_shared<ComputePass>(make_composed_pass(gpu, frame, source, more, strategy.parameters));
