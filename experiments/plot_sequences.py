@@ -68,7 +68,7 @@ def motion_errors(results, tables):
 
 
 # From the simplest to the exact one; others come after them.
-STRATEGIES = ["surface", "hit", "surface_parallax", "hit_parallax", "smallest", "plane"]
+STRATEGIES = ["surface", "hit", "surface_parallax", "hit_parallax", "smallest", "plane", "carried_plane"]
 COLOURS = ["#D55E00", "#E69F00", "#CC79A7", "#8A6D00", "#0072B2", "#009E73", "#56B4E9", "#1A1A1A"]
 
 
@@ -85,7 +85,7 @@ def reprojection_errors(results, tables):
     measures = [("reprojection_error_median_px", "median error, px"), ("reprojection_error_p95_px", "95th percentile, px"),
                 ("ghosting_rmse", "error behind moving edges, RMSE")]
     scenes = list(dict.fromkeys(rows.scene))
-    figure, axes = plt.subplots(len(scenes), 3, figsize=(13, 3.6 * len(scenes)), squeeze=False)
+    figure, axes = plt.subplots(len(scenes), 3, figsize=(13, 3.6 * len(scenes)), squeeze=False, layout="tight")
     for line, scene in zip(axes, scenes):
         views = list(dict.fromkeys(rows[rows.scene == scene].view))
         for axis, (measure, label) in zip(line, measures):
@@ -109,7 +109,7 @@ def reprojection_errors(results, tables):
     handles, labels = axes[0][2].get_legend_handles_labels()
     figure.legend(handles, labels, fontsize=8, ncols=len(labels), loc="lower center")
     figure.suptitle("Where a reflection was in the frame before: strategies against the truth")
-    figure.tight_layout(rect=(0, 0.05, 1, 1))
+    figure.get_layout_engine().set(rect=(0, 0.05, 1, 1))  # the legend stands below
     yield "reprojection_errors", figure
 
 

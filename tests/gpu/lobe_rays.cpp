@@ -21,7 +21,7 @@ GBufferImage floor_before_glow(float roughness)
 /// Pixels hold planes: no ray meets its own floor.
 Reflection reflection_with(const Picture& picture, const ParameterValues& passes)
 {
-    const auto frame = frame_with(picture, passes, "hiz", SurfaceModel::plane);
+    const auto frame = frame_with(picture, passes, "hiz", "plane");
     run_frame(device(), *frame);
     return read_colours(picture.buffers->reflection);
 }

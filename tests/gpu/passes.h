@@ -28,7 +28,8 @@ inline size_t changes_on_the_right_alone(const Reflection& found, const Reflecti
 }
 
 inline PreparedFramePtr frame_with(const Picture& picture, const ParameterValues& passes,
-                                   const std::string& technique_id = "dda", SurfaceModel surface = {})
+                                   const std::string& technique_id = "dda",
+                                   std::string_view   surface      = TraceSettings{}.surface)
 {
     FrameSettings settings{.trace = {.thickness_m = 0.5, .max_distance_m = 50, .surface = surface}};
     for (const auto& [name, value] : passes) settings.passes.at(name) = value;

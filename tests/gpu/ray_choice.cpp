@@ -136,7 +136,7 @@ TEST(SeveralRays, CountWhenMoreThanHalfOfThemHit)
     const auto           hit = [](int x) { return glm::ivec2(x, 0); };
     const auto           run = [&](double per_pixel, const std::vector<std::vector<glm::ivec2>>& ends) {
         const auto frame =
-            frame_with(picture, {{"rays_per_pixel", per_pixel}, chosen(Gloss::off), chosen(EdgeFade::off)});
+            frame_with(picture, {{"rays_per_pixel", per_pixel}, chosen(Gloss::off), {"min_direction_cosine", -1}});
         std::vector<glm::ivec2> pixels, hits;
         for (size_t i = 0; i < ends.size(); ++i)
             for (const glm::ivec2& end : ends[i]) {

@@ -212,13 +212,13 @@ TEST(Spec, ATechniquesTableMayNameSettingsOfItsOwn)
 {
     const Experiment experiment =
         load_text("scenes = \"a\"\n[trace]\nthickness_m = [0.1, "
-                  "0.2]\n[[techniques.linear]]\n[[techniques.linear]]\nthickness_m = 0.5\nedge_fade = \"off\"\n");
+                  "0.2]\n[[techniques.linear]]\n[[techniques.linear]]\nthickness_m = 0.5\nedge_fade = \"border\"\n");
     const auto runs = expand(experiment, techniques());
     ASSERT_EQ(runs.size(), 3U);
     EXPECT_EQ(count_runs(experiment), 3);
-    EXPECT_EQ(std::ranges::count(
-                  runs, false, [](const auto& run) { return choice<EdgeFade>(run.settings.passes) != EdgeFade::off; }),
-              1);
+    const auto edge_fade = [](const auto& run) { return choice<EdgeFade>(run.settings.passes); };
+    EXPECT_EQ(std::ranges::count(runs, EdgeFade::border, edge_fade), 1);
+    EXPECT_EQ(std::ranges::count(runs, EdgeFade::off, edge_fade), 2);
     EXPECT_THAT(error_of("scenes = \"a\"\n[techniques.linear]\nthickness_m = -1\n"),
                 HasSubstr(".toml:3: 'thickness_m' must be a number in [0, "));
 }
