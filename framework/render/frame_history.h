@@ -19,7 +19,7 @@ struct FrameHistory {
     GpuImage gradient;   // R32UI, core/plane_gradient.h
     GpuImage normal;     // RGBA32F: view space
     GpuImage reflection; // RGBA32F: colour times weight, weight; < 0: reflects nothing
-    GpuImage facts;      // RGBA32F: frames accumulated, ray length, object that was hit or -1
+    GpuImage facts;      // RGBA32F: frames accumulated, ray length, object that was hit (-1: unknown, -2: missed)
 
     // Of the frame that runs.
     GpuImage reprojected;     // RGBA32F: px to where the reflection was or NaN, ray length, object that was hit

@@ -15,6 +15,8 @@ layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D kept_reflection_
 layout(set = 0, binding = 7, rgba32f) uniform writeonly image2D kept_facts_image;
 layout(set = 0, binding = 8, scalar) buffer HistoryCounts { uint history_counts[HISTORY_COUNTS]; };
 
+const float half_rounding = 1.0 / 2048.0; // of the reflection's image
+
 vec4 weighted(vec4 reflection) { return vec4(reflection.rgb * reflection.a, reflection.a); }
 
 vec4 clamped_to_neighbours(ivec2 pixel, vec4 value)
@@ -53,7 +55,8 @@ void main()
     {
         vec4 before = found.reflection;
         if (history_clamping != history_clamping_off) before = clamped_to_neighbours(pixel, before);
-        if (before != found.reflection) atomicAdd(history_counts[HISTORY_CLAMPED], 1);
+        // A mean of equal halves is not quite equal to them: that is not clamping.
+        if (any(greaterThan(abs(before - found.reflection), abs(found.reflection) * half_rounding))) atomicAdd(history_counts[HISTORY_CLAMPED], 1);
         // A plain mean until there are enough frames for the weight.
         float weight = min(found.frames / (found.frames + 1.0), history_weight) * found.share;
         result       = result + (before - result) * weight;

@@ -4,7 +4,7 @@
 
 layout(set = 0, binding = 50, rgba32f) uniform readonly image2D reprojected_image;         // passes/reprojection.comp
 layout(set = 0, binding = 51, rgba32f) uniform readonly image2D previous_reflection_image; // colour times weight, weight; < 0: reflects nothing
-layout(set = 0, binding = 52, rgba32f) uniform readonly image2D previous_facts_image;      // frames in it, ray length, object that was hit or -1
+layout(set = 0, binding = 52, rgba32f) uniform readonly image2D previous_facts_image;      // frames in it, ray length, object that was hit
 #ifdef BLOCKS
 layout(set = 0, binding = 53, r32ui) uniform readonly uimage2D block_pixel_image;
 #endif
@@ -13,7 +13,7 @@ struct History
 {
     vec4  reflection; // colour times weight, weight
     float frames;     // in it
-    float share;      // in (0, 1]: how much it is to count, by the ray's length
+    float share;      // in [0, 1]: how much it is to count, by the ray's length
 };
 
 // The pixel's own vector, or at a lower resolution that of its block's pixel with rays.
@@ -82,11 +82,17 @@ int find_history(ivec2 pixel, out History found)
     vec3 normal = turned_pvs(normalize(imageLoad(normal_image, pixel).xyz), object), stored_normal = previous_normal_pvs(px);
     if (reject_normal > -1.0 && !(dot(normal, stored_normal) >= reject_normal * length(stored_normal))) return HISTORY_OTHER_NORMAL;
     vec4 facts = imageLoad(previous_facts_image, ivec2(place_px));
-    if (reject_hit && facts.z >= 0.0 && facts.z != now.w) return HISTORY_OTHER_HIT;
+    bool known = facts.z != hit_unknown && now.w != hit_unknown;
+    if (reject_hit && known && facts.z != now.w) return HISTORY_OTHER_HIT;
     found.reflection = previous_reflection(place_px);
     if (found.reflection.a < 0.0) return HISTORY_OTHER_DEPTH;
     found.frames = max(facts.x, 1.0);
     found.share  = 1.0;
-    if (hit_distance_tolerance > 0.0 && facts.z >= 0.0) found.share = exp(-abs(facts.y - now.z) / (hit_distance_tolerance * max(now.z, 1e-6)));
+    if (hit_distance_tolerance > 0.0 && known)
+    {
+        bool hit_then = facts.z >= 0.0, hits_now = now.w >= 0.0;
+        if (hit_then && hits_now) found.share = exp(-abs(facts.y - now.z) / (hit_distance_tolerance * max(now.z, 1e-6)));
+        if (hit_then != hits_now) found.share = 0.0;
+    }
     return HISTORY_ACCUMULATED;
 }

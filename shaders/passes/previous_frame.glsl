@@ -16,6 +16,9 @@ layout(set = 0, binding = 44, r32f) uniform readonly image2D previous_depth_imag
 layout(set = 0, binding = 45, r32ui) uniform readonly uimage2D previous_gradient_image;
 layout(set = 0, binding = 46, rgba32f) uniform readonly image2D previous_normal_image;
 
+// In place of the object that a ray hit.
+const float hit_unknown = -1.0, hit_nothing = -2.0;
+
 // framework/core/plane_gradient.h packs it; NaN: the pixel has no plane.
 vec2 unpacked_gradient(uint words) { return uintBitsToFloat(uvec2(words & 0xFFFF0000u, words << 16)); }
 

@@ -1,5 +1,5 @@
 // Where each pixel's reflection was in the frame before, by the strategy that the framework composes in (techniques/reprojections/): the mean over the
-// pixel's rays that hit and were seen.
+// pixel's rays that hit and were seen. Where all rays missed, the environment stands for what they met: it is infinitely far.
 #include "layout/workgroups.glsl"
 #include "trace/ray_list.glsl"
 #include "trace/hit_list.glsl"
@@ -85,6 +85,15 @@ Reflection reflection_of(PackedRay ray, PackedHit found, out uint hit_object)
     return now;
 }
 
+// The mirror image of what is infinitely far is infinitely far, too: at the position that its direction has on the image.
+vec2 infinite_motion_px(ivec2 pixel, PackedRay ray)
+{
+    vec3 incidence_vs = px_to_vs(vec3(vec2(pixel) + 0.5, load_depth(pixel))), normal_vs = mirroring_normal(pixel, ray, incidence_vs);
+    vec3 seen_pvs     = turned_pvs(reflect(-to_camera_vs(incidence_vs), normal_vs), 0);
+    vec3 normal_pvs   = turned_pvs(normal_vs, imageLoad(object_image, pixel).x);
+    return motion_of(reflect(seen_pvs, normal_pvs), vec2(pixel) + 0.5 - jitter_px);
+}
+
 void main()
 {
     uint first = (work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x) * rays_per_pixel;
@@ -107,6 +116,8 @@ void main()
         moved_px += then.px - now.incidence_px;
         ++seen;
     }
+    if (hits == 0 && orthographic == 0)
+        imageStore(reprojected_image, pixel, vec4(infinite_motion_px(pixel, packed_ray(first)), 0, hit_nothing));
     if (hits == 0) return;
     vec2 mean_px = seen > 0 ? moved_px / float(seen) : vec2(uintBitsToFloat(0x7FC00000u));
     imageStore(reprojected_image, pixel, vec4(mean_px, length_m / float(hits), float(hit_object)));

@@ -40,6 +40,12 @@ SecondFrame second_frame(const Scene& scene, const std::string& view, const std:
 /// Of a pixel's position without jitter: slope (x right, y up) of its view ray, and the object that its ray hit. NaN: not judged.
 using ExpectedVector = std::function<glm::dvec2(glm::dvec2 slope, const Draw& hit)>;
 
+glm::dvec2 slope_of(size_t i, const View& view)
+{
+    const glm::dvec2 down = (glm::dvec2(pixel_at(i, size_px)) + 0.5 - view.centre_px) / view.focal_px;
+    return {down.x, -down.y};
+}
+
 struct Errors {
     size_t hits = 0, unseen = 0;
     double median_px = 0, p95_px = 0;
@@ -47,14 +53,12 @@ struct Errors {
 
 Errors errors_of(const Scene& scene, const SecondFrame& frame, const ExpectedVector& expected)
 {
-    const View&         view = frame.image.view;
     Errors              errors;
     std::vector<double> errors_px;
     for (size_t i = 0; i < frame.vectors_px.size(); ++i) {
         if (frame.hits.status[i] != TraceStatus::hit) continue;
         const uint32_t   object = frame.image.object_id[pixel_index(frame.hits.hit_pixel[i], size_px)];
-        const glm::dvec2 slope  = (glm::dvec2(pixel_at(i, size_px)) + 0.5 - view.centre_px) / view.focal_px;
-        const glm::dvec2 truth  = expected({slope.x, -slope.y}, scene.draws[object - 1]);
+        const glm::dvec2 truth  = expected(slope_of(i, frame.image.view), scene.draws[object - 1]);
         if (std::isnan(truth.x)) continue;
         ++errors.hits;
         if (std::isnan(frame.vectors_px[i].x))
@@ -215,6 +219,43 @@ TEST(Reprojection, ARoughMirrorThatStandsStill)
     }
 }
 
+// A mirror floor alone: what its rays miss is infinitely far. A camera's steps do not move the image of that. A camera that turns moves it as the
+// image of any other point, and so does a mirror that turns: by 1 degree about z, and the direction's image by 2.
+TEST(Reprojection, WhatRaysMissIsInfinitelyFar)
+{
+    constexpr double turn = 0.03, twice = 2 * std::numbers::pi / 180;
+    Scene            scene = load_scene("builtin:mirror_floor_wall");
+    std::erase_if(scene.draws, [&](const Draw& draw) { return scene.materials[draw.material].metallic == 0; });
+    scene.paths                  = {{"step", {level_camera({-0.1, 0, 0.3}), level_camera({0, 0, 0})}, 1},
+                                    {"turn", {level_camera({0, 0, 0}), level_camera({0, 0, 0}, turn)}, 1}};
+    Scene turning                = scene;
+    turning.draws.at(0).motion   = {.turn_deg = {0, 0, 1}, .pivot_ws = {0, -1, 0}};
+    const auto expect_everywhere = [](const SecondFrame& frame, const auto& slope_before) {
+        size_t judged = 0;
+        for (size_t i = 0; i < frame.vectors_px.size(); ++i) {
+            if (frame.hits.status[i] == TraceStatus::not_traced) continue;
+            ASSERT_NE(frame.hits.status[i], TraceStatus::hit);
+            const glm::dvec2 slope    = slope_of(i, frame.image.view);
+            const glm::dvec2 expected = (slope_before(slope) - slope) * glm::dvec2(focal_px, -focal_px);
+            ASSERT_NEAR(frame.vectors_px[i].x, expected.x, 0.01) << i;
+            ASSERT_NEAR(frame.vectors_px[i].y, expected.y, 0.01) << i;
+            ++judged;
+        }
+        EXPECT_GT(judged, 10000U);
+    };
+    for (const int phases : {0, 16}) {
+        expect_everywhere(second_frame(scene, "step", "plane", phases), [](glm::dvec2 slope) { return slope; });
+        expect_everywhere(second_frame(scene, "turn", "plane", phases), [](glm::dvec2 slope) {
+            return glm::dvec2(slope.x * std::cos(turn) + std::sin(turn), slope.y) /
+                   (std::cos(turn) - slope.x * std::sin(turn));
+        });
+        expect_everywhere(second_frame(turning, "default", "plane", phases), [](glm::dvec2 slope) {
+            return glm::dvec2(slope.x * std::cos(twice) + slope.y * std::sin(twice),
+                              slope.y * std::cos(twice) - slope.x * std::sin(twice));
+        });
+    }
+}
+
 // With saturate(1 - length * factor): factor 0 leaves the vectors as they are, a large one makes all of them 0; `smallest` takes the
 // shortest of the four.
 TEST(Reprojection, ParallaxAndTheSmallest)
@@ -226,13 +267,14 @@ TEST(Reprojection, ParallaxAndTheSmallest)
         return second_frame(scene, "truck", id, 0, has ? ParameterValues{{id + ".factor", factor}} : ParameterValues{})
             .vectors_px;
     };
-    const auto surface = vectors("surface", 0), hit = vectors("hit", 0);
-    const auto unchanged        = vectors("surface_parallax", 0);
+    const SecondFrame frame   = second_frame(scene, "truck", "surface");
+    const auto        surface = frame.vectors_px, hit = vectors("hit", 0);
+    const auto        unchanged = vectors("surface_parallax", 0);
     const auto surface_parallax = vectors("surface_parallax", 0.05), hit_parallax = vectors("hit_parallax", 0.05),
                smallest = vectors("smallest", 0.05), none = vectors("smallest", 1000);
     size_t judged = 0;
     for (size_t i = 0; i < surface.size(); ++i) {
-        if (std::isnan(surface[i].x)) continue;
+        if (frame.hits.status[i] != TraceStatus::hit || std::isnan(surface[i].x)) continue;
         ++judged;
         ASSERT_EQ(unchanged[i], surface[i]);
         const float shortest = std::min({glm::length(surface[i]), glm::length(hit[i]), glm::length(surface_parallax[i]),
