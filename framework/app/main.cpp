@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/names.h"
 #include "core/version.h"
+#include "harness/merge_results.h"
 #include "harness/run_experiment.h"
 
 #include <CLI/CLI.hpp>
@@ -198,6 +199,8 @@ int main(int argc, char** argv)
                     "Do the runs that the folder lacks or that failed; refused when specification, shaders, scenes or "
                     "device changed");
     sweep->add_option("--only", run.only, "Just the run of this id (first column of results.csv)");
+    sweep->add_option("--shard", run.shard,
+                      "I/N: the I-th of N parts, cut between pictures, for N machines or processes; see ssrlab merge");
     sweep->add_flag("--dry-run", run.dry_run, "List the runs and the estimated time; write nothing");
     sweep->add_flag("--yes", run.yes, "Allow more than 100,000 runs");
     sweep->callback([&] {
@@ -209,6 +212,12 @@ int main(int argc, char** argv)
             return run_experiment(run);
         };
     });
+    std::filesystem::path              merged;
+    std::vector<std::filesystem::path> parts;
+    auto* merge = app.add_subcommand("merge", "One results folder of the parts that run --shard wrote");
+    merge->add_option("-o,--output", merged, "Folder to write")->required();
+    merge->add_option("DIR", parts, "Results folders of one experiment")->required();
+    merge->callback([&] { command = [&] { return merge_results(merged, parts); }; });
     auto* plot = app.add_subcommand("plot", "Plots, derived rows and report of a results folder");
     plot->add_option("DIR", results, "Results folder")->required();
     plot->callback([&] { command = [&] { return plot_results(results); }; });

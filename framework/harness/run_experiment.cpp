@@ -15,6 +15,7 @@
 #include "scene/load_scene.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 
 namespace ssrlab {
@@ -53,11 +54,58 @@ std::vector<Run> choose(std::vector<Run> runs, std::span<const Technique> techni
     throw_spec_error("no run has the id '{}'; --dry-run lists them", only);
 }
 
+/// Runs on one scene, view and size stand together, frame by frame; takes the next such group off the front.
+std::span<const Run> take_sequence(std::span<const Run>& rest)
+{
+    const Run& first    = rest.front();
+    const auto same     = [&](const Run& run) { return same_sequence(run, first); };
+    const auto count    = static_cast<size_t>(std::ranges::find_if_not(rest, same) - rest.begin());
+    const auto sequence = rest.first(count);
+    rest                = rest.subspan(count);
+    return sequence;
+}
+
+struct Shard {
+    size_t number = 1, of = 1;
+};
+
+Shard parse_shard(const std::string& text)
+{
+    Shard shard;
+    int   read = 0;
+    if (text.empty()) return shard;
+    const bool whole = std::sscanf(text.c_str(), "%zu/%zu%n", &shard.number, &shard.of, &read) == 2 &&
+                       read == static_cast<int>(text.size()) && std::isdigit(text.front()) != 0;
+    if (!whole || shard.number < 1 || shard.number > shard.of)
+        throw_spec_error("--shard must be I/N with 1 <= I <= N, got '{}'", text);
+    return shard;
+}
+
+/// Runs on one scene, view and size stay together: they share truths, and ratios of their times are of one machine.
+std::vector<Run> runs_of_shard(std::span<const Run> runs, const Shard& shard)
+{
+    std::vector<Run> own;
+    for (size_t group = 0; !runs.empty(); ++group) {
+        const auto sequence = take_sequence(runs);
+        if (group % shard.of == shard.number - 1) own.insert(own.end(), sequence.begin(), sequence.end());
+    }
+    return own;
+}
+
 std::vector<Run> planned_runs(const RunOptions& options, const Experiment& experiment,
                               std::span<const Technique> techniques)
 {
     refuse_unknown_scenes(experiment);
-    return choose(expand(experiment, techniques, options.yes), techniques, options.only);
+    const Shard shard = parse_shard(options.shard);
+    return runs_of_shard(choose(expand(experiment, techniques, options.yes), techniques, options.only), shard);
+}
+
+fs::path folder_of(const RunOptions& options, const Experiment& experiment)
+{
+    if (!options.folder.empty()) return options.folder;
+    const Shard shard = parse_shard(options.shard);
+    return fs::path("results") /
+           (experiment.name + (shard.of > 1 ? fmt::format("_{}_of_{}", shard.number, shard.of) : ""));
 }
 
 double total_cost(std::span<const Run> runs, std::span<const Technique> techniques, const MeasureSettings& measure)
@@ -83,17 +131,6 @@ int list_runs(const Experiment& experiment, std::span<const Run> runs, std::span
                duration_text(total_cost(runs, techniques, experiment.measure)),
                experiment.targets.empty() ? "" : "; the search for [targets] adds runs");
     return 0;
-}
-
-/// Runs on one scene, view and size stand together, frame by frame; takes the next such group off the front.
-std::span<const Run> take_sequence(std::span<const Run>& rest)
-{
-    const Run& first    = rest.front();
-    const auto same     = [&](const Run& run) { return same_sequence(run, first); };
-    const auto count    = static_cast<size_t>(std::ranges::find_if_not(rest, same) - rest.begin());
-    const auto sequence = rest.first(count);
-    rest                = rest.subspan(count);
-    return sequence;
 }
 
 /// Of the validation layer, those after the first `reported`.
@@ -129,10 +166,10 @@ int sweep(const RunOptions& options, SweepState& state)
     const Stopwatch stopwatch;
     Gpu             gpu = open_gpu(options.gpu);
     refuse_large_sizes(experiment, gpu.info);
-    const fs::path    folder      = options.folder.empty() ? fs::path("results") / experiment.name : options.folder;
     const Environment environment = describe_environment(experiment, techniques, gpu.info, options.command_line);
-    ResultFolder      results(folder, names_of(columns), environment, options.resume || continues, !continues);
-    std::vector<Run>  pending = runs;
+    ResultFolder results(folder_of(options, experiment), names_of(columns), environment, options.resume || continues,
+                         !continues);
+    std::vector<Run> pending = runs;
     std::erase_if(pending, [&](const Run& run) { return results.finished().contains(run.id); });
 
     Progress progress(pending.size(), total_cost(pending, techniques, experiment.measure), options.quiet);

@@ -14,7 +14,8 @@ struct RunOptions {
     std::filesystem::path              folder;     // empty: results/NAME
     std::vector<std::filesystem::path> techniques; // more directories of techniques
     GpuOptions                         gpu;
-    std::string                        only; // a run id; empty: all runs
+    std::string                        only;  // a run id; empty: all runs
+    std::string                        shard; // "2/8": the second of eight parts, cut between pictures; empty: all
     bool                               resume  = false;
     bool                               dry_run = false; // list runs and estimated time, touch nothing
     bool                               quiet   = false; // no progress
