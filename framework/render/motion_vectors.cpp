@@ -10,7 +10,7 @@ namespace {
 struct PreviousViewBlock {
     glm::vec2 focal_px, centre_px, jitter_px, previous_jitter_px;
     float     near_m, far_m;
-    int32_t   takes_history;
+    int32_t   takes_history, stands_still;
 };
 
 } // namespace
@@ -25,7 +25,8 @@ MotionBuffers make_motion_buffers(Gpu& gpu, const View& view, const FrameMotion&
                                   glm::vec2(previous_jitter_px),
                                   static_cast<float>(previous.near_m),
                                   static_cast<float>(previous.far_m),
-                                  repeats ? 0 : 1};
+                                  repeats ? 0 : 1,
+                                  motion.camera_moves || motion.moving_draws > 0 ? 0 : 1};
     // In double: world positions may be far larger than motions.
     const glm::dmat4       view_to_world = glm::inverse(motion.view.world_to_view);
     std::vector<glm::mat4> to_previous_vs{glm::mat4(previous.world_to_view * view_to_world)};

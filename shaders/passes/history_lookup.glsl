@@ -40,15 +40,6 @@ vec4 reprojected(ivec2 pixel)
     return now;
 }
 
-// Seen by a camera that only turns, the images of all that stands still move alike, however far away they are.
-bool moves_as_infinite(uint reflector, uint hit_before)
-{
-    mat4  still = to_previous_vs[0], mirror = to_previous_vs[reflector] - still, seen = to_previous_vs[hit_before] - still;
-    float moved = length(still[3].xyz);
-    for (int i = 0; i < 4; ++i) moved += length(mirror[i]) + length(seen[i]);
-    return moved < 1e-5;
-}
-
 // Normal of the plane that a pixel is a piece of. 1 / distance = a + b x + c y over the slopes x and y, so with P = distance (x, y, -1) the plane is
 // (b, c, -a) P = 1; orthographic: distance = a + b x + c y.
 vec3 plane_normal_vs(ivec2 pixel, float depth)
@@ -105,8 +96,8 @@ int find_history(ivec2 pixel, out History found)
     vec3 normal = turned_pvs(normalize(imageLoad(normal_image, pixel).xyz), object), stored_normal = previous_normal_pvs(px);
     if (reject_normal > -1.0 && !(dot(normal, stored_normal) >= reject_normal * length(stored_normal))) return HISTORY_OTHER_NORMAL;
     vec4 facts = imageLoad(previous_facts_image, ivec2(place_px));
-    // What was met there has moved on, and the environment behind it had no ray yet.
-    if (now.w == hit_nothing && facts.z >= 0.0 && !moves_as_infinite(object, uint(facts.z))) return HISTORY_OTHER_HIT;
+    // What was met there may have moved on, and uncovered the environment.
+    if (now.w == hit_nothing && facts.z != hit_nothing && stands_still == 0) return HISTORY_OTHER_HIT;
     bool known = facts.z != hit_unknown && now.w != hit_unknown;
     if (reject_hit && known && facts.z != now.w) return HISTORY_OTHER_HIT;
     found.reflection = previous_reflection(place_px);

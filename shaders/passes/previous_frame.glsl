@@ -8,6 +8,7 @@ layout(set = 0, binding = 40, scalar) uniform PreviousView
     vec2  previous_jitter_px;
     float previous_near_m, previous_far_m;
     int   takes_history; // 0: the frame is still and repeats itself
+    int   stands_still;  // camera and all objects; there may be jitter
 };
 layout(set = 0, binding = 41, scalar) readonly buffer Objects { mat4 to_previous_vs[]; }; // by object; 0: what stands still
 layout(set = 0, binding = 42, r32ui) uniform readonly uimage2D object_image;
