@@ -31,7 +31,7 @@ vec4 mean_reflection(uint first)
     for (int ray = 0; ray < rays_per_pixel; ++ray)
     {
         PackedHit hit = packed_hit(first + ray);
-        if (unpack_status(hit.pixel) == TRACE_HIT)
+        if (shows_surface(hit))
         {
             vec4 reflection = reflection_of(first + ray, hit);
             sum += vec4(reflection.rgb * reflection.a, reflection.a);

@@ -27,7 +27,7 @@ vec4 lobe_ray_light(uint index, ivec2 pixel, int number)
     if (light.a < 1.0) light.rgb = mix(environment_lobe(direction, direction, 0.7 * roughness), light.rgb, light.a);
     light.a = 1.0;
 #endif
-    bool  hits    = unpack_status(hit.pixel) == TRACE_HIT;
+    bool  hits    = shows_surface(hit);
     vec3  end_vs  = hits ? px_to_vs(ray.origin + ray.delta * hit.t) : origin_vs + direction * ray_far_m;
     float density = roughness >= mirror_roughness ? lobe_density(own.normal_vs, own.to_eye_vs, direction, own.alpha) : 0.0;
     imageStore(ray_light_image, pixel + ivec2(0, number * size_px.y), light);

@@ -1,6 +1,7 @@
 // What a ray brings back of the surface that it hit, and how much that weighs. After ray_list.glsl, hit_list.glsl, view.glsl,
 // reflecting.glsl and pass/parameters.
 #include "passes/blocks.glsl"
+#include "passes/shown_hits.glsl"
 
 layout(set = 0, binding = 11, rgba16f) uniform readonly image2D radiance_image;
 layout(set = 0, binding = 12, rgba16f) uniform readonly image2D highlight_image;
@@ -153,7 +154,7 @@ float attenuation_at(float distance_m)
 // What the ray found; nothing if it missed.
 Found found_by(PackedRay ray, PackedHit found)
 {
-    if (unpack_status(found.pixel) != TRACE_HIT) return Found(vec3(0), 0.0, 0.0);
+    if (!shows_surface(found)) return Found(vec3(0), 0.0, 0.0);
     ivec2 hit       = unpack_pixel(found.pixel);
     int   layer     = unpack_layer(found.pixel);
     vec3  point     = ray.origin + ray.delta * found.t;

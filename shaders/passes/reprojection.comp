@@ -8,6 +8,7 @@
 #include "rays/lobe_threshold.glsl"
 #include "passes/camera.glsl"
 #include "pass/parameters"
+#include "passes/shown_hits.glsl"
 #include "passes/previous_frame.glsl"
 #include "api/reprojection_api.glsl"
 #include "reprojection/parameters"
@@ -107,7 +108,7 @@ void main()
     for (int ray = 0; ray < rays_per_pixel; ++ray)
     {
         PackedHit found = packed_hit(first + ray);
-        if (unpack_status(found.pixel) != TRACE_HIT) continue;
+        if (!shows_surface(found)) continue;
         Reflection  now  = reflection_of(packed_ray(first + ray), found, hit_object);
         Reprojected then = reproject(now);
         length_m += now.ray_length_m;

@@ -42,7 +42,10 @@ std::vector<Parameter> parameters()
                          "falloff of reflected light with the ray's length d in metres: none, 1/d or 1/d^2; at most 1"),
         real_parameter("min_direction_cosine", 0, -1, 1,
                        "smallest cosine between the ray and the direction to the hit surface; below it the hit counts "
-                       "as a miss; -1: every hit counts")};
+                       "as a miss; -1: every hit counts"),
+        boolean_parameter("stopped_shows_front", true,
+                          "a ray that stopped (behind = stop) brings back the light of the pixel where it stopped, "
+                          "whose other side it met; false: it counts as a miss")};
 }
 
 } // namespace
