@@ -10,6 +10,7 @@
 #include "core/version.h"
 #include "harness/merge_results.h"
 #include "harness/run_experiment.h"
+#include "viewer/viewer.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/ranges.h>
@@ -176,6 +177,20 @@ int main(int argc, char** argv)
     explained->add_option("-o,--output", ray.picture.output, "Also write a picture (.png) or all numbers (.json)");
     explained->add_flag("--json", ray.json, "Print all numbers as JSON instead of the table");
     explained->callback([&] { command = [&] { return explain_ray(common, ray); }; });
+
+    ViewOptions view;
+    auto*       viewed = app.add_subcommand("view", "A window: camera, technique and settings changed live");
+    viewed->add_option("SCENE", view.picture.scene, "As for render")->required();
+    viewed->add_option("-t,--technique", view.picture.technique, "Technique to begin with")
+        ->default_val("hiz")
+        ->capture_default_str();
+    viewed->add_option("-p,--parameter", view.picture.parameters, "name=value, as for render");
+    viewed->add_option("--size", view.picture.size, "WIDTHxHEIGHT in pixels; default: the view's own");
+    viewed->add_option("--view", view.picture.view, "Name of a view or camera path of the scene")
+        ->capture_default_str();
+    add_frame_options(*viewed, view.picture);
+    viewed->add_option("--script", view.script, "Commands in the place of mouse and keyboard (docs/viewer.md)");
+    viewed->callback([&] { command = [&] { return view_scene(common, view); }; });
 
     PlanOptions plan;
     auto*       planned = app.add_subcommand("plan", "Which passes a frame needs, why, and what they cost or save");

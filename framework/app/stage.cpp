@@ -56,20 +56,22 @@ void show_frame(Stage& stage, const std::string& view, SequenceFrame at, glm::dv
                                    motion_at(stage.scene, view, stage.view.size_px, at.frame));
 }
 
+void set_choice(const Technique& technique, Choice& choice, const std::string& pair)
+{
+    const auto equals = pair.find('=');
+    if (equals == std::string::npos) throw_spec_error("-p {}: expected name=value", pair);
+    const std::string name = pair.substr(0, equals), text = pair.substr(equals + 1), place = "-p " + pair;
+    const auto        setting = std::ranges::find(all_settings(), name, &Setting::name);
+    if (setting == all_settings().end())
+        choice.values[name] = parse_parameter(find_parameter(technique, name, place), text, place);
+    else
+        setting->set(choice.settings, parse_parameter(*setting, text, place));
+}
+
 Choice parse_choice(const Technique& technique, const std::vector<std::string>& pairs)
 {
     Choice choice{default_values(technique), {}};
-    for (const std::string& pair : pairs) {
-        const auto equals = pair.find('=');
-        if (equals == std::string::npos) throw_spec_error("-p {}: expected name=value", pair);
-        const std::string name = pair.substr(0, equals), text = pair.substr(equals + 1), place = "-p " + pair;
-        const auto        setting = std::ranges::find(all_settings(), name, &Setting::name);
-        if (setting == all_settings().end()) {
-            choice.values[name] = parse_parameter(find_parameter(technique, name, place), text, place);
-            continue;
-        }
-        setting->set(choice.settings, parse_parameter(*setting, text, place));
-    }
+    for (const std::string& pair : pairs) set_choice(technique, choice, pair);
     return choice;
 }
 

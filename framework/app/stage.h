@@ -33,5 +33,7 @@ struct Choice {
 };
 /// name=value pairs: settings of [trace] and [passes], or else parameters of the technique. Throws SpecError.
 Choice parse_choice(const Technique& technique, const std::vector<std::string>& pairs);
+/// One more pair.
+void set_choice(const Technique& technique, Choice& choice, const std::string& pair);
 
 } // namespace ssrlab

@@ -34,21 +34,6 @@ fs::path temporary_path(const fs::path& path)
     return path.parent_path() / fmt::format(".{}.{}.tmp{}", path.stem().string(), getpid(), path.extension().string());
 }
 
-/// The first three channels as red, green and blue; a missing one repeats the last.
-std::vector<uint8_t> to_srgb8(const Image& image)
-{
-    const size_t         channels = image.channels.size();
-    const size_t         pixels   = image.values.size() / channels;
-    std::vector<uint8_t> bytes(pixels * 3);
-    parallel_pixels(image.size_px.x, image.size_px.y, [&](size_t i) {
-        for (size_t c = 0; c < 3; ++c) {
-            const float value = image.values[i * channels + std::min(c, channels - 1)];
-            bytes[i * 3 + c]  = uint8_t(std::lround(255 * linear_to_srgb(value)));
-        }
-    });
-    return bytes;
-}
-
 OIIO::ImageSpec make_spec(const Image& image, bool png)
 {
     OIIO::ImageSpec spec(image.size_px.x, image.size_px.y, png ? 3 : int(image.channels.size()),
@@ -86,6 +71,20 @@ void require_consistent(const fs::path& path, const Image& image)
 }
 
 } // namespace
+
+std::vector<uint8_t> to_srgb8(const Image& image)
+{
+    const size_t         channels = image.channels.size();
+    const size_t         pixels   = image.values.size() / channels;
+    std::vector<uint8_t> bytes(pixels * 3);
+    parallel_pixels(image.size_px.x, image.size_px.y, [&](size_t i) {
+        for (size_t c = 0; c < 3; ++c) {
+            const float value = image.values[i * channels + std::min(c, channels - 1)];
+            bytes[i * 3 + c]  = uint8_t(std::lround(255 * linear_to_srgb(value)));
+        }
+    });
+    return bytes;
+}
 
 void write_image(const fs::path& path, const Image& image)
 {

@@ -5,6 +5,9 @@
 
 namespace ssrlab {
 
+/// sRGB-encoded: the first three channels as red, green and blue; a missing one repeats the last.
+std::vector<uint8_t> to_srgb8(const Image& image);
+
 /// .exr: float, all channels, linear, metadata as attributes. .png: the first three channels, sRGB-encoded, 8 bit.
 /// Written beside and renamed, so that a partial file never carries the final name. Throws Failure with path and reason, SpecError for another ending.
 void write_image(const std::filesystem::path& path, const Image& image);

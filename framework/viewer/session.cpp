@@ -1,0 +1,216 @@
+#include "viewer/session.h"
+
+#include "compare/pictures.h"
+#include "core/error.h"
+#include "core/names.h"
+#include "harness/experiment.h"
+#include "truth/glossy_truth.h"
+#include "truth/scene_truth.h"
+#include "truth/screen_truth.h"
+#include "viewer/camera_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ssrlab {
+namespace {
+
+constexpr size_t timed_frames        = 9;
+constexpr double timing_budget_ms    = 1000;
+constexpr int    true_rays_per_pixel = 16;
+
+double spent_ms(const std::vector<FrameTimes>& times)
+{
+    double sum = 0;
+    for (const FrameTimes& one : times) sum += one.total_ms();
+    return sum;
+}
+
+bool wants_true_picture(const Session& session) { return session.show == "truth" || session.split > 0; }
+
+void draw_view(Session& session)
+{
+    Stage& stage = session.stage;
+    if (session.camera_moved) {
+        stage.view    = camera_to_view(session.camera, stage.view.size_px);
+        stage.gbuffer = render_gbuffer(stage.gpu, stage.uploaded, stage.view);
+    }
+    session.stale.view = false;
+}
+
+void trace(Session& session)
+{
+    Stage& stage = session.stage;
+    session.times.clear();
+    session.frame = prepare_frame(stage.gpu, make_frame_buffers(stage.gpu, stage.gbuffer), *session.technique,
+                                  session.choice.values, session.choice.settings);
+    run_frame(stage.gpu, *session.frame); // the driver compiles
+    session.times.push_back(run_frame(stage.gpu, *session.frame));
+    session.shaded      = read_shaded(stage.gpu, *session.frame);
+    session.counted     = count_frame(stage.gpu, *session.frame);
+    session.stale.trace = false;
+    session.stale.shown = true;
+}
+
+void find_truth(Session& session)
+{
+    const TraceSettings& settings = session.choice.settings.trace;
+    session.gbuffer = read_gbuffer(session.stage.gpu, *session.stage.gbuffer); // with the layers that were traced
+    if (session.bvh)
+        session.scene_truth = scene_truth(*session.bvh, session.stage.scene, session.gbuffer, settings);
+    else
+        session.screen_truth = screen_truth(session.gbuffer, settings);
+    session.stale.truth = false;
+    session.stale.shown = true;
+}
+
+void find_true_picture(Session& session)
+{
+    if (!session.bvh)
+        throw_spec_error("a frame of another renderer has no triangles, so no true reflection can be computed");
+    const GlossyTruth truth    = glossy_truth(*session.bvh, session.stage.scene, session.gbuffer,
+                                              session.choice.settings.trace, {.rays = true_rays_per_pixel});
+    session.true_picture       = true_picture(truth, session.gbuffer, session.stage.scene.ambient);
+    session.stale.true_picture = false;
+    session.stale.shown        = true;
+}
+
+Image false_colours(const Session& session)
+{
+    if (session.show == "fetches") return fetch_heat_map(session.counted);
+    if (session.show == "agreement")
+        return session.scene_truth ? agreement_picture(session.counted, *session.scene_truth)
+                                   : agreement_picture(session.counted, *session.screen_truth);
+    if (!session.scene_truth)
+        throw_spec_error("causes: a frame of another renderer has no triangles, so the cause of an error is not known");
+    return causes_picture(session.counted, *session.scene_truth, session.gbuffer);
+}
+
+/// The right part of one picture in the place of another's.
+void replace_right(Image& left, const Image& right, double share)
+{
+    const int    width = left.size_px.x;
+    const size_t from  = static_cast<size_t>(std::lround((1 - share) * width));
+    for (size_t y = 0; y < static_cast<size_t>(left.size_px.y); ++y) {
+        const auto row = static_cast<ptrdiff_t>(3 * y * static_cast<size_t>(width));
+        std::copy(right.values.begin() + row + static_cast<ptrdiff_t>(3 * from),
+                  right.values.begin() + row + static_cast<ptrdiff_t>(3 * width),
+                  left.values.begin() + row + static_cast<ptrdiff_t>(3 * from));
+    }
+}
+
+void compose(Session& session)
+{
+    const Display display{session.exposure_ev, Display::Transform::clip};
+    session.measures = session.scene_truth
+                           ? compare_to_scene_truth(session.counted, *session.scene_truth, nullptr, session.gbuffer)
+                           : compare_to_screen_truth(session.counted, *session.screen_truth);
+    merge(session.measures, count_work(session.counted));
+    if (session.show == "truth")
+        session.shown = to_display(session.true_picture, display);
+    else
+        session.shown = session.show == "picture" ? to_display(session.shaded, display) : false_colours(session);
+    if (session.split > 0) replace_right(session.shown, to_display(session.true_picture, display), session.split);
+    session.stale.shown = false;
+    ++session.version;
+}
+
+bool step(Session& session)
+{
+    Stale& stale = session.stale;
+    if (stale.view)
+        draw_view(session);
+    else if (stale.trace)
+        trace(session);
+    else if (stale.truth)
+        find_truth(session);
+    else if (stale.true_picture && wants_true_picture(session))
+        find_true_picture(session);
+    else if (stale.shown)
+        compose(session);
+    else if (session.times.size() < timed_frames && spent_ms(session.times) < timing_budget_ms)
+        session.times.push_back(run_frame(session.stage.gpu, *session.frame));
+    else
+        return false;
+    return true;
+}
+
+} // namespace
+
+std::unique_ptr<Session> open_session(const CommonOptions& common, const PictureOptions& picture)
+{
+    auto     opened    = std::make_unique<Session>();
+    Session& session   = *opened;
+    session.picture    = picture;
+    session.techniques = list_techniques(common.technique_dirs);
+    session.technique  = &find_technique(session.techniques, picture.technique);
+    session.choice     = parse_choice(*session.technique, picture.parameters);
+    session.stage      = prepare_stage(common, picture);
+    if (!camera_is_free(session)) return opened;
+    session.bvh     = std::make_unique<SceneBvh>(session.stage.scene);
+    session.camera  = camera_at(session.stage.scene, picture.view, picture.at);
+    session.gbuffer = read_gbuffer(session.stage.gpu, *session.stage.gbuffer);
+    aim(session);
+    return opened;
+}
+
+bool camera_is_free(const Session& session) { return !session.stage.scene.frame; }
+
+void set_value(Session& session, const std::string& name, const std::string& text)
+{
+    const std::string place = name + "=" + text;
+    const auto        share = [&](double min, double max) {
+        return parse_parameter(
+                   {.name = name, .type = ParameterType::real, .min = min, .max = max, .choices = {}, .doc = {}}, text, place);
+    };
+    session.problem.clear();
+    if (name == "technique") {
+        session.technique     = &find_technique(session.techniques, text);
+        session.choice.values = default_values(*session.technique);
+        session.stale.trace   = true;
+        return;
+    }
+    if (name == "show" || name == "split" || name == "exposure") {
+        if (name == "split") session.split = share(0, 1);
+        if (name == "exposure") session.exposure_ev = share(-32, 32);
+        if (name == "show") {
+            const std::vector<std::string> known(shown_names.begin(), shown_names.end());
+            if (std::ranges::find(known, text) == known.end())
+                throw_spec_error("{}: {}", place, unknown_name("kind of picture", text, known));
+            session.show = text;
+        }
+        session.stale.shown = true;
+        return;
+    }
+    const TraceSettings before = session.choice.settings.trace;
+    set_choice(*session.technique, session.choice, place);
+    session.stale.trace = true;
+    if (before != session.choice.settings.trace) session.stale.truth = session.stale.true_picture = true;
+}
+
+void camera_changed(Session& session)
+{
+    session.problem.clear();
+    session.camera_moved = true;
+    session.stale        = {};
+}
+
+void aim(Session& session)
+{
+    const glm::ivec2 middle = session.stage.view.size_px / 2;
+    const float      depth  = session.gbuffer.depth[pixel_index(middle, session.stage.view.size_px)];
+    if (depth > 0) set_target_distance(session.camera, depth_to_distance(session.stage.view, depth));
+}
+
+bool work(Session& session)
+{
+    if (!session.problem.empty()) return false;
+    try {
+        return step(session);
+    } catch (const std::runtime_error& error) {
+        session.problem = error.what();
+        return false;
+    }
+}
+
+} // namespace ssrlab

@@ -1,0 +1,81 @@
+// What the viewer shows and what was measured of it, without a window: settings in, pictures and numbers out.
+#pragma once
+
+#include "app/stage.h"
+#include "compare/display.h"
+#include "compare/measures.h"
+#include "truth/scene_bvh.h"
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ssrlab {
+
+inline constexpr std::array<std::string_view, 5> shown_names = {"picture", "agreement", "causes", "fetches", "truth"};
+
+/// What has to be made again.
+struct Stale {
+    bool view = true, trace = true, truth = true, true_picture = true, shown = true;
+};
+
+struct Session {
+    PictureOptions            picture; // as the command line names it
+    std::vector<Technique>    techniques;
+    Stage                     stage;
+    std::unique_ptr<SceneBvh> bvh; // empty: a frame of another renderer
+
+    // Panel, keys and script change these and say what is stale.
+    const Technique* technique = nullptr;
+    Choice           choice;
+    Camera           camera;
+    bool             camera_moved = false;
+    std::string      show         = "picture";
+    double           split        = 0; // the right part of the picture that shows the true reflection, as a share
+    double           exposure_ev  = 0;
+    Stale            stale;
+
+    // What work() made of them.
+    PreparedFramePtr           frame;
+    std::vector<FrameTimes>    times; // of this frame, one after another
+    GBufferImage               gbuffer;
+    Image                      shaded, true_picture;
+    TraceResult                counted;
+    std::optional<SceneTruth>  scene_truth;
+    std::optional<TraceResult> screen_truth; // of a frame of another renderer
+    MeasureValues              measures;
+    Image                      shown;       // linear display light
+    int                        version = 0; // of `shown`
+    std::string                problem;     // why the settings cannot be shown; empty: they can
+};
+
+std::unique_ptr<Session> open_session(const CommonOptions& common, const PictureOptions& picture);
+
+/// By name: technique, show, split, exposure, a setting, or a parameter of the technique. Throws SpecError.
+void set_value(Session& session, const std::string& name, const std::string& text);
+/// After a change of the camera.
+void camera_changed(Session& session);
+/// Orbits turn about the surface in the middle of the picture.
+void aim(Session& session);
+bool camera_is_free(const Session& session);
+
+/// Does the next piece of what is stale, or times another frame; false: nothing was left to do.
+bool work(Session& session);
+
+/// A measured number and what it is, for people and scripts.
+struct Reading {
+    std::string name, value;
+};
+std::vector<Reading> readings(const Session& session);
+
+/// What the ray of a pixel did, and what it should have done.
+struct PixelRay {
+    std::string               text;
+    std::optional<glm::dvec2> found_px, true_px;
+    std::string               command; // ssrlab ray …; empty where the camera is no view of the scene
+};
+PixelRay ray_at(const Session& session, glm::ivec2 pixel);
+
+} // namespace ssrlab

@@ -1,0 +1,15 @@
+// ssrlab view: a window with one scene, in which everything that decides the picture can be changed.
+#pragma once
+
+#include "app/commands.h"
+
+namespace ssrlab {
+
+struct ViewOptions {
+    PictureOptions picture;
+    std::string    script; // a file of commands (docs/viewer.md) in the place of mouse and keyboard; empty: none
+};
+
+int view_scene(const CommonOptions& common, const ViewOptions& options);
+
+} // namespace ssrlab
