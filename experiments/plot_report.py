@@ -11,7 +11,7 @@ import plot_pictures
 import plot_verdict
 from plot_data import describe
 from plot_tables import error_table, failed_table, plan_of, plain_table, ranking_table, row_table, split_of, SPLIT
-from ssrlab_results import unit_of
+from ssrlab_results import inputs_of, unit_of
 
 TEMPLATES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "report")
 LIBRARY = "/usr/share/javascript/chart.js/chart.min.js"  # Debian's libjs-chart.js
@@ -53,12 +53,34 @@ def program(results):
     return words[0] if words else "build/bin/ssrlab"
 
 
+def given_options(results):
+    """Those of the program itself, as they were given to `ssrlab run`."""
+    words = shlex.split(results.environment.get("command_line", ""))
+    return [shlex.quote(option) for name in ("--techniques", "--device") for at, word in enumerate(words[:-1]) if word == name
+            for option in (name, words[at + 1])]
+
+
 def again(results, run):
     """Measures one run again, in a folder of its own."""
-    words = shlex.split(results.environment.get("command_line", ""))
-    given = [option for name in ("--techniques", "--device") for at, word in enumerate(words[:-1]) if word == name
-             for option in (name, words[at + 1])]
-    return " ".join([program(results)] + [shlex.quote(word) for word in given] + ["run", specification_path(results), "--only", run, "-o", f"again/{run}"])
+    return " ".join([program(results)] + given_options(results) + ["run", specification_path(results), "--only", run, "-o", f"again/{run}"])
+
+
+def as_option(value):
+    """As -p reads it: a column of whole numbers with gaps is one of floats."""
+    if pd.api.types.is_bool(value):
+        return str(bool(value)).lower()
+    return value if isinstance(value, str) else repr(float(value)).removesuffix(".0")
+
+
+def ray_command(results, row):
+    """Explains a ray of the run; --pixel X,Y comes behind it. Passes around the trace do not change what it finds."""
+    passes = results.environment.get("pass_parameters", "").split()
+    words = ["ray", shlex.quote(row.scene), "--view", shlex.quote(row["view"]), "--size", f"{row.width}x{row.height}", "-t", row.technique]
+    for name, column in (("--frame", "frame"), ("--jitter", "jitter_phases")):
+        words += [name, f"{row[column]:g}"] if row.get(column, 0) > 0 else []
+    for name in inputs_of(results.all_rows):
+        words += ["-p", f"{name}={as_option(row[name])}"] if name not in passes and plot_verdict.has_value(row, name) else []
+    return " ".join([program(results)] + given_options(results) + words)
 
 
 def chart_data(results, chosen):
@@ -74,7 +96,7 @@ def chart_data(results, chosen):
                 "floor": 0.5 / max(1.0, row.rays), "picture": plain(row.picture) if "picture" in row else None,
                 "costs": {**costs, "fetches": costs.get("fetches_mean")},
                 "errors": {name: plain(error_of(row, name)) for name in ERRORS if plot_verdict.has_value(row, name)},
-                "commands": [["Measure it again:", again(results, row.run_id)]], "values": [plain(row[name]) for name in columns]}
+                "commands": [["Measure it again:", again(results, row.run_id)]], "ray": ray_command(results, row), "size": [int(row.width), int(row.height)], "values": [plain(row[name]) for name in columns]}
         for series, line in rows.groupby("series"):
             # Several numbers vary: a cloud of points, not a line.
             cloud[series] = cloud.get(series, False) or sum(line[name].nunique() > 1 for name in results.swept(rows)) > 1

@@ -164,6 +164,24 @@ function prepare_curve() {
   addEventListener("afterprint", () => chart.resize());
 }
 
+// ---- The ray of a pixel of the shown pictures
+function show_pixel(compare, x, y, picture, other) {
+  const run = data.runs[(picture.closest("[data-run]") || other.closest("[data-run]"))?.dataset.run];
+  if (!run) return;
+  const pixel = [x, y].map((share, i) => Math.min(run.size[i] - 1, Math.max(0, Math.floor(share * run.size[i]))));
+  const told = get(".pixel", compare), spot = get(".spot", compare);
+  get("code", told).textContent = `${run.ray} --pixel ${pixel}`;
+  get("button", told).textContent = "Copy";
+  Object.assign(spot.style, { left: `${100 * x}%`, top: `${100 * y}%` });
+  told.hidden = spot.hidden = false;
+}
+
+function copy_command(button) {
+  const command = get("code", button.parentNode);
+  getSelection().selectAllChildren(command); // where a page may not write to the clipboard
+  navigator.clipboard?.writeText(command.textContent).then(() => { button.textContent = "Copied"; }, () => {});
+}
+
 // ---- Pictures side by side under a slider
 function prepare_compare(compare) {
   const pictures = all(".shots img", compare.closest("section"));
@@ -191,10 +209,21 @@ function prepare_compare(compare) {
     slider.value = 100 * (event.clientX - box.left) / box.width;
     place();
   };
+  let pressed_at = null, dragged = false;
   slider.addEventListener("input", place);
-  stage.addEventListener("pointerdown", follow);
-  stage.addEventListener("pointermove", event => { if (event.buttons) follow(event); });
+  stage.addEventListener("pointerdown", event => { pressed_at = event.clientX; dragged = false; });
+  stage.addEventListener("pointermove", event => {
+    dragged ||= event.buttons > 0 && Math.abs(event.clientX - pressed_at) > 3;
+    if (event.buttons && dragged) follow(event);
+  });
   stage.addEventListener("dragstart", event => event.preventDefault());
+  stage.addEventListener("click", event => {
+    if (dragged) return;
+    const box = stage.getBoundingClientRect(), x = (event.clientX - box.left) / box.width, y = (event.clientY - box.top) / box.height;
+    const [left, right] = ["left", "right"].map(side => pictures[get(`.choose-${side}`, compare).value]);
+    show_pixel(compare, x, y, ...(100 * x < slider.value ? [left, right] : [right, left]));
+  });
+  get(".pixel button", compare).addEventListener("click", event => copy_command(event.target));
   for (const [i, picture] of pictures.entries())
     picture.addEventListener("click", () => {
       get(".choose-right", compare).value = i;

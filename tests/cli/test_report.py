@@ -1,6 +1,7 @@
 """The report in a browser: nothing breaks, everything answers, nothing overflows. Skipped without Chromium."""
 import os
 import re
+import shlex
 import shutil
 import unittest
 
@@ -94,6 +95,25 @@ class Test(Case):
         self.assertEqual(set(kinds), {"picture", "agreement", "causes", "FLIP", "fetches"})
         names = run("return [...document.querySelectorAll('.choose-left option')].map(o => o.textContent)")
         self.assertTrue({"off", "truth", "hiz", "dda"} <= set(names), names)
+
+        # A click on a pixel shows the command of its ray, which runs.
+        box = run("const s = document.querySelector('.stage'); s.scrollIntoView({block: 'center'}); const b = s.getBoundingClientRect(); return [b.left, b.top, b.width, b.height]")
+        run("const s = document.querySelector('.compare input'); s.value = 90; s.dispatchEvent(new Event('input'))")
+        self.assertFalse(run("return document.querySelector('.pixel').checkVisibility()"))
+        at = [box[0] + box[2] * 48.5 / 96, box[1] + box[3] * 40.5 / 54]
+        for kind in ("mousePressed", "mouseReleased"):
+            page.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": kind, "x": at[0], "y": at[1], "button": "left", "clickCount": 1})
+        self.wait(page, "return document.querySelector('.pixel').checkVisibility()")
+        self.assertEqual(run("return document.querySelector('.compare input').value"), "90", "a click leaves the border")
+        command = shlex.split(run("return document.querySelector('.pixel code').textContent"))
+        shown = run("const c = document.querySelector('.choose-left'); const i = [...document.querySelectorAll('.frame')][0].querySelectorAll('.shots img')[c.value];"
+                    "return data.runs[i.closest('[data-run]').dataset.run].name")
+        self.assertEqual(command[command.index("-t") + 1], shown.split(",")[0])
+        self.assertEqual(command[-2:], ["--pixel", "48,40"])
+        self.assertIn("max_distance_m=9", command)
+        self.ssrlab(*command[1:], says=["Ray of pixel (48, 40)", "screen truth: "])
+        run("document.querySelector('.pixel button').click()")
+        self.assertEqual(shlex.split(run("return String(getSelection())")), command)
 
         # Sorting and filtering.
         values = ("return [...document.querySelectorAll('#ranking tbody tr')].filter(r => !r.hidden).map(r => r.cells[arguments[0]].dataset.sort)")
