@@ -91,6 +91,14 @@ class Test(Case):
         self.assertLess(changed[1], 0.02)
         self.assertGreater(changed[2], 0.2)
 
+    def test_a_frame_of_another_renderer(self):
+        self.ssrlab("gbuffer", *SCENE, "-o", "frame.exr")
+        text = self.view("print\nset show=agreement\nscreenshot a.png\n", "-t", "dda", scene=("frame.exr",), says=["screen_f1_1px: 100.00 %"])
+        self.assertNotIn("\nrecall_1px", text)
+        self.assertIn((0x00, 0x9e, 0x73), self.shown("a.png").getdata())
+        self.view("orbit 1 1\n", scene=("frame.exr",), code=2, says=["script.txt:1: ", "camera"])
+        self.view("set show=causes\nprint\n", scene=("frame.exr",), code=2, says=["script.txt:2: ", "no triangles"])
+
     def test_mistakes_name_their_place(self):
         self.view("# a comment\nscreenshoot a.png\n", code=2, says=["script.txt:2: ", "did you mean 'screenshot'?"])
         self.view("set steps=0\n", *MARCH, code=2, says=["script.txt:1: ", "steps"])
