@@ -17,7 +17,7 @@ template <typename Field>
 Setting trace_setting(const char* name, ParameterType type, Field TraceSettings::*field, double max, const char* doc,
                       double min = 0)
 {
-    return {{name, type, static_cast<double>(TraceSettings{}.*field), min, max, {}, doc},
+    return {{name, type, static_cast<double>(FrameSettings{}.trace.*field), min, max, {}, doc},
             "trace",
             [=](const FrameSettings& settings) { return static_cast<double>(settings.trace.*field); },
             [=](FrameSettings& settings, double value) { settings.trace.*field = static_cast<Field>(value); }};
@@ -29,7 +29,7 @@ Setting trace_choice(const char* name, Choice TraceSettings::*field, std::span<c
 {
     return {{.name          = name,
              .type          = ParameterType::choice,
-             .default_value = static_cast<double>(TraceSettings{}.*field),
+             .default_value = static_cast<double>(FrameSettings{}.trace.*field),
              .max           = static_cast<double>(choices.size() - 1),
              .choices       = {choices.begin(), choices.end()},
              .doc           = doc},
@@ -51,7 +51,7 @@ Setting surface_setting()
     const auto number_of = [=](const TraceSettings& trace) {
         return static_cast<double>(&find_surface(trace.surface) - surfaces.data());
     };
-    parameter.default_value = number_of({});
+    parameter.default_value = number_of(FrameSettings{}.trace);
     return {parameter, "trace", [=](const FrameSettings& settings) { return number_of(settings.trace); },
             [=](FrameSettings& settings, double value) {
                 settings.trace.surface = surfaces[static_cast<size_t>(value)].id;
