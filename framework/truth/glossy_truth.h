@@ -9,7 +9,7 @@
 // have no size: a path takes all surfaces to be at least as rough as the roughest one that it came from (A. Kaplanyan, C. Dachsbacher
 // 2013, "Path Space Regularization for Holistic and Robust Light Transport"), and at least of roughness 0.05, as the shaders do.
 //
-// Rays follow the rules of scene_truth.h; random numbers are a hash of pixel, ray and seed, so the result is always the same.
+// Rays follow the rules of scene_truth.h. Their random numbers come from a hash of pixel, ray and seed, so the result is always the same.
 #pragma once
 
 #include "core/image.h"
@@ -29,7 +29,7 @@ struct GlossyTruth {
     glm::ivec2             size_px{0, 0};
     std::vector<uint32_t>  rays;           // that were traced: 0, 1 (mirror) or GlossySettings::rays
     std::vector<glm::vec3> radiance;       // linear, mean of weight * radiance
-    std::vector<glm::vec3> standard_error; // of that mean
+    std::vector<glm::vec3> standard_error; // of that mean if the rays were independent; they fill the lobe evenly and err less
     std::vector<glm::vec3> albedo;         // mean weight: the share of light that is reflected
 };
 

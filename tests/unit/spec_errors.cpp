@@ -244,8 +244,9 @@ TEST(Spec, AFrameOfASequenceIsPartOfARunsIdentity)
 
 TEST(Spec, IdsAreStableAndARunListedTwiceComesOnce)
 {
-    const Experiment experiment = load_text("scenes = [\"a\", \"a\"]\nsizes = \"8x8\"\n[[techniques.linear]]\nsteps = "
-                                            "[64, 32, 64]\n[[techniques.linear]]\n");
+    const Experiment experiment = load_text("scenes = [\"a\", \"a\"]\nsizes = \"8x8\"\n[trace]\nsurface = \"box\"\n"
+                                            "behind = \"hit\"\n[[techniques.linear]]\nsteps = [64, 32, 64]\n"
+                                            "[[techniques.linear]]\n");
     const auto       runs       = expand(experiment, techniques());
     ASSERT_EQ(runs.size(), 2U);
     EXPECT_NE(runs[0].id, runs[1].id);
