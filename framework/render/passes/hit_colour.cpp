@@ -40,7 +40,7 @@ std::vector<Parameter> parameters()
         real_parameter("base_colour_min_weight", 0, 0, 1, "smallest weight of the reflector's own colour"),
         choice_parameter(Attenuation::off,
                          "falloff of reflected light with the ray's length d in metres: none, 1/d or 1/d^2; at most 1"),
-        real_parameter("min_direction_cosine", 0, -1, 1,
+        real_parameter("min_direction_cosine", -1, -1, 1,
                        "smallest cosine between the ray and the direction to the hit surface; below it the hit counts "
                        "as a miss; -1: every hit counts"),
         boolean_parameter("stopped_shows_front", true,
