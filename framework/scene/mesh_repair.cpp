@@ -118,18 +118,19 @@ void weld_split_vertices(Mesh& mesh, const std::vector<uint32_t>& source)
 
 size_t drop_bad_triangles(Mesh& mesh)
 {
-    const size_t before = mesh.indices.size();
-    size_t       end    = 0;
-    for (size_t i = 0; i + 2 < before; i += 3) {
+    size_t end = 0, unusable = 0;
+    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
         const Corners corners = corners_of(mesh, i);
-        if (!usable(corners.a) || !usable(corners.b) || !usable(corners.c) || !has_area(corners)) continue;
+        const bool    places  = usable(corners.a) && usable(corners.b) && usable(corners.c);
+        unusable += !places;
+        if (!places || !has_area(corners)) continue;
         std::copy_n(mesh.indices.begin() + static_cast<std::ptrdiff_t>(i), 3,
                     mesh.indices.begin() + static_cast<std::ptrdiff_t>(end));
         end += 3;
     }
     mesh.indices.resize(end);
     drop_unused_vertices(mesh);
-    return (before - end) / 3;
+    return unusable;
 }
 
 void weld_equal_vertices(Mesh& mesh)

@@ -5,7 +5,8 @@
 
 namespace ssrlab {
 
-/// Removes triangles with an unusable position or without area, and vertices that nothing uses. Returns how many triangles.
+/// Removes triangles with an unusable position or without area, and vertices that nothing uses. Returns how many had an unusable position; those
+/// without area show nothing, and nobody misses them.
 size_t drop_bad_triangles(Mesh& mesh);
 
 /// Vertices that are equal in every bit become one.

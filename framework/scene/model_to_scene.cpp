@@ -61,7 +61,7 @@ void repair(Model& model)
     std::erase_if(model.meshes, [](const Mesh& mesh) { return mesh.indices.empty(); });
     if (dropped > 0)
         model.warnings.push_back(
-            fmt::format("{} triangles dropped: without area, or with positions that are not finite", dropped));
+            fmt::format("{} triangles dropped: positions that are not finite, or too large to compute with", dropped));
 }
 
 void add_draw(Scene& scene, const Mesh& mesh)
