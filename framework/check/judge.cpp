@@ -144,6 +144,25 @@ std::string Judge::unsound_hit(const RayInput& ray, const RayOutcome& outcome, c
     return {};
 }
 
+/// Does it meet something from behind in a pixel beside its way that it touches at a corner, where rounding may lead it through?
+bool Judge::passes_in_sliver(const RayInput& ray, const std::vector<Visit>& visits) const
+{
+    const Claim anywhere{.may_miss_between_samples = true};
+    const auto  passes = [&](glm::ivec2 pixel, int layer) {
+        const Range t = part_in_pixel(ray, pixel, sliver_px);
+        const bool  visited =
+            pixel == start_pixel(setup_.gbuffer, ray) || std::ranges::count(visits, pixel, &Visit::pixel) > 0;
+        if (visited || t.empty() || !on_image(setup_.gbuffer, pixel)) return false;
+        const Visit wide = visit(ray, pixel, layer, t.from, t.to);
+        return sides(ray, wide, anywhere).behind && wide.contact >= -depth_rounding(ray, wide);
+    };
+    return std::ranges::any_of(visits, [&](const Visit& v) {
+        for (const glm::ivec2& beside : {glm::ivec2(-1, 0), glm::ivec2(1, 0), glm::ivec2(0, -1), glm::ivec2(0, 1)})
+            if (passes(v.pixel + beside, v.layer)) return true;
+        return false;
+    });
+}
+
 /// A ray that passed must say whether it met something from behind.
 std::string Judge::unsound_end(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const
 {
@@ -153,7 +172,8 @@ std::string Judge::unsound_end(const RayInput& ray, const RayOutcome& outcome, c
         const double more_t = claim.may_hit_within_a_step ? 1 : 0; // how long its steps were, a miss does not say
         const bool   any    = std::ranges::any_of(
                  visits, [&](const Visit& v) { return sides(ray, v, claim).behind && may_touch(ray, v, more_t); });
-        return any ? "" : "ends as facing_away, but touches no surface that faces away";
+        return any || passes_in_sliver(ray, visits) ? ""
+                                                    : "ends as facing_away, but touches no surface that faces away";
     }
     if (outcome.status == TraceStatus::out_of_steps || claim.may_miss_between_samples || claim.may_miss_behind_objects)
         return "";

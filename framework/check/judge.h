@@ -87,6 +87,7 @@ private:
     std::string unsound_side(const RayInput& ray, const RayOutcome& outcome, const Visit& wide,
                              const Claim& claim) const;
     std::string unsound_hit(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
+    bool        passes_in_sliver(const RayInput& ray, const std::vector<Visit>& visits) const;
     std::string unsound_end(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
     std::string unsound(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
 

@@ -133,6 +133,21 @@ TEST(Judge, AMissOfWhatFacesAwayMustSaySo)
     EXPECT_EQ(Judge(away).judge(away.rays[0], miss(), {.may_miss_between_samples = true}).verdict, Verdict::allowed);
 }
 
+// A ray of slope 1 through corners: rounding may lead it through the pixel beside one, (21, 10), which holds what it meets from behind.
+TEST(Judge, PassingThroughACornerDecidesNothing)
+{
+    auto setup    = two_poles_facing(-1);
+    setup.rays[0] = ray_between(setup.gbuffer.view, {10, 0, 4.5}, {40, 30, 4.5});
+    const auto at = [&](glm::ivec2 holder) {
+        setup.gbuffer.depth =
+            picture_of(setup.gbuffer.view, [&](glm::ivec2 p) { return p == holder ? 4.0 : 0.0; }).depth;
+        return Judge(setup).judge(setup.rays[0], {TraceStatus::facing_away}, {}).verdict;
+    };
+    EXPECT_EQ(at({21, 10}), Verdict::sliver);
+    EXPECT_EQ(at({20, 10}), Verdict::right);
+    EXPECT_EQ(at({22, 10}), Verdict::wrong);
+}
+
 TEST(Judge, CountsWhatIsThereAndWhatIsFound)
 {
     const auto  setup = two_poles();
