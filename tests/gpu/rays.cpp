@@ -7,6 +7,8 @@
 #include "unit/truth_gbuffers.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace ssrlab::test {
 namespace {
@@ -15,11 +17,13 @@ using Rays = std::vector<PackedRay<double>>;
 
 template <typename Real> Rays make_rays(const Picture& picture, const TraceSettings& settings, Precision precision)
 {
-    const Technique&  dda     = technique("dda");
-    const auto        frame   = prepare_frame(device(), picture.buffers, dda, values_of(dda), {settings});
-    const RayBuffers  buffers = make_ray_buffers(device(), picture.image.depth.size(), precision);
-    const Buffer      view    = upload_view(device(), picture.view, precision);
-    const TracePasses passes  = make_trace_passes(device(), *frame, buffers, view, nullptr);
+    const Technique& dda = technique("dda");
+    FrameSettings    mirrors{settings};
+    mirrors.passes.at("gloss") = choice_value(Gloss::off); // off: no ray is drawn from a lobe
+    const auto        frame    = prepare_frame(device(), picture.buffers, dda, values_of(dda), mirrors);
+    const RayBuffers  buffers  = make_ray_buffers(device(), picture.image.depth.size(), precision);
+    const Buffer      view     = upload_view(device(), picture.view, precision);
+    const TracePasses passes   = make_trace_passes(device(), *frame, buffers, view, nullptr);
     submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, passes, *picture.buffers); });
     Rays rays;
     for (const PackedRay<Real>& ray : read_list<Real>(device(), buffers))
@@ -42,7 +46,7 @@ Worst compare(const Picture& picture, const TraceSettings& settings, const Rays&
     worst.rays        = rays.size();
     size_t reflecting = 0;
     for (int y = 0; y < picture.view.size_px.y; ++y)
-        for (int x = 0; x < picture.view.size_px.x; ++x) reflecting += reflects(picture.image, {x, y});
+        for (int x = 0; x < picture.view.size_px.x; ++x) reflecting += reflects(picture.image, {x, y}, settings);
     EXPECT_EQ(rays.size(), reflecting);
     std::vector<bool> seen(picture.image.depth.size());
     for (const PackedRay<double>& listed : rays) {
@@ -84,6 +88,21 @@ View orthographic_view(glm::ivec2 size)
     return view;
 }
 
+/// Half metals, and dielectrics at the bounds of what reflects and beside them.
+GBufferImage materials(const View& view)
+{
+    GBufferImage image            = random_gbuffer(view, 9);
+    const float  beyond_roughness = std::nextafter(0.4F, 1.0F), below_f0 = std::nextafter(0.02F, 0.0F);
+    image.dielectric_f0.resize(image.depth.size());
+    image.roughness.resize(image.depth.size());
+    for (size_t i = 0; i < image.depth.size(); ++i) {
+        image.metallic[i]      = i % 5 == 0 ? 0.25F : 0;
+        image.dielectric_f0[i] = std::array{0.02F, below_f0, 0.5F}[i % 3];
+        image.roughness[i]     = std::array{0.4F, beyond_roughness}[i % 2];
+    }
+    return image;
+}
+
 struct Case {
     const char*   name;
     GBufferImage  image;
@@ -100,6 +119,7 @@ std::vector<Case> cases()
             list.push_back({"random, 3 m", random_gbuffer(view, 6), {.max_distance_m = 3}});
             list.push_back({"random, offset", random_gbuffer(view, 8), {.max_distance_m = 40, .ray_offset_m = 0.25}});
         }
+    list.push_back({"materials", materials(bench_view({161, 91})), {.max_distance_m = infinity}});
     list.push_back({"floor and wall", floor_and_wall(bench_view({161, 91}), 10), {.max_distance_m = 1e9}});
     list.push_back({"floor alone", floor_and_wall(off_centre_view({161, 91}), infinity), {.max_distance_m = infinity}});
     return list;

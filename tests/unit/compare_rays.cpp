@@ -188,6 +188,27 @@ TEST(RayMeasures, AgainstSceneTruth)
     }
 }
 
+// A stop is no miss. A hidden point counts as found in a layer behind the first alone: in the first the pixel shows what hides it.
+TEST(RayMeasures, StopsAndHiddenPoints)
+{
+    SceneCase test;
+    auto& [gbuffer, truth, tested, screen] = test;
+    gbuffer.layers.push_back(gbuffer);
+    for (const size_t i : {0, 1}) truth.cls[i] = TruthClass::visible;
+    for (const size_t i : {2, 3}) truth.cls[i] = TruthClass::hidden;
+    set_hit(tested, 0, 12.5);
+    tested.status[1] = TraceStatus::stopped;
+    for (const size_t i : {2, 3}) set_hit(tested, i, 12.5);
+    tested.hit_layer[3]        = 1;
+    const MeasureValues values = compare_to_scene_truth(tested, truth, &screen, gbuffer);
+    EXPECT_EQ(values.at("recall_1px"), 1 / 2.0);
+    EXPECT_EQ(values.at("missed_stopped"), 1 / 2.0);
+    EXPECT_EQ(values.at("missed_not_in_depth"), 0);
+    EXPECT_EQ(values.at("stopped_right_share"), 0);
+    EXPECT_EQ(values.at("hidden_too_recall_1px"), 2 / 4.0);
+    EXPECT_EQ(values.at("hidden_too_precision_1px"), 2 / 3.0);
+}
+
 TEST(RayMeasures, SplitAndFlips)
 {
     SceneCase test;

@@ -127,6 +127,7 @@ TEST(ScreenRay, MaximumDistanceZeroVisitsNothing)
 
 TEST(ScreenRay, EveryEndLiesInTheImage)
 {
+    size_t far_ends = 0, border_ends = 0;
     for (unsigned seed = 0; seed < 20; ++seed) {
         View view = bench_view({31, 23});
         if (seed % 2 == 1) {
@@ -143,9 +144,19 @@ TEST(ScreenRay, EveryEndLiesInTheImage)
                 const glm::dvec3 end = ray.origin_px_depth + ray.delta_px_depth;
                 ASSERT_TRUE(end.x >= 0 && end.x <= 31 && end.y >= 0 && end.y <= 23) << seed << ' ' << x << ' ' << y;
                 ASSERT_TRUE(std::isfinite(end.z) && end.z <= 1 + 1e-12);
+                const bool at_border = end.x == 0 || end.x == 31 || end.y == 0 || end.y == 23,
+                           at_near   = end.z > 1 - 1e-12;
+                const bool at_end    = at_border || at_near || ray.end_status != TraceStatus::left_screen;
+                ASSERT_TRUE(at_end) << seed << ' ' << x << ' ' << y;
+                const bool at_far = view.projection == Projection::orthographic && std::abs(end.z) < 1e-12;
+                ASSERT_TRUE(!at_far || ray.end_status == TraceStatus::past_max_distance);
+                far_ends += at_far;
+                border_ends += at_border;
             }
         }
     }
+    EXPECT_GT(far_ends, 10U);
+    EXPECT_GT(border_ends, 1000U);
 }
 
 TEST(ScreenRay, IncompleteGBufferIsRefused)
