@@ -54,7 +54,7 @@ class Test(Case):
         self.ssrlab("--techniques", "mine", "list", says=["Surface models", "sloped_slab", "plane_solid", "run's thickness behind it."])
         self.ssrlab("--techniques", "mine", "show", "sloped_slab",
                     says=["Sloped slab", "surface=sloped_slab", "besides depth and normal: gradient", "known by its shaders alone"])
-        self.ssrlab("--techniques", "mine", "show", "surface", says=["box | ", "sloped_slab", "default box"])
+        self.ssrlab("--techniques", "mine", "show", "surface", says=["box | ", "sloped_slab", "default plane_solid"])
         listed = json.loads(self.ssrlab("--techniques", "mine", "list", "--json"))
         truths = {one["name"]: one["screen_truth"] for one in listed["surfaces"]}
         self.assertEqual(truths, {"box": True, "box_infinite": True, "box_two_sided": True, "plane": True, "plane_solid": True,
