@@ -70,23 +70,42 @@ void add_frame_options(CLI::App& command, ssrlab::PictureOptions& options)
         ->check(CLI::Range(0, ssrlab::max_jitter_phases));
 }
 
-void add_picture_options(CLI::App& command, ssrlab::PictureOptions& options, bool traces)
+/// Which picture of which scene.
+void add_scene_options(CLI::App& command, ssrlab::PictureOptions& options)
 {
     command
         .add_option("SCENE", options.scene,
                     "A .glb or .gltf file, a scene recipe, builtin:NAME (see ssrlab list), or a frame of another "
                     "renderer (.exr)")
         ->required();
-    if (traces) {
-        command.add_option("-t,--technique", options.technique, "Technique (see ssrlab list)")->required();
-        command.add_option(
-            "-p,--parameter", options.parameters,
-            "name=value: a parameter of the technique (see ssrlab show), or a setting such as thickness_m");
-    }
     command.add_option("--size", options.size, "WIDTHxHEIGHT in pixels; default: the view's own");
     command.add_option("--view", options.view, "Name of a view or camera path of the scene")->capture_default_str();
     add_frame_options(command, options);
+}
+
+void add_parameter_option(CLI::App& command, ssrlab::PictureOptions& options)
+{
+    command.add_option("-p,--parameter", options.parameters,
+                       "name=value: a parameter of the technique (see ssrlab show), or a setting such as thickness_m");
+}
+
+void add_picture_options(CLI::App& command, ssrlab::PictureOptions& options, bool traces)
+{
+    add_scene_options(command, options);
+    if (traces) {
+        command.add_option("-t,--technique", options.technique, "Technique (see ssrlab list)")->required();
+        add_parameter_option(command, options);
+    }
     command.add_option("-o,--output", options.output, "File to write")->required();
+}
+
+/// Of a command that begins with a technique of its own choice.
+void add_default_technique(CLI::App& command, ssrlab::PictureOptions& options)
+{
+    command.add_option("-t,--technique", options.technique, "Technique (see ssrlab list)")
+        ->default_val("hiz")
+        ->capture_default_str();
+    add_parameter_option(command, options);
 }
 
 void add_presentation_options(CLI::App& command, ssrlab::RenderOptions& options)
@@ -165,44 +184,26 @@ int main(int argc, char** argv)
     RayOptions ray;
     auto*      explained = app.add_subcommand(
              "ray", "One ray: what each technique looked at, where and why it stopped, and where it should have");
-    explained->add_option("SCENE", ray.picture.scene, "As for render")->required();
+    add_scene_options(*explained, ray.picture);
     explained->add_option("--pixel", ray.pixel, "X,Y of the pixel that reflects, from the top left")->required();
     explained->add_option("-t,--technique", ray.techniques, "Technique; several may be compared")->required();
     explained->add_option("-p,--parameter", ray.picture.parameters,
                           "name=value, as for render; for every technique that has it");
-    explained->add_option("--size", ray.picture.size, "WIDTHxHEIGHT in pixels; default: the view's own");
-    explained->add_option("--view", ray.picture.view, "Name of a view or camera path of the scene")
-        ->capture_default_str();
-    add_frame_options(*explained, ray.picture);
     explained->add_option("-o,--output", ray.picture.output, "Also write a picture (.png) or all numbers (.json)");
     explained->add_flag("--json", ray.json, "Print all numbers as JSON instead of the table");
     explained->callback([&] { command = [&] { return explain_ray(common, ray); }; });
 
     ViewOptions view;
     auto*       viewed = app.add_subcommand("view", "A window: camera, technique and settings changed live");
-    viewed->add_option("SCENE", view.picture.scene, "As for render")->required();
-    viewed->add_option("-t,--technique", view.picture.technique, "Technique to begin with")
-        ->default_val("hiz")
-        ->capture_default_str();
-    viewed->add_option("-p,--parameter", view.picture.parameters, "name=value, as for render");
-    viewed->add_option("--size", view.picture.size, "WIDTHxHEIGHT in pixels; default: the view's own");
-    viewed->add_option("--view", view.picture.view, "Name of a view or camera path of the scene")
-        ->capture_default_str();
-    add_frame_options(*viewed, view.picture);
+    add_scene_options(*viewed, view.picture);
+    add_default_technique(*viewed, view.picture);
     viewed->add_option("--script", view.script, "Commands in the place of mouse and keyboard (docs/viewer.md)");
     viewed->callback([&] { command = [&] { return view_scene(common, view); }; });
 
     PlanOptions plan;
     auto*       planned = app.add_subcommand("plan", "Which passes a frame needs, why, and what they cost or save");
-    planned->add_option("SCENE", plan.picture.scene, "As for render")->required();
-    planned->add_option("-t,--technique", plan.picture.technique, "Technique (see ssrlab list)")
-        ->default_val("hiz")
-        ->capture_default_str();
-    planned->add_option("-p,--parameter", plan.picture.parameters, "name=value, as for render");
-    planned->add_option("--size", plan.picture.size, "WIDTHxHEIGHT in pixels; default: the view's own");
-    planned->add_option("--view", plan.picture.view, "Name of a view or camera path of the scene")
-        ->capture_default_str();
-    add_frame_options(*planned, plan.picture);
+    add_scene_options(*planned, plan.picture);
+    add_default_technique(*planned, plan.picture);
     planned->add_option("--repeats", plan.repeats, "Timed frames")->capture_default_str()->check(CLI::PositiveNumber);
     planned->callback([&] { command = [&] { return print_plan(common, plan); }; });
 
