@@ -37,6 +37,9 @@ Range part_in_pixel(const RayInput& ray, glm::ivec2 pixel, double margin_px)
     return t;
 }
 
+// Of a pixel that only rounding puts on the ray's way.
+constexpr Claim entered_anywhere{.may_miss_between_samples = true};
+
 double screen_length_px(const RayInput& ray) { return glm::length(glm::dvec2(ray.delta_px_depth)); }
 
 /// A thousandth of a pixel.
@@ -73,13 +76,13 @@ bool Judge::surely_touches(const RayInput& ray, const Visit& v) const
     return v.contact > depth_rounding(ray, v) && depth_inside_px(ray, v) > sliver_px;
 }
 
-/// Rounding could make the ray touch this pixel's surface, or a step that reaches `more_t` farther does.
-bool Judge::may_touch(const RayInput& ray, const Visit& v, double more_t) const
+/// All of the ray's way within a sliver of a pixel, and `more_t` farther, if rounding could make it touch what the pixel holds there.
+std::optional<Visit> Judge::possible_touch(const RayInput& ray, glm::ivec2 pixel, int layer, double more_t) const
 {
-    const Range t = part_in_pixel(ray, v.pixel, sliver_px);
-    if (t.empty()) return false;
-    const Visit wider = visit(ray, v.pixel, v.layer, std::max(t.from - more_t, 0.0), std::min(t.to + more_t, 1.0));
-    return wider.contact >= -depth_rounding(ray, wider);
+    const Range t = part_in_pixel(ray, pixel, sliver_px);
+    if (t.empty()) return std::nullopt;
+    const Visit wide = visit(ray, pixel, layer, std::max(t.from - more_t, 0.0), std::min(t.to + more_t, 1.0));
+    return wide.contact >= -depth_rounding(ray, wide) ? std::optional(wide) : std::nullopt;
 }
 
 /// A box is met from the side that its normal says. A plane is met from behind where the ray enters below it; who samples may have come later.
@@ -109,10 +112,8 @@ std::string Judge::unsound_side(const RayInput& ray, const RayOutcome& outcome, 
     const std::vector<Visit> visits = walk(ray);
     const auto               own =
         std::ranges::find_if(visits, [&](const Visit& v) { return v.pixel == wide.pixel && v.layer == wide.layer; });
-    // A pixel that only rounding puts on the ray's way may be entered anywhere.
-    const Claim anywhere{.may_miss_between_samples = true};
     const Sides possible = claim.may_hit_within_a_step || claim.may_miss_between_samples || own == visits.end()
-                               ? sides(ray, wide, anywhere)
+                               ? sides(ray, wide, entered_anywhere)
                                : sides(ray, *own, claim);
     if (outcome.status == TraceStatus::hit && !possible.front)
         return fmt::format("{}, which faces away or is met from behind (cosine {:.6g}, {:.6g} over its back)",
@@ -147,14 +148,12 @@ std::string Judge::unsound_hit(const RayInput& ray, const RayOutcome& outcome, c
 /// Does it meet something from behind in a pixel beside its way that it touches at a corner, where rounding may lead it through?
 bool Judge::passes_in_sliver(const RayInput& ray, const std::vector<Visit>& visits) const
 {
-    const Claim anywhere{.may_miss_between_samples = true};
-    const auto  passes = [&](glm::ivec2 pixel, int layer) {
-        const Range t = part_in_pixel(ray, pixel, sliver_px);
-        const bool  visited =
+    const auto passes = [&](glm::ivec2 pixel, int layer) {
+        const bool visited =
             pixel == start_pixel(setup_.gbuffer, ray) || std::ranges::count(visits, pixel, &Visit::pixel) > 0;
-        if (visited || t.empty() || !on_image(setup_.gbuffer, pixel)) return false;
-        const Visit wide = visit(ray, pixel, layer, t.from, t.to);
-        return sides(ray, wide, anywhere).behind && wide.contact >= -depth_rounding(ray, wide);
+        if (visited || !on_image(setup_.gbuffer, pixel)) return false;
+        const auto wide = possible_touch(ray, pixel, layer, 0);
+        return wide && sides(ray, *wide, entered_anywhere).behind;
     };
     return std::ranges::any_of(visits, [&](const Visit& v) {
         for (const glm::ivec2& beside : {glm::ivec2(-1, 0), glm::ivec2(1, 0), glm::ivec2(0, -1), glm::ivec2(0, 1)})
@@ -170,8 +169,9 @@ std::string Judge::unsound_end(const RayInput& ray, const RayOutcome& outcome, c
     const std::vector<Visit> visits = walk(ray);
     if (outcome.status == TraceStatus::facing_away) {
         const double more_t = claim.may_hit_within_a_step ? 1 : 0; // how long its steps were, a miss does not say
-        const bool   any    = std::ranges::any_of(
-                 visits, [&](const Visit& v) { return sides(ray, v, claim).behind && may_touch(ray, v, more_t); });
+        const bool   any    = std::ranges::any_of(visits, [&](const Visit& v) {
+            return sides(ray, v, claim).behind && possible_touch(ray, v.pixel, v.layer, more_t);
+        });
         return any || passes_in_sliver(ray, visits) ? ""
                                                     : "ends as facing_away, but touches no surface that faces away";
     }

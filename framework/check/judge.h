@@ -5,6 +5,7 @@
 #include "truth/pixel_surface.h"
 
 #include <limits>
+#include <optional>
 #include <string>
 
 namespace ssrlab {
@@ -77,19 +78,19 @@ private:
     };
 
     /// sampled: by points, for which a plane has the thickness of the run.
-    Visit       visit(const RayInput& ray, glm::ivec2 pixel, int layer, double t_in, double t_out,
-                      bool sampled = false) const;
-    double      depth_rounding(const RayInput& ray, const Visit& visit) const;
-    bool        surely_touches(const RayInput& ray, const Visit& visit) const;
-    bool        surely_ends_ray(const RayInput& ray, const Visit& visit) const;
-    bool        may_touch(const RayInput& ray, const Visit& visit, double more_t) const;
-    Sides       sides(const RayInput& ray, const Visit& visit, const Claim& claim) const;
-    std::string unsound_side(const RayInput& ray, const RayOutcome& outcome, const Visit& wide,
-                             const Claim& claim) const;
-    std::string unsound_hit(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
-    bool        passes_in_sliver(const RayInput& ray, const std::vector<Visit>& visits) const;
-    std::string unsound_end(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
-    std::string unsound(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
+    Visit                visit(const RayInput& ray, glm::ivec2 pixel, int layer, double t_in, double t_out,
+                               bool sampled = false) const;
+    double               depth_rounding(const RayInput& ray, const Visit& visit) const;
+    bool                 surely_touches(const RayInput& ray, const Visit& visit) const;
+    bool                 surely_ends_ray(const RayInput& ray, const Visit& visit) const;
+    std::optional<Visit> possible_touch(const RayInput& ray, glm::ivec2 pixel, int layer, double more_t) const;
+    Sides                sides(const RayInput& ray, const Visit& visit, const Claim& claim) const;
+    std::string          unsound_side(const RayInput& ray, const RayOutcome& outcome, const Visit& wide,
+                                      const Claim& claim) const;
+    std::string          unsound_hit(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
+    bool                 passes_in_sliver(const RayInput& ray, const std::vector<Visit>& visits) const;
+    std::string          unsound_end(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
+    std::string          unsound(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
 
     const Setup& setup_;
 };
