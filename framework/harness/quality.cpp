@@ -60,10 +60,7 @@ Truths::Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path c
 void Truths::make(const TraceSettings& settings, bool image_errors)
 {
     if (made_for_ == settings) return;
-    // Of all settings, the scene truth depends on the maximum distance and on what reflects.
-    const bool same_scene_truth = made_for_ && made_for_->max_distance_m == settings.max_distance_m &&
-                                  made_for_->dielectric_min_f0 == settings.dielectric_min_f0 &&
-                                  made_for_->dielectric_max_roughness == settings.dielectric_max_roughness;
+    const bool keeps_scene_truth = made_for_ && same_scene_truth(*made_for_, settings);
     made_for_.reset();
     true_picture_.reset();
     screen_truth_.reset();
@@ -74,7 +71,7 @@ void Truths::make(const TraceSettings& settings, bool image_errors)
         for (size_t i = 0; i < scene_truth_.cls.size(); ++i)
             if (reflects(gbuffer_, pixel_at(i, scene_truth_.size_px), settings))
                 scene_truth_.cls[i] = TruthClass::hidden;
-    } else if (!same_scene_truth) {
+    } else if (!keeps_scene_truth) {
         reference_.reset();
         scene_truth_ = cached_scene_truth(cache_dir_, *scene_, gbuffer_, settings);
     }

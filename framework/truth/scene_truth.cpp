@@ -31,6 +31,12 @@ void fill_row(const ReflectedRays& reflected, const GBufferImage& gbuffer, const
 
 } // namespace
 
+bool same_scene_truth(const TraceSettings& a, const TraceSettings& b)
+{
+    return a.max_distance_m == b.max_distance_m && a.dielectric_min_f0 == b.dielectric_min_f0 &&
+           a.dielectric_max_roughness == b.dielectric_max_roughness;
+}
+
 SceneTruth empty_scene_truth(glm::ivec2 size_px)
 {
     const size_t count = pixel_count(size_px);

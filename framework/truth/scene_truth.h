@@ -26,6 +26,9 @@
 namespace ssrlab {
 
 /// All pixels not traced.
+/// Do both have the same scene truth and glossy truth of a frame? Those depend on the maximum distance and on what reflects.
+bool same_scene_truth(const TraceSettings& a, const TraceSettings& b);
+
 SceneTruth empty_scene_truth(glm::ivec2 size_px);
 
 /// Radiance of a visible point is the G-buffer's (the view-independent part) at the pixel it falls into, so that a perfect SSR

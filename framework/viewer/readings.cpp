@@ -1,9 +1,8 @@
 // What the panel and a script's `print` say.
 #include "core/error.h"
+#include "core/quantile.h"
 #include "harness/experiment.h"
 #include "viewer/session.h"
-
-#include <algorithm>
 
 namespace ssrlab {
 namespace {
@@ -12,8 +11,7 @@ double median_ms(const std::vector<FrameTimes>& times, auto&& of)
 {
     std::vector<double> values;
     for (const FrameTimes& one : times) values.push_back(of(one));
-    std::ranges::sort(values);
-    return values.empty() ? 0 : values[values.size() / 2];
+    return values.empty() ? 0 : quantile(values, 0.5);
 }
 
 std::string share_text(const MeasureValues& measures, std::string_view name)
@@ -61,12 +59,10 @@ void add_truth(const Session& session, size_t i, PixelRay& ray)
 std::vector<Reading> readings(const Session& session)
 {
     const MeasureValues& measures = session.measures;
-    const auto           mean     = [&](std::string_view name) {
+    const auto           value    = [&](std::string_view name) {
         const auto found = measures.find(name);
         return found == measures.end() ? 0 : found->second.value_or(0);
     };
-    const size_t rays = session.counted.status.size() -
-                        static_cast<size_t>(std::ranges::count(session.counted.status, TraceStatus::not_traced));
     const std::string prefix = session.scene_truth ? "" : "screen_";
     const std::string of     = fmt::format(" ms (median of {})", session.times.size());
     return {
@@ -74,9 +70,9 @@ std::vector<Reading> readings(const Session& session)
          fmt::format("{:.2f}", median_ms(session.times, [](const FrameTimes& t) { return t.of("trace"); })) + of},
         {"all passes",
          fmt::format("{:.2f}", median_ms(session.times, [](const FrameTimes& t) { return t.total_ms(); })) + of},
-        {"fetches a ray", fmt::format("{:.2f}", mean("depth_fetches_mean") + mean("structure_fetches_mean"))},
-        {"steps a ray", fmt::format("{:.2f}", mean("steps_mean"))},
-        {"rays", fmt::format("{}", rays)},
+        {"fetches a ray", fmt::format("{:.2f}", value("depth_fetches_mean") + value("structure_fetches_mean"))},
+        {"steps a ray", fmt::format("{:.2f}", value("steps_mean"))},
+        {"rays", fmt::format("{:.0f}", value("traced_rays"))},
         {prefix + "recall_1px", share_text(measures, prefix + "recall_1px")},
         {prefix + "precision_1px", share_text(measures, prefix + "precision_1px")},
         {prefix + "f1_1px", share_text(measures, prefix + "f1_1px")},

@@ -46,10 +46,10 @@ void trace(Session& session)
                                   session.choice.values, session.choice.settings);
     run_frame(stage.gpu, *session.frame); // the driver compiles
     session.times.push_back(run_frame(stage.gpu, *session.frame));
-    session.shaded      = read_shaded(stage.gpu, *session.frame);
-    session.counted     = count_frame(stage.gpu, *session.frame);
-    session.stale.trace = false;
-    session.stale.shown = true;
+    session.shaded         = read_shaded(stage.gpu, *session.frame);
+    session.counted        = count_frame(stage.gpu, *session.frame);
+    session.stale.trace    = false;
+    session.stale.measures = session.stale.shown = true;
 }
 
 void find_truth(Session& session)
@@ -60,8 +60,8 @@ void find_truth(Session& session)
         session.scene_truth = scene_truth(*session.bvh, session.stage.scene, session.gbuffer, settings);
     else
         session.screen_truth = screen_truth(session.gbuffer, settings);
-    session.stale.truth = false;
-    session.stale.shown = true;
+    session.stale.truth    = false;
+    session.stale.measures = session.stale.shown = true;
 }
 
 void find_true_picture(Session& session)
@@ -99,13 +99,18 @@ void replace_right(Image& left, const Image& right, double share)
     }
 }
 
-void compose(Session& session)
+void measure(Session& session)
 {
-    const Display display{session.exposure_ev, Display::Transform::clip};
     session.measures = session.scene_truth
                            ? compare_to_scene_truth(session.counted, *session.scene_truth, nullptr, session.gbuffer)
                            : compare_to_screen_truth(session.counted, *session.screen_truth);
     merge(session.measures, count_work(session.counted));
+    session.stale.measures = false;
+}
+
+void compose(Session& session)
+{
+    const Display display{session.exposure_ev, Display::Transform::clip};
     if (session.show == "truth")
         session.shown = to_display(session.true_picture, display);
     else
@@ -124,6 +129,8 @@ bool step(Session& session)
         trace(session);
     else if (stale.truth)
         find_truth(session);
+    else if (stale.measures)
+        measure(session);
     else if (stale.true_picture && wants_true_picture(session))
         find_true_picture(session);
     else if (stale.shown)
@@ -184,8 +191,10 @@ void set_value(Session& session, const std::string& name, const std::string& tex
     }
     const TraceSettings before = session.choice.settings.trace;
     set_choice(*session.technique, session.choice, place);
-    session.stale.trace = true;
-    if (before != session.choice.settings.trace) session.stale.truth = session.stale.true_picture = true;
+    session.stale.trace      = true;
+    const TraceSettings& now = session.choice.settings.trace;
+    if (before != now) session.stale.truth = true;
+    if (!same_scene_truth(before, now)) session.stale.true_picture = true;
 }
 
 void camera_changed(Session& session)

@@ -18,7 +18,7 @@ inline constexpr std::array<std::string_view, 5> shown_names = {"picture", "agre
 
 /// What has to be made again.
 struct Stale {
-    bool view = true, trace = true, truth = true, true_picture = true, shown = true;
+    bool view = true, trace = true, truth = true, measures = true, true_picture = true, shown = true;
 };
 
 struct Session {
