@@ -197,9 +197,7 @@ Model import_model(const fs::path& file)
     add_nodes(import, *scene);
     remove_transparent(import, *scene);
     if (import.model.meshes.empty()) throw_failure("{}: no triangle that can be drawn", file.string());
-    if (import.dropped_triangles > 0)
-        warn(import, fmt::format("{} triangles dropped: positions that are not finite, or too large to compute with",
-                                 import.dropped_triangles));
+    if (import.dropped_triangles > 0) warn(import, dropped_triangles_text(import.dropped_triangles));
     return std::move(import.model);
 }
 

@@ -1,5 +1,7 @@
 #include "scene/mesh_repair.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -131,6 +133,11 @@ size_t drop_bad_triangles(Mesh& mesh)
     mesh.indices.resize(end);
     drop_unused_vertices(mesh);
     return unusable;
+}
+
+std::string dropped_triangles_text(size_t count)
+{
+    return fmt::format("{} triangles dropped: positions that are not finite, or too large to compute with", count);
 }
 
 void weld_equal_vertices(Mesh& mesh)

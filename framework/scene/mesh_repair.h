@@ -3,11 +3,15 @@
 
 #include "scene/model.h"
 
+#include <string>
+
 namespace ssrlab {
 
 /// Removes triangles with an unusable position or without area, and vertices that nothing uses. Returns how many had an unusable position; those
-/// without area show nothing, and nobody misses them.
+/// without area show nothing.
 size_t drop_bad_triangles(Mesh& mesh);
+/// What to warn of them.
+std::string dropped_triangles_text(size_t count);
 
 /// Vertices that are equal in every bit become one.
 void weld_equal_vertices(Mesh& mesh);

@@ -59,9 +59,7 @@ void repair(Model& model)
         if (normals.texture >= 0 && !mesh.has_tangents) make_tangents(mesh, normals.uv_set);
     }
     std::erase_if(model.meshes, [](const Mesh& mesh) { return mesh.indices.empty(); });
-    if (dropped > 0)
-        model.warnings.push_back(
-            fmt::format("{} triangles dropped: positions that are not finite, or too large to compute with", dropped));
+    if (dropped > 0) model.warnings.push_back(dropped_triangles_text(dropped));
 }
 
 void add_draw(Scene& scene, const Mesh& mesh)

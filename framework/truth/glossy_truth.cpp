@@ -29,12 +29,11 @@ glm::uvec4 hash(glm::uvec4 v)
 /// discrepancy (M. Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences": R2), moved by a random offset for each pixel.
 glm::dvec2 random(glm::ivec2 pixel, int ray, int bounce, uint32_t seed)
 {
-    const auto key = [&](int number) {
-        return glm::uvec4{uint32_t(pixel.x), uint32_t(pixel.y), uint32_t(number) + (uint32_t(bounce) << 20U), seed};
-    };
-    const auto numbers = [&](int number) { return glm::dvec2(glm::uvec2(hash(key(number)))) * 0x1p-32; };
-    if (bounce > 0) return numbers(ray);
-    return glm::fract(numbers(0) + double(ray) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
+    const uint32_t   number = bounce > 0 ? uint32_t(ray) + (uint32_t(bounce) << 20U) : 0;
+    const glm::uvec4 key{uint32_t(pixel.x), uint32_t(pixel.y), number, seed};
+    const glm::dvec2 numbers = glm::dvec2(glm::uvec2(hash(key))) * 0x1p-32;
+    if (bounce > 0) return numbers;
+    return glm::fract(numbers + double(ray) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
 }
 
 /// A ray under way, and what the light at its end will count for.
