@@ -12,6 +12,7 @@ namespace ssrlab {
 
 struct CommonOptions {
     std::string                        device;
+    TexelStorage                       storage    = TexelStorage::by_device;
     bool                               validation = false;
     bool                               quiet      = false; // no warnings, no progress
     std::vector<std::filesystem::path> technique_dirs;

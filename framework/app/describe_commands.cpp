@@ -139,7 +139,10 @@ nlohmann::json list_as_json(const std::vector<Technique>& techniques)
                                        {"name", info.name},
                                        {"type", info.type},
                                        {"vulkan", info.api_version},
-                                       {"driver", info.driver}});
+                                       {"driver", info.driver},
+                                       {"storage", storage_text(info)},
+                                       {"double", info.float64},
+                                       {"int64", info.int64}});
     } catch (const Failure& failure) {
         json["no_device"] = failure.what();
     }
@@ -175,8 +178,9 @@ int list_everything(const CommonOptions& common, bool json)
     std::puts("\nDevices");
     try {
         for (const GpuInfo& info : list_gpus())
-            std::puts(fmt::format("  {} {} ({}, Vulkan {}, {})", info.index, info.name, info.type, info.api_version,
-                                  info.driver)
+            std::puts(fmt::format("  {} {} ({}, Vulkan {}, {}; {}{}{})", info.index, info.name, info.type,
+                                  info.api_version, info.driver, storage_text(info), info.float64 ? "" : ", no double",
+                                  info.int64 ? "" : ", no 64-bit integers")
                           .c_str());
     } catch (const Failure& failure) {
         std::puts(fmt::format("  none: {}", failure.what()).c_str());

@@ -51,7 +51,7 @@ std::string unknown_command(const CLI::App& app, int argc, char** argv)
     for (const CLI::App* command : app.get_subcommands(nullptr)) known.push_back(command->get_name());
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
-        if (word == "--device" || word == "--techniques") ++i;
+        if (word == "--device" || word == "--techniques" || word == "--storage") ++i;
         if (word.starts_with("-")) continue;
         return std::ranges::find(known, word) != known.end() ? "" : ssrlab::unknown_name("command", word, known);
     }
@@ -155,6 +155,11 @@ int main(int argc, char** argv)
         "--techniques", common.technique_dirs,
         "Further folders of techniques, structures, reprojections and surface models, or folders of them (also "
         "$SSRLAB_TECHNIQUES)");
+    app.add_option(
+           "--storage", common.storage,
+           "How shaders read lists and depth: texel-buffers or plain-buffers; default: what the device has room for")
+        ->transform(CLI::Transformer(std::map<std::string, TexelStorage>{
+            {"texel-buffers", TexelStorage::texel_buffers}, {"plain-buffers", TexelStorage::plain_buffers}}));
     app.add_flag("--validation", common.validation, "Load the Khronos validation layer; any message fails the command");
 
     app.add_flag("--quiet", common.quiet, "No warnings and no progress; errors are still said");
@@ -223,7 +228,7 @@ int main(int argc, char** argv)
         command = [&] {
             run.techniques   = common.technique_dirs;
             run.quiet        = common.quiet;
-            run.gpu          = {.device = common.device, .validation = common.validation};
+            run.gpu          = {.device = common.device, .validation = common.validation, .storage = common.storage};
             run.command_line = fmt::format("{}", fmt::join(argv, argv + argc, " "));
             return run_experiment(run);
         };

@@ -36,7 +36,6 @@ struct Bound {
     vk::Sampler    sampler;
 
     Bound(const Buffer& b) : buffer(*b.buffer), texels(*b.texels) {}
-    Bound(const vk::raii::BufferView& t) : texels(*t) {}
     Bound(const Buffer& b, const vk::raii::BufferView& t) : buffer(*b.buffer), texels(*t) {}
     Bound(const GpuImage& image) : view(*image.view) {}
     Bound(const GpuImage& image, const vk::raii::Sampler& s) : view(*image.view), sampler(*s) {}

@@ -74,6 +74,9 @@ std::string processor_name()
     return text.empty() ? "not known" : text;
 }
 
+/// Rays of an 8K picture take 66 million texels. The standard promises 65,536 (Vulkan 1.3, table "Required Limits").
+constexpr uint32_t enough_texels = 1U << 27;
+
 GpuInfo describe(const vk::raii::PhysicalDevice& device, int index)
 {
     const auto  chain = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
@@ -92,6 +95,7 @@ GpuInfo describe(const vk::raii::PhysicalDevice& device, int index)
     const bool software = core.deviceType == vk::PhysicalDeviceType::eCpu;
     if (software) info.processor = processor_name();
     info.cheap_doubles = software && info.float64;
+    info.plain_buffers = core.limits.maxTexelBufferElements < enough_texels;
     return info;
 }
 
@@ -192,8 +196,10 @@ Gpu open_gpu(const GpuOptions& options)
                     .pfnUserCallback = keep_message,
                     .pUserData       = &impl}};
         }
-        const auto infos     = describe_all(impl.instance);
-        gpu.info             = infos[static_cast<size_t>(choose_device(infos, options.device))];
+        const auto infos = describe_all(impl.instance);
+        gpu.info         = infos[static_cast<size_t>(choose_device(infos, options.device))];
+        if (options.storage != TexelStorage::by_device)
+            gpu.info.plain_buffers = options.storage == TexelStorage::plain_buffers;
         impl.physical_device = std::move(vk::raii::PhysicalDevices(impl.instance)[static_cast<size_t>(gpu.info.index)]);
         impl.queue_family    = find_queue_family(impl.physical_device);
         impl.limits          = impl.physical_device.getProperties().limits;
@@ -226,6 +232,8 @@ int choose_device(std::span<const GpuInfo> infos, const std::string& wanted)
     }
     throw_spec_error("device '{}' not found; devices are:{}", wanted, names);
 }
+
+const char* storage_text(const GpuInfo& device) { return device.plain_buffers ? "plain buffers" : "texel buffers"; }
 
 size_t pipelines_made(const Gpu& gpu) { return gpu.impl->pipelines_made; }
 

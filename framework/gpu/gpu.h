@@ -8,10 +8,14 @@
 
 namespace ssrlab {
 
+/// How shaders see the lists of rays and hits, the depth and what techniques build of it: the same bytes, read as texels or as plain storage buffers.
+enum class TexelStorage { by_device, texel_buffers, plain_buffers };
+
 struct GpuOptions {
     std::string device; // index, or part of the name; empty: a discrete GPU if present, else the first device
     bool        validation = false; // load the Khronos validation layer; every message is kept in validation_messages()
     bool        robust_buffer_access = false;
+    TexelStorage storage             = TexelStorage::by_device;
 };
 
 /// What environment.json says about the device.
@@ -23,6 +27,7 @@ struct GpuInfo {
     bool        cheap_doubles = false; // they cost little more than floats
     uint32_t    max_image_px  = 0;
     bool        int64         = false; // 64-bit integers in shaders
+    bool plain_buffers = false; // texel buffers hold fewer elements than a large picture needs, or it was asked for
 };
 
 struct GpuImpl;
@@ -32,6 +37,8 @@ struct Gpu {
     GpuInfo                  info;
 };
 
+/// "texel buffers" or "plain buffers".
+const char* storage_text(const GpuInfo& device);
 /// Throws SpecError for an unknown device, Failure when there is no Vulkan driver.
 Gpu                  open_gpu(const GpuOptions& options = {});
 std::vector<GpuInfo> list_gpus();

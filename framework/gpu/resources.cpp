@@ -40,6 +40,10 @@ Buffer make(Gpu& gpu, uint64_t bytes, vk::BufferUsageFlags usage, vk::MemoryProp
 
 void refuse_too_many_texels(const Gpu& gpu, uint64_t bytes, vk::Format format)
 {
+    const uint64_t most_bytes = gpu.impl->limits.maxStorageBufferRange;
+    if (gpu.info.plain_buffers && bytes > most_bytes)
+        throw_failure("a buffer of {} MiB is needed; the device allows {} MiB", bytes >> 20, most_bytes >> 20);
+    if (gpu.info.plain_buffers) return;
     const uint64_t texels = bytes / vk::blockSize(format), most = gpu.impl->limits.maxTexelBufferElements;
     if (texels > most) throw_failure("a buffer of {} texels is needed; the device allows {}", texels, most);
 }
@@ -79,8 +83,14 @@ Buffer make_texel_buffer(Gpu& gpu, uint64_t bytes, vk::Format format)
 vk::raii::BufferView make_texel_view(Gpu& gpu, const Buffer& buffer, vk::Format format)
 {
     refuse_too_many_texels(gpu, buffer.bytes, format);
+    if (gpu.info.plain_buffers) return nullptr;
     return {gpu.impl->device,
             vk::BufferViewCreateInfo{.buffer = *buffer.buffer, .format = format, .range = VK_WHOLE_SIZE}};
+}
+
+vk::DescriptorType texel_descriptor(const Gpu& gpu)
+{
+    return gpu.info.plain_buffers ? vk::DescriptorType::eStorageBuffer : vk::DescriptorType::eStorageTexelBuffer;
 }
 
 Buffer make_host_buffer(Gpu& gpu, uint64_t bytes)

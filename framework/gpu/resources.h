@@ -20,10 +20,12 @@ struct Buffer {
 
 /// Device-local storage (also uniform, indirect, vertex, index, copy source and target). Throws Failure when out of memory or over limits.
 Buffer make_buffer(Gpu& gpu, uint64_t bytes);
-/// The same, which shaders may also read as texels of this format. Throws Failure likewise.
+/// The same, which shaders may also read as texels of this format, where the device stores texels so. Throws Failure likewise.
 Buffer make_texel_buffer(Gpu& gpu, uint64_t bytes, vk::Format format);
-/// Another way to read its texels. It must not outlive the buffer. Throws Failure over limits.
+/// Another way to read its texels. It must not outlive the buffer. Throws Failure over limits. None (null) with plain buffers.
 vk::raii::BufferView make_texel_view(Gpu& gpu, const Buffer& buffer, vk::Format format);
+/// What a buffer of texels is to a shader of this device.
+vk::DescriptorType texel_descriptor(const Gpu& gpu);
 /// Host-visible and coherent, mapped.
 Buffer make_host_buffer(Gpu& gpu, uint64_t bytes);
 void   upload(Gpu& gpu, Buffer& target, const void* data, uint64_t bytes);

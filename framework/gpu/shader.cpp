@@ -209,8 +209,9 @@ Shader compile_or_read(const ShaderSource& source, std::span<const std::filesyst
 
 } // namespace
 
-Shader compile_shader(const ShaderSource& source)
+Shader compile_shader(const Gpu& gpu, ShaderSource source)
 {
+    if (gpu.info.plain_buffers) source.defines.emplace("PLAIN_BUFFERS", "1");
     // A sweep and the checks ask for the same shader hundreds of times, with other constants.
     static std::mutex                    mutex;
     static std::map<std::string, Shader> compiled;

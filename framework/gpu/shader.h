@@ -1,6 +1,8 @@
 // GLSL files to SPIR-V by glslang, with what the shader says about its own interface.
 #pragma once
 
+#include "gpu/gpu.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -42,6 +44,7 @@ std::filesystem::path technique_folder();
 
 /// Includes come from the source itself, its folders and the shader folder, and from nowhere else. Throws SpecError with a line
 /// "FILE:LINE: message" for each error found; what is missing from a file of include_files is said of that file.
-Shader compile_shader(const ShaderSource& source);
+/// Shaders are made for a device's way of storing texels (GpuInfo::plain_buffers).
+Shader compile_shader(const Gpu& gpu, ShaderSource source);
 
 } // namespace ssrlab

@@ -49,6 +49,7 @@ std::map<std::string, std::string> describe_identity(const Experiment&          
     identity["shaders"]       = folder_hash(data_root() / "shaders");
     identity["device"]        = device.name;
     identity["driver"]        = device.driver;
+    identity["storage"]       = storage_text(device);
     if (!device.processor.empty()) identity["processor"] = device.processor;
     for (const TechniqueSweep& sweep : experiment.techniques) {
         const Technique& technique        = find_technique(techniques, sweep.id);

@@ -34,9 +34,9 @@ vk::raii::ShaderModule make_module(Gpu& gpu, const Shader& shader)
 
 DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipelineOptions& options)
 {
-    const Shader vertex   = compile_shader({.file = "gbuffer/gbuffer.vert", .stage = ShaderStage::vertex});
+    const Shader vertex   = compile_shader(gpu, {.file = "gbuffer/gbuffer.vert", .stage = ShaderStage::vertex});
     const Shader fragment = compile_shader(
-        {.file = options.fragment_shader, .stage = ShaderStage::fragment, .defines = options.fragment_defines});
+        gpu, {.file = options.fragment_shader, .stage = ShaderStage::fragment, .defines = options.fragment_defines});
     const auto vertex_module = make_module(gpu, vertex), fragment_module = make_module(gpu, fragment);
 
     DrawPipeline result;

@@ -104,7 +104,7 @@ FrameStatistics count_gbuffer(Gpu& gpu, const FrameBuffers& buffers, const Trace
     Constants constants;
     add_reflecting(constants, settings);
     const ComputePass classification =
-        make_compute_pass(gpu, compile_shader({.file = "rays/classification.comp"}), bindings, constants);
+        make_compute_pass(gpu, compile_shader(gpu, {.file = "rays/classification.comp"}), bindings, constants);
     submit(gpu, [&](const auto& commands) { record_marking(commands, classification, buffers); });
     statistics.gbuffer = download_as<GBufferCounts>(gpu, buffers.tiles.statistics, 1)[0];
     return statistics;
@@ -209,7 +209,7 @@ TraceCounts count_hits(Gpu& gpu, PreparedFrame& frame)
     Constants constants;
     add_reflecting(constants, frame.settings.trace);
     const ComputePass count =
-        make_compute_pass(gpu, compile_shader({.file = "trace/trace_statistics.comp"}), bindings, constants);
+        make_compute_pass(gpu, compile_shader(gpu, {.file = "trace/trace_statistics.comp"}), bindings, constants);
     submit(gpu, [&](const auto& commands) {
         commands.fillBuffer(*counts.buffer, 0, VK_WHOLE_SIZE, 0);
         record_rays(commands, frame.trace, *frame.buffers);

@@ -182,11 +182,14 @@ TileBuffers make_tile_buffers(Gpu& gpu, glm::ivec2 size_px)
 
 Bindings surface_bindings(const GBuffer& gbuffer)
 {
-    Bindings bindings{
-        {"depth_words", gbuffer.depth.words},     {"depth_cells", gbuffer.depth.cells},
-        {"cell_pairs", gbuffer.depth.pairs},      {"StoredCells", {gbuffer.depth.cells, gbuffer.depth.pairs}},
-        {"normal_image", gbuffer.normal},         {"material_image", gbuffer.material},
-        {"dielectric_image", gbuffer.dielectric}, {"solid_image", gbuffer.solid}};
+    Bindings bindings{{"depth_words", {gbuffer.depth.cells, gbuffer.depth.words}},
+                      {"depth_cells", gbuffer.depth.cells},
+                      {"cell_pairs", {gbuffer.depth.cells, gbuffer.depth.pairs}},
+                      {"StoredCells", {gbuffer.depth.cells, gbuffer.depth.pairs}},
+                      {"normal_image", gbuffer.normal},
+                      {"material_image", gbuffer.material},
+                      {"dielectric_image", gbuffer.dielectric},
+                      {"solid_image", gbuffer.solid}};
     add_layers(bindings, gbuffer.layers);
     return bindings;
 }
@@ -208,7 +211,7 @@ ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch
 {
     Constants constants;
     constants.add(CONSTANT_ITEMS_PER_GROUP, items_per_group);
-    return make_compute_pass(gpu, compile_shader({.file = "trace/dispatch_args.comp"}),
+    return make_compute_pass(gpu, compile_shader(gpu, {.file = "trace/dispatch_args.comp"}),
                              {{"ItemCount", items}, {"Launch", launch}}, constants);
 }
 
@@ -232,7 +235,7 @@ Shader compile_trace(const Gpu& gpu, const PreparedFrame& frame, const RayBuffer
     source.defines.merge(store_defines(gpu, rays.hits));
     if (bindings.contains("Work")) source.defines.emplace("COUNT_WORK", "1");
     if (bindings.contains("Visits")) source.defines.emplace("RECORD_VISITS", "1");
-    return compile_shader(source);
+    return compile_shader(gpu, source);
 }
 
 } // namespace
@@ -295,14 +298,14 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
     constants.add(CONSTANT_TRACE_BLOCK_PX, counts ? 1 : trace_block_px(frame.settings.passes));
     TracePasses passes;
     passes.classification =
-        make_compute_pass(gpu, compile_shader({.file = "rays/classification.comp"}), bindings, constants);
-    passes.tile_list    = make_compute_pass(gpu, compile_shader({.file = "rays/tile_list.comp"}), bindings, constants,
-                                            sizeof(glm::ivec2));
+        make_compute_pass(gpu, compile_shader(gpu, {.file = "rays/classification.comp"}), bindings, constants);
+    passes.tile_list = make_compute_pass(gpu, compile_shader(gpu, {.file = "rays/tile_list.comp"}), bindings, constants,
+                                         sizeof(glm::ivec2));
     passes.tile_launch  = make_launch_pass(gpu, buffers.tiles.count, buffers.tiles.launch, 1);
     Defines ray_defines = precision_defines(gpu, rays.precision);
     ray_defines.merge(store_defines(gpu, rays.list));
-    passes.rays =
-        make_compute_pass(gpu, compile_shader({.file = "rays/rays.comp", .defines = ray_defines}), bindings, constants);
+    passes.rays       = make_compute_pass(gpu, compile_shader(gpu, {.file = "rays/rays.comp", .defines = ray_defines}),
+                                          bindings, constants);
     passes.ray_launch = make_launch_pass(gpu, rays.count, rays.launch, RAYS_PER_GROUP);
     passes.technique  = make_technique_passes(gpu, frame, *buffers.gbuffer, rays, bindings);
     return passes;

@@ -156,7 +156,7 @@ GBufferPtr make_drawn_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& vi
                          .usage = vk::ImageUsageFlagBits::eDepthStencilAttachment | vk::ImageUsageFlagBits::eSampled});
     fill_frame_uniforms(gpu, *gbuffer);
     gbuffer->frame_set =
-        make_frame_set(gpu, *scene, gbuffer->frame_uniforms, before == nullptr ? nullptr : &before->depth.words);
+        make_frame_set(gpu, *scene, gbuffer->frame_uniforms, before == nullptr ? nullptr : &before->depth);
     gbuffer->pipeline      = layer_pipeline(gpu, *scene, *gbuffer, shows);
     gbuffer->sampler       = {gpu.impl->device, vk::SamplerCreateInfo{}};
     gbuffer->view_uniforms = upload_view(gpu, view, Precision::float32);
@@ -164,11 +164,11 @@ GBufferPtr make_drawn_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& vi
     constants.add(CONSTANT_ORTHOGRAPHIC, static_cast<int32_t>(view.projection == Projection::orthographic));
     const ShaderSource background{.file    = "gbuffer/background.comp",
                                   .defines = store_defines(gpu, gbuffer->depth.cells)};
-    gbuffer->background = make_compute_pass(gpu, compile_shader(background),
+    gbuffer->background = make_compute_pass(gpu, compile_shader(gpu, background),
                                             {{"View", gbuffer->view_uniforms},
                                              {"depth_buffer", {gbuffer->depth_buffer, gbuffer->sampler}},
                                              {"environment_map", {scene->environment_map, scene->environment_sampler}},
-                                             {"depth_words", gbuffer->depth.words},
+                                             {"depth_words", {gbuffer->depth.cells, gbuffer->depth.words}},
                                              {"StoredPlanes", gbuffer->depth.cells},
                                              {"gradient_image", gbuffer->gradient},
                                              {"radiance_image", gbuffer->radiance}},

@@ -191,10 +191,9 @@ GpuScenePtr upload_scene(Gpu& gpu, const Scene& source)
     scene->textures.push_back(upload_texture(gpu, white_texture()));
     scene->samplers.push_back(make_sampler(gpu, white_texture()));
 
-    using Type = vk::DescriptorType;
-    scene->frame_layout =
-        make_layout(gpu, {Type::eUniformBuffer, Type::eStorageBuffer, Type::eStorageBuffer, Type::eStorageBuffer,
-                          Type::eCombinedImageSampler, Type::eStorageTexelBuffer});
+    using Type             = vk::DescriptorType;
+    scene->frame_layout    = make_layout(gpu, {Type::eUniformBuffer, Type::eStorageBuffer, Type::eStorageBuffer,
+                                               Type::eStorageBuffer, Type::eCombinedImageSampler, texel_descriptor(gpu)});
     scene->material_layout = make_layout(gpu, std::vector<Type>(textures_per_material, Type::eCombinedImageSampler));
     make_material_sets(gpu, *scene, source);
     for (size_t i = 0; i < source.draws.size(); ++i) {
@@ -236,14 +235,13 @@ void move_scene(Gpu& gpu, GpuScene& uploaded, const Scene& moved)
     render_shadow_maps(gpu, uploaded, moved);
 }
 
-FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms,
-                        const vk::raii::BufferView* first_depth)
+FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms, const DepthBuffer* first_depth)
 {
     using Type                           = vk::DescriptorType;
     const vk::DescriptorPoolSize sizes[] = {{Type::eUniformBuffer, 1},
                                             {Type::eStorageBuffer, 3},
                                             {Type::eCombinedImageSampler, 1},
-                                            {Type::eStorageTexelBuffer, 1}};
+                                            {texel_descriptor(gpu), 1}};
     FrameSet                     result;
     result.pool = {gpu.impl->device,
                    vk::DescriptorPoolCreateInfo{.flags         = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
@@ -274,11 +272,13 @@ FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uni
                                                                  .pImageInfo      = &image},
                                           nullptr);
     if (first_depth == nullptr) return result;
+    const vk::DescriptorBufferInfo depth{*first_depth->cells.buffer, 0, VK_WHOLE_SIZE};
     gpu.impl->device.updateDescriptorSets(vk::WriteDescriptorSet{.dstSet           = *result.set,
                                                                  .dstBinding       = 5,
                                                                  .descriptorCount  = 1,
-                                                                 .descriptorType   = Type::eStorageTexelBuffer,
-                                                                 .pTexelBufferView = &**first_depth},
+                                                                 .descriptorType   = texel_descriptor(gpu),
+                                                                 .pBufferInfo      = &depth,
+                                                                 .pTexelBufferView = &*first_depth->words},
                                           nullptr);
     return result;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gpu/compute.h"
+#include "render/depth_buffer.h"
 #include "render/frame.h"
 
 namespace ssrlab {
@@ -70,7 +71,7 @@ struct FrameSet {
     vk::raii::DescriptorSet  set  = nullptr;
 };
 FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms,
-                        const vk::raii::BufferView* first_depth = nullptr);
+                        const DepthBuffer* first_depth = nullptr);
 
 /// The environment as rough surfaces reflect it; without a map, the one colour that there is.
 const GpuImage& blurred_environment(Gpu& gpu, GpuScene& scene);

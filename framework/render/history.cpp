@@ -93,7 +93,7 @@ void keep_history(Gpu& gpu, const PreparedFrame& frame, int number)
                 {"previous_facts_image", history.facts}});
     ShaderSource source{.file = "gbuffer/keep_history.comp"};
     if (!kept) source.defines.emplace("KEEP_REFLECTION", "1");
-    const ComputePass keep = make_compute_pass(gpu, compile_shader(source), all);
+    const ComputePass keep = make_compute_pass(gpu, compile_shader(gpu, source), all);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         barrier(commands);
         dispatch(commands, keep, groups_of_8(history.size_px));

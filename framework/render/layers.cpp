@@ -31,7 +31,7 @@ void add_layers(Bindings& bindings, std::span<const GBufferPtr> layers)
         const GBuffer& layer = *layers[i];
         const auto     name  = [&](const char* what) { return fmt::format("layer_{}_{}", i + 1, what); };
         bindings.insert({{name("cells"), layer.depth.cells},
-                         {name("depth_words"), layer.depth.words},
+                         {name("depth_words"), {layer.depth.cells, layer.depth.words}},
                          {name("normal_image"), layer.normal},
                          {name("material_image"), layer.material},
                          {name("radiance_image"), layer.radiance},

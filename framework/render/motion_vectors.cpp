@@ -46,9 +46,9 @@ MotionVectors make_motion_vectors(Gpu& gpu, const GBuffer& gbuffer, const FrameM
                                           .usage   = vk::ImageUsageFlagBits::eStorage});
     Constants constants;
     constants.add(CONSTANT_ORTHOGRAPHIC, static_cast<int32_t>(gbuffer.view.projection == Projection::orthographic));
-    vectors.pass = make_compute_pass(gpu, compile_shader({.file = "gbuffer/motion_vectors.comp"}),
+    vectors.pass = make_compute_pass(gpu, compile_shader(gpu, {.file = "gbuffer/motion_vectors.comp"}),
                                      {{"View", gbuffer.view_uniforms},
-                                      {"depth_words", gbuffer.depth.words},
+                                      {"depth_words", {gbuffer.depth.cells, gbuffer.depth.words}},
                                       {"object_image", gbuffer.object},
                                       {"motion_image", vectors.vectors_px},
                                       {"PreviousView", vectors.motion.previous_view},

@@ -17,7 +17,7 @@ void prepare_solid_backs(Gpu& gpu, GBuffer& gbuffer)
     gbuffer.solid_depth = make_image(gpu, {.format  = vk::Format::eD32Sfloat,
                                            .size_px = gbuffer.view.size_px,
                                            .usage   = vk::ImageUsageFlagBits::eDepthStencilAttachment});
-    gbuffer.solid_set   = make_frame_set(gpu, scene, gbuffer.frame_uniforms, &gbuffer.depth.words);
+    gbuffer.solid_set   = make_frame_set(gpu, scene, gbuffer.frame_uniforms, &gbuffer.depth);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) { record_solid_backs(commands, gbuffer); });
 }
 

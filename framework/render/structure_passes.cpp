@@ -17,20 +17,20 @@ constexpr int first_binding = 32, group_fetches_binding = 31;
 /// An element type of GLSL as the macros of shaders/layout/structure_buffers.glsl want it.
 struct ElementType {
     int         words;
-    const char *format, *swizzle, *from_bits, *to_bits;
+    const char *swizzle, *from_bits, *to_bits;
     vk::Format  texels;
 };
 
 ElementType element_type(const std::string& type)
 {
     static const std::map<std::string, ElementType> types = {
-        {"uint", {1, "r32ui", "x", "uint", "uint", vk::Format::eR32Uint}},
-        {"uvec2", {2, "rg32ui", "xy", "uvec2", "uvec2", vk::Format::eR32G32Uint}},
-        {"uvec4", {4, "rgba32ui", "xyzw", "uvec4", "uvec4", vk::Format::eR32G32B32A32Uint}},
-        {"float", {1, "r32ui", "x", "uintBitsToFloat", "floatBitsToUint", vk::Format::eR32Uint}},
-        {"vec2", {2, "rg32ui", "xy", "uintBitsToFloat", "floatBitsToUint", vk::Format::eR32G32Uint}},
-        {"vec4", {4, "rgba32ui", "xyzw", "uintBitsToFloat", "floatBitsToUint", vk::Format::eR32G32B32A32Uint}},
-        {"real2", {2, "rg32ui", "xy", "uintBitsToFloat", "floatBitsToUint", vk::Format::eR32G32Uint}}};
+        {"uint", {1, "x", "uint", "uint", vk::Format::eR32Uint}},
+        {"uvec2", {2, "xy", "uvec2", "uvec2", vk::Format::eR32G32Uint}},
+        {"uvec4", {4, "xyzw", "uvec4", "uvec4", vk::Format::eR32G32B32A32Uint}},
+        {"float", {1, "x", "uintBitsToFloat", "floatBitsToUint", vk::Format::eR32Uint}},
+        {"vec2", {2, "xy", "uintBitsToFloat", "floatBitsToUint", vk::Format::eR32G32Uint}},
+        {"vec4", {4, "xyzw", "uintBitsToFloat", "floatBitsToUint", vk::Format::eR32G32B32A32Uint}},
+        {"real2", {2, "xy", "uintBitsToFloat", "floatBitsToUint", vk::Format::eR32G32Uint}}};
     return types.at(type);
 }
 
@@ -156,7 +156,7 @@ StructureDispatch make_dispatch(Gpu& gpu, const PreparedFrame& frame, const Stru
     source.defines.merge(store_defines_of(gpu, structure, layer, rays));
     if (is_per_ray(pass) && bindings.contains("Work")) source.defines.emplace("COUNT_WORK", "1");
     StructureDispatch dispatch;
-    dispatch.pass = make_compute_pass(gpu, compile_shader(source), bindings,
+    dispatch.pass = make_compute_pass(gpu, compile_shader(gpu, source), bindings,
                                       constants_of(frame, is_per_ray(pass) ? rays.precision : Precision::float32),
                                       pass.per == SizeRule::level ? sizeof(int32_t) : 0);
     add_dispatches(dispatch, frame, pass, layer.view.size_px);
@@ -192,7 +192,7 @@ std::string buffer_declarations(const StructureBuffer& buffer, int binding, bool
         return text;
     }
     const ElementType type = element_type(buffer.type);
-    text += fmt::format("LOADED_BUFFER({}, {}, {}, {}, {}, {})\n", binding, buffer.name, buffer.type, type.format,
+    text += fmt::format("LOADED_BUFFER({}, {}, {}, {}, {}, {})\n", binding, buffer.name, buffer.type, type.words,
                         type.from_bits, type.swizzle);
     if (stored)
         text += fmt::format("STORED_BUFFER_{}({}, {}, {}, {})\n", type.words, binding + 1, buffer.name, buffer.type,

@@ -2,14 +2,14 @@
 #ifndef SSRLAB_CELL_PAIRS
 #define SSRLAB_CELL_PAIRS
 #include "layout/cell_places.glsl"
-#include "layout/stored_texels.glsl"
+#include "layout/texels.glsl"
 
-layout(set = 0, binding = 10, rgba32ui) uniform readonly uimageBuffer cell_pairs;
+LOADED_TEXELS_4(10, cell_pairs)
 
 // Two cells side by side, or four pixels. x: even (a multiple of four for pixels). first_row: the row of the heap with which the cells' level begins.
 int pair_index(ivec2 cell, int first_row) { return strip_index(cell.x, first_row + cell.y, pyramid_height) >> 1; }
 
-uvec4 load_pair(int index) { return imageLoad(cell_pairs, index); }
+uvec4 load_pair(int index) { return LOAD_TEXEL(cell_pairs, index); }
 
 #ifdef PIXEL_PLANES
 #include "layout/load_gradients.glsl"

@@ -8,7 +8,7 @@ uvec2 load_cell(ivec2 pixel, int level)
 {
     bool leaf  = level == 0;
     int  index = strip_index(pixel.x >> level, (pyramid_root | pixel.y) >> level, leaf ? leaf_rows : pyramid_height) + (leaf ? leaf_first : 0);
-    return imageLoad(depth_cells, index).xy;
+    return LOAD_TEXEL(depth_cells, index).xy;
 }
 
 // What load_cell() says of this pixel at level 0.

@@ -2,8 +2,9 @@
 #ifndef SSRLAB_LOAD_DEPTH
 #define SSRLAB_LOAD_DEPTH
 #include "layout/depth_words.glsl"
+#include "layout/texels.glsl"
 
-layout(set = 0, binding = DEPTH_BINDING, r32f) uniform readonly imageBuffer depth_words;
+LOADED_FLOATS(DEPTH_BINDING, depth_words)
 
-float load_depth(ivec2 pixel) { return imageLoad(depth_words, depth_word(pixel)).x; }
+float load_depth(ivec2 pixel) { return LOAD_TEXEL(depth_words, depth_word(pixel)).x; }
 #endif

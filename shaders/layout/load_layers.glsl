@@ -2,9 +2,10 @@
 #ifndef SSRLAB_LOAD_LAYERS
 #define SSRLAB_LOAD_LAYERS
 #include "layout/plane_places.glsl"
+#include "layout/texels.glsl"
 
 #define DECLARE_LAYER(number, place)                                                                \
-    layout(set = 0, binding = place, rg32ui) uniform readonly uimageBuffer layer_##number##_cells;     \
+    LOADED_TEXELS_2(place, layer_##number##_cells)                                                    \
     layout(set = 0, binding = place + 1, r32f) uniform readonly image2D layer_##number##_solid_image; \
     layout(set = 0, binding = place + 2, rgba32f) uniform readonly image2D layer_##number##_normal_image;
 DECLARE_LAYER(1, 16)
@@ -21,7 +22,7 @@ DECLARE_LAYER(3, 22)
 #define OF_LAYER_3(loaded, otherwise) otherwise
 #endif
 #define OF_LAYER(load, place) (OF_LAYER_3(load(3, place), OF_LAYER_2(load(2, place), load(1, place))))
-#define LOAD_LAYER_CELL(number, place) imageLoad(layer_##number##_cells, place)
+#define LOAD_LAYER_CELL(number, place) LOAD_TEXEL(layer_##number##_cells, place)
 #define LOAD_LAYER_SOLID(number, place) imageLoad(layer_##number##_solid_image, place)
 #define LOAD_LAYER_NORMAL(number, place) imageLoad(layer_##number##_normal_image, place)
 

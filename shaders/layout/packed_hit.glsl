@@ -2,7 +2,7 @@
 #ifndef SSRLAB_PACKED_HIT
 #define SSRLAB_PACKED_HIT
 #include "api/real.glsl"
-#include "layout/stored_texels.glsl"
+#include "layout/texels.glsl"
 
 struct PackedHit
 {
@@ -13,7 +13,7 @@ struct PackedHit
 #ifdef REAL_IS_DOUBLE
 #include "layout/packed_hit_double.glsl"
 #else
-#define HIT_FORMAT rg32ui
+#define LOADED_HITS LOADED_TEXELS_2
 #define STORED_HITS STORED_TEXELS_2
 uvec2 hit_to_texel(PackedHit hit) { return uvec2(hit.pixel, floatBitsToUint(hit.t)); }
 PackedHit texel_to_hit(uvec4 texel) { return PackedHit(texel.x, uintBitsToFloat(texel.y)); }

@@ -3,7 +3,7 @@
 #ifndef SSRLAB_PACKED_RAY
 #define SSRLAB_PACKED_RAY
 #include "api/real.glsl"
-#include "layout/stored_texels.glsl"
+#include "layout/texels.glsl"
 
 struct PackedRay
 {
@@ -22,8 +22,8 @@ PackedRay texels_to_ray(uvec4 start, uvec4 delta)
     return PackedRay(origin.xyz, origin.w, uintBitsToFloat(delta.xyz), delta.w);
 }
 
-#define LOAD_RAY(rays, index) texels_to_ray(imageLoad(rays, int(index) * 2), imageLoad(rays, int(index) * 2 + 1))
-#define LOAD_RAY_PIXEL(rays, index) imageLoad(rays, int(index) * 2 + 1).w
+#define LOAD_RAY(rays, index) texels_to_ray(LOAD_TEXEL(rays, (index) * 2), LOAD_TEXEL(rays, (index) * 2 + 1))
+#define LOAD_RAY_PIXEL(rays, index) LOAD_TEXEL(rays, (index) * 2 + 1).w
 #define STORE_RAY(rays, index, ray)                                                                                                        \
     STORE_TEXEL(rays, (index) * 2, floatBitsToUint(vec4((ray).origin, (ray).length_m)));                                                   \
     STORE_TEXEL(rays, (index) * 2 + 1, uvec4(floatBitsToUint((ray).delta), (ray).pixel))

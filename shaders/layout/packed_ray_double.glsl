@@ -9,9 +9,9 @@ PackedRay texels_to_ray(uvec4 a, uvec4 b, uvec4 c, uvec4 d)
 }
 
 #define LOAD_RAY(rays, index)                                                                                                              \
-    texels_to_ray(imageLoad(rays, int(index) * 4), imageLoad(rays, int(index) * 4 + 1), imageLoad(rays, int(index) * 4 + 2),               \
-                  imageLoad(rays, int(index) * 4 + 3))
-#define LOAD_RAY_PIXEL(rays, index) imageLoad(rays, int(index) * 4 + 3).z
+    texels_to_ray(LOAD_TEXEL(rays, (index) * 4), LOAD_TEXEL(rays, (index) * 4 + 1), LOAD_TEXEL(rays, (index) * 4 + 2),               \
+                  LOAD_TEXEL(rays, (index) * 4 + 3))
+#define LOAD_RAY_PIXEL(rays, index) LOAD_TEXEL(rays, (index) * 4 + 3).z
 #define STORE_RAY(rays, index, ray)                                                                                                        \
     STORE_TEXEL(rays, (index) * 4, reals_to_texel((ray).origin.x, (ray).origin.y));                                                        \
     STORE_TEXEL(rays, (index) * 4 + 1, reals_to_texel((ray).origin.z, (ray).length_m));                                                    \

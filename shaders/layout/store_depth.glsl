@@ -3,16 +3,15 @@
 #define SSRLAB_STORE_DEPTH
 #include "layout/depth_words.glsl"
 #include "layout/plane_places.glsl"
-#include "layout/stored_texels.glsl"
+#include "layout/texels.glsl"
 
-layout(set = 0, binding = DEPTH_BINDING, r32f) uniform writeonly imageBuffer depth_words;
-
+STORED_FLOATS(DEPTH_BINDING, depth_words)
 STORED_TEXELS_2(PLANES_BINDING, StoredPlanes)
 
 // gradient: as framework/core/plane_gradient.h packs it.
 void store_depth(ivec2 pixel, float depth, uint gradient)
 {
-    imageStore(depth_words, depth_word(pixel), vec4(depth));
+    STORE_FLOAT(depth_words, depth_word(pixel), depth);
     STORE_TEXEL(StoredPlanes, plane_index(pixel), uvec2(floatBitsToUint(depth), gradient));
 }
 #endif

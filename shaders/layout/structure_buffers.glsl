@@ -1,15 +1,15 @@
 // The buffers of structures.
 #ifndef SSRLAB_STRUCTURE_BUFFERS
 #define SSRLAB_STRUCTURE_BUFFERS
-#include "layout/stored_texels.glsl"
+#include "layout/texels.glsl"
 
 // The buffers of structures are declared through these (framework/render/structure_passes.cpp): load_NAME(index), store_NAME(index, value).
-#define LOADED_BUFFER(place, name, type, format, from_bits, words)                     \
-    layout(set = 0, binding = place, format) uniform readonly uimageBuffer name##_loaded; \
-    type load_##name(int index) { return from_bits(imageLoad(name##_loaded, index).words); }
-#define STORED_BUFFER_1(place, name, type, to_bits)                                    \
-    layout(set = 0, binding = place, r32ui) uniform writeonly uimageBuffer name##_stored; \
-    void store_##name(int index, type value) { imageStore(name##_stored, index, uvec4(to_bits(value))); }
+#define LOADED_BUFFER(place, name, type, words, from_bits, swizzle) \
+    LOADED_TEXELS_##words(place, name##_loaded)                     \
+    type load_##name(int index) { return from_bits(LOAD_TEXEL(name##_loaded, index).swizzle); }
+#define STORED_BUFFER_1(place, name, type, to_bits) \
+    STORED_WORDS(place, name##_stored)              \
+    void store_##name(int index, type value) { STORE_WORD(name##_stored, index, to_bits(value)); }
 #define STORED_BUFFER_2(place, name, type, to_bits) \
     STORED_TEXELS_2(place, name##_stored)           \
     void store_##name(int index, type value) { STORE_TEXEL(name##_stored, index, to_bits(value)); }

@@ -7,35 +7,36 @@ layout(set = 0, binding = 11, rgba16f) uniform readonly image2D radiance_image;
 layout(set = 0, binding = 12, rgba16f) uniform readonly image2D highlight_image;
 layout(set = 0, binding = 14, rgba16f) uniform readonly image2D small_colour_image;
 #define DECLARE_COLOURS(number, place)                                                                     \
-    layout(set = 0, binding = place, r32f) uniform readonly imageBuffer layer_##number##_depth_words;         \
+    LOADED_FLOATS(place, layer_##number##_depth_words)                                                     \
     layout(set = 0, binding = place + 1, rgba32f) uniform readonly image2D layer_##number##_normal_image;   \
     layout(set = 0, binding = place + 2, rgba16f) uniform readonly image2D layer_##number##_material_image; \
     layout(set = 0, binding = place + 3, rgba16f) uniform readonly image2D layer_##number##_radiance_image; \
     layout(set = 0, binding = place + 4, rgba16f) uniform readonly image2D layer_##number##_highlight_image; \
     layout(set = 0, binding = place + 5, r32f) uniform readonly image2D layer_##number##_dielectric_image;
-#define OF_LAYER(number, name, place, layer, otherwise) ((layer) == number ? imageLoad(layer_##number##_##name, place) : otherwise)
+#define OF_LAYER(load, number, name, place, layer, otherwise) ((layer) == number ? load(layer_##number##_##name, place) : otherwise)
 #if LAYERS > 3
 DECLARE_COLOURS(3, 82)
-#define LOAD_FROM_3(name, place, layer) OF_LAYER(3, name, place, layer, imageLoad(name, place))
+#define LOAD_FROM_3(load, name, place, layer) OF_LAYER(load, 3, name, place, layer, load(name, place))
 #else
-#define LOAD_FROM_3(name, place, layer) imageLoad(name, place)
+#define LOAD_FROM_3(load, name, place, layer) load(name, place)
 #endif
 #if LAYERS > 2
 DECLARE_COLOURS(2, 76)
-#define LOAD_FROM_2(name, place, layer) OF_LAYER(2, name, place, layer, LOAD_FROM_3(name, place, layer))
+#define LOAD_FROM_2(load, name, place, layer) OF_LAYER(load, 2, name, place, layer, LOAD_FROM_3(load, name, place, layer))
 #else
-#define LOAD_FROM_2(name, place, layer) LOAD_FROM_3(name, place, layer)
+#define LOAD_FROM_2(load, name, place, layer) LOAD_FROM_3(load, name, place, layer)
 #endif
 #if LAYERS > 1
 DECLARE_COLOURS(1, 70)
-#define LOAD_LAYER(name, place, layer) OF_LAYER(1, name, place, layer, LOAD_FROM_2(name, place, layer))
+#define LOAD_FROM_1(load, name, place, layer) OF_LAYER(load, 1, name, place, layer, LOAD_FROM_2(load, name, place, layer))
 #else
-#define LOAD_LAYER(name, place, layer) LOAD_FROM_2(name, place, layer)
+#define LOAD_FROM_1(load, name, place, layer) LOAD_FROM_2(load, name, place, layer)
 #endif
+#define LOAD_LAYER(name, place, layer) LOAD_FROM_1(imageLoad, name, place, layer)
 
 float layer_depth(ivec2 pixel, int layer)
 {
-    return LOAD_LAYER(depth_words, depth_word(pixel), layer).x;
+    return LOAD_FROM_1(LOAD_TEXEL, depth_words, depth_word(pixel), layer).x;
 }
 
 struct Found

@@ -12,7 +12,7 @@ layout(constant_id = CONSTANT_RAYS_PER_PIXEL) const int rays_per_pixel = 1;
 layout(constant_id = CONSTANT_LOBE_RAYS) const int lobe_rays = 0; // rough surfaces: drawn from the lobe, else the mirror ray
 
 STORED_TEXELS_4(5, Rays)
-layout(set = 0, binding = 11, r32ui) uniform readonly uimageBuffer TileMasks; // two words a tile: bit x + 8 y
+LOADED_TEXELS_1(11, TileMasks) // two words a tile: bit x + 8 y
 
 // A place inside the pixel, exact in float. Depth is flat inside each pixel: a ray that starts on the far side of its pixel's
 // centre and runs sideways is behind its neighbour's slab face, which ray_offset_m > 0 avoids.
@@ -60,7 +60,7 @@ void main()
     if (!listed_pixel(pixel)) return;
     ivec2 tile  = listed_tile();
     int   own   = 2 * (tile.y * ((size_px.x + 7) / 8) + tile.x);
-    uvec2 mask  = uvec2(imageLoad(TileMasks, own).x, imageLoad(TileMasks, own + 1).x);
+    uvec2 mask  = uvec2(LOAD_TEXEL(TileMasks, own).x, LOAD_TEXEL(TileMasks, own + 1).x);
     uint  place = gl_LocalInvocationIndex, bit = 1u << place % 32;
     bool  upper = place >= 32;
     if (((upper ? mask.y : mask.x) & bit) == 0) return;

@@ -1,19 +1,20 @@
 // The tiles of 8 x 8 pixels that shaders/rays/tile_list.comp lists, one for each workgroup of an indirect launch.
+#include "layout/texels.glsl"
 #include "layout/workgroups.glsl"
 
 layout(set = 0, binding = 9, scalar) readonly buffer TileCount { uint tile_count; };
 // As texels: layout/packed_ray.glsl says why. Two words a tile: x | y << 16, in tiles; pixels traced in those before it.
-layout(set = 0, binding = 10, r32ui) uniform readonly uimageBuffer Tiles;
+LOADED_TEXELS_1(10, Tiles)
 
 ivec2 listed_tile()
 {
-    uint tile = imageLoad(Tiles, 2 * int(work_group())).x;
+    uint tile = LOAD_TEXEL(Tiles, 2 * work_group()).x;
     return ivec2(tile & 0xFFFF, tile >> 16);
 }
 
 uint pixels_before_tile()
 {
-    return imageLoad(Tiles, 2 * int(work_group()) + 1).x;
+    return LOAD_TEXEL(Tiles, 2 * work_group() + 1).x;
 }
 
 // All invocations of a workgroup get the same answer; the pixel may lie outside the image.

@@ -4,7 +4,7 @@
 #include "layout/packed_ray.glsl"
 
 layout(set = 0, binding = 4, scalar) readonly buffer RayCount { uint ray_count; };
-layout(set = 0, binding = 5, rgba32ui) uniform readonly uimageBuffer Rays;
+LOADED_TEXELS_4(5, Rays)
 
 PackedRay packed_ray(uint index) { return LOAD_RAY(Rays, index); }
 

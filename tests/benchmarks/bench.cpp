@@ -184,7 +184,7 @@ Bench::Picture& Bench::picture(const std::string& scene, glm::ivec2 size_px)
     const std::vector<float> depth = read_depth(gpu_, p.gbuffer->depth);
     upload(gpu_, p.depth, depth.data(), depth.size() * sizeof(float));
     p.copy_pass =
-        make_compute_pass(gpu_, compile_shader({.file = data_root() / "tests/benchmarks/copy_depth.comp"}),
+        make_compute_pass(gpu_, compile_shader(gpu_, {.file = data_root() / "tests/benchmarks/copy_depth.comp"}),
                           {{"depth_image", p.depth}, {"depth_copy", p.copy}});
     p.timestamps = make_timestamps(gpu_, 2);
     return p;

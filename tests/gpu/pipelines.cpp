@@ -19,7 +19,7 @@ struct Launch {
         Constants constants;
         if (of_no_use) constants.add(CONSTANT_SLAB_SCALE, *of_no_use);
         constants.add(CONSTANT_ITEMS_PER_GROUP, items_per_group);
-        return make_compute_pass(device(), compile_shader({.file = "trace/dispatch_args.comp"}),
+        return make_compute_pass(device(), compile_shader(device(), {.file = "trace/dispatch_args.comp"}),
                                  {{"ItemCount", items}, {"Launch", groups}}, constants);
     }
 
@@ -57,9 +57,9 @@ TEST(Pipelines, AreSharedWhereNoConstantThatTheShaderUsesDiffers)
 
 TEST(Pipelines, KnowTheConstantsThatAShaderUses)
 {
-    EXPECT_EQ(compile_shader({.file = "trace/dispatch_args.comp"}).constants,
+    EXPECT_EQ(compile_shader(device(), {.file = "trace/dispatch_args.comp"}).constants,
               std::set<uint32_t>{CONSTANT_ITEMS_PER_GROUP});
-    const auto of_rays = compile_shader({.file = "rays/rays.comp"}).constants;
+    const auto of_rays = compile_shader(device(), {.file = "rays/rays.comp"}).constants;
     EXPECT_TRUE(of_rays.contains(CONSTANT_MAX_DISTANCE_M));
     EXPECT_FALSE(of_rays.contains(CONSTANT_SLAB_SLOPE));
 }

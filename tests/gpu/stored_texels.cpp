@@ -1,6 +1,7 @@
-// What shaders store 64 bits at a time is what they store as texels where the device cannot.
+// Whatever way a device stores texels in, it stores the same bits: words, 64 bits at a time, or plain storage buffers.
 #include "gpu/device.h"
 #include "render/frame_passes.h"
+#include "render/gbuffer.h"
 
 namespace ssrlab::test {
 namespace {
@@ -10,36 +11,59 @@ struct Stored {
     std::vector<float> shaded;
 };
 
-/// All that a frame stores in texels, by a device that is said to have 64-bit integers or not. An odd size: cells stand beside the picture.
-Stored frame_of(const ParameterValues& changed, bool int64)
+struct Way {
+    bool int64, plain_buffers;
+};
+
+/// All that a frame stores in texels, by a device that is said to store so. An odd size: cells stand beside the picture.
+Stored frame_of(const Technique& technique, const FrameSettings& settings, const Way& way)
 {
-    Gpu gpu        = device();
-    gpu.info.int64 = int64;
-    FrameSettings settings{.trace = {.thickness_m = 0.1, .max_distance_m = 100}};
-    for (const auto& [name, value] : changed) settings.passes.at(name) = value;
-    const Picture    picture = make_picture("builtin:everything", "default", {163, 91});
-    const Technique& hiz     = technique("hiz");
-    const auto       frame   = prepare_frame(gpu, picture.buffers, hiz, values_of(hiz), settings);
+    Gpu gpu                = device();
+    gpu.info.int64         = way.int64 && gpu.info.int64;
+    gpu.info.plain_buffers = way.plain_buffers || gpu.info.plain_buffers;
+    const Scene scene      = load_scene("builtin:everything");
+    const auto  gbuffer =
+        render_gbuffer(gpu, upload_scene(gpu, scene), camera_to_view(find_camera(scene, "default"), {163, 91}));
+    const auto buffers = make_frame_buffers(gpu, gbuffer);
+    const auto frame   = prepare_frame(gpu, buffers, technique, values_of(technique), settings);
     run_frame(gpu, *frame);
     const size_t rays = download_as<uint32_t>(gpu, frame->rays->count, 1).front();
     EXPECT_GT(rays, 0U);
-    const Buffer& cells = picture.gbuffer->depth.cells;
+    const Buffer& cells = gbuffer->depth.cells;
     return {download_as<char>(gpu, cells, cells.bytes),
             download_as<char>(gpu, frame->rays->list, rays * sizeof(PackedRay<float>)),
             download_as<char>(gpu, frame->rays->hits, rays * sizeof(PackedHit<float>)),
             read_shaded(gpu, *frame).values};
 }
 
-TEST(StoredTexels, AreTheSame64BitsAtATime)
+void expect_alike(const std::string& id, const FrameSettings& settings)
+{
+    SCOPED_TRACE(id);
+    const Stored words = frame_of(technique(id), settings, {false, false});
+    for (const Way way : {Way{true, false}, Way{false, true}}) {
+        const Stored stored = frame_of(technique(id), settings, way);
+        EXPECT_EQ(stored.cells, words.cells) << way.plain_buffers;
+        EXPECT_EQ(stored.rays, words.rays) << way.plain_buffers;
+        EXPECT_EQ(stored.hits, words.hits) << way.plain_buffers;
+        EXPECT_EQ(stored.shaded, words.shaded) << way.plain_buffers;
+    }
+}
+
+TEST(StoredTexels, AreTheSameInEveryWayOfStoringThem)
 {
     for (const ParameterValues& passes :
          {ParameterValues{{"hidden_layer", 1}}, {chosen(BounceMode::direct), {"bounces", 2}}}) {
-        const Stored wide = frame_of(passes, true), words = frame_of(passes, false);
-        EXPECT_EQ(wide.cells, words.cells);
-        EXPECT_EQ(wide.rays, words.rays);
-        EXPECT_EQ(wide.hits, words.hits);
-        EXPECT_EQ(wide.shaded, words.shaded);
+        FrameSettings settings;
+        for (const auto& [name, value] : passes) settings.passes.at(name) = value;
+        expect_alike("hiz", settings);
     }
+}
+
+TEST(StoredTexels, AreTheSameInStructuresAndLayers)
+{
+    FrameSettings settings;
+    settings.trace.layers = 3;
+    for (const char* id : {"hiz_packets", "quadtree"}) expect_alike(id, settings);
 }
 
 } // namespace

@@ -98,7 +98,7 @@ ComputePass make_composed_pass(Gpu& gpu, const PreparedFrame& frame, ShaderSourc
                          {"ShadowMatrices", scene->shadow_matrices},
                          {"shadow_map", {scene->shadow_map, scene->shadow_sampler}}});
     source.include_texts.emplace("pass/parameters", parameter_declarations(pass_parameters(), CONSTANT_PASSES));
-    return make_compute_pass(gpu, compile_shader(source), bindings, constants, push_constant_bytes);
+    return make_compute_pass(gpu, compile_shader(gpu, source), bindings, constants, push_constant_bytes);
 }
 
 std::shared_ptr<ComputePass> make_shared_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader,

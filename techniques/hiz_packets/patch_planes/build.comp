@@ -82,7 +82,7 @@ void main()
             int   quad = first_quad + sample_quad(column), word = 4 * quad + picks[column].y, i = row * sample_rows + column;
             uvec4 four = load_pair(quad + y * quads);
             depths[i]  = uintBitsToFloat(uvec3(four[picks[column].x], four[picks[column].y], four[picks[column].z]));
-            beside[i]  = vec2(imageLoad(depth_words, word + above * side_px).x, imageLoad(depth_words, word + below * side_px).x);
+            beside[i]  = vec2(LOAD_TEXEL(depth_words, word + above * side_px).x, LOAD_TEXEL(depth_words, word + below * side_px).x);
         }
     }
 
