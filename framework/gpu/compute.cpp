@@ -21,8 +21,23 @@ vk::DescriptorType descriptor_type(BindingType type)
     return vk::DescriptorType::eStorageBuffer;
 }
 
+void refuse_too_many(const Gpu& gpu, const Shader& shader)
+{
+    const auto& limits = gpu.impl->limits;
+    const auto  refuse = [&](BindingType type, const char* what, uint32_t most) {
+        const auto count =
+            std::ranges::count(shader.bindings, type, [](const auto& binding) { return binding.second.type; });
+        if (count > most)
+            throw_failure("{}: {} {} are needed; the device '{}' allows {} a shader. Fewer layers need fewer",
+                           shader.name, count, what, gpu.info.name, most);
+    };
+    refuse(BindingType::storage_image, "images", limits.maxPerStageDescriptorStorageImages);
+    refuse(BindingType::storage_buffer, "storage buffers", limits.maxPerStageDescriptorStorageBuffers);
+}
+
 vk::raii::DescriptorSetLayout make_set_layout(Gpu& gpu, const Shader& shader)
 {
+    refuse_too_many(gpu, shader);
     std::vector<vk::DescriptorSetLayoutBinding> bindings;
     for (const auto& [name, binding] : shader.bindings)
         bindings.push_back({.binding         = binding.binding,

@@ -51,6 +51,9 @@ GpuScenePtr upload_scene(Gpu& gpu, const Scene& scene);
 /// The same scene with its draws elsewhere: vertices and shadow maps anew, in the buffers that are there.
 void move_scene(Gpu& gpu, GpuScene& uploaded, const Scene& moved);
 
+/// What these values need and the device lacks, in words; empty: nothing.
+std::string missing_feature(const Gpu& gpu, const Technique& technique, const ParameterValues& values);
+
 /// Renders the G-buffer; call again for another timing. Throws SpecError when the size exceeds the device's limit.
 /// motion: since the frame before; where anything moved, the G-buffer has motion vectors.
 GBufferPtr render_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view,

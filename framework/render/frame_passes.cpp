@@ -70,21 +70,28 @@ template <typename Real> void add_settings(Constants& constants, const View& vie
     add_reflecting(constants, settings.trace);
 }
 
+/// The choice of a parameter that asks for integers of 128 bits, "NAME = CHOICE"; empty: none does.
+std::string exact_choice(const Technique& technique, const ParameterValues& values)
+{
+    for (const Parameter& parameter : technique.parameters) {
+        const std::string chosen = format_parameter(parameter, values.at(parameter.name));
+        const auto        define = parameter.defines.find(chosen);
+        if (define != parameter.defines.end() && define->second == exact_arithmetic)
+            return fmt::format("{} = {}", parameter.name, chosen);
+    }
+    return "";
+}
+
 /// Throws where the choice of a parameter needs what the device or the surface model does not have.
 void require_exact_arithmetic(const Gpu& gpu, const PreparedFrame& frame)
 {
-    const Surface& surface = find_surface(frame.settings.trace.surface);
-    for (const Parameter& parameter : frame.technique.parameters) {
-        const std::string chosen = format_parameter(parameter, frame.values.at(parameter.name));
-        const auto        define = parameter.defines.find(chosen);
-        if (define == parameter.defines.end() || define->second != exact_arithmetic) continue;
-        if (!gpu.info.int64 || !gpu.info.float64)
-            throw_failure("{} = {} needs 64-bit integers and doubles in shaders; the device '{}' has no {}",
-                          parameter.name, chosen, gpu.info.name, gpu.info.int64 ? "shaderFloat64" : "shaderInt64");
-        if (!std::filesystem::exists(surface.shaders / "meeting_exact.glsl"))
-            throw_spec_error("{} = {} needs a surface model with meeting_exact.glsl, which {} does not have",
-                             parameter.name, chosen, short_path(surface.folder));
-    }
+    if (const std::string missing = missing_feature(gpu, frame.technique, frame.values); !missing.empty())
+        throw_failure("{}", missing);
+    const std::string chosen  = exact_choice(frame.technique, frame.values);
+    const Surface&    surface = find_surface(frame.settings.trace.surface);
+    if (!chosen.empty() && !std::filesystem::exists(surface.shaders / "meeting_exact.glsl"))
+        throw_spec_error("{} needs a surface model with meeting_exact.glsl, which {} does not have", chosen,
+                         short_path(surface.folder));
 }
 
 } // namespace
@@ -107,6 +114,14 @@ void add_surface(ShaderSource& source, const TraceSettings& settings)
     if (surface.needs_solid) source.defines.emplace("SURFACE_SOLID", "1");
     for (const std::string& macro : surface.defines) source.defines.emplace(macro, "1");
     source.defines.emplace("LAYERS", std::to_string(settings.layers));
+}
+
+std::string missing_feature(const Gpu& gpu, const Technique& technique, const ParameterValues& values)
+{
+    const std::string chosen = exact_choice(technique, values);
+    if (chosen.empty() || (gpu.info.int64 && gpu.info.float64)) return "";
+    return fmt::format("{} needs 64-bit integers and doubles in shaders; the device '{}' has no {}", chosen,
+                       gpu.info.name, gpu.info.int64 ? "shaderFloat64" : "shaderInt64");
 }
 
 Defines store_defines(const Gpu& gpu, const Buffer& texels)

@@ -1,0 +1,56 @@
+"""SwiftShader, which Debian's chromium brings: a second driver, with small texel buffers and without doubles."""
+import os
+
+import numpy
+import OpenImageIO
+
+from support import Case, main
+
+DRIVER = "/usr/lib/chromium/vk_swiftshader_icd.json"
+EXACT = ("dda", "hiz", "hiz_packets", "quadtree")
+
+
+class Test(Case):
+    def setUp(self):
+        super().setUp()
+        self.assertTrue(os.path.exists(DRIVER), f"no {DRIVER}: install Debian's package chromium")
+
+    def second(self, *arguments, **more):
+        return self.ssrlab("--validation", *arguments, VK_ICD_FILENAMES=DRIVER, **more)
+
+    def found(self, name):
+        """What trace wrote of each ray but its work, as bits."""
+        picture = OpenImageIO.ImageBuf(self.path(name))
+        names = picture.spec().channelnames
+        kept = [i for i, channel in enumerate(names) if not channel.startswith(("steps", "fetches"))]
+        self.assertGreater(len(kept), 3, names)
+        return picture.get_pixels(OpenImageIO.FLOAT)[..., kept].astype(numpy.float32).view(numpy.uint32)
+
+    def test_same_frame_same_bits(self):
+        self.ssrlab("gbuffer", "builtin:pole_field", "--size", "320x180", "-o", "frame.exr")
+        for surface, behind in (("box", "hit"), ("plane", "stop")):
+            settings = ("-p", "max_distance_m=20", "-p", f"surface={surface}", "-p", f"behind={behind}")
+            self.ssrlab("trace", "frame.exr", "-t", "dda", *settings, "-o", "first.exr")
+            first = self.found("first.exr")
+            for technique in EXACT:
+                self.second("trace", "frame.exr", "-t", technique, *settings, "-o", "second.exr")
+                differ = (self.found("second.exr") != first).any(axis=-1).sum()
+                self.assertEqual(differ, 0, f"{technique}, {surface}: pixels that differ between the drivers")
+
+    def test_smoke(self):
+        self.second("run", "/".join([os.path.dirname(__file__), "../../experiments/smoke.toml"]), "-o", "out")
+        rows = self.rows()
+        self.assertTrue(all(row["outcome"] == "ok" for row in rows), [row["message"] for row in rows])
+        with open(self.path("out/environment.json"), encoding="utf-8") as file:
+            self.assertIn("plain buffers", file.read())
+
+    def test_what_it_cannot_do_is_said(self):
+        self.refused("trace", "builtin:stairs", "-t", "dda", "-p", "arithmetic=exact", "-o", "a.exr", code=1,
+                     says=["arithmetic = exact", "SwiftShader", "shaderInt64"], VK_ICD_FILENAMES=DRIVER)
+        self.refused("trace", "builtin:stairs", "-t", "dda", "-p", "layers=4", "-o", "a.exr", code=1,
+                     says=["images are needed", "SwiftShader", "allows 16"], VK_ICD_FILENAMES=DRIVER)
+        self.second("check", "dda", "--quick", "--case", "parameters_at_their_maximum", says=["left out", "shaderInt64"])
+
+
+if __name__ == "__main__":
+    main()
