@@ -60,6 +60,7 @@ CaseFamily format_cases();
 CaseFamily size_cases();
 CaseFamily camera_cases();
 CaseFamily scale_cases();
+CaseFamily rounding_cases();
 CaseFamily surface_cases();
 CaseFamily plane_cases();
 CaseFamily normal_cases();

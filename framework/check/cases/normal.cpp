@@ -87,11 +87,47 @@ HardCase facing_rule()
         }};
 }
 
+HardCase sides_seen_edge_on()
+{
+    return {.name   = "sides_seen_edge_on",
+            .breaks = "N·R = 0 is neither a front nor a back",
+            .answer = "A ray up the middle column, where the slope of the view is 0, runs along the plane of the "
+                      "normal (±1, 0, 0) "
+                      "of row 20 exactly. Only N·R < 0 is a front: with behind = pass the ray goes on to the front in "
+                      "row 10, or says that it met something.",
+            .setups =
+                [] {
+                    std::vector<Setup> setups;
+                    for (const float side : {1.0F, -1.0F})
+                        for (const bool wall : {true, false}) {
+                            Setup setup{
+                                wall ? "before a front" : "before nothing",
+                                picture_of(bench_view({65, 65}),
+                                           [=](glm::ivec2 p) { return p.y == 20 || (wall && p.y == 10) ? 4.0 : 0.0; }),
+                                {.thickness_m = 1, .max_distance_m = 100, .behind = Behind::pass},
+                                {}};
+                            for (int x = 0; x < 65; ++x) {
+                                setup.gbuffer.normal_vs[static_cast<size_t>(20 * 65 + x)] = {side, 0, 0};
+                                setup.gbuffer.normal_vs[static_cast<size_t>(10 * 65 + x)] = {0, -1, 0};
+                            }
+                            setup.rays.push_back(level_ray(setup.gbuffer.view, {32.5, 60.5}, {0, -60.5}, 4.5));
+                            setups.push_back(setup);
+                        }
+                    return setups;
+                },
+            .expected = [](const Setup& setup, const RayInput&) -> std::optional<Expected> {
+                if (setup.label == "before nothing") return Expected{.status = TraceStatus::facing_away};
+                return Expected{.pixel = glm::ivec2(32, 10)};
+            }};
+}
+
 } // namespace
 
 CaseFamily normal_cases()
 {
-    return {"normal", {no_usable_normal(), normals_of_any_length(), normals_that_face_away(), facing_rule()}};
+    return {
+        "normal",
+        {no_usable_normal(), normals_of_any_length(), normals_that_face_away(), facing_rule(), sides_seen_edge_on()}};
 }
 
 } // namespace ssrlab
