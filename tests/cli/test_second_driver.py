@@ -22,7 +22,7 @@ class Test(Case):
         """What trace wrote of each ray but its work, as bits."""
         picture = OpenImageIO.ImageBuf(self.path(name))
         names = picture.spec().channelnames
-        kept = [i for i, channel in enumerate(names) if not channel.startswith(("steps", "fetches"))]
+        kept = [i for i, channel in enumerate(names) if "steps" not in channel and "fetches" not in channel]
         self.assertGreater(len(kept), 3, names)
         return picture.get_pixels(OpenImageIO.FLOAT)[..., kept].astype(numpy.float32).view(numpy.uint32)
 
