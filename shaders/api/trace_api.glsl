@@ -7,7 +7,6 @@
 #endif
 #include "api/view.glsl"
 #include "api/slab.glsl"
-#include "api/hash.glsl"
 #include "layout/load_cell.glsl"
 #include "trace/work_counters.glsl"
 #include "trace/visits.glsl"
@@ -76,9 +75,6 @@ real3 direction_to_vs(Ray ray, real2 position_px, real depth)
 
 // Direction of the ray in view space, not normalised.
 real3 direction_vs(Ray ray) { return px_to_direction_vs(ray.origin, ray.origin + ray.delta); }
-
-// A number in [0, 1), always the same for the same pixel, unlike its neighbours'.
-real random_of(ivec2 pixel) { return real(pcg(pcg(uint(pixel.x)) + uint(pixel.y)) >> 8) / real(1 << 24); }
 
 // ---- Fetches
 // Normal of a pixel in view space; not counted.

@@ -2,7 +2,7 @@
 #ifndef SSRLAB_LOAD_DEPTH
 #define SSRLAB_LOAD_DEPTH
 #include "layout/depth_words.glsl"
-#include "layout/texels.glsl"
+#include "layout/float_texels.glsl"
 
 LOADED_FLOATS(DEPTH_BINDING, depth_words)
 

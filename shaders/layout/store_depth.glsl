@@ -3,7 +3,7 @@
 #define SSRLAB_STORE_DEPTH
 #include "layout/depth_words.glsl"
 #include "layout/plane_places.glsl"
-#include "layout/texels.glsl"
+#include "layout/float_texels.glsl"
 
 STORED_FLOATS(DEPTH_BINDING, depth_words)
 STORED_TEXELS_2(PLANES_BINDING, StoredPlanes)

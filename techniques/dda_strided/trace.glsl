@@ -1,3 +1,5 @@
+#include "api/random.glsl"
+
 TraceResult trace(Ray ray)
 {
     // Shifted forward: nearer than a stride, half a step ahead already reaches below the floor that the ray comes from.

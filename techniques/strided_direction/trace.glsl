@@ -1,3 +1,5 @@
+#include "api/random.glsl"
+
 struct Look
 {
     real depth;   // of the surface seen there; none: <= 0

@@ -1,5 +1,5 @@
 // Copies what it reads as texels.
-#include "layout/texels.glsl"
+#include "layout/float_texels.glsl"
 layout(local_size_x = 4) in;
 LOADED_FLOATS(0, Floats)
 LOADED_TEXELS_1(1, Words)
