@@ -88,8 +88,8 @@ class Test(Case):
         self.shader_refused('#include "api/hash.glsl"\n#include "loop.glsl"\n' + TRACE, ["mine/coin/trace.glsl:2", "loop.glsl"])
 
     def test_does_not_stand_for_a_shader_of_the_project(self):
-        self.write("mine/coin/api/hash.glsl", "")
-        self.shader_refused(TRACE, ["api/hash.glsl", "mine/coin/api/hash.glsl"])
+        self.write("mine/coin/api/slab.glsl", "")
+        self.shader_refused(TRACE, ["api/slab.glsl", "mine/coin/api/slab.glsl"])
 
     def test_helper_beside_it_is_found_and_part_of_what_is_compiled(self):
         self.write("mine/coin/parts/half.glsl", "const int taken = 1;\n")
