@@ -82,15 +82,15 @@ int check_techniques(const CommonOptions& common, const HardCaseOptions& options
 {
     const std::vector<Technique>       techniques = chosen(common, options.subject);
     const std::vector<ParameterValues> values     = values_of(techniques, options.parameters);
-    Gpu gpu = open_gpu({.device = common.device, .validation = common.validation, .storage = common.storage});
+    Gpu                                gpu        = open_gpu(common.gpu);
     if (!options.ray.empty()) return show_ray(gpu, techniques, values, options);
 
     Gpu robust;
-    if (!options.quick)
-        robust = open_gpu({.device               = common.device,
-                           .validation           = common.validation,
-                           .robust_buffer_access = true,
-                           .storage              = common.storage});
+    if (!options.quick) {
+        GpuOptions bounds_checked           = common.gpu;
+        bounds_checked.robust_buffer_access = true;
+        robust                              = open_gpu(bounds_checked);
+    }
     size_t broken = 0;
     std::puts(table_head().c_str());
     const auto               rows = run_check(gpu, options.quick ? nullptr : &robust,

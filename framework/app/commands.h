@@ -11,10 +11,8 @@
 namespace ssrlab {
 
 struct CommonOptions {
-    std::string                        device;
-    TexelStorage                       storage    = TexelStorage::by_device;
-    bool                               validation = false;
-    bool                               quiet      = false; // no warnings, no progress
+    GpuOptions                         gpu;
+    bool                               quiet = false; // no warnings, no progress
     std::vector<std::filesystem::path> technique_dirs;
 };
 

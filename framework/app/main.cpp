@@ -149,18 +149,19 @@ int main(int argc, char** argv)
     app.require_subcommand(1);
     app.fallthrough();
     app.set_version_flag("--version", version_text());
-    app.add_option("--device", common.device,
+    app.add_option("--device", common.gpu.device,
                    "Vulkan device by index or part of its name; default: a discrete GPU if present, else the first");
     app.add_option(
         "--techniques", common.technique_dirs,
         "Further folders of techniques, structures, reprojections and surface models, or folders of them (also "
         "$SSRLAB_TECHNIQUES)");
     app.add_option(
-           "--storage", common.storage,
+           "--storage", common.gpu.storage,
            "How shaders read lists and depth: texel-buffers or plain-buffers; default: what the device has room for")
         ->transform(CLI::Transformer(std::map<std::string, TexelStorage>{
             {"texel-buffers", TexelStorage::texel_buffers}, {"plain-buffers", TexelStorage::plain_buffers}}));
-    app.add_flag("--validation", common.validation, "Load the Khronos validation layer; any message fails the command");
+    app.add_flag("--validation", common.gpu.validation,
+                 "Load the Khronos validation layer; any message fails the command");
 
     app.add_flag("--quiet", common.quiet, "No warnings and no progress; errors are still said");
 
@@ -228,7 +229,7 @@ int main(int argc, char** argv)
         command = [&] {
             run.techniques   = common.technique_dirs;
             run.quiet        = common.quiet;
-            run.gpu          = {.device = common.device, .validation = common.validation, .storage = common.storage};
+            run.gpu          = common.gpu;
             run.command_line = fmt::format("{}", fmt::join(argv, argv + argc, " "));
             return run_experiment(run);
         };

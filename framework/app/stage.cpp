@@ -35,7 +35,7 @@ Stage prepare_stage(const CommonOptions& common, const PictureOptions& options)
     stage.view            = view_at(stage.scene, options.view, size, options.at);
     if (!common.quiet)
         for (const std::string& warning : stage.scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-    stage.gpu = open_gpu({.device = common.device, .validation = common.validation, .storage = common.storage});
+    stage.gpu = open_gpu(common.gpu);
     if (!stage.scene.frame) stage.uploaded = upload_scene(stage.gpu, stage.scene);
     stage.gbuffer = stage.scene.frame
                         ? upload_gbuffer(stage.gpu, stage.scene.frame->gbuffer)
