@@ -11,4 +11,10 @@ const std::vector<CaseFamily>& hard_cases()
     return families;
 }
 
+ParameterValues adjusted(const HardCase& hard_case, const Technique& technique, ParameterValues values)
+{
+    if (hard_case.adjust) hard_case.adjust(technique, values);
+    return values;
+}
+
 } // namespace ssrlab

@@ -37,6 +37,9 @@ struct HardCase {
     std::function<int(const Setup&)> most_steps = {};
 };
 
+/// The technique's values as the case changes them.
+ParameterValues adjusted(const HardCase& hard_case, const Technique& technique, ParameterValues values);
+
 /// What must be refused, with a message that names the culprit.
 struct RefusedCase {
     std::string           name;

@@ -63,9 +63,8 @@ class CaseRun {
 public:
     CaseRun(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case,
             CaseRow& row)
-        : gpu_(gpu), technique_(technique), values_(values), case_(hard_case), row_(row)
+        : gpu_(gpu), technique_(technique), values_(adjusted(hard_case, technique, values)), case_(hard_case), row_(row)
     {
-        if (case_.adjust) case_.adjust(technique_, values_);
     }
 
     void run(const CheckOptions& options)
@@ -243,11 +242,10 @@ CaseRow run_case(Gpu& gpu, const Technique& technique, const ParameterValues& va
 
 uint64_t digest_of(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case)
 {
-    ParameterValues adjusted = values;
-    if (hard_case.adjust) hard_case.adjust(technique, adjusted);
-    uint64_t digest = 0;
+    const ParameterValues adjusted_values = adjusted(hard_case, technique, values);
+    uint64_t              digest          = 0;
     for (Setup& setup : hard_case.setups()) {
-        const Stage stage = put_on_device(gpu, technique, adjusted, std::move(setup));
+        const Stage stage = put_on_device(gpu, technique, adjusted_values, std::move(setup));
         for (const RayOutcome& outcome : trace_rays(gpu, *stage.tracer, stage.setup.rays))
             add_to_digest(digest, outcome);
     }

@@ -18,17 +18,6 @@ const HardCase& find_case(const std::string& name)
     throw SpecError(unknown_name("hard case", name, known));
 }
 
-namespace {
-
-/// What the values that a case sets need, and the device lacks.
-std::string missing_in(const Gpu& gpu, const Technique& technique, ParameterValues values, const HardCase& hard_case)
-{
-    if (hard_case.adjust) hard_case.adjust(technique, values);
-    return missing_feature(gpu, technique, values);
-}
-
-} // namespace
-
 std::vector<CaseRow> run_check(Gpu& gpu, Gpu* robust, const CheckRequest& request,
                                const std::function<void(const CaseRow&)>& on_row)
 {
@@ -41,7 +30,8 @@ std::vector<CaseRow> run_check(Gpu& gpu, Gpu* robust, const CheckRequest& reques
                 const Technique&      technique = request.techniques[i];
                 const ParameterValues values =
                     request.values.empty() ? default_values(technique) : request.values.at(i);
-                if (const std::string missing = missing_in(gpu, technique, values, hard_case); !missing.empty()) {
+                const std::string missing = missing_feature(gpu, technique, adjusted(hard_case, technique, values));
+                if (!missing.empty()) {
                     on_row({.family    = family.name,
                             .case_name = hard_case.name,
                             .technique = technique.id,

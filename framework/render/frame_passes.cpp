@@ -82,14 +82,13 @@ std::string exact_choice(const Technique& technique, const ParameterValues& valu
     return "";
 }
 
-/// Throws where the choice of a parameter needs what the device or the surface model does not have.
-void require_exact_arithmetic(const Gpu& gpu, const PreparedFrame& frame)
+/// Throws where this choice of a parameter needs what the device or the surface model does not have.
+void require_exact_arithmetic(const Gpu& gpu, const PreparedFrame& frame, const std::string& chosen)
 {
     if (const std::string missing = missing_feature(gpu, frame.technique, frame.values); !missing.empty())
         throw_failure("{}", missing);
-    const std::string chosen  = exact_choice(frame.technique, frame.values);
-    const Surface&    surface = find_surface(frame.settings.trace.surface);
-    if (!chosen.empty() && !std::filesystem::exists(surface.shaders / "meeting_exact.glsl"))
+    const Surface& surface = find_surface(frame.settings.trace.surface);
+    if (!std::filesystem::exists(surface.shaders / "meeting_exact.glsl"))
         throw_spec_error("{} needs a surface model with meeting_exact.glsl, which {} does not have", chosen,
                          short_path(surface.folder));
 }
@@ -258,9 +257,9 @@ Shader compile_trace(const Gpu& gpu, const PreparedFrame& frame, const RayBuffer
 TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, const GBuffer& layer,
                                       const RayBuffers& rays, const Bindings& bindings)
 {
-    const std::vector<std::string> macros = shader_macros(frame.technique, frame.values);
-    if (std::ranges::count(macros, exact_arithmetic) > 0) require_exact_arithmetic(gpu, frame);
-    Constants constants = settings_constants(frame, rays.precision, std::ranges::count(macros, exact_arithmetic) > 0);
+    const std::string exact = exact_choice(frame.technique, frame.values);
+    if (!exact.empty()) require_exact_arithmetic(gpu, frame, exact);
+    Constants constants = settings_constants(frame, rays.precision, !exact.empty());
     add_parameters(constants, frame.technique.parameters, frame.values, CONSTANT_PARAMETERS);
 
     TechniquePasses passes;
