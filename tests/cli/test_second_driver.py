@@ -4,7 +4,7 @@ import os
 import numpy
 import OpenImageIO
 
-from support import Case, main
+from support import SOURCE, Case, main
 
 DRIVER = "/usr/lib/chromium/vk_swiftshader_icd.json"
 EXACT = ("dda", "hiz", "hiz_packets", "quadtree")
@@ -38,7 +38,7 @@ class Test(Case):
                 self.assertEqual(differ, 0, f"{technique}, {surface}: pixels that differ between the drivers")
 
     def test_smoke(self):
-        self.second("run", "/".join([os.path.dirname(__file__), "../../experiments/smoke.toml"]), "-o", "out")
+        self.second("run", os.path.join(SOURCE, "experiments", "smoke.toml"), "-o", "out")
         rows = self.rows()
         self.assertTrue(all(row["outcome"] == "ok" for row in rows), [row["message"] for row in rows])
         with open(self.path("out/environment.json"), encoding="utf-8") as file:

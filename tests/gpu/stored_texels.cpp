@@ -53,7 +53,7 @@ TEST(StoredTexels, AreTheSameInEveryWayOfStoringThem)
 {
     for (const ParameterValues& passes :
          {ParameterValues{{"hidden_layer", 1}}, {chosen(BounceMode::direct), {"bounces", 2}}}) {
-        FrameSettings settings;
+        FrameSettings settings{.trace = {.thickness_m = 0.1, .max_distance_m = 100}}; // boxes
         for (const auto& [name, value] : passes) settings.passes.at(name) = value;
         expect_alike("hiz", settings);
     }
