@@ -49,7 +49,9 @@ class Test(Case):
         sweep = kills.Sweep(PROGRAM, self.folder, 0)
         self.ssrlab("run", spec, "-o", sweep.out)
         expected = {row["run_id"]: row for row in self.rows("out0")}
-        kills.check_finished(sweep, expected)
+        pictures = sweep.pictures()
+        self.assertGreater(len(pictures), len(expected))
+        kills.check_finished(sweep, expected, pictures)
         rows, samples = sweep.file("results.csv"), sweep.file("samples.csv")
         first = rows.split("\n")[1]
         steps = next(iter(expected.values()))["steps_mean"]
@@ -60,13 +62,16 @@ class Test(Case):
                                     ("differ", "results.csv", rows.replace(first, first.replace(f",{steps},", ",7.77,"))),
                                     ("samples", "samples.csv", samples[:samples.rindex("\n", 0, -1) + 1]),
                                     ("samples", "samples.csv", samples + samples.split("\n", 1)[1]),
+                                    ("pictures", "pictures/" + next(iter(pictures)), "another"),
                                     ("left over", "results.csv.tmp1", "")):
             self.write("out0/" + name, text)
             with self.assertRaises(kills.Broken) as found:
-                kills.check_finished(sweep, expected)
+                kills.check_finished(sweep, expected, pictures)
             self.assertEqual(found.exception.promise, promise, found.exception)
             self.write("out0/results.csv", rows)
             self.write("out0/samples.csv", samples)
+            with open(self.path("out0/pictures/" + next(iter(pictures))), "wb") as file:
+                file.write(next(iter(pictures.values())))
 
 
 if __name__ == "__main__":
