@@ -3,7 +3,7 @@ from matplotlib import pyplot as plt
 
 # One colour and marker a surface model; a line's dash says what becomes of rays from behind.
 STYLES = {"box": ("#0072B2", "o"), "box_two_sided": ("#56B4E9", "s"), "box_infinite": ("#999999", "X"), "plane": ("#E69F00", "^"),
-          "plane_solid": ("#009E73", "D")}
+          "plane_solid": ("#009E73", "D"), "plane_infinite": ("#CC79A7", "v")}
 DASHES = {"hit": ":", "pass": "--", "stop": "-"}
 THICKNESS_MATTERS = {"box", "box_two_sided"}
 

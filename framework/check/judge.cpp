@@ -89,7 +89,7 @@ std::optional<Visit> Judge::possible_touch(const RayInput& ray, glm::ivec2 pixel
 Judge::Sides Judge::sides(const RayInput& ray, const Visit& v, const Claim& claim) const
 {
     if (!v.surface.sides_by_height)
-        return {v.facing < facing_rounding, !(v.facing < -facing_rounding) || v.surface.solid_back > 0};
+        return {v.facing < facing_rounding, !(v.facing < -facing_rounding) || std::isfinite(v.surface.solid_back)};
     // Who tests whole steps continues a plane to where the ray was a step before: it may be on either side there.
     if (claim.may_hit_within_a_step) return {};
     const double rounding = depth_rounding(ray, v);

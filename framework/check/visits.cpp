@@ -76,7 +76,7 @@ Visit Judge::visit(const RayInput& ray, glm::ivec2 pixel, int layer, double t_in
     visit.over_back_in      = in.z - surface.back_at(from);
     visit.over_back_out     = out.z - surface.back_at(to);
     const double over_front = std::min(in.z - surface.front_at(from), out.z - surface.front_at(to));
-    const double in_solid   = surface.solid_back > 0 ? std::max(in.z, out.z) - surface.solid_back : -infinity;
+    const double in_solid   = std::max(in.z, out.z) - surface.solid_back;
     const double slab       = slab_back(image.view, static_cast<double>(image.depth[index]), setup_.settings);
     if (sampled) visit.sampled_more = std::max(surface.back - slab, 0.0);
     const double over_back = std::max(visit.over_back_in, visit.over_back_out) + visit.sampled_more;

@@ -8,32 +8,27 @@
 namespace ssrlab {
 namespace {
 
-uint32_t find_memory_type(const GpuImpl& impl, uint32_t allowed, vk::MemoryPropertyFlags wanted)
-{
-    const auto properties = impl.physical_device.getMemoryProperties();
-    for (uint32_t i = 0; i < properties.memoryTypeCount; ++i)
-        if ((allowed & (1U << i)) != 0 && (properties.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
-    throw_failure("the device has no memory type with {}", vk::to_string(wanted));
-}
+using Property = vk::MemoryPropertyFlagBits;
 
 vk::raii::DeviceMemory allocate(const GpuImpl& impl, const vk::MemoryRequirements& needs,
-                                vk::MemoryPropertyFlags wanted)
+                                vk::MemoryPropertyFlags wanted, vk::MemoryPropertyFlags preferred = {})
 {
+    const auto properties = impl.physical_device.getMemoryProperties();
+    const auto type       = choose_memory_type(properties, needs.memoryTypeBits, wanted, preferred);
     try {
-        return {impl.device,
-                vk::MemoryAllocateInfo{.allocationSize  = needs.size,
-                                       .memoryTypeIndex = find_memory_type(impl, needs.memoryTypeBits, wanted)}};
+        return {impl.device, vk::MemoryAllocateInfo{.allocationSize = needs.size, .memoryTypeIndex = type}};
     } catch (const vk::SystemError& error) {
         throw_failure("{} MiB of device memory cannot be had: {}", needs.size >> 20, error.what());
     }
 }
 
-Buffer make(Gpu& gpu, uint64_t bytes, vk::BufferUsageFlags usage, vk::MemoryPropertyFlags wanted)
+Buffer make(Gpu& gpu, uint64_t bytes, vk::BufferUsageFlags usage, vk::MemoryPropertyFlags wanted,
+            vk::MemoryPropertyFlags preferred = {})
 {
     Buffer result;
     result.bytes  = bytes;
     result.buffer = {gpu.impl->device, vk::BufferCreateInfo{.size = bytes, .usage = usage}};
-    result.memory = allocate(*gpu.impl, result.buffer.getMemoryRequirements(), wanted);
+    result.memory = allocate(*gpu.impl, result.buffer.getMemoryRequirements(), wanted, preferred);
     result.buffer.bindMemory(*result.memory, 0);
     return result;
 }
@@ -66,16 +61,21 @@ vk::BufferImageCopy whole_image(const GpuImage& image)
 
 } // namespace
 
-Buffer make_buffer(Gpu& gpu, uint64_t bytes)
+uint32_t choose_memory_type(const vk::PhysicalDeviceMemoryProperties& properties, uint32_t allowed,
+                            vk::MemoryPropertyFlags wanted, vk::MemoryPropertyFlags preferred)
 {
-    return make(gpu, bytes, any_use, vk::MemoryPropertyFlagBits::eDeviceLocal);
+    for (const vk::MemoryPropertyFlags flags : {wanted | preferred, wanted})
+        for (uint32_t i = 0; i < properties.memoryTypeCount; ++i)
+            if ((allowed & (1U << i)) != 0 && (properties.memoryTypes[i].propertyFlags & flags) == flags) return i;
+    throw_failure("the device has no memory type with {}", vk::to_string(wanted));
 }
+
+Buffer make_buffer(Gpu& gpu, uint64_t bytes) { return make(gpu, bytes, any_use, Property::eDeviceLocal); }
 
 Buffer make_texel_buffer(Gpu& gpu, uint64_t bytes, vk::Format format)
 {
     refuse_too_many_texels(gpu, bytes, format); // before its memory is asked for
-    Buffer buffer = make(gpu, bytes, any_use | vk::BufferUsageFlagBits::eStorageTexelBuffer,
-                         vk::MemoryPropertyFlagBits::eDeviceLocal);
+    Buffer buffer = make(gpu, bytes, any_use | vk::BufferUsageFlagBits::eStorageTexelBuffer, Property::eDeviceLocal);
     buffer.texels = make_texel_view(gpu, buffer, format);
     return buffer;
 }
@@ -93,19 +93,32 @@ vk::DescriptorType texel_descriptor(const Gpu& gpu)
     return gpu.info.plain_buffers ? vk::DescriptorType::eStorageBuffer : vk::DescriptorType::eStorageTexelBuffer;
 }
 
-Buffer make_host_buffer(Gpu& gpu, uint64_t bytes)
+namespace {
+
+Buffer map(Buffer buffer)
 {
-    using Property = vk::MemoryPropertyFlagBits;
-    Buffer buffer  = make(gpu, bytes, vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst,
-                          Property::eHostVisible | Property::eHostCoherent);
-    buffer.mapped  = buffer.memory.mapMemory(0, bytes);
+    buffer.mapped = buffer.memory.mapMemory(0, buffer.bytes);
     return buffer;
 }
+
+Buffer make_upload_buffer(Gpu& gpu, uint64_t bytes)
+{
+    return map(make(gpu, bytes, Usage::eTransferSrc, Property::eHostVisible | Property::eHostCoherent));
+}
+
+/// Memory that the CPU caches, where there is such: reads of other memory go to the bus one by one.
+Buffer make_download_buffer(Gpu& gpu, uint64_t bytes)
+{
+    return map(
+        make(gpu, bytes, Usage::eTransferDst, Property::eHostVisible | Property::eHostCoherent, Property::eHostCached));
+}
+
+} // namespace
 
 void upload(Gpu& gpu, Buffer& target, const void* data, uint64_t bytes)
 {
     if (bytes == 0) return;
-    const Buffer staging = make_host_buffer(gpu, bytes);
+    const Buffer staging = make_upload_buffer(gpu, bytes);
     std::memcpy(staging.mapped, data, bytes);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         commands.copyBuffer(*staging.buffer, *target.buffer, vk::BufferCopy{.size = bytes});
@@ -116,7 +129,7 @@ void upload(Gpu& gpu, Buffer& target, const void* data, uint64_t bytes)
 void download(Gpu& gpu, const Buffer& source, void* data, uint64_t bytes)
 {
     if (bytes == 0) return;
-    const Buffer staging = make_host_buffer(gpu, bytes);
+    const Buffer staging = make_download_buffer(gpu, bytes);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         barrier(commands);
         commands.copyBuffer(*source.buffer, *staging.buffer, vk::BufferCopy{.size = bytes});
@@ -147,7 +160,7 @@ GpuImage make_image(Gpu& gpu, const ImageOptions& options)
         .samples     = vk::SampleCountFlagBits::e1,
         .usage       = options.usage | vk::ImageUsageFlagBits::eTransferSrc | vk::ImageUsageFlagBits::eTransferDst};
     result.image  = {gpu.impl->device, info};
-    result.memory = allocate(*gpu.impl, result.image.getMemoryRequirements(), vk::MemoryPropertyFlagBits::eDeviceLocal);
+    result.memory = allocate(*gpu.impl, result.image.getMemoryRequirements(), Property::eDeviceLocal);
     result.image.bindMemory(*result.memory, 0);
     const vk::ImageSubresourceRange all{aspect_of(options.format), 0, options.levels, 0, options.layers};
     result.view = {
@@ -173,7 +186,7 @@ GpuImage make_image(Gpu& gpu, const ImageOptions& options)
 
 void upload(Gpu& gpu, GpuImage& target, const void* data, uint64_t bytes)
 {
-    const Buffer staging = make_host_buffer(gpu, bytes);
+    const Buffer staging = make_upload_buffer(gpu, bytes);
     std::memcpy(staging.mapped, data, bytes);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         barrier(commands);
@@ -185,7 +198,7 @@ void upload(Gpu& gpu, GpuImage& target, const void* data, uint64_t bytes)
 std::vector<char> download(Gpu& gpu, const GpuImage& source, uint32_t bytes_per_texel)
 {
     const uint64_t bytes   = pixel_count(source.size_px) * bytes_per_texel;
-    const Buffer   staging = make_host_buffer(gpu, bytes);
+    const Buffer   staging = make_download_buffer(gpu, bytes);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         barrier(commands);
         commands.copyImageToBuffer(*source.image, vk::ImageLayout::eGeneral, *staging.buffer, whole_image(source));

@@ -18,6 +18,11 @@ struct Buffer {
     void*                  mapped = nullptr; // host-visible buffers only
 };
 
+/// Of the types that a resource may have (a bit for each): the first that has all properties wanted and preferred, else the first that has
+/// those wanted. Throws Failure if none does.
+uint32_t choose_memory_type(const vk::PhysicalDeviceMemoryProperties& properties, uint32_t allowed,
+                            vk::MemoryPropertyFlags wanted, vk::MemoryPropertyFlags preferred);
+
 /// Device-local storage (also uniform, indirect, vertex, index, copy source and target). Throws Failure when out of memory or over limits.
 Buffer make_buffer(Gpu& gpu, uint64_t bytes);
 /// The same, which shaders may also read as texels of this format, where the device stores texels so. Throws Failure likewise.
@@ -26,10 +31,8 @@ Buffer make_texel_buffer(Gpu& gpu, uint64_t bytes, vk::Format format);
 vk::raii::BufferView make_texel_view(Gpu& gpu, const Buffer& buffer, vk::Format format);
 /// What a buffer of texels is to a shader of this device.
 vk::DescriptorType texel_descriptor(const Gpu& gpu);
-/// Host-visible and coherent, mapped.
-Buffer make_host_buffer(Gpu& gpu, uint64_t bytes);
-void   upload(Gpu& gpu, Buffer& target, const void* data, uint64_t bytes);
-void   download(Gpu& gpu, const Buffer& source, void* data, uint64_t bytes);
+void               upload(Gpu& gpu, Buffer& target, const void* data, uint64_t bytes);
+void               download(Gpu& gpu, const Buffer& source, void* data, uint64_t bytes);
 
 template <typename T> Buffer make_buffer_with(Gpu& gpu, std::span<const T> values)
 {

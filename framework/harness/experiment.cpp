@@ -258,7 +258,7 @@ MeasureSettings read_measure(const TomlFile& file)
         with(name, [&](const toml::node& node, const std::string& key) { field = toml_bool(file, node, key); });
     };
     integer("seed", measure.seed, 0, std::numeric_limits<int64_t>::max());
-    integer("warmup", measure.warmup, 0, 1000);
+    number("warmup_s", measure.warmup_s, 0, 60);
     integer("min_repeats", measure.min_repeats, 1, 100000);
     integer("max_repeats", measure.max_repeats, 1, 100000);
     number("budget_s", measure.budget_s, 0, infinity);

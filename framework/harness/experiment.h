@@ -17,9 +17,9 @@ namespace ssrlab {
 
 /// How long and how often is measured.
 struct MeasureSettings {
-    uint64_t seed         = 1; // of the random order of repeats
-    int      warmup       = 1; // untimed frames before the first timed one
-    int      min_repeats  = 9; // below 6 there is no 95 % interval
+    uint64_t seed         = 1;   // of the random order of repeats
+    double   warmup_s     = 0.2; // of untimed frames before the timed ones, in which a GPU's clocks rise
+    int      min_repeats  = 9;   // below 6 there is no 95 % interval
     int      max_repeats  = 100;
     double   time_limit_s = 60;   // a run fails whose preparation or frame takes longer on the device
     double   budget_s     = 1;    // a run has as many repeats as its pilot frame says fit into this

@@ -79,7 +79,7 @@ Observed observe(Bench& bench, const FrameBuffersPtr& buffers, MeasuredRun& meas
     add_plan(measured.row, plan_of(*measured.frame));
     bench.counted_s += counting_s_of(*measured.frame);
     return clocked(bench.counted_s, [&] {
-        for (int i = 0; i < std::max(1, measure.warmup); ++i) run_frame(bench.gpu, *measured.frame);
+        run_frame(bench.gpu, *measured.frame);
         Observed observed{read_shaded(bench.gpu, *measured.frame), count_frame(bench.gpu, *measured.frame),
                           read_hidden_hits(bench.gpu, *measured.frame)};
         observed.reprojection = read_reprojection(bench.gpu, *measured.frame);
@@ -223,6 +223,23 @@ void prepare_comparison(Bench& bench, MeasuredRun& measured)
     if (pipelines_made(bench.gpu) != known) clocked(bench.counted_s, [&] { run_frame(bench.gpu, *measured.unculled); });
 }
 
+/// Untimed frames of all runs in turn: a GPU that was idle has not raised its clocks yet.
+void warm_up(Bench& bench, std::vector<MeasuredRun>& open)
+{
+    const auto over = [](const MeasuredRun& measured) { return measured.run == nullptr; };
+    clocked(bench.counted_s, [&] {
+        const Stopwatch stopwatch;
+        while (!open.empty() && stop_requested() == 0 && stopwatch.seconds() < bench.experiment.measure.warmup_s) {
+            for (MeasuredRun& measured : open)
+                try_step(bench, measured, [&] {
+                    const UnderWay under_way(bench.state, measured.run->id, bench.experiment.measure.time_limit_s);
+                    run_frame(bench.gpu, *measured.frame);
+                });
+            std::erase_if(open, over);
+        }
+    });
+}
+
 /// Timed repeats, every round in another order, until each run has those planned for it or a stop was requested.
 void repeat_until_final(Bench& bench, Picture& picture, std::vector<MeasuredRun>& open)
 {
@@ -293,6 +310,7 @@ void open_run(Bench& bench, Picture& picture, const Run& run, std::vector<Measur
 void time_runs(Bench& bench, Picture& picture, std::vector<MeasuredRun>& open)
 {
     refuse_changed_sources(bench);
+    warm_up(bench, open);
     repeat_until_final(bench, picture, open);
     keep_measured(bench, picture, open);
 }

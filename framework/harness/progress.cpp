@@ -53,7 +53,7 @@ double estimated_seconds(const Run& run, const Technique& technique, const Measu
     const double errors_s = measure.truth && measure.image_errors ? pixels * image_errors_s : 0;
     const int    saved =
         measure.saved_time && choice<PassSet>(run.settings.passes) != PassSet::shading ? saved_pairs + 1 : 0;
-    return overhead_s + errors_s + frame_s * (repeats + measure.warmup + counting + saved);
+    return overhead_s + errors_s + frame_s * (repeats + 1 + counting + saved);
 }
 
 std::string duration_text(double seconds)

@@ -25,22 +25,28 @@ glm::uvec4 hash(glm::uvec4 v)
     return v;
 }
 
-/// Two numbers in [0, 1) for each ray of each pixel and each of its bounces. The first rays of a pixel fill its lobe evenly: a sequence of low
-/// discrepancy (M. Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences": R2), moved by a random offset for each pixel.
+/// Two numbers in [0, 1) for each ray of each pixel and each of its bounces.
 glm::dvec2 random(glm::ivec2 pixel, int ray, int bounce, uint32_t seed)
 {
-    const uint32_t   number = bounce > 0 ? uint32_t(ray) + (uint32_t(bounce) << 20U) : 0;
-    const glm::uvec4 key{uint32_t(pixel.x), uint32_t(pixel.y), number, seed};
-    const glm::dvec2 numbers = glm::dvec2(glm::uvec2(hash(key))) * 0x1p-32;
-    if (bounce > 0) return numbers;
-    return glm::fract(numbers + double(ray) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
+    const glm::uvec4 key{uint32_t(pixel.x), uint32_t(pixel.y), uint32_t(ray) + (uint32_t(bounce) << 20U), seed};
+    return glm::dvec2(glm::uvec2(hash(key))) * 0x1p-32;
+}
+
+/// The same for rays that fill one lobe evenly: a sequence of low discrepancy (M. Roberts 2018, "The Unreasonable Effectiveness of
+/// Quasirandom Sequences": R2), moved by a random offset for each pixel.
+glm::dvec2 even(glm::ivec2 pixel, int ray, int bounce, uint32_t seed)
+{
+    return glm::fract(random(pixel, 0, bounce, seed) +
+                      double(ray) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
 }
 
 /// A ray under way, and what the light at its end will count for.
 struct Path {
     size_t     sample = 0;
     glm::dvec3 throughput{1};
-    double     roughness = 0; // the largest so far
+    double     roughness = 0;     // the largest so far
+    int        number    = 0;     // among the rays of its pixel
+    bool       alone     = false; // nothing but mirrors so far: one ray stands for the whole pixel
 };
 
 /// The rays of one row, pixel after pixel.
@@ -49,7 +55,6 @@ struct RowPaths {
     std::vector<size_t>     ends;    // of each pixel's samples
     std::vector<glm::dvec3> weights; // of each sample; 0: below the horizon
     std::vector<glm::dvec3> light;   // of each sample
-    std::vector<int>        numbers; // of each sample among its pixel's
     std::vector<size_t>     owners;  // of each sample in `pixels`
     std::vector<Path>       paths;   // that go on
     std::vector<SceneRay>   rays;    // of those
@@ -91,15 +96,14 @@ private:
         const Lobe lobe(normal_vs, to_eye_vs, std::isfinite(roughness) ? roughness : 0);
         truth.rays[i] = lobe.is_mirror() ? 1 : uint32_t(glossy_.rays);
         for (int k = 0; k < int(truth.rays[i]); ++k) {
-            LobeSample sample = lobe.sample(random(pixel, k, 0, glossy_.seed));
+            LobeSample sample = lobe.sample(even(pixel, k, 0, glossy_.seed));
             if (lobe.is_mirror()) sample.direction = mirror_vs; // the scene truth's, to the last bit
             const size_t number = row.weights.size();
             row.weights.push_back(sample.weight > 0 ? sample.weight * fresnel(f0, sample.cos_half) : glm::dvec3(0));
             row.light.emplace_back(0);
-            row.numbers.push_back(k);
             row.owners.push_back(row.pixels.size());
             if (!(sample.weight > 0)) continue;
-            row.paths.push_back({number, glm::dvec3(1), roughness});
+            row.paths.push_back({number, glm::dvec3(1), roughness, k, lobe.is_mirror()});
             row.rays.push_back(reflected_.ray_from(pixel, sample.direction));
         }
         row.pixels.push_back(pixel);
@@ -138,21 +142,34 @@ private:
         }
         const glm::ivec2 pixel = row.pixels[row.owners[path.sample]];
         const Lobe       lobe(seen_normal_ws(material, end.hit, ray.direction_ws), to_eye_ws, roughness);
-        const LobeSample sample = lobe.sample(random(pixel, row.numbers[path.sample], bounce + 1, glossy_.seed));
         const glm::dvec3 f0 = f0_of(material.base_colour, double(material.metallic), double(material.dielectric_f0));
-        const glm::dvec3 weight   = sample.weight * fresnel(f0, sample.cos_half);
         const glm::dvec3 stand_in = glm::dvec3(scene_.ambient * material.base_colour) * double(material.metallic);
         const glm::dvec3 below    = glm::max(glm::dvec3(end.radiance) - stand_in, 0.0);
-        light += path.throughput * (1.0 - weight) * below; // its mean over the lobe is that of the albedo
-        if (!(sample.weight > 0)) return;
-        const double side = glm::dot(end.hit.normal_ws, ray.direction_ws) > 0 ? -1 : 1;
-        if (side * glm::dot(end.hit.normal_ws, sample.direction) <= 0) {
-            light += path.throughput * weight * glm::dvec3(end.radiance); // interpolated normals lead into the triangle
-            return;
+        const double     side     = glm::dot(end.hit.normal_ws, ray.direction_ws) > 0 ? -1 : 1;
+        const bool       spreads  = path.alone && !lobe.is_mirror();
+        const int        count    = spreads ? glossy_.rays : 1;
+        path.throughput /= count;
+        path.alone     = path.alone && !spreads;
+        path.roughness = roughness;
+        for (int k = 0; k < count; ++k) {
+            path.number              = spreads ? k : path.number;
+            const glm::dvec2 numbers = spreads ? even(pixel, k, bounce + 1, glossy_.seed)
+                                               : random(pixel, path.number, bounce + 1, glossy_.seed);
+            const LobeSample sample  = lobe.sample(numbers);
+            const glm::dvec3 weight  = sample.weight * fresnel(f0, sample.cos_half);
+            light += path.throughput * (1.0 - weight) * below; // its mean over the lobe is that of the albedo
+            if (!(sample.weight > 0)) continue;
+            if (side * glm::dot(end.hit.normal_ws, sample.direction) <= 0) {
+                light +=
+                    path.throughput * weight * glm::dvec3(end.radiance); // interpolated normals lead into the triangle
+                continue;
+            }
+            Path onward = path;
+            onward.throughput *= weight;
+            row.paths.push_back(onward);
+            row.rays.push_back({point_ws, sample.direction, self_hit_share * std::max(1.0, end.hit.t),
+                                std::numeric_limits<double>::infinity()});
         }
-        row.paths.push_back({path.sample, path.throughput * weight, roughness});
-        row.rays.push_back({point_ws, sample.direction, self_hit_share * std::max(1.0, end.hit.t),
-                            std::numeric_limits<double>::infinity()});
     }
 
     /// Mean and standard error of one pixel's samples.

@@ -1,8 +1,9 @@
 // Glossy truth: what every pixel that reflects truly reflects, and the finished picture that follows from it. Nothing of it is shared
 // with the shaders that it judges.
 //
-// From each such pixel many rays leave through the scene, by the lobe of truth/ggx_lobe.h around the shading normal. Where a ray meets
-// a surface that reflects, too, it goes on from there in the same way, one ray for each. A surface sends back
+// From each such pixel many rays leave through the scene, by the lobe of truth/ggx_lobe.h around the shading normal. From a mirror it is
+// one, and as many leave from the first rough surface that this one meets. Where a ray meets a surface that reflects, too, it goes on
+// from there in the same way, one ray for each. A surface sends back
 //   (1 - albedo) * (what comes from below its surface: diffuse light and emission) + highlights of the lights + its own reflection.
 // What comes from below is the scene truth's radiance (scene_truth.h) without metal's share of the ambient light, which there stands
 // in for a metal's reflection; after the last bounce it stands in again. Lights are points, so that the highlights of a smooth surface
@@ -27,10 +28,11 @@ struct GlossySettings {
 /// One entry per pixel, row-major; all 0 where nothing was traced.
 struct GlossyTruth {
     glm::ivec2             size_px{0, 0};
-    std::vector<uint32_t>  rays;           // that were traced: 0, 1 (mirror) or GlossySettings::rays
-    std::vector<glm::vec3> radiance;       // linear, mean of weight * radiance
-    std::vector<glm::vec3> standard_error; // of that mean if the rays were independent; they fill the lobe evenly and err less
-    std::vector<glm::vec3> albedo;         // mean weight: the share of light that is reflected
+    std::vector<uint32_t>  rays;     // that were traced: 0, 1 (mirror) or GlossySettings::rays
+    std::vector<glm::vec3> radiance; // linear, mean of weight * radiance
+    std::vector<glm::vec3>
+        standard_error;            // of that mean if the rays were independent; they fill the lobe evenly and err less
+    std::vector<glm::vec3> albedo; // mean weight: the share of light that is reflected
 };
 
 GlossyTruth empty_glossy_truth(glm::ivec2 size_px);

@@ -60,7 +60,14 @@ PixelSurface plane_or_box(const GBufferImage& gbuffer, size_t index, double dept
 PixelSurface plane_and_solid(const GBufferImage& gbuffer, size_t index, double depth, const TraceSettings& settings)
 {
     PixelSurface surface = plane_or_box(gbuffer, index, depth, settings);
-    if (!gbuffer.solid_back.empty()) surface.solid_back = std::max(double(gbuffer.solid_back[index]), 0.0);
+    if (!gbuffer.solid_back.empty() && gbuffer.solid_back[index] > 0) surface.solid_back = gbuffer.solid_back[index];
+    return surface;
+}
+
+PixelSurface plane_infinite(const GBufferImage& gbuffer, size_t index, double depth, const TraceSettings& settings)
+{
+    PixelSurface surface = plane_or_box(gbuffer, index, depth, settings);
+    surface.solid_back   = -infinity;
     return surface;
 }
 
@@ -69,9 +76,12 @@ struct Model {
     PixelSurface (*held_by)(const GBufferImage&, size_t index, double depth, const TraceSettings&);
     bool needs_gradients = false;
 };
-constexpr std::array models = {Model{"box", box}, Model{"box_two_sided", box_two_sided},
-                               Model{"box_infinite", box_infinite}, Model{"plane", plane_or_box, true},
-                               Model{"plane_solid", plane_and_solid, true}};
+constexpr std::array models = {Model{"box", box},
+                               Model{"box_two_sided", box_two_sided},
+                               Model{"box_infinite", box_infinite},
+                               Model{"plane", plane_or_box, true},
+                               Model{"plane_solid", plane_and_solid, true},
+                               Model{"plane_infinite", plane_infinite, true}};
 
 const Model& model_of(const TraceSettings& settings)
 {
@@ -156,15 +166,14 @@ Meeting meet(const PixelSurface& surface, const RayPart& ray, double facing)
                  over_front_out    = out.z - surface.front_at(glm::dvec2(out));
     const double over_back_in      = in.z - surface.back_at(glm::dvec2(in)),
                  over_back_out     = out.z - surface.back_at(glm::dvec2(out));
-    const bool has_solid           = surface.solid_back > 0;
     const bool above = over_front_in > 0 && over_front_out > 0, below = over_back_in < 0 && over_back_out < 0;
-    const bool touches_solid = has_solid && std::max(in.z, out.z) >= surface.solid_back;
+    const bool touches_solid = std::max(in.z, out.z) >= surface.solid_back;
     if (above || (below && !touches_solid)) return {};
 
     // What a box's normal says holds for its slab; a ray below that is met by the solid alone.
     const bool from_behind = surface.sides_by_height ? over_back_in < 0 : below || !(facing < 0);
     if (over_front_in > 0) return {true, from_behind, root(ray, over_front_in, over_front_out)};
-    if (over_back_in >= 0 || (has_solid && in.z >= surface.solid_back)) return {true, from_behind, ray.t_in};
+    if (over_back_in >= 0 || in.z >= surface.solid_back) return {true, from_behind, ray.t_in};
     double t = ray.t_out;
     if (over_back_out >= 0) t = std::min(t, root(ray, over_back_in, over_back_out));
     if (touches_solid) t = std::min(t, root(ray, in.z - surface.solid_back, out.z - surface.solid_back));

@@ -4,6 +4,7 @@
 #include "core/gbuffer_image.h"
 #include "core/trace_result.h"
 
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -12,10 +13,10 @@ namespace ssrlab {
 /// A front and a back that slope alike, in depth; behind the back perhaps a solid.
 struct PixelSurface {
     glm::dvec2 centre_px{0, 0};
-    double     front = 0;               // at the centre; +inf: infinitely near
-    double     back  = 0;               // at the centre; -inf: there is none
-    glm::dvec2 gradient{0, 0};          // depth per px; 0: level
-    double     solid_back      = 0;     // where the solid ends; 0: there is none
+    double     front = 0;                                                 // at the centre; +inf: infinitely near
+    double     back  = 0;                                                 // at the centre; -inf: there is none
+    glm::dvec2 gradient{0, 0};                                            // depth per px; 0: level
+    double     solid_back      = std::numeric_limits<double>::infinity(); // where the solid ends; +inf: there is none
     bool       sides_by_height = false; // met from behind where the ray comes from below; else where the normal says so
 
     double front_at(glm::dvec2 position_px) const { return front + glm::dot(gradient, position_px - centre_px); }

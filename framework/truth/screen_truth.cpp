@@ -50,7 +50,7 @@ std::pair<double, double> depth_range(const PixelSurface& surface)
     // A ray's position may leave the pixel by its rounding.
     const double reach = (0.5 + 1e-9) * (std::abs(surface.gradient.x) + std::abs(surface.gradient.y));
     const double back  = surface.back - reach;
-    return {surface.front + reach, surface.solid_back > 0 ? std::min(back, surface.solid_back) : back};
+    return {surface.front + reach, std::min(back, surface.solid_back)};
 }
 
 } // namespace

@@ -191,7 +191,8 @@ const Held every_model[] = {{"box", Behind::pass},           {"box", Behind::sto
                             {"plane", Behind::hit},          {"plane", Behind::pass},
                             {"plane_solid", Behind::stop},   {"box", Behind::stop, 2},
                             {"plane", Behind::pass, 4},      {"plane_solid", Behind::stop, 2},
-                            {"plane_solid", Behind::hit, 4}, {"sloped_slab", Behind::stop}};
+                            {"plane_solid", Behind::hit, 4}, {"plane_infinite", Behind::stop},
+                            {"sloped_slab", Behind::stop}};
 
 std::vector<Case> cases_of_models()
 {

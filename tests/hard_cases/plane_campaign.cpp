@@ -140,7 +140,8 @@ TEST_P(PlaneCampaign, RandomPlanesAndSolids)
         int              layers = 1;
     };
     const Model  models[] = {{"plane", Behind::hit},           {"plane", Behind::pass},  {"plane_solid", Behind::stop},
-                             {"plane_solid", Behind::stop, 2}, {"box", Behind::pass, 2}, {"plane", Behind::hit, 4}};
+                             {"plane_solid", Behind::stop, 2}, {"box", Behind::pass, 2}, {"plane", Behind::hit, 4},
+                             {"plane_infinite", Behind::stop}};
     const size_t rays     = planned_rays() / (std::size(plane_sizes) * std::size(all_fields) * std::size(models));
     Count        count;
     std::string  first;

@@ -1,6 +1,7 @@
-// Which device is opened when several are there.
+// Which device is opened when several are there, and which of its kinds of memory is taken.
 #include "core/error.h"
 #include "gpu/gpu.h"
+#include "gpu/resources.h"
 
 #include <gtest/gtest.h>
 
@@ -33,6 +34,21 @@ TEST(DeviceChoice, FollowsANumberOrAPartOfTheName)
     EXPECT_EQ(choose_device(devices, "1"), 1);
     EXPECT_EQ(choose_device(devices, "LLVMPIPE"), 1);
     EXPECT_THROW(choose_device(devices, "Arc"), SpecError);
+}
+
+TEST(MemoryChoice, TakesWhatTheCpuCachesWhereThatIsBetter)
+{
+    using Property                          = vk::MemoryPropertyFlagBits;
+    const vk::MemoryPropertyFlags      host = Property::eHostVisible | Property::eHostCoherent;
+    vk::PhysicalDeviceMemoryProperties properties;
+    for (const vk::MemoryPropertyFlags flags : {vk::MemoryPropertyFlags(Property::eDeviceLocal), host,
+                                                host | Property::eHostCached, host | Property::eDeviceLocal})
+        properties.memoryTypes[properties.memoryTypeCount++].propertyFlags = flags;
+    EXPECT_EQ(choose_memory_type(properties, 0b1111, host, {}), 1U);
+    EXPECT_EQ(choose_memory_type(properties, 0b1111, host, Property::eHostCached), 2U);
+    EXPECT_EQ(choose_memory_type(properties, 0b1011, host, Property::eHostCached), 1U) << "the cached one not allowed";
+    EXPECT_EQ(choose_memory_type(properties, 0b1000, host, Property::eHostCached), 3U);
+    EXPECT_THROW(choose_memory_type(properties, 0b0001, host, Property::eHostCached), Failure);
 }
 
 } // namespace

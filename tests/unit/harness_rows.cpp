@@ -204,7 +204,6 @@ TEST(Rows, TheEstimateFollowsSizeAndTechnique)
 {
     MeasureSettings measure;
     measure.truth       = false;
-    measure.warmup      = 0;
     measure.min_repeats = measure.max_repeats = 1;
     Technique dda                             = walk, hiz;
     dda.exact                                 = true;

@@ -162,7 +162,7 @@ TEST(Spec, TargetsAgainstEveryMistake)
 
 TEST(Spec, EveryMeasureFieldAgainstEveryMistake)
 {
-    for (const char* field : {"seed", "warmup", "min_repeats", "max_repeats", "budget_s", "truth", "image_errors",
+    for (const char* field : {"seed", "warmup_s", "min_repeats", "max_repeats", "budget_s", "truth", "image_errors",
                               "double_twin", "pictures", "saved_time"}) {
         for (const char* value : {"\"x\"", "[]", "nan", "-1", "{}"}) {
             EXPECT_THAT(error_of(with_line(fmt::format("[measure]\n{} = {}", field, value))),

@@ -225,6 +225,30 @@ TEST(GlossyTruth, FourTimesTheRaysHalveTheError)
     EXPECT_NEAR(few / many, 2, 0.1);
 }
 
+// A pixel of a mirror has one ray. From the rough wall that it meets many go on, so the wall looks as smooth there as it does by itself.
+TEST(GlossyTruth, ARoughSurfaceInAMirrorHasLittleNoise)
+{
+    Room room(0);
+    room.scene.materials[1].metallic  = 1;
+    room.scene.materials[1].roughness = 0.5F;
+    struct Noise {
+        double rms = 0, mean = 0;
+    };
+    const auto noise = [&](int rays) {
+        const GlossyTruth a = room.truth({.rays = rays}), b = room.truth({.rays = rays, .seed = 1});
+        double            squares = 0;
+        for (size_t i = 0; i < a.rays.size(); ++i) {
+            const double off = double(a.radiance[i].g) - double(b.radiance[i].g);
+            squares += off * off;
+        }
+        return Noise{std::sqrt(squares / double(a.rays.size())), mean_of(a.radiance)};
+    };
+    const Noise few = noise(4), many = noise(64);
+    ASSERT_GT(few.rms, 0);
+    EXPECT_LT(many.rms, few.rms / 4) << "16 times the rays";
+    EXPECT_NEAR(many.mean, few.mean, 0.01 * few.mean);
+}
+
 TEST(GlossyTruth, IsTheSameOnEveryNumberOfThreadsAndAnotherWithAnotherSeed)
 {
     const Room        room(0.5F);

@@ -16,7 +16,7 @@ using namespace test;
 constexpr double infinity  = std::numeric_limits<double>::infinity();
 constexpr float  quiet_nan = std::numeric_limits<float>::quiet_NaN();
 
-constexpr std::array all_models = {"box", "box_two_sided", "box_infinite", "plane", "plane_solid"};
+constexpr std::array all_models = {"box", "box_two_sided", "box_infinite", "plane", "plane_solid", "plane_infinite"};
 
 View orthographic_view(glm::ivec2 size_px)
 {
@@ -195,6 +195,21 @@ TEST(SurfaceModels, SolidReachesFromTheBackToItsFarSide)
     GBufferImage unknown = gbuffer;
     unknown.solid_back.clear();
     EXPECT_EQ(answer(unknown, ray_through(0.02, 0.02), "plane_solid").status, TraceStatus::left_screen);
+}
+
+TEST(SurfaceModels, PlaneWithoutAnEndHoldsEverythingBehindIt)
+{
+    constexpr double   d       = 1 / 32.0;
+    const GBufferImage gbuffer = single_pixel(d, {0, 0});
+    const auto         meets   = [&](double z_in, double z_out, Behind behind = Behind::stop) {
+        return answer(gbuffer, ray_through(z_in, z_out), "plane_infinite", behind);
+    };
+    expect_at(meets(1e-9, 1e-9), TraceStatus::stopped, t_in);
+    expect_at(meets(1e-9, d + 0.001), TraceStatus::stopped, t_in);
+    expect_at(meets(1e-9, 1e-9, Behind::hit), TraceStatus::hit, t_in);
+    EXPECT_EQ(meets(1e-9, 1e-9, Behind::pass).status, TraceStatus::facing_away);
+    expect_at(meets(d + 0.001, d - 0.001), TraceStatus::hit, t_middle); // the front as ever
+    EXPECT_EQ(meets(d + 0.001, d + 0.001).status, TraceStatus::left_screen);
 }
 
 TEST(SurfaceModels, PixelWithoutUsablePlaneHoldsItsBox)
@@ -397,8 +412,9 @@ WalkResult first_by_sets(const GBufferImage& gbuffer, const ScreenRay& ray, cons
         const Range sheet =
             endless ? where_between(inside, z, dz, surface->back, big) : where_between(inside, over, rate, -depth, 0);
         Range solid{1, 0};
-        if (surface->solid_back > 0)
-            solid = where_between(where_between(inside, over, rate, -big, -depth), z, dz, surface->solid_back, big);
+        if (surface->solid_back < big)
+            solid = where_between(where_between(inside, over, rate, -big, -depth), z, dz,
+                                  std::max(Real(surface->solid_back), -big), big);
         if (sheet.empty() && solid.empty()) continue;
         const bool below  = !endless && over + inside.from * rate < -depth;
         const bool normal = glm::dot(glm::dvec3(gbuffer.normal_vs[i]), ray.direction_vs) < 0;

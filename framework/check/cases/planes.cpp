@@ -163,35 +163,39 @@ HardCase mirror_alone()
 
 HardCase solid_from_its_side()
 {
-    return {.name   = "solid_from_its_side",
-            .breaks = "a ray goes on inside a wall as if the wall were as thin as paper",
-            .answer =
-                "Right of column 48 a wall at Z = 4, solid to Z = 6; left of it nothing. Level rays at Z = 5.2 run "
-                "into its side: stopped at its first column, through with `plane`. At Z = 7 they pass behind it.",
-            .setups =
-                [] {
-                    std::vector<Setup> setups;
-                    for (const std::string_view surface : {"plane", "plane_solid"}) {
-                        Setup setup{std::string(surface),
-                                    picture_of(bench_view({97, 64}), [](glm::ivec2 p) { return p.x > 48 ? 4.0 : 0.0; }),
-                                    with(surface, Behind::stop),
-                                    {}};
-                        complete_gradients(setup.gbuffer);
-                        for (const float depth : setup.gbuffer.depth)
-                            setup.gbuffer.solid_back.push_back(
-                                depth > 0 ? static_cast<float>(distance_to_depth(setup.gbuffer.view, 6)) : 0);
-                        for (int y = 0; y < 64; ++y)
-                            for (const double z : {5.2, 7.0})
-                                setup.rays.push_back(level_ray(setup.gbuffer.view, {10.5, y + 0.5}, {80, 0}, z));
-                        setups.push_back(setup);
-                    }
-                    return setups;
-                },
-            .expected = [](const Setup& setup, const RayInput& ray) -> std::optional<Expected> {
-                const bool level_5 = depth_to_distance(setup.gbuffer.view, ray.origin_px_depth.z) < 6;
-                if (!level_5 || setup.settings.surface == "plane") return Expected{.status = ray.end_status};
-                return Expected{.status = TraceStatus::stopped, .pixel = glm::ivec2(49, ray.pixel.y), .t = 38.5 / 80};
-            }};
+    return {
+        .name   = "solid_from_its_side",
+        .breaks = "a ray goes on inside a wall as if the wall were as thin as paper",
+        .answer =
+            "Right of column 48 a wall at Z = 4, solid to Z = 6; left of it nothing. Level rays at Z = 5.2 run "
+            "into its side: stopped at its first column, through with `plane`. At Z = 7 they pass behind it, but for "
+            "`plane_infinite`.",
+        .setups =
+            [] {
+                std::vector<Setup> setups;
+                for (const std::string_view surface : {"plane", "plane_solid", "plane_infinite"}) {
+                    Setup setup{std::string(surface),
+                                picture_of(bench_view({97, 64}), [](glm::ivec2 p) { return p.x > 48 ? 4.0 : 0.0; }),
+                                with(surface, Behind::stop),
+                                {}};
+                    complete_gradients(setup.gbuffer);
+                    for (const float depth : setup.gbuffer.depth)
+                        setup.gbuffer.solid_back.push_back(
+                            depth > 0 ? static_cast<float>(distance_to_depth(setup.gbuffer.view, 6)) : 0);
+                    for (int y = 0; y < 64; ++y)
+                        for (const double z : {5.2, 7.0})
+                            setup.rays.push_back(level_ray(setup.gbuffer.view, {10.5, y + 0.5}, {80, 0}, z));
+                    setups.push_back(setup);
+                }
+                return setups;
+            },
+        .expected = [](const Setup& setup, const RayInput& ray) -> std::optional<Expected> {
+            const bool level_5 = depth_to_distance(setup.gbuffer.view, ray.origin_px_depth.z) < 6;
+            const bool stops =
+                setup.settings.surface == "plane_infinite" || (level_5 && setup.settings.surface == "plane_solid");
+            if (!stops) return Expected{.status = ray.end_status};
+            return Expected{.status = TraceStatus::stopped, .pixel = glm::ivec2(49, ray.pixel.y), .t = 38.5 / 80};
+        }};
 }
 
 HardCase no_usable_plane()

@@ -1,5 +1,5 @@
 // A pixel as a plane with a small tolerance behind it, and with SURFACE_SOLID as what lies between the plane and the next surface, where that is the
-// solid's far side. shaders/surfaces/README.md says what each function answers.
+// solid's far side. With SOLID_ENDLESS everything behind it is solid. shaders/surfaces/README.md says what each function answers.
 #include "surfaces/plane/stored.glsl"
 
 struct PixelSurface
@@ -41,7 +41,7 @@ bool meets(Ray ray, PixelSurface surface, real t_in, real t_out)
     real a = height_at(surface, t_in), b = height_at(surface, t_out);
     real low = a < b ? a : b, high = a < b ? b : a;
     bool met = low <= real(0) && high >= surface.back;
-#ifdef SURFACE_SOLID
+#ifdef HOLDS_SOLID
     real z_a = depth_at(ray, t_in), z_b = depth_at(ray, t_out);
     met = met || (high < surface.back && (z_a > z_b ? z_a : z_b) >= surface.solid);
 #endif
@@ -57,7 +57,7 @@ real contact_t(Ray ray, PixelSurface surface, real t_in, real t_out)
     real face   = height > real(0) ? real(0) : surface.back;
     precise real t_face = (face - surface.start) / surface.rate;
     real t = height <= real(0) && height >= surface.back || surface.rate == real(0) ? t_in : clamp(t_face, t_in, t_out);
-#ifdef SURFACE_SOLID
+#ifdef HOLDS_SOLID
     if (height < surface.back)
     {
         // Only a back that the ray reaches counts: one that it leaves lies before t_in.

@@ -1,6 +1,9 @@
 // Planes and solids as the G-buffer stores them.
 #ifndef SSRLAB_STORED_PLANES
 #define SSRLAB_STORED_PLANES
+#if defined(SURFACE_SOLID) || defined(SOLID_ENDLESS)
+#define HOLDS_SOLID
+#endif
 #ifdef SURFACE_SOLID
 layout(set = 0, binding = 13, r32f) uniform readonly image2D solid_image;
 #endif
@@ -16,7 +19,9 @@ bool has_plane(vec2 gradient) { return (floatBitsToUint(gradient.x) & 0x7FFFFFFF
 // The depth where the solid behind the pixel's surface in a layer ends; nearer than everything where there is none.
 float load_solid(ivec2 pixel, int layer)
 {
-#ifdef SURFACE_SOLID
+#if defined(SOLID_ENDLESS)
+    return -1e30;
+#elif defined(SURFACE_SOLID)
 #if LAYERS > 1
     float solid = layer > 0 ? load_layer_solid(pixel, layer) : imageLoad(solid_image, pixel).x;
 #else
