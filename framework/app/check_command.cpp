@@ -7,6 +7,7 @@
 #include "check/stability.h"
 #include "core/error.h"
 #include "core/files.h"
+#include "core/version.h"
 
 #include <algorithm>
 #include <charconv>
@@ -110,12 +111,15 @@ int check_techniques(const CommonOptions& common, const HardCaseOptions& options
         ++broken;
         std::fprintf(stderr, "validation: %s\n", message.c_str());
     }
-    std::string markdown = markdown_table(rows);
-    if (options.stability) markdown += measure_stability(gpu, techniques);
-    if (!options.markdown.empty()) write_file_atomically(options.markdown, markdown);
-    std::puts(fmt::format("{} of {} rows hold what the technique claims",
-                          std::ranges::count(rows, 0U, &CaseRow::breaks), rows.size())
-                  .c_str());
+    const std::string verdict   = fmt::format("{} of {} rows hold what the technique claims",
+                                              std::ranges::count(rows, 0U, &CaseRow::breaks), rows.size());
+    const std::string stability = options.stability ? measure_stability(gpu, techniques) : "";
+    if (!options.markdown.empty())
+        write_file_atomically(options.markdown,
+                              fmt::format("# Hard cases\nWritten by `{}`. Commit: {}. Device: {}.\n\n{}.\n\n{}{}",
+                                          options.command_line, built_commit(), gpu.info.name, verdict,
+                                          markdown_table(rows), stability));
+    std::puts(verdict.c_str());
     return broken == 0 ? 0 : 1;
 }
 

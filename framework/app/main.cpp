@@ -263,7 +263,12 @@ int main(int argc, char** argv)
     check->add_option("--markdown", hard_cases.markdown, "Write the table to this file");
     check->add_flag("--quick", hard_cases.quick, "Without double precision and robust buffer access");
     check->add_flag("--stability", hard_cases.stability, "Also measure sub-pixel jitter and depth formats");
-    check->callback([&] { command = [&] { return check_techniques(common, hard_cases); }; });
+    check->callback([&] {
+        command = [&] {
+            hard_cases.command_line = fmt::format("ssrlab {}", fmt::join(argv + 1, argv + argc, " "));
+            return check_techniques(common, hard_cases);
+        };
+    });
 
     try {
         app.parse(argc, argv);

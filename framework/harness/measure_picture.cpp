@@ -90,18 +90,30 @@ Observed observe(Bench& bench, const FrameBuffersPtr& buffers, MeasuredRun& meas
     });
 }
 
-/// The picture with true reflections, and beside it the one without any.
+/// The name of the run's true picture. Runs that trace alike share it, whichever of them a sweep that is resumed begins with.
+std::string truth_name(const Run& run)
+{
+    Run named            = run;
+    named.technique      = "truth";
+    named.values         = {};
+    named.settings       = {};
+    named.settings.trace = run.settings.trace;
+    named.id             = run_id(named);
+    return picture_name(named);
+}
+
+/// The picture with true reflections, and beside it the one without any; those of the first run stay.
 void write_references(Bench& bench, Picture& picture, const MeasuredRun& measured, const Image& truth)
 {
     if (!bench.experiment.measure.pictures) return;
-    Run named              = *measured.run;
-    named.technique        = "truth";
-    picture.reference_file = picture_name(named) + ".png";
+    const std::string           name  = truth_name(*measured.run);
+    const std::filesystem::path path  = bench.results.path() / (name + ".png"),
+                                plain = bench.results.path() / (name + "_off.png");
+    picture.reference_file            = name + ".png";
     const std::vector<glm::vec4> none(pixel_count(truth.size_px), glm::vec4(0, 0, 0, -1));
-    std::filesystem::create_directories(bench.results.path() / "pictures");
-    write_image(bench.results.path() / picture.reference_file, truth);
-    write_image(bench.results.path() / (picture_name(named) + "_off.png"),
-                composite_reflection(bench.gpu, *measured.frame, none));
+    std::filesystem::create_directories(path.parent_path());
+    if (!std::filesystem::exists(path)) write_image(path, truth);
+    if (!std::filesystem::exists(plain)) write_image(plain, composite_reflection(bench.gpu, *measured.frame, none));
 }
 
 /// Makes what judging the run needs, unless the last run had the same settings.

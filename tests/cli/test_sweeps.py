@@ -140,6 +140,17 @@ class Test(Case):
         self.assertEqual([row["run_id"] for row in self.rows()], [run_id])
         self.refused("run", spec, "-o", "other", "--only", "nothing", code=2, says=["nothing", "--dry-run"])
 
+    def test_rows_do_not_depend_on_what_ran_before(self):
+        """As after --resume: a run that comes first by itself names the same true picture."""
+        spec = self.write("s.toml", SWEEP)
+        self.ssrlab("run", spec, "-o", "out")
+        row = self.rows()[2]
+        self.ssrlab("run", spec, "-o", "alone", "--only", row["run_id"])
+        alone, = self.rows("alone")
+        for column in ("picture", "truth_picture", "steps_mean", "picture_rmse"):
+            self.assertEqual(alone[column], row[column], column)
+        self.assertTrue(os.path.exists(self.path("alone/" + row["truth_picture"])))
+
     def test_results_are_not_overwritten(self):
         spec = self.write("s.toml", SWEEP)
         self.ssrlab("run", spec, "-o", "out")

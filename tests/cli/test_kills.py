@@ -1,0 +1,78 @@
+"""tests/kills: a sweep that is killed again and again loses nothing, and a promise that is broken is found."""
+import importlib.machinery
+import importlib.util
+import json
+import os
+import subprocess
+
+from support import PROGRAM, SOURCE, Case, main
+
+KILLS = os.path.join(SOURCE, "tests", "kills")
+# Loses the first row whenever it starts, and then goes on as ssrlab.
+FORGETFUL = f"""#!/bin/sh
+for file in "$4"/results.csv; do [ -e "$file" ] && sed -i 2d "$file"; done
+exec {PROGRAM} "$@"
+"""
+
+
+def kills_module():
+    loader = importlib.machinery.SourceFileLoader("kills", KILLS)
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("kills", loader))
+    loader.exec_module(module)
+    return module
+
+
+class Test(Case):
+    def kills(self, *arguments, code=0):
+        self.last_command = " ".join(["tests/kills", *arguments])
+        done = subprocess.run([KILLS, "--program", PROGRAM, *arguments], capture_output=True, text=True, timeout=280)
+        self.assertEqual(done.returncode, code, f"repeat: {self.last_command}\n{done.stdout}{done.stderr}")
+        return done.stdout + done.stderr
+
+    def test_nothing_is_lost(self):
+        self.kills("--kills", "3", "--stops", "5", "-o", self.path("kills.json"))
+        with open(self.path("kills.json"), encoding="utf-8") as file:
+            figures = json.load(file)
+        self.assertEqual((figures["kills"], figures["stops"]), (3, 5))
+        self.assertGreater(figures["rows_compared"], 0)
+        self.assertEqual(set(figures["broken"].values()), {0})
+
+    def test_a_program_that_forgets_is_found(self):
+        program = self.write("forgetful", FORGETFUL)
+        os.chmod(program, 0o755)
+        text = self.kills("--kills", "2", "--stops", "0", "--program", program, code=1)
+        self.assertRegex(text, "lost: the row of run r[0-9a-f]+ was written and is (lost|another now)")
+
+    def test_each_broken_promise_is_found(self):
+        kills = kills_module()
+        spec  = self.write("kills.toml", kills.SPEC)
+        sweep = kills.Sweep(PROGRAM, self.folder, 0)
+        self.ssrlab("run", spec, "-o", sweep.out)
+        expected = {row["run_id"]: row for row in self.rows("out0")}
+        pictures = sweep.pictures()
+        self.assertGreater(len(pictures), len(expected))
+        kills.check_finished(sweep, expected, pictures)
+        rows, samples = sweep.file("results.csv"), sweep.file("samples.csv")
+        first = rows.split("\n")[1]
+        steps = next(iter(expected.values()))["steps_mean"]
+        for promise, name, text in (("lost", "results.csv", rows.replace(first + "\n", "")),
+                                    ("doubled", "results.csv", rows + first + "\n"),
+                                    ("torn", "results.csv", rows + first[:50]),
+                                    ("torn", "results.csv", rows.replace(first, first[:50])),
+                                    ("differ", "results.csv", rows.replace(first, first.replace(f",{steps},", ",7.77,"))),
+                                    ("samples", "samples.csv", samples[:samples.rindex("\n", 0, -1) + 1]),
+                                    ("samples", "samples.csv", samples + samples.split("\n", 1)[1]),
+                                    ("pictures", "pictures/" + next(iter(pictures)), "another"),
+                                    ("left over", "results.csv.tmp1", "")):
+            self.write("out0/" + name, text)
+            with self.assertRaises(kills.Broken) as found:
+                kills.check_finished(sweep, expected, pictures)
+            self.assertEqual(found.exception.promise, promise, found.exception)
+            self.write("out0/results.csv", rows)
+            self.write("out0/samples.csv", samples)
+            with open(self.path("out0/pictures/" + next(iter(pictures))), "wb") as file:
+                file.write(next(iter(pictures.values())))
+
+
+if __name__ == "__main__":
+    main()
