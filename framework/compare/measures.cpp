@@ -8,11 +8,12 @@
 namespace ssrlab {
 namespace {
 
-constexpr std::string_view contract = "docs/hit_contract.md";
-constexpr std::string_view truth    = "framework/truth/scene_truth.h";
-constexpr std::string_view before   = "framework/truth/reprojection_truth.h";
-constexpr std::string_view causes   = "framework/compare/causes.h";
-constexpr std::string_view own      = "ssrlab";
+constexpr std::string_view contract   = "docs/hit_contract.md";
+constexpr std::string_view truth      = "framework/truth/scene_truth.h";
+constexpr std::string_view before     = "framework/truth/reprojection_truth.h";
+constexpr std::string_view causes     = "framework/compare/causes.h";
+constexpr std::string_view own        = "ssrlab";
+constexpr std::string_view divergence = "docs/devices.md";
 
 // px distance = the larger of |dx| and |dy| between two hit points. "Found" = the truth has a point, the technique hits, and
 // their distance is at most 1 px unless another number is named.
@@ -20,6 +21,13 @@ constexpr auto table = std::to_array<Measure>({
     {"traced_rays", "rays", "pixels that reflect: depth, metallic and a usable normal", contract},
     {"steps_mean", "steps", "loop iterations per traced ray", own},
     {"steps_max", "steps", "largest number of loop iterations of a ray", own},
+    {"warp32_iterations_mean", "steps",
+     "longest ray's loop iterations in a group of 32 rays that follow each other in the list, mean over all groups "
+     "(the "
+     "last may be smaller)",
+     divergence},
+    {"wave64_iterations_mean", "steps", "the same in groups of 64 rays; divided by 64, wave iterations per ray",
+     divergence},
     {"depth_fetches_mean", "fetches", "depth texels read per traced ray", own},
     {"structure_fetches_mean", "fetches", "reads of structures (such as the depth pyramid) per traced ray", own},
 

@@ -52,7 +52,7 @@ MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth
 /// What the pass hidden_layer adds: `first` and `second` are what the rays found in each depth layer.
 MeasureValues compare_hidden_layer(const TraceResult& first, const TraceResult& second, const SceneTruth& scene_truth);
 
-/// Mean and largest work per ray.
+/// Mean and largest work per ray, and the work of rays that run side by side.
 MeasureValues count_work(const TraceResult& result);
 
 /// Traced rays whose status, or whose pixel when both hit, differ, per million.

@@ -64,6 +64,21 @@ std::optional<double> recall_against(const TraceResult& tested, const SceneTruth
     return share(found, whole);
 }
 
+/// Mean over groups of `width` rays that were traced one after the other, the last of which may hold fewer, of the longest one's steps.
+std::optional<double> group_iterations_mean(const TraceResult& result, size_t width)
+{
+    if (result.traced_order.empty()) return std::nullopt;
+    double sum    = 0;
+    size_t groups = 0;
+    for (size_t first = 0; first < result.traced_order.size(); first += width, ++groups) {
+        uint32_t longest = 0;
+        for (size_t i = first; i < std::min(first + width, result.traced_order.size()); ++i)
+            longest = std::max(longest, result.steps[result.traced_order[i]]);
+        sum += longest;
+    }
+    return sum / double(groups);
+}
+
 enum class FalseHit { self, too_thick, wrong_surface };
 
 FalseHit false_hit_cause(const TraceResult& tested, const GBufferImage& gbuffer, size_t i)
@@ -215,8 +230,10 @@ MeasureValues count_work(const TraceResult& result)
         if (counts.empty() || rays == 0) return std::nullopt;
         return std::accumulate(counts.begin(), counts.end(), 0.0) / double(rays);
     };
-    values["steps_mean"]         = mean(result.steps);
-    values["depth_fetches_mean"] = mean(result.depth_fetches);
+    values["steps_mean"]             = mean(result.steps);
+    values["depth_fetches_mean"]     = mean(result.depth_fetches);
+    values["warp32_iterations_mean"] = group_iterations_mean(result, 32);
+    values["wave64_iterations_mean"] = group_iterations_mean(result, 64);
     std::vector<uint32_t> structure_fetches; // empty when the result was not counted
     for (size_t i = 0; i < result.depth_fetches.size(); ++i)
         structure_fetches.push_back(structure_fetches_of(result, i));

@@ -55,6 +55,7 @@ struct TraceResult {
     std::vector<uint32_t>         steps;             // loop iterations; 0 where not traced
     std::vector<uint32_t>         depth_fetches;     // empty when the result was not counted
     std::vector<StructureFetches> structure_fetches; // of each structure that the technique reads
+    std::vector<size_t>           traced_order = {}; // indices of the pixels as their rays were traced; empty: unknown
 };
 
 /// Every pixel not traced; with room for fetch counts if they are to be counted.

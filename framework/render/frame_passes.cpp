@@ -399,8 +399,9 @@ TraceResult read_result(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& 
         if (work != nullptr)
             result.structure_fetches.push_back({structure.id, std::vector<uint32_t>(pixel_count(size_px))});
     for (size_t i = 0; i < count; ++i) {
-        const glm::ivec2 pixel     = unpack_pixel(listed[i].pixel);
-        const size_t     index     = pixel_index(pixel, size_px);
+        const glm::ivec2 pixel = unpack_pixel(listed[i].pixel);
+        const size_t     index = pixel_index(pixel, size_px);
+        result.traced_order.push_back(index);
         result.status[index]       = unpack_status(hits[i].pixel);
         result.hit_pixel[index]    = unpack_pixel(hits[i].pixel);
         result.hit_layer[index]    = unpack_layer(hits[i].pixel);

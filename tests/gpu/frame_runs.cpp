@@ -1,7 +1,11 @@
 // A timed frame: its times are there, its hits are the counting pipeline's, and running again changes nothing.
+#include "compare/measures.h"
+#include "core/pixel_index.h"
 #include "gpu/device.h"
 #include "render/frame_passes.h"
+#include "render/ray_list.h"
 
+#include <algorithm>
 #include <map>
 
 namespace ssrlab::test {
@@ -21,6 +25,7 @@ TEST_P(FrameRuns, TimesAreThereAndResultsAreTheCountedOnes)
     EXPECT_EQ(first.steps, second.steps);
     EXPECT_EQ(first.depth_fetches, second.depth_fetches);
     EXPECT_EQ(first.structure_fetches, second.structure_fetches);
+    EXPECT_EQ(first.traced_order, second.traced_order);
 
     std::vector<float> shaded;
     for (int run = 0; run < 3; ++run) {
@@ -40,6 +45,24 @@ TEST_P(FrameRuns, TimesAreThereAndResultsAreTheCountedOnes)
 
 INSTANTIATE_TEST_SUITE_P(Techniques, FrameRuns, testing::Values("dda", "hiz", "linear", "linear_binary"),
                          [](const auto& param) { return std::string(param.param); });
+
+TEST(FrameRuns, TheOrderOfTheRaysIsThatOfTheList)
+{
+    const Picture       picture = make_picture("builtin:pole_field", "down", {161, 91});
+    const TraceSettings settings{.thickness_m = 0.1, .max_distance_m = 20};
+    const Technique&    hiz    = technique("hiz");
+    const TraceResult   result = trace(picture, hiz, values_of(hiz), settings);
+    const auto          tracer =
+        make_ray_tracer(device(), picture.gbuffer, hiz, values_of(hiz), settings, pixel_count({161, 91}));
+    std::vector<size_t> listed;
+    for (const RayInput& ray : set_up_rays(device(), *tracer)) listed.push_back(pixel_index(ray.pixel, {161, 91}));
+    EXPECT_GT(listed.size(), 1000U);
+    EXPECT_EQ(result.traced_order, listed);
+    EXPECT_FALSE(std::ranges::is_sorted(listed)); // tiles, not rows
+    const auto values = count_work(result);
+    EXPECT_GT(values.at("wave64_iterations_mean"), values.at("warp32_iterations_mean"));
+    EXPECT_GT(values.at("warp32_iterations_mean"), values.at("steps_mean"));
+}
 
 TEST(GBufferRuns, TheSamePictureEveryTime)
 {

@@ -244,6 +244,28 @@ TEST(RayMeasures, WorkIsCountedPerTracedRay)
     EXPECT_EQ(count_work(result).at("depth_fetches_mean"), 2);
 }
 
+TEST(RayMeasures, AGroupWaitsForItsLongestRay)
+{
+    // Pixels 0 to 99, traced backwards: pixel 99 - i is ray i.
+    TraceResult result = row_of(100);
+    result.steps.assign(100, 1);
+    for (size_t i = 0; i < 100; ++i) result.traced_order.push_back(99 - i);
+    result.steps[99] = 10; // ray 0
+    result.steps[67] = 7;  // ray 32
+    result.steps[35] = 20; // ray 64
+    result.steps[3]  = 31; // ray 96, of four in the last group
+    EXPECT_EQ(count_work(result).at("warp32_iterations_mean"), (10 + 7 + 20 + 31) / 4.0);
+    EXPECT_EQ(count_work(result).at("wave64_iterations_mean"), (10 + 31) / 2.0);
+    std::ranges::reverse(result.traced_order); // ray i is pixel i: 3 | 35 | 67 | 99
+    EXPECT_EQ(count_work(result).at("warp32_iterations_mean"), (31 + 20 + 7 + 10) / 4.0);
+    EXPECT_EQ(count_work(result).at("wave64_iterations_mean"), (31 + 10) / 2.0);
+    std::swap(result.traced_order[3], result.traced_order[40]); // the longest goes to the second group of 32
+    EXPECT_EQ(count_work(result).at("warp32_iterations_mean"), (1 + 31 + 7 + 10) / 4.0);
+    EXPECT_EQ(count_work(result).at("wave64_iterations_mean"), (31 + 10) / 2.0);
+    result.traced_order.clear();
+    EXPECT_FALSE(count_work(result).at("wave64_iterations_mean"));
+}
+
 TEST(RayMeasures, DifferentSizesAreRefused)
 {
     EXPECT_THROW(compare_to_screen_truth(row_of(3), row_of(4)), Failure);
