@@ -5,6 +5,7 @@
 #include "app/plan_command.h"
 #include "app/ray_command.h"
 #include "app/render_command.h"
+#include "app/shaders_command.h"
 #include "core/error.h"
 #include "core/names.h"
 #include "core/version.h"
@@ -246,6 +247,20 @@ int main(int argc, char** argv)
     app.add_subcommand("measures", "Every column of results.csv and what it means (results/README.md)")->callback([&] {
         command = [&] { return print_measures(common); };
     });
+
+    ShadersOptions shaders;
+    auto*          compiled = app.add_subcommand(
+                 "shaders", "What a GPU's compiler makes of each pass: registers, code, the innermost loop (docs/devices.md)");
+    compiled->add_option("TECHNIQUE", shaders.techniques, "Techniques; default: all");
+    compiled->add_option(
+        "--chip", shaders.chip,
+        fmt::format("Compile for this AMD GPU without having it: {}; default: for the device that is there",
+                    fmt::join(known_chips(), ", ")));
+    compiled->add_option("-p,--parameter", shaders.parameters,
+                         "name=value, as for render; for every technique that has it");
+    compiled->add_option("--assembly", shaders.assembly, "Also write the assembly of each pass into this folder");
+    compiled->add_flag("--json", shaders.json, "With all that the driver says, as JSON");
+    compiled->callback([&] { command = [&] { return describe_shaders(common, shaders); }; });
 
     auto* begin = app.add_subcommand("new-technique", "A folder to begin with: a tracer that passes check");
     begin->add_option("FOLDER", results, "Its name becomes the technique's id")->required();

@@ -35,30 +35,16 @@ glm::ivec2 pixel_option(const std::string& text, glm::ivec2 size_px)
     return pixel;
 }
 
-bool belongs_to(const Technique& technique, const std::string& pair)
-{
-    const std::string name = pair.substr(0, pair.find('='));
-    return std::ranges::find(all_settings(), name, &Setting::name) != all_settings().end() ||
-           std::ranges::find(technique.parameters, name, &Parameter::name) != technique.parameters.end();
-}
-
 /// A parameter counts for every technique that has it.
 std::vector<RayQuestion> questions_of(const RayOptions& options, const std::vector<Technique>& all,
                                       FrameSettings& settings)
 {
+    std::vector<const Technique*> techniques;
+    for (const std::string& id : options.techniques) techniques.push_back(&find_technique(all, id));
     std::vector<RayQuestion> questions;
-    for (const std::string& id : options.techniques) {
-        const Technique&         technique = find_technique(all, id);
-        std::vector<std::string> own;
-        for (const std::string& pair : options.picture.parameters) {
-            const bool of_any = std::ranges::any_of(options.techniques, [&](const std::string& other) {
-                return belongs_to(find_technique(all, other), pair);
-            });
-            if (!of_any || belongs_to(technique, pair)) own.push_back(pair);
-        }
-        const Choice choice = parse_choice(technique, own);
-        settings            = choice.settings;
-        questions.push_back({&technique, choice.values});
+    for (const Choice& choice : parse_choices(techniques, options.picture.parameters)) {
+        settings = choice.settings;
+        questions.push_back({techniques[questions.size()], choice.values});
     }
     return questions;
 }

@@ -75,6 +75,33 @@ Choice parse_choice(const Technique& technique, const std::vector<std::string>& 
     return choice;
 }
 
+namespace {
+
+bool belongs_to(const Technique& technique, const std::string& pair)
+{
+    const std::string name = pair.substr(0, pair.find('='));
+    return std::ranges::find(all_settings(), name, &Setting::name) != all_settings().end() ||
+           std::ranges::find(technique.parameters, name, &Parameter::name) != technique.parameters.end();
+}
+
+} // namespace
+
+std::vector<Choice> parse_choices(const std::vector<const Technique*>& techniques,
+                                  const std::vector<std::string>&      pairs)
+{
+    std::vector<Choice> choices;
+    for (const Technique* technique : techniques) {
+        std::vector<std::string> own;
+        for (const std::string& pair : pairs) {
+            const bool of_any =
+                std::ranges::any_of(techniques, [&](const Technique* other) { return belongs_to(*other, pair); });
+            if (!of_any || belongs_to(*technique, pair)) own.push_back(pair);
+        }
+        choices.push_back(parse_choice(*technique, own));
+    }
+    return choices;
+}
+
 int report_messages(const Stage& stage)
 {
     const auto messages = validation_messages(stage.gpu);

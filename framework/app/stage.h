@@ -33,6 +33,9 @@ struct Choice {
 };
 /// name=value pairs: settings of [trace] and [passes], or else parameters of the technique. Throws SpecError.
 Choice parse_choice(const Technique& technique, const std::vector<std::string>& pairs);
+/// The same of several techniques, where each takes the parameters that it has. Throws SpecError for what none has.
+std::vector<Choice> parse_choices(const std::vector<const Technique*>& techniques,
+                                  const std::vector<std::string>&      pairs);
 /// One more pair.
 void set_choice(const Technique& technique, Choice& choice, const std::string& pair);
 

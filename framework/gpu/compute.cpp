@@ -91,6 +91,27 @@ void write_set(Gpu& gpu, const Shader& shader, const Bindings& bindings, const v
     }
 }
 
+/// Invocations of a workgroup, as its SPIR-V says.
+uint32_t group_size(const Shader& shader)
+{
+    constexpr uint32_t           execution_mode = 16, constant = 43, execution_mode_id = 331; // instructions
+    constexpr uint32_t           local_size = 17, local_size_id = 38;                         // modes
+    const auto&                  words = shader.spirv;
+    std::map<uint32_t, uint32_t> constants;
+    std::vector<uint32_t>        ids;
+    uint32_t                     size = 0;
+    for (size_t i = 5; i < words.size() && words[i] >> 16U != 0; i += words[i] >> 16U) {
+        const uint32_t instruction = words[i] & 0xFFFFU;
+        if (instruction == execution_mode && words[i + 2] == local_size)
+            size = words[i + 3] * words[i + 4] * words[i + 5];
+        else if (instruction == execution_mode_id && words[i + 2] == local_size_id)
+            ids = {words[i + 3], words[i + 4], words[i + 5]};
+        else if (instruction == constant)
+            constants[words[i + 2]] = words[i + 3];
+    }
+    return ids.empty() ? size : constants[ids[0]] * constants[ids[1]] * constants[ids[2]];
+}
+
 ComputePipeline make_pipeline(Gpu& gpu, const Shader& shader, const Constants& constants, uint32_t push_constant_bytes)
 {
     const vk::raii::Device& device = gpu.impl->device;
@@ -103,16 +124,25 @@ ComputePipeline make_pipeline(Gpu& gpu, const Shader& shader, const Constants& c
                                                           .pPushConstantRanges    = &range}};
     const vk::raii::ShaderModule module(
         device, vk::ShaderModuleCreateInfo{.codeSize = shader.spirv.size() * 4, .pCode = shader.spirv.data()});
-    const vk::SpecializationInfo        specialization{.mapEntryCount = static_cast<uint32_t>(constants.entries.size()),
-                                                       .pMapEntries   = constants.entries.data(),
-                                                       .dataSize      = constants.bytes.size(),
-                                                       .pData         = constants.bytes.data()};
-    const vk::ComputePipelineCreateInfo info{.stage  = {.stage               = vk::ShaderStageFlagBits::eCompute,
+    const vk::SpecializationInfo specialization{.mapEntryCount = static_cast<uint32_t>(constants.entries.size()),
+                                                .pMapEntries   = constants.entries.data(),
+                                                .dataSize      = constants.bytes.size(),
+                                                .pData         = constants.bytes.data()};
+    const bool                   described = gpu.info.compiles_only;
+    using Flag                             = vk::PipelineCreateFlagBits;
+    const vk::ComputePipelineCreateInfo info{.flags  = described ? Flag::eCaptureStatisticsKHR |
+                                                                      Flag::eCaptureInternalRepresentationsKHR
+                                                                 : vk::PipelineCreateFlags(),
+                                             .stage  = {.stage               = vk::ShaderStageFlagBits::eCompute,
                                                         .module              = *module,
                                                         .pName               = "main",
                                                         .pSpecializationInfo = &specialization},
                                              .layout = *result.layout};
     result.pipeline = {device, gpu.impl->pipeline_cache, info};
+    if (described) {
+        result.compiled       = read_compiled(gpu, shader.name, result.pipeline);
+        result.compiled.group = group_size(shader);
+    }
     return result;
 }
 
@@ -162,7 +192,11 @@ ComputePass make_compute_pass(Gpu& gpu, const Shader& shader, const Bindings& bi
     ComputePass pass;
     try {
         pass.compute = find_pipeline(gpu, shader, constants.only(shader.constants), push_constant_bytes);
-        pass.pool    = make_pool(gpu, shader);
+        if (gpu.info.compiles_only) {
+            gpu.impl->asked_for.push_back(pass.compute);
+            return pass;
+        }
+        pass.pool = make_pool(gpu, shader);
         vk::raii::DescriptorSets sets(
             gpu.impl->device,
             {.descriptorPool = *pass.pool, .descriptorSetCount = 1, .pSetLayouts = &*pass.compute->set_layout});
@@ -196,6 +230,7 @@ void dispatch_indirect(const vk::raii::CommandBuffer& commands, const ComputePas
 
 Timestamps make_timestamps(Gpu& gpu, uint32_t count)
 {
+    if (gpu.info.compiles_only) return {};
     return {{gpu.impl->device, vk::QueryPoolCreateInfo{.queryType = vk::QueryType::eTimestamp, .queryCount = count}},
             count};
 }

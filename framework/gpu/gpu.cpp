@@ -116,7 +116,19 @@ uint32_t find_queue_family(const vk::raii::PhysicalDevice& device)
     throw_failure("the device has no queue with graphics, compute and timestamps");
 }
 
-vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical_device, uint32_t queue_family, bool robust)
+constexpr const char* executable_properties = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
+
+void require_executable_properties(const vk::raii::PhysicalDevice& device, const GpuInfo& info)
+{
+    const auto extensions = device.enumerateDeviceExtensionProperties();
+    if (std::ranges::none_of(extensions, [](const vk::ExtensionProperties& extension) {
+            return std::strcmp(extension.extensionName, executable_properties) == 0;
+        }))
+        throw_failure("the device '{}' does not say what it compiles: it has no {}", info.name, executable_properties);
+}
+
+vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical_device, uint32_t queue_family,
+                             const GpuOptions& options)
 {
     const vk::PhysicalDeviceFeatures available = physical_device.getFeatures();
     const float                      priority  = 1.0F;
@@ -126,12 +138,19 @@ vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical_device, ui
         .synchronization2 = true, .dynamicRendering = true, .maintenance4 = true};
     vk::PhysicalDeviceVulkan12Features features12{.pNext = &features13, .scalarBlockLayout = true};
     const vk::PhysicalDeviceFeatures2  features{.pNext    = &features12,
-                                                .features = {.robustBufferAccess = robust,
+                                                .features = {.robustBufferAccess = options.robust_buffer_access,
                                                              .samplerAnisotropy  = available.samplerAnisotropy,
                                                              .shaderFloat64      = available.shaderFloat64,
                                                              .shaderInt64        = available.shaderInt64}};
-    return {physical_device,
-            vk::DeviceCreateInfo{.pNext = &features, .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue}};
+    const vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR described{
+        .pNext = const_cast<vk::PhysicalDeviceFeatures2*>(&features), .pipelineExecutableInfo = true};
+    vk::DeviceCreateInfo info{.pNext = &features, .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue};
+    if (options.compiles_only) {
+        info.pNext                   = &described;
+        info.enabledExtensionCount   = 1;
+        info.ppEnabledExtensionNames = &executable_properties;
+    }
+    return {physical_device, info};
 }
 
 /// Pipelines of one device and driver version; of another one, the driver would refuse them.
@@ -204,12 +223,15 @@ Gpu open_gpu(const GpuOptions& options)
         impl.queue_family    = find_queue_family(impl.physical_device);
         impl.limits          = impl.physical_device.getProperties().limits;
         impl.timestamp_period_ns = static_cast<double>(impl.limits.timestampPeriod);
-        const uint32_t bits = impl.physical_device.getQueueFamilyProperties()[impl.queue_family].timestampValidBits;
-        impl.timestamp_mask = bits >= 64 ? ~0ULL : (1ULL << bits) - 1;
-        impl.device         = make_device(impl.physical_device, impl.queue_family, options.robust_buffer_access);
-        impl.queue          = impl.device.getQueue(impl.queue_family, 0);
-        impl.command_pool   = {impl.device, vk::CommandPoolCreateInfo{.queueFamilyIndex = impl.queue_family}};
-        open_pipeline_cache(impl);
+        const uint32_t bits    = impl.physical_device.getQueueFamilyProperties()[impl.queue_family].timestampValidBits;
+        impl.timestamp_mask    = bits >= 64 ? ~0ULL : (1ULL << bits) - 1;
+        gpu.info.compiles_only = options.compiles_only;
+        if (options.compiles_only) require_executable_properties(impl.physical_device, gpu.info);
+        impl.device = make_device(impl.physical_device, impl.queue_family, options);
+        impl.queue  = impl.device.getQueue(impl.queue_family, 0);
+        if (options.compiles_only) return gpu;
+        impl.command_pool = {impl.device, vk::CommandPoolCreateInfo{.queueFamilyIndex = impl.queue_family}};
+        open_pipeline_cache(impl); // of pipelines that it knows, a driver may not say how they were compiled
     } catch (const vk::SystemError& error) {
         throw_failure("the Vulkan device cannot be opened: {}", error.what());
     }
@@ -245,6 +267,7 @@ std::vector<std::string> validation_messages(const Gpu& gpu)
 
 void submit(Gpu& gpu, const std::function<void(const vk::raii::CommandBuffer&)>& record)
 {
+    if (gpu.info.compiles_only) return;
     constexpr uint64_t five_minutes_ns = 300ULL * 1000 * 1000 * 1000;
     GpuImpl&           impl            = *gpu.impl;
     try {

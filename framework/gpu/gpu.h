@@ -16,6 +16,8 @@ struct GpuOptions {
     bool        validation = false; // load the Khronos validation layer; every message is kept in validation_messages()
     bool        robust_buffer_access = false;
     TexelStorage storage             = TexelStorage::by_device;
+    bool         compiles_only =
+        false; // pipelines are made and described (gpu/compiled.h); there is no memory, and nothing runs
 };
 
 /// What environment.json says about the device.
@@ -27,6 +29,7 @@ struct GpuInfo {
     bool        cheap_doubles = false; // they cost little more than floats
     uint32_t    max_image_px  = 0;
     bool        int64         = false; // 64-bit integers in shaders
+    bool        compiles_only = false; // it was opened so
     bool plain_buffers = false; // texel buffers hold fewer elements than a large picture needs, or it was asked for
 };
 

@@ -26,7 +26,8 @@ Buffer make(Gpu& gpu, uint64_t bytes, vk::BufferUsageFlags usage, vk::MemoryProp
             vk::MemoryPropertyFlags preferred = {})
 {
     Buffer result;
-    result.bytes  = bytes;
+    result.bytes = bytes;
+    if (gpu.info.compiles_only) return result;
     result.buffer = {gpu.impl->device, vk::BufferCreateInfo{.size = bytes, .usage = usage}};
     result.memory = allocate(*gpu.impl, result.buffer.getMemoryRequirements(), wanted, preferred);
     result.buffer.bindMemory(*result.memory, 0);
@@ -83,7 +84,7 @@ Buffer make_texel_buffer(Gpu& gpu, uint64_t bytes, vk::Format format)
 vk::raii::BufferView make_texel_view(Gpu& gpu, const Buffer& buffer, vk::Format format)
 {
     refuse_too_many_texels(gpu, buffer.bytes, format);
-    if (gpu.info.plain_buffers) return nullptr;
+    if (gpu.info.plain_buffers || gpu.info.compiles_only) return nullptr;
     return {gpu.impl->device,
             vk::BufferViewCreateInfo{.buffer = *buffer.buffer, .format = format, .range = VK_WHOLE_SIZE}};
 }
@@ -117,7 +118,7 @@ Buffer make_download_buffer(Gpu& gpu, uint64_t bytes)
 
 void upload(Gpu& gpu, Buffer& target, const void* data, uint64_t bytes)
 {
-    if (bytes == 0) return;
+    if (bytes == 0 || gpu.info.compiles_only) return;
     const Buffer staging = make_upload_buffer(gpu, bytes);
     std::memcpy(staging.mapped, data, bytes);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
@@ -151,6 +152,7 @@ GpuImage make_image(Gpu& gpu, const ImageOptions& options)
     result.size_px = options.size_px;
     result.levels  = options.levels;
     result.layers  = options.layers;
+    if (gpu.info.compiles_only) return result;
     const vk::ImageCreateInfo info{
         .imageType   = vk::ImageType::e2D,
         .format      = options.format,
@@ -186,6 +188,7 @@ GpuImage make_image(Gpu& gpu, const ImageOptions& options)
 
 void upload(Gpu& gpu, GpuImage& target, const void* data, uint64_t bytes)
 {
+    if (gpu.info.compiles_only) return;
     const Buffer staging = make_upload_buffer(gpu, bytes);
     std::memcpy(staging.mapped, data, bytes);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {

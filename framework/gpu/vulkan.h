@@ -1,7 +1,7 @@
 // The inside of Gpu: for the folders gpu/ and render/ only.
 #pragma once
 
-#include "gpu/gpu.h"
+#include "gpu/compiled.h"
 
 #include <vulkan/vulkan_raii.hpp>
 
@@ -16,6 +16,7 @@ struct ComputePipeline {
     vk::raii::DescriptorSetLayout set_layout = nullptr;
     vk::raii::PipelineLayout      layout     = nullptr;
     vk::raii::Pipeline            pipeline   = nullptr;
+    CompiledPipeline              compiled   = {}; // of a device that only compiles
 };
 
 struct GpuImpl {
@@ -46,10 +47,13 @@ struct GpuImpl {
         std::shared_ptr<const ComputePipeline> pipeline;
         uint64_t                               last_use = 0;
     };
-    std::map<std::string, KnownPipeline> known_pipelines;
-    uint64_t                             pipeline_uses  = 0;
-    size_t                               pipelines_made = 0;
+    std::map<std::string, KnownPipeline>                known_pipelines;
+    uint64_t                                            pipeline_uses  = 0;
+    size_t                                              pipelines_made = 0;
+    std::vector<std::shared_ptr<const ComputePipeline>> asked_for; // by passes, of a device that only compiles
 };
+
+CompiledPipeline read_compiled(const Gpu& gpu, const std::string& shader, const vk::raii::Pipeline& pipeline);
 
 /// Records commands, submits them and waits. Throws Failure when the device is lost or the wait exceeds five minutes.
 void submit(Gpu& gpu, const std::function<void(const vk::raii::CommandBuffer&)>& record);

@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "core/pixel_index.h"
 #include "core/stopwatch.h"
 #include "render/directional_albedo.h"
 #include "render/frame_passes.h"
@@ -299,6 +300,24 @@ PreparedFramePtr prepare_unculled(Gpu& gpu, const PreparedFrame& planned)
     settings.passes.at("skip_unneeded_passes") = 0;
     return prepare(gpu, planned.buffers, planned.technique, planned.values, settings, planned.history,
                    &planned.statistics.trace);
+}
+
+std::vector<CompiledPtr> compile_frame(Gpu& gpu, const Technique& technique, const ParameterValues& values,
+                                       const FrameSettings& settings)
+{
+    const GBufferPtr      gbuffer = make_gbuffer(gpu, camera_to_view(Camera{}, {1920, 1080}));
+    const FrameBuffersPtr buffers = make_frame_buffers(gpu, gbuffer);
+    const auto            pixels  = static_cast<uint32_t>(pixel_count(gbuffer->view.size_px));
+    const glm::uvec3      tiles   = groups_of_8(gbuffer->view.size_px);
+    FrameStatistics       all{.pixels = pixels, .tiles = tiles.x * tiles.y, .gbuffer = {}, .trace = {}};
+    all.gbuffer.surface_pixels = all.gbuffer.reflecting_pixels = pixels;
+    all.gbuffer.reflecting_tiles                               = all.tiles;
+    all.gbuffer.roughness_pixels[0] = all.gbuffer.roughness_pixels[ROUGHNESS_BINS / 4] = pixels / 2;
+    buffers->statistics.emplace(std::pair(settings.trace.dielectric_min_f0, settings.trace.dielectric_max_roughness),
+                                all);
+    const TraceCounts every_ray_hits{pixels, pixels, 0};
+    prepare(gpu, buffers, technique, values, settings, nullptr, &every_ray_hits);
+    return take_compiled(gpu);
 }
 
 const std::vector<PlannedPass>& plan_of(const PreparedFrame& frame) { return frame.plan; }

@@ -4,7 +4,7 @@
 #include "core/gbuffer_image.h"
 #include "core/image.h"
 #include "core/trace_result.h"
-#include "gpu/gpu.h"
+#include "gpu/compiled.h"
 #include "render/frame_plan.h"
 #include "render/history.h"
 #include "render/technique.h"
@@ -80,6 +80,10 @@ const std::vector<PlannedPass>& plan_of(const PreparedFrame& frame);
 size_t reflecting_pixels_of(const PreparedFrame& frame);
 /// Seconds of prepare_frame() spent counting hits for the plan.
 double counting_s_of(const PreparedFrame& frame);
+/// On a device that only compiles (gpu/compiled.h): every pipeline of a frame at 1080p, as if every pixel reflected, one half of them
+/// as mirrors and one half with a roughness of a quarter, and every ray hit. There is no scene: what draws it is left out.
+std::vector<CompiledPtr> compile_frame(Gpu& gpu, const Technique& technique, const ParameterValues& values,
+                                       const FrameSettings& settings);
 /// Whether the unculled frame would do more. False with pass_set = shading.
 bool plan_skips_work(const PreparedFrame& frame);
 /// What the plan rests on, a line each.

@@ -1,0 +1,154 @@
+#include "app/shaders_command.h"
+
+#include "app/stage.h"
+#include "core/error.h"
+#include "core/files.h"
+
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace ssrlab {
+namespace {
+
+struct Row {
+    CompiledPtr              pipeline;
+    LoopCode                 loop;
+    std::vector<std::string> techniques; // whose frames use it
+};
+
+/// Techniques that bind different buffers to the same code share a row.
+bool same_code(const CompiledPipeline& a, const CompiledPipeline& b)
+{
+    return a.shader == b.shader && !a.assembly.empty() && a.assembly == b.assembly;
+}
+
+/// "trace/trace.comp"
+std::string short_name(const CompiledPipeline& pipeline)
+{
+    const std::filesystem::path file = pipeline.shader;
+    return (file.parent_path().filename() / file.filename()).string();
+}
+
+std::vector<Row> compile(Gpu& gpu, const std::vector<const Technique*>& techniques, const std::vector<Choice>& choices)
+{
+    std::vector<Row> rows;
+    for (size_t i = 0; i < techniques.size(); ++i)
+        for (const CompiledPtr& pipeline : compile_frame(gpu, *techniques[i], choices[i].values, choices[i].settings)) {
+            auto row = std::ranges::find_if(rows, [&](const Row& known) {
+                return known.pipeline == pipeline || same_code(*known.pipeline, *pipeline);
+            });
+            if (row == rows.end()) row = rows.insert(row, {pipeline, innermost_loop(pipeline->assembly), {}});
+            if (row->techniques.empty() || row->techniques.back() != techniques[i]->id)
+                row->techniques.push_back(techniques[i]->id);
+        }
+    return rows;
+}
+
+/// A column of the table; several names are summed. AMD's compiler has all of them, others some.
+struct Column {
+    const char*              title;
+    std::vector<const char*> statistics;
+};
+
+const std::vector<Column>& columns()
+{
+    static const std::vector<Column> all = {{"VGPRs", {"VGPRs"}},
+                                            {"SGPRs", {"SGPRs"}},
+                                            {"waves a SIMD", {"Subgroups per SIMD"}},
+                                            {"spilled", {"Spilled VGPRs", "Spilled SGPRs"}},
+                                            {"LDS B", {"LDS size"}},
+                                            {"scratch B", {"Scratch size"}},
+                                            {"code B", {"Code size"}},
+                                            {"instructions", {"Instructions"}}};
+    return all;
+}
+
+std::string cell(const Row& row, const Column& column)
+{
+    const auto& statistics = row.pipeline->statistics;
+    uint64_t    sum        = 0;
+    for (const char* name : column.statistics) {
+        if (!statistics.contains(name)) return "-";
+        sum += statistics.at(name);
+    }
+    return std::to_string(sum);
+}
+
+void print_table(const std::vector<Row>& rows, size_t techniques)
+{
+    std::string head = "| technique | shader | group | lanes |", line = "|---|---|--:|--:|";
+    for (const Column& column : columns()) {
+        head += fmt::format(" {} |", column.title);
+        line += "--:|";
+    }
+    std::puts((head + " in the innermost loop | loads there |\n" + line + "--:|--:|").c_str());
+    for (const Row& row : rows) {
+        const bool  shared = techniques > 1 && row.techniques.size() == techniques;
+        std::string text   = fmt::format("| {} | `{}` | {} | {} |",
+                                       shared ? "(all)" : fmt::format("{}", fmt::join(row.techniques, ", ")),
+                                         short_name(*row.pipeline), row.pipeline->group, row.pipeline->lanes);
+        for (const Column& column : columns()) text += fmt::format(" {} |", cell(row, column));
+        const bool shown = !row.pipeline->assembly.empty();
+        text += shown ? fmt::format(" {} | {} |", row.loop.instructions, row.loop.loads) : " - | - |";
+        std::puts(text.c_str());
+    }
+}
+
+void print_json(const std::vector<Row>& rows, const GpuInfo& device)
+{
+    nlohmann::json json{{"device", device.name}, {"driver", device.driver}, {"pipelines", nlohmann::json::array()}};
+    for (const Row& row : rows) {
+        json["pipelines"].push_back({{"shader", short_name(*row.pipeline)},
+                                     {"techniques", row.techniques},
+                                     {"invocations_a_group", row.pipeline->group},
+                                     {"lanes", row.pipeline->lanes},
+                                     {"statistics", row.pipeline->statistics}});
+        if (!row.pipeline->assembly.empty())
+            json["pipelines"].back()["innermost_loop"] = {{"instructions", row.loop.instructions},
+                                                          {"loads", row.loop.loads}};
+    }
+    std::puts(json.dump(1).c_str());
+}
+
+void write_assembly(const std::vector<Row>& rows, const std::filesystem::path& folder)
+{
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw_failure("--assembly {}: cannot be created: {}", folder.string(), error.message());
+    for (size_t i = 0; i < rows.size(); ++i) {
+        const std::string name = fmt::format("{:02}_{}_{}.s", i, rows[i].techniques.front(),
+                                             std::filesystem::path(rows[i].pipeline->shader).filename().string());
+        write_file_atomically(folder / name, rows[i].pipeline->assembly);
+    }
+}
+
+} // namespace
+
+int describe_shaders(const CommonOptions& common, const ShadersOptions& options)
+{
+    const std::vector<Technique>  all = list_techniques(common.technique_dirs);
+    std::vector<const Technique*> techniques;
+    for (const std::string& name : options.techniques) techniques.push_back(&find_technique(all, name));
+    if (techniques.empty())
+        for (const Technique& technique : all) techniques.push_back(&technique);
+    const std::vector<Choice> choices = parse_choices(techniques, options.parameters);
+
+    GpuOptions device    = common.gpu;
+    device.compiles_only = true;
+    if (!options.chip.empty()) pretend_chip(options.chip);
+    Gpu                    gpu  = open_gpu(device);
+    const std::vector<Row> rows = compile(gpu, techniques, choices);
+    if (options.json)
+        print_json(rows, gpu.info);
+    else {
+        std::puts(fmt::format("Compiled for {} by {}\n", gpu.info.name, gpu.info.driver).c_str());
+        print_table(rows, techniques.size());
+    }
+    if (!options.assembly.empty()) write_assembly(rows, options.assembly);
+    return 0;
+}
+
+} // namespace ssrlab

@@ -1,0 +1,80 @@
+"""ssrlab shaders: what Mesa's compiler for AMD GPUs makes of each pass, without a GPU."""
+import glob
+import json
+import os
+
+from support import SOURCE, Case, main
+
+TECHNIQUES = ("hiz", "hiz_packets", "dda", "linear")
+
+
+class Test(Case):
+    def setUp(self):
+        super().setUp()
+        if not glob.glob("/usr/share/vulkan/icd.d/radeon_icd.*"):
+            self.skipTest("no driver for AMD GPUs: install Debian's package mesa-vulkan-drivers")
+
+    def compiled(self, *arguments):
+        return json.loads(self.ssrlab("--quiet", "shaders", *arguments, "--json"))["pipelines"]
+
+    def trace_of(self, pipelines, technique):
+        found = [one for one in pipelines
+                 if technique in one["techniques"] and one["shader"].startswith("trace/trace")]
+        self.assertEqual(len(found), 1, [one["shader"] for one in pipelines])
+        return found[0]
+
+    def assert_plausible(self, pipeline):
+        said = pipeline["statistics"]
+        for name in ("VGPRs", "SGPRs", "Subgroups per SIMD", "Code size", "Instructions"):
+            self.assertGreater(said[name], 0, f"{name} of {pipeline}")
+        for name in ("Spilled VGPRs", "Spilled SGPRs"):
+            self.assertEqual(said[name], 0, f"{name} of {pipeline}")
+        self.assertIn(pipeline["lanes"], (32, 64))
+
+    def test_every_technique_on_navi21(self):
+        pipelines = self.compiled(*TECHNIQUES, "--chip", "navi21")
+        for pipeline in pipelines:
+            self.assert_plausible(pipeline)
+        for technique in TECHNIQUES:
+            loop = self.trace_of(pipelines, technique)["innermost_loop"]
+            self.assertGreater(loop["loads"], 0, technique)
+            self.assertLess(loop["loads"], loop["instructions"])
+        self.assertEqual(self.trace_of(pipelines, "hiz_packets")["shader"], "trace/trace_pairs.comp")
+        self.assertEqual(self.trace_of(pipelines, "hiz_packets")["invocations_a_group"], 32)
+        self.assertEqual(self.trace_of(pipelines, "hiz")["invocations_a_group"], 64)
+        shared = [one for one in pipelines if one["shader"] == "rays/rays.comp"]
+        self.assertEqual([one["techniques"] for one in shared], [list(TECHNIQUES)])
+        pyramid = [one for one in pipelines if one["shader"] == "depth_pyramid/level_of_pixels.comp"]
+        self.assertEqual([one["techniques"] for one in pyramid], [["hiz", "hiz_packets"]])
+
+    def test_table_and_assembly(self):
+        text = self.ssrlab("shaders", "linear", "--chip", "navi21", "--assembly", "code", says=["NAVI21", "| linear |"])
+        rows = [line.split("|")[1:-1] for line in text.splitlines() if line.startswith("|")]
+        self.assertEqual({len(row) for row in rows}, {14}, text)
+        written = sorted(os.listdir(self.path("code")))
+        self.assertEqual(len(written), len(rows) - 2)
+        trace = [name for name in written if name.endswith("linear_trace.comp.s")]
+        with open(os.path.join(self.path("code"), trace[0]), encoding="utf-8") as file:
+            self.assertIn("s_endpgm", file.read())
+
+    def test_settings_and_other_chips(self):
+        default = self.trace_of(self.compiled("hiz", "--chip", "navi10"), "hiz")
+        box = self.trace_of(self.compiled("hiz", "--chip", "navi10", "-p", "surface=box", "-p", "behind=hit"), "hiz")
+        self.assertLess(box["statistics"]["Code size"], default["statistics"]["Code size"])
+        for chip in ("vega10", "gfx1100"):
+            self.assert_plausible(self.trace_of(self.compiled("hiz", "--chip", chip), "hiz"))
+
+    def test_a_technique_from_outside(self):
+        folder = os.path.join(SOURCE, "tests", "techniques")
+        pipelines = self.compiled("unity_hiz", "--techniques", folder, "--chip", "navi21")
+        self.assert_plausible(self.trace_of(pipelines, "unity_hiz"))
+
+    def test_refusals(self):
+        self.refused("shaders", "hiz", "--chip", "navi2", code=2, says=["--chip", "'navi2'", "navi21"])
+        self.refused("shaders", "hizz", "--chip", "navi21", code=2, says=["hizz", "'hiz'"])
+        self.refused("shaders", "hiz", "--chip", "navi21", "-p", "steps=3", code=2, says=["steps"])
+        self.refused("shaders", "hiz", "--device", "llvmpipe", code=1, says=["llvmpipe", "VK_KHR_pipeline_executable"])
+
+
+if __name__ == "__main__":
+    main()
