@@ -98,6 +98,7 @@ namespace {
 
 Buffer map(Buffer buffer)
 {
+    if (!*buffer.memory) throw_failure("a device that only compiles was asked for what is in its memory");
     buffer.mapped = buffer.memory.mapMemory(0, buffer.bytes);
     return buffer;
 }
