@@ -11,6 +11,7 @@ Added columns: cost_ms_median, cost_ms_ci_low and cost_ms_ci_high are the time o
 """
 import json
 import os
+import re
 import tomllib
 
 import pandas as pd
@@ -18,10 +19,13 @@ import pandas as pd
 TEXT = ["run_id", "experiment", "scene", "view", "technique", "outcome", "message", "picture", "truth_picture", "no_scene_truth", "no_screen_truth", "passes",
         "passes_skipped"]
 FRAME = ["scene", "view", "width", "height", "frame"]
+# What a clock decides, and differs from one run to the next.
+OF_TIME = re.compile(r"(^|[_.])ms(_|$)|^(fps|inverse_fps_s|passes)$")
 # By the end of a column's name, longest first; "" is a count, a share of 1 or a setting's own value.
 UNITS = {"per_million": "rays per million", "_ms_median": "ms", "_ms_mad": "ms", "_ms_ci_low": "ms", "_ms_ci_high": "ms", "_ms": "ms",
          "_px": "px", "_m": "m", "_db": "dB", "_s": "s", "_share": "share", "recall_1px": "share",
-         "precision_1px": "share", "f1_1px": "share", "recall_4px": "share", "fetches_mean": "fetches", "steps_mean": "steps"}
+         "precision_1px": "share", "f1_1px": "share", "recall_4px": "share", "fetches_mean": "fetches", "steps_mean": "steps",
+         "_iterations_mean": "steps"}
 
 
 def read_rows(folder):

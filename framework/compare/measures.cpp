@@ -22,9 +22,8 @@ constexpr auto table = std::to_array<Measure>({
     {"steps_mean", "steps", "loop iterations per traced ray", own},
     {"steps_max", "steps", "largest number of loop iterations of a ray", own},
     {"warp32_iterations_mean", "steps",
-     "longest ray's loop iterations in a group of 32 rays that follow each other in the list, mean over all groups "
-     "(the "
-     "last may be smaller)",
+     "longest ray's loop iterations in a group of 32 rays that follow each other in the list, mean over all "
+     "groups (the last may be smaller)",
      divergence},
     {"wave64_iterations_mean", "steps", "the same in groups of 64 rays; divided by 64, wave iterations per ray",
      divergence},

@@ -91,27 +91,6 @@ void write_set(Gpu& gpu, const Shader& shader, const Bindings& bindings, const v
     }
 }
 
-/// Invocations of a workgroup, as its SPIR-V says.
-uint32_t group_size(const Shader& shader)
-{
-    constexpr uint32_t           execution_mode = 16, constant = 43, execution_mode_id = 331; // instructions
-    constexpr uint32_t           local_size = 17, local_size_id = 38;                         // modes
-    const auto&                  words = shader.spirv;
-    std::map<uint32_t, uint32_t> constants;
-    std::vector<uint32_t>        ids;
-    uint32_t                     size = 0;
-    for (size_t i = 5; i < words.size() && words[i] >> 16U != 0; i += words[i] >> 16U) {
-        const uint32_t instruction = words[i] & 0xFFFFU;
-        if (instruction == execution_mode && words[i + 2] == local_size)
-            size = words[i + 3] * words[i + 4] * words[i + 5];
-        else if (instruction == execution_mode_id && words[i + 2] == local_size_id)
-            ids = {words[i + 3], words[i + 4], words[i + 5]};
-        else if (instruction == constant)
-            constants[words[i + 2]] = words[i + 3];
-    }
-    return ids.empty() ? size : constants[ids[0]] * constants[ids[1]] * constants[ids[2]];
-}
-
 ComputePipeline make_pipeline(Gpu& gpu, const Shader& shader, const Constants& constants, uint32_t push_constant_bytes)
 {
     const vk::raii::Device& device = gpu.impl->device;

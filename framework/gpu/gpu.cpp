@@ -137,13 +137,13 @@ vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical_device, ui
     vk::PhysicalDeviceVulkan13Features features13{
         .synchronization2 = true, .dynamicRendering = true, .maintenance4 = true};
     vk::PhysicalDeviceVulkan12Features features12{.pNext = &features13, .scalarBlockLayout = true};
-    const vk::PhysicalDeviceFeatures2  features{.pNext    = &features12,
+    vk::PhysicalDeviceFeatures2        features{.pNext    = &features12,
                                                 .features = {.robustBufferAccess = options.robust_buffer_access,
                                                              .samplerAnisotropy  = available.samplerAnisotropy,
                                                              .shaderFloat64      = available.shaderFloat64,
                                                              .shaderInt64        = available.shaderInt64}};
-    const vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR described{
-        .pNext = const_cast<vk::PhysicalDeviceFeatures2*>(&features), .pipelineExecutableInfo = true};
+    const vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR described{.pNext                  = &features,
+                                                                              .pipelineExecutableInfo = true};
     vk::DeviceCreateInfo info{.pNext = &features, .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue};
     if (options.compiles_only) {
         info.pNext                   = &described;

@@ -49,6 +49,25 @@ constexpr vk::BufferUsageFlags any_use = Usage::eStorageBuffer | Usage::eUniform
                                          Usage::eVertexBuffer | Usage::eIndexBuffer | Usage::eTransferSrc |
                                          Usage::eTransferDst;
 
+Buffer map(Buffer buffer)
+{
+    if (!*buffer.memory) throw_failure("a device that only compiles was asked for what is in its memory");
+    buffer.mapped = buffer.memory.mapMemory(0, buffer.bytes);
+    return buffer;
+}
+
+Buffer make_upload_buffer(Gpu& gpu, uint64_t bytes)
+{
+    return map(make(gpu, bytes, Usage::eTransferSrc, Property::eHostVisible | Property::eHostCoherent));
+}
+
+/// Memory that the CPU caches, where there is such: reads of other memory go to the bus one by one.
+Buffer make_download_buffer(Gpu& gpu, uint64_t bytes)
+{
+    return map(
+        make(gpu, bytes, Usage::eTransferDst, Property::eHostVisible | Property::eHostCoherent, Property::eHostCached));
+}
+
 vk::ImageAspectFlags aspect_of(vk::Format format)
 {
     return is_depth(format) ? vk::ImageAspectFlagBits::eDepth : vk::ImageAspectFlagBits::eColor;
@@ -93,29 +112,6 @@ vk::DescriptorType texel_descriptor(const Gpu& gpu)
 {
     return gpu.info.plain_buffers ? vk::DescriptorType::eStorageBuffer : vk::DescriptorType::eStorageTexelBuffer;
 }
-
-namespace {
-
-Buffer map(Buffer buffer)
-{
-    if (!*buffer.memory) throw_failure("a device that only compiles was asked for what is in its memory");
-    buffer.mapped = buffer.memory.mapMemory(0, buffer.bytes);
-    return buffer;
-}
-
-Buffer make_upload_buffer(Gpu& gpu, uint64_t bytes)
-{
-    return map(make(gpu, bytes, Usage::eTransferSrc, Property::eHostVisible | Property::eHostCoherent));
-}
-
-/// Memory that the CPU caches, where there is such: reads of other memory go to the bus one by one.
-Buffer make_download_buffer(Gpu& gpu, uint64_t bytes)
-{
-    return map(
-        make(gpu, bytes, Usage::eTransferDst, Property::eHostVisible | Property::eHostCoherent, Property::eHostCached));
-}
-
-} // namespace
 
 void upload(Gpu& gpu, Buffer& target, const void* data, uint64_t bytes)
 {

@@ -95,23 +95,31 @@ std::string state_of(const std::filesystem::path& path)
     return fmt::format("{} {} {}", state.st_mtim.tv_sec, state.st_mtim.tv_nsec, state.st_size);
 }
 
+/// Calls visit(words) for each instruction of a module.
+template <typename Visit> void for_each_instruction(std::span<const uint32_t> spirv, const Visit& visit)
+{
+    constexpr size_t header_words = 5; // of the module; of an instruction one: words << 16 | opcode
+    for (size_t first = header_words; first < spirv.size(); first += spirv[first] >> 16)
+        visit(spirv.subspan(first, spirv[first] >> 16));
+}
+
+uint32_t opcode_of(std::span<const uint32_t> words) { return words[0] & 0xFFFF; }
+
 /// The compiler declares every specialization constant that it read, used or not. A number that happens to equal a constant's id
 /// counts as a use, too.
 std::set<uint32_t> constants_used(std::span<const uint32_t> spirv)
 {
-    constexpr size_t             header_words = 5; // of the module; of an instruction one: words << 16 | opcode
     constexpr uint32_t           name = 5, decorate = 71, decoration_spec_id = 1; // SPIR-V 1.6, section 3
     std::map<uint32_t, uint32_t> constant_of;                                     // result id -> constant_id
     std::set<uint32_t>           used;
-    for (size_t first = header_words; first < spirv.size(); first += spirv[first] >> 16) {
-        const auto     words  = spirv.subspan(first, spirv[first] >> 16);
-        const uint32_t opcode = words[0] & 0xFFFF;
+    for_each_instruction(spirv, [&](std::span<const uint32_t> words) {
+        const uint32_t opcode = opcode_of(words);
         if (opcode == decorate && words[2] == decoration_spec_id) constant_of[words[1]] = words[3];
         const bool defines = opcode >= 48 && opcode <= 50; // OpSpecConstantTrue, OpSpecConstantFalse, OpSpecConstant
-        if (opcode == name || opcode == decorate || defines) continue;
+        if (opcode == name || opcode == decorate || defines) return;
         for (const uint32_t word : words.subspan(1))
             if (const auto found = constant_of.find(word); found != constant_of.end()) used.insert(found->second);
-    }
+    });
     return used;
 }
 
@@ -208,6 +216,25 @@ Shader compile_or_read(const ShaderSource& source, std::span<const std::filesyst
 }
 
 } // namespace
+
+uint32_t group_size(const Shader& shader)
+{
+    constexpr uint32_t           execution_mode = 16, constant = 43, execution_mode_id = 331; // instructions
+    constexpr uint32_t           local_size = 17, local_size_id = 38;                         // modes
+    std::map<uint32_t, uint32_t> constants;
+    std::vector<uint32_t>        ids;
+    uint32_t                     size = 0;
+    for_each_instruction(shader.spirv, [&](std::span<const uint32_t> words) {
+        const uint32_t opcode = opcode_of(words);
+        if (opcode == execution_mode && words[2] == local_size)
+            size = words[3] * words[4] * words[5];
+        else if (opcode == execution_mode_id && words[2] == local_size_id)
+            ids = {words[3], words[4], words[5]};
+        else if (opcode == constant)
+            constants[words[2]] = words[3];
+    });
+    return ids.empty() ? size : constants[ids[0]] * constants[ids[1]] * constants[ids[2]];
+}
 
 Shader compile_shader(const Gpu& gpu, ShaderSource source)
 {

@@ -28,6 +28,9 @@ struct Shader {
     std::set<uint32_t>                   constants; // constant_id of each specialization constant that its code uses
 };
 
+/// Invocations of a workgroup, as its code says; of a compute shader.
+uint32_t group_size(const Shader& shader);
+
 struct ShaderSource {
     std::filesystem::path                        file; // relative to the shader folder
     ShaderStage                                  stage         = ShaderStage::compute;
