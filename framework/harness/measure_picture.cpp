@@ -59,6 +59,9 @@ template <typename Step> bool try_step(Bench& bench, MeasuredRun& measured, cons
     }
 }
 
+/// It has its row.
+bool is_over(const MeasuredRun& measured) { return measured.run == nullptr; }
+
 /// pictures/SCENE_VIEW_SIZE_TECHNIQUE_ID, without the ending.
 std::string picture_name(const Run& run)
 {
@@ -226,16 +229,16 @@ void prepare_comparison(Bench& bench, MeasuredRun& measured)
 /// Untimed frames of all runs in turn: a GPU that was idle has not raised its clocks yet.
 void warm_up(Bench& bench, std::vector<MeasuredRun>& open)
 {
-    const auto over = [](const MeasuredRun& measured) { return measured.run == nullptr; };
+    const MeasureSettings& measure = bench.experiment.measure;
     clocked(bench.counted_s, [&] {
         const Stopwatch stopwatch;
-        while (!open.empty() && stop_requested() == 0 && stopwatch.seconds() < bench.experiment.measure.warmup_s) {
-            for (MeasuredRun& measured : open)
-                try_step(bench, measured, [&] {
-                    const UnderWay under_way(bench.state, measured.run->id, bench.experiment.measure.time_limit_s);
-                    run_frame(bench.gpu, *measured.frame);
-                });
-            std::erase_if(open, over);
+        for (size_t i = 0; !open.empty() && stop_requested() == 0 && stopwatch.seconds() < measure.warmup_s; ++i) {
+            MeasuredRun& measured = open[i % open.size()];
+            try_step(bench, measured, [&] {
+                const UnderWay under_way(bench.state, measured.run->id, measure.time_limit_s);
+                run_frame(bench.gpu, *measured.frame);
+            });
+            std::erase_if(open, is_over);
         }
     });
 }
@@ -243,7 +246,6 @@ void warm_up(Bench& bench, std::vector<MeasuredRun>& open)
 /// Timed repeats, every round in another order, until each run has those planned for it or a stop was requested.
 void repeat_until_final(Bench& bench, Picture& picture, std::vector<MeasuredRun>& open)
 {
-    const auto over    = [](const MeasuredRun& measured) { return measured.run == nullptr; };
     const auto is_last = [](const MeasuredRun& measured) {
         return static_cast<int>(measured.rounds.size()) >= measured.repeats;
     };
@@ -256,12 +258,12 @@ void repeat_until_final(Bench& bench, Picture& picture, std::vector<MeasuredRun>
                 clocked(bench.timed_s, [&] { add_repeat(bench.gpu, measured, picture.gbuffer_ms, picture.round); });
                 if (is_last(measured)) leave_history(bench, *measured.run, *measured.frame);
             });
-            if (over(measured) || !is_last(measured)) continue;
+            if (is_over(measured) || !is_last(measured)) continue;
             add_times(measured, picture.gbuffer_ms);
             finish(bench, *measured.run, measured.row, samples_text(measured));
             measured.run = nullptr;
         }
-        std::erase_if(open, over);
+        std::erase_if(open, is_over);
         ++picture.round;
         bench.progress.tick();
     }
