@@ -28,9 +28,14 @@ def fit_line(x, y):
 
 
 def plain_ticks(axis, values):
-    """Every measured value labelled as it is written."""
+    """Measured values of a logarithmic axis labelled as they are written, but for those with no room beside the one before."""
+    places = sorted(value for value in values if 0 < value < np.inf)
+    labelled = places[:1]
+    for value in places[1:]:
+        if value >= (places[-1] / places[0]) ** (1 / 20) * labelled[-1]:
+            labelled.append(value)
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_ticks(sorted(values))
+    axis.set_ticks(labelled)
     axis.set_minor_locator(matplotlib.ticker.NullLocator())
 
 
