@@ -1,5 +1,5 @@
 // Two rays at a time: what one visit waits for, the other ray's visit can use (docs/performance.md).
-#include "traversal.glsl"
+#include "api/forward_traversal.glsl"
 
 int top = pyramid_top();
 
@@ -20,8 +20,7 @@ void visit(Ray ray, inout Traversal walk, CellContent content, int own_lane)
 TraceResult finish(Ray ray, Traversal walk, int own_lane)
 {
     lane = own_lane;
-    if (walk.level >= 0) return walk.t < walk.grid.t_end ? out_of_steps(walk.visited) : miss(ray, walk.visited);
-    return hit_between(ray, pixel_of(walk), walk.t, t_exit(walk), walk.visited);
+    return result_of(ray, walk);
 }
 
 void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult result_b)

@@ -12,7 +12,7 @@
 namespace ssrlab::test {
 namespace {
 
-constexpr int patch_px = 16; // techniques/hiz_packets/patch_planes/structure.toml
+constexpr int patch_px = 16; // techniques/structures/patch_planes/structure.toml
 
 /// Of each patch: the plane's slope rightward and downward, its depth at the first pixel; the farthest depth of its occluders, or 0.
 std::vector<glm::vec4> planes_of(const Picture& picture, const TraceSettings& settings = {},

@@ -21,9 +21,12 @@ public:
         std::string pattern = (fs::temp_directory_path() / "mutant.XXXXXX").string();
         folder_             = ::mkdtemp(pattern.data());
         fs::copy(technique(id).folder, folder_ / "mutant", fs::copy_options::recursive);
-        if (!replace_in(folder_ / "mutant/trace.glsl", from, to) &&
-            !replace_in(folder_ / "mutant/traversal.glsl", from, to))
-            throw std::logic_error("mutation: '" + from + "' is not in " + id);
+        const fs::path file = folder_ / "mutant/trace.glsl";
+        std::string    text = read_file(file);
+        replace_in(text, "#include \"api/forward_traversal.glsl\"",
+                   read_file(shader_folder() / "api/forward_traversal.glsl"));
+        if (!replace_in(text, from, to)) throw std::logic_error("mutation: '" + from + "' is not in " + id);
+        write_file_atomically(file, text);
         mutant_ = load_technique(folder_ / "mutant", list_structures({}));
     }
     ~Mutant() { fs::remove_all(folder_); }
@@ -32,13 +35,11 @@ public:
     const Technique& operator*() const { return mutant_; }
 
 private:
-    static bool replace_in(const fs::path& file, const std::string& from, const std::string& to)
+    static bool replace_in(std::string& text, const std::string& from, const std::string& to)
     {
-        if (!fs::exists(file)) return false;
-        std::string  text = read_file(file);
-        const size_t at   = text.find(from);
+        const size_t at = text.find(from);
         if (at == std::string::npos) return false;
-        write_file_atomically(file, text.replace(at, from.size(), to));
+        text.replace(at, from.size(), to);
         return true;
     }
 

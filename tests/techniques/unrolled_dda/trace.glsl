@@ -1,5 +1,5 @@
 // The walk of techniques/dda, two rays at a time and two pixels of each in one iteration, in a picture mirrored so that they run forward.
-#include "hiz_packets/traversal.glsl"
+#include "api/forward_traversal.glsl"
 
 // In pixels, level 0.
 void visit(Ray ray, inout Traversal walk, int own_lane)
@@ -20,8 +20,7 @@ void visit(Ray ray, inout Traversal walk, int own_lane)
 TraceResult finish(Ray ray, Traversal walk, int own_lane)
 {
     lane = own_lane;
-    if (walk.level >= 0) return walk.t < walk.grid.t_end ? out_of_steps(walk.visited) : miss(ray, walk.visited);
-    return hit_between(ray, pixel_of(walk), walk.t, t_exit(walk), walk.visited);
+    return result_of(ray, walk);
 }
 
 void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult result_b)

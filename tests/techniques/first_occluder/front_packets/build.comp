@@ -1,2 +1,2 @@
 #define IN_FRONT
-#include "hiz_packets/ray_packets/build.comp"
+#include "structures/ray_packets/build.comp"

@@ -1,1 +1,1 @@
-#include "hiz_packets/ray_packets/read.glsl"
+#include "structures/ray_packets/read.glsl"

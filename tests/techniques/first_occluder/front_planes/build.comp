@@ -1,2 +1,2 @@
 #define IN_FRONT
-#include "hiz_packets/patch_planes/build.comp"
+#include "structures/patch_planes/build.comp"

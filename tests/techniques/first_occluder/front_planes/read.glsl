@@ -1,1 +1,1 @@
-#include "hiz_packets/patch_planes/read.glsl"
+#include "structures/patch_planes/read.glsl"

@@ -1,7 +1,7 @@
 // A walk through the cells of a pyramid, in an image mirrored so that its ray runs forward on both axes: pixel p becomes p ^ mirror, and crossings keep
 // their bits, since only signs change. A cell is named by its exit corner: the borders where the ray leaves it, x and y multiples of its size in pixels.
 // A cell is left where the ray crosses its border, at the same t on every level; going down chooses the child by comparing t with the middle border. So
-// the finest cells passed are exactly the pixels of the walk (docs/exactness.md). Float only.
+// the finest cells passed are exactly the pixels of the walk (docs/exactness.md). Float only. The technique has a parameter max_steps.
 struct Traversal
 {
     Ray   forward; // in the mirrored image
@@ -106,4 +106,11 @@ void skip_to(inout Traversal walk, int level, real t)
     walk.t         = !skips ? walk.t : ends ? walk.grid.t_end : t_entry;
     walk.corner    = skips ? corner : walk.corner;
     walk.level     = skips ? level : walk.level;
+}
+
+// Of a walk that has ended.
+TraceResult result_of(Ray ray, Traversal walk)
+{
+    if (walk.level >= 0) return walk.t < walk.grid.t_end ? out_of_steps(walk.visited) : miss(ray, walk.visited);
+    return hit_between(ray, pixel_of(walk), walk.t, t_exit(walk), walk.visited);
 }
