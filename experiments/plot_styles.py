@@ -15,7 +15,7 @@ MARKERS = [("o", "circle", 0), ("s", "rect", 0), ("^", "triangle", 0), ("D", "re
 DASHES = ["-", "--", ":", "-."]  # variants of one technique
 SLOTS = 24
 # Fixed places, so that a technique looks alike in every report. Others find theirs by their name.
-PLACES = ["linear", "linear_binary", "dda_strided", "strided_direction", "dda", "hiz", "hiz_packets", "quadtree"]
+PLACES = ["linear", "linear_binary", "dda_strided", "strided_direction", "dda", "hiz", "hiz_packets", "quadtree", "hiz_waves"]
 
 
 def slots(techniques):

@@ -7,7 +7,7 @@ import OpenImageIO
 from support import SOURCE, Case, main
 
 DRIVER = "/usr/lib/chromium/vk_swiftshader_icd.json"
-EXACT = ("dda", "hiz", "hiz_packets", "quadtree")
+EXACT = ("dda", "hiz", "hiz_packets", "hiz_waves", "quadtree")
 
 
 class Test(Case):

@@ -5,7 +5,7 @@ import os
 
 from support import SOURCE, Case, main
 
-TECHNIQUES = ("hiz", "hiz_packets", "dda", "linear")
+TECHNIQUES = ("hiz", "hiz_packets", "hiz_waves", "dda", "linear")
 
 
 class Test(Case):
@@ -41,11 +41,12 @@ class Test(Case):
             self.assertLess(loop["loads"], loop["instructions"])
         self.assertEqual(self.trace_of(pipelines, "hiz_packets")["shader"], "trace/trace_pairs.comp")
         self.assertEqual(self.trace_of(pipelines, "hiz_packets")["invocations_a_group"], 32)
-        self.assertEqual(self.trace_of(pipelines, "hiz")["invocations_a_group"], 64)
+        for technique in ("hiz", "hiz_waves"):
+            self.assertEqual(self.trace_of(pipelines, technique)["invocations_a_group"], 64)
         shared = [one for one in pipelines if one["shader"] == "rays/rays.comp"]
         self.assertEqual([one["techniques"] for one in shared], [list(TECHNIQUES)])
         pyramid = [one for one in pipelines if one["shader"] == "depth_pyramid/level_of_pixels.comp"]
-        self.assertEqual([one["techniques"] for one in pyramid], [["hiz", "hiz_packets"]])
+        self.assertEqual([one["techniques"] for one in pyramid], [["hiz", "hiz_packets", "hiz_waves"]])
 
     def test_table_and_assembly(self):
         text = self.ssrlab("shaders", "linear", "--chip", "navi21", "--assembly", "code", says=["NAVI21", "| linear |"])

@@ -2,6 +2,7 @@
 #include "check/run_check.h"
 #include "core/files.h"
 #include "gpu/device.h"
+#include "gpu/shader.h"
 #include "hard_cases/random_rays.h"
 
 #include <fmt/core.h>
