@@ -68,6 +68,42 @@ Buffer make_download_buffer(Gpu& gpu, uint64_t bytes)
         make(gpu, bytes, Usage::eTransferDst, Property::eHostVisible | Property::eHostCoherent, Property::eHostCached));
 }
 
+/// Calls use(buffer) with at least that many bytes that the host sees. A large one is not kept.
+template <typename Use> void with_staging(Gpu& gpu, Buffer& kept, auto make_staging, uint64_t bytes, const Use& use)
+{
+    constexpr uint64_t most_kept_bytes = 64ULL << 20;
+    if (kept.bytes < bytes) {
+        kept = {};
+        kept = make_staging(gpu, std::max<uint64_t>(bytes, 1 << 16));
+    }
+    use(kept);
+    if (kept.bytes > most_kept_bytes) kept = {};
+}
+
+template <typename Record> void submit_upload(Gpu& gpu, const void* data, uint64_t bytes, const Record& record)
+{
+    with_staging(gpu, gpu.impl->upload_staging, make_upload_buffer, bytes, [&](const Buffer& staging) {
+        std::memcpy(staging.mapped, data, bytes);
+        submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+            barrier(commands);
+            record(commands, *staging.buffer);
+            barrier(commands);
+        });
+    });
+}
+
+template <typename Record> void submit_download(Gpu& gpu, void* data, uint64_t bytes, const Record& record)
+{
+    with_staging(gpu, gpu.impl->download_staging, make_download_buffer, bytes, [&](const Buffer& staging) {
+        submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+            barrier(commands);
+            record(commands, *staging.buffer);
+            barrier(commands);
+        });
+        std::memcpy(data, staging.mapped, bytes);
+    });
+}
+
 vk::ImageAspectFlags aspect_of(vk::Format format)
 {
     return is_depth(format) ? vk::ImageAspectFlagBits::eDepth : vk::ImageAspectFlagBits::eColor;
@@ -116,24 +152,17 @@ vk::DescriptorType texel_descriptor(const Gpu& gpu)
 void upload(Gpu& gpu, Buffer& target, const void* data, uint64_t bytes)
 {
     if (bytes == 0 || gpu.info.compiles_only) return;
-    const Buffer staging = make_upload_buffer(gpu, bytes);
-    std::memcpy(staging.mapped, data, bytes);
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-        commands.copyBuffer(*staging.buffer, *target.buffer, vk::BufferCopy{.size = bytes});
-        barrier(commands);
+    submit_upload(gpu, data, bytes, [&](const vk::raii::CommandBuffer& commands, vk::Buffer staging) {
+        commands.copyBuffer(staging, *target.buffer, vk::BufferCopy{.size = bytes});
     });
 }
 
 void download(Gpu& gpu, const Buffer& source, void* data, uint64_t bytes)
 {
     if (bytes == 0) return;
-    const Buffer staging = make_download_buffer(gpu, bytes);
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-        barrier(commands);
-        commands.copyBuffer(*source.buffer, *staging.buffer, vk::BufferCopy{.size = bytes});
-        barrier(commands);
+    submit_download(gpu, data, bytes, [&](const vk::raii::CommandBuffer& commands, vk::Buffer staging) {
+        commands.copyBuffer(*source.buffer, staging, vk::BufferCopy{.size = bytes});
     });
-    std::memcpy(data, staging.mapped, bytes);
 }
 
 bool is_depth(vk::Format format) { return format == vk::Format::eD32Sfloat || format == vk::Format::eD16Unorm; }
@@ -186,26 +215,19 @@ GpuImage make_image(Gpu& gpu, const ImageOptions& options)
 void upload(Gpu& gpu, GpuImage& target, const void* data, uint64_t bytes)
 {
     if (gpu.info.compiles_only) return;
-    const Buffer staging = make_upload_buffer(gpu, bytes);
-    std::memcpy(staging.mapped, data, bytes);
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-        barrier(commands);
-        commands.copyBufferToImage(*staging.buffer, *target.image, vk::ImageLayout::eGeneral, whole_image(target));
-        barrier(commands);
+    submit_upload(gpu, data, bytes, [&](const vk::raii::CommandBuffer& commands, vk::Buffer staging) {
+        commands.copyBufferToImage(staging, *target.image, vk::ImageLayout::eGeneral, whole_image(target));
     });
 }
 
 std::vector<char> download(Gpu& gpu, const GpuImage& source, uint32_t bytes_per_texel)
 {
-    const uint64_t bytes   = pixel_count(source.size_px) * bytes_per_texel;
-    const Buffer   staging = make_download_buffer(gpu, bytes);
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-        barrier(commands);
-        commands.copyImageToBuffer(*source.image, vk::ImageLayout::eGeneral, *staging.buffer, whole_image(source));
-        barrier(commands);
-    });
-    const char* begin = static_cast<const char*>(staging.mapped);
-    return {begin, begin + bytes};
+    std::vector<char> texels(pixel_count(source.size_px) * bytes_per_texel);
+    submit_download(
+        gpu, texels.data(), texels.size(), [&](const vk::raii::CommandBuffer& commands, vk::Buffer staging) {
+            commands.copyImageToBuffer(*source.image, vk::ImageLayout::eGeneral, staging, whole_image(source));
+        });
+    return texels;
 }
 
 } // namespace ssrlab

@@ -10,14 +10,6 @@
 
 namespace ssrlab {
 
-struct Buffer {
-    vk::raii::DeviceMemory memory = nullptr; // freed after the buffer: members die in reverse order
-    vk::raii::Buffer       buffer = nullptr;
-    vk::raii::BufferView   texels = nullptr; // make_texel_buffer() only
-    uint64_t               bytes  = 0;
-    void*                  mapped = nullptr; // host-visible buffers only
-};
-
 /// Of the types that a resource may have (a bit for each): the first that has all properties wanted and preferred, else the first that has
 /// those wanted. Throws Failure if none does.
 uint32_t choose_memory_type(const vk::PhysicalDeviceMemoryProperties& properties, uint32_t allowed,

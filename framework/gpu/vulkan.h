@@ -19,6 +19,14 @@ struct ComputePipeline {
     CompiledPipeline              compiled   = {}; // of a device that only compiles
 };
 
+struct Buffer {
+    vk::raii::DeviceMemory memory = nullptr; // freed after the buffer: members die in reverse order
+    vk::raii::Buffer       buffer = nullptr;
+    vk::raii::BufferView   texels = nullptr; // make_texel_buffer() only
+    uint64_t               bytes  = 0;
+    void*                  mapped = nullptr; // host-visible buffers only
+};
+
 struct GpuImpl {
     GpuImpl() = default;
     ~GpuImpl(); // keeps the pipelines that were compiled for the next start
@@ -39,6 +47,7 @@ struct GpuImpl {
     vk::PhysicalDeviceLimits         limits;
     double                           timestamp_period_ns = 1;
     uint64_t                         timestamp_mask      = ~0ULL;
+    Buffer                           upload_staging, download_staging; // kept, since host memory is slow to get
     std::mutex                       messages_mutex;
     std::vector<std::string>         messages;
 
