@@ -141,6 +141,7 @@ nlohmann::json list_as_json(const std::vector<Technique>& techniques)
                                        {"vulkan", info.api_version},
                                        {"driver", info.driver},
                                        {"storage", storage_text(info)},
+                                       {"passes", passes_text(info)},
                                        {"double", info.float64},
                                        {"int64", info.int64}});
     } catch (const Failure& failure) {

@@ -161,6 +161,11 @@ int main(int argc, char** argv)
            "How shaders read lists and depth: texel-buffers or plain-buffers; default: what the device has room for")
         ->transform(CLI::Transformer(std::map<std::string, TexelStorage>{
             {"texel-buffers", TexelStorage::texel_buffers}, {"plain-buffers", TexelStorage::plain_buffers}}));
+    app.add_option("--passes", common.gpu.passes,
+                   "How the passes before the trace share their work: serial (an invocation a tile or ray group) or "
+                   "parallel (one a pixel, several a ray group); default: serial on a CPU, parallel on a GPU")
+        ->transform(CLI::Transformer(
+            std::map<std::string, PassStyle>{{"serial", PassStyle::serial}, {"parallel", PassStyle::parallel}}));
     app.add_flag("--validation", common.gpu.validation,
                  "Load the Khronos validation layer; any message fails the command");
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -77,9 +78,20 @@ std::string processor_name()
 /// Rays of an 8K picture take 66 million texels. The standard promises 65,536 (Vulkan 1.3, table "Required Limits").
 constexpr uint32_t enough_texels = 1U << 27;
 
+/// Invocations of a subgroup that may work on one ray group: a power of two.
+int lanes_of(const vk::PhysicalDeviceSubgroupProperties& subgroups)
+{
+    constexpr uint32_t most   = 8;
+    const auto         needed = vk::SubgroupFeatureFlagBits::eVote | vk::SubgroupFeatureFlagBits::eShuffle;
+    const bool         usable = (subgroups.supportedStages & vk::ShaderStageFlagBits::eCompute) &&
+                        (subgroups.supportedOperations & needed) == needed;
+    return usable ? static_cast<int>(std::min(most, std::bit_floor(subgroups.subgroupSize))) : 1;
+}
+
 GpuInfo describe(const vk::raii::PhysicalDevice& device, int index)
 {
-    const auto  chain = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
+    const auto  chain = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties,
+                                             vk::PhysicalDeviceSubgroupProperties>();
     const auto& core  = chain.get<vk::PhysicalDeviceProperties2>().properties;
     const auto& drive = chain.get<vk::PhysicalDeviceDriverProperties>();
     GpuInfo     info;
@@ -96,6 +108,8 @@ GpuInfo describe(const vk::raii::PhysicalDevice& device, int index)
     if (software) info.processor = processor_name();
     info.cheap_doubles = software && info.float64;
     info.plain_buffers = core.limits.maxTexelBufferElements < enough_texels;
+    info.most_lanes    = lanes_of(chain.get<vk::PhysicalDeviceSubgroupProperties>());
+    info.lanes         = software ? 1 : info.most_lanes;
     return info;
 }
 
@@ -219,6 +233,10 @@ Gpu open_gpu(const GpuOptions& options)
         gpu.info         = infos[static_cast<size_t>(choose_device(infos, options.device))];
         if (options.storage != TexelStorage::by_device)
             gpu.info.plain_buffers = options.storage == TexelStorage::plain_buffers;
+        if (options.passes == PassStyle::parallel && gpu.info.most_lanes == 1)
+            throw_spec_error("the device '{}' has no subgroups that shuffle: its passes are serial", gpu.info.name);
+        if (options.passes != PassStyle::by_device)
+            gpu.info.lanes = options.passes == PassStyle::parallel ? gpu.info.most_lanes : 1;
         impl.physical_device = std::move(vk::raii::PhysicalDevices(impl.instance)[static_cast<size_t>(gpu.info.index)]);
         impl.queue_family    = find_queue_family(impl.physical_device);
         impl.limits          = impl.physical_device.getProperties().limits;
@@ -256,6 +274,8 @@ int choose_device(std::span<const GpuInfo> infos, const std::string& wanted)
 }
 
 const char* storage_text(const GpuInfo& device) { return device.plain_buffers ? "plain buffers" : "texel buffers"; }
+
+const char* passes_text(const GpuInfo& device) { return device.lanes > 1 ? "parallel" : "serial"; }
 
 size_t pipelines_made(const Gpu& gpu) { return gpu.impl->pipelines_made; }
 

@@ -11,11 +11,15 @@ namespace ssrlab {
 /// How shaders see the lists of rays and hits, the depth and what techniques build of it: the same bytes, read as texels or as plain storage buffers.
 enum class TexelStorage { by_device, texel_buffers, plain_buffers };
 
+/// How the passes before the trace share their work: one invocation a tile or ray group, as CPU devices like it, or many that wait for memory together.
+enum class PassStyle { by_device, serial, parallel };
+
 struct GpuOptions {
     std::string device; // index, or part of the name; empty: a discrete GPU if present, else the first device
     bool        validation = false; // load the Khronos validation layer; every message is kept in validation_messages()
     bool        robust_buffer_access = false;
     TexelStorage storage             = TexelStorage::by_device;
+    PassStyle    passes              = PassStyle::by_device;
     bool         compiles_only =
         false; // pipelines are made and described (gpu/compiled.h); there is no memory, and nothing runs
 };
@@ -30,7 +34,9 @@ struct GpuInfo {
     uint32_t    max_image_px  = 0;
     bool        int64         = false; // 64-bit integers in shaders
     bool        compiles_only = false; // it was opened so
-    bool plain_buffers = false; // texel buffers hold fewer elements than a large picture needs, or it was asked for
+    int         lanes = 1; // that share a ray group; above 1: passes before the trace take an invocation a pixel, too
+    int         most_lanes = 1;     // that its subgroups allow
+    bool plain_buffers     = false; // texel buffers hold fewer elements than a large picture needs, or it was asked for
 };
 
 struct GpuImpl;
@@ -42,6 +48,8 @@ struct Gpu {
 
 /// "texel buffers" or "plain buffers".
 const char* storage_text(const GpuInfo& device);
+/// "serial" or "parallel".
+const char* passes_text(const GpuInfo& device);
 /// Throws SpecError for an unknown device, Failure when there is no Vulkan driver.
 Gpu                  open_gpu(const GpuOptions& options = {});
 std::vector<GpuInfo> list_gpus();

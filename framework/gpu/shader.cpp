@@ -239,6 +239,7 @@ uint32_t group_size(const Shader& shader)
 Shader compile_shader(const Gpu& gpu, ShaderSource source)
 {
     if (gpu.info.plain_buffers) source.defines.emplace("PLAIN_BUFFERS", "1");
+    source.defines.emplace("GROUP_LANES", std::to_string(gpu.info.lanes));
     // A sweep and the checks ask for the same shader hundreds of times, with other constants.
     static std::mutex                    mutex;
     static std::map<std::string, Shader> compiled;

@@ -47,7 +47,7 @@ std::filesystem::path technique_folder();
 
 /// Includes come from the source itself, its folders and the shader folder, and from nowhere else. Throws SpecError with a line
 /// "FILE:LINE: message" for each error found; what is missing from a file of include_files is said of that file.
-/// Shaders are made for a device's way of storing texels (GpuInfo::plain_buffers).
+/// Shaders are made for a device's way of storing texels and of sharing work (GpuInfo::plain_buffers, lanes).
 Shader compile_shader(const Gpu& gpu, ShaderSource source);
 
 } // namespace ssrlab

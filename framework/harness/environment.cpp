@@ -50,6 +50,7 @@ std::map<std::string, std::string> describe_identity(const Experiment&          
     identity["device"]        = device.name;
     identity["driver"]        = device.driver;
     identity["storage"]       = storage_text(device);
+    identity["passes"]        = passes_text(device);
     if (!device.processor.empty()) identity["processor"] = device.processor;
     for (const TechniqueSweep& sweep : experiment.techniques) {
         const Technique& technique        = find_technique(techniques, sweep.id);

@@ -104,8 +104,7 @@ FrameStatistics count_gbuffer(Gpu& gpu, const FrameBuffers& buffers, const Trace
         {{"View", buffers.view}, {"TileMasks", buffers.tiles.masks}, {"PictureStatistics", buffers.tiles.statistics}});
     Constants constants;
     add_reflecting(constants, settings);
-    const ComputePass classification =
-        make_compute_pass(gpu, compile_shader(gpu, {.file = "rays/classification.comp"}), bindings, constants);
+    const Classification classification = make_classification(gpu, bindings, constants);
     submit(gpu, [&](const auto& commands) { record_marking(commands, classification, buffers); });
     statistics.gbuffer = download_as<GBufferCounts>(gpu, buffers.tiles.statistics, 1)[0];
     return statistics;

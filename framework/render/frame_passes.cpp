@@ -9,6 +9,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace ssrlab {
@@ -252,6 +253,15 @@ Shader compile_trace(const Gpu& gpu, const PreparedFrame& frame, const RayBuffer
     return compile_shader(gpu, source);
 }
 
+/// One workgroup lists the tiles: as wide as every device allows, and as wide as this one allows where passes are parallel.
+Shader compile_tile_list(const Gpu& gpu)
+{
+    const uint32_t most        = std::min(gpu.impl->limits.maxComputeWorkGroupInvocations, 1024U);
+    const uint32_t invocations = gpu.info.lanes > 1 ? std::bit_floor(most) : 128;
+    return compile_shader(
+        gpu, {.file = "rays/tile_list.comp", .defines = {{"TILE_LIST_INVOCATIONS", std::to_string(invocations)}}});
+}
+
 } // namespace
 
 TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, const GBuffer& layer,
@@ -266,8 +276,8 @@ TechniquePasses make_technique_passes(Gpu& gpu, const PreparedFrame& frame, cons
     passes.structures   = make_ray_structures(gpu, frame, layer, rays, bindings);
     const auto is_built = [](const StructurePasses& structure) { return !structure.dispatches.empty(); };
     if (std::ranges::any_of(passes.structures, is_built))
-        passes.group_launch =
-            make_launch_pass(gpu, rays.count, rays.group_launch, RAYS_PER_GROUP * RAY_GROUPS_PER_WORKGROUP);
+        passes.group_launch = make_launch_pass(gpu, rays.count, rays.group_launch,
+                                               RAYS_PER_GROUP * RAY_GROUP_INVOCATIONS / gpu.info.lanes);
     Bindings all = bindings;
     all.merge(structure_bindings(gpu, frame.technique, layer, rays));
     passes.trace = make_compute_pass(gpu, compile_trace(gpu, frame, rays, bindings), all, constants);
@@ -311,12 +321,10 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
     constants.add(CONSTANT_LOBE_RAYS, !counts && draws_lobe_rays(frame.settings.passes) ? 1 : 0);
     constants.add(CONSTANT_TRACE_BLOCK_PX, counts ? 1 : trace_block_px(frame.settings.passes));
     TracePasses passes;
-    passes.classification =
-        make_compute_pass(gpu, compile_shader(gpu, {.file = "rays/classification.comp"}), bindings, constants);
-    passes.tile_list = make_compute_pass(gpu, compile_shader(gpu, {.file = "rays/tile_list.comp"}), bindings, constants,
-                                         sizeof(glm::ivec2));
-    passes.tile_launch  = make_launch_pass(gpu, buffers.tiles.count, buffers.tiles.launch, 1);
-    Defines ray_defines = precision_defines(gpu, rays.precision);
+    passes.classification = make_classification(gpu, bindings, constants);
+    passes.tile_list      = make_compute_pass(gpu, compile_tile_list(gpu), bindings, constants, sizeof(glm::ivec2));
+    passes.tile_launch    = make_launch_pass(gpu, buffers.tiles.count, buffers.tiles.launch, 1);
+    Defines ray_defines   = precision_defines(gpu, rays.precision);
     ray_defines.merge(store_defines(gpu, rays.list));
     passes.rays       = make_compute_pass(gpu, compile_shader(gpu, {.file = "rays/rays.comp", .defines = ray_defines}),
                                           bindings, constants);
@@ -325,14 +333,23 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
     return passes;
 }
 
-void record_marking(const vk::raii::CommandBuffer& commands, const ComputePass& classification,
+Classification make_classification(Gpu& gpu, const Bindings& bindings, const Constants& constants)
+{
+    const bool  by_pixel = gpu.info.lanes > 1;
+    const char* file     = by_pixel ? "rays/classification_by_pixel.comp" : "rays/classification.comp";
+    return {.pass            = make_compute_pass(gpu, compile_shader(gpu, {.file = file}), bindings, constants),
+            .tiles_per_group = by_pixel ? uint32_t{CLASSIFIED_TILES_BY_PIXEL} : uint32_t{CLASSIFIED_TILES}};
+}
+
+void record_marking(const vk::raii::CommandBuffer& commands, const Classification& classification,
                     const FrameBuffers& buffers)
 {
     barrier(commands);
     commands.fillBuffer(*buffers.tiles.statistics.buffer, 0, VK_WHOLE_SIZE, 0);
     barrier(commands);
     const glm::uvec3 tiles = groups_of_8(buffers.gbuffer->view.size_px);
-    dispatch(commands, classification, {(tiles.x + CLASSIFIED_TILES - 1) / CLASSIFIED_TILES, tiles.y, 1});
+    const uint32_t   each  = classification.tiles_per_group;
+    dispatch(commands, classification.pass, {(tiles.x + each - 1) / each, tiles.y, 1});
     barrier(commands);
 }
 

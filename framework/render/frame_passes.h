@@ -89,8 +89,15 @@ struct TechniquePasses {
     ComputePass                  group_launch, trace;
 };
 
+/// Marks tiles: a workgroup so many side by side.
+struct Classification {
+    ComputePass pass;
+    uint32_t    tiles_per_group = 1;
+};
+
 struct TracePasses {
-    ComputePass     classification, tile_list, tile_launch, rays, ray_launch;
+    Classification  classification;
+    ComputePass     tile_list, tile_launch, rays, ray_launch;
     TechniquePasses technique;
 };
 
@@ -152,8 +159,9 @@ void        add_parameters(Constants& constants, std::span<const Parameter> para
 
 /// Classification and ray set-up.
 void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const FrameBuffers& buffers);
+Classification make_classification(Gpu& gpu, const Bindings& bindings, const Constants& constants);
 /// Marks and counts alone, without a list.
-void record_marking(const vk::raii::CommandBuffer& commands, const ComputePass& classification,
+void record_marking(const vk::raii::CommandBuffer& commands, const Classification& classification,
                     const FrameBuffers& buffers);
 void record_classification(const vk::raii::CommandBuffer& commands, const TracePasses& passes,
                            const FrameBuffers& buffers);

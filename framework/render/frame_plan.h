@@ -32,6 +32,7 @@ struct FrameFacts {
 struct GBufferCounts {
     uint32_t                             surface_pixels = 0, reflecting_pixels = 0, reflecting_tiles = 0;
     std::array<uint32_t, ROUGHNESS_BINS> roughness_pixels{}; // of reflecting pixels; bin 0: roughness 0
+    bool                                 operator==(const GBufferCounts&) const = default;
 };
 
 /// shaders/trace/trace_statistics.comp counts these after tracing.

@@ -15,11 +15,16 @@ int level_cell_index(ivec2 pixel, int level) { return ((pyramid_root | pixel.y) 
 // Cells of a level; level 0 is the pixels.
 ivec2 level_size(int level) { return ((size_px - 1) >> level) + 1; }
 
-// per = "ray_group": of this invocation. A pass per ray group has RAY_GROUPS_PER_WORKGROUP invocations a workgroup, one for each group.
+#ifdef BUILDS_STRUCTURE
+#include "api/group_lanes.glsl"
+#endif
+
+// per = "ray_group": of this invocation. A pass per ray group has RAY_GROUP_INVOCATIONS invocations a workgroup; GROUP_LANES of them share a ray group
+// (api/group_lanes.glsl).
 int ray_group()
 {
 #ifdef BUILDS_STRUCTURE
-    return int(work_group() * RAY_GROUPS_PER_WORKGROUP + gl_LocalInvocationID.x);
+    return int(work_group() * (RAY_GROUP_INVOCATIONS / GROUP_LANES)) + ray_group_in_workgroup();
 #else
     return int(work_group());
 #endif

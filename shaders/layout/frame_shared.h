@@ -2,11 +2,10 @@
 #ifndef SSRLAB_FRAME_SHARED_H
 #define SSRLAB_FRAME_SHARED_H
 
-// Tiles that a workgroup classifies, side by side (shaders/rays/classification.comp).
+// Tiles that a workgroup classifies, side by side (shaders/rays/classification.comp, and classification_by_pixel.comp where passes are parallel).
 #define CLASSIFIED_TILES 32
+#define CLASSIFIED_TILES_BY_PIXEL 16
 
-// The one workgroup that lists the tiles (shaders/rays/tile_list.comp).
-#define TILE_LIST_INVOCATIONS 128
 
 // Specialization constants of these shaders.
 #define CONSTANT_EVERY_SURFACE 7

@@ -35,8 +35,8 @@ SHARED_FUNCTION int status_to_number(int status, int layer) { return layer == 0 
 #define RAYS_PER_GROUP 64
 #define LAUNCH_ROW_GROUPS 256
 
-// Groups of rays that a workgroup of a structure's pass per ray group works on, one an invocation.
-#define RAY_GROUPS_PER_WORKGROUP 64
+// Invocations of a workgroup of a structure's pass per ray group: GpuInfo::lanes of them (GROUP_LANES in shaders) share a group.
+#define RAY_GROUP_INVOCATIONS 64
 
 // What becomes of a ray that meets a pixel from behind (core/trace_result.h, Behind).
 #define BEHIND_HIT 0

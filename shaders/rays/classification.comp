@@ -1,37 +1,11 @@
 // Marks in each tile of 8 x 8 pixels those to trace, and counts what the plan of the frame asks about. A tile per invocation: what its pixels
 // share needs neither shared memory nor an atomic per pixel, which CPU devices run lane by lane.
-#include "api/view.glsl"
-#include "rays/reflecting.glsl"
-#include "layout/frame_shared.h"
+#include "rays/classified.glsl"
 #if ROUGHNESS_BINS != 16
 #error four bins in each of four words
 #endif
 
 layout(local_size_x = CLASSIFIED_TILES) in;
-layout(constant_id = CONSTANT_EVERY_SURFACE) const int every_surface = 0; // trace what does not reflect, too
-layout(constant_id = CONSTANT_TRACE_BLOCK_PX) const int block_px = 1;     // one pixel of each block that reflects
-
-layout(set = 0, binding = 11, scalar) writeonly buffer TileMasks { uvec2 tile_masks[]; }; // bit x + 8 y of a tile, in x and y
-layout(set = 0, binding = 6, scalar) buffer PictureStatistics // struct GBufferCounts of render/frame_plan.h
-{
-    uint surface_pixels;
-    uint reflecting_pixels;
-    uint reflecting_tiles;
-    uint roughness_pixels[ROUGHNESS_BINS];
-};
-
-// The pixels of a block from its centre outward, row by row where equally far.
-int rank_in_block(ivec2 place)
-{
-    ivec2 offset = 2 * place - (block_px - 1);
-    return (offset.x * offset.x + offset.y * offset.y) * 16 + place.y * block_px + place.x;
-}
-
-// Bin 0 holds perfect mirrors alone.
-int roughness_bin(float roughness)
-{
-    return roughness > 0.0 ? clamp(int(ceil(roughness * float(ROUGHNESS_BINS - 1))), 1, ROUGHNESS_BINS - 1) : 0;
-}
 
 void main()
 {

@@ -37,12 +37,15 @@ void main()
     for (uint tile = first; tile < last; ++tile) count += count_of(pixels_of(tile));
     share_counts[own] = count;
     barrier();
-    uvec3 before = uvec3(0), total = uvec3(0);
-    for (uint i = 0; i < TILE_LIST_INVOCATIONS; ++i)
+    // Sums over twice as many shares each time (Hillis and Steele 1986, Data Parallel Algorithms).
+    for (uint reach = 1; reach < TILE_LIST_INVOCATIONS; reach *= 2)
     {
-        before += i < own ? share_counts[i] : uvec3(0);
-        total += share_counts[i];
+        uvec3 further = own >= reach ? share_counts[own - reach] : uvec3(0);
+        barrier();
+        share_counts[own] += further;
+        barrier();
     }
+    uvec3 before = share_counts[own] - count, total = share_counts[TILE_LIST_INVOCATIONS - 1];
 
     for (uint tile = first; tile < last; ++tile)
     {

@@ -1,4 +1,5 @@
-// Whatever way a device stores texels in, it stores the same bits: words, 64 bits at a time, or plain storage buffers.
+// Whatever way a device stores texels in, it stores the same bits: words, 64 bits at a time, or plain storage buffers. The same holds for whether
+// the passes before the trace are serial or parallel.
 #include "gpu/device.h"
 #include "render/frame_passes.h"
 #include "render/gbuffer.h"
@@ -7,12 +8,13 @@ namespace ssrlab::test {
 namespace {
 
 struct Stored {
-    std::vector<char>  cells, rays, hits;
+    std::vector<char>  cells, rays, hits, intervals;
     std::vector<float> shaded;
+    GBufferCounts      counts;
 };
 
 struct Way {
-    bool int64, plain_buffers;
+    bool int64, plain_buffers, parallel;
 };
 
 /// All that a frame stores in texels, by a device that is said to store so. An odd size: cells stand beside the picture.
@@ -21,6 +23,7 @@ Stored frame_of(const Technique& technique, const FrameSettings& settings, const
     Gpu gpu                = device();
     gpu.info.int64         = way.int64 && gpu.info.int64;
     gpu.info.plain_buffers = way.plain_buffers || gpu.info.plain_buffers;
+    gpu.info.lanes         = way.parallel ? gpu.info.most_lanes : 1;
     const Scene scene      = load_scene("builtin:everything");
     const auto  gbuffer =
         render_gbuffer(gpu, upload_scene(gpu, scene), camera_to_view(find_camera(scene, "default"), {163, 91}));
@@ -29,23 +32,33 @@ Stored frame_of(const Technique& technique, const FrameSettings& settings, const
     run_frame(gpu, *frame);
     const size_t rays = download_as<uint32_t>(gpu, frame->rays->count, 1).front();
     EXPECT_GT(rays, 0U);
-    const Buffer& cells = gbuffer->depth.cells;
-    return {download_as<char>(gpu, cells, cells.bytes),
-            download_as<char>(gpu, frame->rays->list, rays * sizeof(PackedRay<float>)),
-            download_as<char>(gpu, frame->rays->hits, rays * sizeof(PackedHit<float>)),
-            read_shaded(gpu, *frame).values};
+    const Buffer& cells      = gbuffer->depth.cells;
+    const auto&   structures = frame->rays->structures;
+    const auto    intervals  = structures ? structures->find("ray_packets.intervals") : decltype(structures->end()){};
+    const bool    packets    = structures && intervals != structures->end();
+    const size_t  groups     = (rays - 1) / RAYS_PER_GROUP + 1;
+    return {.cells     = download_as<char>(gpu, cells, cells.bytes),
+            .rays      = download_as<char>(gpu, frame->rays->list, rays * sizeof(PackedRay<float>)),
+            .hits      = download_as<char>(gpu, frame->rays->hits, rays * sizeof(PackedHit<float>)),
+            .intervals = packets ? download_as<char>(gpu, intervals->second, groups * 4 * sizeof(glm::vec2))
+                                 : std::vector<char>{},
+            .shaded    = read_shaded(gpu, *frame).values,
+            .counts    = frame->statistics.gbuffer};
 }
 
 void expect_alike(const std::string& id, const FrameSettings& settings)
 {
     SCOPED_TRACE(id);
-    const Stored words = frame_of(technique(id), settings, {false, false});
-    for (const Way way : {Way{true, false}, Way{false, true}}) {
+    const Stored words = frame_of(technique(id), settings, {false, false, false});
+    for (const Way way : {Way{true, false, false}, Way{false, true, false}, Way{false, false, true}}) {
+        SCOPED_TRACE(way.parallel ? "parallel passes" : way.plain_buffers ? "plain buffers" : "64 bits at a time");
         const Stored stored = frame_of(technique(id), settings, way);
-        EXPECT_EQ(stored.cells, words.cells) << way.plain_buffers;
-        EXPECT_EQ(stored.rays, words.rays) << way.plain_buffers;
-        EXPECT_EQ(stored.hits, words.hits) << way.plain_buffers;
-        EXPECT_EQ(stored.shaded, words.shaded) << way.plain_buffers;
+        EXPECT_EQ(stored.cells, words.cells);
+        EXPECT_EQ(stored.rays, words.rays);
+        EXPECT_EQ(stored.hits, words.hits);
+        EXPECT_EQ(stored.intervals, words.intervals);
+        EXPECT_EQ(stored.shaded, words.shaded);
+        EXPECT_EQ(stored.counts, words.counts);
     }
 }
 
@@ -56,6 +69,18 @@ TEST(StoredTexels, AreTheSameInEveryWayOfStoringThem)
         FrameSettings settings{.trace = {.thickness_m = 0.1, .max_distance_m = 100}}; // boxes
         for (const auto& [name, value] : passes) settings.passes.at(name) = value;
         expect_alike("hiz", settings);
+    }
+}
+
+TEST(StoredTexels, AreTheSameOfBlocksAndOfSeveralRays)
+{
+    for (const ParameterValues& passes : {ParameterValues{{"rays_per_pixel", 3}},
+                                          {{"skip_unneeded_passes", 0}},
+                                          {chosen(TraceResolution::half)},
+                                          {chosen(TraceResolution::quarter)}}) {
+        FrameSettings settings{.trace = {.thickness_m = 0.1, .max_distance_m = 100}};
+        for (const auto& [name, value] : passes) settings.passes.at(name) = value;
+        expect_alike("hiz_packets", settings);
     }
 }
 

@@ -8,7 +8,10 @@
 #include "structure/parameters"
 #include "structure/buffers"
 
-layout(local_size_x = RAY_GROUPS_PER_WORKGROUP) in;
+layout(local_size_x = RAY_GROUP_INVOCATIONS) in;
+
+LEAST_OF_GROUP_LANES(real)
+LEAST_OF_GROUP_LANES(real3)
 
 const real first_px = 8, finest_step_px = 8, shortest_interval_px = 24; // on screen, along the longest delta
 const real widest_px = 64;                                             // where rays of different tiles meet in one group
@@ -24,7 +27,7 @@ const real rounding_px = 1.0 / 16, rounding_depth = 1.0 / (1 << 20);
 
 int top = pyramid_top();
 
-uint fetches = 0; // of this packet
+uint fetches = 0; // of this lane
 
 // x_px, y_px, depth
 struct Box
@@ -37,10 +40,14 @@ real lesser(real a, real b) { return b < a ? b : a; }
 real3 lesser(real3 a, real3 b) { return mix(a, b, lessThan(b, a)); }
 real3 greater(real3 a, real3 b) { return mix(a, b, greaterThan(b, a)); }
 
+const Box no_box = Box(real3(1e30), real3(-1e30));
+
 Box unite(Box a, Box b)
 {
     return Box(lesser(a.low, b.low), greater(a.high, b.high));
 }
+
+Box unite_lanes(Box own) { return Box(least_of_group_lanes(own.low), -least_of_group_lanes(-own.high)); }
 
 // Of all points between the two boxes, at the same t of each ray.
 Box box_at(Box start, Box end, real t)
@@ -57,20 +64,31 @@ int level_of(Box box)
 
 ivec2 cell_at(real2 position_px, int level) { return clamp(ivec2(floor(position_px)), ivec2(0), size_px - 1) >> level; }
 
-// The next of the cells from first to last, row by row; behind the last one it is below them.
+// The cells from first to last, row by row, that are a lane's; behind the last one they are below them.
+#if GROUP_LANES > 1
+ivec2 further_cell(ivec2 cell, int places, ivec2 first, ivec2 last)
+{
+    int width = last.x - first.x + 1, place = cell.x - first.x + places;
+    return ivec2(first.x + place % width, cell.y + place / width);
+}
+ivec2 first_cell(ivec2 first, ivec2 last) { return further_cell(first, group_lane(), first, last); }
+ivec2 next_cell(ivec2 cell, ivec2 first, ivec2 last) { return further_cell(cell, GROUP_LANES, first, last); }
+#else
+ivec2 first_cell(ivec2 first, ivec2 last) { return first; }
 ivec2 next_cell(ivec2 cell, ivec2 first, ivec2 last)
 {
     return cell.x == last.x ? ivec2(first.x, cell.y + 1) : ivec2(cell.x + 1, cell.y);
 }
+#endif
 
-bool touches(Box box, int level)
+bool touches(Box box, int level, bool asked)
 {
-    ivec2 first = cell_at(box.low.xy, level), last = cell_at(box.high.xy, level), cell = first;
-    bool  found = false, goes = true;
+    ivec2 first = cell_at(box.low.xy, level), last = cell_at(box.high.xy, level), cell = first_cell(first, last);
+    bool  found = false, goes = asked && cell.y <= last.y;
     do
     {
         fetches += uint(goes);
-        uvec2 content = load_cell(cell << level, level);
+        uvec2 content = load_cell((goes ? cell : first) << level, level);
         bool  behind  = floatBitsToInt(float(box.low.z)) <= int(content.x); // at its farthest, of the nearest front
         #ifdef IN_FRONT
         bool touched = behind;
@@ -80,20 +98,20 @@ bool touches(Box box, int level)
         found        = found || (goes && touched);
         cell         = next_cell(cell, first, last);
         goes         = goes && !found && cell.y <= last.y;
-    } while (goes);
-    return found;
+    } while (any_in_subgroup(goes));
+    return any_group_lane(found);
 }
 
 // Does any base plane under the box reach that height, or the box the slab of an occluder? Heights are those above the plane of the gradient `base`
 // through 0 at position 0, 0.
-bool meets_patch(Box box, real2 base, real height)
+bool meets_patch(Box box, real2 base, real height, bool asked)
 {
-    ivec2 first = cell_at(box.low.xy, PATCH_BITS), last = cell_at(box.high.xy, PATCH_BITS), place = first;
-    bool  found = any(greaterThanEqual(last - first, ivec2(most_patches))), goes = !found;
+    ivec2 first = cell_at(box.low.xy, PATCH_BITS), last = cell_at(box.high.xy, PATCH_BITS), place = first_cell(first, last);
+    bool  found = any(greaterThanEqual(last - first, ivec2(most_patches))), goes = asked && !found && place.y <= last.y;
     do
     {
         fetches += uint(goes);
-        Plane plane  = load_plane(place);
+        Plane plane  = load_plane(goes ? place : first);
         real2 centre = real2(place << PATCH_BITS) + real(0.5);
         real2 steeper = plane.gradient - base;
         real2 rise    = max(steeper, real2(0)) * real((1 << PATCH_BITS) - 1) + (level_fronts ? real2(0) : abs(steeper) * real(held_reach_px));
@@ -102,15 +120,15 @@ bool meets_patch(Box box, real2 base, real height)
         found        = found || (goes && (rises || !passes));
         place        = next_cell(place, first, last);
         goes         = goes && !found && place.y <= last.y;
-    } while (goes);
-    return found;
+    } while (any_in_subgroup(goes));
+    return any_group_lane(found);
 }
 
 // One more interval, if it is long enough to be worth a skip.
 void keep(int packet, inout int kept, real begin, real end, real length_px)
 {
     bool keeps = kept < most_intervals && (end - begin) * length_px >= shortest_interval_px;
-    if (keeps) store_intervals(packet * intervals_count + kept, real2(begin, end));
+    if (keeps && group_lane() == 0) store_intervals(packet * intervals_count + kept, real2(begin, end));
     kept += int(keeps);
 }
 
@@ -118,24 +136,30 @@ void main()
 {
     int  packet = ray_group();
     uint first  = packet * RAYS_PER_GROUP;
+#if GROUP_LANES == 1
     if (first >= ray_count) return;
-
-    uint count = min(ray_count - first, RAYS_PER_GROUP);
-    PackedRay ray = packed_ray(first); // with NaN in it the box is not usable, and of the other rays such are left out: they touch nothing
-    Box start = Box(ray.origin, ray.origin), end = Box(ray.origin + ray.delta, ray.origin + ray.delta);
+#endif
+    bool exists = first < ray_count;
+    uint count  = exists ? min(ray_count - first, RAYS_PER_GROUP) : 0;
+    // NaN are left out: rays with them touch nothing.
+    Box start = no_box, end = no_box;
     // Of all rays the least height, where they start and where they end.
-    ++fetches;
-    real2 base = load_plane(cell_at(start.low.xy, PATCH_BITS)).gradient;
-    real  height = start.low.z - dot(base, start.low.xy), end_height = end.low.z - dot(base, end.low.xy);
-    for (uint i = 1; i < count; ++i)
+    fetches += uint(group_lane() == 0);
+    real2 base = load_plane(cell_at(packed_ray(exists ? first : 0).origin.xy, PATCH_BITS)).gradient;
+    real  height = 1e30, end_height = 1e30;
+    for (uint i = group_lane(); i < count; i += GROUP_LANES)
     {
-        ray = packed_ray(first + i);
+        PackedRay ray = packed_ray(first + i);
         real3 from = ray.origin, to = ray.origin + ray.delta;
         start = unite(start, Box(from, from));
         end   = unite(end, Box(to, to));
         height     = lesser(height, from.z - dot(base, from.xy));
         end_height = lesser(end_height, to.z - dot(base, to.xy));
     }
+    start      = unite_lanes(start);
+    end        = unite_lanes(end);
+    height     = least_of_group_lanes(height);
+    end_height = least_of_group_lanes(end_height);
     real  nearest  = max(start.high.z, end.high.z);
     real3 rounding = real3(rounding_px, rounding_px, nearest * rounding_depth);
     start = Box(start.low - rounding, start.high + rounding);
@@ -152,31 +176,41 @@ void main()
     real begin = rising_px / length_px, t = begin, rising_step = rising_step_px / length_px;
     bool rises = usable && rise > real(0);
     int  rising_tests = 0;
-    while (rises && rising_tests < most_rising_tests && t + rising_step < real(1))
+    bool tested = rises && t + rising_step < real(1);
+    while (any_in_subgroup(tested))
     {
         Box box = unite(box_at(start, end, t), box_at(start, end, t + rising_step));
-        rises   = !meets_patch(box, base, height + t * rise - clearance);
-        t       = rises ? t + rising_step : t;
+        tested  = !meets_patch(box, base, height + t * rise - clearance, tested) && tested;
+        t       = tested ? t + rising_step : t;
         ++rising_tests;
+        tested = tested && rising_tests < most_rising_tests && t + rising_step < real(1);
     }
 
     begin       = !usable ? real(1) : t > begin ? begin : first_px / length_px;
     t           = usable ? max(t, begin) : real(1);
     real finest = finest_step_px / length_px, step_t = 2 * finest;
     int  kept = 0, tests = 0, blocked_steps = 0;
-    while (t < real(1) && kept < most_intervals && tests < most_tests && blocked_steps < most_blocked_steps)
+    bool goes = t < real(1);
+    while (any_in_subgroup(goes))
     {
         real t_next  = min(real(1), t + step_t);
         Box  box     = unite(box_at(start, end, t), box_at(start, end, t_next));
         int  level   = level_of(box);
-        bool touched = touches(box, level), ends = touched && step_t <= finest;
-        if (ends) keep(packet, kept, begin, t, length_px);
-        t      = touched && !ends ? t : t_next;
-        begin  = ends ? t_next : begin;
-        step_t = !touched ? step_t * 2 : ends ? step_t : step_t / 2;
-        blocked_steps += int(ends);
-        ++tests;
+        bool touched = touches(box, level, goes);
+        if (goes)
+        {
+            bool ends = touched && step_t <= finest;
+            if (ends) keep(packet, kept, begin, t, length_px);
+            t      = touched && !ends ? t : t_next;
+            begin  = ends ? t_next : begin;
+            step_t = !touched ? step_t * 2 : ends ? step_t : step_t / 2;
+            blocked_steps += int(ends);
+            ++tests;
+            goes = t < real(1) && kept < most_intervals && tests < most_tests && blocked_steps < most_blocked_steps;
+        }
     }
+    fetches = sum_of_group_lanes(fetches);
+    if (!exists || group_lane() > 0) return;
     keep(packet, kept, begin, t, length_px);
     for (int i = kept; i < intervals_count; ++i) store_intervals(packet * intervals_count + i, real2(2));
     store_group_fetches(packet, fetches);

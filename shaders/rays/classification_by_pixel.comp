@@ -1,0 +1,99 @@
+// The same as classification.comp, an invocation a pixel: for devices whose passes are parallel. What the pixels of a tile share is counted by subgroups.
+#include "rays/classified.glsl"
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+
+const int tiles_at_once = 2;
+
+layout(local_size_x = 64 * tiles_at_once) in;
+
+shared uint mirrors[2 * CLASSIFIED_TILES_BY_PIXEL], marks[2 * CLASSIFIED_TILES_BY_PIXEL]; // two words a tile, as tile_masks
+shared uint surfaces, roughness[ROUGHNESS_BINS];
+
+// Of these pixels of a tile, is it the first of its block?
+bool first_of_block(uvec2 pixels, ivec2 in_tile)
+{
+    ivec2 corner = in_tile / block_px * block_px;
+    int   rank   = rank_in_block(in_tile - corner);
+    bool  first  = true;
+    for (int inner = 0; inner < block_px * block_px; ++inner)
+    {
+        ivec2 place = ivec2(inner % block_px, inner / block_px), other = corner + place;
+        bool  set   = (pixels[other.y >> 2] >> (other.x + 8 * (other.y & 3)) & 1u) != 0;
+        first       = first && !(set && rank_in_block(place) < rank);
+    }
+    return first;
+}
+
+// Sets the bits of those pixels; `place` is the invocation's in the tile. A subgroup has 4 to 64 pixels of one tile, in their order.
+#define SET_BITS(MASKS, TILE, PLACE, FLAG)                                          \
+    {                                                                               \
+        uvec4 flags = subgroupBallot(FLAG);                                         \
+        if (subgroupElect())                                                        \
+        {                                                                           \
+            atomicOr(MASKS[2 * (TILE) + ((PLACE) >> 5)], flags.x << ((PLACE) & 31)); \
+            if (gl_SubgroupSize > 32) atomicOr(MASKS[2 * (TILE) + 1], flags.y);     \
+        }                                                                           \
+    }
+
+void main()
+{
+    const uint index = gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID;
+    if (index < 2 * CLASSIFIED_TILES_BY_PIXEL)
+    {
+        mirrors[index] = 0;
+        marks[index]   = 0;
+    }
+    if (index < ROUGHNESS_BINS) roughness[index] = 0;
+    if (index == 0) surfaces = 0;
+    barrier();
+
+    const ivec2 tiles = (size_px + 7) / 8, first_tile = ivec2(gl_WorkGroupID.x * CLASSIFIED_TILES_BY_PIXEL, gl_WorkGroupID.y);
+    const uint  place = index & 63;
+    const ivec2 in_tile = ivec2(place & 7, place >> 3);
+    uint surface_places = 0; // a bit for each tile of this invocation
+    for (uint i = index >> 6; i < CLASSIFIED_TILES_BY_PIXEL; i += tiles_at_once)
+    {
+        ivec2 pixel  = (first_tile + ivec2(i, 0)) * 8 + in_tile;
+        bool inside  = all(lessThan(pixel, size_px));
+        vec4 normal  = inside ? imageLoad(normal_image, pixel) : vec4(0);
+        bool surface = inside && is_surface(load_depth(pixel), normal.xyz);
+        bool mirror  = surface && material_reflects(pixel);
+        surface_places |= uint(surface) << i;
+        SET_BITS(mirrors, i, place, mirror)
+        uint count = subgroupBallotBitCount(subgroupBallot(surface));
+        if (count > 0 && subgroupElect()) atomicAdd(surfaces, count);
+        int bin = mirror ? roughness_bin(normal.w) : ROUGHNESS_BINS;
+        for (bool left = mirror; left;)
+        {
+            bool alike = subgroupBroadcastFirst(bin) == bin;
+            uint many  = subgroupBallotBitCount(subgroupBallot(alike));
+            if (subgroupElect()) atomicAdd(roughness[bin], many);
+            left = !alike;
+        }
+    }
+    barrier();
+    for (uint i = index >> 6; i < CLASSIFIED_TILES_BY_PIXEL; i += tiles_at_once)
+    {
+        uvec2 reflecting = uvec2(mirrors[2 * i], mirrors[2 * i + 1]);
+        bool  surface    = (surface_places >> i & 1u) != 0;
+        bool  mirror     = (reflecting[in_tile.y >> 2] >> (in_tile.x + 8 * (in_tile.y & 3)) & 1u) != 0;
+        bool  marked     = mirror ? first_of_block(reflecting, in_tile) : every_surface != 0 && surface;
+        SET_BITS(marks, i, place, marked)
+    }
+    barrier();
+
+    const ivec2 tile = first_tile + ivec2(index, 0);
+    if (index < CLASSIFIED_TILES_BY_PIXEL && all(lessThan(tile, tiles)))
+    {
+        tile_masks[tile.y * tiles.x + tile.x] = uvec2(marks[2 * index], marks[2 * index + 1]);
+        uint reflecting = bitCount(mirrors[2 * index]) + bitCount(mirrors[2 * index + 1]);
+        if (reflecting > 0)
+        {
+            atomicAdd(reflecting_tiles, 1);
+            atomicAdd(reflecting_pixels, reflecting);
+        }
+    }
+    if (index < ROUGHNESS_BINS && roughness[index] > 0) atomicAdd(roughness_pixels[index], roughness[index]);
+    if (index == 0 && surfaces > 0) atomicAdd(surface_pixels, surfaces);
+}
