@@ -131,7 +131,8 @@ void expect_rounding_only(const Picture& picture, const TraceSettings& settings,
             const Answer  walked{walk.status[i], walk.hit_pixel[i]};
             const Dispute dispute = explain_dispute(picture.image, settings, ray, answer, walked);
             EXPECT_TRUE(dispute.explained()) << dispute.text;
-            EXPECT_FALSE(dispute.missed) << dispute.text;
+            // Around an exact corner a walk may go on either side: the pixel that it leaves out holds no part of the ray.
+            EXPECT_FALSE(dispute.missed && !dispute.tie()) << dispute.text;
             ++count.disputed;
             count.ties += explain_dispute(picture.image, settings, own_ray, answer, walked).tie();
         };
@@ -142,9 +143,12 @@ void expect_rounding_only(const Picture& picture, const TraceSettings& settings,
     // A ray that meets corners exactly in real numbers no longer does so once it is rounded to 24 bits: the views beside the default one, which look
     // straight at mirrors, have more of those than 100 in a million.
     const bool counts_ties = picture.view.name == "default";
+    // Quotients of GPUs are up to 2.5 units in the last place off where those of CPUs are half a unit off (Vulkan 1.3, "Precision of Individual
+    // Operations"): five times as many rays may pass within rounding of a corner.
+    const double most = device().info.type == "Cpu" ? 1e-4 : 5e-4;
     for (const Count& count : {same_rays, own_rays})
         EXPECT_LE(static_cast<double>(count.disputed - (counts_ties ? 0 : count.ties)),
-                  1e-4 * static_cast<double>(count.rays));
+                  most * static_cast<double>(count.rays));
     for (const auto& [what, count] : {std::pair("walk", same_rays), std::pair("rays_and_walk", own_rays)}) {
         testing::Test::RecordProperty(std::string(what) + "_disputed", static_cast<int>(count.disputed));
         if (count.disputed > 0)
