@@ -31,6 +31,9 @@ const std::vector<Column> times = {
     {"trace_ms_ci_low", "lower end of the 95 % interval of the median, from order statistics; empty below six repeats"},
     {"trace_ms_ci_high", "upper end"},
     {"repeats", "timed frames"},
+    {"trace_drift",
+     "median trace time of the later half of the repeats over that of the earlier half, minus 1: far from 0 where the "
+     "device's clocks moved; empty below six repeats"},
     {"gbuffer_ms_median", "rendering the G-buffer, measured once per scene, view and size"},
     {"rays_ms_median", "finding the tiles that reflect and making the rays"},
     {"structures_ms_median", "building the structures that the technique reads; 0 without any"},

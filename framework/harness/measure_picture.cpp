@@ -226,19 +226,44 @@ void prepare_comparison(Bench& bench, MeasuredRun& measured)
     if (pipelines_made(bench.gpu) != known) clocked(bench.counted_s, [&] { run_frame(bench.gpu, *measured.unculled); });
 }
 
-/// Untimed frames of all runs in turn: a GPU that was idle has not raised its clocks yet.
+double warm_frame_ms(Bench& bench, MeasuredRun& measured)
+{
+    double ms = 0;
+    try_step(bench, measured, [&] {
+        const UnderWay under_way(bench.state, measured.run->id, bench.experiment.measure.time_limit_s);
+        ms = run_frame(bench.gpu, *measured.frame).total_ms();
+    });
+    return ms;
+}
+
+/// Untimed frames of all runs in turn for half a second or longer: the device's time for a frame of each, as a mean over whole turns.
+double warm_turns_ms(Bench& bench, std::vector<MeasuredRun>& open)
+{
+    const Stopwatch stopwatch;
+    double          sum_ms = 0, turns = 0;
+    for (; !open.empty() && stop_requested() == 0 && stopwatch.seconds() < 0.5; ++turns) {
+        for (MeasuredRun& measured : open) sum_ms += warm_frame_ms(bench, measured);
+        std::erase_if(open, is_over);
+    }
+    return turns > 0 ? sum_ms / turns : 0;
+}
+
+/// Untimed frames: a GPU that was idle raises its clocks in steps, some tenths of a second apart. It is warm when frames no longer get faster.
 void warm_up(Bench& bench, std::vector<MeasuredRun>& open)
 {
-    const MeasureSettings& measure = bench.experiment.measure;
+    const double     warmup_s = bench.experiment.measure.warmup_s;
+    constexpr double most_s = 5, faster = 0.97;
     clocked(bench.counted_s, [&] {
         const Stopwatch stopwatch;
-        for (size_t i = 0; !open.empty() && stop_requested() == 0 && stopwatch.seconds() < measure.warmup_s; ++i) {
-            MeasuredRun& measured = open[i % open.size()];
-            try_step(bench, measured, [&] {
-                const UnderWay under_way(bench.state, measured.run->id, measure.time_limit_s);
-                run_frame(bench.gpu, *measured.frame);
-            });
+        for (size_t i = 0; !open.empty() && stop_requested() == 0 && stopwatch.seconds() < warmup_s; ++i) {
+            warm_frame_ms(bench, open[i % open.size()]);
             std::erase_if(open, is_over);
+        }
+        if (bench.gpu.info.type == "Cpu" || warmup_s <= 0) return;
+        double before_ms = warm_turns_ms(bench, open), now_ms = 0;
+        for (; stopwatch.seconds() < most_s && !open.empty() && stop_requested() == 0; before_ms = now_ms) {
+            now_ms = warm_turns_ms(bench, open);
+            if (now_ms >= faster * before_ms) return;
         }
     });
 }

@@ -126,6 +126,16 @@ int repeats_for(double pilot_s, const MeasureSettings& measure)
                                        static_cast<double>(measure.max_repeats)));
 }
 
+/// How much longer the later half of the repeats took than the earlier one.
+std::string drift_text(std::span<const double> trace_ms)
+{
+    if (trace_ms.size() < 6) return "";
+    const auto   half    = static_cast<std::ptrdiff_t>(trace_ms.size() / 2);
+    const double earlier = quantile({trace_ms.begin(), trace_ms.begin() + half}, 0.5);
+    const double later   = quantile({trace_ms.end() - half, trace_ms.end()}, 0.5);
+    return earlier > 0 ? number_text(later / earlier - 1) : "";
+}
+
 void add_times(MeasuredRun& measured, double gbuffer_ms)
 {
     Row&          row   = measured.row;
@@ -133,6 +143,7 @@ void add_times(MeasuredRun& measured, double gbuffer_ms)
     add_summary(row, "trace_ms", summarise(measured.trace_ms));
     add_summary(row, "frame_ms", frame);
     row["repeats"]           = std::to_string(measured.trace_ms.size());
+    row["trace_drift"]       = drift_text(measured.trace_ms);
     row["gbuffer_ms_median"] = gbuffer_ms > 0 ? number_text(gbuffer_ms) : ""; // a frame of another renderer has none
     const auto median_ms     = [&](const std::string& pass) {
         const auto found = measured.pass_ms.find(pass);
