@@ -1,9 +1,11 @@
-// Pipelines are made once: for equal shaders and constants, with a store that stays small, and for all pictures of a scene.
+// Pipelines are made once: for equal shaders and constants, with a store that stays small, of files as they are, and for all pictures of a scene.
+#include "core/files.h"
 #include "gpu/compute.h"
 #include "gpu/device.h"
 #include "render/gbuffer.h"
 #include "shared.h"
 
+#include <chrono>
 #include <optional>
 #include <set>
 
@@ -72,6 +74,36 @@ TEST(Pipelines, ThatWereForgottenGoOnForThoseWhoHoldThem)
     EXPECT_LE(device().impl->known_pipelines.size(), 256U);
     EXPECT_NE(launch.pass(10).compute, first.compute);
     EXPECT_EQ(launch.run(first), 100U);
+}
+
+TEST(Pipelines, AreAllReadyWhenTheyAreFinished)
+{
+    Launch launch;
+    for (int i = 1; i <= 8; ++i) launch.pass(1000 + i);
+    finish_pipelines(device());
+    for (const auto& [key, known] : device().impl->known_pipelines)
+        EXPECT_EQ(known.pipeline->pipeline.wait_for(std::chrono::seconds(0)), std::future_status::ready);
+}
+
+TEST(Pipelines, SeeAFileThatWasEditedUnlessFilesAreHeld)
+{
+    const std::filesystem::path file  = std::filesystem::path(::testing::TempDir()) / "edited.comp";
+    const auto                  write = [&](int groups) {
+        write_file_atomically(file, fmt::format("layout(local_size_x = {}) in;\nvoid main() {{}}\n", groups));
+    };
+    const auto size = [&] { return group_size(compile_shader(device(), {.file = file})); };
+    write(2);
+    EXPECT_EQ(size(), 2U);
+    write(16);
+    EXPECT_EQ(size(), 16U);
+    {
+        const ShaderFilesHeld held, twice;
+        EXPECT_EQ(size(), 16U);
+        write(128);
+        EXPECT_EQ(size(), 16U);
+    }
+    EXPECT_EQ(size(), 128U);
+    std::filesystem::remove(file);
 }
 
 TEST(Pipelines, OfAGBufferAreSharedByThePicturesOfAScene)
