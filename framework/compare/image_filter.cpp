@@ -34,7 +34,7 @@ std::vector<float> filter_rows(const std::vector<float>& source, int width, int 
 {
     const int          radius = int(kernel.size() / 2);
     std::vector<float> result(source.size());
-    parallel_rows(height, 0, [&](int y) {
+    parallel_rows(height, threads_for(width, height), [&](int y) {
         const float*       row = &source[size_t(y) * size_t(width)];
         std::vector<float> padded(size_t(width) + 2 * size_t(radius));
         for (size_t i = 0; i < padded.size(); ++i) padded[i] = row[std::clamp(int(i) - radius, 0, width - 1)];
@@ -50,7 +50,7 @@ std::vector<float> filter_columns(const std::vector<float>& source, int width, i
 {
     const int          radius = int(kernel.size() / 2);
     std::vector<float> result(source.size());
-    parallel_rows(height, 0, [&](int y) {
+    parallel_rows(height, threads_for(width, height), [&](int y) {
         std::vector<const float*> rows;
         for (int k = 0; k < int(kernel.size()); ++k)
             rows.push_back(&source[size_t(std::clamp(y + k - radius, 0, height - 1)) * size_t(width)]);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -35,10 +36,13 @@ template <typename DoRow> void parallel_rows(int row_count, unsigned threads, co
     if (error) std::rethrow_exception(error);
 }
 
+/// For parallel_rows() over an image with a little work a pixel: on a small one, a thread would take longer to start than the work.
+inline unsigned threads_for(int width, int height) { return int64_t{width} * height < 4096 ? 1 : 0; }
+
 /// Calls do_pixel(index) once for every pixel of an image, index = y * width + x, on all cores.
 template <typename DoPixel> void parallel_pixels(int width, int height, const DoPixel& do_pixel)
 {
-    parallel_rows(height, 0, [&](int y) {
+    parallel_rows(height, threads_for(width, height), [&](int y) {
         const size_t first = static_cast<size_t>(y) * static_cast<size_t>(width);
         for (size_t i = first; i < first + static_cast<size_t>(width); ++i) do_pixel(i);
     });

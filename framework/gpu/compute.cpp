@@ -91,35 +91,46 @@ void write_set(Gpu& gpu, const Shader& shader, const Bindings& bindings, const v
     }
 }
 
+vk::raii::Pipeline compile_pipeline(const GpuImpl& gpu, const Shader& shader, const Constants& constants,
+                                    vk::PipelineLayout layout, vk::PipelineCreateFlags flags)
+{
+    try {
+        const vk::raii::ShaderModule module(
+            gpu.device, vk::ShaderModuleCreateInfo{.codeSize = shader.spirv.size() * 4, .pCode = shader.spirv.data()});
+        const vk::SpecializationInfo specialization{.mapEntryCount = static_cast<uint32_t>(constants.entries.size()),
+                                                    .pMapEntries   = constants.entries.data(),
+                                                    .dataSize      = constants.bytes.size(),
+                                                    .pData         = constants.bytes.data()};
+        const vk::ComputePipelineCreateInfo info{.flags  = flags,
+                                                 .stage  = {.stage               = vk::ShaderStageFlagBits::eCompute,
+                                                            .module              = *module,
+                                                            .pName               = "main",
+                                                            .pSpecializationInfo = &specialization},
+                                                 .layout = layout};
+        return {gpu.device, gpu.pipeline_cache, info};
+    } catch (const vk::SystemError& error) {
+        throw_failure("{}: the driver refuses the pipeline: {}", shader.name, error.what());
+    }
+}
+
 ComputePipeline make_pipeline(Gpu& gpu, const Shader& shader, const Constants& constants, uint32_t push_constant_bytes)
 {
     const vk::raii::Device& device = gpu.impl->device;
     ComputePipeline         result;
     result.set_layout = make_set_layout(gpu, shader);
     const vk::PushConstantRange range{vk::ShaderStageFlagBits::eCompute, 0, push_constant_bytes};
-    result.layout = {device, vk::PipelineLayoutCreateInfo{.setLayoutCount         = 1,
-                                                          .pSetLayouts            = &*result.set_layout,
-                                                          .pushConstantRangeCount = push_constant_bytes > 0 ? 1U : 0U,
-                                                          .pPushConstantRanges    = &range}};
-    const vk::raii::ShaderModule module(
-        device, vk::ShaderModuleCreateInfo{.codeSize = shader.spirv.size() * 4, .pCode = shader.spirv.data()});
-    const vk::SpecializationInfo specialization{.mapEntryCount = static_cast<uint32_t>(constants.entries.size()),
-                                                .pMapEntries   = constants.entries.data(),
-                                                .dataSize      = constants.bytes.size(),
-                                                .pData         = constants.bytes.data()};
-    const bool                   described = gpu.info.compiles_only;
-    using Flag                             = vk::PipelineCreateFlagBits;
-    const vk::ComputePipelineCreateInfo info{.flags  = described ? Flag::eCaptureStatisticsKHR |
-                                                                      Flag::eCaptureInternalRepresentationsKHR
-                                                                 : vk::PipelineCreateFlags(),
-                                             .stage  = {.stage               = vk::ShaderStageFlagBits::eCompute,
-                                                        .module              = *module,
-                                                        .pName               = "main",
-                                                        .pSpecializationInfo = &specialization},
-                                             .layout = *result.layout};
-    result.pipeline = {device, gpu.impl->pipeline_cache, info};
-    if (described) {
-        result.compiled       = read_compiled(gpu, shader.name, result.pipeline);
+    result.layout    = {device, vk::PipelineLayoutCreateInfo{.setLayoutCount         = 1,
+                                                             .pSetLayouts            = &*result.set_layout,
+                                                             .pushConstantRangeCount = push_constant_bytes > 0 ? 1U : 0U,
+                                                             .pPushConstantRanges    = &range}};
+    using Flag       = vk::PipelineCreateFlagBits;
+    const auto flags = gpu.info.compiles_only ? Flag::eCaptureStatisticsKHR | Flag::eCaptureInternalRepresentationsKHR
+                                              : vk::PipelineCreateFlags();
+    result.pipeline =
+        std::async(std::launch::async, compile_pipeline, std::cref(*gpu.impl), shader, constants, *result.layout, flags)
+            .share();
+    if (gpu.info.compiles_only) {
+        result.compiled       = read_compiled(gpu, shader.name, result.pipeline.get());
         result.compiled.group = group_size(shader);
     }
     return result;
@@ -190,7 +201,7 @@ ComputePass make_compute_pass(Gpu& gpu, const Shader& shader, const Bindings& bi
 namespace {
 void bind(const vk::raii::CommandBuffer& commands, const ComputePass& pass)
 {
-    commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pass.compute->pipeline);
+    commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pass.compute->pipeline.get());
     commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *pass.compute->layout, 0, *pass.set, nullptr);
 }
 } // namespace

@@ -279,6 +279,11 @@ const char* passes_text(const GpuInfo& device) { return device.lanes > 1 ? "para
 
 size_t pipelines_made(const Gpu& gpu) { return gpu.impl->pipelines_made; }
 
+void finish_pipelines(const Gpu& gpu)
+{
+    for (const auto& [key, known] : gpu.impl->known_pipelines) known.pipeline->pipeline.wait();
+}
+
 std::vector<std::string> validation_messages(const Gpu& gpu)
 {
     std::scoped_lock lock(gpu.impl->messages_mutex);

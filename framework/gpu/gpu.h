@@ -60,5 +60,7 @@ int choose_device(std::span<const GpuInfo> infos, const std::string& wanted);
 std::vector<std::string> validation_messages(const Gpu& gpu);
 /// Compute pipelines that were made so far: where the number has not changed, all were known.
 size_t pipelines_made(const Gpu& gpu);
+/// A pass waits for its pipeline when it is recorded. This waits for all: threads that still compile disturb times.
+void finish_pipelines(const Gpu& gpu);
 
 } // namespace ssrlab

@@ -58,6 +58,36 @@ void collect_bindings(const glslang::TProgram& program, Shader& shader)
     }
 }
 
+/// What was seen of the files since the last look.
+struct SeenFiles {
+    std::mutex                                   mutex; // of the compiled shaders, too
+    int                                          holders = 0;
+    std::map<std::string, std::vector<fs::path>> below; // a folder
+    std::map<std::string, std::string>           states;
+};
+
+SeenFiles& seen_files()
+{
+    static SeenFiles seen;
+    return seen;
+}
+
+void look_again(SeenFiles& seen)
+{
+    seen.below.clear();
+    seen.states.clear();
+}
+
+const std::vector<fs::path>& files_below(const fs::path& folder)
+{
+    auto& below = seen_files().below;
+    if (const auto known = below.find(folder.native()); known != below.end()) return known->second;
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file()) files.push_back(entry.path());
+    return below.emplace(folder.native(), std::move(files)).first->second;
+}
+
 /// All files that the compiler may read for this source.
 std::vector<std::filesystem::path> files_read(const ShaderSource& source)
 {
@@ -67,9 +97,7 @@ std::vector<std::filesystem::path> files_read(const ShaderSource& source)
     if (!source.include_folders.empty()) folders.push_back(technique_folder());
     const auto is_listed = [&](const fs::path& folder) { return lies_in(folder, technique_folder()); };
     std::ranges::copy_if(source.include_folders, std::back_inserter(folders), std::not_fn(is_listed));
-    for (const fs::path& folder : folders)
-        for (const auto& entry : fs::recursive_directory_iterator(folder))
-            if (entry.is_regular_file()) files.push_back(entry.path());
+    for (const fs::path& folder : folders) std::ranges::copy(files_below(folder), std::back_inserter(files));
     return files;
 }
 
@@ -88,11 +116,14 @@ std::string key_of(const ShaderSource& source, std::span<const std::filesystem::
 }
 
 /// When a file was written, and its bytes: asked for each pass of each frame, without opening it.
-std::string state_of(const std::filesystem::path& path)
+const std::string& state_of(const std::filesystem::path& path)
 {
+    auto& states = seen_files().states;
+    if (const auto known = states.find(path.native()); known != states.end()) return known->second;
     struct stat state = {};
     if (stat(path.c_str(), &state) != 0) throw_spec_error("{}: cannot be read", path.string());
-    return fmt::format("{} {} {}", state.st_mtim.tv_sec, state.st_mtim.tv_nsec, state.st_size);
+    std::string text = fmt::format("{} {} {}", state.st_mtim.tv_sec, state.st_mtim.tv_nsec, state.st_size);
+    return states.emplace(path.native(), std::move(text)).first->second;
 }
 
 /// Calls visit(words) for each instruction of a module.
@@ -236,17 +267,31 @@ uint32_t group_size(const Shader& shader)
     return ids.empty() ? size : constants[ids[0]] * constants[ids[1]] * constants[ids[2]];
 }
 
+ShaderFilesHeld::ShaderFilesHeld()
+{
+    SeenFiles&            seen = seen_files();
+    const std::lock_guard lock(seen.mutex);
+    if (++seen.holders == 1) look_again(seen);
+}
+
+ShaderFilesHeld::~ShaderFilesHeld()
+{
+    const std::lock_guard lock(seen_files().mutex);
+    --seen_files().holders;
+}
+
 Shader compile_shader(const Gpu& gpu, ShaderSource source)
 {
     if (gpu.info.plain_buffers) source.defines.emplace("PLAIN_BUFFERS", "1");
     source.defines.emplace("GROUP_LANES", std::to_string(gpu.info.lanes));
     // A sweep and the checks ask for the same shader hundreds of times, with other constants.
-    static std::mutex                    mutex;
     static std::map<std::string, Shader> compiled;
-    const std::lock_guard                lock(mutex);
-    const auto                           files = files_read(source);
-    const std::string                    key   = key_of(source, files, state_of);
-    const auto                           known = compiled.find(key);
+    SeenFiles&                           seen = seen_files();
+    const std::lock_guard                lock(seen.mutex);
+    if (seen.holders == 0) look_again(seen);
+    const auto        files = files_read(source);
+    const std::string key   = key_of(source, files, state_of);
+    const auto        known = compiled.find(key);
     return known != compiled.end() ? known->second
                                    : compiled.emplace(key, compile_or_read(source, files)).first->second;
 }

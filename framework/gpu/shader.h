@@ -45,6 +45,15 @@ std::filesystem::path shader_folder();
 /// Where the project's techniques and structures lie: their files may be included, too.
 std::filesystem::path technique_folder();
 
+/// While one lives, each file is looked at once, changed or not: a frame has dozens of shaders, the project hundreds of files.
+class ShaderFilesHeld {
+public:
+    ShaderFilesHeld();
+    ~ShaderFilesHeld();
+    ShaderFilesHeld(const ShaderFilesHeld&)            = delete;
+    ShaderFilesHeld& operator=(const ShaderFilesHeld&) = delete;
+};
+
 /// Includes come from the source itself, its folders and the shader folder, and from nowhere else. Throws SpecError with a line
 /// "FILE:LINE: message" for each error found; what is missing from a file of include_files is said of that file.
 /// Shaders are made for a device's way of storing texels and of sharing work (GpuInfo::plain_buffers, lanes).

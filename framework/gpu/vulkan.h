@@ -6,6 +6,7 @@
 #include <vulkan/vulkan_raii.hpp>
 
 #include <functional>
+#include <future>
 #include <map>
 #include <mutex>
 
@@ -13,10 +14,10 @@ namespace ssrlab {
 
 /// A compute shader with its constants, ready to run with anything bound to it.
 struct ComputePipeline {
-    vk::raii::DescriptorSetLayout set_layout = nullptr;
-    vk::raii::PipelineLayout      layout     = nullptr;
-    vk::raii::Pipeline            pipeline   = nullptr;
-    CompiledPipeline              compiled   = {}; // of a device that only compiles
+    vk::raii::DescriptorSetLayout          set_layout = nullptr;
+    vk::raii::PipelineLayout               layout     = nullptr;
+    std::shared_future<vk::raii::Pipeline> pipeline;      // compiled on a thread of its own: drivers compile slowly
+    CompiledPipeline                       compiled = {}; // of a device that only compiles
 };
 
 struct Buffer {

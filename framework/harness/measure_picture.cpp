@@ -82,13 +82,15 @@ Observed observe(Bench& bench, const FrameBuffersPtr& buffers, MeasuredRun& meas
     add_plan(measured.row, plan_of(*measured.frame));
     bench.counted_s += counting_s_of(*measured.frame);
     return clocked(bench.counted_s, [&] {
+        const PreparedCountPtr count   = prepare_count(bench.gpu, *measured.frame);
+        const bool             doubled = measure.truth && measure.double_twin && bench.gpu.info.float64;
+        const PreparedCountPtr twin = doubled ? prepare_count(bench.gpu, *measured.frame, Precision::float64) : nullptr;
         run_frame(bench.gpu, *measured.frame);
-        Observed observed{read_shaded(bench.gpu, *measured.frame), count_frame(bench.gpu, *measured.frame),
+        Observed observed{read_shaded(bench.gpu, *measured.frame), count_frame(bench.gpu, *measured.frame, *count),
                           read_hidden_hits(bench.gpu, *measured.frame)};
         observed.reprojection = read_reprojection(bench.gpu, *measured.frame);
         observed.history      = read_history_counts(bench.gpu, *measured.frame);
-        if (measure.truth && measure.double_twin && bench.gpu.info.float64)
-            observed.twin = count_frame(bench.gpu, *measured.frame, Precision::float64);
+        if (twin) observed.twin = count_frame(bench.gpu, *measured.frame, *twin);
         return observed;
     });
 }
@@ -337,6 +339,7 @@ void open_run(Bench& bench, Picture& picture, const Run& run, std::vector<Measur
 void time_runs(Bench& bench, Picture& picture, std::vector<MeasuredRun>& open)
 {
     refuse_changed_sources(bench);
+    finish_pipelines(bench.gpu);
     warm_up(bench, open);
     repeat_until_final(bench, picture, open);
     keep_measured(bench, picture, open);

@@ -228,12 +228,13 @@ PreparedFramePtr prepare(Gpu& gpu, const FrameBuffersPtr& buffers, const Techniq
                          const TraceCounts* counts)
 {
     require_bounded(technique, values);
-    auto frame       = std::make_shared<PreparedFrame>();
-    frame->buffers   = buffers;
-    frame->technique = technique;
-    frame->values    = values;
-    frame->settings  = settings;
-    frame->history   = history;
+    const ShaderFilesHeld held;
+    auto                  frame = std::make_shared<PreparedFrame>();
+    frame->buffers              = buffers;
+    frame->technique            = technique;
+    frame->values               = values;
+    frame->settings             = settings;
+    frame->history              = history;
     if (!buffers->gbuffer->scene && choice<HitShading>(settings.passes) == HitShading::mirrored) // there are no lights
         frame->settings.passes.insert_or_assign("hit_shading", choice_value(HitShading::lit));
     frame->statistics = statistics_for(gpu, *buffers, settings.trace);
@@ -358,24 +359,41 @@ FrameTimes run_frame(Gpu& gpu, PreparedFrame& frame)
     return times;
 }
 
-TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision)
+struct PreparedCount {
+    RayBuffers  rays;
+    Buffer      work, view;
+    TracePasses passes;
+};
+
+PreparedCountPtr prepare_count(Gpu& gpu, const PreparedFrame& frame, Precision precision)
 {
     if (precision == Precision::float64 && !gpu.info.float64)
         throw_failure("the device '{}' has no double precision", gpu.info.name);
-    const GBuffer&   gbuffer = *frame.buffers->gbuffer;
-    const RayBuffers rays    = make_ray_buffers(gpu, frame.statistics.gbuffer.reflecting_pixels, precision);
-    const Buffer     work =
-        make_buffer(gpu, std::max<uint64_t>(rays.capacity, 1) * work_words(frame.technique) * sizeof(uint32_t));
-    const Buffer      view   = upload_view(gpu, gbuffer.view, precision);
-    const TracePasses passes = make_trace_passes(gpu, frame, rays, view, &work);
+    const ShaderFilesHeld held;
+    auto                  count = std::make_shared<PreparedCount>();
+    count->rays                 = make_ray_buffers(gpu, frame.statistics.gbuffer.reflecting_pixels, precision);
+    const uint64_t rays         = std::max<uint64_t>(count->rays.capacity, 1);
+    count->work                 = make_buffer(gpu, rays * work_words(frame.technique) * sizeof(uint32_t));
+    count->view                 = upload_view(gpu, frame.buffers->gbuffer->view, precision);
+    count->passes               = make_trace_passes(gpu, frame, count->rays, count->view, &count->work);
+    return count;
+}
+
+TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, const PreparedCount& count)
+{
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-        record_rays(commands, passes, *frame.buffers);
+        record_rays(commands, count.passes, *frame.buffers);
         record_depth_structures(commands, frame.structures);
-        record_technique(commands, passes.technique, rays);
+        record_technique(commands, count.passes.technique, count.rays);
         barrier(commands);
     });
-    return precision == Precision::float64 ? read_result<double>(gpu, frame, rays, &work)
-                                           : read_result<float>(gpu, frame, rays, &work);
+    return count.rays.precision == Precision::float64 ? read_result<double>(gpu, frame, count.rays, &count.work)
+                                                      : read_result<float>(gpu, frame, count.rays, &count.work);
+}
+
+TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision)
+{
+    return count_frame(gpu, frame, *prepare_count(gpu, frame, precision));
 }
 
 Image read_shaded(Gpu& gpu, const PreparedFrame& frame)

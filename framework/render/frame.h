@@ -101,6 +101,11 @@ GBufferImage read_second_layer(Gpu& gpu, const PreparedFrame& frame);
 /// The image with this reflection in place of the traced one: colour and weight of each pixel, weight < 0 where nothing reflects.
 /// Leaves this reflection in the shared buffers.
 Image composite_reflection(Gpu& gpu, const PreparedFrame& frame, std::span<const glm::vec4> reflection);
+/// What count_frame() needs. Until it is called, its pipelines are compiled beside whatever else is done.
+struct PreparedCount;
+using PreparedCountPtr = std::shared_ptr<const PreparedCount>;
+PreparedCountPtr prepare_count(Gpu& gpu, const PreparedFrame& frame, Precision precision = Precision::float32);
+TraceResult      count_frame(Gpu& gpu, PreparedFrame& frame, const PreparedCount& count);
 /// Traces once with the counting pipeline (work counters on; never timed). Precision float64 gives the double twin.
 TraceResult count_frame(Gpu& gpu, PreparedFrame& frame, Precision precision = Precision::float32);
 
