@@ -1,7 +1,9 @@
-// The invocations that share a ray group. A CPU device has one for each, GROUP_LANES == 1; on a GPU several lanes of a subgroup work on a group, so that they
-// wait for memory together. Whoever asks other lanes must do so where the whole subgroup is: loops go on while any_in_subgroup().
+// For the passes of a structure per ray group, RAY_GROUP_INVOCATIONS invocations a workgroup: those that share a group. On a CPU device each has a group
+// of its own, GROUP_LANES == 1. On a GPU several lanes of a subgroup work on one, so that they wait for memory together. Whoever asks other lanes must do
+// so where the whole subgroup is: loops go on while any_in_subgroup().
 #ifndef SSRLAB_GROUP_LANES
 #define SSRLAB_GROUP_LANES
+#include "layout/workgroups.glsl"
 #if GROUP_LANES > 1
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_vote : require
@@ -24,11 +26,11 @@ uint sum_of_group_lanes(uint own)
     return own;
 }
 
-#define LEAST_OF_GROUP_LANES(TYPE)                                                             \
-    TYPE least_of_group_lanes(TYPE least)                                                      \
-    {                                                                                    \
+#define LEAST_OF_GROUP_LANES(TYPE)                                                                                 \
+    TYPE least_of_group_lanes(TYPE least)                                                                          \
+    {                                                                                                              \
         for (int other = 1; other < GROUP_LANES; other *= 2) least = min(least, subgroupShuffleXor(least, other)); \
-        return least;                                                                    \
+        return least;                                                                                              \
     }
 #else
 int  ray_group_in_workgroup() { return int(gl_LocalInvocationID.x); }
@@ -38,4 +40,6 @@ bool any_group_lane(bool own) { return own; }
 uint sum_of_group_lanes(uint own) { return own; }
 #define LEAST_OF_GROUP_LANES(TYPE) TYPE least_of_group_lanes(TYPE least) { return least; }
 #endif
+
+int ray_group() { return int(work_group() * (RAY_GROUP_INVOCATIONS / GROUP_LANES)) + ray_group_in_workgroup(); }
 #endif

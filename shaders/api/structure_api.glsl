@@ -15,17 +15,7 @@ int level_cell_index(ivec2 pixel, int level) { return ((pyramid_root | pixel.y) 
 // Cells of a level; level 0 is the pixels.
 ivec2 level_size(int level) { return ((size_px - 1) >> level) + 1; }
 
-#ifdef BUILDS_STRUCTURE
-#include "api/group_lanes.glsl"
+// per = "ray_group": of this invocation; a pass per ray group includes api/group_lanes.glsl.
+#ifndef BUILDS_STRUCTURE
+int ray_group() { return int(work_group()); }
 #endif
-
-// per = "ray_group": of this invocation. A pass per ray group has RAY_GROUP_INVOCATIONS invocations a workgroup; GROUP_LANES of them share a ray group
-// (api/group_lanes.glsl).
-int ray_group()
-{
-#ifdef BUILDS_STRUCTURE
-    return int(work_group() * (RAY_GROUP_INVOCATIONS / GROUP_LANES)) + ray_group_in_workgroup();
-#else
-    return int(work_group());
-#endif
-}
