@@ -17,6 +17,7 @@ except ImportError as error:
 import plot_accuracy
 import plot_effects
 import plot_figures
+import plot_gpu
 import plot_panels
 import plot_report
 import plot_sequences
@@ -32,7 +33,7 @@ def draw(results, folder):
     os.makedirs(folder, exist_ok=True)
     plots, tables = [], {}
     # A specification that names its figures wants these.
-    usual = plot_figures.ALL + plot_accuracy.ALL + plot_effects.ALL + plot_surfaces.ALL + plot_sequences.ALL
+    usual = plot_figures.ALL + plot_accuracy.ALL + plot_effects.ALL + plot_surfaces.ALL + plot_sequences.ALL + plot_gpu.ALL
     for make in plot_panels.ALL if plot_panels.figures_of(results) else usual:
         for name, figure in (make(results, tables) if len(results.rows) else ()):
             for extension in ("png", "svg"):

@@ -53,10 +53,10 @@ def program(results):
     return words[0] if words else "build/bin/ssrlab"
 
 
-def given_options(results):
+def given_options(results, names=("--techniques", "--device")):
     """Those of the program itself, as they were given to `ssrlab run`."""
     words = shlex.split(results.environment.get("command_line", ""))
-    return [shlex.quote(option) for name in ("--techniques", "--device") for at, word in enumerate(words[:-1]) if word == name
+    return [shlex.quote(option) for name in names for at, word in enumerate(words[:-1]) if word == name
             for option in (name, words[at + 1])]
 
 

@@ -1,0 +1,46 @@
+"""What walks would cost on a GPU that is not there: the instructions that Mesa compiles for it, times the iterations that were counted."""
+import json
+import os
+import shutil
+import subprocess
+
+import plot_verdict
+from plot_report import given_options, program
+
+CHIP = "navi21"
+HEADING = "What this would cost on RDNA2, by its compiler"
+BUILT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../build/bin/ssrlab")
+
+
+def trace_of(results, technique, surface):
+    """The trace's pipeline as `ssrlab shaders --json` describes it; None where that compiler is not installed or refuses."""
+    tool = next((path for path in (program(results), BUILT) if shutil.which(path)), None)
+    if tool is None:
+        return None
+    command = [tool, *given_options(results, ["--techniques"]), "shaders", technique, "--chip", CHIP, "-p", f"surface={surface}", "--json"]
+    said = subprocess.run(command, capture_output=True, text=True, check=False)
+    if said.returncode != 0:
+        return None
+    return next((one for one in json.loads(said.stdout)["pipelines"] if one["shader"].startswith("trace/trace")), None)
+
+
+def table(results, tables):
+    """One line a technique and surface model: each at the setting that the ranking compares, as a mean over the frames."""
+    chosen = plot_verdict.picks(results)
+    if "wave64_iterations_mean" not in chosen or chosen.wave64_iterations_mean.isna().all():
+        return ()
+    lines = []
+    for (technique, surface), rows in chosen.groupby(["technique", "surface"], sort=False):
+        trace = trace_of(results, technique, surface)
+        if trace is None:
+            continue
+        counts, loop, iterations = trace["statistics"], trace["innermost_loop"]["instructions"], rows.wave64_iterations_mean.mean()
+        lines.append({"technique": technique, "surface": surface, "VGPRs": counts["VGPRs"], "spills": counts["Spilled VGPRs"],
+                      "waves a SIMD": counts["Subgroups per SIMD"], "group": trace["invocations_a_group"], "innermost loop": loop,
+                      "iterations of a wave": round(iterations, 2), "wave instructions a ray": round(loop * iterations / 64, 1)})
+    if lines:
+        tables[HEADING] = sorted(lines, key=lambda line: line["wave instructions a ray"])
+    return ()
+
+
+ALL = [table]
