@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/pixel_index.h"
+#include "gpu/vulkan.h"
 #include "render/gbuffer.h"
 
 #include <cmath>
@@ -14,6 +15,10 @@ Gpu& device()
     static Gpu gpu = open_gpu({.device = {}, .validation = true});
     return gpu;
 }
+
+int most_layers() { return device().impl->limits.maxPerStageDescriptorStorageImages < 32 ? 2 : MAX_LAYERS; }
+
+bool draws_exactly() { return device().info.name.find("SwiftShader") == std::string::npos; }
 
 const Technique& technique(const std::string& id)
 {

@@ -187,6 +187,7 @@ INSTANTIATE_TEST_SUITE_P(Pitch, GBufferPitches, testing::Values(0, 0.5, 25, 60, 
 
 TEST(GBuffer, OrthographicViewsShowTheSamePlanes)
 {
+    if (!draws_exactly()) GTEST_SKIP() << "this driver draws less exactly";
     Camera camera     = tilted(30);
     camera.projection = Projection::orthographic;
     camera.height_m   = 6;
@@ -215,6 +216,7 @@ TEST(GBuffer, VoidIsBackgroundEverywhere)
 // Moving the image by whole pixels moves every pixel's content along.
 TEST(GBuffer, OffCentreByWholePixelsMovesThePicture)
 {
+    if (!draws_exactly()) GTEST_SKIP() << "this driver draws less exactly";
     constexpr glm::ivec2 size{160, 90}, shift{5, -3};
     const Scene          scene  = load_scene("builtin:pole_field");
     Camera               camera = tilted(10);

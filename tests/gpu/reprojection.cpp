@@ -214,7 +214,7 @@ TEST(Reprojection, ARoughMirrorThatStandsStill)
         const SecondFrame frame  = second_frame(scene, "default", id, 16, {{"gloss", choice_value(Gloss::stochastic)}});
         const Errors      errors = errors_of(scene, frame, still);
         EXPECT_GT(errors.hits - errors.unseen, 20000U) << id;
-        EXPECT_LT(errors.median_px, 0.01) << id;
+        EXPECT_LT(errors.median_px, draws_exactly() ? 0.01 : 0.02) << id;
         EXPECT_LT(errors.p95_px, 0.5) << id << ": a box is met elsewhere than the plane of its pixel";
     }
 }
