@@ -74,7 +74,9 @@ ivec2 further_cell(ivec2 cell, int places, ivec2 first, ivec2 last)
 }
 ivec2 first_cell(ivec2 first, ivec2 last) { return further_cell(first, group_lane(), first, last); }
 ivec2 next_cell(ivec2 cell, ivec2 first, ivec2 last) { return further_cell(cell, GROUP_LANES, first, last); }
+ivec2 loaded_cell(bool goes, ivec2 cell, ivec2 first) { return goes ? cell : first; } // a lane that waits loads one that is there
 #else
+ivec2 loaded_cell(bool goes, ivec2 cell, ivec2 first) { return cell; } // nothing waits
 ivec2 first_cell(ivec2 first, ivec2 last) { return first; }
 ivec2 next_cell(ivec2 cell, ivec2 first, ivec2 last)
 {
@@ -89,7 +91,7 @@ bool touches(Box box, int level, bool asked)
     do
     {
         fetches += uint(goes);
-        uvec2 content = load_cell((goes ? cell : first) << level, level);
+        uvec2 content = load_cell(loaded_cell(goes, cell, first) << level, level);
         bool  behind  = floatBitsToInt(float(box.low.z)) <= int(content.x); // at its farthest, of the nearest front
         #ifdef IN_FRONT
         bool touched = behind;
@@ -112,7 +114,7 @@ bool meets_patch(Box box, real2 base, real height, bool asked)
     do
     {
         fetches += uint(goes);
-        Plane plane  = load_plane(goes ? place : first);
+        Plane plane  = load_plane(loaded_cell(goes, place, first));
         real2 centre = real2(place << PATCH_BITS) + real(0.5);
         real2 steeper = plane.gradient - base;
         real2 rise    = max(steeper, real2(0)) * real((1 << PATCH_BITS) - 1) + (level_fronts ? real2(0) : abs(steeper) * real(held_reach_px));
