@@ -78,13 +78,15 @@ std::string processor_name()
 /// Rays of an 8K picture take 66 million texels. The standard promises 65,536 (Vulkan 1.3, table "Required Limits").
 constexpr uint32_t enough_texels = 1U << 27;
 
-/// Invocations of a subgroup that may work on one ray group: a power of two.
+/// Invocations of a subgroup that may work on one ray group: a power of two. 1 where parallel passes cannot run: they vote, ballot and shuffle, and a
+/// subgroup of theirs lies in one tile of 64 pixels.
 int lanes_of(const vk::PhysicalDeviceSubgroupProperties& subgroups)
 {
-    constexpr uint32_t most   = 8;
-    const auto         needed = vk::SubgroupFeatureFlagBits::eVote | vk::SubgroupFeatureFlagBits::eShuffle;
-    const bool         usable = (subgroups.supportedStages & vk::ShaderStageFlagBits::eCompute) &&
-                        (subgroups.supportedOperations & needed) == needed;
+    constexpr uint32_t most = 8;
+    using Feature           = vk::SubgroupFeatureFlagBits;
+    const auto needed       = Feature::eVote | Feature::eBallot | Feature::eShuffle;
+    const bool usable       = (subgroups.supportedStages & vk::ShaderStageFlagBits::eCompute) &&
+                        (subgroups.supportedOperations & needed) == needed && subgroups.subgroupSize <= 64;
     return usable ? static_cast<int>(std::min(most, std::bit_floor(subgroups.subgroupSize))) : 1;
 }
 
@@ -234,7 +236,9 @@ Gpu open_gpu(const GpuOptions& options)
         if (options.storage != TexelStorage::by_device)
             gpu.info.plain_buffers = options.storage == TexelStorage::plain_buffers;
         if (options.passes == PassStyle::parallel && gpu.info.most_lanes == 1)
-            throw_spec_error("the device '{}' has no subgroups that shuffle: its passes are serial", gpu.info.name);
+            throw_spec_error(
+                "the device '{}' cannot run passes in parallel: its subgroups lack votes, ballots or shuffles",
+                gpu.info.name);
         if (options.passes != PassStyle::by_device)
             gpu.info.lanes = options.passes == PassStyle::parallel ? gpu.info.most_lanes : 1;
         impl.physical_device = std::move(vk::raii::PhysicalDevices(impl.instance)[static_cast<size_t>(gpu.info.index)]);

@@ -80,26 +80,27 @@ template <typename Use> void with_staging(Gpu& gpu, Buffer& kept, auto make_stag
     if (kept.bytes > most_kept_bytes) kept = {};
 }
 
+template <typename Record> void submit_copy(Gpu& gpu, const Buffer& staging, const Record& record)
+{
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        barrier(commands);
+        record(commands, *staging.buffer);
+        barrier(commands);
+    });
+}
+
 template <typename Record> void submit_upload(Gpu& gpu, const void* data, uint64_t bytes, const Record& record)
 {
     with_staging(gpu, gpu.impl->upload_staging, make_upload_buffer, bytes, [&](const Buffer& staging) {
         std::memcpy(staging.mapped, data, bytes);
-        submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-            barrier(commands);
-            record(commands, *staging.buffer);
-            barrier(commands);
-        });
+        submit_copy(gpu, staging, record);
     });
 }
 
 template <typename Record> void submit_download(Gpu& gpu, void* data, uint64_t bytes, const Record& record)
 {
     with_staging(gpu, gpu.impl->download_staging, make_download_buffer, bytes, [&](const Buffer& staging) {
-        submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-            barrier(commands);
-            record(commands, *staging.buffer);
-            barrier(commands);
-        });
+        submit_copy(gpu, staging, record);
         std::memcpy(data, staging.mapped, bytes);
     });
 }
