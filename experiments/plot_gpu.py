@@ -12,16 +12,15 @@ HEADING = "What this would cost on RDNA2, by its compiler"
 BUILT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../build/bin/ssrlab")
 
 
-def trace_of(results, technique, surface):
-    """The trace's pipeline as `ssrlab shaders --json` describes it; None where that compiler is not installed or refuses."""
+def traces_of(results, techniques, surface):
+    """Each technique's trace pipeline as `ssrlab shaders --json` describes it; none where that compiler is not installed or refuses."""
     tool = next((path for path in (program(results), BUILT) if shutil.which(path)), None)
     if tool is None:
-        return None
-    command = [tool, *given_options(results, ["--techniques"]), "shaders", technique, "--chip", CHIP, "-p", f"surface={surface}", "--json"]
+        return {}
+    command = [tool, *given_options(results, ["--techniques"]), "shaders", *techniques, "--chip", CHIP, "-p", f"surface={surface}", "--json"]
     said = subprocess.run(command, capture_output=True, text=True, check=False)
-    if said.returncode != 0:
-        return None
-    return next((one for one in json.loads(said.stdout)["pipelines"] if one["shader"].startswith("trace/trace")), None)
+    pipelines = json.loads(said.stdout)["pipelines"] if said.returncode == 0 else []
+    return {technique: one for one in pipelines if one["shader"].startswith("trace/trace") for technique in one["techniques"]}
 
 
 def table(results, tables):
@@ -29,9 +28,10 @@ def table(results, tables):
     chosen = plot_verdict.picks(results)
     if "wave64_iterations_mean" not in chosen or chosen.wave64_iterations_mean.isna().all():
         return ()
+    traces = {surface: traces_of(results, list(rows.technique.unique()), surface) for surface, rows in chosen.groupby("surface")}
     lines = []
     for (technique, surface), rows in chosen.groupby(["technique", "surface"], sort=False):
-        trace = trace_of(results, technique, surface)
+        trace = traces[surface].get(technique)
         if trace is None:
             continue
         counts, loop, iterations = trace["statistics"], trace["innermost_loop"]["instructions"], rows.wave64_iterations_mean.mean()

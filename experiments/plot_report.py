@@ -56,13 +56,13 @@ def program(results):
 def given_options(results, names=("--techniques", "--device")):
     """Those of the program itself, as they were given to `ssrlab run`."""
     words = shlex.split(results.environment.get("command_line", ""))
-    return [shlex.quote(option) for name in names for at, word in enumerate(words[:-1]) if word == name
+    return [option for name in names for at, word in enumerate(words[:-1]) if word == name
             for option in (name, words[at + 1])]
 
 
 def again(results, run):
     """Measures one run again, in a folder of its own."""
-    return " ".join([program(results)] + given_options(results) + ["run", specification_path(results), "--only", run, "-o", f"again/{run}"])
+    return " ".join([program(results), *map(shlex.quote, given_options(results))] + ["run", specification_path(results), "--only", run, "-o", f"again/{run}"])
 
 
 def as_option(value):
@@ -80,7 +80,7 @@ def ray_command(results, row):
         words += [name, f"{row[column]:g}"] if row.get(column, 0) > 0 else []
     for name in inputs_of(results.all_rows):
         words += ["-p", f"{name}={as_option(row[name])}"] if name not in passes and plot_verdict.has_value(row, name) else []
-    return " ".join([program(results)] + given_options(results) + words)
+    return " ".join([program(results), *map(shlex.quote, given_options(results))] + words)
 
 
 def chart_data(results, chosen):
