@@ -20,7 +20,7 @@ TEXT = ["run_id", "experiment", "scene", "view", "technique", "outcome", "messag
         "passes_skipped"]
 FRAME = ["scene", "view", "width", "height", "frame"]
 # What a clock decides, and differs from one run to the next.
-OF_TIME = re.compile(r"(^|[_.])ms(_|$)|^(fps|inverse_fps_s|passes|trace_drift)$")
+OF_TIME = re.compile(r"(^|[_.])ms(_|$)|^(fps|inverse_fps_s|passes|trace_drift|frames_per_submit)$")
 # By the end of a column's name, longest first; "" is a count, a share of 1 or a setting's own value.
 UNITS = {"per_million": "rays per million", "_ms_median": "ms", "_ms_mad": "ms", "_ms_ci_low": "ms", "_ms_ci_high": "ms", "_ms": "ms",
          "_px": "px", "_m": "m", "_db": "dB", "_s": "s", "_share": "share", "recall_1px": "share",

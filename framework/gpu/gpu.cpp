@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "gpu/disk_cache.h"
+#include "gpu/driver_threads.h"
 
 #include <algorithm>
 #include <array>
@@ -215,8 +216,9 @@ std::vector<GpuInfo> list_gpus()
 
 Gpu open_gpu(const GpuOptions& options)
 {
-    Gpu      gpu{std::make_shared<GpuImpl>(), {}};
-    GpuImpl& impl = *gpu.impl;
+    Gpu                 gpu{std::make_shared<GpuImpl>(), {}};
+    GpuImpl&            impl           = *gpu.impl;
+    const std::set<int> threads_before = thread_ids();
     try {
         impl.instance = make_instance(impl.context, options.validation);
         if (options.validation) {
@@ -252,6 +254,7 @@ Gpu open_gpu(const GpuOptions& options)
         impl.device = make_device(impl.physical_device, impl.queue_family, options);
         impl.queue  = impl.device.getQueue(impl.queue_family, 0);
         if (options.compiles_only) return gpu;
+        if (contains_ignoring_case(gpu.info.name, "llvmpipe")) spread_threads_since(threads_before);
         impl.command_pool = {impl.device, vk::CommandPoolCreateInfo{.queueFamilyIndex = impl.queue_family}};
         open_pipeline_cache(impl); // of pipelines that it knows, a driver may not say how they were compiled
     } catch (const vk::SystemError& error) {

@@ -31,6 +31,7 @@ const std::vector<Column> times = {
     {"trace_ms_ci_low", "lower end of the 95 % interval of the median, from order statistics; empty below six repeats"},
     {"trace_ms_ci_high", "upper end"},
     {"repeats", "timed frames"},
+    {"frames_per_submit", "frames that a repeat submits together; the last is timed"},
     {"trace_drift",
      "median trace time of the later half of the repeats over that of the earlier half, minus 1: far from 0 where the "
      "device's clocks moved; empty below six repeats"},

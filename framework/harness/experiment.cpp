@@ -261,6 +261,7 @@ MeasureSettings read_measure(const TomlFile& file)
     number("warmup_s", measure.warmup_s, 0, 60);
     integer("min_repeats", measure.min_repeats, 1, 100000);
     integer("max_repeats", measure.max_repeats, 1, 100000);
+    integer("frames_per_submit", measure.frames_per_submit, 0, 1000);
     number("budget_s", measure.budget_s, 0, infinity);
     number("time_limit_s", measure.time_limit_s, 0.1, most_time_limit_s);
     flag("truth", measure.truth);

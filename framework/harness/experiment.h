@@ -17,17 +17,18 @@ namespace ssrlab {
 
 /// How long and how often is measured.
 struct MeasureSettings {
-    uint64_t seed         = 1;   // of the random order of repeats
-    double   warmup_s     = 0.2; // of untimed frames before the timed ones, in which a GPU's clocks rise
-    int      min_repeats  = 9;   // below 6 there is no 95 % interval
-    int      max_repeats  = 100;
-    double   time_limit_s = 60;   // a run fails whose preparation or frame takes longer on the device
-    double   budget_s     = 1;    // a run has as many repeats as its pilot frame says fit into this
-    bool     truth        = true; // compare with the truths
-    bool     image_errors = true; // also compare the pictures (SSIM, FLIP …), which takes longer than comparing rays
-    bool     double_twin  = true; // trace once more in double precision, to tell rounding from the other errors
-    bool     pictures     = true; // write the reflected picture of each run
-    bool     saved_time   = true; // time a few unculled frames, too; never with pass_set = shading
+    uint64_t seed            = 1;   // of the random order of repeats
+    double   warmup_s        = 0.2; // of untimed frames before the timed ones, in which a GPU's clocks rise
+    int      min_repeats     = 9;   // below 6 there is no 95 % interval
+    int      max_repeats     = 100;
+    int    frames_per_submit = 0;  // one after another, of which the last is timed; 0: one on a CPU, more on a fast GPU
+    double time_limit_s      = 60; // a run fails whose preparation or frame takes longer on the device
+    double budget_s          = 1;  // a run has as many repeats as its pilot frame says fit into this
+    bool   truth             = true; // compare with the truths
+    bool   image_errors = true; // also compare the pictures (SSIM, FLIP …), which takes longer than comparing rays
+    bool   double_twin  = true; // trace once more in double precision, to tell rounding from the other errors
+    bool   pictures     = true; // write the reflected picture of each run
+    bool   saved_time   = true; // time a few unculled frames, too; never with pass_set = shading
 };
 
 /// Values of a measure that a search makes techniques reach.

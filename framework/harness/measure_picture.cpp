@@ -212,8 +212,10 @@ void plan_repeats(Bench& bench, MeasuredRun& measured)
     clocked(bench.counted_s, [&] {
         const UnderWay  under_way(bench.state, measured.run->id, bench.experiment.measure.time_limit_s);
         const Stopwatch stopwatch;
-        run_frame(bench.gpu, *measured.frame);
-        measured.repeats = repeats_for(stopwatch.seconds(), bench.experiment.measure);
+        const double    frame_ms   = run_frame(bench.gpu, *measured.frame).total_ms();
+        const double    pilot_s    = stopwatch.seconds();
+        measured.frames_per_submit = frames_for(frame_ms, bench.experiment.measure, bench.gpu.info);
+        measured.repeats           = repeats_for(pilot_s * measured.frames_per_submit, bench.experiment.measure);
     });
 }
 

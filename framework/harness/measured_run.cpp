@@ -106,8 +106,9 @@ void add_plan(Row& row, const std::vector<PlannedPass>& plan)
 void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms, int round)
 {
     const std::clock_t cpu_before = std::clock();
-    const FrameTimes   times      = run_frame(gpu, *measured.frame);
-    measured.cpu_ms.push_back(1000.0 * static_cast<double>(std::clock() - cpu_before) / CLOCKS_PER_SEC);
+    const FrameTimes   times      = run_frame(gpu, *measured.frame, measured.frames_per_submit);
+    measured.cpu_ms.push_back(1000.0 * static_cast<double>(std::clock() - cpu_before) / CLOCKS_PER_SEC /
+                              measured.frames_per_submit);
     measured.rounds.push_back(round);
     measured.pass_order.clear();
     for (const auto& [pass, ms] : times.passes_ms) {
@@ -117,7 +118,15 @@ void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms, int round)
     measured.trace_ms.push_back(times.of("trace"));
     measured.frame_ms.push_back(gbuffer_ms + times.total_ms());
     if (measured.unculled && measured.saved_ms.size() < saved_pairs)
-        measured.saved_ms.push_back(run_frame(gpu, *measured.unculled).total_ms() - times.total_ms());
+        measured.saved_ms.push_back(run_frame(gpu, *measured.unculled, measured.frames_per_submit).total_ms() -
+                                    times.total_ms());
+}
+
+int frames_for(double frame_ms, const MeasureSettings& measure, const GpuInfo& device)
+{
+    constexpr double filled_ms = 5, most = 64;
+    if (measure.frames_per_submit > 0) return measure.frames_per_submit;
+    return device.type == "Cpu" ? 1 : static_cast<int>(std::clamp(std::ceil(filled_ms / frame_ms), 1.0, most));
 }
 
 int repeats_for(double pilot_s, const MeasureSettings& measure)
@@ -143,6 +152,7 @@ void add_times(MeasuredRun& measured, double gbuffer_ms)
     add_summary(row, "trace_ms", summarise(measured.trace_ms));
     add_summary(row, "frame_ms", frame);
     row["repeats"]           = std::to_string(measured.trace_ms.size());
+    row["frames_per_submit"] = std::to_string(measured.frames_per_submit);
     row["trace_drift"]       = drift_text(measured.trace_ms);
     row["gbuffer_ms_median"] = gbuffer_ms > 0 ? number_text(gbuffer_ms) : ""; // a frame of another renderer has none
     const auto median_ms     = [&](const std::string& pass) {

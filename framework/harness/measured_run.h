@@ -16,10 +16,11 @@ struct MeasuredRun {
     Row                                        row;
     std::vector<int>                           rounds; // one entry per timed frame, as in the lists below
     std::vector<double>                        trace_ms, frame_ms, cpu_ms, saved_ms;
-    std::map<std::string, std::vector<double>> pass_ms;     // by pass, of those that ran
-    std::vector<std::string>                   pass_order;  // the same in the order of a frame
-    std::vector<std::string>                   structures;  // of the technique
-    int                                        repeats = 0; // that it will have, known before the first one
+    std::map<std::string, std::vector<double>> pass_ms;               // by pass, of those that ran
+    std::vector<std::string>                   pass_order;            // the same in the order of a frame
+    std::vector<std::string>                   structures;            // of the technique
+    int                                        repeats           = 0; // that it will have, known before the first one
+    int                                        frames_per_submit = 1;
 };
 
 /// Run id, experiment, scene … and every setting and parameter.
@@ -32,6 +33,8 @@ void add_measures(Row& row, const MeasureValues& values);
 void add_plan(Row& row, const std::vector<PlannedPass>& plan);
 /// Pairs of a planned and an unculled frame.
 inline constexpr int saved_pairs = 5;
+/// How many frames a submit has, of which the last is timed: on a GPU as many as fill 5 ms, since one that has just been idle is slower.
+int frames_for(double frame_ms, const MeasureSettings& measure, const GpuInfo& device);
 /// One timed frame, and the first few times the unculled one, too.
 void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms, int round);
 /// How many repeats fit into the budget, from the wall time of a frame before the first repeat. Their number depends on no time

@@ -65,24 +65,27 @@ Buffer upload_view(Gpu& gpu, const View& view, Precision precision)
     return buffer;
 }
 
-RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision)
+RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision, int rays_of_pixels)
 {
-    const uint64_t listed_bytes =
-        precision == Precision::float64 ? sizeof(PackedRay<double>) : sizeof(PackedRay<float>);
-    const uint64_t rays    = std::max<uint64_t>(capacity, 1);
-    const uint64_t largest = rays * sizeof(glm::uvec3); // what was counted of each, a storage buffer
+    const uint64_t listed_bytes = rays_of_pixels > 0                ? sizeof(uint32_t)
+                                  : precision == Precision::float64 ? sizeof(PackedRay<double>)
+                                                                    : sizeof(PackedRay<float>);
+    const uint64_t rays         = std::max<uint64_t>(capacity, 1);
+    const uint64_t largest      = rays * sizeof(glm::uvec3); // what was counted of each, a storage buffer
     if (largest > gpu.impl->limits.maxStorageBufferRange)
         throw_failure("{} rays need a buffer of {} MiB; the device allows {} MiB", rays, largest >> 20,
                       gpu.impl->limits.maxStorageBufferRange >> 20);
     RayBuffers buffers;
-    buffers.precision = precision;
-    buffers.capacity  = capacity;
-    buffers.count     = make_buffer(gpu, 16);
-    buffers.launch    = make_buffer(gpu, 16);
-    buffers.list      = make_texel_buffer(gpu, rays * listed_bytes, vk::Format::eR32G32B32A32Uint);
-    buffers.hits      = precision == Precision::float64
-                            ? make_texel_buffer(gpu, rays * sizeof(PackedHit<double>), vk::Format::eR32G32B32A32Uint)
-                            : make_texel_buffer(gpu, rays * sizeof(PackedHit<float>), vk::Format::eR32G32Uint);
+    buffers.precision      = precision;
+    buffers.capacity       = capacity;
+    buffers.count          = make_buffer(gpu, 16);
+    buffers.launch         = make_buffer(gpu, 16);
+    buffers.list           = make_texel_buffer(gpu, rays * listed_bytes,
+                                     rays_of_pixels > 0 ? vk::Format::eR32Uint : vk::Format::eR32G32B32A32Uint);
+    buffers.rays_of_pixels = rays_of_pixels;
+    buffers.hits           = precision == Precision::float64
+                                 ? make_texel_buffer(gpu, rays * sizeof(PackedHit<double>), vk::Format::eR32G32B32A32Uint)
+                                 : make_texel_buffer(gpu, rays * sizeof(PackedHit<float>), vk::Format::eR32G32Uint);
 
     buffers.group_launch = make_buffer(gpu, 16);
     buffers.structures   = std::make_shared<StructureBuffers>();
@@ -124,9 +127,15 @@ std::shared_ptr<RayBuffers> rays_for(Gpu& gpu, FrameBuffers& buffers, const GBuf
 {
     const size_t pixels =
         settings.passes.at("skip_unneeded_passes") == 0 ? counts.surface_pixels : counts.reflecting_pixels;
-    const size_t                 capacity = pixels * static_cast<size_t>(settings.passes.at("rays_per_pixel"));
-    std::shared_ptr<RayBuffers>& rays     = buffers.rays[capacity];
-    if (!rays) rays = std::make_shared<RayBuffers>(make_ray_buffers(gpu, capacity, Precision::float32));
+    const size_t capacity             = pixels * static_cast<size_t>(settings.passes.at("rays_per_pixel"));
+    const bool   of_pixels            = choice<RayList>(settings.passes) == RayList::pixels;
+    const int    rays_of_pixels       = of_pixels ? static_cast<int>(settings.passes.at("rays_per_pixel")) : 0;
+    const bool   from_lobe            = of_pixels && draws_lobe_rays(settings.passes);
+    std::shared_ptr<RayBuffers>& rays = buffers.rays[{capacity, rays_of_pixels, from_lobe}];
+    if (!rays) {
+        rays = std::make_shared<RayBuffers>(make_ray_buffers(gpu, capacity, Precision::float32, rays_of_pixels));
+        rays->from_lobe = from_lobe;
+    }
     return rays;
 }
 
@@ -206,10 +215,11 @@ TraceCounts count_hits(Gpu& gpu, PreparedFrame& frame)
     const Buffer counts   = make_buffer(gpu, 16);
     Bindings     bindings = bindings_of(*frame.buffers, *frame.rays);
     bindings.insert({{"View", frame.buffers->view}, {"TraceStatistics", counts}});
-    Constants constants;
-    add_reflecting(constants, frame.settings.trace);
-    const ComputePass count =
-        make_compute_pass(gpu, compile_shader(gpu, {.file = "trace/trace_statistics.comp"}), bindings, constants);
+    const Constants   constants = settings_constants(frame, Precision::float32);
+    const ComputePass count     = make_compute_pass(
+            gpu,
+            compile_shader(gpu, {.file = "trace/trace_statistics.comp", .defines = ray_list_defines(gpu, *frame.rays)}),
+            bindings, constants);
     submit(gpu, [&](const auto& commands) {
         commands.fillBuffer(*counts.buffer, 0, VK_WHOLE_SIZE, 0);
         record_rays(commands, frame.trace, *frame.buffers);
@@ -341,9 +351,14 @@ std::vector<std::string> facts_of_plan(const PreparedFrame& frame)
     return describe_facts(frame.facts, frame.statistics);
 }
 
-FrameTimes run_frame(Gpu& gpu, PreparedFrame& frame)
+FrameTimes run_frame(Gpu& gpu, PreparedFrame& frame, int frames)
 {
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        for (int untimed = 1; untimed < frames; ++untimed)
+            for (const RecordFunction& record : frame.record_functions) {
+                record(commands);
+                barrier(commands);
+            }
         uint32_t timestamp = 0;
         write_timestamp(commands, frame.timestamps, timestamp++);
         for (const RecordFunction& record : frame.record_functions) {

@@ -89,8 +89,9 @@ bool plan_skips_work(const PreparedFrame& frame);
 /// What the plan rests on, a line each.
 std::vector<std::string> facts_of_plan(const PreparedFrame& frame);
 
-/// Runs the planned passes once and waits. The first call of a frame includes driver compilation: warm up.
-FrameTimes run_frame(Gpu& gpu, PreparedFrame& frame);
+/// Runs the planned passes and waits. The first call of a frame includes driver compilation: warm up.
+/// frames: so many times, one after another, in one submit. The times are those of the last.
+FrameTimes run_frame(Gpu& gpu, PreparedFrame& frame, int frames = 1);
 /// The image that the last run_frame of this frame left in the shared buffers. Linear RGB.
 Image read_shaded(Gpu& gpu, const PreparedFrame& frame);
 /// What the last run_frame of this frame found in the second layer: `hit` there, not_traced elsewhere. Empty when the plan

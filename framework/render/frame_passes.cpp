@@ -103,6 +103,15 @@ Defines precision_defines(const Gpu& gpu, Precision precision)
     return {};
 }
 
+Defines ray_list_defines(const Gpu& gpu, const RayBuffers& rays)
+{
+    if (rays.rays_of_pixels == 0) return {};
+    Defines defines = precision_defines(gpu, rays.precision);
+    defines.emplace("RAYS_OF_PIXELS", std::to_string(rays.rays_of_pixels));
+    defines.emplace("RAYS_FROM_LOBE", rays.from_lobe ? "1" : "0");
+    return defines;
+}
+
 void add_surface(ShaderSource& source, const TraceSettings& settings)
 {
     const Surface& surface = find_surface(settings.surface);
@@ -201,6 +210,7 @@ Bindings surface_bindings(const GBuffer& gbuffer)
                       {"depth_cells", gbuffer.depth.cells},
                       {"cell_pairs", {gbuffer.depth.cells, gbuffer.depth.pairs}},
                       {"StoredCells", {gbuffer.depth.cells, gbuffer.depth.pairs}},
+                      {"StoredCell", gbuffer.depth.cells},
                       {"normal_image", gbuffer.normal},
                       {"material_image", gbuffer.material},
                       {"dielectric_image", gbuffer.dielectric},
@@ -248,6 +258,7 @@ Shader compile_trace(const Gpu& gpu, const PreparedFrame& frame, const RayBuffer
     source.defines.emplace("STRUCTURES", std::to_string(technique.structures.size()));
     for (const std::string& macro : shader_macros(technique, frame.values)) source.defines.emplace(macro, "1");
     source.defines.merge(store_defines(gpu, rays.hits));
+    source.defines.merge(ray_list_defines(gpu, rays));
     if (bindings.contains("Work")) source.defines.emplace("COUNT_WORK", "1");
     if (bindings.contains("Visits")) source.defines.emplace("RECORD_VISITS", "1");
     return compile_shader(gpu, source);
@@ -326,6 +337,7 @@ TracePasses make_trace_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuf
     passes.tile_launch    = make_launch_pass(gpu, buffers.tiles.count, buffers.tiles.launch, 1);
     Defines ray_defines   = precision_defines(gpu, rays.precision);
     ray_defines.merge(store_defines(gpu, rays.list));
+    ray_defines.merge(ray_list_defines(gpu, rays));
     passes.rays       = make_compute_pass(gpu, compile_shader(gpu, {.file = "rays/rays.comp", .defines = ray_defines}),
                                           bindings, constants);
     passes.ray_launch = make_launch_pass(gpu, rays.count, rays.launch, RAYS_PER_GROUP);

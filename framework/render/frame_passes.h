@@ -9,6 +9,8 @@
 
 namespace ssrlab {
 
+using Defines = std::map<std::string, std::string>;
+
 /// shaders/layout/packed_ray.glsl
 template <typename Real> struct PackedRay {
     glm::vec<3, Real> origin{0};
@@ -32,11 +34,16 @@ struct RayBuffers {
     Buffer                            count, launch, list, hits;
     Buffer                            group_launch;    // of passes with an invocation for each group of rays
     std::shared_ptr<StructureBuffers> structures = {}; // that depend on this list
+    int  rays_of_pixels = 0;     // above 0: the list holds pixels, each so many times, and shaders make the rays anew
+    bool from_lobe      = false; // likewise: drawn from the lobe of a rough surface
 };
 /// The uniform block of shaders/api/view.glsl.
 Buffer     upload_view(Gpu& gpu, const View& view, Precision precision);
 void       write_view(Gpu& gpu, Buffer& target, const View& view, Precision precision);
-RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision);
+RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision, int rays_of_pixels = 0);
+
+/// For a shader that reads this list or makes it.
+Defines ray_list_defines(const Gpu& gpu, const RayBuffers& rays);
 
 /// Rays that come from other rays: a list of their own, and of each the ray or pixel that it belongs to.
 struct DerivedRays {
@@ -67,10 +74,10 @@ struct FrameBuffers {
     GBufferPtr                                           gbuffer;
     Buffer                                               view; // float
     TileBuffers                                          tiles;
-    std::map<std::pair<double, double>, FrameStatistics> statistics;   // by what reflects; nothing is traced yet
-    std::map<size_t, std::shared_ptr<RayBuffers>>        rays;         // by capacity; float
-    GBufferPtr                                           second_layer; // empty until a frame asks for it
-    std::shared_ptr<ConePyramid>                         cone;         // empty until a frame asks for it
+    std::map<std::pair<double, double>, FrameStatistics> statistics; // by what reflects; nothing is traced yet
+    std::map<std::tuple<size_t, int, bool>, std::shared_ptr<RayBuffers>> rays; // by capacity and what they hold; float
+    GBufferPtr                                                     second_layer; // empty until a frame asks for it
+    std::shared_ptr<ConePyramid>                                   cone;         // empty until a frame asks for it
     std::map<std::pair<size_t, int>, std::shared_ptr<DerivedRays>> derived_rays; // by capacity, and which of two
     std::map<int, std::shared_ptr<LobeRayImages>>                  lobe_rays;    // by rays per pixel
     GpuImage          reflection;   // RGBA16F: colour, weight; weight < 0 where no ray started
@@ -100,8 +107,6 @@ struct TracePasses {
     ComputePass     tile_list, tile_launch, rays, ray_launch;
     TechniquePasses technique;
 };
-
-using Defines = std::map<std::string, std::string>;
 
 struct PreparedFrame {
     FrameBuffersPtr              buffers;

@@ -15,9 +15,11 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string> structure_keys = {"name", "summary", "cite", "reads", "parameters", "buffers", "passes"};
 const std::vector<std::string> buffer_keys    = {"per", "count", "tile_px", "type"};
-const std::vector<std::string> pass_keys      = {"shader",      "per",        "tile_px",
-                                                 "first_level", "last_level", "cells_per_invocation"};
-const std::vector<std::string> element_types  = {"uint", "uvec2", "uvec4", "float", "vec2", "vec4", "real2"};
+const std::vector<std::string> pass_keys      = {
+         "shader", "style", "per", "tile_px", "first_level", "last_level", "levels_per_dispatch", "cells_per_invocation"};
+const std::vector<std::string> element_types = {"uint", "uvec2", "uvec4", "float", "vec2", "vec4", "real2"};
+
+const std::map<std::string, PassStyle> pass_styles = {{"serial", PassStyle::serial}, {"parallel", PassStyle::parallel}};
 
 const std::map<std::string, SizeRule> buffer_rules = {{"pixel", SizeRule::pixel},
                                                       {"tile", SizeRule::tile},
@@ -29,16 +31,22 @@ const std::map<std::string, SizeRule> pass_rules   = {{"pixel", SizeRule::pixel}
                                                       {"level", SizeRule::level},
                                                       {"ray_group", SizeRule::ray_group}};
 
+template <typename Value>
+Value read_word(const TomlFile& file, const toml::node& node, const std::string& name, const char* kind,
+                const std::map<std::string, Value>& words)
+{
+    const std::string text  = toml_text(file, node, name);
+    const auto        found = words.find(text);
+    if (found != words.end()) return found->second;
+    std::vector<std::string> known;
+    for (const auto& [word, value] : words) known.push_back(word);
+    throw_spec_error("{}: {}", toml_place(file, node), unknown_name(kind, text, known));
+}
+
 SizeRule read_rule(const TomlFile& file, const toml::table& table, const std::string& owner,
                    const std::map<std::string, SizeRule>& rules)
 {
-    const toml::node& node  = manifest_key(file, table, "per", owner);
-    const std::string text  = toml_text(file, node, "per of " + owner);
-    const auto        found = rules.find(text);
-    if (found != rules.end()) return found->second;
-    std::vector<std::string> known;
-    for (const auto& [name, rule] : rules) known.push_back(name);
-    throw_spec_error("{}: {}", toml_place(file, node), unknown_name("size rule", text, known));
+    return read_word(file, manifest_key(file, table, "per", owner), "per of " + owner, "size rule", rules);
 }
 
 int read_integer(const TomlFile& file, const toml::node& node, const std::string& name, int64_t min, int64_t max)
@@ -112,12 +120,15 @@ StructurePass read_pass(const TomlFile& file, const toml::node& node, const Stru
     pass.shader = structure.folder / toml_text(file, shader, "shader of " + owner);
     if (!fs::exists(pass.shader))
         throw_spec_error("{}: shader '{}' is not there", toml_place(file, shader), short_path(pass.shader));
+    if (const toml::node* style = table.get("style"))
+        pass.style = read_word(file, *style, "style of " + owner, "pass style", pass_styles);
     pass.per     = read_rule(file, table, owner, pass_rules);
     pass.tile_px = read_tile_px(file, table, owner, pass.per);
-    for (const char* key : {"first_level", "last_level", "cells_per_invocation"})
+    for (const char* key : {"first_level", "last_level", "levels_per_dispatch", "cells_per_invocation"})
         if (const toml::node* given = table.get(key); given != nullptr && pass.per != SizeRule::level)
             throw_spec_error("{}: '{}' belongs to per = \"level\"", toml_place(file, *given), key);
-    pass.first_level = read_optional(file, table, "first_level", owner, 1, 1, most_levels);
+    pass.first_level         = read_optional(file, table, "first_level", owner, 1, 1, most_levels);
+    pass.levels_per_dispatch = read_optional(file, table, "levels_per_dispatch", owner, 1, 1, most_levels);
     if (const toml::node* last = table.get("last_level")) {
         if (last->is_string()) {
             const std::string name = toml_text(file, *last, "last_level");
@@ -138,6 +149,18 @@ StructurePass read_pass(const TomlFile& file, const toml::node& node, const Stru
                 read_integer(file, *pair->get(static_cast<size_t>(axis)), "cells_per_invocation", 1, most_cells);
     }
     return pass;
+}
+
+/// A device runs the passes of one style.
+void require_both_styles(const TomlFile& file, const toml::node& passes, const Structure& structure)
+{
+    const auto has = [&](PassStyle style) {
+        return std::ranges::find(structure.passes, style, &StructurePass::style) != structure.passes.end();
+    };
+    const bool serial = has(PassStyle::serial);
+    if (serial != has(PassStyle::parallel))
+        throw_spec_error("{}: passes of style \"{}\" need others of style \"{}\" that make the same",
+                         toml_place(file, passes), serial ? "serial" : "parallel", serial ? "parallel" : "serial");
 }
 
 } // namespace
@@ -161,6 +184,7 @@ Structure load_structure(const fs::path& folder)
     const toml::array* list   = passes.as_array();
     if (list == nullptr || list->empty()) toml_refuse(file, passes, "passes", "a list of tables [[passes]]");
     for (const toml::node& pass : *list) structure.passes.push_back(read_pass(file, pass, structure));
+    require_both_styles(file, passes, structure);
     return structure;
 }
 

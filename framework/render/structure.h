@@ -2,6 +2,7 @@
 // which shaders build it; read.glsl is how techniques read it (docs/writing_a_technique.md).
 #pragma once
 
+#include "gpu/gpu.h"
 #include "render/parameter.h"
 
 #include <glm/glm.hpp>
@@ -35,10 +36,12 @@ struct StructureBuffer {
 
 struct StructurePass {
     std::filesystem::path          shader;
+    PassStyle                      style       = PassStyle::by_device; // serial, parallel: only where passes are
     SizeRule                       per         = SizeRule::pixel;
     int                            tile_px     = 0;  // per tile
     int                            first_level = 1;  // per level
     std::variant<int, std::string> last_level  = 31; // a number, or the name of an integer parameter
+    int                            levels_per_dispatch = 1;
     glm::ivec2                     cells_per_invocation{1, 1};
 };
 

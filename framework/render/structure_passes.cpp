@@ -63,6 +63,11 @@ std::string group_fetches_key(const Structure& structure) { return structure.id 
 
 bool is_per_ray(const StructurePass& pass) { return pass.per == SizeRule::ray_group; }
 
+bool is_of_style(const StructurePass& pass, const GpuInfo& device)
+{
+    return pass.style == PassStyle::by_device || (pass.style == PassStyle::parallel) == (device.lanes > 1);
+}
+
 bool builds_per_ray(const Structure& structure) { return std::ranges::any_of(structure.passes, is_per_ray); }
 
 /// `id` and all that it reads.
@@ -122,8 +127,9 @@ void add_dispatches(StructureDispatch& dispatch, const PreparedFrame& frame, con
     case SizeRule::tile: dispatch.groups.push_back(groups_of_8(tiles_of(size_px, pass.tile_px))); break;
     case SizeRule::ray_group: dispatch.per_ray = true; break;
     case SizeRule::level:
-        for (int level = pass.first_level; level <= last_level(frame, pass, size_px); ++level) {
-            dispatch.levels.push_back(level);
+        for (int level = pass.first_level, last = last_level(frame, pass, size_px); level <= last;
+             level += pass.levels_per_dispatch) {
+            dispatch.levels.emplace_back(level, std::min(level + pass.levels_per_dispatch - 1, last));
             dispatch.groups.push_back(groups_of_8((level_size(size_px, level) - 1) / pass.cells_per_invocation + 1));
         }
         break;
@@ -154,11 +160,12 @@ StructureDispatch make_dispatch(Gpu& gpu, const PreparedFrame& frame, const Stru
     add_surface(source, frame.settings.trace);
     source.defines.merge(precision_defines(gpu, is_per_ray(pass) ? rays.precision : Precision::float32));
     source.defines.merge(store_defines_of(gpu, structure, layer, rays));
+    if (is_per_ray(pass)) source.defines.merge(ray_list_defines(gpu, rays));
     if (is_per_ray(pass) && bindings.contains("Work")) source.defines.emplace("COUNT_WORK", "1");
     StructureDispatch dispatch;
     dispatch.pass = make_compute_pass(gpu, compile_shader(gpu, source), bindings,
                                       constants_of(frame, is_per_ray(pass) ? rays.precision : Precision::float32),
-                                      pass.per == SizeRule::level ? sizeof(int32_t) : 0);
+                                      pass.per == SizeRule::level ? sizeof(glm::ivec2) : 0);
     add_dispatches(dispatch, frame, pass, layer.view.size_px);
     return dispatch;
 }
@@ -175,7 +182,7 @@ std::vector<StructurePasses> make_structures(Gpu& gpu, const PreparedFrame& fram
             bindings.insert_or_assign("group_fetches_stored", fetches);
         }
         for (const StructurePass& pass : structure.passes)
-            if (is_per_ray(pass) == per_ray)
+            if (is_per_ray(pass) == per_ray && is_of_style(pass, gpu.info))
                 passes.dispatches.push_back(make_dispatch(gpu, frame, structure, pass, layer, rays, bindings));
         structures.push_back(std::move(passes));
     }

@@ -20,8 +20,8 @@ using StructureBuffers = std::map<std::string, Buffer>; // by "structure.buffer"
 struct StructureDispatch {
     ComputePass             pass;
     bool                    per_ray = false; // the list of rays says how many groups
-    std::vector<int>        levels;          // per level: each is pushed
-    std::vector<glm::uvec3> groups;          // of each level, or of the only dispatch
+    std::vector<glm::ivec2> levels;          // per level: the first and the last that each dispatch makes, pushed
+    std::vector<glm::uvec3> groups;          // of each dispatch
 };
 
 /// A structure's passes on one depth, or on one list of rays. None where it has none of that kind.

@@ -8,13 +8,12 @@
 #include "api/view.glsl"
 #include "api/slab.glsl"
 #include "layout/load_cell.glsl"
+#include "layout/normal_image.glsl"
+#include "api/ray_limits.glsl"
 #include "trace/work_counters.glsl"
 #include "trace/visits.glsl"
 
 layout(constant_id = CONSTANT_BEHIND) const int behind_rule = 0; // BEHIND_*
-layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1;
-
-layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image;
 
 struct Ray
 {

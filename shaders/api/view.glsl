@@ -1,4 +1,6 @@
 // The camera of the G-buffer (core/view.h) and its mappings between view space and pixels.
+#ifndef SSRLAB_VIEW
+#define SSRLAB_VIEW
 #include "api/real.glsl"
 #include "layout/shared.h"
 
@@ -44,3 +46,4 @@ ivec2 unpack_pixel(uint packed) { return ivec2(packed, packed >> PIXEL_BITS) & (
 int unpack_status(uint packed) { return number_to_status(int(packed >> (2 * PIXEL_BITS))); }
 
 int unpack_layer(uint packed) { return number_to_layer(int(packed >> (2 * PIXEL_BITS))); }
+#endif

@@ -3,6 +3,7 @@
 #include "trace/ray_list.glsl"
 #include "trace/hit_list.glsl"
 #include "rays/segment.glsl"
+#include "rays/reflecting.glsl"
 #include "pass/parameters"
 #include "passes/ray_colour.glsl"
 #extension GL_KHR_shader_subgroup_ballot : require

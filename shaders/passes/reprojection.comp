@@ -6,6 +6,7 @@
 #include "api/view.glsl"
 #include "rays/reflecting.glsl"
 #include "rays/lobe_threshold.glsl"
+#include "api/ray_limits.glsl"
 #include "passes/camera.glsl"
 #include "pass/parameters"
 #include "passes/shown_hits.glsl"
@@ -13,8 +14,6 @@
 #include "api/reprojection_api.glsl"
 #include "reprojection/parameters"
 #include "reprojection/reproject.glsl"
-
-layout(constant_id = CONSTANT_RAY_OFFSET_M) const float ray_offset_m = 0;
 
 layout(local_size_x = RAYS_PER_GROUP) in;
 layout(set = 0, binding = 13, rgba32f) uniform writeonly image2D reprojected_image; // px to where it was, ray length, object that was hit

@@ -1,7 +1,9 @@
 // Which pixels reflect: those with a surface, a usable normal and a material that reflects. After view.glsl.
+#ifndef SSRLAB_REFLECTING
+#define SSRLAB_REFLECTING
 #include "layout/load_depth.glsl"
 #include "layout/frame_shared.h"
-layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image;    // xyz = view-space normal, w = roughness
+#include "layout/normal_image.glsl"
 layout(set = 0, binding = 3, rgba16f) uniform readonly image2D material_image;  // rgb = base colour, a = metallic
 layout(set = 0, binding = 60, r32f) uniform readonly image2D dielectric_image;  // reflectance at normal incidence of what is not metal
 
@@ -29,3 +31,4 @@ bool reflects(ivec2 pixel)
 {
     return has_surface(pixel) && material_reflects(pixel);
 }
+#endif

@@ -1,12 +1,12 @@
 // A ray in screen space: the segment from a pixel's surface, clipped to the near plane, the image and the maximum distance
 // (docs/hit_contract.md). Set up in double-floats (df64): its ends are the nearest floats to those of exact numbers, nearly always.
+#ifndef SSRLAB_SEGMENT
+#define SSRLAB_SEGMENT
 #include "api/view.glsl"
 #include "rays/double_float.glsl"
-#include "rays/reflecting.glsl"
+#include "layout/normal_image.glsl"
 #include "layout/packed_ray.glsl"
-
-layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1;
-layout(constant_id = CONSTANT_RAY_OFFSET_M) const real ray_offset_m = 0;
+#include "api/ray_limits.glsl"
 
 struct Segment
 {
@@ -154,3 +154,4 @@ PackedRay segment_to_packed_ray(Segment segment, ivec2 pixel)
 {
     return PackedRay(segment.origin, segment.length_m, segment.delta, pack_pixel(pixel, segment.end_status));
 }
+#endif

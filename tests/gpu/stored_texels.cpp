@@ -37,8 +37,9 @@ Stored frame_of(const Technique& technique, const FrameSettings& settings, const
     const auto    intervals  = structures ? structures->find("ray_packets.intervals") : decltype(structures->end()){};
     const bool    packets    = structures && intervals != structures->end();
     const size_t  groups     = (rays - 1) / RAYS_PER_GROUP + 1;
+    const size_t  ray_bytes  = frame->rays->rays_of_pixels > 0 ? sizeof(uint32_t) : sizeof(PackedRay<float>);
     return {.cells     = download_as<char>(gpu, cells, cells.bytes),
-            .rays      = download_as<char>(gpu, frame->rays->list, rays * sizeof(PackedRay<float>)),
+            .rays      = download_as<char>(gpu, frame->rays->list, rays * ray_bytes),
             .hits      = download_as<char>(gpu, frame->rays->hits, rays * sizeof(PackedHit<float>)),
             .intervals = packets ? download_as<char>(gpu, intervals->second, groups * 4 * sizeof(glm::vec2))
                                  : std::vector<char>{},
@@ -89,6 +90,30 @@ TEST(StoredTexels, AreTheSameInStructuresAndLayers)
     FrameSettings settings;
     settings.trace.layers = std::min(3, most_layers());
     for (const char* id : {"hiz_packets", "quadtree"}) expect_alike(id, settings);
+}
+
+TEST(StoredTexels, OfHitsAreTheSameWhateverTheListOfRaysHolds)
+{
+    const auto alike = [](const std::string& id, const ParameterValues& passes, bool parallel, int layers = 1) {
+        FrameSettings settings;
+        settings.trace.layers                   = layers;
+        settings.trace.dielectric_max_roughness = 1;
+        for (const auto& [name, value] : passes) settings.passes.at(name) = value;
+        const Way    way{true, false, parallel};
+        const Stored rays = frame_of(technique(id), settings, way);
+        settings.passes.insert_or_assign("ray_list", choice_value(RayList::pixels));
+        const Stored pixels = frame_of(technique(id), settings, way);
+        EXPECT_EQ(pixels.rays.size() * sizeof(PackedRay<float>), rays.rays.size() * sizeof(uint32_t));
+        EXPECT_EQ(pixels.hits, rays.hits);
+        EXPECT_EQ(pixels.intervals, rays.intervals);
+        EXPECT_EQ(pixels.shaded, rays.shaded);
+    };
+    alike("hiz", {}, false);
+    alike("hiz_packets", {{"rays_per_pixel", 3}}, true, std::min(2, most_layers()));
+    alike("hiz_waves", {chosen(Gloss::stochastic), {"rays_per_pixel", 2}}, false);
+    alike("linear", {chosen(BounceMode::direct), {"bounces", 2}, chosen(Gloss::stochastic)}, false);
+    alike("dda", {{"hidden_layer", 1}, chosen(TraceResolution::half)}, false);
+    alike("quadtree", {chosen(BounceMode::history)}, false);
 }
 
 } // namespace

@@ -169,6 +169,21 @@ TEST(Rows, RepeatsFillTheBudgetWithinTheirBounds)
     EXPECT_EQ(repeats_for(0, measure), 30);
 }
 
+TEST(Rows, AFastGpuHasSeveralFramesInASubmit)
+{
+    GpuInfo gpu, cpu;
+    gpu.type = "DiscreteGpu";
+    cpu.type = "Cpu";
+    MeasureSettings measure;
+    EXPECT_EQ(frames_for(2, measure, gpu), 3);
+    EXPECT_EQ(frames_for(6, measure, gpu), 1);
+    EXPECT_EQ(frames_for(0, measure, gpu), 64);
+    EXPECT_EQ(frames_for(0.001, measure, cpu), 1);
+    measure.frames_per_submit = 4;
+    EXPECT_EQ(frames_for(6, measure, gpu), 4);
+    EXPECT_EQ(frames_for(6, measure, cpu), 4);
+}
+
 TEST(Rows, SavedTimeIsTheMedianOfItsPairsAndEmptyWithoutAny)
 {
     MeasuredRun measured;

@@ -162,8 +162,8 @@ TEST(Spec, TargetsAgainstEveryMistake)
 
 TEST(Spec, EveryMeasureFieldAgainstEveryMistake)
 {
-    for (const char* field : {"seed", "warmup_s", "min_repeats", "max_repeats", "budget_s", "truth", "image_errors",
-                              "double_twin", "pictures", "saved_time"}) {
+    for (const char* field : {"seed", "warmup_s", "min_repeats", "max_repeats", "budget_s", "frames_per_submit",
+                              "truth", "image_errors", "double_twin", "pictures", "saved_time"}) {
         for (const char* value : {"\"x\"", "[]", "nan", "-1", "{}"}) {
             EXPECT_THAT(error_of(with_line(fmt::format("[measure]\n{} = {}", field, value))),
                         HasSubstr(fmt::format(".toml:4: '{}' must be", field)))

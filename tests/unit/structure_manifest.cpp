@@ -42,10 +42,16 @@ bounds = { per = "ray_group", type = "real2", count = 4 }
 cells  = { per = "depth_cell" }
 [[passes]]
 shader = "build.comp"
+style = "serial"
 per = "level"
 first_level = 2
 last_level = "levels"
 cells_per_invocation = [2, 1]
+[[passes]]
+shader = "build.comp"
+style = "parallel"
+per = "level"
+levels_per_dispatch = 5
 [[passes]]
 shader = "build.comp"
 per = "ray_group"
@@ -59,11 +65,16 @@ per = "ray_group"
     EXPECT_EQ(structure.buffers[1].name, "bounds"); // as declared
     EXPECT_EQ(structure.buffers[1].count, 4);
     EXPECT_EQ(structure.buffers[2].per, SizeRule::depth_cell);
-    ASSERT_EQ(structure.passes.size(), 2U);
+    ASSERT_EQ(structure.passes.size(), 3U);
+    EXPECT_EQ(structure.passes[0].style, PassStyle::serial);
+    EXPECT_EQ(structure.passes[0].levels_per_dispatch, 1);
     EXPECT_EQ(structure.passes[0].first_level, 2);
     EXPECT_EQ(std::get<std::string>(structure.passes[0].last_level), "tiles.levels");
     EXPECT_EQ(structure.passes[0].cells_per_invocation, glm::ivec2(2, 1));
-    EXPECT_EQ(structure.passes[1].per, SizeRule::ray_group);
+    EXPECT_EQ(structure.passes[1].style, PassStyle::parallel);
+    EXPECT_EQ(structure.passes[1].levels_per_dispatch, 5);
+    EXPECT_EQ(structure.passes[2].per, SizeRule::ray_group);
+    EXPECT_EQ(structure.passes[2].style, PassStyle::by_device);
 }
 
 TEST(StructureManifest, MistakesAreNamedWithFileAndLine)
@@ -96,7 +107,13 @@ TEST(StructureManifest, MistakesAreNamedWithFileAndLine)
         {head + buffer + "[[passes]]\nshader = \"build.comp\"\nper = \"level\"\nlast_level = \"levels\"\n",
          ":8: 'last_level' names 'levels', which is no integer parameter of tiles"},
         {head + buffer + "[[passes]]\nshader = \"build.comp\"\nper = \"level\"\nfirst_level = 0\n",
-         ":8: 'first_level of a pass of tiles' must be an integer in [1, 31]"}};
+         ":8: 'first_level of a pass of tiles' must be an integer in [1, 31]"},
+        {head + buffer + "[[passes]]\nshader = \"build.comp\"\nper = \"pixel\"\nlevels_per_dispatch = 2\n",
+         ":8: 'levels_per_dispatch' belongs to per = \"level\""},
+        {head + buffer + "[[passes]]\nshader = \"build.comp\"\nper = \"pixel\"\nstyle = \"wide\"\n",
+         ":8: unknown pass style 'wide' (known: parallel, serial)"},
+        {head + buffer + "[[passes]]\nshader = \"build.comp\"\nper = \"pixel\"\nstyle = \"serial\"\n",
+         ":5: passes of style \"serial\" need others of style \"parallel\" that make the same"}};
     const StructureDir dir;
     for (const Mistake& mistake : mistakes) {
         const std::string message = message_of<SpecError>([&] { load_structure(dir.add("tiles", mistake.manifest)); });

@@ -19,6 +19,7 @@ struct ChoiceNames {
 
 PASS_CHOICE(PassSet, pass_set, all, shading)
 PASS_CHOICE(TraceResolution, trace_resolution, full, half, quarter)
+PASS_CHOICE(RayList, ray_list, rays, pixels)
 PASS_CHOICE(HitShading, hit_shading, diffuse, lit, mirrored)
 PASS_CHOICE(ViewerFade, viewer_fade, off, linear, cut, smooth)
 PASS_CHOICE(EdgeFade, edge_fade, off, manhattan, linear, squared, border)

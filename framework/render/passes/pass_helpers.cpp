@@ -80,6 +80,7 @@ ComputePass make_composed_pass(Gpu& gpu, const PreparedFrame& frame, ShaderSourc
     add_parameters(constants, pass_parameters(), frame.settings.passes, CONSTANT_PASSES);
     add_parameters(constants, own, frame.settings.passes, CONSTANT_REPROJECTION);
     Bindings bindings = more;
+    if (!bindings.contains("Rays")) source.defines.merge(ray_list_defines(gpu, *frame.rays));
     bindings.merge(bindings_of(buffers, *frame.rays));
     bindings.insert({{"View", buffers.view},
                      {"radiance_image", buffers.gbuffer->radiance},

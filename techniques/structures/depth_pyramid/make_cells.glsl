@@ -1,6 +1,8 @@
-// How cells are made; level_of_pixels.comp and level_of_cells.comp include it. A cell (i, j) of level L covers exactly the pixels
+// How cells are made; cells_of_pixels.glsl and cells_of_cells.glsl include it. A cell (i, j) of level L covers exactly the pixels
 // [i << L, (i + 1) << L) x [j << L, (j + 1) << L): cell = pixel >> level at any image size, odd, prime or 1 x N (level sizes are rounded up, not down
-// as in mip chains). An invocation makes two cells side by side: fewer reads and writes. The second may lie beyond the level: that place belongs to none.
+// as in mip chains). Two cells side by side are made at once: fewer reads and writes. The second may lie beyond the level: that place belongs to none.
+#ifndef SSRLAB_MAKE_CELLS
+#define SSRLAB_MAKE_CELLS
 #include "api/view.glsl"
 #include "api/slab.glsl"
 #include "api/held.glsl"
@@ -8,9 +10,6 @@
 #include "api/structure_api.glsl"
 #include "layout/cell_pairs.glsl"
 #include "structure/parameters"
-
-layout(local_size_x = 8, local_size_y = 8) in;
-layout(push_constant, scalar) uniform Push { int level; };
 
 // The bits of a pixel's front and back, or of a cell's; nearest < farthest where there is nothing to hit.
 struct Range
@@ -91,7 +90,13 @@ uvec2 finished(uvec2 cell)
     return depth_pyramid_kind == depth_pyramid_kind_occupancy ? cell : uvec2(cell.x, bins_between(0, findMSB(cell.y)));
 }
 
-// Cells of the level, and the first of the two that this invocation makes.
-ivec2 size = level_size(level), cell = ivec2(2, 1) * ivec2(gl_GlobalInvocationID.xy);
-
-void store_cells(uvec4 cells) { store_pair(pair_index(cell, pyramid_root >> level), cells); }
+// Quarters two by two.
+uvec2 cell_of_quarters(uvec4 upper, uvec4 lower)
+{
+    Range range = unite(unite(cell_range(upper.xy), cell_range(upper.zw)), unite(cell_range(lower.xy), cell_range(lower.zw)));
+    uvec2 cell  = cell_of_range(range);
+    cell.y      = bins_of_quarter(cell, upper.xy) | bins_of_quarter(cell, upper.zw);
+    cell.y |= bins_of_quarter(cell, lower.xy) | bins_of_quarter(cell, lower.zw);
+    return finished(cell);
+}
+#endif
