@@ -66,6 +66,18 @@ class Test(Case):
                 covered += ratio.low <= 1 <= ratio.high
             self.assertGreaterEqual(covered / 1500, 0.95 - 0.012, count)
 
+    def test_interval_covers_where_neighbours_correlate(self):
+        random = np.random.default_rng(6)
+        covered = 0
+        for _ in range(1000):
+            noise = 0.01 * random.standard_t(3, 120)
+            for i in range(1, 120):
+                noise[i] += 0.3 * noise[i - 1]
+            ratio = pairs.paired_ratio(series(np.exp(noise[20:])), series([1.0] * 100))
+            self.assertEqual(ratio.pairs, 100)
+            covered += ratio.low <= 1 <= ratio.high
+        self.assertGreaterEqual(covered / 1000, 0.95)
+
     def results(self, extra_time=0.0):
         """hiz 1 ms; dda 4 ms; linear 8, 20, 22, 90 ms at recalls 0.5, 0.98, 0.991, 0.999. linear_binary misses."""
         rows = [("h", "hiz", "", 1, 1.0, 0.9), ("d", "dda", "", 4, 1.0, 0.9), ("l1", "linear", 100, 8, 0.5, 0.8),
