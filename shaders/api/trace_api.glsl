@@ -9,7 +9,6 @@
 #include "api/slab.glsl"
 #include "layout/load_cell.glsl"
 #include "layout/normal_image.glsl"
-#include "api/ray_limits.glsl"
 #include "trace/work_counters.glsl"
 #include "trace/visits.glsl"
 

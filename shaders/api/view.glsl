@@ -1,10 +1,10 @@
 // The camera of the G-buffer (core/view.h) and its mappings between view space and pixels.
-#ifndef SSRLAB_VIEW
-#define SSRLAB_VIEW
 #include "api/real.glsl"
 #include "layout/shared.h"
 
 layout(constant_id = CONSTANT_ORTHOGRAPHIC) const int orthographic = 0;
+layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1; // where rays end
+layout(constant_id = CONSTANT_RAY_OFFSET_M) const real ray_offset_m = 0;     // how far along its direction a ray starts
 
 layout(set = 0, binding = 0, scalar) uniform View
 {
@@ -46,4 +46,3 @@ ivec2 unpack_pixel(uint packed) { return ivec2(packed, packed >> PIXEL_BITS) & (
 int unpack_status(uint packed) { return number_to_status(int(packed >> (2 * PIXEL_BITS))); }
 
 int unpack_layer(uint packed) { return number_to_layer(int(packed >> (2 * PIXEL_BITS))); }
-#endif

@@ -1,9 +1,9 @@
 // Mixes what a further bounce found, or the environment where it found nothing, into the reflection that it belongs to: what the reflector
 // where the bounce began shows with it, in the place of what it shows without, times what that still weighs.
 #include "layout/workgroups.glsl"
+#include "api/view.glsl"
 #include "trace/ray_list.glsl"
 #include "trace/hit_list.glsl"
-#include "api/view.glsl"
 #include "rays/reflecting.glsl"
 #include "pass/parameters"
 #include "passes/ray_colour.glsl"

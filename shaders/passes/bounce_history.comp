@@ -1,8 +1,8 @@
 // Where a ray hit a surface that reflects, the colour is that surface's own with its reflection of the previous frame, as the camera saw it.
 #include "layout/workgroups.glsl"
+#include "api/view.glsl"
 #include "trace/ray_list.glsl"
 #include "trace/hit_list.glsl"
-#include "api/view.glsl"
 #include "rays/reflecting.glsl"
 #include "pass/parameters"
 #include "passes/ray_colour.glsl"

@@ -1,8 +1,8 @@
 // Lists the rays of reflecting pixels that found nothing, as they are, to be traced in the second layer.
 #include "layout/workgroups.glsl"
+#include "api/view.glsl"
 #include "trace/ray_list.glsl"
 #include "trace/hit_list.glsl"
-#include "api/view.glsl"
 #include "rays/reflecting.glsl"
 #extension GL_KHR_shader_subgroup_ballot : require
 

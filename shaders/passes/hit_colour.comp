@@ -1,8 +1,8 @@
 // The colour that a ray brings back, and how much it weighs: rgb and weight of a pixel's reflection, the mean over the pixel's rays.
 #include "layout/workgroups.glsl"
+#include "api/view.glsl"
 #include "trace/ray_list.glsl"
 #include "trace/hit_list.glsl"
-#include "api/view.glsl"
 #include "rays/reflecting.glsl"
 #include "pass/parameters"
 #include "passes/ray_colour.glsl"

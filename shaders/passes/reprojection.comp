@@ -1,12 +1,11 @@
 // Where each pixel's reflection was in the frame before, by the strategy that the framework composes in (techniques/reprojections/): the mean over the
 // pixel's rays that hit and were seen. Where all rays missed, the environment stands for what they met: it is infinitely far.
 #include "layout/workgroups.glsl"
+#include "api/view.glsl"
 #include "trace/ray_list.glsl"
 #include "trace/hit_list.glsl"
-#include "api/view.glsl"
 #include "rays/reflecting.glsl"
 #include "rays/lobe_threshold.glsl"
-#include "api/ray_limits.glsl"
 #include "passes/camera.glsl"
 #include "pass/parameters"
 #include "passes/shown_hits.glsl"

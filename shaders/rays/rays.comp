@@ -1,9 +1,7 @@
 // The list of rays: those of each pixel that is marked in a listed tile, one pixel's after the other's. Other pixels leave no trace in it. It holds
 // the rays, ready to trace, or with RAYS_OF_PIXELS their pixels alone (trace/ray_list.glsl).
-#ifdef RAYS_OF_PIXELS
 #include "api/view.glsl"
-#include "layout/texels.glsl"
-#else
+#ifndef RAYS_OF_PIXELS
 #include "rays/pixel_ray.glsl"
 #endif
 #include "rays/tiles.glsl"

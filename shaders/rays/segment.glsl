@@ -1,12 +1,10 @@
 // A ray in screen space: the segment from a pixel's surface, clipped to the near plane, the image and the maximum distance
-// (docs/hit_contract.md). Set up in double-floats (df64): its ends are the nearest floats to those of exact numbers, nearly always.
+// (docs/hit_contract.md). After api/view.glsl. Set up in double-floats (df64): its ends are the nearest floats to those of exact numbers, nearly always.
 #ifndef SSRLAB_SEGMENT
 #define SSRLAB_SEGMENT
-#include "api/view.glsl"
 #include "rays/double_float.glsl"
 #include "layout/normal_image.glsl"
 #include "layout/packed_ray.glsl"
-#include "api/ray_limits.glsl"
 
 struct Segment
 {

@@ -1,8 +1,8 @@
 // How the rays of the pixels that reflect ended, for the frame's plan.
 #include "layout/workgroups.glsl"
+#include "api/view.glsl"
 #include "trace/ray_list.glsl"
 #include "trace/hit_list.glsl"
-#include "api/view.glsl"
 #include "rays/reflecting.glsl"
 #extension GL_KHR_shader_subgroup_arithmetic : require
 
