@@ -55,6 +55,8 @@ struct Import {
     template <typename... Args> [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const;
 };
 
+[[noreturn]] void refuse_triangles(const Import& import, uint64_t triangles);
+
 /// Reads and parses the file; refuses what the parser itself would let through or choke on.
 void parse_file(Import& import, const std::filesystem::path& file);
 
