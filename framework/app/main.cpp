@@ -8,6 +8,7 @@
 #include "app/shaders_command.h"
 #include "core/error.h"
 #include "core/names.h"
+#include "core/printable.h"
 #include "core/version.h"
 #include "harness/merge_results.h"
 #include "harness/run_experiment.h"
@@ -134,6 +135,9 @@ void add_presentation_options(CLI::App& command, ssrlab::RenderOptions& options)
                   "Without reflections, with the traced and with the true ones, in one picture with labels")
         ->excludes(truth);
 }
+
+/// One line in a terminal, whatever a file holds.
+void say_error(const std::string& what) { std::fprintf(stderr, "ssrlab: %s\n", ssrlab::printable(what).c_str()); }
 
 } // namespace
 
@@ -294,7 +298,7 @@ int main(int argc, char** argv)
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (const std::string wrong = unknown_command(app, argc, argv); !wrong.empty()) {
-            std::fprintf(stderr, "ssrlab: %s\n", wrong.c_str());
+            say_error(wrong);
             return 2;
         }
         return app.exit(error) == 0 ? 0 : 2;
@@ -303,10 +307,10 @@ int main(int argc, char** argv)
         name_in_environment(common.technique_dirs);
         return command();
     } catch (const SpecError& error) {
-        std::fprintf(stderr, "ssrlab: %s\n", error.what());
+        say_error(error.what());
         return 2;
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "ssrlab: %s\n", error.what());
+        say_error(error.what());
         return 1;
     }
 }

@@ -1,6 +1,7 @@
 #include "app/stage.h"
 
 #include "core/error.h"
+#include "core/printable.h"
 #include "core/size.h"
 #include "harness/experiment.h"
 
@@ -34,7 +35,8 @@ Stage prepare_stage(const CommonOptions& common, const PictureOptions& options)
     const glm::ivec2 size = options.size.empty() ? glm::ivec2(0) : size_option(options.size);
     stage.view            = view_at(stage.scene, options.view, size, options.at);
     if (!common.quiet)
-        for (const std::string& warning : stage.scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+        for (const std::string& warning : stage.scene.warnings)
+            std::fprintf(stderr, "warning: %s\n", printable(warning).c_str());
     stage.gpu = open_gpu(common.gpu);
     if (!stage.scene.frame) stage.uploaded = upload_scene(stage.gpu, stage.scene);
     stage.gbuffer = stage.scene.frame

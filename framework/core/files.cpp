@@ -10,8 +10,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 
 namespace ssrlab {
 namespace {
@@ -27,36 +25,53 @@ void sync_folder(const fs::path& folder)
     ::close(fd);
 }
 
+/// Open for reading. A pipe would wait for a writer that never comes, a device may have no end.
+struct RegularFile {
+    int      descriptor = -1;
+    uint64_t bytes      = 0;
+
+    explicit RegularFile(const fs::path& path) : descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC))
+    {
+        if (descriptor < 0) throw_failure("{}: cannot be read: {}", short_path(path), std::strerror(errno));
+        struct stat info {};
+        if (::fstat(descriptor, &info) != 0 || !S_ISREG(info.st_mode)) {
+            ::close(descriptor);
+            throw_failure("{}: not a regular file", short_path(path));
+        }
+        bytes = static_cast<uint64_t>(info.st_size);
+    }
+    RegularFile(const RegularFile&)            = delete;
+    RegularFile& operator=(const RegularFile&) = delete;
+    ~RegularFile() { ::close(descriptor); }
+};
+
 } // namespace
 
 std::string read_file(const fs::path& path)
 {
     if (fs::is_directory(path)) throw_failure("{}: is a folder, not a file", short_path(path));
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) throw_failure("{}: cannot be read: {}", short_path(path), std::strerror(errno));
-    std::ostringstream bytes;
-    bytes << stream.rdbuf();
-    if (stream.bad()) throw_failure("{}: reading failed: {}", short_path(path), std::strerror(errno));
-    return std::move(bytes).str();
+    const RegularFile file(path);
+    std::string       bytes;
+    std::vector<char> block(1 << 16);
+    // To its end: files of /proc say that they are empty.
+    for (;;) {
+        const ssize_t count = ::read(file.descriptor, block.data(), block.size());
+        if (count == 0) return bytes;
+        if (count > 0)
+            bytes.append(block.data(), static_cast<size_t>(count));
+        else if (errno != EINTR)
+            throw_failure("{}: reading failed: {}", short_path(path), std::strerror(errno));
+    }
 }
 
 std::vector<unsigned char> read_regular_file(const fs::path& path, uint64_t limit_bytes)
 {
-    // Without O_NONBLOCK a pipe would wait for a writer that never comes.
-    const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (descriptor < 0) throw_failure("{}: cannot be opened: {}", short_path(path), std::strerror(errno));
-    struct Closer {
-        int descriptor;
-        ~Closer() { ::close(descriptor); }
-    } closer{descriptor};
-    struct stat info {};
-    if (::fstat(descriptor, &info) != 0 || !S_ISREG(info.st_mode))
-        throw_failure("{}: not a regular file", short_path(path));
-    if (static_cast<uint64_t>(info.st_size) > limit_bytes)
-        throw_failure("{}: {} bytes, but at most {} can be loaded", short_path(path), info.st_size, limit_bytes);
-    std::vector<unsigned char> bytes(static_cast<size_t>(info.st_size));
+    const RegularFile file(path);
+    if (file.bytes > limit_bytes)
+        throw_failure("{}: {} bytes, but at most {} can be loaded", short_path(path), file.bytes, limit_bytes);
+    std::vector<unsigned char> bytes(file.bytes);
     for (size_t done = 0; done < bytes.size();) {
-        const ssize_t count = ::read(descriptor, bytes.data() + done, bytes.size() - done);
+        const ssize_t count = ::read(file.descriptor, bytes.data() + done, bytes.size() - done);
         if (count <= 0) throw_failure("{}: cannot be read to its end", short_path(path));
         done += static_cast<size_t>(count);
     }

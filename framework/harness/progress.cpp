@@ -1,5 +1,6 @@
 #include "harness/progress.h"
 
+#include "core/printable.h"
 #include "harness/measured_run.h"
 
 #include <fmt/format.h>
@@ -113,6 +114,6 @@ void Progress::print()
     write((in_place_ ? "\r\033[K" : "") + line + (in_place_ && done_runs_ < total_runs_ ? "" : "\n"));
 }
 
-void Progress::say(const std::string& line) { write((in_place_ ? "\r\033[K" : "") + line + "\n"); }
+void Progress::say(const std::string& line) { write((in_place_ ? "\r\033[K" : "") + printable(line) + "\n"); }
 
 } // namespace ssrlab

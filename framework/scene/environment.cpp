@@ -88,20 +88,23 @@ EnvironmentMap load_environment(const std::filesystem::path& file, double scale,
     const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(name);
     if (!input) throw_failure("{}: expected an .hdr or .exr picture: {}", name, OIIO::geterror());
     const OIIO::ImageSpec& spec = input->spec();
-    if (spec.width != 2 * spec.height || spec.width > max_width_px || spec.depth > 1)
-        throw_failure("{}: expected an equirectangular picture, twice as wide as high and at most {} wide, got {}x{}",
-                      name, max_width_px, spec.width, spec.height);
-    const auto         channels = size_t(spec.nchannels);
+    if (spec.width > max_width_px)
+        throw_spec_error("{}: {}x{} pixels, at most {} wide can be used", name, spec.width, spec.height, max_width_px);
+    if (spec.width < 2 || spec.width != 2 * spec.height || spec.depth > 1)
+        throw_failure("{}: expected an equirectangular picture, twice as wide as high, got {}x{}", name, spec.width,
+                      spec.height);
+    const size_t       channels = spec.nchannels >= 3 ? 3 : 1; // a file may have a thousand
     EnvironmentMap     map;
     std::vector<float> values(size_t(spec.width) * size_t(spec.height) * channels);
     map.size_px = {spec.width, spec.height};
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data()))
+    if (!input->read_image(0, 0, 0, int(channels), OIIO::TypeDesc::FLOAT, values.data()))
         throw_failure("{}: cannot be decoded: {}", name, input->geterror());
     size_t clamped = 0;
+    map.radiance.reserve(values.size() / channels);
     for (size_t i = 0; i < values.size(); i += channels) {
         glm::vec3 radiance(0);
         for (int c = 0; c < 3; ++c) {
-            const float value = values[i + (channels >= 3 ? size_t(c) : 0)] * float(scale);
+            const float value = values[i + (channels == 3 ? size_t(c) : 0)] * float(scale);
             // In this order NaN becomes 0.
             radiance[c] = std::min(std::max(0.0F, value), largest_radiance);
             clamped += !(value <= largest_radiance); // negative values are a camera's noise around black

@@ -21,7 +21,7 @@ inline constexpr size_t   max_objects       = 1'000'000; // of each kind: nodes,
 inline constexpr int      max_json_depth    = 128;
 inline constexpr int      max_node_depth    = 256;
 inline constexpr size_t   max_node_visits   = 1'000'000;
-inline constexpr size_t   max_triangles     = 100'000'000;
+inline constexpr size_t   max_triangles     = 40'000'000; // with all truths 500 bytes each (tests/at_size): 20 GiB
 inline constexpr size_t   max_accessor_rows = 300'000'000;
 inline constexpr size_t   max_poses         = 4'000'000; // baked for animations, 128 bytes each
 
@@ -54,6 +54,8 @@ struct Import {
     void                                          warn(const std::string& text);
     template <typename... Args> [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const;
 };
+
+[[noreturn]] void refuse_triangles(const Import& import, uint64_t triangles);
 
 /// Reads and parses the file; refuses what the parser itself would let through or choke on.
 void parse_file(Import& import, const std::filesystem::path& file);

@@ -175,6 +175,35 @@ void check_buffer_views(const Import& import, const json& root)
     }
 }
 
+/// Corners that an accessor can hold; one that says more than its bytes can is refused when it is read.
+uint64_t corner_count(const Import& import, const json& root, const json& accessor)
+{
+    const json& views = array_of(import, root, "bufferViews");
+    const auto  view  = accessor.find("bufferView");
+    if (view == accessor.end() || !view->is_number_unsigned() || *view >= views.size()) return 0;
+    return std::min(count_of(import, accessor, "count", "/accessors", 0),
+                    count_of(import, views[view->get<size_t>()], "byteLength", "/bufferViews", 0));
+}
+
+/// Before the buffers are read. Instances are counted when they are placed.
+void check_triangle_count(const Import& import, const json& root)
+{
+    const json& accessors = array_of(import, root, "accessors");
+    const auto  member    = [](const json& object, const char* key) {
+        return object.is_object() && object.contains(key) ? object[key] : json();
+    };
+    uint64_t triangles = 0;
+    for (const json& mesh : array_of(import, root, "meshes"))
+        for (const json& primitive : member(mesh, "primitives")) {
+            const json mode = member(primitive, "mode"), indices = member(primitive, "indices");
+            const json accessor = indices.is_null() ? member(member(primitive, "attributes"), "POSITION") : indices;
+            if (mode.is_number() && mode < TINYGLTF_MODE_TRIANGLES) continue; // points and lines
+            if (!accessor.is_number_unsigned() || accessor >= accessors.size()) continue;
+            triangles += corner_count(import, root, accessors[accessor.get<size_t>()]) / 3; // strips and fans have more
+            if (triangles > max_triangles) refuse_triangles(import, triangles);
+        }
+}
+
 bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
                   int size, void*)
 {
@@ -239,6 +268,12 @@ void Import::warn(const std::string& text)
         model.warnings.push_back(fmt::format("{}: {}", fs::path(file).filename().string(), text));
 }
 
+void refuse_triangles(const Import& import, uint64_t triangles)
+{
+    throw_spec_error("{}: {} triangles with all instances, at most {} can be loaded", import.file, triangles,
+                     max_triangles);
+}
+
 fs::path resolve_uri(const fs::path& folder, const std::string& uri)
 {
     const std::string text = percent_decoded(uri);
@@ -268,6 +303,7 @@ void parse_file(Import& import, const fs::path& file)
             array_of(import, root, kind);
         check_uris(import, root, folder);
         check_buffer_views(import, root);
+        check_triangle_count(import, root);
     }
     tinygltf::TinyGLTF parser;
     parser.SetImageLoader(keep_encoded, nullptr);

@@ -4,13 +4,8 @@
 #include "scene/image_file.h"
 #include "scene/load_scene.h"
 #include "scene/mesh_repair.h"
+#include "scene/model_file.h"
 #include "scene/shapes.h"
-
-#include <assimp/config.h>
-#include <assimp/Importer.hpp>
-#include <assimp/material.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 
 #include <algorithm>
 #include <cmath>
@@ -59,124 +54,58 @@ float exponent_to_roughness(float exponent)
     return std::clamp(std::pow(2.0F / (std::max(exponent, 0.0F) + 2.0F), 0.25F), 0.05F, 1.0F);
 }
 
-Material convert_material(Import& import, const aiMaterial& source)
+Material convert_material(Import& import, const FileMaterial& source)
 {
-    Material  material = make_material("", glm::vec3(0.8F), 0, 0.9F);
-    aiString  name;
-    aiColor3D diffuse(0.8F, 0.8F, 0.8F);
-    aiColor3D specular(0, 0, 0);
-    aiColor3D emissive(0, 0, 0);
-    float     exponent = 0;
-    source.Get(AI_MATKEY_NAME, name);
-    source.Get(AI_MATKEY_COLOR_DIFFUSE, diffuse);
-    source.Get(AI_MATKEY_COLOR_SPECULAR, specular);
-    source.Get(AI_MATKEY_COLOR_EMISSIVE, emissive);
-    source.Get(AI_MATKEY_SHININESS, exponent);
-    material.name         = name.C_Str();
+    Material material     = make_material(source.name, source.diffuse, 0, 0.9F);
     material.double_sided = true; // these formats know no front, and their models are often open sheets
-    material.base_colour  = {diffuse.r, diffuse.g, diffuse.b, 1};
-    material.emissive     = {emissive.r, emissive.g, emissive.b};
+    material.emissive     = source.emissive;
     // Many files carry an exponent although the material has no highlight at all.
-    const bool shiny   = std::max({specular.r, specular.g, specular.b}) > 0.01F;
-    material.roughness = shiny ? exponent_to_roughness(exponent) : 0.9F;
-    aiString texture;
-    if (source.GetTexture(aiTextureType_DIFFUSE, 0, &texture) == aiReturn_SUCCESS) {
-        material.base_colour_texture.texture = texture_number(import, texture.C_Str());
-        // Kd beside a texture is often black or grey by accident of the exporter; the picture is the colour.
-        if (material.base_colour_texture.texture >= 0) {
-            material.base_colour = glm::vec4(1);
-            const Texture& used  = import.model.textures[static_cast<size_t>(material.base_colour_texture.texture)];
-            material.alpha_mask  = mean_alpha(used) < 0.999F;
-        }
+    const bool shiny = std::max({source.specular.r, source.specular.g, source.specular.b}) > 0.01F;
+    if (shiny) material.roughness = exponent_to_roughness(source.exponent);
+    if (source.texture.empty()) return material;
+    material.base_colour_texture.texture = texture_number(import, source.texture);
+    // Kd beside a texture is often black or grey by accident of the exporter; the picture is the colour.
+    if (material.base_colour_texture.texture >= 0) {
+        material.base_colour = glm::vec4(1);
+        const Texture& used  = import.model.textures[static_cast<size_t>(material.base_colour_texture.texture)];
+        material.alpha_mask  = mean_alpha(used) < 0.999F;
     }
     return material;
 }
 
 /// Transparent surfaces cannot be in a G-buffer: less than half opaque is left out, the rest is drawn opaque.
-bool left_out(Import& import, const aiMaterial& source, const Material& material)
+bool left_out(Import& import, const FileMaterial& source)
 {
-    float opacity = 1;
-    source.Get(AI_MATKEY_OPACITY, opacity);
-    if (opacity >= 1) return false;
-    const bool out = opacity < 0.5F;
-    warn(import, fmt::format("material '{}' is {:.0f} % opaque: {}", material.name, 100 * opacity,
+    if (!(source.opacity < 1)) return false;
+    const bool out = source.opacity < 0.5F;
+    warn(import, fmt::format("material '{}' is {:.0f} % opaque: {}", source.name, 100 * source.opacity,
                              out ? "left out" : "drawn opaque"));
     return out;
 }
 
-Mesh convert_mesh(const aiMesh& source)
+/// One mesh per material, with its number: exporters cut models into hundreds of pieces.
+void add_meshes(Import& import, std::vector<Mesh> meshes)
 {
-    Mesh mesh;
-    mesh.name        = source.mName.C_Str();
-    mesh.has_normals = source.HasNormals();
-    for (unsigned i = 0; i < source.mNumVertices; ++i) {
-        Vertex vertex{};
-        vertex.normal_ws = {0, 1, 0};
-        vertex.colour    = glm::vec4(1);
-        if (mesh.has_normals) vertex.normal_ws = {source.mNormals[i].x, source.mNormals[i].y, source.mNormals[i].z};
-        if (source.HasTextureCoords(0))
-            // OBJ counts v from the bottom of the image.
-            vertex.uv0 = vertex.uv1 = {source.mTextureCoords[0][i].x, 1 - source.mTextureCoords[0][i].y};
-        mesh.positions_ws.emplace_back(source.mVertices[i].x, source.mVertices[i].y, source.mVertices[i].z);
-        mesh.vertices.push_back(vertex);
-    }
-    for (unsigned i = 0; i < source.mNumFaces; ++i) {
-        const aiFace& face = source.mFaces[i];
-        if (face.mNumIndices != 3) continue; // points and lines
-        if (std::any_of(face.mIndices, face.mIndices + 3, [&](unsigned index) { return index >= source.mNumVertices; }))
-            throw_failure("vertex index out of range in mesh '{}'", mesh.name);
-        mesh.indices.insert(mesh.indices.end(), face.mIndices, face.mIndices + 3);
-    }
-    return mesh;
-}
-
-glm::dmat4 convert_matrix(const aiMatrix4x4& m)
-{
-    return {{m.a1, m.b1, m.c1, m.d1}, {m.a2, m.b2, m.c2, m.d2}, {m.a3, m.b3, m.c3, m.d3}, {m.a4, m.b4, m.c4, m.d4}};
-}
-
-/// One mesh per material: exporters cut models into hundreds of pieces.
-void add_nodes(Import& import, const aiScene& scene)
-{
-    std::vector<std::pair<const aiNode*, glm::dmat4>> pending{{scene.mRootNode, glm::dmat4(1)}};
-    while (!pending.empty()) {
-        const auto [node, parent] = pending.back();
-        const glm::dmat4 to_world = parent * convert_matrix(node->mTransformation);
-        pending.pop_back();
-        for (unsigned i = 0; i < node->mNumMeshes; ++i) {
-            const aiMesh& source = *scene.mMeshes[node->mMeshes[i]];
-            Mesh          mesh   = convert_mesh(source);
-            transform(mesh, to_world);
-            import.dropped_triangles += drop_bad_triangles(mesh);
-            weld_equal_vertices(mesh);
-            if (mesh.has_normals)
-                turn_fronts_to_normals(mesh);
-            else
-                make_smooth_normals(mesh, crease_deg);
-            append(import.model.meshes.at(source.mMaterialIndex), mesh);
-        }
-        for (unsigned i = 0; i < node->mNumChildren; ++i) pending.emplace_back(node->mChildren[i], to_world);
-    }
-}
-
-/// Meshes start as one per material, so that both have the same numbers.
-void add_materials(Import& import, const aiScene& scene)
-{
-    for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
-        Mesh mesh;
+    for (uint32_t i = 0; i < import.model.materials.size(); ++i) {
+        Mesh& mesh    = import.model.meshes.emplace_back();
         mesh.material = i;
-        import.model.materials.push_back(convert_material(import, *scene.mMaterials[i]));
-        mesh.name = import.model.materials.back().name;
-        import.model.meshes.push_back(std::move(mesh));
+        mesh.name     = import.model.materials[i].name;
+    }
+    for (Mesh& mesh : meshes) {
+        import.dropped_triangles += drop_bad_triangles(mesh);
+        weld_equal_vertices(mesh);
+        if (mesh.has_normals)
+            turn_fronts_to_normals(mesh);
+        else
+            make_smooth_normals(mesh, crease_deg);
+        append(import.model.meshes[mesh.material], mesh);
     }
 }
 
-void remove_transparent(Import& import, const aiScene& scene)
+void remove_transparent(Import& import, const std::vector<FileMaterial>& materials)
 {
     for (Mesh& mesh : import.model.meshes)
-        if (!mesh.indices.empty() &&
-            left_out(import, *scene.mMaterials[mesh.material], import.model.materials[mesh.material]))
-            mesh.indices.clear();
+        if (!mesh.indices.empty() && left_out(import, materials[mesh.material])) mesh.indices.clear();
     std::erase_if(import.model.meshes, [](const Mesh& mesh) { return mesh.indices.empty(); });
 }
 
@@ -185,17 +114,12 @@ void remove_transparent(Import& import, const aiScene& scene)
 Model import_model(const fs::path& file)
 {
     Import import;
-    import.file = file;
-    read_regular_file(file, 2ULL << 30); // a clear message, before assimp's
-    Assimp::Importer importer;
-    importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_LIGHTS | aiComponent_CAMERAS);
-    // Never aiProcess_JoinIdenticalVertices: version 5.2.5 crashes in it on real files.
-    const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_RemoveComponent);
-    if (scene == nullptr || scene->mRootNode == nullptr)
-        throw_failure("{}: cannot be read: {}", file.string(), importer.GetErrorString());
-    add_materials(import, *scene);
-    add_nodes(import, *scene);
-    remove_transparent(import, *scene);
+    import.file      = file;
+    FileModel source = read_model_file(file);
+    for (const FileMaterial& material : source.materials)
+        import.model.materials.push_back(convert_material(import, material));
+    add_meshes(import, std::move(source.meshes));
+    remove_transparent(import, source.materials);
     if (import.model.meshes.empty()) throw_failure("{}: no triangle that can be drawn", file.string());
     if (import.dropped_triangles > 0) warn(import, dropped_triangles_text(import.dropped_triangles));
     return std::move(import.model);

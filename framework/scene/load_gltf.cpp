@@ -191,7 +191,7 @@ void place_mesh(Import& import, Walk& walk, int mesh_index, const glm::dmat4& to
         walk.meshes.emplace(mesh_index, read_mesh(import, mesh_index, walk.material_left_out));
     for (Mesh mesh : walk.meshes.at(mesh_index)) {
         import.triangles += mesh.indices.size() / 3;
-        if (import.triangles > max_triangles) import.fail("more than {} triangles with all instances", max_triangles);
+        if (import.triangles > max_triangles) refuse_triangles(import, import.triangles);
         transform(mesh, to_world);
         mesh.motion.poses = poses;
         import.model.meshes.push_back(std::move(mesh));

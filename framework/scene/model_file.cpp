@@ -1,0 +1,284 @@
+#include "scene/model_file.h"
+
+#include "core/error.h"
+#include "core/files.h"
+
+#include <assimp/config.h>
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/Importer.hpp>
+#include <assimp/material.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <type_traits>
+
+namespace ssrlab {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr uint64_t max_file_bytes = 2ULL << 30;
+// Of a processor's time; a megabyte takes a twentieth of a second.
+constexpr uint64_t least_time_s = 5, file_bytes_per_s = 256 << 10;
+
+// ---- Between the processes: values as their bytes, lists behind their length.
+struct Writer {
+    std::string bytes;
+
+    template <typename T> void value(const T& item)
+    {
+        static_assert(std::is_standard_layout_v<T>);
+        bytes.append(reinterpret_cast<const char*>(&item), sizeof item);
+    }
+    template <typename List> void list(const List& items)
+    {
+        value(uint64_t(items.size()));
+        bytes.append(reinterpret_cast<const char*>(items.data()), items.size() * sizeof items[0]);
+    }
+};
+
+struct Reader {
+    std::string_view bytes;
+
+    void take(void* to, size_t count)
+    {
+        if (count > bytes.size()) throw_failure("what assimp made of it is cut");
+        std::memcpy(to, bytes.data(), count);
+        bytes.remove_prefix(count);
+    }
+    template <typename T> void    value(T& item) { take(&item, sizeof item); }
+    template <typename List> void list(List& items)
+    {
+        uint64_t count = 0;
+        value(count);
+        if (count > bytes.size() / sizeof items[0]) throw_failure("what assimp made of it is cut");
+        items.resize(count);
+        if (count > 0) take(items.data(), count * sizeof items[0]);
+    }
+};
+
+/// The same order both ways.
+template <typename Stream, typename Item> void pass_material(Stream& stream, Item& material)
+{
+    stream.list(material.name);
+    stream.list(material.texture);
+    stream.value(material.diffuse);
+    stream.value(material.specular);
+    stream.value(material.emissive);
+    stream.value(material.exponent);
+    stream.value(material.opacity);
+}
+
+template <typename Stream, typename Item> void pass_mesh(Stream& stream, Item& mesh)
+{
+    stream.list(mesh.name);
+    stream.value(mesh.material);
+    stream.value(mesh.has_normals);
+    stream.list(mesh.positions_ws);
+    stream.list(mesh.vertices);
+    stream.list(mesh.indices);
+}
+
+// ---- The process that reads
+/// A pipe beside the model would be waited for.
+struct RegularFiles : Assimp::DefaultIOSystem {
+    bool Exists(const char* file) const override // assimp's own opens it
+    {
+        std::error_code error;
+        return fs::is_regular_file(file, error);
+    }
+    Assimp::IOStream* Open(const char* file, const char* mode) override
+    {
+        return Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+    }
+};
+
+FileMaterial convert_material(const aiMaterial& source)
+{
+    FileMaterial material;
+    const auto   colour = [&](const char* key, unsigned type, unsigned index, glm::vec3& value) {
+        aiColor3D found;
+        if (source.Get(key, type, index, found) == aiReturn_SUCCESS) value = {found.r, found.g, found.b};
+    };
+    aiString text;
+    if (source.Get(AI_MATKEY_NAME, text) == aiReturn_SUCCESS) material.name = text.C_Str();
+    if (source.GetTexture(aiTextureType_DIFFUSE, 0, &text) == aiReturn_SUCCESS) material.texture = text.C_Str();
+    colour(AI_MATKEY_COLOR_DIFFUSE, material.diffuse);
+    colour(AI_MATKEY_COLOR_SPECULAR, material.specular);
+    colour(AI_MATKEY_COLOR_EMISSIVE, material.emissive);
+    source.Get(AI_MATKEY_SHININESS, material.exponent);
+    source.Get(AI_MATKEY_OPACITY, material.opacity);
+    return material;
+}
+
+Mesh convert_mesh(const aiMesh& source)
+{
+    Mesh mesh;
+    mesh.name        = source.mName.C_Str();
+    mesh.material    = source.mMaterialIndex;
+    mesh.has_normals = source.HasNormals();
+    for (unsigned i = 0; i < source.mNumVertices; ++i) {
+        Vertex vertex{};
+        vertex.normal_ws = {0, 1, 0};
+        vertex.colour    = glm::vec4(1);
+        if (mesh.has_normals) vertex.normal_ws = {source.mNormals[i].x, source.mNormals[i].y, source.mNormals[i].z};
+        if (source.HasTextureCoords(0))
+            // OBJ counts v from the bottom of the image.
+            vertex.uv0 = vertex.uv1 = {source.mTextureCoords[0][i].x, 1 - source.mTextureCoords[0][i].y};
+        mesh.positions_ws.emplace_back(source.mVertices[i].x, source.mVertices[i].y, source.mVertices[i].z);
+        mesh.vertices.push_back(vertex);
+    }
+    for (unsigned i = 0; i < source.mNumFaces; ++i) {
+        const aiFace& face = source.mFaces[i];
+        if (face.mNumIndices == 3) // others are points and lines
+            mesh.indices.insert(mesh.indices.end(), face.mIndices, face.mIndices + 3);
+    }
+    return mesh;
+}
+
+glm::dmat4 convert_matrix(const aiMatrix4x4& m)
+{
+    return {{m.a1, m.b1, m.c1, m.d1}, {m.a2, m.b2, m.c2, m.d2}, {m.a3, m.b3, m.c3, m.d3}, {m.a4, m.b4, m.c4, m.d4}};
+}
+
+std::vector<Mesh> placed_meshes(const aiScene& scene)
+{
+    std::vector<Mesh>                                 meshes;
+    std::vector<std::pair<const aiNode*, glm::dmat4>> pending{{scene.mRootNode, glm::dmat4(1)}};
+    while (!pending.empty()) {
+        const auto [node, parent] = pending.back();
+        const glm::dmat4 to_world = parent * convert_matrix(node->mTransformation);
+        pending.pop_back();
+        for (unsigned i = 0; i < node->mNumMeshes; ++i) {
+            meshes.push_back(convert_mesh(*scene.mMeshes[node->mMeshes[i]]));
+            transform(meshes.back(), to_world);
+        }
+        for (unsigned i = 0; i < node->mNumChildren; ++i) pending.emplace_back(node->mChildren[i], to_world);
+    }
+    return meshes;
+}
+
+/// An error's text, empty if there is none, and the model.
+std::string read_here(const fs::path& file)
+{
+    Writer           writer;
+    Assimp::Importer importer;
+    importer.SetIOHandler(new RegularFiles); // which the importer deletes
+    importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_LIGHTS | aiComponent_CAMERAS);
+    // Never aiProcess_JoinIdenticalVertices: version 5.2.5 crashes in it on real files.
+    const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_RemoveComponent);
+    if (scene == nullptr || scene->mRootNode == nullptr) {
+        const std::string error = importer.GetErrorString();
+        writer.list(error.empty() ? "no scene in it" : error);
+        return writer.bytes;
+    }
+    writer.list(std::string());
+    writer.value(uint64_t(scene->mNumMaterials));
+    for (unsigned i = 0; i < scene->mNumMaterials; ++i) {
+        const FileMaterial material = convert_material(*scene->mMaterials[i]);
+        pass_material(writer, material);
+    }
+    const std::vector<Mesh> meshes = placed_meshes(*scene);
+    writer.value(uint64_t(meshes.size()));
+    for (const Mesh& mesh : meshes) pass_mesh(writer, mesh);
+    return writer.bytes;
+}
+
+[[noreturn]] void be_the_reader(const fs::path& file, uint64_t time_s, int to)
+{
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGXCPU, SIGALRM}) std::signal(signal, SIG_DFL);
+    const rlimit time{time_s, time_s + 1}, no_core{0, 0};
+    ::setrlimit(RLIMIT_CPU, &time);
+    ::alarm(static_cast<unsigned>(10 * time_s)); // for what waits and takes no time
+    ::setrlimit(RLIMIT_CORE, &no_core);
+    // What assimp says before it aborts is for its authors.
+    if (const int nothing = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nothing >= 0) ::dup2(nothing, STDERR_FILENO);
+    bool done = false;
+    try {
+        done = write_fully(to, read_here(file));
+    } catch (const std::exception& error) {
+        Writer writer;
+        writer.list(std::string(error.what()));
+        done = write_fully(to, writer.bytes);
+    }
+    ::_exit(done ? 0 : 1); // what the parent has opened stays its own
+}
+
+// ---- The process that asks
+std::string read_to_end(int from)
+{
+    std::string       bytes;
+    std::vector<char> block(1 << 16);
+    for (;;) {
+        const ssize_t count = ::read(from, block.data(), block.size());
+        if (count == 0) return bytes;
+        if (count > 0)
+            bytes.append(block.data(), static_cast<size_t>(count));
+        else if (errno != EINTR)
+            throw_failure("what assimp made of it cannot be read: {}", std::strerror(errno));
+    }
+}
+
+std::string read_elsewhere(const fs::path& file, uint64_t time_s)
+{
+    int ends[2] = {-1, -1};
+    if (::pipe2(ends, O_CLOEXEC) != 0) throw_failure("no pipe to another process: {}", std::strerror(errno));
+    const pid_t reader = ::fork();
+    if (reader == 0) be_the_reader(file, time_s, ends[1]);
+    ::close(ends[1]);
+    std::string bytes;
+    if (reader > 0) bytes = read_to_end(ends[0]);
+    ::close(ends[0]);
+    if (reader < 0) throw_failure("no process to read it: {}", std::strerror(errno));
+    int status = 0;
+    while (::waitpid(reader, &status, 0) < 0 && errno == EINTR) {}
+    const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    if (signal == SIGXCPU || signal == SIGALRM) throw_failure("assimp took more than {} s", time_s);
+    if (signal != 0) throw_failure("assimp fell over it (signal {}, {})", signal, ::strsignal(signal));
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw_failure("assimp ended without an answer");
+    return bytes;
+}
+
+FileModel to_model(Reader reader)
+{
+    std::string error;
+    reader.list(error);
+    if (!error.empty()) throw_failure("{}", error);
+    FileModel model;
+    uint64_t  count = 0;
+    reader.value(count);
+    for (uint64_t i = 0; i < count; ++i) pass_material(reader, model.materials.emplace_back());
+    reader.value(count);
+    for (uint64_t i = 0; i < count; ++i) {
+        Mesh& mesh = model.meshes.emplace_back();
+        pass_mesh(reader, mesh);
+        if (mesh.material >= model.materials.size()) throw_failure("there is no material {}", mesh.material);
+        if (mesh.vertices.size() != mesh.positions_ws.size() ||
+            std::ranges::any_of(mesh.indices, [&](uint32_t index) { return index >= mesh.vertices.size(); }))
+            throw_failure("vertex index out of range in mesh '{}'", mesh.name);
+    }
+    return model;
+}
+
+} // namespace
+
+FileModel read_model_file(const fs::path& file)
+{
+    const uint64_t size = read_regular_file(file, max_file_bytes).size(); // a clear message, before assimp's
+    try {
+        return to_model({read_elsewhere(file, least_time_s + size / file_bytes_per_s)});
+    } catch (const Failure& failure) {
+        throw_failure("{}: cannot be read: {}", file.string(), failure.what());
+    }
+}
+
+} // namespace ssrlab

@@ -1,0 +1,45 @@
+"""tests/at_size: large scenes are drawn and measured, larger ones refused; what does not hold is found."""
+import importlib.machinery
+import importlib.util
+import os
+
+from support import PROGRAM, SOURCE, Case, main
+
+
+def at_size_module():
+    loader = importlib.machinery.SourceFileLoader("at_size", os.path.join(SOURCE, "tests", "at_size"))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("at_size", loader))
+    loader.exec_module(module)
+    return module
+
+
+class Test(Case):
+    def setUp(self):
+        super().setUp()
+        self.at_size = at_size_module()
+        self.trial = self.at_size.Trial(PROGRAM, self.folder)
+
+    def test_triangles_are_counted_and_measured(self):
+        scene, count = self.at_size.waves(self.folder, 20_000)
+        self.assertEqual(count, 2 * 101**2)
+        self.trial.measure("waves", scene)
+        self.assertGreater(self.trial.done[0]["peak_mib"], 20)
+
+    def test_too_many_triangles_are_refused_before_they_are_read(self):
+        scene = self.at_size.more_triangles(self.folder, 40_000_001)
+        self.trial.refuse("more", scene, ["more_triangles.gltf", "40000001 triangles", "at most 40000000"])
+        self.assertLess(self.trial.refused[0]["peak_mib"], 250, "the file has 114 MiB")
+
+    def test_too_wide_an_environment_is_refused(self):
+        self.trial.refuse("wide", self.at_size.surrounded(self.folder, 16386, 64), ["sky.exr", "16386x64", "at most 16384 wide"])
+
+    def test_what_does_not_hold_is_found(self):
+        scene, _ = self.at_size.waves(self.folder, 200)
+        with self.assertRaisesRegex(self.at_size.Broken, "exit code 0 after"):
+            self.trial.refuse("not refused", scene, [])
+        with self.assertRaisesRegex(self.at_size.Broken, "exit code 2"):
+            self.trial.draw("refused", self.at_size.lit(self.folder, 1025))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,81 @@
+// Models over which assimp falls: each must end in a message that names the file, and in time.
+#include "scene/model_file.h"
+
+#include "scene_files.h"
+
+#include "core/error.h"
+
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+namespace ssrlab {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::string obj = "mtllib model.mtl\nv -1 0 0\nv 1 0 0\nv 1 1 0\nusemtl paint\nf 1 2 3\n";
+const std::string mtl = "newmtl paint\nKd 0.8 0.4 0.2\nNs 50\n";
+const std::string ply =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+
+std::string message_of(const std::string& file)
+{
+    try {
+        read_model_file(file);
+    } catch (const Failure& failure) {
+        return failure.what();
+    }
+    ADD_FAILURE() << file << " was read without the expected error";
+    return {};
+}
+
+TEST(ModelFile, HoldsWhatTheFileSays)
+{
+    TempFolder folder;
+    folder.write("model.mtl", mtl + "map_Kd image.png\nd 0.25\n");
+    const FileModel model = read_model_file(folder.write("model.obj", obj));
+    ASSERT_EQ(model.meshes.size(), 1U);
+    const Mesh& mesh = model.meshes[0];
+    EXPECT_EQ(mesh.positions_ws.size(), 3U);
+    EXPECT_EQ(mesh.indices, (std::vector<uint32_t>{0, 1, 2}));
+    EXPECT_FALSE(mesh.has_normals);
+    const FileMaterial& material = model.materials.at(mesh.material);
+    EXPECT_EQ(material.name, "paint");
+    EXPECT_EQ(material.texture, "image.png");
+    EXPECT_EQ(material.diffuse, glm::vec3(0.8F, 0.4F, 0.2F));
+    EXPECT_EQ(material.opacity, 0.25F);
+}
+
+TEST(ModelFile, ACrashOfAssimpIsAnError)
+{
+    TempFolder folder;
+    folder.write("model.mtl", "map_Kd image.png\n" + mtl); // of no material
+    const std::string file = folder.write("model.obj", obj);
+    EXPECT_THAT(message_of(file), AllOf(HasSubstr(file), HasSubstr("assimp fell over it")));
+}
+
+TEST(ModelFile, AnEndlessReadIsAnError)
+{
+    TempFolder        folder;
+    const std::string file = folder.write("model.ply", ply.substr(0, 60));
+    EXPECT_THAT(message_of(file), AllOf(HasSubstr(file), HasSubstr("took more than 5 s")));
+}
+
+TEST(ModelFile, APipeBesideTheModelIsNotWaitedFor)
+{
+    TempFolder folder;
+    ASSERT_EQ(::mkfifo((folder.path() / "model.mtl").c_str(), 0600), 0);
+    EXPECT_EQ(read_model_file(folder.write("model.obj", obj)).meshes.size(), 1U);
+}
+
+TEST(ModelFile, CornersThatAreNotThereAreNamed)
+{
+    TempFolder        folder;
+    const std::string file = folder.write("model.ply", ply + "0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n");
+    EXPECT_THAT(message_of(file), AllOf(HasSubstr(file), HasSubstr("out of range")));
+}
+
+} // namespace
+} // namespace ssrlab
