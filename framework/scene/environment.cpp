@@ -2,6 +2,8 @@
 
 #include "core/error.h"
 #include "core/pixel_index.h"
+#include "scene/exr_header.h"
+#include "scene/load_scene.h"
 #include "scene/scene.h"
 
 #include <OpenImageIO/imageio.h>
@@ -85,10 +87,14 @@ EnvironmentMap load_environment(const std::filesystem::path& file, double scale,
 {
     const std::string name = file.string();
     if (!std::filesystem::is_regular_file(file)) throw_failure("{}: not a regular file", name);
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(name);
-    if (!input) throw_failure("{}: expected an .hdr or .exr picture: {}", name, OIIO::geterror());
-    const OIIO::ImageSpec& spec = input->spec();
-    if (spec.width != 2 * spec.height || spec.width > max_width_px || spec.depth > 1)
+    const bool exr = lower_extension(file) == ".exr";
+    if (exr) check_exr_header(file, name);
+    // By that reader alone: ImageInput::open(name) hands what its own reader refuses to those of all other formats.
+    const auto      input = OIIO::ImageInput::create(exr ? "openexr" : "hdr");
+    OIIO::ImageSpec spec;
+    if (!input || !input->open(name, spec))
+        throw_failure("{}: expected an .hdr or .exr picture: {}", name, input ? input->geterror() : OIIO::geterror());
+    if (spec.width < 1 || spec.width != 2 * spec.height || spec.width > max_width_px || spec.depth > 1)
         throw_failure("{}: expected an equirectangular picture, twice as wide as high and at most {} wide, got {}x{}",
                       name, max_width_px, spec.width, spec.height);
     const auto         channels = size_t(spec.nchannels);

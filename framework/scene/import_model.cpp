@@ -13,9 +13,12 @@
 #include <assimp/scene.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <numeric>
+#include <sstream>
 
 namespace ssrlab {
 namespace fs = std::filesystem;
@@ -180,13 +183,44 @@ void remove_transparent(Import& import, const aiScene& scene)
     std::erase_if(import.model.meshes, [](const Mesh& mesh) { return mesh.indices.empty(); });
 }
 
+/// Before assimp 5.2.5, which ends with a crash where a material file says something of a material before it names one.
+void check_material_file(const fs::path& file)
+{
+    std::error_code error;
+    if (!fs::is_regular_file(file, error)) return;
+    std::istringstream text(read_file(file));
+    int                number = 1;
+    for (std::string line; std::getline(text, line); ++number) {
+        const size_t first = line.find_first_not_of(" \t\r");
+        if (first == std::string::npos) continue;
+        if (line.compare(first, 6, "newmtl") == 0) return;
+        if (std::strchr("KkTtDdNnMmBbRrIiAaPp", line[first]) != nullptr)
+            throw_failure("{}:{}: expected 'newmtl' before what is said of a material, got '{}'", file.string(), number,
+                          line.substr(first, 80));
+    }
+}
+
+/// Those that an OBJ file names (assimp takes one for OBJ by its content, too), and that beside it which it takes where there is no such file.
+void check_material_files(const fs::path& file, std::string_view obj)
+{
+    constexpr std::string_view key = "mtllib";
+    for (size_t at = obj.find(key); at != std::string_view::npos; at = obj.find(key, at + 1)) {
+        std::string name(obj.substr(at + key.size(), obj.find('\n', at) - at - key.size()));
+        while (!name.empty() && std::isspace(static_cast<unsigned char>(name.back())) != 0) name.pop_back();
+        name.erase(0, name.find_first_not_of(" \t"));
+        check_material_file(file.parent_path() / name);
+        check_material_file(fs::path(file).replace_extension(".mtl"));
+    }
+}
+
 } // namespace
 
 Model import_model(const fs::path& file)
 {
     Import import;
-    import.file = file;
-    read_regular_file(file, 2ULL << 30); // a clear message, before assimp's
+    import.file                            = file;
+    const std::vector<unsigned char> bytes = read_regular_file(file, 2ULL << 30); // a clear message, before assimp's
+    check_material_files(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     Assimp::Importer importer;
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_LIGHTS | aiComponent_CAMERAS);
     // Never aiProcess_JoinIdenticalVertices: version 5.2.5 crashes in it on real files.
