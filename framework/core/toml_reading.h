@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/names.h"
+#include "core/toml_text.h"
 
 #include <toml++/toml.h>
 
@@ -22,18 +23,23 @@ struct TomlFile {
     toml::table root;
 };
 
-inline TomlFile read_toml(const std::filesystem::path& path)
+inline TomlFile parse_toml(const std::string& path, std::string text)
 {
-    TomlFile file{short_path(path), "", {}};
-    if (!std::filesystem::exists(path)) throw_spec_error("{}: no such file", file.path);
-    const std::vector<unsigned char> bytes = read_regular_file(path, 16U << 20U);
-    file.text.assign(bytes.begin(), bytes.end());
+    TomlFile file{path, std::move(text), {}};
+    check_toml_text(file.path, file.text);
     try {
         file.root = toml::parse(file.text);
     } catch (const toml::parse_error& error) {
         throw_spec_error("{}:{}: {}", file.path, error.source().begin.line, error.description());
     }
     return file;
+}
+
+inline TomlFile read_toml(const std::filesystem::path& path)
+{
+    if (!std::filesystem::exists(path)) throw_spec_error("{}: no such file", short_path(path));
+    const std::vector<unsigned char> bytes = read_regular_file(path, 16U << 20U);
+    return parse_toml(short_path(path), std::string(bytes.begin(), bytes.end()));
 }
 
 /// "experiments/steps.toml:7"

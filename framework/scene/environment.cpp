@@ -2,6 +2,8 @@
 
 #include "core/error.h"
 #include "core/pixel_index.h"
+#include "scene/exr_header.h"
+#include "scene/load_scene.h"
 #include "scene/scene.h"
 
 #include <OpenImageIO/imageio.h>
@@ -85,9 +87,13 @@ EnvironmentMap load_environment(const std::filesystem::path& file, double scale,
 {
     const std::string name = file.string();
     if (!std::filesystem::is_regular_file(file)) throw_failure("{}: not a regular file", name);
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(name);
-    if (!input) throw_failure("{}: expected an .hdr or .exr picture: {}", name, OIIO::geterror());
-    const OIIO::ImageSpec& spec = input->spec();
+    const bool exr = lower_extension(file) == ".exr";
+    if (exr) check_exr_header(file, name);
+    // By that reader alone: ImageInput::open(name) hands what its own reader refuses to those of all other formats.
+    const auto      input = OIIO::ImageInput::create(exr ? "openexr" : "hdr");
+    OIIO::ImageSpec spec;
+    if (!input || !input->open(name, spec))
+        throw_failure("{}: expected an .hdr or .exr picture: {}", name, input ? input->geterror() : OIIO::geterror());
     if (spec.width > max_width_px)
         throw_spec_error("{}: {}x{} pixels, at most {} wide can be used", name, spec.width, spec.height, max_width_px);
     if (spec.width < 2 || spec.width != 2 * spec.height || spec.depth > 1)

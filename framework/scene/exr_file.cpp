@@ -2,19 +2,19 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "scene/exr_header.h"
 
 #include <OpenImageIO/imageio.h>
 
 namespace ssrlab {
 namespace {
 
-constexpr int max_side_px = 16384;
-
 void require_usable(const ExrFile& file, const OIIO::ImageSpec& spec, int part)
 {
     if (spec.deep) throw_failure("{}: part {} is deep data, expected one value per pixel", file.shown, part);
-    if (spec.width < 1 || spec.height < 1 || spec.width > max_side_px || spec.height > max_side_px)
-        throw_failure("{}: {} x {} pixels, expected 1 to {} a side", file.shown, spec.width, spec.height, max_side_px);
+    if (spec.width < 1 || spec.height < 1 || spec.width > max_exr_side_px || spec.height > max_exr_side_px)
+        throw_failure("{}: {} x {} pixels, expected 1 to {} a side", file.shown, spec.width, spec.height,
+                      max_exr_side_px);
     // A cropped data window would move every pixel against the camera.
     if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
         spec.height != spec.full_height)
@@ -38,10 +38,12 @@ void add_channels(ExrFile& file, const OIIO::ImageSpec& spec, int part, bool sev
 
 std::unique_ptr<OIIO::ImageInput> open_input(const std::filesystem::path& path, const std::string& shown)
 {
-    auto input = OIIO::ImageInput::open(path.string());
-    if (!input) throw_failure("{}: cannot be read as EXR: {}", shown, OIIO::geterror());
-    if (std::string(input->format_name()) != "openexr")
-        throw_failure("{}: expected OpenEXR, got {}", shown, input->format_name());
+    check_exr_header(path, shown);
+    // By that reader alone: ImageInput::open(path) hands what it refuses to those of all other formats.
+    auto            input = OIIO::ImageInput::create("openexr");
+    OIIO::ImageSpec spec;
+    if (!input || !input->open(path.string(), spec))
+        throw_failure("{}: cannot be read as EXR: {}", shown, input ? input->geterror() : OIIO::geterror());
     return input;
 }
 

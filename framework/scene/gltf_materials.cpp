@@ -110,7 +110,7 @@ TextureUse texture_use(Import& import, Textures& textures, const Info& info, boo
     const auto extension = info.extensions.find("KHR_texture_transform");
     if (extension != info.extensions.end()) {
         use.uv_transform = uv_transform_of(extension->second);
-        use.uv_set       = static_cast<int>(number_in(extension->second, "texCoord", use.uv_set));
+        use.uv_set = static_cast<int>(std::clamp(number_in(extension->second, "texCoord", use.uv_set), -1.0, 2.0));
     }
     if (use.texture >= 0 && (use.uv_set < 0 || use.uv_set > 1)) {
         import.warn(fmt::format("{}: texture coordinate set {} is not supported; texture left out", where, use.uv_set));

@@ -12,16 +12,31 @@ namespace {
 
 constexpr int max_side_px = 16384;
 
+/// OpenImageIO's name.
 const char* format_of(std::span<const unsigned char> bytes, const std::string& name)
 {
     const auto starts_with = [&](std::string_view magic) {
         return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
     };
-    if (starts_with("\x89PNG")) return "image.png";
-    if (starts_with("\xFF\xD8\xFF")) return "image.jpg";
-    if (starts_with("BM")) return "image.bmp";
-    if (name.ends_with(".tga") || name.ends_with(".TGA")) return "image.tga";
+    if (starts_with("\x89PNG")) return "png";
+    if (starts_with("\xFF\xD8\xFF")) return "jpeg";
+    if (starts_with("BM")) return "bmp";
+    if (name.ends_with(".tga") || name.ends_with(".TGA")) return "targa";
     throw_failure("{}: neither PNG, JPEG, BMP nor TGA", name);
+}
+
+/// Before OpenImageIO 2.4, which leaks memory where a chunk ends beyond the file.
+void refuse_cut_png(std::span<const unsigned char> bytes, const std::string& name)
+{
+    constexpr size_t signature = 8, around_data = 12; // length, kind and checksum
+    for (size_t at = signature; at + around_data <= bytes.size();) {
+        const auto   byte   = [&](size_t i) { return static_cast<size_t>(bytes[at + i]); };
+        const size_t length = byte(0) << 24U | byte(1) << 16U | byte(2) << 8U | byte(3);
+        if (length > bytes.size() - at - around_data) break;
+        if (std::memcmp(&bytes[at + 4], "IEND", 4) == 0) return;
+        at += around_data + length;
+    }
+    throw_failure("{}: cut off: a PNG of {} bytes that ends within a chunk, or without IEND", name, bytes.size());
 }
 
 /// Spreads grey, grey-alpha or RGB to RGBA.
@@ -50,9 +65,13 @@ Texture decode_image(std::span<const unsigned char> bytes, const std::string& na
     // As an attribute: given as an argument, version 2.4 looks for a file of that name all the same.
     OIIO::Filesystem::IOProxy* proxy = &memory;
     config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(format_of(bytes, name), &config);
-    if (!input) throw_failure("{}: cannot be decoded: {}", name, first_line(OIIO::geterror()));
-    const OIIO::ImageSpec& spec = input->spec();
+    // By that reader alone: ImageInput::open() hands what it refuses to those of all other formats.
+    const std::string format = format_of(bytes, name);
+    if (format == "png") refuse_cut_png(bytes, name);
+    const auto      input = OIIO::ImageInput::create(format);
+    OIIO::ImageSpec spec;
+    if (!input || !input->open("image", spec, config))
+        throw_failure("{}: cannot be decoded: {}", name, first_line(input ? input->geterror() : OIIO::geterror()));
     if (spec.width < 1 || spec.height < 1 || spec.width > max_side_px || spec.height > max_side_px)
         throw_failure("{}: {} x {} pixels, but at most {} a side can be used", name, spec.width, spec.height,
                       max_side_px);

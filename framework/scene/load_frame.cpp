@@ -198,7 +198,8 @@ void read_own(FrameSource& source)
 {
     GBufferImage& gbuffer = source.frame.gbuffer;
     if (const auto ids = find_plane(source, "object_id"))
-        for (const float id : ids->values) gbuffer.object_id.push_back(static_cast<uint32_t>(std::max(id, 0.0F)));
+        for (const float id : ids->values)
+            gbuffer.object_id.push_back(id > 0 && id < 0x1p32F ? static_cast<uint32_t>(id) : 0);
     else
         for (const float depth : gbuffer.depth) gbuffer.object_id.push_back(depth > 0 ? 1 : 0);
     const auto x = find_plane(source, "gradient.x"), y = find_plane(source, "gradient.y");

@@ -1,0 +1,98 @@
+#include "core/toml_text.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+
+namespace ssrlab {
+namespace {
+
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
+/// Bytes of the code point that begins at `at`; 0 where none does.
+size_t utf8_length(std::string_view text, size_t at)
+{
+    const auto byte = [&](size_t i) { return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0U; };
+    const auto continues = [&](size_t i) { return (byte(i) & 0xC0U) == 0x80U; };
+    const unsigned first = byte(0), second = byte(1);
+    if (first < 0x80) return 1;
+    if (first < 0xC2 || first > 0xF4 || !continues(1)) return 0;
+    if (first < 0xE0) return 2;
+    // Longer than needed, half of a UTF-16 pair, or beyond U+10FFFF.
+    if ((first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) || (first == 0xF0 && second < 0x90) ||
+        (first == 0xF4 && second > 0x8F) || !continues(2))
+        return 0;
+    if (first < 0xF0) return 3;
+    return continues(3) ? 4 : 0;
+}
+
+struct Reader {
+    const std::string& file;
+    std::string_view   text;
+    size_t             at = 0;
+
+    bool   more() const { return at < text.size(); }
+    bool   next_is(std::string_view expected) const { return text.substr(at, expected.size()) == expected; }
+    bool   beyond_ascii() const { return more() && static_cast<unsigned char>(text[at]) >= 0x80; }
+    void   skip(std::string_view some) { at = std::min(text.find_first_not_of(some, at), text.size()); }
+    size_t line() const { return static_cast<size_t>(std::count(text.begin(), text.begin() + at, '\n')) + 1; }
+};
+
+[[noreturn]] void refuse_letter(const Reader& reader, const std::string& where)
+{
+    throw_spec_error("{}:{}: expected ASCII {}, got '{}'", reader.file, reader.line(), where,
+                     reader.text.substr(reader.at, utf8_length(reader.text, reader.at)));
+}
+
+/// Elsewhere a quote begins nothing, though toml++ looks on behind it for the end of a number.
+bool begins_string(const Reader& reader)
+{
+    constexpr std::string_view before = " \t\r\n=,[{.";
+    const bool                 first  = reader.at == 0 || reader.text.substr(0, reader.at) == byte_order_mark;
+    return (reader.next_is("\"") || reader.next_is("'")) &&
+           (first || before.find(reader.text[reader.at - 1]) != std::string_view::npos);
+}
+
+/// To the end of its line, or of the quotes.
+void skip_string(Reader& reader)
+{
+    const std::string quote(1, reader.text[reader.at]), three = quote + quote + quote;
+    const bool        several_lines = reader.next_is(three), escapes = quote == "\"";
+    const std::string end = several_lines ? three : quote;
+    for (reader.at += end.size(); reader.more() && !reader.next_is(end); ++reader.at) {
+        if (!several_lines && reader.next_is("\n")) return;
+        if (!escapes || !reader.next_is("\\")) continue;
+        const size_t escaped = ++reader.at;
+        if (several_lines) reader.skip(" \t\r\n");
+        if (several_lines && reader.beyond_ascii())
+            refuse_letter(reader,
+                          "after a backslash, or after a line that ends with one (\\u and its number is ASCII)");
+        if (reader.at > escaped) --reader.at;
+    }
+    reader.at = std::min(reader.at + end.size(), reader.text.size());
+    // Up to two more quotes belong to a string of several lines.
+    for (int more = 0; several_lines && more < 2 && reader.next_is(quote); ++more) ++reader.at;
+}
+
+} // namespace
+
+void check_toml_text(const std::string& file, std::string_view text)
+{
+    Reader reader{file, text};
+    for (; reader.more(); reader.at += utf8_length(text, reader.at))
+        if (utf8_length(text, reader.at) == 0)
+            throw_spec_error("{}:{}: expected UTF-8, got the byte 0x{:02x}", file, reader.line(),
+                             static_cast<unsigned char>(text[reader.at]));
+    reader.at = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
+    while (reader.more()) {
+        if (reader.beyond_ascii()) refuse_letter(reader, "outside quotes and comments");
+        if (begins_string(reader))
+            skip_string(reader);
+        else if (reader.next_is("#"))
+            reader.at = std::min(text.find('\n', reader.at), text.size());
+        else
+            ++reader.at;
+    }
+}
+
+} // namespace ssrlab

@@ -1,0 +1,15 @@
+#include "targets.h"
+
+#include "harness/experiment.h"
+
+namespace ssrlab::fuzz {
+
+void feed_experiment(Bytes bytes)
+{
+    constexpr double                    most_runs  = 1000; // the program expands more, in more time
+    static const std::vector<Technique> techniques = list_techniques({});
+    const Experiment                    experiment = load_experiment(file_with("experiment.toml", bytes), techniques);
+    if (count_runs(experiment) <= most_runs) expand(experiment, techniques);
+}
+
+} // namespace ssrlab::fuzz

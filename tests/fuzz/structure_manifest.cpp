@@ -1,0 +1,12 @@
+#include "targets.h"
+
+#include "render/structure.h"
+
+namespace ssrlab::fuzz {
+
+void feed_structure_manifest(Bytes bytes)
+{
+    load_structure(file_with("structure/structure.toml", bytes).parent_path());
+}
+
+} // namespace ssrlab::fuzz
