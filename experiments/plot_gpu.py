@@ -26,7 +26,7 @@ def traces_of(results, techniques, surface):
 def table(results, tables):
     """One line a technique and surface model: each at the setting that the ranking compares, as a mean over the frames."""
     chosen = plot_verdict.picks(results)
-    if "wave64_iterations_mean" not in chosen or chosen.wave64_iterations_mean.isna().all():
+    if "wave128_iterations_mean" not in chosen or chosen.wave128_iterations_mean.isna().all():
         return ()
     traces = {surface: traces_of(results, list(rows.technique.unique()), surface) for surface, rows in chosen.groupby("surface")}
     lines = []
@@ -34,10 +34,11 @@ def table(results, tables):
         trace = traces[surface].get(technique)
         if trace is None:
             continue
-        counts, loop, iterations = trace["statistics"], trace["innermost_loop"]["instructions"], rows.wave64_iterations_mean.mean()
+        rays = 128 if "trace_pairs" in trace["shader"] else 64  # that a wave of 64 holds
+        counts, loop, iterations = trace["statistics"], trace["innermost_loop"]["instructions"], rows[f"wave{rays}_iterations_mean"].mean()
         lines.append({"technique": technique, "surface": surface, "VGPRs": counts["VGPRs"], "spills": counts["Spilled VGPRs"],
                       "waves a SIMD": counts["Subgroups per SIMD"], "group": trace["invocations_a_group"], "innermost loop": loop,
-                      "iterations of a wave": round(iterations, 2), "wave instructions a ray": round(loop * iterations / 64, 1)})
+                      "iterations of a wave": round(iterations, 2), "wave instructions a ray": round(loop * iterations / rays, 1)})
     if lines:
         tables[HEADING] = sorted(lines, key=lambda line: line["wave instructions a ray"])
     return ()

@@ -27,6 +27,10 @@ constexpr auto table = std::to_array<Measure>({
      divergence},
     {"wave64_iterations_mean", "steps", "the same in groups of 64 rays; divided by 64, wave iterations per ray",
      divergence},
+    {"wave128_iterations_mean", "steps",
+     "the same in groups of 128 rays, which a wave of 64 holds where an invocation traces two; divided by 128, wave "
+     "iterations per ray",
+     divergence},
     {"depth_fetches_mean", "fetches", "depth texels read per traced ray", own},
     {"structure_fetches_mean", "fetches", "reads of structures (such as the depth pyramid) per traced ray", own},
 

@@ -230,10 +230,11 @@ MeasureValues count_work(const TraceResult& result)
         if (counts.empty() || rays == 0) return std::nullopt;
         return std::accumulate(counts.begin(), counts.end(), 0.0) / double(rays);
     };
-    values["steps_mean"]             = mean(result.steps);
-    values["depth_fetches_mean"]     = mean(result.depth_fetches);
-    values["warp32_iterations_mean"] = group_iterations_mean(result, 32);
-    values["wave64_iterations_mean"] = group_iterations_mean(result, 64);
+    values["steps_mean"]              = mean(result.steps);
+    values["depth_fetches_mean"]      = mean(result.depth_fetches);
+    values["warp32_iterations_mean"]  = group_iterations_mean(result, 32);
+    values["wave64_iterations_mean"]  = group_iterations_mean(result, 64);
+    values["wave128_iterations_mean"] = group_iterations_mean(result, 128);
     std::vector<uint32_t> structure_fetches; // empty when the result was not counted
     for (size_t i = 0; i < result.depth_fetches.size(); ++i)
         structure_fetches.push_back(structure_fetches_of(result, i));

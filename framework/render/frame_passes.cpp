@@ -259,6 +259,7 @@ Shader compile_trace(const Gpu& gpu, const PreparedFrame& frame, const RayBuffer
     for (const std::string& macro : shader_macros(technique, frame.values)) source.defines.emplace(macro, "1");
     source.defines.merge(store_defines(gpu, rays.hits));
     source.defines.merge(ray_list_defines(gpu, rays));
+    if (technique.rays_per_invocation == 2) source.defines.emplace("PAIR_GROUPS", gpu.info.lanes > 1 ? "2" : "1");
     if (bindings.contains("Work")) source.defines.emplace("COUNT_WORK", "1");
     if (bindings.contains("Visits")) source.defines.emplace("RECORD_VISITS", "1");
     return compile_shader(gpu, source);

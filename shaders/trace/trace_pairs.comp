@@ -1,17 +1,22 @@
 // As trace.comp, two rays an invocation: the technique defines trace_pair(Ray a, Ray b, out TraceResult result_a, out TraceResult result_b).
 #define TRACES_PAIRS
+#include "layout/workgroups.glsl"
+// On a GPU a workgroup takes two groups of 64 rays, so that no wave of 64 is half empty (PAIR_GROUPS). The launch has a workgroup for each group: half of
+// them find no rays.
+#undef work_group
+#define work_group() (unfold_group(gl_WorkGroupID.xy, gl_NumWorkGroups.y) * PAIR_GROUPS + gl_LocalInvocationID.x / (RAYS_PER_GROUP / 2))
 #include "api/trace_api.glsl"
 #include "technique/parameters"
 #include "technique/structures"
 #include "technique/trace.glsl"
 #include "trace/listed_ray.glsl"
 
-layout(local_size_x = RAYS_PER_GROUP / 2) in;
+layout(local_size_x = PAIR_GROUPS * RAYS_PER_GROUP / 2) in;
 
 void main()
 {
     // Eight neighbouring invocations take 16 rays that follow each other: the first eight, and the eight after those.
-    uint place = gl_LocalInvocationID.x, index = work_group() * RAYS_PER_GROUP + (place & ~7) + place, second = index + 8;
+    uint place = gl_LocalInvocationID.x % (RAYS_PER_GROUP / 2), index = work_group() * RAYS_PER_GROUP + (place & ~7) + place, second = index + 8;
     reset_counters();
     if (index >= ray_count) return;
     bool        is_pair = second < ray_count;

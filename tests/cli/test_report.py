@@ -52,21 +52,23 @@ def browser(folder, width, dark=False):
 class Test(Case):
     def test_what_it_would_cost_on_a_gpu(self):
         """Instructions of the compiler for RDNA2 times the iterations that were counted."""
-        self.ssrlab("run", self.write("small.toml", SMALL), "-o", self.path("out"))
+        spec = SMALL.replace("[measure]", "[techniques.hiz_packets]\n[measure]")
+        self.ssrlab("run", self.write("small.toml", spec), "-o", self.path("out"))
         self.ssrlab("plot", self.path("out"))
         with open(self.path("out/report.md"), encoding="utf-8") as file:
             text = file.read()
         part = text[text.index("## What this would cost on RDNA2, by its compiler"):]
         lines = [[cell.strip() for cell in line.split("|")[1:-1]] for line in part.splitlines() if line.startswith("|")]
-        heads, rows = lines[0], [dict(zip(lines[0], line)) for line in lines[2:5]]
+        heads, rows = lines[0], [dict(zip(lines[0], line)) for line in lines[2:6]]
         self.assertIn("wave instructions a ray", heads)
-        self.assertEqual({row["technique"] for row in rows}, {"linear", "dda", "hiz"}, part)
+        self.assertEqual({row["technique"] for row in rows}, {"linear", "dda", "hiz", "hiz_packets"}, part)
         counted = self.rows()
         for row in rows:
-            self.assertEqual(row["spills"], "0")
+            self.assertEqual((row["spills"], row["group"]), ("0", "64"))
+            rays = 128 if row["technique"] == "hiz_packets" else 64  # two an invocation
             loop, iterations = float(row["innermost loop"]), float(row["iterations of a wave"])
-            self.assertAlmostEqual(float(row["wave instructions a ray"]), loop * iterations / 64, delta=0.02 * loop)
-            means = [float(one["wave64_iterations_mean"]) for one in counted if one["technique"] == row["technique"]]
+            self.assertAlmostEqual(float(row["wave instructions a ray"]), loop * iterations / rays, delta=0.02 * loop)
+            means = [float(one[f"wave{rays}_iterations_mean"]) for one in counted if one["technique"] == row["technique"]]
             self.assertTrue(min(means) - 0.01 <= iterations <= max(means) + 0.01, (means, row))
 
     def report(self):

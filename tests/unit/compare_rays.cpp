@@ -256,6 +256,7 @@ TEST(RayMeasures, AGroupWaitsForItsLongestRay)
     result.steps[3]  = 31; // ray 96, of four in the last group
     EXPECT_EQ(count_work(result).at("warp32_iterations_mean"), (10 + 7 + 20 + 31) / 4.0);
     EXPECT_EQ(count_work(result).at("wave64_iterations_mean"), (10 + 31) / 2.0);
+    EXPECT_EQ(count_work(result).at("wave128_iterations_mean"), 31);
     std::ranges::reverse(result.traced_order); // ray i is pixel i: 3 | 35 | 67 | 99
     EXPECT_EQ(count_work(result).at("warp32_iterations_mean"), (31 + 20 + 7 + 10) / 4.0);
     EXPECT_EQ(count_work(result).at("wave64_iterations_mean"), (31 + 10) / 2.0);
