@@ -95,7 +95,7 @@ EnvironmentMap load_environment(const std::filesystem::path& file, double scale,
     if (!input || !input->open(name, spec))
         throw_failure("{}: expected an .hdr or .exr picture: {}", name, input ? input->geterror() : OIIO::geterror());
     if (spec.width > max_width_px)
-        throw_spec_error("{}: {}x{} pixels, at most {} wide can be used", name, spec.width, spec.height, max_width_px);
+        throw_spec_error("{}: {}x{} pixels, at most {} a side can be used", name, spec.width, spec.height, max_width_px);
     if (spec.width < 2 || spec.width != 2 * spec.height || spec.depth > 1)
         throw_failure("{}: expected an equirectangular picture, twice as wide as high, got {}x{}", name, spec.width,
                       spec.height);

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <fstream>
@@ -66,8 +67,11 @@ void check_attribute(HeaderReader& reader, const std::string& name)
     const int64_t end = reader.left() - bytes; // bytes of the file after it
     if (name == "dataWindow" && bytes >= 16) {
         const int64_t left = reader.number(), top = reader.number(), right = reader.number(), bottom = reader.number();
-        check_side(reader, name, right - left + 1, max_exr_side_px);
-        check_side(reader, name, bottom - top + 1, max_exr_side_px);
+        const int64_t width = right - left + 1, height = bottom - top + 1;
+        if (std::max(width, height) > max_exr_side_px)
+            throw_spec_error("{}: {}x{} pixels, at most {} a side can be used", reader.shown, width, height,
+                             max_exr_side_px);
+        check_side(reader, name, std::min(width, height), max_exr_side_px);
     }
     if (type == "tiledesc" && bytes >= 8)
         for (int axis = 0; axis < 2; ++axis) check_side(reader, name, reader.number(), max_tile_px);

@@ -163,7 +163,7 @@ TEST_F(EnvironmentFiles, MistakesNamePlaceExpectedAndGot)
                 testing::AllOf(HasSubstr("square.exr"), HasSubstr("twice as wide as high"), HasSubstr("2x2")));
     write_picture(folder_ / "wide.exr", {16386, 1}, std::vector<float>(3 * 16386));
     EXPECT_THAT(error_of<SpecError>(recipe("environment = 'wide.exr'")),
-                testing::AllOf(HasSubstr("wide.exr"), HasSubstr("16386x1"), HasSubstr("at most 16384 wide")));
+                testing::AllOf(HasSubstr("wide.exr"), HasSubstr("16386x1"), HasSubstr("at most 16384 a side")));
     folder_.write("broken.exr", "not a picture");
     EXPECT_THAT(error_of<Failure>(recipe("environment = 'broken.exr'")), HasSubstr("broken.exr"));
     folder_.write("folder.exr/file", "");
