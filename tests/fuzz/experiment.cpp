@@ -6,7 +6,7 @@ namespace ssrlab::fuzz {
 
 void feed_experiment(Bytes bytes)
 {
-    constexpr double                    most_runs  = 1000; // the program expands more, in more time
+    constexpr double                    most_runs  = 50; // the program expands more, in more time
     static const std::vector<Technique> techniques = list_techniques({});
     const Experiment                    experiment = load_experiment(file_with("experiment.toml", bytes), techniques);
     if (count_runs(experiment) <= most_runs) expand(experiment, techniques);

@@ -263,8 +263,7 @@ TEST(SceneGltfHostile, UnusableImagesLeaveTheShape)
     folder.write("bomb.png",
                  std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x75\x30\0\0\x75\x30\x08\x06\0\0\0\x66\x27\xf8\xba"
                              "\0\0\0\x04"
-                             "IDAT\0\0\0\0\0\0\0\0"
-                             "\0\0\0\0IEND\xAE\x42\x60\x82",
+                             "IDAT\0\0\0\0\0\0\0\0\0\0\0\0IEND\xAE\x42\x60\x82",
                              61));
     for (const char* uri : {"missing.png", "broken.png", "bomb.png"}) {
         GltfFile file = GltfFile::triangle();
