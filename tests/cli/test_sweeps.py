@@ -56,6 +56,16 @@ class Test(Case):
         # Times of a software device are those of a processor.
         self.assertEqual("processor" in environment["identity"], environment["device_type"] == "Cpu")
 
+    def test_frames_of_a_submit_change_nothing_but_times(self):
+        answers = {}
+        for frames in (1, 3):
+            self.ssrlab("run", self.write("s.toml", SWEEP + f"frames_per_submit = {frames}\npictures = false\n"), "-o", f"out{frames}")
+            rows = self.rows(f"out{frames}")
+            self.assertEqual({row["frames_per_submit"] for row in rows}, {str(frames)})
+            answers[frames] = {row["run_id"]: (row["hit_share"], row["recall_1px"], row["picture_rmse"]) for row in rows}
+        self.assertEqual(answers[1], answers[3])
+        self.assertTrue(all(answers[1].values()))
+
     def test_times_follow_from_the_samples(self):
         """Medians and intervals of results.csv, recomputed from samples.csv alone, to the last digit that it prints."""
         spec = self.write("s.toml", SWEEP.replace("min_repeats = 2\nmax_repeats = 4", "min_repeats = 7\nmax_repeats = 9") +
