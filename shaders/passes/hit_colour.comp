@@ -22,6 +22,10 @@ vec4 reflection_of(uint index, PackedHit hit)
     return vec4(found.light * found.attenuation, found.weight);
 }
 
+#if defined(RAYS_OF_PIXELS) && RAYS_OF_PIXELS == 1
+// No loop: SwiftShader takes minutes to compile one that makes rays.
+#define ONE_RAY
+#else
 // The mean of the pictures that the rays would make one by one, if more than half of them hit.
 // J. Somerville Roberts, "Screen Space Reflections": noise is where few of them do.
 vec4 mean_reflection(uint first)
@@ -41,6 +45,7 @@ vec4 mean_reflection(uint first)
     if (2 * hits <= rays_per_pixel || sum.a <= 0.0) return vec4(0);
     return vec4(sum.rgb / sum.a, sum.a / float(rays_per_pixel));
 }
+#endif
 
 void main()
 {
@@ -49,7 +54,9 @@ void main()
     if (first >= ray_count) return;
     ivec2 pixel = unpack_pixel(ray_pixel(first));
     if (!reflects(pixel)) return;
-#ifdef LOBE_RAYS
+#if defined(LOBE_RAYS) && defined(ONE_RAY)
+    lobe_ray_light(first, pixel, 0);
+#elif defined(LOBE_RAYS)
     vec4 mean = vec4(0);
     for (int ray = 0; ray < rays_per_pixel; ++ray)
     {
@@ -57,6 +64,8 @@ void main()
         mean += vec4(light.rgb * light.a, light.a);
     }
     if (rays_per_pixel > 1) imageStore(reflection_image, pixel, mean.a > 0.0 ? vec4(mean.rgb / mean.a, mean.a / float(rays_per_pixel)) : vec4(0));
+#elif defined(ONE_RAY)
+    imageStore(reflection_image, pixel, reflection_of(first, packed_hit(first)));
 #else
     imageStore(reflection_image, pixel, rays_per_pixel > 1 ? mean_reflection(first) : reflection_of(first, packed_hit(first)));
 #endif

@@ -108,9 +108,11 @@ TEST(StoredTexels, OfHitsAreTheSameWhateverTheListOfRaysHolds)
         EXPECT_EQ(pixels.intervals, rays.intervals);
         EXPECT_EQ(pixels.shaded, rays.shaded);
     };
+    // SwiftShader takes minutes to compile a loop that makes rays.
+    const double several = draws_exactly() ? 3 : 1;
     alike("hiz", {}, false);
-    alike("hiz_packets", {{"rays_per_pixel", 3}}, true, std::min(2, most_layers()));
-    alike("hiz_waves", {chosen(Gloss::stochastic), {"rays_per_pixel", 2}}, false);
+    alike("hiz_packets", {{"rays_per_pixel", several}}, true, std::min(2, most_layers()));
+    alike("hiz_waves", {chosen(Gloss::stochastic), {"rays_per_pixel", several}}, false);
     alike("linear", {chosen(BounceMode::direct), {"bounces", 2}, chosen(Gloss::stochastic)}, false);
     alike("dda", {{"hidden_layer", 1}, chosen(TraceResolution::half)}, false);
     alike("quadtree", {chosen(BounceMode::history)}, false);
