@@ -8,9 +8,9 @@ import subprocess
 from support import PROGRAM, SOURCE, Case, main
 
 HOSTILE = os.path.join(SOURCE, "tests", "hostile")
-# Falls over files whose name ends in .png, and is ssrlab otherwise.
+# Falls over a picture without a byte, and is ssrlab otherwise.
 FRAGILE = f"""#!/bin/sh
-if [ "$1" = gbuffer ] && [ "$(head -c 8 image.png 2> /dev/null | wc -c)" = 0 ] && [ -e scene.gltf ]; then kill -SEGV $$; fi
+if [ -e image.png ] && [ ! -s image.png ]; then kill -SEGV $$; fi
 exec {PROGRAM} "$@"
 """
 
