@@ -109,7 +109,7 @@ def code_files():
     for folder in CODE_FOLDERS:
         for parent, _, names in os.walk(os.path.join(SOURCE, folder)):
             for name in names:
-                if not name.endswith((".md", ".pyc", ".png", ".json", ".csv")):
+                if not name.endswith((".md", ".pyc", ".png", ".json", ".csv", ".bin")):
                     yield os.path.join(parent, name)
 
 
