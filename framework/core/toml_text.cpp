@@ -70,7 +70,7 @@ void skip_string(Reader& reader)
 /// A number, a date, a word: toml++ looks on to where it ends, whatever stands there.
 void skip_bare_value(Reader& reader)
 {
-    const size_t end = std::min(reader.text.find_first_of(" \t\n\v\f\r]},#", reader.at), reader.text.size());
+    const size_t end = std::min(reader.text.find_first_of(" \t\n\v\f\r]},#", reader.at + 1), reader.text.size());
     for (; reader.at < end; ++reader.at)
         if (reader.beyond_ascii()) refuse_letter(reader, "outside quotes and comments");
 }

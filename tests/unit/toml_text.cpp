@@ -61,6 +61,8 @@ TEST(TomlText, LettersElsewhereAreRefusedWithTheirLine)
     for (const char* text : {"a = \"\"\"\\é\"\"\"", "a = \"\"\"\\\né\"\"\"", "a = \"\"\"x\\ \t\r\n\n  é\"\"\""})
         EXPECT_THAT(refused(text), HasSubstr("expected ASCII after a backslash, or after a line that ends with one"))
             << text;
+    EXPECT_THAT(refused("a = \v"), HasSubstr("file.toml:1: "));
+    EXPECT_THAT(refused("a = \f\"é\""), HasSubstr("file.toml:1: "));
     EXPECT_THAT(refused("a = \"x"), HasSubstr("file.toml:1: "));
     EXPECT_THAT(refused("a = \"\"\"\\"), HasSubstr("file.toml:1: "));
     EXPECT_THAT(refused("a = \"\\"), HasSubstr("file.toml:1: "));
