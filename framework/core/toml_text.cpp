@@ -29,7 +29,9 @@ size_t utf8_length(std::string_view text, size_t at)
 struct Reader {
     const std::string& file;
     std::string_view   text;
-    size_t             at = 0;
+    size_t             at       = 0;
+    bool               in_value = false; // behind "=", in a list
+    std::string        open     = {};    // brackets of the lists and tables that it is in
 
     bool   more() const { return at < text.size(); }
     bool   next_is(std::string_view expected) const { return text.substr(at, expected.size()) == expected; }
@@ -42,15 +44,6 @@ struct Reader {
 {
     throw_spec_error("{}:{}: expected ASCII {}, got '{}'", reader.file, reader.line(), where,
                      reader.text.substr(reader.at, utf8_length(reader.text, reader.at)));
-}
-
-/// Elsewhere a quote begins nothing, though toml++ looks on behind it for the end of a number.
-bool begins_string(const Reader& reader)
-{
-    constexpr std::string_view before = " \t\r\n=,[{.";
-    const bool                 first  = reader.at == 0 || reader.text.substr(0, reader.at) == byte_order_mark;
-    return (reader.next_is("\"") || reader.next_is("'")) &&
-           (first || before.find(reader.text[reader.at - 1]) != std::string_view::npos);
 }
 
 /// To the end of its line, or of the quotes.
@@ -74,6 +67,26 @@ void skip_string(Reader& reader)
     for (int more = 0; several_lines && more < 2 && reader.next_is(quote); ++more) ++reader.at;
 }
 
+/// A number, a date, a word: toml++ looks on to where it ends, whatever stands there.
+void skip_bare_value(Reader& reader)
+{
+    const size_t end = std::min(reader.text.find_first_of(" \t\n\v\f\r]},#", reader.at + 1), reader.text.size());
+    for (; reader.at < end; ++reader.at)
+        if (reader.beyond_ascii()) refuse_letter(reader, "outside quotes and comments");
+}
+
+void pass_sign(Reader& reader)
+{
+    const char sign   = reader.text[reader.at++];
+    const bool closes = (sign == ']' && reader.open.ends_with('[')) || (sign == '}' && reader.open.ends_with('{'));
+    if (!reader.in_value && sign != '=' && !closes) return;
+    if (closes) reader.open.pop_back();
+    if (sign == '[' || sign == '{') reader.open += sign;
+    const bool key_follows =
+        sign == '{' || (sign == ',' && reader.open.ends_with('{')) || (sign == '\n' && reader.open.empty());
+    reader.in_value = !key_follows;
+}
+
 } // namespace
 
 void check_toml_text(const std::string& file, std::string_view text)
@@ -86,12 +99,14 @@ void check_toml_text(const std::string& file, std::string_view text)
     reader.at = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
     while (reader.more()) {
         if (reader.beyond_ascii()) refuse_letter(reader, "outside quotes and comments");
-        if (begins_string(reader))
+        if (reader.next_is("\"") || reader.next_is("'"))
             skip_string(reader);
         else if (reader.next_is("#"))
             reader.at = std::min(text.find('\n', reader.at), text.size());
+        else if (reader.in_value && std::string_view(" \t\r\n,[]{}").find(text[reader.at]) == std::string_view::npos)
+            skip_bare_value(reader);
         else
-            ++reader.at;
+            pass_sign(reader);
     }
 }
 

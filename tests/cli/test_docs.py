@@ -110,7 +110,7 @@ def code_files():
         for parent, folders, names in os.walk(os.path.join(SOURCE, folder)):
             folders[:] = [one for one in folders if one != "kept"]  # inputs found by fuzzing
             for name in names:
-                if not name.endswith((".md", ".pyc", ".png", ".json", ".csv")):
+                if not name.endswith((".md", ".pyc", ".png", ".json", ".csv", ".bin")):
                     yield os.path.join(parent, name)
 
 

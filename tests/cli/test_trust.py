@@ -7,8 +7,8 @@ from support import SOURCE, Case, main
 
 REFERENCE = os.path.join(SOURCE, "results", "reference")
 PAGES = ("trust.md", "reliability.md")
-READ = ("aa.json", "kills.json", "thousand.json", "reruns.json", "hostile.json", "at_size.json", "mutations.md", "lavapipe/campaign.md", "lavapipe/hard_cases.md", "lavapipe/resolution/results.csv",
-        "lavapipe/resolution/environment.json")
+READ = ("aa.json", "kills.json", "hostile.json", "fuzz.json", "thousand.json", "at_size.json", "reruns.json", "mutations.md", "lavapipe/campaign.md",
+        "lavapipe/hard_cases.md", "lavapipe/resolution/results.csv", "lavapipe/resolution/environment.json")
 
 
 class Test(Case):

@@ -1,4 +1,4 @@
-// Inputs with which a target failed once, fed to it again without the fuzzer: tests/fuzz/kept/TARGET/NAME.
+// Inputs with which a target failed once, fed to it again without the fuzzer: tests/fuzz/kept/TARGET/NAME.bin.
 #include "core/error.h"
 #include "core/files.h"
 #include "targets.h"

@@ -27,6 +27,9 @@ TEST(TomlText, LettersStandInStringsAndComments)
     EXPECT_EQ(value_of("a = '''\né\\\n'é''''"), "é\\\n'é'");
     EXPECT_EQ(value_of("a = \"\\\\\" # é"), "\\");
     EXPECT_EQ(value_of("\"é\"=1\nb=[\"é\",'é']\nc={\"é\"=1,'ü'=2}\nd.\"é\"=3\n['ö'.\"ü\"]\n"), "");
+    EXPECT_EQ(value_of("b = [{}, {c = 1.5, d.\"é\" = 2}, [\n-1, 'ü',\n], ]\ne = 1\nf.\"é\"=1979-05-27 07:32:00 # "
+                       "ü\n[[g]]\n\"ä\" = inf\nh.'é' = {i = true, \"é\"=\"é\"}"),
+              "");
     EXPECT_EQ(value_of("a = \"\"\"\\\n  \\u00e9\"\"\""), "é");
     EXPECT_EQ(value_of("a = \"\xED\x9F\xBF\xEE\x80\x80\xF0\x90\x80\x80\xF4\x8F\xBF\xBF\""),
               "\xED\x9F\xBF\xEE\x80\x80\xF0\x90\x80\x80\xF4\x8F\xBF\xBF");
@@ -48,14 +51,18 @@ TEST(TomlText, WhatIsNotUtf8IsRefusedWithItsLine)
 
 TEST(TomlText, LettersElsewhereAreRefusedWithTheirLine)
 {
-    for (const char* text : {"é = 1", "a é= 1", "a = é", "a = 1 é", "a = \"x\"é", "[é]", "a.é = 1", "a = [1, é]",
-                             "a = {é = 1}", "a = 1\n\né", "a = '''x''''é", "a = \"\"\"x\"\"\"\"é", "a = \"x\né",
-                             "'é\né", "a = 0\"é\"", "a = -'é'", "a = [1979'''é''']"})
+    for (const char* text :
+         {"é = 1",        "a é= 1",         "a = é",        "a = 1 é",          "a = \"x\"é",    "[é]",
+          "a.é = 1",      "a = [1, é]",     "a = {é = 1}",  "a = 1\n\né",       "a = '''x''''é", "a = \"\"\"x\"\"\"\"é",
+          "a = \"x\né",   "'é\né",          "a = 0\"é\"",   "a = -'é'",         "a = 0.\"é\"",   "a = 0=\"é\"",
+          "a = [0[\"é\"", "a = {b = 0{'é'", "a = [\n1.'é'", "a = [1979'''é''']"})
         EXPECT_THAT(refused(text), HasSubstr("expected ASCII outside quotes and comments, got 'é'")) << text;
     EXPECT_THAT(refused("a = 1\n\n é"), HasSubstr("file.toml:3: "));
     for (const char* text : {"a = \"\"\"\\é\"\"\"", "a = \"\"\"\\\né\"\"\"", "a = \"\"\"x\\ \t\r\n\n  é\"\"\""})
         EXPECT_THAT(refused(text), HasSubstr("expected ASCII after a backslash, or after a line that ends with one"))
             << text;
+    EXPECT_THAT(refused("a = \v"), HasSubstr("file.toml:1: "));
+    EXPECT_THAT(refused("a = \f\"é\""), HasSubstr("file.toml:1: "));
     EXPECT_THAT(refused("a = \"x"), HasSubstr("file.toml:1: "));
     EXPECT_THAT(refused("a = \"\"\"\\"), HasSubstr("file.toml:1: "));
     EXPECT_THAT(refused("a = \"\\"), HasSubstr("file.toml:1: "));
