@@ -31,7 +31,7 @@ class Test(Case):
         self.assertLess(self.trial.refused[0]["peak_mib"], 250, "the file has 114 MiB")
 
     def test_too_wide_an_environment_is_refused(self):
-        self.trial.refuse("wide", self.at_size.surrounded(self.folder, 16386, 64), ["sky.exr", "16386x64", "at most 16384 wide"])
+        self.trial.refuse("wide", self.at_size.surrounded(self.folder, 16386, 64), ["sky.exr", "16386x64", "at most 16384 a side"])
 
     def test_what_does_not_hold_is_found(self):
         scene, _ = self.at_size.waves(self.folder, 200)
