@@ -1,22 +1,12 @@
 """tests/at_size: large scenes are drawn and measured, larger ones refused; what does not hold is found."""
-import importlib.machinery
-import importlib.util
-import os
 
-from support import PROGRAM, SOURCE, Case, main
-
-
-def at_size_module():
-    loader = importlib.machinery.SourceFileLoader("at_size", os.path.join(SOURCE, "tests", "at_size"))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("at_size", loader))
-    loader.exec_module(module)
-    return module
+from support import PROGRAM, Case, load_script, main
 
 
 class Test(Case):
     def setUp(self):
         super().setUp()
-        self.at_size = at_size_module()
+        self.at_size = load_script("tests", "at_size")
         self.trial = self.at_size.Trial(PROGRAM, self.folder)
 
     def test_triangles_are_counted_and_measured(self):

@@ -1,7 +1,5 @@
 """The benchmark program, the bench's sweeps and verdicts, and growth drawn from a sweep."""
 import argparse
-import importlib.machinery
-import importlib.util
 import json
 import math
 import os
@@ -9,17 +7,10 @@ import subprocess
 from pathlib import Path
 
 import OpenImageIO as oiio
-from support import PROGRAM, SOURCE, Case, main
+from support import PROGRAM, SOURCE, Case, load_script, main
 
 SCENE = "builtin:stairs"
 PLOT = os.path.join(SOURCE, "experiments", "plot_benchmarks.py")
-
-
-def load_bench():
-    loader = importlib.machinery.SourceFileLoader("bench", os.path.join(SOURCE, "experiments", "bench"))
-    bench = importlib.util.module_from_spec(importlib.util.spec_from_loader("bench", loader))
-    loader.exec_module(bench)
-    return bench
 
 
 class Test(Case):
@@ -51,7 +42,7 @@ class Test(Case):
         self.assertGreater(rows["scene_truth"][0]["rays_per_s_a_core"], 0)
 
     def test_ratios_are_of_pairs_in_a_sweep(self):
-        bench = load_bench()
+        bench = load_script("experiments", "bench")
         bench.SIZES = {"1080p": ("161x91", list(bench.CONTENDERS))}
         options = argparse.Namespace(build=Path(PROGRAM).parent.parent, device="", quiet=True)
         sweep = bench.sweep(options, Path(self.folder), SCENE, "1080p", 6, truth=True)
@@ -92,7 +83,7 @@ class Test(Case):
         self.assertIn("did you mean 'hiz'", self.run_command(program, "--technique=hix", code=2))
 
     def test_a_target_is_decided_by_the_whole_interval(self):
-        bench = load_bench()
+        bench = load_script("experiments", "bench")
         for low, high, target, at_most, verdict in ((11, 13, 10, False, "holds"), (11, 13, 12, False, "undecided"), (11, 13, 14, False, "FAILS"),
                                                     (0.4, 0.5, 0.5, True, "holds"), (0.4, 0.5, 0.45, True, "undecided"), (0.4, 0.5, 0.3, True, "FAILS")):
             self.assertEqual(bench.verdict(low, high, target, at_most), verdict, (low, high, target, at_most))
@@ -100,7 +91,7 @@ class Test(Case):
             self.assertEqual(bench.verdict(value, value, 2.3, False, most=1.5), verdict, value)
 
     def test_a_ratio_of_medians_has_an_interval(self):
-        bench = load_bench()
+        bench = load_script("experiments", "bench")
         ratio, low, high = bench.ratio_of_medians([10, 11, 12, 13, 14, 90], [2, 2, 2, 2, 2, 2])
         self.assertEqual(ratio, 6.25)
         self.assertLess(low, 6.25)

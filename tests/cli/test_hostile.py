@@ -1,13 +1,9 @@
 """tests/hostile: files that lie are used or refused in one line that names them, and a program that breaks a promise is found."""
-import importlib.machinery
-import importlib.util
 import json
 import os
-import subprocess
 
-from support import PROGRAM, SOURCE, Case, main
+from support import PROGRAM, Case, load_script, main
 
-HOSTILE = os.path.join(SOURCE, "tests", "hostile")
 # Falls over a picture without a byte, and is ssrlab otherwise.
 FRAGILE = f"""#!/bin/sh
 if [ -e image.png ] && [ ! -s image.png ]; then kill -SEGV $$; fi
@@ -15,22 +11,9 @@ exec {PROGRAM} "$@"
 """
 
 
-def hostile_module():
-    loader = importlib.machinery.SourceFileLoader("hostile", HOSTILE)
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("hostile", loader))
-    loader.exec_module(module)
-    return module
-
-
 class Test(Case):
-    def hostile(self, *arguments, code=0):
-        self.last_command = " ".join(["tests/hostile", *arguments])
-        done = subprocess.run([HOSTILE, "--program", PROGRAM, *arguments], capture_output=True, text=True, timeout=280)
-        self.assertEqual(done.returncode, code, f"repeat: {self.last_command}\n{done.stdout}{done.stderr}")
-        return done.stdout + done.stderr
-
     def test_one_of_each_rule(self):
-        self.hostile("--each", "1", "--only", "glb/", "-o", self.path("hostile.json"))
+        self.script("hostile", "--each", "1", "--only", "glb/", "-o", self.path("hostile.json"))
         with open(self.path("hostile.json"), encoding="utf-8") as file:
             figures = json.load(file)
         self.assertGreater(figures["by_kind"]["glb"]["refused"], 10)
@@ -40,12 +23,12 @@ class Test(Case):
     def test_a_program_that_falls_is_found(self):
         program = self.write("fragile", FRAGILE)
         os.chmod(program, 0o755)
-        text = self.hostile("--only", "png/empty", "--program", program, code=1)
+        text = self.script("hostile", "--only", "png/empty", "--program", program, code=1)
         self.assertIn("BROKEN (signal) png/empty/0", text)
         self.assertIn("repeat: tests/hostile --seed 1 --each 3 --only png/empty/0", text)
 
     def test_each_broken_promise_is_found(self):
-        judge, names = hostile_module().broken_promise, ["a.png", "scene.gltf"]
+        judge, names = load_script("tests", "hostile").broken_promise, ["a.png", "scene.gltf"]
         good = "ssrlab: a.png: cannot be decoded\n"
         self.assertIsNone(judge(0, "", names))
         self.assertIsNone(judge(1, good, names))
@@ -57,7 +40,7 @@ class Test(Case):
             self.assertEqual(judge(code, said, names), promise, (code, said))
 
     def test_the_seed_decides_every_damage(self):
-        hostile = hostile_module()
+        hostile = load_script("tests", "hostile")
         content = bytes(range(256)) * 4
         for rule, change in {**hostile.RANDOM, **hostile.ONCE, **hostile.TEXT}.items():
             once, again, other = (change(content, hostile.random.Random(seed)) for seed in (1, 1, 2))

@@ -1,13 +1,9 @@
 """tests/kills: a sweep that is killed again and again loses nothing, and a promise that is broken is found."""
-import importlib.machinery
-import importlib.util
 import json
 import os
-import subprocess
 
-from support import PROGRAM, SOURCE, Case, main
+from support import PROGRAM, Case, load_script, main
 
-KILLS = os.path.join(SOURCE, "tests", "kills")
 # Loses the first row whenever it starts, and then goes on as ssrlab.
 FORGETFUL = f"""#!/bin/sh
 for file in "$4"/results.csv; do [ -e "$file" ] && sed -i 2d "$file"; done
@@ -15,22 +11,9 @@ exec {PROGRAM} "$@"
 """
 
 
-def kills_module():
-    loader = importlib.machinery.SourceFileLoader("kills", KILLS)
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("kills", loader))
-    loader.exec_module(module)
-    return module
-
-
 class Test(Case):
-    def kills(self, *arguments, code=0):
-        self.last_command = " ".join(["tests/kills", *arguments])
-        done = subprocess.run([KILLS, "--program", PROGRAM, *arguments], capture_output=True, text=True, timeout=280)
-        self.assertEqual(done.returncode, code, f"repeat: {self.last_command}\n{done.stdout}{done.stderr}")
-        return done.stdout + done.stderr
-
     def test_nothing_is_lost(self):
-        self.kills("--kills", "3", "--stops", "5", "-o", self.path("kills.json"))
+        self.script("kills", "--kills", "3", "--stops", "5", "-o", self.path("kills.json"))
         with open(self.path("kills.json"), encoding="utf-8") as file:
             figures = json.load(file)
         self.assertEqual((figures["kills"], figures["stops"]), (3, 5))
@@ -40,11 +23,11 @@ class Test(Case):
     def test_a_program_that_forgets_is_found(self):
         program = self.write("forgetful", FORGETFUL)
         os.chmod(program, 0o755)
-        text = self.kills("--kills", "2", "--stops", "0", "--program", program, code=1)
+        text = self.script("kills", "--kills", "2", "--stops", "0", "--program", program, code=1)
         self.assertRegex(text, "lost: the row of run r[0-9a-f]+ was written and is (lost|another now)")
 
     def test_each_broken_promise_is_found(self):
-        kills = kills_module()
+        kills = load_script("tests", "kills")
         spec  = self.write("kills.toml", kills.SPEC)
         sweep = kills.Sweep(PROGRAM, self.folder, 0)
         self.ssrlab("run", spec, "-o", sweep.out)
