@@ -1,25 +1,11 @@
 #include "core/printable.h"
 
-#include <fmt/format.h>
+#include "core/utf8.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
 namespace ssrlab {
 namespace {
-
-/// Bytes of the character that begins here; 0 where it is no UTF-8.
-size_t character_bytes(std::string_view text)
-{
-    const auto   first     = static_cast<unsigned char>(text[0]);
-    const size_t length    = first < 0x80                    ? 1
-                             : first >= 0xC2 && first < 0xE0 ? 2
-                             : first >= 0xE0 && first < 0xF0 ? 3
-                             : first >= 0xF0 && first < 0xF5 ? 4
-                                                             : 0;
-    const auto   continues = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80; };
-    if (length == 0 || length > text.size()) return 0;
-    return std::ranges::all_of(text.substr(1, length - 1), continues) ? length : 0;
-}
 
 bool is_control(std::string_view character)
 {
@@ -35,7 +21,7 @@ std::string printable(std::string_view text)
 {
     std::string result;
     while (!text.empty()) {
-        const size_t bytes = character_bytes(text);
+        const size_t bytes = utf8_length(text);
         const bool   shown = bytes > 0 && !is_control(text.substr(0, bytes));
         result +=
             shown ? std::string(text.substr(0, bytes)) : fmt::format("\\x{:02X}", static_cast<unsigned char>(text[0]));
