@@ -12,9 +12,6 @@ namespace {
 void require_usable(const ExrFile& file, const OIIO::ImageSpec& spec, int part)
 {
     if (spec.deep) throw_failure("{}: part {} is deep data, expected one value per pixel", file.shown, part);
-    if (spec.width < 1 || spec.height < 1 || spec.width > max_exr_side_px || spec.height > max_exr_side_px)
-        throw_failure("{}: {} x {} pixels, expected 1 to {} a side", file.shown, spec.width, spec.height,
-                      max_exr_side_px);
     // A cropped data window would move every pixel against the camera.
     if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
         spec.height != spec.full_height)

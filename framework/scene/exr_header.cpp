@@ -10,7 +10,7 @@
 namespace ssrlab {
 namespace {
 
-constexpr int64_t max_tile_px = 4096, max_preview_px = 4096;
+constexpr int64_t max_side_px = 16384, max_tile_px = 4096, max_preview_px = 4096;
 
 /// Numbers of the file, least byte first; what is beyond its end is refused.
 struct HeaderReader {
@@ -68,10 +68,10 @@ void check_attribute(HeaderReader& reader, const std::string& name)
     if (name == "dataWindow" && bytes >= 16) {
         const int64_t left = reader.number(), top = reader.number(), right = reader.number(), bottom = reader.number();
         const int64_t width = right - left + 1, height = bottom - top + 1;
-        if (std::max(width, height) > max_exr_side_px)
+        if (std::max(width, height) > max_side_px)
             throw_spec_error("{}: {}x{} pixels, at most {} a side can be used", reader.shown, width, height,
-                             max_exr_side_px);
-        check_side(reader, name, std::min(width, height), max_exr_side_px);
+                             max_side_px);
+        check_side(reader, name, std::min(width, height), max_side_px);
     }
     if (type == "tiledesc" && bytes >= 8)
         for (int axis = 0; axis < 2; ++axis) check_side(reader, name, reader.number(), max_tile_px);

@@ -6,10 +6,8 @@
 
 namespace ssrlab {
 
-inline constexpr int max_exr_side_px = 16384;
-
 /// OpenEXR 3.1 takes sizes in a header at their word and asks for as much memory: up to 2 GB for one text of a file of 400 bytes. Refuses
-/// what reaches beyond the file, and pictures and tiles that are too large. Throws Failure; `shown` is the path as messages show it.
+/// what reaches beyond the file, and pictures and tiles that are too large. Throws Failure, SpecError for too many pixels; `shown` is the path as messages show it.
 void check_exr_header(const std::filesystem::path& file, const std::string& shown);
 
 } // namespace ssrlab
