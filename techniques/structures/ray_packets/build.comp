@@ -17,11 +17,11 @@ LEAST_OF_GROUP_LANES(real3)
 const real first_px = 8, finest_step_px = 8, shortest_interval_px = 24; // on screen, along the longest delta
 const real widest_px = 64;                                             // where rays of different tiles meet in one group
 const real rising_px = 1.5, rising_step_px = 16;                       // while it is held against planes
-const int  most_tests = 64, most_rising_tests = 3, most_patches = 6;
+const int  most_rising_tests = 3, most_patches = 6;
 #ifdef IN_FRONT // it has to stay in front of everything: then it has one interval, which begins soon or not at all
-const int most_intervals = 1, most_blocked_steps = 4;
+const int most_intervals = 1, most_tests = 64, most_blocked_steps = 4;
 #else
-const int most_intervals = intervals_count, most_blocked_steps = most_tests;
+const int most_intervals = intervals_count, most_tests = ray_packets_most_tests, most_blocked_steps = most_tests;
 #endif
 // What rounding moves a position by, at the largest image, and a depth, as a share of the nearest: many times more than it can.
 const real rounding_px = 1.0 / 16, rounding_depth = 1.0 / (1 << 20);
