@@ -1,6 +1,7 @@
 // What the history holds of a pixel's reflection, and whether that still is the same reflection. After previous_frame.glsl and pass/parameters.
 #include "layout/frame_shared.h"
 #include "passes/blocks.glsl"
+#include "passes/share.glsl"
 
 layout(set = 0, binding = 50, rgba32f) uniform readonly image2D reprojected_image;         // passes/reprojection.comp
 layout(set = 0, binding = 51, rgba32f) uniform readonly image2D previous_reflection_image; // colour times weight, weight; < 0: reflects nothing
@@ -80,7 +81,7 @@ vec4 previous_reflection(vec2 place_px)
         sum += weight * stored;
         total += weight;
     }
-    return total > 0.0 ? sum / total : vec4(-1);
+    return total > 0.0 ? vec4(sum.rgb / total, share_of(sum.a, total)) : vec4(-1);
 }
 
 // One of HISTORY_ACCUMULATED … HISTORY_OTHER_HIT; only the first comes with a history.

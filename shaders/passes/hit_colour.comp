@@ -6,6 +6,7 @@
 #include "rays/reflecting.glsl"
 #include "pass/parameters"
 #include "passes/ray_colour.glsl"
+#include "passes/share.glsl"
 #ifdef LOBE_RAYS
 #include "passes/lobe_rays.glsl"
 #endif
@@ -43,7 +44,7 @@ vec4 mean_reflection(uint first)
         }
     }
     if (2 * hits <= rays_per_pixel || sum.a <= 0.0) return vec4(0);
-    return vec4(sum.rgb / sum.a, sum.a / float(rays_per_pixel));
+    return vec4(sum.rgb / sum.a, share_of(sum.a, float(rays_per_pixel)));
 }
 #endif
 
@@ -63,7 +64,7 @@ void main()
         vec4 light = lobe_ray_light(first + ray, pixel, ray);
         mean += vec4(light.rgb * light.a, light.a);
     }
-    if (rays_per_pixel > 1) imageStore(reflection_image, pixel, mean.a > 0.0 ? vec4(mean.rgb / mean.a, mean.a / float(rays_per_pixel)) : vec4(0));
+    if (rays_per_pixel > 1) imageStore(reflection_image, pixel, mean.a > 0.0 ? vec4(mean.rgb / mean.a, share_of(mean.a, float(rays_per_pixel))) : vec4(0));
 #elif defined(ONE_RAY)
     imageStore(reflection_image, pixel, reflection_of(first, packed_hit(first)));
 #else
