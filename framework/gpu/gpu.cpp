@@ -98,14 +98,15 @@ GpuInfo describe(const vk::raii::PhysicalDevice& device, int index)
     const auto& core  = chain.get<vk::PhysicalDeviceProperties2>().properties;
     const auto& drive = chain.get<vk::PhysicalDeviceDriverProperties>();
     GpuInfo     info;
-    info.index          = index;
-    info.name           = core.deviceName.data();
-    info.type           = vk::to_string(core.deviceType);
-    info.driver         = fmt::format("{} {}", drive.driverName.data(), drive.driverInfo.data());
-    info.api_version    = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(core.apiVersion),
-                                      VK_API_VERSION_MINOR(core.apiVersion), VK_API_VERSION_PATCH(core.apiVersion));
-    info.float64        = device.getFeatures().shaderFloat64 != 0;
-    info.max_image_px   = core.limits.maxImageDimension2D;
+    info.index       = index;
+    info.name        = core.deviceName.data();
+    info.type        = vk::to_string(core.deviceType);
+    info.driver      = fmt::format("{} {}", drive.driverName.data(), drive.driverInfo.data());
+    info.api_version = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(core.apiVersion),
+                                   VK_API_VERSION_MINOR(core.apiVersion), VK_API_VERSION_PATCH(core.apiVersion));
+    info.float64     = device.getFeatures().shaderFloat64 != 0;
+    info.max_drawn_px =
+        std::min({core.limits.maxImageDimension2D, core.limits.maxFramebufferWidth, core.limits.maxFramebufferHeight});
     info.int64          = device.getFeatures().shaderInt64 != 0;
     const bool software = core.deviceType == vk::PhysicalDeviceType::eCpu;
     if (software) info.processor = processor_name();

@@ -31,7 +31,7 @@ struct GpuInfo {
     std::string processor; // that a software device runs on, "NAME, family F, model M"; of other devices empty
     bool        float64       = false;
     bool        cheap_doubles = false; // they cost little more than floats
-    uint32_t    max_image_px  = 0;
+    uint32_t    max_drawn_px  = 0;     // largest side of a picture that it can draw
     bool        int64         = false; // 64-bit integers in shaders
     bool        compiles_only = false; // it was opened so
     int         lanes = 1; // that share a ray group; above 1: passes before the trace take an invocation a pixel, too

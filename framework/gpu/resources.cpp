@@ -170,10 +170,12 @@ bool is_depth(vk::Format format) { return format == vk::Format::eD32Sfloat || fo
 
 GpuImage make_image(Gpu& gpu, const ImageOptions& options)
 {
-    const auto limit = static_cast<int>(gpu.impl->limits.maxImageDimension2D);
+    using Usage      = vk::ImageUsageFlagBits;
+    const bool drawn = static_cast<bool>(options.usage & (Usage::eColorAttachment | Usage::eDepthStencilAttachment));
+    const auto limit = static_cast<int>(drawn ? gpu.info.max_drawn_px : gpu.impl->limits.maxImageDimension2D);
     if (options.size_px.x < 1 || options.size_px.y < 1 || options.size_px.x > limit || options.size_px.y > limit)
-        throw_spec_error("image size {}x{} is outside what the device '{}' supports: 1x1 to {}x{}", options.size_px.x,
-                         options.size_px.y, gpu.info.name, limit, limit);
+        throw_spec_error("image size {}x{} is outside what the device '{}' {}: 1x1 to {}x{}", options.size_px.x,
+                         options.size_px.y, gpu.info.name, drawn ? "can draw" : "supports", limit, limit);
     GpuImage result;
     result.format  = options.format;
     result.size_px = options.size_px;

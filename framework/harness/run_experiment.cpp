@@ -39,9 +39,9 @@ void refuse_unknown_scenes(const Experiment& experiment)
 void refuse_large_sizes(const Experiment& experiment, const GpuInfo& device)
 {
     for (const glm::ivec2& size_px : experiment.sizes_px) {
-        if (static_cast<uint32_t>(std::max(size_px.x, size_px.y)) <= device.max_image_px) continue;
-        throw_spec_error("{}: size {} is more than {} allows ({} pixels a side)", short_path(experiment.file),
-                         size_text(size_px), device.name, device.max_image_px);
+        if (static_cast<uint32_t>(std::max(size_px.x, size_px.y)) <= device.max_drawn_px) continue;
+        throw_spec_error("{}: size {} is more than {} can draw ({} pixels a side)", short_path(experiment.file),
+                         size_text(size_px), device.name, device.max_drawn_px);
     }
 }
 

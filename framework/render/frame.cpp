@@ -315,7 +315,7 @@ PreparedFramePtr prepare_unculled(Gpu& gpu, const PreparedFrame& planned)
 std::vector<CompiledPtr> compile_frame(Gpu& gpu, const Technique& technique, const ParameterValues& values,
                                        const FrameSettings& settings)
 {
-    const GBufferPtr      gbuffer = make_gbuffer(gpu, camera_to_view(Camera{}, {1920, 1080}));
+    const GBufferPtr      gbuffer = make_gbuffer(gpu, camera_to_view(Camera{}, {1920, 1080}), Filled::drawn);
     const FrameBuffersPtr buffers = make_frame_buffers(gpu, gbuffer);
     const auto            pixels  = static_cast<uint32_t>(pixel_count(gbuffer->view.size_px));
     const glm::uvec3      tiles   = groups_of_8(gbuffer->view.size_px);

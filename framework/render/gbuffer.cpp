@@ -41,28 +41,28 @@ glm::vec4 from_half(const HalfTexel& h)
 
 } // namespace
 
-GBufferPtr make_gbuffer(Gpu& gpu, const View& view)
+GBufferPtr make_gbuffer(Gpu& gpu, const View& view, Filled filled)
 {
     if (view.size_px.x > MAX_IMAGE_PX || view.size_px.y > MAX_IMAGE_PX)
         throw_spec_error("image size {}x{} is outside 1x1 to {}x{}", view.size_px.x, view.size_px.y, MAX_IMAGE_PX,
                          MAX_IMAGE_PX);
-    using Usage      = vk::ImageUsageFlagBits;
     using Format     = vk::Format;
     auto gbuffer     = std::make_shared<GBuffer>();
     gbuffer->view    = view;
-    const auto image = [&](Format format, vk::ImageUsageFlags usage) {
+    const auto image = [&](Format format) {
+        using Usage      = vk::ImageUsageFlagBits;
+        const auto usage = filled == Filled::drawn ? Usage::eColorAttachment | Usage::eStorage : Usage::eStorage;
         return make_image(gpu, {.format = format, .size_px = view.size_px, .usage = usage});
     };
-    const vk::ImageUsageFlags target = Usage::eColorAttachment | Usage::eStorage;
-    gbuffer->depth                   = make_depth_buffer(gpu, view.size_px);
-    gbuffer->normal                  = image(Format::eR32G32B32A32Sfloat, target);
-    gbuffer->material                = image(Format::eR16G16B16A16Sfloat, target);
-    gbuffer->dielectric              = image(Format::eR32Sfloat, target);
-    gbuffer->radiance                = image(Format::eR16G16B16A16Sfloat, target);
-    gbuffer->highlight               = image(Format::eR16G16B16A16Sfloat, target);
-    gbuffer->object                  = image(Format::eR32Uint, target);
-    gbuffer->gradient                = image(Format::eR32Uint, target);
-    gbuffer->solid                   = image(Format::eR32Sfloat, target);
+    gbuffer->depth      = make_depth_buffer(gpu, view.size_px);
+    gbuffer->normal     = image(Format::eR32G32B32A32Sfloat);
+    gbuffer->material   = image(Format::eR16G16B16A16Sfloat);
+    gbuffer->dielectric = image(Format::eR32Sfloat);
+    gbuffer->radiance   = image(Format::eR16G16B16A16Sfloat);
+    gbuffer->highlight  = image(Format::eR16G16B16A16Sfloat);
+    gbuffer->object     = image(Format::eR32Uint);
+    gbuffer->gradient   = image(Format::eR32Uint);
+    gbuffer->solid      = image(Format::eR32Sfloat);
     return gbuffer;
 }
 
@@ -148,7 +148,7 @@ std::shared_ptr<const DrawPipeline> layer_pipeline(Gpu& gpu, GpuScene& scene, co
 /// Ready to be drawn. before: the G-buffer that lies before this one; null: none.
 GBufferPtr make_drawn_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view, Shows shows, const GBuffer* before)
 {
-    GBufferPtr gbuffer = make_gbuffer(gpu, view);
+    GBufferPtr gbuffer = make_gbuffer(gpu, view, Filled::drawn);
     gbuffer->scene     = scene;
     gbuffer->depth_buffer =
         make_image(gpu, {.format  = vk::Format::eD32Sfloat,
@@ -277,7 +277,7 @@ void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image)
 
 GBufferPtr upload_gbuffer(Gpu& gpu, const GBufferImage& image)
 {
-    GBufferPtr gbuffer = make_gbuffer(gpu, image.view);
+    GBufferPtr gbuffer = make_gbuffer(gpu, image.view, Filled::uploaded);
     upload_surfaces(gpu, *gbuffer, image);
     const size_t           count = image.depth.size();
     std::vector<HalfTexel> radiance(count), highlight(count);

@@ -49,8 +49,11 @@ void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image);
 GBufferPtr make_second_layer(Gpu& gpu, const GBuffer& first);
 void       record_second_layer(const vk::raii::CommandBuffer& commands, const GBuffer& second, double separation_m);
 
+/// By triangles, or by what somebody else drew: then the device's limits on what it can draw do not count.
+enum class Filled { drawn, uploaded };
+
 /// The images of a view, without content.
-GBufferPtr make_gbuffer(Gpu& gpu, const View& view);
+GBufferPtr make_gbuffer(Gpu& gpu, const View& view, Filled filled);
 /// The next layer behind one that was drawn from a scene: the same images, of the nearest surfaces behind it that face the camera.
 /// `before` must outlive it.
 GBufferPtr make_next_layer(Gpu& gpu, const GBuffer& before);

@@ -11,7 +11,7 @@ void prepare_layers(Gpu& gpu, GBuffer& gbuffer, const TraceSettings& settings)
     while (static_cast<int>(gbuffer.layers.size()) + 1 < settings.layers) {
         const GBuffer& before = gbuffer.layers.empty() ? gbuffer : *gbuffer.layers.back();
         if (!gbuffer.scene) {
-            gbuffer.layers.push_back(make_gbuffer(gpu, gbuffer.view));
+            gbuffer.layers.push_back(make_gbuffer(gpu, gbuffer.view, Filled::uploaded));
             continue;
         }
         const GBufferPtr& layer = gbuffer.layers.emplace_back(make_next_layer(gpu, before));
