@@ -90,6 +90,12 @@ TraceResult trace(const Picture& picture, const Technique& technique, const Para
     return count_frame(device(), *frame, precision);
 }
 
+std::string missing_for_exact()
+{
+    const Technique& walk = technique("dda");
+    return missing_feature(device(), walk, values_of(walk, {{"arithmetic", 1}}));
+}
+
 std::string repeat_command(const std::string& scene, const std::string& view, glm::ivec2 size_px,
                            const Technique& technique, const ParameterValues& values, const TraceSettings& settings)
 {

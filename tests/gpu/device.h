@@ -48,6 +48,9 @@ inline ParameterValues report_passes()
 TraceResult trace(const Picture& picture, const Technique& technique, const ParameterValues& values,
                   const TraceSettings& settings, Precision precision = Precision::float32);
 
+/// What the device lacks for arithmetic = exact; empty: nothing.
+std::string missing_for_exact();
+
 /// The command that repeats a trace outside the tests.
 std::string repeat_command(const std::string& scene, const std::string& view, glm::ivec2 size_px,
                            const Technique& technique, const ParameterValues& values, const TraceSettings& settings);

@@ -11,6 +11,7 @@ namespace {
 
 TEST(ExactArithmetic, HoldsOnEveryHardCase)
 {
+    if (const std::string missing = missing_for_exact(); !missing.empty()) GTEST_SKIP() << missing;
     for (const std::string id : {"dda", "hiz", "quadtree"})
         for (const CaseFamily& family : hard_cases())
             for (const HardCase& hard_case : family.cases) {
@@ -28,6 +29,7 @@ TEST(ExactArithmetic, HoldsOnEveryHardCase)
 // On the rays of the float shader: made by it, they are exact in double precision, too.
 TEST(ExactArithmetic, IsTheSameInFloatAndDouble)
 {
+    if (const std::string missing = missing_for_exact(); !missing.empty()) GTEST_SKIP() << missing;
     const TraceSettings settings{.thickness_m = 0.1, .max_distance_m = 1e9};
     for (const SceneListing& scene : list_scenes()) {
         const Picture picture = make_picture(scene.name, "default", {640, 360});

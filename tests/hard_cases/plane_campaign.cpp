@@ -83,13 +83,15 @@ public:
         add_layers(setup_.gbuffer, layers);
         gbuffer_ = upload_gbuffer(device(), setup_.gbuffer);
         for (const double exact : {0.0, 1.0})
-            for (const char* id : {"dda", "hiz", "quadtree"}) tracers_[exact > 0].push_back(make(id, exact));
+            if (exact == 0 || missing_for_exact().empty())
+                for (const char* id : {"dda", "hiz", "quadtree"}) tracers_[exact > 0].push_back(make(id, exact));
         tracers_[0].push_back(make("hiz_packets", std::nullopt));
     }
 
     void run(const std::vector<RayInput>& rays, bool judged, Count& count, std::string& first)
     {
         for (const auto& tracers : tracers_) {
+            if (tracers.empty()) continue;
             const auto walk = trace_rays(device(), *tracers[0], rays);
             for (size_t i = 1; i < tracers.size(); ++i) {
                 const auto found = trace_rays(device(), *tracers[i], rays);
