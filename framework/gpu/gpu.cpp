@@ -145,8 +145,10 @@ void require_executable_properties(const vk::raii::PhysicalDevice& device, const
         throw_failure("the device '{}' does not say what it compiles: it has no {}", info.name, executable_properties);
 }
 
+/// A walk of a pair that has ended still reads for nothing, outside of the picture. Where texel buffers are read that gives something; a plain buffer
+/// may lie at the end of what is mapped, and promises it only with robust buffer access.
 vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical_device, uint32_t queue_family,
-                             const GpuOptions& options)
+                             const GpuOptions& options, bool plain_buffers)
 {
     const vk::PhysicalDeviceFeatures available = physical_device.getFeatures();
     const float                      priority  = 1.0F;
@@ -155,11 +157,12 @@ vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical_device, ui
     vk::PhysicalDeviceVulkan13Features features13{
         .synchronization2 = true, .dynamicRendering = true, .maintenance4 = true};
     vk::PhysicalDeviceVulkan12Features features12{.pNext = &features13, .scalarBlockLayout = true};
-    vk::PhysicalDeviceFeatures2        features{.pNext    = &features12,
-                                                .features = {.robustBufferAccess = options.robust_buffer_access,
-                                                             .samplerAnisotropy  = available.samplerAnisotropy,
-                                                             .shaderFloat64      = available.shaderFloat64,
-                                                             .shaderInt64        = available.shaderInt64}};
+    vk::PhysicalDeviceFeatures2        features{
+               .pNext    = &features12,
+               .features = {.robustBufferAccess = options.robust_buffer_access || plain_buffers,
+                            .samplerAnisotropy  = available.samplerAnisotropy,
+                            .shaderFloat64      = available.shaderFloat64,
+                            .shaderInt64        = available.shaderInt64}};
     const vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR described{.pNext                  = &features,
                                                                               .pipelineExecutableInfo = true};
     vk::DeviceCreateInfo info{.pNext = &features, .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue};
@@ -252,7 +255,7 @@ Gpu open_gpu(const GpuOptions& options)
         impl.timestamp_mask    = bits >= 64 ? ~0ULL : (1ULL << bits) - 1;
         gpu.info.compiles_only = options.compiles_only;
         if (options.compiles_only) require_executable_properties(impl.physical_device, gpu.info);
-        impl.device = make_device(impl.physical_device, impl.queue_family, options);
+        impl.device = make_device(impl.physical_device, impl.queue_family, options, gpu.info.plain_buffers);
         impl.queue  = impl.device.getQueue(impl.queue_family, 0);
         if (options.compiles_only) return gpu;
         if (contains_ignoring_case(gpu.info.name, "llvmpipe")) spread_threads_since(threads_before);
