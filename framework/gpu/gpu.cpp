@@ -145,8 +145,8 @@ void require_executable_properties(const vk::raii::PhysicalDevice& device, const
         throw_failure("the device '{}' does not say what it compiles: it has no {}", info.name, executable_properties);
 }
 
-/// A walk of a pair that has ended still reads for nothing, outside of the picture. Where texel buffers are read that gives something; a plain buffer
-/// may lie at the end of what is mapped, and promises it only with robust buffer access.
+/// Plain buffers come with robust buffer access: a ray of a pair that has ended still reads, for nothing and outside of the picture, and without it
+/// SwiftShader reads memory that is not mapped. Drivers check the bounds of texel buffers by themselves.
 vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical_device, uint32_t queue_family,
                              const GpuOptions& options, bool plain_buffers)
 {

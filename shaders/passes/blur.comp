@@ -6,7 +6,7 @@
 #include "passes/blocks.glsl"
 #include "rays/tiles.glsl"
 #include "layout/frame_shared.h"
-#include "passes/share.glsl"
+#include "passes/mean_reflection.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 #ifdef ALONG_X
@@ -87,6 +87,6 @@ void main()
         add(sum, reflection_at(place - offset), gauss);
         add(sum, reflection_at(place + offset), gauss);
     }
-    vec4 blurred = sum.trusted > 0.0 ? vec4(sum.colour / sum.trusted, share_of(sum.trusted, sum.weight)) : vec4(0);
+    vec4 blurred = mean_reflection(vec4(sum.colour, sum.trusted), sum.weight);
     imageStore(TARGET, pixel, taps == 0 ? own : blurred);
 }

@@ -3,7 +3,7 @@
 #include "layout/shared.h"
 #include "pass/parameters"
 #include "rays/tiles.glsl"
-#include "passes/share.glsl"
+#include "passes/mean_reflection.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 4, rgba16f) uniform readonly image2D reflection_image; // a < 0: reflects nothing
@@ -31,7 +31,7 @@ vec4 mean()
 {
     vec4 sum = vec4(0);
     for (int i = 0; i < count; ++i) sum += vec4(neighbours[i].rgb * neighbours[i].a, neighbours[i].a);
-    return sum.a > 0.0 ? vec4(sum.rgb / sum.a, share_of(sum.a, float(count))) : vec4(0);
+    return mean_reflection(sum, float(count));
 }
 
 float brightness(vec4 value)

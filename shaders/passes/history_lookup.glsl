@@ -1,7 +1,7 @@
 // What the history holds of a pixel's reflection, and whether that still is the same reflection. After previous_frame.glsl and pass/parameters.
 #include "layout/frame_shared.h"
 #include "passes/blocks.glsl"
-#include "passes/share.glsl"
+#include "passes/mean_reflection.glsl"
 
 layout(set = 0, binding = 50, rgba32f) uniform readonly image2D reprojected_image;         // passes/reprojection.comp
 layout(set = 0, binding = 51, rgba32f) uniform readonly image2D previous_reflection_image; // colour times weight, weight; < 0: reflects nothing

@@ -6,7 +6,7 @@
 #include "rays/reflecting.glsl"
 #include "pass/parameters"
 #include "passes/ray_colour.glsl"
-#include "passes/share.glsl"
+#include "passes/mean_reflection.glsl"
 #ifdef LOBE_RAYS
 #include "passes/lobe_rays.glsl"
 #endif
@@ -29,7 +29,7 @@ vec4 reflection_of(uint index, PackedHit hit)
 #else
 // The mean of the pictures that the rays would make one by one, if more than half of them hit.
 // J. Somerville Roberts, "Screen Space Reflections": noise is where few of them do.
-vec4 mean_reflection(uint first)
+vec4 mean_of_rays(uint first)
 {
     vec4 sum  = vec4(0);
     int  hits = 0;
@@ -43,8 +43,7 @@ vec4 mean_reflection(uint first)
             ++hits;
         }
     }
-    if (2 * hits <= rays_per_pixel || sum.a <= 0.0) return vec4(0);
-    return vec4(sum.rgb / sum.a, share_of(sum.a, float(rays_per_pixel)));
+    return 2 * hits > rays_per_pixel ? mean_reflection(sum, float(rays_per_pixel)) : vec4(0);
 }
 #endif
 
@@ -64,11 +63,11 @@ void main()
         vec4 light = lobe_ray_light(first + ray, pixel, ray);
         mean += vec4(light.rgb * light.a, light.a);
     }
-    if (rays_per_pixel > 1) imageStore(reflection_image, pixel, mean.a > 0.0 ? vec4(mean.rgb / mean.a, share_of(mean.a, float(rays_per_pixel))) : vec4(0));
+    if (rays_per_pixel > 1) imageStore(reflection_image, pixel, mean_reflection(mean, float(rays_per_pixel)));
 #elif defined(ONE_RAY)
     imageStore(reflection_image, pixel, reflection_of(first, packed_hit(first)));
 #else
-    imageStore(reflection_image, pixel, rays_per_pixel > 1 ? mean_reflection(first) : reflection_of(first, packed_hit(first)));
+    imageStore(reflection_image, pixel, rays_per_pixel > 1 ? mean_of_rays(first) : reflection_of(first, packed_hit(first)));
 #endif
     if (block_px > 1) imageStore(block_pixel_image, pixel / block_px, uvec4(pack_pixel(pixel, 0)));
 }

@@ -19,7 +19,7 @@ layout(set = 0, binding = 8, rgba32f) uniform readonly image2D ray_end_image;   
 const float largest_ratio = 8.0; // a ray that its own pixel hardly ever draws must not decide
 
 #include "passes/reflector.glsl"
-#include "passes/share.glsl"
+#include "passes/mean_reflection.glsl"
 
 // The pixel that was traced in place of this one.
 ivec2 traced_pixel(ivec2 pixel)
@@ -75,5 +75,5 @@ void main()
     }
     // One ray that alone met something bright is a speck: it counts for no more than the next brightest.
     if (most > 0.0) sum.rgb -= brightest * (1.0 - next / most);
-    if (total > 0.0) imageStore(filtered_image, pixel, sum.a > 0.0 ? vec4(sum.rgb / sum.a, share_of(sum.a, total)) : vec4(0));
+    if (total > 0.0) imageStore(filtered_image, pixel, mean_reflection(sum, total));
 }

@@ -8,7 +8,7 @@
 #include "passes/blocks.glsl"
 #include "rays/tiles.glsl"
 #include "passes/reflector.glsl"
-#include "passes/share.glsl"
+#include "passes/mean_reflection.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 4, rgba16f) uniform writeonly image2D reflection_image;
@@ -44,5 +44,5 @@ void main()
         sum += weight * vec4(other.rgb * other.a, other.a);
         total += weight;
     }
-    if (total > 0.0 && sum.a > 0.0) imageStore(reflection_image, pixel, vec4(sum.rgb / sum.a, share_of(sum.a, total)));
+    if (total > 0.0 && sum.a > 0.0) imageStore(reflection_image, pixel, mean_reflection(sum, total));
 }

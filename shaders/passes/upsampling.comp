@@ -6,7 +6,7 @@
 #include "pass/parameters"
 #include "passes/blocks.glsl"
 #include "passes/camera.glsl"
-#include "passes/share.glsl"
+#include "passes/mean_reflection.glsl"
 #include "passes/directional_albedo.glsl"
 #include "rays/tiles.glsl"
 #include "layout/frame_shared.h"
@@ -83,7 +83,7 @@ vec4 upsampled(ivec2 pixel)
         }
     }
     if (total < vanishing) return closest;
-    return sum.a > 0.0 ? vec4(sum.rgb / sum.a, share_of(sum.a, total)) : vec4(0);
+    return mean_reflection(sum, total);
 }
 
 void main()
