@@ -34,7 +34,7 @@ void apply_sampler(const Import& import, int sampler_index, Texture& texture)
         sampler.minFilter != TINYGLTF_TEXTURE_FILTER_NEAREST && sampler.minFilter != TINYGLTF_TEXTURE_FILTER_LINEAR;
 }
 
-/// An image that cannot be used leaves its texture out, with a warning: the shape is still worth seeing.
+/// An image that cannot be decoded leaves its texture out, with a warning: the shape is still worth seeing.
 const Texture& decoded_image(Import& import, Textures& textures, int image_index)
 {
     const auto [found, added] = textures.decoded.try_emplace(image_index);
@@ -52,6 +52,8 @@ const Texture& decoded_image(Import& import, Textures& textures, int image_index
     try {
         const std::string name = image.uri.empty() ? image.name : image.uri.substr(0, 100);
         found->second          = decode_image(image.image, fmt::format("{} '{}'", where, name));
+    } catch (const SpecError& error) {
+        throw_spec_error("{}: {}", import.file, error.what());
     } catch (const Failure& failure) {
         import.warn(fmt::format("texture left out: {}", failure.what()));
     }

@@ -72,9 +72,9 @@ Texture decode_image(std::span<const unsigned char> bytes, const std::string& na
     OIIO::ImageSpec spec;
     if (!input || !input->open("image", spec, config))
         throw_failure("{}: cannot be decoded: {}", name, first_line(input ? input->geterror() : OIIO::geterror()));
-    if (spec.width < 1 || spec.height < 1 || spec.width > max_side_px || spec.height > max_side_px)
-        throw_failure("{}: {} x {} pixels, but at most {} a side can be used", name, spec.width, spec.height,
-                      max_side_px);
+    if (spec.width < 1 || spec.height < 1) throw_failure("{}: {}x{} pixels", name, spec.width, spec.height);
+    if (spec.width > max_side_px || spec.height > max_side_px)
+        throw_spec_error("{}: {}x{} pixels, at most {} a side can be used", name, spec.width, spec.height, max_side_px);
     const auto           channels = static_cast<size_t>(spec.nchannels);
     std::vector<uint8_t> pixels(static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height) * channels);
     if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, pixels.data()))

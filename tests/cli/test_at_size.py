@@ -23,6 +23,10 @@ class Test(Case):
     def test_too_wide_an_environment_is_refused(self):
         self.trial.refuse("wide", self.at_size.surrounded(self.folder, 16386, 64), ["sky.exr", "16386x64", "at most 16384 a side"])
 
+    def test_too_wide_a_texture_is_refused(self):
+        scene = self.at_size.textured(self.folder, "texture", 16385, 64)
+        self.trial.refuse("texture", scene, ["texture.gltf", "texture.png", "16385x64", "at most 16384 a side"])
+
     def test_what_does_not_hold_is_found(self):
         scene, _ = self.at_size.waves(self.folder, 200)
         with self.assertRaisesRegex(self.at_size.Broken, "exit code 0 after"):
