@@ -13,9 +13,12 @@ exec {PROGRAM} "$@"
 
 class Test(Case):
     def test_nothing_is_lost(self):
+        earlier = {"kills": 9}
+        self.write("kills.json", json.dumps({"runs": [earlier]}))
         self.script("kills", "--kills", "3", "--stops", "5", "-o", self.path("kills.json"))
         with open(self.path("kills.json"), encoding="utf-8") as file:
-            figures = json.load(file)
+            kept, figures = json.load(file)["runs"]
+        self.assertEqual(kept, earlier)
         self.assertEqual((figures["kills"], figures["stops"]), (3, 5))
         self.assertGreater(figures["rows_compared"], 0)
         self.assertEqual(set(figures["broken"].values()), {0})
