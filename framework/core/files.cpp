@@ -30,7 +30,8 @@ struct RegularFile {
     int      descriptor = -1;
     uint64_t bytes      = 0;
 
-    explicit RegularFile(const fs::path& path) : descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC))
+    explicit RegularFile(const fs::path& path, uint64_t limit_bytes = UINT64_MAX)
+        : descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC))
     {
         if (descriptor < 0) throw_failure("{}: cannot be read: {}", short_path(path), std::strerror(errno));
         struct stat info {};
@@ -39,6 +40,10 @@ struct RegularFile {
             throw_failure("{}: not a regular file", short_path(path));
         }
         bytes = static_cast<uint64_t>(info.st_size);
+        if (bytes > limit_bytes) {
+            ::close(descriptor);
+            throw_failure("{}: {} bytes, but at most {} can be loaded", short_path(path), bytes, limit_bytes);
+        }
     }
     RegularFile(const RegularFile&)            = delete;
     RegularFile& operator=(const RegularFile&) = delete;
@@ -47,28 +52,34 @@ struct RegularFile {
 
 } // namespace
 
-std::string read_file(const fs::path& path)
+std::string read_to_end(int fd)
 {
-    if (fs::is_directory(path)) throw_failure("{}: is a folder, not a file", short_path(path));
-    const RegularFile file(path);
     std::string       bytes;
     std::vector<char> block(1 << 16);
-    // To its end: files of /proc say that they are empty.
     for (;;) {
-        const ssize_t count = ::read(file.descriptor, block.data(), block.size());
+        const ssize_t count = ::read(fd, block.data(), block.size());
         if (count == 0) return bytes;
         if (count > 0)
             bytes.append(block.data(), static_cast<size_t>(count));
         else if (errno != EINTR)
-            throw_failure("{}: reading failed: {}", short_path(path), std::strerror(errno));
+            throw_failure("reading failed: {}", std::strerror(errno));
+    }
+}
+
+std::string read_file(const fs::path& path)
+{
+    if (fs::is_directory(path)) throw_failure("{}: is a folder, not a file", short_path(path));
+    const RegularFile file(path);
+    try {
+        return read_to_end(file.descriptor); // files of /proc say that they are empty
+    } catch (const Failure& failure) {
+        throw_failure("{}: {}", short_path(path), failure.what());
     }
 }
 
 std::vector<unsigned char> read_regular_file(const fs::path& path, uint64_t limit_bytes)
 {
-    const RegularFile file(path);
-    if (file.bytes > limit_bytes)
-        throw_failure("{}: {} bytes, but at most {} can be loaded", short_path(path), file.bytes, limit_bytes);
+    const RegularFile          file(path, limit_bytes);
     std::vector<unsigned char> bytes(file.bytes);
     for (size_t done = 0; done < bytes.size();) {
         const ssize_t count = ::read(file.descriptor, bytes.data() + done, bytes.size() - done);
@@ -93,6 +104,8 @@ bool write_fully(int fd, std::string_view bytes)
     }
     return true;
 }
+
+uint64_t regular_file_bytes(const fs::path& path, uint64_t limit_bytes) { return RegularFile(path, limit_bytes).bytes; }
 
 void write_file_atomically(const fs::path& path, std::string_view bytes)
 {

@@ -12,8 +12,14 @@ namespace ssrlab {
 /// The whole file; throws Failure with path and reason.
 std::string read_file(const std::filesystem::path& path);
 
-/// The same of a regular file of limited size, for what a person names; throws Failure (missing, a folder, a pipe, larger than `limit_bytes`).
+/// From `fd` to its end; throws Failure, with the reason alone.
+std::string read_to_end(int fd);
+
+/// A regular file of limited size, for what a person names; throws Failure (missing, a folder, a pipe, larger than `limit_bytes`).
 std::vector<unsigned char> read_regular_file(const std::filesystem::path& path, uint64_t limit_bytes);
+
+/// How many bytes read_regular_file() would return.
+uint64_t regular_file_bytes(const std::filesystem::path& path, uint64_t limit_bytes);
 
 /// Written beside, synced and renamed: the final name never carries a partial file. Throws Failure with path and reason.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);

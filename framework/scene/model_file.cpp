@@ -214,20 +214,6 @@ std::string read_here(const fs::path& file)
 }
 
 // ---- The process that asks
-std::string read_to_end(int from)
-{
-    std::string       bytes;
-    std::vector<char> block(1 << 16);
-    for (;;) {
-        const ssize_t count = ::read(from, block.data(), block.size());
-        if (count == 0) return bytes;
-        if (count > 0)
-            bytes.append(block.data(), static_cast<size_t>(count));
-        else if (errno != EINTR)
-            throw_failure("what assimp made of it cannot be read: {}", std::strerror(errno));
-    }
-}
-
 std::string read_elsewhere(const fs::path& file, uint64_t time_s)
 {
     int ends[2] = {-1, -1};
@@ -273,7 +259,7 @@ FileModel to_model(Reader reader)
 
 FileModel read_model_file(const fs::path& file)
 {
-    const uint64_t size = read_regular_file(file, max_file_bytes).size(); // a clear message, before assimp's
+    const uint64_t size = regular_file_bytes(file, max_file_bytes); // a clear message, before assimp's
     try {
         return to_model({read_elsewhere(file, least_time_s + size / file_bytes_per_s)});
     } catch (const Failure& failure) {

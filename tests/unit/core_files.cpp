@@ -23,6 +23,7 @@ TEST(Files, AreReadToTheirEnd)
     const std::string file = folder.write("a.txt", bytes);
     EXPECT_EQ(read_file(file), bytes);
     EXPECT_EQ(read_regular_file(file, bytes.size()).size(), bytes.size());
+    EXPECT_EQ(regular_file_bytes(file, bytes.size()), bytes.size());
     EXPECT_EQ(read_file(folder.write("empty", "")), "");
     EXPECT_FALSE(read_file("/proc/self/cmdline").empty()) << "it says that it has no bytes";
 }
@@ -47,8 +48,9 @@ TEST(Files, LargerThanTheLimitAreRefused)
 {
     const TempFolder  folder;
     const std::string file = folder.write("a.txt", "12345");
-    EXPECT_THAT([&] { read_regular_file(file, 4); },
-                Throws<Failure>(Property(&Failure::what, AllOf(HasSubstr("5 bytes"), HasSubstr("at most 4")))));
+    const auto refused = Throws<Failure>(Property(&Failure::what, AllOf(HasSubstr("5 bytes"), HasSubstr("at most 4"))));
+    EXPECT_THAT([&] { read_regular_file(file, 4); }, refused);
+    EXPECT_THAT([&] { regular_file_bytes(file, 4); }, refused);
 }
 
 } // namespace
