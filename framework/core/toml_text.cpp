@@ -9,6 +9,7 @@ namespace ssrlab {
 namespace {
 
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+constexpr int              most_key_dots   = 100; // each is a table in a table, and toml++ calls itself for each
 
 struct Reader {
     const std::string& file;
@@ -16,6 +17,7 @@ struct Reader {
     size_t             at       = 0;
     bool               in_value = false; // behind "=", in a list
     std::string        open     = {};    // brackets of the lists and tables that it is in
+    int                key_dots = 0;
 
     bool   more() const { return at < text.size(); }
     bool   next_is(std::string_view expected) const { return text.substr(at, expected.size()) == expected; }
@@ -61,7 +63,11 @@ void skip_bare_value(Reader& reader)
 
 void pass_sign(Reader& reader)
 {
-    const char sign   = reader.text[reader.at++];
+    const char sign = reader.text[reader.at++];
+    if (std::string_view("=\n,{").find(sign) != std::string_view::npos) reader.key_dots = 0;
+    if (!reader.in_value && sign == '.' && ++reader.key_dots > most_key_dots)
+        throw_spec_error("{}:{}: expected a key of at most {} parts, got more", reader.file, reader.line(),
+                         most_key_dots + 1);
     const bool closes = (sign == ']' && reader.open.ends_with('[')) || (sign == '}' && reader.open.ends_with('{'));
     if (!reader.in_value && sign != '=' && !closes) return;
     if (closes) reader.open.pop_back();

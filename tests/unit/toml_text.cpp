@@ -35,6 +35,19 @@ TEST(TomlText, LettersStandInStringsAndComments)
               "\xED\x9F\xBF\xEE\x80\x80\xF0\x90\x80\x80\xF4\x8F\xBF\xBF");
 }
 
+TEST(TomlText, KeysOfManyPartsAreRefused)
+{
+    const auto key = [](size_t parts) {
+        std::string text = "a";
+        for (size_t i = 1; i < parts; ++i) text += i % 2 == 0 ? ".a" : ".\"a.b\"";
+        return text;
+    };
+    EXPECT_EQ(value_of("[" + key(101) + "]\nb = { " + key(101) + " = 1.5 }\n"), "");
+    for (const std::string& text :
+         {key(102) + " = 1", "[" + key(300'000) + "]", "b = { c = 1, " + key(300'000) + " = 1 }"})
+        EXPECT_THAT(refused("# é\n" + text), HasSubstr("file.toml:2: expected a key of at most 101 parts"));
+}
+
 TEST(TomlText, WhatIsNotUtf8IsRefusedWithItsLine)
 {
     const char* broken[] = {
