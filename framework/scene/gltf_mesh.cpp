@@ -26,41 +26,46 @@ std::vector<float> rows_of(const Import& import, const tinygltf::Primitive& prim
     return rows;
 }
 
-void read_colours(const Import& import, const tinygltf::Primitive& primitive, Mesh& mesh, const std::string& where)
+/// The corners of the primitive's triangles: its indices, or all its vertices in order.
+std::vector<uint32_t> read_corners(const Import& import, const tinygltf::Primitive& primitive, size_t vertex_count,
+                                   const std::string& where)
+{
+    if (primitive.indices < 0) {
+        std::vector<uint32_t> corners(vertex_count);
+        std::iota(corners.begin(), corners.end(), 0U);
+        return corners;
+    }
+    std::vector<uint32_t> corners = read_indices(import, primitive.indices, where + "/indices");
+    const auto beyond = std::ranges::find_if(corners, [&](uint32_t corner) { return corner >= vertex_count; });
+    if (beyond != corners.end())
+        import.fail("{}/indices: index {} is out of range, there are {} vertices", where, *beyond, vertex_count);
+    return corners;
+}
+
+/// Which vertices the corners name, in order; the corners then name places in this list. Primitives may share one long list of vertices.
+std::vector<uint32_t> take_used(std::vector<uint32_t>& corners, size_t vertex_count)
+{
+    std::vector<uint32_t> place(vertex_count, 0), used;
+    for (const uint32_t corner : corners) place[corner] = 1;
+    for (uint32_t i = 0; i < vertex_count; ++i) {
+        if (place[i] == 0) continue;
+        place[i] = static_cast<uint32_t>(used.size());
+        used.push_back(i);
+    }
+    for (uint32_t& corner : corners) corner = place[corner];
+    return used;
+}
+
+void read_colours(const Import& import, const tinygltf::Primitive& primitive, size_t vertex_count,
+                  const std::vector<uint32_t>& used, Mesh& mesh, const std::string& where)
 {
     const int accessor = attribute(primitive, "COLOR_0");
     if (accessor < 0) return;
     const int                components = component_count(import, accessor, where) == 4 ? 4 : 3;
-    const std::vector<float> rows = rows_of(import, primitive, "COLOR_0", components, mesh.vertices.size(), where);
-    for (size_t i = 0; i < mesh.vertices.size(); ++i)
+    const std::vector<float> rows       = rows_of(import, primitive, "COLOR_0", components, vertex_count, where);
+    for (size_t i = 0; i < used.size(); ++i)
         for (int c = 0; c < components; ++c)
-            mesh.vertices[i].colour[c] = rows[i * static_cast<size_t>(components) + static_cast<size_t>(c)];
-}
-
-void read_vertices(const Import& import, const tinygltf::Primitive& primitive, Mesh& mesh, const std::string& where)
-{
-    const std::vector<float> positions =
-        read_floats(import, attribute(primitive, "POSITION"), 3, where + "/attributes/POSITION");
-    const size_t             count    = positions.size() / 3;
-    const std::vector<float> normals  = rows_of(import, primitive, "NORMAL", 3, count, where);
-    const std::vector<float> tangents = rows_of(import, primitive, "TANGENT", 4, count, where);
-    const std::vector<float> uv0      = rows_of(import, primitive, "TEXCOORD_0", 2, count, where);
-    const std::vector<float> uv1      = rows_of(import, primitive, "TEXCOORD_1", 2, count, where);
-    mesh.has_normals                  = !normals.empty();
-    mesh.has_tangents                 = !tangents.empty() && mesh.has_normals;
-    for (size_t i = 0; i < count; ++i) {
-        Vertex vertex{};
-        vertex.normal_ws = {0, 1, 0};
-        vertex.colour    = glm::vec4(1);
-        if (mesh.has_normals) vertex.normal_ws = {normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]};
-        if (mesh.has_tangents)
-            vertex.tangent_ws = {tangents[4 * i], tangents[4 * i + 1], tangents[4 * i + 2], tangents[4 * i + 3]};
-        if (!uv0.empty()) vertex.uv0 = {uv0[2 * i], uv0[2 * i + 1]};
-        if (!uv1.empty()) vertex.uv1 = {uv1[2 * i], uv1[2 * i + 1]};
-        mesh.positions_ws.emplace_back(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
-        mesh.vertices.push_back(vertex);
-    }
-    read_colours(import, primitive, mesh, where);
+            mesh.vertices[i].colour[c] = rows[used[i] * static_cast<size_t>(components) + static_cast<size_t>(c)];
 }
 
 /// Strips and fans as single triangles, with the winding that glTF defines.
@@ -84,15 +89,30 @@ std::vector<uint32_t> to_triangles(const std::vector<uint32_t>& corners, int mod
 void read_triangles(const Import& import, const tinygltf::Primitive& primitive, int mode, Mesh& mesh,
                     const std::string& where)
 {
-    std::vector<uint32_t> corners(mesh.vertices.size());
-    if (primitive.indices >= 0)
-        corners = read_indices(import, primitive.indices, where + "/indices");
-    else
-        std::iota(corners.begin(), corners.end(), 0U);
-    const auto beyond = std::ranges::find_if(corners, [&](uint32_t corner) { return corner >= mesh.vertices.size(); });
-    if (beyond != corners.end())
-        import.fail("{}/indices: index {} is out of range, there are {} vertices", where, *beyond,
-                    mesh.vertices.size());
+    const std::vector<float> positions =
+        read_floats(import, attribute(primitive, "POSITION"), 3, where + "/attributes/POSITION");
+    const size_t                count    = positions.size() / 3;
+    std::vector<uint32_t>       corners  = read_corners(import, primitive, count, where);
+    const std::vector<uint32_t> used     = take_used(corners, count);
+    const std::vector<float>    normals  = rows_of(import, primitive, "NORMAL", 3, count, where);
+    const std::vector<float>    tangents = rows_of(import, primitive, "TANGENT", 4, count, where);
+    const std::vector<float>    uv0      = rows_of(import, primitive, "TEXCOORD_0", 2, count, where);
+    const std::vector<float>    uv1      = rows_of(import, primitive, "TEXCOORD_1", 2, count, where);
+    mesh.has_normals                     = !normals.empty();
+    mesh.has_tangents                    = !tangents.empty() && mesh.has_normals;
+    for (const size_t i : used) {
+        Vertex vertex{};
+        vertex.normal_ws = {0, 1, 0};
+        vertex.colour    = glm::vec4(1);
+        if (mesh.has_normals) vertex.normal_ws = {normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]};
+        if (mesh.has_tangents)
+            vertex.tangent_ws = {tangents[4 * i], tangents[4 * i + 1], tangents[4 * i + 2], tangents[4 * i + 3]};
+        if (!uv0.empty()) vertex.uv0 = {uv0[2 * i], uv0[2 * i + 1]};
+        if (!uv1.empty()) vertex.uv1 = {uv1[2 * i], uv1[2 * i + 1]};
+        mesh.positions_ws.emplace_back(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
+        mesh.vertices.push_back(vertex);
+    }
+    read_colours(import, primitive, count, used, mesh, where);
     mesh.indices = to_triangles(corners, mode);
 }
 
@@ -123,7 +143,6 @@ std::vector<Mesh> read_mesh(Import& import, int mesh_index, const std::vector<bo
         mesh.material = static_cast<uint32_t>(primitive.material >= 0 ? primitive.material
                                                                       : static_cast<int>(material_left_out.size()) - 1);
         if (material_left_out[mesh.material]) continue;
-        read_vertices(import, primitive, mesh, where);
         read_triangles(import, primitive, mode, mesh, where);
         meshes.push_back(std::move(mesh));
     }

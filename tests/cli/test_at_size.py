@@ -15,6 +15,10 @@ class Test(Case):
         self.trial.measure("waves", scene)
         self.assertGreater(self.trial.done[0]["peak_mib"], 20)
 
+    def test_meshes_take_of_a_shared_list_what_they_use(self):
+        self.trial.draw("shared", self.at_size.shared(self.folder, 40, 200_000))
+        self.assertLess(self.trial.done[0]["peak_mib"], 400, "with the whole list for each, it is 1 GiB more")
+
     def test_too_many_triangles_are_refused_before_they_are_read(self):
         scene = self.at_size.more_triangles(self.folder, 40_000_001)
         self.trial.refuse("more", scene, ["more_triangles.gltf", "40000001 triangles", "at most 40000000"])

@@ -55,6 +55,29 @@ TEST(SceneGltf, IndexedAndUnindexedGiveTheSameTriangles)
     for (size_t i = 0; i < 3; ++i) EXPECT_EQ(corner(plain, i), corner(indexed, i));
 }
 
+TEST(SceneGltf, PrimitivesTakeOfASharedListWhatTheyUse)
+{
+    TempFolder folder;
+    GltfFile   file;
+    const int  positions = file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 2, 0, 0, 3, 0, 0, 2, 1, 0});
+    const int  red =
+        file.add_accessor<float>({0, 0, 0, .1F, 0, 0, .2F, 0, 0, .3F, 0, 0, .4F, 0, 0, .5F, 0, 0}, "VEC3", 3);
+    const int      right      = file.add_accessor<uint16_t>({4, 5, 3}, "SCALAR", 1);
+    nlohmann::json attributes = {{"POSITION", positions}, {"COLOR_0", red}};
+    file.root["nodes"]        = {{{"mesh", 0}}};
+    file.root["meshes"]       = {
+              {{"primitives", {{{"attributes", attributes}, {"indices", right}}, {{"attributes", attributes}}}}}};
+    const Scene scene = load_scene(file.write(folder));
+    ASSERT_EQ(scene.indices.size(), 9U);
+    EXPECT_EQ(scene.vertices.size(), 9U);
+    for (size_t i = 0; i < 9; ++i) {
+        const float at_x   = std::array<float, 9>{3, 2, 2, 0, 1, 0, 2, 3, 2}[i],
+                    vertex = std::array<float, 9>{4, 5, 3, 0, 1, 2, 3, 4, 5}[i];
+        EXPECT_EQ(corner(scene, i).x, at_x) << i;
+        EXPECT_NEAR(scene.vertices[scene.indices[i]].colour.r, 0.1F * vertex, eps) << i;
+    }
+}
+
 TEST(SceneGltf, StripsAndFansKeepTheirFronts)
 {
     for (int mode : {5, 6}) {
