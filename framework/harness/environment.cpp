@@ -11,6 +11,7 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <thread>
 
@@ -39,6 +40,14 @@ std::string scene_hash(const std::string& name)
     return content_hash(listing);
 }
 
+/// How many threads a software device has.
+std::string threads_text()
+{
+    const char* told = std::getenv("LP_NUM_THREADS");
+    return fmt::format("{}{}", std::thread::hardware_concurrency(),
+                       told != nullptr ? fmt::format(" (LP_NUM_THREADS={})", told) : "");
+}
+
 } // namespace
 
 std::map<std::string, std::string> describe_identity(const Experiment&          experiment,
@@ -46,12 +55,16 @@ std::map<std::string, std::string> describe_identity(const Experiment&          
 {
     std::map<std::string, std::string> identity;
     identity["specification"] = content_hash(experiment.text);
+    identity["program"]       = content_hash(read_file("/proc/self/exe"));
     identity["shaders"]       = folder_hash(data_root() / "shaders");
     identity["device"]        = device.name;
     identity["driver"]        = device.driver;
     identity["storage"]       = storage_text(device);
     identity["passes"]        = passes_text(device);
-    if (!device.processor.empty()) identity["processor"] = device.processor;
+    if (!device.processor.empty()) {
+        identity["processor"] = device.processor;
+        identity["threads"]   = threads_text();
+    }
     for (const TechniqueSweep& sweep : experiment.techniques) {
         const Technique& technique        = find_technique(techniques, sweep.id);
         identity["technique " + sweep.id] = folder_hash(technique.folder);
@@ -91,7 +104,6 @@ Environment describe_environment(const Experiment& experiment, std::span<const T
     notes["version"]       = SSRLAB_VERSION;
     notes["compiler"]      = __VERSION__;
     notes["system"]        = fmt::format("{} {} {}", system.sysname, system.release, system.machine);
-    notes["cpu_threads"]   = std::to_string(std::thread::hardware_concurrency());
     notes["device_type"]   = device.type;
     notes["vulkan"]        = device.api_version;
     // What a search for targets turns, so that plots know which neighbours on a line differ in accuracy.

@@ -7,7 +7,7 @@
 
 namespace ssrlab {
 
-/// Hashes of specification, shaders, techniques and scene files, as they are now, and the device.
+/// Hashes of specification, program, shaders, techniques and scene files, as they are now, and the device with its threads.
 std::map<std::string, std::string> describe_identity(const Experiment&          experiment,
                                                      std::span<const Technique> techniques, const GpuInfo& device);
 

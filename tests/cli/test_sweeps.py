@@ -248,6 +248,17 @@ class Test(Case):
         self.write("s.toml", SWEEP.replace("64]", "128]"))
         self.refused("run", spec, "-o", "out", "--resume", code=2, says=["cannot be resumed", "specification"])
 
+    def test_resume_refuses_other_threads_and_another_program(self):
+        spec = self.write("s.toml", SWEEP)
+        self.ssrlab("run", spec, "-o", "out")
+        with open(self.path("out/environment.json"), encoding="utf-8") as file:
+            environment = json.load(file)
+        if environment["device_type"] == "Cpu":
+            self.refused("run", spec, "-o", "out", "--resume", code=2, says=["cannot be resumed", "threads"], LP_NUM_THREADS="1")
+        environment["identity"]["program"] = "0123456789abcdef"
+        self.write("out/environment.json", json.dumps(environment))
+        self.refused("run", spec, "-o", "out", "--resume", code=2, says=["cannot be resumed", "program"])
+
     def test_second_writer_is_refused(self):
         # Long enough that the first one still writes after the two seconds for which a second one waits.
         spec = self.write("s.toml", SWEEP.replace("min_repeats = 2\nmax_repeats = 4", "min_repeats = 400\nmax_repeats = 400"))
