@@ -40,6 +40,13 @@ std::string scene_hash(const std::string& name)
     return content_hash(listing);
 }
 
+/// Of this program, whatever lies at its place by now.
+const std::string& program_hash()
+{
+    static const std::string hash = content_hash(read_file("/proc/self/exe"));
+    return hash;
+}
+
 /// How many threads a software device has.
 std::string threads_text()
 {
@@ -55,7 +62,7 @@ std::map<std::string, std::string> describe_identity(const Experiment&          
 {
     std::map<std::string, std::string> identity;
     identity["specification"] = content_hash(experiment.text);
-    identity["program"]       = content_hash(read_file("/proc/self/exe"));
+    identity["program"]       = program_hash();
     identity["shaders"]       = folder_hash(data_root() / "shaders");
     identity["device"]        = device.name;
     identity["driver"]        = device.driver;

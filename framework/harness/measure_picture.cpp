@@ -130,8 +130,14 @@ void make_references(Bench& bench, Picture& picture, const MeasuredRun& measured
     clocked(bench.truths_s, [&] {
         if (picture.truths->known_layers() < static_cast<size_t>(settings.trace.layers))
             picture.truths->know_layers(read_gbuffer(bench.gpu, *picture.gbuffer).layers);
+        const std::string lacked = picture.truths->without_scene();
         picture.truths->make(settings.trace, image_errors);
+        if (const std::string& lacks = picture.truths->without_scene(); !lacks.empty() && lacks != lacked)
+            bench.progress.say(fmt::format("warning: {} {}: no scene truth: {}", measured.run->scene,
+                                           size_text(measured.run->size_px), lacks));
         if (!image_errors || (picture.reference && picture.reference_for == settings.trace)) return;
+        picture.reference.reset();
+        picture.reference_file.clear();
         std::optional<Image> truth = picture.truths->given_picture();
         if (!truth && picture.truths->without_scene().empty()) truth = picture.truths->true_picture();
         if (!truth) return;

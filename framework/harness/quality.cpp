@@ -53,8 +53,26 @@ Image reflected_image(const TraceResult& result, const GBufferImage& gbuffer, gl
 }
 
 Truths::Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path cache_dir)
-    : scene_(&scene), gbuffer_(std::move(gbuffer)), cache_dir_(std::move(cache_dir))
+    : scene_(&scene), gbuffer_(std::move(gbuffer)), cache_dir_(std::move(cache_dir)),
+      without_scene_(scene.frame ? "a frame of another renderer has no triangles" : "")
 {
+}
+
+/// All that is known without triangles.
+SceneTruth Truths::only_reflecting(const TraceSettings& settings) const
+{
+    SceneTruth truth = empty_scene_truth(gbuffer_.view.size_px);
+    for (size_t i = 0; i < truth.cls.size(); ++i)
+        if (reflects(gbuffer_, pixel_at(i, truth.size_px), settings)) truth.cls[i] = TruthClass::hidden;
+    return truth;
+}
+
+void Truths::make_scene_truth(const TraceSettings& settings)
+{
+    scene_truth_     = cached_scene_truth(cache_dir_, *scene_, gbuffer_, settings);
+    depth_off_scene_ = off_surface_share(scene_truth_);
+    without_scene_   = drawn_elsewhere(scene_truth_);
+    if (!without_scene_.empty()) scene_truth_ = only_reflecting(settings);
 }
 
 void Truths::make(const TraceSettings& settings, bool image_errors)
@@ -66,16 +84,12 @@ void Truths::make(const TraceSettings& settings, bool image_errors)
     screen_truth_.reset();
     if (without_screen(settings).empty()) screen_truth_ = cached_screen_truth(cache_dir_, gbuffer_, settings);
     if (scene_->frame) {
-        // All that is known: which pixels reflect.
-        scene_truth_ = empty_scene_truth(gbuffer_.view.size_px);
-        for (size_t i = 0; i < scene_truth_.cls.size(); ++i)
-            if (reflects(gbuffer_, pixel_at(i, scene_truth_.size_px), settings))
-                scene_truth_.cls[i] = TruthClass::hidden;
+        scene_truth_ = only_reflecting(settings);
     } else if (!keeps_scene_truth) {
         reference_.reset();
-        scene_truth_ = cached_scene_truth(cache_dir_, *scene_, gbuffer_, settings);
+        make_scene_truth(settings);
     }
-    if (image_errors && !reference_ && !scene_->frame) reference_.emplace(reference_image(scene_truth_));
+    if (image_errors && !reference_ && without_scene_.empty()) reference_.emplace(reference_image(scene_truth_));
     made_for_ = settings;
 }
 
@@ -88,25 +102,20 @@ const TraceSettings& Truths::made_for() const
 std::optional<Image> Truths::agreement(const TraceResult& counted) const
 {
     made_for();
-    if (!scene_->frame) return agreement_picture(counted, scene_truth_);
+    if (without_scene_.empty()) return agreement_picture(counted, scene_truth_);
     return screen_truth_ ? std::optional(agreement_picture(counted, *screen_truth_)) : std::nullopt;
 }
 
 std::optional<Image> Truths::causes(const TraceResult& counted) const
 {
     made_for();
-    return scene_->frame ? std::nullopt : std::optional(causes_picture(counted, scene_truth_, gbuffer_));
+    return !without_scene_.empty() ? std::nullopt : std::optional(causes_picture(counted, scene_truth_, gbuffer_));
 }
 
 std::string Truths::without_screen(const TraceSettings& settings)
 {
     if (has_screen_truth(settings.surface)) return "";
     return fmt::format("the surface model {} is known by its shaders alone", settings.surface);
-}
-
-std::string Truths::without_scene() const
-{
-    return scene_->frame ? "a frame of another renderer has no triangles" : "";
 }
 
 std::optional<Image> Truths::given_picture() const
@@ -189,9 +198,10 @@ MeasureValues Truths::compare(const TraceResult& counted, const TraceResult* twi
 {
     made_for();
     const TraceResult* screen = screen_truth_ ? &*screen_truth_ : nullptr;
-    MeasureValues      values = split_error(counted, twin, screen, scene_->frame ? nullptr : &scene_truth_);
+    MeasureValues      values = split_error(counted, twin, screen, without_scene_.empty() ? &scene_truth_ : nullptr);
     if (screen != nullptr) merge(values, compare_to_screen_truth(counted, *screen));
-    if (scene_->frame) return values;
+    values["depth_off_scene"] = depth_off_scene_;
+    if (!without_scene_.empty()) return values;
     merge(values, compare_to_scene_truth(counted, scene_truth_, screen, gbuffer_));
     merge(values, count_causes(counted, scene_truth_, gbuffer_));
     if (hidden != nullptr) merge(values, compare_hidden_layer(counted, *hidden, scene_truth_));

@@ -38,8 +38,8 @@ public:
 
     /// Why there is no screen truth of these settings. Empty: there is one.
     static std::string without_screen(const TraceSettings& settings);
-    /// Why there is no scene truth: a frame of another renderer has no triangles. Empty: there is one.
-    std::string without_scene() const;
+    /// Why there is no scene truth: a frame of another renderer has no triangles, or the driver draws another scene. Empty: there is one.
+    const std::string& without_scene() const { return without_scene_; }
     /// The picture of true reflections that comes with such a frame, if one does. Throws where it has another size.
     std::optional<Image> given_picture() const;
 
@@ -64,13 +64,17 @@ public:
 
 private:
     const TraceSettings& made_for() const;
+    SceneTruth           only_reflecting(const TraceSettings& settings) const;
+    void                 make_scene_truth(const TraceSettings& settings);
 
     const Scene*                     scene_;
     GBufferImage                     gbuffer_;
     std::filesystem::path            cache_dir_;
     std::optional<TraceSettings>     made_for_;
     std::optional<TraceResult>       screen_truth_; // empty: the surface model has none
-    SceneTruth                       scene_truth_;
+    SceneTruth                       scene_truth_;  // without one: which pixels reflect
+    std::string                      without_scene_;
+    std::optional<double>            depth_off_scene_;  // empty of a frame without triangles
     std::optional<Reference>         reference_;        // with image_errors: the scene truth's reflection
     std::optional<Image>             true_picture_;     // when asked for
     std::optional<ReprojectionTruth> before_, earlier_; // when asked for

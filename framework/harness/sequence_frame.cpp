@@ -36,7 +36,8 @@ void make_reprojection(Bench& bench, Picture& picture, const Run& run)
 /// Where something but jitter moved.
 void judge_motion(Bench& bench, Picture& picture, MeasuredRun& measured, const Observed& observed)
 {
-    if (!picture.truths || !picture.motion || !anything_moved(*picture.motion)) return;
+    if (!picture.truths || !picture.truths->without_scene().empty()) return;
+    if (!picture.motion || !anything_moved(*picture.motion)) return;
     clocked(bench.truths_s, [&] { make_reprojection(bench, picture, *measured.run); });
     add_measures(measured.row, picture.truths->compare_motion(observed.counted, observed.reprojection));
     if (picture.reference)
@@ -63,6 +64,7 @@ bool nothing_moves(const Scene& scene, const Run& run, int last_frame)
 void add_true_picture(Picture& picture, const TraceSettings& settings, Image& sum)
 {
     picture.truths->make(settings, false);
+    if (!picture.truths->without_scene().empty()) return;
     const Image& shown = picture.truths->true_picture();
     if (sum.values.empty()) return void(sum = shown);
     for (size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += shown.values[i];
@@ -142,6 +144,7 @@ void make_converged_pictures(Bench& bench, std::span<const Run> runs, int last_f
         for (auto& [settings, sum] : sums) add_true_picture(picture, settings, sum);
         bench.progress.tick();
     }
+    std::erase_if(sums, [](const auto& sum) { return sum.second.values.empty(); });
     for (auto& [settings, sum] : sums) {
         for (float& value : sum.values) value /= static_cast<float>(first.at.jitter_phases);
         bench.converged.push_back({settings, Reference(sum)});

@@ -5,6 +5,7 @@
 #include "truth/scene_truth.h"
 #include "truth/screen_ray.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace ssrlab {
@@ -114,6 +115,19 @@ std::vector<RayEnd> ReflectedRays::follow(std::span<const SceneRay> rays) const
         ends[k].hit      = hits[k];
     }
     return ends;
+}
+
+size_t ReflectedRays::count_off_surface(std::span<const size_t> pixels) const
+{
+    std::vector<SceneRay> rays;
+    for (const size_t pixel : pixels) {
+        rays.push_back(sight_ray(pixel_point_vs(gbuffer_, pixel_at(pixel, gbuffer_.view.size_px))));
+        rays.back().t_min = 1 - self_hit_share;
+        rays.back().t_max = 1 + self_hit_share;
+    }
+    std::vector<uint8_t> met(rays.size());
+    bvh_.occluded(rays, Sides::as_rasterised, met);
+    return static_cast<size_t>(std::ranges::count(met, 0));
 }
 
 void require_radiance(const GBufferImage& gbuffer)

@@ -31,6 +31,9 @@ public:
     SceneRay            ray_from(glm::ivec2 pixel, glm::dvec3 direction_vs) const;
     std::vector<RayEnd> follow(std::span<const SceneRay> rays) const;
 
+    /// At how many of these pixels' depths there is nothing that the frame draws. Rays from there would begin inside of things.
+    size_t count_off_surface(std::span<const size_t> pixels) const;
+
 private:
     glm::dvec3 point_to_ws(glm::dvec3 point_vs) const;
     glm::dvec3 direction_to_ws(glm::dvec3 direction_vs) const;

@@ -4,11 +4,17 @@
 #include "core/pixel_index.h"
 #include "truth/screen_ray.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
 namespace ssrlab {
 namespace {
 
-void fill_row(const ReflectedRays& reflected, const GBufferImage& gbuffer, const TraceSettings& settings, int y,
-              SceneTruth& truth)
+/// Returns how many pixels are off the scene's surfaces.
+size_t fill_row(const ReflectedRays& reflected, const GBufferImage& gbuffer, const TraceSettings& settings, int y,
+                SceneTruth& truth)
 {
     std::vector<SceneRay> rays;
     std::vector<size_t>   pixels;
@@ -27,6 +33,7 @@ void fill_row(const ReflectedRays& reflected, const GBufferImage& gbuffer, const
         truth.distance_m[i] = ends[k].distance_m;
         truth.radiance[i]   = ends[k].radiance;
     }
+    return reflected.count_off_surface(pixels);
 }
 
 } // namespace
@@ -56,8 +63,29 @@ SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferIma
     require_radiance(gbuffer);
     SceneTruth          truth = empty_scene_truth(gbuffer.view.size_px);
     const ReflectedRays reflected(bvh, scene, gbuffer, settings.max_distance_m);
-    parallel_rows(truth.size_px.y, threads, [&](int y) { fill_row(reflected, gbuffer, settings, y, truth); });
+    std::vector<size_t> off_surface(static_cast<size_t>(truth.size_px.y));
+    parallel_rows(truth.size_px.y, threads, [&](int y) {
+        off_surface[static_cast<size_t>(y)] = fill_row(reflected, gbuffer, settings, y, truth);
+    });
+    truth.off_surface = std::accumulate(off_surface.begin(), off_surface.end(), uint64_t(0));
     return truth;
+}
+
+std::optional<double> off_surface_share(const SceneTruth& truth)
+{
+    const auto rays = truth.cls.size() - static_cast<size_t>(std::ranges::count(truth.cls, TruthClass::not_traced));
+    if (rays == 0) return std::nullopt;
+    return static_cast<double>(truth.off_surface) / static_cast<double>(rays);
+}
+
+std::string drawn_elsewhere(const SceneTruth& truth)
+{
+    constexpr double most  = 0.05;
+    const double     share = off_surface_share(truth).value_or(0);
+    if (share <= most) return "";
+    return fmt::format("the driver draws another scene: at {:.0f} % of the pixels that reflect the drawn depth is off "
+                       "every surface",
+                       100 * share);
 }
 
 } // namespace ssrlab

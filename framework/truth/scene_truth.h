@@ -23,6 +23,9 @@
 #include "truth/scene_bvh.h"
 #include "truth/truth_class.h"
 
+#include <optional>
+#include <string>
+
 namespace ssrlab {
 
 /// All pixels not traced.
@@ -36,6 +39,13 @@ SceneTruth empty_scene_truth(glm::ivec2 size_px);
 /// Threads = 0: all cores.
 SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer,
                        const TraceSettings& settings, unsigned threads = 0);
+
+/// Share of the traced pixels off every surface (SceneTruth::off_surface); empty if none is traced.
+std::optional<double> off_surface_share(const SceneTruth& truth);
+
+/// Why such a truth is false: a driver that rounds a triangle's corners to few parts of a pixel draws other depths, and reflected rays begin
+/// inside of things. Empty: it holds.
+std::string drawn_elsewhere(const SceneTruth& truth);
 
 /// Lambertian, with shadow rays, without bounces:
 /// base (1 - metallic) / pi * sum(irradiance cos shadow) + ambient base + emissive.

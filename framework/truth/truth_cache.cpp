@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Raise when the code computes another truth from the same input, or writes it in another form.
-constexpr uint32_t format_version = 7;
+constexpr uint32_t format_version = 8;
 
 struct Header {
     std::array<char, 8> magic{'S', 'S', 'R', 'T', 'R', 'U', 'T', 'H'};
@@ -165,6 +165,7 @@ template <typename Pass> void pass_values(Pass& pass, TraceResult& result)
 
 template <typename Pass> void pass_values(Pass& pass, SceneTruth& truth)
 {
+    pass(truth.off_surface);
     for (size_t i = 0; i < truth.cls.size(); ++i) {
         pass(truth.cls[i]);
         if (truth.cls[i] == TruthClass::not_traced) continue;

@@ -31,6 +31,8 @@ struct SceneTruth {
     std::vector<glm::dvec2> point_px;   // undefined for sky and for points that are not in front of the eye
     std::vector<double>     distance_m; // along the reflected ray; +inf for sky
     std::vector<glm::vec3>  radiance;   // linear
+    uint64_t                off_surface =
+        0; // traced pixels that have a depth at which the scene has no surface, within self_hit_share of their distance
 };
 
 /// Where a pixel's reflection was in the frame before. How it is decided: truth/reprojection_truth.h.

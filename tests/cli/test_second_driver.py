@@ -7,6 +7,16 @@ import OpenImageIO
 from support import SOURCE, Case, main
 
 DRIVER = "/usr/lib/chromium/vk_swiftshader_icd.json"
+SPEC = """scenes = ["builtin:pole_field"]
+sizes  = ["64x36"]
+[passes]
+pass_set = "shading"
+[techniques.hiz]
+[measure]
+min_repeats = 2
+max_repeats = 2
+budget_s    = 0
+"""
 EXACT = ("dda", "hiz", "hiz_packets", "hiz_waves", "quadtree")
 
 
@@ -43,6 +53,21 @@ class Test(Case):
         self.assertTrue(all(row["outcome"] == "ok" for row in rows), [row["message"] for row in rows])
         with open(self.path("out/environment.json"), encoding="utf-8") as file:
             self.assertIn("plain buffers", file.read())
+
+    def test_without_scene_truth_where_it_draws_another_scene(self):
+        spec = self.write("s.toml", SPEC)
+        self.ssrlab("run", spec, "-o", "first")
+        self.second("run", spec, "-o", "out", says=["builtin:pole_field 64x36: no scene truth: the driver draws another scene"])
+        (first,), (second,) = self.rows("first"), self.rows()
+        self.assertLess(float(first["depth_off_scene"]), 0.001)
+        self.assertGreater(float(second["depth_off_scene"]), 0.05, "it rounds corners to 1/16 pixel")
+        self.assertEqual((first["no_scene_truth"], second["outcome"]), ("", "ok"))
+        self.assertIn("off every surface", second["no_scene_truth"])
+        self.assertTrue(first["recall_1px"] and first["picture_rmse"] and second["screen_same_pixel"])
+        for more in ("--side-by-side", "--show=agreement"):
+            self.refused("render", "builtin:pole_field", "-t", "hiz", "--size", "64x36", more, "-o", "a.png", code=1,
+                         says=["no scene truth: the driver draws another scene"], VK_ICD_FILENAMES=DRIVER)
+        self.assertEqual([second[name] for name in ("recall_1px", "truth_visible", "picture_rmse", "truth_picture")], [""] * 4)
 
     def test_what_it_cannot_do_is_said(self):
         self.refused("trace", "builtin:stairs", "-t", "dda", "-p", "arithmetic=exact", "-o", "a.exr", code=1,

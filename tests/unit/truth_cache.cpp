@@ -113,6 +113,7 @@ TEST_F(TruthCache, SceneTruthReadsWhatItWrote)
         EXPECT_EQ(cached.point_vs, computed.point_vs);
         EXPECT_EQ(cached.point_px, computed.point_px);
         EXPECT_EQ(cached.distance_m, computed.distance_m);
+        EXPECT_EQ(cached.off_surface, computed.off_surface);
         EXPECT_EQ(cached.radiance, computed.radiance);
     }
     EXPECT_EQ(files().size(), 1U);

@@ -3,7 +3,7 @@
 #include "truth/scene_truth.h"
 #include "truth_scenes.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 
@@ -58,6 +58,27 @@ TEST(SceneTruth, MirrorFloorAndWall)
         }
     }
     EXPECT_EQ(count(truth, TruthClass::not_traced), 64 * 35);
+    EXPECT_EQ(truth.off_surface, 0U);
+}
+
+TEST(SceneTruth, DepthsWhereTheSceneHasNoSurfaceAreCounted)
+{
+    Case test = floor_case();
+    add_wall(test.scene, 1, 10);
+    const double floor_m[] = {32 / 13.5, 32 / 18.5}; // of rows 45 and 50
+    for (int x = 0; x < 64; ++x) {
+        set_pixel(test.gbuffer, x, 45, floor_m[0] * (1 + 0.5 * self_hit_share), {0, 1, 0}, 1);
+        if (x < 20) set_pixel(test.gbuffer, x, 50, floor_m[1] * (1 + 2 * self_hit_share), {0, 1, 0}, 1);
+        if (x > 30) set_pixel(test.gbuffer, x, 50, floor_m[1] * (1 - 2 * self_hit_share), {0, 1, 0}, 1);
+    }
+    const SceneTruth truth = test.truth();
+    EXPECT_EQ(truth.off_surface, 20U + 33U);
+    EXPECT_THAT(off_surface_share(truth), testing::Optional(53.0 / (64 * 29)));
+    EXPECT_EQ(drawn_elsewhere(truth), "");
+    for (int y = 55; y < 57; ++y)
+        for (int x = 0; x < 64; ++x) set_pixel(test.gbuffer, x, y, 1, {0, 1, 0}, 1);
+    EXPECT_THAT(drawn_elsewhere(test.truth()), testing::HasSubstr("at 10 % of the pixels"));
+    EXPECT_EQ(off_surface_share(empty_scene_truth({4, 4})), std::nullopt);
 }
 
 TEST(SceneTruth, FloorAloneReflectsTheSky)
