@@ -19,7 +19,8 @@ struct Dispute {
 
     /// Through a corner exactly: no rounding of the ray decides it as exact numbers do. Level views send dozens of such rays.
     bool tie() const { return std::abs(corner_px) < 1e-9; }
-    bool explained() const { return corner_px <= allowed_px || face <= allowed_face; }
+    /// A pixel that the ray passes by more than that is no matter of rounding.
+    bool explained() const { return corner_px >= -allowed_px && (corner_px <= allowed_px || face <= allowed_face); }
 };
 
 struct Answer {
