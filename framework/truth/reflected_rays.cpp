@@ -6,12 +6,15 @@
 #include "truth/screen_ray.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace ssrlab {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+// In a plane through the camera the frame draws nothing, and which of its sides is seen would be a matter of rounding.
+constexpr double edge_on_cosine = 1e-6;
 
 bool inside_image(const View& view, glm::dvec2 point_px)
 {
@@ -76,11 +79,13 @@ RayEnd ReflectedRays::classify(const SceneRay& ray, const SceneHit& hit) const
     if (hit.t > max_distance_m_) return with(TruthClass::beyond);
     if (!in_front) return with(TruthClass::behind_camera);
     if (!inside_image(view, end.point_px)) return with(TruthClass::off_screen);
-    const glm::dvec3 sight_ws     = direction_to_ws(end.point_vs - eye_vs(end.point_vs));
-    const bool       camera_front = glm::dot(hit.normal_ws, sight_ws) < 0;
+    const glm::dvec3 sight_ws = direction_to_ws(end.point_vs - eye_vs(end.point_vs));
+    const double     towards  = glm::dot(hit.normal_ws, sight_ws);
+    const bool       edge_on = std::abs(towards) <= edge_on_cosine * glm::length(hit.normal_ws) * glm::length(sight_ws);
+    const bool       camera_front = towards < 0;
     const bool       ray_front    = glm::dot(hit.normal_ws, ray.direction_ws) < 0;
     const bool       drawn        = ray_front || scene_.materials[scene_.draws[hit.surface.draw].material].double_sided;
-    return with(camera_front == ray_front && drawn ? TruthClass::visible : TruthClass::facing_away);
+    return with(!edge_on && camera_front == ray_front && drawn ? TruthClass::visible : TruthClass::facing_away);
 }
 
 glm::vec3 ReflectedRays::radiance(const SceneRay& ray, const SceneHit& hit, const RayEnd& end) const

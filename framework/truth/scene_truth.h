@@ -9,8 +9,8 @@
 //   beyond         the point is farther along the ray than max_distance_m
 //   behind_camera  its distance is less than the near plane's
 //   off_screen     it projects outside the image
-//   facing_away    the frame does not draw the side that the ray sees: the camera looks at the other one, or it is the back
-//                  of a material that is not double-sided
+//   facing_away    the frame does not draw the side that the ray sees: the camera looks at the other one, or along the surface,
+//                  or it is the back of a material that is not double-sided
 //   hidden         something lies between the near plane and the point: an occlusion ray from the eye (orthographic: along
 //                  the view axis) is blocked before (1 - visibility_tolerance) of the way by something that the frame draws
 //   visible        everything else: an SSR could find it

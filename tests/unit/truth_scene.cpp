@@ -148,6 +148,21 @@ TEST(SceneTruth, CulledBackHidesNothing)
 
 // A ceiling at y = 30 is met at Z = Z0 + 31 Z0 = 32 Z0 and projects to py = 32 (1 - 30 / (32 Z0)): outside for Z0 < 30/32.
 // A wall that looks away shows ray and camera the same back, which the frame draws only if the material is double-sided.
+TEST(SceneTruth, WhatTheCameraSeesFromItsEdgeIsNotVisible)
+{
+    for (const double height_m : {0.0, 1e-8, -1e-8}) {
+        for (const bool front_down : {true, false}) {
+            Case             test = floor_case();
+            const glm::dvec3 across(2000, 0, 0), along(0, 0, 4000);
+            add_quad(test.scene, 1, {-1000, height_m, -2000}, front_down ? across : along, front_down ? along : across);
+            test.scene.materials[1].double_sided = true;
+            const SceneTruth truth               = test.truth();
+            EXPECT_EQ(count(truth, TruthClass::visible), 0) << height_m << ' ' << front_down;
+            EXPECT_GT(count(truth, TruthClass::facing_away), 64 * 20) << height_m << ' ' << front_down;
+        }
+    }
+}
+
 TEST(SceneTruth, OffScreenAndBackSide)
 {
     Case test                     = floor_case();
