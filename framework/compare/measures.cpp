@@ -117,8 +117,7 @@ constexpr auto table = std::to_array<Measure>({
     {"truth_beyond", "share", "rays whose true point is beyond the maximum distance, of traced rays", truth},
     {"depth_off_scene", "share",
      "pixels at whose drawn depth the scene has no surface, within 0.0001 of their distance, of traced rays: some lie "
-     "at "
-     "silhouettes; with more than 0.05 the driver draws another scene, and there is no scene truth",
+     "at silhouettes; with more than 0.05 the driver draws another scene, and there is no scene truth",
      truth},
 
     {"hidden_recovered_share", "share",
