@@ -16,6 +16,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <fstream>
 #include <thread>
 
 namespace ssrlab {
@@ -30,6 +31,15 @@ std::string to_json(const Environment& environment)
     json["identity"] = environment.identity;
     // Text that is not UTF-8 (a file name, say) must not stop a sweep.
     return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+/// Has it lost the process that watches over the sweep? Then it is being killed.
+bool is_orphan(const std::string& pid)
+{
+    std::ifstream status("/proc/" + pid + "/status");
+    for (std::string line; std::getline(status, line);)
+        if (line == "PPid:\t1") return true;
+    return false;
 }
 
 std::map<std::string, std::string> recorded_identity(const fs::path& file)
@@ -95,16 +105,15 @@ void ResultFolder::lock()
     const fs::path file = folder_ / ".lock";
     lock_fd_            = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (lock_fd_ < 0) throw_failure("{}: cannot be written: {}", short_path(file), std::strerror(errno));
-    // A sweep that was just killed may have a child that is still ending.
+    // A sweep that was just killed may have a child that is still ending: on a busy machine for some seconds.
     bool locked = false;
-    for (int i = 0; i < 20 && !locked; ++i) {
+    for (int i = 0; !locked && (i < 20 || (i < 300 && is_orphan(read_file(file)))); ++i) {
         if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
         locked = ::flock(lock_fd_, LOCK_EX | LOCK_NB) == 0;
+        if (!locked && errno != EWOULDBLOCK)
+            throw_failure("{}: cannot be locked: {}", short_path(file), std::strerror(errno));
     }
-    if (!locked) {
-        if (errno != EWOULDBLOCK) throw_failure("{}: cannot be locked: {}", short_path(file), std::strerror(errno));
-        throw_failure("{}: another ssrlab is writing here (process {})", short_path(folder_), read_file(file));
-    }
+    if (!locked) throw_failure("{}: another ssrlab is writing here (process {})", short_path(folder_), read_file(file));
     const std::string pid = std::to_string(::getpid());
     if (::ftruncate(lock_fd_, 0) != 0 || !write_fully(lock_fd_, pid)) {
         throw_failure("{}: cannot be written: {}", short_path(file), std::strerror(errno));

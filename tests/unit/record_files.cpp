@@ -8,6 +8,7 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <fcntl.h>
@@ -99,6 +100,29 @@ TEST_F(RecordFiles, ASecondWriterIsRefusedWhileTheFirstLives)
                 HasSubstr("process " + std::to_string(::getpid())));
     first.reset();
     EXPECT_NO_THROW(ResultFolder(folder, columns, here, true));
+}
+
+TEST_F(RecordFiles, AWriterThatHasLostItsParentIsWaitedFor)
+{
+    const auto is_orphan = [] { return ::getppid() == 1; };
+    // The child ends at once; its own child keeps the folder for four seconds.
+    if (::fork() == 0) {
+        if (::fork() == 0) {
+            for (int i = 0; i < 5000 && !is_orphan(); ++i) ::usleep(1000);
+            if (!is_orphan()) ::_exit(1);
+            ResultFolder results(folder, columns, here, false);
+            results.append(row_of(1));
+            ::sleep(4);
+            ::_exit(0);
+        }
+        ::_exit(0);
+    }
+    ::wait(nullptr);
+    for (int i = 0; i < 1000 && !fs::exists(folder / "results.csv"); ++i) ::usleep(10'000);
+    if (!fs::exists(folder / "results.csv")) GTEST_SKIP() << "here orphans are not the first process's";
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_TRUE(ResultFolder(folder, columns, here, true).finished().contains("r1"));
+    EXPECT_GT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
 }
 
 TEST_F(RecordFiles, ATornTailIsCutAtEveryByte)
