@@ -49,6 +49,9 @@ MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResu
 MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth& scene_truth,
                                      const TraceResult* screen_truth, const GBufferImage& gbuffer);
 
+/// At how many of the traced pixels the drawn depth is off every surface of the scene.
+MeasureValues compare_depth_to_scene(const SceneTruth& scene_truth);
+
 /// What the pass hidden_layer adds: `first` and `second` are what the rays found in each depth layer.
 MeasureValues compare_hidden_layer(const TraceResult& first, const TraceResult& second, const SceneTruth& scene_truth);
 

@@ -69,9 +69,9 @@ SceneTruth Truths::only_reflecting(const TraceSettings& settings) const
 
 void Truths::make_scene_truth(const TraceSettings& settings)
 {
-    scene_truth_     = cached_scene_truth(cache_dir_, *scene_, gbuffer_, settings);
-    depth_off_scene_ = off_surface_share(scene_truth_);
-    without_scene_   = drawn_elsewhere(scene_truth_);
+    scene_truth_    = cached_scene_truth(cache_dir_, *scene_, gbuffer_, settings);
+    depth_to_scene_ = compare_depth_to_scene(scene_truth_);
+    without_scene_  = drawn_elsewhere(scene_truth_);
     if (!without_scene_.empty()) scene_truth_ = only_reflecting(settings);
 }
 
@@ -200,7 +200,7 @@ MeasureValues Truths::compare(const TraceResult& counted, const TraceResult* twi
     const TraceResult* screen = screen_truth_ ? &*screen_truth_ : nullptr;
     MeasureValues      values = split_error(counted, twin, screen, without_scene_.empty() ? &scene_truth_ : nullptr);
     if (screen != nullptr) merge(values, compare_to_screen_truth(counted, *screen));
-    values["depth_off_scene"] = depth_off_scene_;
+    merge(values, depth_to_scene_);
     if (!without_scene_.empty()) return values;
     merge(values, compare_to_scene_truth(counted, scene_truth_, screen, gbuffer_));
     merge(values, count_causes(counted, scene_truth_, gbuffer_));

@@ -74,7 +74,7 @@ private:
     std::optional<TraceResult>       screen_truth_; // empty: the surface model has none
     SceneTruth                       scene_truth_;  // without one: which pixels reflect
     std::string                      without_scene_;
-    std::optional<double>            depth_off_scene_;  // empty of a frame without triangles
+    MeasureValues                    depth_to_scene_;   // empty of a frame without triangles
     std::optional<Reference>         reference_;        // with image_errors: the scene truth's reflection
     std::optional<Image>             true_picture_;     // when asked for
     std::optional<ReprojectionTruth> before_, earlier_; // when asked for

@@ -289,6 +289,7 @@ TEST(Measures, TableIsCompleteAndUnique)
     all.merge(compare_hidden_layer(test.tested, test.screen, test.truth));
     all.merge(split_error(test.tested, &test.tested, &test.screen, &test.truth));
     all.merge(count_work(test.tested));
+    all.merge(compare_depth_to_scene(test.truth));
     test.truth.radiance.resize(16);
     const Reference reference(reference_image(test.truth));
     all.merge(compare_images(reference_image(test.truth), reference, test.truth));
