@@ -100,6 +100,8 @@ void read_triangles(const Import& import, const tinygltf::Primitive& primitive, 
     const std::vector<float>    uv1      = rows_of(import, primitive, "TEXCOORD_1", 2, count, where);
     mesh.has_normals                     = !normals.empty();
     mesh.has_tangents                    = !tangents.empty() && mesh.has_normals;
+    mesh.positions_ws.reserve(used.size());
+    mesh.vertices.reserve(used.size());
     for (const size_t i : used) {
         Vertex vertex{};
         vertex.normal_ws = {0, 1, 0};
