@@ -223,8 +223,7 @@ MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth
 
 MeasureValues compare_depth_to_scene(const SceneTruth& truth)
 {
-    const auto rays = truth.cls.size() - size_t(std::count(truth.cls.begin(), truth.cls.end(), TruthClass::not_traced));
-    return {{"depth_off_scene", share(truth.off_surface, rays)}};
+    return {{"depth_off_scene", off_surface_share(truth)}};
 }
 
 MeasureValues count_work(const TraceResult& result)

@@ -89,6 +89,8 @@ std::vector<unsigned char> read_regular_file(const fs::path& path, uint64_t limi
     return bytes;
 }
 
+uint64_t regular_file_bytes(const fs::path& path, uint64_t limit_bytes) { return RegularFile(path, limit_bytes).bytes; }
+
 bool write_fully(int fd, std::string_view bytes)
 {
     while (!bytes.empty()) {
@@ -104,8 +106,6 @@ bool write_fully(int fd, std::string_view bytes)
     }
     return true;
 }
-
-uint64_t regular_file_bytes(const fs::path& path, uint64_t limit_bytes) { return RegularFile(path, limit_bytes).bytes; }
 
 void write_file_atomically(const fs::path& path, std::string_view bytes)
 {

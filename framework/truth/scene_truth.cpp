@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <numeric>
 
 namespace ssrlab {
@@ -71,19 +70,12 @@ SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferIma
     return truth;
 }
 
-std::optional<double> off_surface_share(const SceneTruth& truth)
-{
-    const auto rays = truth.cls.size() - static_cast<size_t>(std::ranges::count(truth.cls, TruthClass::not_traced));
-    if (rays == 0) return std::nullopt;
-    return static_cast<double>(truth.off_surface) / static_cast<double>(rays);
-}
-
 std::string drawn_elsewhere(const SceneTruth& truth)
 {
     constexpr double most  = 0.05;
     const double     share = off_surface_share(truth).value_or(0);
     if (share <= most) return "";
-    return fmt::format("the driver draws another scene: at {:.0f} % of the pixels that reflect the drawn depth is off "
+    return fmt::format("the driver draws another scene: at {:.0f} % of the pixels that reflect, the drawn depth is off "
                        "every surface",
                        100 * share);
 }

@@ -23,15 +23,14 @@
 #include "truth/scene_bvh.h"
 #include "truth/truth_class.h"
 
-#include <optional>
 #include <string>
 
 namespace ssrlab {
 
-/// All pixels not traced.
 /// Do both have the same scene truth and glossy truth of a frame? Those depend on the maximum distance and on what reflects.
 bool same_scene_truth(const TraceSettings& a, const TraceSettings& b);
 
+/// All pixels not traced.
 SceneTruth empty_scene_truth(glm::ivec2 size_px);
 
 /// Radiance of a visible point is the G-buffer's (the view-independent part) at the pixel it falls into, so that a perfect SSR
@@ -39,9 +38,6 @@ SceneTruth empty_scene_truth(glm::ivec2 size_px);
 /// Threads = 0: all cores.
 SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer,
                        const TraceSettings& settings, unsigned threads = 0);
-
-/// Share of the traced pixels off every surface (SceneTruth::off_surface); empty if none is traced.
-std::optional<double> off_surface_share(const SceneTruth& truth);
 
 /// Why such a truth is false: a driver that rounds a triangle's corners to few parts of a pixel draws other depths, and reflected rays begin
 /// inside of things. Empty: it holds.

@@ -3,8 +3,10 @@
 
 #include <glm/glm.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -31,9 +33,16 @@ struct SceneTruth {
     std::vector<glm::dvec2> point_px;   // undefined for sky and for points that are not in front of the eye
     std::vector<double>     distance_m; // along the reflected ray; +inf for sky
     std::vector<glm::vec3>  radiance;   // linear
-    uint64_t                off_surface =
-        0; // traced pixels that have a depth at which the scene has no surface, within self_hit_share of their distance
+    // Traced pixels at whose depth the scene has no surface, within self_hit_share of their distance.
+    uint64_t off_surface = 0;
 };
+
+/// Of the traced pixels; empty if none is traced.
+inline std::optional<double> off_surface_share(const SceneTruth& truth)
+{
+    const auto rays = truth.cls.size() - size_t(std::count(truth.cls.begin(), truth.cls.end(), TruthClass::not_traced));
+    return rays > 0 ? std::optional(double(truth.off_surface) / double(rays)) : std::nullopt;
+}
 
 /// Where a pixel's reflection was in the frame before. How it is decided: truth/reprojection_truth.h.
 enum class ReprojectionClass : uint8_t {

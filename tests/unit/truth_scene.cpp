@@ -146,8 +146,6 @@ TEST(SceneTruth, CulledBackHidesNothing)
     EXPECT_GT(count(test.truth(), TruthClass::hidden), 64 * 20);
 }
 
-// A ceiling at y = 30 is met at Z = Z0 + 31 Z0 = 32 Z0 and projects to py = 32 (1 - 30 / (32 Z0)): outside for Z0 < 30/32.
-// A wall that looks away shows ray and camera the same back, which the frame draws only if the material is double-sided.
 TEST(SceneTruth, WhatTheCameraSeesFromItsEdgeIsNotVisible)
 {
     for (const double height_m : {0.0, 1e-8, -1e-8}) {
@@ -163,6 +161,8 @@ TEST(SceneTruth, WhatTheCameraSeesFromItsEdgeIsNotVisible)
     }
 }
 
+// A ceiling at y = 30 is met at Z = Z0 + 31 Z0 = 32 Z0 and projects to py = 32 (1 - 30 / (32 Z0)): outside for Z0 < 30/32.
+// A wall that looks away shows ray and camera the same back, which the frame draws only if the material is double-sided.
 TEST(SceneTruth, OffScreenAndBackSide)
 {
     Case test                     = floor_case();
