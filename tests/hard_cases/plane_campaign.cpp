@@ -7,21 +7,12 @@
 
 #include <fmt/core.h>
 
-#include <cstdlib>
 #include <limits>
 #include <random>
 
 namespace ssrlab::test {
 namespace {
 
-/// Four hundred thousand rays in every run, a hundred million in the long one, or as many as SSRLAB_LONG says where that is a number above 1.
-size_t planned_rays()
-{
-    const char* asked = std::getenv("SSRLAB_LONG");
-    if (asked == nullptr) return 400'000;
-    const size_t rays = std::strtoull(asked, nullptr, 10);
-    return rays > 1 ? rays : 100'000'000;
-}
 constexpr size_t     batch         = 10'000;
 constexpr glm::ivec2 plane_sizes[] = {{257, 193}, {127, 131}, {641, 359}, {3, 1021}, {1, 97}};
 
@@ -85,7 +76,7 @@ public:
         for (const double exact : {0.0, 1.0})
             if (exact == 0 || missing_for_exact().empty())
                 for (const char* id : {"dda", "hiz", "quadtree"}) tracers_[exact > 0].push_back(make(id, exact));
-        tracers_[0].push_back(make("hiz_packets", std::nullopt));
+        for (const char* id : {"hiz_packets", "hiz_waves"}) tracers_[0].push_back(make(id, std::nullopt));
     }
 
     void run(const std::vector<RayInput>& rays, bool judged, Count& count, std::string& first)
@@ -144,7 +135,7 @@ TEST_P(PlaneCampaign, RandomPlanesAndSolids)
     const Model  models[] = {{"plane", Behind::hit},           {"plane", Behind::pass},  {"plane_solid", Behind::stop},
                              {"plane_solid", Behind::stop, 2}, {"box", Behind::pass, 2}, {"plane", Behind::hit, 4},
                              {"plane_infinite", Behind::stop}};
-    const size_t rays     = planned_rays() / (std::size(plane_sizes) * std::size(all_fields) * std::size(models));
+    const size_t rays = planned_rays(400'000) / (std::size(plane_sizes) * std::size(all_fields) * std::size(models));
     Count        count;
     std::string  first;
     for (const Field field : all_fields)
@@ -155,8 +146,8 @@ TEST_P(PlaneCampaign, RandomPlanesAndSolids)
                 tested.run(random_rays(GetParam(), std::min(batch, rays - done), seed), done == 0, count, first);
             }
         }
-    fmt::print("{} x {}: {} rays, {} hits, {} stopped, {} of both behind the first layer, {} differ; {} judged, {} "
-               "wrong, {} near ties\n",
+    fmt::print("| image | rays | hits | stopped | behind the first layer | differ | judged | wrong | near ties |\n"
+               "| {} × {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
                GetParam().x, GetParam().y, count.rays, count.hits, count.stops, count.behind, count.differ,
                count.judged, count.wrong, count.near_ties);
     EXPECT_GT(count.hits, count.rays / 100);

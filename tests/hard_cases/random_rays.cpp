@@ -4,6 +4,7 @@
 #include "shared.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <random>
 
 namespace ssrlab::test {
@@ -110,6 +111,14 @@ RayInput make_ray(Span span, int from_z, int to_z, glm::ivec2 size_px, Random& r
 }
 
 } // namespace
+
+size_t planned_rays(size_t short_run)
+{
+    const char* asked = std::getenv("SSRLAB_LONG");
+    if (asked == nullptr) return short_run;
+    const size_t rays = std::strtoull(asked, nullptr, 10);
+    return rays > 1 ? rays : 100'000'000;
+}
 
 Setup make_field(Field field, glm::ivec2 size_px, uint32_t seed)
 {

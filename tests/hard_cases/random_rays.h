@@ -13,6 +13,9 @@ inline constexpr int depth_steps = 1 << 20; // depths are multiples of 2^-20
 /// The slab's back lies at half the depth, exactly.
 inline constexpr TraceSettings campaign_settings{.thickness_m = 1, .thickness_relative = true, .max_distance_m = 1e9};
 
+/// Rays of a campaign: what SSRLAB_LONG says, a hundred million where it says no number above 1, `short_run` where it is not set.
+size_t planned_rays(size_t short_run);
+
 enum class Field { poles, sparse_poles, walls, terrain };
 inline constexpr Field all_fields[] = {Field::poles, Field::sparse_poles, Field::walls, Field::terrain};
 
