@@ -54,9 +54,10 @@ std::optional<TrueEnd> true_end_of(const Stage& stage, const Setup& setup, glm::
     if (stage.scene.frame) return std::nullopt;
     const SceneBvh      bvh(stage.scene);
     const ReflectedRays reflected(bvh, stage.scene, setup.gbuffer, setup.settings.max_distance_m);
-    const SceneRay      ray = reflected.ray_from(pixel, mirror_direction_vs(setup.gbuffer, pixel));
-    const RayEnd        end = reflected.follow(std::span(&ray, 1))[0];
-    return TrueEnd{end.cls, end.distance_m, end.point_px};
+    const SceneRay      ray   = reflected.ray_from(pixel, mirror_direction_vs(setup.gbuffer, pixel));
+    const RayEnd        end   = reflected.follow(std::span(&ray, 1))[0];
+    const size_t        index = pixel_index(pixel, setup.gbuffer.view.size_px);
+    return TrueEnd{end.cls, end.distance_m, end.point_px, reflected.count_off_surface(std::span(&index, 1)) > 0};
 }
 
 RayInput ray_of_pixel(Stage& stage, const Setup& setup, const RayQuestion& question, glm::ivec2 pixel)
@@ -90,6 +91,8 @@ void print_report(const RayOptions& options, const RayReport& report)
                               truth_class_names[static_cast<size_t>(report.true_end->cls)], report.true_end->distance_m,
                               report.true_end->point_px.x, report.true_end->point_px.y)
                       .c_str());
+    if (report.true_end && report.true_end->starts_off_surface)
+        std::puts("  it may be false: the depth that was drawn here is off every surface of the scene");
     for (const TechniqueReport& technique : report.techniques) {
         std::puts(fmt::format("\n{}: {}\n{}; {} steps, {} depth fetches, {} structure fetches", technique.id,
                               technique.ending, technique.verdict, technique.outcome.steps,

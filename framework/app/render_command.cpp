@@ -94,9 +94,9 @@ glm::dvec2 sample_offset_px(int sample, int samples)
     return glm::dvec2((sample + 0.5) / samples, mirrored + 0.5 / samples) - 0.5;
 }
 
-void refuse_false(const SceneTruth& truth)
+void refuse_false(std::optional<double> off_surface)
 {
-    if (const std::string why = drawn_elsewhere(truth); !why.empty()) throw_failure("no scene truth: {}", why);
+    if (const std::string why = drawn_elsewhere(off_surface); !why.empty()) throw_failure("no scene truth: {}", why);
 }
 
 /// What the truth is made with: the scene's hierarchy is built once.
@@ -115,7 +115,7 @@ public:
         }
         if (!bvh_ || anything_moves(stage_.first)) {
             bvh_ = std::make_unique<SceneBvh>(stage_.scene);
-            refuse_false(scene_truth(*bvh_, stage_.scene, gbuffer, settings));
+            refuse_false(off_surface_share(*bvh_, stage_.scene, gbuffer, settings));
         }
         // As many rays a pixel in all as one picture has.
         const int rays = std::max(2, (GlossySettings{}.rays + samples_ - 1) / samples_);
@@ -138,7 +138,7 @@ Image false_colours(Stage& stage, PreparedFrame& frame, const TraceSettings& set
     const GBufferImage gbuffer = read_gbuffer(stage.gpu, *stage.gbuffer); // with the layers that were traced
     if (!stage.scene.frame) {
         const SceneTruth truth = scene_truth(SceneBvh(stage.scene), stage.scene, gbuffer, settings);
-        refuse_false(truth);
+        refuse_false(off_surface_share(truth));
         return show == "causes" ? causes_picture(counted, truth, gbuffer) : agreement_picture(counted, truth);
     }
     if (show == "causes")

@@ -215,10 +215,10 @@ nlohmann::json to_json(const RayReport& report, const Setup& setup)
                         {"walk", to_json(report.walk)},
                         {"techniques", nlohmann::json::array()}};
     if (report.true_end)
-        json["scene_truth"] = {
-            {"class", truth_class_names[static_cast<size_t>(report.true_end->cls)]},
-            {"distance_m", number(report.true_end->distance_m)},
-            {"point_px", {number(report.true_end->point_px.x), number(report.true_end->point_px.y)}}};
+        json["scene_truth"] = {{"class", truth_class_names[static_cast<size_t>(report.true_end->cls)]},
+                               {"distance_m", number(report.true_end->distance_m)},
+                               {"point_px", {number(report.true_end->point_px.x), number(report.true_end->point_px.y)}},
+                               {"starts_off_surface", report.true_end->starts_off_surface}};
     for (const TechniqueReport& technique : report.techniques) {
         nlohmann::json one       = to_json(technique.outcome, technique.ending);
         one["technique"]         = technique.id;

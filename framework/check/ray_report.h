@@ -21,6 +21,7 @@ struct TrueEnd {
     TruthClass cls        = TruthClass::not_traced;
     double     distance_m = 0; // infinite for sky
     glm::dvec2 point_px{0};
+    bool       starts_off_surface = false; // the drawn depth is off every surface of the scene, so the end may be false
 };
 
 /// What a visited pixel or cell holds, and the part of the ray there. Distances along the view axis.

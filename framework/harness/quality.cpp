@@ -71,7 +71,7 @@ void Truths::make_scene_truth(const TraceSettings& settings)
 {
     scene_truth_    = cached_scene_truth(cache_dir_, *scene_, gbuffer_, settings);
     depth_to_scene_ = compare_depth_to_scene(scene_truth_);
-    without_scene_  = drawn_elsewhere(scene_truth_);
+    without_scene_  = drawn_elsewhere(off_surface_share(scene_truth_));
     if (!without_scene_.empty()) scene_truth_ = only_reflecting(settings);
 }
 

@@ -70,10 +70,21 @@ SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferIma
     return truth;
 }
 
-std::string drawn_elsewhere(const SceneTruth& truth)
+std::optional<double> off_surface_share(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer,
+                                        const TraceSettings& settings)
+{
+    std::vector<size_t> reflecting;
+    for (size_t i = 0; i < gbuffer.depth.size(); ++i)
+        if (reflects(gbuffer, pixel_at(i, gbuffer.view.size_px), settings)) reflecting.push_back(i);
+    if (reflecting.empty()) return std::nullopt;
+    const ReflectedRays reflected(bvh, scene, gbuffer, settings.max_distance_m);
+    return double(reflected.count_off_surface(reflecting)) / double(reflecting.size());
+}
+
+std::string drawn_elsewhere(std::optional<double> off_surface_share)
 {
     constexpr double most  = 0.05;
-    const double     share = off_surface_share(truth).value_or(0);
+    const double     share = off_surface_share.value_or(0);
     if (share <= most) return "";
     return fmt::format("the driver draws another scene: at {:.0f} % of the pixels that reflect, the drawn depth is off "
                        "every surface",

@@ -23,6 +23,7 @@
 #include "truth/scene_bvh.h"
 #include "truth/truth_class.h"
 
+#include <optional>
 #include <string>
 
 namespace ssrlab {
@@ -39,9 +40,13 @@ SceneTruth empty_scene_truth(glm::ivec2 size_px);
 SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer,
                        const TraceSettings& settings, unsigned threads = 0);
 
-/// Why such a truth is false: a driver that rounds a triangle's corners to few parts of a pixel draws other depths, and reflected rays begin
+/// The same share as off_surface_share(SceneTruth), without following the reflected rays.
+std::optional<double> off_surface_share(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer,
+                                        const TraceSettings& settings);
+
+/// Why a truth with such a share is false: a driver that rounds a triangle's corners to few parts of a pixel draws other depths, and reflected rays begin
 /// inside of things. Empty: it holds.
-std::string drawn_elsewhere(const SceneTruth& truth);
+std::string drawn_elsewhere(std::optional<double> off_surface_share);
 
 /// Lambertian, with shadow rays, without bounces:
 /// base (1 - metallic) / pi * sum(irradiance cos shadow) + ambient base + emissive.

@@ -47,7 +47,7 @@ class Test(Case):
         walk = [v["pixel"] for v in ray["walk"]]
         self.assertEqual([v["pixel"] for v in dda["visits"]], walk[:len(dda["visits"])])
         self.assertEqual(dda["visits"][-1]["then"], "hit")
-        self.assertEqual(ray["scene_truth"]["class"], "visible")
+        self.assertEqual((ray["scene_truth"]["class"], ray["scene_truth"]["starts_off_surface"]), ("visible", False))
         self.assertGreater(os.path.getsize(self.path("ray.png")), 20000)
         self.assertEqual(sorted(os.listdir(self.folder)), ["mine", "ray.png"])
 

@@ -67,6 +67,8 @@ class Test(Case):
         for more in ("--side-by-side", "--show=agreement"):
             self.refused("render", "builtin:pole_field", "-t", "hiz", "--size", "64x36", more, "-o", "a.png", code=1,
                          says=["no scene truth: the driver draws another scene"], VK_ICD_FILENAMES=DRIVER)
+        self.second("ray", "builtin:pole_field", "-t", "hiz", "--size", "64x36", "--pixel", "32,30",
+                    says=["it may be false: the depth that was drawn here is off every surface"])
         self.assertEqual([second[name] for name in ("recall_1px", "truth_visible", "picture_rmse", "truth_picture")], [""] * 4)
 
     def test_what_it_cannot_do_is_said(self):
