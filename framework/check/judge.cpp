@@ -203,7 +203,16 @@ Judgement Judge::judge(const RayInput& ray, const RayOutcome& outcome, const Cla
         return result;
     }
     result.found = both_hit && (outcome.hit_pixel == exact.hit_pixel || result.deviation_px <= within_one_px);
-    if (outcome.status == exact.status && (!ends || outcome.hit_pixel == exact.hit_pixel)) return result;
+    if (outcome.status == exact.status && (!ends || outcome.hit_pixel == exact.hit_pixel)) {
+        const bool samples =
+            claim.may_miss_between_samples || claim.may_miss_behind_objects || claim.may_hit_within_a_step;
+        if (!ends || samples || outcome.hit_layer == exact.hit_layer || outcome.t <= exact.t + slack_t(ray))
+            return result;
+        result.verdict = Verdict::wrong;
+        result.reason  = fmt::format("{} in layer {}, but the ray meets layer {} of that pixel before, at t = {:.9g}",
+                                     name(outcome), outcome.hit_layer, exact.hit_layer, exact.t);
+        return result;
+    }
 
     // Something was skipped. Is there a pixel before the reported one where the ray undoubtedly ends?
     const bool within_limits = !unsound(ray, outcome, {}).empty();

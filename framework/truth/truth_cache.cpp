@@ -19,14 +19,15 @@ namespace {
 namespace fs = std::filesystem;
 
 // Raise when the code computes another truth from the same input, or writes it in another form.
-constexpr uint32_t format_version = 8;
+constexpr uint32_t format_version = 9;
 
 struct Header {
     std::array<char, 8> magic{'S', 'S', 'R', 'T', 'R', 'U', 'T', 'H'};
     uint64_t            payload_bytes = 0;
+    XXH128_hash_t       key{}; // of the input: a file under another's name is not read
     XXH128_hash_t       checksum{};
 };
-static_assert(sizeof(Header) == 32);
+static_assert(sizeof(Header) == 48);
 
 void add(ContentHash& hash, const GBufferImage& gbuffer)
 {
@@ -119,27 +120,29 @@ private:
     bool                     ok_    = true;
 };
 
-std::optional<std::vector<char>> read_payload(const fs::path& path)
+std::optional<std::vector<char>> read_payload(const fs::path& path, XXH128_hash_t key)
 {
     std::ifstream   file(path, std::ios::binary);
     std::error_code error;
     const auto      file_bytes = fs::file_size(path, error);
     Header          header;
     if (error || file_bytes < sizeof header || !file.read(reinterpret_cast<char*>(&header), sizeof header)) return {};
-    if (header.magic != Header{}.magic || header.payload_bytes != file_bytes - sizeof header) return {};
+    if (header.magic != Header{}.magic || !XXH128_isEqual(header.key, key)) return {};
+    if (header.payload_bytes != file_bytes - sizeof header) return {};
     std::vector<char> payload(header.payload_bytes);
     if (!file.read(payload.data(), std::streamsize(payload.size()))) return {};
     if (!XXH128_isEqual(XXH3_128bits(payload.data(), payload.size()), header.checksum)) return {};
     return payload;
 }
 
-void write_payload(const fs::path& path, const std::vector<char>& payload)
+void write_payload(const fs::path& path, XXH128_hash_t key, const std::vector<char>& payload)
 {
     std::error_code error;
     fs::create_directories(path.parent_path(), error);
     const fs::path temporary = path.parent_path() / fmt::format(".{}.{}.tmp", path.filename().string(), getpid());
     Header         header;
     header.payload_bytes = payload.size();
+    header.key           = key;
     header.checksum      = XXH3_128bits(payload.data(), payload.size());
     std::ofstream file(temporary, std::ios::binary);
     file.write(reinterpret_cast<const char*>(&header), sizeof header);
@@ -155,7 +158,7 @@ template <typename Pass> void pass_values(Pass& pass, TraceResult& result)
     for (size_t i = 0; i < result.status.size(); ++i) {
         pass(result.status[i]);
         if (result.status[i] != TraceStatus::not_traced) pass(result.steps[i]);
-        if (result.status[i] != TraceStatus::hit) continue;
+        if (!has_place(result.status[i])) continue;
         pass(result.hit_pixel[i]);
         pass(result.hit_layer[i]);
         pass(result.hit_px_depth[i]);
@@ -199,10 +202,13 @@ template <typename Truth> Truth empty_truth(glm::ivec2 size_px)
     if constexpr (std::is_same_v<Truth, TraceResult>) return make_trace_result(size_px, false);
 }
 
+/// kind: begins the file's name.
 template <typename Truth, typename Compute>
-Truth cached(const fs::path& path, glm::ivec2 size_px, const Compute& compute)
+Truth cached(const fs::path& cache_dir, std::string_view kind, const ContentHash& input, glm::ivec2 size_px,
+             const Compute& compute)
 {
-    if (const auto payload = read_payload(path)) {
+    const fs::path path = cache_dir / fmt::format("{}_{}.truth", kind, input.hex());
+    if (const auto payload = read_payload(path, input.digest())) {
         Truth  truth = empty_truth<Truth>(size_px);
         Reader reader(*payload);
         pass_values(reader, truth);
@@ -211,7 +217,7 @@ Truth cached(const fs::path& path, glm::ivec2 size_px, const Compute& compute)
     Truth  truth = compute();
     Writer writer;
     pass_values(writer, truth);
-    write_payload(path, writer.take());
+    write_payload(path, input.digest(), writer.take());
     return truth;
 }
 
@@ -225,7 +231,7 @@ TraceResult cached_screen_truth(const fs::path& cache_dir, const GBufferImage& g
     add(hash.add(format_version), gbuffer);
     for (int layer = 1; layer < layer_count(gbuffer, settings); ++layer) add(hash, layer_of(gbuffer, layer));
     add(hash, settings);
-    return cached<TraceResult>(cache_dir / fmt::format("screen_{}.truth", hash.hex()), gbuffer.view.size_px,
+    return cached<TraceResult>(cache_dir, "screen", hash, gbuffer.view.size_px,
                                [&] { return screen_truth(gbuffer, settings, threads); });
 }
 
@@ -238,7 +244,7 @@ SceneTruth cached_scene_truth(const fs::path& cache_dir, const Scene& scene, con
     hash.add(gbuffer.radiance).add(settings.max_distance_m);
     add_reflecting(hash, settings); // of the settings, only these matter
     add(hash, scene);
-    return cached<SceneTruth>(cache_dir / fmt::format("scene_{}.truth", hash.hex()), gbuffer.view.size_px,
+    return cached<SceneTruth>(cache_dir, "scene", hash, gbuffer.view.size_px,
                               [&] { return scene_truth(SceneBvh(scene), scene, gbuffer, settings, threads); });
 }
 
@@ -252,7 +258,7 @@ GlossyTruth cached_glossy_truth(const fs::path& cache_dir, const Scene& scene, c
     hash.add(glossy.rays).add(glossy.bounces).add(glossy.seed);
     add_reflecting(hash, settings);
     add(hash, scene);
-    return cached<GlossyTruth>(cache_dir / fmt::format("glossy_{}.truth", hash.hex()), gbuffer.view.size_px, [&] {
+    return cached<GlossyTruth>(cache_dir, "glossy", hash, gbuffer.view.size_px, [&] {
         return glossy_truth(SceneBvh(scene), scene, gbuffer, settings, glossy, threads);
     });
 }

@@ -146,27 +146,40 @@ TEST(History, IsClampedToItsNeighbours)
     const TwoFrames minmax = second_after(bright, with(passes, {chosen(HistoryClamping::minmax)}));
     const TwoFrames variance =
         second_after(bright, with(passes, {chosen(HistoryClamping::variance), {"clamping_deviations", 0}}));
+    const TwoFrames wider =
+        second_after(bright, with(passes, {chosen(HistoryClamping::variance), {"clamping_deviations", 1}}));
     EXPECT_EQ(minmax.counts.clamped, minmax.counts.accumulated);
     EXPECT_EQ(variance.counts.clamped, variance.counts.accumulated);
-    size_t changed = 0;
+    size_t changed = 0, bounded = 0;
     for (int y = 1; y < size_px.y - 1; ++y)
         for (int x = 1; x < size_px.x - 1; ++x) {
             const size_t i = pixel_index({x, y}, size_px);
             if (off.result[i] == off.own[i]) continue;
             ++changed;
             ASSERT_GT(off.result[i].r, 10) << "without clamping the history shows";
-            float high = 0, low = 1e9F;
+            float high = 0, low = 1e9F, count = 0, sum = 0, squares = 0;
             for (int k = 0; k < 9; ++k) {
                 const glm::vec4 next = minmax.own[pixel_index({x + k % 3 - 1, y + k / 3 - 1}, size_px)];
                 if (next.a < 0) continue;
                 high = std::max(high, next.r * next.a);
                 low  = std::min(low, next.r * next.a);
+                count += 1;
+                sum += next.r * next.a;
+                squares += next.r * next.a * next.r * next.a;
             }
             ASSERT_LE(minmax.result[i].r * minmax.result[i].a, high + 1e-3F);
             ASSERT_LE(variance.result[i].r * variance.result[i].a, high + 1e-3F);
             ASSERT_GE(variance.result[i].r * variance.result[i].a, low - 1e-3F);
+            // The share of the history is known from the first, and so is what the last was clamped to.
+            const float own = off.own[i].r * off.own[i].a, mean = sum / count,
+                        bound = mean + std::sqrt(std::max(squares / count - mean * mean, 0.0F));
+            if (high - own < 0.2F) continue;
+            ++bounded;
+            const float part = (minmax.result[i].r * minmax.result[i].a - own) / (high - own);
+            ASSERT_NEAR(wider.result[i].r * wider.result[i].a, own + part * (bound - own), 0.02F) << x << ' ' << y;
         }
     EXPECT_GT(changed, 1000U);
+    EXPECT_GT(bounded, 50U);
 }
 
 // Each rejection on its own sees what was changed for it, and the frame stays as it is without a history.

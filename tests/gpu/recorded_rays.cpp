@@ -79,10 +79,60 @@ TEST(RecordedRays, VisitsAreTheWalkAndThePyramidSkipsPartsOfIt)
                 pixels, [&](const RayVisit& p) { return p.pixel >> cell.level == cell.pixel >> cell.level; });
             EXPECT_TRUE(crossed) << "level " << cell.level << " " << cell.pixel.x << ", " << cell.pixel.y;
         }
+        for (size_t i = 1; i < cells.size(); ++i) {
+            EXPECT_LE(cells[i].level, cells[i - 1].level + 1);
+            if (cells[i].level > cells[i - 1].level) {
+                EXPECT_NE(cells[i].pixel >> cells[i].level, cells[i - 1].pixel >> cells[i].level)
+                    << "climbs without leaving the cell above";
+            }
+        }
         skipped += pixels.size() > cells.size() ? pixels.size() - cells.size() : 0;
     }
     EXPECT_GT(hits, 0);
     EXPECT_GT(skipped, 0);
+}
+
+TEST(CountedWork, IsWhatTheRaysRead)
+{
+    const Rays rays = rays_of("builtin:stairs");
+    for (const char* id : {"dda", "hiz", "quadtree"})
+        for (const RayInput& ray : rays.some) {
+            const auto recorded =
+                record_ray(device(), rays.picture.gbuffer, technique(id), values_of(technique(id)), rays.settings, ray);
+            const auto pixels = std::ranges::count(recorded.visits, 0, &RayVisit::level);
+            EXPECT_EQ(recorded.outcome.depth_fetches, pixels) << id;
+            EXPECT_EQ(recorded.outcome.structure_fetches, recorded.visits.size() - size_t(pixels)) << id;
+        }
+}
+
+TEST(CountedWork, OfALayerIsAReadMoreAPixel)
+{
+    const Picture picture = make_picture("builtin:stairs", "default", size_px);
+    const auto    walk    = trace(picture, technique("dda"), values_of(technique("dda")),
+                                  {.thickness_m = 0.2, .max_distance_m = 20, .layers = 2});
+    size_t        misses  = 0;
+    for (size_t i = 0; i < walk.status.size(); ++i) {
+        if (has_place(walk.status[i]) || walk.steps[i] == 0) continue;
+        ++misses;
+        ASSERT_EQ(walk.depth_fetches[i], 2 * walk.steps[i]) << i;
+    }
+    EXPECT_GT(misses, 100U);
+}
+
+// The two rays of a pair wait for each other, and pay for themselves alone.
+TEST(CountedWork, OfPairsIsThatOfSingleRays)
+{
+    const Picture       picture = make_picture("builtin:stairs", "default", size_px);
+    const TraceSettings settings{.thickness_m = 0.2, .max_distance_m = 20};
+    const auto          work_of = [&](const char* id) {
+        return trace(picture, technique(id), values_of(technique(id)), settings);
+    };
+    const TraceResult pairs = work_of("hiz_packets"), single = work_of("hiz_waves");
+    EXPECT_EQ(pairs.steps, single.steps);
+    EXPECT_EQ(pairs.depth_fetches, single.depth_fetches);
+    ASSERT_EQ(pairs.structure_fetches.size(), single.structure_fetches.size());
+    for (size_t i = 0; i < pairs.structure_fetches.size(); ++i)
+        EXPECT_EQ(pairs.structure_fetches[i].fetches, single.structure_fetches[i].fetches);
 }
 
 } // namespace

@@ -93,6 +93,27 @@ TEST(Judge, GrazingAPixelByLessThanASliverDecidesNothing)
     EXPECT_EQ(judge.judge(setup.rays[0], miss(), {}).verdict, Verdict::sliver);
 }
 
+// From behind, the ray meets the farther of two layers first.
+TEST(Judge, AHitOfTheLayerThatIsMetLaterIsWrong)
+{
+    auto       setup = two_poles();
+    const auto pole  = [](double distance_m) {
+        return picture_of(bench_view(), [=](glm::ivec2 p) { return p == glm::ivec2(20, 10) ? distance_m : 0.0; });
+    };
+    setup.gbuffer         = pole(4);
+    setup.gbuffer.layers  = {pole(5)};
+    setup.settings.layers = 2;
+    setup.rays            = {ray_between(setup.gbuffer.view, {19.5, 10.5, 9}, {21.5, 10.5, 3})};
+    const Judge judge(setup);
+    RayOutcome  outcome = judge.exact_answer(setup.rays[0]);
+    ASSERT_EQ(outcome.status, TraceStatus::hit);
+    EXPECT_EQ(outcome.hit_layer, 1);
+    EXPECT_EQ(judge.judge(setup.rays[0], outcome, {}).verdict, Verdict::right);
+    outcome.hit_layer = 0;
+    outcome.t += 0.125;
+    EXPECT_THAT(judge.judge(setup.rays[0], outcome, {}).reason, HasSubstr("layer 1 of that pixel before"));
+}
+
 /// The same with every normal turned toward the ray or away from it.
 ssrlab::Setup two_poles_facing(double z)
 {

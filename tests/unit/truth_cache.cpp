@@ -6,6 +6,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 
 namespace ssrlab {
@@ -30,6 +31,7 @@ void expect_equal(const TraceResult& a, const TraceResult& b)
     EXPECT_EQ(a.status, b.status);
     EXPECT_EQ(a.steps, b.steps);
     EXPECT_EQ(a.hit_pixel, b.hit_pixel);
+    EXPECT_EQ(a.hit_layer, b.hit_layer);
     EXPECT_EQ(a.hit_px_depth, b.hit_px_depth);
     EXPECT_EQ(a.hit_t, b.hit_t);
 }
@@ -92,6 +94,27 @@ TEST_F(TruthCache, DamagedFilesAreComputedAnew)
         expect_equal(cached_screen_truth(folder_, gbuffer, {}), computed);
     }
     EXPECT_EQ(files().size(), 1U); // no temporary file is left
+}
+
+TEST_F(TruthCache, FilesUnderEachOthersNamesAreComputedAnew)
+{
+    const GBufferImage gbuffer = random_gbuffer(bench_view({31, 23}), 3);
+    TraceSettings      other;
+    other.behind            = Behind::stop;
+    const TraceResult hits  = cached_screen_truth(folder_, gbuffer, {});
+    const TraceResult stops = cached_screen_truth(folder_, gbuffer, other);
+    ASSERT_NE(hits.status, stops.status);
+    ASSERT_EQ(files().size(), 2U);
+    const fs::path first = files()[0], second = files()[1], aside = folder_ / "aside";
+    fs::rename(first, aside);
+    fs::rename(second, first);
+    fs::rename(aside, second);
+    for (int i = 0; i < 2; ++i) { // anew, and then as they were written
+        expect_equal(cached_screen_truth(folder_, gbuffer, {}), hits);
+        expect_equal(cached_screen_truth(folder_, gbuffer, other), stops);
+    }
+    EXPECT_GT(std::ranges::count(stops.status, TraceStatus::stopped), 0) << "their places are kept, too";
+    EXPECT_EQ(files().size(), 2U);
 }
 
 TEST_F(TruthCache, UnwritableFolderIsNoError)
