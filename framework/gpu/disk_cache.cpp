@@ -12,8 +12,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file begins with the hash of what follows: 16 digits.
+// A file begins with the hash of its name and of what follows, 16 digits: one under another's name is not read.
 constexpr size_t hash_bytes = 16;
+
+std::string hash_of(const std::string& name, std::string_view bytes)
+{
+    return content_hash(std::string(name).append("\n").append(bytes));
+}
 
 fs::path cache_folder()
 {
@@ -41,7 +46,7 @@ std::optional<std::string> read_cached(const std::string& name)
         if (folder.empty() || !fs::is_regular_file(folder / name)) return std::nullopt;
         const std::string file = read_file(folder / name);
         const std::string rest = file.size() > hash_bytes ? file.substr(hash_bytes) : "";
-        if (!rest.empty() && file.compare(0, hash_bytes, content_hash(rest)) == 0) return rest;
+        if (!rest.empty() && file.compare(0, hash_bytes, hash_of(name, rest)) == 0) return rest;
     } catch (const std::exception& error) { // unreadable is as good as absent
         warn_once(error.what());
     }
@@ -54,7 +59,7 @@ void write_cached(const std::string& name, std::string_view bytes) noexcept
         const fs::path folder = cache_folder();
         if (folder.empty()) return;
         fs::create_directories(folder);
-        write_file_atomically(folder / name, content_hash(bytes).append(bytes));
+        write_file_atomically(folder / name, hash_of(name, bytes).append(bytes));
     } catch (const std::exception& error) { // made anew next time
         warn_once(error.what());
     }

@@ -60,6 +60,9 @@ struct Import {
 /// Reads and parses the file; refuses what the parser itself would let through or choke on.
 void parse_file(Import& import, const std::filesystem::path& file);
 
+/// The files of its buffers and images, whether they are there or not. Throws Failure where the JSON is broken or a URI leads elsewhere.
+std::vector<std::filesystem::path> files_named_by(const std::filesystem::path& file);
+
 /// The file's folder joined with a relative URI; throws Failure for absolute paths, schemes, and ways out of the folder.
 std::filesystem::path resolve_uri(const std::filesystem::path& folder, const std::string& uri);
 

@@ -139,8 +139,10 @@ void check_extensions(Import& import, const json& root)
             import.warn(fmt::format("extension {} is not supported and was ignored", name));
 }
 
-void check_uris(const Import& import, const json& root, const fs::path& folder)
+/// Refuses URIs that lead elsewhere.
+std::vector<fs::path> files_named_in(const Import& import, const json& root, const fs::path& folder)
 {
+    std::vector<fs::path> files;
     for (const char* kind : {"buffers", "images"}) {
         const json& items = array_of(import, root, kind);
         for (size_t i = 0; i < items.size(); ++i) {
@@ -150,12 +152,13 @@ void check_uris(const Import& import, const json& root, const fs::path& folder)
             const std::string text = *uri;
             if (text.starts_with("data:")) continue;
             try {
-                resolve_uri(folder, text);
+                files.push_back(resolve_uri(folder, text));
             } catch (const Failure& failure) {
                 import.fail("/{}/{}/uri: {}", kind, i, failure.what());
             }
         }
     }
+    return files;
 }
 
 /// The parser reads images through buffer views before anybody could check them.
@@ -288,6 +291,16 @@ fs::path resolve_uri(const fs::path& folder, const std::string& uri)
     return resolved;
 }
 
+std::vector<fs::path> files_named_by(const fs::path& file)
+{
+    Import import;
+    import.file            = file.string();
+    const auto       bytes = read_regular_file(file, max_file_bytes);
+    std::string_view text  = json_text(import, bytes);
+    check_json_depth(import, text);
+    return files_named_in(import, parse_json(import, text), file.parent_path());
+}
+
 void parse_file(Import& import, const fs::path& file)
 {
     import.file                             = file.string();
@@ -301,7 +314,7 @@ void parse_file(Import& import, const fs::path& file)
         check_extensions(import, root);
         for (const char* kind : {"nodes", "meshes", "accessors", "materials", "textures", "scenes", "cameras"})
             array_of(import, root, kind);
-        check_uris(import, root, folder);
+        files_named_in(import, root, folder);
         check_buffer_views(import, root);
         check_triangle_count(import, root);
     }

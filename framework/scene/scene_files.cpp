@@ -25,17 +25,6 @@ void add(const fs::path& file, Files& files)
     add_named_by(file, files);
 }
 
-/// The values of "uri": a .glb has them in its JSON chunk.
-void add_gltf_uris(const fs::path& file, Files& files)
-{
-    const std::string text = read_file(file);
-    for (size_t at = text.find("\"uri\""); at != std::string::npos; at = text.find("\"uri\"", at + 1)) {
-        const size_t open = text.find('"', at + 5), close = text.find('"', open + 1);
-        if (close == std::string::npos || text.compare(open + 1, 5, "data:") == 0) continue;
-        add(gltf::resolve_uri(file.parent_path(), text.substr(open + 1, close - open - 1)), files);
-    }
-}
-
 /// "mtllib NAME" of an OBJ file, "map_Kd [OPTIONS] NAME" and its like of an MTL file.
 void add_obj_names(const fs::path& file, Files& files)
 {
@@ -54,7 +43,8 @@ void add_obj_names(const fs::path& file, Files& files)
 void add_named_by(const fs::path& file, Files& files)
 {
     const std::string extension = lower_extension(file);
-    if (extension == ".gltf" || extension == ".glb") add_gltf_uris(file, files);
+    if (extension == ".gltf" || extension == ".glb")
+        for (const fs::path& named : gltf::files_named_by(file)) add(named, files);
     if (extension == ".obj" || extension == ".mtl") add_obj_names(file, files);
 }
 

@@ -145,7 +145,7 @@ class Test(Case):
         self.assertLess(float(skips["1"]["depth_fetches_mean"]), float(skips["2"]["depth_fetches_mean"]))
 
     def test_holds_every_layer(self):
-        layered = SWEEP.replace("[techniques.tile_skip]", '[trace]\nlayers = 3\nsurface = ["box", "plane"]\n[techniques.tile_skip]', 1)
+        layered = SWEEP.replace("builtin:stairs", "builtin:hidden_shelf").replace("[techniques.tile_skip]", '[trace]\nlayers = 3\nsurface = ["box", "plane"]\n[techniques.tile_skip]', 1)
         self.ssrlab("run", self.write("layers.toml", layered.replace("[1.0, 2.0]", "1.0")), "-o", "out", "--techniques", "mine")
         rows = self.rows()
         self.assert_complete(rows, 4)

@@ -50,6 +50,13 @@ TEST(SequenceMeasures, TemporalDeviation)
     EXPECT_FALSE(temporal_rms(moments, 5)) << "no pixel reflects in all of five frames";
 }
 
+TEST(SequenceMeasures, WhatWasOffTheScreenIsDisoccludedToo)
+{
+    using enum ReprojectionClass;
+    const ReprojectionTruth truth{{5, 1}, {hidden, off_screen, seen, unknown, seen}, std::vector<glm::dvec2>(5)};
+    EXPECT_EQ(count_disocclusions(truth)["disocclusion_share"], 2.0 / 4);
+}
+
 // Six rays: one without an answer, one disoccluded, one whose hit is wrong, one without a vector, and two that count: off by 1 and 3 px.
 TEST(SequenceMeasures, DistancesFromWhereReflectionsWere)
 {

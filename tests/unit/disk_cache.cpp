@@ -44,6 +44,15 @@ TEST_F(DiskCache, IgnoresDamagedFiles)
     EXPECT_EQ(read_cached("thing"), "some bytes");
 }
 
+TEST_F(DiskCache, IgnoresFilesUnderAnothersName)
+{
+    write_cached("thing", "some bytes");
+    write_cached("other", "more bytes");
+    fs::copy_file(folder_ / "ssrlab/other", folder_ / "ssrlab/thing", fs::copy_options::overwrite_existing);
+    EXPECT_EQ(read_cached("thing"), std::nullopt);
+    EXPECT_EQ(read_cached("other"), "more bytes");
+}
+
 TEST_F(DiskCache, DoesWithoutAFolder)
 {
     ::setenv("XDG_CACHE_HOME", "/proc", 1);

@@ -43,6 +43,15 @@ TEST(SceneFiles, AGltfHasItsBuffersImagesAndViews)
     EXPECT_THAT(names(folder, scene), ElementsAre("s.gltf", "a b.bin", "t/i.png", "s.gltf.views.toml"));
 }
 
+TEST(SceneFiles, AGltfMayWriteItsNamesInAnyWayThatJsonHas)
+{
+    const TempFolder  folder;
+    const std::string scene =
+        folder.write("s.gltf", R"({"images": [{"uri": "t\/i.png"}, {"uri": "\u0061.png"}, {"\u0075ri": "b.png"}]})");
+    for (const char* name : {"t/i.png", "a.png", "b.png"}) folder.write(name, "");
+    EXPECT_THAT(names(folder, scene), ElementsAre("s.gltf", "t/i.png", "a.png", "b.png"));
+}
+
 TEST(SceneFiles, NothingForWhatIsBuiltInUnknownOrDamaged)
 {
     const TempFolder folder;

@@ -151,6 +151,10 @@ TEST_F(TruthCache, SceneTruthReadsWhatItWrote)
     scene.environment.radiance[1].b = 3;
     cached_scene_truth(folder_, scene, gbuffer, {});
     EXPECT_EQ(files().size(), 5U);
+    scene.materials[1].alpha_cutoff = 0.75F;
+    cached_scene_truth(folder_, scene, gbuffer, {});
+    cached_scene_truth(folder_, scene, gbuffer, {.max_distance_m = 3});
+    EXPECT_EQ(files().size(), 7U);
 }
 
 TEST_F(TruthCache, GlossyTruthReadsWhatItWrote)

@@ -307,6 +307,38 @@ TEST(SceneTruth, ShadesWithShadows)
     EXPECT_NEAR(shade().x, lit + 0.05F, 1e-5);
     scene.lights[0] = Light{LightType::point, {0, 2, 0}, {0, -1, 0}, {8, 8, 8}, 0, 0, 0, true};
     EXPECT_NEAR(shade().x, 0.5F / std::numbers::pi_v<float> * 2 + 0.05F, 1e-5); // 8 / 2^2, straight from above
+    scene.materials[material].metallic = 0.75F;
+    EXPECT_NEAR(shade().x, 0.25F * 0.5F / std::numbers::pi_v<float> * 2 + 0.05F, 1e-5); // metal has no diffuse part
+}
+
+// Seen along the mirror image of the light at 60 degrees: D = 1 / (pi a^4), and the visibility of G. Smith's separable form.
+TEST(SceneTruth, HighlightsAreThoseOfTheMicrofacetModel)
+{
+    Scene          scene;
+    const uint32_t material = add_material(scene, {0.5F, 0.5F, 0.5F}, 1);
+    const double   root3    = std::numbers::sqrt3;
+    add_quad(scene, material, {-5, 0, 5}, {10, 0, 0}, {0, 0, -10});
+    Light light;
+    light.intensity    = {2, 2, 2};
+    light.direction_ws = glm::normalize(glm::vec3(root3, -1, 0));
+    scene.lights.push_back(light);
+    const SceneRay ray{{root3, 1, 0}, {-root3, -1, 0}, 0, 10};
+    SceneHit       hit;
+    const auto     highlight = [&](double roughness) {
+        const SceneBvh bvh(scene);
+        bvh.intersect({&ray, 1}, {&hit, 1});
+        EXPECT_TRUE(hit.met);
+        return double(shade_highlight(bvh, scene, hit, {0, 0, 0}, ray.direction_ws, roughness).x);
+    };
+    for (const double roughness : {0.3, 0.6, 1.0}) {
+        const double a2 = std::pow(roughness, 4), cosine = 0.5, to_root = std::sqrt(a2 + (1 - a2) * cosine * cosine);
+        const double facets = 1 / (std::numbers::pi * a2), visibility = 0.5 / (2 * cosine * to_root),
+                     fresnel  = 0.5 + 0.5 * std::pow(1 - cosine, 5);
+        const double expected = 2 * fresnel * facets * visibility * cosine;
+        EXPECT_NEAR(highlight(roughness) / expected, 1, 1e-5) << roughness;
+    }
+    add_quad(scene, material, {-2, -3, -3}, {0, 6, 0}, {0, 0, 6}); // between the point and the light
+    EXPECT_EQ(highlight(0.3), 0);
 }
 
 TEST(SceneTruth, HostileInputDoesNotAbort)

@@ -61,6 +61,7 @@ TEST(ValidateResult, SaysHowManyWhichAndWhat)
     EXPECT_THAT(found([](TraceResult& r, size_t i) { r.hit_t[i] = -0.1; }), Optional(HasSubstr("t = -0.1")));
     EXPECT_THAT(found([](TraceResult& r, size_t i) { r.steps[i] = static_cast<uint32_t>(-1); }),
                 Optional(HasSubstr("4294967295 steps, but the technique declares at most 7")));
+    EXPECT_THAT(found([](TraceResult& r, size_t i) { r.steps[i] = 8; }), Optional(HasSubstr("8 steps, but")));
     EXPECT_THAT(found([](TraceResult& r, size_t i) { r.status[i] = static_cast<TraceStatus>(200), r.steps[i] = 200; }),
                 Optional(HasSubstr("status 200")));
     // As the device stores it: status and pixel in the place of the work.
