@@ -49,6 +49,8 @@ nlohmann::json json_of(const Technique& technique)
                         {"title", technique.name},
                         {"summary", technique.summary},
                         {"exact", technique.exact},
+                        {"limits", technique.limits},
+                        {"ignores", technique.ignores},
                         {"folder", technique.folder.string()},
                         {"sources", technique.cite},
                         {"structures", nlohmann::json::array()},
@@ -62,6 +64,9 @@ int print_technique(const Technique& technique)
 {
     std::puts(fmt::format("{} ({})\n{}\n", technique.name, technique.id, technique.summary).c_str());
     std::puts(technique.exact ? "exact: gives the pixel walk's answer on every ray" : "not exact");
+    if (!technique.limits.empty()) std::puts(fmt::format("limits: {}", fmt::join(technique.limits, ", ")).c_str());
+    if (!technique.ignores.empty())
+        std::puts(fmt::format("its own hit test ignores: {}", fmt::join(technique.ignores, ", ")).c_str());
     std::puts(fmt::format("folder: {}", technique.folder.string()).c_str());
     for (const Structure& structure : technique.structures)
         std::puts(

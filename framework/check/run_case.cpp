@@ -25,7 +25,8 @@ Stage put_on_device(Gpu& gpu, const Technique& technique, const ParameterValues&
 {
     const size_t pixels   = setup.gbuffer.depth.size();
     const size_t capacity = setup.rays.empty() ? pixels : setup.rays.size();
-    Stage        stage{std::move(setup), nullptr};
+    if (std::ranges::count(technique.ignores, "behind") > 0) setup.settings.behind = Behind::hit; // and is judged so
+    Stage stage{std::move(setup), nullptr};
     stage.tracer = make_ray_tracer(gpu, upload_gbuffer(gpu, stage.setup.gbuffer), technique, values,
                                    stage.setup.settings, capacity, precision);
     if (stage.setup.rays.empty()) stage.setup.rays = set_up_rays(gpu, *stage.tracer);

@@ -43,7 +43,8 @@ Row identity_row(const Experiment& experiment, const Run& run, const Technique& 
                {"height", std::to_string(run.size_px.y)},
                {"frame", std::to_string(run.at.frame)},
                {"jitter_phases", std::to_string(run.at.jitter_phases)},
-               {"technique", run.technique}};
+               {"technique", run.technique},
+               {"technique_ignores", fmt::format("{}", fmt::join(technique.ignores, " "))}};
     for (const Setting& setting : all_settings()) {
         row[setting.name] = format_parameter(setting, setting.get(run.settings));
     }

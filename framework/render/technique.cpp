@@ -15,8 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::vector<std::string> manifest_keys = {
-    "name",   "summary",    "cite",     "structures",          "exact",
-    "limits", "bounded_by", "accuracy", "rays_per_invocation", "parameters"};
+    "name",    "summary",    "cite",     "structures",          "exact",     "limits",
+    "ignores", "bounded_by", "accuracy", "rays_per_invocation", "parameters"};
 
 void check_bounds(const TomlFile& file, const toml::node& node, const Technique& technique)
 {
@@ -60,6 +60,14 @@ void read_limits(const TomlFile& file, const toml::node& node, Technique& techni
     technique.limits = read_known(file, node, "limits", "limit", known);
     if (technique.exact && !technique.limits.empty())
         throw_spec_error("{}: 'limits' contradicts 'exact': an exact technique has none", toml_place(file, node));
+}
+
+void read_ignored(const TomlFile& file, const toml::node& node, Technique& technique)
+{
+    static const std::vector<std::string> known = {"behind", "surface", "thickness"};
+    technique.ignores                           = read_known(file, node, "ignores", "part of the hit test", known);
+    if (technique.exact && !technique.ignores.empty())
+        throw_spec_error("{}: 'ignores' contradicts 'exact': the hit contract has all of them", toml_place(file, node));
 }
 
 bool is_technique(const fs::path& folder)
@@ -148,6 +156,7 @@ Technique load_technique(const fs::path& folder, std::span<const Structure> know
             collect_structures(toml_texts(file, *node, "structures"), known, toml_place(file, *node));
     if (const toml::node* node = file.root.get("exact")) technique.exact = toml_bool(file, *node, "exact");
     if (const toml::node* node = file.root.get("limits")) read_limits(file, *node, technique);
+    if (const toml::node* node = file.root.get("ignores")) read_ignored(file, *node, technique);
     if (const toml::node* node = file.root.get("rays_per_invocation")) {
         technique.rays_per_invocation = static_cast<int>(toml_integer(file, *node, "rays_per_invocation"));
         if (technique.rays_per_invocation != 1 && technique.rays_per_invocation != 2)

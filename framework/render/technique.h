@@ -31,6 +31,7 @@ struct Technique {
     std::vector<Parameter>   parameters;              // its own, then those of its structures as "structure.parameter"
     std::filesystem::path    folder;
     std::vector<Accuracy>    accuracy = {};
+    std::vector<std::string> ignores = {}; // of "behind", "surface" and "thickness": what its own hit test does not ask
 };
 
 /// What a technique that is not exact may declare that it gets wrong. The check holds it to everything else.

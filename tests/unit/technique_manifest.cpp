@@ -61,6 +61,19 @@ TEST(TechniqueManifest, AccuracyNamesNumbersAndADirection)
             << line;
 }
 
+TEST(TechniqueManifest, WhatAnOwnHitTestIgnoresIsDeclared)
+{
+    const TechniqueDir dir;
+    EXPECT_THAT(load_technique(dir.add("all", head)).ignores, testing::IsEmpty());
+    EXPECT_THAT(load_technique(dir.add("own", head + "ignores = [\"behind\", \"thickness\"]\n")).ignores,
+                ElementsAre("behind", "thickness"));
+    EXPECT_THAT(message_of<SpecError>([&] { load_technique(dir.add("vague", head + "ignores = [\"facing\"]\n")); }),
+                HasSubstr("vague/technique.toml:3: unknown part of the hit test 'facing'"));
+    EXPECT_THAT(message_of<SpecError>(
+                    [&] { load_technique(dir.add("both", head + "exact = true\nignores = [\"behind\"]\n")); }),
+                HasSubstr("both/technique.toml:4: 'ignores' contradicts 'exact'"));
+}
+
 TEST(TechniqueManifest, LimitsAreKnownNamesAndBelongToInexactTechniques)
 {
     const TechniqueDir dir;
