@@ -64,7 +64,16 @@ TEST(Display, AgxHasTheEndsThatItsAuthorGives)
         EXPECT_GT(shown(glm::vec3(bright), agx).g, 0.95F);
         EXPECT_LE(shown(glm::vec3(bright), agx).g, 1);
     }
-    EXPECT_EQ(shown({nan, 1, 1}, agx).r, 0);
+    EXPECT_EQ(shown({nan, 1, 0.25F}, agx), glm::vec3(0, 1, 0.25F)); // clipped
+}
+
+/// The author's formulas in double precision, by hand. Without its last matrix, colours would be paler.
+TEST(Display, AgxGivesColoursTheirSaturationBack)
+{
+    const glm::vec3 brown = shown({0.5F, 0.25F, 0.125F}, agx);
+    EXPECT_NEAR(brown.r, 0.441499F, 1e-4F);
+    EXPECT_NEAR(brown.g, 0.279311F, 1e-4F);
+    EXPECT_NEAR(brown.b, 0.168905F, 1e-4F);
 }
 
 /// Clipping turns a bright orange yellow; AgX takes it toward white and keeps red above green above blue on the way.

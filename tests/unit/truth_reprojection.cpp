@@ -127,6 +127,23 @@ TEST(ReprojectionTruth, AMirrorThatMoves)
         frames, [](glm::dvec2 slope) { return slope - glm::dvec2(0, 0.02); }, 28 * 55);
 }
 
+// About the camera's axis: the wall's image was turned by twice the angle.
+TEST(ReprojectionTruth, AMirrorThatTurns)
+{
+    constexpr double angle = 0.02;
+    const glm::dvec3 middle(0, -1, 0);
+    Frames           frames;
+    frames.move_back(0, glm::translate(glm::rotate(glm::translate(glm::dmat4(1), middle), angle, {0, 0, 1}), -middle));
+    expect_everywhere(
+        frames,
+        [](glm::dvec2 slope) {
+            const glm::dvec2 on_floor(0, -1), normal(-std::sin(angle), std::cos(angle));
+            const glm::dvec2 on_wall(wall_m * slope.x, -2 - wall_m * slope.y);
+            return (on_wall - 2 * glm::dot(normal, on_wall - on_floor) * normal) / wall_m;
+        },
+        28 * 40);
+}
+
 // Without a wall the floor reflects the sky, which is infinitely far away: it does not move under a camera that does.
 TEST(ReprojectionTruth, TheSkyStandsStill)
 {
@@ -154,6 +171,23 @@ TEST(ReprojectionTruth, WhatWasHiddenIsSaidToBe)
         }
     frames.motion.previous_view.world_to_view = glm::translate(glm::dmat4(1), glm::dvec3(50, 0, 0));
     EXPECT_EQ(frames.truth().cls[at(frames.gbuffer, 3, 50)], ReprojectionClass::off_screen);
+}
+
+// A rug lay on the floor in the frame before, from 1.5 to 9 m and at x = -1.01 … 1.01: it is in the mirror's plane, but no part of the mirror.
+TEST(ReprojectionTruth, WhatLayOnTheMirrorHidIt)
+{
+    Frames frames;
+    for (Scene* scene : {&frames.now, &frames.before})
+        add_quad(*scene, 1, {scene == &frames.now ? -99.01 : -1.01, -1 + 1e-6, -1.5}, {2.02, 0, 0}, {0, 0, -7.5});
+    frames.motion.to_previous_ws.push_back(glm::translate(glm::dmat4(1), glm::dvec3(98, 0, 0)));
+    const ReprojectionTruth truth = frames.truth();
+    for (int y = 36; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) {
+            const double floor_m = 32 / (y + 0.5 - 32);
+            const bool   on_rug  = floor_m > 1.5 && floor_m < 9 && std::abs(x + 0.5 - 32) * floor_m < 32 * 1.01;
+            EXPECT_EQ(truth.cls[at(frames.gbuffer, x, y)], on_rug ? ReprojectionClass::hidden : ReprojectionClass::seen)
+                << x << ' ' << y;
+        }
 }
 
 /// A mirror sphere of radius 1 at (0, 0, -4), and a wall behind the camera that it shows.

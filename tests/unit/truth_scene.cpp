@@ -82,6 +82,19 @@ TEST(SceneTruth, DepthsWhereTheSceneHasNoSurfaceAreCounted)
     EXPECT_EQ(off_surface_share(empty_scene_truth({4, 4})), std::nullopt);
 }
 
+// What else is set, of how rays are traced, leaves the truth as it is.
+TEST(SceneTruth, IsAnotherWhereOtherPixelsReflectOrRaysEndElsewhere)
+{
+    const TraceSettings settings;
+    TraceSettings       farther = settings, rougher = settings, brighter = settings, thicker = settings;
+    farther.max_distance_m += 1;
+    rougher.dielectric_max_roughness += 0.125;
+    brighter.dielectric_min_f0 += 0.125;
+    thicker.thickness_m += 1;
+    for (const TraceSettings& other : {farther, rougher, brighter}) EXPECT_FALSE(same_scene_truth(settings, other));
+    EXPECT_TRUE(same_scene_truth(settings, thicker));
+}
+
 TEST(SceneTruth, FloorAloneReflectsTheSky)
 {
     Case test              = floor_case();
@@ -134,6 +147,33 @@ TEST(SceneTruth, OccluderHidesTheWall)
         EXPECT_NEAR(truth.point_vs[i].y, on_plate ? plate : wall_y, tolerance * 5) << y;
     }
     EXPECT_GT(count(truth, TruthClass::hidden), 0);
+}
+
+// The picture shows the plate there, another colour.
+TEST(SceneTruth, HiddenPointsHaveTheirOwnColour)
+{
+    Case test = floor_case();
+    add_wall(test.scene, 1, 10);
+    add_quad(test.scene, 1, {-100, 1, -5}, {200, 0, 0}, {0, 0.5, 0});
+    test.scene.materials[1].base_colour = {0, 0, 0, 1};
+    test.scene.materials[1].emissive    = {0.25F, 0, 0};
+    std::ranges::fill(test.gbuffer.radiance, glm::vec3(0, 7, 0));
+    const SceneTruth truth = test.truth();
+    EXPECT_GT(count(truth, TruthClass::hidden), 0);
+    for (size_t i = 0; i < truth.cls.size(); ++i) {
+        if (truth.cls[i] == TruthClass::not_traced) continue;
+        const bool hidden = truth.cls[i] == TruthClass::hidden;
+        EXPECT_EQ(truth.radiance[i], hidden ? glm::vec3(0.25F, 0, 0) : glm::vec3(0, 7, 0)) << i;
+    }
+}
+
+TEST(SceneTruth, WhatLiesBeforeTheNearPlaneHidesNothing)
+{
+    Case test = floor_case();
+    add_wall(test.scene, 1, 10);
+    add_quad(test.scene, 1, {-100, -100, -0.5 * test.gbuffer.view.near_m}, {200, 0, 0}, {0, 200, 0});
+    test.scene.materials[1].double_sided = true;
+    EXPECT_EQ(count(test.truth(), TruthClass::visible), 64 * 29);
 }
 
 // The camera looks into a room through the back of a wall that the rasteriser culls: that wall hides nothing.

@@ -222,6 +222,11 @@ TEST(SurfaceModels, PixelWithoutUsablePlaneHoldsItsBox)
             expect_at(answer(gbuffer, in_slab, model), TraceStatus::hit, t_in);
         EXPECT_EQ(answer(gbuffer, in_solid, "plane").status, TraceStatus::left_screen);
         expect_at(answer(gbuffer, in_solid, "plane_solid"), TraceStatus::stopped, t_in);
+        // Its sides are told apart by height, whatever its normal says.
+        GBufferImage facing_away                 = gbuffer;
+        facing_away.normal_vs[at(gbuffer, 4, 1)] = {1, 0, 0};
+        expect_at(answer(facing_away, in_slab, "plane"), TraceStatus::hit, t_in);
+        expect_at(answer(facing_away, in_slab, "box"), TraceStatus::stopped, t_in);
     }
     GBufferImage without = single_pixel(1 / 32.0, {0, 0});
     without.gradient.clear();

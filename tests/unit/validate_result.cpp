@@ -55,6 +55,7 @@ TEST(ValidateResult, SaysHowManyWhichAndWhat)
               "2 of 31 rays have an answer that cannot be; the first is the ray of pixel (5, 1): hit pixel (8, 2) is "
               "off the image of 8x4");
     EXPECT_THAT(found([](TraceResult& r, size_t i) { r.hit_pixel[i] = {-1, 2}; }), Optional(HasSubstr("(-1, 2)")));
+    EXPECT_THAT(found([](TraceResult& r, size_t i) { r.hit_pixel[i] = {2, 4}; }), Optional(HasSubstr("(2, 4)")));
     EXPECT_THAT(found([](TraceResult& r, size_t i) { r.hit_t[i] = std::numeric_limits<double>::quiet_NaN(); }),
                 Optional(HasSubstr("t of a hit is not a number")));
     EXPECT_THAT(found([](TraceResult& r, size_t i) { r.hit_t[i] = 7; }), Optional(HasSubstr("t = 7")));
