@@ -120,6 +120,7 @@ int check_techniques(const CommonOptions& common, const HardCaseOptions& options
                                           options.command_line, built_commit(), gpu.info.name, verdict,
                                           markdown_table(rows), stability));
     std::puts(verdict.c_str());
+    if (broken > 0) std::printf("the check fails: %zu findings, each above\n", broken);
     return broken == 0 ? 0 : 1;
 }
 

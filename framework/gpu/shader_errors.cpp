@@ -39,6 +39,15 @@ int unclosed_brace(const std::string& text)
     return open.empty() ? 0 : open.front();
 }
 
+/// The first line that defines a function of this name; 0: none.
+int line_defining(const std::string& text, const std::string& name)
+{
+    const std::string plain = without_comments(text);
+    std::smatch       found;
+    if (!std::regex_search(plain, found, std::regex("\\b\\w+\\s+(" + name + ")\\s*\\("))) return 0;
+    return 1 + static_cast<int>(std::count(plain.begin(), plain.begin() + found.position(1), '\n'));
+}
+
 /// "path:12: 'x' : undeclared identifier". The project's shaders have no errors of their own: what is found in them is
 /// missing from the plug-in's file.
 std::string error_text(const std::string& error, const ShaderSource& source)
@@ -47,6 +56,18 @@ std::string error_text(const std::string& error, const ShaderSource& source)
     for (const auto& [name, file] : source.include_files)
         if (const int line = unclosed_brace(read_file(file)); line > 0)
             return fmt::format("{}:{}: this '{{' is never closed", file.string(), line);
+    if (error.find("'main' : function already has a body") != std::string::npos)
+        for (const auto& [name, file] : source.include_files)
+            if (const int line = line_defining(read_file(file), "main"); line > 0)
+                return fmt::format("{}:{}: 'main' is reserved: the framework defines it", file.string(), line);
+    const auto technique = source.include_files.find("technique/trace.glsl");
+    if (technique != source.include_files.end()) {
+        if (error.find("'trace' : no matching overloaded function found") != std::string::npos)
+            return fmt::format("{}:{}: trace.glsl defines no TraceResult trace(Ray)", technique->second.string(),
+                               std::max<std::ptrdiff_t>(std::ranges::count(read_file(technique->second), '\n'), 1));
+        // It follows from the missing trace().
+        if (error.find("'store_result' : no matching overloaded function found") != std::string::npos) return "";
+    }
     const fs::path& file  = source.include_files.rbegin()->second;
     const auto      lines = std::max<std::ptrdiff_t>(std::ranges::count(read_file(file), '\n'), 1);
     return fmt::format("{}:{}: {} (found where the file is used: {})", file.string(), lines,
@@ -64,7 +85,7 @@ std::string shader_errors_in(const std::string& log, const ShaderSource& source)
         // The compiler's last line counts its errors.
         if (!line.starts_with(prefix) || line.ends_with("No code generated.")) continue;
         const std::string error = error_text(line.substr(prefix.size()), source);
-        if (std::ranges::count(errors, error) == 0) errors.push_back(error);
+        if (!error.empty() && std::ranges::count(errors, error) == 0) errors.push_back(error);
     }
     return errors.empty() ? log : fmt::format("{}", fmt::join(errors, "\n"));
 }

@@ -69,8 +69,16 @@ class Test(Case):
                             ["mine/coin/trace.glsl:3: 'pixle_at'", "mine/coin/trace.glsl:5: 'mis'"])
 
     def test_missing_trace_function_is_said_of_its_file(self):
-        out = self.shader_refused(TRACE.replace("trace(Ray", "trace_it(Ray"), ["mine/coin/trace.glsl:6: 'trace'"])
+        out = self.shader_refused(TRACE.replace("trace(Ray", "trace_it(Ray"), ["mine/coin/trace.glsl:6: trace.glsl defines no TraceResult trace(Ray)"], never=["store_result"])
         self.assertTrue(out.startswith("ssrlab: mine/coin/trace.glsl:6:"), out)
+
+    def test_own_main_is_said_to_be_reserved(self):
+        self.shader_refused("// main()\nvoid main() {}\n" + TRACE, ["mine/coin/trace.glsl:2: 'main' is reserved"])
+
+    def test_check_ends_with_its_failure(self):
+        self.write("mine/coin/trace.glsl", "TraceResult trace(Ray ray)\n{\n    return miss(ray, 1);\n}\n")
+        out = self.ssrlab("--techniques", "mine", "check", "coin", "--quick", "--case", "one_object_in_the_sky", code=1)
+        self.assertRegex(out.splitlines()[-1], r"^the check fails: \d+ findings, each above$")
 
     def test_unbalanced_braces_are_said_of_its_file(self):
         self.shader_refused(TRACE.rstrip().removesuffix("}"), ["mine/coin/trace.glsl:2: this '{' is never closed"])
