@@ -51,6 +51,12 @@ class Test(Case):
         self.assertLessEqual(float(coin["fetches_mean"]), 1)
         self.assertNotEqual(coin["screen_same_pixel"], "")
 
+    def test_says_in_its_row_what_its_hit_test_ignores(self):
+        self.write("mine/coin/technique.toml", MANIFEST.replace("summary", 'ignores = ["behind", "surface"]\nsummary', 1))
+        self.ssrlab("--techniques", "mine", "show", "coin", says=["its own hit test ignores: behind, surface"])
+        self.ssrlab("run", self.spec, "-o", "out", "--techniques", "mine")
+        self.assertEqual({row["technique"]: row["technique_ignores"] for row in self.rows()}, {"coin": "behind surface", "dda": ""})
+
     def test_error_in_its_shader_names_file_and_line(self):
         self.write("mine/coin/trace.glsl", TRACE.replace("ivec2 pixel = pixel_at", "ivec2 pixel = pixle_at"))
         self.refused("render", "builtin:mirror_floor_wall", "-t", "coin", "--techniques", "mine", "--size", "64x36", "-o", "a.png",
