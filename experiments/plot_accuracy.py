@@ -5,7 +5,7 @@ from matplotlib import pyplot as plt
 from matplotlib.ticker import LogLocator
 
 from pairs import Ratio, paired_ratio
-from plot_data import describe, label_of
+from plot_data import describe, errors, known, label_of
 from plot_figures import log_axis
 
 NOT_REACHED = "not reached"
@@ -36,6 +36,14 @@ def drop_overlapping(labels):
             kept.append(box)
 
 
+def draw_intervals(axis, line, cost, error, style):
+    """The 95 % interval of each time on its point; hollow where it is not known."""
+    name = cost.removesuffix("_median")
+    sure = known(line, name)
+    axis.errorbar(line[cost][sure], line[error][sure], xerr=errors(line[sure], name), fmt="none", ecolor=style["color"], elinewidth=0.9)
+    axis.plot(line[cost][~sure], line[error][~sure], ms=5, **{**style, "linestyle": "none", "markerfacecolor": "white"})
+
+
 def draw_curves(axis, results, rows, cost, error, xlabel):
     front, labels = pareto(rows, cost, error), []
     for series, line in rows.groupby("series"):
@@ -51,6 +59,8 @@ def draw_curves(axis, results, rows, cost, error, xlabel):
             # A search adds points where a target is crossed: the front and the ends say enough.
             named = line[line.index.isin(front.index) | (line.index == line.index[0]) | (line.index == line.index[-1])]
         axis.plot(line[cost], line[error], label=series, ms=5, lw=1.3, **style)
+        if cost.endswith("_median"):
+            draw_intervals(axis, line, cost, error, style)
         for _, row in named.iterrows():
             labels.append(axis.annotate(label_of(results, row, rows), (row[cost], row[error]), textcoords="offset points", xytext=(4, 3),
                                         fontsize=6.5, color=results.styles[series]["color"]))
@@ -88,8 +98,8 @@ def finish(figure, axes, title, clipped):
 
 
 def accuracy_curves(results, _):
-    """Error against time and against fetches; precision and F1 against time: recall alone misleads. Log-log."""
-    cost, fetches = ("cost_ms_median", "trace + structures, ms"), ("fetches_mean", "fetches per ray")
+    """Error against time, with its intervals, and against fetches; precision and F1 against time: recall alone misleads. Log-log."""
+    cost, fetches = ("cost_ms_median", "trace + structures, ms (95 % interval; hollow: not known)"), ("fetches_mean", "fetches per ray")
     for title, name, rows in results.pictures():
         if len(rows) < 5 or not results.swept(rows):
             continue

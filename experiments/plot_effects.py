@@ -54,10 +54,11 @@ def trade(axis, first, points, error, where):
     removed = np.array([first[error] - row[error] for _, row in points])
     low = np.array([row.frame_ms_median - row.frame_ms_ci_low for _, row in points])
     high = np.array([row.frame_ms_ci_high - row.frame_ms_median for _, row in points])
+    sure = ~np.isnan(low) & ~np.isnan(high)
     axis.axhline(0, color="#888888", lw=1)
     axis.axvline(0, color="#888888", lw=1)
-    axis.errorbar(added, removed, xerr=[np.nan_to_num(low), np.nan_to_num(high)], fmt="o", color="#0072B2", ecolor="#0072B2",
-                  elinewidth=1, ms=5)
+    axis.errorbar(added[sure], removed[sure], xerr=[low[sure], high[sure]], fmt="o", color="#0072B2", ecolor="#0072B2", elinewidth=1, ms=5)
+    axis.plot(added[~sure], removed[~sure], "o", color="#0072B2", markerfacecolor="white", ms=5)
     axis.plot(0, 0, "s", color="#000000", ms=6)
     # An interval that a busy machine made long is cut at the frame.
     margin = 0.15 * max(np.ptp(np.append(added, 0)), 1e-3)
@@ -71,7 +72,7 @@ def trade(axis, first, points, error, where):
         axis.annotate(label, (x, y), xytext=(1.03, place), textcoords=axis.get_yaxis_transform(), fontsize=8, va="center",
                       annotation_clip=False,
                       arrowprops=dict(arrowstyle="-", color="#999999", lw=0.6, shrinkA=0, shrinkB=3, relpos=(0, 0.5)))
-    axis.set(xlabel="added to the frame, ms (median, 95 % interval)", ylabel=f"{error} removed")
+    axis.set(xlabel="added to the frame, ms (median, 95 % interval; hollow: not known)", ylabel=f"{error} removed")
     axis.set_title(f"{where}: {first[error]:.4f} in the first run", loc="left", fontsize=10)
 
 
