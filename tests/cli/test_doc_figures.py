@@ -10,7 +10,7 @@ from support import SOURCE, Case, load_script, main
 
 REFERENCE = os.path.join("results", "reference")
 SCRIPTS = ("doc_figures", "ssrlab_results.py")
-READ = ("results.csv", "sequence_summary.csv")
+READ = ("results.csv", "sequence_summary.csv", "table.txt", "two_scenes.txt")
 
 
 def read(path):
