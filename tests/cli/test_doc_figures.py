@@ -9,8 +9,8 @@ import subprocess
 from support import SOURCE, Case, load_script, main
 
 REFERENCE = os.path.join("results", "reference")
-SCRIPTS = ("doc_figures", "ssrlab_results.py")
-READ = ("results.csv", "sequence_summary.csv", "table.txt", "two_scenes.txt")
+SCRIPTS = ("doc_figures", "default_settings", "ssrlab_results.py")
+READ = ("results.csv", "environment.json", "sequence_summary.csv", "table.txt", "two_scenes.txt")
 
 
 def read(path):
