@@ -39,6 +39,12 @@ int unclosed_brace(const std::string& text)
     return open.empty() ? 0 : open.front();
 }
 
+/// Where what a file lacks is said to be missing.
+std::ptrdiff_t last_line(const fs::path& file)
+{
+    return std::max<std::ptrdiff_t>(std::ranges::count(read_file(file), '\n'), 1);
+}
+
 /// The first line that defines a function of this name; 0: none.
 int line_defining(const std::string& text, const std::string& name)
 {
@@ -64,13 +70,12 @@ std::string error_text(const std::string& error, const ShaderSource& source)
     if (technique != source.include_files.end()) {
         if (error.find("'trace' : no matching overloaded function found") != std::string::npos)
             return fmt::format("{}:{}: trace.glsl defines no TraceResult trace(Ray)", technique->second.string(),
-                               std::max<std::ptrdiff_t>(std::ranges::count(read_file(technique->second), '\n'), 1));
+                               last_line(technique->second));
         // It follows from the missing trace().
         if (error.find("'store_result' : no matching overloaded function found") != std::string::npos) return "";
     }
-    const fs::path& file  = source.include_files.rbegin()->second;
-    const auto      lines = std::max<std::ptrdiff_t>(std::ranges::count(read_file(file), '\n'), 1);
-    return fmt::format("{}:{}: {} (found where the file is used: {})", file.string(), lines,
+    const fs::path& file = source.include_files.rbegin()->second;
+    return fmt::format("{}:{}: {} (found where the file is used: {})", file.string(), last_line(file),
                        std::regex_replace(error, std::regex("^[^:]*:[0-9]+: "), ""), error.substr(0, error.find(": ")));
 }
 

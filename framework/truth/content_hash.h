@@ -49,7 +49,11 @@ public:
     XXH128_hash_t digest() const { return XXH3_128bits_digest(state_.get()); }
 
     /// 32 hexadecimal digits.
-    std::string hex() const { return fmt::format("{:016x}{:016x}", digest().high64, digest().low64); }
+    std::string hex() const
+    {
+        const XXH128_hash_t hash = digest();
+        return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+    }
 
 private:
     std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
