@@ -3,6 +3,7 @@
 //   build/bin/benchmarks --scene=thin_yard --benchmark_filter=1080p
 #include "benchmarks/bench.h"
 #include "core/error.h"
+#include "core/version.h"
 
 #include <cstdio>
 
@@ -81,6 +82,7 @@ int run(std::vector<char*> arguments)
     benchmark::AddCustomContext("device_type", bench.info().type);
     benchmark::AddCustomContext("driver", bench.info().driver);
     benchmark::AddCustomContext("processor", bench.info().processor);
+    benchmark::AddCustomContext("commit", built_commit());
     for (size_t begin = 0; begin <= scenes.size();) {
         const size_t end = std::min(scenes.find(',', begin), scenes.size());
         add_all(bench, scenes.substr(begin, end - begin));
