@@ -3,6 +3,7 @@
 #include "app/stage.h"
 #include "core/error.h"
 #include "core/files.h"
+#include "core/version.h"
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -99,7 +100,10 @@ void print_table(const std::vector<Row>& rows, size_t techniques)
 
 void print_json(const std::vector<Row>& rows, const GpuInfo& device)
 {
-    nlohmann::json json{{"device", device.name}, {"driver", device.driver}, {"pipelines", nlohmann::json::array()}};
+    nlohmann::json json{{"commit", built_commit()},
+                        {"device", device.name},
+                        {"driver", device.driver},
+                        {"pipelines", nlohmann::json::array()}};
     for (const Row& row : rows) {
         json["pipelines"].push_back({{"shader", short_name(*row.pipeline)},
                                      {"techniques", row.techniques},

@@ -64,6 +64,10 @@ class Test(Case):
         for chip in ("vega10", "gfx1100"):
             self.assert_plausible(self.trace_of(self.compiled("hiz", "--chip", chip), "hiz"))
 
+    def test_the_commit_is_named(self):
+        said = json.loads(self.ssrlab("--quiet", "shaders", "linear", "--chip", "navi21", "--json"))
+        self.assertRegex(said["commit"], r"^[0-9a-f]{40}( with changes)?$|^not known$")
+
     def test_a_technique_from_outside(self):
         folder = os.path.join(SOURCE, "tests", "techniques")
         pipelines = self.compiled("unity_hiz", "--techniques", folder, "--chip", "navi21")
