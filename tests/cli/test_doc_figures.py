@@ -32,6 +32,7 @@ class Test(Case):
     def copied_tree(self):
         tree = self.path("tree")
         files = [os.path.join(SOURCE, "experiments", name) for name in SCRIPTS] + pages(SOURCE)
+        files.append(os.path.join(SOURCE, "techniques", "hiz", "trace.glsl"))
         for name in READ:
             files += glob.glob(os.path.join(SOURCE, REFERENCE, "**", name), recursive=True)
         for path in files:
