@@ -27,9 +27,11 @@ class Test(Case):
                          "--benchmark_repetitions=2", f"--benchmark_out={file}", "--benchmark_out_format=json")
         rows = {}
         with open(file, encoding="utf-8") as text:
-            for row in json.load(text)["benchmarks"]:
-                if row["run_type"] == "iteration":
-                    rows.setdefault(row["name"].split("/iterations:")[0].removeprefix(SCENE + "/360p/"), []).append(row)
+            report = json.load(text)
+        self.assertRegex(report["context"]["commit"], r"^[0-9a-f]{40}( with changes)?$|^not known$")
+        for row in report["benchmarks"]:
+            if row["run_type"] == "iteration":
+                rows.setdefault(row["name"].split("/iterations:")[0].removeprefix(SCENE + "/360p/"), []).append(row)
         self.assertEqual(sorted(rows), ["copy_depth", "judge", "pyramid/occupancy", "scattered/list", "scene_truth", "screen_truth", "trace"])
         for name, repetitions in rows.items():
             self.assertEqual(len(repetitions), 2, name)
