@@ -35,6 +35,7 @@ class Test(Case):
         files.append(os.path.join(SOURCE, "techniques", "hiz", "trace.glsl"))
         for name in READ:
             files += glob.glob(os.path.join(SOURCE, REFERENCE, "**", name), recursive=True)
+        files += glob.glob(os.path.join(SOURCE, REFERENCE, "compiled", "*.json"))
         for path in files:
             target = os.path.join(tree, os.path.relpath(path, SOURCE))
             os.makedirs(os.path.dirname(target), exist_ok=True)
