@@ -29,13 +29,13 @@ size_t edit_distance(std::string_view a, std::string_view b)
     return row[b.size()];
 }
 
-// GLSL 4.60, section 3.6: keywords and what is reserved; and the project's own macros and entry points.
+// GLSL 4.60, section 3.6: keywords and what is reserved; and the project's own entry points and their argument.
 constexpr std::string_view glsl_keywords =
     " "
     "active asm atomic_uint attribute bool break buffer case cast centroid class coherent common "
     "const continue default discard do double else enum extern external false filter fixed flat float "
     "for goto half highp if in inline inout input int interface invariant layout long lowp main "
-    "mediump namespace noinline noperspective out output partition patch precise precision public "
+    "mediump namespace noinline noperspective out output partition patch precise precision public ray "
     "readonly resource restrict return sample shared short sizeof smooth static struct subroutine "
     "superp switch template this trace true typedef uint uniform union unsigned using varying void "
     "volatile while writeonly ";

@@ -67,7 +67,7 @@ const std::vector<Column> ending = {
     {"truth_picture",
      "the same picture with the scene truth's reflection; beside it NAME_off.png, without reflections"},
     {"technique_ignores", "of behind, surface and thickness: what the technique's own hit test does not ask, by its "
-                          "manifest; empty: it asks all of them"},
+                          "manifest; empty: it asks all of them; unknown: the manifest does not say"},
     {"no_screen_truth", "why the measures that need the screen truth are empty; empty: they have a value"},
     {"no_scene_truth", "why the measures that need the scene's triangles are empty; empty: they have a value"},
     {"outcome", "ok; no_rays: nothing in the picture reflects; failed: see message; invalid: a ray has an answer that "

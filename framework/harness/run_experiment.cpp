@@ -177,6 +177,11 @@ int sweep(const RunOptions& options, SweepState& state)
     if (continues) record_lost(bench, pending, state.lost);
     if (const std::string trouble = cache_trouble(truth_cache_dir(results.path())); !trouble.empty())
         progress.say("warning: " + trouble);
+    for (const Technique& technique : techniques)
+        if (std::ranges::count(technique.ignores, "unknown") > 0)
+            progress.say(fmt::format("warning: {}: expected 'ignores', what its own hit test does not ask of behind, "
+                                     "surface and thickness ([]: nothing)",
+                                     short_path(technique.folder / "technique.toml")));
     size_t reported = 0;
     for (std::span<const Run> rest(runs); !rest.empty() && stop_requested() == 0;) {
         measure_sequence(bench, take_sequence(rest));

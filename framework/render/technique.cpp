@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <regex>
 #include <set>
 
 namespace ssrlab {
@@ -68,6 +69,27 @@ void read_ignored(const TomlFile& file, const toml::node& node, Technique& techn
     technique.ignores                           = read_known(file, node, "ignores", "part of the hit test", known);
     if (technique.exact && !technique.ignores.empty())
         throw_spec_error("{}: 'ignores' contradicts 'exact': the hit contract has all of them", toml_place(file, node));
+}
+
+std::string shaders_below(const fs::path& folder)
+{
+    std::string text;
+    for (const auto& entry : fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied))
+        if (entry.is_regular_file() && entry.path().extension() == ".glsl") text += read_file(entry.path());
+    return text;
+}
+
+/// May a test other than the hit contract's decide what is hit? By the names in its shaders: it reads a pixel itself, or neither it
+/// nor a structure of its asks the contract.
+bool may_test_itself(const Technique& technique)
+{
+    static const std::regex reads("\\b(fetch_depth|fetch_pixel)\\b");
+    static const std::regex asks("\\b(touches_surface|touches_sample|ends_at)\\b");
+    const std::string       own = shaders_below(technique.folder);
+    if (std::regex_search(own, reads)) return true;
+    return !std::regex_search(own, asks) && std::ranges::none_of(technique.structures, [](const Structure& structure) {
+        return std::regex_search(shaders_below(structure.folder), asks);
+    });
 }
 
 bool is_technique(const fs::path& folder)
@@ -173,6 +195,8 @@ Technique load_technique(const fs::path& folder, std::span<const Structure> know
     if (const toml::node* node = file.root.get("accuracy")) read_accuracy(file, *node, technique);
     if (!fs::exists(folder / "trace.glsl"))
         throw_spec_error("{}: missing; it holds the technique's trace function", short_path(folder / "trace.glsl"));
+    if (!technique.exact && !file.root.contains("ignores") && may_test_itself(technique))
+        technique.ignores = {"unknown"};
     return technique;
 }
 

@@ -31,7 +31,9 @@ struct Technique {
     std::vector<Parameter>   parameters;              // its own, then those of its structures as "structure.parameter"
     std::filesystem::path    folder;
     std::vector<Accuracy>    accuracy = {};
-    std::vector<std::string> ignores = {}; // of "behind", "surface" and "thickness": what its own hit test does not ask
+    /// Of "behind", "surface" and "thickness": what its own hit test does not ask. "unknown": its shaders may have
+    /// such a test, and the manifest does not say.
+    std::vector<std::string> ignores = {};
 };
 
 /// What a technique that is not exact may declare that it gets wrong. The check holds it to everything else.

@@ -60,8 +60,11 @@ void check_json_depth(const Import& import, std::string_view text)
     }
 }
 
-json parse_json(const Import& import, std::string_view text)
+/// The JSON of a file's bytes.
+json parse_json(const Import& import, const std::vector<unsigned char>& bytes)
 {
+    const std::string_view text = json_text(import, bytes);
+    check_json_depth(import, text);
     try {
         json parsed = json::parse(text);
         if (!parsed.is_object()) import.fail("the JSON is no object");
@@ -294,11 +297,9 @@ fs::path resolve_uri(const fs::path& folder, const std::string& uri)
 std::vector<fs::path> files_named_by(const fs::path& file)
 {
     Import import;
-    import.file            = file.string();
-    const auto       bytes = read_regular_file(file, max_file_bytes);
-    std::string_view text  = json_text(import, bytes);
-    check_json_depth(import, text);
-    return files_named_in(import, parse_json(import, text), file.parent_path());
+    import.file      = file.string();
+    const auto bytes = read_regular_file(file, max_file_bytes);
+    return files_named_in(import, parse_json(import, bytes), file.parent_path());
 }
 
 void parse_file(Import& import, const fs::path& file)
@@ -306,10 +307,8 @@ void parse_file(Import& import, const fs::path& file)
     import.file                             = file.string();
     fs::path                         folder = fs::weakly_canonical(file).parent_path();
     const std::vector<unsigned char> bytes  = read_regular_file(file, max_file_bytes);
-    const std::string_view           text   = json_text(import, bytes);
-    check_json_depth(import, text);
     {
-        const json root = parse_json(import, text);
+        const json root = parse_json(import, bytes);
         check_version(import, root);
         check_extensions(import, root);
         for (const char* kind : {"nodes", "meshes", "accessors", "materials", "textures", "scenes", "cameras"})
@@ -328,7 +327,8 @@ void parse_file(Import& import, const fs::path& file)
     try {
         ok = is_binary(bytes)
                  ? parser.LoadBinaryFromMemory(&import.json, &error, &warning, bytes.data(), size, folder.string())
-                 : parser.LoadASCIIFromString(&import.json, &error, &warning, text.data(), size, folder.string());
+                 : parser.LoadASCIIFromString(&import.json, &error, &warning, json_text(import, bytes).data(), size,
+                                              folder.string());
     } catch (const std::exception& exception) {
         error += exception.what();
     }

@@ -57,6 +57,11 @@ class Test(Case):
         self.ssrlab("run", self.spec, "-o", "out", "--techniques", "mine")
         self.assertEqual({row["technique"]: row["technique_ignores"] for row in self.rows()}, {"coin": "behind surface", "dda": ""})
 
+    def test_warns_of_an_own_hit_test_of_which_nothing_is_said(self):
+        self.write("mine/coin/trace.glsl", TRACE.replace("touches_sample(ray, pixel, real(place))", "fetch_depth(pixel) > ray.origin.z"))
+        self.ssrlab("run", self.spec, "-o", "out", "--techniques", "mine", says=["warning: mine/coin/technique.toml: expected 'ignores'"])
+        self.assertEqual({row["technique"]: row["technique_ignores"] for row in self.rows()}, {"coin": "unknown", "dda": ""})
+
     def test_error_in_its_shader_names_file_and_line(self):
         self.write("mine/coin/trace.glsl", TRACE.replace("ivec2 pixel = pixel_at", "ivec2 pixel = pixle_at"))
         self.refused("render", "builtin:mirror_floor_wall", "-t", "coin", "--techniques", "mine", "--size", "64x36", "-o", "a.png",

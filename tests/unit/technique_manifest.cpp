@@ -64,7 +64,6 @@ TEST(TechniqueManifest, AccuracyNamesNumbersAndADirection)
 TEST(TechniqueManifest, WhatAnOwnHitTestIgnoresIsDeclared)
 {
     const TechniqueDir dir;
-    EXPECT_THAT(load_technique(dir.add("all", head)).ignores, testing::IsEmpty());
     EXPECT_THAT(load_technique(dir.add("own", head + "ignores = [\"behind\", \"thickness\"]\n")).ignores,
                 ElementsAre("behind", "thickness"));
     EXPECT_THAT(message_of<SpecError>([&] { load_technique(dir.add("vague", head + "ignores = [\"facing\"]\n")); }),
@@ -72,6 +71,27 @@ TEST(TechniqueManifest, WhatAnOwnHitTestIgnoresIsDeclared)
     EXPECT_THAT(message_of<SpecError>(
                     [&] { load_technique(dir.add("both", head + "exact = true\nignores = [\"behind\"]\n")); }),
                 HasSubstr("both/technique.toml:4: 'ignores' contradicts 'exact'"));
+}
+
+TEST(TechniqueManifest, AnOwnHitTestOfWhichNothingIsSaidIsUnknown)
+{
+    const TechniqueDir dir;
+    const auto         ignores = [&](const std::string& id, const std::string& manifest, const std::string& shader) {
+        const fs::path folder = dir.add(id, head + manifest);
+        write_file_atomically(folder / "trace.glsl", shader);
+        return load_technique(folder).ignores;
+    };
+    const std::string asks  = "bool found = touches_surface(ray, pixel, t_in, t_out);\n",
+                      reads = "real z = fetch_depth(pixel);\n";
+    EXPECT_THAT(ignores("asks", "", asks), testing::IsEmpty());
+    EXPECT_THAT(ignores("samples", "", "bool found = touches_sample(ray, pixel, t);\n"), testing::IsEmpty());
+    EXPECT_THAT(ignores("neither", "", "// its own\n"), ElementsAre("unknown"));
+    EXPECT_THAT(ignores("reads", "", asks + reads), ElementsAre("unknown"));
+    EXPECT_THAT(ignores("says", "ignores = []\n", asks + reads), testing::IsEmpty());
+    EXPECT_THAT(ignores("exact", "exact = true\n", reads), testing::IsEmpty());
+    fs::create_directories(dir.path() / "asks" / "parts");
+    write_file_atomically(dir.path() / "asks" / "parts" / "own.glsl", reads);
+    EXPECT_THAT(load_technique(dir.path() / "asks").ignores, ElementsAre("unknown"));
 }
 
 TEST(TechniqueManifest, LimitsAreKnownNamesAndBelongToInexactTechniques)
@@ -163,6 +183,7 @@ TEST(TechniqueManifest, MistakesAreNamedWithFileAndLine)
         {"\"two words\" = { default = true, doc = \"d\" }",
          ":4: parameter 'two words' is not a name that GLSL accepts"},
         {"float = { default = true, doc = \"d\" }", ":4: parameter 'float' is not a name that GLSL accepts"},
+        {"ray = { default = true, doc = \"d\" }", ":4: parameter 'ray' is not a name that GLSL accepts"},
         {"steps = { default = 1, min = 1, max = 2, doc = \"d\" ", ":4: "},
     };
     const TechniqueDir dir;
