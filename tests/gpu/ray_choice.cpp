@@ -165,6 +165,30 @@ TEST(SeveralRays, CountWhenMoreThanHalfOfThemHit)
     EXPECT_EQ(one[1], glm::vec4(0));
 }
 
+// Pixel 3 of row 0 is 1 m nearer than all about it, pixel 10 half a metre: with a fade over 2 m its reflection weighs 1/2, that one's 3/4, and one of
+// pixel 6 weighs 1. Rays drawn from lobes are averaged by another line.
+TEST(SeveralRays, CountByTheirWeights)
+{
+    GBufferImage image = metal_wall({16, 16});
+    for (int x = 0; x < 16; ++x) image.radiance[at(image, x, 0)] = {static_cast<float>(x), 1, 0};
+    image.roughness.assign(image.roughness.size(), 0.4F);
+    set_pixel(image, 3, 0, 4, {0, 0, 1}, 1);
+    set_pixel(image, 10, 0, 4.5, {0, 0, 1}, 1);
+    const Picture picture = make_picture(image);
+    for (const Gloss gloss : {Gloss::off, Gloss::stochastic}) {
+        const auto frame = frame_with(
+            picture, {{"rays_per_pixel", 4}, chosen(gloss), {"min_direction_cosine", -1}, {"depth_step_fade_m", 2}});
+        const glm::ivec2 pixel{5, 5};
+        set_list(*frame, {pixel, pixel, pixel, pixel}, {{3, 0}, {6, 0}, {-1, -1}, {10, 0}});
+        run_passes(*frame, {hit_colour_pass()});
+        const glm::vec4 mean    = read_colours(picture.buffers->reflection)[at(image, pixel.x, pixel.y)];
+        const float     weights = 0.5F + 1 + 0.75F;
+        EXPECT_NEAR(mean.r, (0.5F * 3 + 1.0F * 6 + 0.75F * 10) / weights, 1e-2);
+        EXPECT_NEAR(mean.g, 1, 1e-3);
+        EXPECT_NEAR(mean.a, weights / 4, 1e-3);
+    }
+}
+
 /// A third of the pixels reflect, at random.
 GBufferImage speckled(glm::ivec2 size_px)
 {

@@ -1,5 +1,6 @@
 // arithmetic = exact beyond the campaign: on every hard case, and on a device that cannot.
 #include "check/run_check.h"
+#include "core/pixel_index.h"
 #include "gpu/device.h"
 #include "render/ray_list.h"
 #include "scene/scene.h"
@@ -49,6 +50,26 @@ TEST(ExactArithmetic, IsTheSameInFloatAndDouble)
                           (found[i].status == TraceStatus::hit && found[i].hit_pixel != exact[i].hit_pixel);
             EXPECT_EQ(differ, 0U) << scene.name << ", " << id << ": of " << rays.size() << " rays";
         }
+    }
+}
+
+// The nearest float to the way down to the border leads one step beyond it: there the picture has no row, and 512 is the number of the first one's
+// place, too, which holds an object.
+TEST(ExactArithmetic, RaysEndAtTheBorderOfTheImage)
+{
+    if (const std::string missing = missing_for_exact(); !missing.empty()) GTEST_SKIP() << missing;
+    const View         view = bench_view({8, 512});
+    std::vector<float> depth(pixel_count(view.size_px));
+    for (size_t x = 0; x < 8; ++x) depth[x] = 0.5F;
+    const auto     gbuffer = upload_depth(device(), view, depth);
+    const float    y       = 100.5F + 1.0F / 65536;
+    const double   to_end  = 512.0 - static_cast<double>(y);
+    const RayInput ray{{3.5, y, 0.5}, {1, static_cast<float>(to_end), 0}, 1, TraceStatus::left_screen, {3, 100}};
+    ASSERT_EQ(ray.delta_px_depth.y - to_end, 1.0 / 65536);
+    for (const char* id : {"dda", "hiz", "quadtree"}) {
+        const auto tracer =
+            make_ray_tracer(device(), gbuffer, technique(id), values_of(technique(id), {{"arithmetic", 1}}), {}, 1);
+        EXPECT_EQ(trace_rays(device(), *tracer, {&ray, 1})[0].status, TraceStatus::left_screen) << id;
     }
 }
 

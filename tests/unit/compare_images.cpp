@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numbers>
 #include <random>
 
 namespace ssrlab {
@@ -109,6 +111,129 @@ TEST(Flip, FineDetailVanishesWithDistance)
     const auto at_centre = [&](float ppd) { return flip_of(a, b, ppd)[32 * 64 + 32]; };
     EXPECT_LT(at_centre(200), at_centre(20));
     EXPECT_LT(at_centre(200), 0.05F);
+}
+
+// FLIP of one pixel once more, as Andersson et al. 2020 define it: by sums over two-dimensional filters, in double precision.
+namespace by_definition {
+
+constexpr double pi = std::numbers::pi;
+/// Linear RGB of every place, inside the picture or beyond.
+using Colours = std::function<glm::dvec3(glm::ivec2)>;
+using Filter  = std::function<double(double x_deg, double y_deg)>;
+
+const glm::dmat3 rgb_to_xyz{
+    {0.41238656, 0.21263682, 0.01933062}, {0.35759149, 0.71518298, 0.11919716}, {0.18045049, 0.0721802, 0.95037259}};
+const glm::dvec3 white = rgb_to_xyz * glm::dvec3(1);
+
+/// CIELAB with Hunt's effect.
+glm::dvec3 hunt_lab(glm::dvec3 rgb)
+{
+    glm::dvec3 f = rgb_to_xyz * rgb / white;
+    for (int c : {0, 1, 2}) f[c] = f[c] > 216.0 / 24389 ? std::cbrt(f[c]) : f[c] * 841 / 108 + 4.0 / 29;
+    const double lightness = 116 * f.y - 16;
+    return {lightness, 0.01 * lightness * 500 * (f.x - f.y), 0.01 * lightness * 200 * (f.y - f.z)};
+}
+
+double hyab(glm::dvec3 a, glm::dvec3 b) { return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z); }
+
+/// XYZ as parts of white about a pixel. The weights above 0 sum to 1, those below to -1.
+glm::dvec3 filtered(const Colours& colours, glm::ivec2 pixel, int radius_px, const Filter& filter)
+{
+    glm::dvec3 above(0), below(0);
+    double     weight_above = 0, weight_below = 0;
+    for (int y = -radius_px; y <= radius_px; ++y)
+        for (int x = -radius_px; x <= radius_px; ++x) {
+            const double     weight = filter(x / double(flip_pixels_per_degree), y / double(flip_pixels_per_degree));
+            const glm::dvec3 term   = weight * (rgb_to_xyz * colours(pixel + glm::ivec2(x, y)) / white);
+            (weight > 0 ? above : below) += term;
+            (weight > 0 ? weight_above : weight_below) += std::abs(weight);
+        }
+    return above / weight_above + (weight_below > 0 ? below / weight_below : glm::dvec3(0));
+}
+
+/// Section 4.1: Y, Cx = X - Y and Cz = Y - Z, each as sharp as the eye sees it.
+glm::dvec3 perceived(const Colours& colours, glm::ivec2 pixel)
+{
+    const int  radius_px = 10; // three deviations of the widest
+    const auto seen      = [&](const std::vector<glm::dvec2>& terms) {
+        return filtered(colours, pixel, radius_px, [&](double x_deg, double y_deg) {
+            double sum = 0;
+            for (const glm::dvec2 term : terms)
+                sum +=
+                    term[0] * std::sqrt(pi / term[1]) * std::exp(-pi * pi * (x_deg * x_deg + y_deg * y_deg) / term[1]);
+            return sum;
+        });
+    };
+    const glm::dvec3 y = seen({{1, 0.0047}}), cx = seen({{1, 0.0053}}), cz = seen({{34.1, 0.04}, {13.5, 0.025}});
+    const glm::dvec3 xyz = glm::dvec3(y.y + cx.x - cx.y, y.y, y.y - cz.y + cz.z) * white;
+    return hunt_lab(glm::clamp(glm::inverse(rgb_to_xyz) * xyz, 0.0, 1.0));
+}
+
+/// Section 4.2: the first and the second derivative of a Gaussian, along both axes.
+glm::dvec2 edge_and_point(const Colours& colours, glm::ivec2 pixel)
+{
+    const double deviation_deg = 0.5 * 0.082;
+    const int    radius_px     = 9; // three deviations
+    const auto   gauss         = [&](double x_deg, double y_deg) {
+        return std::exp(-(x_deg * x_deg + y_deg * y_deg) / (2 * deviation_deg * deviation_deg));
+    };
+    const auto length = [&](const std::function<double(double)>& factor) {
+        const auto along = [&](int axis) {
+            return filtered(colours, pixel, radius_px,
+                            [&](double x_deg, double y_deg) {
+                                return factor((axis == 0 ? x_deg : y_deg) / deviation_deg) * gauss(x_deg, y_deg);
+                            })
+                .y;
+        };
+        return std::hypot(along(0), along(1));
+    };
+    return {length([](double x) { return -x; }), length([](double x) { return x * x - 1; })};
+}
+
+double flip(const Colours& tested, const Colours& reference, glm::ivec2 pixel)
+{
+    const double     largest = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), 0.7), knee = 0.4 * largest;
+    const double     power    = std::pow(hyab(perceived(tested, pixel), perceived(reference, pixel)), 0.7);
+    const double     colour   = power < knee ? 0.95 * power / knee : 0.95 + 0.05 * (power - knee) / (largest - knee);
+    const glm::dvec2 features = glm::abs(edge_and_point(tested, pixel) - edge_and_point(reference, pixel));
+    return std::pow(colour, 1 - std::sqrt(std::max(features.x, features.y) / std::numbers::sqrt2));
+}
+
+} // namespace by_definition
+
+/// The colours, which are 0 or 1 and so the same in sRGB, as a picture.
+Image picture_of(glm::ivec2 size_px, const by_definition::Colours& colours)
+{
+    Image image = uniform(size_px, {0, 0, 0});
+    for (size_t i = 0; i < pixel_count(size_px); ++i)
+        for (int c : {0, 1, 2}) image.values[3 * i + size_t(c)] = float(colours(pixel_at(i, size_px))[c]);
+    return image;
+}
+
+/// In the middle, where no filter reaches the border.
+void expect_flip_by_definition(const by_definition::Colours& tested, const by_definition::Colours& reference)
+{
+    const glm::ivec2         size_px{41, 25};
+    const std::vector<float> found = flip_of(picture_of(size_px, tested), picture_of(size_px, reference));
+    for (int y = 11; y < 14; ++y)
+        for (int x = 11; x < 30; ++x)
+            EXPECT_NEAR(found[pixel_index({x, y}, size_px)], by_definition::flip(tested, reference, {x, y}), 1e-4)
+                << x << ", " << y;
+}
+
+// The eye sees blue against yellow less sharply than it sees lightness.
+TEST(Flip, OfABorderOfBlueAndYellowIsThatOfItsDefinition)
+{
+    const glm::dvec3 blue(0, 0, 1), yellow(1, 1, 0);
+    expect_flip_by_definition([&](glm::ivec2 p) { return p.x < 20 ? blue : yellow; }, [&](glm::ivec2) { return blue; });
+}
+
+// Beside a border of black and white lie the largest edges and, two pixels off, points; about a dot both.
+TEST(Flip, OfEdgesAndPointsIsThatOfItsDefinition)
+{
+    const glm::dvec3 black(0), white(1);
+    expect_flip_by_definition([&](glm::ivec2 p) { return p.x < 17 || p == glm::ivec2(24, 12) ? white : black; },
+                              [&](glm::ivec2) { return black; });
 }
 
 TEST(Flip, DifferentSizesAreRefused) { EXPECT_THROW(flip_of(uniform({3, 3}, {}), uniform({4, 3}, {})), Failure); }

@@ -209,6 +209,42 @@ TEST(RayMeasures, StopsAndHiddenPoints)
     EXPECT_EQ(values.at("hidden_too_precision_1px"), 2 / 3.0);
 }
 
+// The second layer lies at Z = 4: a ray at Z = 3 is behind the first and in front of the second.
+TEST(RayMeasures, AFalseHitIsJudgedByItsOwnLayer)
+{
+    SceneCase test;
+    auto& [gbuffer, truth, tested, screen] = test;
+    gbuffer.layers.push_back(gbuffer);
+    for (int x = 0; x < 16; ++x) set_pixel(gbuffer.layers[0], x, 0, 4, {0, 0, 1}, 1);
+    for (const size_t i : {0, 1}) {
+        truth.cls[i] = TruthClass::sky;
+        set_hit(tested, i, 12.5, 0.1 / 3);
+    }
+    tested.hit_layer[1]        = 1;
+    const MeasureValues values = compare_to_scene_truth(tested, truth, &screen, gbuffer);
+    EXPECT_EQ(values.at("false_too_thick"), 1 / 2.0);
+    EXPECT_EQ(values.at("false_wrong_surface"), 1 / 2.0);
+    EXPECT_EQ(values.at("false_self"), 0);
+}
+
+// Seen from its back, an object reflects on that side: pixel 9 at Z = 1 is before its plane, pixel 10 at Z = 4 behind it.
+TEST(RayMeasures, TheSideOfAReflectorIsTheOneThatIsSeen)
+{
+    SceneCase test;
+    auto& [gbuffer, truth, tested, screen] = test;
+    set_pixel(gbuffer, 10, 0, 4, {0, 0, 1}, 1);
+    for (const size_t i : {8, 11, 12}) {
+        truth.cls[i]         = TruthClass::sky;
+        gbuffer.normal_vs[i] = {0, 0, -1};
+    }
+    set_hit(tested, 8, 9.5, 0.1);
+    set_hit(tested, 12, 9.5, 0.1);
+    set_hit(tested, 11, 10.5, 0.1 / 4);
+    const MeasureValues values = compare_to_scene_truth(tested, truth, &screen, gbuffer);
+    EXPECT_EQ(values.at("false_self"), 1 / 3.0);
+    EXPECT_EQ(values.at("false_wrong_surface"), 2 / 3.0);
+}
+
 TEST(RayMeasures, SplitAndFlips)
 {
     SceneCase test;

@@ -149,6 +149,41 @@ TEST(SceneTruth, OccluderHidesTheWall)
     EXPECT_GT(count(truth, TruthClass::hidden), 0);
 }
 
+// Seen along the axis, 8 px a metre: a mirror ramp Y = Z / 2 - 5 from below up to a wall at Z = 10, and a plate at Z = 5 over Y in [1, 2],
+// which covers the same Y of the wall. From Y0 of the ramp the ray goes along (0, 4, -3) / 5, behind the plate, and meets the wall at
+// Y = -5/3 Y0; above 4 it is off the picture.
+TEST(SceneTruth, OrthographicViewsSeeAlongTheirAxis)
+{
+    Case test;
+    add_quad(test.scene, add_material(test.scene, {1, 1, 1}, 1), {-20, -4.5, -1}, {40, 0, 0}, {0, 4.5, -9});
+    add_wall(test.scene, add_material(test.scene, {0.5F, 0.5F, 0.5F}, 0), 10);
+    add_quad(test.scene, 1, {-20, 1, -5}, {40, 0, 0}, {0, 1, 0});
+    View view       = bench_view({64, 64});
+    view.projection = Projection::orthographic;
+    view.focal_px   = {8, 8};
+    view.far_m      = 30;
+    test.gbuffer    = empty_gbuffer(view);
+    for (int y = 32; y < 64; ++y)
+        for (int x = 0; x < 64; ++x)
+            set_pixel(test.gbuffer, x, y, 2 * ((31.5 - y) / 8 + 5), glm::normalize(glm::dvec3(0, 2, 1)), 1);
+    const SceneTruth truth = test.truth();
+    for (int y = 32; y < 64; ++y)
+        for (const int x : {0, 20, 63}) {
+            const size_t i      = at(test.gbuffer, x, y);
+            const double y0     = (31.5 - y) / 8;
+            const double wall_y = -5.0 / 3 * y0;
+            EXPECT_EQ(truth.cls[i], wall_y > 4                 ? TruthClass::off_screen
+                                    : wall_y > 1 && wall_y < 2 ? TruthClass::hidden
+                                                               : TruthClass::visible)
+                << x << ' ' << y;
+            EXPECT_NEAR(truth.point_vs[i].y, wall_y, tolerance * 5) << y;
+            EXPECT_NEAR(truth.point_vs[i].z, -10, tolerance * 10) << y;
+            EXPECT_NEAR(truth.point_px[i].y, 32 - 8 * wall_y, tolerance * 64) << y;
+            EXPECT_NEAR(truth.distance_m[i], -10.0 / 3 * y0, tolerance * 10) << y;
+        }
+    EXPECT_EQ(truth.off_surface, 0U);
+}
+
 // The picture shows the plate there, another colour.
 TEST(SceneTruth, HiddenPointsHaveTheirOwnColour)
 {

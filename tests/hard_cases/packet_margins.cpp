@@ -1,0 +1,70 @@
+// hiz_packets skips what a packet finds empty. Its bounds are wider than its rays by what rounding may move these: on rays whose position or depth
+// rounds to the other side of what they meet, it still finds what the pixel walk finds.
+#include "check/setup.h"
+#include "core/pixel_index.h"
+#include "gpu/device.h"
+
+#include <cmath>
+#include <vector>
+
+namespace ssrlab::test {
+namespace {
+
+constexpr TraceSettings settings{.thickness_m = 1, .max_distance_m = 1e9};
+
+/// Each ray alone, through a picture of one object: the same answer to the last bit. How many rays meet it.
+int same_answers(glm::ivec2 object, float depth, std::span<const RayInput> rays)
+{
+    const View         view = bench_view({128, 128});
+    std::vector<float> depths(pixel_count(view.size_px));
+    depths[pixel_index(object, view.size_px)] = depth;
+    const auto gbuffer                        = upload_depth(device(), view, depths);
+    const auto make                           = [&](const char* id) {
+        return make_ray_tracer(device(), gbuffer, technique(id), values_of(technique(id)), settings, 1);
+    };
+    const auto walk = make("dda"), packets = make("hiz_packets");
+    int        hits = 0;
+    for (const RayInput& ray : rays) {
+        const RayOutcome found = trace_rays(device(), *packets, {&ray, 1})[0],
+                         exact = trace_rays(device(), *walk, {&ray, 1})[0];
+        hits += exact.status == TraceStatus::hit;
+        EXPECT_EQ(found.status, exact.status) << "from y = " << ray.origin_px_depth.y << " by " << ray.delta_px_depth.y;
+        EXPECT_EQ(found.t, exact.t);
+    }
+    return hits;
+}
+
+RayInput ray_of(glm::vec3 origin, glm::vec3 delta)
+{
+    return {origin, delta, 1, TraceStatus::left_screen, glm::ivec2(origin)};
+}
+
+// Up the picture, and past row 64's border, which cells of every size share, by a last place of dy. The sum with y rounds that away; the walk, which
+// divides, ends in row 63.
+TEST(PacketMargins, HoldRaysThatEndAtABorder)
+{
+    std::vector<RayInput> rays;
+    for (float y = 72.5F; y < 96; ++y) {
+        const float dy = std::nextafter(64 - y, -100.0F);
+        EXPECT_EQ(y + dy, 64);
+        rays.push_back(ray_of({4.5F, y, 0.0225F}, {50, dy, 0}));
+    }
+    EXPECT_EQ(same_answers({54, 63}, 0.025F, rays), static_cast<int>(rays.size()));
+}
+
+// The rays end nearer than the object by a few last places of its depth. That is closer than the sums that lead there are exact, so the walk meets it.
+TEST(PacketMargins, HoldRaysThatEndAtAFront)
+{
+    std::vector<RayInput> rays;
+    const float           front = 0.05F;
+    float                 end   = front;
+    for (int places = 1; places <= 4; ++places) {
+        end = std::nextafter(end, 1.0F);
+        for (const float origin : {0.4F, 0.5F, 0.6F, 0.7F, 0.8F, 0.9F})
+            rays.push_back(ray_of({4.5F, 20.5F, origin}, {50, 0, end - origin}));
+    }
+    EXPECT_GT(same_answers({54, 20}, front, rays), 0);
+}
+
+} // namespace
+} // namespace ssrlab::test
