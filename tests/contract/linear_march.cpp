@@ -4,9 +4,11 @@
 #include "gpu/device.h"
 #include "truth/pixel_surface.h"
 #include "truth/screen_ray.h"
+#include "unit/truth_gbuffers.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace ssrlab::test {
 namespace {
@@ -26,6 +28,7 @@ struct Found {
     glm::ivec2  pixel{0, 0};
     double      t     = 0;
     uint32_t    steps = 0;
+    int         layer = 0;
 };
 
 /// One ray of a march.
@@ -50,33 +53,49 @@ struct Marcher {
         if (march.space == screen) return part;
         const double of_length = settings.max_distance_m * part / ray.length_m;
         if (of_length > 1) return 2;
+        if (image.view.projection == Projection::orthographic) return of_length;
         // 1 / distance is linear on screen.
         const double z0 = ray.origin_px_depth.z, z1 = z0 + ray.delta_px_depth.z;
         return of_length / (of_length + (1 - of_length) * z1 / z0);
     }
 
-    Meeting meeting(glm::ivec2 pixel, double t_in, double t_out) const
+    Meeting meeting(glm::ivec2 pixel, int layer, double t_in, double t_out) const
     {
-        const size_t i       = pixel_index(pixel, image.view.size_px);
-        const auto   surface = pixel_surface(image, i, settings);
+        const GBufferImage& held    = layer_of(image, layer);
+        const size_t        i       = pixel_index(pixel, image.view.size_px);
+        const auto          surface = pixel_surface(held, i, settings);
         if (!surface) return {};
         return meet(*surface, {ray.origin_px_depth, ray.delta_px_depth, t_in, t_out},
-                    glm::dot(glm::dvec3(image.normal_vs[i]), ray.direction_vs));
+                    glm::dot(glm::dvec3(held.normal_vs[i]), ray.direction_vs));
     }
+
+    bool passes(const Meeting& met) const { return met.meets && met.from_behind && settings.behind == Behind::pass; }
 
     bool touches(glm::ivec2 pixel, double t_in, double t_out)
     {
-        if (pixel == ray.start_pixel) return false;
-        const Meeting met    = meeting(pixel, t_in, t_out);
-        const bool    passes = met.meets && met.from_behind && settings.behind == Behind::pass;
-        passed |= passes;
-        return met.meets && !passes;
+        bool ends = false;
+        for (int layer = 0; layer < layer_count(image, settings) && pixel != ray.start_pixel; ++layer) {
+            const Meeting met = meeting(pixel, layer, t_in, t_out);
+            passed |= passes(met);
+            ends |= met.meets && !passes(met);
+        }
+        return ends;
     }
 
-    Found hit(glm::ivec2 pixel, double t_in, double t_out, double t, int taken) const
+    /// Of the layers in which the ray ends there, that which it meets first; of two at once the one in front. t: empty where it meets it.
+    Found hit(glm::ivec2 pixel, double t_in, double t_out, std::optional<double> t, int taken) const
     {
-        const bool stops = settings.behind == Behind::stop && meeting(pixel, t_in, t_out).from_behind;
-        return {stops ? TraceStatus::stopped : TraceStatus::hit, pixel, t, uint32_t(taken)};
+        Meeting first;
+        int     first_layer = 0;
+        for (int layer = 0; layer < layer_count(image, settings); ++layer) {
+            const Meeting met = meeting(pixel, layer, t_in, t_out);
+            if (!met.meets || passes(met) || (first.meets && met.t >= first.t)) continue;
+            first       = met;
+            first_layer = layer;
+        }
+        const bool stops = settings.behind == Behind::stop && first.from_behind;
+        return {stops ? TraceStatus::stopped : TraceStatus::hit, pixel, t.value_or(first.t), uint32_t(taken),
+                first_layer};
     }
 
     /// The part of the ray in a pixel's square.
@@ -101,7 +120,7 @@ struct Marcher {
         const glm::ivec2 front   = pixel_of(std::clamp(t_front, t_before, t));
         const RayPart    part    = part_in(front);
         if (!touches(front, part.t_in, part.t_out)) return sample;
-        return hit(front, part.t_in, part.t_out, meeting(front, part.t_in, part.t_out).t, taken);
+        return hit(front, part.t_in, part.t_out, {}, taken);
     }
 
     Found run()
@@ -142,25 +161,30 @@ void expect_march(const Picture& picture, const std::string& id, const Parameter
     const Technique&      t      = technique(id);
     const ParameterValues values = values_of(t, changed);
     const TraceResult     result = trace(picture, t, values, settings, Precision::float64);
-    size_t                wrong = 0, hits = 0;
+    const GBufferImage    image  = read_gbuffer(device(), *picture.gbuffer); // with the layers that the trace has drawn
+    size_t                wrong = 0, hits = 0, behind = 0;
     for (size_t i = 0; i < result.status.size(); ++i) {
         const glm::ivec2 pixel = pixel_at(i, picture.view.size_px);
-        Marcher          marcher{picture.image, settings, march, make_screen_ray(picture.image, pixel, settings)};
+        Marcher          marcher{image, settings, march, make_screen_ray(image, pixel, settings)};
         const Found      found = marcher.run();
         const bool       place = has_place(found.status);
         hits += place;
+        behind += found.layer > 0;
         if (found.status == result.status[i] && found.steps == result.steps[i] &&
-            (!place || (found.pixel == result.hit_pixel[i] && std::abs(found.t - result.hit_t[i]) <= double_twins_t)))
+            (!place || (found.pixel == result.hit_pixel[i] && found.layer == result.hit_layer[i] &&
+                        std::abs(found.t - result.hit_t[i]) <= double_twins_t)))
             continue;
         if (wrong++ < 3)
-            ADD_FAILURE() << fmt::format("ray of pixel ({}, {}): expected {} at ({}, {}), t = {}, {} steps; found {} "
-                                         "at ({}, {}), t = {}, {} steps",
+            ADD_FAILURE() << fmt::format("ray of pixel ({}, {}): expected {} at ({}, {}), layer {}, t = {}, {} steps; "
+                                         "found {} at ({}, {}), layer {}, t = {}, {} steps",
                                          pixel.x, pixel.y, status_name(found.status), found.pixel.x, found.pixel.y,
-                                         found.t, found.steps, status_name(result.status[i]), result.hit_pixel[i].x,
-                                         result.hit_pixel[i].y, result.hit_t[i], result.steps[i]);
+                                         found.layer, found.t, found.steps, status_name(result.status[i]),
+                                         result.hit_pixel[i].x, result.hit_pixel[i].y, result.hit_layer[i],
+                                         result.hit_t[i], result.steps[i]);
     }
     EXPECT_EQ(wrong, 0U) << repeat_command("builtin:pole_field", "default", picture.view.size_px, t, values, settings);
     EXPECT_GT(hits, 400U);
+    EXPECT_TRUE(settings.layers == 1 || behind > 10) << behind;
 }
 
 /// The limits differ with the rule, so that each is tried without trying all combinations.
@@ -169,6 +193,16 @@ const TraceSettings each_rule[] = {{.thickness_m = 0.1, .max_distance_m = 20, .b
                                    {.thickness_m = 2, .max_distance_m = 30, .behind = Behind::stop}};
 constexpr int       steps_in[]  = {48, 48, 200}; // of the three spaces
 constexpr double    stride_px   = double(1.3F);  // what the shader gets; no sample falls on a border
+
+/// Surfaces of random depths and normals, and another one behind each.
+GBufferImage two_layers_of_noise(const View& view)
+{
+    GBufferImage image = random_gbuffer(view, 3), behind = random_gbuffer(view, 8);
+    for (size_t i = 0; i < image.depth.size(); ++i)
+        behind.depth[i] = image.depth[i] > 0 ? std::min(behind.depth[i], 0.9F * image.depth[i]) : 0;
+    image.layers = {behind};
+    return image;
+}
 
 class LinearMarch : public testing::TestWithParam<int> {
 protected:
@@ -200,6 +234,27 @@ TEST_P(LinearMarch, WithBinarySearchEqualsItsHostTwin)
             values["binary_steps"] = halvings;
             expect_march(picture, "linear_binary", values, {space, steps, stride_px, false, false, halvings}, settings);
         }
+}
+
+TEST_P(LinearMarch, OfTwoLayersEqualsItsHostTwin)
+{
+    const Picture noise = make_picture(two_layers_of_noise(bench_view({161, 91})));
+    for (TraceSettings settings : each_rule)
+        for (const bool interval : {false, true}) {
+            settings.layers        = 2;
+            ParameterValues values = common;
+            values["interval"]     = interval;
+            expect_march(noise, "linear", values, {space, steps, stride_px, interval}, settings);
+        }
+}
+
+TEST_P(LinearMarch, OfAnOrthographicViewEqualsItsHostTwin)
+{
+    View view       = bench_view({161, 91});
+    view.projection = Projection::orthographic;
+    view.focal_px   = glm::dvec2(12);
+    view.far_m      = 30;
+    expect_march(make_picture(two_layers_of_noise(view)), "linear", common, {space, steps, stride_px}, each_rule[2]);
 }
 
 INSTANTIATE_TEST_SUITE_P(Spaces, LinearMarch, testing::Values(view, screen, pixels));

@@ -1,9 +1,9 @@
 // C = C_frag + (C_reflect - C_frag) * beta against the formula, for every switch.
 #include "core/pixel_index.h"
-#include "gpu/device.h"
+#include "gpu/passes.h"
 #include "truth/screen_ray.h"
-#include "unit/truth_gbuffers.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ssrlab::test {
@@ -18,6 +18,19 @@ GBufferImage coloured()
             image.radiance[at(image, x, y)]  = {static_cast<float>(x) / 64, static_cast<float>(y) / 64, 0.25F};
             image.highlight[at(image, x, y)] = {0, 0.5F, static_cast<float>(x % 4) / 4};
             if (image.metallic[at(image, x, y)] > 0) image.metallic[at(image, x, y)] = x % 2 == 0 ? 0.75F : 1.0F;
+        }
+    return image;
+}
+
+/// The same with a wall of columns at three distances, and with holes.
+GBufferImage rugged()
+{
+    GBufferImage image = coloured();
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) {
+            if (image.metallic[at(image, x, y)] > 0) continue;
+            set_pixel(image, x, y, 10 + 0.1 * (x / 4 % 3), {0, 0, 1}, 0);
+            if (x % 16 == 7 && y % 8 == 4) image.depth[at(image, x, y)] = 0;
         }
     return image;
 }
@@ -52,6 +65,46 @@ double edge_weight(EdgeFade fade, glm::dvec2 offset)
     return 1 - radial * radial;
 }
 
+double depth_step_weight(const GBufferImage& image, glm::ivec2 hit, double fade_m)
+{
+    if (fade_m == 0) return 1;
+    const auto distance_m = [&](glm::ivec2 pixel) {
+        return depth_to_distance(image.view, static_cast<double>(image.depth[at(image, pixel.x, pixel.y)]));
+    };
+    double largest_m = 0;
+    for (const glm::ivec2& beside : {glm::ivec2(-1, 0), glm::ivec2(1, 0), glm::ivec2(0, -1), glm::ivec2(0, 1)}) {
+        const glm::ivec2 pixel = glm::clamp(hit + beside, glm::ivec2(0), image.view.size_px - 1);
+        const bool       hole  = image.depth[at(image, pixel.x, pixel.y)] <= 0;
+        largest_m              = std::max(largest_m, hole ? fade_m : std::abs(distance_m(pixel) - distance_m(hit)));
+    }
+    return 1 - std::min(largest_m / fade_m, 1.0);
+}
+
+glm::dvec3 start_vs(const GBufferImage& image, size_t i)
+{
+    return pixel_point_vs(image, pixel_at(i, image.view.size_px));
+}
+
+/// Between the ray and the direction to the middle of the pixel that it hit.
+double direction_cosine(const GBufferImage& image, const TraceResult& result, size_t i)
+{
+    const glm::ivec2 pixel = pixel_at(i, image.view.size_px);
+    return glm::dot(mirror_direction_vs(image, pixel),
+                    glm::normalize(pixel_point_vs(image, result.hit_pixel[i]) - start_vs(image, i)));
+}
+
+double attenuation(Attenuation attenuation, const GBufferImage& image, const TraceResult& result, size_t i)
+{
+    const glm::dvec3 end      = result.hit_px_depth[i];
+    const double     length_m = glm::distance(px_to_vs(image.view, glm::dvec2(end), end.z), start_vs(image, i));
+    switch (attenuation) {
+    case Attenuation::off: return 1;
+    case Attenuation::inverse: return std::min(1.0, 1 / length_m);
+    case Attenuation::inverse_square: break;
+    }
+    return std::min(1.0, 1 / (length_m * length_m));
+}
+
 double beta(const GBufferImage& image, const TraceResult& result, size_t i, const ParameterValues& passes)
 {
     const glm::ivec2 pixel(static_cast<int>(i) % 64, static_cast<int>(i) / 64);
@@ -62,8 +115,10 @@ double beta(const GBufferImage& image, const TraceResult& result, size_t i, cons
     const double     viewer   = viewer_weight(choice<ViewerFade>(passes), away, passes.at("viewer_fade_start"));
     const double     edge     = edge_weight(choice<EdgeFade>(passes), offset);
     const double     most     = 1 - passes.at("base_colour_min_weight");
-    value *=
-        choice<FadeOperator>(passes) == FadeOperator::product ? viewer * edge * most : std::min({viewer, edge, most});
+    const double     step     = depth_step_weight(image, result.hit_pixel[i], passes.at("depth_step_fade_m"));
+    if (direction_cosine(image, result, i) < passes.at("min_direction_cosine")) return 0;
+    value *= choice<FadeOperator>(passes) == FadeOperator::product ? viewer * edge * step * most
+                                                                   : std::min({viewer, edge, step, most});
     return value;
 }
 
@@ -71,7 +126,7 @@ class Shading : public testing::TestWithParam<ParameterValues> {};
 
 TEST_P(Shading, IsTheFormulaAtEveryPixel)
 {
-    const Picture       picture = make_picture(coloured());
+    const Picture       picture = make_picture(rugged());
     const TraceSettings settings{.thickness_m = 0.5, .max_distance_m = 50};
     ParameterValues     passes   = report_passes();
     passes.at("edge_fade_width") = border_width;
@@ -81,16 +136,22 @@ TEST_P(Shading, IsTheFormulaAtEveryPixel)
     const TraceResult result = count_frame(device(), *frame);
     run_frame(device(), *frame);
     const Image shaded = read_shaded(device(), *frame);
-    size_t      hits   = 0;
+    size_t      hits = 0, seen = 0;
     for (size_t i = 0; i < result.status.size(); ++i) {
+        const bool hit = result.status[i] == TraceStatus::hit;
+        // Rounding may move a hit over that bound.
+        if (hit && std::abs(direction_cosine(picture.image, result, i) - passes.at("min_direction_cosine")) < 1e-5)
+            continue;
         glm::dvec3 expected = glm::dvec3(picture.image.radiance[i]) + glm::dvec3(picture.image.highlight[i]);
         // What is kept in half precision: the pixel's own light in two parts, the reflection, its weight, and the picture.
         glm::dvec3 rounded = expected;
-        if (result.status[i] == TraceStatus::hit) {
+        if (hit) {
             ++hits;
+            seen += beta(picture.image, result, i, passes) > 0;
             const auto       from = pixel_index(result.hit_pixel[i], result.size_px);
             const glm::dvec3 reflected =
-                picture.image.radiance[from]; // without the highlight: that belongs to the camera's direction
+                glm::dvec3(picture.image.radiance[from]) * // without the highlight: that belongs to the camera
+                attenuation(choice<Attenuation>(passes), picture.image, result, i);
             const glm::dvec3 change = (reflected - expected) * beta(picture.image, result, i, passes);
             rounded += reflected * beta(picture.image, result, i, passes) + glm::abs(change);
             expected += change;
@@ -102,6 +163,8 @@ TEST_P(Shading, IsTheFormulaAtEveryPixel)
                 << "pixel " << i << ", channel " << c;
     }
     EXPECT_GT(hits, 300U);
+    EXPECT_GT(seen, 100U);
+    EXPECT_TRUE(passes.at("min_direction_cosine") == -1 || seen < hits - 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -119,7 +182,46 @@ INSTANTIATE_TEST_SUITE_P(
                                     chosen(EdgeFade::squared),
                                     chosen(FadeOperator::minimum),
                                     {"base_colour_min_weight", 0.6}},
+                    ParameterValues{{"depth_step_fade_m", 0.25}, chosen(ViewerFade::off), chosen(EdgeFade::off)},
+                    ParameterValues{{"depth_step_fade_m", 0.25},
+                                    {"base_colour_min_weight", 0.5},
+                                    chosen(FadeOperator::minimum),
+                                    chosen(EdgeFade::off)},
+                    ParameterValues{chosen(Attenuation::inverse), chosen(EdgeFade::off)},
+                    ParameterValues{chosen(Attenuation::inverse_square), chosen(EdgeFade::off)},
+                    ParameterValues{{"min_direction_cosine", 0.9998}, chosen(EdgeFade::off)},
                     ParameterValues{{"skip_unneeded_passes", 0}, {"metallic_exponent", 2}}));
+
+// A mirror on the left turned to the right, a nearer wall there: rays meet the wall on their way back to the viewer.
+TEST(ShadingTowardTheViewer, WeighsNothing)
+{
+    GBufferImage image = empty_gbuffer(bench_view({64, 64}));
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x)
+            if (x < 32)
+                set_pixel(image, x, y, 10, glm::normalize(glm::dvec3(1, 0, 2)), 1);
+            else
+                set_pixel(image, x, y, 9, {0, 0, 1}, 0);
+    const Picture       picture = make_picture(image);
+    const TraceSettings settings{.thickness_m = 0.5, .max_distance_m = 50};
+    for (const ViewerFade fade : {ViewerFade::linear, ViewerFade::cut, ViewerFade::smooth}) {
+        ParameterValues passes = report_passes();
+        for (const auto& [name, value] : ParameterValues{chosen(fade), chosen(EdgeFade::off)}) passes.at(name) = value;
+        const auto frame =
+            prepare_frame(device(), picture.buffers, technique("dda"), values_of(technique("dda")), {settings, passes});
+        const TraceResult result = count_frame(device(), *frame);
+        run_frame(device(), *frame);
+        const Reflection found  = read_colours(picture.buffers->reflection);
+        size_t           toward = 0;
+        for (size_t i = 0; i < result.status.size(); ++i) {
+            if (result.status[i] != TraceStatus::hit) continue;
+            if (mirror_direction_vs(image, pixel_at(i, image.view.size_px)).z <= 0) continue;
+            ++toward;
+            EXPECT_EQ(found[i].a, 0) << i;
+        }
+        EXPECT_GT(toward, 300U);
+    }
+}
 
 // Nothing hit, nothing changed: the lit colour to the last bit, also of pixels that are no surface.
 TEST(ShadingOfMisses, LeavesTheLitColour)

@@ -1,10 +1,12 @@
 // What a row says about a run, from results whose figures are known.
+#include "compare/validate_result.h"
 #include "core/error.h"
 #include "harness/columns.h"
 #include "harness/measured_run.h"
 #include "harness/progress.h"
 #include "harness/quality.h"
 #include "harness/samples.h"
+#include "harness/sequence_state.h"
 
 #include <gmock/gmock.h>
 
@@ -73,11 +75,19 @@ TEST(Rows, EveryEntryOfARowHasAColumn)
     run.scene     = "a";
     run.technique = "walk";
     run.values    = {{"steps", 25}, {"space", 1}};
+    run.size_px   = {160, 90};
+    run.at        = {3, 8};
+    run.number    = 5;
     MeasuredRun measured;
     measured.run = &run;
     measured.row = identity_row(one_technique("walk"), run, walk);
     EXPECT_EQ(measured.row.at("space"), "screen");
     EXPECT_EQ(measured.row.at("steps"), "25");
+    EXPECT_EQ(measured.row.at("width"), "160");
+    EXPECT_EQ(measured.row.at("height"), "90");
+    EXPECT_EQ(measured.row.at("frame"), "3");
+    EXPECT_EQ(measured.row.at("jitter_phases"), "8");
+    EXPECT_EQ(measured.row.at("run_number"), "5");
     EXPECT_EQ(measured.row.at("thickness_m"), "0.1");
     EXPECT_EQ(measured.row.at("max_distance_m"), "1000000000");
     EXPECT_EQ(measured.row.at("edge_fade"), "off");
@@ -96,6 +106,61 @@ TEST(Rows, EveryEntryOfARowHasAColumn)
     EXPECT_THAT(measured.row.at("passes_skipped"), testing::HasSubstr("trace"));
     EXPECT_THAT(measured.row.at("passes_why"), testing::ContainsRegex("trace: [^;]+; "));
     for (const auto& [name, value] : measured.row) EXPECT_THAT(names, testing::Contains(name));
+}
+
+// Every sum of passes has a figure of its own.
+TEST(Rows, TimesWithKnownFigures)
+{
+    MeasuredRun measured;
+    measured.trace_ms          = {1, 2, 3, 4, 10, 12, 14, 16};
+    measured.frame_ms          = {40, 21, 22, 23, 24, 30, 32, 34};
+    measured.pass_ms           = {{"classification", {1}}, {"rays", {2}},        {"depth_pyramid", {4}},
+                                  {"ray_packets", {8}},    {"hit_colour", {16}}, {"composite", {32}}};
+    measured.structures        = {"depth_pyramid", "ray_packets", "not_built"};
+    measured.frames_per_submit = 3;
+    add_times(measured, 20);
+    const Row expected = {{"trace_ms_median", "7"},
+                          {"trace_ms_mad", "5"},
+                          {"trace_ms_ci_low", "1"},
+                          {"trace_ms_ci_high", "16"},
+                          {"trace_drift", "4.2"}, // 13 / 2.5 - 1
+                          {"frame_ms_median", "27"},
+                          {"frame_ms_mad", "5"},
+                          {"frame_ms_ci_low", "21"},
+                          {"frame_ms_ci_high", "40"},
+                          {"repeats", "8"},
+                          {"frames_per_submit", "3"},
+                          {"gbuffer_ms_median", "20"},
+                          {"rays_ms_median", "3"},
+                          {"depth_pyramid.ms_median", "4"},
+                          {"ray_packets.ms_median", "8"},
+                          {"not_built.ms_median", "0"},
+                          {"structures_ms_median", "12"},
+                          {"shade_ms_median", "48"},
+                          {"passes", ""},
+                          {"fps", "37.037"},
+                          {"inverse_fps_s", "0.027"}};
+    EXPECT_EQ(measured.row, expected);
+
+    measured.trace_ms = {1, 2, 3, 4, 5};
+    add_times(measured, 0);
+    EXPECT_EQ(measured.row.at("trace_drift"), "") << "of five repeats";
+    EXPECT_EQ(measured.row.at("gbuffer_ms_median"), "") << "of another renderer's frame";
+}
+
+TEST(Rows, APlanSaysWhatRanAndWhatDidNot)
+{
+    Row row;
+    add_plan(row, {{.id = "rays", .runs = true, .reason = "a"},
+                   {.id = "blur", .runs = false, .reason = "b"},
+                   {.id = "history", .runs = false, .reason = "c"}});
+    EXPECT_EQ(row, (Row{{"passes_skipped", "blur history"}, {"passes_why", "rays: a; blur: b; history: c"}}));
+}
+
+TEST(Rows, WhatFailedIsToldFromWhatCannotBe)
+{
+    EXPECT_EQ(failed_row({}, Failure("no")), (Row{{"outcome", "failed"}, {"message", "no"}}));
+    EXPECT_EQ(failed_row({}, InvalidResult("t")).at("outcome"), "invalid");
 }
 
 TEST(Rows, SamplesReadBackAsTheyWere)
@@ -146,6 +211,34 @@ TEST(Rows, CountsOfAResultWithKnownFigures)
     EXPECT_EQ(row.at("fetches_max"), "10");
 }
 
+// Of 101 rays the sorted figure i is the quantile i / 100. As many pixels are not traced.
+TEST(Rows, QuantilesAreOverTheRays)
+{
+    TraceResult result       = make_trace_result({202, 1}, true);
+    result.structure_fetches = {{"depth_pyramid", std::vector<uint32_t>(202)}};
+    for (size_t ray = 0; ray <= 100; ++ray) {
+        const size_t i                         = 2 * ray + 1;
+        result.status[i]                       = TraceStatus::left_screen;
+        result.steps[i]                        = static_cast<uint32_t>(100 - ray);
+        result.depth_fetches[i]                = ray == 100 ? 101 : 0;
+        result.structure_fetches[0].fetches[i] = static_cast<uint32_t>(ray);
+    }
+    Row row;
+    add_counts(row, result);
+    EXPECT_EQ(row.at("rays"), "101");
+    EXPECT_EQ(row.at("left_screen_share"), "1");
+    EXPECT_EQ(row.at("steps_mean"), "50");
+    EXPECT_EQ(row.at("steps_p99"), "99");
+    EXPECT_EQ(row.at("steps_max"), "100");
+    EXPECT_EQ(row.at("depth_fetches_mean"), "1");
+    EXPECT_EQ(row.at("structure_fetches_mean"), "50");
+    EXPECT_EQ(row.at("depth_pyramid.fetches_mean"), "50");
+    EXPECT_EQ(row.at("fetches_mean"), "51");
+    EXPECT_EQ(row.at("fetches_p50"), "50");
+    EXPECT_EQ(row.at("fetches_p99"), "99");
+    EXPECT_EQ(row.at("fetches_max"), "201");
+}
+
 TEST(Rows, NothingToTraceIsAnOutcome)
 {
     Row row;
@@ -193,6 +286,53 @@ TEST(Rows, SavedTimeIsTheMedianOfItsPairsAndEmptyWithoutAny)
     measured.saved_ms = {4, 9, -1};
     add_times(measured, 0);
     EXPECT_EQ(measured.row.at("saved_ms"), "4");
+}
+
+// Frames with outcomes ok, failed and ok; what is not ok has no part.
+TEST(Rows, ASummaryIsOfTheFramesThatAreOk)
+{
+    const auto frame = [](const char* outcome, const char* ms, const char* rmse, const char* converged) {
+        return Row{
+            {"outcome", outcome}, {"trace_ms_median", ms}, {"picture_rmse", rmse}, {"converged_rmse", converged}};
+    };
+    const Row     frames[] = {frame("ok", "1", "0.1", "0.5"), frame("failed", "90", "0.9", "0.9"),
+                              frame("ok", "2", "0.3", "0.25"), frame("ok", "9", "", "0.125")};
+    SequenceState state;
+    state.flips    = {3, 12};
+    state.moments  = {{1, 3}, {1, 5}, {2, 2}}; // 0 and 1, whose mean is 0.5; 1 and 2
+    state.pictures = 2;
+    const Row row  = summary_row({{"run_id", "r"}, {"run_number", "1"}, {"frame", "0"}, {"scene", "s"}}, frames, state);
+    EXPECT_EQ(row.at("scene"), "s");
+    EXPECT_FALSE(row.contains("run_id") || row.contains("run_number") || row.contains("frame"));
+    EXPECT_EQ(row.at("frames"), "3");
+    EXPECT_EQ(row.at("trace_ms_median"), "2"); // the median; the mean is 4
+    EXPECT_EQ(row.at("picture_rmse"), "0.2");
+    EXPECT_EQ(row.at("history_share"), "");
+    EXPECT_EQ(row.at("converged_rmse_last"), "0.125");
+    EXPECT_EQ(row.at("flip_rate"), "0.25");
+    EXPECT_EQ(row.at("temporal_rms"), "0.5");
+
+    state.moved = true;
+    EXPECT_FALSE(summary_row({}, frames, state).contains("temporal_rms"));
+    state.failed = true;
+    EXPECT_FALSE(summary_row({}, frames, state).contains("flip_rate"));
+}
+
+TEST(Rows, FlipsAreOfPairsOfFramesBetweenWhichNothingMoved)
+{
+    TraceResult hit = make_trace_result({1, 1}, false), miss = hit;
+    hit.status[0]  = TraceStatus::hit;
+    miss.status[0] = TraceStatus::left_screen;
+    const Image   picture{{1, 1}, {"R", "G", "B"}, {1, 1, 1}, {}};
+    SequenceState state;
+    EXPECT_TRUE(watch(state, picture, hit, {0, 0}, false).empty());
+    EXPECT_EQ(watch(state, picture, miss, {0, 0}, false).at("flip_share"), 1);
+    EXPECT_EQ(watch(state, picture, miss, {0, 0}, false).at("flip_share"), 0);
+    EXPECT_TRUE(watch(state, picture, hit, {0, 0}, true).empty());
+    EXPECT_TRUE(state.moved);
+    EXPECT_EQ(state.flips.flips, 1U);
+    EXPECT_EQ(state.flips.rays, 2U);
+    EXPECT_EQ(state.pictures, 4);
 }
 
 TEST(Rows, ReflectedImageTakesTheHitPixelsRadiance)
