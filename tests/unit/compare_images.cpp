@@ -158,7 +158,7 @@ glm::dvec3 perceived(const Colours& colours, glm::ivec2 pixel)
     const auto seen      = [&](const std::vector<glm::dvec2>& terms) {
         return filtered(colours, pixel, radius_px, [&](double x_deg, double y_deg) {
             double sum = 0;
-            for (const glm::dvec2 term : terms)
+            for (const glm::dvec2& term : terms)
                 sum +=
                     term[0] * std::sqrt(pi / term[1]) * std::exp(-pi * pi * (x_deg * x_deg + y_deg * y_deg) / term[1]);
             return sum;
