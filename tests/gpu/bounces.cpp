@@ -1,7 +1,7 @@
 // Mirror in mirror: two facing mirrors by unfolding, the traced chain against double precision, and history as a recursion.
-#include "gpu/device.h"
+#include "gpu/passes.h"
+#include "scene/scene.h"
 #include "truth/screen_truth.h"
-#include "unit/truth_gbuffers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,6 +37,8 @@ GBufferImage coloured_mirrors(glm::ivec2 size_px)
         for (int x = 0; x < size_px.x; ++x) {
             image.radiance[at(image, x, y)] = {static_cast<float>(x) / 256, static_cast<float>(y) / 128, 0.25F};
             if (image.metallic[at(image, x, y)] > 0) image.metallic[at(image, x, y)] = x % 2 == 0 ? 0.875F : 1.0F;
+            // Some show their backs, off which nothing bounces.
+            if (y % 8 == 3) image.normal_vs[at(image, x, y)] *= -1.0F;
         }
     return image;
 }
@@ -110,20 +112,39 @@ double weight_of(const View& view, const ScreenRay& ray, const WalkResult& found
     return std::max(0.0, -ray.direction_vs.z) * std::clamp(1 - std::abs(offset.x) - std::abs(offset.y), 0.0, 1.0);
 }
 
+/// attenuation = inverse
+double attenuation_of(const View& view, const ScreenRay& ray, const WalkResult& found)
+{
+    const auto point_vs = [&](glm::dvec3 px_depth) { return px_to_vs(view, glm::dvec2(px_depth), px_depth.z); };
+    return std::min(1.0, 1 / glm::distance(point_vs(ray.origin_px_depth), point_vs(found.hit_px_depth)));
+}
+
+struct Following {
+    int         bounces     = 0;
+    Attenuation attenuation = Attenuation::off;
+    Chain       missed      = {}; // what a miss brings back
+    bool        fades       = true;
+};
+
 /// What the ray from `pixel` brings back after `bounces` further ones; by definition, in double precision.
-Chain follow(const GBufferImage& image, const ScreenWalk& walk, glm::ivec2 pixel, glm::dvec3 direction_vs, int bounces)
+Chain follow(const GBufferImage& image, const ScreenWalk& walk, glm::ivec2 pixel, glm::dvec3 direction_vs,
+             Following following)
 {
     const ScreenRay  ray   = make_screen_ray(image, pixel, direction_vs, settings);
     const WalkResult found = walk.walk(ray);
-    if (found.status != TraceStatus::hit) return {};
+    if (found.status != TraceStatus::hit) return following.missed;
     const glm::ivec2 hit = found.hit_pixel;
-    Chain            chain{glm::dvec3(image.radiance[at(image, hit.x, hit.y)]), weight_of(image.view, ray, found)};
-    if (bounces == 0 || !reflects(image, hit)) return chain;
+    Chain            chain{glm::dvec3(image.radiance[at(image, hit.x, hit.y)]),
+                following.fades ? weight_of(image.view, ray, found) : 1};
+    const double     attenuation =
+        following.attenuation == Attenuation::inverse ? attenuation_of(image.view, ray, found) : 1;
     const glm::dvec3 normal(image.normal_vs[at(image, hit.x, hit.y)]);
     const double     cosine = glm::dot(normal, direction_vs);
-    if (cosine >= 0) return chain;
-    const Chain next = follow(image, walk, hit, glm::normalize(direction_vs - 2 * cosine * normal), bounces - 1);
-    chain.colour += (next.colour - chain.colour) * beta_of(image, hit, next.weight);
+    if (following.bounces-- > 0 && reflects(image, hit) && cosine < 0) {
+        const Chain next = follow(image, walk, hit, glm::normalize(direction_vs - 2 * cosine * normal), following);
+        chain.colour += (next.colour - chain.colour) * beta_of(image, hit, next.weight);
+    }
+    chain.colour *= attenuation;
     return chain;
 }
 
@@ -135,8 +156,10 @@ TEST_P(Direct, IsTheChainOfMirrorDirections)
     const GBufferImage& image   = picture.image;
     const ScreenWalk    walk(image, settings);
     std::vector<float>  before;
-    for (const int bounces : {1, 2, 5}) {
-        const auto values = shaded(*prepare(picture, bouncing(BounceMode::direct, bounces), GetParam()));
+    for (const Following& following : {Following{1}, Following{2}, Following{5}, Following{3, Attenuation::inverse}}) {
+        const int  bounces = following.bounces;
+        const auto passes  = bouncing(BounceMode::direct, bounces, {chosen(following.attenuation)});
+        const auto values  = shaded(*prepare(picture, passes, GetParam()));
         EXPECT_NE(values, before) << bounces << " bounces show more";
         before = values;
         for (int y = 0; y < 64; ++y)
@@ -144,7 +167,7 @@ TEST_P(Direct, IsTheChainOfMirrorDirections)
                 const glm::ivec2 pixel(x, y);
                 glm::dvec3       expected = image.radiance[at(image, x, y)];
                 if (reflects(image, pixel)) {
-                    const Chain chain = follow(image, walk, pixel, mirror_direction_vs(image, pixel), bounces);
+                    const Chain chain = follow(image, walk, pixel, mirror_direction_vs(image, pixel), following);
                     expected += (chain.colour - expected) * beta_of(image, pixel, chain.weight);
                 }
                 for (int c = 0; c < 3; ++c)
@@ -158,12 +181,45 @@ TEST_P(Direct, IsTheChainOfMirrorDirections)
 INSTANTIATE_TEST_SUITE_P(Techniques, Direct, testing::Values("dda", "hiz"),
                          [](const auto& param) { return std::string(param.param); });
 
+// Mirrors and a wall in the dark, under a sky of one colour: the reflection is the sky wherever the chain ends in a miss.
+TEST(Bounces, ThatMissShowTheSky)
+{
+    Scene scene = load_scene("builtin:facing_mirrors");
+    scene.lights.clear();
+    scene.ambient = glm::vec3(0);
+    for (Material& material : scene.materials) material.emissive = glm::vec3(0);
+    const glm::vec3 sky(3, 2, 1);
+    scene.environment.size_px     = {4, 2};
+    scene.environment.radiance    = std::vector(8, sky);
+    const Picture         picture = make_picture(scene, find_camera(scene, "default"), {161, 91});
+    const GBufferImage&   image   = picture.image;
+    const ScreenWalk      walk(image, settings);
+    const ParameterValues plain{chosen(ViewerFade::off), chosen(EdgeFade::off), chosen(Gloss::off)};
+    const Following       following{.bounces = 2, .missed = {glm::dvec3(sky), 1}, .fades = false};
+    run_frame(device(), *prepare(picture, bouncing(BounceMode::direct, following.bounces, plain)));
+    const Reflection found = read_colours(picture.buffers->reflection);
+    size_t           rays = 0, lit_by_bounces = 0, wrong = 0;
+    for (size_t i = 0; i < found.size(); ++i) {
+        const glm::ivec2 pixel = pixel_at(i, image.view.size_px);
+        if (!reflects(image, pixel)) continue;
+        const glm::dvec3 direction = mirror_direction_vs(image, pixel);
+        const Chain      chain     = follow(image, walk, pixel, direction, following);
+        ++rays;
+        lit_by_bounces += chain.colour.r > 0 &&
+                          walk.walk(make_screen_ray(image, pixel, direction, settings)).status == TraceStatus::hit;
+        wrong += !(glm::distance(glm::dvec3(found[i]), chain.colour) <= 4e-3);
+    }
+    EXPECT_GT(lit_by_bounces, 100U);
+    EXPECT_LE(wrong, rays / 200) << "of " << rays; // where rounding leads a chain into another pixel
+}
+
 // Frame k + 1 shows at a hit that reflects what frame k shows there: the recursion over the pixels that were hit.
 TEST(History, IsTheRecursionAndComesToRest)
 {
     const Picture       picture = make_picture(coloured_mirrors({192, 64}));
     const GBufferImage& image   = picture.image;
     const ScreenWalk    walk(image, settings);
+    constexpr auto      fading = Attenuation::inverse;
     std::vector<Chain>  frame(image.depth.size());
     const auto          next = [&](const std::vector<Chain>* previous) {
         std::vector<Chain> result(image.depth.size());
@@ -176,16 +232,18 @@ TEST(History, IsTheRecursionAndComesToRest)
                 const size_t hit   = at(image, found.hit_pixel.x, found.hit_pixel.y);
                 Chain&       chain = result[at(image, x, y)];
                 chain              = {image.radiance[hit], weight_of(image.view, ray, found)};
-                if (previous == nullptr || !reflects(image, found.hit_pixel)) continue;
-                const Chain& seen = (*previous)[hit];
-                chain.colour += (seen.colour - chain.colour) * beta_of(image, found.hit_pixel, seen.weight);
+                if (previous != nullptr && reflects(image, found.hit_pixel)) {
+                    const Chain& seen = (*previous)[hit];
+                    chain.colour += (seen.colour - chain.colour) * beta_of(image, found.hit_pixel, seen.weight);
+                }
+                chain.colour *= attenuation_of(image.view, ray, found);
             }
         return result;
     };
     frame = next(nullptr);
     for (int bounces = 1; bounces <= 3; ++bounces) {
         frame             = next(&frame);
-        const auto values = shaded(*prepare(picture, bouncing(BounceMode::history, bounces)));
+        const auto values = shaded(*prepare(picture, bouncing(BounceMode::history, bounces, {chosen(fading)})));
         for (size_t i = 0; i < frame.size(); ++i) {
             glm::dvec3       own = image.radiance[i];
             const glm::ivec2 pixel(static_cast<int>(i % 192), static_cast<int>(i / 192));

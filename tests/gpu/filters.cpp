@@ -133,9 +133,15 @@ TEST(ColourDownsampling, IsABlockMeanWithACross)
     image.radiance[at(image, 20, 21)] = {64, 0, 0};
     for (int x = 0; x < 64; ++x) image.radiance[at(image, x, 50)] = {0, 8, 0};
     for (glm::vec3& radiance : image.radiance) radiance.b = 3;
+    for (glm::vec3& highlight : image.highlight) highlight.b = 5;
     const Picture picture = make_picture(image);
+    {
+        const auto frame = frame_with(picture, {chosen(half), chosen(HitShading::lit)});
+        run_pass(*frame, colour_downsampling_pass());
+        EXPECT_EQ(read_colours(picture.buffers->small_colour).front(), glm::vec4(0, 0, 8, 1)) << "with highlights";
+    }
     for (const TraceResolution resolution : {half, quarter}) {
-        const auto frame = frame_with(picture, {chosen(resolution)});
+        const auto frame = frame_with(picture, {chosen(resolution), chosen(HitShading::diffuse)});
         run_pass(*frame, colour_downsampling_pass());
         const Reflection small    = read_colours(picture.buffers->small_colour);
         const int        block_px = resolution == half ? 2 : 4;
@@ -152,6 +158,34 @@ TEST(ColourDownsampling, IsABlockMeanWithACross)
         EXPECT_NEAR(texel(0, 50 / block_px).g, line * (0.75F - 0.125F) / 0.875F,
                     1e-2); // without an arm outside the picture
         EXPECT_EQ(texel(3, 50 / block_px + 1).g, line / 8);
+    }
+}
+
+// An orthographic picture: above a wall, below it mirrors a little farther away that send their rays straight up. Every column has hits, the outer
+// ones too, and all that they may find has one colour.
+TEST(ColourDownsampling, IsThatColourUpToTheBorder)
+{
+    View view          = bench_view({64, 64});
+    view.projection    = Projection::orthographic;
+    view.far_m         = 20;
+    view.focal_px      = glm::dvec2(12);
+    GBufferImage image = empty_gbuffer(view);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) {
+            if (y < 32)
+                set_pixel(image, x, y, 5, {0, 0, 1}, 0);
+            else
+                set_pixel(image, x, y, 5.4 - 0.005 * (y - 32), glm::normalize(glm::dvec3(0, 1, 1)), 1);
+            image.radiance[at(image, x, y)] = {1, 2, 3};
+        }
+    const Picture picture = make_picture(image);
+    for (const TraceResolution resolution : {half, quarter}) {
+        const auto frame = frame_with(
+            picture, {chosen(resolution), chosen(ViewerFade::off), chosen(EdgeFade::off), chosen(Gloss::off)});
+        run_frame(device(), *frame);
+        const Reflection found = read_colours(picture.buffers->reflection);
+        for (int x = 0; x < 64; ++x)
+            EXPECT_LE(glm::distance(found[at(image, x, 50)], {1, 2, 3, 1}), 4e-3) << "column " << x;
     }
 }
 

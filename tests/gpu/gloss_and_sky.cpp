@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace ssrlab::test {
@@ -34,15 +35,38 @@ TEST(Blur, SpreadsALineByTheGaussianOfItsRoughness)
     const Picture picture = rough_wall(0.5F);
     Reflection    line(64 * 64, {0, 0, 0, 1});
     for (int y = 0; y < 64; ++y) line[at(picture.image, 32, y)] = {1, 1, 1, 1};
-    // 0.25 of the height times roughness 0.5: 8 pixels, two standard deviations.
-    const Reflection found = blur(picture, line, {{"blur_scale", 0.25}});
-    double           sum   = 0;
-    for (int d = -8; d <= 8; ++d) sum += std::exp(-0.5 * d * d / 16.0);
-    for (int x = 0; x < 64; ++x) {
-        const int    d        = x - 32;
-        const double expected = std::abs(d) <= 8 ? std::exp(-0.5 * d * d / 16.0) / sum : 0;
-        EXPECT_NEAR(found[at(picture.image, x, 30)].r, expected, 1e-3) << "column " << x;
+    // These shares of the height times roughness 0.5: 8 and 28 pixels, two standard deviations.
+    for (const int radius : {8, 28}) {
+        const Reflection found = blur(picture, line, {{"blur_scale", radius / 32.0}});
+        const auto       gauss = [&](int d) { return std::exp(-2.0 * d * d / (radius * radius)); };
+        double           sum   = 0;
+        for (int d = -radius; d <= radius; ++d) sum += gauss(d);
+        for (int x = 0; x < 64; ++x) {
+            const int d = x - 32;
+            EXPECT_NEAR(found[at(picture.image, x, 30)].r, std::abs(d) <= radius ? gauss(d) / sum : 0, 1e-3)
+                << "column " << x << ", radius " << radius;
+        }
     }
+}
+
+// A radius of 8.4 pixels has nine taps a side, 8.4 / 9 of a pixel apart; each is read at the nearest pixel.
+TEST(Blur, ReadsTheNearestPixels)
+{
+    GBufferImage image = metal_wall({128, 64}); // 64 pixels high: radii are shares of that
+    std::ranges::fill(image.roughness, 0.5F);
+    const Picture picture = make_picture(image);
+    Reflection    line(128 * 64, {0, 0, 0, 1});
+    for (int y = 0; y < 64; ++y) line[at(image, 64, y)] = {1, 1, 1, 1};
+    const Reflection       found = blur(picture, line, {{"blur_scale", 12.4 / 32}, {"blur_bias", -4.0 / 64}});
+    std::map<long, double> at_offset{{0, 1}};
+    double                 sum = 1;
+    for (int i = 1; i <= 9; ++i) {
+        const double weight = std::exp(-2.0 * i * i / 81);
+        at_offset[std::lround(i * 8.4 / 9)] += weight;
+        sum += 2 * weight;
+    }
+    for (int d = 0; d <= 10; ++d)
+        EXPECT_NEAR(found[at(image, 64 + d, 30)].r, at_offset.contains(d) ? at_offset[d] / sum : 0, 1e-3) << d;
 }
 
 TEST(Blur, LeavesSmoothPixelsToTheLastBit)
@@ -63,7 +87,16 @@ TEST(Blur, HolesTakeTheColourAboutThemAndStayLessTrusted)
     const Picture picture = rough_wall(0.5F);
     Reflection    wall(64 * 64, {0.25F, 0.5F, 1, 1});
     wall[at(picture.image, 32, 32)] = hole;
-    const Reflection found          = blur(picture, wall, {{"blur_scale", 0.0625}}); // 2 pixels; 4 for the hole
+    // 2 pixels; 4 for the hole.
+    const ParameterValues passes{{"blur_scale", 0.0625}, {"hole_blur_scale", 2}, {"blur_hole_weight", 0.25}};
+    const Reflection      found = blur(picture, wall, passes);
+    const auto            gauss = [](double i, double radius) { return std::exp(-2 * i * i / (radius * radius)); };
+    const double          far   = 2 * (gauss(1, 4) + gauss(2, 4) + gauss(3, 4) + gauss(4, 4)),
+                 sum            = 1 + 2 * gauss(1, 2) + 2 * gauss(2, 2);
+    // Along x the hole has no part but in the whole, by a quarter of its weight; along y its row meets four whole ones.
+    const double in_row = far / (far + 0.25), beside_in_row = (sum - gauss(1, 2)) / (sum - 0.75 * gauss(1, 2));
+    EXPECT_NEAR(found[at(picture.image, 32, 32)].a, (in_row + sum - 1) / sum, 1e-3);
+    EXPECT_NEAR(found[at(picture.image, 33, 32)].a, (beside_in_row + sum - 1) / sum, 1e-3);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[at(picture.image, 32, 32)][c], wall[0][c], 2e-3);
     for (const int x : {32, 33}) {
         EXPECT_LT(found[at(picture.image, x, 32)].a, 1);
@@ -166,12 +199,16 @@ double directional_albedo(double f0, double roughness, double cosine)
     return sum / (n * n);
 }
 
+// A quarter is metal of that base colour, the rest reflects half at normal incidence. Normals may point away from the eye.
 TEST(Composite, GgxReflectsItsDirectionalAlbedo)
 {
     for (const float roughness : {0.1F, 0.4F, 0.8F, 1.0F})
         for (const float base : {0.2F, 1.0F}) {
             GBufferImage image = metal_wall({64, 64});
             for (int x = 0; x < 64; ++x) image.normal_vs[at(image, x, 32)] = glm::normalize(glm::vec3(64 - x, 0, 4));
+            for (int x = 0; x < 64; x += 8) image.normal_vs[at(image, x, 32)] *= -1.0F;
+            std::ranges::fill(image.metallic, 0.25F);
+            std::ranges::fill(image.dielectric_f0, 0.5F);
             std::ranges::fill(image.roughness, roughness);
             std::ranges::fill(image.base_colour, glm::vec3(base));
             const Picture picture = make_picture(image);
@@ -181,25 +218,28 @@ TEST(Composite, GgxReflectsItsDirectionalAlbedo)
             const Reflection found = read_colours(picture.buffers->shaded);
             for (const int x : {2, 16, 24, 28, 30}) {
                 const glm::dvec3 to_eye = -glm::normalize(glm::dvec3((x + 0.5 - 32) / 32, -0.5 / 32, -1));
-                const double cosine = glm::dot(to_eye, glm::dvec3(picture.image.normal_vs[at(picture.image, x, 32)]));
+                const double     cosine =
+                    std::abs(glm::dot(to_eye, glm::dvec3(picture.image.normal_vs[at(picture.image, x, 32)])));
+                const double f0 = 0.25 * static_cast<double>(base) + 0.75 * 0.5;
                 EXPECT_NEAR(found[at(picture.image, x, 32)].r,
-                            directional_albedo(static_cast<double>(base), static_cast<double>(roughness), cosine), 0.01)
+                            directional_albedo(f0, static_cast<double>(roughness), cosine), 0.01)
                     << "roughness " << roughness << ", base " << base << ", cosine " << cosine;
             }
         }
 }
 
-/// GGX with height-correlated Smith visibility and Schlick's Fresnel factor, times the light's irradiance.
+/// GGX with height-correlated Smith visibility and Schlick's Fresnel factor, times the light's irradiance. At least so rough.
 glm::dvec3 highlight(const Light& light, const GBufferImage& image, size_t i, glm::dvec3 to_eye_ws,
-                     glm::dvec3 normal_ws)
+                     glm::dvec3 normal_ws, float least_roughness)
 {
     const glm::dvec3 to_light = -glm::normalize(glm::dvec3(light.direction_ws)),
                      half     = glm::normalize(to_eye_ws + to_light);
     const double n_l = glm::dot(normal_ws, to_light), n_v = std::max(glm::dot(normal_ws, to_eye_ws), 1e-4);
     if (n_l <= 0) return {0, 0, 0};
     const double n_h = std::max(glm::dot(normal_ws, half), 0.0), v_h = std::max(glm::dot(to_eye_ws, half), 0.0);
-    const double alpha2 = std::pow(std::max(static_cast<double>(image.roughness[i]), 0.05), 4.0);
-    const double d      = n_h * n_h * (alpha2 - 1) + 1;
+    const float  roughness = std::max(image.roughness[i], least_roughness);
+    const double alpha2    = std::pow(std::max(static_cast<double>(roughness), 0.05), 4.0);
+    const double d         = n_h * n_h * (alpha2 - 1) + 1;
     const double smith =
         0.5 / (n_l * std::sqrt(n_v * n_v * (1 - alpha2) + alpha2) + n_v * std::sqrt(n_l * n_l * (1 - alpha2) + alpha2));
     const glm::dvec3 f0 =
@@ -212,6 +252,9 @@ TEST(HitColour, MirroredLightIsTheHighlightThatTheReflectorSees)
 {
     Scene scene = load_scene("builtin:stairs");
     for (Light& light : scene.lights) light.casts_shadow = false;
+    // Reflectors rougher than what they show.
+    for (Material& material : scene.materials)
+        if (material.metallic > 0) material.roughness = 0.9F;
     const Picture     picture = make_picture(scene, find_camera(scene, "default"), {161, 91});
     const auto        frame   = frame_with(picture, {chosen(HitShading::mirrored), chosen(ViewerFade::off),
                                                      chosen(EdgeFade::off), chosen(PassSet::shading)});
@@ -227,8 +270,9 @@ TEST(HitColour, MirroredLightIsTheHighlightThatTheReflectorSees)
         const glm::dvec3 direction = view_to_world * glm::normalize(mirror_direction_vs(picture.image, pixel));
         glm::dvec3       expected(picture.image.radiance[at_hit]);
         for (const Light& light : scene.lights)
-            expected += highlight(light, picture.image, at_hit, -direction,
-                                  view_to_world * glm::dvec3(picture.image.normal_vs[at_hit]));
+            expected +=
+                highlight(light, picture.image, at_hit, -direction,
+                          view_to_world * glm::dvec3(picture.image.normal_vs[at_hit]), picture.image.roughness[i]);
         for (int c = 0; c < 3; ++c)
             ASSERT_NEAR(static_cast<double>(found[i][c]), expected[c], 0.01 * expected[c] + 2e-3) << i;
         ++hits;

@@ -132,12 +132,15 @@ TEST(SeveralRays, CountWhenMoreThanHalfOfThemHit)
 {
     GBufferImage image = metal_wall({16, 16});
     for (int x = 0; x < 16; ++x) image.radiance[at(image, x, 0)] = {static_cast<float>(x), 1, 0};
-    const Picture        picture = make_picture(image);
     constexpr glm::ivec2 miss{-1, -1};
-    const auto           hit = [](int x) { return glm::ivec2(x, 0); };
-    const auto           run = [&](double per_pixel, const std::vector<std::vector<glm::ivec2>>& ends) {
-        const auto frame =
-            frame_with(picture, {{"rays_per_pixel", per_pixel}, chosen(Gloss::off), {"min_direction_cosine", -1}});
+    double               fade_m = 0;
+    const auto           hit    = [](int x) { return glm::ivec2(x, 0); };
+    const auto           run    = [&](double per_pixel, const std::vector<std::vector<glm::ivec2>>& ends) {
+        const Picture           picture = make_picture(image);
+        const auto              frame   = frame_with(picture, {{"rays_per_pixel", per_pixel},
+                                                               chosen(Gloss::off),
+                                                               {"min_direction_cosine", -1},
+                                                               {"depth_step_fade_m", fade_m}});
         std::vector<glm::ivec2> pixels, hits;
         for (size_t i = 0; i < ends.size(); ++i)
             for (const glm::ivec2& end : ends[i]) {
@@ -160,6 +163,13 @@ TEST(SeveralRays, CountWhenMoreThanHalfOfThemHit)
     const Reflection two = run(2, {{hit(3), miss}, {hit(3), hit(5)}});
     EXPECT_EQ(two[0], glm::vec4(0));
     EXPECT_EQ(two[1], glm::vec4(4, 1, 0, 1));
+    // At a step of 0.5 m a weight of 0.5: colours count by it.
+    for (int x = 13; x < 16; ++x) set_pixel(image, x, 0, 5.5, {0, 0, 1}, 1);
+    fade_m               = 1;
+    const Reflection dim = run(4, {{hit(3), hit(12), hit(12), miss}});
+    EXPECT_NEAR(dim[0].r, 7.5, 0.01); // (3 + 12 / 2 + 12 / 2) / (1 + 1 / 2 + 1 / 2)
+    EXPECT_NEAR(dim[0].a, 0.5, 1e-3);
+    fade_m               = 0;
     const Reflection one = run(1, {{hit(9)}, {miss}});
     EXPECT_EQ(one[0], glm::vec4(9, 1, 0, 1));
     EXPECT_EQ(one[1], glm::vec4(0));
