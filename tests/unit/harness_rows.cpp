@@ -163,6 +163,48 @@ TEST(Rows, WhatFailedIsToldFromWhatCannotBe)
     EXPECT_EQ(failed_row({}, InvalidResult("t")).at("outcome"), "invalid");
 }
 
+TEST(Runs, IdsTellApartWhatDecidesAnOutcome)
+{
+    ssrlab::Run plain;
+    plain.scene     = "a";
+    plain.view      = "b";
+    plain.size_px   = {16, 9};
+    plain.technique = "walk";
+    plain.values    = {{"steps", 25}, {"space", 1}};
+    std::vector<ssrlab::Run> runs(9, plain);
+    runs[1].scene                      = "c";
+    runs[2].view                       = "c";
+    runs[3].size_px                    = {9, 16};
+    runs[4].technique                  = "run";
+    runs[5].values.at("steps")         = 26;
+    runs[6].at                         = {1, 0};
+    runs[7].at                         = {0, 8};
+    runs[8].settings.trace.thickness_m = 2;
+    std::set<std::string> ids;
+    for (const ssrlab::Run& run : runs) ids.insert(run_id(run));
+    EXPECT_EQ(ids.size(), runs.size());
+    for (const size_t other : {1, 2, 3, 7}) EXPECT_FALSE(same_sequence(plain, runs[other])) << other;
+    for (const size_t same : {4, 5, 6, 8}) EXPECT_TRUE(same_sequence(plain, runs[same])) << same;
+    EXPECT_FALSE(same_picture(plain, runs[6]));
+    EXPECT_TRUE(same_picture(plain, runs[5]));
+}
+
+TEST(Runs, TooManyAreMadeOnlyWhenAskedFor)
+{
+    Experiment experiment = one_technique("walk");
+    experiment.scenes     = {"a", "b"};
+    experiment.views      = {"c", "d", "e"};
+    experiment.sizes_px   = {{1, 1}, {2, 2}, {3, 3}, {4, 4}, {5, 5}};
+    experiment.frames     = {{0, 0}, {1, 0}};
+    for (int steps = 1; steps <= 1000; ++steps) experiment.techniques[0].values["steps"].push_back(steps);
+    experiment.settings["thickness_m"] = {1, 2};
+    EXPECT_EQ(count_runs(experiment), 2 * 3 * 5 * 2 * 1000 * 2);
+    experiment.techniques[0].settings["thickness_m"] = {3}; // its own in place of those
+    EXPECT_EQ(count_runs(experiment), 2 * 3 * 5 * 2 * 1000);
+    experiment.techniques[0].values["space"] = {0, 1};
+    EXPECT_THROW(expand(experiment, {&walk, 1}), SpecError);
+}
+
 TEST(Rows, SamplesReadBackAsTheyWere)
 {
     ssrlab::Run run;

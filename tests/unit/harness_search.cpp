@@ -124,6 +124,46 @@ TEST(Search, StaysInsideTheListedRangeAndEndsOnFailures)
     EXPECT_THAT(next_probes(experiment, {&march, 1}, runs, rows), testing::IsEmpty());
 }
 
+// Of values that differ in nothing else the next one is halfway by ratio, said by three digits.
+TEST(Search, ReachesATargetThatIsMetExactly)
+{
+    const auto probed = [](std::vector<std::pair<double, const char*>> line, const std::string& measure, bool higher,
+                           double target) {
+        Experiment                 experiment;
+        std::vector<ssrlab::Run>   runs;
+        std::map<std::string, Row> rows;
+        experiment.targets = {{measure, {target}, higher}};
+        for (const auto& [stride_px, measured] : line) {
+            runs.push_back(run_with(9, stride_px, 0));
+            rows[runs.back().id] = {{measure, measured}};
+        }
+        // What another technique does has no part in it.
+        runs.push_back(run_with(9, 3, 0));
+        runs.back().technique = "other";
+        runs.back().id        = run_id(runs.back());
+        rows[runs.back().id]  = {{measure, "0"}};
+        std::vector<double> strides_px;
+        for (const ssrlab::Run& run : next_probes(experiment, {&march, 1}, runs, rows))
+            strides_px.push_back(run.values.at("stride_px"));
+        return strides_px;
+    };
+    EXPECT_THAT(probed({{10, "0.5"}, {1, "0.9"}, {0.1, "0.95"}}, "recall_1px", true, 0.9), testing::ElementsAre(3.16));
+    EXPECT_THAT(probed({{10, "0.3"}, {1, "0.1"}, {0.1, "0.05"}}, "flip_visible", false, 0.1),
+                testing::ElementsAre(3.16));
+}
+
+TEST(Search, KnowsWhichWayAMeasureIsBetter)
+{
+    for (const TargetMeasure& measure : target_measures())
+        EXPECT_EQ(measure.higher_is_better, !measure.name.starts_with("flip")) << measure.name;
+}
+
+TEST(Search, HasNothingBetweenNeighbouringWholeNumbers)
+{
+    const ssrlab::Run listed[] = {run_with(1, 1, 0), run_with(2, 1, 0)};
+    EXPECT_FALSE(find_probe({&march, 1}, listed, "r0123456789abcdef"));
+}
+
 TEST(Search, EveryRunThatItAddsIsFoundByItsId)
 {
     const std::vector<ssrlab::Run> listed = {run_with(16, 1, 0), run_with(256, 1, 0), run_with(4096, 1, 0),

@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <fcntl.h>
 #include <random>
+#include <set>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -183,6 +184,33 @@ TEST_F(RecordFiles, FailedRowsAreTriedAgainOnceAndInNoWayDoubled)
                          csv_line({"r3", "no_rays", "a\n\"b\""}) + csv_line({"r2", "ok", "a\n\"b\""}));
     EXPECT_EQ(ResultFolder(folder, with_outcome, here, true).finished().size(), 3U);
     EXPECT_EQ(read_file(folder / "results.csv"), whole);
+}
+
+// r1 has both of its samples, r2 one of two, r3 is invalid.
+TEST_F(RecordFiles, RowsWithoutAllOfTheirSamplesAreMeasuredAnew)
+{
+    const std::vector<std::string> with_repeats = {"run_id", "outcome", "repeats"};
+    const auto                     sample       = [](const char* id, int round) {
+        return csv_line({id, std::to_string(round), "trace", "1", ""}) +
+               csv_line({id, std::to_string(round), "frame", "2", "3"});
+    };
+    {
+        ResultFolder results(folder, with_repeats, here, false);
+        results.append({{"run_id", "r1"}, {"outcome", "ok"}, {"repeats", "2"}}, sample("r1", 0) + sample("r1", 4));
+        results.append({{"run_id", "r2"}, {"outcome", "ok"}, {"repeats", "2"}}, sample("r2", 3));
+        results.append({{"run_id", "r3"}, {"outcome", "invalid"}, {"repeats", ""}});
+    }
+    const ResultFolder resumed(folder, with_repeats, here, true);
+    EXPECT_EQ(resumed.finished(), std::set<std::string>{"r1"});
+    EXPECT_EQ(resumed.next_round(), 5);
+    EXPECT_EQ(read_file(folder / "samples.csv"), csv_line(sample_columns()) + sample("r1", 0) + sample("r1", 4));
+    EXPECT_EQ(read_file(folder / "results.csv"), csv_line(with_repeats) + csv_line({"r1", "ok", "2"}));
+}
+
+TEST_F(RecordFiles, DifferencesAreNamedFromBothSides)
+{
+    EXPECT_THAT(differences({{"a", "1"}, {"b", "2"}, {"c", "3"}}, {{"b", "2"}, {"c", "4"}, {"d", "5"}}),
+                testing::UnorderedElementsAre("a", "c", "d"));
 }
 
 TEST_F(RecordFiles, UnknownColumnsAreRefused)
