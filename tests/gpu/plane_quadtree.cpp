@@ -156,7 +156,7 @@ TEST(PlaneQuadtreeOfAFlatSurface, FollowsIt)
 // The surface rises by about a last place of its depth from one pixel to the next, so that the heights of slabs round.
 TEST(PlaneQuadtreeOfTheLastPlaces, HoldsEverySlab)
 {
-    for (const glm::dvec2 slope : {glm::dvec2(1.3, 0.7), glm::dvec2(-0.6, 2.2), glm::dvec2(5.1, -3.4)}) {
+    for (const glm::dvec2& slope : {glm::dvec2(1.3, 0.7), glm::dvec2(-0.6, 2.2), glm::dvec2(5.1, -3.4)}) {
         GBufferImage image = empty_gbuffer(bench_view({128, 128}));
         for (size_t i = 0; i < image.depth.size(); ++i) {
             const glm::dvec2 from_middle = glm::dvec2(pixel_at(i, image.view.size_px)) - 64.0;
