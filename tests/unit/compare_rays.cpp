@@ -74,6 +74,13 @@ TEST(RayMeasures, ATieWithinRoundingIsFound)
     }
 }
 
+TEST(RayMeasures, DistanceIsTheLargerOfTwo)
+{
+    EXPECT_EQ(screen_distance_px({1, 2}, {1.75, 1.25}), 0.75);
+    EXPECT_EQ(screen_distance_px({0, 0}, {-3, 2}), 3);
+    EXPECT_EQ(screen_distance_px({0, 0}, {1, -4}), 4);
+}
+
 TEST(RayMeasures, WhatTheSecondLayerAdds)
 {
     TraceResult first = row_of(10), second = row_of(10);
@@ -207,6 +214,33 @@ TEST(RayMeasures, StopsAndHiddenPoints)
     EXPECT_EQ(values.at("stopped_right_share"), 0);
     EXPECT_EQ(values.at("hidden_too_recall_1px"), 2 / 4.0);
     EXPECT_EQ(values.at("hidden_too_precision_1px"), 2 / 3.0);
+    EXPECT_EQ(values.at("hidden_too_f1_1px"), 4 / 7.0);
+}
+
+TEST(RayMeasures, ASelfHitIsOfTheSameObject)
+{
+    SceneCase test;
+    auto& [gbuffer, truth, tested, screen] = test;
+    for (const size_t i : {0, 1, 2}) truth.cls[i] = TruthClass::sky;
+    set_hit(tested, 0, 3.5);
+    for (const size_t i : {1, 2}) set_hit(tested, i, 14.5); // in the same plane
+    const MeasureValues values = compare_to_scene_truth(tested, truth, &screen, gbuffer);
+    EXPECT_EQ(values.at("false_self"), 1 / 3.0);
+    EXPECT_EQ(values.at("false_wrong_surface"), 2 / 3.0);
+}
+
+// What is found is counted of what the better of the two finds.
+TEST(RayMeasures, ErrorsAreSharesOfTheBetterResult)
+{
+    TraceResult found = row_of(8), twin = found, screen = found;
+    set_hit(found, 0, 12.5);
+    for (size_t i = 0; i < 2; ++i) set_hit(twin, i, 12.5);
+    for (size_t i = 0; i < 8; ++i) set_hit(screen, i, 12.5);
+    const MeasureValues values = split_error(found, &twin, &screen, nullptr);
+    EXPECT_EQ(values.at("error_double_to_float"), 1 / 2.0);
+    EXPECT_EQ(values.at("error_screen_to_double"), 6 / 8.0);
+    found.status[7] = TraceStatus::not_traced; // traced in one alone: it counts, and has flipped
+    EXPECT_EQ(count_flips(found, twin), 2e6 / 8);
 }
 
 // The second layer lies at Z = 4: a ray at Z = 3 is behind the first and in front of the second.
