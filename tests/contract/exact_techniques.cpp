@@ -7,6 +7,7 @@
 #include "scene/scene.h"
 #include "truth/pixel_surface.h"
 #include "truth/screen_truth.h"
+#include "unit/truth_gbuffers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -294,6 +295,39 @@ TEST_P(ExactTechniquesOnModels, EqualThePixelWalkWhateverAPixelHolds)
 INSTANTIATE_TEST_SUITE_P(Scenes, ExactTechniquesOnModels, testing::ValuesIn(cases_of_models()), case_name);
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ExactTechniques, testing::ValuesIn(all_cases()), case_name);
+
+// A pole in the sky, and rays across the picture that keep their distance: they meet it up to its thickness before and behind it. Six metres reach
+// behind the eye.
+TEST(TwoSidedBoxes, AreMetOnBothSidesOfTheirDepth)
+{
+    constexpr double pole_m = 5;
+    GBufferImage     image  = empty_gbuffer(bench_view({64, 8}));
+    for (int y = 0; y < 8; ++y) set_pixel(image, 40, y, pole_m, {0, 0, 1}, 0);
+    const GBufferPtr gbuffer       = upload_gbuffer(device(), image);
+    constexpr double distances_m[] = {0.2, 3.9, 4.1, 5.9, 6.1, 10.9, 11.1};
+    for (const Technique& t : list_techniques({})) {
+        if (!t.exact) continue;
+        for (const double thickness_m : {1.0, 6.0}) {
+            std::vector<RayInput> rays;
+            for (const double distance_m : distances_m)
+                rays.push_back({.origin_px_depth = {5.5, 3.5, distance_to_depth(image.view, distance_m)},
+                                .delta_px_depth  = {50, 0, 0},
+                                .pixel           = {5, 3}});
+            const auto tracer = make_ray_tracer(device(), gbuffer, t, values_of(t),
+                                                {.thickness_m = thickness_m, .surface = "box_two_sided"}, rays.size());
+            const auto found  = trace_rays(device(), *tracer, rays);
+            for (size_t i = 0; i < rays.size(); ++i) {
+                const bool meets = std::abs(distances_m[i] - pole_m) < thickness_m;
+                EXPECT_EQ(found[i].status, meets ? TraceStatus::hit : TraceStatus::left_screen)
+                    << t.id << " at " << distances_m[i] << " m, thickness " << thickness_m;
+                if (!meets) continue;
+                EXPECT_EQ(found[i].hit_pixel, glm::ivec2(40, 3)) << t.id;
+                EXPECT_NEAR(found[i].t, (40 - 5.5) / 50, 1e-6)
+                    << t.id; // where it enters the pixel: it is inside of the box
+            }
+        }
+    }
+}
 
 /// The traversal that stops at the first occluder is not exact, but packets must not change what it finds. Those that may pass behind things do.
 TEST(FrontPackets, ChangeNoAnswerOfATraversalThatStopsAtTheFirstOccluder)

@@ -181,6 +181,43 @@ TEST_P(Direct, IsTheChainOfMirrorDirections)
 INSTANTIATE_TEST_SUITE_P(Techniques, Direct, testing::Values("dda", "hiz"),
                          [](const auto& param) { return std::string(param.param); });
 
+// A mirror panel hides the wall, which rays from behind it hit in the second layer: what they bring back is the wall, which reflects nothing, and not the
+// panel of the same pixels.
+TEST(Bounces, DoNotComeFromWhatStandsBeforeAHit)
+{
+    GBufferImage image = floor_and_wall(bench_view({64, 64}), back_m);
+    for (size_t i = 0; i < image.radiance.size(); ++i)
+        image.radiance[i] = {static_cast<float>(i % 64) / 64, static_cast<float>(i / 64) / 64, 0.25F};
+    GBufferImage behind = image;
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) {
+            if (y >= 40) image.metallic[at(image, x, y)] = 0; // in front of the panel
+            if (std::abs(x - 32) < 12 && y >= 20 && y < 36)
+                set_pixel(image, x, y, 4, {0, 0, 1}, 1);
+            else
+                behind.depth[at(image, x, y)] = 0;
+        }
+    image.layers          = {behind};
+    const Picture picture = make_picture(image);
+    TraceSettings layered = settings;
+    layered.layers        = 2;
+    const auto prepared   = [&](const ParameterValues& passes) {
+        const Technique& t = technique("dda");
+        return prepare_frame(device(), picture.buffers, t, values_of(t), {layered, passes});
+    };
+    const TraceResult traced = count_frame(device(), *prepared(report_passes()));
+    size_t            hidden = 0;
+    for (size_t i = 0; i < traced.status.size(); ++i)
+        hidden += traced.status[i] == TraceStatus::hit && traced.hit_layer[i] == 1;
+    EXPECT_GT(hidden, 20U);
+    const auto without = shaded(*prepared(bouncing(BounceMode::off, 1)));
+    for (const BounceMode mode : {BounceMode::direct, BounceMode::history}) {
+        const auto frame = prepared(bouncing(mode, 2));
+        EXPECT_FALSE(bounces_of(*frame).runs) << bounces_of(*frame).reason;
+        EXPECT_EQ(shaded(*prepared(bouncing(mode, 2, {{"skip_unneeded_passes", 0}}))), without);
+    }
+}
+
 // Mirrors and a wall in the dark, under a sky of one colour: the reflection is the sky wherever the chain ends in a miss.
 TEST(Bounces, ThatMissShowTheSky)
 {

@@ -175,7 +175,7 @@ TEST(ColourDownsampling, IsThatColourUpToTheBorder)
             if (y < 32)
                 set_pixel(image, x, y, 5, {0, 0, 1}, 0);
             else
-                set_pixel(image, x, y, 5.4 - 0.005 * (y - 32), glm::normalize(glm::dvec3(0, 1, 1)), 1);
+                set_pixel(image, x, y, 5.4 - 0.005 * (y - 32), glm::normalize(glm::dvec3(0, 1, 1)), x < 60 || x == 63);
             image.radiance[at(image, x, y)] = {1, 2, 3};
         }
     const Picture picture = make_picture(image);
@@ -185,7 +185,8 @@ TEST(ColourDownsampling, IsThatColourUpToTheBorder)
         run_frame(device(), *frame);
         const Reflection found = read_colours(picture.buffers->reflection);
         for (int x = 0; x < 64; ++x)
-            EXPECT_LE(glm::distance(found[at(image, x, 50)], {1, 2, 3, 1}), 4e-3) << "column " << x;
+            if (x < 60 || x == 63) // alone in its block, it is traced itself
+                EXPECT_LE(glm::distance(found[at(image, x, 50)], {1, 2, 3, 1}), 4e-3) << "column " << x;
     }
 }
 
