@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <utility>
 
 namespace ssrlab {
 namespace {
@@ -102,6 +104,55 @@ TEST(WrongCauses, OfEachRay)
     EXPECT_EQ(test.cause(10), WrongCause::other); // its pixel holds it, in the midst of a plane
     test.gbuffer.normal_vs[10] = glm::normalize(glm::vec3(1, 0, 0.2F));
     EXPECT_EQ(test.cause(10), WrongCause::own_surface); // the shading normal sends it into the wall
+}
+
+// What stands straight above a hit, or is not there, makes an edge as what stands beside it does.
+TEST(WrongCauses, AllEightNeighboursMayJump)
+{
+    CausesCase test;
+    for (int ray = 0; ray < 24; ++ray) test.gbuffer.object_id[size_t(ray)] = 9;
+    test.set_truth(5, TruthClass::sky);
+    test.set_end(5, TraceStatus::hit, {20.5, 4.5});
+    EXPECT_EQ(test.cause(5), WrongCause::other);
+    for (const glm::ivec2& other : {glm::ivec2(20, 3), glm::ivec2(19, 4), glm::ivec2(21, 5)})
+        for (const float depth : {0.0F, 0.05F}) {
+            float&      at_other = test.gbuffer.depth[at(test.gbuffer, other.x, other.y)];
+            const float before   = std::exchange(at_other, depth);
+            EXPECT_EQ(test.cause(5), WrongCause::silhouette) << other.x << ' ' << other.y << ' ' << depth;
+            at_other = before;
+        }
+}
+
+// A hit a fifth farther than the true point passed it.
+TEST(WrongCauses, AHitBehindTheTruePointPassedIt)
+{
+    CausesCase test;
+    test.gbuffer.object_id[5] = 9;
+    test.set_truth(5, TruthClass::visible, {20.5, 4.5}, 3);
+    test.set_end(5, TraceStatus::hit, {18.5, 6.5});
+    const View&  view  = test.gbuffer.view;
+    const double depth = distance_to_depth(view, 4);
+    const double way_m = glm::distance(px_to_vs(view, {18.5, 6.5}, depth), px_to_vs(view, {5.5, 0.5}, depth));
+    for (const auto& [share, cause] : {std::pair(1.2, WrongCause::thin), {1.0, WrongCause::other}}) {
+        test.truth.distance_m[5] = way_m / share;
+        EXPECT_EQ(test.cause(5), cause) << share;
+    }
+}
+
+// A plane turned to the right by 50 degrees sends the sight to the right, away from itself.
+TEST(WrongCauses, OrthographicPlanesHaveTheirNormals)
+{
+    CausesCase test;
+    View&      view           = test.gbuffer.view;
+    view.projection           = Projection::orthographic;
+    view.far_m                = 20;
+    const glm::dvec3 normal   = glm::normalize(glm::dvec3(std::sin(0.87), 0, std::cos(0.87)));
+    test.gbuffer.normal_vs[5] = glm::vec3(normal);
+    test.gbuffer.gradient[5]  = {float(-normal.x / normal.z / view.focal_px.x / (view.far_m - view.near_m)), 0};
+    test.set_truth(5, TruthClass::visible, {20.5, 4.5}, 4, 9);
+    EXPECT_NE(test.cause(5), WrongCause::own_surface);
+    test.gbuffer.gradient[5] *= -1.0F;
+    EXPECT_EQ(test.cause(5), WrongCause::own_surface);
 }
 
 TEST(WrongCauses, AHiddenPointInALayerBehindIsRight)

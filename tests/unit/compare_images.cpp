@@ -330,7 +330,7 @@ TEST(ImageMeasures, MaskDecidesWhatCounts)
     EXPECT_LT(values.at("ssim_reflective").value(), 0.7);
 }
 
-// Columns 0..4 do not reflect; the rest does, and from column 12 on it is rough. Wrong is what lies about that border.
+// Columns 0..4 do not reflect; the rest does, and from column 12 on it is rougher. Wrong is what lies about that border. Column 20 is background.
 TEST(CompareImages, PicturesOverAllThatReflectsAndAtTheBorderOfMaterials)
 {
     const glm::ivec2 size_px{24, 10};
@@ -343,25 +343,40 @@ TEST(CompareImages, PicturesOverAllThatReflectsAndAtTheBorderOfMaterials)
     for (int i = 0; i < size_px.x * size_px.y; ++i) {
         const int  x          = i % size_px.x;
         const bool reflecting = x >= 5;
-        truth.cls.push_back(!reflecting ? TruthClass::not_traced : x < 15 ? TruthClass::visible : TruthClass::sky);
-        gbuffer.depth.push_back(x == 0 ? 0.0F : 0.5F);
-        gbuffer.metallic.push_back(reflecting ? 1.0F : 0.0F);
-        gbuffer.roughness.push_back(x < 12 ? 0.05F : 0.9F);
+        const bool background = x == 0 || x == 20;
+        truth.cls.push_back(!reflecting || background ? TruthClass::not_traced
+                            : x < 15                  ? TruthClass::visible
+                                                      : TruthClass::sky);
+        gbuffer.depth.push_back(background ? 0.0F : 0.5F);
+        gbuffer.metallic.push_back(reflecting && !background ? 1.0F : 0.0F);
+        gbuffer.roughness.push_back(x < 12 ? 0.3F : x < 17 ? 0.5F : 0.55F);
         if (x == 11 || x < 5)
             for (size_t c = 0; c < 3; ++c) tested.values[3 * static_cast<size_t>(i) + c] = 1;
     }
     const MeasureValues values = compare_pictures(tested, Reference(reference), truth, gbuffer);
-    EXPECT_NEAR(values.at("picture_rmse").value(), std::sqrt(1.0 / 19), 1e-6);
+    EXPECT_NEAR(values.at("picture_rmse").value(), std::sqrt(1.0 / 18), 1e-6);
     // Within 2 px of a change: columns 5, 6 beside what does not reflect, and 10 to 13.
     EXPECT_NEAR(values.at("picture_border_rmse").value(), std::sqrt(1.0 / 6), 1e-6);
     EXPECT_NEAR(values.at("picture_visible_rmse").value(), std::sqrt(0.1), 1e-6);
     EXPECT_NEAR(values.at("picture_visible_border_rmse").value(), std::sqrt(1.0 / 6), 1e-6);
-    EXPECT_NEAR(values.at("picture_psnr_db").value(), 10 * std::log10(19), 1e-4);
+    EXPECT_NEAR(values.at("picture_psnr_db").value(), 10 * std::log10(18), 1e-4);
     EXPECT_GT(values.at("picture_flip").value(), 0);
     EXPECT_LT(values.at("picture_ssim").value(), 1);
     gbuffer.metallic.assign(gbuffer.metallic.size(), 1);
     gbuffer.roughness.assign(gbuffer.roughness.size(), 0.3F);
     EXPECT_FALSE(compare_pictures(tested, Reference(reference), truth, gbuffer).at("picture_border_rmse"));
+}
+
+// SSIM sees luma alone, which is 0.5 in both.
+TEST(ImageMeasures, SsimIsOfRec709Luma)
+{
+    const float     blue = (0.5F - 0.2126F * 0.9F - 0.7152F * 0.4F) / 0.0722F;
+    const glm::vec3 colour{srgb_to_linear(0.9F), srgb_to_linear(0.4F), srgb_to_linear(blue)};
+    const auto      values =
+        compare_images(uniform({16, 16}, colour), Reference(uniform({16, 16}, glm::vec3(srgb_to_linear(0.5F)))),
+                       half_visible({16, 16}));
+    EXPECT_NEAR(values.at("ssim_visible").value(), 1, 1e-5);
+    EXPECT_GT(values.at("rmse_visible").value(), 0.2);
 }
 
 TEST(ImageMeasures, OfDisplayValues)
