@@ -73,11 +73,6 @@ class Test(Case):
         self.assertIn("no row of interior", self.run_command(PLOT, self.path("out"), "--scene", "interior", "-o", picture, code=1))
         self.assertIn("no results.csv", self.run_command(PLOT, self.folder, "-o", picture, code=1))
 
-    def test_the_kept_growth_is_drawn(self):
-        picture = self.path("growth.png")
-        self.run_command(PLOT, os.path.join(SOURCE, "results", "reference", "lavapipe", "growth"), "-o", picture)
-        self.assertGreater(oiio.ImageBuf(picture).spec().width, 1000)
-
     def test_wrong_usage(self):
         program = os.path.join(os.path.dirname(PROGRAM), "benchmarks")
         self.assertIn("--scene=", self.run_command(program, "--seen=interior", code=2))
