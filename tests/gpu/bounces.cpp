@@ -193,7 +193,7 @@ TEST(Bounces, DoNotComeFromWhatStandsBeforeAHit)
         for (int x = 0; x < 64; ++x) {
             if (y >= 40) image.metallic[at(image, x, y)] = 0; // in front of the panel
             if (std::abs(x - 32) < 12 && y >= 20 && y < 36)
-                set_pixel(image, x, y, 4, {0, 0, 1}, 1);
+                set_pixel(image, x, y, 4, glm::normalize(glm::dvec3(0, -0.36, 1)), 1); // down on the floor
             else
                 behind.depth[at(image, x, y)] = 0;
         }
@@ -205,16 +205,19 @@ TEST(Bounces, DoNotComeFromWhatStandsBeforeAHit)
         const Technique& t = technique("dda");
         return prepare_frame(device(), picture.buffers, t, values_of(t), {layered, passes});
     };
-    const TraceResult traced = count_frame(device(), *prepared(report_passes()));
-    size_t            hidden = 0;
+    const TraceResult     traced = count_frame(device(), *prepared(report_passes()));
+    const ParameterValues no_fades{chosen(ViewerFade::off), chosen(EdgeFade::off)};
+    size_t                hidden = 0;
     for (size_t i = 0; i < traced.status.size(); ++i)
         hidden += traced.status[i] == TraceStatus::hit && traced.hit_layer[i] == 1;
     EXPECT_GT(hidden, 20U);
-    const auto without = shaded(*prepared(bouncing(BounceMode::off, 1)));
+    const auto without = shaded(*prepared(bouncing(BounceMode::off, 1, no_fades)));
     for (const BounceMode mode : {BounceMode::direct, BounceMode::history}) {
-        const auto frame = prepared(bouncing(mode, 2));
+        const auto frame = prepared(bouncing(mode, 2, no_fades));
         EXPECT_FALSE(bounces_of(*frame).runs) << bounces_of(*frame).reason;
-        EXPECT_EQ(shaded(*prepared(bouncing(mode, 2, {{"skip_unneeded_passes", 0}}))), without);
+        ParameterValues passes            = bouncing(mode, 2, no_fades);
+        passes.at("skip_unneeded_passes") = 0;
+        EXPECT_EQ(shaded(*prepared(passes)), without);
     }
 }
 

@@ -65,6 +65,7 @@ Picture floor_before_wall(float roughness, const Colour& colour, glm::ivec2 size
     GBufferImage image = floor_and_wall(bench_view(size_px), 4);
     std::ranges::fill(image.roughness, roughness);
     for (size_t i = 0; i < image.radiance.size(); ++i) image.radiance[i] = colour(static_cast<int>(i) % size_px.x);
+    std::ranges::fill(image.highlight, glm::vec3(0.5F));
     return make_picture(image);
 }
 
@@ -97,13 +98,18 @@ TEST(Cones, OfOneColourSeeThatColour)
     for (const glm::ivec2& size_px : {glm::ivec2(128, 128), glm::ivec2(75, 131)}) {
         const Picture picture = floor_before_wall(0.6F, one_colour, size_px);
         for (const double steps : {1, 7}) {
-            int seen = 0;
-            for (const glm::vec4& pixel : reflection_of(picture, {chosen(Gloss::cone), {"cone_steps", steps}})) {
-                if (pixel.a <= 0) continue;
-                ++seen;
-                for (int c = 0; c < 3; ++c) ASSERT_NEAR(pixel[c], 0.25F * static_cast<float>(c + 1), 1e-3F);
+            for (const auto& [shading, highlight] : {std::pair(HitShading::diffuse, 0.0F), {HitShading::lit, 0.5F}}) {
+                int        seen = 0;
+                const auto found =
+                    reflection_of(picture, {chosen(Gloss::cone), chosen(shading), {"cone_steps", steps}});
+                for (const glm::vec4& pixel : found) {
+                    if (pixel.a <= 0) continue;
+                    ++seen;
+                    for (int c = 0; c < 3; ++c)
+                        ASSERT_NEAR(pixel[c], 0.25F * static_cast<float>(c + 1) + highlight, 1e-3F);
+                }
+                EXPECT_GT(seen, 1000);
             }
-            EXPECT_GT(seen, 1000);
         }
     }
 }
@@ -116,7 +122,8 @@ TEST(Cones, OverTwoColoursMixThemByTheirShareOfTheCone)
     constexpr double scale = 0.5, roughness = 0.5;
     const Picture    picture = floor_before_wall(
            static_cast<float>(roughness), [](int x) { return x < border ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0); });
-    const Reflection found = reflection_of(picture, {chosen(Gloss::cone), {"cone_steps", 1}, {"cone_scale", scale}});
+    const Reflection found = reflection_of(
+        picture, {chosen(Gloss::cone), chosen(HitShading::diffuse), {"cone_steps", 1}, {"cone_scale", scale}});
     // The mirror ray of a floor pixel stays in its column: from slope s below the horizon to 2 / 4 m - s.
     const double height = 2 * (row + 0.5 - 64 - 64 / 4.0);
     const double alpha2 = std::pow(roughness, 4);

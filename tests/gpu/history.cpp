@@ -301,8 +301,9 @@ TEST(History, IsInterpolatedOverWhatReflected)
     const FrameHistoryPtr history = make_history(device(), size_px);
     const ParameterValues passes  = with(plain, {strategy("surface"), {"history_weight", 0.5}, {"reject_hit", 0}});
     keep_history(device(), *run_picture(picture_at(scene, "truck", {4, 8}, size_px), passes, history), 4);
-    change_texels<glm::vec4>(history->reflection,
-                             [](glm::vec4& r) { r = r.a < 0 ? glm::vec4(-1000) : glm::vec4(50, 50, 50, 1); });
+    change_texels<glm::vec4>(history->reflection, [](glm::vec4& r) {
+        r = r.a < 0 ? glm::vec4(-1000, -1000, -1000, -1) : glm::vec4(50, 50, 50, 1);
+    });
     change_texels<glm::vec4>(history->facts, [](glm::vec4& f) { f.x = std::min(f.x, 1.0F); });
     const SequencePicture picture = picture_at(scene, "truck", {5, 8}, size_px);
     const Reflection      own     = (run_picture(picture, passes, nullptr), read_colours(picture.buffers->reflection));

@@ -338,7 +338,7 @@ TEST(Rows, ASummaryIsOfTheFramesThatAreOk)
             {"outcome", outcome}, {"trace_ms_median", ms}, {"picture_rmse", rmse}, {"converged_rmse", converged}};
     };
     const Row     frames[] = {frame("ok", "1", "0.1", "0.5"), frame("failed", "90", "0.9", "0.9"),
-                              frame("ok", "2", "0.3", "0.25"), frame("ok", "9", "", "0.125")};
+                              frame("ok", "2", "0.3", "0.25"), frame("ok", "9", "0.8", "0.125")};
     SequenceState state;
     state.flips    = {3, 12};
     state.moments  = {{1, 3}, {1, 5}, {2, 2}}; // 0 and 1, whose mean is 0.5; 1 and 2
@@ -348,7 +348,7 @@ TEST(Rows, ASummaryIsOfTheFramesThatAreOk)
     EXPECT_FALSE(row.contains("run_id") || row.contains("run_number") || row.contains("frame"));
     EXPECT_EQ(row.at("frames"), "3");
     EXPECT_EQ(row.at("trace_ms_median"), "2"); // the median; the mean is 4
-    EXPECT_EQ(row.at("picture_rmse"), "0.2");
+    EXPECT_EQ(row.at("picture_rmse"), "0.4");  // the mean; the median is 0.3
     EXPECT_EQ(row.at("history_share"), "");
     EXPECT_EQ(row.at("converged_rmse_last"), "0.125");
     EXPECT_EQ(row.at("flip_rate"), "0.25");

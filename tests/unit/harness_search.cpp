@@ -140,8 +140,9 @@ TEST(Search, ReachesATargetThatIsMetExactly)
         // What another technique does has no part in it.
         runs.push_back(run_with(9, 3, 0));
         runs.back().technique = "other";
-        runs.back().id        = run_id(runs.back());
-        rows[runs.back().id]  = {{measure, "0"}};
+        runs.back().values.clear();
+        runs.back().id       = run_id(runs.back());
+        rows[runs.back().id] = {{measure, "0"}};
         std::vector<double> strides_px;
         for (const ssrlab::Run& run : next_probes(experiment, {&march, 1}, runs, rows))
             strides_px.push_back(run.values.at("stride_px"));
