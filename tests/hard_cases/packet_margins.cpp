@@ -52,13 +52,13 @@ TEST(PacketMargins, HoldRaysThatEndAtABorder)
     EXPECT_GT(same_answers({54, 63}, 0.025F, rays), 0);
 }
 
-// The rays end nearer than the object by four last places of its depth. A ray's depth is a sum with that of its origin, which is known less well: the
-// walk meets the object.
+// The rays end nearer than the object by a half of the last place of their origin's depth, with which theirs is a sum: the walk meets the object. That is
+// as far apart as two fronts of the depth pyramid's cells at that depth.
 TEST(PacketMargins, HoldRaysThatEndAtAFront)
 {
-    const float           end = 838861.0F / (1 << 24), front = end - 4.0F / (1 << 28); // near 0.05
+    const float           place = 1.0F / (1 << 24), end = 209715 * place, front = end - place / 2; // near 0.0125
     std::vector<RayInput> rays;
-    for (float origin = 0.5F; origin < 1; origin += 0.03125F) {
+    for (float origin = 0.53125F; origin < 1; origin += 0.03125F) {
         EXPECT_EQ(origin + (end - origin), end);
         rays.push_back(ray_of({4.5F, 20.5F, origin}, {50, 0, end - origin}));
     }
