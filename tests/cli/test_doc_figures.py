@@ -9,7 +9,7 @@ import subprocess
 from support import SOURCE, Case, load_script, main
 
 REFERENCE = os.path.join("results", "reference")
-SCRIPTS = ("doc_figures", "default_settings", "ssrlab_results.py")
+SCRIPTS = ("doc_figures", "default_settings", "trust", "ssrlab_results.py")
 READ = ("results.csv", "environment.json", "sequence_summary.csv", "table.txt", "two_scenes.txt", "hard_cases.md", "hard_cases.txt", "gpu_tests.txt",
         "thousand.json")
 
