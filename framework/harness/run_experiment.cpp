@@ -179,8 +179,8 @@ int sweep(const RunOptions& options, SweepState& state)
         progress.say("warning: " + trouble);
     for (const Technique& technique : techniques)
         if (std::ranges::count(technique.ignores, "unknown") > 0)
-            progress.say(fmt::format("warning: {}: expected 'ignores', what its own hit test does not ask of behind, "
-                                     "surface and thickness ([]: nothing)",
+            progress.say(fmt::format("warning: {}: expected 'ignores': which of behind, surface and thickness its own "
+                                     "hit test leaves out ([]: none)",
                                      short_path(technique.folder / "technique.toml")));
     size_t reported = 0;
     for (std::span<const Run> rest(runs); !rest.empty() && stop_requested() == 0;) {
