@@ -167,6 +167,18 @@ TEST(PlaneQuadtreeOfTheLastPlaces, HoldsEverySlab)
     }
 }
 
+// Found by a search: the heights of nodes round below those of their slabs.
+TEST(PlaneQuadtreeOfTheLastPlaces, HoldsSlabsThatRoundAway)
+{
+    constexpr int places[] = {5, 5, 3, 1, 0, -1, -2, -5};
+    GBufferImage  image    = empty_gbuffer(bench_view({64, 64}));
+    for (size_t i = 0; i < image.depth.size(); ++i) {
+        image.depth[i]     = 0.5F + static_cast<float>(places[i % 8]) / (1 << 24);
+        image.normal_vs[i] = {0, 0, 1};
+    }
+    expect_every_slab_held(make_picture(image), {.thickness_m = 1e-9});
+}
+
 TEST(PlaneQuadtreeOfNothing, IsEmpty)
 {
     GBufferImage image  = empty_gbuffer(bench_view({64, 48}));
