@@ -3,6 +3,7 @@
 #include "app/stage.h"
 #include "compare/image_io.h"
 #include "compare/pictures.h"
+#include "compare/validate_result.h"
 #include "core/error.h"
 #include "harness/quality.h"
 #include "truth/glossy_truth.h"
@@ -190,7 +191,8 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
     if (options.samples > 1 && stage.scene.frame)
         throw_spec_error("--samples: expected 1 for a frame of another renderer, which cannot be rendered anew; got {}",
                          options.samples);
-    TrueReflections truth(stage, options.samples);
+    TrueReflections            truth(stage, options.samples);
+    std::optional<std::string> impossible;
     // Each sample has frames of its own before it.
     std::vector<FrameHistoryPtr> histories(static_cast<size_t>(options.samples));
     for (FrameHistoryPtr& history : histories)
@@ -205,6 +207,8 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
             const auto frame = prepare_frame(stage.gpu, make_frame_buffers(stage.gpu, stage.gbuffer), technique,
                                              choice.values, choice.settings, histories[static_cast<size_t>(sample)]);
             if (sample == 0) warn_without_reflections(common, *frame);
+            if (i == 0 && sample == 0 && !options.truth)
+                impossible = find_impossible(count_frame(stage.gpu, *frame), declared_steps(technique, choice.values));
             if (!options.show.empty())
                 rendered.pictures.front().image = false_colours(stage, *frame, choice.settings.trace, options.show);
             else
@@ -221,6 +225,7 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
         std::puts(fmt::format("{}: {}x{}{} on {}", file, stage.view.size_px.x, stage.view.size_px.y, timed,
                               stage.gpu.info.name)
                       .c_str());
+        if (impossible) throw InvalidResult(*impossible);
     }
     return report_messages(stage);
 }

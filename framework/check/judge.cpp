@@ -233,10 +233,11 @@ Judgement Judge::judge(const RayInput& ray, const RayOutcome& outcome, const Cla
     return result;
 }
 
-std::string Judge::broken_invariant(const RayInput& ray, const RayOutcome& outcome) const
+std::string Judge::broken_invariant(const RayInput& ray, const RayOutcome& outcome, double most_steps) const
 {
     const Answer answer{outcome.status, outcome.hit_pixel, outcome.t, outcome.steps};
-    if (const std::string what = impossible(answer, setup_.gbuffer.view.size_px, infinity); !what.empty()) return what;
+    if (const std::string what = impossible(answer, setup_.gbuffer.view.size_px, most_steps); !what.empty())
+        return what;
     if (!std::isfinite(outcome.t)) return fmt::format("t is {}", outcome.t);
     const Behind behind   = setup_.settings.behind;
     const bool   possible = outcome.status == TraceStatus::hit || outcome.status == ray.end_status ||

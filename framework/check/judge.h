@@ -69,7 +69,8 @@ public:
     Judgement  judge(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
     /// Breaks of what holds for every technique: finite numbers, hits on screen, inside the segment and outside the start pixel, a status that
     /// the ray can have. Empty: none.
-    std::string broken_invariant(const RayInput& ray, const RayOutcome& outcome) const;
+    std::string broken_invariant(const RayInput& ray, const RayOutcome& outcome,
+                                 double most_steps = std::numeric_limits<double>::infinity()) const;
 
 private:
     /// From which sides the ray may meet what it visits, rounding considered.

@@ -65,6 +65,7 @@ VisitReport describe(const Setup& setup, const RayInput& ray, const RayVisit& vi
     }
     report.ray_in_m  = metres(view, ray.origin_px_depth.z + report.t_in * ray.delta_px_depth.z);
     report.ray_out_m = metres(view, ray.origin_px_depth.z + report.t_out * ray.delta_px_depth.z);
+    if (!on_image(setup.gbuffer, visit.pixel)) return report; // a technique may look anywhere
     if (visit.level > 0) {
         const glm::dvec2 held = held_by_cell(setup.gbuffer, first, side);
         report.front_m        = held.x;
@@ -118,10 +119,12 @@ std::string ending_of(const Setup& setup, const RayInput& ray, const RayOutcome&
     }
 }
 
-std::string verdict_of(const Judge& judge, const RayInput& ray, const RayOutcome& outcome, const Technique& technique)
+std::string verdict_of(const Judge& judge, const RayInput& ray, const RayOutcome& outcome, const RayQuestion& question)
 {
-    if (std::string broken = judge.broken_invariant(ray, outcome); !broken.empty()) return broken;
-    const Judgement judgement = judge.judge(ray, outcome, claim_of(technique));
+    const double most_steps = declared_steps(*question.technique, question.values);
+    if (const std::string broken = judge.broken_invariant(ray, outcome, most_steps); !broken.empty())
+        return "impossible: " + broken;
+    const Judgement judgement = judge.judge(ray, outcome, claim_of(*question.technique));
     switch (judgement.verdict) {
     case Verdict::right: return "the hit contract's answer";
     case Verdict::sliver: return "a near tie: rounding decides between this and the hit contract's answer";
@@ -180,8 +183,8 @@ RayReport report_ray(Gpu& gpu, const Setup& setup, const RayInput& ray, std::spa
         const RecordedRay recorded =
             record_ray(gpu, gbuffer, *question.technique, question.values, setup.settings, ray);
         report.techniques.push_back({question.technique->id, recorded.outcome, ending_of(setup, ray, recorded.outcome),
-                                     verdict_of(judge, ray, recorded.outcome, *question.technique),
-                                     describe(setup, ray, recorded), recorded.visit_count});
+                                     verdict_of(judge, ray, recorded.outcome, question), describe(setup, ray, recorded),
+                                     recorded.visit_count});
     }
     return report;
 }
