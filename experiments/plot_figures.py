@@ -4,6 +4,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+from matplotlib.colors import to_rgba  # noqa: E402
 from matplotlib.ticker import FuncFormatter, LogLocator  # noqa: E402
 
 from plot_data import errors, is_number, known  # noqa: E402
@@ -215,8 +216,10 @@ def bars(axis, rows, results, value, spread, ylabel):
         at = np.arange(len(scenes)) + (i - (len(series) - 1) / 2) * width
         style = results.styles[name]
         unknown = ~known(part, spread) if spread else part[value].isna()
-        axis.bar(at, part[value], width * 0.92, label=name, color=["none" if hollow else style["color"] for hollow in unknown],
-                 edgecolor=style["color"], alpha=style["alpha"], yerr=errors(part, spread) if spread else None, error_kw={"lw": 1, "capsize": 2, "ecolor": "#333333"})
+        # In the colour: bar's own alpha would fill what has none.
+        colour = to_rgba(style["color"], style["alpha"])
+        axis.bar(at, part[value], width * 0.92, label=name, color=["none" if hollow else colour for hollow in unknown], edgecolor=colour,
+                 yerr=errors(part, spread) if spread else None, error_kw={"lw": 1, "capsize": 2, "ecolor": "#333333"})
         tops = part[f"{spread}_ci_high"].fillna(part[value]) if spread else part[value]
         for x, height, top in zip(at, part[value], tops):
             if np.isfinite(height):
