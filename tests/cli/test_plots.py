@@ -1,0 +1,307 @@
+"""What figures and tables show, read back from what was drawn. Results are made up, so that every answer can be worked out by hand."""
+import os
+import sys
+
+from support import SOURCE, Case, main
+
+sys.path.insert(0, os.path.join(SOURCE, "experiments"))
+import matplotlib  # noqa: E402
+
+matplotlib.use("Agg")
+import numpy as np  # noqa: E402
+import plot_accuracy  # noqa: E402
+import plot_benchmarks  # noqa: E402
+import plot_effects  # noqa: E402
+import plot_figures  # noqa: E402
+import plot_sequences  # noqa: E402
+import plot_surfaces  # noqa: E402
+from made_results import made_results, write_table  # noqa: E402
+from matplotlib import pyplot as plt  # noqa: E402
+
+
+def line_of(axis, label):
+    """(x, y) of the one line whose label begins so."""
+    line, = (one for one in axis.get_lines() if str(one.get_label()).startswith(label))
+    return list(line.get_xdata()), list(line.get_ydata())
+
+
+def segments_of(axis):
+    """Ends of error bars along y, in the order in which they were drawn."""
+    return [bar[:, 1].tolist() for container in axis.containers for lines in container[2] for bar in lines.get_segments() if len(bar)]
+
+
+class Test(Case):
+    def near(self, found, expected):
+        np.testing.assert_allclose(np.asarray(found, float), np.asarray(expected, float), rtol=1e-6, atol=1e-12)
+
+    def drawn(self, make, results):
+        """({name: figure}, tables)"""
+        tables = {}
+        figures = dict(make(results, tables) or ())
+        self.addCleanup(plt.close, "all")
+        return figures, tables
+
+    def test_the_law_of_steps(self):
+        """2 ms and 0.01 ms a step from 50 steps on. 0.15 m is nearer to 0.1 m than 0.06 m by its ratio; of looks the most count."""
+        rows = []
+        for thickness, looks, more_ms in ((0.15, 2, 0), (0.06, 2, 3), (0.15, 1, 4)):
+            for steps in (25, 50, 100, 500, 1000):
+                ms = 2 + 0.01 * steps + more_ms if steps > 25 else 9
+                rows.append(dict(technique="linear", thickness_m=thickness, looks=looks, steps=steps, trace_ms_median=ms, frame_ms_median=ms,
+                                 frame_ms_ci_low=ms - 0.5, frame_ms_ci_high=ms + 0.25, fps=1000 / ms, inverse_fps_s=ms / 1000))
+        rows.append(dict(technique="dda", thickness_m=0.15, frame_ms_median=50, frame_ms_ci_low=49, frame_ms_ci_high=51, fps=20, inverse_fps_s=0.05))
+        rows = [dict(row, scene="animal_on_metal") for row in rows]
+        figures, tables = self.drawn(plot_figures.law_of_steps, made_results(self, rows, ["thickness_m", "looks", "steps"]))
+        (name, figure), = figures.items()
+        self.assertEqual(name, "s0_fig11_fig12_fps_steps_animal_on_metal_default_80x60")
+        self.assertEqual(tables, {"Law of steps: frame time = slope · steps + intercept, from 50 steps up": [
+            {"frame": "animal_on_metal, view default, 80×60", "series": "linear", "slope, ms per step": "0.01", "intercept, ms": "2", "R²": "1.0000"}]})
+        left, right = figure.axes
+        steps, ms = [25, 50, 100, 500, 1000], [9, 2.5, 3, 7, 12]
+        self.near(line_of(left, "linear"), [steps, [1000 / one for one in ms]])
+        self.near(line_of(left, "dda")[1], [20, 20])
+        self.near(line_of(right, "dda: 50 ms")[1], [50, 50])
+        self.near(line_of(right, "linear: 0.01 ms/step + 2 ms, R² 1.0000"), [[50, 1000], [2.5, 12]])
+        self.near(segments_of(right), [[one - 0.5, one + 0.25] for one in ms])
+        self.near(right.containers[0][0].get_ydata(), ms)
+        # The report's own frame rates, scaled so that its 31 at 500 steps are the 1000 / 7 here.
+        steps, fps = line_of(left, "OpenGL report")
+        self.assertEqual((steps[0], steps[-1]), (25, 2500))
+        self.near([fps[0], fps[-1]], [120 * 1000 / 7 / 31, 9 * 1000 / 7 / 31])
+        self.near(line_of(right, "OpenGL report")[1][0], 31 * 7 / 120)
+        self.assertIn("linear: 0.01 ms/step + 2 ms", figure.finding)
+
+    def test_a_fit_says_how_well_it_fits(self):
+        """Through (0, 0), (1, 3), (2, 3): slope 1.5, intercept 0.5; of 6 squares around the mean 2, 1.5 are left."""
+        self.near(plot_figures.fit_line(np.array([0.0, 1, 2]), np.array([0.0, 3, 3])), [1.5, 0.5, 0.75])
+
+    def thickness(self):
+        """Half of the rays have a visible truth: misses are 25, 10, 5, 2.5 % of the rays at 40 steps, and false hits 1, 2, 10, 20 %."""
+        rows = []
+        for steps, worse in ((10, 0.2), (20, 0.1), (40, 0)):
+            for thickness, recall, false in ((0.05, 0.5, 0.01), (0.1, 0.8, 0.02), (0.2, 0.9, 0.1), (0.4, 0.95, 0.2)):
+                rows.append(dict(technique="linear", thickness_m=thickness, steps=steps, recall_1px=recall - worse, false_hits=false + worse,
+                                 truth_visible=0.5, screen_missed=0, trace_ms_median=steps * thickness))
+        return made_results(self, rows, ["thickness_m", "steps"])
+
+    def test_the_best_thickness(self):
+        figures, tables = self.drawn(plot_figures.thickness_curves, self.thickness())
+        (_, figure), = figures.items()
+        self.assertEqual(tables, {plot_figures.BEST_THICKNESS: [
+            {"frame": "s, view default, 80×60", "series": "linear, 40 steps", "thickness, m": "0.1", "missed, % of rays": "10.00", "false, % of rays": "2.00"}]})
+        left, right = figure.axes
+        self.near(line_of(left, "linear, 40 steps"), [[0.05, 0.1, 0.2, 0.4], [26, 12, 15, 22.5]])
+        self.near(line_of(right, "linear, 40 steps"), [[1, 2, 10, 20], [25, 10, 5, 2.5]])
+        circled = left.get_lines()[1]
+        self.near([circled.get_xdata(), circled.get_ydata()], [[0.1], [12]])
+        self.assertEqual([one.get_text() for one in right.texts], ["0.05", "0.1", "0.2", "0.4"])
+        self.assertIn("Fewest at 0.1 m (linear, 40 steps)", figure.finding)
+
+    def test_maps_of_thickness_and_steps(self):
+        figures, _ = self.drawn(plot_figures.thickness_maps, self.thickness())
+        (_, figure), = figures.items()
+        recall, false, time = (axis.images[0] for axis in figure.axes)
+        worse, found = np.array([0.2, 0.1, 0]), np.array([[0.5], [0.8], [0.9], [0.95]])
+        self.near(recall.get_array(), 100 * (found - worse))
+        self.near(false.get_array(), 100 * (np.array([[0.01], [0.02], [0.1], [0.2]]) + worse))
+        self.near(time.get_array(), np.outer([0.05, 0.1, 0.2, 0.4], [10, 20, 40]))
+        self.near([recall.get_clim(), false.get_clim(), time.get_clim()], [[0, 100], [0, 40], [0, 16]])
+        self.assertEqual([figure.axes[0].get_xticklabels()[0].get_text(), figure.axes[0].get_yticklabels()[0].get_text()], ["10", "0.05"])
+        self.assertEqual([axis.texts[1].get_text() for axis in figure.axes], ["40", "11.0", "1"])
+
+    def test_bars_of_techniques(self):
+        rows = [dict(scene=scene, technique=technique, trace_ms_median=ms, trace_ms_ci_low=ms - 0.5, trace_ms_ci_high=ms + 1, structures_ms_median=own,
+                     fetches_mean=10 * ms)
+                for scene, technique, ms, own in (("a", "dda", 4, 0), ("a", "hiz", 1, 2), ("b", "dda", 2, 0), ("b", "hiz", 3, 0.5))]
+        del rows[3]["trace_ms_ci_low"]
+        figures, _ = self.drawn(plot_figures.comparison_bars, made_results(self, rows))
+        figure = figures["compare_default_80x60"]
+        top, bottom = figure.axes
+        (dda, hiz), (_, fetches) = ([one for one in axis.containers if one.get_label() in ("dda", "hiz")] for axis in (top, bottom))
+        self.near([bar.get_height() for bar in dda], [4, 2])
+        self.near([bar.get_height() for bar in hiz], [3, 3.5])
+        self.near([bar.get_x() + bar.get_width() / 2 for bar in dda] + [bar.get_x() + bar.get_width() / 2 for bar in hiz], [-0.2, 0.8, 0.2, 1.2])
+        self.near([bar.get_height() for bar in fetches], [10, 30])
+        self.assertEqual([bar.get_facecolor()[3] > 0 for bar in hiz], [True, False], "hollow where the interval is not known")
+        self.near(dda.errorbar[2][0].get_segments()[0][:, 1], [3.5, 5])
+        self.near(hiz.errorbar[2][0].get_segments()[0][:, 1], [2.5, 4])
+        self.assertIn("Fastest: hiz on a (3 ms), dda on b (2 ms)", figure.finding)
+
+    def growing(self):
+        """Cost as the square root of the pixels, fetches as their fourth root; half of the pixels are rays."""
+        rows = []
+        for side in (100, 200, 400):
+            rows.append(dict(technique="hiz", width=side, height=side, trace_ms_median=side / 100 - 0.25, structures_ms_median=0.25,
+                             fetches_mean=4 * side ** 0.5, rays=side * side // 2))
+        return made_results(self, rows)
+
+    def test_growth_with_the_picture(self):
+        results = self.growing()
+        figures, tables = self.drawn(plot_figures.growth, results)
+        (_, figure), = figures.items()
+        rows, = tables.values()
+        self.assertEqual([(row["of"], row["exponent"]) for row in rows], [("trace + structures, ms", "0.500"), ("fetches per ray", "0.250")])
+        self.near(line_of(figure.axes[0], "hiz: pixels^0.50"), [[0.01, 0.04, 0.16], [1, 2, 4]])
+        self.assertIn("hiz: pixels^0.50", figure.finding)
+        plot_benchmarks.draw(results, results.rows, "growth", self.path("growth.png"))
+        left, right = plt.gcf().axes
+        self.near(line_of(left, "hiz")[0], [1e4, 4e4, 16e4])
+        self.near(line_of(left, "hiz")[1], [0.75e6 / 5e3, 1.75e6 / 20e3, 3.75e6 / 80e3])
+        self.near(line_of(right, "hiz  +0.25")[1], [40, 40 * 2 ** 0.5, 80])
+
+    def test_what_passes_cost_and_remove(self):
+        common = dict(technique="dda", gloss="stochastic", filter_3x3=True, frame_ms_ci_low=8.5)
+        rows = [dict(common, run_number=0, frame_ms_median=10, frame_ms_ci_high=11, picture_rmse=0.2, picture_visible_border_rmse=0.3),
+                dict(common, run_number=1, gloss="cone", frame_ms_median=12.5, frame_ms_ci_high=13.5, picture_rmse=0.15, picture_visible_border_rmse=0.1),
+                dict(common, run_number=2, filter_3x3=False, frame_ms_median=9, picture_rmse=0.25, picture_visible_border_rmse=0.4)]
+        results = made_results(self, rows[::-1], ["gloss", "filter_3x3"], pass_parameters="gloss filter_3x3")
+        figures, tables = self.drawn(plot_effects.trades, results)
+        (name, figure), = figures.items()
+        lines, = tables.values()
+        self.assertEqual([tuple(line.values())[1:] for line in lines], [("gloss cone", "2.50", "+0.0500", "+0.2000"), ("no filter_3x3", "-1.00", "-0.0500", "-0.1000")])
+        self.assertIn("gloss cone removes most picture_rmse: +0.0500 for 2.50 ms", figure.finding)
+        for axis, removed in zip(figure.axes, (0.05, 0.2)):
+            self.near(axis.containers[0][0].get_xydata(), [[2.5, removed]])
+            self.near(axis.containers[0][2][0].get_segments()[0][:, 0], [12.5 - 10 - 4, 3.5])
+        self.near(figure.axes[0].get_lines()[-2].get_xydata(), [[-1, -0.05]])
+        self.assertIn("0.2000 in the first run", figure.axes[0].get_title(loc="left"))
+
+    def test_names_beside_points_keep_their_order_and_their_room(self):
+        places = plot_effects.spread(np.array([0.0, 1, 2]), np.array([0.5, 0.5, 0.9]), 0.2, 0, 1)
+        self.near(places, [0.7, 0.5, 0.9])
+        self.near(plot_effects.spread(np.array([0.0, 1]), np.array([0.95, 1.0]), 0.2, 0, 1), [0.8, 1])
+
+    def test_curves_of_accuracy(self):
+        """Of 100 rays half a one is the least error that can be drawn."""
+        rows = [dict(technique="linear", steps=steps, trace_ms_median=ms, trace_ms_ci_low=ms - 0.5, trace_ms_ci_high=ms + 1, structures_ms_median=1, rays=100,
+                     fetches_mean=10 * ms, recall_1px=recall, precision_1px=0.9, f1_1px=0.8, screen_displacement_p95_px=4 - ms / 4)
+                for steps, ms, recall in ((10, 1, 0.5), (20, 2, 0.9), (40, 4, 0.8), (80, 8, 0.99), (160, 16, 1))]
+        figures, _ = self.drawn(plot_accuracy.accuracy_curves, made_results(self, rows, ["steps"]))
+        self.assertEqual([name.removesuffix("_s_default_80x60") for name in figures],
+                         ["accuracy_recall_1px", "accuracy_screen_displacement_p95_px", "accuracy_precision_f1"])
+        time, fetches = figures["accuracy_recall_1px_s_default_80x60"].axes
+        self.near(line_of(time, "linear"), [[2, 3, 5, 9, 17], [0.5, 0.1, 0.2, 0.01, 0.005]])
+        self.near(line_of(time, "Pareto front"), [[2, 3, 9, 17], [0.5, 0.1, 0.01, 0.005]])
+        self.near([bar[:, 0] for bar in time.containers[0][2][0].get_segments()], [[1.5, 3], [2.5, 4], [4.5, 6], [8.5, 10], [16.5, 18]])
+        self.near(line_of(fetches, "linear"), [[10, 20, 40, 80, 160], [0.5, 0.1, 0.2, 0.01, 0.005]])
+        self.assertIn("dotted", figures["accuracy_recall_1px_s_default_80x60"]._suptitle.get_text())
+        far, _ = figures["accuracy_screen_displacement_p95_px_s_default_80x60"].axes
+        self.near(line_of(far, "linear")[1], [3.75, 3.5, 3, 2, 1e-3])
+        precision, f1 = figures["accuracy_precision_f1_s_default_80x60"].axes
+        self.near(line_of(precision, "linear")[1] + line_of(f1, "linear")[1], [0.1] * 5 + [0.2] * 5)
+        self.assertNotIn("dotted", figures["accuracy_precision_f1_s_default_80x60"]._suptitle.get_text())
+
+    def surfaces(self, thicknesses=(0.1,), layers=(1,)):
+        """A box finds more the thicker it is, and more that is false. F1 is best at 0.2 m."""
+        rows = []
+        for scene, better in (("a_hall", 0), ("b_hall", 0.1)):
+            for surface, behind, most, solid_ms in (("plane", "stop", 0.8, 0.5), ("box", "stop", 0.6, 0), ("box", "hit", 0.5, 0)):
+                for thickness in thicknesses:
+                    for layer in layers:
+                        f1 = most + better + 0.05 * (layer - 1) - abs(thickness - 0.2)
+                        rows.append(dict(scene=scene, technique="hiz", surface=surface, behind=behind, thickness_m=thickness, layers=layer,
+                                         recall_1px=most + thickness / 10, precision_1px=0.9 - thickness, f1_1px=f1, hidden_too_f1_1px=f1 - 0.1,
+                                         hidden_too_recall_1px=0.5, trace_ms_median=2 + better, structures_ms_median=0.75,
+                                         passes=f"layers={layer - 1} solid_backs={solid_ms} trace=2 other_layers=9"))
+        return made_results(self, rows, ["surface", "behind", "thickness_m", "layers"])
+
+    def test_precision_against_recall(self):
+        results = self.surfaces(thicknesses=(0.4, 0.1, 0.2))
+        figures, _ = self.drawn(plot_surfaces.precision_against_recall, results)
+        figure = figures["surfaces_precision_recall_a_hall_default_80x60"]
+        axis, = figure.axes
+        self.near(line_of(axis, "box, stop"), [[61, 62, 64], [80, 70, 50]])
+        self.near(line_of(axis, "plane, stop"), [[81], [80]])
+        self.assertEqual([text.get_text() for text in axis.get_legend().get_texts()], ["box, hit", "box, stop", "plane, stop"])
+        self.assertIn("Best F1: plane, stop, 80.0 %", figure.finding)
+        best = plot_surfaces.ladder(results)
+        self.assertEqual(list(zip(best.scene, best.surface, best.behind, best.thickness_m)), [
+            (scene, *model, 0.2) for scene in ("a_hall", "b_hall") for model in (("plane", "stop"), ("box", "stop"), ("box", "hit"))])
+        self.near(best.solid_backs_ms, [0.5, 0, 0] * 2)
+
+    def test_what_surface_models_cost(self):
+        figures, _ = self.drawn(plot_surfaces.f1_against_time, self.surfaces())
+        axis, = figures["surfaces_f1_time"].axes
+        self.near(line_of(axis, "plane, stop"), [[3.25, 3.35], [70, 80]])
+        self.near(line_of(axis, "box, hit"), [[2.75, 2.85], [40, 50]])
+        figures, _ = self.drawn(plot_surfaces.ladder_of_layers, self.surfaces(thicknesses=(0.2,), layers=(2, 1)))
+        found, cost = figures["surfaces_ladder"].axes
+        self.assertEqual([label.get_text() for label in cost.get_xticklabels()],
+                         ["box, hit", "box, stop", "box, hit,\n2 layers", "box, stop,\n2 layers", "plane, stop", "plane, stop,\n2 layers"])
+        self.near(line_of(found, "a_hall")[1], [40, 50, 45, 55, 70, 75])
+        self.near(line_of(found, "b_hall")[1], [50, 60, 55, 65, 80, 85])
+        parts = {part.get_label(): ([bar.get_height() for bar in part], [bar.get_y() for bar in part]) for part in cost.containers}
+        self.near(parts["trace"], [[2.05] * 6, [0] * 6])
+        self.near(parts["structures"], [[0.75] * 6, [2.05] * 6])
+        self.near(parts["backs of solids"], [[0, 0, 0, 0, 0.5, 0.5], [2.8] * 6])
+        self.near(parts["layers"], [[0, 0, 1, 1, 0, 1], [2.8, 2.8, 2.8, 2.8, 3.3, 3.3]])
+
+    def test_f1_against_size(self):
+        rows = [dict(scene=scene, technique="hiz", surface=surface, behind="stop", thickness_m=0.1, width=2 * height, height=height,
+                     recall_1px=0.5, precision_1px=0.5, f1_1px=height / 1000 + more)
+                for scene in ("a", "b") for surface, more in (("box", 0), ("plane", 0.25)) for height in (400, 100, 200)]
+        figures, _ = self.drawn(plot_surfaces.f1_against_size, made_results(self, rows, ["surface", "behind", "thickness_m"]))
+        for axis in figures["surfaces_f1_size"].axes:
+            self.near(line_of(axis, "box, stop"), [[100, 200, 400], [10, 20, 40]])
+            self.near(line_of(axis, "plane, stop"), [[100, 200, 400], [35, 45, 65]])
+
+    def sequence(self, summary, rows=({"technique": "dda"},), inputs=()):
+        results = made_results(self, rows, inputs)
+        write_table(self.path("out/sequence_summary.csv"), summary)
+        return results
+
+    def test_flips_under_jitter(self):
+        results = self.sequence([dict(scene="s", technique="linear", steps=steps, flip_rate=rate) for steps, rate in ((64, 0.01), (8, 0.2), (16, 0.1))] +
+                                [dict(scene="s", technique="dda", flip_rate=0.005)])
+        figures, _ = self.drawn(plot_sequences.flips_under_jitter, results)
+        axis, = figures["jitter_flips"].axes
+        self.near(line_of(axis, "linear"), [[8, 16, 64], [20, 10, 1]])
+        self.near(line_of(axis, "dda")[1], [0.5, 0.5])
+
+    def test_errors_of_motion_and_reprojection(self):
+        views = [("pan", 0.5, 2, 0.25), ("truck", 1, 4, 0.1)]
+        results = self.sequence([dict(scene="s", view=view, surface_motion_error_median_px=median, surface_motion_error_p95_px=p95, disocclusion_share=share)
+                                 for view, median, p95, share in views] + [dict(scene="s", view="still")])
+        figures, _ = self.drawn(plot_sequences.motion_errors, results)
+        error, unseen = figures["motion_errors"].axes
+        bars = {one.get_label(): [bar.get_height() for bar in one] for one in error.containers}
+        self.near([bars["median"], bars["95th percentile"]], [[0.5, 1], [2, 4]])
+        self.near([bar.get_height() for bar in unseen.containers[0]], [25, 10])
+        self.assertEqual([label.get_text() for label in error.get_xticklabels()], ["pan", "truck"])
+
+        weights = [dict(scene="s", view=view, reprojection=name, history_weight=0.9, reprojection_error_median_px=error, reprojection_error_p95_px=3 * error,
+                        ghosting_rmse=error / 10) for view in ("default", "pan") for name, error in (("mine", 4), ("plane", 1), ("surface", 2), ("plane", 3))]
+        results = self.sequence(weights + [dict(scene="s", view="pan", reprojection="plane", history_weight=0, ghosting_rmse=0.75)])
+        figures, _ = self.drawn(plot_sequences.reprojection_errors, results)
+        median, p95, ghosts = figures["reprojection_errors"].axes
+        for axis, factor in ((median, 1), (p95, 3), (ghosts, 0.1)):
+            self.assertEqual([one.get_label() for one in axis.containers], ["surface", "plane", "mine"])
+            self.near([[bar.get_height() for bar in one] for one in axis.containers], factor * np.array([[2, 2], [2, 2], [4, 4]]))
+        self.near([bar.get_x() + bar.get_width() / 2 for bar in median.containers[0]], [-0.4 + 0.4 / 3, 0.6 + 0.4 / 3])
+        floor, = ghosts.collections
+        self.near(floor.get_segments()[0], [[0.55, 0.75], [1.45, 0.75]])
+        self.assertEqual([label.get_text() for label in ghosts.get_xticklabels()], ["objects only", "pan"])
+
+    def test_clamping_and_convergence(self):
+        summary = [dict(scene="s", view=f"waves_{waves}_roughness_{roughness}", history_clamping=clamping, clamped_share=share)
+                   for clamping, most in (("minmax", 0.8), ("variance", 0.4), ("off", 0.9))
+                   for waves, roughness, share in ((4, 0.1, most), (0, 0.1, most / 2), (4, 0.3, most / 4))]
+        rows = [dict(technique="dda", view="waves_2_roughness_0.1", frame=frame, history_weight=weight, history_clamping=clamping, converged_rmse=error + other,
+                     run_number=0)
+                for other in (0, 0.2)
+                for weight, clamping, frame, error in ((0, "minmax", 0, 0.5), (0, "minmax", 7, 0.4), (0.9, "minmax", 0, 0.5), (0.9, "minmax", 7, 0.1))]
+        results = self.sequence(summary, rows, ["history_weight", "history_clamping"])
+        figures, _ = self.drawn(plot_sequences.clamped_history, results)
+        left, right = figures["clamped_history"].axes
+        self.assertEqual((left.get_title(), right.get_title()), ("minmax", "variance"))
+        self.near(line_of(left, "roughness 0.1"), [[0, 4], [40, 80]])
+        self.near(line_of(right, "roughness 0.3"), [[4], [10]])
+        figures, _ = self.drawn(plot_sequences.convergence, results)
+        axis, = figures["convergence"].axes
+        self.assertEqual(axis.get_title(), "2 waves per metre")
+        self.near(line_of(axis, "no history"), [[1, 8], [0.6, 0.5]])
+        self.near(line_of(axis, "minmax"), [[1, 8], [0.6, 0.2]])
+
+
+if __name__ == "__main__":
+    main()
