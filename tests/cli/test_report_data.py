@@ -1,0 +1,339 @@
+"""What the report, its tables and summary.csv say, on results made up here: every answer can be worked out by hand."""
+import math
+import os
+import re
+import sys
+import tomllib
+from types import SimpleNamespace
+
+from support import SOURCE, Case, load_script, main
+
+sys.path.insert(0, os.path.join(SOURCE, "experiments"))
+import numpy as np  # noqa: E402
+import pandas as pd  # noqa: E402
+import pairs  # noqa: E402
+import plot_accuracy  # noqa: E402
+import plot_panels  # noqa: E402
+import plot_pictures  # noqa: E402
+import plot_ray  # noqa: E402
+import plot_report  # noqa: E402
+import plot_tables  # noqa: E402
+import plot_verdict  # noqa: E402
+import ssrlab_results  # noqa: E402
+from made_results import made_results, write_table  # noqa: E402
+from matplotlib import pyplot as plt  # noqa: E402
+from plot_data import Results  # noqa: E402
+from PIL import Image  # noqa: E402
+
+
+def interval(low, high, pairs_=9):
+    return pairs.Ratio((low + high) / 2, low, high, pairs_)
+
+
+class Test(Case):
+    def near(self, found, expected):
+        np.testing.assert_allclose(np.asarray(found, float), np.asarray(expected, float), rtol=1e-6, atol=1e-12)
+
+    def samples(self, ms):
+        """{run: milliseconds by round} of the trace."""
+        write_table(self.path("out/samples.csv"), [{"run_id": run, "round": number, "pass": "trace", "ms": one} for run, times in ms.items() for number, one in enumerate(times)])
+
+    def test_results_in_pandas(self):
+        rows = [dict(technique="linear", space="pixels", jitter=True, steps=8, trace_ms_median=2, structures_ms_median="", frame=0),
+                dict(technique="linear", space="metres", jitter=False, steps=16, trace_ms_median=3, frame=0),
+                dict(technique="hiz", space="", jitter="", trace_ms_median=1, structures_ms_median=0.5, frame=3, view="v"),
+                dict(technique="hiz", outcome="failed", trace_ms_median="", message="no", frame=0)]
+        for row in rows:
+            row.update(thickness_m=0.1, psnr_visible_db=30, flips_per_million=2, wave64_iterations_mean=5, recall_1px=0.5, stopped_share=0.1, fps=3,
+                       inverse_fps_s=1, error_median_px=1)
+        made_results(self, rows, ["space", "jitter", "steps", "thickness_m"])
+        loaded = ssrlab_results.load(self.path("out"))
+        self.assertEqual(list(loaded.run_id), ["r0", "r1", "r2"])
+        self.assertEqual(list(loaded.series), ["linear, pixels, jitter", "linear, metres", "hiz"])
+        self.assertEqual(list(loaded.frame_name), ["s, view default, 80×60", "s, view default, 80×60", "s, view v, 80×60, frame 3"])
+        self.near(loaded.cost_ms_median, [2, 3, 1.5])
+        self.assertEqual(loaded.attrs["inputs"], ["space", "jitter", "steps"])
+        self.assertEqual((loaded.attrs["constants"]["thickness_m"], loaded.attrs["constants"]["width"]), (0.1, 80))
+        self.assertFalse({"thickness_m", "message", "width"} & set(loaded))
+        self.assertIn("scene", loaded)
+        self.assertNotIn("message", loaded.attrs["constants"])
+        whole = ssrlab_results.load(self.path("out"), keep_constants=True, failed=True)
+        self.assertEqual((len(whole), whole.thickness_m.iloc[3], whole.message.iloc[3]), (4, 0.1, "no"))
+        units = {"thickness_m": "m", "psnr_visible_db": "dB", "flips_per_million": "rays per million", "wave64_iterations_mean": "steps", "recall_1px": "share",
+                 "stopped_share": "share", "fps": "", "inverse_fps_s": "s", "error_median_px": "px", "cost_ms_median": "ms", "trace_ms_ci_low": "ms",
+                 "fetches_mean": "fetches", "rays": ""}
+        self.assertEqual({name: whole.attrs["units"][name] for name in units}, units)
+
+    def verdict_rows(self):
+        """linear reaches 0.99 with 20, 40 and 80 steps, at 80 with the best F1, at 40 within a point of it. march never does."""
+        rows = [dict(technique="linear", steps=steps, trace_ms_median=ms, screen_recall_1px=found, f1_1px=f1)
+                for steps, ms, found, f1 in ((10, 0.5, 0.9, 0.99), (20, 1, 0.992, 0.8), (40, 2, 0.991, 0.895), (80, 5, 0.999, 0.9))]
+        rows += [dict(technique="march", steps=steps, trace_ms_median=ms, screen_recall_1px=found, f1_1px=0.5)
+                 for steps, ms, found in ((10, 1, 0.5), (20, 9, 0.8), (40, 3, 0.7995))]
+        rows[2].update(recall_1px=0.9, missed_not_in_depth=0.07, visible_displaced=0.02, missed_stopped=0.01, missed_facing_rule=0.0004, false_hits=0.05, false_self=0.015,
+                       false_too_thick=0.03, false_wrong_surface=0.0004)
+        rows.append(dict(technique="dda", trace_ms_median=2.2, screen_recall_1px=1, f1_1px=0.9))
+        return rows
+
+    def test_which_run_of_a_tracer_is_compared(self):
+        rows = self.verdict_rows()
+        made_results(self, rows, ["steps"])
+        self.samples({"r2": [2, 2, 2, 2, 2, 2], "r7": [1.8, 1.9, 2, 2.2, 2.4, 2.6]})
+        results = Results(self.path("out"))
+        chosen = plot_verdict.picks(results)
+        self.assertEqual(list(chosen.run_id), ["r2", "r7", "r6"])
+        self.assertEqual(list(chosen.setting), ["linear, steps 40", "dda", "march, steps 40"])
+        self.assertEqual(list(chosen.reached), [True, True, False])
+        (_, text), = plot_verdict.verdicts(results, chosen)
+        self.assertEqual(text, "Cheapest tracer that finds 99 % of what the depth buffer holds: linear (steps 40), 2 ms, "
+                               "1.05 [0.9, 1.3] times as fast as dda (no difference shown). "
+                               "Of what the frame shows, it does not find 10 %: 7 % are not in the depth buffer, 2 % hit another point. "
+                               "5 % of its rays end in a false hit: 3 % behind a surface that is taken too thick, 1.5 % on the reflector itself.")
+        (_, text), = plot_verdict.verdicts(results, chosen[~chosen.reached])
+        self.assertEqual(text, "No tracer finds 99 % of what the depth buffer holds. The nearest is march (steps 40): 80 % in 3 ms. ")
+        results.targets = {"recall_1px": [0.5, 0.995]}
+        self.assertEqual(plot_verdict.goal(results), ("screen_recall_1px", 0.99))
+        results.targets = {"screen_recall_1px": [0.9, 0.95, 0.999]}
+        self.assertEqual(plot_verdict.goal(results), ("screen_recall_1px", 0.95))
+
+    def test_the_ranking(self):
+        """Over two frames: times by the geometric mean, shares by the mean. Who misses the target comes later, the nearer one first."""
+        rows = [dict(technique=technique, view=view, trace_ms_median=ms, trace_ms_ci_low=ms / 2, trace_ms_ci_high=2 * ms, screen_recall_1px=found, recall_1px=found / 2,
+                     precision_1px=0.5, f1_1px=0.4, false_hits=0.1, fetches_mean=10 * ms, flip_visible=0.2)
+                for technique, times, recalls in (("slow", (4, 16), (1, 1)), ("quick", (1, 4), (0.99, 0.995)), ("far", (0.1, 0.1), (0.2, 0.2)),
+                                                  ("near", (1, 1), (0.9, 0.8)), ("half", (1, 1), (0.3, 1)))
+                for view, ms, found in zip(("a", "b"), times, recalls)]
+        results = made_results(self, rows)
+        ranked = plot_verdict.ranking(results, plot_verdict.picks(results))
+        self.assertEqual(list(ranked.label), ["quick", "slow", "half", "near", "far"])
+        first = ranked.iloc[0]
+        self.near([first.cost_ms_median, first.cost_ms_ci_low, first.cost_ms_ci_high], [2, 1, 4])
+        self.near([first.screen_recall, first.recall, first.precision, first.f1, first.false_hits, first.flip, first.fetches],
+                  [0.9925, 0.49625, 0.5, 0.4, 0.1, 0.2, 25])
+        self.assertEqual(list(ranked.reached), [2, 2, 1, 0, 0])
+        self.assertEqual(list(ranked.unreached), [0, 0, 1, 2, 2])
+        shown = plot_tables.ranking_table(ranked)
+        self.assertEqual([column["name"] for column in shown["columns"]],
+                         ["rank", "tracer", "target reached", "recall", "precision", "F1", "false", "screen recall", "FLIP", "ms", "from", "to", "fetches"])
+        self.assertEqual([cell["text"] for cell in shown["rows"][0]["cells"]],
+                         ["1", "quick", "2 of 2", "49.6 %", "50 %", "40 %", "10 %", "99.2 %", "0.2", "2", "1", "4", "25"])
+        self.assertEqual([row["best"] for row in shown["rows"]], [True] + [False] * 4)
+        self.assertEqual([row["cells"][9]["sort"] for row in shown["rows"][:3]], ["2", "8", "1"])
+
+    def test_without_a_truth_all_settings_are_ranked_by_time(self):
+        results = made_results(self, [dict(technique="linear", steps=steps, trace_ms_median=ms) for steps, ms in ((8, 3), (16, 1), (32, 2))], ["steps"])
+        chosen = plot_verdict.picks(results)
+        self.assertEqual(list(chosen.label), ["linear, steps 16", "linear, steps 32", "linear, steps 8"])
+        ranked = plot_verdict.ranking(results, chosen)
+        self.assertEqual(list(ranked.label), list(chosen.label))
+        self.assertEqual(plot_verdict.verdicts(results, chosen), [])
+        self.assertIn("No truth was computed", plot_report.ranking_text(results, chosen))
+
+    def test_tables_of_a_frame(self):
+        rows = [dict(technique="linear", steps=steps, trace_ms_median=ms, steps_mean=7, screen_recall_1px=found, recall_1px=0.5, visible_displaced=0.25,
+                     missed_stepped_over=0.125, missed_stopped=0, missed_not_in_depth=0.125, error_scene_to_screen=0.5, wrong_rays=0.3, wrong_thin=0.2, wrong_other=0.1,
+                     passes="rays=1.25 trace=2 blur=0.5", passes_skipped="cone history", passes_why="rays: 9 pixels; blur: it is rough; cone: gloss = stochastic")
+                for steps, ms, found in ((16, 2, 1), (8, 1, 0.5))]
+        results = made_results(self, rows, ["steps"])
+        chosen = plot_verdict.picks(results)
+        shown = plot_tables.row_table(results, results.rows, chosen)
+        self.assertEqual([column["name"] for column in shown["columns"]], ["tracer", "steps", "ms", "fetches", "steps", "recall", "screen recall", "repeats", "run"])
+        self.assertEqual([[cell["text"] for cell in row["cells"]] for row in shown["rows"]],
+                         [["linear", "8", "1", "1", "7", "50 %", "50 %", "9", "r1"], ["linear", "16", "2", "1", "7", "50 %", "100 %", "9", "r0"]])
+        self.assertEqual([row["best"] for row in shown["rows"]], [False, True])
+        bar, = plot_tables.split_of(chosen)
+        self.assertEqual([(part["kind"], part["width"], part["text"]) for part in bar["parts"]],
+                         [("found", 50, "50 %"), ("displaced", 25, "25 %"), ("not-in-depth", 12.5, "12.5 %"), ("skipped-over", 12.5, "12.5 %")])
+        errors = plot_tables.error_table(chosen)
+        self.assertEqual([column["name"] for column in errors["columns"]], ["tracer", "scene → screen", "wrong", "thin", "other"])
+        self.assertEqual([cell["text"] for cell in errors["rows"][0]["cells"]], ["linear, steps 16", "50 %", "30 %", "20 %", "10 %"])
+        plan = plot_tables.plan_of(chosen)
+        self.assertEqual([(one["name"], one["ms"], one["why"]) for one in plan["passes"]],
+                         [("rays", "1.25", "9 pixels"), ("trace", "2", ""), ("blur", "0.5", "it is rough"), ("cone", "–", "gloss = stochastic"),
+                          ("history", "–", "not needed, or off")])
+        self.assertEqual([cell["sort"] for cell in plot_tables.plain_table([{"a": "2.5", "b": "x"}])["rows"][0]["cells"]], ["2.5", None])
+
+    def test_failed_runs_and_their_commands(self):
+        rows = [dict(technique="dda", frame=2, jitter_phases=5, steps=8, space="pixels", near=True, gloss="cone"),
+                dict(technique="dda", outcome="failed", message="lost", frame=0), dict(technique="dda", outcome="invalid", frame=0), dict(technique="dda", outcome="skipped", frame=0)]
+        results = made_results(self, rows, ["jitter_phases", "steps", "space", "near", "gloss"], pass_parameters="gloss",
+                               command_line="bin/ssrlab --techniques 'my own' --quiet --device 1 run a.toml -o out")
+        self.assertEqual(plot_report.again(results, "r1"), "bin/ssrlab --techniques 'my own' --device 1 run a.toml --only r1 -o again/r1")
+        self.assertEqual(plot_report.ray_command(results, results.rows.iloc[0]),
+                         "bin/ssrlab --techniques 'my own' --device 1 ray s --view default --size 80x60 -t dda --frame 2 --jitter 5 -p jitter_phases=5 -p steps=8 "
+                         "-p space=pixels -p near=true")
+        failed = plot_tables.failed_table(results, plot_report.again)
+        self.assertEqual([[cell["text"] for cell in row["cells"]][:6] for row in failed["rows"]],
+                         [["dda", "s", "default", "80×60", "failed", "lost"], ["dda", "s", "default", "80×60", "invalid", ""]])
+        self.assertEqual(sorted(re.findall(r"\d \w+", plot_report.context(results, [], {})["counts"])), ["1 failed", "1 invalid", "1 ok", "1 skipped", "4 runs"])
+
+    def test_what_the_page_shows(self):
+        rows = [dict(technique="linear", steps=steps, trace_ms_median=ms, trace_ms_ci_low=ms, trace_ms_ci_high=ms, rays=1000, steps_mean=4, fetches_mean=6, recall_1px=0.75,
+                     flip_visible=0.125, screen_recall_1px=0.5, screen_precision_1px=0.875, max_distance_m=math.inf, binary=binary, width=width)
+                for steps, ms, binary, width in ((8, 1, 1, 80), (16, 2, 2, 80), (8, 1, 1, 1920), (16, 1, 1, 1920))]
+        results = made_results(self, rows, ["steps", "binary", "max_distance_m"])
+        data = plot_report.chart_data(results, plot_verdict.picks(results))
+        run = data["runs"]["r1"]
+        self.assertEqual(run["costs"], {"cost_ms_median": 2, "fetches_mean": 6, "steps_mean": 4, "fetches": 6})
+        self.assertEqual(run["errors"], {"recall_1px": 0.25, "flip_visible": 0.125, "screen_recall_1px": 0.5, "screen_precision_1px": 0.125})
+        self.assertEqual((run["floor"], run["size"], run["name"], run["time"]), (0.0005, [80, 60], "linear, steps 16, binary 2", "2 ms [2, 2]"))
+        self.assertEqual(data["cloud"], {"linear": True})
+        values = dict(zip(data["columns"], run["values"]))
+        self.assertEqual((values["max_distance_m"], values["steps"]), ("inf", 16))
+        self.assertEqual(dict(zip(data["columns"], data["units"]))["max_distance_m"], "m")
+        self.assertEqual(plot_report.plain(np.float64(1.23456789)), 1.2346)
+        # Of each view the largest picture that is at most 1280 wide.
+        chosen = pd.DataFrame([dict(scene="s", view="a", width=width, frame_title=f"a{width}") for width in (640, 1920, 1280)] +
+                              [dict(scene="s", view="b", width=width, frame_title=f"b{width}") for width in (3840, 1920)])
+        self.assertEqual(plot_report.with_pictures(results, chosen), {"a1280", "b3840"})
+
+    def test_rows_of_the_summary(self):
+        """stride is better the lower; FLIP too. Within half of what the best takes: 4 ms; each 1 % along the front costs (8 - 2) / 40."""
+        rows = [dict(technique="linear", stride=stride, trace_ms_median=ms, recall_1px=found, precision_1px=0.5, f1_1px=0.6, screen_recall_1px=0.1, flip_visible=flip)
+                for stride, ms, found, flip in ((1, 8, 0.9, 0.1), (2, 5, 0.45, 0.2), (4, 2, 0.5, 0.3))]
+        rows.append(dict(technique="hiz", trace_ms_median=16, recall_1px=0.8995, flip_visible=0.25))
+        results = made_results(self, rows, ["stride"], accuracy="linear.stride=lower", specification="[targets]\nrecall_1px = 0.9\nflip_visible = [0.2, 0.05]\n")
+        table = plot_accuracy.summary(results)
+        within = table[table.kind == "best_within_time"]
+        self.near(within.time_budget_ms, [4, 4, 8, 8])
+        self.assertEqual(list(zip(within.technique, within.run_id.fillna(""), within.setting)),
+                         [("hiz", "", "no setting is fast enough"), ("linear", "r2", "linear, stride 4"), ("hiz", "", "no setting is fast enough"), ("linear", "r0", "linear, stride 1")])
+        price = table[table.kind == "marginal_price"]
+        self.assertEqual(list(price.run_id), ["r2", "r0"])
+        self.near(price.price_ms_per_percent.iloc[1:], [6 / 40])
+        cheapest = table[table.kind == "cheapest_for_target"]
+        self.assertEqual(list(zip(cheapest.measure, cheapest.technique, cheapest.target, cheapest.setting, cheapest.value)),
+                         [("recall_1px", "hiz", 0.9, "not reached", 0.8995), ("recall_1px", "linear", 0.9, "linear, stride 1", 0.9),
+                          ("flip_visible", "hiz", 0.2, "not reached", 0.25), ("flip_visible", "linear", 0.2, "linear, stride 2", 0.2),
+                          ("flip_visible", "hiz", 0.05, "not reached", 0.25), ("flip_visible", "linear", 0.05, "not reached", 0.1)])
+        self.assertEqual(list(cheapest.missed_by.dropna()), ["r1", "r2"], "the next coarser stride")
+        self.near(cheapest[["recall", "precision", "f1", "time_ms", "fetches_mean"]].iloc[1], [0.9, 0.5, 0.6, 8, 1])
+
+    def test_the_front_holds_what_nothing_beats(self):
+        rows = pd.DataFrame({"ms": [3, 1, 2, 2, 4], "error": [0.1, 0.5, 0.6, 0.3, 0.1]}, index=list("abcde"))
+        self.assertEqual(list(plot_accuracy.pareto(rows, "ms", "error").index), ["b", "d", "a"])
+
+    def test_pairs_of_many_rounds_are_medians_of_neighbours(self):
+        """Of 36 ratios each block is two neighbours, 18 of them; at rank 5 of 18 the sign test keeps 95 %."""
+        ratios = pd.Series(np.arange(36.0), index=range(36)) + 1
+        self.near(pairs.blocks_of(ratios.to_numpy()), np.arange(18) * 2 + 1.5)
+        found = pairs.paired_ratio(ratios[::-1], pd.Series(1.0, index=range(36)))
+        self.near([found.median, found.low, found.high], [18.5, 9.5, 27.5])
+        self.assertEqual(len(pairs.blocks_of(np.ones(31))), 31)
+
+    def test_panels_show_what_their_experiment_names(self):
+        row = pd.Series(dict(technique="linear", steps=16, jitter=True, width=80, recall_1px=0.5, precision_1px=np.nan, hit_share=0.25, picture="p/a.png", truth_picture="p/t.png"))
+        self.assertEqual([plot_panels.picture_of({"show": show} if show else {}, row) for show in ("", "off", "truth", "causes")],
+                         ["p/a.png", "p/t_off.png", "p/t.png", "p/a_causes.png"])
+        figure = {"panels": [{"steps": 16, "jitter": True}, {"steps": 64, "jitter": True}], "measures": ["recall_1px", "precision_1px"]}
+        self.assertEqual(plot_panels.caption(figure["panels"][0], figure, row), "steps 16\nrecall 0.500")
+        self.assertEqual(plot_panels.caption({"steps": 16, "show": "agreement"}, figure, row), "green right, yellow displaced, orange missed, pink false, steps 16\nrecall 0.500")
+        self.assertEqual(plot_panels.caption({"steps": 16, "show": "off"}, figure, row), "no reflections")
+        held = [(16, 16, True), (16.1, 16, False), (True, True, True), ("true", True, True), (False, True, False), ("16", 16, False), ("box", "box", True), (np.nan, 16, False)]
+        for cell, value, expected in held:
+            self.assertEqual(bool(plot_panels.is_value(cell, value)), expected, (cell, value))
+
+    def test_pictures_of_the_report(self):
+        """Each technique's best run comes before any variant; a technique's truth before all."""
+        rows = [dict(technique="linear", space=space, trace_ms_median=ms, screen_recall_1px=1, picture=f"pictures/{space}.png", truth_picture="pictures/t.png", recall_1px=0.5,
+                     false_hits=0.125, wrong_rays=0.25, picture_flip=0.0625, fetches_mean=3) for space, ms in (("b", 1), ("a", 2))]
+        rows.append(dict(rows[0], technique="dda", space="", trace_ms_median=9, picture="pictures/dda.png"))
+        rows.append(dict(rows[0], technique="hiz", space="", trace_ms_median=3, picture="pictures/lost.png"))
+        results = made_results(self, rows, ["space"])
+        os.makedirs(self.path("out/pictures"))
+        for name in ("a", "b", "dda", "t", "t_off", "b_flip"):
+            Image.new("RGB", (1280, 720), (200, 10, 10)).save(self.path(f"out/pictures/{name}.png"))
+        chosen = plot_verdict.picks(results)
+        shots, left, shape = plot_pictures.shots(results, chosen, results.rows)
+        self.assertEqual([shot["name"] for shot in shots], ["Without reflections, and the truth", "linear, b", "dda", "linear, a"])
+        self.assertEqual([[(image["name"], image["kind"]) for image in shot["images"]] for shot in shots[:2]],
+                         [[("off", "picture"), ("truth", "picture")], [("linear, b", "picture"), ("linear, b", "FLIP")]])
+        self.assertEqual((left, shape), (1, "1280 / 720"))
+        best = chosen.iloc[0]
+        self.assertEqual([plot_pictures.finding(best, kind) for kind in plot_pictures.KINDS],
+                         ["1 ms", "finds 50 % of what the frame shows, 12.5 % of the rays end in a false hit", "25 % of the rays are wrong",
+                          "mean FLIP against the truth 0.0625", "3 fetches a ray"])
+
+    def ray(self):
+        """4 px to the right and 3 down; a wall at 3 m in the second of two pixels."""
+        walk = [dict(t_in=0.0, t_out=0.5, front_m=0, back_m=0, ray_in_m=1.0, ray_out_m=2.0), dict(t_in=0.5, t_out=1.0, front_m=3.0, back_m=None, ray_in_m=2.0, ray_out_m=4.0)]
+        visits = [dict(t_in=0.0, t_out=0.5, level=1, then="skips", pixel=[12, 21]), dict(t_in=0.5, t_out=0.5, level=0, then="hit", pixel=[13, 22])]
+        return dict(scene="s", pixel=[10, 20], origin_px_depth=[10, 20, 1], delta_px_depth=[4, 3, 1], walk=walk,
+                    techniques=[dict(technique="hiz", status="hit", t=0.75, visits=visits), dict(technique="dda", status="left_screen", visits=[])],
+                    screen_truth=dict(t=0.5), scene_truth={"class": "visible", "point_px": [12.8, 22.1]},
+                    background=dict(first=[8, 16], rows=[[[1, 0, 0.25]] * 16] * 8))
+
+    def test_a_ray_is_drawn_where_it_is(self):
+        ray = self.ray()
+        self.assertEqual(plot_ray.length_px(ray), 5)
+        self.near(plot_ray.scene_truth_t(ray), 0.7)
+        self.near([plot_ray.shown_t(ray), plot_ray.shown_t(dict(ray, techniques=[])), plot_ray.shown_t(dict(ray, techniques=[], screen_truth={}, scene_truth=None))],
+                  [1, 1, 1])
+        near_end = dict(ray, techniques=[], screen_truth={"t": 0.25}, scene_truth=None)
+        self.near(plot_ray.shown_t(near_end), 1.4 * 0.25 + 2 / 5)
+        for truth in ({"class": "sky", "point_px": [12, 21]}, {"class": "visible", "point_px": [9, 20]}, {"class": "visible", "point_px": [15, 23.75]}, {"class": "visible", "point_px": [None, 1]}):
+            self.assertIsNone(plot_ray.scene_truth_t(dict(ray, scene_truth=truth)), truth)
+        figure, (side, visits, screen) = plt.subplots(3, 1)
+        self.addCleanup(plt.close, figure)
+        plot_ray.draw_side(side, ray)
+        lines = {line.get_label(): line.get_xydata().tolist() for line in side.get_lines()}
+        self.near(lines["ray"], [[0, 1], [2.5, 2], [5, 4]])
+        self.near(lines["hiz: hit"], [[3.75, 3]])
+        self.assertEqual(lines["dda: left_screen"], [])
+        self.near([lines["screen truth"][0][0], lines["scene truth"][0][0]], [2.5, 3.5])
+        fill, = side.collections
+        self.near(fill.get_datalim(side.transData).extents, [2.5, 3, 5, 1.1 * 4])
+        self.near(side.get_ylim(), [4.4, 1 - 0.1 * 3.4])
+        plot_ray.draw_visits(visits, ray, ray["techniques"][0], "#000000")
+        skip, hit = visits.get_lines()
+        self.near([skip.get_xdata(), skip.get_ydata()], [[0, 2.5], [1, 1]])
+        self.near([*hit.get_xdata(), *hit.get_ydata()], [2.5, 2])
+        self.assertEqual((skip.get_linewidth(), skip.get_alpha()), (3, 0.4))
+        plot_ray.draw_screen(screen, ray)
+        cells = [(*patch.get_xy(), patch.get_width(), patch.get_height()) for patch in screen.patches]
+        self.assertEqual(cells, [(12, 20, 2, 2), (13, 22, 1, 1)])
+        self.near(screen.get_lines()[0].get_xydata(), [[10, 20], [14, 23]])
+        self.near(screen.get_lines()[-1].get_xydata(), [[13, 22.25]])
+        self.near(screen.images[0].get_extent(), [8, 24, 24, 16])
+        self.near(screen.images[0].get_array()[0, 0], [1, 0, 0.25 ** (1 / 2.2)])
+
+    def test_judging_by_two_names(self):
+        aa = load_script("experiments", "aa")
+        self.assertEqual(aa.specification("s", "8x8").count("110"), 1)
+        judged = [("same", interval(0.9, 1.1), 1), ("same", interval(1.01, 1.2), 1), ("same", interval(0.8, 0.98, 5), 1), ("same", interval(1, 1.5), 1),
+                  ("slower", interval(1.05, 1.2), 1.1), ("slower", interval(0.9, 1.2), 1.2), ("slower", interval(0.9, 0.95), 1.4)]
+        environment = {"commit": "c", "started": "now", "identity": {"device": "d"}}
+        figures = aa.figures_of(judged, "aa", environment)
+        expected = dict(pairs_of_frames=9, trials_of_two_names=4, false_alarms=2, interval_width=0.2236, trials_of_a_slowdown=3, found=1, found_with_the_wrong_sign=1,
+                        slower_steps=1.1, slower_fetches=1.2, processor="unknown")
+        self.assertEqual({name: figures[name] for name in expected}, expected)
+        for alarms, found, holds in ((5, 95, True), (6, 95, False), (5, 94, False)):
+            self.assertEqual(aa.holds(dict(figures, trials_of_two_names=100, false_alarms=alarms, trials_of_a_slowdown=100, found=found)), holds, (alarms, found))
+        # dda takes 2 ms and its copy 3, and so on: the copy is the one above.
+        steps = sorted({*aa.STEPS, *(round(1.1 * one) for one in aa.STEPS)})
+        rows = [dict(technique=name + again, steps="") for name in ("dda", "hiz") for again in ("", "_again")]
+        rows += [dict(technique="linear" + again, steps=one) for again in ("", "_again") for one in steps]
+        for row in rows:
+            row["fetches_mean"] = row["steps"] or 3
+        made_results(self, rows, ["steps"])
+        times = {f"r{i}": [(row["steps"] or 2) * (1.5 if row["technique"].endswith("_again") else 1)] * 6 for i, row in enumerate(rows)}
+        self.samples(times)
+        found = list(aa.trials(self.path("out")))
+        self.assertEqual([kind for kind, _, _ in found], ["same", "same"] + ["same", "slower"] * len(aa.STEPS))
+        self.near([ratio.low for kind, ratio, _ in found if kind == "same"], [1.5] * (2 + len(aa.STEPS)))
+        slower = [round(1.1 * one) / one for one in aa.STEPS]
+        self.near([[ratio.low, fetches] for kind, ratio, fetches in found if kind == "slower"], [[1.5 * one, one] for one in slower])
+
+    def test_a_sweep_of_the_bench_adds_what_a_tracer_needs(self):
+        bench = load_script("experiments", "bench")
+        sweep = SimpleNamespace(samples={("tracer", name): pd.DataFrame({"ms": [one]}) for name, one in (("trace", 1.0), ("ray_packets", 2.0), ("depth_pyramid", 4.0), ("shade", 8.0))})
+        self.near(bench.Sweep.times_ms(sweep, "tracer"), [3])
+        self.near(bench.Sweep.times_ms(sweep, "tracer", bench.ON_DEPTH), [4])
+        text = tomllib.loads(bench.specification("interior:piano", "8x8", ["nearest only"], 3, True))
+        self.assertEqual((text["scenes"], text["views"], text["measure"]["min_repeats"], text["measure"]["max_repeats"]), (["interior"], ["piano"], 3, 3))
+        self.assertEqual(text["techniques"], {"hiz_packets": [{"depth_pyramid": {"kind": "nearest"}}]})
+        self.assertEqual(tomllib.loads(bench.specification("builtin:stairs", "8x8", ["plain"], 3, True))["views"], ["default"])
+
+
+if __name__ == "__main__":
+    main()
