@@ -340,6 +340,18 @@ TEST(SceneGltf, FarFromTheOriginPositionsStayAccurate)
     EXPECT_LT(glm::length(scene.cameras[0].position_ws), 1) << "cameras are relative to the origin, too";
 }
 
+TEST(SceneGltf, TheOriginMovesSixteenRadiiAway)
+{
+    // The triangle's bounds have a radius of sqrt(1 / 2), their middle lies at (0.5 + x, 0.5, 0): 16 radii are 11.3.
+    for (double x : {10.0, 11.5}) {
+        TempFolder folder;
+        GltfFile   file    = GltfFile::triangle();
+        file.root["nodes"] = {{{"mesh", 0}, {"translation", {x, 0, 0}}}};
+        EXPECT_VEC_NEAR(load_scene(file.write(folder)).origin_ws, x < 11 ? glm::dvec3(0) : glm::dvec3(x + 0.5, 0.5, 0),
+                        1e-6);
+    }
+}
+
 TEST(SceneGltf, GlbWithItsBinaryChunk)
 {
     TempFolder folder;
@@ -357,6 +369,185 @@ TEST(SceneGltf, GlbWithItsBinaryChunk)
     EXPECT_THAT(error_of<Failure>(folder.write("cut.glb", glb.substr(0, glb.size() - 8))), HasSubstr("truncated"));
     glb[4] = 1;
     EXPECT_THAT(error_of<Failure>(folder.write("old.glb", glb)), HasSubstr("version 1"));
+}
+
+TEST(SceneGltf, NodesTurnTheirCameras)
+{
+    TempFolder folder;
+    GltfFile   file      = GltfFile::triangle();
+    file.root["cameras"] = {
+        {{"type", "perspective"}, {"name", "first"}, {"perspective", {{"yfov", 1}, {"znear", 0.25}}}},
+        {{"type", "orthographic"},
+         {"name", "second"},
+         {"orthographic", {{"xmag", 2}, {"ymag", 3}, {"znear", 0.5}, {"zfar", 50}}}}};
+    const float half    = std::numbers::sqrt2_v<float> / 2;
+    file.root["nodes"]  = {{{"mesh", 0}, {"children", {1, 2}}, {"scale", {2, 2, 2}}},
+                           // By 90 degrees about z, and about y.
+                           {{"camera", 0}, {"rotation", {0, 0, half, half}}},
+                           {{"camera", 1}, {"rotation", {0, half, 0, half}}}};
+    const Scene   scene = load_scene(file.write(folder));
+    const Camera &first = find_camera(scene, "first"), &second = find_camera(scene, "second");
+    EXPECT_VEC_NEAR(first.up_ws, glm::dvec3(-1, 0, 0), 1e-6);
+    EXPECT_VEC_NEAR(first.target_ws, glm::dvec3(0, 0, -1), 1e-6);
+    EXPECT_VEC_NEAR(second.up_ws, glm::dvec3(0, 1, 0), 1e-6);
+    EXPECT_VEC_NEAR(second.target_ws, glm::dvec3(-1, 0, 0), 1e-6);
+    EXPECT_EQ(second.near_m, 0.5);
+    EXPECT_EQ(&find_camera(scene, "default"), &first) << "nodes are visited in their order";
+}
+
+TEST(SceneGltf, KindsOfLightsAndTheSceneThatIsShown)
+{
+    TempFolder folder;
+    GltfFile   file             = GltfFile::triangle();
+    file.root["scene"]          = 1;
+    file.root["scenes"]         = {{{"nodes", {1}}}, {{"nodes", {0, 2}}}};
+    file.root["extensionsUsed"] = {"KHR_lights_punctual"};
+    file.root["extensions"]     = {
+            {"KHR_lights_punctual",
+             {{"lights",
+               {{{"type", "point"}, {"intensity", 2}, {"range", 3}},
+                {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.6}}}}}}}}};
+    file.root["nodes"] = {{{"mesh", 0}, {"children", {3}}},
+                          {{"mesh", 0}, {"translation", {9, 9, 9}}},
+                          {{"translation", {1, 2, 3}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}},
+                          {{"rotation", {0, 1, 0, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}}};
+    const Scene scene  = load_scene(file.write(folder));
+    ASSERT_EQ(scene.draws.size(), 1U);
+    EXPECT_EQ(corner(scene, 0), glm::vec3(0)) << "scene 1 is shown, not scene 0";
+    ASSERT_EQ(scene.lights.size(), 2U);
+    const Light &spot = scene.lights[0], &point = scene.lights[1];
+    EXPECT_EQ(point.type, LightType::point);
+    EXPECT_EQ(point.intensity, glm::vec3(2));
+    EXPECT_EQ(point.position_ws, glm::vec3(1, 2, 3));
+    EXPECT_EQ(spot.type, LightType::spot);
+    EXPECT_VEC_NEAR(spot.direction_ws, glm::vec3(0, 0, 1), eps);
+    EXPECT_FLOAT_EQ(spot.inner_angle_rad, 0.2F);
+    EXPECT_FLOAT_EQ(spot.outer_angle_rad, 0.6F);
+}
+
+/// Material 0 of a triangle.
+Material material_of(const json& description)
+{
+    TempFolder folder;
+    GltfFile   file              = GltfFile::triangle();
+    file.primitive()["material"] = 0;
+    file.root["images"]          = {{{"uri", pixel_png}}};
+    file.root["textures"]        = {{{"source", 0}}};
+    file.root["materials"]       = {description};
+    const Scene scene            = load_scene(file.write(folder));
+    return scene.materials.at(scene.draws.at(0).material);
+}
+
+json with_extension(json material, const char* name, const json& values)
+{
+    material["extensions"][name] = values;
+    return material;
+}
+
+TEST(SceneGltf, ExtensionsOfMaterials)
+{
+    const json plastic = {
+        {"pbrMetallicRoughness",
+         {{"baseColorFactor", {0.1, 0.2, 0.3, 0.75}}, {"metallicFactor", 0}, {"roughnessFactor", 0.8}}}};
+    const Material plain = material_of(plastic);
+    EXPECT_VEC_NEAR(plain.base_colour, glm::vec4(0.1F, 0.2F, 0.3F, 0.75F), eps);
+    EXPECT_EQ(plain.metallic, 0);
+    EXPECT_FLOAT_EQ(plain.roughness, 0.8F);
+    EXPECT_EQ(plain.dielectric_f0, common_dielectric_f0);
+    // ((n - 1) / (n + 1))^2 is 1 / 9 for n = 2; an index of 0 means that all is reflected.
+    const json glassy = with_extension(plastic, "KHR_materials_ior", {{"ior", 2}});
+    EXPECT_FLOAT_EQ(material_of(glassy).dielectric_f0, 1.0F / 9);
+    EXPECT_EQ(material_of(with_extension(plastic, "KHR_materials_ior", {{"ior", 0}})).dielectric_f0, 1);
+    // The strongest of the colour's factors counts, at most all is reflected.
+    const json specular = with_extension(glassy, "KHR_materials_specular",
+                                         {{"specularFactor", 0.5}, {"specularColorFactor", {0.25, 3, 0.5}}});
+    EXPECT_FLOAT_EQ(material_of(specular).dielectric_f0, 0.5F * 3 / 9);
+    // Half a coat: half way to its roughness and to the reflectance of an index of 1.5.
+    const json     coat   = {{"clearcoatFactor", 0.5}, {"clearcoatRoughnessFactor", 0.2}};
+    const Material coated = material_of(with_extension(glassy, "KHR_materials_clearcoat", coat));
+    EXPECT_FLOAT_EQ(coated.roughness, 0.5F);
+    EXPECT_FLOAT_EQ(coated.dielectric_f0, 0.5F * (1.0F / 9 + common_dielectric_f0));
+    json metal                                      = plastic;
+    metal["pbrMetallicRoughness"]["metallicFactor"] = 1;
+    EXPECT_FLOAT_EQ(material_of(with_extension(metal, "KHR_materials_clearcoat", coat)).roughness, 0.8F);
+    const Material unlit = material_of(with_extension(plastic, "KHR_materials_unlit", json::object()));
+    EXPECT_VEC_NEAR(unlit.emissive, glm::vec3(0.1F, 0.2F, 0.3F), eps);
+    EXPECT_VEC_NEAR(unlit.base_colour, glm::vec4(0, 0, 0, 0.75F), eps);
+    EXPECT_EQ(glm::vec3(unlit.metallic, unlit.roughness, unlit.dielectric_f0), glm::vec3(0, 1, 0));
+}
+
+TEST(SceneGltf, ColoursAreEncodedAndNormalsAreNot)
+{
+    TempFolder folder;
+    GltfFile   file                              = GltfFile::triangle();
+    file.primitive()["material"]                 = 0;
+    file.primitive()["attributes"]["TEXCOORD_0"] = file.add_accessor<float>({0, 0, 1, 0, 0, 1}, "VEC2", 2);
+    file.root["images"]                          = {{{"uri", pixel_png}}};
+    file.root["samplers"]                        = {{{"minFilter", 9987}, {"wrapS", 33648}, {"wrapT", 33071}}};
+    file.root["textures"]                        = {{{"source", 0}, {"sampler", 0}}};
+    const json texture                           = {{"index", 0}};
+    file.root["materials"]                       = {
+                              {{"emissiveTexture", texture}, {"emissiveFactor", {1, 1, 1}}, {"normalTexture", texture}}};
+    const Scene     scene    = load_scene(file.write(folder));
+    const Material& material = scene.materials[scene.draws[0].material];
+    const Texture & emissive = scene.textures.at(size_t(material.emissive_texture.texture)),
+                  &normals   = scene.textures.at(size_t(material.normal_texture.texture));
+    EXPECT_TRUE(emissive.srgb);
+    EXPECT_FALSE(normals.srgb);
+    EXPECT_FALSE(normals.nearest);
+    EXPECT_TRUE(normals.mipmaps);
+    EXPECT_EQ(normals.wrap_u, Wrap::mirrored_repeat);
+    EXPECT_EQ(normals.wrap_v, Wrap::clamp_to_edge);
+}
+
+TEST(SceneGltf, VerticesKeepWhatTheFileSays)
+{
+    TempFolder folder;
+    GltfFile   file          = GltfFile::triangle();
+    auto&      attributes    = file.primitive()["attributes"];
+    const int  normals       = file.add_accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
+    const int  tangents      = file.add_accessor<float>({0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1}, "VEC4", 4);
+    const int  first         = file.add_accessor<float>({1, 2, 3, 4, 5, 6}, "VEC2", 2);
+    const int  second        = file.add_accessor<float>({7, 8, 9, 10, 11, 12}, "VEC2", 2);
+    const int  colours       = file.add_accessor<float>({.1F, .2F, .3F, 0, 0, 0, 0, 0, 0}, "VEC3", 3);
+    attributes["NORMAL"]     = normals;
+    attributes["TANGENT"]    = tangents;
+    attributes["TEXCOORD_0"] = first;
+    attributes["TEXCOORD_1"] = second;
+    attributes["COLOR_0"]    = colours;
+    const auto placed        = [&](const json& scale) {
+        file.root["nodes"] = {{{"mesh", 0}, {"scale", scale}}};
+        return load_scene(file.write(folder)).vertices;
+    };
+    const std::vector<Vertex> vertices = placed({1, 1, 1});
+    EXPECT_EQ(vertices[0].colour, glm::vec4(.1F, .2F, .3F, 1));
+    EXPECT_EQ(vertices[2].uv0, glm::vec2(5, 6));
+    EXPECT_EQ(vertices[2].uv1, glm::vec2(11, 12));
+    EXPECT_EQ(vertices[1].tangent_ws, glm::vec4(0, 1, 0, -1));
+    EXPECT_EQ(placed({1, 3, 1})[1].tangent_ws, glm::vec4(0, 1, 0, -1)) << "tangents stay units";
+    EXPECT_EQ(placed({-1, 1, 1})[1].tangent_ws, glm::vec4(0, 1, 0, 1)) << "a mirror changes their hand";
+}
+
+TEST(SceneGltf, ATextureMakesAMaterialTransparentWithItsFactor)
+{
+    // The grey pixel is opaque: half of it is drawn, less is left out.
+    for (double alpha : {0.45, 0.55}) {
+        TempFolder folder;
+        GltfFile   file              = GltfFile::triangle();
+        file.primitive()["material"] = 0;
+        file.root["images"]          = {{{"uri", pixel_png}}};
+        file.root["textures"]        = {{{"source", 0}}};
+        file.root["materials"]       = {
+                  {{"alphaMode", "BLEND"},
+                   {"alphaCutoff", 0.1},
+                   {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, alpha}}, {"baseColorTexture", {{"index", 0}}}}}}};
+        const Scene scene = load_scene(file.write(folder));
+        ASSERT_EQ(scene.draws.size(), alpha < 0.5 ? 0U : 1U);
+        if (alpha < 0.5) continue;
+        const Material& material = scene.materials[scene.draws[0].material];
+        EXPECT_TRUE(material.alpha_mask);
+        EXPECT_EQ(material.alpha_cutoff, 0.5F);
+    }
 }
 
 } // namespace

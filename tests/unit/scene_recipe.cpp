@@ -361,5 +361,146 @@ TEST(SceneShapes, SmoothNormalsIgnoreHowVerticesAreShared)
             << "edges stay sharp";
 }
 
+TEST(SceneRecipe, RotationsAreAboutXThenYThenZ)
+{
+    const auto size_m = [](const char* rotation_deg) {
+        const Draw draw =
+            load_text(fmt::format("[[part]]\nshape = 'box'\nsize_m = [1, 2, 3]\nrotation_deg = {}\n", rotation_deg))
+                .draws.at(0);
+        return draw.bounds_max_ws - draw.bounds_min_ws;
+    };
+    // A quarter turn exchanges two of the three sizes.
+    EXPECT_VEC_NEAR(size_m("[90, 0, 90]"), glm::vec3(3, 1, 2), 1e-5F);
+    EXPECT_VEC_NEAR(size_m("[0, 90, 90]"), glm::vec3(2, 3, 1), 1e-5F);
+    EXPECT_VEC_NEAR(size_m("[90, 90, 0]"), glm::vec3(2, 3, 1), 1e-5F);
+    // The pyramid's top, 1.5 m from the middle, turns from y to z, to -x, and to x by way of z.
+    const auto top = [](const char* rotation_deg) {
+        glm::vec3   far(0);
+        const Scene scene = load_text(fmt::format("[[part]]\nfile = 'pyramid.obj'\nrotation_deg = {}\n", rotation_deg));
+        for (const Vertex& vertex : scene.vertices) {
+            const glm::vec3 from_middle = vertex.position_ws - glm::vec3(0, 1, 0);
+            if (std::abs(from_middle.y) < 1e-4F) far = from_middle; // the others are corners
+        }
+        return far;
+    };
+    EXPECT_VEC_NEAR(top("[90, 0, 0]"), glm::vec3(0, 0, 1.5F), 1e-5F);
+    EXPECT_VEC_NEAR(top("[0, 0, 90]"), glm::vec3(-1.5F, 0, 0), 1e-5F);
+    EXPECT_VEC_NEAR(top("[90, 90, 0]"), glm::vec3(1.5F, 0, 0), 1e-5F);
+}
+
+TEST(SceneRecipe, MaterialsChangeAsTold)
+{
+    const Material box = load_text("[[part]]\nshape = 'box'\n[part.material]\nmetallic = 0.5\nroughness = 0.25\n"
+                                   "ior = 2\nbase_colour = [0.1, 0.2, 0.3]\nemissive = [1, 2, 3]\n"
+                                   "double_sided = true\n")
+                             .materials.at(0);
+    EXPECT_EQ(box.metallic, 0.5F);
+    EXPECT_EQ(box.roughness, 0.25F);
+    EXPECT_FLOAT_EQ(box.dielectric_f0, 1.0F / 9);
+    EXPECT_VEC_NEAR(box.base_colour, glm::vec4(0.1F, 0.2F, 0.3F, 1), 1e-6F);
+    EXPECT_EQ(box.emissive, glm::vec3(1, 2, 3));
+    EXPECT_TRUE(box.double_sided);
+
+    const Scene changed = load_text("[[part]]\nfile = 'pyramid.obj'\n[[part]]\nshape = 'box'\nposition = [9, 0, 0]\n"
+                                    "[[material]]\nname = 'stone'\nleave_out = true\n"
+                                    "[[material]]\npart = 'pyramid'\nmetallic = 1\ndouble_sided = false\n");
+    ASSERT_EQ(changed.draws.size(), 2U) << "stone is left out";
+    const Material &gold = material_named(changed, "gold_leaf"), &other = material_named(changed, "box");
+    EXPECT_EQ(gold.metallic, 1);
+    EXPECT_FALSE(gold.double_sided);
+    EXPECT_EQ(other.metallic, 0) << "another part";
+    // Of the file: Phong's exponent 30 is alpha^2 = 2 / 32, and roughness the root of alpha.
+    EXPECT_NEAR(gold.roughness, 0.5, 1e-6);
+    EXPECT_VEC_NEAR(gold.base_colour, glm::vec4(0.9F, 0.7F, 0.1F, 1), 1e-6F);
+    const Scene plain = load_text("[[part]]\nfile = 'pyramid.obj'\n");
+    EXPECT_FLOAT_EQ(material_named(plain, "stone").roughness, 0.9F) << "no highlight";
+    EXPECT_TRUE(material_named(plain, "stone").double_sided);
+}
+
+TEST(SceneRecipe, LightsHaveAKindARangeAndASoftEdge)
+{
+    const Scene scene = load_text("[[part]]\nshape = 'box'\n"
+                                  "[[light]]\ntype = 'point'\nposition = [1, 2, 3]\nintensity = 5\nrange_m = 7\n"
+                                  "[[light]]\ntype = 'spot'\nposition = [0, 0, 9]\ntarget = [0, 0, 5]\n"
+                                  "angle_deg = 120\nintensity = 5\n");
+    EXPECT_EQ(scene.lights.at(0).type, LightType::point);
+    EXPECT_EQ(scene.lights[0].position_ws, glm::vec3(1, 2, 3));
+    EXPECT_EQ(scene.lights[0].range_m, 7);
+    EXPECT_TRUE(scene.lights[0].casts_shadow);
+    EXPECT_EQ(scene.lights.at(1).direction_ws, glm::vec3(0, 0, -1));
+    EXPECT_NEAR(scene.lights[1].outer_angle_rad, std::acos(-1.0) / 3, 1e-6);
+    EXPECT_NEAR(scene.lights[1].inner_angle_rad, std::acos(-1.0) / 4, 1e-6) << "three quarters of the outer angle";
+    EXPECT_EQ(scene.lights[1].range_m, 0);
+}
+
+TEST(SceneRecipe, TilesAlternateByTheMetre)
+{
+    const Scene scene = load_text("[[part]]\nshape = 'checker_floor'\nsize_m = [6, 0, 4]\ntile_m = 0.5\n"
+                                  "tile_colours = [[1, 0, 0], [0, 0, 1]]\n");
+    glm::vec2   least(1e9F), most(-1e9F);
+    for (const Vertex& vertex : scene.vertices) {
+        least = glm::min(least, vertex.uv0), most = glm::max(most, vertex.uv0);
+        // The texture's u runs along x, its v away from the far edge.
+        EXPECT_NEAR(vertex.uv0.x, vertex.position_ws.x + 3, 1e-5);
+        EXPECT_NEAR(vertex.uv0.y, vertex.position_ws.z + 2, 1e-5);
+    }
+    EXPECT_VEC_NEAR(glm::vec3(most - least, 0), glm::vec3(6, 4, 0), 1e-5F); // a repeat is two tiles
+    const Texture& texture = scene.textures.at(0);
+    const auto     texel   = [&](int x, int y) {
+        const uint8_t* rgba = &texture.rgba[4 * size_t(x + y * texture.size_px.x)];
+        return glm::ivec3(rgba[0], rgba[1], rgba[2]);
+    };
+    const int last = texture.size_px.x - 1;
+    EXPECT_EQ(texel(0, 0), glm::ivec3(255, 0, 0));
+    EXPECT_EQ(texel(last, last), glm::ivec3(255, 0, 0));
+    EXPECT_EQ(texel(last, 0), glm::ivec3(0, 0, 255));
+    EXPECT_EQ(texel(0, last), glm::ivec3(0, 0, 255));
+    EXPECT_TRUE(texture.srgb);
+    EXPECT_TRUE(texture.nearest);
+}
+
+TEST(SceneRecipe, WithoutViewsAndLightsTheyAreFitted)
+{
+    const Scene   scene  = load_text("[[part]]\nshape = 'box'\nsize_m = [2, 4, 4]\nposition = [1, 0, 0]\n");
+    const Camera& camera = scene.cameras.at(0);
+    // A sphere of 3 m around the box, a twentieth farther away than where it fills the view of 50 degrees.
+    const double distance_m = 1.05 * 3 / std::sin(25 * std::acos(-1.0) / 180);
+    EXPECT_VEC_NEAR(camera.target_ws, glm::dvec3(1, 2, 0), 1e-9);
+    EXPECT_VEC_NEAR(camera.position_ws - camera.target_ws, distance_m * glm::normalize(glm::dvec3(0.5, 0.4, 1)), 1e-9);
+    EXPECT_NEAR(camera.near_m, distance_m / 100, 1e-9);
+    const Light& light = scene.lights.at(0);
+    EXPECT_EQ(light.type, LightType::directional);
+    EXPECT_EQ(light.intensity, glm::vec3(2.5F));
+    EXPECT_VEC_NEAR(light.direction_ws, glm::normalize(glm::vec3(-0.4F, -1, -0.6F)), 1e-6F);
+}
+
+TEST(SceneShapes, TexturesAreLaidInMetres)
+{
+    const double pi   = std::acos(-1.0);
+    const auto   most = [](const Mesh& mesh) {
+        glm::vec2 uv(0);
+        for (const Vertex& vertex : mesh.vertices) uv = glm::max(uv, vertex.uv0);
+        return glm::vec3(uv, 0);
+    };
+    EXPECT_VEC_NEAR(most(make_sphere({0, 0, 0}, 2, 8, 4)), glm::vec3(4 * pi, 2 * pi, 0), 1e-5F);
+    EXPECT_VEC_NEAR(most(make_cylinder({0, 0, 0}, 2, 3, 8)), glm::vec3(4 * pi, 3, 0), 1e-5F);
+    EXPECT_VEC_NEAR(most(make_quad({0, 0, 0}, {5, 0, 0}, {0, 0, -2})), glm::vec3(5, 2, 0), 1e-6F);
+    const Mesh   round = make_cylinder({1, 2, 3}, 2, 3, 8);
+    const Bounds box   = [&] {
+        Bounds bounds;
+        for (const glm::dvec3& position : round.positions_ws) bounds.add(position);
+        return bounds;
+    }();
+    EXPECT_VEC_NEAR(box.min_ws, glm::dvec3(-1, 2, 1), 1e-9);
+    EXPECT_VEC_NEAR(box.max_ws, glm::dvec3(3, 5, 5), 1e-9);
+    for (const Shape shape : {Shape::sphere, Shape::cylinder}) {
+        const Draw draw = load_text(fmt::format("[[part]]\nshape = '{}'\nsize_m = [2, 4, 6]\n",
+                                                shape == Shape::sphere ? "sphere" : "cylinder"))
+                              .draws.at(0);
+        EXPECT_VEC_NEAR(draw.bounds_min_ws, glm::vec3(-1, 0, -3), 1e-5F);
+        EXPECT_VEC_NEAR(draw.bounds_max_ws, glm::vec3(1, 4, 3), 1e-5F);
+    }
+}
+
 } // namespace
 } // namespace ssrlab

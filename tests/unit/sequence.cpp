@@ -160,5 +160,77 @@ frames_per_view = 8
     EXPECT_EQ(camera_at(scene, "ride", {2, 0}).position_ws, glm::dvec3(1, 1, 5));
 }
 
+// Tait-Bryan: about x, then y, then z. Quarter turns take axes to axes, and in another order to others.
+TEST(Sequence, TurnsAreAboutXThenYThenZ)
+{
+    const auto turned = [](glm::dvec3 turn_deg, glm::dvec3 point) {
+        return glm::dvec3(pose({.turn_deg = turn_deg}, 1) * glm::dvec4(point, 1));
+    };
+    expect_near(turned({90, 0, 0}, {0, 1, 0}), {0, 0, 1}, 1e-12);
+    expect_near(turned({0, 0, 90}, {1, 0, 0}), {0, 1, 0}, 1e-12);
+    expect_near(turned({90, 0, 90}, {0, 1, 0}), {0, 0, 1}, 1e-12);
+    expect_near(turned({90, 0, 90}, {0, 0, 1}), {1, 0, 0}, 1e-12);
+    expect_near(turned({0, 90, 90}, {1, 0, 0}), {0, 0, -1}, 1e-12);
+    expect_near(turned({90, 90, 0}, {0, 1, 0}), {1, 0, 0}, 1e-12);
+    expect_near(turned({90, 90, 0}, {1, 0, 0}), {0, 0, -1}, 1e-12);
+}
+
+TEST(Sequence, APathChangesAllOfACamera)
+{
+    Camera a, b;
+    a.name = "a", b.name = "b";
+    a.position_ws = {0, 0, 0}, b.position_ws = {8, 4, 2};
+    a.target_ws = {0, 0, -1}, b.target_ws = {8, 4, -7};
+    a.up_ws = {0, 1, 0}, b.up_ws = {1, 0, 0};
+    a.fov_y_deg = 30, b.fov_y_deg = 90;
+    a.height_m = 2, b.height_m = 6;
+    a.shift_px = {0, 4}, b.shift_px = {8, 0};
+    Scene scene;
+    scene.cameras = {a, b};
+    scene.paths   = {{"shot", {a, b}, 4}};
+    Camera at     = camera_at(scene, "shot", {1, 0});
+    EXPECT_EQ(at.name, "shot");
+    expect_near(at.position_ws, {2, 1, 0.5}, 1e-12);
+    expect_near(at.target_ws, {2, 1, -2.5}, 1e-12);
+    expect_near(at.up_ws, {0.25, 0.75, 0}, 1e-12);
+    EXPECT_NEAR(at.fov_y_deg, 45, 1e-12);
+    EXPECT_NEAR(at.height_m, 3, 1e-12);
+    EXPECT_EQ(at.shift_px, glm::dvec2(2, 3));
+    EXPECT_EQ(camera_at(scene, "shot", {1, 8}).shift_px, glm::dvec2(2, 3) + jitter_px({1, 8}));
+
+    const auto moves = [&](auto change) {
+        Scene changed            = scene;
+        changed.paths[0].cameras = {a, a};
+        change(changed.paths[0].cameras[1]);
+        return motion_at(changed, "shot", {64, 36}, 1)->camera_moves;
+    };
+    EXPECT_FALSE(moves([](Camera&) {}));
+    EXPECT_TRUE(moves([](Camera& camera) { camera.position_ws.x = camera.target_ws.x = 1; }));
+    EXPECT_TRUE(moves([](Camera& camera) { camera.fov_y_deg = 31; }));
+    EXPECT_TRUE(moves([](Camera& camera) { camera.shift_px.x = 1; }));
+    EXPECT_TRUE(moves([](Camera& camera) { camera.up_ws = {1, 0, 0}; }));
+}
+
+TEST(Sequence, WhatTurnsTakesItsNormalsAndTangentsAlong)
+{
+    TempFolder folder;
+    // By 90 degrees about y: x becomes -z, and z becomes x.
+    const Scene scene = load_scene(folder.write(
+        "turning.toml", "[[part]]\nshape = \"box\"\nsize_m = [1, 2, 3]\nripple_m = 1\nturn_deg = [0, 90, 0]\n"));
+    const Scene later = scene_at(scene, 1);
+    ASSERT_EQ(scene.vertices.size(), later.vertices.size());
+    const auto turned = [](glm::vec3 v) { return glm::vec3(v.z, v.y, -v.x); };
+    for (size_t i = 0; i < scene.vertices.size(); ++i) {
+        const Vertex &before = scene.vertices[i], &after = later.vertices[i];
+        ASSERT_NEAR(glm::length(glm::vec3(before.tangent_ws)), 1, 1e-5);
+        EXPECT_VEC_NEAR(after.position_ws, turned(before.position_ws), 1e-5F);
+        EXPECT_VEC_NEAR(after.normal_ws, turned(before.normal_ws), 1e-5F);
+        EXPECT_VEC_NEAR(glm::vec3(after.tangent_ws), turned(glm::vec3(before.tangent_ws)), 1e-5F);
+        EXPECT_EQ(after.tangent_ws.w, before.tangent_ws.w);
+    }
+    EXPECT_VEC_NEAR(later.draws.at(0).bounds_max_ws, glm::vec3(1.5F, 2, 0.5F), 1e-5F);
+    EXPECT_VEC_NEAR(later.draws.at(0).bounds_min_ws, glm::vec3(-1.5F, 0, -0.5F), 1e-5F);
+}
+
 } // namespace
 } // namespace ssrlab
