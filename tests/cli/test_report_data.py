@@ -220,6 +220,13 @@ class Test(Case):
         found = pairs.paired_ratio(ratios[::-1], pd.Series(1.0, index=range(36)))
         self.near([found.median, found.low, found.high], [18.5, 9.5, 27.5])
         self.assertEqual(len(pairs.blocks_of(np.ones(31))), 31)
+        self.near(pairs.blocks_of(np.tile([1.0, 2, 9], 16)), [2] * 16)
+        # Critical values of the two-sided sign test at 5 %, plus one.
+        for count, rank in ((6, 1), (8, 1), (9, 2), (11, 2), (12, 3), (15, 4), (17, 5), (20, 6), (25, 8), (30, 10)):
+            found = pairs.paired_ratio(ratios[:count], pd.Series(1.0, index=range(count)))
+            self.assertEqual((found.low, found.high), (rank, count + 1 - rank), count)
+        none = pairs.paired_ratio(ratios, pd.Series([1.0], index=[99]))
+        self.assertEqual((none.pairs, math.isnan(none.median)), (0, True))
 
     def test_panels_show_what_their_experiment_names(self):
         row = pd.Series(dict(technique="linear", steps=16, jitter=True, width=80, recall_1px=0.5, precision_1px=np.nan, hit_share=0.25, picture="p/a.png", truth_picture="p/t.png"))

@@ -7,6 +7,8 @@
 #include "harness/quality.h"
 #include "harness/samples.h"
 #include "harness/sequence_state.h"
+#include "temp_folder.h"
+#include "truth_gbuffers.h"
 
 #include <gmock/gmock.h>
 
@@ -385,6 +387,52 @@ TEST(Rows, ReflectedImageTakesTheHitPixelsRadiance)
     result.status       = {TraceStatus::hit, TraceStatus::left_screen, TraceStatus::not_traced};
     result.hit_pixel[0] = {2, 0};
     EXPECT_THAT(reflected_image(result, gbuffer, {7, 8, 9}).values, testing::ElementsAre(0, 0, 3, 7, 8, 9, 0, 0, 0));
+}
+
+TEST(Rows, ReflectedImageTakesTheRadianceOfTheLayerThatIsHit)
+{
+    GBufferImage gbuffer, behind, last;
+    gbuffer.radiance    = {{1, 0, 0}, {2, 0, 0}};
+    behind.radiance     = {{0, 3, 0}, {0, 4, 0}};
+    last.radiance       = {{0, 0, 5}, {0, 0, 6}};
+    gbuffer.layers      = {behind, last};
+    TraceResult result  = make_trace_result({2, 1}, false);
+    result.status       = {TraceStatus::hit, TraceStatus::hit};
+    result.hit_pixel[0] = {1, 0};
+    result.hit_layer    = {1, 2};
+    EXPECT_THAT(reflected_image(result, gbuffer, {7, 8, 9}).values, testing::ElementsAre(0, 4, 0, 0, 0, 5));
+}
+
+// Pixel 0 reflects, pixel 1 is dull, pixel 2 empty. Of another renderer's frame it is not known what the mirror should show there.
+TEST(Rows, AFrameWithoutTrianglesIsJudgedWhereItReflects)
+{
+    const TempFolder folder;
+    GBufferImage     gbuffer = test::empty_gbuffer(test::bench_view({3, 1}));
+    test::set_pixel(gbuffer, 0, 0, 2, {0, 0, 1}, 1);
+    test::set_pixel(gbuffer, 1, 0, 2, {0, 0, 1}, 0);
+    Scene scene;
+    scene.frame.emplace();
+    Truths truths(scene, gbuffer, folder.path());
+    truths.make({}, true);
+    EXPECT_THAT(truths.without_scene(), testing::HasSubstr("has no triangles"));
+    const Image     black{{3, 1}, {"R", "G", "B"}, std::vector<float>(9, 0.0F), {}};
+    const Reference reference(black);
+    Image           elsewhere = black, there = black;
+    for (size_t i = 3; i < 9; ++i) elsewhere.values[i] = 1;
+    for (size_t i = 0; i < 3; ++i) there.values[i] = 1;
+    EXPECT_EQ(truths.compare_picture(elsewhere, reference).at("picture_rmse"), 0);
+    EXPECT_EQ(truths.compare_picture(there, reference).at("picture_rmse"), 1);
+    EXPECT_EQ(truths.compare_picture(there, reference).at("picture_visible_rmse"), std::nullopt);
+    EXPECT_EQ(truths.compare_converged(there, reference).at("converged_rmse"), 1);
+    TraceResult traced         = make_trace_result({3, 1}, false);
+    traced.status[0]           = TraceStatus::left_screen;
+    const MeasureValues values = truths.compare(traced, nullptr, nullptr);
+    EXPECT_FALSE(values.contains("recall_1px"));
+    EXPECT_FALSE(values.contains("wrong_rays"));
+    EXPECT_FALSE(values.contains("rmse_visible"));
+    EXPECT_EQ(values.at("screen_within_1px"), 1);
+    EXPECT_TRUE(truths.agreement(traced));
+    EXPECT_FALSE(truths.causes(traced));
 }
 
 TEST(Rows, TheTruthCacheLiesBesideTheResults)
