@@ -131,7 +131,7 @@ class Test(Case):
         """Cost as the square root of the pixels, fetches as their fourth root; half of the pixels are rays."""
         rows = []
         for side in (100, 200, 400):
-            rows.append(dict(technique="hiz", width=side, height=side, trace_ms_median=side / 100 - 0.25, structures_ms_median=0.25,
+            rows.append(dict(technique="hiz", width=2 * side, height=side // 2, trace_ms_median=side / 100 - 0.25, structures_ms_median=0.25,
                              fetches_mean=4 * side ** 0.5, rays=side * side // 2))
         return made_results(self, rows)
 
@@ -202,7 +202,7 @@ class Test(Case):
                         rows.append(dict(scene=scene, technique="hiz", surface=surface, behind=behind, thickness_m=thickness, layers=layer,
                                          recall_1px=most + thickness / 10, precision_1px=0.9 - thickness, f1_1px=f1, hidden_too_f1_1px=f1 - 0.1,
                                          hidden_too_recall_1px=0.5, trace_ms_median=2 + better, structures_ms_median=0.75,
-                                         passes=f"layers={layer - 1} solid_backs={solid_ms} trace=2 other_layers=9"))
+                                         passes=f"other_layers=9 layers={layer - 1} solid_backs={solid_ms} trace=2"))
         return made_results(self, rows, ["surface", "behind", "thickness_m", "layers"])
 
     def test_precision_against_recall(self):

@@ -41,18 +41,20 @@ class Test(Case):
     def test_results_in_pandas(self):
         rows = [dict(technique="linear", space="pixels", jitter=True, steps=8, trace_ms_median=2, structures_ms_median="", frame=0),
                 dict(technique="linear", space="metres", jitter=False, steps=16, trace_ms_median=3, frame=0),
-                dict(technique="hiz", space="", jitter="", trace_ms_median=1, structures_ms_median=0.5, frame=3, view="v"),
+                dict(technique="hiz", space="pixels", jitter=True, trace_ms_median=1, structures_ms_median=0.5, frame=3, view="NA"),
                 dict(technique="hiz", outcome="failed", trace_ms_median="", message="no", frame=0)]
         for row in rows:
             row.update(thickness_m=0.1, psnr_visible_db=30, flips_per_million=2, wave64_iterations_mean=5, recall_1px=0.5, stopped_share=0.1, fps=3,
                        inverse_fps_s=1, error_median_px=1)
-        made_results(self, rows, ["space", "jitter", "steps", "thickness_m"])
+        rows[0]["kind"] = "only"  # of one run, so it does not vary
+        made_results(self, rows, ["space", "jitter", "kind", "steps", "thickness_m"])
         loaded = ssrlab_results.load(self.path("out"))
         self.assertEqual(list(loaded.run_id), ["r0", "r1", "r2"])
         self.assertEqual(list(loaded.series), ["linear, pixels, jitter", "linear, metres", "hiz"])
-        self.assertEqual(list(loaded.frame_name), ["s, view default, 80×60", "s, view default, 80×60", "s, view v, 80×60, frame 3"])
+        self.assertEqual(ssrlab_results.varying(loaded, loaded.attrs["inputs"]), ["space", "jitter", "steps"])
+        self.assertEqual(list(loaded.frame_name), ["s, view default, 80×60", "s, view default, 80×60", "s, view NA, 80×60, frame 3"])
         self.near(loaded.cost_ms_median, [2, 3, 1.5])
-        self.assertEqual(loaded.attrs["inputs"], ["space", "jitter", "steps"])
+        self.assertEqual(loaded.attrs["inputs"], ["space", "jitter", "kind", "steps"])
         self.assertEqual((loaded.attrs["constants"]["thickness_m"], loaded.attrs["constants"]["width"]), (0.1, 80))
         self.assertFalse({"thickness_m", "message", "width"} & set(loaded))
         self.assertIn("scene", loaded)
@@ -60,7 +62,7 @@ class Test(Case):
         whole = ssrlab_results.load(self.path("out"), keep_constants=True, failed=True)
         self.assertEqual((len(whole), whole.thickness_m.iloc[3], whole.message.iloc[3]), (4, 0.1, "no"))
         units = {"thickness_m": "m", "psnr_visible_db": "dB", "flips_per_million": "rays per million", "wave64_iterations_mean": "steps", "recall_1px": "share",
-                 "stopped_share": "share", "fps": "", "inverse_fps_s": "s", "error_median_px": "px", "cost_ms_median": "ms", "trace_ms_ci_low": "ms",
+                 "stopped_share": "share", "fps": "", "inverse_fps_s": "s", "error_median_px": "px", "cost_ms_median": "ms", "trace_ms_ci_low": "ms", "trace_ms_ci_high": "ms",
                  "fetches_mean": "fetches", "rays": ""}
         self.assertEqual({name: whole.attrs["units"][name] for name in units}, units)
 
@@ -227,6 +229,16 @@ class Test(Case):
             self.assertEqual((found.low, found.high), (rank, count + 1 - rank), count)
         none = pairs.paired_ratio(ratios, pd.Series([1.0], index=[99]))
         self.assertEqual((none.pairs, math.isnan(none.median)), (0, True))
+
+    def test_frames_and_variants_are_told_apart(self):
+        rows = [dict(technique="linear", space=space, frame=frame) for frame in (0, 3) for space in ("b", "a")]
+        results = made_results(self, rows, ["space"])
+        self.assertEqual([(title, name) for title, name, _ in results.pictures()],
+                         [("s, view default, 80×60", "s_default_80x60_0"), ("s, view default, 80×60, frame 3", "s_default_80x60_3")])
+        self.assertEqual((results.styles["linear, a"]["linestyle"], results.styles["linear, b"]["linestyle"]), ("-", "--"))
+        self.assertEqual((results.chart_styles["linear, a"]["dash"], results.chart_styles["linear, b"]["dash"]), ([], [6, 4]))
+        self.assertEqual(results.targets, {name: [0.9, 0.95, 0.99, 0.995] for name in ("recall_1px", "screen_recall_1px")}, "where none are stated")
+        self.assertEqual([name for _, name, _ in made_results(self, rows[2:], ["space"]).pictures()], ["s_default_80x60"])
 
     def test_panels_show_what_their_experiment_names(self):
         row = pd.Series(dict(technique="linear", steps=16, jitter=True, width=80, recall_1px=0.5, precision_1px=np.nan, hit_share=0.25, picture="p/a.png", truth_picture="p/t.png"))
