@@ -69,6 +69,55 @@ TEST(Blur, ReadsTheNearestPixels)
         EXPECT_NEAR(found[at(image, 64 + d, 30)].r, at_offset.contains(d) ? at_offset[d] / sum : 0, 1e-3) << d;
 }
 
+// At half resolution, before up-sampling: a step is a block, the radius is half as many steps, and beyond the border stands its last block. Of
+// 65 x 63 pixels the blocks at the border are cut.
+TEST(Blur, OfBlocksIsTheGaussianOfHalfAsManySteps)
+{
+    for (const glm::ivec2& size_px : {glm::ivec2(64, 64), glm::ivec2(65, 63)}) {
+        GBufferImage image = metal_wall(size_px);
+        std::ranges::fill(image.roughness, 0.5F);
+        const Picture    picture = make_picture(image);
+        const auto       frame   = frame_with(picture, {chosen(Gloss::blur),
+                                                        chosen(TraceResolution::half),
+                                                        chosen(BlurOrder::before_upsampling),
+                                                        {"blur_scale", 0.375}});
+        const glm::ivec2 blocks  = (size_px + 1) / 2;
+        run_frame(device(), *frame); // says which pixels blocks are traced from
+        const auto traced = download_as<uint32_t>(device(), picture.buffers->block_pixel);
+        const auto source = [&](int x, int y) {
+            return glm::dvec3(x % 8 == 7, y % 8 == 1, (x + 2 * y) % 16) / glm::dvec3(1, 1, 16);
+        };
+        Reflection reflection(image.depth.size(), nothing_reflects);
+        for (int y = 0; y < blocks.y; ++y)
+            for (int x = 0; x < blocks.x; ++x) {
+                const glm::ivec2 pixel = unpack_pixel(traced[pixel_index({x, y}, blocks)]);
+                ASSERT_EQ(pixel / 2, glm::ivec2(x, y));
+                reflection[at(image, pixel.x, pixel.y)] = glm::vec4(source(x, y), 1);
+            }
+        set_reflection(picture, reflection);
+        run_pass(*frame, ray_blur_pass());
+        const Reflection found  = read_colours(picture.buffers->reflection);
+        const double     radius = 0.375 * 0.5 * size_px.y / 2;
+        const int        taps   = int(std::ceil(radius));
+        for (int y = 0; y < blocks.y; ++y)
+            for (int x = 0; x < blocks.x; ++x) {
+                glm::dvec3 sum(0);
+                double     total = 0;
+                for (int v = -taps; v <= taps; ++v)
+                    for (int u = -taps; u <= taps; ++u) {
+                        const auto   steps  = [&](int i) { return int(std::round(i * radius / taps)); };
+                        const double weight = std::exp(-2.0 * (u * u + v * v) / (taps * taps));
+                        sum += weight * source(std::clamp(x + steps(u), 0, blocks.x - 1),
+                                               std::clamp(y + steps(v), 0, blocks.y - 1));
+                        total += weight;
+                    }
+                const glm::ivec2 pixel = unpack_pixel(traced[pixel_index({x, y}, blocks)]);
+                for (int c = 0; c < 3; ++c)
+                    ASSERT_NEAR(found[at(image, pixel.x, pixel.y)][c], sum[c] / total, 3e-3) << x << ", " << y;
+            }
+    }
+}
+
 TEST(Blur, LeavesSmoothPixelsToTheLastBit)
 {
     GBufferImage image = metal_wall({64, 64});
