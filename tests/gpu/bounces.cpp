@@ -336,5 +336,32 @@ TEST(Bounces, AreLeftOutWhereNothingThatWasHitReflects)
               shaded(*prepare(mirrors, bouncing(BounceMode::direct, 1, {{"skip_unneeded_passes", 0}}))));
 }
 
+// Rough mirrors of bright and dark columns between which a dark wall stands: a cone sees a mean of half of their light. Where the ray hit a bright
+// column that reflects the wall, that column's whole light is taken away again: more than there is.
+TEST(Bounces, LeaveNoNegativeLightWhereConesSawLess)
+{
+    GBufferImage image = facing_mirrors({256, 128});
+    for (int y = 0; y < 128; ++y)
+        for (int x = 0; x < 256; ++x) {
+            const size_t i     = at(image, x, y);
+            image.radiance[i]  = glm::vec3(image.metallic[i] > 0 && x % 2 == 0 ? 1.0F : 0.0F);
+            image.roughness[i] = 0.7F;
+        }
+    const Picture picture = make_picture(image);
+    const auto    frame =
+        prepare(picture,
+                bouncing(BounceMode::direct, 1, {chosen(Gloss::cone), chosen(ViewerFade::off), chosen(EdgeFade::off)}));
+    run_frame(device(), *frame);
+    size_t dark = 0, bright = 0;
+    for (const glm::vec4& pixel : read_colours(picture.buffers->reflection)) {
+        if (pixel.a <= 0) continue;
+        ASSERT_GE(pixel.r, 0);
+        dark += pixel.r == 0;
+        bright += pixel.r > 0.3F;
+    }
+    EXPECT_GT(dark, 100U);
+    EXPECT_GT(bright, 100U);
+}
+
 } // namespace
 } // namespace ssrlab::test

@@ -262,11 +262,16 @@ TEST(Cones, EqualTheirHostTwin)
             const auto        shading = chosen(lit ? HitShading::lit : HitShading::diffuse);
             const double      stored  = host.top() * 2 * std::exp2(-10);
             for (const int steps : {1, 4}) {
-                ParameterValues   passes{chosen(Gloss::cone),     shading,
-                                       chosen(ViewerFade::off), chosen(EdgeFade::off),
-                                       chosen(BounceMode::off), {"skip_unneeded_passes", 0},
-                                       {"blur_scale", 0},       {"cone_steps", steps},
-                                       {"cone_scale", 1},       {"environment_fallback", 0}};
+                ParameterValues   passes{chosen(Gloss::cone),
+                                       shading,
+                                       chosen(ViewerFade::off),
+                                       chosen(EdgeFade::off),
+                                       chosen(BounceMode::off),
+                                       {"skip_unneeded_passes", 0},
+                                       {"blur_scale", 0},
+                                       {"cone_steps", steps},
+                                       {"cone_scale", steps == 1 ? 1 : 2},
+                                       {"environment_fallback", 0}};
                 const auto        frame  = frame_with(picture, passes);
                 const TraceResult traced = count_frame(device(), *frame);
                 run_frame(device(), *frame);
@@ -290,7 +295,8 @@ TEST(Cones, EqualTheirHostTwin)
                                      to_px(traced.hit_px_depth[i]);
                     const double alpha2 = std::pow(double(picture.image.roughness[i]), 4);
                     const double sine =
-                        std::sin(std::min(std::acos(std::pow(0.244, alpha2 / (2 - alpha2))), std::numbers::pi / 2));
+                        std::sin(std::min((steps == 1 ? 1 : 2) * std::acos(std::pow(0.244, alpha2 / (2 - alpha2))),
+                                          std::numbers::pi / 2));
                     const double radius = glm::distance(from_px, to_px) * sine / (1 + sine);
                     if (std::abs(radius - 0.5) < 0.01) continue; // sharp, or a circle?
                     const glm::dvec3 sharp(host.cell(traced.hit_pixel[i], 0).colour);
@@ -308,6 +314,47 @@ TEST(Cones, EqualTheirHostTwin)
             }
         }
     }
+}
+
+// Rays pass behind a panel at 2 m and hit, in the second layer, the wall at 4 m. What they bring back is of that layer: not of a cone, which sees the first
+// one; not bent away, since the wall lies where they go; and not faded, since the wall is flat.
+TEST(Cones, SeeNothingOfDeeperLayers)
+{
+    GBufferImage image = floor_and_wall(bench_view({64, 64}), 4), behind = empty_gbuffer(image.view);
+    std::ranges::fill(image.roughness, 0.6F);
+    std::ranges::fill(image.radiance, glm::vec3(1, 0, 0));
+    std::ranges::fill(behind.radiance, glm::vec3(0, 1, 0));
+    for (int y = 24; y < 36; ++y)
+        for (int x = 0; x < 64; ++x) {
+            set_pixel(image, x, y, 2, {0, 0, 1}, 0);
+            set_pixel(behind, x, y, 4, {0, 0, 1}, 0);
+        }
+    image.layers          = {behind};
+    const Picture picture = make_picture(image);
+    FrameSettings settings{.trace = {.thickness_m = 0.5, .max_distance_m = 50}};
+    settings.trace.layers = 2;
+    for (const auto& [name, value] : ParameterValues{chosen(Gloss::cone),
+                                                     chosen(HitShading::diffuse),
+                                                     chosen(ViewerFade::off),
+                                                     chosen(EdgeFade::off),
+                                                     chosen(BounceMode::off),
+                                                     {"environment_fallback", 0},
+                                                     {"min_direction_cosine", 0.98},
+                                                     {"depth_step_fade_m", 1}})
+        settings.passes.at(name) = value;
+    const auto frame =
+        prepare_frame(device(), picture.buffers, technique("dda"), values_of(technique("dda")), settings);
+    const TraceResult traced = count_frame(device(), *frame);
+    run_frame(device(), *frame);
+    const Reflection found  = read_colours(picture.buffers->reflection);
+    size_t           deeper = 0;
+    for (size_t i = 0; i < found.size(); ++i) {
+        if (traced.status[i] != TraceStatus::hit || traced.hit_layer[i] == 0) continue;
+        if (traced.hit_pixel[i].y == 24 || traced.hit_pixel[i].y == 35) continue; // beside it the layer is empty
+        ++deeper;
+        ASSERT_EQ(found[i], glm::vec4(0, 1, 0, 1)) << i;
+    }
+    EXPECT_GT(deeper, 200U);
 }
 
 } // namespace

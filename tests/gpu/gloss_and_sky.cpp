@@ -69,6 +69,24 @@ TEST(Blur, ReadsTheNearestPixels)
         EXPECT_NEAR(found[at(image, 64 + d, 30)].r, at_offset.contains(d) ? at_offset[d] / sum : 0, 1e-3) << d;
 }
 
+// Less than half a step reaches no neighbour, and there is no radius below 0; 0.7 steps are one tap a side, at the next pixel and two deviations away.
+TEST(Blur, BeginsAtHalfAStep)
+{
+    const Picture picture = rough_wall(0.5F);
+    Reflection    line(64 * 64, {0, 0, 0, 1});
+    for (int y = 0; y < 64; ++y) line[at(picture.image, 32, y)] = {1, 1, 1, 1};
+    const auto with_radius = [&](double radius_px) {
+        return blur(picture, line, {{"blur_scale", 1.0 / 32}, {"blur_bias", (radius_px - 1) / 64}});
+    };
+    EXPECT_EQ(with_radius(0.49), line);
+    EXPECT_EQ(with_radius(-8), line);
+    const Reflection found  = with_radius(0.7);
+    const double     beside = std::exp(-2) / (1 + 2 * std::exp(-2));
+    EXPECT_NEAR(found[at(picture.image, 31, 30)].r, beside, 1e-3);
+    EXPECT_NEAR(found[at(picture.image, 32, 30)].r, 1 - 2 * beside, 1e-3);
+    EXPECT_EQ(found[at(picture.image, 34, 30)].r, 0);
+}
+
 // At half resolution, before up-sampling: a step is a block, the radius is half as many steps, and beyond the border stands its last block. Of
 // 65 x 63 pixels the blocks at the border are cut.
 TEST(Blur, OfBlocksIsTheGaussianOfHalfAsManySteps)
@@ -193,14 +211,21 @@ glm::vec3 blurred_sky(const Scene& scene, const EnvironmentMap& levels, glm::dve
 }
 
 // A mirror reflects the map itself; what is rough, its mean over the lobe: between the levels on either side of its roughness.
-TEST(EnvironmentFallback, IsTheSkyInTheMirrorDirectionBlendedByTheWeight)
+void expect_blended_sky(Projection projection)
 {
-    const Scene   scene   = load_scene("builtin:everything");
-    const Picture picture = make_picture(scene, find_camera(scene, "default"), {161, 91});
+    const Scene scene     = load_scene("builtin:everything");
+    Camera      camera    = find_camera(scene, "default");
+    camera.projection     = projection;
+    camera.height_m       = 4;
+    const Picture picture = make_picture(scene, camera, {161, 91});
     const auto    frame   = frame_with(picture, {chosen(Gloss::off)});
     Reflection    before(picture.image.depth.size(), nothing_reflects);
     for (size_t i = 0; i < before.size(); ++i)
         if (picture.image.metallic[i] > 0) before[i] = {2, 1, 0.5F, static_cast<float>(i % 3) / 2};
+    // Some normals show away from the eye: what they are of is seen all the same.
+    auto normals = download_as<glm::vec4>(device(), picture.gbuffer->normal);
+    for (size_t i = 0; i < normals.size(); i += 5) normals[i] *= glm::vec4(-1, -1, -1, 1);
+    upload(device(), picture.gbuffer->normal, normals.data(), normals.size() * sizeof(glm::vec4));
     set_reflection(picture, before);
     run_pass(*frame, environment_pass());
     const Reflection     after         = read_colours(picture.buffers->reflection);
@@ -226,6 +251,70 @@ TEST(EnvironmentFallback, IsTheSkyInTheMirrorDirectionBlendedByTheWeight)
     }
     EXPECT_GT(sharp, 300U);
     EXPECT_GT(rough, 1000U);
+}
+
+TEST(EnvironmentFallback, IsTheSkyInTheMirrorDirectionBlendedByTheWeight)
+{
+    expect_blended_sky(Projection::perspective);
+    expect_blended_sky(Projection::orthographic);
+}
+
+// A drawn ray stands for its share of the lobe: the sky, blurred by 0.7 of the roughness about the ray itself, takes what the ray's weight leaves. Rays that
+// found nothing end a million metres away.
+TEST(EnvironmentFallback, TakesWhatDrawnRaysLeave)
+{
+    Scene scene = load_scene("builtin:everything");
+    for (Material& material : scene.materials) // mirrors have no lobe, even where they are not ideal
+        if (material.roughness == 0) material.roughness = 0.0195F;
+    const Picture picture = make_picture(scene, find_camera(scene, "default"), {161, 91});
+    const auto    frame   = frame_with(picture, {chosen(Gloss::stochastic),
+                                                 chosen(ViewerFade::off),
+                                                 chosen(EdgeFade::manhattan),
+                                                 chosen(HitShading::diffuse),
+                                                 chosen(BounceMode::off),
+                                                 {"rays_per_pixel", 2}});
+    run_frame(device(), *frame);
+    const auto           rays          = read_list<float>(device(), *frame->rays);
+    const auto           hits          = download_as<PackedHit<float>>(device(), frame->rays->hits, rays.size());
+    const Reflection     light         = read_colours(picture.buffers->lobe_rays.at(2)->light);
+    const auto           end           = download_as<glm::vec4>(device(), picture.buffers->lobe_rays.at(2)->end);
+    const glm::dmat3     view_to_world = glm::transpose(glm::dmat3(picture.view.world_to_view));
+    const EnvironmentMap levels        = prefilter_environment(scene.environment);
+    size_t               missed = 0, mixed = 0, mirrors = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        const glm::ivec2 pixel     = unpack_pixel(rays[i].pixel);
+        const double     roughness = picture.image.roughness[at(picture.image, pixel.x, pixel.y)];
+        const bool       hit       = unpack_status(hits[i].pixel) == TraceStatus::hit;
+        const glm::dvec3 origin(rays[i].origin), delta(rays[i].delta), point = origin + delta * double(hits[i].t);
+        const auto       point_vs = [&](glm::dvec3 px_depth) {
+            return px_to_vs(picture.view, glm::dvec2(px_depth), px_depth.z);
+        };
+        // Depth is linear along the ray on screen: halfway is before every end, and not at infinity.
+        const glm::dvec3 direction = glm::normalize(point_vs(origin + 0.5 * delta) - point_vs(origin));
+        const glm::dvec2 offset    = glm::dvec2(point) / glm::dvec2(161, 91) - 0.5;
+        const double     weight    = hit ? std::clamp(1 - std::abs(offset.x) - std::abs(offset.y), 0.0, 1.0) : 0;
+        const glm::ivec2 met       = unpack_pixel(hits[i].pixel);
+        const glm::vec3  surface   = picture.image.radiance[at(picture.image, met.x, met.y)],
+                        sky_ws     = glm::vec3(view_to_world * direction);
+        const glm::vec3 sky        = roughness > 0
+                                         ? blurred_sky(scene, levels, glm::dvec3(sky_ws), glm::dvec3(sky_ws), 0.7 * roughness)
+                                         : sky_radiance(scene, glm::dvec3(sky_ws));
+        const size_t    texel      = at(picture.image, pixel.x, pixel.y) + (i % 2) * size_t(161 * 91);
+        ASSERT_EQ(light[texel].a, 1) << i;
+        for (int c = 0; c < 3; ++c) {
+            const float expected = glm::mix(sky[c], surface[c], float(weight));
+            ASSERT_NEAR(light[texel][c], expected, 0.01F * expected + 0.01F) << i;
+        }
+        missed += !hit;
+        mixed += hit && weight < 0.9;
+        mirrors += roughness < 0.02;
+        ASSERT_EQ(end[texel].w > 0, roughness >= 0.02) << i;
+        const glm::dvec3 expected_end = hit ? point_vs(point) : point_vs(origin) + 1e6 * direction;
+        ASSERT_LT(glm::distance(glm::dvec3(end[texel]), expected_end), 1e-3 * glm::length(expected_end)) << i;
+    }
+    EXPECT_GT(missed, 300U);
+    EXPECT_GT(mixed, 300U);
+    EXPECT_GT(mirrors, 300U);
 }
 
 // A wall that faces the camera, in a sky that is 1 + y: its mean over a lobe about the direction d is 1 + c d.y, c the lobe's mean cosine.

@@ -197,14 +197,16 @@ INSTANTIATE_TEST_SUITE_P(Techniques, HiddenLayer, testing::Values("dda", "hiz"),
 TEST(HiddenLayerWalk, HizFindsThereWhatThePixelWalkFinds)
 {
     const Picture picture = make_picture("builtin:everything", "default", {641, 359});
-    const auto    found   = [&](const char* id) {
-        const auto frame = prepare(picture, id, thin);
+    const auto    found   = [&](const char* id, const ParameterValues& changed = {}) {
+        const auto frame = prepare(picture, id, thin, changed);
         run_frame(device(), *frame);
         return *read_hidden_hits(device(), *frame);
     };
     const TraceResult walk = found("dda");
     std::string       first;
     EXPECT_EQ(count_differences(found("hiz"), walk, bit_equal_t, first), 0U) << first;
+    EXPECT_EQ(count_differences(found("hiz", {{"skip_unneeded_passes", 0}}), walk, bit_equal_t, first), 0U)
+        << "what does not reflect looks for nothing there: " << first;
     EXPECT_GT(std::ranges::count(walk.status, TraceStatus::hit), 1000);
 }
 

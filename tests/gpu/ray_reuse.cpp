@@ -32,7 +32,7 @@ GBufferImage uneven_walls(std::mt19937& random)
             set_pixel(image, x, y, (x + y < 64 ? 5 : 5.2) + 0.05 * unit(random), random() % 8 == 0 ? -normal : normal,
                       random() % 10 == 0 ? 0 : 1);
             image.roughness[at(image, x, y)] =
-                random() % 10 == 0 ? 0.01F : static_cast<float>(0.5 + 0.3 * unit(random));
+                random() % 10 == 0 ? 0.0195F : static_cast<float>(0.5 + 0.3 * unit(random));
         }
     return image;
 }
@@ -256,7 +256,7 @@ TEST(RayReuse, IsFilteredOverTheSameSurface)
         rays.light[i]       = rays.light[first];
         rays.end[i]         = {0, 0, 0, 1}; // the eye, which every reflector faces
     }
-    const double radius = 0.35;
+    const double radius = 1; // a step of mirrors would be a third of a pixel, and two of them reach the next one
     const Passed passed = run_reuse(image, rays, {{"reuse_radius", radius}, {"reuse_neighbours", 1}});
     Reflection   own    = passed.traced;
     for (size_t i = 0; i < own.size(); ++i)
