@@ -1,6 +1,7 @@
 // Passes that make one reflection out of several: up-sampling, down-sampling, filters.
 #include "core/pixel_index.h"
 #include "gpu/passes.h"
+#include "render/directional_albedo.h"
 
 #include <algorithm>
 #include <array>
@@ -125,6 +126,134 @@ TEST(Upsampling, HolesAndPixelsThatReflectNothing)
     EXPECT_EQ(found[at(image, 15, 9)],
               glm::vec4(3, 2, 1, 0.5F)); // between a hole and a hit: the hit's colour, at half the weight
     EXPECT_EQ(found[at(image, 17, 9)], glm::vec4(3, 2, 1, 1));
+}
+
+/// The split-sum table, bilinear; its entries have tests of their own (Composite.GgxReflectsItsDirectionalAlbedo).
+double albedo(double f0, double roughness, double cosine)
+{
+    constexpr int    entries = DFG_TABLE_ENTRIES;
+    const glm::dvec2 place = glm::dvec2(std::sqrt(cosine), roughness) * (entries - 1.0), low = glm::floor(place),
+                     part = place - low;
+    const auto entry      = [&](int dx, int dy) {
+        const glm::ivec2 at = glm::min(glm::ivec2(low) + glm::ivec2(dx, dy), glm::ivec2(entries - 1));
+        return glm::dvec2(dfg_table()[size_t(at.y * entries + at.x)]);
+    };
+    const glm::dvec2 terms =
+        glm::mix(glm::mix(entry(0, 0), entry(1, 0), part.x), glm::mix(entry(0, 1), entry(1, 1), part.x), part.y);
+    return std::clamp(f0 * terms.x + std::min(1.0, 50 * f0) * terms.y, 0.0, 1.0);
+}
+
+struct Seen {
+    glm::dvec3 position_vs, normal_vs;
+    double     reflectivity;
+};
+
+Seen seen_at(const GBufferImage& image, glm::ivec2 pixel)
+{
+    const size_t     i        = at(image, pixel.x, pixel.y);
+    const glm::dvec3 position = px_to_vs(image.view, glm::dvec2(pixel) + 0.5, double(image.depth[i])),
+                     facing   = glm::normalize(glm::dvec3(image.normal_vs[i]));
+    const double luma         = glm::dot(glm::dvec3(image.base_colour[i]), {0.2126, 0.7152, 0.0722}),
+                 metallic     = double(image.metallic[i]);
+    const double f0           = glm::mix(double(image.dielectric_f0[i]), luma, metallic);
+    return {position, facing,
+            albedo(f0, double(image.roughness[i]), std::max(0.0, glm::dot(facing, -glm::normalize(position))))};
+}
+
+/// Of a device's filtering Vulkan asks 8 bits: reflectivities are off by 2^-8 of what neighbouring entries of the table differ by, which is below a half. The
+/// tolerance divides that by a half, so weights are within 0.4 %, and a mean of values up to 1 within 0.4 %, and half floats add 2^-11.
+TEST(Upsampling, IsTheHostsMean)
+{
+    constexpr glm::ivec2                   size_px{62, 46};
+    std::mt19937                           random(31);
+    std::uniform_real_distribution<double> unit(0, 1);
+    GBufferImage                           image = metal_wall(size_px);
+    for (int y = 0; y < size_px.y; ++y)
+        for (int x = 0; x < size_px.x; ++x) {
+            const size_t     i = at(image, x, y);
+            const glm::dvec3 leaning(0.3 * unit(random), 0.3 * unit(random), 1);
+            // A wall that recedes to the right: along it depths differ more than across it.
+            set_pixel(image, x, y, 5 + 0.05 * x + 0.02 * unit(random), glm::normalize(leaning),
+                      random() % 8 == 0   ? 0
+                      : random() % 2 == 0 ? 0.5F
+                                          : 1.0F);
+            image.base_colour[i]   = glm::vec3(unit(random), unit(random), unit(random));
+            image.dielectric_f0[i] = 0.01F;
+            image.roughness[i]     = float(unit(random));
+        }
+    Reflection values;
+    for (size_t i = 0; i < image.depth.size(); ++i)
+        values.emplace_back(unit(random), unit(random), unit(random), float(random() % 3) / 2);
+    const Picture picture         = make_picture(image);
+    const double  depth_tolerance = 0.02, reflectivity_tolerance = 0.5;
+    for (const auto& [resolution, block_px] : {std::pair(half, 2), {quarter, 4}})
+        for (int weights = 0; weights < 16; ++weights) {
+            const bool by_distance = weights & 1, by_depth = weights & 2, by_normal = weights & 4,
+                       by_reflectivity = weights & 8;
+            ParameterValues passes{chosen(resolution),
+                                   {"upsampling_distance", by_distance},
+                                   {"upsampling_depth", by_depth},
+                                   {"upsampling_normal", by_normal},
+                                   {"upsampling_reflectivity", by_reflectivity},
+                                   {"upsampling_depth_tolerance", depth_tolerance},
+                                   {"upsampling_reflectivity_tolerance", reflectivity_tolerance}};
+            const auto      frame = frame_with(picture, passes);
+            run_frame(device(), *frame); // says which pixels blocks are traced from
+            const glm::ivec2 blocks = (size_px - 1) / block_px + 1;
+            const auto       traced = download_as<uint32_t>(device(), picture.buffers->block_pixel);
+            Reflection       source(values.size(), nothing_reflects);
+            for (int i = 0; i < blocks.x * blocks.y; ++i) {
+                const uint32_t from =
+                    traced[size_t(i / blocks.x * picture.buffers->block_pixel.size_px.x + i % blocks.x)];
+                if (from == NO_PIXEL) continue;
+                const glm::ivec2 pixel              = unpack_pixel(from);
+                source[at(image, pixel.x, pixel.y)] = values[at(image, pixel.x, pixel.y)];
+            }
+            set_reflection(picture, source);
+            run_pass(*frame, upsampling_pass());
+            const Reflection found  = read_colours(picture.buffers->reflection);
+            size_t           judged = 0;
+            for (size_t i = 0; i < found.size(); ++i) {
+                const glm::ivec2 pixel = pixel_at(i, size_px);
+                if (image.metallic[i] == 0) {
+                    ASSERT_EQ(found[i], nothing_reflects) << i;
+                    continue;
+                }
+                if (source[i].a >= 0) continue;
+                const Seen       own   = seen_at(picture.image, pixel);
+                const glm::dvec2 place = glm::dvec2(pixel - (block_px - 1) / 2) / double(block_px),
+                                 low = glm::floor(place), part = place - low;
+                glm::dvec4 sum(0);
+                double     total = 0;
+                for (int corner = 0; corner < 4; ++corner) {
+                    const glm::ivec2 step(corner % 2, corner / 2), block = glm::ivec2(low) + step;
+                    if (block.x < 0 || block.y < 0 || block.x >= blocks.x || block.y >= blocks.y) continue;
+                    const uint32_t from = traced[size_t(block.y * picture.buffers->block_pixel.size_px.x + block.x)];
+                    if (from == NO_PIXEL) continue;
+                    const Seen   other  = seen_at(picture.image, unpack_pixel(from));
+                    const double off_m  = std::abs(glm::dot(own.normal_vs, other.position_vs - own.position_vs));
+                    double       weight = 1;
+                    if (by_distance)
+                        weight *= (step.x == 1 ? part.x : 1 - part.x) * (step.y == 1 ? part.y : 1 - part.y);
+                    if (by_depth) weight *= std::exp(off_m / (depth_tolerance * own.position_vs.z));
+                    if (by_normal) weight *= std::pow(glm::dot(own.normal_vs, other.normal_vs), 32);
+                    if (by_reflectivity)
+                        weight *= std::exp(-std::abs(own.reflectivity - other.reflectivity) / reflectivity_tolerance);
+                    const glm::dvec4 value(source[at(image, unpack_pixel(from).x, unpack_pixel(from).y)]);
+                    sum += weight * glm::dvec4(glm::dvec3(value) * value.a, value.a);
+                    total += weight;
+                }
+                if (total < 1e-3) continue; // next to nothing: the most alike counts
+                ++judged;
+                const glm::dvec4 expected =
+                    sum.a > 0 ? glm::dvec4(glm::dvec3(sum) / sum.a, sum.a / total) : glm::dvec4(0);
+                for (int c = 0; c < 3; ++c)
+                    ASSERT_NEAR(found[i][c] * found[i].a, expected[c] * expected.a, 5e-3)
+                        << i << ", weights " << weights << ", blocks of " << block_px;
+                ASSERT_NEAR(found[i].a, expected.a, 5e-3) << i << ", weights " << weights << ", blocks of " << block_px;
+            }
+            EXPECT_GT(judged, 1000U);
+        }
 }
 
 TEST(ColourDownsampling, IsABlockMeanWithACross)

@@ -447,6 +447,10 @@ void scramble(FrameHistory& history)
     change.     operator()<float>(history.depth, [&](float& d) {
         if (random() % 8 == 0) d *= random() % 2 == 0 ? 1.3F : 0.97F;
     });
+    // So steep that within a pixel depth doubles, or is next to nothing.
+    change.operator()<uint32_t>(history.gradient, [&](uint32_t& g) {
+        if (random() % 4 == 0) g = pack_gradient({0.03F * (unit(random) - 0.5F), 0.03F * (unit(random) - 0.5F)});
+    });
     // Of no unit length, and turned.
     change.operator()<glm::vec4>(history.normal, [&](glm::vec4& n) {
         n *= random() % 8 == 0 ? -1 : 0.5F + unit(random);
