@@ -22,7 +22,7 @@ import plot_verdict  # noqa: E402
 import ssrlab_results  # noqa: E402
 from made_results import made_results, write_table  # noqa: E402
 from matplotlib import pyplot as plt  # noqa: E402
-from plot_data import Results  # noqa: E402
+from plot_data import Results, describe, label_of  # noqa: E402
 from PIL import Image  # noqa: E402
 
 
@@ -211,6 +211,15 @@ class Test(Case):
         self.assertEqual(list(cheapest.missed_by.dropna()), ["r1", "r2"], "the next coarser stride")
         self.near(cheapest[["recall", "precision", "f1", "time_ms", "fetches_mean"]].iloc[1], [0.9, 0.5, 0.6, 8, 1])
 
+    def test_a_bracket_begins_where_the_setting_before_may_be(self):
+        """20 steps reach the target and take 4 times as long as hiz; 10 do not, and take 2 to 3 times as long."""
+        rows = [dict(technique="hiz", trace_ms_median=1, recall_1px=1)]
+        rows += [dict(technique="linear", steps=steps, trace_ms_median=ms, recall_1px=found) for steps, ms, found in ((10, 2.5, 0.9), (20, 4, 0.995))]
+        made_results(self, rows, ["steps"], accuracy="linear.steps=higher", specification="[targets]\nrecall_1px = 0.99\n")
+        self.samples({"r0": [1] * 6, "r1": [2, 2.2, 2.4, 2.6, 2.8, 3], "r2": [4] * 6})
+        row = plot_accuracy.summary(Results(self.path("out"))).iloc[0]
+        self.assertEqual((row.speedup, row.speedup_ci_low, row.speedup_ci_high, row.bracket, row.pairs), (4, 2, 4, "closed", 6))
+
     def test_the_front_holds_what_nothing_beats(self):
         rows = pd.DataFrame({"ms": [3, 1, 2, 2, 4], "error": [0.1, 0.5, 0.6, 0.3, 0.1]}, index=list("abcde"))
         self.assertEqual(list(plot_accuracy.pareto(rows, "ms", "error").index), ["b", "d", "a"])
@@ -239,6 +248,20 @@ class Test(Case):
         self.assertEqual((results.chart_styles["linear, a"]["dash"], results.chart_styles["linear, b"]["dash"]), ([], [6, 4]))
         self.assertEqual(results.targets, {name: [0.9, 0.95, 0.99, 0.995] for name in ("recall_1px", "screen_recall_1px")}, "where none are stated")
         self.assertEqual([name for _, name, _ in made_results(self, rows[2:], ["space"]).pictures()], ["s_default_80x60"])
+
+    def test_settings_are_named_where_they_vary(self):
+        """Of a technique only what varies within it; beside a point the numbers alone."""
+        rows = [dict(technique="linear", space="a", steps=16, looks=looks, trace_ms_median=1) for looks in (1, 2)]
+        rows += [dict(technique="linear", space="b", steps=8, looks=1, trace_ms_median=1), dict(technique="march", steps=4, looks=7, trace_ms_median=1)]
+        results = made_results(self, rows, ["space", "steps", "looks"])
+        named = [(describe(results, row, results.rows), label_of(results, row, results.rows)) for _, row in results.rows.iterrows()]
+        self.assertEqual(named, [("linear, a, steps 16, looks 1", "1"), ("linear, a, steps 16, looks 2", "2"), ("linear, b, steps 8, looks 1", ""), ("march", "")])
+        self.assertEqual(results.swept(results.rows), ["steps", "looks"], "the one with most values first")
+
+    def test_what_an_interval_shows(self):
+        for low, high, said in ((1.01, 2, "faster"), (0.5, 0.99, "slower"), (0.5, 1.5, "no difference shown"), (1, 2, "no difference shown"), (np.nan, 2, "not known"),
+                                (1.5, np.nan, "not known")):
+            self.assertEqual(plot_accuracy.verdict(low, high), said, (low, high))
 
     def test_panels_show_what_their_experiment_names(self):
         row = pd.Series(dict(technique="linear", steps=16, jitter=True, width=80, recall_1px=0.5, precision_1px=np.nan, hit_share=0.25, picture="p/a.png", truth_picture="p/t.png"))
