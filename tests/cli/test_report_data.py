@@ -122,6 +122,11 @@ class Test(Case):
         self.assertEqual([row["best"] for row in shown["rows"]], [True] + [False] * 4)
         self.assertEqual([row["cells"][9]["sort"] for row in shown["rows"][:3]], ["2", "8", "1"])
 
+    def test_means_over_frames(self):
+        part = pd.DataFrame({"a": [1.0, 2, 6], "b": [1.0, 2, 32], "c": [1, np.nan, 3], "d": [0.0, 1, 2]})
+        self.near([plot_verdict.mean_of(part, "a"), plot_verdict.geometric(part, "b"), plot_verdict.mean_of(part, "c")], [3, 4, 2])
+        self.assertTrue(all(np.isnan(plot_verdict.geometric(part, name)) for name in ("c", "d", "none")), "unknown where one frame has none")
+
     def test_without_a_truth_all_settings_are_ranked_by_time(self):
         results = made_results(self, [dict(technique="linear", steps=steps, trace_ms_median=ms) for steps, ms in ((8, 3), (16, 1), (32, 2))], ["steps"])
         chosen = plot_verdict.picks(results)
@@ -132,23 +137,28 @@ class Test(Case):
         self.assertIn("No truth was computed", plot_report.ranking_text(results, chosen))
 
     def test_tables_of_a_frame(self):
-        rows = [dict(technique="linear", steps=steps, trace_ms_median=ms, steps_mean=7, screen_recall_1px=found, recall_1px=0.5, visible_displaced=0.25,
+        rows = [dict(technique="linear", steps=steps, trace_ms_median=ms, trace_ms_ci_low=ms / 2, trace_ms_ci_high=ms * 2, steps_mean=7, screen_recall_1px=found,
+                     recall_1px=0.5, precision_1px=0.25, f1_1px=0.375, false_hits=0.0625, screen_precision_1px=0.9, flip_visible=0.21, picture_flip=0.11,
+                     frame_ms_median=30, fps=33, visible_displaced=0.25,
                      missed_stepped_over=0.125, missed_stopped=0, missed_not_in_depth=0.125, error_scene_to_screen=0.5, wrong_rays=0.3, wrong_thin=0.2, wrong_other=0.1,
                      passes="rays=1.25 trace=2 blur=0.5", passes_skipped="cone history", passes_why="rays: 9 pixels; blur: it is rough; cone: gloss = stochastic")
                 for steps, ms, found in ((16, 2, 1), (8, 1, 0.5))]
         results = made_results(self, rows, ["steps"])
         chosen = plot_verdict.picks(results)
         shown = plot_tables.row_table(results, results.rows, chosen)
-        self.assertEqual([column["name"] for column in shown["columns"]], ["tracer", "steps", "ms", "fetches", "steps", "recall", "screen recall", "repeats", "run"])
+        self.assertEqual([column["name"] for column in shown["columns"]], 
+                         ["tracer", "steps", "ms", "from", "to", "fetches", "steps", "recall", "precision", "F1", "false", "screen recall", "screen precision", "FLIP",
+                          "picture FLIP", "frame ms", "fps", "repeats", "run"])
         self.assertEqual([[cell["text"] for cell in row["cells"]] for row in shown["rows"]],
-                         [["linear", "8", "1", "1", "7", "50 %", "50 %", "9", "r1"], ["linear", "16", "2", "1", "7", "50 %", "100 %", "9", "r0"]])
+                         [["linear", steps, ms, low, high, "1", "7", "50 %", "25 %", "37.5 %", "6.25 %", found, "90 %", "0.21", "0.11", "30", "33", "9", run]
+                          for steps, ms, low, high, found, run in (("8", "1", "0.5", "2", "50 %", "r1"), ("16", "2", "1", "4", "100 %", "r0"))])
         self.assertEqual([row["best"] for row in shown["rows"]], [False, True])
         bar, = plot_tables.split_of(chosen)
         self.assertEqual([(part["kind"], part["width"], part["text"]) for part in bar["parts"]],
                          [("found", 50, "50 %"), ("displaced", 25, "25 %"), ("not-in-depth", 12.5, "12.5 %"), ("skipped-over", 12.5, "12.5 %")])
         errors = plot_tables.error_table(chosen)
-        self.assertEqual([column["name"] for column in errors["columns"]], ["tracer", "scene → screen", "wrong", "thin", "other"])
-        self.assertEqual([cell["text"] for cell in errors["rows"][0]["cells"]], ["linear, steps 16", "50 %", "30 %", "20 %", "10 %"])
+        self.assertEqual([column["name"] for column in errors["columns"]], ["tracer", "scene → screen", "false", "wrong", "thin", "other"])
+        self.assertEqual([cell["text"] for cell in errors["rows"][0]["cells"]], ["linear, steps 16", "50 %", "6.25 %", "30 %", "20 %", "10 %"])
         plan = plot_tables.plan_of(chosen)
         self.assertEqual([(one["name"], one["ms"], one["why"]) for one in plan["passes"]],
                          [("rays", "1.25", "9 pixels"), ("trace", "2", ""), ("blur", "0.5", "it is rough"), ("cone", "–", "gloss = stochastic"),
