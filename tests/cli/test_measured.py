@@ -51,7 +51,7 @@ class Test(Case):
 
     def test_times_are_of_one_frame_of_a_submit(self):
         """Undivided, sixteen frames would take sixteen times as long as one; what else the machine does is far from a factor of four."""
-        (one, samples), (many, of_many) = self.run_spec("one", "frames_per_submit = 1\n"), self.run_spec("many", "frames_per_submit = 16\n")
+        (one, samples), (many, of_many) = self.run_spec("one", "frames_per_submit = 1\nsaved_time = false\n"), self.run_spec("many", "frames_per_submit = 16\nsaved_time = false\n")
         self.assertEqual({row["frames_per_submit"] for row in many}, {"16"})
         for first, second in zip(one, many):
             self.assertLess(float(second["frame_ms_median"]), 4 * float(first["frame_ms_median"]))
@@ -59,7 +59,15 @@ class Test(Case):
             def cpu_ms(runs, run):
                 return statistics.median(float(passes["frame"][1]) for passes in runs[run].values())
             self.assertLess(cpu_ms(of_many, second["run_id"]), 4 * cpu_ms(samples, first["run_id"]))
+        self.assertEqual({row["saved_ms"] for row in one}, {""})
         self.assertGreater(sum(float(passes["frame"][1]) for rounds in of_many.values() for passes in rounds.values()), 0)
+
+    def test_saved_time_is_that_of_the_frame_that_skips_nothing(self):
+        """Nothing in builtin:matte reflects: but for its G-buffer the planned frame is all but empty, and the other one traces and blurs every pixel."""
+        self.ssrlab("run", self.write("matte.toml", SPEC.replace("stairs", "matte")), "-o", "matte")
+        for row in self.rows("matte"):
+            planned_ms = float(row["frame_ms_median"]) - float(row["gbuffer_ms_median"])
+            self.assertGreater(float(row["saved_ms"]), 4 * planned_ms, row)
 
 
 if __name__ == "__main__":

@@ -105,6 +105,8 @@ class Test(Case):
                 for technique, times, recalls in (("slow", (4, 16), (1, 1)), ("quick", (1, 4), (0.99, 0.995)), ("far", (0.1, 0.1), (0.2, 0.2)),
                                                   ("near", (1, 1), (0.9, 0.8)), ("half", (1, 1), (0.3, 1)))
                 for view, ms, found in zip(("a", "b"), times, recalls)]
+        for row in rows[:2]:
+            row["flip_visible"] = ""  # slow's alone
         results = made_results(self, rows)
         ranked = plot_verdict.ranking(results, plot_verdict.picks(results))
         self.assertEqual(list(ranked.label), ["quick", "slow", "half", "near", "far"])
@@ -119,6 +121,7 @@ class Test(Case):
                          ["rank", "tracer", "target reached", "recall", "precision", "F1", "false", "screen recall", "FLIP", "ms", "from", "to", "fetches"])
         self.assertEqual([cell["text"] for cell in shown["rows"][0]["cells"]],
                          ["1", "quick", "2 of 2", "49.6 %", "50 %", "40 %", "10 %", "99.2 %", "0.2", "2", "1", "4", "25"])
+        self.assertEqual(shown["rows"][1]["cells"][8], {"text": "", "sort": "", "series": ""}, "what is not known is empty, and its column stays")
         self.assertEqual([row["best"] for row in shown["rows"]], [True] + [False] * 4)
         self.assertEqual([row["cells"][9]["sort"] for row in shown["rows"][:3]], ["2", "8", "1"])
 
@@ -143,15 +146,16 @@ class Test(Case):
                      missed_stepped_over=0.125, missed_stopped=0, missed_not_in_depth=0.125, error_scene_to_screen=0.5, wrong_rays=0.3, wrong_thin=0.2, wrong_other=0.1,
                      passes="rays=1.25 trace=2 blur=0.5", passes_skipped="cone history", passes_why="rays: 9 pixels; blur: it is rough; cone: gloss = stochastic")
                 for steps, ms, found in ((16, 2, 1), (8, 1, 0.5))]
+        rows[1]["picture_flip"] = ""
         results = made_results(self, rows, ["steps"])
         chosen = plot_verdict.picks(results)
         shown = plot_tables.row_table(results, results.rows, chosen)
-        self.assertEqual([column["name"] for column in shown["columns"]], 
+        self.assertEqual([column["name"] for column in shown["columns"]],
                          ["tracer", "steps", "ms", "from", "to", "fetches", "steps", "recall", "precision", "F1", "false", "screen recall", "screen precision", "FLIP",
                           "picture FLIP", "frame ms", "fps", "repeats", "run"])
         self.assertEqual([[cell["text"] for cell in row["cells"]] for row in shown["rows"]],
-                         [["linear", steps, ms, low, high, "1", "7", "50 %", "25 %", "37.5 %", "6.25 %", found, "90 %", "0.21", "0.11", "30", "33", "9", run]
-                          for steps, ms, low, high, found, run in (("8", "1", "0.5", "2", "50 %", "r1"), ("16", "2", "1", "4", "100 %", "r0"))])
+                         [["linear", steps, ms, low, high, "1", "7", "50 %", "25 %", "37.5 %", "6.25 %", found, "90 %", "0.21", flip, "30", "33", "9", run]
+                          for steps, ms, low, high, found, flip, run in (("8", "1", "0.5", "2", "50 %", "", "r1"), ("16", "2", "1", "4", "100 %", "0.11", "r0"))])
         self.assertEqual([row["best"] for row in shown["rows"]], [False, True])
         bar, = plot_tables.split_of(chosen)
         self.assertEqual([(part["kind"], part["width"], part["text"]) for part in bar["parts"]],
