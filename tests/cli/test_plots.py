@@ -121,6 +121,8 @@ class Test(Case):
         self.near([bar.get_height() for bar in hiz], [3, 3.5])
         self.near([bar.get_x() + bar.get_width() / 2 for bar in dda] + [bar.get_x() + bar.get_width() / 2 for bar in hiz], [-0.2, 0.8, 0.2, 1.2])
         self.near([bar.get_height() for bar in fetches], [10, 30])
+        self.assertEqual([[text.get_text() for text in axis.texts] for axis in (top, bottom)], [["4", "2", "3", "3.5"], ["40", "20", "10", "30"]])
+        self.near([text.xy[1] for text in top.texts], [5, 3, 4, 4.5])  # above the end of the interval
         self.assertEqual([bar.get_facecolor()[3] > 0 for bar in hiz], [True, False], "hollow where the interval is not known")
         self.near(dda.errorbar[2][0].get_segments()[0][:, 1], [3.5, 5])
         self.near(hiz.errorbar[2][0].get_segments()[0][:, 1], [2.5, 4])
