@@ -169,6 +169,67 @@ TEST(Judge, PassingThroughACornerDecidesNothing)
     EXPECT_EQ(at({22, 10}), Verdict::wrong);
 }
 
+// A slab that ends 0.0001 m before the ray is missed by 5e-7 in depth, 20 times what rounding can change; one that ends 1e-9 m before it may be met.
+TEST(Judge, RoundingExcusesOnlyWhatRoundingCanDo)
+{
+    for (const double thickness_m : {0.4, 0.49, 0.4999}) {
+        const auto setup = two_poles(thickness_m);
+        EXPECT_THAT(Judge(setup).judge(setup.rays[0], hit({20, 10}, 14.5 / 50), {}).reason,
+                    HasSubstr("does not meet the slab"))
+            << thickness_m;
+    }
+    const auto close = two_poles(0.5 - 1e-9);
+    EXPECT_NE(Judge(close).judge(close.rays[0], hit({20, 10}, 14.5 / 50), {}).verdict, Verdict::wrong);
+}
+
+TEST(Judge, AHitLiesInItsPixelAndItsLayer)
+{
+    const auto  setup = two_poles();
+    const Judge judge(setup);
+    for (const double t : {14.4 / 50, 15.6 / 50})
+        EXPECT_THAT(judge.judge(setup.rays[0], hit({20, 10}, t), {}).reason,
+                    HasSubstr("but the ray is in that pixel from"));
+    RayOutcome outcome = hit({20, 10}, 14.5 / 50);
+    outcome.hit_layer  = 1;
+    EXPECT_THAT(judge.judge(setup.rays[0], outcome, {}).reason, HasSubstr("layer 1, which is not there"));
+}
+
+// Behind the first pole, 3 m away, the ray goes on to the second, which it meets.
+TEST(Judge, WhatIsBehindAnObjectMayBeMissedIfSoClaimed)
+{
+    auto setup    = two_poles(0.5);
+    setup.gbuffer = picture_of(bench_view(), [](glm::ivec2 p) { return p.x == 20 ? 3.0 : p.x == 30 ? 4.2 : 0.0; });
+    const Judge judge(setup);
+    ASSERT_EQ(judge.exact_answer(setup.rays[0]).hit_pixel, glm::ivec2(30, 10));
+    EXPECT_EQ(judge.judge(setup.rays[0], miss(), {.may_miss_behind_objects = true}).verdict, Verdict::allowed);
+    EXPECT_EQ(judge.judge(setup.rays[0], miss(), {}).verdict, Verdict::wrong);
+}
+
+TEST(Judge, AStopIsOfWhatIsMetFromBehind)
+{
+    for (const double z : {-1.0, 1.0}) {
+        auto setup            = two_poles_facing(z);
+        setup.settings.behind = Behind::stop;
+        const Judge      judge(setup);
+        const RayOutcome stop{TraceStatus::stopped, {20, 10}, 14.5 / 50};
+        EXPECT_EQ(judge.exact_answer(setup.rays[0]).status, z < 0 ? TraceStatus::stopped : TraceStatus::hit);
+        EXPECT_THAT(judge.broken_invariant(setup.rays[0], stop), IsEmpty());
+        EXPECT_THAT(judge.broken_invariant(setup.rays[0], {TraceStatus::facing_away}), HasSubstr("cannot"));
+        if (z < 0)
+            EXPECT_EQ(judge.judge(setup.rays[0], stop, {}).verdict, Verdict::right);
+        else
+            EXPECT_THAT(judge.judge(setup.rays[0], stop, {}).reason, HasSubstr("which is met from the front"));
+        EXPECT_EQ(judge.judge(setup.rays[0], hit({20, 10}, 14.5 / 50), {}).verdict,
+                  z < 0 ? Verdict::wrong : Verdict::right);
+    }
+    for (const Behind behind : {Behind::hit, Behind::pass}) {
+        auto setup            = two_poles();
+        setup.settings.behind = behind;
+        EXPECT_THAT(Judge(setup).broken_invariant(setup.rays[0], {TraceStatus::stopped, {20, 10}, 14.5 / 50}),
+                    HasSubstr("cannot"));
+    }
+}
+
 TEST(Judge, CountsWhatIsThereAndWhatIsFound)
 {
     const auto  setup = two_poles();
@@ -183,6 +244,20 @@ TEST(Judge, CountsWhatIsThereAndWhatIsFound)
     EXPECT_FALSE(found(miss()));
     const auto thin = two_poles(0.1);
     EXPECT_FALSE(Judge(thin).judge(thin.rays[0], miss(), {}).findable);
+}
+
+// A ray that enters the pole in row 10, and row 11 half a pixel later.
+TEST(Judge, AFindIsWithinAPixelOfTheHit)
+{
+    auto setup = two_poles();
+    setup.rays = {ray_between(setup.gbuffer.view, {5.5, 10.5, 4.5}, {55.5, 10.5 + 5 / 3.0, 4.5})};
+    const Judge judge(setup);
+    ASSERT_EQ(judge.exact_answer(setup.rays[0]).hit_pixel, glm::ivec2(20, 10));
+    const Judgement judgement =
+        judge.judge(setup.rays[0], hit({20, 11}, 15.01 / 50), {.may_miss_between_samples = true});
+    EXPECT_NE(judgement.verdict, Verdict::wrong);
+    EXPECT_TRUE(judgement.found);
+    EXPECT_NEAR(judgement.deviation_px, 0.51, 0.01);
 }
 
 TEST(Judge, AHitOffTheImageIsReadNowhere)

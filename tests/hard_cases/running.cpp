@@ -271,6 +271,12 @@ TEST(RayReport, SaysWhatTheRayMet)
         const int  side = 1 << visit.visit.level, x = visit.visit.pixel.x >> visit.visit.level << visit.visit.level;
         const bool holds = (x <= 20 && 20 < x + side) || (x <= 30 && 30 < x + side);
         EXPECT_NEAR(visit.front_m, holds ? 4 : 0, 1e-6) << i;
+        EXPECT_NEAR(visit.back_m,
+                    !holds                  ? 0
+                    : visit.visit.level > 0 ? 4
+                                            : 5,
+                    1e-5)
+            << i; // of a cell its farthest pixel
         EXPECT_LE(visit.t_in, visit.t_out);
         opened = opened || visit.then == std::string("opens");
         if (visit.then == std::string("opens")) {

@@ -166,6 +166,56 @@ TEST(WrongCauses, AHiddenPointInALayerBehindIsRight)
     EXPECT_EQ(test.cause(0), WrongCause::right);
 }
 
+// Beside the bend the second layer is flat.
+TEST(WrongCauses, AHitIsJudgedByItsOwnLayer)
+{
+    CausesCase   test;
+    GBufferImage flat = test.gbuffer;
+    flat.depth.assign(flat.depth.size(), float(distance_to_depth(flat.view, 4)));
+    flat.object_id.assign(flat.object_id.size(), 7);
+    test.gbuffer.layers       = {flat};
+    test.gbuffer.object_id[6] = 9;
+    test.set_truth(6, TruthClass::sky);
+    test.set_end(6, TraceStatus::hit, {bend_x + 1.5, 4.5});
+    EXPECT_EQ(test.cause(6), WrongCause::edge);
+    test.tested.hit_layer[6] = 1;
+    EXPECT_EQ(test.cause(6), WrongCause::other);
+    test.gbuffer.layers[0].object_id[at(test.gbuffer, bend_x + 1, 4)] = 9;
+    EXPECT_EQ(test.cause(6), WrongCause::own_surface);
+    test.tested.hit_layer[6] = 0;
+    EXPECT_EQ(test.cause(6), WrongCause::edge);
+}
+
+// Over 12.7 m, 6 cm before the plane is a sine of 0.005, half a metre one of 0.04.
+TEST(WrongCauses, AnOwnSurfaceIsMetNearlyInItsPlane)
+{
+    CausesCase test;
+    for (const size_t i : {size_t(5), at(test.gbuffer, 18, 6)}) test.gbuffer.object_id[i] = 9;
+    test.set_truth(5, TruthClass::sky);
+    test.set_end(5, TraceStatus::hit, {18.5, 6.5}, 3.94);
+    EXPECT_EQ(test.cause(5), WrongCause::own_surface);
+    test.set_end(5, TraceStatus::hit, {18.5, 6.5}, 3.5);
+    EXPECT_EQ(test.cause(5), WrongCause::other);
+}
+
+// All pixels of a leaning wall lie on each other's planes.
+TEST(WrongCauses, APlaneLeansAsItsGradientSays)
+{
+    CausesCase test;
+    for (int y = 0; y < 9; ++y)
+        for (int x = 0; x < 24; ++x)
+            test.gbuffer.depth[at(test.gbuffer, x, y)] = 0.025F + 0.0005F * float(x - 12) - 0.0003F * float(y - 4);
+    test.gbuffer.gradient.assign(test.gbuffer.depth.size(), {0.0005F, -0.0003F});
+    test.gbuffer.object_id[5] = 9;
+    test.set_truth(5, TruthClass::sky);
+    test.set_end(5, TraceStatus::hit, {18.5, 6.5});
+    EXPECT_EQ(test.cause(5), WrongCause::other);
+    for (const glm::vec2& wrong : {glm::vec2(0, -0.0003F), glm::vec2(0.0005F, 0), glm::vec2(0.0005F, 0.0003F)}) {
+        test.gbuffer.gradient.assign(test.gbuffer.depth.size(), wrong);
+        EXPECT_NE(test.cause(5), WrongCause::other) << wrong.x << ' ' << wrong.y;
+    }
+}
+
 TEST(WrongCauses, SharesSumToTheWrongRaysAndColoursTellThemApart)
 {
     CausesCase test;

@@ -229,6 +229,22 @@ TEST(RayMeasures, ASelfHitIsOfTheSameObject)
     EXPECT_EQ(values.at("false_wrong_surface"), 2 / 3.0);
 }
 
+// Across 12 m the sine of the angle to the plane is 0.005 for a hit 6 cm before it, and 0.025 for one 30 cm before it.
+TEST(RayMeasures, ASelfHitLiesNearlyInThePlane)
+{
+    SceneCase test;
+    auto& [gbuffer, truth, tested, screen] = test;
+    set_pixel(gbuffer, 3, 0, 1.94, {0, 0, 1}, 1);
+    set_pixel(gbuffer, 4, 0, 1.7, {0, 0, 1}, 1);
+    for (const size_t i : {0, 1}) {
+        truth.cls[i] = TruthClass::sky;
+        set_hit(tested, i, 3.5 + double(i));
+    }
+    const MeasureValues values = compare_to_scene_truth(tested, truth, &screen, gbuffer);
+    EXPECT_EQ(values.at("false_hits"), 1);
+    EXPECT_EQ(values.at("false_self"), 1 / 2.0);
+}
+
 // What is found is counted of what the better of the two finds.
 TEST(RayMeasures, ErrorsAreSharesOfTheBetterResult)
 {

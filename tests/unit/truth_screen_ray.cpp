@@ -159,6 +159,56 @@ TEST(ScreenRay, EveryEndLiesInTheImage)
     EXPECT_GT(border_ends, 1000U);
 }
 
+// Both borders of a corner are met at once but for rounding, so that the end on one of them must be put into the image.
+TEST(ScreenRay, EndsInCornersLieInTheImage)
+{
+    const GBufferImage gbuffer = floor_and_wall(bench_view({61, 47}), infinity);
+    TraceSettings      settings;
+    settings.max_distance_m = infinity;
+    size_t in_corner        = 0;
+    for (int y = 24; y < 47; ++y)
+        for (int x = 0; x < 61; ++x)
+            for (const glm::dvec2& corner :
+                 {glm::dvec2(0, 0), glm::dvec2(61, 0), glm::dvec2(0, 47), glm::dvec2(61, 47)}) {
+                const glm::dvec2 way = (corner - (glm::dvec2(x, y) + 0.5)) / gbuffer.view.focal_px;
+                const ScreenRay  ray = make_screen_ray(gbuffer, {x, y}, {way.x, -way.y, 0}, settings);
+                const glm::dvec2 end(ray.origin_px_depth + ray.delta_px_depth);
+                ASSERT_TRUE(end.x >= 0 && end.x <= 61 && end.y >= 0 && end.y <= 47) << x << ' ' << y;
+                ASSERT_LT(glm::distance(end, corner), 1e-9);
+                in_corner += end == corner;
+            }
+    EXPECT_GT(in_corner, 1000U);
+}
+
+TEST(ScreenRay, AMaterialReflectsByItsMetalOrItsSmoothCoat)
+{
+    TraceSettings settings;
+    settings.dielectric_min_f0        = 0.04;
+    settings.dielectric_max_roughness = 0.4;
+    GBufferImage gbuffer              = pixel_towards({12, 50}, 3, {0.2, 0.5, -0.4});
+    const size_t i                    = at(gbuffer, 12, 50);
+    const auto   reflecting           = [&](float metallic, float f0, float roughness) {
+        gbuffer.metallic[i] = metallic, gbuffer.dielectric_f0[i] = f0, gbuffer.roughness[i] = roughness;
+        return reflects(gbuffer, {12, 50}, settings);
+    };
+    EXPECT_TRUE(reflecting(0.01F, 0, 1));
+    EXPECT_TRUE(reflecting(0, 0.04F, 0.4F));
+    EXPECT_FALSE(reflecting(0, 0.04F, 0.41F));
+    EXPECT_FALSE(reflecting(0, 0.039F, 0));
+    EXPECT_FALSE(reflecting(0, 0.04F, 1));
+    gbuffer.roughness.clear();
+    EXPECT_TRUE(reflects(gbuffer, {12, 50}, settings)) << "without a roughness all is smooth";
+    for (const float depth : {0.0F, -1.0F, std::numeric_limits<float>::infinity(), std::nanf("")}) {
+        gbuffer.depth[i] = depth;
+        EXPECT_FALSE(reflects(gbuffer, {12, 50}, settings)) << depth;
+    }
+    gbuffer.depth[i]     = 0.1F;
+    gbuffer.normal_vs[i] = glm::vec3(0);
+    EXPECT_FALSE(reflects(gbuffer, {12, 50}, settings));
+    gbuffer.normal_vs[i] = {0, std::nanf(""), 1};
+    EXPECT_FALSE(reflects(gbuffer, {12, 50}, settings));
+}
+
 TEST(ScreenRay, IncompleteGBufferIsRefused)
 {
     GBufferImage gbuffer = empty_gbuffer(bench_view({4, 4}));
