@@ -261,13 +261,15 @@ void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image)
     planes.normal_vs = image.normal_vs;
     planes.gradient  = image.gradient;
     complete_gradients(planes);
+    const std::vector<float> depth = usable_depth(image.depth);
+    // Background is level, as shaders/gbuffer/background.comp draws it: without a plane it would have a slab, which may end nearer than everything.
     std::vector<uint32_t> gradients;
-    for (const glm::vec2& gradient : planes.gradient) gradients.push_back(pack_gradient(gradient));
+    for (size_t i = 0; i < count; ++i) gradients.push_back(depth[i] > 0 ? pack_gradient(planes.gradient[i]) : 0);
     std::vector<float> solid = image.solid_back;
     solid.resize(count);
     upload(gpu, gbuffer.gradient, gradients.data(), count * sizeof(uint32_t));
     upload(gpu, gbuffer.solid, solid.data(), count * sizeof(float));
-    write_depth(gpu, gbuffer.depth, usable_depth(image.depth), gradients);
+    write_depth(gpu, gbuffer.depth, depth, gradients);
     upload(gpu, gbuffer.normal, normal.data(), count * sizeof(glm::vec4));
     upload(gpu, gbuffer.material, material.data(), count * sizeof(HalfTexel));
     upload(gpu, gbuffer.dielectric, dielectric.data(), count * sizeof(float));
