@@ -25,7 +25,8 @@ constexpr Held  all_held[] = {{{0, 0}, 0},
                               {{0, 0}, 1 / 128.0F},
                               {{nan, nan}, 1 / 128.0F},
                               {{1 / 64.0F, 0}, 1 / 128.0F},
-                              {{-1 / 64.0F, 1 / 128.0F}, 1 / 64.0F}};
+                              {{-1 / 64.0F, 1 / 128.0F}, 1 / 64.0F},
+                              {{1 / 64.0F, 0}, 7 / 256.0F}};
 constexpr int   held_count = std::size(all_held);
 
 GBufferImage picture()
@@ -125,6 +126,9 @@ TEST(Packets, PassBehindNothingThatTheyMeet)
     const glm::ivec2 size_px(128, 64);
     GBufferImage     image =
         picture_of(bench_view(size_px, 0.1), [](glm::ivec2 p) { return p.x % 16 == 9 ? 2 / 3.0 : 2.0; });
+    image.gradient.assign(image.depth.size(), glm::vec2(0));
+    for (size_t i = 0; i < image.depth.size(); ++i)
+        if (image.depth[i] > 0.1F) image.gradient[i] = glm::vec2(nan); // a slab in models with planes, too
     const GBufferPtr gbuffer = upload_gbuffer(device(), image);
     for (const std::string_view surface : {"box", "box_two_sided", "plane"}) {
         const TraceSettings   settings{.thickness_m = 0.1, .max_distance_m = 1e9, .surface = surface};
@@ -135,7 +139,8 @@ TEST(Packets, PassBehindNothingThatTheyMeet)
                 RayInput ray;
                 // Groups of 64 rays are packets: one from each row, all to end at about one depth.
                 ray.origin_px_depth = {10.5F + float(step % 4), float(y) + 0.5F, 0.0501F};
-                ray.delta_px_depth  = {80, float(step % 3 - 1), 0.0023F * float(y)};
+                ray.delta_px_depth  = {80, float(step % 3 - 1),
+                                      y % 2 == 0 ? 0.0096F * float(y) : 0.1F + 0.0012F * float(y)};
                 ray.length_m        = 1;
                 ray.end_status      = TraceStatus::left_screen;
                 ray.pixel           = glm::ivec2(ray.origin_px_depth);
