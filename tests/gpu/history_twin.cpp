@@ -16,13 +16,13 @@ constexpr glm::ivec2 size_px{113, 71};
 constexpr double     not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double     factor       = 0.1; // of the strategies with parallax
 
-/// Moving boxes over a mirror that turns, whose camera moves.
-Scene moving_scene(Projection projection)
+/// Moving boxes over a mirror that turns. The camera was a little farther left, or so far ahead that much of what it sees now was behind it.
+Scene moving_scene(Projection projection, bool was_ahead)
 {
     Scene scene = load_scene("builtin:moving_boxes");
     for (Draw& draw : scene.draws)
         if (scene.materials[draw.material].metallic > 0)
-            draw.motion = {.turn_deg = {0.2, 0, 0.4}, .pivot_ws = {0, -1, -4}};
+            draw.motion = {.turn_deg = {0.5, 0, 1.5}, .pivot_ws = {0, -1, -4}};
     std::vector<Camera> cameras = {find_camera(scene, "default"), find_camera(scene, "default")};
     for (Camera& camera : cameras) {
         camera.projection = projection;
@@ -32,7 +32,8 @@ Scene moving_scene(Projection projection)
     }
     cameras[0].position_ws = {-0.3, 0.9, 1.5};
     cameras[1].position_ws = {0.1, 1.1, 1.2};
-    scene.paths            = {{"path", cameras, 1}};
+    if (was_ahead) cameras[0].position_ws = {0.1, 0.4, -3};
+    scene.paths = {{"path", cameras, 1}};
     return scene;
 }
 
@@ -59,7 +60,7 @@ double depth_on_plane(double depth, uint32_t gradient, glm::dvec2 from_centre_px
 bool near_border(glm::dvec2 px)
 {
     const glm::dvec2 off = glm::abs(px - glm::round(px));
-    return std::min(off.x, off.y) < 2e-3;
+    return std::min(off.x, off.y) < 0.01; // vector_error_px
 }
 
 double previous_depth(const Before& before, glm::dvec2 px)
@@ -85,10 +86,11 @@ glm::dvec2 seen_px(const Before& before, glm::dvec3 position_pvs)
     return glm::dvec2(vs_to_px(before.view, position_pvs));
 }
 
-/// Where the eye sees a point in the plane through `on_plane`: its mirror image. NaN: eye and point lie on two sides.
-glm::dvec2 mirrored_px(const Before& before, glm::dvec3 on_plane, glm::dvec3 normal, glm::dvec3 point)
+/// Where the eye sees a point in the plane through `on_plane`: its mirror image. NaN: eye and point lie on two sides. Nothing: rounding says on which.
+std::optional<glm::dvec2> mirrored_px(const Before& before, glm::dvec3 on_plane, glm::dvec3 normal, glm::dvec3 point)
 {
     const double eye = glm::dot(normal, -on_plane), height = glm::dot(normal, point - on_plane);
+    if (std::min(std::abs(eye), std::abs(height)) < 1e-3) return std::nullopt;
     if (eye * height <= 0) return glm::dvec2(not_a_number);
     return seen_px(before, point - 2 * height * normal);
 }
@@ -178,9 +180,9 @@ Told told_by(const Frame& frame, size_t ray, double ray_offset_m)
 
 /// The second frame of the path; `change` may change what the first one left.
 Frame second_frame(Projection projection, const ParameterValues& passes, TraceSettings trace,
-                   const std::function<void(FrameHistory&)>& change = {})
+                   const std::function<void(FrameHistory&)>& change = {}, bool was_ahead = false)
 {
-    const Scene   scene            = moving_scene(projection);
+    const Scene   scene            = moving_scene(projection, was_ahead);
     FrameSettings settings         = sequence_settings(passes);
     settings.trace                 = trace;
     const FrameHistoryPtr history  = make_history(device(), size_px);
@@ -193,7 +195,10 @@ Frame second_frame(Projection projection, const ParameterValues& passes, TraceSe
     keep_history(device(), *prepared(picture_at(scene, "path", {0, 8}, size_px), history), 0);
     if (change) change(*history);
     const SequencePicture picture = picture_at(scene, "path", {1, 8}, size_px);
-    Frame                 frame;
+    auto                  planes  = download_as<uint32_t>(device(), picture.gbuffer->gradient);
+    for (size_t i = 0; i < planes.size(); i += 7) planes[i] = pack_gradient(glm::vec2(float(not_a_number))); // no plane
+    upload(device(), picture.gbuffer->gradient, planes.data(), planes.size() * sizeof(uint32_t));
+    Frame frame;
     prepared(picture, nullptr);
     frame.own      = read_colours(picture.buffers->reflection);
     const auto run = prepared(picture, history);
@@ -241,13 +246,14 @@ ParameterValues passes_of(const std::string& id, const ParameterValues& more)
 /// to the camera is left out. Sums and differences of a few of them, and vectors of up to 100 px that are multiplied: ten times that.
 constexpr double vector_error_px = 0.01;
 
-void expect_strategy(const std::string& id, Projection projection, int per_pixel, double ray_offset_m, int layers)
+void expect_strategy(const std::string& id, Projection projection, int per_pixel, double ray_offset_m, int layers,
+                     bool was_ahead = false)
 {
     SCOPED_TRACE(id + (projection == Projection::orthographic ? ", orthographic, " : ", ") + std::to_string(per_pixel) +
                  " rays, " + std::to_string(layers) + " layers, offset " + std::to_string(ray_offset_m));
     TraceSettings trace{.thickness_m = 0.1, .max_distance_m = 100, .ray_offset_m = ray_offset_m};
     trace.layers       = layers;
-    const Frame frame  = second_frame(projection, passes_of(id, {{"rays_per_pixel", per_pixel}}), trace);
+    const Frame frame  = second_frame(projection, passes_of(id, {{"rays_per_pixel", per_pixel}}), trace, {}, was_ahead);
     size_t      judged = 0, deeper = 0;
     for (size_t first = 0; first < frame.rays.size(); first += size_t(per_pixel)) {
         const size_t i = pixel_index(unpack_pixel(frame.rays[first].pixel), size_px);
@@ -266,10 +272,11 @@ void expect_strategy(const std::string& id, Projection projection, int per_pixel
             const size_t h = pixel_index(unpack_pixel(frame.hits[ray].pixel), size_px);
             object = layer > 0 ? frame.image.layers.at(size_t(layer - 1)).object_id[h] : frame.image.object_id[h];
             const auto place = placed(id, frame.before, told);
-            // Rounding decides near the mirror's plane, and rules close to the eye.
-            const double height = glm::dot(told.normal_pvs, told.hit_pvs - told.incidence_pvs);
-            known               = known && place && std::abs(height) > 1e-3 &&
-                    (projection == Projection::orthographic || told.hit_pvs.z < -1) && told.incidence_pvs.z < -1;
+            // Rounding rules close to the eye.
+            const auto far = [&](glm::dvec3 p) {
+                return projection == Projection::orthographic || p.z < -1 || p.z > 0.1;
+            };
+            known = known && place && far(told.hit_pvs) && far(told.incidence_pvs);
             if (!known || std::isnan(place->x)) continue;
             ++seen;
             sum_px += *place - told.incidence_px;
@@ -286,7 +293,7 @@ void expect_strategy(const std::string& id, Projection projection, int per_pixel
         ASSERT_NEAR(found.x, expected.x, bound) << i;
         ASSERT_NEAR(found.y, expected.y, bound) << i;
     }
-    EXPECT_GT(judged, 1000U);
+    EXPECT_GT(judged, 700U);
     EXPECT_TRUE(layers == 1 || deeper > 10) << deeper;
 }
 
@@ -305,6 +312,8 @@ TEST(ReprojectionTwin, OfSeveralRaysOffsetsAndLayers)
     }
     expect_strategy("plane", Projection::orthographic, 3, 0.2, 1);
     expect_strategy("smallest", Projection::perspective, 4, 0.2, 1);
+    for (const char* strategy_id : {"surface", "smallest", "carried_plane"})
+        expect_strategy(strategy_id, Projection::perspective, 1, 0, 1, true);
 }
 
 /// As shaders/layout/frame_shared.h numbers them; the counts are all that the device says of them.
@@ -355,7 +364,7 @@ double expected_m(const Frame& frame, glm::ivec2 pixel, glm::dvec2 px)
     const glm::dvec2  gradient = unpack_gradient(frame.gradient[i]), centre = glm::dvec2(pixel) + 0.5;
     const glm::dmat4& matrix   = frame.before.to_previous_vs[frame.image.object_id[i]];
     const auto        on_plane = [&](glm::dvec2 step) {
-        return px_to_vs(view, centre + step, depth + glm::dot(gradient, step));
+        return px_to_vs(view, centre + step, depth + (step.x == 0 && step.y == 0 ? 0 : glm::dot(gradient, step)));
     };
     const glm::dvec3 point  = on_plane({0, 0});
     glm::dvec3       normal = glm::normalize(glm::dvec3(frame.image.normal_vs[i]));
@@ -502,7 +511,7 @@ TEST(HistoryTwin, OfEveryRule)
             SCOPED_TRACE(std::string(projection == Projection::perspective ? "perspective" : "orthographic") +
                          (half ? ", half" : ""));
             expect_history(projection,
-                           {.reject_depth = 0.05, .reject_normal = 0.9, .length_tolerance = 0, .reject_hit = false},
+                           {.reject_depth = 0.02, .reject_normal = 0.9, .length_tolerance = 0, .reject_hit = false},
                            half, outcomes);
             expect_history(projection,
                            {.reject_depth = 0, .reject_normal = -1, .length_tolerance = 0.3, .reject_hit = false}, half,
