@@ -9,6 +9,7 @@ import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 import numpy as np  # noqa: E402
+import pandas as pd  # noqa: E402
 import plot_accuracy  # noqa: E402
 import plot_benchmarks  # noqa: E402
 import plot_effects  # noqa: E402
@@ -229,9 +230,15 @@ class Test(Case):
         self.assertEqual(list(zip(best.scene, best.surface, best.behind, best.thickness_m)), [
             (scene, *model, 0.2) for scene in ("a_hall", "b_hall") for model in (("plane", "stop"), ("box", "stop"), ("box", "hit"))])
         self.near(best.solid_backs_ms, [0.5, 0, 0] * 2)
+        self.near(best.recall_1px, [0.82, 0.62, 0.52] * 2)
+        self.near(best.precision_1px, [0.7] * 6)
+        self.assertEqual([text.get_text() for text in axis.texts], ["0.1 m", "0.2 m", "0.4 m"] * 2)
+        self.near([text.xy for text in axis.texts], [[61, 80], [62, 70], [64, 50], [51, 80], [52, 70], [54, 50]])
 
     def test_what_surface_models_cost(self):
-        figures, _ = self.drawn(plot_surfaces.f1_against_time, self.surfaces())
+        results = self.surfaces()
+        results.rows = pd.concat([results.rows, results.rows.assign(width=40, f1_1px=0.0)])  # smaller pictures do not count
+        figures, _ = self.drawn(plot_surfaces.f1_against_time, results)
         axis, = figures["surfaces_f1_time"].axes
         self.near(line_of(axis, "plane, stop"), [[3.25, 3.35], [70, 80]])
         self.near(line_of(axis, "box, hit"), [[2.75, 2.85], [40, 50]])
