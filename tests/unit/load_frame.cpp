@@ -113,6 +113,26 @@ TEST_F(LoadFrame, EveryDepthConventionGivesTheSameDistances)
     }
 }
 
+// Depth is linear in the distance, and a ray's way is its distance.
+TEST_F(LoadFrame, OrthographicDepthConventionsGiveTheSameDistances)
+{
+    const std::string flat =
+        "[camera]\nprojection = 'orthographic'\nheight_m = 6\nnear_m = 0.25\nfar_m = 50\n[depth]\n";
+    const auto                           reversed = [](size_t i) { return (far_m - distance_m(i)) / (far_m - near_m); };
+    const std::pair<const char*, Values> conventions[] = {
+        {"kind = 'reversed'\n", reversed},
+        {"kind = 'standard'\n", [&](size_t i) { return 1 - reversed(i); }},
+        {"kind = 'distance'\n", distance_m},
+        {"kind = 'ray_distance'\n", distance_m}};
+    for (const auto& [text, value] : conventions) {
+        channels_.clear();
+        whole_frame("Depth.Z", value);
+        const Frame frame = load(flat + text);
+        for (size_t i = 0; i < pixel_count(size_px); ++i) // the file and what is read round to float
+            ASSERT_NEAR(frame.gbuffer.depth[i], reversed(i), std::ldexp(1.0, -22)) << text << i;
+    }
+}
+
 TEST_F(LoadFrame, NormalsOfTheWorldTurnIntoTheCamera)
 {
     channel("ViewLayer.Depth.Z", [](size_t) { return 3.0; });

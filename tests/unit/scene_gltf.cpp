@@ -528,6 +528,35 @@ TEST(SceneGltf, VerticesKeepWhatTheFileSays)
     EXPECT_EQ(placed({-1, 1, 1})[1].tangent_ws, glm::vec4(0, 1, 0, 1)) << "a mirror changes their hand";
 }
 
+// Eight bytes a vertex: a colour of four unsigned bytes, coordinates of two signed ones, and two that nobody reads.
+TEST(SceneGltf, InterleavedBytesAreSharesOfTheirLargest)
+{
+    TempFolder    folder;
+    GltfFile      file      = GltfFile::triangle();
+    const uint8_t bytes[]   = {255, 0,    51, 204, 0x80, 127, 9, 9,   0, 255, 0, 255,
+                               64,  0x81, 9,  9,   0,    102, 0, 255, 0, 1,   9, 9};
+    const auto    attribute = [&](const char* name, int component, const char* type, size_t offset) {
+        file.root["accessors"].push_back({{"bufferView", file.root["bufferViews"].size() - 1},
+                                          {"byteOffset", offset},
+                                          {"componentType", component},
+                                          {"normalized", true},
+                                          {"count", 3},
+                                          {"type", type}});
+        file.primitive()["attributes"][name] = file.root["accessors"].size() - 1;
+    };
+    file.root["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", file.binary.size()}, {"byteLength", sizeof(bytes)}, {"byteStride", 8}});
+    file.binary.append(reinterpret_cast<const char*>(bytes), sizeof(bytes));
+    attribute("COLOR_0", 5121, "VEC4", 0);
+    attribute("TEXCOORD_0", 5120, "VEC2", 4);
+    const std::vector<Vertex> vertices = load_scene(file.write(folder)).vertices;
+    EXPECT_VEC_NEAR(vertices[0].colour, glm::vec4(1, 0, 0.2F, 0.8F), eps);
+    EXPECT_VEC_NEAR(vertices[2].colour, glm::vec4(0, 0.4F, 0, 1), eps);
+    EXPECT_EQ(vertices[0].uv0, glm::vec2(-1, 1)) << "-128 is no less than -1";
+    EXPECT_NEAR(vertices[1].uv0.x, 64.0F / 127, eps);
+    EXPECT_EQ(vertices[1].uv0.y, -1);
+}
+
 TEST(SceneGltf, ATextureMakesAMaterialTransparentWithItsFactor)
 {
     // The grey pixel is opaque: half of it is drawn, less is left out.
