@@ -198,6 +198,8 @@ class Test(Case):
         self.assertEqual((values["max_distance_m"], values["steps"]), ("inf", 16))
         self.assertEqual(dict(zip(data["columns"], data["units"]))["max_distance_m"], "m")
         self.assertEqual(plot_report.plain(np.float64(1.23456789)), 1.2346)
+        line = made_results(self, [dict(row, binary=1) for row in rows], ["steps", "binary", "max_distance_m"])
+        self.assertEqual(plot_report.chart_data(line, plot_verdict.picks(line))["cloud"], {"linear": False}, "one number alone varies")
         # Of each view the largest picture that is at most 1280 wide.
         chosen = pd.DataFrame([dict(scene="s", view="a", width=width, frame_title=f"a{width}") for width in (640, 1920, 1280)] +
                               [dict(scene="s", view="b", width=width, frame_title=f"b{width}") for width in (3840, 1920)])
