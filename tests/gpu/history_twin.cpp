@@ -32,7 +32,7 @@ Scene moving_scene(Projection projection, bool was_ahead)
     }
     cameras[0].position_ws = {-0.3, 0.9, 1.5};
     cameras[1].position_ws = {0.1, 1.1, 1.2};
-    if (was_ahead) cameras[0].position_ws = {0.1, 0.4, -3};
+    if (was_ahead) cameras[0].position_ws = {0.1, 0.4, -7};
     scene.paths = {{"path", cameras, 1}};
     return scene;
 }
@@ -92,7 +92,10 @@ std::optional<glm::dvec2> mirrored_px(const Before& before, glm::dvec3 on_plane,
     const double eye = glm::dot(normal, -on_plane), height = glm::dot(normal, point - on_plane);
     if (std::min(std::abs(eye), std::abs(height)) < 1e-3) return std::nullopt;
     if (eye * height <= 0) return glm::dvec2(not_a_number);
-    return seen_px(before, point - 2 * height * normal);
+    const glm::dvec3 image = point - 2 * height * normal;
+    // Close to the eye's plane it is seen far away, and rounding says how far.
+    if (before.view.projection == Projection::perspective && std::abs(image.z) < 1) return std::nullopt;
+    return seen_px(before, image);
 }
 
 glm::dvec2 shortest(std::initializer_list<glm::dvec2> vectors)
@@ -293,7 +296,7 @@ void expect_strategy(const std::string& id, Projection projection, int per_pixel
         ASSERT_NEAR(found.x, expected.x, bound) << i;
         ASSERT_NEAR(found.y, expected.y, bound) << i;
     }
-    EXPECT_GT(judged, 700U);
+    EXPECT_GT(judged, 500U);
     EXPECT_TRUE(layers == 1 || deeper > 10) << deeper;
 }
 
