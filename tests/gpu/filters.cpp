@@ -109,9 +109,11 @@ TEST(Upsampling, TakesTheMostAlikeWhereAllWeightsVanish)
     for (int y = 0; y < 16; ++y)
         for (int x = 31; x < 64; ++x) set_pixel(image, x, y, 7, {0, 0, 1}, 1);
     set_pixel(image, 30, 9, 7, {0, 0, 1}, 1);
+    set_pixel(image, 31, 5, 5.6, {0, 0, 1}, 1); // of neither surface, and nearer to the left one
     const Picture picture = make_picture(image);
     EXPECT_EQ(upsample_two(picture, bilinear)[at(image, 30, 9)], red);
     EXPECT_EQ(upsample_two(picture, depth)[at(image, 30, 9)], blue);
+    EXPECT_EQ(upsample_two(picture, depth)[at(image, 31, 5)], red);
 }
 
 TEST(Upsampling, HolesAndPixelsThatReflectNothing)
