@@ -32,7 +32,10 @@ Scene moving_scene(Projection projection, bool was_ahead)
     }
     cameras[0].position_ws = {-0.3, 0.9, 1.5};
     cameras[1].position_ws = {0.1, 1.1, 1.2};
-    if (was_ahead) cameras[0].position_ws = {0.1, 0.4, -7};
+    if (was_ahead) {
+        cameras[0].position_ws = {0.1, 0.4, -7};
+        cameras[0].target_ws   = {0.2, -0.9, -14};
+    }
     scene.paths = {{"path", cameras, 1}};
     return scene;
 }
