@@ -321,29 +321,6 @@ TEST(History, IsInterpolatedOverWhatReflected)
     EXPECT_GT(taken, 1000U);
 }
 
-// Where nothing but jitter moves, the plane of each pixel says the depth of the frame before to the last digits.
-TEST(History, KnowsTheDepthOfPlanes)
-{
-    if (!draws_exactly()) GTEST_SKIP() << "this driver draws less exactly";
-    Scene  scene       = still_scene();
-    Camera camera      = find_camera(scene, "default");
-    camera.position_ws = {0, 6, 4}; // down on the floor
-    camera.target_ws   = {0, -1, -7};
-    for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
-        camera.projection             = projection;
-        camera.height_m               = 8;
-        camera.far_m                  = 60;
-        scene.cameras                 = {camera};
-        const FrameHistoryPtr history = make_history(device(), size_px);
-        const ParameterValues passes  = with(plain, {strategy("surface"), {"reject_depth", 1e-4}});
-        keep_history(device(), *run_picture(picture_at(scene, "default", {0, 16}, size_px), passes, history), 0);
-        const auto          run    = run_picture(picture_at(scene, "default", {1, 16}, size_px), passes, history);
-        const HistoryCounts counts = read_history_counts(device(), *run).value();
-        EXPECT_GT(counts.accumulated, 300U);
-        EXPECT_GT(counts.accumulated, 5 * counts.other_depth) << "projection " << int(projection);
-    }
-}
-
 TEST(History, NothingIsLeftOfItAfterACut)
 {
     const Scene           scene   = load_scene("builtin:moving_boxes");
