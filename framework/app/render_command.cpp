@@ -132,9 +132,8 @@ private:
 };
 
 /// How right the rays are, how wrong, or how hard.
-Image false_colours(Stage& stage, PreparedFrame& frame, const TraceSettings& settings, const std::string& show)
+Image false_colours(Stage& stage, const TraceResult& counted, const TraceSettings& settings, const std::string& show)
 {
-    const TraceResult counted = count_frame(stage.gpu, frame);
     if (show == "fetches") return fetch_heat_map(counted);
     const GBufferImage gbuffer = read_gbuffer(stage.gpu, *stage.gbuffer); // with the layers that were traced
     if (!stage.scene.frame) {
@@ -207,10 +206,12 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
             const auto frame = prepare_frame(stage.gpu, make_frame_buffers(stage.gpu, stage.gbuffer), technique,
                                              choice.values, choice.settings, histories[static_cast<size_t>(sample)]);
             if (sample == 0) warn_without_reflections(common, *frame);
-            if (i == 0 && sample == 0 && !options.truth)
-                impossible = find_impossible(count_frame(stage.gpu, *frame), declared_steps(technique, choice.values));
+            const bool                 first = i == 0 && sample == 0 && !options.truth;
+            std::optional<TraceResult> counted;
+            if (first || !options.show.empty()) counted = count_frame(stage.gpu, *frame);
+            if (first) impossible = find_impossible(*counted, declared_steps(technique, choice.values));
             if (!options.show.empty())
-                rendered.pictures.front().image = false_colours(stage, *frame, choice.settings.trace, options.show);
+                rendered.pictures.front().image = false_colours(stage, *counted, choice.settings.trace, options.show);
             else
                 add_sample(stage, *frame, options, choice.settings.trace, truth, sample, picture.at.frame + i,
                            rendered);
