@@ -86,17 +86,16 @@ class Case(unittest.TestCase):
         self.assertEqual(len(errors), 1, f"one line of error\nrepeat: {self.last_command}\n{text}")
         return text
 
-    def rows(self, folder="out"):
-        with open(os.path.join(self.path(folder), "results.csv"), encoding="utf-8", newline="") as file:
+    def rows(self, folder="out", table="results.csv"):
+        with open(os.path.join(self.path(folder), table), encoding="utf-8", newline="") as file:
             return list(csv.DictReader(file))
 
     def samples(self, folder="out"):
         """samples.csv as {run id: {pass: [(round, ms), …]}}."""
         samples = {}
-        with open(os.path.join(self.path(folder), "samples.csv"), encoding="utf-8", newline="") as file:
-            for one in csv.DictReader(file):
-                passes = samples.setdefault(one["run_id"], {})
-                passes.setdefault(one["pass"], []).append((int(one["round"]), float(one["ms"])))
+        for one in self.rows(folder, "samples.csv"):
+            passes = samples.setdefault(one["run_id"], {})
+            passes.setdefault(one["pass"], []).append((int(one["round"]), float(one["ms"])))
         return samples
 
     def whole_rows(self, folder="out"):

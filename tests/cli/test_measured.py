@@ -1,5 +1,4 @@
 """What is timed: a frame is its passes and its G-buffer, a sample is that of one frame, and what skipping saves is what a frame without it takes more."""
-import csv
 import statistics
 
 from support import Case, main
@@ -22,9 +21,8 @@ class Test(Case):
     def raw(self, folder):
         """{run id: {round: {pass: (ms, cpu_ms)}}}; cpu_ms as text."""
         runs = {}
-        with open(self.path(f"{folder}/samples.csv"), encoding="utf-8", newline="") as file:
-            for one in csv.DictReader(file):
-                runs.setdefault(one["run_id"], {}).setdefault(one["round"], {})[one["pass"]] = (float(one["ms"]), one["cpu_ms"])
+        for one in self.rows(folder, "samples.csv"):
+            runs.setdefault(one["run_id"], {}).setdefault(one["round"], {})[one["pass"]] = (float(one["ms"]), one["cpu_ms"])
         return runs
 
     def run_spec(self, folder, more=""):
