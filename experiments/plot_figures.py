@@ -219,7 +219,7 @@ def bars(axis, rows, results, value, spread, ylabel):
         # In the colour: bar's own alpha would fill what has none.
         colour = to_rgba(style["color"], style["alpha"])
         axis.bar(at, part[value], width * 0.92, label=name, color=["none" if hollow else colour for hollow in unknown], edgecolor=colour,
-                 yerr=errors(part, spread) if spread else None, error_kw={"lw": 1, "capsize": 2, "ecolor": "#333333"})
+                 yerr=errors(part, spread) if spread and not unknown.all() else None, error_kw={"lw": 1, "capsize": 2, "ecolor": "#333333"})
         tops = part[f"{spread}_ci_high"].fillna(part[value]) if spread else part[value]
         for x, height, top in zip(at, part[value], tops):
             if np.isfinite(height):
@@ -241,7 +241,8 @@ def comparison_bars(results, _):
         figure, (top, bottom) = plt.subplots(2, 1, figsize=(max(7, 2.3 * rows.scene.nunique()), 7.4))
         bars(top, rows, results, "cost_ms_median", "cost_ms", "trace + structures, ms")
         bars(bottom, rows, results, "fetches_mean", None, "fetches per ray")
-        top.set_title(f"Time, median and 95 % interval, hollow: not known ({width}×{height}, view {view})")
+        figure.suptitle(f"View {view}, {width}×{height}")
+        top.set_title("Time: median and 95 % interval (hollow: not known)")
         bottom.set_title("Work: fetches of depth and structures per traced ray")
         top.legend(ncol=4, loc="upper center", bbox_to_anchor=(0.5, -0.08))
         fastest = rows.loc[rows.groupby("scene", sort=False).cost_ms_median.idxmin()]
