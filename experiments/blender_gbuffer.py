@@ -29,6 +29,10 @@ def arguments():
     return chosen
 
 
+def refuse(text):
+    sys.exit(f"blender_gbuffer.py: {text}")
+
+
 def load_model(path):
     if not hasattr(numpy, "bool"):  # Debian 12: the glTF importer of Blender 3.4 uses a name that NumPy 1.24 removed
         numpy.bool = bool
@@ -41,7 +45,7 @@ def complete(scene):
     if scene.camera is None:
         cameras = [item for item in scene.objects if item.type == "CAMERA"]
         if not cameras:
-            sys.exit("blender_gbuffer.py: the scene has no camera")
+            refuse("the scene has no camera")
         scene.camera = cameras[0]
     if scene.world is None:
         scene.world = bpy.data.worlds.new("grey")
@@ -76,11 +80,38 @@ def write_material_aovs(material):
 def prepare_passes(scene, layer):
     layer.use_pass_z = True
     layer.use_pass_normal = True
+    layer.use_pass_emit = True
     for name, kind in AOVS.items():
         aov = layer.aovs.add()
         aov.name, aov.type = name, kind
     for material in bpy.data.materials:
         write_material_aovs(material)
+
+
+def refuse_what_no_frame_can_say(scene):
+    """A frame's camera is a pinhole with square pixels and axes at right angles."""
+    render, camera = scene.render, scene.camera
+    if render.pixel_aspect_x != render.pixel_aspect_y:
+        refuse(f"the pixels are not square ({render.pixel_aspect_x:g} x {render.pixel_aspect_y:g}): set Output, Format, Aspect to 1 x 1")
+    if camera.data.type not in ("PERSP", "ORTHO"):
+        refuse(f"camera '{camera.name}' is of type {camera.data.type}: only perspective and orthographic cameras have a depth buffer")
+    axes = camera.matrix_world.to_3x3().normalized().col
+    if max(abs(axes[0].dot(axes[1])), abs(axes[1].dot(axes[2])), abs(axes[2].dot(axes[0]))) > 1e-4:
+        refuse(f"the axes of camera '{camera.name}' are not at right angles: a parent scales it unevenly; clear the parent or apply its scale")
+
+
+def turn_off_what_moves_points(scene, layer):
+    """Each pixel is to show one point through its centre, once."""
+    if scene.camera.data.dof.use_dof:
+        print("blender_gbuffer.py: depth of field is off in all pictures")
+        scene.camera.data.dof.use_dof = False
+    scene.render.use_motion_blur = False
+    scene.render.use_multiview = False
+    scene.render.use_compositing = False
+    scene.render.use_sequencer = False
+    layer.cycles.denoising_store_passes = False  # a second depth and normal
+    for other in scene.view_layers:
+        other.use = other == layer
 
 
 def render(scene, path, samples, multilayer):
@@ -126,6 +157,8 @@ def main():
     if chosen.frame is not None:
         scene.frame_set(chosen.frame)
     complete(scene)
+    refuse_what_no_frame_can_say(scene)
+    turn_off_what_moves_points(scene, bpy.context.view_layer)
     if chosen.size:
         scene.render.resolution_x, scene.render.resolution_y = (int(side) for side in chosen.size.split("x"))
         scene.render.resolution_percentage = 100
