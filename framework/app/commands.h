@@ -1,7 +1,7 @@
 // What each subcommand of ssrlab does. Each returns the exit code and throws SpecError (2) or Failure (1).
 #pragma once
 
-#include "render/frame.h"
+#include "frame/frame.h"
 #include "scene/sequence.h"
 
 #include <filesystem>

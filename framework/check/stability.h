@@ -1,8 +1,8 @@
 // What cannot be right or wrong, only measured: how answers move when the picture is sampled elsewhere or its depth is stored in another format.
 #pragma once
 
-#include "render/frame.h"
-#include "render/technique.h"
+#include "frame/frame.h"
+#include "trace/technique.h"
 
 #include <string>
 #include <vector>

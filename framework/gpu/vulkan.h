@@ -1,4 +1,4 @@
-// The inside of Gpu: for the folders gpu/ and render/ only.
+// The inside of Gpu: for the folders gpu/, trace/ and frame/ only.
 #pragma once
 
 #include "gpu/compiled.h"

@@ -1,9 +1,9 @@
 // An experiment is a TOML file in which a list is a sweep; expanded, it is a list of runs.
 #pragma once
 
-#include "render/frame.h"
-#include "render/technique.h"
+#include "frame/frame.h"
 #include "scene/sequence.h"
+#include "trace/technique.h"
 
 #include <cstdint>
 #include <filesystem>

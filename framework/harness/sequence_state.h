@@ -2,9 +2,9 @@
 #pragma once
 
 #include "compare/measures.h"
+#include "frame/history.h"
 #include "harness/columns.h"
 #include "harness/record.h"
-#include "render/history.h"
 
 #include <span>
 

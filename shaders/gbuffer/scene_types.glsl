@@ -1,4 +1,4 @@
-// Scene data as the G-buffer and shadow passes read it; render/gpu_scene.cpp fills the same layouts.
+// Scene data as the G-buffer and shadow passes read it; frame/gpu_scene.cpp fills the same layouts.
 struct Material
 {
     vec4  base_colour;   // linear

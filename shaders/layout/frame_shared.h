@@ -6,7 +6,6 @@
 #define CLASSIFIED_TILES 32
 #define CLASSIFIED_TILES_BY_PIXEL 16
 
-
 // Specialization constants of these shaders.
 #define CONSTANT_EVERY_SURFACE 7
 #define CONSTANT_ITEMS_PER_GROUP 8
@@ -15,10 +14,10 @@
 #define CONSTANT_DIELECTRIC_MIN_F0 15
 #define CONSTANT_DIELECTRIC_MAX_ROUGHNESS 16
 #define CONSTANT_LOBE_RAYS 17
-#define CONSTANT_PASSES 64 // the passes' parameters, in the order of render/passes/all_passes.cpp
+#define CONSTANT_PASSES 64        // the passes' parameters, in the order of frame/passes/all_passes.cpp
 #define CONSTANT_REPROJECTION 256 // those of the reprojection strategy
 
-// What became of a pixel's history (framework/render/history.h, HistoryCounts).
+// What became of a pixel's history (framework/frame/history.h, HistoryCounts).
 #define HISTORY_ACCUMULATED 0
 #define HISTORY_UNSEEN 1
 #define HISTORY_OFF_IMAGE 2

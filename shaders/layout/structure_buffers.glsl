@@ -3,7 +3,7 @@
 #define SSRLAB_STRUCTURE_BUFFERS
 #include "layout/texels.glsl"
 
-// The buffers of structures are declared through these (framework/render/structure_passes.cpp): load_NAME(index), store_NAME(index, value).
+// The buffers of structures are declared through these (framework/trace/structure_passes.cpp): load_NAME(index), store_NAME(index, value).
 #define LOADED_BUFFER(place, name, type, words, from_bits, swizzle) \
     LOADED_TEXELS_##words(place, name##_loaded)                     \
     type load_##name(int index) { return from_bits(LOAD_TEXEL(name##_loaded, index).swizzle); }

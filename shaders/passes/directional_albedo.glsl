@@ -1,4 +1,4 @@
-// The split-sum table: the directional albedo of a GGX surface is f0 * x + f90 * y (render/directional_albedo.h).
+// The split-sum table: the directional albedo of a GGX surface is f0 * x + f90 * y (frame/directional_albedo.h).
 #include "layout/frame_shared.h"
 #include "gbuffer/grazing.glsl"
 layout(set = 0, binding = 36) uniform sampler2D dfg_table;

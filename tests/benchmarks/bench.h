@@ -1,8 +1,8 @@
 // The passes of a frame one by one, on pictures that are made once and kept: interleaved repetitions return to them.
 #pragma once
 
-#include "render/frame_passes.h"
 #include "scene/scene.h"
+#include "trace/frame_passes.h"
 
 #include <benchmark/benchmark.h>
 

@@ -1,6 +1,6 @@
 #include "targets.h"
 
-#include "render/reprojection.h"
+#include "trace/reprojection.h"
 
 namespace ssrlab::fuzz {
 

@@ -1,6 +1,6 @@
 #include "targets.h"
 
-#include "render/structure.h"
+#include "trace/structure.h"
 
 namespace ssrlab::fuzz {
 

@@ -1,6 +1,6 @@
 #include "targets.h"
 
-#include "render/surface.h"
+#include "trace/surface.h"
 
 namespace ssrlab::fuzz {
 

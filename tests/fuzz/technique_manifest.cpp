@@ -1,6 +1,6 @@
 #include "targets.h"
 
-#include "render/technique.h"
+#include "trace/technique.h"
 
 namespace ssrlab::fuzz {
 

@@ -1,8 +1,8 @@
 // The depth pyramid against brute force: every cell of every level, at sizes that halving does not divide.
 #include "core/pixel_index.h"
 #include "gpu/device.h"
-#include "render/frame_passes.h"
 #include "shared.h"
+#include "trace/frame_passes.h"
 #include "truth/screen_truth.h"
 #include "unit/truth_gbuffers.h"
 

@@ -2,8 +2,8 @@
 
 #include "core/error.h"
 #include "core/pixel_index.h"
+#include "frame/gbuffer.h"
 #include "gpu/vulkan.h"
-#include "render/gbuffer.h"
 
 #include <cmath>
 #include <map>

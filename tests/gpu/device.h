@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/error.h"
-#include "render/frame.h"
+#include "frame/frame.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // The environment map on the device: the same lookup as in C++, and what pixels without a surface show.
 #include "core/files.h"
 #include "core/pixel_index.h"
+#include "frame/gpu_scene.h"
 #include "gpu/compute.h"
 #include "gpu/device.h"
-#include "render/gpu_scene.h"
 
 #include <cmath>
 #include <random>

@@ -1,7 +1,7 @@
 // Passes that make one reflection out of several: up-sampling, down-sampling, filters.
 #include "core/pixel_index.h"
+#include "frame/directional_albedo.h"
 #include "gpu/passes.h"
-#include "render/directional_albedo.h"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 #include "compare/measures.h"
 #include "core/pixel_index.h"
 #include "gpu/device.h"
-#include "render/frame_passes.h"
-#include "render/ray_list.h"
+#include "trace/frame_passes.h"
+#include "trace/ray_list.h"
 
 #include <algorithm>
 #include <map>

@@ -1,8 +1,8 @@
 // The history of pixels whose rays miss.
 #include "core/pixel_index.h"
+#include "frame/frame_history.h"
+#include "frame/passes/choices.h"
 #include "gpu/sequence_frames.h"
-#include "render/frame_history.h"
-#include "render/passes/choices.h"
 
 namespace ssrlab::test {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "gpu/device.h"
-#include "render/frame_passes.h"
+#include "trace/frame_passes.h"
 #include "unit/truth_gbuffers.h"
 
 #include <glm/gtc/packing.hpp>

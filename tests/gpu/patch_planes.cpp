@@ -2,8 +2,8 @@
 #include "core/files.h"
 #include "core/pixel_index.h"
 #include "gpu/device.h"
-#include "render/frame_passes.h"
 #include "shared.h"
+#include "trace/frame_passes.h"
 #include "unit/truth_gbuffers.h"
 
 #include <limits>

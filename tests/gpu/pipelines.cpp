@@ -1,8 +1,8 @@
 // Pipelines are made once: for equal shaders and constants, with a store that stays small, of files as they are, and for all pictures of a scene.
 #include "core/files.h"
+#include "frame/gbuffer.h"
 #include "gpu/compute.h"
 #include "gpu/device.h"
-#include "render/gbuffer.h"
 #include "shared.h"
 
 #include <chrono>

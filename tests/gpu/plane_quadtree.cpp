@@ -1,8 +1,8 @@
 // The plane quadtree against the pixels themselves: every pixel's slab lies in every node above it, at every place of the pixel.
 #include "core/pixel_index.h"
 #include "gpu/device.h"
-#include "render/frame_passes.h"
 #include "shared.h"
+#include "trace/frame_passes.h"
 #include "truth/screen_truth.h"
 #include "unit/truth_gbuffers.h"
 

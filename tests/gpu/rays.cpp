@@ -1,8 +1,8 @@
 // Rays as the shader sets them up against the host's double precision: also a round trip of everything that both sides share
 // (the view's uniform block, the settings' constants, packed pixels and statuses).
 #include "gpu/device.h"
-#include "render/frame_passes.h"
 #include "shared.h"
+#include "trace/frame_passes.h"
 #include "truth/screen_ray.h"
 #include "unit/truth_gbuffers.h"
 

@@ -1,6 +1,6 @@
 // The pipeline that records what a ray looks at: the answer is the same, and the visits are those of the walk.
 #include "gpu/device.h"
-#include "render/ray_list.h"
+#include "trace/ray_list.h"
 
 #include <algorithm>
 

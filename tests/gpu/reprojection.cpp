@@ -1,7 +1,7 @@
 // Where reflections were in the frame before, against closed forms.
 #include "core/pixel_index.h"
+#include "frame/passes/choices.h"
 #include "gpu/sequence_frames.h"
-#include "render/passes/choices.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "gpu/device.h"
-#include "render/frame_passes.h"
 #include "scene/sequence.h"
+#include "trace/frame_passes.h"
 
 namespace ssrlab::test {
 

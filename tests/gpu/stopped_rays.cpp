@@ -1,8 +1,8 @@
 // What a ray shows that stopped at the unseen side of a surface.
+#include "frame/passes/choices.h"
 #include "gpu/device.h"
 #include "gpu/passes.h"
-#include "render/frame_passes.h"
-#include "render/passes/choices.h"
+#include "trace/frame_passes.h"
 
 namespace ssrlab::test {
 namespace {

@@ -1,8 +1,8 @@
 // Whatever way a device stores texels in, it stores the same bits: words, 64 bits at a time, or plain storage buffers. The same holds for whether
 // the passes before the trace are serial or parallel.
+#include "frame/gbuffer.h"
 #include "gpu/device.h"
-#include "render/frame_passes.h"
-#include "render/gbuffer.h"
+#include "trace/frame_passes.h"
 
 namespace ssrlab::test {
 namespace {

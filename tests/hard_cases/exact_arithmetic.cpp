@@ -2,8 +2,8 @@
 #include "check/run_check.h"
 #include "core/pixel_index.h"
 #include "gpu/device.h"
-#include "render/ray_list.h"
 #include "scene/scene.h"
+#include "trace/ray_list.h"
 
 #include <gmock/gmock.h>
 

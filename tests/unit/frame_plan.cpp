@@ -1,5 +1,5 @@
 // The plan as a pure function: what is left out, and the reason with the number that decided.
-#include "render/frame_plan.h"
+#include "frame/frame_plan.h"
 #include "core/files.h"
 #include "gpu/shader.h"
 
@@ -194,7 +194,7 @@ TEST(PassList, NamesAreUniqueAndDefaultsInRange)
 TEST(PassList, EveryShaderOfTheFolderIsNamedByAPass)
 {
     std::string sources;
-    for (const auto& file : std::filesystem::directory_iterator(data_root() / "framework/render/passes"))
+    for (const auto& file : std::filesystem::directory_iterator(data_root() / "framework/frame/passes"))
         sources += read_file(file.path());
     size_t shaders = 0;
     for (const auto& file : std::filesystem::directory_iterator(shader_folder() / "passes")) {

@@ -2,8 +2,8 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "errors.h"
-#include "render/technique.h"
 #include "temp_folder.h"
+#include "trace/technique.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,0 +1,286 @@
+#include "frame/gpu_scene.h"
+
+#include "core/error.h"
+#include "scene/prefiltered_environment.h"
+
+#include <glm/gtc/packing.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ssrlab {
+namespace {
+
+/// shaders/gbuffer/scene_types.glsl, struct Material, scalar layout.
+struct MaterialBlock {
+    glm::vec4  base_colour;
+    glm::vec3  emissive;
+    float      metallic;
+    float      roughness;
+    float      dielectric_f0;
+    float      normal_scale;
+    float      alpha_cutoff;
+    int32_t    double_sided;
+    glm::ivec4 uv_set;
+    glm::mat3  uv_transform[4];
+};
+static_assert(sizeof(MaterialBlock) == 212);
+
+constexpr uint32_t textures_per_material = 4;
+
+std::array<const TextureUse*, textures_per_material> texture_uses(const Material& material)
+{
+    return {&material.base_colour_texture, &material.metallic_roughness_texture, &material.normal_texture,
+            &material.emissive_texture};
+}
+
+MaterialBlock to_block(const Material& material)
+{
+    MaterialBlock block{material.base_colour,
+                        material.emissive,
+                        material.metallic,
+                        material.roughness,
+                        material.dielectric_f0,
+                        material.normal_scale,
+                        material.alpha_mask ? material.alpha_cutoff : -1.0F,
+                        material.double_sided,
+                        {},
+                        {}};
+    const auto    uses = texture_uses(material);
+    for (int i = 0; i < static_cast<int>(uses.size()); ++i) {
+        block.uv_set[i]       = uses[static_cast<size_t>(i)]->uv_set;
+        block.uv_transform[i] = uses[static_cast<size_t>(i)]->uv_transform;
+    }
+    return block;
+}
+
+vk::SamplerAddressMode address_mode(Wrap wrap)
+{
+    switch (wrap) {
+    case Wrap::repeat: return vk::SamplerAddressMode::eRepeat;
+    case Wrap::mirrored_repeat: return vk::SamplerAddressMode::eMirroredRepeat;
+    case Wrap::clamp_to_edge: return vk::SamplerAddressMode::eClampToEdge;
+    }
+    return vk::SamplerAddressMode::eRepeat;
+}
+
+vk::raii::Sampler make_sampler(Gpu& gpu, const Texture& texture)
+{
+    const auto filter = texture.nearest ? vk::Filter::eNearest : vk::Filter::eLinear;
+    return {gpu.impl->device, vk::SamplerCreateInfo{.magFilter    = filter,
+                                                    .minFilter    = filter,
+                                                    .mipmapMode   = vk::SamplerMipmapMode::eLinear,
+                                                    .addressModeU = address_mode(texture.wrap_u),
+                                                    .addressModeV = address_mode(texture.wrap_v),
+                                                    .maxLod       = texture.mipmaps ? VK_LOD_CLAMP_NONE : 0.0F}};
+}
+
+/// Each level is the filtered half of the one before.
+void make_mipmaps(Gpu& gpu, GpuImage& image)
+{
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        glm::ivec2 size = image.size_px;
+        for (uint32_t level = 1; level < image.levels; ++level) {
+            const glm::ivec2    half = glm::max(size / 2, glm::ivec2(1));
+            const vk::ImageBlit blit{.srcSubresource = {vk::ImageAspectFlagBits::eColor, level - 1, 0, 1},
+                                     .srcOffsets     = {{vk::Offset3D{0, 0, 0}, vk::Offset3D{size.x, size.y, 1}}},
+                                     .dstSubresource = {vk::ImageAspectFlagBits::eColor, level, 0, 1},
+                                     .dstOffsets     = {{vk::Offset3D{0, 0, 0}, vk::Offset3D{half.x, half.y, 1}}}};
+            barrier(commands);
+            commands.blitImage(*image.image, vk::ImageLayout::eGeneral, *image.image, vk::ImageLayout::eGeneral, blit,
+                               vk::Filter::eLinear);
+            size = half;
+        }
+        barrier(commands);
+    });
+}
+
+GpuImage upload_texture(Gpu& gpu, const Texture& texture)
+{
+    const int      largest = std::max(texture.size_px.x, texture.size_px.y);
+    const uint32_t levels  = texture.mipmaps ? static_cast<uint32_t>(std::log2(largest)) + 1 : 1;
+    GpuImage image = make_image(gpu, {.format  = texture.srgb ? vk::Format::eR8G8B8A8Srgb : vk::Format::eR8G8B8A8Unorm,
+                                      .size_px = texture.size_px,
+                                      .usage   = vk::ImageUsageFlagBits::eSampled,
+                                      .levels  = levels});
+    upload(gpu, image, texture.rgba.data(), texture.rgba.size());
+    if (levels > 1) make_mipmaps(gpu, image);
+    return image;
+}
+
+void upload_environment(Gpu& gpu, GpuScene& scene, const Scene& source)
+{
+    const bool             mapped = !source.environment.radiance.empty();
+    std::vector<glm::vec4> texels(mapped ? 0 : 1, glm::vec4(source.background, 1));
+    for (const glm::vec3& radiance : source.environment.radiance) texels.emplace_back(radiance, 1);
+    scene.environment_map     = make_image(gpu, {.format  = vk::Format::eR32G32B32A32Sfloat,
+                                                 .size_px = mapped ? source.environment.size_px : glm::ivec2(1),
+                                                 .usage   = vk::ImageUsageFlagBits::eSampled});
+    scene.environment_sampler = {gpu.impl->device, vk::SamplerCreateInfo{}};
+    upload(gpu, scene.environment_map, texels.data(), texels.size() * sizeof(glm::vec4));
+    scene.environment = source.environment;
+}
+
+Texture white_texture()
+{
+    Texture texture;
+    texture.size_px = {1, 1};
+    texture.rgba    = {255, 255, 255, 255};
+    texture.mipmaps = false;
+    return texture;
+}
+
+vk::raii::DescriptorSetLayout make_layout(Gpu& gpu, std::vector<vk::DescriptorType> types)
+{
+    std::vector<vk::DescriptorSetLayoutBinding> bindings;
+    for (uint32_t i = 0; i < types.size(); ++i)
+        bindings.push_back({.binding         = i,
+                            .descriptorType  = types[i],
+                            .descriptorCount = 1,
+                            .stageFlags      = vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment});
+    return {gpu.impl->device, vk::DescriptorSetLayoutCreateInfo{.bindingCount = static_cast<uint32_t>(bindings.size()),
+                                                                .pBindings    = bindings.data()}};
+}
+
+void make_material_sets(Gpu& gpu, GpuScene& scene, const Scene& source)
+{
+    const auto                   count = static_cast<uint32_t>(std::max<size_t>(source.materials.size(), 1));
+    const vk::DescriptorPoolSize size{vk::DescriptorType::eCombinedImageSampler, count * textures_per_material};
+    scene.pool = {gpu.impl->device,
+                  vk::DescriptorPoolCreateInfo{.flags         = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
+                                               .maxSets       = count,
+                                               .poolSizeCount = 1,
+                                               .pPoolSizes    = &size}};
+    for (const Material& material : source.materials) {
+        vk::raii::DescriptorSets sets(
+            gpu.impl->device,
+            {.descriptorPool = *scene.pool, .descriptorSetCount = 1, .pSetLayouts = &*scene.material_layout});
+        const auto uses = texture_uses(material);
+        for (uint32_t i = 0; i < textures_per_material; ++i) {
+            const bool   has   = uses[i]->texture >= 0;
+            const size_t index = has ? static_cast<size_t>(uses[i]->texture) : scene.textures.size() - 1;
+            const vk::DescriptorImageInfo image{.sampler     = *scene.samplers[index],
+                                                .imageView   = *scene.textures[index].view,
+                                                .imageLayout = vk::ImageLayout::eGeneral};
+            gpu.impl->device.updateDescriptorSets(
+                vk::WriteDescriptorSet{.dstSet          = *sets[0],
+                                       .dstBinding      = i,
+                                       .descriptorCount = 1,
+                                       .descriptorType  = vk::DescriptorType::eCombinedImageSampler,
+                                       .pImageInfo      = &image},
+                nullptr);
+        }
+        scene.material_sets.push_back(std::move(sets[0]));
+    }
+}
+
+} // namespace
+
+GpuScenePtr upload_scene(Gpu& gpu, const Scene& source)
+{
+    auto scene      = std::make_shared<GpuScene>();
+    scene->vertices = make_buffer_with<Vertex>(gpu, source.vertices);
+    scene->indices  = make_buffer_with<uint32_t>(gpu, source.indices);
+    std::vector<MaterialBlock> blocks;
+    for (const Material& material : source.materials) blocks.push_back(to_block(material));
+    scene->materials = make_buffer_with<MaterialBlock>(gpu, blocks);
+    for (const Texture& texture : source.textures) {
+        scene->textures.push_back(upload_texture(gpu, texture));
+        scene->samplers.push_back(make_sampler(gpu, texture));
+    }
+    scene->textures.push_back(upload_texture(gpu, white_texture()));
+    scene->samplers.push_back(make_sampler(gpu, white_texture()));
+
+    using Type             = vk::DescriptorType;
+    scene->frame_layout    = make_layout(gpu, {Type::eUniformBuffer, Type::eStorageBuffer, Type::eStorageBuffer,
+                                               Type::eStorageBuffer, Type::eCombinedImageSampler, texel_descriptor(gpu)});
+    scene->material_layout = make_layout(gpu, std::vector<Type>(textures_per_material, Type::eCombinedImageSampler));
+    make_material_sets(gpu, *scene, source);
+    for (size_t i = 0; i < source.draws.size(); ++i) {
+        const Draw& draw = source.draws[i];
+        scene->draws.push_back({draw.first_index, draw.index_count, draw.material, static_cast<uint32_t>(i + 1),
+                                source.materials[draw.material].double_sided, draw.bounds_min_ws, draw.bounds_max_ws});
+    }
+    scene->ambient             = source.ambient;
+    scene->alpha_mask          = std::ranges::any_of(source.materials, &Material::alpha_mask);
+    scene->has_environment_map = !source.environment.radiance.empty();
+    upload_environment(gpu, *scene, source);
+    make_shadow_maps(gpu, *scene, source);
+    render_shadow_maps(gpu, *scene, source);
+    return scene;
+}
+
+const GpuImage& blurred_environment(Gpu& gpu, GpuScene& scene)
+{
+    if (!scene.has_environment_map) return scene.environment_map;
+    if (!scene.blurred_environment) {
+        const EnvironmentMap  levels = prefilter_environment(scene.environment);
+        std::vector<uint64_t> texels;
+        for (const glm::vec3& radiance : levels.radiance) texels.push_back(glm::packHalf4x16(glm::vec4(radiance, 1)));
+        scene.blurred_environment = make_image(gpu, {.format  = vk::Format::eR16G16B16A16Sfloat,
+                                                     .size_px = levels.size_px,
+                                                     .usage   = vk::ImageUsageFlagBits::eSampled});
+        upload(gpu, *scene.blurred_environment, texels.data(), texels.size() * sizeof(uint64_t));
+    }
+    return *scene.blurred_environment;
+}
+
+void move_scene(Gpu& gpu, GpuScene& uploaded, const Scene& moved)
+{
+    upload(gpu, uploaded.vertices, moved.vertices.data(), moved.vertices.size() * sizeof(Vertex));
+    for (size_t i = 0; i < moved.draws.size(); ++i) {
+        uploaded.draws[i].bounds_min_ws = moved.draws[i].bounds_min_ws;
+        uploaded.draws[i].bounds_max_ws = moved.draws[i].bounds_max_ws;
+    }
+    render_shadow_maps(gpu, uploaded, moved);
+}
+
+FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms, const DepthBuffer* first_depth)
+{
+    using Type                           = vk::DescriptorType;
+    const vk::DescriptorPoolSize sizes[] = {{Type::eUniformBuffer, 1},
+                                            {Type::eStorageBuffer, 3},
+                                            {Type::eCombinedImageSampler, 1},
+                                            {texel_descriptor(gpu), 1}};
+    FrameSet                     result;
+    result.pool = {gpu.impl->device,
+                   vk::DescriptorPoolCreateInfo{.flags         = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
+                                                .maxSets       = 1,
+                                                .poolSizeCount = std::size(sizes),
+                                                .pPoolSizes    = sizes}};
+    vk::raii::DescriptorSets sets(
+        gpu.impl->device,
+        {.descriptorPool = *result.pool, .descriptorSetCount = 1, .pSetLayouts = &*scene.frame_layout});
+    result.set                  = std::move(sets[0]);
+    const vk::Buffer buffers[4] = {*frame_uniforms.buffer, *scene.materials.buffer, *scene.lights.buffer,
+                                   *scene.shadow_matrices.buffer};
+    for (uint32_t i = 0; i < 4; ++i) {
+        const vk::DescriptorBufferInfo info{buffers[i], 0, VK_WHOLE_SIZE};
+        gpu.impl->device.updateDescriptorSets(
+            vk::WriteDescriptorSet{.dstSet          = *result.set,
+                                   .dstBinding      = i,
+                                   .descriptorCount = 1,
+                                   .descriptorType  = i == 0 ? Type::eUniformBuffer : Type::eStorageBuffer,
+                                   .pBufferInfo     = &info},
+            nullptr);
+    }
+    const vk::DescriptorImageInfo image{*scene.shadow_sampler, *scene.shadow_map.view, vk::ImageLayout::eGeneral};
+    gpu.impl->device.updateDescriptorSets(vk::WriteDescriptorSet{.dstSet          = *result.set,
+                                                                 .dstBinding      = 4,
+                                                                 .descriptorCount = 1,
+                                                                 .descriptorType  = Type::eCombinedImageSampler,
+                                                                 .pImageInfo      = &image},
+                                          nullptr);
+    if (first_depth == nullptr) return result;
+    const vk::DescriptorBufferInfo depth{*first_depth->cells.buffer, 0, VK_WHOLE_SIZE};
+    gpu.impl->device.updateDescriptorSets(vk::WriteDescriptorSet{.dstSet           = *result.set,
+                                                                 .dstBinding       = 5,
+                                                                 .descriptorCount  = 1,
+                                                                 .descriptorType   = texel_descriptor(gpu),
+                                                                 .pBufferInfo      = &depth,
+                                                                 .pTexelBufferView = &*first_depth->words},
+                                          nullptr);
+    return result;
+}
+
+} // namespace ssrlab

@@ -1,0 +1,125 @@
+#include "shared.h"
+#include "trace/frame_passes.h"
+
+#include <fmt/format.h>
+
+namespace ssrlab {
+namespace {
+
+static_assert(sizeof(HistoryCounts) == HISTORY_COUNTS * sizeof(uint32_t));
+
+bool planned(const PreparedFrame& frame, const char* pass)
+{
+    return std::ranges::any_of(frame.plan, [&](const PlannedPass& row) { return row.id == pass && row.runs; });
+}
+
+vk::ImageCopy whole(const GpuImage& image)
+{
+    const vk::ImageSubresourceLayers colour{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
+    return {.srcSubresource = colour,
+            .dstSubresource = colour,
+            .extent         = {static_cast<uint32_t>(image.size_px.x), static_cast<uint32_t>(image.size_px.y), 1}};
+}
+
+void record_image_copy(const vk::raii::CommandBuffer& commands, const GpuImage& source, const GpuImage& target)
+{
+    commands.copyImage(*source.image, vk::ImageLayout::eGeneral, *target.image, vk::ImageLayout::eGeneral,
+                       whole(source));
+}
+
+} // namespace
+
+FrameHistoryPtr make_history(Gpu& gpu, glm::ivec2 size_px)
+{
+    auto       history = std::make_shared<FrameHistory>();
+    const auto image   = [&](vk::Format format) {
+        return make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
+    };
+    constexpr auto four_floats = vk::Format::eR32G32B32A32Sfloat;
+    history->size_px           = size_px;
+    history->depth             = image(vk::Format::eR32Sfloat);
+    history->gradient          = image(vk::Format::eR32Uint);
+    history->normal            = image(four_floats);
+    history->reflection        = image(four_floats);
+    history->facts             = image(four_floats);
+    history->reprojected       = image(four_floats);
+    history->kept_reflection   = image(four_floats);
+    history->kept_facts        = image(four_floats);
+    history->counts            = make_buffer(gpu, sizeof(HistoryCounts));
+    return history;
+}
+
+void drop_history(FrameHistory& history) { history.view.reset(); }
+
+std::string history_mismatch(const FrameHistory& history, const GBuffer& gbuffer)
+{
+    if (!history.view) return "no frame before this one";
+    if (!gbuffer.motion) return "a cut: nothing came before this frame";
+    const FrameMotion& motion   = *gbuffer.motion;
+    const View &       previous = motion.previous_view, &held = *history.view;
+    if (history.size_px != gbuffer.view.size_px)
+        return fmt::format("a cut: the frame before had {}x{} pixels", history.size_px.x, history.size_px.y);
+    if (history.frame + 1 != motion.frame)
+        return fmt::format("a cut: frame {} follows frame {}", motion.frame, history.frame);
+    if (held.world_to_view != previous.world_to_view || held.focal_px != previous.focal_px ||
+        held.projection != previous.projection || held.near_m != previous.near_m)
+        return "a cut: the frame before had another view";
+    return "";
+}
+
+Bindings history_bindings(const FrameHistory& history, const MotionBuffers& motion, const GBuffer& gbuffer)
+{
+    return {{"PreviousView", motion.previous_view},    {"Objects", motion.objects},
+            {"object_image", gbuffer.object},          {"gradient_image", gbuffer.gradient},
+            {"previous_depth_image", history.depth},   {"previous_gradient_image", history.gradient},
+            {"previous_normal_image", history.normal}, {"previous_reflection_image", history.reflection},
+            {"previous_facts_image", history.facts},   {"reprojected_image", history.reprojected}};
+}
+
+void keep_history(Gpu& gpu, const PreparedFrame& frame, int number)
+{
+    if (!frame.history) throw std::logic_error("keep_history: the frame was prepared without a history");
+    FrameHistory& history = *frame.history;
+    GBuffer&      gbuffer = *frame.buffers->gbuffer;
+    const bool    kept    = planned(frame, "history");
+    Bindings      all     = surface_bindings(gbuffer);
+    all.insert({{"View", frame.buffers->view},
+                {"gradient_image", gbuffer.gradient},
+                {"previous_depth_image", history.depth},
+                {"previous_gradient_image", history.gradient},
+                {"previous_normal_image", history.normal},
+                {"reflection_image", frame.buffers->reflection},
+                {"previous_reflection_image", history.reflection},
+                {"previous_facts_image", history.facts}});
+    ShaderSource source{.file = "gbuffer/keep_history.comp"};
+    if (!kept) source.defines.emplace("KEEP_REFLECTION", "1");
+    const ComputePass keep = make_compute_pass(gpu, compile_shader(gpu, source), all);
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        barrier(commands);
+        dispatch(commands, keep, groups_of_8(history.size_px));
+        if (kept) {
+            record_image_copy(commands, history.kept_reflection, history.reflection);
+            record_image_copy(commands, history.kept_facts, history.facts);
+        }
+        barrier(commands);
+    });
+    history.view  = gbuffer.view;
+    history.frame = number;
+}
+
+std::vector<glm::vec2> read_reprojection(Gpu& gpu, const PreparedFrame& frame)
+{
+    std::vector<glm::vec2> vectors_px;
+    if (!planned(frame, "reprojection")) return vectors_px;
+    for (const glm::vec4& texel : download_as<glm::vec4>(gpu, frame.history->reprojected))
+        vectors_px.emplace_back(texel);
+    return vectors_px;
+}
+
+std::optional<HistoryCounts> read_history_counts(Gpu& gpu, const PreparedFrame& frame)
+{
+    if (!planned(frame, "history")) return std::nullopt;
+    return download_as<HistoryCounts>(gpu, frame.history->counts, 1)[0];
+}
+
+} // namespace ssrlab

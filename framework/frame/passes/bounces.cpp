@@ -1,0 +1,139 @@
+// Mirror in mirror: further bounces, traced ray by ray or taken from the previous frame's reflection.
+#include "frame/passes/pass_helpers.h"
+
+namespace ssrlab {
+namespace {
+
+struct Bounce {
+    std::shared_ptr<DerivedRays> rays;
+    ComputePass                  set_up, launch, colour;
+    TechniquePasses              technique;
+};
+
+Bindings list_bindings(const FrameBuffers& buffers, const DerivedRays& derived)
+{
+    Bindings bindings = {{"RaySources", derived.sources}, {"RayThroughputs", derived.throughputs}};
+    bindings.merge(bindings_of(buffers, derived.rays));
+    return bindings;
+}
+
+/// The rays that continue those of `from`, or of the frame where that is null.
+Bounce make_bounce(Gpu& gpu, const PreparedFrame& frame, const DerivedRays* from, int which)
+{
+    const FrameBuffers& buffers = *frame.buffers;
+    Bounce              bounce;
+    bounce.rays       = derived_rays(gpu, frame, which);
+    Bindings arriving = derived_bindings(*bounce.rays);
+    if (from != nullptr) arriving.merge(list_bindings(buffers, *from));
+    Defines defines = precision_defines(gpu, Precision::float32);
+    defines.merge(store_defines(gpu, bounce.rays->rays.list));
+    if (from != nullptr) defines.emplace("FURTHER", "1");
+    Bindings traced = list_bindings(buffers, *bounce.rays);
+    traced.insert({"View", buffers.view});
+    bounce.set_up    = make_colour_pass(gpu, frame, "passes/bounce_rays.comp", defines, arriving);
+    bounce.launch    = make_launch_pass(gpu, bounce.rays->rays.count, bounce.rays->rays.launch, RAYS_PER_GROUP);
+    bounce.technique = make_technique_passes(gpu, frame, *buffers.gbuffer, bounce.rays->rays, traced);
+    Defines colour_defines;
+    add_environment(gpu, frame, colour_defines, traced);
+    bounce.colour = make_colour_pass(gpu, frame, "passes/bounce_colour.comp", colour_defines, traced);
+    return bounce;
+}
+
+void record_bounce(const vk::raii::CommandBuffer& commands, const Bounce& bounce, const Buffer& arriving_launch)
+{
+    const RayBuffers& rays = bounce.rays->rays;
+    barrier(commands);
+    commands.fillBuffer(*rays.count.buffer, 0, VK_WHOLE_SIZE, 0);
+    barrier(commands);
+    dispatch_indirect(commands, bounce.set_up, arriving_launch);
+    barrier(commands);
+    dispatch(commands, bounce.launch, {1, 1, 1});
+    barrier(commands);
+    record_technique(commands, bounce.technique, rays);
+    barrier(commands);
+    dispatch_indirect(commands, bounce.colour, rays.launch);
+}
+
+/// The first bounce continues the frame's rays; the others alternate between two lists.
+RecordFunction direct(Gpu& gpu, PreparedFrame& frame, int count)
+{
+    auto bounces = std::make_shared<std::vector<Bounce>>();
+    bounces->push_back(make_bounce(gpu, frame, nullptr, 0));
+    if (count > 1) bounces->push_back(make_bounce(gpu, frame, bounces->at(0).rays.get(), 1));
+    if (count > 2) bounces->push_back(make_bounce(gpu, frame, bounces->at(1).rays.get(), 0));
+    return [&frame, bounces, count](const auto& commands) {
+        record_bounce(commands, bounces->at(0), frame.rays->launch);
+        for (int i = 1; i < count; ++i) {
+            const Bounce& bounce = bounces->at(i % 2 == 1 ? 1 : 2);
+            record_bounce(commands, bounce, bounces->at(i % 2 == 1 ? 0 : 1).rays->rays.launch);
+        }
+    };
+}
+
+/// From the reflection that the frame before left in its history.
+RecordFunction real_history(Gpu& gpu, PreparedFrame& frame)
+{
+    auto pass = std::make_shared<ComputePass>(
+        make_colour_pass(gpu, frame, "passes/bounce_history.comp", {{"REPROJECTED", "1"}},
+                         history_bindings(*frame.history, frame.motion, *frame.buffers->gbuffer)));
+    return [&frame, pass](const auto& commands) { dispatch_indirect(commands, *pass, frame.rays->launch); };
+}
+
+/// Without one every pass stands for the next frame of a still image.
+RecordFunction history(Gpu& gpu, PreparedFrame& frame, int count)
+{
+    if (frame.facts.history.usable) return real_history(gpu, frame);
+    auto pass = std::make_shared<ComputePass>(
+        make_colour_pass(gpu, frame, "passes/bounce_history.comp", {}, {{"history_image", frame.buffers->filtered}}));
+    return [&frame, pass, count](const auto& commands) {
+        for (int i = 0; i < count; ++i) {
+            record_copy(commands, frame.buffers->reflection, frame.buffers->filtered);
+            dispatch_indirect(commands, *pass, frame.rays->launch);
+        }
+    };
+}
+
+RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
+{
+    const int count = static_cast<int>(frame.settings.passes.at("bounces"));
+    return choice<BounceMode>(frame.settings.passes) == BounceMode::history ? history(gpu, frame, count)
+                                                                            : direct(gpu, frame, count);
+}
+
+PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (choice<BounceMode>(values) == BounceMode::off) return {PassDecision::off, "bounce_mode = off"};
+    if (!one_ray_per_pixel(values)) return {PassDecision::off, "needs one ray per pixel at full resolution"};
+    const TraceCounts& trace = statistics.trace;
+    if (trace.mirror_hits == 0) return {PassDecision::not_needed, fmt::format("none of {} hits reflects", trace.hits)};
+    return {PassDecision::needed,
+            fmt::format("{} of {} hits reflect{}", percent(trace.mirror_hits, trace.hits), trace.hits,
+                        takes_bounces_from_history(facts, values) ? ", as the frame before shows" : "")};
+}
+
+} // namespace
+
+bool takes_bounces_from_history(const FrameFacts& facts, const ParameterValues& values)
+{
+    return choice<BounceMode>(values) == BounceMode::history && facts.history.usable;
+}
+
+Pass bounces_pass()
+{
+    return {
+        .id             = "bounces",
+        .summary        = "Further bounces between mirrors: continues the rays whose hits reflect, too",
+        .cite           = {"J. Somerville Roberts, Screen Space Reflections"},
+        .parameters     = {choice_parameter(BounceMode::direct,
+                                            "further bounces. off: none; history: from the previous frame's "
+                                                "reflection as the camera saw it, reprojected; direct: traced in the mirror "
+                                                "direction of the arriving ray"),
+                           integer_parameter("bounces", 1, 1, 16,
+                                             "further bounces; with history and no frame before this one, earlier frames "
+                                                 "of a still image; each adds one level of reflection")},
+        .decide         = decide,
+        .prepare        = prepare,
+        .beyond_shading = true};
+}
+
+} // namespace ssrlab

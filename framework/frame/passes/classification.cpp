@@ -1,0 +1,29 @@
+// Which tiles of the image reflect.
+#include "frame/passes/pass_helpers.h"
+
+namespace ssrlab {
+namespace {
+
+PassDecision decide(const FrameFacts& /*facts*/, const FrameStatistics& statistics, const ParameterValues& /*values*/)
+{
+    const uint32_t tiles = statistics.gbuffer.reflecting_tiles;
+    if (tiles == 0) return {PassDecision::not_needed, "no pixel reflects"};
+    return {PassDecision::needed, fmt::format("{} of {} tiles reflect", tiles, statistics.tiles)};
+}
+
+RecordFunction prepare(Gpu& /*gpu*/, PreparedFrame& frame)
+{
+    return [&](const auto& commands) { record_classification(commands, frame.trace, *frame.buffers); };
+}
+
+} // namespace
+
+Pass classification_pass()
+{
+    return {.id      = "classification",
+            .summary = "Lists the 8 x 8 pixel tiles that reflect; all later passes except composite run on these only",
+            .decide  = decide,
+            .prepare = prepare};
+}
+
+} // namespace ssrlab

@@ -1,0 +1,40 @@
+// A 3 x 3 filter on the reflection, against noise.
+#include "frame/passes/pass_helpers.h"
+
+namespace ssrlab {
+namespace {
+
+PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (choice<Filter3x3>(values) == Filter3x3::off) return {PassDecision::off, "filter_3x3 = off"};
+    if (statistics.gbuffer.reflecting_pixels == 0) return needed_if_anything_reflects(facts, statistics, values);
+    const TraceCounts& trace = statistics.trace;
+    const bool second_layer  = hidden_layer_pass().decide(facts, statistics, values).verdict == PassDecision::needed;
+    if (trace.hits == 0 && !second_layer) return {PassDecision::not_needed, "no ray hits anything"};
+    return {PassDecision::needed, fmt::format("{} rays hit ({})", trace.hits, percent(trace.hits, trace.rays))};
+}
+
+RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
+{
+    return [&frame, pass = make_shared_pass(gpu, frame, "passes/filter_3x3.comp")](const auto& commands) {
+        record_clear_reflection(commands, frame.buffers->filtered); // of tiles that are not listed
+        dispatch_indirect(commands, *pass, frame.buffers->tiles.launch);
+        record_copy(commands, frame.buffers->filtered, frame.buffers->reflection);
+    };
+}
+
+} // namespace
+
+Pass filter_3x3_pass()
+{
+    return {.id             = "filter_3x3",
+            .summary        = "Filters the reflection over 3 x 3 pixels, against noise",
+            .cite           = {"J. Somerville Roberts, Screen Space Reflections"},
+            .parameters     = {choice_parameter(
+                    Filter3x3::off, "filter over 3 x 3 pixels: none, the mean, or the neighbour of median brightness")},
+            .decide         = decide,
+            .prepare        = prepare,
+            .beyond_shading = true};
+}
+
+} // namespace ssrlab

@@ -1,0 +1,121 @@
+// The hidden layer: the scene once more without what the first layer shows, and the rays that missed, traced in it.
+#include "core/pixel_index.h"
+#include "frame/passes/pass_helpers.h"
+#include "frame/solid_backs.h"
+
+namespace ssrlab {
+namespace {
+
+struct HiddenLayer {
+    GBufferPtr                   layer;
+    std::shared_ptr<DerivedRays> missed;
+    std::vector<StructurePasses> structures;
+    ComputePass                  gather, launch, merge;
+    TechniquePasses              technique;
+};
+
+/// The technique's own passes: it does not know which layer it sees.
+TechniquePasses make_layer_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays)
+{
+    const FrameBuffers& buffers  = *frame.buffers;
+    Bindings            bindings = surface_bindings(*buffers.second_layer);
+    bindings.insert({"View", buffers.view});
+    bindings.merge(bindings_of(buffers, rays));
+    return make_technique_passes(gpu, frame, *buffers.second_layer, rays, bindings);
+}
+
+PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (values.at("hidden_layer") == 0) return {PassDecision::off, "hidden_layer = false"};
+    if (facts.layers > 1) return {PassDecision::off, "layers > 1: the walk knows what is hidden"};
+    if (!facts.scene) return {PassDecision::off, "no scene to draw again"};
+    if (!one_ray_per_pixel(values)) return {PassDecision::off, "needs one ray per pixel at full resolution"};
+    const TraceCounts& trace  = statistics.trace;
+    const uint32_t     misses = trace.rays - trace.hits;
+    if (misses == 0) return {PassDecision::not_needed, fmt::format("none of {} rays missed", trace.rays)};
+    const double      threshold = values.at("hidden_layer_threshold");
+    const std::string reason    = fmt::format("{} of {} rays missed", percent(misses, trace.rays), trace.rays);
+    if (misses <= threshold * trace.rays)
+        return {PassDecision::off, fmt::format("{}, the threshold is {:.3g} %", reason, 100 * threshold)};
+    return {PassDecision::needed, reason};
+}
+
+RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
+{
+    FrameBuffers& buffers = *frame.buffers;
+    if (!buffers.second_layer) buffers.second_layer = make_second_layer(gpu, *buffers.gbuffer);
+    frame.hidden_layer = true;
+    auto own           = std::make_shared<HiddenLayer>();
+    own->layer         = buffers.second_layer;
+    const bool solids  = find_surface(frame.settings.trace.surface).needs_solid;
+    if (solids) prepare_solid_backs(gpu, *own->layer);
+    own->missed            = derived_rays(gpu, frame, 0);
+    own->structures        = make_depth_structures(gpu, frame, *own->layer);
+    const Bindings derived = derived_bindings(*own->missed);
+    own->gather =
+        make_pass(gpu, frame, "passes/gather_misses.comp", store_defines(gpu, own->missed->rays.list), derived);
+    own->launch    = make_launch_pass(gpu, own->missed->rays.count, own->missed->rays.launch, RAYS_PER_GROUP);
+    own->technique = make_layer_passes(gpu, frame, own->missed->rays);
+    own->merge = make_pass(gpu, frame, "passes/second_layer_hits.comp", store_defines(gpu, frame.rays->hits), derived);
+    const double separation = frame.settings.passes.at("hidden_layer_separation_m");
+    return [&frame, own, separation, solids](const auto& commands) {
+        const RayBuffers& missed = own->missed->rays;
+        record_second_layer(commands, *own->layer, separation);
+        if (solids) record_solid_backs(commands, *own->layer);
+        record_depth_structures(commands, own->structures);
+        commands.fillBuffer(*missed.count.buffer, 0, VK_WHOLE_SIZE, 0);
+        barrier(commands);
+        dispatch_indirect(commands, own->gather, frame.rays->launch);
+        barrier(commands);
+        dispatch(commands, own->launch, {1, 1, 1});
+        barrier(commands);
+        record_technique(commands, own->technique, missed);
+        barrier(commands);
+        dispatch_indirect(commands, own->merge, missed.launch);
+    };
+}
+
+} // namespace
+
+Pass hidden_layer_pass()
+{
+    return {
+        .id             = "hidden_layer",
+        .summary        = "Draws a second depth layer by depth peeling, and traces in it the rays that missed",
+        .cite           = {"C. Everitt 2001, Interactive Order-Independent Transparency",
+                           "M. Mara, M. McGuire, D. Nowrouzezahrai, D. Luebke 2016, Deep G-Buffers for Stable Global "
+                                     "Illumination Approximation"},
+        .parameters     = {boolean_parameter("hidden_layer", false, "trace rays that missed in a second depth layer"),
+                           real_parameter("hidden_layer_separation_m", 0.5, 0, 1e6,
+                                          "the second layer is the nearest surface more than this far behind the first"),
+                           real_parameter("hidden_layer_threshold", 0, 0, 1,
+                                          "skip the second layer if at most this share of rays missed; above 0 the image "
+                                              "changes")},
+        .decide         = decide,
+        .prepare        = prepare,
+        .beyond_shading = true};
+}
+
+std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame)
+{
+    if (!frame.hidden_layer) return std::nullopt;
+    const RayBuffers& rays    = *frame.rays;
+    const glm::ivec2  size_px = frame.buffers->gbuffer->view.size_px;
+    TraceResult       result  = read_result<float>(gpu, frame, rays, nullptr);
+    const auto        listed  = read_list<float>(gpu, rays);
+    const auto        hits    = download_as<PackedHit<float>>(gpu, rays.hits, listed.size());
+    for (size_t i = 0; i < listed.size(); ++i) {
+        if (unpack_layer(hits[i].pixel) > 0) continue;
+        const glm::ivec2 pixel                     = unpack_pixel(listed[i].pixel);
+        result.status[pixel_index(pixel, size_px)] = TraceStatus::not_traced;
+    }
+    return result;
+}
+
+GBufferImage read_second_layer(Gpu& gpu, const PreparedFrame& frame)
+{
+    if (!frame.hidden_layer) throw std::logic_error("read_second_layer: the frame has none");
+    return read_gbuffer(gpu, *frame.buffers->second_layer);
+}
+
+} // namespace ssrlab

@@ -1,0 +1,35 @@
+// The structures that the technique reads, such as the depth pyramid: each under its own id.
+#include "frame/passes/pass_helpers.h"
+
+#include <algorithm>
+
+namespace ssrlab {
+namespace {
+
+PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
+{
+    if (facts.structures.empty()) return {PassDecision::off, "the technique reads none"};
+    return needed_if_anything_reflects(facts, statistics, values);
+}
+
+RecordFunction prepare_structure(PreparedFrame& frame, const std::string& structure)
+{
+    const auto own = [structure](const StructurePasses& passes) { return passes.id == structure; };
+    return [&frame, own](const auto& commands) {
+        const TechniquePasses& technique = frame.trace.technique;
+        record_structure(commands, *std::ranges::find_if(frame.structures, own), nullptr);
+        record_ray_structure(commands, technique, *std::ranges::find_if(technique.structures, own), *frame.rays);
+    };
+}
+
+} // namespace
+
+Pass structures_pass()
+{
+    return {.id                = "structures",
+            .summary           = "Builds what the technique reads beside depth, such as the depth pyramid",
+            .decide            = decide,
+            .prepare_structure = prepare_structure};
+}
+
+} // namespace ssrlab

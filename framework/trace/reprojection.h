@@ -1,0 +1,32 @@
+// A reprojection strategy is a folder: reprojection.toml says what it is, reproject.glsl where a reflection was in the frame before
+// (docs/motion.md).
+#pragma once
+
+#include "trace/parameter.h"
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace ssrlab {
+
+struct Reprojection {
+    std::string              id; // the folder's name
+    std::string              name;
+    std::string              summary;
+    std::vector<std::string> cite;
+    std::vector<Parameter>   parameters; // named "id.parameter"
+    std::filesystem::path    folder;
+};
+
+/// Reads folder/reprojection.toml; throws SpecError with file and line.
+Reprojection load_reprojection(const std::filesystem::path& folder);
+
+/// Those of the tree, then those in $SSRLAB_TECHNIQUES; read once per program. Throws SpecError when two share an id.
+std::span<const Reprojection> all_reprojections();
+
+/// The one that these values of the passes' parameters name.
+const Reprojection& chosen_reprojection(const ParameterValues& passes);
+
+} // namespace ssrlab

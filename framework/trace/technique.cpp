@@ -1,0 +1,254 @@
+#include "trace/technique.h"
+
+#include "core/files.h"
+#include "core/names.h"
+#include "gpu/shader.h"
+#include "trace/manifest.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <regex>
+#include <set>
+
+namespace ssrlab {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> manifest_keys = {
+    "name",    "summary",    "cite",     "structures",          "exact",     "limits",
+    "ignores", "bounded_by", "accuracy", "rays_per_invocation", "parameters"};
+
+void check_bounds(const TomlFile& file, const toml::node& node, const Technique& technique)
+{
+    for (const std::string& name : technique.bounded_by) {
+        if (find_parameter(technique, name, toml_place(file, node)).type != ParameterType::integer) {
+            throw_spec_error("{}: 'bounded_by' names '{}', which is not an integer", toml_place(file, node), name);
+        }
+    }
+}
+
+/// accuracy = { parameter = "steps", better = "higher" }, or a list of such tables.
+void read_accuracy(const TomlFile& file, const toml::node& node, Technique& technique)
+{
+    std::vector<const toml::node*> nodes;
+    if (const toml::array* list = node.as_array())
+        for (const toml::node& one : *list) nodes.push_back(&one);
+    else
+        nodes.push_back(&node);
+    static const std::vector<std::string> keys = {"parameter", "better"};
+    for (const toml::node* one : nodes) {
+        const toml::table& table = toml_table(file, *one, "accuracy");
+        toml_known_keys(file, table, "field of 'accuracy'", keys);
+        const toml::node& name   = manifest_key(file, table, "parameter", "'accuracy'");
+        const toml::node& better = manifest_key(file, table, "better", "'accuracy'");
+        const Parameter&  parameter =
+            find_parameter(technique, toml_text(file, name, "parameter"), toml_place(file, name));
+        if (parameter.type != ParameterType::integer && parameter.type != ParameterType::real)
+            throw_spec_error("{}: 'accuracy' names '{}', which is not a number", toml_place(file, name),
+                             parameter.name);
+        const std::string direction = toml_text(file, better, "better");
+        if (direction != "higher" && direction != "lower")
+            toml_refuse(file, better, "better", "\"higher\" or \"lower\"");
+        technique.accuracy.push_back({parameter.name, direction == "higher"});
+    }
+}
+
+void read_limits(const TomlFile& file, const toml::node& node, Technique& technique)
+{
+    std::vector<std::string> known;
+    std::ranges::transform(known_limits(), std::back_inserter(known), &Limit::name);
+    technique.limits = read_known(file, node, "limits", "limit", known);
+    if (technique.exact && !technique.limits.empty())
+        throw_spec_error("{}: 'limits' contradicts 'exact': an exact technique has none", toml_place(file, node));
+}
+
+void read_ignored(const TomlFile& file, const toml::node& node, Technique& technique)
+{
+    static const std::vector<std::string> known = {"behind", "surface", "thickness"};
+    technique.ignores                           = read_known(file, node, "ignores", "part of the hit test", known);
+    if (technique.exact && !technique.ignores.empty())
+        throw_spec_error("{}: 'ignores' contradicts 'exact': the hit contract has all of them", toml_place(file, node));
+}
+
+std::string shaders_below(const fs::path& folder)
+{
+    std::string text;
+    for (const auto& entry : fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied))
+        if (entry.is_regular_file() && entry.path().extension() == ".glsl") text += read_file(entry.path());
+    return text;
+}
+
+/// May a test other than the hit contract's decide what is hit? By the names in its shaders: it reads a pixel itself, or neither it
+/// nor a structure of its asks the contract.
+bool may_test_itself(const Technique& technique)
+{
+    static const std::regex reads("\\b(fetch_depth|fetch_pixel)\\b");
+    static const std::regex asks("\\b(touches_surface|touches_sample|ends_at)\\b");
+    const std::string       own = shaders_below(technique.folder);
+    if (std::regex_search(own, reads)) return true;
+    return !std::regex_search(own, asks) && std::ranges::none_of(technique.structures, [](const Structure& structure) {
+        return std::regex_search(shaders_below(structure.folder), asks);
+    });
+}
+
+bool is_technique(const fs::path& folder)
+{
+    return fs::exists(folder / "technique.toml") || fs::exists(folder / "trace.glsl");
+}
+
+bool is_structure(const fs::path& folder) { return fs::exists(folder / "structure.toml"); }
+
+bool is_reprojection(const fs::path& folder) { return fs::exists(folder / "reprojection.toml"); }
+
+bool is_surface(const fs::path& folder) { return fs::exists(folder / "surface.toml"); }
+
+/// No technique, but what belongs beside techniques.
+bool is_addition(const fs::path& folder)
+{
+    return is_structure(folder) || is_reprojection(folder) || is_surface(folder);
+}
+
+/// Of a directory of techniques: itself or the folders in it, down to those `deepest` levels farther in.
+std::vector<fs::path> folders_in(const fs::path& dir, bool (*wanted)(const fs::path&), int deepest)
+{
+    if (!fs::is_directory(dir)) throw_spec_error("{}: no such directory of techniques", short_path(dir));
+    std::vector<fs::path> folders;
+    if (wanted(dir)) folders.push_back(fs::weakly_canonical(dir));
+    constexpr auto skip = fs::directory_options::skip_permission_denied;
+    for (auto entry = fs::recursive_directory_iterator(dir, skip); entry != fs::recursive_directory_iterator();
+         ++entry) {
+        if (entry.depth() == deepest) entry.disable_recursion_pending();
+        if (entry->is_directory() && wanted(entry->path())) folders.push_back(entry->path());
+    }
+    std::ranges::sort(folders);
+    return folders;
+}
+
+/// The in-tree directory, then those in $SSRLAB_TECHNIQUES, then the others.
+std::vector<fs::path> technique_dirs(std::span<const fs::path> extra_dirs)
+{
+    std::vector<fs::path> dirs{data_root() / "techniques"};
+    const char*           variable = std::getenv("SSRLAB_TECHNIQUES");
+    const std::string     list     = variable == nullptr ? "" : variable;
+    for (size_t start = 0; start < list.size();) {
+        const size_t end = std::min(list.find(':', start), list.size());
+        if (end > start) dirs.emplace_back(list.substr(start, end - start));
+        start = end + 1;
+    }
+    dirs.insert(dirs.end(), extra_dirs.begin(), extra_dirs.end());
+    return dirs;
+}
+
+/// The same folder may be named twice, two folders of one id may not.
+template <typename Item> void append(std::vector<Item>& items, Item item, const std::string& kind)
+{
+    const auto same = std::ranges::find(items, item.id, &Item::id);
+    if (same == items.end())
+        items.push_back(std::move(item));
+    else if (!fs::equivalent(same->folder, item.folder))
+        throw_spec_error("two {} are called '{}': {} and {}", kind, item.id, short_path(same->folder),
+                         short_path(item.folder));
+}
+
+} // namespace
+
+std::span<const Limit> known_limits()
+{
+    static const std::vector<Limit> limits = {
+        {"point_sampled", "sees the depth buffer only at its samples: misses what lies between two of them, and may "
+                          "report a later surface instead"},
+        {"stops_behind_objects", "gives up where it has passed behind an object: misses everything farther along"},
+        {"tests_whole_steps",
+         "tests a pixel against the ray's depths over a whole step: may hit a surface that the ray "
+         "touches only up to one step (t of the hit / its steps) before or behind that pixel"}};
+    return limits;
+}
+
+Technique load_technique(const fs::path& folder, std::span<const Structure> known)
+{
+    const TomlFile file = read_toml(folder / "technique.toml");
+    Technique      technique;
+    technique.folder = folder;
+    technique.id     = read_folder_id(file, folder, "technique");
+    toml_known_keys(file, file.root, "key", manifest_keys);
+    read_about(file, "the technique", technique);
+    if (const toml::node* node = file.root.get("structures"))
+        technique.structures =
+            collect_structures(toml_texts(file, *node, "structures"), known, toml_place(file, *node));
+    if (const toml::node* node = file.root.get("exact")) technique.exact = toml_bool(file, *node, "exact");
+    if (const toml::node* node = file.root.get("limits")) read_limits(file, *node, technique);
+    if (const toml::node* node = file.root.get("ignores")) read_ignored(file, *node, technique);
+    if (const toml::node* node = file.root.get("rays_per_invocation")) {
+        technique.rays_per_invocation = static_cast<int>(toml_integer(file, *node, "rays_per_invocation"));
+        if (technique.rays_per_invocation != 1 && technique.rays_per_invocation != 2)
+            toml_refuse(file, *node, "rays_per_invocation", "1 or 2");
+    }
+    technique.parameters = read_parameters(file);
+    for (const Structure& structure : technique.structures)
+        technique.parameters.insert(technique.parameters.end(), structure.parameters.begin(),
+                                    structure.parameters.end());
+    if (const toml::node* node = file.root.get("bounded_by")) {
+        technique.bounded_by = toml_texts(file, *node, "bounded_by");
+        check_bounds(file, *node, technique);
+    }
+    if (const toml::node* node = file.root.get("accuracy")) read_accuracy(file, *node, technique);
+    if (!fs::exists(folder / "trace.glsl"))
+        throw_spec_error("{}: missing; it holds the technique's trace function", short_path(folder / "trace.glsl"));
+    if (!technique.exact && !file.root.contains("ignores") && may_test_itself(technique))
+        technique.ignores = {"unknown"};
+    return technique;
+}
+
+std::vector<Structure> list_structures(std::span<const fs::path> extra_dirs)
+{
+    std::vector<Structure> structures;
+    for (const fs::path& dir : technique_dirs(extra_dirs))
+        for (const fs::path& folder : folders_in(dir, is_structure, 1))
+            append(structures, load_structure(folder), "structures");
+    return structures;
+}
+
+std::vector<Reprojection> list_reprojections(std::span<const fs::path> extra_dirs)
+{
+    std::vector<Reprojection> strategies;
+    for (const fs::path& dir : technique_dirs(extra_dirs))
+        for (const fs::path& folder : folders_in(dir, is_reprojection, 1))
+            append(strategies, load_reprojection(folder), "reprojection strategies");
+    return strategies;
+}
+
+std::vector<Surface> list_surfaces(std::span<const fs::path> extra_dirs)
+{
+    std::vector<fs::path> dirs = technique_dirs(extra_dirs);
+    dirs.insert(dirs.begin(), shader_folder() / "surfaces");
+    std::vector<Surface> surfaces;
+    for (const fs::path& dir : dirs)
+        for (const fs::path& folder : folders_in(dir, is_surface, 1))
+            append(surfaces, load_surface(folder), "surface models");
+    return surfaces;
+}
+
+std::vector<Technique> list_techniques(std::span<const fs::path> extra_dirs)
+{
+    const std::vector<Structure> structures = list_structures(extra_dirs);
+    std::vector<Technique>       techniques;
+    for (const fs::path& dir : technique_dirs(extra_dirs)) {
+        const std::vector<fs::path> folders = folders_in(dir, is_technique, 0);
+        if (folders.empty() && folders_in(dir, is_addition, 1).empty())
+            throw_spec_error("{}: holds no technique (a folder with technique.toml)", short_path(dir));
+        for (const fs::path& folder : folders) append(techniques, load_technique(folder, structures), "techniques");
+    }
+    return techniques;
+}
+
+const Technique& find_technique(std::span<const Technique> techniques, const std::string& id)
+{
+    const auto found = std::ranges::find(techniques, id, &Technique::id);
+    if (found != techniques.end()) return *found;
+    std::vector<std::string> known;
+    std::ranges::transform(techniques, std::back_inserter(known), &Technique::id);
+    throw SpecError(unknown_name("technique", id, known));
+}
+
+} // namespace ssrlab
