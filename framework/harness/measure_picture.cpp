@@ -28,32 +28,32 @@ namespace {
 // frame's runs in one batch, since what it compares must be paired.
 constexpr size_t batch_size = 64;
 
-double cost_of(const Bench& bench, const Run& run)
+double cost_of(const SweepContext& sweep, const Run& run)
 {
-    return estimated_seconds(run, find_technique(bench.techniques, run.technique), bench.experiment.measure);
+    return estimated_seconds(run, find_technique(sweep.techniques, run.technique), sweep.experiment.measure);
 }
 
 /// Shaders are read when a run is prepared: one that was edited under a sweep must not end in the same file. Asked after preparing,
 /// before anything of it is written.
-void refuse_changed_sources(const Bench& bench)
+void refuse_changed_sources(const SweepContext& sweep)
 {
     const auto changed =
-        differences(bench.identity, describe_identity(bench.experiment, bench.techniques, bench.gpu.info));
+        differences(sweep.identity, describe_identity(sweep.experiment, sweep.techniques, sweep.gpu.info));
     if (changed.empty()) return;
     throw_failure("{}: stopped, because these changed while it was measured: {}; its rows are from before",
-                  short_path(bench.results.path()), fmt::join(changed, ", "));
+                  short_path(sweep.results.path()), fmt::join(changed, ", "));
 }
 
 /// Tries a step of one run; when it throws, the run's row says why and the run is over.
-template <typename Step> bool try_step(Bench& bench, MeasuredRun& measured, const Step& step)
+template <typename Step> bool try_step(SweepContext& sweep, MeasuredRun& measured, const Step& step)
 {
     try {
         step();
         return true;
     } catch (const std::exception& error) {
-        refuse_changed_sources(bench);
-        finish(bench, *measured.run, failed_row(measured.row, error));
-        lose_sequence(bench, *measured.run);
+        refuse_changed_sources(sweep);
+        finish(sweep, *measured.run, failed_row(measured.row, error));
+        lose_sequence(sweep, *measured.run);
         measured.run = nullptr;
         return false;
     }
@@ -73,24 +73,24 @@ std::string picture_name(const Run& run)
 }
 
 /// Everything on the device but the timed repeats: pipelines, warm-up, picture, counts.
-Observed observe(Bench& bench, const FrameBuffersPtr& buffers, MeasuredRun& measured)
+Observed observe(SweepContext& sweep, const FrameBuffersPtr& buffers, MeasuredRun& measured)
 {
     const Run&             run     = *measured.run;
-    const MeasureSettings& measure = bench.experiment.measure;
-    measured.frame = prepare_frame(bench.gpu, buffers, find_technique(bench.techniques, run.technique), run.values,
-                                   run.settings, history_of(bench, run));
+    const MeasureSettings& measure = sweep.experiment.measure;
+    measured.frame = prepare_frame(sweep.gpu, buffers, find_technique(sweep.techniques, run.technique), run.values,
+                                   run.settings, history_of(sweep, run));
     add_plan(measured.row, plan_of(*measured.frame));
-    bench.counted_s += counting_s_of(*measured.frame);
-    return clocked(bench.counted_s, [&] {
-        const PreparedCountPtr count   = prepare_count(bench.gpu, *measured.frame);
-        const bool             doubled = measure.truth && measure.double_twin && bench.gpu.info.float64;
-        const PreparedCountPtr twin = doubled ? prepare_count(bench.gpu, *measured.frame, Precision::float64) : nullptr;
-        run_frame(bench.gpu, *measured.frame);
-        Observed observed{read_shaded(bench.gpu, *measured.frame), count_frame(bench.gpu, *measured.frame, *count),
-                          read_hidden_hits(bench.gpu, *measured.frame)};
-        observed.reprojection = read_reprojection(bench.gpu, *measured.frame);
-        observed.history      = read_history_counts(bench.gpu, *measured.frame);
-        if (twin) observed.twin = count_frame(bench.gpu, *measured.frame, *twin);
+    sweep.counted_s += counting_s_of(*measured.frame);
+    return clocked(sweep.counted_s, [&] {
+        const PreparedCountPtr count   = prepare_count(sweep.gpu, *measured.frame);
+        const bool             doubled = measure.truth && measure.double_twin && sweep.gpu.info.float64;
+        const PreparedCountPtr twin = doubled ? prepare_count(sweep.gpu, *measured.frame, Precision::float64) : nullptr;
+        run_frame(sweep.gpu, *measured.frame);
+        Observed observed{read_shaded(sweep.gpu, *measured.frame), count_frame(sweep.gpu, *measured.frame, *count),
+                          read_hidden_hits(sweep.gpu, *measured.frame)};
+        observed.reprojection = read_reprojection(sweep.gpu, *measured.frame);
+        observed.history      = read_history_counts(sweep.gpu, *measured.frame);
+        if (twin) observed.twin = count_frame(sweep.gpu, *measured.frame, *twin);
         return observed;
     });
 }
@@ -108,32 +108,32 @@ std::string truth_name(const Run& run)
 }
 
 /// The picture with true reflections, and beside it the one without any; those of the first run stay.
-void write_references(Bench& bench, Picture& picture, const MeasuredRun& measured, const Image& truth)
+void write_references(SweepContext& sweep, Picture& picture, const MeasuredRun& measured, const Image& truth)
 {
-    if (!bench.experiment.measure.pictures) return;
+    if (!sweep.experiment.measure.pictures) return;
     const std::string           name  = truth_name(*measured.run);
-    const std::filesystem::path path  = bench.results.path() / (name + ".png"),
-                                plain = bench.results.path() / (name + "_off.png");
+    const std::filesystem::path path  = sweep.results.path() / (name + ".png"),
+                                plain = sweep.results.path() / (name + "_off.png");
     picture.reference_file            = name + ".png";
     const std::vector<glm::vec4> none(pixel_count(truth.size_px), glm::vec4(0, 0, 0, -1));
     std::filesystem::create_directories(path.parent_path());
     if (!std::filesystem::exists(path)) write_image(path, truth);
-    if (!std::filesystem::exists(plain)) write_image(plain, composite_reflection(bench.gpu, *measured.frame, none));
+    if (!std::filesystem::exists(plain)) write_image(plain, composite_reflection(sweep.gpu, *measured.frame, none));
 }
 
 /// Makes what judging the run needs, unless the last run had the same settings.
-void make_references(Bench& bench, Picture& picture, const MeasuredRun& measured)
+void make_references(SweepContext& sweep, Picture& picture, const MeasuredRun& measured)
 {
     const FrameSettings& settings     = measured.run->settings;
-    const bool           image_errors = bench.experiment.measure.image_errors;
+    const bool           image_errors = sweep.experiment.measure.image_errors;
     if (!picture.truths) return;
-    clocked(bench.truths_s, [&] {
+    clocked(sweep.truths_s, [&] {
         if (picture.truths->known_layers() < static_cast<size_t>(settings.trace.layers))
-            picture.truths->know_layers(read_gbuffer(bench.gpu, *picture.gbuffer).layers);
+            picture.truths->know_layers(read_gbuffer(sweep.gpu, *picture.gbuffer).layers);
         const std::string lacked = picture.truths->without_scene();
         picture.truths->make(settings.trace, image_errors);
         if (const std::string& lacks = picture.truths->without_scene(); !lacks.empty() && lacks != lacked)
-            bench.progress.say(fmt::format("warning: {} {}: no scene truth: {}", measured.run->scene,
+            sweep.progress.say(fmt::format("warning: {} {}: no scene truth: {}", measured.run->scene,
                                            size_text(measured.run->size_px), lacks));
         if (!image_errors || (picture.reference && picture.reference_for == settings.trace)) return;
         picture.reference.reset();
@@ -143,7 +143,7 @@ void make_references(Bench& bench, Picture& picture, const MeasuredRun& measured
         if (!truth) return;
         picture.reference.emplace(*truth);
         picture.reference_for = settings.trace;
-        write_references(bench, picture, measured, *truth);
+        write_references(sweep, picture, measured, *truth);
     });
 }
 
@@ -165,12 +165,12 @@ void write_pictures(const std::filesystem::path& path, const Picture& picture, c
 }
 
 /// Pictures, counts and comparisons with the truths.
-void judge(const Bench& bench, Picture& picture, MeasuredRun& measured, const Observed& observed)
+void judge(const SweepContext& sweep, Picture& picture, MeasuredRun& measured, const Observed& observed)
 {
-    const MeasureSettings& measure = bench.experiment.measure;
+    const MeasureSettings& measure = sweep.experiment.measure;
     if (measure.pictures) {
         const std::string name = picture_name(*measured.run);
-        write_pictures(bench.results.path() / name, picture, observed);
+        write_pictures(sweep.results.path() / name, picture, observed);
         measured.row["picture"] = name + ".png";
         if (!picture.reference_file.empty()) measured.row["truth_picture"] = picture.reference_file;
     }
@@ -186,9 +186,9 @@ void judge(const Bench& bench, Picture& picture, MeasuredRun& measured, const Ob
 }
 
 /// Nothing is measured by answers that cannot be.
-void refuse_impossible(const Bench& bench, const Run& run, const Observed& observed)
+void refuse_impossible(const SweepContext& sweep, const Run& run, const Observed& observed)
 {
-    const Technique& technique = find_technique(bench.techniques, run.technique);
+    const Technique& technique = find_technique(sweep.techniques, run.technique);
     const double     steps     = declared_steps(technique, run.values);
     const auto       refuse    = [&](const TraceResult& result, const char* where) {
         if (const auto found = find_impossible(result, steps))
@@ -200,117 +200,117 @@ void refuse_impossible(const Bench& bench, const Run& run, const Observed& obser
 }
 
 /// Everything but the timed repeats.
-void prepare(Bench& bench, Picture& picture, MeasuredRun& measured)
+void prepare(SweepContext& sweep, Picture& picture, MeasuredRun& measured)
 {
     const Observed observed = [&] {
-        const UnderWay under_way(bench.state, measured.run->id, bench.experiment.measure.time_limit_s);
-        return observe(bench, picture.buffers, measured);
+        const UnderWay under_way(sweep.state, measured.run->id, sweep.experiment.measure.time_limit_s);
+        return observe(sweep, picture.buffers, measured);
     }();
-    refuse_impossible(bench, *measured.run, observed);
-    make_references(bench, picture, measured);
-    judge(bench, picture, measured, observed);
-    judge_sequence(bench, picture, measured, observed);
+    refuse_impossible(sweep, *measured.run, observed);
+    make_references(sweep, picture, measured);
+    judge(sweep, picture, measured, observed);
+    judge_sequence(sweep, picture, measured, observed);
 }
 
 /// The pilot: one warm frame, whose time is not recorded, says how many repeats fit into the budget.
-void plan_repeats(Bench& bench, MeasuredRun& measured)
+void plan_repeats(SweepContext& sweep, MeasuredRun& measured)
 {
-    clocked(bench.counted_s, [&] {
-        const UnderWay  under_way(bench.state, measured.run->id, bench.experiment.measure.time_limit_s);
+    clocked(sweep.counted_s, [&] {
+        const UnderWay  under_way(sweep.state, measured.run->id, sweep.experiment.measure.time_limit_s);
         const Stopwatch stopwatch;
-        const double    frame_ms   = run_frame(bench.gpu, *measured.frame).total_ms();
+        const double    frame_ms   = run_frame(sweep.gpu, *measured.frame).total_ms();
         const double    pilot_s    = stopwatch.seconds();
-        measured.frames_per_submit = frames_for(frame_ms, bench.experiment.measure, bench.gpu.info);
-        measured.repeats           = repeats_for(pilot_s * measured.frames_per_submit, bench.experiment.measure);
+        measured.frames_per_submit = frames_for(frame_ms, sweep.experiment.measure, sweep.gpu.info);
+        measured.repeats           = repeats_for(pilot_s * measured.frames_per_submit, sweep.experiment.measure);
     });
 }
 
 /// The same frame, unculled, where that is more.
-void prepare_comparison(Bench& bench, MeasuredRun& measured)
+void prepare_comparison(SweepContext& sweep, MeasuredRun& measured)
 {
-    if (!bench.experiment.measure.saved_time || !plan_skips_work(*measured.frame)) return;
-    const size_t   known = pipelines_made(bench.gpu);
-    const UnderWay under_way(bench.state, measured.run->id, bench.experiment.measure.time_limit_s);
-    measured.unculled = prepare_unculled(bench.gpu, *measured.frame);
+    if (!sweep.experiment.measure.saved_time || !plan_skips_work(*measured.frame)) return;
+    const size_t   known = pipelines_made(sweep.gpu);
+    const UnderWay under_way(sweep.state, measured.run->id, sweep.experiment.measure.time_limit_s);
+    measured.unculled = prepare_unculled(sweep.gpu, *measured.frame);
     // A driver may compile a pipeline when it first runs.
-    if (pipelines_made(bench.gpu) != known) clocked(bench.counted_s, [&] { run_frame(bench.gpu, *measured.unculled); });
+    if (pipelines_made(sweep.gpu) != known) clocked(sweep.counted_s, [&] { run_frame(sweep.gpu, *measured.unculled); });
 }
 
-double warm_frame_ms(Bench& bench, MeasuredRun& measured)
+double warm_frame_ms(SweepContext& sweep, MeasuredRun& measured)
 {
     double ms = 0;
-    try_step(bench, measured, [&] {
-        const UnderWay under_way(bench.state, measured.run->id, bench.experiment.measure.time_limit_s);
-        ms = run_frame(bench.gpu, *measured.frame).total_ms();
+    try_step(sweep, measured, [&] {
+        const UnderWay under_way(sweep.state, measured.run->id, sweep.experiment.measure.time_limit_s);
+        ms = run_frame(sweep.gpu, *measured.frame).total_ms();
     });
     return ms;
 }
 
 /// Untimed frames of all runs in turn for half a second or longer: the device's time for a frame of each, as a mean over whole turns.
-double warm_turns_ms(Bench& bench, std::vector<MeasuredRun>& open)
+double warm_turns_ms(SweepContext& sweep, std::vector<MeasuredRun>& open)
 {
     const Stopwatch stopwatch;
     double          sum_ms = 0, turns = 0;
     for (; !open.empty() && stop_requested() == 0 && stopwatch.seconds() < 0.5; ++turns) {
-        for (MeasuredRun& measured : open) sum_ms += warm_frame_ms(bench, measured);
+        for (MeasuredRun& measured : open) sum_ms += warm_frame_ms(sweep, measured);
         std::erase_if(open, is_over);
     }
     return turns > 0 ? sum_ms / turns : 0;
 }
 
 /// Untimed frames: a GPU that was idle raises its clocks in steps, some tenths of a second apart. It is warm when frames no longer get faster.
-void warm_up(Bench& bench, std::vector<MeasuredRun>& open)
+void warm_up(SweepContext& sweep, std::vector<MeasuredRun>& open)
 {
-    const double     warmup_s = bench.experiment.measure.warmup_s;
+    const double     warmup_s = sweep.experiment.measure.warmup_s;
     constexpr double most_s = 5, faster = 0.97;
-    clocked(bench.counted_s, [&] {
+    clocked(sweep.counted_s, [&] {
         const Stopwatch stopwatch;
         for (size_t i = 0; !open.empty() && stop_requested() == 0 && stopwatch.seconds() < warmup_s; ++i) {
-            warm_frame_ms(bench, open[i % open.size()]);
+            warm_frame_ms(sweep, open[i % open.size()]);
             std::erase_if(open, is_over);
         }
-        if (bench.gpu.info.type == "Cpu" || warmup_s <= 0) return;
-        double before_ms = warm_turns_ms(bench, open), now_ms = 0;
+        if (sweep.gpu.info.type == "Cpu" || warmup_s <= 0) return;
+        double before_ms = warm_turns_ms(sweep, open), now_ms = 0;
         for (; stopwatch.seconds() < most_s && !open.empty() && stop_requested() == 0; before_ms = now_ms) {
-            now_ms = warm_turns_ms(bench, open);
+            now_ms = warm_turns_ms(sweep, open);
             if (now_ms >= faster * before_ms) return;
         }
     });
 }
 
 /// Timed repeats, every round in another order, until each run has those planned for it or a stop was requested.
-void repeat_until_final(Bench& bench, Picture& picture, std::vector<MeasuredRun>& open)
+void repeat_until_final(SweepContext& sweep, Picture& picture, std::vector<MeasuredRun>& open)
 {
     const auto is_last = [](const MeasuredRun& measured) {
         return static_cast<int>(measured.rounds.size()) >= measured.repeats;
     };
     while (!open.empty() && stop_requested() == 0) {
-        std::ranges::shuffle(open, bench.random);
+        std::ranges::shuffle(open, sweep.random);
         for (MeasuredRun& measured : open) {
             if (stop_requested() != 0) break;
-            try_step(bench, measured, [&] {
-                const UnderWay under_way(bench.state, measured.run->id, bench.experiment.measure.time_limit_s);
-                clocked(bench.timed_s, [&] { add_repeat(bench.gpu, measured, picture.gbuffer_ms, picture.round); });
-                if (is_last(measured)) leave_history(bench, *measured.run, *measured.frame);
+            try_step(sweep, measured, [&] {
+                const UnderWay under_way(sweep.state, measured.run->id, sweep.experiment.measure.time_limit_s);
+                clocked(sweep.timed_s, [&] { add_repeat(sweep.gpu, measured, picture.gbuffer_ms, picture.round); });
+                if (is_last(measured)) leave_history(sweep, *measured.run, *measured.frame);
             });
             if (is_over(measured) || !is_last(measured)) continue;
             add_times(measured, picture.gbuffer_ms);
-            finish(bench, *measured.run, measured.row, samples_text(measured));
+            finish(sweep, *measured.run, measured.row, samples_text(measured));
             measured.run = nullptr;
         }
         std::erase_if(open, is_over);
         ++picture.round;
-        bench.progress.tick();
+        sweep.progress.tick();
     }
 }
 
 /// On a stop, what was measured often enough is kept; the rest is left for --resume.
-void keep_measured(Bench& bench, const Picture& picture, std::vector<MeasuredRun>& open)
+void keep_measured(SweepContext& sweep, const Picture& picture, std::vector<MeasuredRun>& open)
 {
     for (MeasuredRun& measured : open) {
-        if (static_cast<int>(measured.trace_ms.size()) < bench.experiment.measure.min_repeats) continue;
+        if (static_cast<int>(measured.trace_ms.size()) < sweep.experiment.measure.min_repeats) continue;
         add_times(measured, picture.gbuffer_ms);
-        finish(bench, *measured.run, measured.row, samples_text(measured));
+        finish(sweep, *measured.run, measured.row, samples_text(measured));
     }
 }
 
@@ -326,127 +326,127 @@ std::vector<const Run*> by_settings(std::span<const Run> runs)
 }
 
 /// All of a run but its timed repeats; a run that fails is over.
-void open_run(Bench& bench, Picture& picture, const Run& run, std::vector<MeasuredRun>& open)
+void open_run(SweepContext& sweep, Picture& picture, const Run& run, std::vector<MeasuredRun>& open)
 {
-    bench.progress.tick();
+    sweep.progress.tick();
     MeasuredRun measured;
     measured.run               = &run;
-    const Technique& technique = find_technique(bench.techniques, run.technique);
-    measured.row               = identity_row(bench.experiment, run, technique);
+    const Technique& technique = find_technique(sweep.techniques, run.technique);
+    measured.row               = identity_row(sweep.experiment, run, technique);
     for (const Structure& structure : technique.structures) measured.structures.push_back(structure.id);
     const auto prepare_all = [&] {
-        prepare(bench, picture, measured);
-        prepare_comparison(bench, measured);
-        plan_repeats(bench, measured);
+        prepare(sweep, picture, measured);
+        prepare_comparison(sweep, measured);
+        plan_repeats(sweep, measured);
     };
-    if (!try_step(bench, measured, prepare_all)) return;
-    bench.progress.prepared_run(run.id, cost_of(bench, run));
+    if (!try_step(sweep, measured, prepare_all)) return;
+    sweep.progress.prepared_run(run.id, cost_of(sweep, run));
     open.push_back(std::move(measured));
 }
 
-void time_runs(Bench& bench, Picture& picture, std::vector<MeasuredRun>& open)
+void time_runs(SweepContext& sweep, Picture& picture, std::vector<MeasuredRun>& open)
 {
-    refuse_changed_sources(bench);
-    finish_pipelines(bench.gpu);
-    warm_up(bench, open);
-    repeat_until_final(bench, picture, open);
-    keep_measured(bench, picture, open);
+    refuse_changed_sources(sweep);
+    finish_pipelines(sweep.gpu);
+    warm_up(sweep, open);
+    repeat_until_final(sweep, picture, open);
+    keep_measured(sweep, picture, open);
 }
 
-void measure_batch(Bench& bench, Picture& picture, std::span<const Run> runs)
+void measure_batch(SweepContext& sweep, Picture& picture, std::span<const Run> runs)
 {
     std::vector<MeasuredRun> open;
     for (const Run* run : by_settings(runs)) {
         if (stop_requested() != 0) return;
-        open_run(bench, picture, *run, open);
+        open_run(sweep, picture, *run, open);
     }
-    time_runs(bench, picture, open);
+    time_runs(sweep, picture, open);
 }
 
 /// The picture, or rows that say why there is none.
-std::optional<Picture> try_picture(Bench& bench, std::span<const Run> runs, std::span<const Run> replayed = {})
+std::optional<Picture> try_picture(SweepContext& sweep, std::span<const Run> runs, std::span<const Run> replayed = {})
 {
     try {
         const Run&     any = runs.empty() ? replayed.front() : runs.front();
-        const UnderWay under_way(bench.state, any.id, 0, true);
-        return make_picture(bench, any);
+        const UnderWay under_way(sweep.state, any.id, 0, true);
+        return make_picture(sweep, any);
     } catch (const std::exception& error) {
-        refuse_changed_sources(bench);
+        refuse_changed_sources(sweep);
         for (const Run& run : runs) {
-            const Technique& technique = find_technique(bench.techniques, run.technique);
-            finish(bench, run, failed_row(identity_row(bench.experiment, run, technique), error));
-            lose_sequence(bench, run);
+            const Technique& technique = find_technique(sweep.techniques, run.technique);
+            finish(sweep, run, failed_row(identity_row(sweep.experiment, run, technique), error));
+            lose_sequence(sweep, run);
         }
-        for (const Run& run : replayed) lose_sequence(bench, run);
+        for (const Run& run : replayed) lose_sequence(sweep, run);
         return std::nullopt;
     }
 }
 
-std::vector<Run> without_row(const Bench& bench, std::span<const Run> runs)
+std::vector<Run> without_row(const SweepContext& sweep, std::span<const Run> runs)
 {
     std::vector<Run> pending(runs.begin(), runs.end());
-    std::erase_if(pending, [&](const Run& run) { return bench.results.finished().contains(run.id); });
+    std::erase_if(pending, [&](const Run& run) { return sweep.results.finished().contains(run.id); });
     return pending;
 }
 
 /// Measures are known before a run is timed. So the search comes first, and then all runs of the picture, listed ones and those of the
 /// search, are timed in the same rounds.
-void search_and_measure(Bench& bench, std::span<const Run> listed)
+void search_and_measure(SweepContext& sweep, std::span<const Run> listed)
 {
-    std::map<std::string, Row> rows = bench.results.rows();
+    std::map<std::string, Row> rows = sweep.results.rows();
     std::vector<Run>           all(listed.begin(), listed.end());
     std::deque<Run>            opened; // keeps addresses
     std::vector<MeasuredRun>   open;
     std::optional<Picture>     picture;
     for (std::vector<Run> next = all; !next.empty();) {
-        const std::vector<Run> pending = without_row(bench, next);
-        if (!picture && !pending.empty()) picture = try_picture(bench, pending);
+        const std::vector<Run> pending = without_row(sweep, next);
+        if (!picture && !pending.empty()) picture = try_picture(sweep, pending);
         if (!picture && !pending.empty()) return;
         for (const Run* run : by_settings(pending)) {
             if (stop_requested() != 0) return;
-            open_run(bench, *picture, opened.emplace_back(*run), open);
+            open_run(sweep, *picture, opened.emplace_back(*run), open);
         }
         for (const MeasuredRun& measured : open) rows[measured.run->id] = measured.row;
-        next = next_probes(bench.experiment, bench.techniques, all, rows);
+        next = next_probes(sweep.experiment, sweep.techniques, all, rows);
         all.insert(all.end(), next.begin(), next.end());
-        const std::vector<Run> added = without_row(bench, next);
+        const std::vector<Run> added = without_row(sweep, next);
         double                 cost  = 0;
-        for (const Run& run : added) cost += cost_of(bench, run);
-        bench.progress.add_runs(added.size(), cost);
+        for (const Run& run : added) cost += cost_of(sweep, run);
+        sweep.progress.add_runs(added.size(), cost);
     }
-    if (picture) time_runs(bench, *picture, open);
+    if (picture) time_runs(sweep, *picture, open);
 }
 
 } // namespace
 
-void finish(Bench& bench, const Run& run, const Row& row, std::string_view samples)
+void finish(SweepContext& sweep, const Run& run, const Row& row, std::string_view samples)
 {
-    bench.results.append(row, samples);
-    ++bench.state.written;
+    sweep.results.append(row, samples);
+    ++sweep.state.written;
     if (row.contains("message")) {
-        ++bench.state.failed;
-        bench.progress.say(fmt::format("run {} {}: {}", run.id, row.at("outcome"), row.at("message")));
+        ++sweep.state.failed;
+        sweep.progress.say(fmt::format("run {} {}: {}", run.id, row.at("outcome"), row.at("message")));
     }
-    bench.progress.finish_run(run.id, cost_of(bench, run));
+    sweep.progress.finish_run(run.id, cost_of(sweep, run));
 }
 
-void measure_picture(Bench& bench, std::span<const Run> listed, std::span<const Run> replayed)
+void measure_picture(SweepContext& sweep, std::span<const Run> listed, std::span<const Run> replayed)
 {
     if (listed.empty() && replayed.empty()) return;
     const Run&        first = listed.empty() ? replayed.front() : listed.front();
     const std::string frame = first.at == SequenceFrame{} ? "" : fmt::format(" frame {}", first.at.frame);
-    bench.progress.start_picture(fmt::format("{} {} {}{}", first.scene, first.view, size_text(first.size_px), frame));
-    if (!bench.experiment.targets.empty()) return search_and_measure(bench, listed);
-    const std::vector<Run> pending = without_row(bench, listed);
+    sweep.progress.start_picture(fmt::format("{} {} {}{}", first.scene, first.view, size_text(first.size_px), frame));
+    if (!sweep.experiment.targets.empty()) return search_and_measure(sweep, listed);
+    const std::vector<Run> pending = without_row(sweep, listed);
     if (pending.empty() && replayed.empty()) return;
-    std::optional<Picture> picture = try_picture(bench, pending, replayed);
+    std::optional<Picture> picture = try_picture(sweep, pending, replayed);
     for (std::span<const Run> rest(pending); picture && !rest.empty() && stop_requested() == 0;) {
         const auto batch = rest.first(std::min(batch_size, rest.size()));
         rest             = rest.subspan(batch.size());
-        measure_batch(bench, *picture, batch);
+        measure_batch(sweep, *picture, batch);
     }
     for (const Run& run : replayed)
-        if (picture && stop_requested() == 0) replay(bench, *picture, run);
+        if (picture && stop_requested() == 0) replay(sweep, *picture, run);
 }
 
 } // namespace ssrlab

@@ -29,7 +29,7 @@ struct ConvergedPicture {
 };
 
 /// What all measuring works with.
-struct Bench {
+struct SweepContext {
     const Experiment&                    experiment;
     std::span<const Technique>           techniques;
     Gpu&                                 gpu;
@@ -47,11 +47,11 @@ struct Bench {
 };
 
 /// Appends the row of a run that is over.
-void finish(Bench& bench, const Run& run, const Row& row, std::string_view samples = "");
+void finish(SweepContext& sweep, const Run& run, const Row& row, std::string_view samples = "");
 
 /// Appends a row for each run that has none, as soon as it is final, and for those that the search for the experiment's targets adds; a
 /// run that fails is a row with the reason. Returns early, with the rows so far complete, when a stop was requested.
 /// `replayed`: runs whose frame is only carried to the next one of their sequence.
-void measure_picture(Bench& bench, std::span<const Run> runs, std::span<const Run> replayed = {});
+void measure_picture(SweepContext& sweep, std::span<const Run> runs, std::span<const Run> replayed = {});
 
 } // namespace ssrlab

@@ -32,23 +32,23 @@ std::vector<Sequence> sequences_of(std::span<const Run> runs)
 }
 
 /// Whether this is all of it: --only picks one frame.
-bool is_whole(const Bench& bench, const Sequence& sequence)
+bool is_whole(const SweepContext& sweep, const Sequence& sequence)
 {
-    return sequence.runs.size() == bench.experiment.frames.size();
+    return sequence.runs.size() == sweep.experiment.frames.size();
 }
 
-bool is_finished(const Bench& bench, const Sequence& sequence, const std::set<std::string>& summaries)
+bool is_finished(const SweepContext& sweep, const Sequence& sequence, const std::set<std::string>& summaries)
 {
-    const auto has_row = [&](const Run& run) { return bench.results.finished().contains(run.id); };
+    const auto has_row = [&](const Run& run) { return sweep.results.finished().contains(run.id); };
     return std::ranges::all_of(sequence.runs, has_row) &&
-           (!is_whole(bench, sequence) || summaries.contains(sequence.id));
+           (!is_whole(sweep, sequence) || summaries.contains(sequence.id));
 }
 
 /// The first one from this frame on that has no row, or the last one: it has the blame if a replayed frame ends the process.
-const Run& next_listed(const Bench& bench, const Sequence& sequence, int frame)
+const Run& next_listed(const SweepContext& sweep, const Sequence& sequence, int frame)
 {
     const auto next = std::ranges::find_if(sequence.runs, [&](const Run& run) {
-        return run.at.frame > frame && !bench.results.finished().contains(run.id);
+        return run.at.frame > frame && !sweep.results.finished().contains(run.id);
     });
     return next == sequence.runs.end() ? sequence.runs.back() : *next;
 }
@@ -60,76 +60,77 @@ Run in_frame(Run run, int frame)
 }
 
 /// Runs whose row says so.
-std::set<std::string> failed_runs(const Bench& bench)
+std::set<std::string> failed_runs(const SweepContext& sweep)
 {
     std::set<std::string> ids;
-    for (const auto& [id, row] : bench.results.rows())
+    for (const auto& [id, row] : sweep.results.rows())
         if (row.contains("message") && !row.at("message").empty()) ids.insert(id);
     return ids;
 }
 
-void measure_frame(Bench& bench, std::span<const Sequence> sequences, const std::set<std::string>& failed, int frame)
+void measure_frame(SweepContext& sweep, std::span<const Sequence> sequences, const std::set<std::string>& failed,
+                   int frame)
 {
     std::vector<Run> listed, replayed;
     for (const Sequence& sequence : sequences) {
         if (frame > sequence.runs.back().at.frame) continue;
         const auto is_here = std::ranges::find(sequence.runs, frame, [](const Run& run) { return run.at.frame; });
-        if (is_here != sequence.runs.end() && !bench.results.finished().contains(is_here->id))
+        if (is_here != sequence.runs.end() && !sweep.results.finished().contains(is_here->id))
             listed.push_back(*is_here);
         else if (is_here != sequence.runs.end() && failed.contains(is_here->id))
-            lose_sequence(bench, *is_here); // it would fail again
+            lose_sequence(sweep, *is_here); // it would fail again
         else
-            replayed.push_back(in_frame(next_listed(bench, sequence, frame), frame));
+            replayed.push_back(in_frame(next_listed(sweep, sequence, frame), frame));
     }
-    measure_picture(bench, listed, replayed);
+    measure_picture(sweep, listed, replayed);
 }
 
 /// Frame by frame, without a look at the one before.
-void measure_each_picture(Bench& bench, std::span<const Run> runs)
+void measure_each_picture(SweepContext& sweep, std::span<const Run> runs)
 {
     while (!runs.empty() && stop_requested() == 0) {
         const auto same  = [&](const Run& run) { return same_picture(run, runs.front()); };
         const auto count = static_cast<size_t>(std::ranges::find_if_not(runs, same) - runs.begin());
-        measure_picture(bench, runs.first(count));
+        measure_picture(sweep, runs.first(count));
         runs = runs.subspan(count);
     }
 }
 
-void summarise_sequences(Bench& bench, std::span<const Sequence> sequences)
+void summarise_sequences(SweepContext& sweep, std::span<const Sequence> sequences)
 {
-    const std::map<std::string, Row> rows    = bench.results.rows();
-    const std::vector<Column>        columns = summary_columns(bench.experiment, bench.techniques);
+    const std::map<std::string, Row> rows    = sweep.results.rows();
+    const std::vector<Column>        columns = summary_columns(sweep.experiment, sweep.techniques);
     for (const Sequence& sequence : sequences) {
-        if (!is_whole(bench, sequence)) continue;
+        if (!is_whole(sweep, sequence)) continue;
         std::vector<Row> frames;
         for (const Run& run : sequence.runs) frames.push_back(rows.at(run.id));
         const Run& first = sequence.runs.front();
-        Row row = summary_row(identity_row(bench.experiment, first, find_technique(bench.techniques, first.technique)),
-                              frames, bench.sequences[sequence.id]);
+        Row row = summary_row(identity_row(sweep.experiment, first, find_technique(sweep.techniques, first.technique)),
+                              frames, sweep.sequences[sequence.id]);
         row["sequence_id"] = sequence.id;
-        write_summary(bench.results.path(), columns, row);
+        write_summary(sweep.results.path(), columns, row);
     }
 }
 
 } // namespace
 
-void measure_sequence(Bench& bench, std::span<const Run> runs)
+void measure_sequence(SweepContext& sweep, std::span<const Run> runs)
 {
-    if (!is_sequence(bench.experiment) || is_frame(runs.front().scene)) return measure_each_picture(bench, runs);
-    bench.sequences.clear();
-    bench.converged.clear();
-    const std::set<std::string> summaries = summarised(bench.results.path());
+    if (!is_sequence(sweep.experiment) || is_frame(runs.front().scene)) return measure_each_picture(sweep, runs);
+    sweep.sequences.clear();
+    sweep.converged.clear();
+    const std::set<std::string> summaries = summarised(sweep.results.path());
     std::vector<Sequence>       sequences = sequences_of(runs);
-    std::erase_if(sequences, [&](const Sequence& sequence) { return is_finished(bench, sequence, summaries); });
+    std::erase_if(sequences, [&](const Sequence& sequence) { return is_finished(sweep, sequence, summaries); });
     if (sequences.empty()) return;
     int last = -1;
     for (const Sequence& sequence : sequences) last = std::max(last, sequence.runs.back().at.frame);
-    make_converged_pictures(bench, runs, last);
-    const std::set<std::string> failed = failed_runs(bench); // before this process
-    for (int frame = 0; frame <= last && stop_requested() == 0; ++frame) measure_frame(bench, sequences, failed, frame);
-    if (stop_requested() == 0) summarise_sequences(bench, sequences);
-    bench.sequences.clear();
-    bench.converged.clear();
+    make_converged_pictures(sweep, runs, last);
+    const std::set<std::string> failed = failed_runs(sweep); // before this process
+    for (int frame = 0; frame <= last && stop_requested() == 0; ++frame) measure_frame(sweep, sequences, failed, frame);
+    if (stop_requested() == 0) summarise_sequences(sweep, sequences);
+    sweep.sequences.clear();
+    sweep.converged.clear();
 }
 
 } // namespace ssrlab

@@ -22,8 +22,8 @@ struct Picture {
 };
 
 /// Loads and uploads a scene unless it is the one that is there, and moves it to the frame.
-const LoadedScene& scene_of(Bench& bench, const std::string& name, int frame);
-Picture            make_picture(Bench& bench, const Run& run);
+const LoadedScene& scene_of(SweepContext& sweep, const std::string& name, int frame);
+Picture            make_picture(SweepContext& sweep, const Run& run);
 
 /// What a run's frames gave, before anything is said about it.
 struct Observed {

@@ -134,27 +134,27 @@ int list_runs(const Experiment& experiment, std::span<const Run> runs, std::span
 }
 
 /// Of the validation layer, those after the first `reported`.
-void report_messages(Bench& bench, size_t& reported)
+void report_messages(SweepContext& sweep, size_t& reported)
 {
-    const auto messages = validation_messages(bench.gpu);
-    for (; reported < messages.size(); ++reported, ++bench.state.messages)
-        bench.progress.say("validation: " + messages[reported]);
+    const auto messages = validation_messages(sweep.gpu);
+    for (; reported < messages.size(); ++reported, ++sweep.state.messages)
+        sweep.progress.say("validation: " + messages[reported]);
 }
 
 /// A child ended at these: rows that say so, and no second try.
-void record_lost(Bench& bench, std::span<const Run> runs, const LostRun& lost)
+void record_lost(SweepContext& sweep, std::span<const Run> runs, const LostRun& lost)
 {
     const auto at = std::ranges::find(runs, lost.run_id, &Run::id);
     if (at == runs.end()) throw_failure("run {} of the search for the targets: {}", lost.run_id, lost.why);
     const auto is_it = [&](const Run& run) { return lost.whole_picture ? same_picture(run, *at) : run.id == at->id; };
     for (const Run& run : runs) {
         if (!is_it(run)) continue;
-        const Technique& technique = find_technique(bench.techniques, run.technique);
-        finish(bench, run, failed_row(identity_row(bench.experiment, run, technique), Failure(lost.why)));
+        const Technique& technique = find_technique(sweep.techniques, run.technique);
+        finish(sweep, run, failed_row(identity_row(sweep.experiment, run, technique), Failure(lost.why)));
     }
 }
 
-int sweep(const RunOptions& options, SweepState& state)
+int run_sweep(const RunOptions& options, SweepState& state)
 {
     const bool                   continues  = state.lost.run_id[0] != 0;
     const std::vector<Technique> techniques = list_techniques(options.techniques);
@@ -172,9 +172,9 @@ int sweep(const RunOptions& options, SweepState& state)
     std::vector<Run> pending = runs;
     std::erase_if(pending, [&](const Run& run) { return results.finished().contains(run.id); });
 
-    Progress progress(pending.size(), total_cost(pending, techniques, experiment.measure), options.quiet);
-    Bench    bench{experiment, techniques, gpu, results, progress, state, environment.identity};
-    if (continues) record_lost(bench, pending, state.lost);
+    Progress     progress(pending.size(), total_cost(pending, techniques, experiment.measure), options.quiet);
+    SweepContext sweep{experiment, techniques, gpu, results, progress, state, environment.identity};
+    if (continues) record_lost(sweep, pending, state.lost);
     if (const std::string trouble = cache_trouble(truth_cache_dir(results.path())); !trouble.empty())
         progress.say("warning: " + trouble);
     for (const Technique& technique : techniques)
@@ -184,8 +184,8 @@ int sweep(const RunOptions& options, SweepState& state)
                                      short_path(technique.folder / "technique.toml")));
     size_t reported = 0;
     for (std::span<const Run> rest(runs); !rest.empty() && stop_requested() == 0;) {
-        measure_sequence(bench, take_sequence(rest));
-        report_messages(bench, reported);
+        measure_sequence(sweep, take_sequence(rest));
+        report_messages(sweep, reported);
     }
     results.require_unmoved();
     const double      took_s  = stopwatch.seconds();
@@ -193,8 +193,8 @@ int sweep(const RunOptions& options, SweepState& state)
         "{}: {} rows, {} written now, {} of them failed; of {}, {:.0f} % went to frames that were timed, {:.0f} % "
         "to frames that were counted, {:.0f} % to truths\n",
         short_path(results.path() / "results.csv"), results.finished().size(), state.written, state.failed,
-        duration_text(took_s), 100 * bench.timed_s / took_s, 100 * bench.counted_s / took_s,
-        100 * bench.truths_s / took_s);
+        duration_text(took_s), 100 * sweep.timed_s / took_s, 100 * sweep.counted_s / took_s,
+        100 * sweep.truths_s / took_s);
     std::fputs(summary.c_str(), stdout);
     if (stop_requested() != 0) {
         progress.say("stopped; the same command with --resume does the other runs");
@@ -216,7 +216,7 @@ int run_experiment(const RunOptions& options)
     SweepState* state = shared_with_parent();
     if (state == nullptr) return supervise(own_command());
     listen_for_stop();
-    return sweep(options, *state);
+    return run_sweep(options, *state);
 }
 
 } // namespace ssrlab

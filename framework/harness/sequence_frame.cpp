@@ -9,11 +9,11 @@ namespace {
 
 bool anything_moved(const FrameMotion& motion) { return motion.camera_moves || motion.moving_draws > 0; }
 
-MeasureValues watch_sequence(Bench& bench, const Picture& picture, const Run& run, const Observed& observed)
+MeasureValues watch_sequence(SweepContext& sweep, const Picture& picture, const Run& run, const Observed& observed)
 {
     // Behind a cut of the camera everything is elsewhere.
     const bool moved = picture.motion ? anything_moved(*picture.motion) : run.at.frame > 0;
-    return watch(bench.sequences[sequence_id(run)], observed.shaded, observed.counted, picture.jitter_px, moved);
+    return watch(sweep.sequences[sequence_id(run)], observed.shaded, observed.counted, picture.jitter_px, moved);
 }
 
 SceneInTime scene_before(const LoadedScene& loaded, const FrameMotion& motion, int frames_back)
@@ -22,10 +22,10 @@ SceneInTime scene_before(const LoadedScene& loaded, const FrameMotion& motion, i
     return {scene_at(loaded.first, motion.frame - frames_back), motion};
 }
 
-void make_reprojection(Bench& bench, Picture& picture, const Run& run)
+void make_reprojection(SweepContext& sweep, Picture& picture, const Run& run)
 {
     if (picture.truths->has_reprojection()) return;
-    const LoadedScene&         loaded = *bench.scene;
+    const LoadedScene&         loaded = *sweep.scene;
     std::optional<FrameMotion> earlier;
     int                        frames_back = ghost_frames + 1;
     while (!earlier) earlier = motion_at(loaded.first, run.view, run.size_px, run.at.frame, --frames_back);
@@ -34,11 +34,11 @@ void make_reprojection(Bench& bench, Picture& picture, const Run& run)
 }
 
 /// Where something but jitter moved.
-void judge_motion(Bench& bench, Picture& picture, MeasuredRun& measured, const Observed& observed)
+void judge_motion(SweepContext& sweep, Picture& picture, MeasuredRun& measured, const Observed& observed)
 {
     if (!picture.truths || !picture.truths->without_scene().empty()) return;
     if (!picture.motion || !anything_moved(*picture.motion)) return;
-    clocked(bench.truths_s, [&] { make_reprojection(bench, picture, *measured.run); });
+    clocked(sweep.truths_s, [&] { make_reprojection(sweep, picture, *measured.run); });
     add_measures(measured.row, picture.truths->compare_motion(observed.counted, observed.reprojection));
     if (picture.reference)
         add_measures(measured.row, picture.truths->compare_ghosts(observed.shaded, *picture.reference));
@@ -72,67 +72,67 @@ void add_true_picture(Picture& picture, const TraceSettings& settings, Image& su
 
 } // namespace
 
-FrameHistoryPtr history_of(Bench& bench, const Run& run)
+FrameHistoryPtr history_of(SweepContext& sweep, const Run& run)
 {
-    if (!is_sequence(bench.experiment) || bench.scene->first.frame) return nullptr;
-    SequenceState& state = bench.sequences[sequence_id(run)];
+    if (!is_sequence(sweep.experiment) || sweep.scene->first.frame) return nullptr;
+    SequenceState& state = sweep.sequences[sequence_id(run)];
     if (state.failed) throw_failure("a frame before this one failed, so this one has no history");
-    if (!state.history) state.history = make_history(bench.gpu, run.size_px);
+    if (!state.history) state.history = make_history(sweep.gpu, run.size_px);
     return state.history;
 }
 
-void leave_history(Bench& bench, const Run& run, PreparedFrame& frame)
+void leave_history(SweepContext& sweep, const Run& run, PreparedFrame& frame)
 {
-    if (history_of(bench, run) == nullptr) return;
-    clocked(bench.counted_s, [&] {
-        run_frame(bench.gpu, frame);
-        keep_history(bench.gpu, frame, run.at.frame);
+    if (history_of(sweep, run) == nullptr) return;
+    clocked(sweep.counted_s, [&] {
+        run_frame(sweep.gpu, frame);
+        keep_history(sweep.gpu, frame, run.at.frame);
     });
 }
 
-void judge_sequence(Bench& bench, Picture& picture, MeasuredRun& measured, const Observed& observed)
+void judge_sequence(SweepContext& sweep, Picture& picture, MeasuredRun& measured, const Observed& observed)
 {
-    judge_motion(bench, picture, measured, observed);
+    judge_motion(sweep, picture, measured, observed);
     if (observed.history) add_measures(measured.row, history_measures(*observed.history));
     const auto converged =
-        std::ranges::find(bench.converged, measured.run->settings.trace, &ConvergedPicture::settings);
-    if (converged != bench.converged.end())
+        std::ranges::find(sweep.converged, measured.run->settings.trace, &ConvergedPicture::settings);
+    if (converged != sweep.converged.end())
         add_measures(measured.row, picture.truths->compare_converged(observed.shaded, converged->picture));
-    if (is_sequence(bench.experiment))
-        add_measures(measured.row, watch_sequence(bench, picture, *measured.run, observed));
+    if (is_sequence(sweep.experiment))
+        add_measures(measured.row, watch_sequence(sweep, picture, *measured.run, observed));
 }
 
-void lose_sequence(Bench& bench, const Run& run)
+void lose_sequence(SweepContext& sweep, const Run& run)
 {
-    bench.sequences[sequence_id(run)]        = {};
-    bench.sequences[sequence_id(run)].failed = true;
+    sweep.sequences[sequence_id(run)]        = {};
+    sweep.sequences[sequence_id(run)].failed = true;
 }
 
-void replay(Bench& bench, const Picture& picture, const Run& run)
+void replay(SweepContext& sweep, const Picture& picture, const Run& run)
 {
     try {
-        const UnderWay         under_way(bench.state, run.id, bench.experiment.measure.time_limit_s);
+        const UnderWay         under_way(sweep.state, run.id, sweep.experiment.measure.time_limit_s);
         const PreparedFramePtr frame =
-            prepare_frame(bench.gpu, picture.buffers, find_technique(bench.techniques, run.technique), run.values,
-                          run.settings, history_of(bench, run));
-        clocked(bench.counted_s, [&] {
-            run_frame(bench.gpu, *frame);
-            watch_sequence(bench, picture, run,
-                           {read_shaded(bench.gpu, *frame), count_frame(bench.gpu, *frame), std::nullopt});
+            prepare_frame(sweep.gpu, picture.buffers, find_technique(sweep.techniques, run.technique), run.values,
+                          run.settings, history_of(sweep, run));
+        clocked(sweep.counted_s, [&] {
+            run_frame(sweep.gpu, *frame);
+            watch_sequence(sweep, picture, run,
+                           {read_shaded(sweep.gpu, *frame), count_frame(sweep.gpu, *frame), std::nullopt});
         });
-        leave_history(bench, run, *frame);
+        leave_history(sweep, run, *frame);
     } catch (const std::exception& error) {
-        bench.progress.say(fmt::format("frame {} of {}: {}", run.at.frame, sequence_id(run), error.what()));
-        lose_sequence(bench, run);
+        sweep.progress.say(fmt::format("frame {} of {}: {}", run.at.frame, sequence_id(run), error.what()));
+        lose_sequence(sweep, run);
     }
 }
 
-void make_converged_pictures(Bench& bench, std::span<const Run> runs, int last_frame)
+void make_converged_pictures(SweepContext& sweep, std::span<const Run> runs, int last_frame)
 {
-    const MeasureSettings& measure = bench.experiment.measure;
+    const MeasureSettings& measure = sweep.experiment.measure;
     const Run&             first   = runs.front();
     if (!measure.truth || !measure.image_errors || first.at.jitter_phases == 0) return;
-    if (!nothing_moves(scene_of(bench, first.scene, 0).first, first, last_frame)) return;
+    if (!nothing_moves(scene_of(sweep, first.scene, 0).first, first, last_frame)) return;
     std::vector<std::pair<TraceSettings, Image>> sums;
     for (const Run& run : runs)
         if (std::ranges::none_of(sums, [&](const auto& sum) { return sum.first == run.settings.trace; }))
@@ -140,14 +140,14 @@ void make_converged_pictures(Bench& bench, std::span<const Run> runs, int last_f
     for (int phase = 0; phase < first.at.jitter_phases; ++phase) {
         Run at_phase      = first;
         at_phase.at.frame = phase;
-        Picture picture   = make_picture(bench, at_phase);
+        Picture picture   = make_picture(sweep, at_phase);
         for (auto& [settings, sum] : sums) add_true_picture(picture, settings, sum);
-        bench.progress.tick();
+        sweep.progress.tick();
     }
     std::erase_if(sums, [](const auto& sum) { return sum.second.values.empty(); });
     for (auto& [settings, sum] : sums) {
         for (float& value : sum.values) value /= static_cast<float>(first.at.jitter_phases);
-        bench.converged.push_back({settings, Reference(sum)});
+        sweep.converged.push_back({settings, Reference(sum)});
     }
 }
 

@@ -6,21 +6,21 @@
 namespace ssrlab {
 
 /// What the run's frame before left; null where frames do not follow each other. Throws Failure where that frame failed.
-FrameHistoryPtr history_of(Bench& bench, const Run& run);
+FrameHistoryPtr history_of(SweepContext& sweep, const Run& run);
 
 /// The run's next frame finds what this one leaves. Runs share images, so this one runs once more.
-void leave_history(Bench& bench, const Run& run, PreparedFrame& frame);
+void leave_history(SweepContext& sweep, const Run& run, PreparedFrame& frame);
 
 /// Adds the measures that need the frames before, and remembers this one.
-void judge_sequence(Bench& bench, Picture& picture, MeasuredRun& measured, const Observed& observed);
+void judge_sequence(SweepContext& sweep, Picture& picture, MeasuredRun& measured, const Observed& observed);
 
 /// After a frame that failed: what follows does not follow from it.
-void lose_sequence(Bench& bench, const Run& run);
+void lose_sequence(SweepContext& sweep, const Run& run);
 
 /// Carries a run to its next frame, without a row.
-void replay(Bench& bench, const Picture& picture, const Run& run);
+void replay(SweepContext& sweep, const Picture& picture, const Run& run);
 
-/// Makes Bench::converged for the settings of these runs, if nothing but jitter moves from their first frame to `last_frame`.
-void make_converged_pictures(Bench& bench, std::span<const Run> runs, int last_frame);
+/// Makes SweepContext::converged for the settings of these runs, if nothing but jitter moves from their first frame to `last_frame`.
+void make_converged_pictures(SweepContext& sweep, std::span<const Run> runs, int last_frame);
 
 } // namespace ssrlab
