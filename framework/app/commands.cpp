@@ -94,7 +94,7 @@ int plot_results(const std::string& folder)
 {
     const std::filesystem::path table = std::filesystem::path(folder) / "results.csv";
     if (!std::filesystem::exists(table)) throw_spec_error("{}: no such file; ssrlab run writes it", table.string());
-    run_python("experiments/plot.py", {folder});
+    run_python("experiments/plot", {folder});
     return 0;
 }
 

@@ -2,6 +2,7 @@
 #include "core/error.h"
 
 #include "compare/measures.h"
+#include "harness/passes.h"
 #include "harness/sequence_state.h"
 
 #include <algorithm>
@@ -20,6 +21,7 @@ here, which git ignores. `reference/` holds small committed runs to compare with
 | `results.csv` | one row per run, in the columns below |
 | `sequence_summary.csv` | of an experiment with several frames: one row per run without its frame, in the columns of the last table |
 | `samples.csv` | every timed frame: run_id, round, pass, ms, cpu_ms; docs/measuring.md says what a round is |
+| `passes.csv` | the passes of each run's frame: whether each ran, how long it took, and why |
 | `environment.json` | device, driver, commit, command line, seed, specification, and hashes of everything that decides a result |
 | `pictures/` | per run: the reflection, right and wrong rays in false colours, and the work per ray |
 | `report.html`, `report.md`, `summary.csv`, `plots/` | made from the above by `ssrlab plot` |
@@ -57,6 +59,9 @@ int print_measures(const CommonOptions& common)
     for (const Column& column : summary_columns(everything, techniques))
         if (std::ranges::find(settings, column.name, &Column::name) == settings.end())
             text += fmt::format("| {} | {} |\n", code(column.name), column.meaning);
+    text += "\n## Passes of the frames\n`passes.csv` has a row for each pass of each run, in the order of a frame:\n\n";
+    text += "| column | meaning |\n|---|---|\n";
+    for (const Column& column : pass_columns()) text += fmt::format("| {} | {} |\n", code(column.name), column.meaning);
     std::fputs(text.c_str(), stdout);
     return 0;
 }

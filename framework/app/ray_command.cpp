@@ -135,7 +135,7 @@ void draw_ray(nlohmann::json json, const Setup& setup, const RayReport& report, 
         std::filesystem::remove(data, ignored);
     };
     try {
-        run_python("experiments/plot_ray.py", {data.string(), output.string()});
+        run_python("experiments/plot", {"ray", data.string(), output.string()});
     } catch (...) {
         remove();
         throw;

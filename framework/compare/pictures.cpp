@@ -20,7 +20,7 @@ glm::vec3 from_srgb(int r, int g, int b)
     return {srgb_to_linear(float(r) / 255), srgb_to_linear(float(g) / 255), srgb_to_linear(float(b) / 255)};
 }
 
-// Okabe and Ito 2008: told apart by the colour-blind. experiments/plot_report.py has the same for its legend.
+// Okabe and Ito 2008: told apart by the colour-blind. experiments/plots/report.py has the same for its legend.
 const glm::vec3 green = from_srgb(0x00, 0x9e, 0x73), yellow = from_srgb(0xf0, 0xe4, 0x42),
                 vermilion = from_srgb(0xd5, 0x5e, 0x00), pink = from_srgb(0xcc, 0x79, 0xa7),
                 grey = from_srgb(0x6b, 0x6b, 0x74), orange = from_srgb(0xe6, 0x9f, 0x00),

@@ -10,19 +10,23 @@
 namespace ssrlab {
 namespace {
 
+using enum ColumnType;
+
 const std::vector<Column> identity = {
-    {"run_id", "hash of the run: scene, view, size, technique, settings, parameters; content hashes are in "
-               "environment.json"},
-    {"experiment", "name of the specification"},
+    {"run_id",
+     "hash of the run: scene, view, size, technique, settings, parameters; content hashes are in "
+     "environment.json",
+     words},
+    {"experiment", "name of the specification", words},
     {"run_number",
-     "position in the specification's list of runs of this frame, from 0; the others are compared with run 0"},
-    {"scene", "file, recipe or builtin:NAME"},
-    {"view", "camera"},
-    {"width", "pixels"},
-    {"height", "pixels"},
-    {"frame", "of the sequence: 0 is the scene as loaded and the start of a camera path"},
-    {"jitter_phases", "sub-pixel offsets of the camera (Halton 2, 3) that repeat after so many frames; 0: none"},
-    {"technique", "folder of the technique"},
+     "position in the specification's list of runs of this frame, from 0; the others are compared with run 0", whole},
+    {"scene", "file, recipe or builtin:NAME", words},
+    {"view", "camera", words},
+    {"width", "pixels", whole},
+    {"height", "pixels", whole},
+    {"frame", "of the sequence: 0 is the scene as loaded and the start of a camera path", whole},
+    {"jitter_phases", "sub-pixel offsets of the camera (Halton 2, 3) that repeat after so many frames; 0: none", whole},
+    {"technique", "folder of the technique", words},
 };
 
 const std::vector<Column> times = {
@@ -30,18 +34,17 @@ const std::vector<Column> times = {
     {"trace_ms_mad", "its median absolute deviation"},
     {"trace_ms_ci_low", "lower end of the 95 % interval of the median, from order statistics; empty below six repeats"},
     {"trace_ms_ci_high", "upper end"},
-    {"repeats", "timed frames"},
-    {"frames_per_submit", "frames that a repeat submits together; the last is timed"},
+    {"repeats", "timed frames", whole},
+    {"frames_per_submit", "frames that a repeat submits together; the last is timed", whole},
     {"trace_drift",
      "median trace time of the later half of the repeats over that of the earlier half, minus 1: far from 0 where the "
      "device's clocks moved; empty below six repeats"},
     {"gbuffer_ms_median", "rendering the G-buffer, measured once per scene, view and size"},
     {"rays_ms_median", "finding the tiles that reflect and making the rays"},
     {"structures_ms_median", "building the structures that the technique reads; 0 without any"},
-    {"shade_ms_median", "turning hits into colour and putting the picture together"},
-    {"passes", "passes that ran, in their order, each with the median of its GPU time in milliseconds"},
-    {"passes_skipped", "passes that did not run, because the frame does not need them or they are off"},
-    {"passes_why", "each pass and why it ran or did not: NAME: reason; NAME: reason"},
+    {"shade_ms_median", "all passes after the trace, which turn hits into the finished picture"},
+    {"passes_ran", "passes of the frame that ran; passes.csv says of each whether it ran, how long it took, and why",
+     whole},
     {"saved_ms",
      "time saved by skipping: the unculled frame (skip_unneeded_passes = false) minus the planned one, median over "
      "five pairs; empty if only disabled passes were skipped, or if it was not measured (saved_time = false, "
@@ -55,24 +58,33 @@ const std::vector<Column> times = {
 };
 
 const std::vector<Column> counts = {
-    {"rays", "traced rays: pixels that reflect"}, {"fetches_mean", "reads of depth and of structures per traced ray"},
-    {"fetches_p50", "median over the rays"},      {"fetches_p99", "99th percentile over the rays"},
-    {"fetches_max", "of the worst ray"},          {"steps_p99", "loop iterations, 99th percentile over the rays"},
+    {"rays", "traced rays: pixels that reflect", whole},
+    {"fetches_mean", "reads of depth and of structures per traced ray"},
+    {"fetches_p50", "median over the rays"},
+    {"fetches_p99", "99th percentile over the rays"},
+    {"fetches_max", "of the worst ray"},
+    {"steps_p99", "loop iterations, 99th percentile over the rays"},
 };
 
 const std::vector<Column> ending = {
-    {"picture", "the reflected picture, relative to this file; beside it NAME_agreement.png (right and wrong in false "
-                "colours), NAME_causes.png (why rays are wrong), NAME_fetches.png (work per ray) and NAME_flip.png "
-                "(difference from truth_picture)"},
-    {"truth_picture",
-     "the same picture with the scene truth's reflection; beside it NAME_off.png, without reflections"},
-    {"technique_ignores", "of behind, surface and thickness: what the technique's own hit test does not ask, by its "
-                          "manifest; empty: it asks all of them; unknown: the manifest does not say"},
-    {"no_screen_truth", "why the measures that need the screen truth are empty; empty: they have a value"},
-    {"no_scene_truth", "why the measures that need the scene's triangles are empty; empty: they have a value"},
-    {"outcome", "ok; no_rays: nothing in the picture reflects; failed: see message; invalid: a ray has an answer that "
-                "cannot be, see message"},
-    {"message", "what went wrong"},
+    {"picture",
+     "the reflected picture, relative to this file; beside it NAME_agreement.png (right and wrong in false "
+     "colours), NAME_causes.png (why rays are wrong), NAME_fetches.png (work per ray) and NAME_flip.png "
+     "(difference from truth_picture)",
+     words},
+    {"truth_picture", "the same picture with the scene truth's reflection; beside it NAME_off.png, without reflections",
+     words},
+    {"technique_ignores",
+     "of behind, surface and thickness: what the technique's own hit test does not ask, by its "
+     "manifest; empty: it asks all of them; unknown: the manifest does not say",
+     words},
+    {"no_screen_truth", "why the measures that need the screen truth are empty; empty: they have a value", words},
+    {"no_scene_truth", "why the measures that need the scene's triangles are empty; empty: they have a value", words},
+    {"outcome",
+     "ok; no_rays: nothing in the picture reflects; failed: see message; invalid: a ray has an answer that "
+     "cannot be, see message",
+     words},
+    {"message", "what went wrong", words},
 };
 
 void append(std::vector<Column>& columns, const std::vector<Column>& more)
@@ -83,7 +95,7 @@ void append(std::vector<Column>& columns, const std::vector<Column>& more)
 std::vector<Column> settings()
 {
     std::vector<Column> columns;
-    for (const Setting& setting : all_settings()) columns.push_back({setting.name, setting.doc});
+    for (const Setting& setting : all_settings()) columns.push_back({setting.name, setting.doc, ColumnType::setting});
     return columns;
 }
 
@@ -94,7 +106,7 @@ std::vector<Column> parameters(const Experiment& experiment, std::span<const Tec
     for (const TechniqueSweep& sweep : experiment.techniques) {
         for (const Parameter& parameter : find_technique(techniques, sweep.id).parameters) {
             if (std::ranges::find(columns, parameter.name, &Column::name) == columns.end()) {
-                columns.push_back({parameter.name, parameter.doc});
+                columns.push_back({parameter.name, parameter.doc, ColumnType::setting});
             }
         }
     }
@@ -174,13 +186,6 @@ std::vector<Column> result_columns(const Experiment& experiment, std::span<const
     std::vector<Column> columns = setting_columns(experiment, techniques);
     append(columns, back);
     return columns;
-}
-
-std::vector<std::string> names_of(std::span<const Column> columns)
-{
-    std::vector<std::string> names;
-    for (const Column& column : columns) names.push_back(column.name);
-    return names;
 }
 
 } // namespace ssrlab

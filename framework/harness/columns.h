@@ -1,23 +1,16 @@
-// Every column of results.csv, once: name with unit, and what it means.
+// Every column of results.csv, once: name with unit, what it means, and the type of its values.
 #pragma once
 
 #include "harness/experiment.h"
-
-#include <string>
-#include <vector>
+#include "harness/record.h"
 
 namespace ssrlab {
-
-struct Column {
-    std::string name, meaning;
-};
 
 /// Identity, settings and parameters of the experiment's techniques: what tells rows apart.
 std::vector<Column> setting_columns(const Experiment& experiment, std::span<const Technique> techniques);
 
 /// Identity, settings, parameters, measures, outcome, message: known before the first row. Parameters are those of the
 /// experiment's techniques. Throws SpecError when one has the name of another column.
-std::vector<Column>      result_columns(const Experiment& experiment, std::span<const Technique> techniques);
-std::vector<std::string> names_of(std::span<const Column> columns);
+std::vector<Column> result_columns(const Experiment& experiment, std::span<const Technique> techniques);
 
 } // namespace ssrlab

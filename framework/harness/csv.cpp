@@ -42,4 +42,12 @@ std::optional<CsvRecord> take_csv_record(std::string_view& text)
     return std::nullopt;
 }
 
+std::string lines_of(const CsvRecord& header, std::string_view records, const std::set<std::string>& ids)
+{
+    std::string kept = csv_line(header);
+    while (const auto record = take_csv_record(records))
+        if (ids.contains(record->front())) kept += csv_line(*record);
+    return kept;
+}
+
 } // namespace ssrlab

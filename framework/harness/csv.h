@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,5 +15,8 @@ std::string csv_line(const CsvRecord& fields);
 
 /// Takes one record off the front of `text`; nothing when the rest is empty or torn (no line end outside quotes).
 std::optional<CsvRecord> take_csv_record(std::string_view& text);
+
+/// The header and those of the records that begin with one of `ids`; a torn last record is left out.
+std::string lines_of(const CsvRecord& header, std::string_view records, const std::set<std::string>& ids);
 
 } // namespace ssrlab

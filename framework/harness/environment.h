@@ -3,7 +3,7 @@
 
 #include "gpu/gpu.h"
 #include "harness/experiment.h"
-#include "harness/record.h"
+#include "harness/result_folder.h"
 
 namespace ssrlab {
 

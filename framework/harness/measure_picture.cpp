@@ -8,6 +8,7 @@
 #include "core/parallel_rows.h"
 #include "core/stopwatch.h"
 #include "harness/environment.h"
+#include "harness/passes.h"
 #include "harness/picture.h"
 #include "harness/samples.h"
 #include "harness/search.h"
@@ -79,7 +80,7 @@ Observed observe(SweepContext& sweep, const FrameBuffersPtr& buffers, MeasuredRu
     const MeasureSettings& measure = sweep.experiment.measure;
     measured.frame = prepare_frame(sweep.gpu, buffers, find_technique(sweep.techniques, run.technique), run.values,
                                    run.settings, history_of(sweep, run));
-    add_plan(measured.row, plan_of(*measured.frame));
+    measured.plan  = plan_of(*measured.frame);
     sweep.counted_s += counting_s_of(*measured.frame);
     return clocked(sweep.counted_s, [&] {
         const PreparedCountPtr count   = prepare_count(sweep.gpu, *measured.frame);
@@ -295,7 +296,7 @@ void repeat_until_final(SweepContext& sweep, Picture& picture, std::vector<Measu
             });
             if (is_over(measured) || !is_last(measured)) continue;
             add_times(measured, picture.gbuffer_ms);
-            finish(sweep, *measured.run, measured.row, samples_text(measured));
+            finish(sweep, *measured.run, measured.row, samples_text(measured), passes_text(measured));
             measured.run = nullptr;
         }
         std::erase_if(open, is_over);
@@ -310,7 +311,7 @@ void keep_measured(SweepContext& sweep, const Picture& picture, std::vector<Meas
     for (MeasuredRun& measured : open) {
         if (static_cast<int>(measured.trace_ms.size()) < sweep.experiment.measure.min_repeats) continue;
         add_times(measured, picture.gbuffer_ms);
-        finish(sweep, *measured.run, measured.row, samples_text(measured));
+        finish(sweep, *measured.run, measured.row, samples_text(measured), passes_text(measured));
     }
 }
 
@@ -393,11 +394,11 @@ std::vector<Run> without_row(const SweepContext& sweep, std::span<const Run> run
 /// search, are timed in the same rounds.
 void search_and_measure(SweepContext& sweep, std::span<const Run> listed)
 {
-    std::map<std::string, Row> rows = sweep.results.rows();
-    std::vector<Run>           all(listed.begin(), listed.end());
-    std::deque<Run>            opened; // keeps addresses
-    std::vector<MeasuredRun>   open;
-    std::optional<Picture>     picture;
+    std::map<std::string, Record> rows = sweep.results.rows();
+    std::vector<Run>              all(listed.begin(), listed.end());
+    std::deque<Run>               opened; // keeps addresses
+    std::vector<MeasuredRun>      open;
+    std::optional<Picture>        picture;
     for (std::vector<Run> next = all; !next.empty();) {
         const std::vector<Run> pending = without_row(sweep, next);
         if (!picture && !pending.empty()) picture = try_picture(sweep, pending);
@@ -419,13 +420,13 @@ void search_and_measure(SweepContext& sweep, std::span<const Run> listed)
 
 } // namespace
 
-void finish(SweepContext& sweep, const Run& run, const Row& row, std::string_view samples)
+void finish(SweepContext& sweep, const Run& run, const Record& row, std::string_view samples, std::string_view passes)
 {
-    sweep.results.append(row, samples);
+    sweep.results.append(row, samples, passes);
     ++sweep.state.written;
     if (row.contains("message")) {
         ++sweep.state.failed;
-        sweep.progress.say(fmt::format("run {} {}: {}", run.id, row.at("outcome"), row.at("message")));
+        sweep.progress.say(fmt::format("run {} {}: {}", run.id, words_of(row, "outcome"), words_of(row, "message")));
     }
     sweep.progress.finish_run(run.id, cost_of(sweep, run));
 }

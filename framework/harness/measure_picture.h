@@ -4,7 +4,7 @@
 #include "harness/measured_run.h"
 #include "harness/progress.h"
 #include "harness/quality.h"
-#include "harness/record.h"
+#include "harness/result_folder.h"
 #include "harness/sequence_state.h"
 #include "harness/supervise.h"
 
@@ -47,7 +47,8 @@ struct SweepContext {
 };
 
 /// Appends the row of a run that is over.
-void finish(SweepContext& sweep, const Run& run, const Row& row, std::string_view samples = "");
+void finish(SweepContext& sweep, const Run& run, const Record& row, std::string_view samples = "",
+            std::string_view passes = "");
 
 /// Appends a row for each run that has none, as soon as it is final, and for those that the search for the experiment's targets adds; a
 /// run that fails is a row with the reason. Returns early, with the rows so far complete, when a stop was requested.

@@ -64,7 +64,7 @@ std::set<std::string> failed_runs(const SweepContext& sweep)
 {
     std::set<std::string> ids;
     for (const auto& [id, row] : sweep.results.rows())
-        if (row.contains("message") && !row.at("message").empty()) ids.insert(id);
+        if (row.contains("message")) ids.insert(id);
     return ids;
 }
 
@@ -98,15 +98,16 @@ void measure_each_picture(SweepContext& sweep, std::span<const Run> runs)
 
 void summarise_sequences(SweepContext& sweep, std::span<const Sequence> sequences)
 {
-    const std::map<std::string, Row> rows    = sweep.results.rows();
-    const std::vector<Column>        columns = summary_columns(sweep.experiment, sweep.techniques);
+    const std::map<std::string, Record> rows    = sweep.results.rows();
+    const std::vector<Column>           columns = summary_columns(sweep.experiment, sweep.techniques);
     for (const Sequence& sequence : sequences) {
         if (!is_whole(sweep, sequence)) continue;
-        std::vector<Row> frames;
+        std::vector<Record> frames;
         for (const Run& run : sequence.runs) frames.push_back(rows.at(run.id));
         const Run& first = sequence.runs.front();
-        Row row = summary_row(identity_row(sweep.experiment, first, find_technique(sweep.techniques, first.technique)),
-                              frames, sweep.sequences[sequence.id]);
+        Record     row =
+            summary_row(identity_row(sweep.experiment, first, find_technique(sweep.techniques, first.technique)),
+                        frames, sweep.sequences[sequence.id]);
         row["sequence_id"] = sequence.id;
         write_summary(sweep.results.path(), columns, row);
     }

@@ -13,24 +13,22 @@ namespace ssrlab {
 struct MeasuredRun {
     const Run*                                 run = nullptr;
     PreparedFramePtr                           frame, unculled; // the same without skipping, or null
-    Row                                        row;
+    Record                                     row;
+    std::vector<PlannedPass>                   plan;
     std::vector<int>                           rounds; // one entry per timed frame, as in the lists below
     std::vector<double>                        trace_ms, frame_ms, cpu_ms, saved_ms;
     std::map<std::string, std::vector<double>> pass_ms;               // by pass, of those that ran
-    std::vector<std::string>                   pass_order;            // the same in the order of a frame
     std::vector<std::string>                   structures;            // of the technique
     int                                        repeats           = 0; // that it will have, known before the first one
     int                                        frames_per_submit = 1;
 };
 
 /// Run id, experiment, scene … and every setting and parameter.
-Row identity_row(const Experiment& experiment, const Run& run, const Technique& technique);
+Record identity_row(const Experiment& experiment, const Run& run, const Technique& technique);
 /// Rays, fetches, steps and how the rays ended, from a counted trace; outcome ok or no_rays.
-void add_counts(Row& row, const TraceResult& counted);
+void add_counts(Record& row, const TraceResult& counted);
 /// The measures that have a column.
-void add_measures(Row& row, const MeasureValues& values);
-/// Which passes were skipped.
-void add_plan(Row& row, const std::vector<PlannedPass>& plan);
+void add_measures(Record& row, const MeasureValues& values);
 /// Pairs of a planned and an unculled frame.
 inline constexpr int saved_pairs = 5;
 /// How many frames a submit has, of which the last is timed: on a GPU as many as fill 5 ms, since one that has just been idle is slower.
@@ -42,12 +40,9 @@ void add_repeat(Gpu& gpu, MeasuredRun& measured, double gbuffer_ms, int round);
 int  repeats_for(double pilot_s, const MeasureSettings& measure);
 void add_times(MeasuredRun& measured, double gbuffer_ms);
 /// Outcome failed or, of an InvalidResult, invalid; and why.
-Row failed_row(Row row, const std::exception& error);
+Record failed_row(Record row, const std::exception& error);
 
 /// The command that shows what each ray of a run found.
 std::string trace_command(const Run& run, const Technique& technique);
-
-/// Six significant digits; NaN is an empty field.
-std::string number_text(double value);
 
 } // namespace ssrlab

@@ -2,7 +2,8 @@
 
 #include "core/error.h"
 #include "core/files.h"
-#include "harness/record.h"
+#include "harness/passes.h"
+#include "harness/result_folder.h"
 #include "harness/samples.h"
 
 #include <fmt/ranges.h>
@@ -46,6 +47,7 @@ Table joined(const std::vector<fs::path>& folders, const char* name)
         const fs::path file = folder / name;
         if (!fs::exists(file)) continue;
         const Table table = read_table(file);
+        refuse_old_form(file, table.header);
         if (all.header.empty()) all.header = table.header;
         if (table.header != all.header)
             throw_spec_error("{}: its columns are not those of {}", short_path(file), short_path(folders.front()));
@@ -97,17 +99,18 @@ std::string joined_environment(const std::vector<fs::path>& folders)
     return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-std::string joined_samples(const std::vector<fs::path>& folders, const Table& results)
+/// What this file says of the runs that have a row.
+std::string joined_lines(const std::vector<fs::path>& folders, const char* name, const CsvRecord& header,
+                         const Table& results)
 {
     std::set<std::string> ids;
     for (const CsvRecord& row : results.rows) ids.insert(row.front());
-    const std::string header = csv_line(sample_columns());
-    std::string       all    = header;
+    std::string all = csv_line(header);
     for (const fs::path& folder : folders) {
-        const std::string text = read_file(folder / "samples.csv");
+        const std::string text = read_file(folder / name);
         std::string_view  rest = text;
         take_csv_record(rest); // the header
-        all += samples_of(rest, ids).substr(header.size());
+        all += lines_of(header, rest, ids).substr(csv_line(header).size());
     }
     return all;
 }
@@ -131,14 +134,16 @@ int merge_results(const fs::path& merged, const std::vector<fs::path>& folders)
         if (!fs::exists(folder / results_file))
             throw_spec_error("{}: no such file; ssrlab run writes it", short_path(folder / results_file));
     const std::string environment = joined_environment(folders);
-    // Rows before samples: a sweep that still runs writes a run's samples first.
+    // Rows first: a sweep that still runs writes a run's samples and passes before its row.
     const Table       results = joined(folders, results_file), summaries = joined(folders, summary_file);
-    const std::string samples = joined_samples(folders, results);
+    const std::string samples = joined_lines(folders, "samples.csv", sample_columns(), results);
+    const std::string passes  = joined_lines(folders, "passes.csv", names_of(pass_columns()), results);
 
     fs::create_directories(merged);
     for (const fs::path& folder : folders) copy_pictures(folder / "pictures", merged / "pictures");
     write_file_atomically(merged / "environment.json", environment);
     write_file_atomically(merged / "samples.csv", samples);
+    write_file_atomically(merged / "passes.csv", passes);
     if (!summaries.header.empty()) write_file_atomically(merged / summary_file, text_of(summaries));
     // Last, because a results.csv promises that everything else is there.
     write_file_atomically(merged / results_file, text_of(results));

@@ -1,271 +1,85 @@
 #include "harness/record.h"
 
-#include "core/error.h"
-#include "core/files.h"
-#include "harness/samples.h"
+#include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
-#include <fcntl.h>
-#include <fmt/ranges.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <cerrno>
-#include <chrono>
-#include <cstring>
-#include <fstream>
-#include <thread>
+#include <charconv>
+#include <cmath>
 
 namespace ssrlab {
 namespace {
 
-namespace fs = std::filesystem;
-
-std::string to_json(const Environment& environment)
+/// Empty unless all of the text is a number.
+template <typename Number> std::optional<Number> read_number(const std::string& text)
 {
-    nlohmann::ordered_json json;
-    for (const auto& [key, value] : environment.notes) json[key] = value;
-    json["identity"] = environment.identity;
-    // Text that is not UTF-8 (a file name, say) must not stop a sweep.
-    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    Number     number = 0;
+    const auto end    = text.data() + text.size();
+    const auto read   = std::from_chars(text.data(), end, number);
+    return read.ec == std::errc() && read.ptr == end ? std::optional(number) : std::nullopt;
 }
 
-/// Has it lost the process that watches over the sweep? Then it is being killed.
-bool is_orphan(const std::string& pid)
+std::string text_of(const Value& value, ColumnType type)
 {
-    std::ifstream status("/proc/" + pid + "/status");
-    for (std::string line; std::getline(status, line);)
-        if (line == "PPid:\t1") return true;
-    return false;
+    if (const auto* words = std::get_if<std::string>(&value)) return *words;
+    if (const auto* whole = std::get_if<int64_t>(&value)) return std::to_string(*whole);
+    const double number = std::get<double>(value);
+    return type == ColumnType::measure ? fmt::format("{:.6g}", number) : fmt::format("{}", number);
 }
 
-std::map<std::string, std::string> recorded_identity(const fs::path& file)
+Value value_of(const std::string& text, ColumnType type)
 {
-    try {
-        return nlohmann::json::parse(read_file(file)).at("identity").get<std::map<std::string, std::string>>();
-    } catch (const nlohmann::json::exception& error) {
-        throw_failure("{}: damaged: {}", short_path(file), error.what());
-    }
+    if (type == ColumnType::words) return text;
+    if (type == ColumnType::whole)
+        if (const auto whole = read_number<int64_t>(text)) return *whole;
+    if (const auto number = read_number<double>(text)) return *number;
+    return text;
 }
 
 } // namespace
 
-std::vector<std::string> differences(const std::map<std::string, std::string>& a,
-                                     const std::map<std::string, std::string>& b)
+std::vector<std::string> names_of(std::span<const Column> columns)
 {
     std::vector<std::string> names;
-    for (const auto& [name, value] : a) {
-        if (!b.contains(name) || b.at(name) != value) names.push_back(name);
-    }
-    for (const auto& [name, value] : b) {
-        if (!a.contains(name)) names.push_back(name);
-    }
+    for (const Column& column : columns) names.push_back(column.name);
     return names;
 }
 
-ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> columns, const Environment& environment,
-                           bool resuming, bool retry)
-    : folder_(std::move(folder)), csv_(folder_ / "results.csv"), samples_(folder_ / "samples.csv"),
-      columns_(std::move(columns))
+void put(Record& record, const std::string& column, double value)
 {
-    std::error_code error;
-    fs::create_directories(folder_, error);
-    if (error) throw_failure("{}: cannot be created: {}", short_path(folder_), error.message());
-    try {
-        lock();
-        if (fs::exists(csv_) && !resuming) {
-            throw_spec_error("{}: already there; continue it with --resume, or choose another folder with -o",
-                             short_path(csv_));
-        }
-        remove_partial_files();
-        if (fs::exists(csv_))
-            resume(environment, retry);
-        else
-            start(environment);
-    } catch (...) {
-        if (csv_fd_ >= 0) ::close(csv_fd_);
-        if (samples_fd_ >= 0) ::close(samples_fd_);
-        if (lock_fd_ >= 0) ::close(lock_fd_);
-        throw;
+    if (!std::isnan(value)) record[column] = value;
+}
+
+std::optional<double> number_of(const Record& record, const std::string& column)
+{
+    const auto found = record.find(column);
+    if (found == record.end()) return std::nullopt;
+    if (const auto* whole = std::get_if<int64_t>(&found->second)) return static_cast<double>(*whole);
+    const auto* number = std::get_if<double>(&found->second);
+    return number != nullptr ? std::optional(*number) : std::nullopt;
+}
+
+std::string words_of(const Record& record, const std::string& column)
+{
+    const auto  found = record.find(column);
+    const auto* words = found == record.end() ? nullptr : std::get_if<std::string>(&found->second);
+    return words != nullptr ? *words : "";
+}
+
+CsvRecord fields_of(const Record& record, std::span<const Column> columns)
+{
+    CsvRecord fields;
+    for (const Column& column : columns) {
+        const auto found = record.find(column.name);
+        fields.push_back(found == record.end() ? "" : text_of(found->second, column.type));
     }
+    return fields;
 }
 
-ResultFolder::~ResultFolder()
+Record record_of(const CsvRecord& fields, std::span<const Column> columns)
 {
-    ::close(csv_fd_);
-    ::close(samples_fd_);
-    ::close(lock_fd_); // releases the lock; so does the end of the process, however it ends
-}
-
-void ResultFolder::lock()
-{
-    const fs::path file = folder_ / ".lock";
-    lock_fd_            = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (lock_fd_ < 0) throw_failure("{}: cannot be written: {}", short_path(file), std::strerror(errno));
-    // A sweep that was just killed may have a child that is still ending: on a busy machine for some seconds.
-    bool locked = false;
-    for (int i = 0; !locked && (i < 20 || (i < 300 && is_orphan(read_file(file)))); ++i) {
-        if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
-        locked = ::flock(lock_fd_, LOCK_EX | LOCK_NB) == 0;
-        if (!locked && errno != EWOULDBLOCK)
-            throw_failure("{}: cannot be locked: {}", short_path(file), std::strerror(errno));
-    }
-    if (!locked) throw_failure("{}: another ssrlab is writing here (process {})", short_path(folder_), read_file(file));
-    const std::string pid = std::to_string(::getpid());
-    if (::ftruncate(lock_fd_, 0) != 0 || !write_fully(lock_fd_, pid)) {
-        throw_failure("{}: cannot be written: {}", short_path(file), std::strerror(errno));
-    }
-}
-
-void ResultFolder::start(const Environment& environment)
-{
-    write_file_atomically(folder_ / "environment.json", to_json(environment));
-    write_file_atomically(samples_, csv_line(sample_columns()));
-    // Last, because a results.csv promises that everything else is there.
-    write_file_atomically(csv_, csv_line(columns_));
-    open_files();
-}
-
-void ResultFolder::open_files()
-{
-    for (const auto& [file, fd] : {std::pair{&csv_, &csv_fd_}, std::pair{&samples_, &samples_fd_}}) {
-        *fd = ::open(file->c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-        if (*fd < 0) throw_failure("{}: cannot be written: {}", short_path(*file), std::strerror(errno));
-    }
-}
-
-void ResultFolder::resume(const Environment& environment, bool retry)
-{
-    const auto changed = differences(recorded_identity(folder_ / "environment.json"), environment.identity);
-    if (!changed.empty()) {
-        throw_spec_error("{}: cannot be resumed, since it was started these changed: {}; choose another folder with -o",
-                         short_path(folder_), fmt::join(changed, ", "));
-    }
-    const std::string text = read_file(csv_);
-    std::string_view  rest = text;
-    if (take_csv_record(rest) != columns_) {
-        throw_spec_error(
-            "{}: cannot be resumed, its columns are not those of this version; choose another folder with -o",
-            short_path(csv_));
-    }
-    const std::string samples     = read_file(samples_);
-    std::string_view  sample_rest = samples;
-    if (take_csv_record(sample_rest) != sample_columns())
-        throw_failure("{}: damaged: its first line is not '{}'", short_path(samples_),
-                      fmt::join(sample_columns(), ","));
-    const SampleCounts counts = count_samples(sample_rest);
-    next_round_               = counts.next_round;
-    // Each file is replaced as a whole: a kill in between leaves the old one, and resuming again comes to the same.
-    const std::string kept = finished_rows(rest, counts.frames, retry);
-    if (kept != text) write_file_atomically(csv_, kept);
-    const std::string kept_samples = samples_of(sample_rest, finished_);
-    if (kept_samples != samples) write_file_atomically(samples_, kept_samples);
-    open_files();
-}
-
-/// Header and rows that stand: not those whose samples are not all there nor, with `retry`, those that failed, which are tried
-/// again, and not a last one that a kill tore. `frames`: timed frames by run in samples.csv.
-std::string ResultFolder::finished_rows(std::string_view rows, const std::map<std::string, int>& frames, bool retry)
-{
-    const auto field = [&](const CsvRecord& record, const char* column) {
-        const auto i = static_cast<size_t>(std::ranges::find(columns_, column) - columns_.begin());
-        return i < record.size() ? record[i] : "";
-    };
-    std::string           kept = csv_line(columns_);
-    std::set<std::string> seen;
-    while (const auto record = take_csv_record(rows)) {
-        if (record->size() != columns_.size() || !seen.insert(record->front()).second) {
-            throw_failure("{}: damaged: the row of run '{}' {}", short_path(csv_), record->front(),
-                          record->size() != columns_.size() ? "has the wrong number of fields" : "is there twice");
-        }
-        const std::string how = field(*record, "outcome");
-        if (retry && (how == "failed" || how == "invalid")) continue;
-        const std::string repeats = field(*record, "repeats");
-        const auto        sampled = frames.find(record->front());
-        if (!repeats.empty() && (sampled == frames.end() || std::to_string(sampled->second) != repeats)) continue;
-        kept += csv_line(*record);
-        finished_.insert(record->front());
-    }
-    return kept;
-}
-
-/// Rows in a file that nobody will find are lost, and a lock that is gone lets a second writer in.
-void ResultFolder::require_unmoved(const fs::path& file, int fd) const
-{
-    struct stat ours = {}, there = {};
-    const bool  same = ::fstat(fd, &ours) == 0 && ::stat(file.c_str(), &there) == 0 && ours.st_dev == there.st_dev &&
-                      ours.st_ino == there.st_ino;
-    if (!same) throw_failure("{}: was removed or replaced while it was in use", short_path(file));
-}
-
-void ResultFolder::require_unmoved() const
-{
-    require_unmoved(csv_, csv_fd_);
-    require_unmoved(samples_, samples_fd_);
-    require_unmoved(folder_ / ".lock", lock_fd_);
-}
-
-namespace {
-
-/// One checked write and a sync; on failure what was written is cut off again.
-void append_whole(int fd, const fs::path& file, std::string_view bytes, const std::string& what)
-{
-    struct stat before = {};
-    if (::fstat(fd, &before) != 0) throw_failure("{}: {}", short_path(file), std::strerror(errno));
-    if (write_fully(fd, bytes) && ::fdatasync(fd) == 0) return;
-    const int  reason = errno;
-    const bool cut    = ::ftruncate(fd, before.st_size) == 0;
-    throw_failure("{}: writing {} failed: {}{}", short_path(file), what, std::strerror(reason),
-                  cut ? "; the rows before it are intact, continue with --resume" : "");
-}
-
-} // namespace
-
-void ResultFolder::append(const Row& row, std::string_view samples)
-{
-    CsvRecord record;
-    for (const std::string& column : columns_) record.push_back(row.contains(column) ? row.at(column) : "");
-    const auto known = [&](const auto& entry) { return std::ranges::find(columns_, entry.first) != columns_.end(); };
-    const auto stray = std::ranges::find_if_not(row, known);
-    if (stray != row.end()) throw_failure("{}: has no column '{}'", short_path(csv_), stray->first);
-
-    require_unmoved();
-    if (!samples.empty()) append_whole(samples_fd_, samples_, samples, "the samples of run " + record.front());
-    append_whole(csv_fd_, csv_, csv_line(record), "the row of run " + record.front());
-    finished_.insert(record.front());
-}
-
-std::map<std::string, Row> ResultFolder::rows() const
-{
-    std::map<std::string, Row> rows;
-    const std::string          text = read_file(csv_);
-    std::string_view           rest = text;
-    take_csv_record(rest); // the header
-    while (const auto record = take_csv_record(rest)) {
-        Row& row = rows[record->front()];
-        for (size_t i = 0; i < columns_.size(); ++i) row[columns_[i]] = record->at(i);
-    }
-    return rows;
-}
-
-/// What a killed writer left beside its files; nothing that only looks alike.
-void ResultFolder::remove_partial_files() const
-{
-    std::vector<fs::path> partial;
-    for (const fs::path& folder : {folder_, folder_ / "pictures"}) {
-        if (!fs::is_directory(folder)) continue;
-        for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-            const std::string name = entry.path().filename().string();
-            const bool        text = name.starts_with("environment.json.tmp") || name.starts_with("results.csv.tmp") ||
-                              name.starts_with("samples.csv.tmp") || name.starts_with("sequence_summary.csv.tmp");
-            const bool picture = name.starts_with(".") && name.find(".tmp.") != std::string::npos;
-            if (text || (picture && folder != folder_)) partial.push_back(entry.path());
-        }
-    }
-    for (const fs::path& path : partial) fs::remove(path);
+    Record record;
+    for (size_t i = 0; i < columns.size(); ++i)
+        if (!fields.at(i).empty()) record[columns[i].name] = value_of(fields.at(i), columns[i].type);
+    return record;
 }
 
 } // namespace ssrlab

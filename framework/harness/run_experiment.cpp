@@ -8,7 +8,7 @@
 #include "harness/environment.h"
 #include "harness/measure_sequence.h"
 #include "harness/progress.h"
-#include "harness/record.h"
+#include "harness/result_folder.h"
 #include "harness/search.h"
 #include "harness/stop_signal.h"
 #include "harness/supervise.h"
@@ -167,8 +167,7 @@ int run_sweep(const RunOptions& options, SweepState& state)
     Gpu             gpu = open_gpu(options.gpu);
     refuse_large_sizes(experiment, gpu.info);
     const Environment environment = describe_environment(experiment, techniques, gpu.info, options.command_line);
-    ResultFolder results(folder_of(options, experiment), names_of(columns), environment, options.resume || continues,
-                         !continues);
+    ResultFolder results(folder_of(options, experiment), columns, environment, options.resume || continues, !continues);
     std::vector<Run> pending = runs;
     std::erase_if(pending, [&](const Run& run) { return results.finished().contains(run.id); });
 

@@ -41,13 +41,4 @@ SampleCounts count_samples(std::string_view records)
     return counts;
 }
 
-std::string samples_of(std::string_view records, const std::set<std::string>& run_ids)
-{
-    std::string kept = csv_line(sample_columns());
-    while (const auto record = take_csv_record(records)) {
-        if (run_ids.contains(record->front())) kept += csv_line(*record);
-    }
-    return kept;
-}
-
 } // namespace ssrlab

@@ -5,7 +5,6 @@
 #include "harness/measured_run.h"
 
 #include <map>
-#include <set>
 #include <string>
 #include <string_view>
 
@@ -26,8 +25,5 @@ struct SampleCounts {
 };
 /// `records`: the file without its header. A torn last record is left out.
 SampleCounts count_samples(std::string_view records);
-
-/// Header and the records of these runs.
-std::string samples_of(std::string_view records, const std::set<std::string>& run_ids);
 
 } // namespace ssrlab

@@ -1,7 +1,6 @@
 #include "harness/search.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -14,16 +13,6 @@ struct Point {
     const Run* run;
     double     value, measured;
 };
-
-std::optional<double> measured_of(const std::map<std::string, Row>& rows, const Run& run, const std::string& measure)
-{
-    const auto row = rows.find(run.id);
-    if (row == rows.end() || !row->second.contains(measure)) return std::nullopt;
-    const std::string& text  = row->second.at(measure);
-    double             value = 0;
-    const auto         read  = std::from_chars(text.data(), text.data() + text.size(), value);
-    return read.ec == std::errc() ? std::optional(value) : std::nullopt;
-}
 
 /// Halfway by ratio; nothing when there is no place between the two that is worth a run.
 std::optional<double> halfway(const Parameter& parameter, double a, double b)
@@ -89,7 +78,7 @@ std::span<const TargetMeasure> target_measures()
 }
 
 std::vector<Run> next_probes(const Experiment& experiment, std::span<const Technique> techniques,
-                             std::span<const Run> runs, const std::map<std::string, Row>& rows)
+                             std::span<const Run> runs, const std::map<std::string, Record>& rows)
 {
     std::set<std::string> tried;
     for (const Run& run : runs) tried.insert(run.id);
@@ -109,9 +98,11 @@ std::vector<Run> next_probes(const Experiment& experiment, std::span<const Techn
             for (const auto& [key, line] : lines_of(runs, technique, accuracy.parameter)) {
                 for (const Target& target : experiment.targets) {
                     std::vector<Point> points;
-                    for (const Run* run : line)
-                        if (const auto measured = measured_of(rows, *run, target.measure))
-                            points.push_back({run, run->values.at(accuracy.parameter), *measured});
+                    for (const Run* run : line) {
+                        const auto row      = rows.find(run->id);
+                        const auto measured = row == rows.end() ? std::nullopt : number_of(row->second, target.measure);
+                        if (measured) points.push_back({run, run->values.at(accuracy.parameter), *measured});
+                    }
                     std::ranges::sort(points, {}, [&](const Point& point) {
                         return accuracy.higher_is_better ? point.value : -point.value;
                     });

@@ -26,7 +26,7 @@ inline constexpr double search_ratio = 1.1;
 /// close enough. The search never leaves the listed values' range. `runs`: all of the frame, those that earlier steps added
 /// included; `rows`: what is known of them, by id. Empty when there is nothing left to try.
 std::vector<Run> next_probes(const Experiment& experiment, std::span<const Technique> techniques,
-                             std::span<const Run> runs, const std::map<std::string, Row>& rows);
+                             std::span<const Run> runs, const std::map<std::string, Record>& rows);
 
 /// The run with this id among all that the search may ever add to `listed`; nothing: it never makes such a run.
 std::optional<Run> find_probe(std::span<const Technique> techniques, std::span<const Run> listed,

@@ -3,10 +3,8 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/quantile.h"
-#include "harness/measured_run.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace ssrlab {
 namespace {
@@ -36,27 +34,24 @@ constexpr auto summarised_columns = std::to_array<Summarised>({
     {"frame_ms_median", true},
 });
 
-std::optional<double> value_of(const Row& row, const char* column)
-{
-    const auto found = row.find(column);
-    if (found == row.end() || found->second.empty()) return std::nullopt;
-    return std::strtod(found->second.c_str(), nullptr);
-}
-
-std::string text_of(std::optional<double> value) { return value ? number_text(*value) : ""; }
-
-std::string summary_of(std::span<const Row> frames, const Summarised& what)
+/// Empty where no frame has a value.
+std::optional<double> summary_of(std::span<const Record> frames, const Summarised& what)
 {
     std::vector<double> values;
     double              sum = 0;
-    for (const Row& row : frames)
-        if (const auto value = value_of(row, what.column)) {
+    for (const Record& row : frames)
+        if (const auto value = number_of(row, what.column)) {
             values.push_back(*value);
             sum += *value;
         }
-    if (values.empty()) return "";
+    if (values.empty()) return std::nullopt;
     const auto count = static_cast<double>(values.size());
-    return number_text(what.median ? quantile(std::move(values), 0.5) : sum / count);
+    return what.median ? quantile(std::move(values), 0.5) : sum / count;
+}
+
+void put(Record& row, const std::string& column, std::optional<double> value)
+{
+    if (value) row[column] = *value;
 }
 
 } // namespace
@@ -94,10 +89,10 @@ MeasureValues watch(SequenceState& state, const Image& shaded, const TraceResult
 
 std::vector<Column> summary_columns(const Experiment& experiment, std::span<const Technique> techniques)
 {
-    std::vector<Column> columns{{"sequence_id", "hash of the run without its frame"}};
+    std::vector<Column> columns{{"sequence_id", "hash of the run without its frame", ColumnType::words}};
     for (const Column& column : setting_columns(experiment, techniques))
         if (column.name != "run_id" && column.name != "run_number" && column.name != "frame") columns.push_back(column);
-    columns.push_back({"frames", "rows of the sequence with outcome ok"});
+    columns.push_back({"frames", "rows of the sequence with outcome ok", ColumnType::whole});
     columns.push_back({"flip_rate", "flip_share over all frames: flips of all pairs of frames, of their rays"});
     columns.push_back({"temporal_rms", "standard deviation over time of the display luma of the finished picture, root "
                                        "mean square over pixels that reflect in every frame; where nothing but jitter "
@@ -109,21 +104,21 @@ std::vector<Column> summary_columns(const Experiment& experiment, std::span<cons
     return columns;
 }
 
-Row summary_row(const Row& identity, std::span<const Row> frames, const SequenceState& state)
+Record summary_row(const Record& identity, std::span<const Record> frames, const SequenceState& state)
 {
-    Row row = identity;
+    Record row = identity;
     row.erase("run_id");
     row.erase("run_number");
     row.erase("frame");
-    std::vector<Row> good;
-    for (const Row& frame : frames)
-        if (frame.contains("outcome") && frame.at("outcome") == "ok") good.push_back(frame);
-    row["frames"] = std::to_string(good.size());
-    for (const Summarised& what : summarised_columns) row[what.column] = summary_of(good, what);
-    if (!good.empty()) row["converged_rmse_last"] = text_of(value_of(good.back(), "converged_rmse"));
+    std::vector<Record> good;
+    for (const Record& frame : frames)
+        if (words_of(frame, "outcome") == "ok") good.push_back(frame);
+    row["frames"] = static_cast<int64_t>(good.size());
+    for (const Summarised& what : summarised_columns) put(row, what.column, summary_of(good, what));
+    if (!good.empty()) put(row, "converged_rmse_last", number_of(good.back(), "converged_rmse"));
     if (state.failed) return row;
-    row["flip_rate"] = text_of(share(state.flips.flips, state.flips.rays));
-    if (!state.moved) row["temporal_rms"] = text_of(temporal_rms(state.moments, state.pictures));
+    put(row, "flip_rate", share(state.flips.flips, state.flips.rays));
+    if (!state.moved) put(row, "temporal_rms", temporal_rms(state.moments, state.pictures));
     return row;
 }
 
@@ -138,7 +133,7 @@ std::set<std::string> summarised(const fs::path& folder)
     return ids;
 }
 
-void write_summary(const fs::path& folder, std::span<const Column> columns, const Row& row)
+void write_summary(const fs::path& folder, std::span<const Column> columns, const Record& row)
 {
     const CsvRecord header = names_of(columns);
     std::string     text   = csv_line(header);
@@ -148,11 +143,9 @@ void write_summary(const fs::path& folder, std::span<const Column> columns, cons
         if (take_csv_record(rest) != header)
             throw_failure("{}: its columns are not those of this version", short_path(folder / summary_file));
         while (const auto record = take_csv_record(rest))
-            if (record->front() != row.at("sequence_id")) text += csv_line(*record);
+            if (record->front() != words_of(row, "sequence_id")) text += csv_line(*record);
     }
-    CsvRecord record;
-    for (const std::string& name : header) record.push_back(row.contains(name) ? row.at(name) : "");
-    write_file_atomically(folder / summary_file, text + csv_line(record));
+    write_file_atomically(folder / summary_file, text + csv_line(fields_of(row, columns)));
 }
 
 } // namespace ssrlab

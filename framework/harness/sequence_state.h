@@ -4,7 +4,7 @@
 #include "compare/measures.h"
 #include "frame/history.h"
 #include "harness/columns.h"
-#include "harness/record.h"
+#include "harness/result_folder.h"
 
 #include <span>
 
@@ -35,11 +35,11 @@ MeasureValues watch(SequenceState& state, const Image& shaded, const TraceResult
 std::vector<Column> summary_columns(const Experiment& experiment, std::span<const Technique> techniques);
 
 /// The summary of a sequence from the rows of its frames, in the order of time.
-Row summary_row(const Row& identity, std::span<const Row> frames, const SequenceState& state);
+Record summary_row(const Record& identity, std::span<const Record> frames, const SequenceState& state);
 
 /// Ids of the sequences that have a summary in the folder.
 std::set<std::string> summarised(const std::filesystem::path& folder);
 /// Adds a summary, or replaces the one of the same sequence; the file is written as a whole.
-void write_summary(const std::filesystem::path& folder, std::span<const Column> columns, const Row& row);
+void write_summary(const std::filesystem::path& folder, std::span<const Column> columns, const Record& row);
 
 } // namespace ssrlab

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "harness/columns.h"
 #include "harness/measured_run.h"
+#include "harness/passes.h"
 #include "harness/progress.h"
 #include "harness/quality.h"
 #include "harness/samples.h"
@@ -83,30 +84,25 @@ TEST(Rows, EveryEntryOfARowHasAColumn)
     MeasuredRun measured;
     measured.run = &run;
     measured.row = identity_row(one_technique("walk"), run, walk);
-    EXPECT_EQ(measured.row.at("space"), "screen");
-    EXPECT_EQ(measured.row.at("steps"), "25");
-    EXPECT_EQ(measured.row.at("width"), "160");
-    EXPECT_EQ(measured.row.at("height"), "90");
-    EXPECT_EQ(measured.row.at("frame"), "3");
-    EXPECT_EQ(measured.row.at("jitter_phases"), "8");
-    EXPECT_EQ(measured.row.at("run_number"), "5");
-    EXPECT_EQ(measured.row.at("thickness_m"), "0.1");
-    EXPECT_EQ(measured.row.at("max_distance_m"), "1000000000");
-    EXPECT_EQ(measured.row.at("edge_fade"), "off");
-    measured.pass_order = {"trace", "composite"};
-    measured.pass_ms    = {{"trace", std::vector<double>(7, 4.0)}, {"composite", std::vector<double>(7, 1.5)}};
-    measured.trace_ms   = {1, 2, 3, 4, 5, 6, 7};
-    measured.frame_ms   = {11, 12, 13, 14, 15, 16, 17};
-    add_plan(measured.row, plan_frame({}, {}, default_pass_values()));
+    EXPECT_EQ(words_of(measured.row, "space"), "screen");
+    EXPECT_EQ(number_of(measured.row, "steps"), 25);
+    EXPECT_EQ(number_of(measured.row, "width"), 160);
+    EXPECT_EQ(number_of(measured.row, "height"), 90);
+    EXPECT_EQ(number_of(measured.row, "frame"), 3);
+    EXPECT_EQ(number_of(measured.row, "jitter_phases"), 8);
+    EXPECT_EQ(number_of(measured.row, "run_number"), 5);
+    EXPECT_EQ(number_of(measured.row, "thickness_m"), 0.1);
+    EXPECT_EQ(number_of(measured.row, "max_distance_m"), 1000000000);
+    EXPECT_EQ(words_of(measured.row, "edge_fade"), "off");
+    measured.pass_ms  = {{"trace", std::vector<double>(7, 4.0)}, {"composite", std::vector<double>(7, 1.5)}};
+    measured.trace_ms = {1, 2, 3, 4, 5, 6, 7};
+    measured.frame_ms = {11, 12, 13, 14, 15, 16, 17};
     add_times(measured, 7);
     add_measures(measured.row, no_measures());
     measured.row = failed_row(measured.row, Failure("no"));
-    EXPECT_EQ(measured.row.at("trace_ms_median"), "4");
-    EXPECT_EQ(measured.row.at("trace_ms_ci_low"), "1");
-    EXPECT_EQ(measured.row.at("inverse_fps_s"), "0.014");
-    EXPECT_EQ(measured.row.at("passes"), "trace=4 composite=1.5");
-    EXPECT_THAT(measured.row.at("passes_skipped"), testing::HasSubstr("trace"));
-    EXPECT_THAT(measured.row.at("passes_why"), testing::ContainsRegex("trace: [^;]+; "));
+    EXPECT_EQ(number_of(measured.row, "trace_ms_median"), 4);
+    EXPECT_EQ(number_of(measured.row, "trace_ms_ci_low"), 1);
+    EXPECT_EQ(number_of(measured.row, "inverse_fps_s"), 0.014);
     for (const auto& [name, value] : measured.row) EXPECT_THAT(names, testing::Contains(name));
 }
 
@@ -114,55 +110,67 @@ TEST(Rows, EveryEntryOfARowHasAColumn)
 TEST(Rows, TimesWithKnownFigures)
 {
     MeasuredRun measured;
-    measured.trace_ms          = {1, 2, 3, 4, 10, 12, 14, 16};
-    measured.frame_ms          = {40, 21, 22, 23, 24, 30, 32, 34};
-    measured.pass_ms           = {{"classification", {1}}, {"rays", {2}},        {"depth_pyramid", {4}},
-                                  {"ray_packets", {8}},    {"hit_colour", {16}}, {"composite", {32}}};
+    measured.trace_ms = {1, 2, 3, 4, 10, 12, 14, 16};
+    measured.frame_ms = {40, 21, 22, 23, 24, 30, 32, 34};
+    measured.pass_ms  = {{"classification", {1}}, {"rays", {2}},       {"depth_pyramid", {4}}, {"ray_packets", {8}},
+                         {"hit_colour", {16}},    {"composite", {32}}, {"ray_reuse", {64}}};
+    for (const char* pass : {"rays", "trace", "hit_colour", "ray_reuse", "composite"})
+        measured.plan.push_back({.id = pass, .runs = true, .reason = ""});
+    measured.plan.push_back({.id = "blur", .runs = false, .reason = ""});
     measured.structures        = {"depth_pyramid", "ray_packets", "not_built"};
     measured.frames_per_submit = 3;
     add_times(measured, 20);
-    const Row expected = {{"trace_ms_median", "7"},
-                          {"trace_ms_mad", "5"},
-                          {"trace_ms_ci_low", "1"},
-                          {"trace_ms_ci_high", "16"},
-                          {"trace_drift", "4.2"}, // 13 / 2.5 - 1
-                          {"frame_ms_median", "27"},
-                          {"frame_ms_mad", "5"},
-                          {"frame_ms_ci_low", "21"},
-                          {"frame_ms_ci_high", "40"},
-                          {"repeats", "8"},
-                          {"frames_per_submit", "3"},
-                          {"gbuffer_ms_median", "20"},
-                          {"rays_ms_median", "3"},
-                          {"depth_pyramid.ms_median", "4"},
-                          {"ray_packets.ms_median", "8"},
-                          {"not_built.ms_median", "0"},
-                          {"structures_ms_median", "12"},
-                          {"shade_ms_median", "48"},
-                          {"passes", ""},
-                          {"fps", "37.037"},
-                          {"inverse_fps_s", "0.027"}};
-    EXPECT_EQ(measured.row, expected);
+    const std::map<std::string, double> expected = {{"trace_ms_median", 7},
+                                                    {"trace_ms_mad", 5},
+                                                    {"trace_ms_ci_low", 1},
+                                                    {"trace_ms_ci_high", 16},
+                                                    {"trace_drift", 4.2}, // 13 / 2.5 - 1
+                                                    {"frame_ms_median", 27},
+                                                    {"frame_ms_mad", 5},
+                                                    {"frame_ms_ci_low", 21},
+                                                    {"frame_ms_ci_high", 40},
+                                                    {"repeats", 8},
+                                                    {"frames_per_submit", 3},
+                                                    {"gbuffer_ms_median", 20},
+                                                    {"rays_ms_median", 3},
+                                                    {"depth_pyramid.ms_median", 4},
+                                                    {"ray_packets.ms_median", 8},
+                                                    {"not_built.ms_median", 0},
+                                                    {"structures_ms_median", 12},
+                                                    {"shade_ms_median", 112},
+                                                    {"passes_ran", 5},
+                                                    {"fps", 1000.0 / 27},
+                                                    {"inverse_fps_s", 0.027}};
+    std::map<std::string, double>       found;
+    for (const auto& [name, value] : measured.row) found[name] = *number_of(measured.row, name);
+    EXPECT_EQ(found, expected);
 
+    measured.row      = {};
     measured.trace_ms = {1, 2, 3, 4, 5};
     add_times(measured, 0);
-    EXPECT_EQ(measured.row.at("trace_drift"), "") << "of five repeats";
-    EXPECT_EQ(measured.row.at("gbuffer_ms_median"), "") << "of another renderer's frame";
+    EXPECT_FALSE(measured.row.contains("trace_drift")) << "of five repeats";
+    EXPECT_FALSE(measured.row.contains("gbuffer_ms_median")) << "of another renderer's frame";
 }
 
-TEST(Rows, APlanSaysWhatRanAndWhatDidNot)
+TEST(Rows, EveryPassHasALineWithItsTimeAndReason)
 {
-    Row row;
-    add_plan(row, {{.id = "rays", .runs = true, .reason = "a"},
-                   {.id = "blur", .runs = false, .reason = "b"},
-                   {.id = "history", .runs = false, .reason = "c"}});
-    EXPECT_EQ(row, (Row{{"passes_skipped", "blur history"}, {"passes_why", "rays: a; blur: b; history: c"}}));
+    ssrlab::Run run;
+    run.id = "ra";
+    MeasuredRun measured;
+    measured.run     = &run;
+    measured.plan    = {{.id = "rays", .runs = true, .reason = "a, b"}, {.id = "blur", .runs = false, .reason = "c"}};
+    measured.pass_ms = {{"rays", {1, 2, 3, 4, 5, 1.0 / 3, 9}}};
+    const std::string text = passes_text(measured);
+    EXPECT_EQ(text, "ra,rays,true,3,0.333333,9,\"a, b\"\r\nra,blur,false,,,,c\r\n");
+    EXPECT_THAT(count_passes(text + "rb,rays,true,1"), testing::ElementsAre(testing::Pair("ra", 1)));
+    measured.pass_ms = {{"rays", {2, 2.5}}};
+    EXPECT_THAT(passes_text(measured), testing::StartsWith("ra,rays,true,2.25,,,")) << "of two repeats";
 }
 
 TEST(Rows, WhatFailedIsToldFromWhatCannotBe)
 {
-    EXPECT_EQ(failed_row({}, Failure("no")), (Row{{"outcome", "failed"}, {"message", "no"}}));
-    EXPECT_EQ(failed_row({}, InvalidResult("t")).at("outcome"), "invalid");
+    EXPECT_EQ(failed_row({}, Failure("no")), (Record{{"outcome", "failed"}, {"message", "no"}}));
+    EXPECT_EQ(words_of(failed_row({}, InvalidResult("t")), "outcome"), "invalid");
 }
 
 TEST(Runs, IdsTellApartWhatDecidesAnOutcome)
@@ -222,7 +230,7 @@ TEST(Rows, SamplesReadBackAsTheyWere)
     const SampleCounts counts = count_samples(text + "rb,9,frame,1");
     EXPECT_THAT(counts.frames, testing::ElementsAre(testing::Pair("ra", 2)));
     EXPECT_EQ(counts.next_round, 5);
-    EXPECT_EQ(samples_of(text + "rb,9,frame,1,1\r\nrc,", {"ra"}), csv_line(sample_columns()) + text);
+    EXPECT_EQ(lines_of(sample_columns(), text + "rb,9,frame,1,1\r\nrc,", {"ra"}), csv_line(sample_columns()) + text);
 }
 
 TEST(Rows, CountsOfAResultWithKnownFigures)
@@ -240,19 +248,19 @@ TEST(Rows, CountsOfAResultWithKnownFigures)
     result.hit_pixel.resize(5);
     result.hit_px_depth.resize(5);
     result.hit_t.resize(5);
-    Row row;
+    Record row;
     add_counts(row, result);
-    EXPECT_EQ(row.at("outcome"), "ok");
-    EXPECT_EQ(row.at("rays"), "4");
-    EXPECT_EQ(row.at("hit_share"), "0.5");
-    EXPECT_EQ(row.at("out_of_steps_share"), "0.25");
-    EXPECT_EQ(row.at("facing_away_share"), "0");
-    EXPECT_EQ(row.at("steps_mean"), "25");
-    EXPECT_EQ(row.at("depth_fetches_mean"), "2.5");
-    EXPECT_EQ(row.at("structure_fetches_mean"), "7.5");
-    EXPECT_EQ(row.at("depth_pyramid.fetches_mean"), "7.5");
-    EXPECT_EQ(row.at("fetches_mean"), "10");
-    EXPECT_EQ(row.at("fetches_max"), "10");
+    EXPECT_EQ(words_of(row, "outcome"), "ok");
+    EXPECT_EQ(number_of(row, "rays"), 4);
+    EXPECT_EQ(number_of(row, "hit_share"), 0.5);
+    EXPECT_EQ(number_of(row, "out_of_steps_share"), 0.25);
+    EXPECT_EQ(number_of(row, "facing_away_share"), 0);
+    EXPECT_EQ(number_of(row, "steps_mean"), 25);
+    EXPECT_EQ(number_of(row, "depth_fetches_mean"), 2.5);
+    EXPECT_EQ(number_of(row, "structure_fetches_mean"), 7.5);
+    EXPECT_EQ(number_of(row, "depth_pyramid.fetches_mean"), 7.5);
+    EXPECT_EQ(number_of(row, "fetches_mean"), 10);
+    EXPECT_EQ(number_of(row, "fetches_max"), 10);
 }
 
 // Of 101 rays the sorted figure i is the quantile i / 100. As many pixels are not traced.
@@ -267,31 +275,30 @@ TEST(Rows, QuantilesAreOverTheRays)
         result.depth_fetches[i]                = ray == 100 ? 101 : 0;
         result.structure_fetches[0].fetches[i] = static_cast<uint32_t>(ray);
     }
-    Row row;
+    Record row;
     add_counts(row, result);
-    EXPECT_EQ(row.at("rays"), "101");
-    EXPECT_EQ(row.at("left_screen_share"), "1");
-    EXPECT_EQ(row.at("steps_mean"), "50");
-    EXPECT_EQ(row.at("steps_p99"), "99");
-    EXPECT_EQ(row.at("steps_max"), "100");
-    EXPECT_EQ(row.at("depth_fetches_mean"), "1");
-    EXPECT_EQ(row.at("structure_fetches_mean"), "50");
-    EXPECT_EQ(row.at("depth_pyramid.fetches_mean"), "50");
-    EXPECT_EQ(row.at("fetches_mean"), "51");
-    EXPECT_EQ(row.at("fetches_p50"), "50");
-    EXPECT_EQ(row.at("fetches_p99"), "99");
-    EXPECT_EQ(row.at("fetches_max"), "201");
+    EXPECT_EQ(number_of(row, "rays"), 101);
+    EXPECT_EQ(number_of(row, "left_screen_share"), 1);
+    EXPECT_EQ(number_of(row, "steps_mean"), 50);
+    EXPECT_EQ(number_of(row, "steps_p99"), 99);
+    EXPECT_EQ(number_of(row, "steps_max"), 100);
+    EXPECT_EQ(number_of(row, "depth_fetches_mean"), 1);
+    EXPECT_EQ(number_of(row, "structure_fetches_mean"), 50);
+    EXPECT_EQ(number_of(row, "depth_pyramid.fetches_mean"), 50);
+    EXPECT_EQ(number_of(row, "fetches_mean"), 51);
+    EXPECT_EQ(number_of(row, "fetches_p50"), 50);
+    EXPECT_EQ(number_of(row, "fetches_p99"), 99);
+    EXPECT_EQ(number_of(row, "fetches_max"), 201);
 }
 
 TEST(Rows, NothingToTraceIsAnOutcome)
 {
-    Row row;
+    Record row;
     add_counts(row, {{1, 1}, {TraceStatus::not_traced}, {{}}, {0}, {{}}, {0}, {0}, {0}, {{"depth_pyramid", {0}}}});
-    EXPECT_EQ(row.at("outcome"), "no_rays");
-    EXPECT_EQ(row.at("rays"), "0");
+    EXPECT_EQ(words_of(row, "outcome"), "no_rays");
+    EXPECT_EQ(number_of(row, "rays"), 0);
     EXPECT_FALSE(row.contains("steps_mean"));
     EXPECT_FALSE(row.contains("hit_share"));
-    EXPECT_EQ(number_text(std::nan("")), "");
 }
 
 TEST(Rows, RepeatsFillTheBudgetWithinTheirBounds)
@@ -329,32 +336,32 @@ TEST(Rows, SavedTimeIsTheMedianOfItsPairsAndEmptyWithoutAny)
     EXPECT_FALSE(measured.row.contains("saved_ms"));
     measured.saved_ms = {4, 9, -1};
     add_times(measured, 0);
-    EXPECT_EQ(measured.row.at("saved_ms"), "4");
+    EXPECT_EQ(number_of(measured.row, "saved_ms"), 4);
 }
 
 // Frames with outcomes ok, failed and ok; what is not ok has no part.
 TEST(Rows, ASummaryIsOfTheFramesThatAreOk)
 {
-    const auto frame = [](const char* outcome, const char* ms, const char* rmse, const char* converged) {
-        return Row{
+    const auto frame = [](const char* outcome, double ms, double rmse, double converged) {
+        return Record{
             {"outcome", outcome}, {"trace_ms_median", ms}, {"picture_rmse", rmse}, {"converged_rmse", converged}};
     };
-    const Row     frames[] = {frame("ok", "1", "0.1", "0.5"), frame("failed", "90", "0.9", "0.9"),
-                              frame("ok", "2", "0.3", "0.25"), frame("ok", "9", "0.8", "0.125")};
+    const Record  frames[] = {frame("ok", 1, 0.1, 0.5), frame("failed", 90, 0.9, 0.9), frame("ok", 2, 0.3, 0.25),
+                              frame("ok", 9, 0.8, 0.125)};
     SequenceState state;
-    state.flips    = {3, 12};
-    state.moments  = {{1, 3}, {1, 5}, {2, 2}}; // 0 and 1, whose mean is 0.5; 1 and 2
-    state.pictures = 2;
-    const Row row  = summary_row({{"run_id", "r"}, {"run_number", "1"}, {"frame", "0"}, {"scene", "s"}}, frames, state);
-    EXPECT_EQ(row.at("scene"), "s");
+    state.flips      = {3, 12};
+    state.moments    = {{1, 3}, {1, 5}, {2, 2}}; // 0 and 1, whose mean is 0.5; 1 and 2
+    state.pictures   = 2;
+    const Record row = summary_row({{"run_id", "r"}, {"run_number", 1}, {"frame", 0}, {"scene", "s"}}, frames, state);
+    EXPECT_EQ(words_of(row, "scene"), "s");
     EXPECT_FALSE(row.contains("run_id") || row.contains("run_number") || row.contains("frame"));
-    EXPECT_EQ(row.at("frames"), "3");
-    EXPECT_EQ(row.at("trace_ms_median"), "2"); // the median; the mean is 4
-    EXPECT_EQ(row.at("picture_rmse"), "0.4");  // the mean; the median is 0.3
-    EXPECT_EQ(row.at("history_share"), "");
-    EXPECT_EQ(row.at("converged_rmse_last"), "0.125");
-    EXPECT_EQ(row.at("flip_rate"), "0.25");
-    EXPECT_EQ(row.at("temporal_rms"), "0.5");
+    EXPECT_EQ(number_of(row, "frames"), 3);
+    EXPECT_EQ(number_of(row, "trace_ms_median"), 2);        // the median; the mean is 4
+    EXPECT_DOUBLE_EQ(*number_of(row, "picture_rmse"), 0.4); // the mean; the median is 0.3
+    EXPECT_FALSE(row.contains("history_share"));
+    EXPECT_EQ(number_of(row, "converged_rmse_last"), 0.125);
+    EXPECT_EQ(number_of(row, "flip_rate"), 0.25);
+    EXPECT_EQ(number_of(row, "temporal_rms"), 0.5);
 
     state.moved = true;
     EXPECT_FALSE(summary_row({}, frames, state).contains("temporal_rms"));

@@ -1,7 +1,6 @@
 // The search for a target: on curves that are known, it ends between the two values where the curve crosses.
 #include "harness/search.h"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -44,10 +43,9 @@ std::vector<ssrlab::Run> searched(std::vector<ssrlab::Run> runs, std::vector<Tar
 {
     Experiment experiment;
     experiment.targets = std::move(targets);
-    std::map<std::string, Row> rows;
+    std::map<std::string, Record> rows;
     for (size_t known = 0; known < runs.size();) {
-        for (; known < runs.size(); ++known)
-            rows[runs[known].id] = {{measure, fmt::format("{:.6g}", curve(runs[known]))}};
+        for (; known < runs.size(); ++known) rows[runs[known].id] = {{measure, curve(runs[known])}};
         const auto more = next_probes(experiment, {&march, 1}, runs, rows);
         runs.insert(runs.end(), more.begin(), more.end());
         EXPECT_LT(runs.size(), 200U);
@@ -115,10 +113,10 @@ TEST(Search, StaysInsideTheListedRangeAndEndsOnFailures)
     EXPECT_EQ(searched({run_with(7, 1, 0)}, {{"recall_1px", {0.5}}}, saturating).size(), 1U);
     // A run that failed has a row without the measure: it is not tried again.
     Experiment experiment;
-    experiment.targets              = {{"recall_1px", {0.8}}};
-    std::vector<ssrlab::Run>   runs = listed;
-    std::map<std::string, Row> rows;
-    for (const ssrlab::Run& run : runs) rows[run.id] = {{"recall_1px", fmt::format("{}", saturating(run))}};
+    experiment.targets                 = {{"recall_1px", {0.8}}};
+    std::vector<ssrlab::Run>      runs = listed;
+    std::map<std::string, Record> rows;
+    for (const ssrlab::Run& run : runs) rows[run.id] = {{"recall_1px", saturating(run)}};
     runs.push_back(next_probes(experiment, {&march, 1}, runs, rows).at(0));
     rows[runs.back().id] = {{"outcome", "failed"}};
     EXPECT_THAT(next_probes(experiment, {&march, 1}, runs, rows), testing::IsEmpty());
@@ -127,11 +125,11 @@ TEST(Search, StaysInsideTheListedRangeAndEndsOnFailures)
 // Of values that differ in nothing else the next one is halfway by ratio, said by three digits.
 TEST(Search, ReachesATargetThatIsMetExactly)
 {
-    const auto probed = [](std::vector<std::pair<double, const char*>> line, const std::string& measure, bool higher,
+    const auto probed = [](std::vector<std::pair<double, double>> line, const std::string& measure, bool higher,
                            double target) {
-        Experiment                 experiment;
-        std::vector<ssrlab::Run>   runs;
-        std::map<std::string, Row> rows;
+        Experiment                    experiment;
+        std::vector<ssrlab::Run>      runs;
+        std::map<std::string, Record> rows;
         experiment.targets = {{measure, {target}, higher}};
         for (const auto& [stride_px, measured] : line) {
             runs.push_back(run_with(9, stride_px, 0));
@@ -142,15 +140,14 @@ TEST(Search, ReachesATargetThatIsMetExactly)
         runs.back().technique = "other";
         runs.back().values.clear();
         runs.back().id       = run_id(runs.back());
-        rows[runs.back().id] = {{measure, "0"}};
+        rows[runs.back().id] = {{measure, 0.0}};
         std::vector<double> strides_px;
         for (const ssrlab::Run& run : next_probes(experiment, {&march, 1}, runs, rows))
             strides_px.push_back(run.values.at("stride_px"));
         return strides_px;
     };
-    EXPECT_THAT(probed({{10, "0.5"}, {1, "0.9"}, {0.1, "0.95"}}, "recall_1px", true, 0.9), testing::ElementsAre(3.16));
-    EXPECT_THAT(probed({{10, "0.3"}, {1, "0.1"}, {0.1, "0.05"}}, "flip_visible", false, 0.1),
-                testing::ElementsAre(3.16));
+    EXPECT_THAT(probed({{10, 0.5}, {1, 0.9}, {0.1, 0.95}}, "recall_1px", true, 0.9), testing::ElementsAre(3.16));
+    EXPECT_THAT(probed({{10, 0.3}, {1, 0.1}, {0.1, 0.05}}, "flip_visible", false, 0.1), testing::ElementsAre(3.16));
 }
 
 TEST(Search, KnowsWhichWayAMeasureIsBetter)

@@ -2,16 +2,19 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "errors.h"
-#include "harness/record.h"
+#include "harness/passes.h"
+#include "harness/result_folder.h"
 #include "harness/samples.h"
 #include "temp_folder.h"
 
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <fcntl.h>
+#include <limits>
 #include <random>
 #include <set>
 #include <sys/resource.h>
@@ -24,8 +27,10 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-const std::vector<std::string> columns = {"run_id", "value", "message"};
-const Environment              here    = {{{"specification", "a"}, {"shaders", "b"}}, {{"commit", "\xff not UTF-8"}}};
+using enum ColumnType;
+
+const std::vector<Column> columns = {{"run_id", "", words}, {"value", "", words}, {"message", "", words}};
+const Environment         here    = {{{"specification", "a"}, {"shaders", "b"}}, {{"commit", "\xff not UTF-8"}}};
 
 struct RecordFiles : testing::Test {
     TempFolder temp;
@@ -38,13 +43,13 @@ struct RecordFiles : testing::Test {
         std::vector<CsvRecord> records;
         while (auto record = take_csv_record(rest)) records.push_back(*record);
         EXPECT_TRUE(rest.empty()) << "torn tail";
-        EXPECT_EQ(records.at(0), columns);
+        EXPECT_EQ(records.at(0), names_of(columns));
         records.erase(records.begin());
         return records;
     }
 };
 
-Row row_of(int i)
+Record row_of(int i)
 {
     return {{"run_id", "r" + std::to_string(i)},
             {"value", std::string(200, 'x')},
@@ -88,7 +93,7 @@ TEST_F(RecordFiles, ResumeRefusesWhatChangedAndNamesIt)
     EXPECT_THAT(message_of<SpecError>([&] { ResultFolder(folder, columns, other, true); }),
                 HasSubstr("these changed: shaders, scene s"));
     EXPECT_THAT(message_of<SpecError>([&] {
-                    ResultFolder(folder, {"run_id", "else"}, here, true);
+                    ResultFolder(folder, {{"run_id", "", words}, {"else", "", words}}, here, true);
                 }),
                 HasSubstr("its columns are not those"));
     EXPECT_TRUE(ResultFolder(folder, columns, here, true).finished().contains("r1"));
@@ -163,8 +168,8 @@ TEST_F(RecordFiles, DamageIsReportedNotRepaired)
 
 TEST_F(RecordFiles, FailedRowsAreTriedAgainOnceAndInNoWayDoubled)
 {
-    const std::vector<std::string> with_outcome = {"run_id", "outcome", "message"};
-    const auto                     append       = [&](ResultFolder& results, const char* id, const char* outcome) {
+    const std::vector<Column> with_outcome = {{"run_id", "", words}, {"outcome", "", words}, {"message", "", words}};
+    const auto                append       = [&](ResultFolder& results, const char* id, const char* outcome) {
         results.append({{"run_id", id}, {"outcome", outcome}, {"message", "a\n\"b\""}});
     };
     {
@@ -180,31 +185,66 @@ TEST_F(RecordFiles, FailedRowsAreTriedAgainOnceAndInNoWayDoubled)
         append(results, "r2", "ok");
     }
     const std::string whole = read_file(folder / "results.csv");
-    EXPECT_EQ(whole, csv_line(with_outcome) + csv_line({"r1", "ok", "a\n\"b\""}) +
+    EXPECT_EQ(whole, csv_line(names_of(with_outcome)) + csv_line({"r1", "ok", "a\n\"b\""}) +
                          csv_line({"r3", "no_rays", "a\n\"b\""}) + csv_line({"r2", "ok", "a\n\"b\""}));
     EXPECT_EQ(ResultFolder(folder, with_outcome, here, true).finished().size(), 3U);
     EXPECT_EQ(read_file(folder / "results.csv"), whole);
 }
 
-// r1 has both of its samples, r2 one of two, r3 is invalid.
-TEST_F(RecordFiles, RowsWithoutAllOfTheirSamplesAreMeasuredAnew)
+// r1 has both of its samples and passes, r2 one of two samples, r3 is invalid, r4 lacks a pass.
+TEST_F(RecordFiles, RowsWithoutAllOfTheirSamplesOrPassesAreMeasuredAnew)
 {
-    const std::vector<std::string> with_repeats = {"run_id", "outcome", "repeats"};
-    const auto                     sample       = [](const char* id, int round) {
+    const std::vector<Column> with_repeats = {
+        {"run_id", "", words}, {"outcome", "", words}, {"repeats", "", whole}, {"passes_ran", "", whole}};
+    const auto row = [](const char* id, int repeats) {
+        return Record{{"run_id", id}, {"outcome", "ok"}, {"repeats", repeats}, {"passes_ran", 2}};
+    };
+    const auto passes = [](const std::string& id) {
+        return id + ",rays,true,1,,,a\r\n" + id + ",blur,false,,,,\"b, c\"\r\n" + id + ",trace,true,2,1,3,d\r\n";
+    };
+    const auto sample = [](const char* id, int round) {
         return csv_line({id, std::to_string(round), "trace", "1", ""}) +
                csv_line({id, std::to_string(round), "frame", "2", "3"});
     };
     {
         ResultFolder results(folder, with_repeats, here, false);
-        results.append({{"run_id", "r1"}, {"outcome", "ok"}, {"repeats", "2"}}, sample("r1", 0) + sample("r1", 4));
-        results.append({{"run_id", "r2"}, {"outcome", "ok"}, {"repeats", "2"}}, sample("r2", 3));
-        results.append({{"run_id", "r3"}, {"outcome", "invalid"}, {"repeats", ""}});
+        results.append(row("r1", 2), sample("r1", 0) + sample("r1", 4), passes("r1"));
+        results.append(row("r2", 2), sample("r2", 3), passes("r2"));
+        results.append({{"run_id", "r3"}, {"outcome", "invalid"}});
+        results.append(row("r4", 1), sample("r4", 3), "r4,trace,true,2,1,3,d\r\n");
     }
     const ResultFolder resumed(folder, with_repeats, here, true);
     EXPECT_EQ(resumed.finished(), std::set<std::string>{"r1"});
     EXPECT_EQ(resumed.next_round(), 5);
     EXPECT_EQ(read_file(folder / "samples.csv"), csv_line(sample_columns()) + sample("r1", 0) + sample("r1", 4));
-    EXPECT_EQ(read_file(folder / "results.csv"), csv_line(with_repeats) + csv_line({"r1", "ok", "2"}));
+    EXPECT_EQ(read_file(folder / "passes.csv"), csv_line(names_of(pass_columns())) + passes("r1"));
+    EXPECT_EQ(read_file(folder / "results.csv"), csv_line(names_of(with_repeats)) + csv_line({"r1", "ok", "2", "2"}));
+}
+
+TEST_F(RecordFiles, AFolderOfTheOldFormIsRefusedWithTheWayOut)
+{
+    ResultFolder(folder, columns, here, false).append(row_of(1));
+    write_file_atomically(folder / "results.csv", "run_id,passes,passes_why\r\nr1,trace=1,trace: a\r\n");
+    EXPECT_THAT(message_of<SpecError>([&] { ResultFolder(folder, columns, here, true); }),
+                HasSubstr("measure it anew: ssrlab run"));
+}
+
+TEST_F(RecordFiles, ValuesComeBackByTheTypeOfTheirColumn)
+{
+    const Column    typed[] = {{"m", ""}, {"w", "", whole}, {"s", "", setting}, {"c", "", setting}, {"t", "", words}};
+    const Record    record  = {{"m", 1.0 / 3}, {"w", 2073600}, {"s", 0.123456789}, {"c", "view"}, {"t", "12"}};
+    const CsvRecord fields  = {"0.333333", "2073600", "0.123456789", "view", "12"};
+    Record          back    = record;
+    back["m"]               = 0.333333;
+    EXPECT_EQ(fields_of(record, typed), fields);
+    EXPECT_EQ(record_of(fields, typed), back);
+    EXPECT_EQ(record_of({"", "", "inf", "", ""}, typed), (Record{{"s", std::numeric_limits<double>::infinity()}}));
+    EXPECT_EQ(number_of(record, "w"), 2073600);
+    EXPECT_EQ(number_of(record, "t"), std::nullopt) << "words";
+    EXPECT_EQ(words_of(record, "m"), "") << "a number";
+    Record empty;
+    put(empty, "m", std::nan(""));
+    EXPECT_TRUE(empty.empty());
 }
 
 TEST_F(RecordFiles, DifferencesAreNamedFromBothSides)
@@ -255,7 +295,8 @@ TEST_F(RecordFiles, KillsLoseDoubleOrTearNoRow)
                 ResultFolder results(folder, columns, here, true);
                 for (int i = 0; i < row_count; ++i) {
                     const std::string id = "r" + std::to_string(i);
-                    if (!results.finished().contains(id)) results.append(row_of(i), id + ",0,frame,1,1\r\n");
+                    if (!results.finished().contains(id))
+                        results.append(row_of(i), id + ",0,frame,1,1\r\n", id + ",trace,true,1,,,\r\n");
                 }
             };
             const int status = in_child(sweep, useconds_t(500 + random() % 20000));
@@ -269,10 +310,11 @@ TEST_F(RecordFiles, KillsLoseDoubleOrTearNoRow)
         const SampleCounts samples = count_samples(read_file(folder / "samples.csv"));
         ASSERT_EQ(samples.frames.size(), static_cast<size_t>(row_count));
         for (const auto& [id, frames] : samples.frames) ASSERT_EQ(frames, 1) << id;
+        const auto passes = count_passes(read_file(folder / "passes.csv"));
+        ASSERT_EQ(passes.size(), static_cast<size_t>(row_count));
+        for (const auto& [id, ran] : passes) ASSERT_EQ(ran, 1) << id;
         for (int i = 0; i < row_count; ++i) {
-            const Row expected = row_of(i);
-            ASSERT_EQ(records[static_cast<size_t>(i)],
-                      (CsvRecord{expected.at("run_id"), expected.at("value"), expected.at("message")}));
+            ASSERT_EQ(records[static_cast<size_t>(i)], fields_of(row_of(i), columns));
         }
         for (const auto& entry : fs::directory_iterator(folder))
             EXPECT_EQ(entry.path().string().find(".tmp"), std::string::npos);

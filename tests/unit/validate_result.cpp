@@ -90,7 +90,7 @@ TEST(ValidateResult, NothingIsMeasuredByAnImpossibleResult)
     off.hit_pixel[9]  = {-5, 99999};
     unknown.status[9] = static_cast<TraceStatus>(200);
     for (const TraceResult& result : {off, unknown}) {
-        Row row;
+        Record row;
         EXPECT_THROW(compare_to_screen_truth(result, sound()), InvalidResult);
         EXPECT_THROW(compare_to_scene_truth(result, scene, nullptr, gbuffer), InvalidResult);
         EXPECT_THROW(reflected_image(result, gbuffer, {}), InvalidResult);
@@ -100,8 +100,8 @@ TEST(ValidateResult, NothingIsMeasuredByAnImpossibleResult)
 
 TEST(ValidateResult, MakesARowInvalid)
 {
-    EXPECT_EQ(failed_row({}, InvalidResult("a")), (Row{{"outcome", "invalid"}, {"message", "a"}}));
-    EXPECT_EQ(failed_row({}, Failure("b")), (Row{{"outcome", "failed"}, {"message", "b"}}));
+    EXPECT_EQ(failed_row({}, InvalidResult("a")), (Record{{"outcome", "invalid"}, {"message", "a"}}));
+    EXPECT_EQ(failed_row({}, Failure("b")), (Record{{"outcome", "failed"}, {"message", "b"}}));
 }
 
 } // namespace
