@@ -122,8 +122,11 @@ class Case(unittest.TestCase):
         self.assert_samples(rows)
 
     def assert_samples(self, rows):
-        """Every row has the samples of each of its repeats, once; nothing else has any."""
+        """Every row has the samples of each of its repeats and all of its passes, once; nothing else has any."""
         samples = self.samples()
+        passes = [(one["run_id"], one["pass"]) for one in self.rows(table="passes.csv")]
+        self.assertEqual(len(set(passes)), len(passes))
+        self.assertEqual({run for run, _ in passes}, set(samples))
         self.assertEqual(set(samples), {row["run_id"] for row in rows if row["repeats"]})
         for row in rows:
             for name, values in samples[row["run_id"]].items():

@@ -10,7 +10,7 @@ import OpenImageIO as oiio
 from support import PROGRAM, SOURCE, Case, load_script, main
 
 SCENE = "builtin:stairs"
-PLOT = os.path.join(SOURCE, "experiments", "plot_benchmarks.py")
+PLOT = (os.path.join(SOURCE, "experiments", "plot"), "growth")
 
 
 class Test(Case):
@@ -68,10 +68,10 @@ class Test(Case):
                           "[techniques.dda]\n[techniques.hiz]\n[measure]\nmin_repeats = 1\nbudget_s = 0\ntruth = false\npictures = false\n")
         self.ssrlab("run", file, "-o", self.path("out"))
         picture = self.path("growth.png")
-        self.run_command(PLOT, self.path("out"), "--scene", SCENE, "-o", picture)
+        self.run_command(*PLOT, self.path("out"), "--scene", SCENE, "-o", picture)
         self.assertGreater(oiio.ImageBuf(picture).spec().width, 1000)
-        self.assertIn("no row of interior", self.run_command(PLOT, self.path("out"), "--scene", "interior", "-o", picture, code=1))
-        self.assertIn("no results.csv", self.run_command(PLOT, self.folder, "-o", picture, code=1))
+        self.assertIn("no row of interior", self.run_command(*PLOT, self.path("out"), "--scene", "interior", "-o", picture, code=1))
+        self.assertIn("no results.csv", self.run_command(*PLOT, self.folder, "-o", picture, code=1))
 
     def test_wrong_usage(self):
         program = os.path.join(os.path.dirname(PROGRAM), "benchmarks")

@@ -142,8 +142,9 @@ class Test(Case):
         for frame in range(6):
             same = pictures["0", str(frame)] == pictures["0.9", str(frame)]
             self.assertEqual(same, frame in (0, 4), frame)
-        why = next(row["passes_why"] for row in self.rows() if row["frame"] == "4" and row["history_weight"] == "0.9")
-        self.assertIn("a cut: nothing came before this frame", why)
+        run = next(row["run_id"] for row in self.rows() if row["frame"] == "4" and row["history_weight"] == "0.9")
+        why = {one["pass"]: one["reason"] for one in self.rows(table="passes.csv") if one["run_id"] == run}
+        self.assertIn("a cut: nothing came before this frame", why["history"])
 
     def test_frames_become_an_animation(self):
         for strategy in ("surface", "plane"):

@@ -38,7 +38,7 @@ class Test(Case):
         pictures = sweep.pictures()
         self.assertGreater(len(pictures), len(expected))
         kills.check_finished(sweep, expected, pictures)
-        rows, samples = sweep.file("results.csv"), sweep.file("samples.csv")
+        rows, samples, passes = (sweep.file(name) for name in ("results.csv", "samples.csv", "passes.csv"))
         first = rows.split("\n")[1]
         steps = next(iter(expected.values()))["steps_mean"]
         for promise, name, text in (("lost", "results.csv", rows.replace(first + "\n", "")),
@@ -48,6 +48,7 @@ class Test(Case):
                                     ("differ", "results.csv", rows.replace(first, first.replace(f",{steps},", ",7.77,"))),
                                     ("samples", "samples.csv", samples[:samples.rindex("\n", 0, -1) + 1]),
                                     ("samples", "samples.csv", samples + samples.split("\n", 1)[1]),
+                                    ("passes", "passes.csv", passes + passes.split("\n", 1)[1]),
                                     ("pictures", "pictures/" + next(iter(pictures)), "another"),
                                     ("left over", "results.csv.tmp1", "")):
             self.write("out0/" + name, text)
@@ -56,6 +57,7 @@ class Test(Case):
             self.assertEqual(found.exception.promise, promise, found.exception)
             self.write("out0/results.csv", rows)
             self.write("out0/samples.csv", samples)
+            self.write("out0/passes.csv", passes)
             with open(self.path("out0/pictures/" + next(iter(pictures))), "wb") as file:
                 file.write(next(iter(pictures.values())))
 

@@ -42,10 +42,16 @@ class Test(Case):
                 self.assertAlmostEqual(frame_ms, gbuffer_ms + sum(ms for ms, _ in passes.values()), delta=1e-5 * gbuffer_ms)
                 self.assertGreaterEqual(float(cpu_ms), 0)
                 self.assertEqual({cpu for _, cpu in passes.values()}, {""}, "a frame's alone")
-            for name in passes:
-                of_pass = dict(one.split("=") for one in row["passes"].split())
-                self.assertAlmostEqual(float(of_pass[name]), statistics.median(one[name][0] for one in rounds.values()), delta=1e-5 * float(of_pass[name]))
-            self.assertAlmostEqual(float(row["trace_ms_median"]), float(of_pass["trace"]), delta=1e-5 * float(of_pass["trace"]))
+            of_pass = {one["pass"]: float(one["ms_median"]) for one in self.rows("out", "passes.csv") if one["run_id"] == row["run_id"] and one["ran"] == "true"}
+            self.assertEqual(set(of_pass), set(passes))
+            self.assertEqual(len(of_pass), int(row["passes_ran"]))
+            for name, ms in of_pass.items():
+                self.assertAlmostEqual(ms, statistics.median(one[name][0] for one in rounds.values()), delta=1e-5 * ms)
+            self.assertEqual(float(row["trace_ms_median"]), of_pass["trace"])
+            # Every pass is in one of the parts.
+            parts = ("rays_ms_median", "structures_ms_median", "trace_ms_median", "shade_ms_median")
+            before = of_pass.get("layers", 0) + of_pass.get("solid_backs", 0)
+            self.assertAlmostEqual(before + sum(float(row[part]) for part in parts), sum(of_pass.values()), delta=1e-4 * sum(of_pass.values()))
 
     def test_times_are_of_one_frame_of_a_submit(self):
         """Undivided, sixteen frames would take sixteen times as long as one; what else the machine does is far from a factor of four."""

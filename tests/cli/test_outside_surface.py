@@ -85,6 +85,13 @@ class Test(Case):
         with open(self.path("out/environment.json"), encoding="utf-8") as file:
             self.assertIn("surface sloped_slab", json.load(file)["identity"])
 
+    def test_a_sweep_of_its_thickness_is_plotted(self):
+        spec = self.write("s.toml", SWEEP.replace("[techniques.dda]\n", "").replace("[techniques.hiz_packets]\n", "").replace("[trace]\n", "[trace]\nthickness_m = [0.1, 0.3]\n"))
+        self.ssrlab("run", spec, "-o", "out", "--techniques", "mine")
+        self.ssrlab("plot", "out")
+        self.assertTrue(os.path.exists(self.path("out/plots/surfaces_precision_recall_builtin_sphere_over_mirror_default_97x61.png")))
+        self.assertEqual({row["surface"] for row in self.rows(table="surfaces.csv")}, {"sloped_slab", "box"})
+
     def test_structures_skip_only_what_no_ray_meets(self):
         for parameters in ([], ["layers=2"], ["behind=pass"], ["thickness_m=0.5", "behind=stop"]):
             walk = self.hits("dda", *parameters)

@@ -11,23 +11,23 @@ from support import SOURCE, Case, load_script, main
 sys.path.insert(0, os.path.join(SOURCE, "experiments"))
 import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
-import pairs  # noqa: E402
-import plot_accuracy  # noqa: E402
-import plot_panels  # noqa: E402
-import plot_pictures  # noqa: E402
-import plot_ray  # noqa: E402
-import plot_report  # noqa: E402
-import plot_tables  # noqa: E402
-import plot_verdict  # noqa: E402
-import ssrlab_results  # noqa: E402
+import plots.pairs  # noqa: E402
+import plots.accuracy  # noqa: E402
+import plots.panels  # noqa: E402
+import plots.pictures  # noqa: E402
+import plots.ray  # noqa: E402
+import plots.report  # noqa: E402
+import plots.tables  # noqa: E402
+import plots.verdict  # noqa: E402
+import plots.results  # noqa: E402
 from made_results import made_results, write_table  # noqa: E402
 from matplotlib import pyplot as plt  # noqa: E402
-from plot_data import Results, describe, label_of  # noqa: E402
+from plots.data import Results, describe, label_of  # noqa: E402
 from PIL import Image  # noqa: E402
 
 
 def interval(low, high, pairs_=9):
-    return pairs.Ratio((low + high) / 2, low, high, pairs_)
+    return plots.pairs.Ratio((low + high) / 2, low, high, pairs_)
 
 
 class Test(Case):
@@ -48,10 +48,10 @@ class Test(Case):
                        inverse_fps_s=1, error_median_px=1)
         rows[0]["kind"] = "only"  # of one run, so it does not vary
         made_results(self, rows, ["space", "jitter", "kind", "steps", "thickness_m"])
-        loaded = ssrlab_results.load(self.path("out"))
+        loaded = plots.results.load(self.path("out"))
         self.assertEqual(list(loaded.run_id), ["r0", "r1", "r2"])
         self.assertEqual(list(loaded.series), ["linear, pixels, jitter", "linear, metres", "hiz"])
-        self.assertEqual(ssrlab_results.varying(loaded, loaded.attrs["inputs"]), ["space", "jitter", "steps"])
+        self.assertEqual(plots.results.varying(loaded, loaded.attrs["inputs"]), ["space", "jitter", "steps"])
         self.assertEqual(list(loaded.frame_name), ["s, view default, 80×60", "s, view default, 80×60", "s, view NA, 80×60, frame 3"])
         self.near(loaded.cost_ms_median, [2, 3, 1.5])
         self.assertEqual(loaded.attrs["inputs"], ["space", "jitter", "kind", "steps"])
@@ -59,7 +59,7 @@ class Test(Case):
         self.assertFalse({"thickness_m", "message", "width"} & set(loaded))
         self.assertIn("scene", loaded)
         self.assertNotIn("message", loaded.attrs["constants"])
-        whole = ssrlab_results.load(self.path("out"), keep_constants=True, failed=True)
+        whole = plots.results.load(self.path("out"), keep_constants=True, failed=True)
         self.assertEqual((len(whole), whole.thickness_m.iloc[3], whole.message.iloc[3]), (4, 0.1, "no"))
         units = {"thickness_m": "m", "psnr_visible_db": "dB", "flips_per_million": "rays per million", "wave64_iterations_mean": "steps", "recall_1px": "share",
                  "stopped_share": "share", "fps": "", "inverse_fps_s": "s", "error_median_px": "px", "cost_ms_median": "ms", "trace_ms_ci_low": "ms", "trace_ms_ci_high": "ms",
@@ -82,21 +82,21 @@ class Test(Case):
         made_results(self, rows, ["steps"])
         self.samples({"r2": [2, 2, 2, 2, 2, 2], "r7": [1.8, 1.9, 2, 2.2, 2.4, 2.6]})
         results = Results(self.path("out"))
-        chosen = plot_verdict.picks(results)
+        chosen = plots.verdict.picks(results)
         self.assertEqual(list(chosen.run_id), ["r2", "r7", "r6"])
         self.assertEqual(list(chosen.setting), ["linear, steps 40", "dda", "march, steps 40"])
         self.assertEqual(list(chosen.reached), [True, True, False])
-        (_, text), = plot_verdict.verdicts(results, chosen)
+        (_, text), = plots.verdict.verdicts(results, chosen)
         self.assertEqual(text, "Cheapest tracer that finds 99 % of what the depth buffer holds: linear (steps 40), 2 ms, "
                                "1.05 [0.9, 1.3] times as fast as dda (no difference shown). "
                                "Of what the frame shows, it does not find 10 %: 7 % are not in the depth buffer, 2 % hit another point. "
                                "5 % of its rays end in a false hit: 3 % behind a surface that is taken too thick, 1.5 % on the reflector itself.")
-        (_, text), = plot_verdict.verdicts(results, chosen[~chosen.reached])
+        (_, text), = plots.verdict.verdicts(results, chosen[~chosen.reached])
         self.assertEqual(text, "No tracer finds 99 % of what the depth buffer holds. The nearest is march (steps 40): 80 % in 3 ms. ")
         results.targets = {"recall_1px": [0.5, 0.995]}
-        self.assertEqual(plot_verdict.goal(results), ("screen_recall_1px", 0.99))
+        self.assertEqual(plots.verdict.goal(results), ("screen_recall_1px", 0.99))
         results.targets = {"screen_recall_1px": [0.9, 0.95, 0.999]}
-        self.assertEqual(plot_verdict.goal(results), ("screen_recall_1px", 0.95))
+        self.assertEqual(plots.verdict.goal(results), ("screen_recall_1px", 0.95))
 
     def test_the_ranking(self):
         """Over two frames: times by the geometric mean, shares by the mean. Who misses the target comes later, the nearer one first."""
@@ -108,7 +108,7 @@ class Test(Case):
         for row in rows[:2]:
             row["flip_visible"] = ""  # slow's alone
         results = made_results(self, rows)
-        ranked = plot_verdict.ranking(results, plot_verdict.picks(results))
+        ranked = plots.verdict.ranking(results, plots.verdict.picks(results))
         self.assertEqual(list(ranked.label), ["quick", "slow", "half", "near", "far"])
         first = ranked.iloc[0]
         self.near([first.cost_ms_median, first.cost_ms_ci_low, first.cost_ms_ci_high], [2, 1, 4])
@@ -116,7 +116,7 @@ class Test(Case):
                   [0.9925, 0.49625, 0.5, 0.4, 0.1, 0.2, 25])
         self.assertEqual(list(ranked.reached), [2, 2, 1, 0, 0])
         self.assertEqual(list(ranked.unreached), [0, 0, 1, 2, 2])
-        shown = plot_tables.ranking_table(ranked)
+        shown = plots.tables.ranking_table(ranked)
         self.assertEqual([column["name"] for column in shown["columns"]],
                          ["rank", "tracer", "target reached", "recall", "precision", "F1", "false", "screen recall", "FLIP", "ms", "from", "to", "fetches"])
         self.assertEqual([cell["text"] for cell in shown["rows"][0]["cells"]],
@@ -127,29 +127,29 @@ class Test(Case):
 
     def test_means_over_frames(self):
         part = pd.DataFrame({"a": [1.0, 2, 6], "b": [1.0, 2, 32], "c": [1, np.nan, 3], "d": [0.0, 1, 2]})
-        self.near([plot_verdict.mean_of(part, "a"), plot_verdict.geometric(part, "b"), plot_verdict.mean_of(part, "c")], [3, 4, 2])
-        self.assertTrue(all(np.isnan(plot_verdict.geometric(part, name)) for name in ("c", "d", "none")), "unknown where one frame has none")
+        self.near([plots.verdict.mean_of(part, "a"), plots.verdict.geometric(part, "b"), plots.verdict.mean_of(part, "c")], [3, 4, 2])
+        self.assertTrue(all(np.isnan(plots.verdict.geometric(part, name)) for name in ("c", "d", "none")), "unknown where one frame has none")
 
     def test_without_a_truth_all_settings_are_ranked_by_time(self):
         results = made_results(self, [dict(technique="linear", steps=steps, trace_ms_median=ms) for steps, ms in ((8, 3), (16, 1), (32, 2))], ["steps"])
-        chosen = plot_verdict.picks(results)
+        chosen = plots.verdict.picks(results)
         self.assertEqual(list(chosen.label), ["linear, steps 16", "linear, steps 32", "linear, steps 8"])
-        ranked = plot_verdict.ranking(results, chosen)
+        ranked = plots.verdict.ranking(results, chosen)
         self.assertEqual(list(ranked.label), list(chosen.label))
-        self.assertEqual(plot_verdict.verdicts(results, chosen), [])
-        self.assertIn("No truth was computed", plot_report.ranking_text(results, chosen))
+        self.assertEqual(plots.verdict.verdicts(results, chosen), [])
+        self.assertIn("No truth was computed", plots.report.ranking_text(results, chosen))
 
     def test_tables_of_a_frame(self):
         rows = [dict(technique="linear", steps=steps, trace_ms_median=ms, trace_ms_ci_low=ms / 2, trace_ms_ci_high=ms * 2, steps_mean=7, screen_recall_1px=found,
                      recall_1px=0.5, precision_1px=0.25, f1_1px=0.375, false_hits=0.0625, screen_precision_1px=0.9, flip_visible=0.21, picture_flip=0.11,
                      frame_ms_median=30, fps=33, visible_displaced=0.25,
                      missed_stepped_over=0.125, missed_stopped=0, missed_not_in_depth=0.125, error_scene_to_screen=0.5, wrong_rays=0.3, wrong_thin=0.2, wrong_other=0.1,
-                     passes="rays=1.25 trace=2 blur=0.5", passes_skipped="cone history", passes_why="rays: 9 pixels; blur: it is rough; cone: gloss = stochastic")
+                     passes={"rays": (1.25, "9 pixels"), "cone": (None, "gloss = stochastic"), "trace": (2, ""), "blur": (0.5, "it is rough")})
                 for steps, ms, found in ((16, 2, 1), (8, 1, 0.5))]
         rows[1]["picture_flip"] = ""
         results = made_results(self, rows, ["steps"])
-        chosen = plot_verdict.picks(results)
-        shown = plot_tables.row_table(results, results.rows, chosen)
+        chosen = plots.verdict.picks(results)
+        shown = plots.tables.row_table(results, results.rows, chosen)
         self.assertEqual([column["name"] for column in shown["columns"]],
                          ["tracer", "steps", "ms", "from", "to", "fetches", "steps", "recall", "precision", "F1", "false", "screen recall", "screen precision", "FLIP",
                           "picture FLIP", "frame ms", "fps", "repeats", "run"])
@@ -157,38 +157,37 @@ class Test(Case):
                          [["linear", steps, ms, low, high, "1", "7", "50 %", "25 %", "37.5 %", "6.25 %", found, "90 %", "0.21", flip, "30", "33", "9", run]
                           for steps, ms, low, high, found, flip, run in (("8", "1", "0.5", "2", "50 %", "", "r1"), ("16", "2", "1", "4", "100 %", "0.11", "r0"))])
         self.assertEqual([row["best"] for row in shown["rows"]], [False, True])
-        bar, = plot_tables.split_of(chosen)
+        bar, = plots.tables.split_of(chosen)
         self.assertEqual([(part["kind"], part["width"], part["text"]) for part in bar["parts"]],
                          [("found", 50, "50 %"), ("displaced", 25, "25 %"), ("not-in-depth", 12.5, "12.5 %"), ("skipped-over", 12.5, "12.5 %")])
-        errors = plot_tables.error_table(chosen)
+        errors = plots.tables.error_table(chosen)
         self.assertEqual([column["name"] for column in errors["columns"]], ["tracer", "scene → screen", "false", "wrong", "thin", "other"])
         self.assertEqual([cell["text"] for cell in errors["rows"][0]["cells"]], ["linear, steps 16", "50 %", "6.25 %", "30 %", "20 %", "10 %"])
-        plan = plot_tables.plan_of(chosen)
+        plan = plots.tables.plan_of(results, chosen)
         self.assertEqual([(one["name"], one["ms"], one["why"]) for one in plan["passes"]],
-                         [("rays", "1.25", "9 pixels"), ("trace", "2", ""), ("blur", "0.5", "it is rough"), ("cone", "–", "gloss = stochastic"),
-                          ("history", "–", "not needed, or off")])
-        self.assertEqual([cell["sort"] for cell in plot_tables.plain_table([{"a": "2.5", "b": "x"}])["rows"][0]["cells"]], ["2.5", None])
+                         [("rays", "1.25", "9 pixels"), ("trace", "2", ""), ("blur", "0.5", "it is rough"), ("cone", "–", "gloss = stochastic")])
+        self.assertEqual([cell["sort"] for cell in plots.tables.plain_table([{"a": "2.5", "b": "x"}])["rows"][0]["cells"]], ["2.5", None])
 
     def test_failed_runs_and_their_commands(self):
         rows = [dict(technique="dda", frame=2, jitter_phases=5, steps=8, space="pixels", near=True, gloss="cone"),
                 dict(technique="dda", outcome="failed", message="lost", frame=0), dict(technique="dda", outcome="invalid", frame=0), dict(technique="dda", outcome="skipped", frame=0)]
         results = made_results(self, rows, ["jitter_phases", "steps", "space", "near", "gloss"], pass_parameters="gloss",
                                command_line="bin/ssrlab --techniques 'my own' --quiet --device 1 run a.toml -o out")
-        self.assertEqual(plot_report.again(results, "r1"), "bin/ssrlab --techniques 'my own' --device 1 run a.toml --only r1 -o again/r1")
-        self.assertEqual(plot_report.ray_command(results, results.rows.iloc[0]),
+        self.assertEqual(plots.report.again(results, "r1"), "bin/ssrlab --techniques 'my own' --device 1 run a.toml --only r1 -o again/r1")
+        self.assertEqual(plots.report.ray_command(results, results.rows.iloc[0]),
                          "bin/ssrlab --techniques 'my own' --device 1 ray s --view default --size 80x60 -t dda --frame 2 --jitter 5 -p jitter_phases=5 -p steps=8 "
                          "-p space=pixels -p near=true")
-        failed = plot_tables.failed_table(results, plot_report.again)
+        failed = plots.tables.failed_table(results, plots.report.again)
         self.assertEqual([[cell["text"] for cell in row["cells"]][:6] for row in failed["rows"]],
                          [["dda", "s", "default", "80×60", "failed", "lost"], ["dda", "s", "default", "80×60", "invalid", ""]])
-        self.assertEqual(sorted(re.findall(r"\d \w+", plot_report.context(results, [], {})["counts"])), ["1 failed", "1 invalid", "1 ok", "1 skipped", "4 runs"])
+        self.assertEqual(sorted(re.findall(r"\d \w+", plots.report.context(results, [], {})["counts"])), ["1 failed", "1 invalid", "1 ok", "1 skipped", "4 runs"])
 
     def test_what_the_page_shows(self):
         rows = [dict(technique="linear", steps=steps, trace_ms_median=ms, trace_ms_ci_low=ms, trace_ms_ci_high=ms, rays=1000, steps_mean=4, fetches_mean=6, recall_1px=0.75,
                      flip_visible=0.125, screen_recall_1px=0.5, screen_precision_1px=0.875, max_distance_m=math.inf, binary=binary, width=width)
                 for steps, ms, binary, width in ((8, 1, 1, 80), (16, 2, 2, 80), (8, 1, 1, 1920), (16, 1, 1, 1920))]
         results = made_results(self, rows, ["steps", "binary", "max_distance_m"])
-        data = plot_report.chart_data(results, plot_verdict.picks(results))
+        data = plots.report.chart_data(results, plots.verdict.picks(results))
         run = data["runs"]["r1"]
         self.assertEqual(run["costs"], {"cost_ms_median": 2, "fetches_mean": 6, "steps_mean": 4, "fetches": 6})
         self.assertEqual(run["errors"], {"recall_1px": 0.25, "flip_visible": 0.125, "screen_recall_1px": 0.5, "screen_precision_1px": 0.125})
@@ -197,13 +196,13 @@ class Test(Case):
         values = dict(zip(data["columns"], run["values"]))
         self.assertEqual((values["max_distance_m"], values["steps"]), ("inf", 16))
         self.assertEqual(dict(zip(data["columns"], data["units"]))["max_distance_m"], "m")
-        self.assertEqual(plot_report.plain(np.float64(1.23456789)), 1.2346)
+        self.assertEqual(plots.report.plain(np.float64(1.23456789)), 1.2346)
         line = made_results(self, [dict(row, binary=1) for row in rows], ["steps", "binary", "max_distance_m"])
-        self.assertEqual(plot_report.chart_data(line, plot_verdict.picks(line))["cloud"], {"linear": False}, "one number alone varies")
+        self.assertEqual(plots.report.chart_data(line, plots.verdict.picks(line))["cloud"], {"linear": False}, "one number alone varies")
         # Of each view the largest picture that is at most 1280 wide.
         chosen = pd.DataFrame([dict(scene="s", view="a", width=width, frame_title=f"a{width}") for width in (640, 1920, 1280)] +
                               [dict(scene="s", view="b", width=width, frame_title=f"b{width}") for width in (3840, 1920)])
-        self.assertEqual(plot_report.with_pictures(results, chosen), {"a1280", "b3840"})
+        self.assertEqual(plots.report.with_pictures(results, chosen), {"a1280", "b3840"})
 
     def test_rows_of_the_summary(self):
         """stride is better the lower; FLIP too. Within half of what the best takes: 4 ms; each 1 % along the front costs (8 - 2) / 40."""
@@ -211,7 +210,7 @@ class Test(Case):
                 for stride, ms, found, flip in ((1, 8, 0.9, 0.1), (2, 5, 0.45, 0.2), (4, 2, 0.5, 0.3))]
         rows.append(dict(technique="hiz", trace_ms_median=16, recall_1px=0.8995, flip_visible=0.25))
         results = made_results(self, rows, ["stride"], accuracy="linear.stride=lower", specification="[targets]\nrecall_1px = 0.9\nflip_visible = [0.2, 0.05]\n")
-        table = plot_accuracy.summary(results)
+        table = plots.accuracy.summary(results)
         within = table[table.kind == "best_within_time"]
         self.near(within.time_budget_ms, [4, 4, 8, 8])
         self.assertEqual(list(zip(within.technique, within.run_id.fillna(""), within.setting)),
@@ -233,26 +232,26 @@ class Test(Case):
         rows += [dict(technique="linear", steps=steps, trace_ms_median=ms, recall_1px=found) for steps, ms, found in ((10, 2.5, 0.9), (20, 4, 0.995))]
         made_results(self, rows, ["steps"], accuracy="linear.steps=higher", specification="[targets]\nrecall_1px = 0.99\n")
         self.samples({"r0": [1] * 6, "r1": [2, 2.2, 2.4, 2.6, 2.8, 3], "r2": [4] * 6})
-        row = plot_accuracy.summary(Results(self.path("out"))).iloc[0]
+        row = plots.accuracy.summary(Results(self.path("out"))).iloc[0]
         self.assertEqual((row.speedup, row.speedup_ci_low, row.speedup_ci_high, row.bracket, row.pairs), (4, 2, 4, "closed", 6))
 
     def test_the_front_holds_what_nothing_beats(self):
         rows = pd.DataFrame({"ms": [3, 1, 2, 2, 4], "error": [0.1, 0.5, 0.6, 0.3, 0.1]}, index=list("abcde"))
-        self.assertEqual(list(plot_accuracy.pareto(rows, "ms", "error").index), ["b", "d", "a"])
+        self.assertEqual(list(plots.accuracy.pareto(rows, "ms", "error").index), ["b", "d", "a"])
 
     def test_pairs_of_many_rounds_are_medians_of_neighbours(self):
         """Of 36 ratios each block is two neighbours, 18 of them; at rank 5 of 18 the sign test keeps 95 %."""
         ratios = pd.Series(np.arange(36.0), index=range(36)) + 1
-        self.near(pairs.blocks_of(ratios.to_numpy()), np.arange(18) * 2 + 1.5)
-        found = pairs.paired_ratio(ratios[::-1], pd.Series(1.0, index=range(36)))
+        self.near(plots.pairs.blocks_of(ratios.to_numpy()), np.arange(18) * 2 + 1.5)
+        found = plots.pairs.paired_ratio(ratios[::-1], pd.Series(1.0, index=range(36)))
         self.near([found.median, found.low, found.high], [18.5, 9.5, 27.5])
-        self.assertEqual(len(pairs.blocks_of(np.ones(31))), 31)
-        self.near(pairs.blocks_of(np.tile([1.0, 2, 9], 16)), [2] * 16)
+        self.assertEqual(len(plots.pairs.blocks_of(np.ones(31))), 31)
+        self.near(plots.pairs.blocks_of(np.tile([1.0, 2, 9], 16)), [2] * 16)
         # Critical values of the two-sided sign test at 5 %, plus one.
         for count, rank in ((6, 1), (8, 1), (9, 2), (11, 2), (12, 3), (15, 4), (17, 5), (20, 6), (25, 8), (30, 10)):
-            found = pairs.paired_ratio(ratios[:count], pd.Series(1.0, index=range(count)))
+            found = plots.pairs.paired_ratio(ratios[:count], pd.Series(1.0, index=range(count)))
             self.assertEqual((found.low, found.high), (rank, count + 1 - rank), count)
-        none = pairs.paired_ratio(ratios, pd.Series([1.0], index=[99]))
+        none = plots.pairs.paired_ratio(ratios, pd.Series([1.0], index=[99]))
         self.assertEqual((none.pairs, math.isnan(none.median)), (0, True))
 
     def test_frames_and_variants_are_told_apart(self):
@@ -277,19 +276,19 @@ class Test(Case):
     def test_what_an_interval_shows(self):
         for low, high, said in ((1.01, 2, "faster"), (0.5, 0.99, "slower"), (0.5, 1.5, "no difference shown"), (1, 2, "no difference shown"), (np.nan, 2, "not known"),
                                 (1.5, np.nan, "not known")):
-            self.assertEqual(plot_accuracy.verdict(low, high), said, (low, high))
+            self.assertEqual(plots.accuracy.verdict(low, high), said, (low, high))
 
     def test_panels_show_what_their_experiment_names(self):
         row = pd.Series(dict(technique="linear", steps=16, jitter=True, width=80, recall_1px=0.5, precision_1px=np.nan, hit_share=0.25, picture="p/a.png", truth_picture="p/t.png"))
-        self.assertEqual([plot_panels.picture_of({"show": show} if show else {}, row) for show in ("", "off", "truth", "causes")],
+        self.assertEqual([plots.panels.picture_of({"show": show} if show else {}, row) for show in ("", "off", "truth", "causes")],
                          ["p/a.png", "p/t_off.png", "p/t.png", "p/a_causes.png"])
         figure = {"panels": [{"steps": 16, "jitter": True}, {"steps": 64, "jitter": True}], "measures": ["recall_1px", "precision_1px"]}
-        self.assertEqual(plot_panels.caption(figure["panels"][0], figure, row), "steps 16\nrecall 0.500")
-        self.assertEqual(plot_panels.caption({"steps": 16, "show": "agreement"}, figure, row), "green right, yellow displaced, orange missed, pink false, steps 16\nrecall 0.500")
-        self.assertEqual(plot_panels.caption({"steps": 16, "show": "off"}, figure, row), "no reflections")
+        self.assertEqual(plots.panels.caption(figure["panels"][0], figure, row), "steps 16\nrecall 0.500")
+        self.assertEqual(plots.panels.caption({"steps": 16, "show": "agreement"}, figure, row), "green right, yellow displaced, orange missed, pink false, steps 16\nrecall 0.500")
+        self.assertEqual(plots.panels.caption({"steps": 16, "show": "off"}, figure, row), "no reflections")
         held = [(16, 16, True), (16.1, 16, False), (True, True, True), ("true", True, True), (False, True, False), ("16", 16, False), ("box", "box", True), (np.nan, 16, False)]
         for cell, value, expected in held:
-            self.assertEqual(bool(plot_panels.is_value(cell, value)), expected, (cell, value))
+            self.assertEqual(bool(plots.panels.is_value(cell, value)), expected, (cell, value))
 
     def test_pictures_of_the_report(self):
         """Each technique's best run comes before any variant; a technique's truth before all."""
@@ -301,14 +300,14 @@ class Test(Case):
         os.makedirs(self.path("out/pictures"))
         for name in ("a", "b", "dda", "t", "t_off", "b_flip"):
             Image.new("RGB", (1280, 720), (200, 10, 10)).save(self.path(f"out/pictures/{name}.png"))
-        chosen = plot_verdict.picks(results)
-        shots, left, shape = plot_pictures.shots(results, chosen, results.rows)
+        chosen = plots.verdict.picks(results)
+        shots, left, shape = plots.pictures.shots(results, chosen, results.rows)
         self.assertEqual([shot["name"] for shot in shots], ["Without reflections, and the truth", "linear, b", "dda", "linear, a"])
         self.assertEqual([[(image["name"], image["kind"]) for image in shot["images"]] for shot in shots[:2]],
                          [[("off", "picture"), ("truth", "picture")], [("linear, b", "picture"), ("linear, b", "FLIP")]])
         self.assertEqual((left, shape), (1, "1280 / 720"))
         best = chosen.iloc[0]
-        self.assertEqual([plot_pictures.finding(best, kind) for kind in plot_pictures.KINDS],
+        self.assertEqual([plots.pictures.finding(best, kind) for kind in plots.pictures.KINDS],
                          ["1 ms", "finds 50 % of what the frame shows, 12.5 % of the rays end in a false hit", "25 % of the rays are wrong",
                           "mean FLIP against the truth 0.0625", "3 fetches a ray"])
 
@@ -323,17 +322,17 @@ class Test(Case):
 
     def test_a_ray_is_drawn_where_it_is(self):
         ray = self.ray()
-        self.assertEqual(plot_ray.length_px(ray), 5)
-        self.near(plot_ray.scene_truth_t(ray), 0.7)
-        self.near([plot_ray.shown_t(ray), plot_ray.shown_t(dict(ray, techniques=[])), plot_ray.shown_t(dict(ray, techniques=[], screen_truth={}, scene_truth=None))],
+        self.assertEqual(plots.ray.length_px(ray), 5)
+        self.near(plots.ray.scene_truth_t(ray), 0.7)
+        self.near([plots.ray.shown_t(ray), plots.ray.shown_t(dict(ray, techniques=[])), plots.ray.shown_t(dict(ray, techniques=[], screen_truth={}, scene_truth=None))],
                   [1, 1, 1])
         near_end = dict(ray, techniques=[], screen_truth={"t": 0.25}, scene_truth=None)
-        self.near(plot_ray.shown_t(near_end), 1.4 * 0.25 + 2 / 5)
+        self.near(plots.ray.shown_t(near_end), 1.4 * 0.25 + 2 / 5)
         for truth in ({"class": "sky", "point_px": [12, 21]}, {"class": "visible", "point_px": [9, 20]}, {"class": "visible", "point_px": [15, 23.75]}, {"class": "visible", "point_px": [None, 1]}):
-            self.assertIsNone(plot_ray.scene_truth_t(dict(ray, scene_truth=truth)), truth)
+            self.assertIsNone(plots.ray.scene_truth_t(dict(ray, scene_truth=truth)), truth)
         figure, (side, visits, screen) = plt.subplots(3, 1)
         self.addCleanup(plt.close, figure)
-        plot_ray.draw_side(side, ray)
+        plots.ray.draw_side(side, ray)
         lines = {line.get_label(): line.get_xydata().tolist() for line in side.get_lines()}
         self.near(lines["ray"], [[0, 1], [2.5, 2], [5, 4]])
         self.near(lines["hiz: hit"], [[3.75, 3]])
@@ -342,12 +341,12 @@ class Test(Case):
         fill, = side.collections
         self.near(fill.get_datalim(side.transData).extents, [2.5, 3, 5, 1.1 * 4])
         self.near(side.get_ylim(), [4.4, 1 - 0.1 * 3.4])
-        plot_ray.draw_visits(visits, ray, ray["techniques"][0], "#000000")
+        plots.ray.draw_visits(visits, ray, ray["techniques"][0], "#000000")
         skip, hit = visits.get_lines()
         self.near([skip.get_xdata(), skip.get_ydata()], [[0, 2.5], [1, 1]])
         self.near([*hit.get_xdata(), *hit.get_ydata()], [2.5, 2])
         self.assertEqual((skip.get_linewidth(), skip.get_alpha()), (3, 0.4))
-        plot_ray.draw_screen(screen, ray)
+        plots.ray.draw_screen(screen, ray)
         cells = [(*patch.get_xy(), patch.get_width(), patch.get_height()) for patch in screen.patches]
         self.assertEqual(cells, [(12, 20, 2, 2), (13, 22, 1, 1)])
         self.near(screen.get_lines()[0].get_xydata(), [[10, 20], [14, 23]])

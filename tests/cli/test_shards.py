@@ -42,9 +42,8 @@ class Test(Case):
                 self.assertEqual(row[column], merged[run_id][column], column)
             self.assertTrue(os.path.exists(self.path("out/" + merged[run_id]["picture"])))
         self.assert_complete(list(merged.values()), SWEEP_ROWS)
-        samples = self.samples("out")
-        for run_id, row in merged.items():
-            self.assertEqual(len(samples[run_id]["frame"]), int(row["repeats"]))
+        passes = [[{name: one[name] for name in ("run_id", "pass", "ran", "reason")} for one in self.rows(folder, "passes.csv")] for folder in ("whole", "out")]
+        self.assertEqual(*(sorted(one, key=lambda line: (line["run_id"], line["pass"])) for one in passes))
         with open(self.path("out/environment.json"), encoding="utf-8") as file:
             self.assertEqual(json.load(file)["merged_from"], parts)
         # As if one program had written it.

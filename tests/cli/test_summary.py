@@ -8,11 +8,11 @@ from support import SOURCE, Case, main
 sys.path.insert(0, os.path.join(SOURCE, "experiments"))
 import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
-import pairs  # noqa: E402
-import plot_accuracy  # noqa: E402
-import plot_styles  # noqa: E402
-import plot_verdict  # noqa: E402
-from plot_data import Results  # noqa: E402
+import plots.pairs  # noqa: E402
+import plots.accuracy  # noqa: E402
+import plots.styles  # noqa: E402
+import plots.verdict  # noqa: E402
+from plots.data import Results  # noqa: E402
 
 
 def series(values, first_round=0):
@@ -41,19 +41,19 @@ def difference(a, b):
 class Test(Case):
     def test_drift_cancels_in_pairs(self):
         drift = np.linspace(1, 5, 12)
-        ratio = pairs.paired_ratio(series(3 * drift), series(drift))
+        ratio = plots.pairs.paired_ratio(series(3 * drift), series(drift))
         self.assertEqual((ratio.median, ratio.low, ratio.high, ratio.pairs), (3, 3, 3, 12))
 
     def test_only_common_rounds_are_pairs(self):
-        ratio = pairs.paired_ratio(series([8.0] * 9), series([2.0] * 9, first_round=3))
+        ratio = plots.pairs.paired_ratio(series([8.0] * 9), series([2.0] * 9, first_round=3))
         self.assertEqual((ratio.median, ratio.pairs), (4, 6))
-        self.assertTrue(np.isnan(pairs.paired_ratio(series([1.0] * 3), series([1.0] * 3, first_round=9)).median))
+        self.assertTrue(np.isnan(plots.pairs.paired_ratio(series([1.0] * 3), series([1.0] * 3, first_round=9)).median))
 
     def test_interval_is_unknown_below_six_pairs(self):
-        ratio = pairs.paired_ratio(series([2.0] * 5), series([1.0] * 5))
+        ratio = plots.pairs.paired_ratio(series([2.0] * 5), series([1.0] * 5))
         self.assertEqual(ratio.median, 2)
         self.assertTrue(np.isnan(ratio.low) and np.isnan(ratio.high))
-        six = pairs.paired_ratio(series([1, 2, 3, 4, 5, 6]), series([1.0] * 6))
+        six = plots.pairs.paired_ratio(series([1, 2, 3, 4, 5, 6]), series([1.0] * 6))
         self.assertEqual((six.low, six.high), (1, 6))
 
     def test_interval_covers_as_often_as_promised(self):
@@ -62,7 +62,7 @@ class Test(Case):
             covered = 0
             for _ in range(1500):
                 noise = np.exp(0.05 * random.standard_t(2, count))
-                ratio = pairs.paired_ratio(series(noise), series([1.0] * count))
+                ratio = plots.pairs.paired_ratio(series(noise), series([1.0] * count))
                 covered += ratio.low <= 1 <= ratio.high
             self.assertGreaterEqual(covered / 1500, 0.95 - 0.012, count)
 
@@ -73,7 +73,7 @@ class Test(Case):
             noise = 0.01 * random.standard_t(3, 120)
             for i in range(1, 120):
                 noise[i] += 0.3 * noise[i - 1]
-            ratio = pairs.paired_ratio(series(np.exp(noise[20:])), series([1.0] * 100))
+            ratio = plots.pairs.paired_ratio(series(np.exp(noise[20:])), series([1.0] * 100))
             self.assertEqual(ratio.pairs, 100)
             covered += ratio.low <= 1 <= ratio.high
         self.assertGreaterEqual(covered / 1000, 0.95)
@@ -105,7 +105,7 @@ class Test(Case):
         return Results(self.path("out"))
 
     def test_speedups_come_first_and_include_the_bracket(self):
-        summary = plot_accuracy.summary(self.results())
+        summary = plots.accuracy.summary(self.results())
         first = summary.head(3)
         self.assertEqual(list(first.kind), ["speedup"] * 3)
         self.assertEqual(list(first.over), ["dda", "best other", "linear"])
@@ -127,54 +127,54 @@ class Test(Case):
 
     def test_the_verdict_names_the_cheapest_that_reaches_the_target(self):
         results = self.results()
-        chosen = plot_verdict.picks(results)
+        chosen = plots.verdict.picks(results)
         self.assertEqual(list(chosen.run_id), ["h", "d", "l3", "b"])
         self.assertEqual(list(chosen.reached), [True, True, True, False])
-        (_, text), = plot_verdict.verdicts(results, chosen)
+        (_, text), = plots.verdict.verdicts(results, chosen)
         for part in ("finds 99 % of what the depth buffer holds: hiz, 1 ms", "4 [4, 4] times as fast as dda", "22 [22, 22] times as fast as linear (steps 990)"):
             self.assertIn(part, text)
-        ranked = plot_verdict.ranking(results, chosen)
+        ranked = plots.verdict.ranking(results, chosen)
         self.assertEqual(list(ranked.label), ["hiz", "dda", "linear", "linear_binary"])
 
     def test_24_techniques_look_different(self):
-        names = plot_styles.PLACES + [f"mine_{i}" for i in range(plot_styles.SLOTS - len(plot_styles.PLACES))]
-        slots = plot_styles.slots(names)
-        looks = {(plot_styles.look(slot)[0], plot_styles.look(slot)[2]) for slot in slots.values()}
+        names = plots.styles.PLACES + [f"mine_{i}" for i in range(plots.styles.SLOTS - len(plots.styles.PLACES))]
+        slots = plots.styles.slots(names)
+        looks = {(plots.styles.look(slot)[0], plots.styles.look(slot)[2]) for slot in slots.values()}
         self.assertEqual(len(looks), 24)
-        self.assertEqual(plot_styles.slots(["hiz", "mine_3"])["hiz"], slots["hiz"], "a place does not depend on the others")
+        self.assertEqual(plots.styles.slots(["hiz", "mine_3"])["hiz"], slots["hiz"], "a place does not depend on the others")
         for dark in (0, 1):
             for one in range(24):
                 for other in range(one):
-                    a, b = plot_styles.look(one), plot_styles.look(other)
+                    a, b = plots.styles.look(one), plots.styles.look(other)
                     if a[2] == b[2]:
                         self.assertGreater(difference(a[dark], b[dark]), 15, (one, other))
 
     def test_without_samples_the_interval_is_unknown(self):
         self.results()
         os.remove(self.path("out/samples.csv"))
-        row = plot_accuracy.summary(Results(self.path("out"))).iloc[0]
+        row = plots.accuracy.summary(Results(self.path("out"))).iloc[0]
         self.assertEqual((row.speedup, row.pairs, row.verdict), (4, 0, "not known"))
         self.assertTrue(np.isnan(row.speedup_ci_low))
 
     def test_a_line_that_begins_at_the_target_is_no_closed_bracket(self):
         results = self.results()
         results.rows = results.rows[~results.rows.run_id.isin(["l1", "l2"])]
-        row = plot_accuracy.summary(results).iloc[2]
+        row = plots.accuracy.summary(results).iloc[2]
         self.assertEqual((row.run_id, row.bracket, row.verdict), ("l3", "open", "not known"))
 
     def test_unknown_intervals_are_hollow(self):
-        from plot_data import errors, known
+        from plots.data import errors, known
         rows = pd.DataFrame({"t_median": [2.0, 3.0], "t_ci_low": [1.0, np.nan], "t_ci_high": [4.0, np.nan]})
         low, high = errors(rows, "t")
         self.assertEqual((low[0], high[0]), (1, 2))
         self.assertTrue(np.isnan(low[1]) and np.isnan(high[1]))
         self.assertEqual(list(known(rows, "t")), [True, False])
-        figure, axis = plot_accuracy.plt.subplots()
-        plot_accuracy.draw_intervals(axis, rows.assign(error=[0.1, 0.2]), "t_median", "error", {"color": "#000000", "marker": "o"})
+        figure, axis = plots.accuracy.plt.subplots()
+        plots.accuracy.draw_intervals(axis, rows.assign(error=[0.1, 0.2]), "t_median", "error", {"color": "#000000", "marker": "o"})
         bars, hollow = axis.containers[0][2][0].get_segments(), axis.get_lines()[-1]
         self.assertEqual([segment[:, 0].tolist() for segment in bars], [[1, 4]])
         self.assertEqual((list(hollow.get_xdata()), hollow.get_markerfacecolor()), ([3], "white"))
-        plot_accuracy.plt.close(figure)
+        plots.accuracy.plt.close(figure)
 
 
 if __name__ == "__main__":

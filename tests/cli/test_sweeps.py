@@ -85,9 +85,11 @@ class Test(Case):
                 self.assertEqual(float(row[f"{column}_median"]), text(statistics.median(values)))
                 self.assertEqual(float(row[f"{column}_ci_low"]), text(values[rank - 1]))
                 self.assertEqual(float(row[f"{column}_ci_high"]), text(values[count - rank]))
-            for shown in row["passes"].split():
-                name, median = shown.split("=")
-                self.assertEqual(float(median), text(statistics.median(passes[name])))
+            shown = [one for one in self.rows("out", "passes.csv") if one["run_id"] == row["run_id"]]
+            self.assertEqual(len({one["pass"] for one in shown}), len(shown))
+            self.assertTrue(all(one["reason"] for one in shown), shown)
+            for one in shown:
+                self.assertEqual(one["ms_median"] and float(one["ms_median"]), text(statistics.median(passes[one["pass"]])) if one["ran"] == "true" else "")
         with open(self.path("out/samples.csv"), encoding="utf-8") as file:
             self.assertEqual(file.readline().strip(), "run_id,round,pass,ms,cpu_ms")
         with open(self.path("out/environment.json"), encoding="utf-8") as file:

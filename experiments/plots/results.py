@@ -1,6 +1,6 @@
 """Results as a pandas table. One file that needs only pandas: copy it beside your own script, or put experiments/ into PYTHONPATH.
 
-    from ssrlab_results import load
+    from plots.results import load
     rows = load("results/cost_of_accuracy")     # a row a run that succeeded; typed; without columns that never change
     rows.groupby("technique").cost_ms_median.min()
     rows.attrs["units"]["cost_ms_median"]            # "ms"
@@ -16,11 +16,11 @@ import tomllib
 
 import pandas as pd
 
-TEXT = ["run_id", "experiment", "scene", "view", "technique", "outcome", "message", "picture", "truth_picture", "no_scene_truth", "no_screen_truth", "passes",
-        "passes_skipped", "technique_ignores"]
+TEXT = ["run_id", "experiment", "scene", "view", "technique", "outcome", "message", "picture", "truth_picture", "no_scene_truth", "no_screen_truth",
+        "technique_ignores"]
 FRAME = ["scene", "view", "width", "height", "frame"]
 # What a clock decides, and differs from one run to the next.
-OF_TIME = re.compile(r"(^|[_.])ms(_|$)|^(fps|inverse_fps_s|passes|trace_drift|frames_per_submit)$")
+OF_TIME = re.compile(r"(^|[_.])ms(_|$)|^(fps|inverse_fps_s|trace_drift|frames_per_submit)$")
 # By the end of a column's name, longest first; "" is a count, a share of 1 or a setting's own value.
 UNITS = {"per_million": "rays per million", "_ms_median": "ms", "_ms_mad": "ms", "_ms_ci_low": "ms", "_ms_ci_high": "ms", "_ms": "ms",
          "_px": "px", "_m": "m", "_db": "dB", "_s": "s", "_share": "share", "recall_1px": "share",
@@ -28,12 +28,19 @@ UNITS = {"per_million": "rays per million", "_ms_median": "ms", "_ms_mad": "ms",
          "_iterations_mean": "steps"}
 
 
+class OldForm(Exception):
+    """Results whose passes are packed into columns."""
+
+
 def read_rows(folder):
     """Every row of results.csv, failed ones too; empty fields are missing values, words stay words."""
     path = os.path.join(folder, "results.csv")
     if not os.path.exists(path):
         raise FileNotFoundError(f"{folder}: holds no results.csv; make one with ssrlab run")
-    return pd.read_csv(path, dtype={name: str for name in TEXT}, keep_default_na=False, na_values=[""])
+    rows = pd.read_csv(path, dtype={name: str for name in TEXT}, keep_default_na=False, na_values=[""])
+    if "passes" in rows or "passes_why" in rows:
+        raise OldForm(f"{path}: an older ssrlab wrote it, without passes.csv; measure it anew: ssrlab run SPECIFICATION.toml -o ANOTHER_FOLDER")
+    return rows
 
 
 def read_environment(folder):
@@ -48,6 +55,14 @@ def read_environment(folder):
 def read_samples(folder):
     """Every timed frame: run_id, round, pass, ms, cpu_ms."""
     return pd.read_csv(os.path.join(folder, "samples.csv"), dtype={"run_id": str, "pass": str})
+
+
+def read_passes(folder):
+    """The passes of every run's frame: run_id, pass, ran, ms_median, ms_ci_low, ms_ci_high, reason; empty without passes.csv."""
+    path = os.path.join(folder, "passes.csv")
+    if not os.path.exists(path):
+        return pd.DataFrame(columns=["run_id", "pass", "ran", "ms_median", "ms_ci_low", "ms_ci_high", "reason"])
+    return pd.read_csv(path, dtype={"run_id": str, "pass": str, "reason": str}, keep_default_na=False, na_values=[""])
 
 
 def specification(folder):

@@ -1,10 +1,6 @@
-"""One ray, drawn from what `ssrlab ray` wrote: from the side, and on screen.
-
-    plot_ray.py RAY.json PICTURE.png
-"""
+"""One ray, drawn from what `ssrlab ray` wrote: from the side, and on screen."""
 import json
 import math
-import sys
 
 import matplotlib
 matplotlib.use("Agg")
@@ -129,8 +125,8 @@ def draw_screen(axes, ray):
     axes.set_ylabel("y, px")
 
 
-def main():
-    with open(sys.argv[1], encoding="utf-8") as file:
+def main(found, picture):
+    with open(found, encoding="utf-8") as file:
         ray = json.load(file)
     techniques = ray["techniques"][:MOST_TECHNIQUES]
     until = shown_t(ray)
@@ -151,8 +147,5 @@ def main():
     axes[-1].set_xlabel("way on screen, px" + ("" if until == 1 else f" (of {length_px(ray):.0f})"))
     draw_screen(screen, ray)
     axes[0].set_title(f"{ray['scene']}, pixel ({ray['pixel'][0]}, {ray['pixel'][1]})", loc="left")
-    figure.savefig(sys.argv[2], dpi=110, metadata={"Software": "ssrlab"})
+    figure.savefig(picture, dpi=110, metadata={"Software": "ssrlab"})
 
-
-if __name__ == "__main__":
-    main()

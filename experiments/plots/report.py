@@ -1,4 +1,4 @@
-"""report.html, one file that needs nothing beside it, and report.md, the same in short. Templates: report/."""
+"""report.html, one file that needs nothing beside it, and report.md, the same in short. Templates: templates/."""
 import json
 import math
 import os
@@ -7,13 +7,13 @@ import shlex
 import jinja2
 import pandas as pd
 
-import plot_pictures
-import plot_verdict
-from plot_data import describe
-from plot_tables import error_table, failed_table, plan_of, plain_table, ranking_table, row_table, split_of, SPLIT
-from ssrlab_results import inputs_of, unit_of
+from .data import describe
+from .pictures import data_uri, shots
+from .results import inputs_of, unit_of
+from .tables import error_table, failed_table, plan_of, plain_table, ranking_table, row_table, split_of, SPLIT
+from .verdict import goal, goal_text, has_value, milliseconds, picks, ranking, verdicts
 
-TEMPLATES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "report")
+TEMPLATES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "templates")
 LIBRARY = "/usr/share/javascript/chart.js/chart.min.js"  # Debian's libjs-chart.js
 # Of framework/compare/pictures.cpp.
 AGREEMENT = [("#009e73", "found within 1 px"), ("#f0e442", "hit farther away"), ("#d55e00", "missed"), ("#cc79a7", "hit where nothing is"),
@@ -79,7 +79,7 @@ def ray_command(results, row):
     for name, column in (("--frame", "frame"), ("--jitter", "jitter_phases")):
         words += [name, f"{row[column]:g}"] if row.get(column, 0) > 0 else []
     for name in inputs_of(results.all_rows):
-        words += ["-p", f"{name}={as_option(row[name])}"] if name not in passes and plot_verdict.has_value(row, name) else []
+        words += ["-p", f"{name}={as_option(row[name])}"] if name not in passes and has_value(row, name) else []
     return " ".join([program(results), *map(shlex.quote, given_options(results))] + words)
 
 
@@ -90,18 +90,18 @@ def chart_data(results, chosen):
     runs, cloud = {}, {}
     for title, _, rows in results.pictures():
         for _, row in rows.iterrows():
-            costs = {name: plain(row[name]) for name in COSTS if plot_verdict.has_value(row, name)}
+            costs = {name: plain(row[name]) for name in COSTS if has_value(row, name)}
             runs[row.run_id] = {
-                "frame": title, "series": row.series, "name": describe(results, row, rows), "time": plot_verdict.milliseconds(row),
+                "frame": title, "series": row.series, "name": describe(results, row, rows), "time": milliseconds(row),
                 "floor": 0.5 / max(1.0, row.rays), "picture": plain(row.picture) if "picture" in row else None,
                 "costs": {**costs, "fetches": costs.get("fetches_mean")},
-                "errors": {name: plain(error_of(row, name)) for name in ERRORS if plot_verdict.has_value(row, name)},
+                "errors": {name: plain(error_of(row, name)) for name in ERRORS if has_value(row, name)},
                 "commands": [["Measure it again:", again(results, row.run_id)]], "ray": ray_command(results, row), "size": [int(row.width), int(row.height)], "values": [plain(row[name]) for name in columns]}
         for series, line in rows.groupby("series"):
             # Several numbers vary: a cloud of points, not a line.
             cloud[series] = cloud.get(series, False) or sum(line[name].nunique() > 1 for name in results.swept(rows)) > 1
     return {"runs": runs, "columns": columns, "units": [unit_of(name) for name in columns], "errors": ERRORS, "costs": COSTS,
-            "styles": results.chart_styles, "cloud": cloud, "findings": dict(plot_verdict.verdicts(results, chosen))}
+            "styles": results.chart_styles, "cloud": cloud, "findings": dict(verdicts(results, chosen))}
 
 
 def with_pictures(results, chosen):
@@ -114,17 +114,17 @@ def with_pictures(results, chosen):
 
 
 def frame_sections(results, chosen):
-    pictured, said = with_pictures(results, chosen), dict(plot_verdict.verdicts(results, chosen))
+    pictured, said = with_pictures(results, chosen), dict(verdicts(results, chosen))
     for title, name, rows in results.pictures():
         part = chosen[chosen.frame_title == title]
-        pictures, left, shape = plot_pictures.shots(results, part, rows) if title in pictured else ([], 0, "")
+        pictures, left, shape = shots(results, part, rows) if title in pictured else ([], 0, "")
         images = [image for shot in pictures for image in shot["images"]]
         names = [image["name"] for image in images]
         first_run = next((i for i, image in enumerate(images) if image["kind"] == "picture" and image["name"] not in ("off", "truth")), 0)
         right = names.index("truth") if "truth" in names else next((i for i, image in enumerate(images) if i != first_run), 0)
         yield {"title": title, "anchor": name, "verdict": said.get(title, ""), "pictures": pictures, "left": first_run, "right": right,
                "aspect": shape, "more_pictures": f"{left} more runs have pictures in pictures/." if left > 0 else "",
-               "split": split_of(part), "errors": error_table(part), "plan": plan_of(part), "rows": row_table(results, rows, part)}
+               "split": split_of(part), "errors": error_table(part), "plan": plan_of(results, part), "rows": row_table(results, rows, part)}
 
 
 def about(environment):
@@ -136,23 +136,23 @@ def about(environment):
 
 
 def ranking_text(results, chosen):
-    measure, target = plot_verdict.goal(results)
+    measure, target = goal(results)
     if measure is None:
         return "No truth was computed, so only times and work are compared: every setting, the fastest first."
-    return (f"Each tracer at its cheapest setting that finds {plot_verdict.goal_text(measure, target)} with an F1 within one point of its best; "
+    return (f"Each tracer at its cheapest setting that finds {goal_text(measure, target)} with an F1 within one point of its best; "
             f"where none does, at the one that comes nearest. Shares are means over {chosen.frame_title.nunique()} frames, times are "
             "geometric means of the medians, with those of the interval's ends.")
 
 
 def context(results, plots, tables):
-    environment, chosen = results.environment, plot_verdict.picks(results)
+    environment, chosen = results.environment, picks(results)
     counts = results.all_rows.outcome.value_counts()
     device = environment.get("identity", {}).get("device")
-    ranked = plot_verdict.ranking(results, chosen)
+    ranked = ranking(results, chosen)
     return {"title": environment.get("title") or os.path.basename(os.path.abspath(results.folder)),
             "counts": f"{len(results.all_rows)} runs: " + ", ".join(f"{n} {outcome}" for outcome, n in counts.items()) + ".",
             "device": f"Device: {device}." if device else "", "on_cpu": environment.get("device_type", "").lower() == "cpu",
-            "verdicts": plot_verdict.verdicts(results, chosen), "ranking": ranking_table(ranked), "ranking_text": ranking_text(results, chosen),
+            "verdicts": verdicts(results, chosen), "ranking": ranking_table(ranked), "ranking_text": ranking_text(results, chosen),
             "has_curve": any(results.has(name) for name in ERRORS), "frames": list(frame_sections(results, chosen)),
             "failed": failed_table(results, again), "plots": plots, "tables": [(name, plain_table(rows)) for name, rows in tables.items()],
             "about": about(environment), "again": again(results, "RUN_ID"), "specification": environment.get("specification", ""),
@@ -168,13 +168,13 @@ def read(path):
 def write(results, plots, tables):
     """plots: [{"name", "alt", "path", "curve"}]. Returns the verdicts."""
     if not os.path.exists(LIBRARY):
-        raise SystemExit(f"plot.py: {LIBRARY}: no such file; install libjs-chart.js")
+        raise SystemExit(f"plot: {LIBRARY}: no such file; install libjs-chart.js")
     whole = context(results, plots, tables)
     said = [(name, text) for (title, name, _) in results.pictures() for frame, text in whole["verdicts"] if frame == title]
     for plot in plots:
         plot["alt"] += "".join(f" {text}" for name, text in said if plot["curve"] and plot["name"].endswith(name))
     # What the interactive curve shows is not shown twice.
-    shown = [{**plot, "src": plot_pictures.data_uri(plot["path"], flat=True, width=1600)} for plot in plots if not plot["curve"]]
+    shown = [{**plot, "src": data_uri(plot["path"], flat=True, width=1600)} for plot in plots if not plot["curve"]]
     engine = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=jinja2.select_autoescape(["html.jinja"]),
                                 trim_blocks=True, lstrip_blocks=True)
     data = json.dumps(whole["data"], ensure_ascii=False, allow_nan=False).replace("</", "<\\/")

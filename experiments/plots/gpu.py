@@ -4,12 +4,12 @@ import os
 import shutil
 import subprocess
 
-import plot_verdict
-from plot_report import given_options, program
+from .report import given_options, program
+from .verdict import picks
 
 CHIP = "navi21"
 HEADING = "What this would cost on RDNA2, by its compiler"
-BUILT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../build/bin/ssrlab")
+BUILT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../build/bin/ssrlab")
 
 
 def traces_of(results, techniques, surface):
@@ -25,7 +25,7 @@ def traces_of(results, techniques, surface):
 
 def table(results, tables):
     """One line a technique and surface model: each at the setting that the ranking compares, as a mean over the frames."""
-    chosen = plot_verdict.picks(results)
+    chosen = picks(results)
     if "wave128_iterations_mean" not in chosen or chosen.wave128_iterations_mean.isna().all():
         return ()
     traces = {surface: traces_of(results, list(rows.technique.unique()), surface) for surface, rows in chosen.groupby("surface")}

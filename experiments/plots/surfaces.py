@@ -1,15 +1,26 @@
 """What a pixel is taken to hold: precision against recall as thickness grows, and F1 against time. Each function returns its figures."""
+import zlib
+
 from matplotlib import pyplot as plt
 
-# One colour and marker a surface model; a line's dash says what becomes of rays from behind.
+# One colour and marker a surface model, in the order of the ladder; a line's dash says what becomes of rays from behind.
 STYLES = {"box": ("#0072B2", "o"), "box_two_sided": ("#56B4E9", "s"), "box_infinite": ("#999999", "X"), "plane": ("#E69F00", "^"),
           "plane_solid": ("#009E73", "D"), "plane_infinite": ("#CC79A7", "v")}
 DASHES = {"hit": ":", "pass": "--", "stop": "-"}
-THICKNESS_MATTERS = {"box", "box_two_sided"}
+OWN = [("#000000", "P"), ("#7A1340", "*"), ("#5C8F00", "<"), ("#6B3A00", ">")]  # models from elsewhere, by their name
+
+
+def look_of(surface):
+    return STYLES.get(surface) or OWN[zlib.crc32(surface.encode()) % len(OWN)]
+
+
+def place_of(surface):
+    """For sorting: models from elsewhere stand behind the ladder, by their name."""
+    return (list(STYLES).index(surface), "") if surface in STYLES else (len(STYLES), surface)
 
 
 def style_of(surface, behind):
-    colour, marker = STYLES.get(surface, ("#000000", "v"))
+    colour, marker = look_of(surface)
     return dict(color=colour, marker=marker, linestyle=DASHES.get(behind, "-"), ms=6, lw=1.3,
                 markerfacecolor=colour if behind == "stop" else "white", label=f"{surface}, {behind}")
 
@@ -22,9 +33,8 @@ def models_of(rows):
 
 def sorted_legend(axis):
     """In the order of the ladder; a model's two rules side by side."""
-    order = list(STYLES)
     handles, labels = axis.get_legend_handles_labels()
-    pairs = sorted(zip(labels, handles), key=lambda pair: (order.index(pair[0].split(",")[0]), pair[0]))
+    pairs = sorted(zip(labels, handles), key=lambda pair: (place_of(pair[0].split(",")[0]), pair[0]))
     return [handle for _, handle in pairs], [label for label, _ in pairs]
 
 
@@ -33,22 +43,20 @@ def has_models(results):
 
 
 def precision_against_recall(results, tables):
-    """A curve a model: along it the thickness grows. A plane needs none, so it is one point."""
+    """A curve a model: along it the thickness grows. A model that needs none is one point."""
     if not has_models(results) or results.rows.thickness_m.nunique() < 2:
         return
     for title, name, rows in results.pictures():
         figure, axis = plt.subplots(figsize=(7.2, 5.2))
         for surface, behind, line in models_of(rows):
-            line = line.sort_values("thickness_m")
-            if surface not in THICKNESS_MATTERS:
-                line = line.iloc[:1]
+            line = line.sort_values("thickness_m").drop_duplicates(["recall_1px", "precision_1px"])
             axis.plot(100 * line.recall_1px, 100 * line.precision_1px, **style_of(surface, behind))
             if surface != "box":
                 continue
             side = (8, 3) if behind == "stop" else (-8, -9)
             for _, row in line.iterrows():
                 axis.annotate(f"{row.thickness_m:g} m", (100 * row.recall_1px, 100 * row.precision_1px), textcoords="offset points",
-                              xytext=side, fontsize=7, color=STYLES["box"][0], ha="left" if behind == "stop" else "right")
+                              xytext=side, fontsize=7, color=look_of("box")[0], ha="left" if behind == "stop" else "right")
         axis.set(xlabel="recall: visible points found within 1 px, %", ylabel="precision: hits that are right, %",
                  title=f"Surface models: {title}")
         axis.legend(*sorted_legend(axis), fontsize=7.5, loc="best")
@@ -66,7 +74,7 @@ def f1_against_time(results, tables):
     rows = rows[rows.technique == rows.technique.iloc[0]]
     figure, axis = plt.subplots(figsize=(7.2, 5.2))
     for surface, behind, line in models_of(rows):
-        solid_ms = pass_ms(line, "solid_backs")
+        solid_ms = results.pass_ms(line, "solid_backs")
         axis.plot(line.cost_ms_median + solid_ms, 100 * line.f1_1px, **{**style_of(surface, behind), "linestyle": "none"})
         for (_, row), more in zip(line.iterrows(), solid_ms):
             axis.annotate(row.scene.split("_")[0], (row.cost_ms_median + more, 100 * row.f1_1px), textcoords="offset points",
@@ -99,12 +107,8 @@ def f1_against_size(results, tables):
 def rungs_of(rows):
     """Surface models with their layers in the order of the ladder, as (label, rows)."""
     keys = ["surface", "behind", "layers"]
-    rungs = sorted(rows.groupby(keys, sort=False), key=lambda rung: (list(STYLES).index(rung[0][0]), rung[0][2], rung[0][1]))
+    rungs = sorted(rows.groupby(keys, sort=False), key=lambda rung: (place_of(rung[0][0]), rung[0][2], rung[0][1]))
     return [(f"{surface}, {behind}" + (f",\n{layers} layers" if layers > 1 else ""), rung) for (surface, behind, layers), rung in rungs]
-
-
-def pass_ms(rows, name):
-    return rows.passes.str.extract(rf"(?:^| ){name}=([0-9.e+-]+)")[0].astype(float).fillna(0)
 
 
 def ladder_of_layers(results, tables):
@@ -121,8 +125,8 @@ def ladder_of_layers(results, tables):
     found.set(ylabel="F1 over visible and hidden rays, %", title="The ladder of surface models")
     found.legend(fontsize=8)
     parts = {"trace": [rows.trace_ms_median for _, rows in rungs], "structures": [rows.structures_ms_median for _, rows in rungs],
-             "backs of solids": [pass_ms(rows, "solid_backs") for _, rows in rungs],
-             "layers": [pass_ms(rows, "layers") for _, rows in rungs]}
+             "backs of solids": [results.pass_ms(rows, "solid_backs") for _, rows in rungs],
+             "layers": [results.pass_ms(rows, "layers") for _, rows in rungs]}
     below = [0.0] * len(rungs)
     for colour, (name, columns) in zip(("#0072B2", "#56B4E9", "#E69F00", "#009E73"), parts.items()):
         heights = [column.mean() for column in columns]
@@ -140,7 +144,7 @@ def ladder(results):
     if not has_models(results):
         return []
     rows = results.rows.copy()
-    rows["solid_backs_ms"] = pass_ms(rows, "solid_backs")
+    rows["solid_backs_ms"] = results.pass_ms(rows, "solid_backs")
     keys = ["scene", "view", "width", "height", "technique", "surface", "behind"] + ["layers"] * ("layers" in rows)
     best = rows.loc[rows.groupby(keys, sort=False).f1_1px.idxmax()]
     shown = ["thickness_m", "recall_1px", "precision_1px", "f1_1px", "hidden_too_recall_1px", "hidden_too_precision_1px", "hidden_too_f1_1px", "stopped_share", "stopped_right_share", "false_hits",

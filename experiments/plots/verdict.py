@@ -2,8 +2,8 @@
 import numpy as np
 import pandas as pd
 
-from plot_accuracy import ratio_of_rows
-from plot_data import describe
+from .accuracy import ratio_of_rows
+from .data import describe
 
 F1_SLACK = 0.01
 MISSES = {"visible_displaced": "hit another point", "missed_not_in_depth": "are not in the depth buffer", "missed_stopped": "are stopped",

@@ -7,7 +7,7 @@ import numpy as np  # noqa: E402
 from matplotlib.colors import to_rgba  # noqa: E402
 from matplotlib.ticker import FuncFormatter, LogLocator  # noqa: E402
 
-from plot_data import errors, is_number, known  # noqa: E402
+from .data import errors, is_number, known  # noqa: E402
 
 BEST_THICKNESS = "Best thickness: fewest missed points and false hits"
 LAW_FROM_STEPS = 50  # the report's frame rate is capped below

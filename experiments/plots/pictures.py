@@ -5,7 +5,7 @@ import os
 
 from PIL import Image
 
-from plot_verdict import has_value, milliseconds, percent
+from .verdict import has_value, milliseconds, percent
 
 WIDEST = 640
 MANY = 10  # per frame

@@ -26,10 +26,10 @@ def row_of(rows, panel, figure):
         if name == "show":
             continue
         if name not in rows:
-            raise SystemExit(f"plot.py: [figures.{figure}]: '{name}' is no column of results.csv")
+            raise SystemExit(f"plot: [figures.{figure}]: '{name}' is no column of results.csv")
         rows = rows[[is_value(cell, value) for cell in rows[name]]]
     if len(rows) != 1:
-        raise SystemExit(f"plot.py: [figures.{figure}]: a panel must name one run, {panel} names {len(rows)}")
+        raise SystemExit(f"plot: [figures.{figure}]: a panel must name one run, {panel} names {len(rows)}")
     return rows.iloc[0]
 
 

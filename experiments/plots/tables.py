@@ -1,9 +1,8 @@
 """Tables of the report: columns with a meaning, cells with a text and a value to sort by."""
-import re
 
 import pandas as pd
 
-from plot_verdict import has_value, percent
+from .verdict import has_value, percent
 
 # (column, class in report.css, what it says): of the rays whose true point the frame shows.
 SPLIT = [("recall_1px", "found", "found within 1 px"), ("visible_displaced", "displaced", "hit farther away"),
@@ -117,16 +116,14 @@ def error_table(chosen):
     return table([column("tracer")] + [column(name, doc) for _, name, doc in wanted], rows, chosen.technique.iloc[0])
 
 
-def plan_of(chosen):
-    """Passes of the best tracer's frame. passes: "trace=1.2 shade=0.3"; passes_skipped: "blur: nothing is rough; …"."""
-    if chosen.empty or not has_value(chosen.iloc[0], "passes"):
+def plan_of(results, chosen):
+    """Passes of the best tracer's frame, those that ran first."""
+    passes = results.passes[results.passes.run_id == (chosen.run_id.iloc[0] if len(chosen) else "")]
+    if passes.empty:
         return None
-    row = chosen.iloc[0]
-    reasons = dict(re.findall(r"([^;:]+): ([^;]*)(?:; |$)", row.passes_why)) if has_value(row, "passes_why") else {}
-    ran = [one.partition("=") for one in row.passes.split()]
-    passes = [{"name": name, "ms": f"{float(ms):.3g}", "why": reasons.get(name, "")} for name, _, ms in ran]
-    skipped = row.passes_skipped.split() if has_value(row, "passes_skipped") else []
-    return {"of": row.setting, "passes": passes + [{"name": name, "ms": "–", "why": reasons.get(name, "not needed, or off")} for name in skipped]}
+    lines = [{"name": row["pass"], "ms": f"{row.ms_median:.3g}" if row.ran else "–", "why": row.reason if has_value(row, "reason") else ""}
+             for _, row in passes.sort_values("ran", ascending=False, kind="stable").iterrows()]
+    return {"of": chosen.setting.iloc[0], "passes": lines}
 
 
 def failed_table(results, again):

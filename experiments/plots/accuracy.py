@@ -4,9 +4,9 @@ import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.ticker import LogLocator
 
-from pairs import Ratio, paired_ratio
-from plot_data import describe, errors, known, label_of
-from plot_figures import log_axis
+from .pairs import Ratio, paired_ratio
+from .data import describe, errors, known, label_of
+from .figures import log_axis
 
 NOT_REACHED = "not reached"
 SUBJECT = "hiz"  # whose speed-ups are the headline; techniques whose names begin with it are its variants, not rivals

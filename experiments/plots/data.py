@@ -3,9 +3,9 @@ import tomllib
 
 import pandas as pd
 
-from pairs import cost_samples
-from plot_styles import chart_styles, styles
-from ssrlab_results import add_derived, inputs_of, is_number, read_environment, read_rows, varying  # noqa: F401
+from .pairs import cost_samples
+from .styles import chart_styles, styles
+from .results import add_derived, inputs_of, is_number, read_environment, read_passes, read_rows, varying  # noqa: F401
 
 # Where a specification names no [targets].
 TARGETS = {"recall_1px": [0.90, 0.95, 0.99, 0.995], "screen_recall_1px": [0.90, 0.95, 0.99, 0.995]}
@@ -23,6 +23,7 @@ class Results:
         self.targets = targets_of(self.environment)
         self.accuracy = accuracy_of(self.environment)
         self.costs = cost_samples(folder)
+        self.passes = read_passes(folder)
         add_derived(self.rows)
         self.techniques = sorted(self.rows.technique.unique())
         series = {name: sorted(self.rows[self.rows.technique == name].series.unique()) for name in self.techniques}
@@ -31,6 +32,11 @@ class Results:
     def has(self, *columns):
         """Whether every column is there with at least one value."""
         return all(column in self.rows and self.rows[column].notna().any() for column in columns)
+
+    def pass_ms(self, rows, name):
+        """Milliseconds of a pass in each of these rows; 0 where it did not run."""
+        times = self.passes[self.passes["pass"] == name].set_index("run_id").ms_median
+        return rows.run_id.map(times).astype(float).fillna(0)
 
     def pictures(self):
         """(title, file-name part, rows) for each scene, view, size and frame of a sequence."""

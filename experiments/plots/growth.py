@@ -1,8 +1,7 @@
-#!/usr/bin/python3
 """Draws how the cost of a ray grows with the picture, from a sweep over sizes.
 
     build/bin/ssrlab run experiments/resolution.toml
-    experiments/plot_benchmarks.py results/resolution -o growth.png
+    experiments/plot growth results/resolution -o growth.png
 Left the trace's time per traced ray, right the fetches per ray, against pixels. The legend gives each fitted exponent: 0 does not
 grow, 0.5 grows with the width of the picture.
 """
@@ -11,14 +10,12 @@ import argparse
 import os
 import sys
 
-import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.ticker import NullLocator
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-from matplotlib.ticker import NullLocator  # noqa: E402
-from plot_data import Results  # noqa: E402
-from plot_figures import fit_line, log_axis  # noqa: E402
+from .data import Results
+from .figures import fit_line, log_axis
 
 
 def exponent(pixels, values):
@@ -45,22 +42,19 @@ def draw(results, rows, title, output):
     print(output)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def main(words):
+    parser = argparse.ArgumentParser(prog="plot growth", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", metavar="FOLDER", help="a results folder with several sizes")
     parser.add_argument("--scene", default="thin_yard")
     parser.add_argument("--view", default="default")
     parser.add_argument("-o", "--output", default="growth.png", metavar="FILE.png")
-    options = parser.parse_args()
+    options = parser.parse_args(words)
     if not os.path.exists(os.path.join(options.folder, "results.csv")):
-        sys.exit(f"plot_benchmarks: {options.folder}: holds no results.csv; make one with ssrlab run")
+        sys.exit(f"plot growth: {options.folder}: holds no results.csv; make one with ssrlab run")
     results = Results(options.folder)
     rows = results.rows[(results.rows.scene == options.scene) & (results.rows["view"] == options.view)]
     if rows.empty:
-        sys.exit(f"plot_benchmarks: {options.folder}: no row of {options.scene}, view {options.view}")
+        sys.exit(f"plot growth: {options.folder}: no row of {options.scene}, view {options.view}")
     device = results.environment.get("identity", {}).get("device", "a device that is not known")
     draw(results, rows, f"{options.scene}, view {options.view}: growth with resolution on {device}", options.output)
 
-
-if __name__ == "__main__":
-    main()

@@ -1,0 +1,39 @@
+"""All plots and the report of a results folder."""
+import os
+import sys
+
+from matplotlib import pyplot as plt
+
+from . import accuracy, effects, figures, gpu, panels, report, sequences, surfaces
+from .data import Results
+
+INTERACTIVE = accuracy.ALL  # the report shows these as one chart to choose from
+
+
+def draw(results, folder):
+    """([{"name", "alt", "path", "curve"}], tables); an alt text says what a plot shows."""
+    os.makedirs(folder, exist_ok=True)
+    plots, tables = [], {}
+    # A specification that names its figures wants these.
+    usual = figures.ALL + accuracy.ALL + effects.ALL + surfaces.ALL + sequences.ALL + gpu.ALL
+    for make in panels.ALL if panels.figures_of(results) else usual:
+        for name, figure in (make(results, tables) if len(results.rows) else ()):
+            for extension in ("png", "svg"):
+                figure.savefig(os.path.join(folder, f"{name}.{extension}"))
+            plt.close(figure)
+            plots.append({"name": name, "alt": (getattr(figure, "finding", "") or name.replace("_", " ")) + ".",
+                          "path": os.path.join(folder, f"{name}.png"), "curve": make in INTERACTIVE})
+    return plots, tables
+
+
+def main(folder):
+    if not os.path.exists(os.path.join(folder, "results.csv")):
+        sys.exit(f"plot: {folder}: holds no results.csv; make one with ssrlab run")
+    results = Results(folder)
+    plots, tables = draw(results, os.path.join(folder, "plots"))
+    for name, table, digits in (("summary.csv", accuracy.summary(results), "%.6g"), ("surfaces.csv", surfaces.ladder(results), "%.5g")):
+        if len(table):
+            table.to_csv(os.path.join(folder, name), index=False, float_format=digits)
+    for frame, text in report.write(results, plots, tables):
+        print(f"{frame}: {text}")
+    print(f"{os.path.join(folder, 'report.html')}: {len(plots)} plots, {len(results.rows)} of {len(results.all_rows)} rows ok")
