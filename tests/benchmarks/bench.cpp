@@ -73,7 +73,7 @@ template <typename Record> double Bench::measure(benchmark::State& state, Pictur
 
 Bench::Bench(const std::string& device, const std::string& tracer)
     : gpu_(open_gpu({.device = device})),
-      techniques_(list_techniques(std::vector<fs::path>{data_root() / "tests/techniques"})),
+      techniques_(list_techniques(std::vector<fs::path>{data_root() / "techniques/rivals"})),
       tracer_{find_technique(techniques_, tracer).id, {}}
 {
 }

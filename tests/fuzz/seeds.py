@@ -147,8 +147,8 @@ def gltf_files(png):
     return [text, glb, small]
 
 
-MANIFESTS = {"technique_manifest": ("techniques/*/technique.toml", "tests/techniques/*/technique.toml"),
-             "structure_manifest": ("techniques/**/structure.toml", "tests/techniques/**/structure.toml"),
+MANIFESTS = {"technique_manifest": ("techniques/*/technique.toml", "techniques/rivals/*/technique.toml"),
+             "structure_manifest": ("techniques/**/structure.toml",),
              "surface_manifest": ("shaders/surfaces/*/surface.toml",), "reprojection_manifest": ("techniques/**/reprojection.toml",),
              "experiment": ("experiments/*.toml",), "recipe": ("experiments/scenes/*.toml",)}
 

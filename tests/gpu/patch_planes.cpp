@@ -132,7 +132,7 @@ TEST(PatchPlanesBehindBars, LieAboveThemWherePacketsStayInFront)
     const Picture picture = make_picture(ground_behind_bars({128, 64}));
     TraceSettings settings;
     settings.thickness_m                   = 0.1;
-    const std::filesystem::path folders[]  = {data_root() / "tests/techniques"};
+    const std::filesystem::path folders[]  = {data_root() / "techniques/rivals"};
     const auto                  techniques = list_techniques(folders);
     const auto                  planes     = planes_of(picture, settings, find_technique(techniques, "first_occluder"));
     for (const Front& front : fronts_of(picture, planes)) ASSERT_GE(front.height, -1e-6F);

@@ -12,7 +12,7 @@ namespace {
 
 const Technique& fragile(const std::string& id)
 {
-    static const std::filesystem::path  dirs[]     = {data_root() / "tests/techniques"};
+    static const std::filesystem::path  dirs[]     = {data_root() / "techniques/rivals"};
     static const std::vector<Technique> techniques = list_techniques(dirs);
     return find_technique(techniques, id);
 }

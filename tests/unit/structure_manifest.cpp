@@ -163,7 +163,7 @@ TEST(Structures, ThatCannotStandTogetherAreRefused)
 
 TEST(Structures, AreFoundAlsoInTheFolderOfATechnique)
 {
-    const std::vector<std::filesystem::path> folders = {data_root() / "tests/techniques"};
+    const std::vector<std::filesystem::path> folders = {data_root() / "techniques/rivals"};
     std::vector<std::string>                 ids;
     for (const Structure& structure : list_structures(folders)) ids.push_back(structure.id);
     for (const char* id : {"depth_pyramid", "ray_packets", "front_packets"}) EXPECT_THAT(ids, testing::Contains(id));
