@@ -21,7 +21,7 @@ inline constexpr size_t   max_objects       = 1'000'000; // of each kind: nodes,
 inline constexpr int      max_json_depth    = 128;
 inline constexpr int      max_node_depth    = 256;
 inline constexpr size_t   max_node_visits   = 1'000'000;
-inline constexpr size_t   max_triangles     = 40'000'000; // with all truths 500 bytes each (tests/at_size): 20 GiB
+inline constexpr size_t   max_triangles     = 40'000'000; // with all truths 500 bytes each (tests/stress/run sizes): 20 GiB
 inline constexpr size_t   max_accessor_rows = 300'000'000;
 inline constexpr size_t   max_poses         = 4'000'000; // baked for animations, 128 bytes each
 

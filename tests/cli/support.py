@@ -31,7 +31,7 @@ SWEEP_ROWS = 15
 
 
 def load_script(*path):
-    """A script of the tree without ending, such as tests/kills, as a module."""
+    """A script of the tree without ending, such as experiments/bench, as a module."""
     loader = importlib.machinery.SourceFileLoader(path[-1], os.path.join(SOURCE, *path))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader(path[-1], loader))
     loader.exec_module(module)
@@ -71,13 +71,6 @@ class Case(unittest.TestCase):
         for text in says:
             self.assertIn(text, out + err, story)
         return out + err
-
-    def script(self, name, *arguments, code=0):
-        """Runs tests/NAME on the built program to its end; says what it said."""
-        self.last_command = " ".join([f"tests/{name}", *arguments])
-        done = subprocess.run([os.path.join(SOURCE, "tests", name), "--program", PROGRAM, *arguments], capture_output=True, text=True, timeout=280)
-        self.assertEqual(done.returncode, code, f"repeat: {self.last_command}\n{done.stdout}{done.stderr}")
-        return done.stdout + done.stderr
 
     def refused(self, *arguments, code, says, **more):
         """An error is one line on stderr that begins with the program's name, and it leaves no output behind."""

@@ -333,7 +333,7 @@ TEST(TwoSidedBoxes, AreMetOnBothSidesOfTheirDepth)
 TEST(FrontPackets, ChangeNoAnswerOfATraversalThatStopsAtTheFirstOccluder)
 {
     namespace fs                = std::filesystem;
-    const fs::path   folders[]  = {data_root() / "tests/techniques"};
+    const fs::path   folders[]  = {data_root() / "techniques/rivals"};
     const auto       techniques = list_techniques(folders);
     const Technique& stops      = find_technique(techniques, "first_occluder");
     Technique        behind     = stops;
