@@ -117,16 +117,21 @@ bool same_picture(const Run& a, const Run& b) { return same_sequence(a, b) && a.
 
 std::string size_text(glm::ivec2 size_px) { return fmt::format("{}x{}", size_px.x, size_px.y); }
 
+const std::vector<std::string>& views_of(const Experiment& experiment, const std::string& scene)
+{
+    const auto own = experiment.scene_views.find(scene);
+    return own == experiment.scene_views.end() ? experiment.views : own->second;
+}
+
 double count_runs(const Experiment& experiment)
 {
     double sweeps = 0;
     for (const TechniqueSweep& sweep : experiment.techniques) {
         sweeps += combinations(settings_of(experiment, sweep)) * combinations(sweep.values);
     }
-    const double pictures = static_cast<double>(experiment.scenes.size()) *
-                            static_cast<double>(experiment.views.size()) *
-                            static_cast<double>(experiment.sizes_px.size() * experiment.frames.size());
-    return pictures * sweeps;
+    size_t views = 0;
+    for (const std::string& scene : experiment.scenes) views += views_of(experiment, scene).size();
+    return static_cast<double>(views * experiment.sizes_px.size() * experiment.frames.size()) * sweeps;
 }
 
 std::vector<Run> expand(const Experiment& experiment, std::span<const Technique> techniques, bool many)
@@ -140,7 +145,7 @@ std::vector<Run> expand(const Experiment& experiment, std::span<const Technique>
     std::vector<Run>       runs;
     std::set<std::string>  ids;
     for (const std::string& scene : experiment.scenes)
-        for (const std::string& view : experiment.views)
+        for (const std::string& view : views_of(experiment, scene))
             for (const glm::ivec2& size_px : sizes_of(experiment, scene))
                 for (const SequenceFrame& at : frames_of(experiment, scene))
                     for (Run run : on_each_picture) {

@@ -58,14 +58,30 @@ std::string read_name(const TomlFile& file, const std::filesystem::path& path)
     return name;
 }
 
+std::vector<std::string> texts_of(const TomlFile& file, const toml::node& node, const std::string& name)
+{
+    std::vector<std::string> texts;
+    for (const toml::node* value : values_of(file, node, name)) texts.push_back(toml_text(file, *value, name));
+    return texts;
+}
+
 std::vector<std::string> read_texts(const TomlFile& file, const std::string& name,
                                     const std::vector<std::string>& otherwise)
 {
     const toml::node* node = file.root.get(name);
-    if (node == nullptr) return otherwise;
-    std::vector<std::string> texts;
-    for (const toml::node* value : values_of(file, *node, name)) texts.push_back(toml_text(file, *value, name));
-    return texts;
+    return node == nullptr ? otherwise : texts_of(file, *node, name);
+}
+
+/// A list for all scenes, or a table of lists for scenes that name their own.
+void read_views(const TomlFile& file, Experiment& experiment)
+{
+    const toml::node*  node  = file.root.get("views");
+    const toml::table* table = node == nullptr ? nullptr : node->as_table();
+    experiment.views = table == nullptr ? read_texts(file, "views", {"default"}) : std::vector<std::string>{"default"};
+    if (table == nullptr) return;
+    toml_known_keys(file, *table, "scene of 'views'", experiment.scenes);
+    for (const auto& [scene, views] : *table)
+        experiment.scene_views[std::string(scene.str())] = texts_of(file, views, std::string(scene.str()));
 }
 
 glm::ivec2 read_size(const TomlFile& file, const toml::node& node)
@@ -321,13 +337,13 @@ Experiment load_experiment(const std::filesystem::path& path, std::span<const Te
     if (experiment.scenes.empty())
         throw_spec_error("{}:1: names no scene: add scenes = [\"builtin:stairs\"]", file.path);
     experiment.scenes_place = toml_place(file, *file.root.get("scenes"));
-    experiment.views        = read_texts(file, "views", {"default"});
-    experiment.sizes_px     = read_sizes(file);
-    experiment.frames       = read_frames(file);
-    experiment.settings     = read_settings(file);
-    experiment.techniques   = read_sweeps(file, techniques);
-    experiment.measure      = read_measure(file);
-    experiment.targets      = read_targets(file, experiment.measure);
+    read_views(file, experiment);
+    experiment.sizes_px   = read_sizes(file);
+    experiment.frames     = read_frames(file);
+    experiment.settings   = read_settings(file);
+    experiment.techniques = read_sweeps(file, techniques);
+    experiment.measure    = read_measure(file);
+    experiment.targets    = read_targets(file, experiment.measure);
     return experiment;
 }
 

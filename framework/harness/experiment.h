@@ -49,10 +49,12 @@ struct TechniqueSweep {
 };
 
 struct Experiment {
-    std::filesystem::path      file;
-    std::string                text; // the whole file
-    std::string                name, title;
-    std::vector<std::string>   scenes, views;
+    std::filesystem::path                           file;
+    std::string                                     text; // the whole file
+    std::string                                     name, title;
+    std::vector<std::string>                        scenes, views;
+    std::map<std::string, std::vector<std::string>> scene_views =
+        {};                                  // in the place of `views`, of scenes that name them
     std::string                scenes_place; // file:line
     std::vector<glm::ivec2>    sizes_px;
     std::vector<SequenceFrame> frames = {{}};
@@ -88,6 +90,8 @@ inline constexpr double max_runs_unasked = 100000;
 
 /// Throws SpecError with file and line for whatever is unknown, missing, of the wrong type or out of range.
 Experiment load_experiment(const std::filesystem::path& file, std::span<const Technique> techniques);
+
+const std::vector<std::string>& views_of(const Experiment& experiment, const std::string& scene);
 
 /// The number of runs that expand() makes, without making them.
 double count_runs(const Experiment& experiment);

@@ -28,8 +28,8 @@ class Test(Case):
     def setUp(self):
         super().setUp()
         self.write("experiments/tiny.toml", EXPERIMENT.replace("STEPS", "[8, 16]"))
-        for name in ("references", "ssrlab_results.py"):
-            shutil.copy(os.path.join(SOURCE, "experiments", name), self.path("experiments/" + name))
+        shutil.copy(os.path.join(SOURCE, "experiments/references"), self.path("experiments"))
+        shutil.copytree(os.path.join(SOURCE, "experiments/plots"), self.path("experiments/plots"))
         os.chmod(self.write("build/bin/ssrlab", WRAPPER), 0o755)
         self.write(REFERENCE + "/environment.json", json.dumps(
             {"experiment": "tiny", "command_line": "build/bin/ssrlab --quiet run experiments/tiny.toml -o /elsewhere"}))

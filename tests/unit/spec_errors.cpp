@@ -208,6 +208,18 @@ binary_steps = 10
     EXPECT_EQ(pictures, 2 * 2 * 3);
 }
 
+TEST(Spec, AListOfViewsMayBeOfOneScene)
+{
+    const std::string        head       = "scenes = [\"a\", \"b:c\"]\n[techniques.dda]\n";
+    const Experiment         experiment = load_text("views = { \"b:c\" = [\"left\", \"default\"] }\n" + head);
+    std::vector<std::string> frames;
+    for (const ssrlab::Run& run : expand(experiment, techniques())) frames.push_back(run.scene + " " + run.view);
+    EXPECT_THAT(frames, testing::ElementsAre("a default", "b:c left", "b:c default"));
+    EXPECT_EQ(count_runs(experiment), 3);
+    EXPECT_THAT(error_of("views = { c = \"left\" }\n" + head), HasSubstr(".toml:1: unknown scene of 'views' 'c'"));
+    EXPECT_THAT(error_of("views = { a = [] }\n" + head), HasSubstr(".toml:1: 'a' is an empty list"));
+}
+
 TEST(Spec, ATechniquesTableMayNameSettingsOfItsOwn)
 {
     const Experiment experiment =
