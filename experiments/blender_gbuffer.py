@@ -1,4 +1,4 @@
-"""Writes a frame of a Blender scene as ssrlab reads it (docs/own_frames.md). Run by Blender 3.4 or later, with Cycles:
+"""Writes a frame of a Blender scene as ssrlab reads it (docs/how-to/export_frames.md). Run by Blender 3.4 or later, with Cycles:
 
     blender -b --factory-startup -P experiments/blender_gbuffer.py -- model.glb frame.exr
     blender -b my.blend -P experiments/blender_gbuffer.py -- frame.exr

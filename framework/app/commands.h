@@ -23,13 +23,15 @@ struct PictureOptions {
 };
 
 int list_everything(const CommonOptions& common, bool json);
+/// docs/reference/settings.md: every setting and parameter with its range, default and meaning.
+int list_as_markdown(const CommonOptions& common);
 /// A technique, a surface model, or a setting of [trace] and [passes].
 int show_entry(const CommonOptions& common, const std::string& name, bool json);
 int trace_hits(const CommonOptions& common, const PictureOptions& options);
 int write_gbuffer(const CommonOptions& common, const PictureOptions& options);
 /// Plots, derived rows and report of a results folder, by the plot script.
 int plot_results(const std::string& folder);
-/// results/README.md: every column of results.csv.
+/// docs/reference/columns.md: every column of results.csv.
 int print_measures(const CommonOptions& common);
 
 } // namespace ssrlab

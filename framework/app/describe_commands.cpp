@@ -155,7 +155,45 @@ nlohmann::json list_as_json(const std::vector<Technique>& techniques)
     return json;
 }
 
+/// One row of a Markdown table.
+std::string row_of(const Parameter& parameter)
+{
+    std::string doc = parameter.doc;
+    for (size_t bar = doc.find('|'); bar != std::string::npos; bar = doc.find('|', bar + 2)) doc.insert(bar, "\\");
+    const std::string range = parameter.type == ParameterType::choice
+                                  ? fmt::format("{}", fmt::join(parameter.choices, ", "))
+                              : parameter.type == ParameterType::boolean ? "true, false"
+                                                                         : range_of(parameter);
+    return fmt::format("| `{}` | {} | {} | {} |\n", parameter.name, range,
+                       format_parameter(parameter, parameter.default_value), doc);
+}
+
+constexpr const char* markdown_introduction = R"(# Settings and parameters
+
+`ssrlab list --markdown` writes this page; do not edit it. Settings belong to the experiment and are
+equal for all techniques: tables `[trace]` and `[passes]` of a specification. Parameters belong to a
+technique: its table `[techniques.NAME]`. On the command line both are `-p NAME=VALUE`, and both are
+columns of `results.csv`.
+)";
+
 } // namespace
+
+int list_as_markdown(const CommonOptions& common)
+{
+    constexpr const char* head = "| name | range | default | meaning |\n|---|---|---|---|\n";
+    std::string           text = markdown_introduction;
+    for (const char* table : {"trace", "passes"}) {
+        text += fmt::format("\n## [{}]\n{}", table, head);
+        for (const Setting& setting : all_settings())
+            if (setting.table == table) text += row_of(setting);
+    }
+    for (const Technique& technique : list_techniques(common.technique_dirs)) {
+        text += fmt::format("\n## [techniques.{}]\n{}", technique.id, head);
+        for (const Parameter& parameter : technique.parameters) text += row_of(parameter);
+    }
+    std::fputs(text.c_str(), stdout);
+    return 0;
+}
 
 int list_everything(const CommonOptions& common, bool json)
 {

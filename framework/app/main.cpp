@@ -67,7 +67,7 @@ void add_frame_options(CLI::App& command, ssrlab::PictureOptions& options)
         ->check(CLI::Range(0, ssrlab::max_frames));
     command
         .add_option("--jitter", options.at.jitter_phases,
-                    "Sub-pixel offsets of the camera that repeat after so many frames; 0: none")
+                    "Sub-pixel offsets of the camera that repeat after this many frames; 0: none")
         ->capture_default_str()
         ->check(CLI::Range(0, ssrlab::max_jitter_phases));
 }
@@ -112,27 +112,28 @@ void add_default_technique(CLI::App& command, ssrlab::PictureOptions& options)
 
 void add_presentation_options(CLI::App& command, ssrlab::RenderOptions& options)
 {
-    command.add_option("--frames", options.frames, "Write so many numbered pictures, of this frame and those after it")
+    command.add_option("--frames", options.frames, "Write this many numbered pictures, beginning with this frame")
         ->check(CLI::Range(1, ssrlab::max_frames));
     command
-        .add_option("--samples", options.samples, "Anti-aliasing: average so many places of the camera within a pixel")
+        .add_option("--samples", options.samples,
+                    "Anti-aliasing: the mean of this many camera positions within a pixel")
         ->capture_default_str()
         ->check(CLI::Range(1, ssrlab::max_samples));
-    command.add_option("--exposure", options.exposure_ev, "Stops by which a .png is brighter")->capture_default_str();
+    command.add_option("--exposure", options.exposure_ev, "Exposure of a .png, in stops")->capture_default_str();
     command
         .add_option("--display", options.display,
-                    "How a .png shows radiance: clip (cut at 1), or agx (AgX, which keeps bright colours)")
+                    "Tone curve of a .png: clip (at 1), or agx, which keeps bright colours")
         ->capture_default_str()
         ->check(CLI::IsMember({"clip", "agx"}));
     command
         .add_option("--show", options.show,
-                    "False colours in place of the picture (docs/reading_the_report.md): agreement (right and wrong "
+                    "False colours instead of the picture (docs/how-to/read_the_report.md): agreement (right and wrong "
                     "rays), causes (why rays are wrong), fetches (work per ray)")
         ->check(CLI::IsMember({"agreement", "causes", "fetches"}));
-    auto* truth = command.add_flag("--truth", options.truth, "The true reflection in place of the traced one");
+    auto* truth = command.add_flag("--truth", options.truth, "The true reflection instead of the traced one");
     command
         .add_flag("--side-by-side", options.side_by_side,
-                  "Without reflections, with the traced and with the true ones, in one picture with labels")
+                  "Three labelled pictures in one: without reflections, traced, true")
         ->excludes(truth);
 }
 
@@ -146,7 +147,8 @@ int main(int argc, char** argv)
     using namespace ssrlab;
     open_closed_streams();
     CLI::App app(
-        "ssrlab: what does each bit of accuracy of a screen-space reflection tracer cost in time, on your scene?");
+        "ssrlab: what does each bit of accuracy of a screen-space reflection tracer cost in time, on your scene?",
+        "ssrlab");
     CommonOptions  common;
     PictureOptions picture;
     RunOptions     run;
@@ -156,50 +158,53 @@ int main(int argc, char** argv)
     app.set_version_flag("--version", version_text());
     app.add_option("--device", common.gpu.device,
                    "Vulkan device by index or part of its name; default: a discrete GPU if present, else the first");
-    app.add_option(
-        "--techniques", common.technique_dirs,
-        "Further folders of techniques, structures, reprojections and surface models, or folders of them (also "
-        "$SSRLAB_TECHNIQUES)");
+    app.add_option("--techniques", common.technique_dirs,
+                   "Further folders of techniques, structures, reprojections and surface models, or folders of them "
+                   "(also $SSRLAB_TECHNIQUES)");
     app.add_option(
            "--storage", common.gpu.storage,
-           "How shaders read lists and depth: texel-buffers or plain-buffers; default: what the device has room for")
+           "How shaders read lists and depth: texel-buffers or plain-buffers; default: by the limits of the device")
         ->transform(CLI::Transformer(std::map<std::string, TexelStorage>{
-            {"texel-buffers", TexelStorage::texel_buffers}, {"plain-buffers", TexelStorage::plain_buffers}}));
+            {"texel-buffers", TexelStorage::texel_buffers}, {"plain-buffers", TexelStorage::plain_buffers}}))
+        ->option_text("texel-buffers|plain-buffers");
     app.add_option("--passes", common.gpu.passes,
-                   "How the passes before the trace share their work: serial (an invocation a tile or ray group) or "
-                   "parallel (one a pixel, several a ray group); default: serial on a CPU, parallel on a GPU")
+                   "How the passes before the trace share work: serial (an invocation per tile or ray group) or "
+                   "parallel (one per pixel, several per ray group); default: serial on a CPU, parallel on a GPU")
         ->transform(CLI::Transformer(
-            std::map<std::string, PassStyle>{{"serial", PassStyle::serial}, {"parallel", PassStyle::parallel}}));
+            std::map<std::string, PassStyle>{{"serial", PassStyle::serial}, {"parallel", PassStyle::parallel}}))
+        ->option_text("serial|parallel");
     app.add_flag("--validation", common.gpu.validation,
                  "Load the Khronos validation layer; any message fails the command");
 
-    app.add_flag("--quiet", common.quiet, "No warnings and no progress; errors are still said");
+    app.add_flag("--quiet", common.quiet, "Print no warnings and no progress, only errors");
 
     std::function<int()> command;
     bool                 json = false;
-    auto*                list = app.add_subcommand("list", "Techniques, surface models, scenes, settings and devices");
-    list->add_flag("--json", json, "With everything that show says, as JSON");
-    list->callback([&] { command = [&] { return list_everything(common, json); }; });
-    auto* show = app.add_subcommand(
-        "show", "A technique's parameters and sources, what a surface model needs, or a setting's range and default");
+    auto* list = app.add_subcommand("list", "List techniques, surface models, scenes, settings and devices");
+    list->add_flag("--json", json, "As JSON, with everything that show prints");
+    bool markdown = false;
+    list->add_flag("--markdown", markdown, "Settings and parameters alone, as docs/reference/settings.md has them");
+    list->callback(
+        [&] { command = [&] { return markdown ? list_as_markdown(common) : list_everything(common, json); }; });
+    auto* show = app.add_subcommand("show", "Describe a technique, a surface model or a setting");
     show->add_option("TECHNIQUE|SURFACE|SETTING", technique)->required();
     show->add_flag("--json", json, "As JSON");
     show->callback([&] { command = [&] { return show_entry(common, technique, json); }; });
     RenderOptions rendered;
-    auto*         render = app.add_subcommand("render", "A picture with reflections (.png or .exr)");
+    auto*         render = app.add_subcommand("render", "Render a picture with reflections (.png or .exr)");
     add_picture_options(*render, rendered.picture, true);
     add_presentation_options(*render, rendered);
     render->callback([&] { command = [&] { return render_picture(common, rendered); }; });
-    auto* trace = app.add_subcommand("trace", "What each ray found and why it stopped (.exr)");
+    auto* trace = app.add_subcommand("trace", "Write what each ray found and why it stopped (.exr)");
     add_picture_options(*trace, picture, true);
     trace->callback([&] { command = [&] { return trace_hits(common, picture); }; });
-    auto* gbuffer = app.add_subcommand("gbuffer", "What the camera sees (.exr)");
+    auto* gbuffer = app.add_subcommand("gbuffer", "Write what the camera sees (.exr)");
     add_picture_options(*gbuffer, picture, false);
     gbuffer->callback([&] { command = [&] { return write_gbuffer(common, picture); }; });
 
     RayOptions ray;
     auto*      explained = app.add_subcommand(
-             "ray", "One ray: what each technique looked at, where and why it stopped, and where it should have");
+             "ray", "Explain one ray: what each technique read, where and why it stopped, and where it should have");
     add_scene_options(*explained, ray.picture);
     explained->add_option("--pixel", ray.pixel, "X,Y of the pixel that reflects, from the top left")->required();
     explained->add_option("-t,--technique", ray.techniques, "Technique; several may be compared")->required();
@@ -210,29 +215,30 @@ int main(int argc, char** argv)
     explained->callback([&] { command = [&] { return explain_ray(common, ray); }; });
 
     ViewOptions view;
-    auto*       viewed = app.add_subcommand("view", "A window: camera, technique and settings changed live");
+    auto* viewed = app.add_subcommand("view", "Open a window in which camera, technique and settings change live");
     add_scene_options(*viewed, view.picture);
     add_default_technique(*viewed, view.picture);
-    viewed->add_option("--script", view.script, "Commands in the place of mouse and keyboard (docs/viewer.md)");
+    viewed->add_option("--script", view.script,
+                       "File of commands instead of mouse and keyboard (docs/how-to/viewer.md)");
     viewed->callback([&] { command = [&] { return view_scene(common, view); }; });
 
     PlanOptions plan;
-    auto*       planned = app.add_subcommand("plan", "Which passes a frame needs, why, and what they cost or save");
+    auto* planned = app.add_subcommand("plan", "Show which passes a frame needs, why, and what they cost or save");
     add_scene_options(*planned, plan.picture);
     add_default_technique(*planned, plan.picture);
     planned->add_option("--repeats", plan.repeats, "Timed frames")->capture_default_str()->check(CLI::PositiveNumber);
     planned->callback([&] { command = [&] { return print_plan(common, plan); }; });
 
     auto* sweep =
-        app.add_subcommand("run", "An experiment: every combination of its lists becomes a row of results.csv");
-    sweep->add_option("SPEC", run.specification, "Experiment (.toml; see experiments/README.md)")->required();
+        app.add_subcommand("run", "Run an experiment: every combination of its lists becomes a row of results.csv");
+    sweep->add_option("SPEC", run.specification, "Experiment (.toml; see docs/how-to/experiments.md)")->required();
     sweep->add_option("-o,--output", run.folder, "Results folder; default: results/NAME");
-    sweep->add_flag("--resume", run.resume,
-                    "Do the runs that the folder lacks or that failed; refused when specification, shaders, scenes or "
-                    "device changed");
-    sweep->add_option("--only", run.only, "Just the run of this id (first column of results.csv)");
+    sweep->add_flag(
+        "--resume", run.resume,
+        "Do the runs that are missing or failed; refused if specification, shaders, scenes or device changed");
+    sweep->add_option("--only", run.only, "Only the run with this id (first column of results.csv)");
     sweep->add_option("--shard", run.shard,
-                      "I/N: the I-th of N parts, cut between pictures, for N machines or processes; see ssrlab merge");
+                      "I/N: the I-th of N parts, cut between frames, for N machines or processes; see ssrlab merge");
     sweep->add_flag("--dry-run", run.dry_run, "List the runs and the estimated time; write nothing");
     sweep->add_flag("--yes", run.yes, "Allow more than 100,000 runs");
     sweep->callback([&] {
@@ -246,46 +252,45 @@ int main(int argc, char** argv)
     });
     std::filesystem::path              merged;
     std::vector<std::filesystem::path> parts;
-    auto* merge = app.add_subcommand("merge", "One results folder of the parts that run --shard wrote");
+    auto* merge = app.add_subcommand("merge", "Merge the parts that run --shard wrote into one results folder");
     merge->add_option("-o,--output", merged, "Folder to write")->required();
     merge->add_option("DIR", parts, "Results folders of one experiment")->required();
     merge->callback([&] { command = [&] { return merge_results(merged, parts); }; });
-    auto* plot = app.add_subcommand("plot", "Plots, derived rows and report of a results folder");
+    auto* plot = app.add_subcommand("plot", "Write plots, summary and report of a results folder");
     plot->add_option("DIR", results, "Results folder")->required();
     plot->callback([&] { command = [&] { return plot_results(results); }; });
-    app.add_subcommand("measures", "Every column of results.csv and what it means (results/README.md)")->callback([&] {
-        command = [&] { return print_measures(common); };
-    });
+    app.add_subcommand("measures", "Print what every column of results.csv means (docs/reference/columns.md)")
+        ->callback([&] { command = [&] { return print_measures(common); }; });
 
     ShadersOptions shaders;
     auto*          compiled = app.add_subcommand(
-                 "shaders", "What a GPU's compiler makes of each pass: registers, code, the innermost loop (docs/devices.md)");
+                 "shaders",
+                 "Show what a GPU's compiler makes of each pass: registers, code, the innermost loop (docs/how-to/devices.md)");
     compiled->add_option("TECHNIQUE", shaders.techniques, "Techniques; default: all");
-    compiled->add_option(
-        "--chip", shaders.chip,
-        fmt::format("Compile for this AMD GPU without having it: {}; default: for the device that is there",
-                    fmt::join(known_chips(), ", ")));
+    compiled->add_option("--chip", shaders.chip,
+                         fmt::format("Compile for this AMD GPU without having it: {}; default: for the present device",
+                                     fmt::join(known_chips(), ", ")));
     compiled->add_option("-p,--parameter", shaders.parameters,
                          "name=value, as for render; for every technique that has it");
     compiled->add_option("--assembly", shaders.assembly, "Also write the assembly of each pass into this folder");
-    compiled->add_flag("--json", shaders.json, "With all that the driver says, as JSON");
+    compiled->add_flag("--json", shaders.json, "As JSON, with all that the driver says");
     compiled->callback([&] { command = [&] { return describe_shaders(common, shaders); }; });
 
-    auto* begin = app.add_subcommand("new-technique", "A folder to begin with: a tracer that passes check");
+    auto* begin = app.add_subcommand("new-technique", "Write a folder to begin with: a tracer that passes check");
     begin->add_option("FOLDER", results, "Its name becomes the technique's id")->required();
     begin->callback([&] { command = [&] { return write_new_technique(results); }; });
 
     HardCaseOptions hard_cases;
     auto*           check = app.add_subcommand(
                   "check",
-                  "Techniques against the catalogue of hard cases (docs/hard_cases.md); fails when one breaks what it claims");
+                  "Run techniques against the hard cases (docs/explanation/hard_cases.md); fails if one breaks what it claims");
     check->add_option("TECHNIQUE|DIR", hard_cases.subject, "A technique, or a folder of techniques; default: all");
     check->add_option("-p,--parameter", hard_cases.parameters,
                       "name=value of the techniques, instead of the default (see ssrlab show)");
     check->add_option("--case", hard_cases.only_case, "Only this case");
-    check->add_option("--ray", hard_cases.ray, "SETUP:RAY of the case: show its way, pixel by pixel");
+    check->add_option("--ray", hard_cases.ray, "SETUP:RAY of the case: show its path, pixel by pixel");
     check->add_option("--markdown", hard_cases.markdown, "Write the table to this file");
-    check->add_flag("--quick", hard_cases.quick, "Without double precision and robust buffer access");
+    check->add_flag("--quick", hard_cases.quick, "Leave out double precision and robust buffer access");
     check->add_flag("--stability", hard_cases.stability, "Also measure sub-pixel jitter and depth formats");
     check->callback([&] {
         command = [&] {

@@ -11,24 +11,23 @@
 namespace ssrlab {
 namespace {
 
-constexpr const char* introduction = R"(# Results
+constexpr const char* introduction = R"(# Columns
 
-`ssrlab measures` writes this page; do not edit it. `ssrlab run` makes one folder per experiment
-here, which git ignores. `reference/` holds small committed runs to compare with.
+`ssrlab measures` writes this page; do not edit it. `results.csv` has one row per run, in the columns
+below. The settings and parameters of the run are columns, too: [settings.md](settings.md). A field
+without a value is empty, never NaN.
 
 | in a results folder | |
 |---|---|
-| `results.csv` | one row per run, in the columns below |
-| `sequence_summary.csv` | of an experiment with several frames: one row per run without its frame, in the columns of the last table |
-| `samples.csv` | every timed frame: run_id, round, pass, ms, cpu_ms; docs/measuring.md says what a round is |
+| `results.csv` | one row per run |
+| `sequence_summary.csv` | for an experiment with several frames: one row per run without its frame, in the columns of the last table |
+| `samples.csv` | every timed frame: run_id, round, pass, ms, cpu_ms; [measuring](../explanation/measuring.md) says what a round is |
 | `passes.csv` | the passes of each run's frame: whether each ran, how long it took, and why |
 | `environment.json` | device, driver, commit, command line, seed, specification, and hashes of everything that decides a result |
 | `pictures/` | per run: the reflection, right and wrong rays in false colours, and the work per ray |
 | `report.html`, `report.md`, `summary.csv`, `plots/` | made from the above by `ssrlab plot` |
 
-## Columns
-A field without a value is empty, never NaN. Parameters of techniques are marked. They are empty for
-techniques that do not have them.
+## Runs
 )";
 
 std::string code(std::string_view text) { return fmt::format("`{}`", text); }
@@ -41,19 +40,21 @@ int print_measures(const CommonOptions& common)
     Experiment everything;
     for (const Technique& technique : techniques) everything.techniques.push_back({technique.id, {}, {}, {}});
 
-    std::vector<std::string> parameters;
+    // Settings and parameters have a page of their own.
+    std::vector<std::string> elsewhere;
+    for (const Setting& setting : all_settings()) elsewhere.push_back(setting.name);
     for (const Technique& technique : techniques)
-        for (const Parameter& parameter : technique.parameters) parameters.push_back(parameter.name);
+        for (const Parameter& parameter : technique.parameters) elsewhere.push_back(parameter.name);
 
     std::string text = introduction;
-    text += "\n| column | meaning |\n|---|---|\n";
+    text += "| column | meaning |\n|---|---|\n";
     for (const Column& column : result_columns(everything, techniques)) {
         if (std::ranges::find(measures(), column.name, &Measure::name) != measures().end()) continue;
-        const bool is_parameter = std::ranges::find(parameters, column.name) != parameters.end();
-        text += fmt::format("| {} | {}{} |\n", code(column.name), is_parameter ? "parameter: " : "", column.meaning);
+        if (std::ranges::find(elsewhere, column.name) != elsewhere.end()) continue;
+        text += fmt::format("| {} | {} |\n", code(column.name), column.meaning);
     }
     text += "\n## Measures\nAlso columns. A share is between 0 and 1.\n\n" + measures_markdown();
-    text += "\n## Summary of a sequence\n`sequence_summary.csv` has the settings and parameters above, and these:\n\n";
+    text += "\n## Summary of a sequence\n`sequence_summary.csv` has the settings and parameters of the runs, and these:\n\n";
     text += "| column | meaning |\n|---|---|\n";
     const std::vector<Column> settings = setting_columns(everything, techniques);
     for (const Column& column : summary_columns(everything, techniques))

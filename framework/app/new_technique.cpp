@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* manifest = R"(name       = "{0}"
 summary    = "Looks at places a fixed number of pixels apart."
-limits     = ["point_sampled", "tests_whole_steps"] # what it does not claim; docs/writing_a_technique.md
+limits     = ["point_sampled", "tests_whole_steps"] # what it does not claim; docs/reference/manifests.md
 bounded_by = ["max_steps"]                          # bounds the loop
 
 [parameters]

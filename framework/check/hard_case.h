@@ -1,4 +1,4 @@
-// The catalogue of hard cases (docs/hard_cases.md): what breaks tracers, the smallest picture and rays that show it, and the answer.
+// The catalogue of hard cases (docs/explanation/hard_cases.md): what breaks tracers, the smallest picture and rays that show it, and the answer.
 #pragma once
 
 #include "check/setup.h"

@@ -8,12 +8,12 @@
 namespace ssrlab {
 namespace {
 
-constexpr std::string_view contract   = "docs/hit_contract.md";
+constexpr std::string_view contract   = "docs/reference/hit_contract.md";
 constexpr std::string_view truth      = "framework/truth/scene_truth.h";
 constexpr std::string_view before     = "framework/truth/reprojection_truth.h";
 constexpr std::string_view causes     = "framework/compare/causes.h";
 constexpr std::string_view own        = "ssrlab";
-constexpr std::string_view divergence = "docs/devices.md";
+constexpr std::string_view divergence = "docs/explanation/devices.md";
 
 // px distance = the larger of |dx| and |dy| between two hit points. "Found" = the truth has a point, the technique hits, and
 // their distance is at most 1 px unless another number is named.

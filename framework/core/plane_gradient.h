@@ -11,7 +11,7 @@ namespace ssrlab {
 uint32_t  pack_gradient(glm::vec2 gradient);
 glm::vec2 unpack_gradient(uint32_t packed);
 
-/// Gives a G-buffer without gradients those of its normals (docs/hit_contract.md), as pack_gradient() keeps them; NaN where a normal is not usable. One that
+/// Gives a G-buffer without gradients those of its normals (docs/reference/hit_contract.md), as pack_gradient() keeps them; NaN where a normal is not usable. One that
 /// has gradients stays as it is.
 void complete_gradients(GBufferImage& image);
 

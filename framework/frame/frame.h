@@ -17,7 +17,7 @@
 
 namespace ssrlab {
 
-/// A frame's defaults are what measures best (docs/surfaces.md); TraceSettings alone are the simplest contract.
+/// A frame's defaults are what measures best (docs/explanation/surfaces.md); TraceSettings alone are the simplest contract.
 struct FrameSettings {
     TraceSettings   trace  = {.behind = Behind::stop, .surface = "plane_solid"};
     ParameterValues passes = default_pass_values(); // by the names of pass_parameters()

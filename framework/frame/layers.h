@@ -1,4 +1,4 @@
-// The layers behind a G-buffer that enter the walk (docs/hit_contract.md). Folder-internal.
+// The layers behind a G-buffer that enter the walk (docs/reference/hit_contract.md). Folder-internal.
 #pragma once
 
 #include "frame/gbuffer.h"

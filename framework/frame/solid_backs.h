@@ -1,4 +1,4 @@
-// Where the solids end whose fronts the G-buffer shows (docs/hit_contract.md, plane_solid). Folder-internal.
+// Where the solids end whose fronts the G-buffer shows (docs/reference/hit_contract.md, plane_solid). Folder-internal.
 #pragma once
 
 #include "frame/gbuffer.h"

@@ -46,7 +46,7 @@ Setting surface_setting()
                                              .max     = static_cast<double>(surfaces.size() - 1),
                                              .choices = {},
                                              .doc = "what a pixel holds around its depth: a surface model (ssrlab show NAME), see "
-                                                    "docs/hit_contract.md"};
+                                                    "docs/reference/hit_contract.md"};
     std::ranges::transform(surfaces, std::back_inserter(parameter.choices), &Surface::id);
     const auto number_of = [=](const TraceSettings& trace) {
         return static_cast<double>(&find_surface(trace.surface) - surfaces.data());

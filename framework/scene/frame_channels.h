@@ -9,7 +9,7 @@
 
 namespace ssrlab {
 
-/// One number per pixel that a frame has. docs/own_frames.md lists the names that are recognised.
+/// One number per pixel that a frame has. docs/reference/frame_files.md lists the names that are recognised.
 inline constexpr const char* frame_quantities[] = {
     "depth",       "normal.x",   "normal.y",   "normal.z",      "roughness",     "smoothness",    "metallic",
     "specular.R",  "specular.G", "specular.B", "base_colour.R", "base_colour.G", "base_colour.B", "lit.R",

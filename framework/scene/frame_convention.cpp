@@ -161,10 +161,10 @@ FrameConvention read_convention(const ExrFile& file)
     convention.view.name    = Camera{}.name;
     convention.view.size_px = file.size_px;
     if (!(convention.device_far_m > 0))
-        throw_spec_error("{}: nothing says how the camera looks: write {} with [camera] (docs/own_frames.md)",
+        throw_spec_error("{}: nothing says how the camera looks: write {} with [camera] (docs/reference/frame_files.md)",
                          file.shown, convention.place);
     if (!convention.depth)
-        throw_spec_error("{}: nothing says what depth means: write {} with [depth] kind (docs/own_frames.md)",
+        throw_spec_error("{}: nothing says what depth means: write {} with [depth] kind (docs/reference/frame_files.md)",
                          file.shown, convention.place);
     return convention;
 }

@@ -16,7 +16,7 @@ struct Frame {
     std::vector<std::string> warnings;  // one line each
 };
 
-/// docs/own_frames.md says what is read. Throws SpecError (what a person can write otherwise) or Failure (a damaged file), naming file
+/// docs/reference/frame_files.md says what is read. Throws SpecError (what a person can write otherwise) or Failure (a damaged file), naming file
 /// and channel, what was expected and what is there.
 Frame load_frame(const std::filesystem::path& exr);
 

@@ -1,5 +1,5 @@
 // A structure is a folder: structure.toml says what is derived from the G-buffer to trace faster, how much room it takes and
-// which shaders build it; read.glsl is how techniques read it (docs/writing_a_technique.md).
+// which shaders build it; read.glsl is how techniques read it (docs/how-to/write_a_structure.md).
 #pragma once
 
 #include "gpu/gpu.h"

@@ -1,4 +1,4 @@
-// What a pixel holds and where a ray meets it: sections "What a pixel holds" and "The meeting" of docs/hit_contract.md, in double precision.
+// What a pixel holds and where a ray meets it: sections "What a pixel holds" and "The meeting" of docs/reference/hit_contract.md, in double precision.
 #pragma once
 
 #include "core/gbuffer_image.h"

@@ -1,4 +1,4 @@
-// Ray set-up in double precision: section "The ray" of docs/hit_contract.md.
+// Ray set-up in double precision: section "The ray" of docs/reference/hit_contract.md.
 #pragma once
 
 #include "core/gbuffer_image.h"

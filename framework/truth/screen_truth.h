@@ -1,4 +1,4 @@
-// Screen truth: the hit contract (docs/hit_contract.md) evaluated in double precision on the CPU, every pixel that the ray crosses.
+// Screen truth: the hit contract (docs/reference/hit_contract.md) evaluated in double precision on the CPU, every pixel that the ray crosses.
 #pragma once
 
 #include "core/gbuffer_image.h"

@@ -116,7 +116,7 @@ void show_widgets(Session& session)
 {
     if (const auto chosen = combo("show", session.show, shown_names.size(), [](size_t i) { return shown_names[i]; }))
         set_value(session, "show", std::string(shown_names[*chosen]));
-    tip("The picture, its rays in false colours (docs/reading_the_report.md), or the true reflection");
+    tip("The picture, its rays in false colours (docs/how-to/read_the_report.md), or the true reflection");
     auto split = static_cast<float>(session.split);
     if (ImGui::SliderFloat("split", &split, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp))
         set_value(session, "split", fmt::format("{}", split));

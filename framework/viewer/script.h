@@ -1,4 +1,4 @@
-// Commands of a file in the place of mouse and keyboard: docs/viewer.md.
+// Commands of a file in the place of mouse and keyboard: docs/how-to/viewer.md.
 #pragma once
 
 #include <filesystem>

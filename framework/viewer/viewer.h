@@ -7,7 +7,7 @@ namespace ssrlab {
 
 struct ViewOptions {
     PictureOptions picture;
-    std::string    script; // a file of commands (docs/viewer.md) in the place of mouse and keyboard; empty: none
+    std::string    script; // a file of commands (docs/how-to/viewer.md) in the place of mouse and keyboard; empty: none
 };
 
 int view_scene(const CommonOptions& common, const ViewOptions& options);

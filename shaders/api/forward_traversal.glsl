@@ -1,7 +1,7 @@
 // A walk through the cells of a pyramid, in an image mirrored so that its ray runs forward on both axes: pixel p becomes p ^ mirror, and crossings keep
 // their bits, since only signs change. A cell is named by its exit corner: the borders where the ray leaves it, x and y multiples of its size in pixels.
 // A cell is left where the ray crosses its border, at the same t on every level; going down chooses the child by comparing t with the middle border. So
-// the finest cells passed are exactly the pixels of the walk (docs/exactness.md). Float only. The technique has a parameter max_steps.
+// the finest cells passed are exactly the pixels of the walk (docs/explanation/exactness.md). Float only. The technique has a parameter max_steps.
 struct Traversal
 {
     Ray   forward; // in the mirrored image

@@ -1,4 +1,4 @@
-// All that the author of a reprojection strategy reads (docs/motion.md): where was, in the frame before, what a pixel reflects now?
+// All that the author of a reprojection strategy reads (docs/explanation/motion.md): where was, in the frame before, what a pixel reflects now?
 // reproject.glsl defines
 //     Reprojected reproject(Reflection now)
 // Positions on the image are in pixels and without the jitter of either frame. _vs is this frame's view space, _pvs that of the frame before.

@@ -1,4 +1,4 @@
-// The slab of a depth sample (docs/hit_contract.md) in one form for all views and thickness rules:
+// The slab of a depth sample (docs/reference/hit_contract.md) in one form for all views and thickness rules:
 //   slab_back(d) = (d * scale - shift) / (1 + d * slope)
 //   perspective   absolute: slope = thickness / near        relative: scale = 1 / (1 + thickness)
 //   orthographic  absolute: shift = thickness / (far - near)  relative: scale = 1 + thickness, shift = thickness * far / (far - near)

@@ -89,7 +89,7 @@ uvec2 fetch_pixel(ivec2 pixel)
 // Depth of a pixel, BACKGROUND_DEPTH where there is nothing; counted.
 real fetch_depth(ivec2 pixel) { return real(depth_in(fetch_pixel(pixel), pixel)); }
 
-// ---- The hit contract (docs/hit_contract.md)
+// ---- The hit contract (docs/reference/hit_contract.md)
 // How far rounding may move the depth of a ray. Nothing in double precision, which is what float is held to.
 real depth_rounding(real3 delta)
 {
@@ -101,7 +101,7 @@ real depth_rounding(real3 delta)
 }
 
 // Depths that the ray covers between two of its depths: x the farthest, y the nearest. Wider by what rounding may move them: a near tie becomes a hit,
-// and no hit is lost (docs/exactness.md).
+// and no hit is lost (docs/explanation/exactness.md).
 real2 depth_interval(Ray ray, real z_a, real z_b)
 {
     precise real2 interval = (z_a < z_b ? real2(z_a, z_b) : real2(z_b, z_a)) + real2(-1, 1) * ray.rounding;

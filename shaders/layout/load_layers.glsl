@@ -1,4 +1,4 @@
-// What lies in the layers behind the first one (docs/hit_contract.md). LAYERS: how many there are, the first one among them.
+// What lies in the layers behind the first one (docs/reference/hit_contract.md). LAYERS: how many there are, the first one among them.
 #ifndef SSRLAB_LOAD_LAYERS
 #define SSRLAB_LOAD_LAYERS
 #include "layout/plane_places.glsl"

@@ -1,5 +1,5 @@
 // A ray as the list of rays holds it, in texels of four words: lavapipe reads one with a load for each lane. A texel of one word costs it almost as
-// much, a word of a storage buffer a dozen instructions for each lane (docs/performance.md).
+// much, a word of a storage buffer a dozen instructions for each lane (docs/explanation/performance.md).
 #ifndef SSRLAB_PACKED_RAY
 #define SSRLAB_PACKED_RAY
 #include "api/real.glsl"

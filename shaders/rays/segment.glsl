@@ -1,5 +1,5 @@
 // A ray in screen space: the segment from a pixel's surface, clipped to the near plane, the image and the maximum distance
-// (docs/hit_contract.md). After api/view.glsl. Set up in double-floats (df64): its ends are the nearest floats to those of exact numbers, nearly always.
+// (docs/reference/hit_contract.md). After api/view.glsl. Set up in double-floats (df64): its ends are the nearest floats to those of exact numbers, nearly always.
 #ifndef SSRLAB_SEGMENT
 #define SSRLAB_SEGMENT
 #include "rays/double_float.glsl"

@@ -1,4 +1,4 @@
-// Two rays at a time: what one visit waits for, the other ray's visit can use (docs/performance.md).
+// Two rays at a time: what one visit waits for, the other ray's visit can use (docs/explanation/performance.md).
 #include "api/forward_traversal.glsl"
 
 int top = pyramid_top();
@@ -30,7 +30,7 @@ void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult 
     real2     empty = empty_interval(0);
     stop_at(a, empty.x);
     stop_at(b, empty.x);
-    // This short loop around much work ends at the bottom (docs/performance.md): its body must not change its results once its condition is false.
+    // This short loop around much work ends at the bottom (docs/explanation/performance.md): its body must not change its results once its condition is false.
     do
     {
         while (is_active(a) || is_active(b))
@@ -43,7 +43,7 @@ void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult 
         skip_to(a, min(SKIP_LEVEL, top), empty.y);
         skip_to(b, min(SKIP_LEVEL, top), empty.y);
         ++number;
-        // Here, not before the walk: its loop would work the end out in every iteration (docs/performance.md).
+        // Here, not before the walk: its loop would work the end out in every iteration (docs/explanation/performance.md).
         empty = empty_interval(number);
         stop_at(a, empty.x);
         stop_at(b, empty.x);

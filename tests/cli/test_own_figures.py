@@ -1,7 +1,5 @@
-"""Results in pandas, and the figure of docs/reading_the_report.md, made from the rows that are committed."""
+"""Results in pandas, from the rows that are committed."""
 import os
-import re
-import subprocess
 import sys
 
 from support import SOURCE, Case, main
@@ -22,16 +20,6 @@ class Test(Case):
         self.assertEqual((rows.attrs["units"]["cost_ms_median"], rows.attrs["units"]["recall_1px"]), ("ms", "share"))
         self.assertTrue((rows.cost_ms_median >= rows.trace_ms_median).all())
         self.assertIn("thickness_m", plots.results.load(REFERENCE, keep_constants=True))
-
-    def test_the_figure_of_the_docs(self):
-        with open(os.path.join(SOURCE, "docs", "reading_the_report.md"), encoding="utf-8") as file:
-            code, = re.findall(r"```python\n(.*?)```", file.read(), re.S)
-        os.makedirs(self.path("results"))
-        os.symlink(REFERENCE, self.path("results/cost_of_accuracy"))
-        subprocess.run(["/usr/bin/python3", "-c", "import matplotlib; matplotlib.use('Agg')\n" + code], cwd=self.folder, check=True,
-                       env=dict(self.environment, PYTHONPATH=os.path.join(SOURCE, "experiments")))
-        with open(self.path("figure.pdf"), "rb") as file:
-            self.assertEqual(file.read(4), b"%PDF")
 
 
 if __name__ == "__main__":

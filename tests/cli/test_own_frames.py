@@ -43,7 +43,7 @@ class Test(Case):
     def test_what_is_missing_is_said(self):
         self.ssrlab("render", "frame.exr", "-t", "hiz", "-o", "picture.exr")
         self.refused("render", "picture.exr", "-t", "hiz", "-o", "again.png", code=2,
-                     says=["picture.exr: nothing says how the camera looks", "picture.exr.toml", "docs/own_frames.md"])
+                     says=["picture.exr: nothing says how the camera looks", "picture.exr.toml", "docs/reference/frame_files.md"])
         self.refused("render", "frame.exr", "-t", "hiz", "--size", "64x36", "-o", "again.png", code=2,
                      says=["frame of 96x54 pixels: it cannot be drawn at 64x36"])
         self.refused("trace", "none.exr", "-t", "hiz", "-o", "again.exr", code=2, says=["none.exr: no such file"])

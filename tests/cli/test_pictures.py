@@ -1,5 +1,6 @@
 """list, show, render, trace, gbuffer, measures."""
 import os
+import re
 
 import numpy
 import OpenImageIO as oiio
@@ -88,10 +89,16 @@ class Test(Case):
     def test_the_validation_layer_is_silent(self):
         self.ssrlab("--validation", "render", SCENE, "-t", "hiz", "--size", "64x36", "-o", self.path("a.png"))
 
-    def test_results_readme_is_current(self):
-        with open(os.path.join(SOURCE, "results", "README.md"), encoding="utf-8") as file:
-            written = file.read()
-        self.assertEqual(self.ssrlab("measures"), written, f"regenerate: {PROGRAM} measures > results/README.md")
+    def test_generated_pages_are_what_their_commands_print(self):
+        for page, command in (("columns", ["measures"]), ("settings", ["list", "--markdown"])):
+            path = os.path.join("docs", "reference", page + ".md")
+            with open(os.path.join(SOURCE, path), encoding="utf-8") as file:
+                self.assertEqual(self.ssrlab(*command), file.read(), f"regenerate: {PROGRAM} {' '.join(command)} > {path}")
+
+    def test_the_command_line_is_what_help_prints(self):
+        with open(os.path.join(SOURCE, "docs/reference/command_line.md"), encoding="utf-8") as file:
+            block, = re.findall(r"```text\n(.*?)```", file.read(), re.S)
+        self.assertEqual(self.ssrlab("--help").strip(), block.strip(), f"regenerate: the block of docs/reference/command_line.md by {PROGRAM} --help")
 
 
 if __name__ == "__main__":

@@ -1,81 +1,81 @@
-"""From README to an own technique with an own structure, as docs/writing_a_technique.md shows it: each step's command."""
+"""A stranger's hour: every file and every command of the tutorials, in their order, as they stand there."""
 import os
 import re
+import subprocess
 
-from support import SOURCE, Case, main
-
-SWEEP = """scenes = ["builtin:stairs"]
-sizes  = ["64x36"]
-[techniques.tile_walk]
-[techniques.dda]
-[techniques.hiz]
-depth_pyramid.kind = ["occupancy", "nearest"]
-[measure]
-min_repeats = 1
-max_repeats = 1
-"""
+from support import PROGRAM, SOURCE, Case, main
 
 
 class Test(Case):
-    def setUp(self):
-        super().setUp()
-        with open(os.path.join(SOURCE, "docs/writing_a_technique.md"), encoding="utf-8") as file:
-            self.blocks = dict(re.findall(r"```\w+\n(?:#|//) (mine/\S+\.\w+)\n(.*?)```", file.read(), re.S))
-        for name, text in self.blocks.items():
-            self.write(name, text)
+    def follow(self, page):
+        """Writes the page's files and runs its commands in one folder; returns what they printed."""
+        with open(os.path.join(SOURCE, "docs", page), encoding="utf-8") as file:
+            blocks = re.findall(r"^```(\w+)\n(.*?)^```", file.read(), re.S | re.M)
+        self.assertGreater(len(blocks), 1)
+        environment = dict(self.environment, PATH=os.path.dirname(PROGRAM) + ":/usr/bin:/bin", SSRLAB_SOURCE=SOURCE, MPLBACKEND="Agg")
+        printed = ""
+        for language, text in blocks:
+            if language == "sh":
+                self.last_command = text
+                done = subprocess.run(["/bin/bash", "-euo", "pipefail", "-c", text], cwd=self.folder, env=environment, capture_output=True,
+                                      text=True, timeout=280)
+                self.assertEqual(done.returncode, 0, f"{page}: {text}{done.stdout}{done.stderr}")
+                for written in re.findall(r"-o (\S+\.\w+)", text):
+                    self.assertTrue(os.path.exists(self.path(written)), f"{page}: {text}")
+                printed += done.stdout
+                continue
+            first, rest = text.split("\n", 1)
+            name, appended = re.fullmatch(r"(?:#|//) (\S+\.\w+)(, appended)?", first).groups()
+            before = ""
+            if appended:
+                with open(self.path(name), encoding="utf-8") as file:
+                    before = file.read()
+            self.write(name, before + rest)
+        return printed
 
-    def test_examples_are_found(self):
-        self.assertEqual(set(self.blocks), {f"mine/{name}" for name in (
-            "tile_fronts/structure.toml", "tile_fronts/build.comp", "tile_fronts/read.glsl",
-            "tile_walk/technique.toml", "tile_walk/trace.glsl",
-            "sloped_slab/surface.toml", "sloped_slab/meeting.glsl", "sloped_slab/held.glsl")})
+    def rows_of(self, name, count):
+        rows = self.rows(f"results/{name}")
+        self.assertEqual([row["outcome"] for row in rows], ["ok"] * count)
+        return rows
 
-    def test_it_is_listed_and_shown(self):
-        self.ssrlab("--techniques", "mine", "list", says=["tile_walk", "reads a pixel only"])
-        self.ssrlab("--techniques", "mine", "show", "tile_walk", says=["structure: tile_fronts", "max_steps"])
+    def test_first_verdict(self):
+        printed = self.follow("tutorials/first_verdict.md")
+        self.assertIn("## Verdict", printed)
+        rows = self.rows_of("first", 6)
+        hits = {row["technique"]: row["hit_share"] for row in rows}
+        self.assertEqual(hits["hiz"], hits["dda"])
+        self.assertEqual(hits["hiz_packets"], hits["dda"])
+        linear = [float(row["screen_recall_1px"]) for row in rows if row["technique"] == "linear"]
+        self.assertLess(max(linear), 0.99)
 
-    def test_it_renders_without_a_validation_message(self):
-        self.ssrlab("--techniques", "mine", "--validation", "render", "builtin:stairs", "-t", "tile_walk", "--size", "65x37",
-                    "-o", "a.png")
+    def test_own_scene(self):
+        self.follow("tutorials/own_scene.md")
+        rows = self.rows_of("statue_sweep", 4)
+        self.assertEqual({row["surface"] for row in rows}, {"box", "plane_solid"})
 
-    def test_it_holds_on_the_hard_cases(self):
-        self.ssrlab("--techniques", "mine", "check", "tile_walk")
+    def test_own_frame(self):
+        self.follow("tutorials/own_frame.md")
+        for row in self.rows_of("frame", 3):
+            self.assertTrue(row["no_scene_truth"])
+            self.assertTrue(row["screen_same_pixel"])
+            self.assertTrue(row["picture_rmse"])
 
-    def test_its_structure_is_in_the_sweep(self):
-        spec = self.write("s.toml", SWEEP)
-        self.ssrlab("run", spec, "-o", "out", "--techniques", "mine")
-        rows = self.rows()
-        self.assert_complete(rows, 4)
-        own = next(row for row in rows if row["technique"] == "tile_walk")
-        self.assertGreater(float(own["tile_fronts.ms_median"]), 0)
-        self.assertGreater(float(own["tile_fronts.fetches_mean"]), 0)
-        self.assertEqual(own["screen_same_pixel"], next(row for row in rows if row["technique"] == "dda")["screen_same_pixel"])
-        walk = next(row for row in rows if row["technique"] == "dda")
-        self.assertLess(float(own["depth_fetches_mean"]), float(walk["depth_fetches_mean"]))
-        self.assertEqual({row["depth_pyramid.kind"] for row in rows if row["technique"] == "hiz"}, {"occupancy", "nearest"})
+    def test_own_technique(self):
+        self.follow("tutorials/own_technique.md")
+        rows = self.rows_of("mine", 3)
+        self.assertEqual({row["stride_px"] for row in rows if row["technique"] == "strides"}, {"2", "8"})
 
-    def test_mistakes_name_the_file_and_line(self):
-        self.write("mine/tile_fronts/build.comp", self.blocks["mine/tile_fronts/build.comp"].replace("load_cell(pixel", "load_clel(pixel"))
-        self.refused("--techniques", "mine", "render", "builtin:stairs", "-t", "tile_walk", "--size", "64x36", "-o", "a.png", code=2,
-                     says=["mine/tile_fronts/build.comp:16", "load_clel"])
-        self.write("mine/tile_walk/technique.toml", self.blocks["mine/tile_walk/technique.toml"].replace('["tile_fronts"]', '["tile_front"]'))
-        self.refused("--techniques", "mine", "list", code=2,
-                     says=["mine/tile_walk/technique.toml:3", "unknown structure 'tile_front'", "did you mean 'tile_fronts'"])
+    def test_the_tutorial_s_technique_is_the_one_that_new_technique_writes(self):
+        with open(os.path.join(SOURCE, "docs/tutorials/own_technique.md"), encoding="utf-8") as file:
+            trace, = re.findall(r"// mine/strides/trace.glsl\n(.*?)```", file.read(), re.S)
+        self.ssrlab("new-technique", "mine/strides")
+        with open(self.path("mine/strides/trace.glsl"), encoding="utf-8") as file:
+            self.assertEqual(file.read().split("\n", 1)[1], trace)
 
-    def test_a_parameter_with_the_name_of_another_technique_s_changes_nothing(self):
-        """A parameter means to the framework what the manifest says, whatever its name."""
-        hiz = os.path.join(SOURCE, "techniques", "hiz")
-        with open(os.path.join(hiz, "technique.toml"), encoding="utf-8") as file:
-            manifest = file.read()
-        with open(os.path.join(hiz, "trace.glsl"), encoding="utf-8") as file:
-            self.write("mine/own/trace.glsl", file.read())
-        names = ("top_level", "pyramid", "beams", "kind", "stride_px", "plan")
-        self.write("mine/own/technique.toml", manifest + "".join(f'{name} = {{ default = 1, min = 0, max = 9, doc = "Mine." }}\n' for name in names))
-        spec = self.write("s.toml", SWEEP.replace("tile_walk", "own"))
-        self.ssrlab("run", spec, "-o", "out", "--techniques", "mine")
-        own, hiz = (next(row for row in self.rows() if row["technique"] == name) for name in ("own", "hiz"))
-        for column in ("hit_share", "recall_1px", "steps_mean", "fetches_mean"):
-            self.assertEqual(own[column], hiz[column], column)
+    def test_paper_figure(self):
+        self.follow("tutorials/paper_figure.md")
+        with open(self.path("figure.pdf"), "rb") as file:
+            self.assertEqual(file.read(4), b"%PDF")
 
 
 if __name__ == "__main__":

@@ -158,7 +158,7 @@ def seeds_of(target, folder):
     if target == "toml":
         return [read(path) for patterns in MANIFESTS.values() for path in toml_files(*patterns)] + [TOML.encode()]
     if target in MANIFESTS:
-        examples = {"recipe": "experiments/scenes/README.md", "experiment": "experiments/README.md"}
+        examples = {"recipe": "experiments/scenes/README.md", "experiment": "docs/how-to/experiments.md"}
         return [read(path) for path in toml_files(*MANIFESTS[target])] + (readme_blocks(examples[target], "toml") if target in examples else [])
     if target == "views":
         return [VIEWS.encode()]

@@ -128,14 +128,14 @@ TEST(Leaks, APlaneHasNone)
 }
 
 // At an edge the plane of one pixel goes on where the other surface is. A ray that crosses there may leave its pixel before the one plane and enter the next
-// farther behind the other than the tolerance (docs/surfaces.md).
+// farther behind the other than the tolerance (docs/explanation/surfaces.md).
 TEST(Leaks, AnEdgeHasFew)
 {
     for (const auto& [shape, name] :
          {std::pair(Shape::concave_edge, "concave edge"), {Shape::convex_edge, "convex edge"}}) {
         const Leaks leaks = count_leaks(shape, name);
-        EXPECT_LT(leaks.passed + leaks.stopped, 250U) << name << ": docs/surfaces.md has the count";
-        EXPECT_GT(leaks.passed + leaks.stopped, 0U) << name << ": docs/surfaces.md says that there are some";
+        EXPECT_LT(leaks.passed + leaks.stopped, 250U) << name << ": docs/explanation/surfaces.md has the count";
+        EXPECT_GT(leaks.passed + leaks.stopped, 0U) << name << ": docs/explanation/surfaces.md says that there are some";
         EXPECT_EQ(leaks.differ, 0U) << name;
     }
 }

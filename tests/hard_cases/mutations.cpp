@@ -1,4 +1,4 @@
-// Each assumption of the proof (docs/exactness.md), broken once: the campaign or the catalogue must notice.
+// Each assumption of the proof (docs/explanation/exactness.md), broken once: the campaign or the catalogue must notice.
 #include "check/run_check.h"
 #include "core/files.h"
 #include "gpu/device.h"

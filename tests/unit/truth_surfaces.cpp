@@ -1,4 +1,4 @@
-// The surface models of docs/hit_contract.md in the screen truth: closed forms, and a second definition of the meeting.
+// The surface models of docs/reference/hit_contract.md in the screen truth: closed forms, and a second definition of the meeting.
 #include "core/error.h"
 #include "truth/screen_truth.h"
 #include "truth_gbuffers.h"

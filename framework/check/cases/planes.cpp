@@ -1,4 +1,4 @@
-// Hard cases, family "planes": pixels that hold planes and solids (docs/hit_contract.md).
+// Hard cases, family "planes": pixels that hold planes and solids (docs/reference/hit_contract.md).
 #include "check/hard_case.h"
 #include "core/plane_gradient.h"
 

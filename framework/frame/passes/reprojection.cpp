@@ -48,7 +48,7 @@ std::vector<Parameter> parameters()
              .default_value = static_cast<double>(fallback),
              .max           = static_cast<double>(ids.size()) - 1,
              .choices       = ids,
-             .doc = "where a reflection was in the frame before: a folder with reprojection.toml, see docs/motion.md"}};
+             .doc = "where a reflection was in the frame before: a folder with reprojection.toml, see docs/explanation/motion.md"}};
 }
 
 } // namespace
