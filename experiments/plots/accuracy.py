@@ -37,7 +37,7 @@ def drop_overlapping(labels):
 
 
 def draw_intervals(axis, line, cost, error, style):
-    """The 95 % interval of each time on its point; hollow where it is not known."""
+    """The 95 % confidence interval of each time on its point; hollow where it is not known."""
     name = cost.removesuffix("_median")
     sure = known(line, name)
     axis.errorbar(line[cost][sure], line[error][sure], xerr=errors(line[sure], name), fmt="none", ecolor=style["color"], elinewidth=0.9)
@@ -99,7 +99,7 @@ def finish(figure, axes, title, clipped):
 
 def accuracy_curves(results, _):
     """Error against time, with its intervals, and against fetches; precision and F1 against time: recall alone misleads. Log-log."""
-    cost, fetches = ("cost_ms_median", "trace + structures, ms (95 % interval; hollow: not known)"), ("fetches_mean", "fetches per ray")
+    cost, fetches = ("cost_ms_median", "trace + structures, ms (95 % CI; hollow: not known)"), ("fetches_mean", "fetches per ray")
     for title, name, rows in results.pictures():
         if len(rows) < 5 or not results.swept(rows):
             continue

@@ -72,7 +72,7 @@ def trade(axis, first, points, error, where):
         axis.annotate(label, (x, y), xytext=(1.03, place), textcoords=axis.get_yaxis_transform(), fontsize=8, va="center",
                       annotation_clip=False,
                       arrowprops=dict(arrowstyle="-", color="#999999", lw=0.6, shrinkA=0, shrinkB=3, relpos=(0, 0.5)))
-    axis.set(xlabel="added to the frame, ms (median, 95 % interval; hollow: not known)", ylabel=f"{error} removed")
+    axis.set(xlabel="added to the frame, ms (median, 95 % CI; hollow: not known)", ylabel=f"{error} removed")
     axis.set_title(f"{where}: {first[error]:.4f} in the first run", loc="left", fontsize=10)
 
 

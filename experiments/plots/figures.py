@@ -242,7 +242,7 @@ def comparison_bars(results, _):
         bars(top, rows, results, "cost_ms_median", "cost_ms", "trace + structures, ms")
         bars(bottom, rows, results, "fetches_mean", None, "fetches per ray")
         figure.suptitle(f"View {view}, {width}×{height}")
-        top.set_title("Time: median and 95 % interval (hollow: not known)")
+        top.set_title("Time: median and 95 % CI (hollow: not known)")
         bottom.set_title("Work: fetches of depth and structures per traced ray")
         top.legend(ncol=4, loc="upper center", bbox_to_anchor=(0.5, -0.08))
         fastest = rows.loc[rows.groupby("scene", sort=False).cost_ms_median.idxmin()]

@@ -138,10 +138,10 @@ def about(environment):
 def ranking_text(results, chosen):
     measure, target = goal(results)
     if measure is None:
-        return "No truth was computed, so only times and work are compared: every setting, the fastest first."
-    return (f"Each tracer at its cheapest setting that finds {goal_text(measure, target)} with an F1 within one point of its best; "
-            f"where none does, at the one that comes nearest. Shares are means over {chosen.frame_title.nunique()} frames, times are "
-            "geometric means of the medians, with those of the interval's ends.")
+        return "No truth was computed, so the table compares only times and work: every setting, the fastest first."
+    return (f"Each tracer at its cheapest setting that finds {goal_text(measure, target)}, with an F1 within one point of its best such "
+            f"setting. A tracer that never finds so many is shown at its nearest setting. Shares are means over {chosen.frame_title.nunique()} "
+            "frames. Times and the ends of their confidence intervals are geometric means.")
 
 
 def context(results, plots, tables):

@@ -9,7 +9,7 @@ SPLIT = [("recall_1px", "found", "found within 1 px"), ("visible_displaced", "di
          ("missed_not_in_depth", "not-in-depth", "not in the depth buffer"), ("missed_stepped_over", "skipped-over", "stepped over"),
          ("missed_out_of_steps", "out-of-steps", "out of steps"), ("missed_stopped", "stopped", "stopped"),
          ("missed_facing_rule", "facing", "refused by the facing rule")]
-SHOWN = [("cost_ms_median", "ms", "trace and structures, median"), ("cost_ms_ci_low", "from", "95 % interval"), ("cost_ms_ci_high", "to", "95 % interval"),
+SHOWN = [("cost_ms_median", "ms", "trace and structures, median"), ("cost_ms_ci_low", "from", "95 % confidence interval"), ("cost_ms_ci_high", "to", "95 % confidence interval"),
          ("fetches_mean", "fetches", "per ray"), ("steps_mean", "steps", "per ray"), ("recall_1px", "recall", "found within 1 px, of what the frame shows"),
          ("precision_1px", "precision", "hits that are right"), ("f1_1px", "F1", "of recall and precision"),
          ("false_hits", "false", "false hits, of all rays"), ("screen_recall_1px", "screen recall", "found within 1 px, of what the depth buffer holds"),
@@ -53,8 +53,8 @@ def ranking_table(ranked):
         return table([], [])
     wanted = [("recall", "recall", "of what the frame shows"), ("precision", "precision", "hits that are right"), ("f1", "F1", "of recall and precision"),
               ("false_hits", "false", "false hits, of all rays"), ("screen_recall", "screen recall", "of what the depth buffer holds"),
-              ("flip", "FLIP", "over visible rays"), ("cost_ms_median", "ms", "trace and structures"), ("cost_ms_ci_low", "from", "95 % interval"),
-              ("cost_ms_ci_high", "to", "95 % interval"), ("fetches", "fetches", "per ray")]
+              ("flip", "FLIP", "over visible rays"), ("cost_ms_median", "ms", "trace and structures"), ("cost_ms_ci_low", "from", "95 % confidence interval"),
+              ("cost_ms_ci_high", "to", "95 % confidence interval"), ("fetches", "fetches", "per ray")]
     wanted = [one for one in wanted if ranked[one[0]].notna().any()]
     shares = {"recall", "precision", "f1", "false_hits", "screen_recall"}
     aims = ranked.reached.any() or ranked.unreached.any()
@@ -96,18 +96,18 @@ def split_of(chosen):
 
 def error_table(chosen):
     """The three errors, and the causes of false hits."""
-    wanted = [("error_scene_to_screen", "scene → screen", "what the depth buffer does not hold"),
+    wanted = [("error_scene_to_screen", "scene → screen", "what the depth buffer lacks"),
               ("error_screen_to_double", "screen → double", "what the tracer skips"), ("error_double_to_float", "double → float", "rounding"),
               ("false_hits", "false", "false hits, of all rays"), ("false_self", "false: itself", "on the reflector itself"),
               ("false_too_thick", "false: too thick", "a thinner slab would let the ray pass"),
               ("false_wrong_surface", "false: other surface", "a front that the true ray does not meet"),
-              ("wrong_rays", "wrong", "wrong rays, of all rays; the next columns are their causes, and sum to it"),
+              ("wrong_rays", "wrong", "wrong rays, of all rays; the next columns are their causes and sum to it"),
               ("wrong_own_surface", "own surface", "the ray starts below its own surface or meets it"),
               ("wrong_not_shown", "not shown", "the frame does not show the true point"),
               ("wrong_thin", "thin", "no pixel around the true point holds it"),
               ("wrong_silhouette", "silhouette", "at a pixel whose neighbour lies far off its plane"),
               ("wrong_edge", "edge", "at a pixel where two planes meet"),
-              ("wrong_stopped", "stopped", "stopped in the midst of a plane"), ("wrong_other", "other", "none of these")]
+              ("wrong_stopped", "stopped", "stopped in the middle of a plane"), ("wrong_other", "other", "none of these")]
     wanted = [one for one in wanted if one[0] in chosen and chosen[one[0]].notna().any()]
     if not wanted:
         return table([], [])

@@ -114,7 +114,7 @@ def left_wrong(row):
     sentences = []
     if has_value(row, "recall_1px"):
         missed = causes(row, MISSES)
-        sentences.append(f"Of what the frame shows, it does not find {percent(1 - row.recall_1px)}" + (f": {missed}." if missed else "."))
+        sentences.append(f"It misses {percent(1 - row.recall_1px)} of what the frame shows" + (f": {missed}." if missed else "."))
     if has_value(row, "false_hits"):
         wrong = causes(row, FALSE_HITS)
         sentences.append(f"{percent(row.false_hits)} of its rays end in a false hit" + (f": {wrong}." if wrong else "."))
@@ -130,14 +130,15 @@ def verdict(results, chosen):
     if not best.reached:
         return (f"No tracer finds {goal_text(measure, target)}. The nearest is {named(best)}: {percent(best[measure])} in "
                 f"{milliseconds(best)}. " + left_wrong(best))
-    text = f"Cheapest tracer that finds {goal_text(measure, target)}: {named(best)}, {milliseconds(best)}"
+    text = f"{named(best)} is the cheapest tracer that finds {goal_text(measure, target)}: {milliseconds(best)}"
     rivals = chosen[chosen.reached & (chosen.technique != best.technique)].drop_duplicates("technique").head(2)
     faster = []
     for _, rival in rivals.iterrows():
         ratio = ratio_of_rows(results, rival, best)
         interval = f" [{ratio.low:.3g}, {ratio.high:.3g}]" if pd.notna(ratio.low) else ""
-        shown = "" if pd.isna(ratio.low) or not ratio.low <= 1 <= ratio.high else " (no difference shown)"
-        faster.append(f"{ratio.median:.3g}{interval} times as fast as {named(rival)}{shown}")
+        within_noise = pd.notna(ratio.low) and ratio.low <= 1 <= ratio.high
+        faster.append(f"as fast as {named(rival)} within the noise{interval}" if within_noise
+                      else f"{ratio.median:.3g}{interval} times as fast as {named(rival)}")
     if faster:
         text += ", " + " and ".join(faster)
     return f"{text}. {left_wrong(best)}"
