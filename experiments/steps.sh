@@ -73,14 +73,21 @@ remaining_s() {
     scaled_s "$sum"
 }
 
+# What the running step has left, in seconds: by how much ninja said is done, else by what was expected.
+left_by_count() { # log seconds_spent seconds_expected
+    local count all
+    read -r count all < <(tail -c 2000 "$1" | sed -nE 's/^\[([0-9]+)\/([0-9]+)\].*/\1 \2/p' | tail -n 1)
+    if ((${count:-0} * 10 >= ${all:-1})); then echo $(($2 * (all - count) / count)); else echo $(($3 > $2 ? $3 - $2 : 0)); fi
+}
+step_left_s=left_by_count
+
 # A line that moves on a terminal, and a line now and then elsewhere.
 show_progress() {
     local title=$1 log=$2 begun=$3 line spent left
     while sleep 1; do
         spent=$((SECONDS - begun))
         [[ -t 1 ]] || ((spent % 20 == 0)) || continue
-        left=$(($(scaled_s "${expected[step_number - 1]}") - spent))
-        left=$(($(remaining_s) + (left > 0 ? left : 0)))
+        left=$(($(remaining_s) + $("$step_left_s" "$log" "$spent" "$(scaled_s "${expected[step_number - 1]}")")))
         line=$(tail -c 400 "$log" 2> /dev/null | tr '\r' '\n' | tail -n 1 | tr -cd '[:print:]')
         line="[$step_number/$step_count] $title, $(duration_text $((SECONDS - started))), about $(duration_text $left) left: $line"
         if [[ -t 1 ]]; then printf '\r\033[K%s' "${line:0:$(($(tput cols 2> /dev/null || echo 100) - 1))}"; else echo "$line"; fi
