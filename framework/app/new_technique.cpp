@@ -19,21 +19,20 @@ stride_px = {{ default = 4.0, min = 1.0, max = 64.0, doc = "Distance between two
 max_steps = {{ default = 1024, min = 1, max = 60000, doc = "Places before the ray gives up." }}
 )";
 
-constexpr const char* trace = R"(// Place after place along the ray, until one touches a surface.
+constexpr const char* trace = R"(// Place after place along the ray, until the ray meets a surface at one.
 TraceResult trace(Ray ray)
 {
     real  dt = real(stride_px) / max(length(ray.delta.xy), real(stride_px)), t = real(0);
-    ivec2 pixel = ray.start_pixel;
-    bool  found = false;
-    int   taken = 0;
-    while (!found && t + dt <= real(1) && taken < max_steps)
+    Contact contact = no_contact();
+    int     taken   = 0;
+    while (!contact.found && t + dt <= real(1) && taken < max_steps)
     {
         ++taken;
-        t     = real(taken) * dt;
-        pixel = pixel_at(ray, t);
-        found = pixel != ray.start_pixel && touches_surface(ray, pixel, t - dt, t);
+        t           = real(taken) * dt;
+        ivec2 pixel = pixel_at(ray, t);
+        if (pixel != ray.start_pixel) contact = test_pixel(ray, pixel, t - dt, t);
     }
-    if (found) return hit_at(ray, pixel, t - dt, t, taken);
+    if (contact.found) return hit_at(ray, contact, t, taken);
     if (taken == max_steps) return out_of_steps(taken);
     return miss(ray, taken);
 }

@@ -84,7 +84,7 @@ std::string shaders_below(const fs::path& folder)
 bool may_test_itself(const Technique& technique)
 {
     static const std::regex reads("\\b(fetch_depth|fetch_pixel)\\b");
-    static const std::regex asks("\\b(touches_surface|touches_sample|ends_at)\\b");
+    static const std::regex asks("\\b(test_pixel|test_sample|ends_at)\\b");
     const std::string       own = shaders_below(technique.folder);
     if (std::regex_search(own, reads)) return true;
     return !std::regex_search(own, asks) && std::ranges::none_of(technique.structures, [](const Structure& structure) {

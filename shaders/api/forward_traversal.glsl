@@ -12,6 +12,7 @@ struct Traversal
     real  t;      // where the ray enters the cell
     real  t_stop; // the walk goes no farther than the cell in which the ray is there
     int   visited;
+    Contact contact; // what was tested last
 };
 
 // Level of the cell in which a walk arrives behind an empty interval: nothing is known of what follows.
@@ -55,6 +56,7 @@ Traversal start_traversal(Ray ray, int level)
     walk.level     = level;
     walk.t_stop    = walk.grid.t_end;
     walk.visited   = 0;
+    walk.contact   = no_contact();
     return walk;
 }
 
@@ -88,6 +90,13 @@ void advance(inout Traversal walk, bool touched, int top)
     walk.visited += int(moves);
 }
 
+// A cell was tested: down into it if the ray may meet something there, else on.
+void advance(inout Traversal walk, Contact contact, int top)
+{
+    if (is_active(walk)) walk.contact = contact;
+    advance(walk, contact.found, top);
+}
+
 void stop_at(inout Traversal walk, real t) { walk.t_stop = t < walk.grid.t_end ? t : walk.grid.t_end; }
 
 // Skips an empty interval, to the cell of this level in which the ray is at t: there it stands as if it had walked. Position names that cell but for
@@ -112,5 +121,5 @@ void skip_to(inout Traversal walk, int level, real t)
 TraceResult result_of(Ray ray, Traversal walk)
 {
     if (walk.level >= 0) return walk.t < walk.grid.t_end ? out_of_steps(walk.visited) : miss(ray, walk.visited);
-    return hit_between(ray, pixel_of(walk), walk.t, t_exit(walk), walk.visited);
+    return hit_between(ray, walk.contact, pixel_of(walk), walk.t, t_exit(walk), walk.visited);
 }

@@ -147,39 +147,61 @@ bool ends_at(Ray ray, PixelSurface surface, bool met, real t_in)
     return !passes;
 }
 
+// What a ray meets in a pixel, or nothing: the hit test returns it, and the result is made of it.
+struct Contact
+{
+    bool  found;       // the ray ends here, by a hit or by being stopped
+    ivec2 pixel;
+    int   layer;       // of several the one that the ray meets first
+    uvec2 words;       // what is stored of that layer
+    real  t_in, t_out; // the interval that was tested
+    bool  sampled;     // it was a single sample
+};
+
+// Nothing, before the first test.
+Contact no_contact()
+{
+    Contact none;
+    none.found = false;
+    return none;
+}
+
+// What the pixel holds in the layer that was met.
+PixelSurface surface_of(Ray ray, Contact contact)
+{
+    if (contact.sampled) return sampled_surface_at(ray, contact.pixel, contact.layer, contact.words);
+    return surface_at(ray, contact.pixel, contact.layer, contact.words);
+}
+
 #if LAYERS > 1
 #include "trace/layers.glsl"
 #else
-bool  touches_layers(Ray ray, ivec2 pixel, real t_in, real t_out) { return false; }
-bool  touches_layers(Ray ray, Grid grid, ivec2 pixel, crossing t_in, crossing t_out) { return false; }
-bool  samples_layers(Ray ray, ivec2 pixel, real t) { return false; }
-int   met_layer(Ray ray, ivec2 pixel, real t_in, real t_out) { return 0; }
-int   sampled_layer(Ray ray, ivec2 pixel, real t) { return 0; }
-uvec2 fetch_met(ivec2 pixel, int layer) { return fetch_pixel(pixel); }
+Contact first_of_layers(Ray ray, Contact front) { return front; }
+Contact first_of_layers(Ray ray, Grid grid, Contact front, crossing t_in, crossing t_out) { return front; }
 #endif
 
-// Does the ray end at this pixel between two t, by a hit or by being stopped?
-bool touches_surface(Ray ray, ivec2 pixel, real t_in, real t_out)
+Contact test_interval(Ray ray, ivec2 pixel, real t_in, real t_out, bool sampled)
 {
     note_interval(t_in, t_out);
-    PixelSurface surface = surface_at(ray, pixel, 0, fetch_pixel(pixel));
-    return ends_at(ray, surface, meets(ray, surface, t_in, t_out), t_in) || touches_layers(ray, pixel, t_in, t_out);
+    Contact      contact = Contact(false, pixel, 0, fetch_pixel(pixel), t_in, t_out, sampled);
+    PixelSurface surface = surface_of(ray, contact);
+    contact.found        = ends_at(ray, surface, meets(ray, surface, t_in, t_out), t_in);
+    return first_of_layers(ray, contact);
 }
 
-// Does it end at this pixel by one sample, at t? There a plane has the thickness of the run.
-bool touches_sample(Ray ray, ivec2 pixel, real t)
-{
-    note_interval(t, t);
-    PixelSurface surface = sampled_surface_at(ray, pixel, 0, fetch_pixel(pixel));
-    return ends_at(ray, surface, meets(ray, surface, t, t), t) || samples_layers(ray, pixel, t);
-}
+// The hit test: where does the ray end in this pixel, between two t?
+Contact test_pixel(Ray ray, ivec2 pixel, real t_in, real t_out) { return test_interval(ray, pixel, t_in, t_out, false); }
+
+// The same by one sample, at t. There a plane has the thickness of the run.
+Contact test_sample(Ray ray, ivec2 pixel, real t) { return test_interval(ray, pixel, t, t, true); }
 
 // The same between two crossings.
-bool touches_surface(Ray ray, Grid grid, ivec2 pixel, crossing t_in, crossing t_out)
+Contact test_pixel(Ray ray, Grid grid, ivec2 pixel, crossing t_in, crossing t_out)
 {
-    PixelSurface surface = surface_at(ray, pixel, 0, fetch_pixel(pixel));
-    bool         ends    = ends_at(ray, surface, meets(ray, grid, surface, t_in, t_out), crossing_to_t(grid, t_in));
-    return ends || touches_layers(ray, grid, pixel, t_in, t_out);
+    Contact      contact = Contact(false, pixel, 0, fetch_pixel(pixel), crossing_to_t(grid, t_in), crossing_to_t(grid, t_out), false);
+    PixelSurface surface = surface_of(ray, contact);
+    contact.found        = ends_at(ray, surface, meets(ray, grid, surface, t_in, t_out), contact.t_in);
+    return first_of_layers(ray, grid, contact, t_in, t_out);
 }
 
 // Where the ray leaves the cell whose borders it crosses at t_border, or ends. A select, not min(): no number is NaN.
@@ -196,33 +218,26 @@ ivec2 cross_borders(Grid grid, ivec2 cell, crossing2 t_border, crossing t)
 }
 
 // ---- Results
-// The ray ends at a layer of a pixel, where touches_surface() said it does, at this t; t_in: where that interval began.
-TraceResult end_at(Ray ray, PixelSurface surface, ivec2 pixel, int layer, real t_in, real t, int steps)
+// The ray ends at what it met, at this t.
+TraceResult hit_at(Ray ray, Contact contact, real t, int steps)
 {
-    bool stopped = behind_rule == BEHIND_STOP && from_behind(ray, surface, t_in);
-    return TraceResult(status_to_number(stopped ? TRACE_STOPPED : TRACE_HIT, layer), pixel, t, steps);
+    bool stopped = behind_rule == BEHIND_STOP && from_behind(ray, surface_of(ray, contact), contact.t_in);
+    return TraceResult(status_to_number(stopped ? TRACE_STOPPED : TRACE_HIT, contact.layer), contact.pixel, t, steps);
 }
 
-// A hit (or stop) at one sample, which touches_sample() found.
-TraceResult hit_at_sample(Ray ray, ivec2 pixel, real t, int steps)
+// The same where it first meets it.
+TraceResult hit(Ray ray, Contact contact, int steps)
 {
-    int layer = sampled_layer(ray, pixel, t);
-    return end_at(ray, sampled_surface_at(ray, pixel, layer, fetch_met(pixel, layer)), pixel, layer, t, t, steps);
+    return hit_at(ray, contact, contact_t(ray, surface_of(ray, contact), contact.t_in, contact.t_out), steps);
 }
 
-// A hit (or stop) at the end of an interval [t_in, t] between two samples.
-TraceResult hit_at(Ray ray, ivec2 pixel, real t_in, real t, int steps)
+// The same for a loop that has pixel and interval of the contact anyway: without those in the contact, it carries less.
+TraceResult hit_between(Ray ray, Contact contact, ivec2 pixel, real t_in, real t_out, int steps)
 {
-    int layer = met_layer(ray, pixel, t_in, t);
-    return end_at(ray, surface_at(ray, pixel, layer, fetch_met(pixel, layer)), pixel, layer, t_in, t, steps);
-}
-
-// A hit (or stop) somewhere in [t_in, t_out]: at the point where the ray first meets what the pixel holds.
-TraceResult hit_between(Ray ray, ivec2 pixel, real t_in, real t_out, int steps)
-{
-    int          layer   = met_layer(ray, pixel, t_in, t_out);
-    PixelSurface surface = surface_at(ray, pixel, layer, fetch_met(pixel, layer));
-    return end_at(ray, surface, pixel, layer, t_in, contact_t(ray, surface, t_in, t_out), steps);
+    contact.pixel = pixel;
+    contact.t_in  = t_in;
+    contact.t_out = t_out;
+    return hit(ray, contact, steps);
 }
 
 // Nothing was hit: the ray ends as its segment says, or as one that met something from behind and passed.

@@ -11,6 +11,3 @@ uvec2 fetch_layer(ivec2 pixel, int layer)
     count_depth_fetch();
     return load_layer(pixel, layer);
 }
-
-// Of any layer; not counted.
-uvec2 load_pixel(ivec2 pixel, int layer) { return layer == 0 ? load_cell(pixel, 0) : load_layer(pixel, layer); }

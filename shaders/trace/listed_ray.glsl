@@ -8,13 +8,9 @@ STORED_HITS(9, Hits)
 Ray load_ray(uint index)
 {
     PackedRay listed = packed_ray(index);
-    Ray       ray;
-    ray.origin      = listed.origin;
-    ray.delta       = listed.delta;
-    ray.length_m    = listed.length_m;
-    ray.end_status  = unpack_status(listed.pixel);
-    ray.rounding    = depth_rounding(ray.delta);
-    ray.start_pixel = clamp(ivec2(floor(ray.origin.xy)), ivec2(0), size_px - 1);
+    ivec2     start  = clamp(ivec2(floor(listed.origin.xy)), ivec2(0), size_px - 1);
+    real      slack  = depth_rounding(listed.delta);
+    Ray       ray    = Ray(listed.origin, listed.delta, start, listed.length_m, unpack_status(listed.pixel), slack);
 
     // A ray that runs exactly along the right or lower image border runs in the last column or row: off the border, it crosses none.
     bvec2 along_border = bvec2(ray.delta.x == real(0) && ray.origin.x == real(size_px.x), ray.delta.y == real(0) && ray.origin.y == real(size_px.y));

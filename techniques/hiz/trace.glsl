@@ -6,15 +6,16 @@ TraceResult trace(Ray ray)
     crossing2 t_border = border_t(ray, grid, ray.start_pixel + grid.forward);
     crossing  t_in     = exit_t(grid, t_border), t_out = t_in;
     ivec2     cell     = cross_borders(grid, ray.start_pixel, t_border, t_in) >> level;
+    Contact   contact  = no_contact();
     bool      found    = false;
     while (!found && t_in < grid.t_end && visited < max_steps)
     {
-        ivec2 pixel  = cell << level;
-        t_border     = border_t(ray, grid, (cell + grid.forward) << level);
-        t_out        = exit_t(grid, t_border);
-        bool touched = touches_cell(ray, grid, pixel, level, fetch_cell(pixel, level), t_in, t_out);
-        found        = touched && level == 0;
-        if (touched && level > 0)
+        ivec2 pixel    = cell << level;
+        t_border       = border_t(ray, grid, (cell + grid.forward) << level);
+        t_out          = exit_t(grid, t_border);
+        contact        = test_cell(ray, grid, pixel, level, fetch_cell(pixel, level), t_in, t_out);
+        found          = contact.found && level == 0;
+        if (contact.found && level > 0)
         {
             // Of the four cells below, the one that holds the ray at t_in.
             --level;
@@ -31,6 +32,6 @@ TraceResult trace(Ray ray)
         }
         ++visited;
     }
-    if (found) return hit_between(ray, cell, crossing_to_t(grid, t_in), crossing_to_t(grid, t_out), visited);
+    if (found) return hit_between(ray, contact, cell, crossing_to_t(grid, t_in), crossing_to_t(grid, t_out), visited);
     return t_in < grid.t_end ? out_of_steps(visited) : miss(ray, visited);
 }

@@ -4,17 +4,16 @@
 int top = pyramid_top();
 
 // own_lane: that of the ray.
-CellContent fetch(Traversal walk, int own_lane)
+uvec2 fetch(Traversal walk, int own_lane)
 {
     lane = is_active(walk) ? own_lane : 2;
     return fetch_cell(pixel_of(walk), walk.level);
 }
 
-void visit(Ray ray, inout Traversal walk, CellContent content, int own_lane)
+void visit(Ray ray, inout Traversal walk, uvec2 words, int own_lane)
 {
-    lane         = is_active(walk) ? own_lane : 2;
-    bool touched = touches_cell(ray, walk.grid, pixel_of(walk), walk.level, content, walk.t, t_exit(walk));
-    advance(walk, touched, top);
+    lane = is_active(walk) ? own_lane : 2;
+    advance(walk, test_cell(ray, walk.grid, pixel_of(walk), walk.level, words, walk.t, t_exit(walk)), top);
 }
 
 TraceResult finish(Ray ray, Traversal walk, int own_lane)
@@ -36,7 +35,7 @@ void trace_pair(Ray ray_a, Ray ray_b, out TraceResult result_a, out TraceResult 
         while (is_active(a) || is_active(b))
         {
             // Both reads are under way before one is waited for.
-            CellContent cell_a = fetch(a, 0), cell_b = fetch(b, 1);
+            uvec2 cell_a = fetch(a, 0), cell_b = fetch(b, 1);
             visit(ray_a, a, cell_a, 0);
             visit(ray_b, b, cell_b, 1);
         }

@@ -11,10 +11,9 @@ TraceResult trace(Ray ray)
     {
         while (is_active(walk))
         {
-            ivec2       pixel   = pixel_of(walk);
-            CellContent content = fetch_cell(pixel, walk.level);
-            bool        touched = touches_cell(ray, walk.grid, pixel, walk.level, content, walk.t, t_exit(walk));
-            advance(walk, touched, top);
+            ivec2 pixel = pixel_of(walk);
+            uvec2 words = fetch_cell(pixel, walk.level);
+            advance(walk, test_cell(ray, walk.grid, pixel, walk.level, words, walk.t, t_exit(walk)), top);
         }
         skip_to(walk, min(SKIP_LEVEL, top), empty.y);
         ++number;

@@ -6,31 +6,30 @@ real sample_t(Ray ray, int i)
     return space == space_screen ? fraction : metres_to_t(ray, max_distance_m * fraction);
 }
 
-TraceResult hit(Ray ray, ivec2 pixel, real t_before, real t, int taken)
-{
-    return interval ? hit_at(ray, pixel, t_before, t, taken) : hit_at_sample(ray, pixel, t, taken);
-}
-
 TraceResult trace(Ray ray)
 {
-    real  t_before = real(0), t = real(0);
-    ivec2 pixel = ray.start_pixel;
-    bool  ended = false, found = false;
-    int   taken = 0;
-    while (!ended && !found && taken < steps)
+    real    t_before = real(0), t = real(0);
+    Contact contact = no_contact();
+    bool    ended = false;
+    int     taken = 0;
+    while (!ended && !contact.found && taken < steps)
     {
         ++taken;
-        t_before = t;
-        t        = sample_t(ray, taken);
-        ended    = t > real(1);
-        pixel    = pixel_at(ray, t);
-        found    = !ended && pixel != ray.start_pixel && (interval ? touches_surface(ray, pixel, t_before, t) : touches_sample(ray, pixel, t));
+        t_before    = t;
+        t           = sample_t(ray, taken);
+        ended       = t > real(1);
+        ivec2 pixel = pixel_at(ray, t);
+        bool  tests = !ended && pixel != ray.start_pixel;
+        if (tests && interval) contact = test_pixel(ray, pixel, t_before, t);
+        if (tests && !interval) contact = test_sample(ray, pixel, t);
     }
-    if (!found) return space == space_pixels && !ended && sample_t(ray, taken + 1) <= real(1) ? out_of_steps(taken) : miss(ray, taken);
-    if (!interpolate || ray.delta.z == real(0)) return hit(ray, pixel, t_before, t, taken);
+    if (!contact.found) return space == space_pixels && !ended && sample_t(ray, taken + 1) <= real(1) ? out_of_steps(taken) : miss(ray, taken);
+    if (!interpolate || ray.delta.z == real(0)) return hit_at(ray, contact, t, taken);
 
-    ivec2 front = pixel_at(ray, clamp((fetch_depth(pixel) - ray.origin.z) / ray.delta.z, t_before, t));
+    ivec2 front = pixel_at(ray, clamp((fetch_depth(contact.pixel) - ray.origin.z) / ray.delta.z, t_before, t));
     real2 span  = span_in_pixel(ray, make_grid(ray), front);
-    bool  moves = front != ray.start_pixel && touches_surface(ray, front, span.x, span.y);
-    return moves ? hit_between(ray, front, span.x, span.y, taken) : hit(ray, pixel, t_before, t, taken);
+    Contact moved = no_contact();
+    if (front != ray.start_pixel) moved = test_pixel(ray, front, span.x, span.y);
+    if (moved.found) return hit(ray, moved, taken);
+    return hit_at(ray, contact, t, taken);
 }

@@ -24,11 +24,10 @@ TraceResult trace(Ray ray)
     real3 direction = normalize(direction_vs(ray)), up = fetch_normal(ray.start_pixel);
     up *= sign(dot(up, direction)); // the reflector's normal on the ray's side
     real  t = first * dt, t_behind = real(0);
-    real2 span = real2(0);
-    ivec2 pixel = ray.start_pixel;
-    bool  found = false, searching = false;
-    int   taken = 0, strides = 0;
-    while (!found && t <= real(1) && taken < max_steps)
+    Contact contact = no_contact();
+    bool    searching = false;
+    int     taken = 0, strides = 0;
+    while (!contact.found && t <= real(1) && taken < max_steps)
     {
         bool behind = false;
         while (!behind && t <= real(1) && taken < max_steps)
@@ -55,11 +54,11 @@ TraceResult trace(Ray ray)
             ++taken;
         }
 
-        searching = steps_left > 0;
-        pixel     = pixel_at(ray, t_behind);
-        span      = span_in_pixel(ray, grid, pixel);
-        if (behind && !searching) found = touches_surface(ray, pixel, span.x, span.y);
+        searching   = steps_left > 0;
+        ivec2 pixel = pixel_at(ray, t_behind);
+        real2 span  = span_in_pixel(ray, grid, pixel);
+        if (behind && !searching) contact = test_pixel(ray, pixel, span.x, span.y);
     }
-    if (found) return hit_between(ray, pixel, span.x, span.y, taken);
+    if (contact.found) return hit(ray, contact, taken);
     return searching || t <= real(1) ? out_of_steps(taken) : miss(ray, taken);
 }

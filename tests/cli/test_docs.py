@@ -19,8 +19,7 @@ MOST_COLUMNS = 100
 MOST_LINES_TO_READ = {"dda": 600, "hiz": 800}
 # Shaders whose functions a tracer may use, and those of them that only the framework calls.
 API = ("trace_api", "view", "slab", "grid_float", "grid_exact")
-FRAMEWORK_ONLY = {"depth_rounding", "ends_at", "end_at", "fetch_met", "fetch_pixel", "met_layer", "sampled_layer", "samples_layers",
-                  "touches_layers", "unpack_layer", "meets", "pack_pixel", "unpack_pixel", "unpack_status",
+FRAMEWORK_ONLY = {"depth_rounding", "ends_at", "fetch_pixel", "first_of_layers", "surface_of", "test_interval", "unpack_layer", "meets", "pack_pixel", "unpack_pixel", "unpack_status",
                   "slab_front_of", "slab_back_of", "reaches_slab_back", "scaled_depth", "nearest_steps"}
 
 

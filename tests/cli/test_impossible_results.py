@@ -19,9 +19,9 @@ MEASURE = "[measure]\nmin_repeats = 1\nmax_repeats = 1\n"
 PLACES = "TRACE_HIT, ray.start_pixel + ivec2(0, -1)"
 # Name: what it returns, and what is said of it.
 IMPOSSIBLE = {
-    "off_the_image": ("hit_at(ray, ivec2(-5, 99999), real(0.5), real(0.5), 1)", "hit pixel (-5, 99999) is off the image of 64x36"),
-    "one_pixel_off": ("hit_at(ray, ivec2(64, 10), real(0.5), real(0.5), 1)", "hit pixel (64, 10) is off the image of 64x36"),
-    "one_bad_ray": ("ray.start_pixel == ivec2(32, 30) ? hit_at(ray, ivec2(-1, 0), real(0.5), real(0.5), 1) : miss(ray, 1)",
+    "off_the_image": ("TraceResult(TRACE_HIT, ivec2(-5, 99999), real(0.5), 1)", "hit pixel (-5, 99999) is off the image of 64x36"),
+    "one_pixel_off": ("TraceResult(TRACE_HIT, ivec2(64, 10), real(0.5), 1)", "hit pixel (64, 10) is off the image of 64x36"),
+    "one_bad_ray": ("ray.start_pixel == ivec2(32, 30) ? TraceResult(TRACE_HIT, ivec2(-1, 0), real(0.5), 1) : miss(ray, 1)",
                     "hit pixel (-1, 0) is off the image of 64x36"),
     "no_number": (f"TraceResult({PLACES}, sqrt(ray.origin.z - real(2)), 1)", "t of a hit is not a number"),
     "beyond_the_segment": (f"TraceResult({PLACES}, real(7), 1)", "t = 7"),

@@ -63,20 +63,21 @@ TRACE = """TraceResult trace(Ray ray)
 {
     Grid      grid     = make_grid(ray);
     crossing2 t_border = border_t(ray, grid, ray.start_pixel + grid.forward);
-    crossing  t_in     = exit_t(grid, t_border), t_out = t_in;
+    crossing  t_in     = exit_t(grid, t_border);
     ivec2     pixel    = cross_borders(grid, ray.start_pixel, t_border, t_in), tile = pixel >> 3;
-    bool      found    = false, enters = true; // has it just entered this tile?
+    bool      enters   = true; // has it just entered this tile?
+    Contact   contact  = no_contact();
     int       visited  = 0;
-    while (!found && t_in < grid.t_end && visited < max_steps)
+    while (!contact.found && t_in < grid.t_end && visited < max_steps)
     {
         ++visited;
         int level  = enters ? 3 : 0;
         ivec2 cell = enters ? tile : pixel;
         t_border   = border_t(ray, grid, (cell + grid.forward) << level);
-        t_out      = exit_t(grid, t_border);
-        bool touched = enters ? touches_tile(vec2(covered_depths(ray, grid, t_in, t_out)), tile << 3) : touches_surface(ray, grid, pixel, t_in, t_out);
-        found = touched && !enters;
-        if (touched && enters)
+        crossing t_out = exit_t(grid, t_border);
+        bool opens = enters && touches_tile(vec2(covered_depths(ray, grid, t_in, t_out)), tile << 3);
+        if (!enters) contact = test_pixel(ray, grid, pixel, t_in, t_out);
+        if (opens)
         {
             // Of the tile's pixels, the one that holds the ray at t_in: the borders crossed by then name it.
             for (int half_px = 4; half_px > 0; half_px >>= 1)
@@ -87,7 +88,7 @@ TRACE = """TraceResult trace(Ray ray)
             pixel  = cell;
             enters = false;
         }
-        else if (!found)
+        else
         {
             ivec2 next = cross_borders(grid, cell, t_border, t_out);
             ivec2 next_tile = enters ? next : next >> 3;
@@ -97,7 +98,7 @@ TRACE = """TraceResult trace(Ray ray)
             t_in   = t_out;
         }
     }
-    if (found) return hit_between(ray, pixel, crossing_to_t(grid, t_in), crossing_to_t(grid, t_out), visited);
+    if (contact.found) return hit(ray, contact, visited);
     return t_in < grid.t_end ? out_of_steps(visited) : miss(ray, visited);
 }
 """

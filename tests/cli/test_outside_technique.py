@@ -12,7 +12,15 @@ place = { default = 0.5, min = 0.0, max = 1.0, doc = "Where, as a part of the ra
 TRACE = """TraceResult trace(Ray ray)
 {
     ivec2 pixel = pixel_at(ray, real(place));
-    if (pixel != ray.start_pixel && touches_sample(ray, pixel, real(place))) return hit_at_sample(ray, pixel, real(place), 1);
+    Contact contact = test_sample(ray, pixel, real(place));
+    if (pixel != ray.start_pixel && contact.found) return hit(ray, contact, 1);
+    return miss(ray, 1);
+}
+"""
+OWN_TEST = """TraceResult trace(Ray ray)
+{
+    ivec2 pixel = pixel_at(ray, real(place));
+    if (fetch_depth(pixel) > ray.origin.z) return TraceResult(TRACE_HIT, pixel, real(place), 1);
     return miss(ray, 1);
 }
 """
@@ -58,7 +66,7 @@ class Test(Case):
         self.assertEqual({row["technique"]: row["technique_ignores"] for row in self.rows()}, {"coin": "behind surface", "dda": ""})
 
     def test_warns_of_an_own_hit_test_of_which_nothing_is_said(self):
-        self.write("mine/coin/trace.glsl", TRACE.replace("touches_sample(ray, pixel, real(place))", "fetch_depth(pixel) > ray.origin.z"))
+        self.write("mine/coin/trace.glsl", OWN_TEST)
         self.ssrlab("run", self.spec, "-o", "out", "--techniques", "mine", says=["warning: mine/coin/technique.toml: expected 'ignores'"])
         self.assertEqual({row["technique"]: row["technique_ignores"] for row in self.rows()}, {"coin": "unknown", "dda": ""})
 

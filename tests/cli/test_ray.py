@@ -12,18 +12,17 @@ looks = { default = 3, min = 1, max = 9, doc = "Places." }
 """
 TRACE = """TraceResult trace(Ray ray)
 {
-    bool  found = false;
-    int   taken = 0;
-    real  t     = real(0);
-    ivec2 pixel = ray.start_pixel;
-    while (!found && taken < looks)
+    Contact contact = no_contact();
+    int     taken   = 0;
+    while (!contact.found && taken < looks)
     {
         ++taken;
-        t     = real(taken) / real(looks + 1);
-        pixel = pixel_at(ray, t);
-        found = pixel != ray.start_pixel && touches_sample(ray, pixel, t);
+        real  t     = real(taken) / real(looks + 1);
+        ivec2 pixel = pixel_at(ray, t);
+        if (pixel != ray.start_pixel) contact = test_sample(ray, pixel, t);
     }
-    return found ? hit_at_sample(ray, pixel, t, taken) : miss(ray, taken);
+    if (contact.found) return hit(ray, contact, taken);
+    return miss(ray, taken);
 }
 """
 RAY = ("ray", "builtin:mirror_floor_wall", "--size", "160x90", "--pixel", "80,60", "-p", "max_distance_m=30")

@@ -66,17 +66,18 @@ Mutation replaced(const std::string& name, const std::string& function, const st
 std::vector<Mutation> mutations()
 {
     return {
-        replaced("PyramidSizesRoundedDown", "touches_cell",
-                 "bool mutated_touches_cell(Ray ray, Grid grid, ivec2 pixel, int level, CellContent content, real a, "
-                 "real b) { return all(lessThan(pixel >> level, max(size_px >> level, ivec2(1)))) && "
-                 "touches_cell(ray, grid, pixel, level, content, a, b); }",
+        replaced("PyramidSizesRoundedDown", "test_cell",
+                 "Contact mutated_test_cell(Ray ray, Grid grid, ivec2 pixel, int level, uvec2 words, real a, real b) { "
+                 "if (any(greaterThanEqual(pixel >> level, max(size_px >> level, ivec2(1))))) return no_contact(); "
+                 "return test_cell(ray, grid, pixel, level, words, a, b); }",
                  "last_row_and_column"),
-        replaced("DepthByMix", "touches_cell",
+        replaced("DepthByMix", "test_cell",
                  "real mixed(Ray ray, real t) { real end = ray.origin.z + ray.delta.z; precise real z = "
                  "ray.origin.z * (real(1) - t) + end * t; return z; }\n"
-                 "bool mutated_touches_cell(Ray ray, Grid grid, ivec2 pixel, int level, CellContent content, real a, "
-                 "real b) { if (level > 0) return touches_cell(ray, grid, pixel, level, content, a, b); return "
-                 "interval_touches(content.depth, depth_interval(ray, mixed(ray, a), mixed(ray, b))); }",
+                 "Contact mutated_test_cell(Ray ray, Grid grid, ivec2 pixel, int level, uvec2 words, real a, real b) { "
+                 "Contact c = test_cell(ray, grid, pixel, level, words, a, b); if (level == 0) c.found = "
+                 "interval_touches(depth_in(words, pixel), depth_interval(ray, mixed(ray, a), mixed(ray, b))); "
+                 "return c; }",
                  "level_at_the_surface"),
         replaced("BordersMultipliedOut", "border_t",
                  "real2 mutated_border_t(Ray ray, Grid grid, ivec2 border) { return real2(border) * grid.inverse_delta "
@@ -103,8 +104,8 @@ std::vector<Mutation> mutations()
         replaced("PixelFromThePosition", "cross_borders",
                  "ivec2 mutated_cross_borders(Grid grid, ivec2 cell, real2 t_border, real t) { return cell; }", {},
                  "dda"),
-        {"BorderlineDepthIsAMiss", "dda", "found      = touches_surface(ray, grid, pixel, t_in, t_out);",
-         "found = touches_surface(ray, grid, pixel, t_in, t_out) && fetch_depth(pixel) > "
+        {"BorderlineDepthIsAMiss", "dda", "contact       = test_pixel(ray, grid, pixel, t_in, t_out);",
+         "contact = test_pixel(ray, grid, pixel, t_in, t_out); contact.found = contact.found && fetch_depth(pixel) > "
          "min(depth_at(ray, t_in), depth_at(ray, t_out));",
          "equality_counts"},
         replaced("EmptyIntervalsEndTooLate", "empty_interval",
@@ -116,15 +117,16 @@ std::vector<Mutation> mutations()
                  "real(1) ? real(0) : t.x, t.y); }",
                  {}, "hiz_packets"),
         {"OutOfStepsIsAMiss", "hiz", "out_of_steps(visited)", "miss(ray, visited)", "seven_steps"},
-        {"StopsBehindTheFirstObject", "dda", "while (!found && t_out < grid.t_end",
-         "while (!found && (t_in == real(0) || depth_at(ray, t_out) >= fetch_depth(pixel)) && t_out < grid.t_end",
+        {"StopsBehindTheFirstObject", "dda", "while (!contact.found && t_out < grid.t_end",
+         "while (!contact.found && (visited == 0 || depth_at(ray, t_out) >= fetch_depth(contact.pixel)) && t_out < "
+         "grid.t_end",
          "floating_beam"},
-        {"HitBeyondTheEnd", "dda",
-         "if (found) return hit_between(ray, pixel, crossing_to_t(grid, t_in), crossing_to_t(grid, t_out), visited);",
-         "if (found) return hit_at(ray, pixel, t_in, t_in + real(1), visited);", "axis_aligned"},
-        replaced("FacesIsAlwaysTrue", "touches_surface",
-                 "bool mutated_touches_surface(Ray ray, Grid grid, ivec2 pixel, real a, real b) { return "
-                 "interval_touches(fetch_depth(pixel), depth_interval(ray, depth_at(ray, a), depth_at(ray, b))); }",
+        {"HitBeyondTheEnd", "dda", "if (contact.found) return hit(ray, contact, visited);",
+         "if (contact.found) return hit_at(ray, contact, contact.t_in + real(1), visited);", "axis_aligned"},
+        replaced("FacesIsAlwaysTrue", "test_pixel",
+                 "Contact mutated_test_pixel(Ray ray, Grid grid, ivec2 pixel, real a, real b) { Contact c = "
+                 "test_pixel(ray, grid, pixel, a, b); c.found = interval_touches(fetch_depth(pixel), "
+                 "depth_interval(ray, depth_at(ray, a), depth_at(ray, b))); return c; }",
                  "facing_rule", "dda"),
         replaced("FacingAwayWithoutReason", "miss",
                  "TraceResult mutated_miss(Ray ray, int steps) { return TraceResult(behind_rule != BEHIND_HIT ? "
@@ -134,8 +136,8 @@ std::vector<Mutation> mutations()
                  "TraceResult mutated_miss(Ray ray, int steps) { return TraceResult(ray.end_status, ivec2(0), real(0), "
                  "steps); }",
                  "facing_rule", "dda"),
-        replaced("AlwaysAMiss", "touches_surface",
-                 "bool mutated_touches_surface(Ray ray, Grid grid, ivec2 pixel, real a, real b) { return false; }",
+        replaced("AlwaysAMiss", "test_pixel",
+                 "Contact mutated_test_pixel(Ray ray, Grid grid, ivec2 pixel, real a, real b) { return no_contact(); }",
                  "axis_aligned", "dda"),
         {"NotANumber", "dda", "return t_out < grid.t_end ? out_of_steps(visited) : miss(ray, visited);",
          "return TraceResult(ray.end_status, ivec2(0), sqrt(ray.delta.z - real(1)), visited);",

@@ -187,8 +187,8 @@ TEST(RunCase, MirrorImagesMustAgree)
     // What its limits allow is right in a mirror, too; a hit of nothing never is.
     const std::string limits = "limits = [\"point_sampled\"]";
     EXPECT_EQ(run(*Walk("if (ray.delta.x < real(0)) r = miss(ray, 1);", limits), case_of_poles()).breaks, 0U);
-    const CaseRow wrong = run(*Walk("if (ray.delta.x < real(0)) r = hit_at(ray, ray.start_pixel - ivec2(3, 0), "
-                                    "real(0), real(1), 1);",
+    const CaseRow wrong = run(*Walk("if (ray.delta.x < real(0)) r = TraceResult(TRACE_HIT, "
+                                    "ray.start_pixel - ivec2(3, 0), real(1), 1);",
                                     limits),
                               case_of_poles());
     EXPECT_EQ(wrong.breaks, 3U);

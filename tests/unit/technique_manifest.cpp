@@ -81,10 +81,10 @@ TEST(TechniqueManifest, AnOwnHitTestOfWhichNothingIsSaidIsUnknown)
         write_file_atomically(folder / "trace.glsl", shader);
         return load_technique(folder).ignores;
     };
-    const std::string asks  = "bool found = touches_surface(ray, pixel, t_in, t_out);\n",
+    const std::string asks  = "Contact contact = test_pixel(ray, pixel, t_in, t_out);\n",
                       reads = "real z = fetch_depth(pixel);\n";
     EXPECT_THAT(ignores("asks", "", asks), testing::IsEmpty());
-    EXPECT_THAT(ignores("samples", "", "bool found = touches_sample(ray, pixel, t);\n"), testing::IsEmpty());
+    EXPECT_THAT(ignores("samples", "", "Contact contact = test_sample(ray, pixel, t);\n"), testing::IsEmpty());
     EXPECT_THAT(ignores("neither", "", "// its own\n"), ElementsAre("unknown"));
     EXPECT_THAT(ignores("reads", "", asks + reads), ElementsAre("unknown"));
     EXPECT_THAT(ignores("says", "ignores = []\n", asks + reads), testing::IsEmpty());

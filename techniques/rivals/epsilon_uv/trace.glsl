@@ -21,22 +21,23 @@ TraceResult trace(Ray ray)
     real2 inverse = real2(1) / ray.delta.xy; // infinite for axis-aligned rays, whose t is then minus infinity or NaN
     real2 epsilon = sign(ray.delta.xy) * epsilon_px();
     real  t = real(0), t_next = real(0);
-    ivec2 pixel = ray.start_pixel;
-    bool  ended = false, found = false;
-    int   visited = 0;
-    while (!ended && !found && visited < max_steps)
+    ivec2   pixel   = ray.start_pixel;
+    Contact contact = no_contact();
+    bool    ended   = false;
+    int     visited = 0;
+    while (!ended && !contact.found && visited < max_steps)
     {
         ++visited;
         real2 border = real2(pixel) + real2(greaterThan(ray.delta.xy, real2(0))) + epsilon;
         real2 t_axis = (border - ray.origin.xy) * inverse;
         t_next       = min(t_axis.x, t_axis.y);
-        found        = pixel != ray.start_pixel && touches_surface(ray, pixel, t, min(t_next, real(1)));
+        if (pixel != ray.start_pixel) contact = test_pixel(ray, pixel, t, min(t_next, real(1)));
         ended        = !(t_next < real(1));
         ivec2 next   = ivec2(floor(position_at(ray, t_next)));
         ended        = ended || !on_screen(next);
-        t            = found ? t : t_next;
-        pixel        = found ? pixel : next;
+        t            = t_next;
+        pixel        = next;
     }
-    if (found) return hit_between(ray, pixel, t, min(t_next, real(1)), visited);
+    if (contact.found) return hit(ray, contact, visited);
     return ended ? miss(ray, visited) : out_of_steps(visited);
 }

@@ -1,5 +1,6 @@
 // Fragile on purpose: the cell's nearest depth is all it looks at, and where the ray has gone behind a surface the search is over.
 // Walks as techniques/hiz_packets does, two rays at a time.
+#include "structures/depth_pyramid/front.glsl"
 #include "api/forward_traversal.glsl"
 
 int top = pyramid_top();
@@ -20,9 +21,8 @@ TraceResult finish(Ray ray, Traversal walk, int own_lane)
 {
     lane = own_lane;
     if (walk.level >= 0) return walk.t < walk.grid.t_end ? out_of_steps(walk.visited) : miss(ray, walk.visited);
-    ivec2    pixel = pixel_of(walk);
-    real     t_out = t_exit(walk);
-    if (touches_surface(ray, pixel, walk.t, t_out)) return hit_between(ray, pixel, walk.t, t_out, walk.visited);
+    Contact contact = test_pixel(ray, pixel_of(walk), walk.t, t_exit(walk));
+    if (contact.found) return hit(ray, contact, walk.visited);
     return miss(ray, walk.visited);
 }
 

@@ -12,9 +12,10 @@ TraceResult trace(Ray ray)
     real2 t_max   = border_t(ray, grid, ray.start_pixel + grid.forward);
     ivec2 pixel   = ray.start_pixel;
     real  t_in    = real(0), t_out = min(t_max.x, t_max.y);
-    bool  ended   = false, found = false;
-    int   visited = 0;
-    while (!ended && !found && visited < max_steps)
+    Contact contact = no_contact();
+    bool    ended   = false;
+    int     visited = 0;
+    while (!ended && !contact.found && visited < max_steps)
     {
         t_in = t_out;
         if (t_max.x <= t_max.y)
@@ -29,9 +30,9 @@ TraceResult trace(Ray ray)
         }
         t_out = min(min(t_max.x, t_max.y), real(1));
         ended = t_in >= real(1) || !on_screen(pixel);
-        found = !ended && touches_surface(ray, pixel, t_in, t_out);
+        if (!ended) contact = test_pixel(ray, pixel, t_in, t_out);
         ++visited;
     }
-    if (found) return hit_between(ray, pixel, t_in, t_out, visited);
+    if (contact.found) return hit(ray, contact, visited);
     return ended ? miss(ray, visited) : out_of_steps(visited);
 }

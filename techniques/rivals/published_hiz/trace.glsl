@@ -1,5 +1,6 @@
 // Written from the description, in its own terms: position.xy in uv, a cell's surface is one plane, the ray advances to the nearest of the
 // cell's two borders and that plane. It ends where level 0 is passed downward; a hit if that is within the thickness.
+#include "structures/depth_pyramid/front.glsl"
 
 TraceResult trace(Ray ray)
 {
@@ -40,6 +41,7 @@ TraceResult trace(Ray ray)
     uvec2 words = fetch_pixel(pixel);
     real  depth = real(depth_in(words, pixel));
     bool touched = interval_touches(depth, depth_interval(ray, position.z, min(position.z, depth)));
-    bool hit = t <= real(1) && pixel != ray.start_pixel && ends_at(ray, surface_at(ray, pixel, 0, words), touched, t);
-    return hit ? hit_at(ray, pixel, t, t, visited) : miss(ray, visited);
+    bool ends = t <= real(1) && pixel != ray.start_pixel && ends_at(ray, surface_at(ray, pixel, 0, words), touched, t);
+    if (ends) return hit_at(ray, Contact(true, pixel, 0, words, t, t, false), t, visited);
+    return miss(ray, visited);
 }

@@ -1,5 +1,6 @@
 // Written from the description, in its own terms: a cell has two walls ahead of the ray, and below it a floor (its nearest depth) and a base (the back of
 // that depth's slab; HDRP's is relative to the distance). Without HDRP's bias of the ray's origin: here every technique gets the same ray.
+#include "structures/depth_pyramid/front.glsl"
 
 TraceResult trace(Ray ray)
 {
@@ -39,6 +40,6 @@ TraceResult trace(Ray ray)
         ++visited;
     }
     bool found = hit && t <= real(1) && pixel != ray.start_pixel;
-    if (found) return hit_at(ray, pixel, t_in, t, visited);
+    if (found) return hit_at(ray, test_pixel(ray, pixel, t_in, t), t, visited);
     return hit || missed || t > real(1) ? miss(ray, visited) : out_of_steps(visited);
 }

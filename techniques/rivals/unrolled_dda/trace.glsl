@@ -8,12 +8,13 @@ void visit(Ray ray, inout Traversal walk, int own_lane)
     lane           = goes ? own_lane : 2;
     real2 t_border = border_t(walk.forward, walk.grid, walk.corner);
     real  t_out    = exit_t(walk.grid, t_border);
-    bool  touched  = touches_surface(ray, walk.grid, pixel_of(walk), walk.t, t_out);
-    bool  leaves   = goes && !touched;
+    Contact contact = test_pixel(ray, walk.grid, pixel_of(walk), walk.t, t_out);
+    bool  leaves   = goes && !contact.found;
     ivec2 next     = next_corner(walk.corner, 1, t_border, t_out);
     walk.t         = leaves ? t_out : walk.t;
     walk.corner    = leaves ? next : walk.corner;
-    walk.level     = goes && touched ? -1 : walk.level;
+    walk.level     = goes && contact.found ? -1 : walk.level;
+    if (goes) walk.contact = contact;
     walk.visited += int(goes);
 }
 
