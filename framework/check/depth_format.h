@@ -1,4 +1,4 @@
-// Depth as other renderers store it, and what is left of it after its import.
+// Depth as other renderers store it, and what their precision leaves after import.
 #pragma once
 
 #include "check/setup.h"
@@ -13,10 +13,10 @@ struct DepthFormat {
 };
 const std::vector<DepthFormat>& depth_formats();
 
-/// What becomes of depth near_m / distance_m when it is stored and imported. far_m: of formats with a finite far plane.
+/// Returns depth near_m / distance_m after storing and importing. far_m: for finite formats.
 float stored_and_imported(const DepthFormat& format, float depth, double near_m, double far_m);
 
-/// The setup of a perspective view with its depth stored and imported; the far plane at 1.5 times the farthest surface.
+/// Returns a perspective setup with its depth stored and imported; far plane at 1.5 times the farthest surface.
 Setup stored_and_imported(Setup setup, const DepthFormat& format);
 
 } // namespace ssrlab

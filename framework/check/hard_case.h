@@ -1,4 +1,4 @@
-// The catalogue of hard cases (docs/explanation/hard_cases.md): what breaks tracers, the smallest picture and rays that show it, and the answer.
+// The catalogue of hard cases (docs/explanation/hard_cases.md): small frames and rays, with known answers.
 #pragma once
 
 #include "check/setup.h"
@@ -6,7 +6,7 @@
 
 namespace ssrlab {
 
-/// What a ray of a case must find, known without tracing it.
+/// What a ray of a case must find.
 struct Expected {
     std::optional<TraceStatus> status = TraceStatus::hit; // none: only what follows is known
     std::optional<glm::ivec2>  pixel  = {};               // of the hit
@@ -14,7 +14,7 @@ struct Expected {
     std::optional<glm::dvec2>  end_px = {};               // where the ray must end on screen, within 0.001 px
 };
 
-/// Another setup whose answers must be the same, ray by ray, once `back` has mapped them.
+/// Another setup whose answers must be equal, ray by ray, after `back` has mapped them.
 struct Relation {
     std::string                           name;
     std::function<Setup(const Setup&)>    change;
@@ -27,20 +27,20 @@ struct HardCase {
     std::string                         breaks; // why tracers fail here
     std::string                         answer; // the expected answer and where it comes from
     std::function<std::vector<Setup>()> setups;
-    /// The closed form, if there is one. Every ray is compared with the screen truth besides.
+    /// The closed form, if there is one. Every ray is also compared with the screen truth.
     std::function<std::optional<Expected>(const Setup&, const RayInput&)> expected = {};
-    /// Hold for exact techniques; others are held to mirror images and repetition alone.
+    /// Relations for exact techniques; others are held only to mirror images and repetition.
     std::vector<Relation> relations = {};
-    /// Changes the technique's parameters for this case; the others keep their defaults.
+    /// Changes parameters of the technique for this case; the others keep their defaults.
     std::function<void(const Technique&, ParameterValues&)> adjust = {};
-    /// The most iterations that an exact technique may need a ray, where that is less than 2 (W + H - 1) + start level.
+    /// Bound on the iterations per ray of an exact technique, if it is less than 2 (W + H - 1) + start level.
     std::function<int(const Setup&)> most_steps = {};
 };
 
-/// The technique's values as the case changes them.
+/// Returns the values of the technique as the case changes them.
 ParameterValues adjusted(const HardCase& hard_case, const Technique& technique, ParameterValues values);
 
-/// What must be refused, with a message that names the culprit.
+/// Something that must be refused, with a message that names the culprit.
 struct RefusedCase {
     std::string           name;
     std::function<void()> attempt; // throws SpecError

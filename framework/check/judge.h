@@ -1,4 +1,4 @@
-// Is what a technique says about one ray right? Judged in double precision, with room for what single precision cannot decide.
+// Judges the answer of one ray in double precision, with room for what single precision cannot decide.
 #pragma once
 
 #include "check/setup.h"
@@ -10,9 +10,9 @@
 
 namespace ssrlab {
 
-/// How far a ray may be inside a pixel that was wrongly skipped or taken before it is a gross error.
+/// How far a ray may pass through a pixel that was wrongly skipped or taken and still count as a near tie.
 inline constexpr double sliver_px = 0.05;
-/// Cosine between normal and ray below which rounding decides whether the surface faces the ray.
+/// Cosine between normal and ray below which rounding decides which side is met.
 inline constexpr double facing_rounding = 1e-4;
 
 enum class Verdict {
@@ -54,7 +54,7 @@ struct Visit {
 
 bool       on_image(const GBufferImage& gbuffer, glm::ivec2 pixel);
 glm::ivec2 start_pixel(const GBufferImage& gbuffer, const RayInput& ray);
-/// How deep the ray goes into the pixel: its largest distance to the pixel's borders there.
+/// Returns how deep the ray passes through the pixel: its largest distance to the borders of the pixel.
 double depth_inside_px(const RayInput& ray, const Visit& visit);
 
 class Judge {
@@ -62,23 +62,23 @@ public:
     /// Keeps a reference to the setup. Throws Failure if its G-buffer lacks what its surface model needs.
     explicit Judge(const Setup& setup);
 
-    /// All pixels of the walk, the start pixel excluded, each layer of a pixel by itself.
+    /// Returns all pixels of the walk except the start pixel, each layer separately.
     std::vector<Visit> walk(const RayInput& ray) const;
-    /// The hit contract in double precision.
+    /// Returns the answer of the hit contract in double precision.
     RayOutcome exact_answer(const RayInput& ray) const;
     Judgement  judge(const RayInput& ray, const RayOutcome& outcome, const Claim& claim) const;
-    /// Breaks of what holds for every technique: finite numbers, hits on screen, inside the segment and outside the start pixel, a status that
-    /// the ray can have. Empty: none.
+    /// Returns which rule for all techniques is broken: finite numbers, hits on screen, inside the segment and outside
+    /// the start pixel, a status that the ray can have. Empty: none.
     std::string broken_invariant(const RayInput& ray, const RayOutcome& outcome,
                                  double most_steps = std::numeric_limits<double>::infinity()) const;
 
 private:
-    /// From which sides the ray may meet what it visits, rounding considered.
+    /// From which sides the ray may meet what it visits, allowing for rounding.
     struct Sides {
         bool front = true, behind = true;
     };
 
-    /// sampled: by points, for which a plane has the thickness of the run.
+    /// sampled: tested by points, for which a plane has the thickness of the run.
     Visit                visit(const RayInput& ray, glm::ivec2 pixel, int layer, double t_in, double t_out,
                                bool sampled = false) const;
     double               depth_rounding(const RayInput& ray, const Visit& visit) const;

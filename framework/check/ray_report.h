@@ -1,4 +1,4 @@
-// Everything that is known about one mirror ray: what each technique looked at, where it ended, and where it should have.
+// Everything about one mirror ray: what each technique read, where it ended, and where it should have ended.
 #pragma once
 
 #include "check/setup.h"
@@ -16,7 +16,7 @@ struct RayQuestion {
     ParameterValues  values;
 };
 
-/// Where the scene's triangles say that the ray ends.
+/// Where the ray ends among the scene's triangles.
 struct TrueEnd {
     TruthClass cls        = TruthClass::not_traced;
     double     distance_m = 0; // infinite for sky
@@ -24,7 +24,7 @@ struct TrueEnd {
     bool       starts_off_surface = false; // the drawn depth is off every surface of the scene, so the end may be false
 };
 
-/// What a visited pixel or cell holds, and the part of the ray there. Distances along the view axis.
+/// What a visited pixel or cell holds, and the part of the ray there. Distances are along the view axis.
 struct VisitReport {
     RayVisit visit;
     double   t_in = 0, t_out = 0;
@@ -52,10 +52,10 @@ struct RayReport {
     std::vector<TechniqueReport> techniques;
 };
 
-/// The ray `index` of the setup's list. true_end is left empty.
+/// Reports one ray of the setup. Leaves true_end empty.
 RayReport report_ray(Gpu& gpu, const Setup& setup, const RayInput& ray, std::span<const RayQuestion> questions);
 
-/// Visits as a table, one a line.
+/// Returns the visits as a table, one per line.
 std::string visits_table(const TechniqueReport& report);
 
 nlohmann::json to_json(const RayReport& report, const Setup& setup);

@@ -1,17 +1,17 @@
-// The check's table, for people and for the reference results.
+// Tables of `ssrlab check`.
 #pragma once
 
 #include "check/run_case.h"
 
 namespace ssrlab {
 
-/// One line each, aligned; head() names the columns.
+/// One aligned line each; table_head() names the columns.
 std::string table_head();
 std::string table_line(const CaseRow& row);
-/// The findings of a row that breaks a claim, each with the command that shows it.
+/// Returns the findings of a row that breaks a claim, each with the command that shows it.
 std::string table_findings(const CaseRow& row);
 
-/// The whole table as Markdown, without times: the same bytes on every run.
+/// Returns the whole table as Markdown, without times, so the bytes are equal in every run.
 std::string markdown_table(const std::vector<CaseRow>& rows);
 
 } // namespace ssrlab

@@ -1,4 +1,4 @@
-// One technique on one hard case: every ray judged, every invariant and relation tried.
+// Runs one technique on one hard case: judges every ray, invariant and relation.
 #pragma once
 
 #include "check/hard_case.h"
@@ -29,10 +29,10 @@ struct CheckOptions {
 CaseRow run_case(Gpu& gpu, const Technique& technique, const ParameterValues& values, const std::string& family,
                  const HardCase& hard_case, const CheckOptions& options = {});
 
-/// The digest that run_case would give, and nothing else.
+/// Returns only the digest that run_case() would give.
 uint64_t digest_of(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case);
 
-/// A ray in words: its numbers, the pixels it visits, what is there, what the technique said and what is right.
+/// Describes a ray: its numbers, its pixels, what the technique said and what is right.
 std::string describe_ray(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case,
                          size_t setup, size_t ray);
 

@@ -1,4 +1,4 @@
-// The whole catalogue, technique by technique.
+// Runs the whole catalogue, technique by technique.
 #pragma once
 
 #include "check/run_case.h"
@@ -12,15 +12,15 @@ struct CheckRequest {
     std::vector<ParameterValues> values = {}; // of each technique; empty: defaults
 };
 
-/// Calls `on_row` after each case. With a `robust` device (robust buffer access on), its answers must be the same bits.
-/// Throws SpecError for a case that does not exist.
+/// Calls `on_row` after each case. A `robust` device (robust buffer access) must give the same bits. Throws SpecError
+/// for a case that does not exist.
 std::vector<CaseRow> run_check(Gpu& gpu, Gpu* robust, const CheckRequest& request,
                                const std::function<void(const CaseRow&)>& on_row);
 
-/// A line for each technique that finds nothing in all these rows of what there is: limits allow to miss, but not everything.
+/// Returns a line for each technique that finds nothing in all rows although there is something to find.
 std::vector<std::string> check_finds(const std::vector<CaseRow>& rows);
 
-/// Attempts what must be refused; a line for each that was not.
+/// Attempts what must be refused. Returns a line for each attempt that was accepted.
 std::vector<std::string> check_refusals();
 
 const HardCase& find_case(const std::string& name);

@@ -1,4 +1,4 @@
-// What a hard case gives to a tracer: an analytic picture, settings and rays.
+// What a hard case gives to a tracer: an analytic frame, settings and rays.
 #pragma once
 
 #include "core/gbuffer_image.h"
@@ -12,7 +12,7 @@
 
 namespace ssrlab {
 
-/// One picture with its rays. Without rays, all pixels that reflect send their mirror rays, as the shader sets them up.
+/// One frame with its rays. Without rays, every reflecting pixel sends its mirror ray, as the shader sets it up.
 struct Setup {
     std::string           label; // tells the setups of one case apart
     GBufferImage          gbuffer;
@@ -20,12 +20,12 @@ struct Setup {
     std::vector<RayInput> rays;
 };
 
-/// The bench camera of the closed forms: perspective, 90 degrees high, looking along -z from 0, so that
-/// x_px = W/2 + H/2 * X/Z, y_px = H/2 - H/2 * Y/Z and depth = near_m / Z.
+/// The camera of the closed forms: perspective, 90 degrees high, looking along -z from 0, so that x_px = W/2 + H/2 *
+/// X/Z, y_px = H/2 - H/2 * Y/Z and depth = near_m / Z.
 View bench_view(glm::ivec2 size_px = {64, 64}, double near_m = 0.1, double fov_y_deg = 90);
 View orthographic_view(glm::ivec2 size_px, double height_m, double near_m, double far_m);
 
-/// A surface: where a ray from `origin` along `direction` (view space, -z forward) first meets it, and its normal there.
+/// A surface: where a ray from `origin` along `direction` (view space) first meets it, and its normal there.
 struct ShapePoint {
     double     s = 0; // origin + s * direction
     glm::dvec3 normal_vs{0, 0, 1};
@@ -35,25 +35,25 @@ Shape plane(glm::dvec3 point, glm::dvec3 normal);
 Shape sphere(glm::dvec3 centre, double radius);
 Shape box(glm::dvec3 low, glm::dvec3 high);
 
-/// What the camera sees of the shapes; everything is a perfect mirror.
+/// Draws the shapes; everything is a perfect mirror.
 GBufferImage picture_of(const View& view, const std::vector<Shape>& shapes);
 
-/// The distance in metres of each pixel; 0 or infinity is background. Normals face the camera.
+/// Distance of each pixel in metres; 0 or infinity is background. Normals face the camera.
 using DistanceOfPixel = std::function<double(glm::ivec2)>;
 GBufferImage picture_of(const View& view, const DistanceOfPixel& distance_m);
 
-/// A ray between two points on screen; z in metres of distance.
+/// Makes a ray between two points on screen; z is the distance in metres.
 RayInput ray_between(const View& view, glm::dvec3 from_px_distance, glm::dvec3 to_px_distance);
-/// A ray of constant depth.
+/// Makes a ray of constant depth.
 RayInput level_ray(const View& view, glm::dvec2 from_px, glm::dvec2 delta_px, double distance_m);
 
-/// Rounded to float, as the technique gets it: the answer is to be that of these numbers.
+/// Rounds the ray to float, as the technique gets it: the answer must be that of these numbers.
 RayInput rounded_to_float(const RayInput& ray);
 
-/// The same setup in a mirror; axis 0 exchanges left and right, 1 top and bottom.
+/// Mirrors a setup; axis 0 exchanges left and right, axis 1 top and bottom.
 Setup      mirrored(const Setup& setup, int axis);
 RayOutcome mirrored(RayOutcome outcome, glm::ivec2 size_px, int axis);
-/// False where the mirrored ray is another ray: its origin rounds differently, or lies on a border and so belongs to one side.
+/// Returns false if mirroring changes the ray: its origin rounds differently, or lies on a border.
 bool mirrors_exactly(const RayInput& ray, glm::ivec2 size_px, int axis);
 
 } // namespace ssrlab

@@ -1,4 +1,4 @@
-// What cannot be right or wrong, only measured: how answers move when the picture is sampled elsewhere or its depth is stored in another format.
+// Stability: how answers change when the frame is sampled elsewhere or its depth is stored differently.
 #pragma once
 
 #include "frame/frame.h"
@@ -9,7 +9,7 @@
 
 namespace ssrlab {
 
-/// 16 sub-pixel phases (Halton 2, 3) of a still camera before the yard of the catalogue's family "motion".
+/// Answers under 16 sub-pixel phases (Halton 2, 3) of a still camera in front of the yard of the family "motion".
 struct JitterRow {
     std::string technique;
     size_t      pixels        = 0; // that reflect in every phase
@@ -20,7 +20,7 @@ struct JitterRow {
 };
 JitterRow measure_jitter(Gpu& gpu, const Technique& technique);
 
-/// The mirror rays of the catalogue's perspective cases, on depth that was stored in a format and imported again.
+/// Mirror rays of the perspective cases on depth that was stored in a format and imported.
 struct FormatRow {
     std::string format;
     std::string technique;
@@ -34,7 +34,7 @@ struct FormatRow {
 inline constexpr double deep_near_planes = 1e4;
 std::vector<FormatRow>  measure_formats(Gpu& gpu, const Technique& technique);
 
-/// Two tables; in the second a column for each technique.
+/// Returns two tables; the second has a column for each technique.
 std::string stability_markdown(const std::vector<JitterRow>& jitter, const std::vector<FormatRow>& formats);
 
 } // namespace ssrlab

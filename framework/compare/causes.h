@@ -1,11 +1,11 @@
-// Why a ray's answer is wrong against the scene: one cause for each wrong ray.
+// Why a ray is wrong against the scene: one cause for each wrong ray.
 #pragma once
 
 #include "compare/measures.h"
 
 namespace ssrlab {
 
-/// A ray that ends on its own object at a smaller angle above its tangent plane meets itself.
+/// A ray that ends on its own object at a smaller angle above its tangent plane hits itself.
 inline constexpr double self_hit_sine = 0.01;
 
 /// A ray is wrong if it does not find a visible true point within 1 px, or if it hits where no visible point is (a hidden one counts where it
@@ -25,10 +25,10 @@ enum class WrongCause : uint8_t {
 inline constexpr std::array<std::string_view, 8> wrong_cause_names = {
     "right", "own_surface", "not_shown", "thin", "silhouette", "edge", "stopped", "other"};
 
-/// By pixel. Throws Failure unless all have the same size, InvalidResult for a result that cannot be.
+/// Returns the cause of each pixel. Throws Failure unless all sizes agree, InvalidResult for an impossible result.
 std::vector<WrongCause> wrong_causes(const TraceResult& tested, const SceneTruth& truth, const GBufferImage& gbuffer);
 
-/// wrong_rays and the names that begin with "wrong_".
+/// Returns wrong_rays and the measures that begin with "wrong_".
 MeasureValues count_causes(const TraceResult& tested, const SceneTruth& truth, const GBufferImage& gbuffer);
 
 } // namespace ssrlab

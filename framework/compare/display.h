@@ -17,10 +17,10 @@ struct Display {
     Transform transform   = Transform::clip;
 };
 
-/// Linear radiance to linear display light in [0, 1] (sRGB primaries); NaN gives 0. Of three channels.
+/// Converts linear radiance to linear display light in [0, 1] (sRGB primaries); NaN gives 0. Three channels.
 Image to_display(const Image& radiance, const Display& display);
 
-/// Mean of pictures of one size, which were added up.
+/// Returns the mean of `count` pictures from their sum.
 Image mean_of(Image sum, int count);
 /// sum + image; `sum` may be empty.
 void add_to(Image& sum, const Image& image);
@@ -29,7 +29,7 @@ struct LabelledImage {
     std::string label;
     Image       image;
 };
-/// From left to right, each below its label; all of one size, three channels. Throws Failure where there is no font.
+/// Puts pictures of one size and three channels side by side, each below its label. Throws Failure if there is no font.
 Image side_by_side(std::span<const LabelledImage> pictures);
 
 } // namespace ssrlab

@@ -1,5 +1,5 @@
 // LDR FLIP: how different two pictures look when a viewer flips between them.
-// Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild 2020: FLIP: A Difference Evaluator for Alternating Images.
+// P. Andersson et al. 2020, "FLIP: A Difference Evaluator for Alternating Images".
 #pragma once
 
 #include "compare/image_filter.h"
@@ -12,26 +12,26 @@ namespace ssrlab {
 /// The paper's viewing conditions: a 0.7 m wide monitor of 3840 pixels, seen from 0.7 m.
 inline constexpr float flip_pixels_per_degree = 67.0206433F;
 
-/// What a viewer sees of an image, per pixel: the perceived colour, and how strongly edges and points stand out.
+/// What a viewer sees of an image, per pixel: the perceived colour, and the strength of edges and points.
 struct FlipView {
     float                  pixels_per_degree = flip_pixels_per_degree;
     std::array<Plane, 3>   ycxcz; // the image itself
     std::vector<glm::vec3> lab;   // with the Hunt effect
     std::vector<float>     edges, points;
 };
-/// Throws Failure unless there are three values a pixel.
+/// Throws Failure unless the image has three channels.
 void require_three_channels(const Image& image);
-/// Throws Failure where they differ.
+/// Throws Failure if the sizes differ.
 void require_same_size(glm::ivec2 a_px, glm::ivec2 b_px);
 
-/// Channels R, G, B, sRGB-encoded, values in [0, 1]. Throws Failure unless there are three values a pixel.
+/// Views an image with channels R, G, B, sRGB-encoded, in [0, 1]. Throws Failure unless it has three channels.
 FlipView flip_view(const Image& image, float pixels_per_degree = flip_pixels_per_degree);
 
-/// Of a picture that shows `image` inside the mask and outside what the reference shows; there, what a viewer sees is left at 0. Throws
-/// Failure as above, and when the sizes differ.
+/// Views a picture that shows `image` inside the mask and the reference outside; the result is 0 outside. Throws
+/// Failure as flip_view() does, and if the sizes differ.
 FlipView flip_view_inside(const Image& image, const FlipView& reference, const Mask& mask);
 
-/// One value in [0, 1] per pixel, 0 outside the mask. Throws Failure when the sizes differ.
+/// Returns one value in [0, 1] per pixel, 0 outside the mask. Throws Failure if the sizes differ.
 std::vector<float> flip_error(const FlipView& tested, const FlipView& reference, const Mask& mask = {});
 
 } // namespace ssrlab

@@ -14,7 +14,7 @@ struct Plane {
     std::vector<float> values; // row-major
 };
 
-/// One byte a pixel, not 0 inside. Empty: all pixels are inside.
+/// One byte per pixel, not 0 inside. An empty mask contains all pixels.
 using Mask = std::vector<uint8_t>;
 inline bool is_inside(const Mask& mask, size_t pixel) { return mask.empty() || mask[pixel] != 0; }
 

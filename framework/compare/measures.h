@@ -1,4 +1,4 @@
-// Every error measure of a record: one table says what each means; the functions below fill in the values.
+// Every error measure of a record. One table says what each means; the functions below compute the values.
 #pragma once
 
 #include "compare/flip.h"
@@ -27,45 +27,45 @@ struct Measure {
 /// In the order of the CSV's columns.
 std::span<const Measure> measures();
 
-/// By Measure::name. Empty = has no value here (no ray to count, no truth, identical images …), never NaN.
+/// By Measure::name. nullopt: no value here (no rays, no truth, identical images …); never NaN.
 using MeasureValues = std::map<std::string_view, std::optional<double>>;
 
-/// Of nothing there is no share.
+/// Returns part / whole; nullopt if `whole` is 0.
 std::optional<double> share(size_t part, size_t whole);
 
-/// Every measure of the table, without value.
+/// Returns every measure of the table without a value.
 MeasureValues no_measures();
 
-/// Takes over every value that `more` has.
+/// Overwrites `values` with every value that `more` has.
 void merge(MeasureValues& values, const MeasureValues& more);
 
-/// The table, as README text.
+/// Returns the table as Markdown.
 std::string measures_markdown();
 
-/// The names that begin with "screen_", and traced_rays.
+/// Returns traced_rays and the measures that begin with "screen_".
 MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResult& screen_truth);
 
-/// recall, precision, false hits and misses by cause, and the share of each class. Without a screen truth (null), what needs it stays empty.
+/// Returns recall, precision, false hits, misses by cause, shares of classes. The screen truth may be null.
 MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth& scene_truth,
                                      const TraceResult* screen_truth, const GBufferImage& gbuffer);
 
-/// At how many of the traced pixels the drawn depth is off every surface of the scene.
+/// Returns the share of traced pixels whose drawn depth lies on no surface of the scene.
 MeasureValues compare_depth_to_scene(const SceneTruth& scene_truth);
 
-/// What the pass hidden_layer adds: `first` and `second` are what the rays found in each depth layer.
+/// Returns what the pass hidden_layer adds. `first` and `second` are the results in each depth layer.
 MeasureValues compare_hidden_layer(const TraceResult& first, const TraceResult& second, const SceneTruth& scene_truth);
 
-/// Mean and largest work per ray, and the work of rays that run side by side.
+/// Returns mean and largest work per ray, and the work of rays that run in groups.
 MeasureValues count_work(const TraceResult& result);
 
-/// Traced rays whose status, or whose pixel when both hit, differ, per million.
+/// Returns the traced rays per million whose status differs, or whose pixel differs if both hit.
 std::optional<double> count_flips(const TraceResult& float_result, const TraceResult& double_result);
 
-/// flips_per_million and the three errors of the split. Pointers may be null: what needs them stays empty.
+/// Returns flips_per_million and the three errors of the split. For null pointers, what needs them stays empty.
 MeasureValues split_error(const TraceResult& float_result, const TraceResult* double_result,
                           const TraceResult* screen_truth, const SceneTruth* scene_truth);
 
-/// What pictures are judged by, with all that the measures need of it: it may judge many. Throws Failure unless it has three channels.
+/// A reference picture, prepared to judge many pictures. Throws Failure unless it has three channels.
 struct Reference {
     explicit Reference(const Image& linear_radiance);
 
@@ -74,39 +74,39 @@ struct Reference {
     FlipView flip;
 };
 
-/// "reflective": every traced pixel; "visible": those whose true point is visible. Images are linear radiance, three channels.
+/// Compares linear reflections: "reflective" over traced pixels, "visible" over those with a visible point.
 MeasureValues compare_images(const Image& tested, const Reference& reference, const SceneTruth& scene_truth);
 
-/// The names that begin with "picture_": a finished picture against the one with the true reflection.
+/// Returns the measures that begin with "picture_": a finished picture against the one with the true reflection.
 MeasureValues compare_pictures(const Image& tested, const Reference& reference, const SceneTruth& scene_truth,
                                const GBufferImage& gbuffer);
 
-/// Where a finished picture differs from that one: FLIP of each reflecting pixel in false colours.
+/// Returns FLIP of a finished picture against that reference, for each reflecting pixel, in false colours.
 Image flip_of_picture(const Image& tested, const Reference& reference, const SceneTruth& scene_truth);
 
-/// disocclusion_share and reprojection_unknown_share.
+/// Returns disocclusion_share and reprojection_unknown_share.
 MeasureValues count_disocclusions(const ReprojectionTruth& truth);
 
-/// The names that begin with "surface_motion_error". Here and below, `found_px`: by pixel, from the pixel to where its reflection is said
-/// to have been, without jitter; NaN where nothing is said.
+/// Returns the measures that begin with "surface_motion_error". Here and below, `found_px` holds for each pixel the
+/// displacement, without jitter, to where its reflection is said to have been; NaN if unknown.
 MeasureValues compare_surface_motion(std::span<const glm::vec2> found_px, const ReprojectionTruth& truth,
                                      const TraceResult& traced, const SceneTruth& scene_truth);
 
-/// The names that begin with "reprojection_error", and reprojection_found_share.
+/// Returns reprojection_found_share and the measures that begin with "reprojection_error".
 MeasureValues compare_reprojection(std::span<const glm::vec2> found_px, const ReprojectionTruth& truth,
                                    const TraceResult& traced, const SceneTruth& scene_truth);
 
-/// How many frames a ghost is looked for behind the edge that left it.
+/// Frames over which a ghost is looked for behind a moving edge.
 inline constexpr int ghost_frames = 8;
 
-/// ghosting_rmse of a finished picture. `earlier`: the truth of `ghost_frames` frames, or of those since the sequence began.
+/// Returns ghosting_rmse. `earlier`: the truth over `ghost_frames` frames, or since the sequence began.
 MeasureValues compare_ghosts(const Image& tested, const Reference& reference, const ReprojectionTruth& earlier,
                              const SceneTruth& scene_truth);
 
-/// converged_rmse of a finished picture.
+/// Returns converged_rmse of a finished picture.
 MeasureValues compare_converged(const Image& tested, const Reference& converged, const SceneTruth& scene_truth);
 
-/// Where each ray hit, without jitter: what is kept of a frame to compare the next one with it.
+/// Where each ray hit, without jitter: kept of a frame to compare the next one with it.
 struct HitPlaces {
     std::vector<glm::vec2> px; // NaN: traced, without hit; infinite: not traced
 };
@@ -117,24 +117,24 @@ struct Flips {
 };
 Flips count_changes(const HitPlaces& before, const HitPlaces& now);
 
-/// By pixel, of the display luma of a sequence's pictures.
+/// Sums over the pictures of a sequence, per pixel, of the display luma.
 struct TemporalMoments {
     std::vector<float> sum, sum_of_squares;
     std::vector<int>   count;
 };
-/// Adds the pixels that reflect.
+/// Adds the reflecting pixels of a picture.
 void add_picture(TemporalMoments& moments, const Image& linear_radiance, const TraceResult& traced);
-/// Root of the mean variance over time, over pixels that reflect in `frames` pictures, at least two.
+/// Returns the root of the mean variance over time, over pixels that reflect in all `frames` pictures (at least two).
 std::optional<double> temporal_rms(const TemporalMoments& moments, int frames);
 
-/// The reference reflection: the scene truth's radiance where traced, black elsewhere; channels R, G, B.
+/// Returns the reference reflection: the radiance of the scene truth where traced, black elsewhere; channels R, G, B.
 Image reference_image(const SceneTruth& scene_truth);
 
-/// "Within 1 px" and "within 4 px": hits on a lattice of pixels are often exactly as far apart, and rounding must not decide.
+/// Hits on a pixel lattice are often exactly 1 or 4 px apart, and rounding must not decide.
 inline constexpr double within_one_px  = 1 + 1e-3;
 inline constexpr double within_four_px = 4 + 1e-3;
 
-/// Largest of |dx| and |dy|: two points of one pixel are never more than 1 apart.
+/// Returns the larger of |dx| and |dy|. Two points of one pixel are never more than 1 apart.
 double screen_distance_px(glm::dvec2 a, glm::dvec2 b);
 
 } // namespace ssrlab

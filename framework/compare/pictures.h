@@ -1,4 +1,4 @@
-// Pictures that show where a technique errs and where it works hard. Colours are linear.
+// Pictures in false colours that show where a technique errs and where it works hard. Colours are linear.
 #pragma once
 
 #include "core/gbuffer_image.h"
@@ -17,15 +17,15 @@ namespace ssrlab {
 Image agreement_picture(const TraceResult& tested, const TraceResult& screen_truth);
 Image agreement_picture(const TraceResult& tested, const SceneTruth& scene_truth);
 
-/// Why rays are wrong (compare/causes.h):
-/// own surface orange, not shown light blue, thin yellow, silhouette pink, edge green, stopped vermilion, other white; right grey
+/// Shows why rays are wrong (compare/causes.h): own surface orange, not shown light blue, thin yellow, silhouette pink,
+/// edge green, stopped orange-red, other white; right grey.
 Image causes_picture(const TraceResult& tested, const SceneTruth& scene_truth, const GBufferImage& gbuffer);
 
-/// Depth and pyramid fetches of each ray (steps, if fetches were not counted) on a fixed logarithmic scale:
-/// black 0, dark violet 1, violet 8, pink 64, orange 512, pale yellow 4096 and more.
+/// Shows the fetches of each ray (steps, if fetches were not counted) on a fixed logarithmic scale: black 0, dark
+/// violet 1, violet 8, pink 64, orange 512, pale yellow 4096 and more.
 Image fetch_heat_map(const TraceResult& tested);
 
-/// FLIP of each pixel inside the mask on the same colours from 0 to 1; black outside.
+/// Shows FLIP of each pixel inside the mask on the same colours from 0 to 1; black outside.
 Image flip_picture(glm::ivec2 size_px, const std::vector<float>& flip, const std::vector<uint8_t>& mask);
 
 } // namespace ssrlab

@@ -1,4 +1,4 @@
-// Can this be an answer? Asked of what the device returned, before anything is measured by it.
+// Validates what the device returned before anything is measured by it.
 #pragma once
 
 #include "core/error.h"
@@ -10,8 +10,8 @@
 
 namespace ssrlab {
 
-/// One ray's answer, as the tracer stored it. Where its status is `impossible`, `steps` is the status that the technique
-/// returned, and hit_pixel its pixel.
+/// The answer of one ray, as the tracer stored it. If its status is `impossible`, `steps` holds the status that the
+/// technique returned, and hit_pixel its pixel.
 struct Answer {
     TraceStatus status = TraceStatus::not_traced;
     glm::ivec2  hit_pixel{0, 0};
@@ -19,18 +19,18 @@ struct Answer {
     uint32_t    steps = 0;
 };
 
-/// What is impossible in it: an unknown status, a pixel off the image, t outside [0, 1], too many steps. Empty: nothing.
+/// Returns what is impossible (status, pixel off the image, t, number of steps); empty: nothing.
 std::string impossible(const Answer& answer, glm::ivec2 size_px, double most_steps);
 
-/// A result holds answers that cannot be: nothing may be measured by it.
+/// The result holds impossible answers, so nothing may be measured by it.
 struct InvalidResult : Failure {
     using Failure::Failure;
 };
 
-/// How many rays of a result have an impossible answer, and the first of them; empty: none.
+/// Returns how many rays have an impossible answer, and the first of them; nullopt if none has.
 std::optional<std::string> find_impossible(const TraceResult& result, double most_steps);
 
-/// Throws InvalidResult with what find_impossible() says. Without a bound on steps: what makes a result safe to index with.
+/// Throws InvalidResult with what find_impossible() says. Without a bound: checks what indexing needs.
 void require_possible(const TraceResult& result, double most_steps = std::numeric_limits<double>::infinity());
 
 } // namespace ssrlab

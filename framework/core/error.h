@@ -1,4 +1,4 @@
-// Two kinds of failure, and nothing else: what the user wrote wrongly, and what the world refused.
+// Two kinds of error: the user wrote something wrong, or the machine could not do it.
 #pragma once
 
 #include <fmt/format.h>
@@ -8,12 +8,12 @@
 
 namespace ssrlab {
 
-/// Usage or specification is wrong: the message names file, place, what was expected and what was found. Exit code 2.
+/// Wrong usage or specification. The message names file, place, what was expected and what was found. Exit code 2.
 struct SpecError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// The specification is fine but the work failed (device, disk, damaged file). Exit code 1.
+/// The specification is fine but the work failed: device, disk, damaged file. Exit code 1.
 struct Failure : std::runtime_error {
     using std::runtime_error::runtime_error;
 };

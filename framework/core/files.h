@@ -1,4 +1,4 @@
-// Files that are either there completely or not at all.
+// Reading and writing whole files.
 #pragma once
 
 #include <cstdint>
@@ -9,35 +9,35 @@
 
 namespace ssrlab {
 
-/// The whole file; throws Failure with path and reason.
+/// Returns the whole file. Throws Failure with path and reason.
 std::string read_file(const std::filesystem::path& path);
 
-/// From `fd` to its end; throws Failure, with the reason alone.
+/// Returns everything from `fd` to its end. Throws Failure with the reason.
 std::string read_to_end(int fd);
 
-/// A regular file of limited size, for what a person names; throws Failure (missing, a folder, a pipe, larger than `limit_bytes`).
+/// Returns a regular file. Throws Failure: missing, a folder, a pipe, larger than `limit_bytes`.
 std::vector<unsigned char> read_regular_file(const std::filesystem::path& path, uint64_t limit_bytes);
 
-/// How many bytes read_regular_file() would return.
+/// Returns the size that read_regular_file() would return; throws likewise.
 uint64_t regular_file_bytes(const std::filesystem::path& path, uint64_t limit_bytes);
 
-/// Written beside, synced and renamed: the final name never carries a partial file. Throws Failure with path and reason.
+/// Writes beside, syncs and renames: the name never carries a partial file. Throws Failure with the reason.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
 
-/// Writes everything to `fd`, retrying interrupted and short writes. False with errno set when the rest was refused.
+/// Writes everything to `fd`. Returns false, with errno set, if the rest was refused.
 bool write_fully(int fd, std::string_view bytes);
 
-/// 16 hexadecimal digits that depend on every byte; stable across machines and versions.
+/// Returns 16 hexadecimal digits that depend on every byte, equal on all machines and versions.
 std::string content_hash(std::string_view bytes);
 
-/// One hash of all files below `folder` (names and contents); an absent folder hashes as an empty one.
+/// Returns one hash of all files below `folder` (names and contents). A missing folder hashes like an empty one.
 std::string folder_hash(const std::filesystem::path& folder);
 
-/// Where the program's data lies (shaders/, techniques/, experiments/): the folder share/ssrlab beside the program's own. In a build folder that is a link
-/// to the source tree. Throws Failure when it is not there.
+/// Returns the folder of the program's data (shaders/, techniques/, experiments/): share/ssrlab beside the program's
+/// own folder. In a build folder that is a link to the source tree. Throws Failure if it does not exist.
 const std::filesystem::path& data_root();
 
-/// As a person at the current directory would type it.
+/// Returns the path relative to the current directory if it lies below it.
 std::string short_path(const std::filesystem::path& path);
 
 } // namespace ssrlab

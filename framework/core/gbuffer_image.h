@@ -8,7 +8,7 @@
 
 namespace ssrlab {
 
-/// Reflectance at normal incidence of glass, paint, stone: a refractive index of 1.5.
+/// Reflectance at normal incidence for a refractive index of 1.5: glass, paint, stone.
 inline constexpr float common_dielectric_f0 = 0.04F;
 
 /// All arrays are row-major, size_px.x * size_px.y long. Background pixels have depth 0 and object_id 0.

@@ -1,4 +1,4 @@
-// Unknown names are answered with the known one that was probably meant.
+// Error messages for unknown names suggest the nearest known one.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@ namespace ssrlab {
 /// "unknown technique 'lineer': did you mean 'linear'? (known: dda, hiz, linear)"
 std::string unknown_name(const std::string& kind, const std::string& name, std::span<const std::string> known);
 
-/// A name that GLSL accepts for a constant: letters, digits, underscores; no keyword, no gl_ prefix, no double underscore.
+/// Whether GLSL accepts the name: letters, digits, underscores; no keyword, gl_ prefix or "__".
 bool is_glsl_name(const std::string& name);
 
 } // namespace ssrlab

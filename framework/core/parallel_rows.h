@@ -1,4 +1,4 @@
-// Rows of an image over threads: neighbouring rows cost alike, so each thread takes the next one that is free.
+// Loops over image rows on several threads. Each takes the next free row, since neighbours cost alike.
 #pragma once
 
 #include <algorithm>
@@ -36,7 +36,7 @@ template <typename DoRow> void parallel_rows(int row_count, unsigned threads, co
     if (error) std::rethrow_exception(error);
 }
 
-/// For parallel_rows() over an image with a little work a pixel: on a small one, a thread would take longer to start than the work.
+/// Threads for little work per pixel: on a small image, starting threads takes longer than the work.
 inline unsigned threads_for(int width, int height) { return int64_t{width} * height < 4096 ? 1 : 0; }
 
 /// Calls do_pixel(index) once for every pixel of an image, index = y * width + x, on all cores.

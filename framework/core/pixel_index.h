@@ -1,4 +1,4 @@
-// Where a pixel's value lies in an image that is kept row by row.
+// Indices of pixels in row-major images.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -17,7 +17,7 @@ inline size_t pixel_index(glm::ivec2 pixel, glm::ivec2 size_px)
     return static_cast<size_t>(pixel.y) * static_cast<size_t>(size_px.x) + static_cast<size_t>(pixel.x);
 }
 
-/// The pixel of an index.
+/// Returns the pixel of an index.
 inline glm::ivec2 pixel_at(size_t index, glm::ivec2 size_px)
 {
     const auto width = static_cast<size_t>(size_px.x);

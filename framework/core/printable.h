@@ -1,4 +1,4 @@
-// What files say, in messages for a terminal.
+// Text from files, made safe for messages on a terminal.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace ssrlab {
 
-/// The text with \xNN in place of each byte that a terminal may obey or cannot show: control characters except new line and tab,
-/// marks that turn the direction of writing, and what is no UTF-8.
+/// Returns the text with \xNN for each byte that a terminal may obey or cannot show: control characters except newline
+/// and tab, marks that turn the direction of writing, and invalid UTF-8.
 std::string printable(std::string_view text);
 
 } // namespace ssrlab

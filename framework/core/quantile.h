@@ -5,7 +5,7 @@
 
 namespace ssrlab {
 
-/// The value below which a share p of the values lies, interpolated linearly; NaN without values.
+/// Returns the value below which a share `p` of the values lies, interpolated linearly; NaN if there are no values.
 double quantile(std::vector<double> values, double p);
 
 } // namespace ssrlab

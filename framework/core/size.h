@@ -1,4 +1,4 @@
-// Sizes as people write them.
+// Sizes as text.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -8,7 +8,7 @@
 
 namespace ssrlab {
 
-/// "1280x720": two whole numbers; nothing if the text is anything else.
+/// Parses "1280x720". Returns nullopt if the text is anything else.
 std::optional<glm::ivec2> parse_size(std::string_view text);
 
 } // namespace ssrlab

@@ -48,7 +48,7 @@ inline std::string toml_place(const TomlFile& file, const toml::node& node)
     return fmt::format("{}:{}", file.path, node.source().begin.line);
 }
 
-/// What stands there, for "expected …, got …".
+/// Describes a value, for "expected …, got …".
 inline std::string toml_found(const toml::node& node)
 {
     if (const auto* value = node.as_string()) return fmt::format("the string \"{}\"", value->get());

@@ -24,9 +24,9 @@ enum class TraceStatus : uint8_t {
     stopped    = 6, // met something from behind, which this frame does not show from there (behind = stop); no hit
     impossible = 7, // not an answer: an unknown status, or a hit off the image (compare/validate_result.h)
 };
-/// Does a ray that ended so name a pixel and a point?
+/// Whether a ray with this status has a pixel and a point.
 inline bool has_place(TraceStatus status) { return status == TraceStatus::hit || status == TraceStatus::stopped; }
-/// Of those that are answers.
+/// Names of the valid statuses.
 inline constexpr std::array<std::string_view, 7> trace_status_names = {
     "not_traced", "hit", "left_screen", "past_max_distance", "out_of_steps", "facing_away", "stopped"};
 inline std::string_view status_name(TraceStatus status)
@@ -35,7 +35,7 @@ inline std::string_view status_name(TraceStatus status)
     return number < trace_status_names.size() ? trace_status_names[number] : "impossible";
 }
 
-/// How often each ray read a structure. What building took for a whole group of rays counts with its first one.
+/// How often each ray read a structure. Work that building did for a whole group of rays counts for its first ray.
 struct StructureFetches {
     std::string           structure;
     std::vector<uint32_t> fetches;
@@ -58,7 +58,7 @@ struct TraceResult {
     std::vector<size_t>           traced_order = {}; // indices of the pixels as their rays were traced; empty: unknown
 };
 
-/// Every pixel not traced; with room for fetch counts if they are to be counted.
+/// Returns a result in which no pixel is traced, with fetch counts if `counted`.
 inline TraceResult make_trace_result(glm::ivec2 size_px, bool counted)
 {
     const auto  count = pixel_count(size_px);
@@ -76,7 +76,7 @@ inline TraceResult make_trace_result(glm::ivec2 size_px, bool counted)
     return result;
 }
 
-/// All reads of structures by one ray.
+/// Returns the reads of all structures by one ray.
 inline uint32_t structure_fetches_of(const TraceResult& result, size_t pixel)
 {
     uint32_t sum = 0;
@@ -84,7 +84,7 @@ inline uint32_t structure_fetches_of(const TraceResult& result, size_t pixel)
     return sum;
 }
 
-/// What becomes of a ray that meets a pixel from a side that the frame does not show.
+/// What happens to a ray that meets a pixel from a side that the frame does not show.
 enum class Behind : uint8_t { hit, pass, stop };
 inline constexpr std::array<std::string_view, 3> behind_names = {"hit", "pass", "stop"};
 

@@ -1,4 +1,4 @@
-// Where characters begin and end.
+// Characters in UTF-8 text.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace ssrlab {
 
-/// Bytes of the code point that begins at `at`; 0 where none does.
+/// Returns the length in bytes of the code point that begins at `at`; 0 if none does.
 size_t utf8_length(std::string_view text, size_t at = 0);
 
 } // namespace ssrlab

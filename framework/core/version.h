@@ -1,4 +1,4 @@
-// What was built.
+// Version and commit of the program.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@ namespace ssrlab {
 
 /// "0.1.0 (3ce6808…)".
 std::string version_text();
-/// The commit of the source tree when it was built, "… with changes" where files differ from it; "not known" without git.
+/// Returns the commit at build time, "… with changes" if files differed, "not known" without git.
 std::string built_commit();
 
 } // namespace ssrlab

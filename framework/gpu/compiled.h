@@ -1,4 +1,4 @@
-// What a driver's compiler made of a compute pipeline, on a device that is opened to compile only.
+// What the compiler of a driver made of a compute pipeline, on a device opened in compile-only mode.
 #pragma once
 
 #include "gpu/gpu.h"
@@ -20,24 +20,24 @@ struct CompiledPipeline {
     std::string                     assembly;   // empty: the driver does not show it
 };
 
-/// AMD GPUs that Mesa's compiler can be asked for.
+/// Returns the AMD GPUs that Mesa's compiler knows.
 std::vector<std::string> known_chips();
-/// Lets the Vulkan loader find Mesa's driver for this chip alone, without hardware. Before a device is opened.
-/// Throws SpecError for an unknown chip, Failure where the driver is not installed.
+/// Makes the Vulkan loader find only Mesa's driver for this chip, without hardware. Call it before opening a device.
+/// Throws SpecError for an unknown chip, Failure if the driver is not installed.
 void pretend_chip(const std::string& chip);
 
-/// The same pointer for the same pipeline.
+/// Equal pipelines have equal pointers.
 using CompiledPtr = std::shared_ptr<const CompiledPipeline>;
-/// Every pipeline that passes asked for since the last call, in that order, once each.
+/// Returns every pipeline that passes asked for since the last call, in that order, once each.
 std::vector<CompiledPtr> take_compiled(Gpu& gpu);
 
-/// A loop of a program: all from its first to its last line.
+/// A loop of a program, from its first to its last line.
 struct LoopCode {
     int instructions = 0;
     int loads        = 0; // of buffers and images
 };
-/// The longest loop that has no loop within; without loops, nothing. Reads the assembly of AMD GPUs: "BB3:" begins a block, and a
-/// branch back to it ends a loop.
+/// Returns the longest loop that contains no other loop; all 0 without loops. Reads the assembly of AMD GPUs: "BB3:"
+/// begins a block, and a branch back to it ends a loop.
 LoopCode innermost_loop(std::string_view assembly);
 
 } // namespace ssrlab

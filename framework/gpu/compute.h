@@ -1,4 +1,4 @@
-// A compute pass: a shader, its constants, and what is bound to its names.
+// A compute pass: a shader, its constants, and the resources bound to its names.
 #pragma once
 
 #include "gpu/resources.h"
@@ -6,14 +6,14 @@
 
 namespace ssrlab {
 
-/// Specialization constants by constant_id, as the shader declares their types.
+/// Specialization constants by constant_id, of the types that the shader declares.
 class Constants {
 public:
     void add(uint32_t id, int32_t value) { append(id, value); }
     void add(uint32_t id, float value) { append(id, value); }
     void add(uint32_t id, double value) { append(id, value); }
 
-    /// Those of some ids.
+    /// Returns those with these ids.
     Constants only(const std::set<uint32_t>& ids) const;
 
     std::vector<vk::SpecializationMapEntry> entries;
@@ -28,7 +28,7 @@ private:
     }
 };
 
-/// Something that a shader's name can be bound to.
+/// A resource that a name of a shader can be bound to.
 struct Bound {
     vk::Buffer     buffer;
     vk::BufferView texels;
@@ -48,13 +48,13 @@ struct ComputePass {
     vk::raii::DescriptorSet                set  = nullptr;
 };
 
-/// Binds by name: a name that the shader uses and `bindings` lacks is a programmer's mistake (std::logic_error); names it does not use are ignored.
-/// The same holds for constants: passes that differ in none that the shader uses share a pipeline.
-/// push_constant_bytes > 0 adds one push-constant block.
+/// Makes a pass. Throws std::logic_error if `bindings` lacks a name that the shader uses; unused names and constants
+/// are ignored, so passes that differ only in those share a pipeline. push_constant_bytes > 0 adds one push-constant
+/// block.
 ComputePass make_compute_pass(Gpu& gpu, const Shader& shader, const Bindings& bindings, const Constants& constants = {},
                               uint32_t push_constant_bytes = 0);
 
-/// Workgroups of 8 x 8 that cover an image.
+/// Returns the workgroups of 8 x 8 that cover an image.
 inline glm::uvec3 groups_of_8(glm::ivec2 size_px)
 {
     return {static_cast<uint32_t>(size_px.x + 7) / 8, static_cast<uint32_t>(size_px.y + 7) / 8, 1};
@@ -74,7 +74,7 @@ struct Timestamps {
 };
 Timestamps make_timestamps(Gpu& gpu, uint32_t count);
 void       write_timestamp(const vk::raii::CommandBuffer& commands, const Timestamps& timestamps, uint32_t index);
-/// Milliseconds between neighbouring timestamps; throws Failure when a value is missing.
+/// Returns the milliseconds between neighbouring timestamps. Throws Failure if a value is missing.
 std::vector<double> read_intervals_ms(Gpu& gpu, const Timestamps& timestamps);
 
 } // namespace ssrlab

@@ -1,4 +1,4 @@
-// What is expensive to make and may be lost at any time: compiled shaders and pipelines, in the user's cache folder.
+// A cache of compiled shaders and pipelines in the user's cache folder. It may be deleted at any time.
 #pragma once
 
 #include <optional>
@@ -7,10 +7,10 @@
 
 namespace ssrlab {
 
-/// What was kept under this name, if it is there and intact. $XDG_CACHE_HOME/ssrlab or ~/.cache/ssrlab; without either, nothing is kept.
+/// Returns what was kept under this name if it is there and intact.
 std::optional<std::string> read_cached(const std::string& name);
 
-/// Never throws: a cache that cannot be written is no error; the first time, a warning on stderr.
+/// Never throws. If the cache cannot be written, it warns once on stderr.
 void write_cached(const std::string& name, std::string_view bytes) noexcept;
 
 } // namespace ssrlab

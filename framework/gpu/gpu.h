@@ -8,10 +8,10 @@
 
 namespace ssrlab {
 
-/// How shaders see the lists of rays and hits, the depth and what techniques build of it: the same bytes, read as texels or as plain storage buffers.
+/// How shaders read rays, hits, depth and structures: as texels or as plain storage buffers, with the same bytes.
 enum class TexelStorage { by_device, texel_buffers, plain_buffers };
 
-/// How the passes before the trace share their work: one invocation a tile or ray group, as CPU devices like it, or many that wait for memory together.
+/// How passes before the trace share work: one invocation per tile or ray group (CPU devices), or many (GPUs).
 enum class PassStyle { by_device, serial, parallel };
 
 struct GpuOptions {
@@ -40,7 +40,7 @@ struct GpuInfo {
 };
 
 struct GpuImpl;
-/// Movable handle; everything that needs Vulkan itself includes gpu/vulkan.h.
+/// Movable handle. Code that needs Vulkan itself includes gpu/vulkan.h.
 struct Gpu {
     std::shared_ptr<GpuImpl> impl;
     GpuInfo                  info;
@@ -50,17 +50,17 @@ struct Gpu {
 const char* storage_text(const GpuInfo& device);
 /// "serial" or "parallel".
 const char* passes_text(const GpuInfo& device);
-/// Throws SpecError for an unknown device, Failure when there is no Vulkan driver.
+/// Opens a device. Throws SpecError for an unknown one, Failure if there is no Vulkan driver.
 Gpu                  open_gpu(const GpuOptions& options = {});
 std::vector<GpuInfo> list_gpus();
-/// Index of the device that `wanted` names, by its number or a part of its name. Empty: a discrete GPU, else an integrated one, else a virtual one, else a
-/// CPU device. Throws SpecError listing the devices, Failure when there are none.
+/// Returns the index of the device with this number or part of a name. Empty: a discrete GPU, else an integrated one,
+/// else a virtual one, else a CPU device. Throws SpecError listing the devices, Failure if there are none.
 int choose_device(std::span<const GpuInfo> infos, const std::string& wanted);
-/// Messages of the validation layer so far (empty = none, or layer not loaded).
+/// Returns the messages of the validation layer so far; empty also if it is not loaded.
 std::vector<std::string> validation_messages(const Gpu& gpu);
-/// Compute pipelines that were made so far: where the number has not changed, all were known.
+/// Returns the number of compute pipelines made so far. If it has not changed, all were known.
 size_t pipelines_made(const Gpu& gpu);
-/// A pass waits for its pipeline when it is recorded. This waits for all: threads that still compile disturb times.
+/// Waits for all pipelines. Recording a pass waits only for its own, and threads that still compile disturb times.
 void finish_pipelines(const Gpu& gpu);
 
 } // namespace ssrlab

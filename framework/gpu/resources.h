@@ -10,18 +10,18 @@
 
 namespace ssrlab {
 
-/// Of the types that a resource may have (a bit for each): the first that has all properties wanted and preferred, else the first that has
-/// those wanted. Throws Failure if none does.
+/// Returns the first allowed memory type (one bit each) with all wanted and preferred properties, else the first with
+/// the wanted ones. Throws Failure if there is none.
 uint32_t choose_memory_type(const vk::PhysicalDeviceMemoryProperties& properties, uint32_t allowed,
                             vk::MemoryPropertyFlags wanted, vk::MemoryPropertyFlags preferred);
 
-/// Device-local storage (also uniform, indirect, vertex, index, copy source and target). Throws Failure when out of memory or over limits.
+/// Makes device-local storage for any use. Throws Failure when out of memory or over limits.
 Buffer make_buffer(Gpu& gpu, uint64_t bytes);
-/// The same, which shaders may also read as texels of this format, where the device stores texels so. Throws Failure likewise.
+/// Makes such a buffer that shaders may also read as texels of this format, where the device does so. Throws likewise.
 Buffer make_texel_buffer(Gpu& gpu, uint64_t bytes, vk::Format format);
-/// Another way to read its texels. It must not outlive the buffer. Throws Failure over limits. None (null) with plain buffers.
+/// Makes another texel view, which must not outlive the buffer; null with plain buffers. Throws over limits.
 vk::raii::BufferView make_texel_view(Gpu& gpu, const Buffer& buffer, vk::Format format);
-/// What a buffer of texels is to a shader of this device.
+/// Returns the descriptor type of a buffer of texels on this device.
 vk::DescriptorType texel_descriptor(const Gpu& gpu);
 void               upload(Gpu& gpu, Buffer& target, const void* data, uint64_t bytes);
 void               download(Gpu& gpu, const Buffer& source, void* data, uint64_t bytes);
@@ -58,11 +58,11 @@ struct ImageOptions {
     uint32_t            layers     = 1; // > 1: the view is an array view
     bool                array_view = false;
 };
-/// Created in layout GENERAL, and kept there. Throws SpecError when the size exceeds the device's limit.
+/// Makes an image in layout GENERAL, where it stays. Throws SpecError if the size exceeds the limit of the device.
 GpuImage make_image(Gpu& gpu, const ImageOptions& options);
 bool     is_depth(vk::Format format);
 
-/// Tightly packed texels of level 0, layer 0.
+/// Copies tightly packed texels of level 0, layer 0.
 void              upload(Gpu& gpu, GpuImage& target, const void* data, uint64_t bytes);
 std::vector<char> download(Gpu& gpu, const GpuImage& source, uint32_t bytes_per_texel);
 

@@ -1,4 +1,4 @@
-// GLSL files to SPIR-V by glslang, with what the shader says about its own interface.
+// Compiles GLSL files to SPIR-V with glslang and lists the interface of the shader.
 #pragma once
 
 #include "gpu/gpu.h"
@@ -28,7 +28,7 @@ struct Shader {
     std::set<uint32_t>                   constants; // constant_id of each specialization constant that its code uses
 };
 
-/// Invocations of a workgroup, as its code says; of a compute shader.
+/// Returns the invocations of a workgroup, as the code of a compute shader says.
 uint32_t group_size(const Shader& shader);
 
 struct ShaderSource {
@@ -40,12 +40,12 @@ struct ShaderSource {
     std::vector<std::filesystem::path> include_folders = {}; // a plug-in's own: searched before those of the project
 };
 
-/// Where the project's shaders lie.
+/// Returns the folder of the project's shaders.
 std::filesystem::path shader_folder();
-/// Where the project's techniques and structures lie: their files may be included, too.
+/// Returns the folder of the project's techniques and structures; their files may be included, too.
 std::filesystem::path technique_folder();
 
-/// While one lives, each file is looked at once, changed or not: a frame has dozens of shaders, the project hundreds of files.
+/// While one of these lives, each file is read at most once, even if it changes: a frame has dozens of shaders.
 class ShaderFilesHeld {
 public:
     ShaderFilesHeld();
@@ -54,9 +54,9 @@ public:
     ShaderFilesHeld& operator=(const ShaderFilesHeld&) = delete;
 };
 
-/// Includes come from the source itself, its folders and the shader folder, and from nowhere else. Throws SpecError with a line
-/// "FILE:LINE: message" for each error found; what is missing from a file of include_files is said of that file.
-/// Shaders are made for a device's way of storing texels and of sharing work (GpuInfo::plain_buffers, lanes).
+/// Compiles a shader for the storage and passes of this device (GpuInfo::plain_buffers, lanes). Includes come from the
+/// source itself, its folders and the shader folder. Throws SpecError with one line "FILE:LINE: message" per error;
+/// what a file of include_files lacks is reported for that file.
 Shader compile_shader(const Gpu& gpu, ShaderSource source);
 
 } // namespace ssrlab

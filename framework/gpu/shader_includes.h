@@ -1,4 +1,4 @@
-// What #include may name in a shader, and where that is found.
+// Resolves #include in shaders.
 #pragma once
 
 #include "gpu/shader.h"
@@ -10,10 +10,10 @@
 
 namespace ssrlab {
 
-/// Is this folder that one, or inside it?
+/// Whether the folder is `other` or lies inside it.
 bool lies_in(const std::filesystem::path& folder, const std::filesystem::path& other);
 
-/// Resolves includes: virtual names first, then files of the source's folders, then those of the project. What it refuses becomes the compiler's error.
+/// Resolves virtual names first, then files of the source, then of the project. Refusals become compile errors.
 class ShaderIncluder : public glslang::TShader::Includer {
 public:
     /// `source` must outlive it.

@@ -12,7 +12,7 @@
 
 namespace ssrlab {
 
-/// A compute shader with its constants, ready to run with anything bound to it.
+/// A compute shader with its constants, to which anything can be bound.
 struct ComputePipeline {
     vk::raii::DescriptorSetLayout          set_layout = nullptr;
     vk::raii::PipelineLayout               layout     = nullptr;
@@ -52,7 +52,7 @@ struct GpuImpl {
     std::mutex                       messages_mutex;
     std::vector<std::string>         messages;
 
-    /// Made before, by shader and constants; the one used longest ago goes when there are too many.
+    /// Pipelines by shader and constants; the least recently used one is dropped when there are too many.
     struct KnownPipeline {
         std::shared_ptr<const ComputePipeline> pipeline;
         uint64_t                               last_use = 0;
@@ -65,10 +65,10 @@ struct GpuImpl {
 
 CompiledPipeline read_compiled(const Gpu& gpu, const std::string& shader, const vk::raii::Pipeline& pipeline);
 
-/// Records commands, submits them and waits. Throws Failure when the device is lost or the wait exceeds five minutes.
+/// Records commands, submits them and waits. Throws Failure if the device is lost or the wait exceeds five minutes.
 void submit(Gpu& gpu, const std::function<void(const vk::raii::CommandBuffer&)>& record);
 
-/// A full barrier between two passes: everything written before is visible to everything after.
+/// A full barrier between two passes: all earlier writes become visible to all later reads.
 void barrier(const vk::raii::CommandBuffer& commands);
 
 } // namespace ssrlab

@@ -1,4 +1,4 @@
-// What the built-in scenes are put together from, and the scenes of effect_scenes.cpp and textured_scenes.cpp.
+// Parts of the built-in scenes, and the scenes of effect_scenes.cpp and textured_scenes.cpp.
 #pragma once
 
 #include "scene/model.h"
@@ -11,11 +11,11 @@ Light  sun(glm::vec3 direction_ws, float irradiance);
 Camera camera(const char* name, glm::dvec3 position_ws, double pitch_down_deg, const char* hard_for);
 Camera look(const char* name, glm::dvec3 position_ws, glm::dvec3 target_ws, double fov_y_deg, const char* hard_for);
 
-/// Lights, the mirror floor's material (index 0) and the three cameras that the analytic scenes share.
+/// Returns a scene with the lights, the mirror floor's material (index 0) and the three cameras of the analytic scenes.
 Model start_scene();
-/// Lights and these cameras; no material yet.
+/// Returns a scene with lights and these cameras, without materials.
 Model start_scene(std::vector<Camera> cameras);
-/// A sky whose sun stands where the light of start_scene(cameras) comes from.
+/// Returns a sky whose sun stands where the light of start_scene(cameras) comes from.
 void add_sky(Model& model);
 
 void     add(Model& model, const char* name, uint32_t material, Mesh mesh);

@@ -26,8 +26,8 @@ glm::dvec3 uv_to_direction(glm::dvec2 uv);
 /// `map` must not be empty.
 glm::vec3 environment_radiance(const EnvironmentMap& map, glm::dvec3 direction_ws);
 
-/// An .hdr or .exr picture twice as wide as high, times `scale`. Negative radiance becomes 0; what is not finite or beyond half
-/// precision is clamped and counted in `warnings`. Throws Failure that says what was expected and what was found.
+/// Reads an .hdr or .exr twice as wide as high, times `scale`. Negative radiance becomes 0; values that are not finite
+/// or exceed half precision are clamped and counted in `warnings`. Throws Failure with what was expected and found.
 EnvironmentMap load_environment(const std::filesystem::path& file, double scale, std::vector<std::string>& warnings);
 
 /// Radiance straight up, level, and below.
@@ -35,7 +35,7 @@ struct SkyColours {
     glm::dvec3 zenith{0.1, 0.25, 0.62}, horizon{0.62, 0.7, 0.78}, ground{0.3, 0.28, 0.26};
 };
 
-/// A sky that needs no file: a smooth gradient over the horizon, one colour below it, and perhaps a sun of 4 degrees radius.
+/// Makes a sky without a file: a gradient, one colour below, and optionally a sun of 4 degrees radius.
 EnvironmentMap make_sky(const SkyColours& colours, std::optional<glm::dvec3> to_sun_ws = {});
 
 } // namespace ssrlab

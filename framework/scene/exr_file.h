@@ -1,4 +1,4 @@
-// EXR files channel by channel: every part, names as they are in the file. By OpenImageIO.
+// EXR files, channel by channel, all parts, with the names of the file. Uses OpenImageIO.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -25,10 +25,10 @@ struct ExrFile {
     std::map<std::string, std::string> attributes; // those that are text, of the first part
 };
 
-/// The header. Throws SpecError for a missing file, Failure for one that is damaged, cropped, deep, or has parts of several sizes.
+/// Reads the header. Throws SpecError if missing, Failure if damaged, cropped, deep, or of several sizes.
 ExrFile open_exr(const std::filesystem::path& path);
 
-/// A channel's values, row by row from the top. Throws Failure.
+/// Reads the values of a channel, row by row from the top. Throws Failure.
 std::vector<float> read_channel(const ExrFile& file, const ExrChannel& channel);
 
 } // namespace ssrlab

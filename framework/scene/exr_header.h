@@ -1,4 +1,4 @@
-// What an EXR file says of its sizes, looked at before OpenEXR does.
+// Checks the sizes in an EXR file before OpenEXR sees them.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What the numbers of an imported frame mean: FILE.exr.toml beside it, or the attributes that ssrlab writes.
+// What the numbers of a frame file mean: FILE.exr.toml beside it, or the attributes that ssrlab writes.
 #pragma once
 
 #include "scene/exr_file.h"
@@ -30,7 +30,7 @@ struct FrameConvention {
 /// Throws SpecError with file and line.
 FrameConvention read_convention(const ExrFile& file);
 
-/// The file beside an EXR that says what its numbers mean; it need not exist.
+/// Returns the path of the file beside an EXR that says what its numbers mean. It need not exist.
 std::filesystem::path convention_file(const std::filesystem::path& exr);
 
 } // namespace ssrlab

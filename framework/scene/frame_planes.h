@@ -22,13 +22,13 @@ struct FrameSource {
     Frame           frame;
 };
 
-/// What holds the quantity (frame_channels.h): the channel that the convention names, the one that is recognised, or a value. Throws
-/// SpecError where two channels could be it.
+/// Finds what holds the quantity (frame_channels.h): the channel that the convention names, a recognised one, or a
+/// constant. Throws SpecError if two channels could be it.
 std::optional<FramePlane> find_plane(const FrameSource& source, const std::string& quantity);
-/// The same; throws SpecError where there is none. `otherwise`: where else it could be said.
+/// The same; throws SpecError if there is none. `otherwise` says where else it could be stated.
 FramePlane need_plane(const FrameSource& source, const std::string& quantity, const char* otherwise = "");
 
-/// Throws SpecError: file, channel, what was expected, what is there.
+/// Throws SpecError with file, channel, what was expected and what was found.
 [[noreturn]] void refuse(const FrameSource& source, const FramePlane& plane, size_t i, const char* expected);
 
 } // namespace ssrlab

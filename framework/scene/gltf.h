@@ -1,4 +1,4 @@
-// The parts of the glTF loader. Everything that a file says is checked before it is used.
+// Parts of the glTF loader. Everything is checked before it is used.
 #pragma once
 
 #include "core/error.h"
@@ -15,7 +15,7 @@
 
 namespace ssrlab::gltf {
 
-/// Stated limits; a file beyond them is refused, whatever its size.
+/// Limits; a file beyond them is refused.
 inline constexpr uint64_t max_file_bytes    = 2ULL << 30;
 inline constexpr size_t   max_objects       = 1'000'000; // of each kind: nodes, accessors, ...
 inline constexpr int      max_json_depth    = 128;
@@ -57,10 +57,10 @@ struct Import {
 
 [[noreturn]] void refuse_triangles(const Import& import, uint64_t triangles);
 
-/// Reads and parses the file; refuses what the parser itself would let through or choke on.
+/// Reads and parses the file. Refuses what the parser itself would accept wrongly or crash on.
 void parse_file(Import& import, const std::filesystem::path& file);
 
-/// The files of its buffers and images, whether they are there or not. Throws Failure where the JSON is broken or a URI leads elsewhere.
+/// Returns the files of its buffers and images. Throws Failure if the JSON is broken or a URI leads elsewhere.
 std::vector<std::filesystem::path> files_named_by(const std::filesystem::path& file);
 
 /// The file's folder joined with a relative URI; throws Failure for absolute paths, schemes, and ways out of the folder.

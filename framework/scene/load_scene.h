@@ -16,19 +16,19 @@ Model import_model(const std::filesystem::path& file);
 /// A recipe; see experiments/scenes/README.md. Throws SpecError with file and line for mistakes in it.
 Model load_recipe(const std::filesystem::path& file);
 
-/// The line after `summary =`; empty when the recipe cannot be read.
+/// Returns the summary of a recipe; empty if it cannot be read.
 std::string recipe_summary(const std::filesystem::path& file);
 
 /// The [[view]] tables of a file.
 std::vector<Camera> load_views(const std::filesystem::path& file);
 
-/// Folders that are searched for recipes, first match wins.
+/// Returns the folders that are searched for recipes; the first match wins.
 std::vector<std::filesystem::path> recipe_folders();
 
-/// The file of a scene's name: a path, or a recipe of these folders. Empty when it is built in or unknown.
+/// Returns the file of a scene's name: a path, or a recipe of these folders. Empty if it is built in or unknown.
 std::filesystem::path find_scene_file(const std::string& name);
 
-/// Every file that decides how the scene looks: its own, its views, and all that a recipe, glTF, OBJ or MTL file names.
+/// Returns every file that decides how the scene looks, with all that a recipe, glTF, OBJ or MTL names.
 std::vector<std::filesystem::path> scene_files(const std::string& name);
 
 /// Whether a scene's name is that of a frame of another renderer (load_frame.h).
@@ -37,7 +37,7 @@ bool is_frame(const std::string& name);
 /// ".OBJ" is ".obj".
 std::string lower_extension(const std::filesystem::path& file);
 
-/// Where `reference` of a recipe lies: a path (relative to `folder`), package:PKG/path or sweethome3d:MODEL.
+/// Resolves `reference` of a recipe: a path (relative to `folder`), package:PKG/path or sweethome3d:MODEL.
 std::filesystem::path find_data(const std::string& reference, const std::filesystem::path& folder);
 
 } // namespace ssrlab

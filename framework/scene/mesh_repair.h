@@ -1,4 +1,4 @@
-// What files leave out or get wrong: bad triangles, missing normals, missing tangents.
+// Repairs what files leave out or get wrong: bad triangles, missing normals, missing tangents.
 #pragma once
 
 #include "scene/model.h"
@@ -7,23 +7,23 @@
 
 namespace ssrlab {
 
-/// Removes triangles with an unusable position or without area, and vertices that nothing uses. Returns how many had an unusable position; those
-/// without area show nothing.
+/// Removes unused vertices and triangles without area or with an unusable position. Returns how many had an unusable
+/// position.
 size_t drop_bad_triangles(Mesh& mesh);
-/// What to warn of them.
+/// Returns the warnings about them.
 std::string dropped_triangles_text(size_t count);
 
-/// Vertices that are equal in every bit become one.
+/// Merges vertices that are equal in every bit.
 void weld_equal_vertices(Mesh& mesh);
 
-/// Flips triangles whose winding contradicts their vertex normals: exporters care for the normals only.
+/// Flips triangles whose winding contradicts their vertex normals; some exporters get only the normals right.
 void turn_fronts_to_normals(Mesh& mesh);
 
-/// One normal per triangle, as glTF asks for when a mesh has none.
+/// Gives each triangle one normal, as glTF asks for meshes without normals.
 void make_flat_normals(Mesh& mesh);
 
-/// Normals averaged by area over the triangles that meet at a position, where they turn by less than `crease_deg`.
-/// Vertices are told apart by position, not by index: scanned models repeat or share them as they like.
+/// Averages normals by area over the triangles that meet at a position, where they turn by less than `crease_deg`.
+/// Compares positions rather than indices, since scanned models repeat or share vertices arbitrarily.
 void make_smooth_normals(Mesh& mesh, double crease_deg);
 
 /// Tangents along the u direction of `uv_set`, after Lengyel 2001, "Computing Tangent Space Basis Vectors".

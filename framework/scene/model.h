@@ -1,4 +1,4 @@
-// A scene while it is put together: meshes still apart, positions still in double.
+// A scene under construction: separate meshes, positions in double.
 //
 // Loaders make a Model, recipes place and append Models, model_to_scene() makes the Scene.
 #pragma once

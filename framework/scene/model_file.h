@@ -1,4 +1,4 @@
-// What assimp makes of a model's file, before anything is repaired.
+// Models as assimp reads them, before any repair.
 #pragma once
 
 #include "scene/model.h"
@@ -20,7 +20,7 @@ struct FileModel {
     std::vector<Mesh>         meshes; // in the file's order, placed; normals and texture coordinates as they are there
 };
 
-/// Reads it in a process of its own: assimp 5.2.5 crashes on damaged files, or never ends. Throws Failure with the file's name.
+/// Reads a model in a child process: assimp 5.2.5 crashes or hangs on damaged files. Throws Failure with its name.
 FileModel read_model_file(const std::filesystem::path& file);
 
 } // namespace ssrlab

@@ -1,4 +1,4 @@
-// Surfaces that a plain colour cannot show: procedural textures of base colour and gloss that repeat without a seam.
+// Procedural textures of base colour and gloss that repeat without a seam.
 #pragma once
 
 #include "scene/scene.h"

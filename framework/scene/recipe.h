@@ -1,4 +1,4 @@
-// What a recipe says, before anything is loaded. The keys are described in experiments/scenes/README.md.
+// The contents of a recipe before anything is loaded. experiments/scenes/README.md describes the keys.
 #pragma once
 
 #include "scene/model.h"

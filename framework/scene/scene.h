@@ -72,7 +72,7 @@ struct RigidMotion {
     bool operator==(const RigidMotion&) const = default;
 };
 
-/// A view that moves, or a camera that does, if one has this name: straight from one camera to the next.
+/// A camera path: straight from one camera to the next. Or a moving camera, if one has this name.
 struct CameraPath {
     std::string         name;
     std::vector<Camera> cameras;              // at least two, of one projection
@@ -135,7 +135,7 @@ struct SceneListing {
 };
 std::vector<SceneListing> list_scenes();
 
-/// What arrives from infinitely far away: the environment map, or the background.
+/// Returns the radiance from infinitely far away: the environment map, or the background.
 glm::vec3 sky_radiance(const Scene& scene, glm::dvec3 direction_ws);
 
 /// The camera of that name; "default" is the first one where none is called so. Throws SpecError listing the known names.

@@ -1,5 +1,5 @@
-// Frames that follow each other: where objects and the camera are in each. The same frame is the same to the last bit,
-// whatever was asked for before it.
+// Sequences: where objects and the camera are in each frame. A frame has the same bits whatever was asked for before
+// it.
 #pragma once
 
 #include "scene/scene.h"
@@ -18,24 +18,24 @@ struct SequenceFrame {
 
 inline constexpr int max_frames = 1'000'000, max_jitter_phases = 1024;
 
-/// World of frame 0 to world of this frame.
+/// From the world of frame 0 to the world of this frame.
 glm::dmat4 pose(const RigidMotion& motion, int frame);
-/// World of this frame to world of an earlier one; the identity for what is still.
+/// From the world of this frame to the world of an earlier one; the identity for what stands still.
 glm::dmat4 current_to_previous(const RigidMotion& motion, int frame, int frames_back = 1);
 
 bool anything_moves(const Scene& scene);
-/// The scene with its vertices where they are in this frame; motions are those of frame 0.
+/// Returns the scene with its vertices where they are in this frame. Motions stay those of frame 0.
 Scene scene_at(const Scene& scene, int frame);
 
-/// In pixels, each coordinate in [-0.5, 0.5): Halton points to the bases 2 and 3, from index 1 on (J. Halton 1964,
-/// Algorithm 247). 0 without jitter.
+/// Returns the jitter in pixels, each coordinate in [-0.5, 0.5): Halton points to the bases 2 and 3, from index 1 on
+/// (J. Halton 1964, Algorithm 247). 0 without jitter.
 glm::dvec2 jitter_px(SequenceFrame at);
-/// The camera of a view or of a path, without jitter; at the end of a path it stays. Throws SpecError listing the names.
+/// Returns the camera of a view or path without jitter. Throws SpecError listing the names.
 Camera unjittered_camera_at(const Scene& scene, const std::string& view, int frame);
 /// The same with its jitter in Camera::shift_px.
 Camera camera_at(const Scene& scene, const std::string& view, SequenceFrame at);
-/// That camera's view; size 0x0: the camera's own. Throws SpecError where a frame of another renderer is asked for another view,
-/// size or frame.
+/// Returns the view of that camera; size 0x0 means the camera's own. Throws SpecError if a frame file is asked for
+/// another view, size or frame.
 View view_at(const Scene& scene, const std::string& view, glm::ivec2 size_px, SequenceFrame at);
 
 /// From one frame to a later one, usually the next.
@@ -47,7 +47,7 @@ struct FrameMotion {
     int                     moving_draws = 0;
 };
 
-/// Nothing for frame 0, across a cut of the camera and for a frame of another renderer: no frame comes before. `scene` may be in any frame.
+/// Returns nullopt where no frame comes before: frame 0, a cut, a frame file. `scene` may be in any frame.
 std::optional<FrameMotion> motion_at(const Scene& scene, const std::string& view, glm::ivec2 size_px, int frame,
                                      int frames_back = 1);
 

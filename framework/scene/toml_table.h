@@ -1,4 +1,4 @@
-// Tables of scene files, key by key: every mistake is a SpecError that names file and line.
+// Tables of scene files. Every mistake is a SpecError that names file and line.
 #pragma once
 
 #include "core/toml_reading.h"

@@ -21,7 +21,7 @@ struct LobeSample {
 
 class Lobe {
 public:
-    /// Unit vectors; a viewer behind the surface counts as one that grazes it.
+    /// Unit vectors. A viewer behind the surface counts as grazing it.
     Lobe(glm::dvec3 normal, glm::dvec3 to_eye, double roughness);
 
     bool is_mirror() const { return alpha_ == 0; }
@@ -34,10 +34,10 @@ private:
     glm::dvec3 view_{0};
 };
 
-/// Reflectance at normal incidence of a surface that is partly metal.
+/// Returns the reflectance at normal incidence of a material that is partly metal.
 glm::dvec3 f0_of(glm::dvec3 base_colour, double metallic, double dielectric_f0);
 
-/// C. Schlick 1994. At grazing incidence it is 1, and 50 f0 where f0 is below 2 %: nothing is so dark, it says "no reflection".
+/// Schlick 1994: 1 at grazing incidence, but 50 f0 where f0 is below 2 %, which means "no reflection".
 glm::dvec3 fresnel(glm::dvec3 f0, double cosine);
 
 } // namespace ssrlab

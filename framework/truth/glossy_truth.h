@@ -37,11 +37,11 @@ struct GlossyTruth {
 
 GlossyTruth empty_glossy_truth(glm::ivec2 size_px);
 
-/// Threads = 0: all cores.
+/// Returns the truth of every reflecting pixel. threads = 0: all cores.
 GlossyTruth glossy_truth(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer,
                          const TraceSettings& settings, const GlossySettings& glossy, unsigned threads = 0);
 
-/// The G-buffer's own light with the true reflections; linear, channels R, G, B.
+/// Returns the G-buffer's own light with the true reflections; linear, channels R, G, B.
 Image true_picture(const GlossyTruth& truth, const GBufferImage& gbuffer, glm::vec3 ambient);
 
 } // namespace ssrlab

@@ -1,4 +1,4 @@
-// What a pixel holds and where a ray meets it: sections "What a pixel holds" and "The meeting" of docs/reference/hit_contract.md, in double precision.
+// What a pixel holds and where a ray meets it (docs/reference/hit_contract.md), in double precision.
 #pragma once
 
 #include "core/gbuffer_image.h"
@@ -10,7 +10,7 @@
 
 namespace ssrlab {
 
-/// A front and a back that slope alike, in depth; behind the back perhaps a solid.
+/// A front and a back with the same slope, in depth, and perhaps a solid behind the back.
 struct PixelSurface {
     glm::dvec2 centre_px{0, 0};
     double     front = 0;                                                 // at the centre; +inf: infinitely near
@@ -39,28 +39,28 @@ struct Meeting {
     double t           = 0; // where the ray first meets what the pixel holds
 };
 
-/// Depth of the far side of the slab that a pixel of that depth (> 0) stands for.
+/// Returns the depth of the far side of the slab of a pixel with this depth (> 0).
 double slab_back(const View& view, double depth, const TraceSettings& settings);
-/// Depth of the near side of the two-sided slab; +inf where it would be at the eye or behind it.
+/// Returns the depth of the near side of the two-sided slab; +inf where it would lie at the eye or behind it.
 double slab_front(const View& view, double depth, const TraceSettings& settings);
-/// How far the back of a plane lies below its front.
+/// Returns how far the back of a plane lies below its front, in depth.
 double plane_tolerance(const View& view, double depth);
 
-/// Whether the surface model of that id is known here, apart from its shaders. A model from outside the tree is not.
+/// Whether this file knows the surface model. It does not know models from outside the tree.
 bool has_screen_truth(std::string_view surface);
 
 /// Throws SpecError unless the model is known here, and Failure unless the G-buffer has what it needs.
 void require_surface(const GBufferImage& gbuffer, const TraceSettings& settings);
 
-/// In the G-buffer's own layer. Empty on the background.
+/// Returns what a pixel of this layer holds; nullopt for background.
 std::optional<PixelSurface> pixel_surface(const GBufferImage& gbuffer, size_t index, const TraceSettings& settings);
 
-/// How many layers a pixel holds at most: those that the settings ask for and the G-buffer has.
+/// Returns how many layers a pixel holds at most: those that the settings ask for and the G-buffer has.
 int layer_count(const GBufferImage& gbuffer, const TraceSettings& settings);
-/// One of them; 0: the G-buffer itself.
+/// Returns one layer; 0 is the G-buffer itself.
 const GBufferImage& layer_of(const GBufferImage& gbuffer, int layer);
 
-/// `facing`: the sign of normal · direction; it says from which side a box is met.
+/// `facing`: the sign of normal · direction, which decides from which side a box is met.
 Meeting meet(const PixelSurface& surface, const RayPart& ray, double facing);
 
 } // namespace ssrlab

@@ -1,4 +1,4 @@
-// Where reflected rays end, and what they see there: scene truth follows one ray a pixel, glossy truth many.
+// Where reflected rays end and what they see. Scene truth follows one ray per pixel, glossy truth many.
 #pragma once
 
 #include "core/gbuffer_image.h"
@@ -22,16 +22,16 @@ struct RayEnd {
     SceneHit   hit;            // undefined for sky
 };
 
-/// Keeps references; scene_truth.h says what the classes and the radiance mean.
+/// Keeps references to its arguments. scene_truth.h defines the classes and the radiance.
 class ReflectedRays {
 public:
     ReflectedRays(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer, double max_distance_m);
 
-    /// From the pixel's point; `direction_vs` is a unit vector.
+    /// Returns the ray from the pixel's point; `direction_vs` is a unit vector.
     SceneRay            ray_from(glm::ivec2 pixel, glm::dvec3 direction_vs) const;
     std::vector<RayEnd> follow(std::span<const SceneRay> rays) const;
 
-    /// At how many of these pixels' depths there is nothing that the frame draws. Rays from there would begin inside of things.
+    /// Counts the pixels whose depth lies on no drawn surface. Their rays would begin inside objects.
     size_t count_off_surface(std::span<const size_t> pixels) const;
 
 private:

@@ -17,7 +17,7 @@
 
 namespace ssrlab {
 
-/// `now` and `before`: the scene in both frames, each with its hierarchy; `gbuffer`: of this frame. Threads = 0: all cores.
+/// `now`, `before`: the scene in both frames, with its hierarchy; `gbuffer`: this frame. threads = 0: all cores.
 ReprojectionTruth reprojection_truth(const SceneBvh& now, const SceneBvh& before, const GBufferImage& gbuffer,
                                      const FrameMotion& motion, unsigned threads = 0);
 

@@ -34,13 +34,13 @@ public:
     SceneBvh(SceneBvh&&) noexcept;
     ~SceneBvh();
 
-    /// First hit of each ray, on either side. Embree finds the triangle in float; `t` is then the exact crossing of its plane in double.
+    /// Finds the first hit of each ray, on either side: the triangle in float, then `t` exactly on its plane in double.
     /// A ray with a value that is not finite, or without direction, meets nothing.
     void intersect(std::span<const SceneRay> rays, std::span<SceneHit> hits) const;
 
     const Scene& scene() const { return *scene_; }
 
-    /// occluded[i] = 1 where anything lies inside [t_min, t_max].
+    /// Sets occluded[i] = 1 if anything lies inside [t_min, t_max].
     void occluded(std::span<const SceneRay> rays, Sides sides, std::span<uint8_t> occluded) const;
 
 private:

@@ -1,4 +1,4 @@
-// What a scene's triangle is made of at one point: vertices interpolated, textures at their finest level.
+// The material at a point of a scene's triangle: interpolated vertices, textures at their finest level.
 #pragma once
 
 #include "scene/scene.h"
@@ -23,10 +23,10 @@ struct SurfaceMaterial {
 
 glm::dvec3 corner_ws(const Scene& scene, const SurfacePoint& point, int corner);
 
-/// Alpha of the base colour: what an alpha mask compares with its cutoff.
+/// Returns the alpha of the base colour, which an alpha mask compares with its cutoff.
 float surface_alpha(const Scene& scene, const SurfacePoint& point);
 
-/// Interpolated, without normal map; unit, or 0 when the mesh has none.
+/// Returns the interpolated normal without normal map: a unit vector, or 0 if the mesh has none.
 glm::dvec3 shading_normal_ws(const Scene& scene, const SurfacePoint& point);
 
 SurfaceMaterial surface_material(const Scene& scene, const SurfacePoint& point);

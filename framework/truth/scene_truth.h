@@ -28,36 +28,36 @@
 
 namespace ssrlab {
 
-/// Do both have the same scene truth and glossy truth of a frame? Those depend on the maximum distance and on what reflects.
+/// Whether both settings have the same truths: the same maximum distance and materials that reflect.
 bool same_scene_truth(const TraceSettings& a, const TraceSettings& b);
 
-/// All pixels not traced.
+/// Returns a truth in which no pixel is traced.
 SceneTruth empty_scene_truth(glm::ivec2 size_px);
 
-/// Radiance of a visible point is the G-buffer's (the view-independent part) at the pixel it falls into, so that a perfect SSR
-/// reproduces the reference exactly; all other points are shaded by shade_point; sky is sky_radiance in the ray's direction.
-/// Threads = 0: all cores.
+/// Returns the truth of every reflecting pixel. A visible point has the radiance of the G-buffer pixel that it falls
+/// into (the view-independent part), so a perfect tracer reproduces the reference exactly. Other points are shaded by
+/// shade_point(), and the sky by sky_radiance(). threads = 0: all cores.
 SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer,
                        const TraceSettings& settings, unsigned threads = 0);
 
-/// The same share as off_surface_share(SceneTruth), without following the reflected rays.
+/// Returns off_surface_share(SceneTruth) without following the reflected rays.
 std::optional<double> off_surface_share(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer,
                                         const TraceSettings& settings);
 
-/// Why a truth with such a share is false: a driver that rounds a triangle's corners to few parts of a pixel draws other depths, and reflected rays begin
-/// inside of things. Empty: it holds.
+/// Returns why a truth with this share is unusable, or an empty text. A driver that rounds corners of triangles
+/// coarsely draws other depths, so reflected rays begin inside objects.
 std::string drawn_elsewhere(std::optional<double> off_surface_share);
 
-/// Lambertian, with shadow rays, without bounces:
+/// Returns Lambertian radiance with shadow rays and without bounces:
 /// base (1 - metallic) / pi * sum(irradiance cos shadow) + ambient base + emissive.
 glm::vec3 shade_point(const SceneBvh& bvh, const Scene& scene, const SceneHit& hit, glm::dvec3 point_ws,
                       glm::dvec3 direction_ws);
 
-/// Its highlights, at the given roughness: GGX with shadow rays, seen against the direction.
+/// Returns the GGX highlights at this roughness, with shadow rays, as seen against `direction_ws`.
 glm::vec3 shade_highlight(const SceneBvh& bvh, const Scene& scene, const SceneHit& hit, glm::dvec3 point_ws,
                           glm::dvec3 direction_ws, double roughness);
 
-/// The shading normal on the side that a ray in this direction sees.
+/// Returns the shading normal on the side that a ray in this direction sees.
 glm::dvec3 seen_normal_ws(const SurfaceMaterial& material, const SceneHit& hit, glm::dvec3 direction_ws);
 
 } // namespace ssrlab

@@ -17,7 +17,7 @@ struct ScreenRay {
     glm::dvec3  direction_vs{0};                      // unit
 };
 
-/// Section "Which pixels reflect": finite depth > 0, a normal that is finite and not zero, and a material that reflects.
+/// Whether the pixel reflects: finite depth > 0, a finite non-zero normal, and a material that reflects.
 bool reflects(const GBufferImage& gbuffer, glm::ivec2 pixel, const TraceSettings& settings = {});
 
 /// The view-space point at the pixel's centre and depth.
@@ -27,7 +27,7 @@ glm::dvec3 pixel_point_vs(const GBufferImage& gbuffer, glm::ivec2 pixel);
 glm::dvec3 mirror_direction_vs(const GBufferImage& gbuffer, glm::ivec2 pixel);
 
 ScreenRay make_screen_ray(const GBufferImage& gbuffer, glm::ivec2 pixel, const TraceSettings& settings);
-/// From a pixel that reflects, in any direction; its length does not matter.
+/// Makes a ray from a reflecting pixel in any direction; the length of `direction_vs` does not matter.
 ScreenRay make_screen_ray(const GBufferImage& gbuffer, glm::ivec2 pixel, glm::dvec3 direction_vs,
                           const TraceSettings& settings);
 

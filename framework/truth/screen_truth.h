@@ -1,4 +1,4 @@
-// Screen truth: the hit contract (docs/reference/hit_contract.md) evaluated in double precision on the CPU, every pixel that the ray crosses.
+// Screen truth: the hit contract (docs/reference/hit_contract.md) evaluated in double precision on the CPU.
 #pragma once
 
 #include "core/gbuffer_image.h"
@@ -29,8 +29,8 @@ public:
     WalkResult walk(const ScreenRay& ray) const;
 
 private:
-    /// All depths of what a pixel holds, in all its layers, rounded outward to float: it rejects a pixel for certain, and small cells keep the walk in
-    /// the cache. front = -inf on the background, so that nothing meets it.
+    /// Bounds of all that a pixel holds in all its layers, rounded outward to float. They reject most pixels, and small
+    /// cells keep the walk in the cache. front = -inf for background.
     struct Cell {
         float front;
         float back;
@@ -43,7 +43,7 @@ private:
     std::vector<Cell>   cells_;
 };
 
-/// Independent of every shader. threads = 0: all cores. steps counts the pixels visited.
+/// Shares no code with the shaders. threads = 0: all cores. `steps` counts the visited pixels.
 TraceResult screen_truth(const GBufferImage& gbuffer, const TraceSettings& settings, unsigned threads = 0);
 
 } // namespace ssrlab

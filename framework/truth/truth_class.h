@@ -37,7 +37,7 @@ struct SceneTruth {
     uint64_t off_surface = 0;
 };
 
-/// Of the traced pixels; empty if none is traced.
+/// Returns the share of traced pixels; nullopt if none is traced.
 inline std::optional<double> off_surface_share(const SceneTruth& truth)
 {
     const auto rays = truth.cls.size() - size_t(std::count(truth.cls.begin(), truth.cls.end(), TruthClass::not_traced));
