@@ -1,7 +1,6 @@
 #include "app/check_command.h"
 
-#include "app/stage.h"
-
+#include "app/commands.h"
 #include "check/report.h"
 #include "check/run_check.h"
 #include "check/stability.h"
@@ -16,18 +15,24 @@
 namespace ssrlab {
 namespace {
 
-std::vector<Technique> chosen(const CommonOptions& common, const std::string& subject)
+/// A technique of the catalogue, those of a folder, or all.
+std::vector<Technique> chosen(const Catalogue& catalogue, const std::string& subject)
 {
-    if (subject.empty()) return list_techniques(common.technique_dirs);
-    if (!std::filesystem::is_directory(subject))
-        return {find_technique(list_techniques(common.technique_dirs), subject)};
-    const std::filesystem::path dirs[] = {subject};
-    std::vector<Technique>      all    = list_techniques(dirs), below;
-    const auto                  root   = std::filesystem::weakly_canonical(subject).string();
-    std::ranges::copy_if(all, std::back_inserter(below), [&](const Technique& technique) {
+    if (subject.empty()) return catalogue.techniques;
+    if (!std::filesystem::is_directory(subject)) return {find_technique(catalogue.techniques, subject)};
+    std::vector<Technique> below;
+    const auto             root = std::filesystem::weakly_canonical(subject).string();
+    std::ranges::copy_if(catalogue.techniques, std::back_inserter(below), [&](const Technique& technique) {
         return std::filesystem::weakly_canonical(technique.folder).string().starts_with(root);
     });
     return below;
+}
+
+Catalogue catalogue_with(const CommonOptions& common, const std::string& subject)
+{
+    std::vector<std::filesystem::path> dirs = common.technique_dirs;
+    if (std::filesystem::is_directory(subject)) dirs.emplace_back(subject);
+    return load_catalogue(dirs);
 }
 
 /// Defaults with what -p says. Settings of the trace belong to the cases.
@@ -47,8 +52,8 @@ std::vector<ParameterValues> values_of(const std::vector<Technique>& techniques,
     return values;
 }
 
-int show_ray(Gpu& gpu, const std::vector<Technique>& techniques, const std::vector<ParameterValues>& values,
-             const HardCaseOptions& options)
+int show_ray(Gpu& gpu, const Catalogue& catalogue, const std::vector<Technique>& techniques,
+             const std::vector<ParameterValues>& values, const HardCaseOptions& options)
 {
     const auto  colon = options.ray.find(':');
     size_t      setup = 0, ray = 0;
@@ -59,18 +64,19 @@ int show_ray(Gpu& gpu, const std::vector<Technique>& techniques, const std::vect
     if (!read || options.only_case.empty())
         throw_spec_error("--ray: expected SETUP:RAY together with --case, got '{}'", options.ray);
     for (size_t i = 0; i < techniques.size(); ++i)
-        std::puts(describe_ray(gpu, techniques[i], values[i], find_case(options.only_case), setup, ray).c_str());
+        std::puts(
+            describe_ray(gpu, catalogue, techniques[i], values[i], find_case(options.only_case), setup, ray).c_str());
     return 0;
 }
 
 /// Jitter and depth formats, technique by technique; printed as they are written.
-std::string measure_stability(Gpu& gpu, const std::vector<Technique>& techniques)
+std::string measure_stability(Gpu& gpu, const Catalogue& catalogue, const std::vector<Technique>& techniques)
 {
     std::vector<JitterRow> jitter;
     std::vector<FormatRow> formats;
     for (const Technique& technique : techniques) {
-        jitter.push_back(measure_jitter(gpu, technique));
-        std::ranges::copy(measure_formats(gpu, technique), std::back_inserter(formats));
+        jitter.push_back(measure_jitter(gpu, catalogue, technique));
+        std::ranges::copy(measure_formats(gpu, catalogue, technique), std::back_inserter(formats));
     }
     std::string text = stability_markdown(jitter, formats);
     std::puts(text.c_str());
@@ -81,10 +87,11 @@ std::string measure_stability(Gpu& gpu, const std::vector<Technique>& techniques
 
 int check_techniques(const CommonOptions& common, const HardCaseOptions& options)
 {
-    const std::vector<Technique>       techniques = chosen(common, options.subject);
+    const Catalogue                    catalogue  = catalogue_with(common, options.subject);
+    const std::vector<Technique>       techniques = chosen(catalogue, options.subject);
     const std::vector<ParameterValues> values     = values_of(techniques, options.parameters);
     Gpu                                gpu        = open_gpu(common.gpu);
-    if (!options.ray.empty()) return show_ray(gpu, techniques, values, options);
+    if (!options.ray.empty()) return show_ray(gpu, catalogue, techniques, values, options);
 
     Gpu robust;
     if (!options.quick) {
@@ -94,13 +101,14 @@ int check_techniques(const CommonOptions& common, const HardCaseOptions& options
     }
     size_t broken = 0;
     std::puts(table_head().c_str());
-    const auto               rows = run_check(gpu, options.quick ? nullptr : &robust,
-                                              {techniques, options.only_case, {.double_precision = !options.quick}, values},
-                                              [&](const CaseRow& row) {
-                                    broken += row.breaks > 0;
-                                    std::printf("%s\n%s", table_line(row).c_str(), table_findings(row).c_str());
-                                    std::fflush(stdout);
-                                });
+    const auto rows =
+        run_check(gpu, options.quick ? nullptr : &robust,
+                  {catalogue, techniques, options.only_case, {.double_precision = !options.quick}, values},
+                  [&](const CaseRow& row) {
+                      broken += row.breaks > 0;
+                      std::printf("%s\n%s", table_line(row).c_str(), table_findings(row).c_str());
+                      std::fflush(stdout);
+                  });
     std::vector<std::string> more = check_refusals();
     if (options.only_case.empty()) std::ranges::copy(check_finds(rows), std::back_inserter(more));
     for (const std::string& line : more) {
@@ -113,7 +121,7 @@ int check_techniques(const CommonOptions& common, const HardCaseOptions& options
     }
     const std::string verdict   = fmt::format("{} of {} rows hold what the technique claims",
                                               std::ranges::count(rows, 0U, &CaseRow::breaks), rows.size());
-    const std::string stability = options.stability ? measure_stability(gpu, techniques) : "";
+    const std::string stability = options.stability ? measure_stability(gpu, catalogue, techniques) : "";
     if (!options.markdown.empty())
         write_file_atomically(options.markdown,
                               fmt::format("# Hard cases\nWritten by `{}`. Commit: {}. Device: {}.\n\n{}.\n\n{}{}",

@@ -1,41 +1,17 @@
 #include "app/commands.h"
 
 #include "app/python_script.h"
-#include "app/stage.h"
 #include "compare/image_io.h"
 #include "compare/validate_result.h"
 #include "core/error.h"
 #include "core/files.h"
+#include "harness/choice.h"
 #include "harness/measured_run.h"
 
 #include <cstdio>
 
 namespace ssrlab {
 namespace {
-
-PreparedFramePtr prepare(const CommonOptions& common, const PictureOptions& options, Stage& stage)
-{
-    const auto       techniques = list_techniques(common.technique_dirs);
-    const Technique& technique  = find_technique(techniques, options.technique);
-    const Choice     choice     = parse_choice(technique, options.parameters);
-    return prepare_frame(stage.gpu, make_frame_buffers(stage.gpu, stage.gbuffer), technique, choice.values,
-                         choice.settings);
-}
-
-/// Fails before the work starts rather than after it.
-void check_choice(const CommonOptions& common, const PictureOptions& options)
-{
-    const auto techniques = list_techniques(common.technique_dirs);
-    parse_choice(find_technique(techniques, options.technique), options.parameters);
-    if (!options.size.empty()) size_option(options.size);
-}
-
-double most_steps_of(const CommonOptions& common, const PictureOptions& options)
-{
-    const auto       techniques = list_techniques(common.technique_dirs);
-    const Technique& technique  = find_technique(techniques, options.technique);
-    return declared_steps(technique, parse_choice(technique, options.parameters).values);
-}
 
 std::string status_legend()
 {
@@ -49,11 +25,13 @@ std::string status_legend()
 
 int trace_hits(const CommonOptions& common, const PictureOptions& options)
 {
-    check_choice(common, options);
+    const Catalogue  catalogue = load_catalogue(common.technique_dirs);
+    const Technique& technique = find_technique(catalogue.techniques, options.technique);
+    const Choice     choice    = parse_choice(catalogue, technique, options.parameters);
     require_ending(options.output, {".exr"});
-    Stage             stage  = prepare_stage(common, options);
-    const auto        frame  = prepare(common, options, stage);
-    const TraceResult result = count_frame(stage.gpu, *frame);
+    Stage             stage  = open_stage(common, catalogue, options);
+    const LabPtr      lab    = make_lab(stage, technique, choice.values, choice.settings.trace);
+    const TraceResult result = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
     Image             image{result.size_px,
                 {"hit.x", "hit.y", "hit.t", "hit.z", "pixel.x", "pixel.y", "layer", "status", "steps", "depth_fetches",
                              "structure_fetches"},
@@ -76,7 +54,7 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
     }
     write_image(options.output, image);
     std::puts(options.output.c_str());
-    require_possible(result, most_steps_of(common, options));
+    require_possible(result, declared_steps(technique, choice.values));
     return report_messages(stage);
 }
 
@@ -84,7 +62,7 @@ int write_gbuffer(const CommonOptions& common, const PictureOptions& options)
 {
     if (!options.size.empty()) size_option(options.size);
     require_ending(options.output, {".exr"});
-    Stage stage = prepare_stage(common, options);
+    Stage stage = open_stage(common, load_catalogue(common.technique_dirs), options);
     write_image(options.output, frame_image(read_gbuffer(stage.gpu, *stage.gbuffer)));
     std::puts(options.output.c_str());
     return report_messages(stage);

@@ -1,26 +1,11 @@
 // What each subcommand of ssrlab does. Each returns the exit code and throws SpecError (2) or Failure (1).
 #pragma once
 
-#include "frame/frame.h"
-#include "scene/sequence.h"
+#include "harness/choice.h"
 
-#include <filesystem>
 #include <string>
-#include <vector>
 
 namespace ssrlab {
-
-struct CommonOptions {
-    GpuOptions                         gpu;
-    bool                               quiet = false; // no warnings, no progress
-    std::vector<std::filesystem::path> technique_dirs;
-};
-
-struct PictureOptions {
-    std::string              scene, technique, view = "default", size, output;
-    std::vector<std::string> parameters; // name=value: the technique's parameters, or settings of [trace] and [passes]
-    SequenceFrame            at;
-};
 
 int list_everything(const CommonOptions& common, bool json);
 /// docs/reference/settings.md: every setting and parameter with its range, default and meaning.

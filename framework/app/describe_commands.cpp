@@ -123,18 +123,18 @@ int print_setting(const Setting& setting)
     return 0;
 }
 
-nlohmann::json list_as_json(const std::vector<Technique>& techniques)
+nlohmann::json list_as_json(const Catalogue& catalogue)
 {
     nlohmann::json json{{"techniques", nlohmann::json::array()},
                         {"surfaces", nlohmann::json::array()},
                         {"scenes", nlohmann::json::array()},
                         {"settings", nlohmann::json::array()},
                         {"devices", nlohmann::json::array()}};
-    for (const Technique& technique : techniques) json["techniques"].push_back(json_of(technique));
-    for (const Surface& surface : all_surfaces()) json["surfaces"].push_back(json_of(surface));
+    for (const Technique& technique : catalogue.techniques) json["techniques"].push_back(json_of(technique));
+    for (const Surface& surface : catalogue.surfaces) json["surfaces"].push_back(json_of(surface));
     for (const SceneListing& scene : list_scenes())
         json["scenes"].push_back({{"name", scene.name}, {"summary", scene.summary}});
-    for (const Setting& setting : all_settings()) {
+    for (const Setting& setting : all_settings(catalogue)) {
         json["settings"].push_back(json_of(setting));
         json["settings"].back()["table"] = setting.table;
     }
@@ -180,14 +180,15 @@ columns of `results.csv`.
 
 int list_as_markdown(const CommonOptions& common)
 {
-    constexpr const char* head = "| name | range | default | meaning |\n|---|---|---|---|\n";
-    std::string           text = markdown_introduction;
+    constexpr const char* head      = "| name | range | default | meaning |\n|---|---|---|---|\n";
+    const Catalogue       catalogue = load_catalogue(common.technique_dirs);
+    std::string           text      = markdown_introduction;
     for (const char* table : {"trace", "passes"}) {
         text += fmt::format("\n## [{}]\n{}", table, head);
-        for (const Setting& setting : all_settings())
+        for (const Setting& setting : all_settings(catalogue))
             if (setting.table == table) text += row_of(setting);
     }
-    for (const Technique& technique : list_techniques(common.technique_dirs)) {
+    for (const Technique& technique : catalogue.techniques) {
         text += fmt::format("\n## [techniques.{}]\n{}", technique.id, head);
         for (const Parameter& parameter : technique.parameters) text += row_of(parameter);
     }
@@ -197,17 +198,18 @@ int list_as_markdown(const CommonOptions& common)
 
 int list_everything(const CommonOptions& common, bool json)
 {
-    const std::vector<Technique> techniques = list_techniques(common.technique_dirs);
+    const Catalogue            catalogue = load_catalogue(common.technique_dirs);
+    const std::vector<Setting> settings  = all_settings(catalogue);
     if (json) {
-        std::puts(list_as_json(techniques).dump(1).c_str());
+        std::puts(list_as_json(catalogue).dump(1).c_str());
         return 0;
     }
     std::puts("Techniques");
-    for (const Technique& technique : techniques)
+    for (const Technique& technique : catalogue.techniques)
         std::puts(
             fmt::format("  {:<16} {}{}", technique.id, technique.summary, technique.exact ? " (exact)" : "").c_str());
     std::puts("\nSurface models: what a pixel is taken to hold");
-    for (const Surface& surface : all_surfaces())
+    for (const Surface& surface : catalogue.surfaces)
         std::puts(fmt::format("  {:<16} {}", surface.id, surface.summary).c_str());
     std::puts("\nScenes (besides any .glb, .gltf, recipe .toml or frame .exr by its path)");
     for (const SceneListing& scene : list_scenes())
@@ -215,7 +217,7 @@ int list_everything(const CommonOptions& common, bool json)
     std::puts("\nSettings (ssrlab show NAME)");
     for (const char* table : {"trace", "passes"}) {
         std::string names;
-        for (const Setting& setting : all_settings())
+        for (const Setting& setting : settings)
             if (setting.table == table) names += " " + setting.name;
         std::puts(fmt::format("  [{}]{}", table, names).c_str());
     }
@@ -234,22 +236,25 @@ int list_everything(const CommonOptions& common, bool json)
 
 int show_entry(const CommonOptions& common, const std::string& name, bool json)
 {
-    const std::vector<Technique> techniques = list_techniques(common.technique_dirs);
-    const auto                   show       = [&](const auto& entry, const auto& print) {
+    const Catalogue               catalogue  = load_catalogue(common.technique_dirs);
+    const std::vector<Technique>& techniques = catalogue.techniques;
+    const std::vector<Surface>&   surfaces   = catalogue.surfaces;
+    const std::vector<Setting>    settings   = all_settings(catalogue);
+    const auto                    show       = [&](const auto& entry, const auto& print) {
         if (!json) return print(entry);
         std::puts(json_of(entry).dump(1).c_str());
         return 0;
     };
     if (const auto found = std::ranges::find(techniques, name, &Technique::id); found != techniques.end())
         return show(*found, print_technique);
-    if (const auto found = std::ranges::find(all_surfaces(), name, &Surface::id); found != all_surfaces().end())
+    if (const auto found = std::ranges::find(surfaces, name, &Surface::id); found != surfaces.end())
         return show(*found, print_surface);
-    if (const auto found = std::ranges::find(all_settings(), name, &Setting::name); found != all_settings().end())
+    if (const auto found = std::ranges::find(settings, name, &Setting::name); found != settings.end())
         return show(*found, print_setting);
     std::vector<std::string> known;
     for (const Technique& one : techniques) known.push_back(one.id);
-    for (const Surface& one : all_surfaces()) known.push_back(one.id);
-    for (const Setting& one : all_settings()) known.push_back(one.name);
+    for (const Surface& one : surfaces) known.push_back(one.id);
+    for (const Setting& one : settings) known.push_back(one.name);
     throw_spec_error("{}", unknown_name("technique, surface model or setting", name, known));
 }
 

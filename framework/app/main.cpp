@@ -19,7 +19,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <fcntl.h>
 #include <functional>
 #include <unistd.h>
@@ -34,16 +33,6 @@ void open_closed_streams()
         ::close(fd);
         return;
     }
-}
-
-/// Reprojection strategies and surface models are settings, and those are known before a command reads its options: $SSRLAB_TECHNIQUES
-/// names the folders of --techniques, too.
-void name_in_environment(const std::vector<std::filesystem::path>& technique_dirs)
-{
-    const char* before = std::getenv("SSRLAB_TECHNIQUES");
-    std::string list   = before == nullptr ? "" : before;
-    for (const std::filesystem::path& dir : technique_dirs) list += (list.empty() ? "" : ":") + dir.string();
-    if (!list.empty()) ::setenv("SSRLAB_TECHNIQUES", list.c_str(), 1);
 }
 
 /// What is wrong with the first word that is no option, if it is no command.
@@ -309,7 +298,6 @@ int main(int argc, char** argv)
         return app.exit(error) == 0 ? 0 : 2;
     }
     try {
-        name_in_environment(common.technique_dirs);
         return command();
     } catch (const SpecError& error) {
         say_error(error.what());

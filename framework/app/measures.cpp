@@ -36,13 +36,15 @@ std::string code(std::string_view text) { return fmt::format("`{}`", text); }
 
 int print_measures(const CommonOptions& common)
 {
-    const auto techniques = list_techniques(common.technique_dirs);
-    Experiment everything;
+    const Catalogue               catalogue  = load_catalogue(common.technique_dirs);
+    const std::vector<Technique>& techniques = catalogue.techniques;
+    Experiment                    everything;
+    everything.known_settings = all_settings(catalogue);
     for (const Technique& technique : techniques) everything.techniques.push_back({technique.id, {}, {}, {}});
 
     // Settings and parameters have a page of their own.
     std::vector<std::string> elsewhere;
-    for (const Setting& setting : all_settings()) elsewhere.push_back(setting.name);
+    for (const Setting& setting : everything.known_settings) elsewhere.push_back(setting.name);
     for (const Technique& technique : techniques)
         for (const Parameter& parameter : technique.parameters) elsewhere.push_back(parameter.name);
 

@@ -1,7 +1,7 @@
 #include "app/plan_command.h"
 
-#include "app/stage.h"
 #include "core/error.h"
+#include "harness/choice.h"
 #include "harness/statistics.h"
 
 #include <cstdio>
@@ -11,7 +11,7 @@ namespace ssrlab {
 namespace {
 
 struct Timed {
-    PreparedFramePtr                           frame;
+    FramePtr                                   frame;
     std::map<std::string, std::vector<double>> pass_ms;
     std::vector<double>                        total_ms;
 };
@@ -30,10 +30,10 @@ std::string median_text(const Timed& timed, const std::string& pass)
     return found == timed.pass_ms.end() ? "-" : fmt::format("{:.2f}", quantile(found->second, 0.5));
 }
 
-void print_table(const Timed& planned, const Timed& unculled)
+void print_table(const FramePlan& plan, const Timed& planned, const Timed& unculled)
 {
     std::puts(fmt::format("{:<20} {:<8} {:>11} {:>14}  {}", "pass", "", "planned ms", "unculled ms", "why").c_str());
-    for (const PlannedPass& row : plan_of(*planned.frame)) {
+    for (const PlannedPass& row : plan.passes) {
         const std::string& id = row.id;
         std::puts(fmt::format("{:<20} {:<8} {:>11} {:>14}  {}", id, row.runs ? "run" : "skipped",
                               median_text(planned, id), median_text(unculled, id), row.reason)
@@ -49,13 +49,15 @@ FrameHistoryPtr history_before(Stage& stage, const PictureOptions& options, cons
                                const Choice& choice)
 {
     if (options.at.frame == 0) return nullptr;
-    show_frame(stage, options.view, {options.at.frame - 1, options.at.jitter_phases});
-    auto       history = make_history(stage.gpu, stage.view.size_px);
-    const auto frame = prepare_frame(stage.gpu, make_frame_buffers(stage.gpu, stage.gbuffer), technique, choice.values,
-                                     choice.settings, history);
+    show(stage, options.view, stage.view.size_px, {options.at.frame - 1, options.at.jitter_phases});
+    const FrameHistoryPtr history = make_history(stage.gpu, stage.view.size_px);
+    const LabPtr          lab     = make_lab(stage, technique, choice.values, choice.settings.trace);
+    const FrameBuffersPtr buffers = make_frame_buffers(stage);
+    const FramePlan       plan    = plan_frame(stage, lab, buffers, choice.settings, history);
+    const FramePtr        frame   = make_frame(stage.gpu, lab, buffers, plan, history);
     run_frame(stage.gpu, *frame);
     keep_history(stage.gpu, *frame, options.at.frame - 1);
-    show_frame(stage, options.view, options.at);
+    show(stage, options.view, stage.view.size_px, options.at);
     return history;
 }
 
@@ -63,33 +65,36 @@ FrameHistoryPtr history_before(Stage& stage, const PictureOptions& options, cons
 
 int print_plan(const CommonOptions& common, const PlanOptions& options)
 {
-    const auto       techniques = list_techniques(common.technique_dirs);
-    const Technique& technique  = find_technique(techniques, options.picture.technique);
-    Choice           choice     = parse_choice(technique, options.picture.parameters);
-    Stage            stage      = prepare_stage(common, options.picture);
-    const auto       history    = history_before(stage, options.picture, technique, choice);
-    const auto       buffers    = make_frame_buffers(stage.gpu, stage.gbuffer);
+    const Catalogue  catalogue = load_catalogue(common.technique_dirs);
+    const Technique& technique = find_technique(catalogue.techniques, options.picture.technique);
+    Choice           choice    = parse_choice(catalogue, technique, options.picture.parameters);
+    Stage            stage     = open_stage(common, catalogue, options.picture);
+    const auto       history   = history_before(stage, options.picture, technique, choice);
 
     choice.settings.passes.at("skip_unneeded_passes") = 1;
-    const auto timed                                  = [&](PreparedFramePtr frame) {
-        run_frame(stage.gpu, *frame); // warm-up
-        return Timed{std::move(frame), {}, {}};
+    const LabPtr          lab     = make_lab(stage, technique, choice.values, choice.settings.trace);
+    const FrameBuffersPtr buffers = make_frame_buffers(stage);
+    const FramePlan       plan    = plan_frame(stage, lab, buffers, choice.settings, history);
+    const auto            timed   = [&](const FramePlan& of) {
+        Timed frame{make_frame(stage.gpu, lab, buffers, of, history), {}, {}};
+        run_frame(stage.gpu, *frame.frame); // warm-up
+        return frame;
     };
-    Timed      planned = timed(prepare_frame(stage.gpu, buffers, technique, choice.values, choice.settings, history));
+    Timed      planned       = timed(plan);
     const auto planned_image = read_shaded(stage.gpu, *planned.frame);
-    Timed      unculled      = timed(prepare_unculled(stage.gpu, *planned.frame));
-    const bool same          = read_shaded(stage.gpu, *unculled.frame).values == planned_image.values;
+    Timed      all           = timed(unculled(plan));
+    const bool same          = read_shaded(stage.gpu, *all.frame).values == planned_image.values;
     for (int i = 0; i < options.repeats; ++i) {
         add_repeat(stage.gpu, planned);
-        add_repeat(stage.gpu, unculled);
+        add_repeat(stage.gpu, all);
     }
     std::puts(fmt::format("{}, view {}, {}x{}, {} on {}: median of {} frames without the G-buffer",
                           options.picture.scene, options.picture.view, stage.view.size_px.x, stage.view.size_px.y,
                           technique.id, stage.gpu.info.name, options.repeats)
                   .c_str());
-    for (const std::string& fact : facts_of_plan(*planned.frame)) std::puts(fact.c_str());
+    for (const std::string& fact : describe_facts(plan)) std::puts(fact.c_str());
     std::puts("");
-    print_table(planned, unculled);
+    print_table(plan, planned, all);
     std::puts(same ? "\nThe unculled image is bit-identical." : "\nThe unculled image DIFFERS from the planned one.");
     const int messages = report_messages(stage);
     return same ? messages : 1;

@@ -1,12 +1,11 @@
 #include "app/ray_command.h"
 
 #include "app/python_script.h"
-#include "app/stage.h"
 #include "check/ray_report.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "core/pixel_index.h"
-#include "frame/layers.h"
+#include "harness/choice.h"
 #include "harness/experiment.h"
 #include "truth/reflected_rays.h"
 #include "truth/scene_bvh.h"
@@ -36,13 +35,12 @@ glm::ivec2 pixel_option(const std::string& text, glm::ivec2 size_px)
 }
 
 /// A parameter counts for every technique that has it.
-std::vector<RayQuestion> questions_of(const RayOptions& options, const std::vector<Technique>& all,
-                                      FrameSettings& settings)
+std::vector<RayQuestion> questions_of(const RayOptions& options, const Catalogue& catalogue, FrameSettings& settings)
 {
     std::vector<const Technique*> techniques;
-    for (const std::string& id : options.techniques) techniques.push_back(&find_technique(all, id));
+    for (const std::string& id : options.techniques) techniques.push_back(&find_technique(catalogue.techniques, id));
     std::vector<RayQuestion> questions;
-    for (const Choice& choice : parse_choices(techniques, options.picture.parameters)) {
+    for (const Choice& choice : parse_choices(catalogue, techniques, options.picture.parameters)) {
         settings = choice.settings;
         questions.push_back({techniques[questions.size()], choice.values});
     }
@@ -67,8 +65,8 @@ RayInput ray_of_pixel(Stage& stage, const Setup& setup, const RayQuestion& quest
         throw_spec_error("pixel {},{} does not reflect: depth {:g}, metallic {:g}", pixel.x, pixel.y,
                          setup.gbuffer.depth[i], setup.gbuffer.metallic[i]);
     }
-    const auto tracer = make_ray_tracer(stage.gpu, stage.gbuffer, *question.technique, question.values, setup.settings,
-                                        pixel_count(setup.gbuffer.view.size_px));
+    const LabPtr    lab    = make_lab(stage, *question.technique, question.values, setup.settings);
+    const TracerPtr tracer = make_tracer(stage.gpu, lab);
     for (const RayInput& ray : set_up_rays(stage.gpu, *tracer))
         if (ray.pixel == pixel) return ray;
     throw_failure("pixel {},{} has no ray", pixel.x, pixel.y);
@@ -151,15 +149,15 @@ int explain_ray(const CommonOptions& common, const RayOptions& options)
     const std::string           extension = output.extension().string();
     if (!output.empty() && extension != ".json" && extension != ".png")
         throw_spec_error("-o {}: expected .json or .png", options.picture.output);
-    const auto                     techniques = list_techniques(common.technique_dirs);
+    const Catalogue                catalogue = load_catalogue(common.technique_dirs);
     FrameSettings                  settings;
-    const std::vector<RayQuestion> questions = questions_of(options, techniques, settings);
-    Stage                          stage     = prepare_stage(common, options.picture);
-    prepare_layers(stage.gpu, *stage.gbuffer, settings.trace);
+    const std::vector<RayQuestion> questions = questions_of(options, catalogue, settings);
+    Stage                          stage     = open_stage(common, catalogue, options.picture);
+    if (stage.drawing) draw_layers(stage.gpu, *stage.drawing, settings.trace.layers);
     const Setup      setup{"", read_gbuffer(stage.gpu, *stage.gbuffer), settings.trace, {}};
     const glm::ivec2 pixel  = pixel_option(options.pixel, stage.view.size_px);
     const RayInput   ray    = ray_of_pixel(stage, setup, questions.front(), pixel);
-    RayReport        report = report_ray(stage.gpu, setup, ray, questions);
+    RayReport        report = report_ray(stage.gpu, catalogue, setup, ray, questions);
     report.true_end         = true_end_of(stage, setup, pixel);
 
     nlohmann::json json = to_json(report, setup);

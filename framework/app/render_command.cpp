@@ -1,10 +1,10 @@
 #include "app/render_command.h"
 
-#include "app/stage.h"
 #include "compare/image_io.h"
 #include "compare/pictures.h"
 #include "compare/validate_result.h"
 #include "core/error.h"
+#include "harness/choice.h"
 #include "harness/quality.h"
 #include "truth/glossy_truth.h"
 #include "truth/scene_truth.h"
@@ -35,7 +35,7 @@ std::string label_of(Shows shows, const std::string& technique)
 }
 
 /// Fails before the work starts rather than after it.
-Choice checked_choice(const Technique& technique, const RenderOptions& options)
+Choice checked_choice(const Catalogue& catalogue, const Technique& technique, const RenderOptions& options)
 {
     const bool exr = options.picture.output.ends_with(".exr");
     require_ending(options.picture.output, {".png", ".exr"});
@@ -50,7 +50,7 @@ Choice checked_choice(const Technique& technique, const RenderOptions& options)
     if (exr && (options.exposure_ev != 0 || options.display != "clip"))
         throw_spec_error("-o {}: an EXR holds linear radiance; --exposure and --display need a .png",
                          options.picture.output);
-    return parse_choice(technique, options.picture.parameters);
+    return parse_choice(catalogue, technique, options.picture.parameters);
 }
 
 /// "pan.png" is "pan_0007.png" in frame 7.
@@ -80,9 +80,9 @@ std::string command_of(const RenderOptions& options, int at_frame)
     return text;
 }
 
-void warn_without_reflections(const CommonOptions& common, const PreparedFrame& frame)
+void warn_without_reflections(const CommonOptions& common, const FramePlan& plan)
 {
-    if (common.quiet || reflecting_pixels_of(frame) > 0) return;
+    if (common.quiet || plan.statistics.gbuffer.reflecting_pixels > 0) return;
     std::fputs("warning: nothing reflects: no pixel of this frame is metal, or smooth enough to reflect\n", stderr);
 }
 
@@ -152,7 +152,7 @@ struct Rendered {
 };
 
 /// Adds the pictures of one place of the camera.
-void add_sample(Stage& stage, PreparedFrame& frame, const RenderOptions& options, const TraceSettings& settings,
+void add_sample(Stage& stage, ReadyFrame& frame, const RenderOptions& options, const TraceSettings& settings,
                 TrueReflections& truth, int sample, int number, Rendered& rendered)
 {
     const auto    kinds = shown_by(options);
@@ -182,11 +182,11 @@ void add_sample(Stage& stage, PreparedFrame& frame, const RenderOptions& options
 
 int render_picture(const CommonOptions& common, const RenderOptions& options)
 {
-    const PictureOptions& picture    = options.picture;
-    const auto            techniques = list_techniques(common.technique_dirs);
-    const Technique&      technique  = find_technique(techniques, picture.technique);
-    const Choice          choice     = checked_choice(technique, options);
-    Stage                 stage      = prepare_stage(common, picture);
+    const PictureOptions& picture   = options.picture;
+    const Catalogue       catalogue = load_catalogue(common.technique_dirs);
+    const Technique&      technique = find_technique(catalogue.techniques, picture.technique);
+    const Choice          choice    = checked_choice(catalogue, technique, options);
+    Stage                 stage     = open_stage(common, catalogue, picture);
     if (options.samples > 1 && stage.scene.frame)
         throw_spec_error("--samples: expected 1 for a frame of another renderer, which cannot be rendered anew; got {}",
                          options.samples);
@@ -201,14 +201,17 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
         for (const Shows shows : shown_by(options)) rendered.pictures.push_back({label_of(shows, technique.id), {}});
         for (int sample = 0; sample < options.samples; ++sample) {
             if (i > 0 || options.samples > 1)
-                show_frame(stage, picture.view, {picture.at.frame + i, picture.at.jitter_phases},
-                           sample_offset_px(sample, options.samples));
-            const auto frame = prepare_frame(stage.gpu, make_frame_buffers(stage.gpu, stage.gbuffer), technique,
-                                             choice.values, choice.settings, histories[static_cast<size_t>(sample)]);
-            if (sample == 0) warn_without_reflections(common, *frame);
+                show(stage, picture.view, stage.view.size_px, {picture.at.frame + i, picture.at.jitter_phases},
+                     sample_offset_px(sample, options.samples));
+            const FrameHistoryPtr& history = histories[static_cast<size_t>(sample)];
+            const LabPtr           lab     = make_lab(stage, technique, choice.values, choice.settings.trace);
+            const FrameBuffersPtr  buffers = make_frame_buffers(stage);
+            const FramePlan        plan    = plan_frame(stage, lab, buffers, choice.settings, history);
+            const FramePtr         frame   = make_frame(stage.gpu, lab, buffers, plan, history);
+            if (sample == 0) warn_without_reflections(common, plan);
             const bool                 first = i == 0 && sample == 0 && !options.truth;
             std::optional<TraceResult> counted;
-            if (first || !options.show.empty()) counted = count_frame(stage.gpu, *frame);
+            if (first || !options.show.empty()) counted = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
             if (first) impossible = find_impossible(*counted, declared_steps(technique, choice.values));
             if (!options.show.empty())
                 rendered.pictures.front().image = false_colours(stage, *counted, choice.settings.trace, options.show);

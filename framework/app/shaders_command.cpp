@@ -1,9 +1,9 @@
 #include "app/shaders_command.h"
 
-#include "app/stage.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "core/version.h"
+#include "harness/choice.h"
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -33,11 +33,13 @@ std::string short_name(const CompiledPipeline& pipeline)
     return (file.parent_path().filename() / file.filename()).string();
 }
 
-std::vector<Row> compile(Gpu& gpu, const std::vector<const Technique*>& techniques, const std::vector<Choice>& choices)
+std::vector<Row> compile(Gpu& gpu, const Catalogue& catalogue, const std::vector<const Technique*>& techniques,
+                         const std::vector<Choice>& choices)
 {
     std::vector<Row> rows;
     for (size_t i = 0; i < techniques.size(); ++i)
-        for (const CompiledPtr& pipeline : compile_frame(gpu, *techniques[i], choices[i].values, choices[i].settings)) {
+        for (const CompiledPtr& pipeline :
+             compile_frame(gpu, catalogue, *techniques[i], choices[i].values, choices[i].settings)) {
             auto row = std::ranges::find_if(rows, [&](const Row& known) {
                 return known.pipeline == pipeline || same_code(*known.pipeline, *pipeline);
             });
@@ -133,18 +135,19 @@ void write_assembly(const std::vector<Row>& rows, const std::filesystem::path& f
 
 int describe_shaders(const CommonOptions& common, const ShadersOptions& options)
 {
-    const std::vector<Technique>  all = list_techniques(common.technique_dirs);
+    const Catalogue               catalogue = load_catalogue(common.technique_dirs);
     std::vector<const Technique*> techniques;
-    for (const std::string& name : options.techniques) techniques.push_back(&find_technique(all, name));
+    for (const std::string& name : options.techniques)
+        techniques.push_back(&find_technique(catalogue.techniques, name));
     if (techniques.empty())
-        for (const Technique& technique : all) techniques.push_back(&technique);
-    const std::vector<Choice> choices = parse_choices(techniques, options.parameters);
+        for (const Technique& technique : catalogue.techniques) techniques.push_back(&technique);
+    const std::vector<Choice> choices = parse_choices(catalogue, techniques, options.parameters);
 
     GpuOptions device    = common.gpu;
     device.compiles_only = true;
     if (!options.chip.empty()) pretend_chip(options.chip);
     Gpu                    gpu  = open_gpu(device);
-    const std::vector<Row> rows = compile(gpu, techniques, choices);
+    const std::vector<Row> rows = compile(gpu, catalogue, techniques, choices);
     if (options.json)
         print_json(rows, gpu.info);
     else {

@@ -169,7 +169,8 @@ nlohmann::json to_json(const std::vector<VisitReport>& reports)
 
 } // namespace
 
-RayReport report_ray(Gpu& gpu, const Setup& setup, const RayInput& ray, std::span<const RayQuestion> questions)
+RayReport report_ray(Gpu& gpu, const Catalogue& catalogue, const Setup& setup, const RayInput& ray,
+                     std::span<const RayQuestion> questions)
 {
     const GBufferPtr gbuffer = upload_gbuffer(gpu, setup.gbuffer);
     const Judge      judge(setup);
@@ -180,8 +181,8 @@ RayReport report_ray(Gpu& gpu, const Setup& setup, const RayInput& ray, std::spa
     for (const Visit& visit : judge.walk(ray))
         if (visit.layer == 0) report.walk.push_back(describe(setup, ray, {visit.pixel, 0, visit.t_in, visit.t_out}));
     for (const RayQuestion& question : questions) {
-        const RecordedRay recorded =
-            record_ray(gpu, gbuffer, *question.technique, question.values, setup.settings, ray);
+        const RecordedRay recorded = record_ray(
+            gpu, make_lab(gpu, catalogue, gbuffer, *question.technique, question.values, setup.settings), ray);
         report.techniques.push_back({question.technique->id, recorded.outcome, ending_of(setup, ray, recorded.outcome),
                                      verdict_of(judge, ray, recorded.outcome, question), describe(setup, ray, recorded),
                                      recorded.visit_count});

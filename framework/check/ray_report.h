@@ -2,7 +2,7 @@
 #pragma once
 
 #include "check/setup.h"
-#include "truth/truth_class.h"
+#include "core/truth_class.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -53,7 +53,8 @@ struct RayReport {
 };
 
 /// Reports one ray of the setup. Leaves true_end empty.
-RayReport report_ray(Gpu& gpu, const Setup& setup, const RayInput& ray, std::span<const RayQuestion> questions);
+RayReport report_ray(Gpu& gpu, const Catalogue& catalogue, const Setup& setup, const RayInput& ray,
+                     std::span<const RayQuestion> questions);
 
 /// Returns the visits as a table, one per line.
 std::string visits_table(const TechniqueReport& report);

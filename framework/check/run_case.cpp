@@ -15,22 +15,23 @@ namespace {
 constexpr size_t most_findings = 4;
 
 /// A setup on the device, with its rays as the tracer gets them.
-struct Stage {
-    Setup        setup;
-    RayTracerPtr tracer;
+struct Placed {
+    Setup     setup;
+    TracerPtr tracer;
 };
 
-Stage put_on_device(Gpu& gpu, const Technique& technique, const ParameterValues& values, Setup setup,
-                    Precision precision = Precision::float32)
+Placed put_on_device(Gpu& gpu, const Catalogue& catalogue, const Technique& technique, const ParameterValues& values,
+                     Setup setup, Precision precision = Precision::float32)
 {
     const size_t pixels   = setup.gbuffer.depth.size();
     const size_t capacity = setup.rays.empty() ? pixels : setup.rays.size();
     if (std::ranges::count(technique.ignores, "behind") > 0) setup.settings.behind = Behind::hit; // and is judged so
-    Stage stage{std::move(setup), nullptr};
-    stage.tracer = make_ray_tracer(gpu, upload_gbuffer(gpu, stage.setup.gbuffer), technique, values,
-                                   stage.setup.settings, capacity, precision);
-    if (stage.setup.rays.empty()) stage.setup.rays = set_up_rays(gpu, *stage.tracer);
-    return stage;
+    Placed       placed{std::move(setup), nullptr};
+    const LabPtr lab =
+        make_lab(gpu, catalogue, upload_gbuffer(gpu, placed.setup.gbuffer), technique, values, placed.setup.settings);
+    placed.tracer = make_tracer(gpu, lab, capacity, precision);
+    if (placed.setup.rays.empty()) placed.setup.rays = set_up_rays(gpu, *placed.tracer);
+    return placed;
 }
 
 bool same_answer(const RayOutcome& a, const RayOutcome& b, bool compare_t)
@@ -62,9 +63,10 @@ void add_to_digest(uint64_t& digest, const RayOutcome& outcome)
 /// One run of one technique on one case; collects the row.
 class CaseRun {
 public:
-    CaseRun(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case,
-            CaseRow& row)
-        : gpu_(gpu), technique_(technique), values_(adjusted(hard_case, technique, values)), case_(hard_case), row_(row)
+    CaseRun(Gpu& gpu, const Catalogue& catalogue, const Technique& technique, const ParameterValues& values,
+            const HardCase& hard_case, CaseRow& row)
+        : gpu_(gpu), catalogue_(catalogue), technique_(technique), values_(adjusted(hard_case, technique, values)),
+          case_(hard_case), row_(row)
     {
     }
 
@@ -73,16 +75,16 @@ public:
         const std::vector<Setup> setups = case_.setups();
         for (setup_index_ = 0; setup_index_ < setups.size(); ++setup_index_) {
             label_                  = setups[setup_index_].label;
-            Stage          stage    = put_on_device(gpu_, technique_, values_, setups[setup_index_]);
-            const Outcomes outcomes = trace_rays(gpu_, *stage.tracer, stage.setup.rays);
-            judge_rays(stage.setup, outcomes);
-            if (trace_rays(gpu_, *stage.tracer, stage.setup.rays) != outcomes)
+            Placed         placed   = put_on_device(gpu_, catalogue_, technique_, values_, setups[setup_index_]);
+            const Outcomes outcomes = trace_rays(gpu_, *placed.tracer, placed.setup.rays);
+            judge_rays(placed.setup, outcomes);
+            if (trace_rays(gpu_, *placed.tracer, placed.setup.rays) != outcomes)
                 report(0, "a second run gives other bits");
-            compare_mirrored(stage, outcomes);
+            compare_mirrored(placed, outcomes);
             if (technique_.exact)
                 for (const Relation& relation : case_.relations)
                     compare_related(setups[setup_index_], outcomes, relation);
-            if (options.double_precision && gpu_.info.float64) compare_precision(stage.setup, outcomes);
+            if (options.double_precision && gpu_.info.float64) compare_precision(placed.setup, outcomes);
         }
     }
 
@@ -173,16 +175,16 @@ private:
     }
 
     /// Techniques that sample may see a sample on a pixel's border fall to the other side: they are held to a right answer, not to the same.
-    void compare_mirrored(Stage& stage, const Outcomes& outcomes)
+    void compare_mirrored(Placed& placed, const Outcomes& outcomes)
     {
         for (int axis : {0, 1}) {
-            const Setup other = mirrored(stage.setup, axis);
-            replace_picture(gpu_, *stage.tracer, other.gbuffer);
-            const Outcomes answers = trace_rays(gpu_, *stage.tracer, other.rays);
+            const Setup other = mirrored(placed.setup, axis);
+            replace_picture(gpu_, *placed.tracer, other.gbuffer);
+            const Outcomes answers = trace_rays(gpu_, *placed.tracer, other.rays);
             const Judge    judge(other);
             for (size_t i = 0; i < answers.size(); ++i) {
-                if (!mirrors_exactly(stage.setup.rays[i], stage.setup.gbuffer.view.size_px, axis)) continue;
-                const RayOutcome back = mirrored(answers[i], stage.setup.gbuffer.view.size_px, axis);
+                if (!mirrors_exactly(placed.setup.rays[i], placed.setup.gbuffer.view.size_px, axis)) continue;
+                const RayOutcome back = mirrored(answers[i], placed.setup.gbuffer.view.size_px, axis);
                 if (same_answer(back, outcomes[i], true)) continue;
                 if (technique_.exact)
                     report(i, fmt::format("{}, but its mirror image in {} says {}", text(outcomes[i]),
@@ -196,8 +198,8 @@ private:
 
     void compare_related(const Setup& setup, const Outcomes& outcomes, const Relation& relation)
     {
-        const Stage    stage   = put_on_device(gpu_, technique_, values_, relation.change(setup));
-        const Outcomes answers = trace_rays(gpu_, *stage.tracer, stage.setup.rays);
+        const Placed   placed  = put_on_device(gpu_, catalogue_, technique_, values_, relation.change(setup));
+        const Outcomes answers = trace_rays(gpu_, *placed.tracer, placed.setup.rays);
         if (answers.size() != outcomes.size()) {
             report(0, fmt::format("{}: {} rays became {}", relation.name, outcomes.size(), answers.size()));
             return;
@@ -211,13 +213,14 @@ private:
 
     void compare_precision(const Setup& setup, const Outcomes& outcomes)
     {
-        const Stage    stage   = put_on_device(gpu_, technique_, values_, setup, Precision::float64);
-        const Outcomes answers = trace_rays(gpu_, *stage.tracer, stage.setup.rays);
+        const Placed   placed  = put_on_device(gpu_, catalogue_, technique_, values_, setup, Precision::float64);
+        const Outcomes answers = trace_rays(gpu_, *placed.tracer, placed.setup.rays);
         for (size_t i = 0; i < answers.size(); ++i)
             row_.precision_changes += !same_answer(answers[i], outcomes[i], false);
     }
 
     Gpu&             gpu_;
+    const Catalogue& catalogue_;
     const Technique& technique_;
     ParameterValues  values_;
     const HardCase&  case_;
@@ -228,44 +231,45 @@ private:
 
 } // namespace
 
-CaseRow run_case(Gpu& gpu, const Technique& technique, const ParameterValues& values, const std::string& family,
-                 const HardCase& hard_case, const CheckOptions& options)
+CaseRow run_case(Gpu& gpu, const Catalogue& catalogue, const Technique& technique, const ParameterValues& values,
+                 const std::string& family, const HardCase& hard_case, const CheckOptions& options)
 {
     CaseRow row;
     row.family    = family;
     row.case_name = hard_case.name;
     row.technique = technique.id;
     const Stopwatch stopwatch;
-    CaseRun(gpu, technique, values, hard_case, row).run(options);
+    CaseRun(gpu, catalogue, technique, values, hard_case, row).run(options);
     row.seconds = stopwatch.seconds();
     return row;
 }
 
-uint64_t digest_of(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case)
+uint64_t digest_of(Gpu& gpu, const Catalogue& catalogue, const Technique& technique, const ParameterValues& values,
+                   const HardCase& hard_case)
 {
     const ParameterValues adjusted_values = adjusted(hard_case, technique, values);
     uint64_t              digest          = 0;
     for (Setup& setup : hard_case.setups()) {
-        const Stage stage = put_on_device(gpu, technique, adjusted_values, std::move(setup));
-        for (const RayOutcome& outcome : trace_rays(gpu, *stage.tracer, stage.setup.rays))
+        const Placed placed = put_on_device(gpu, catalogue, technique, adjusted_values, std::move(setup));
+        for (const RayOutcome& outcome : trace_rays(gpu, *placed.tracer, placed.setup.rays))
             add_to_digest(digest, outcome);
     }
     return digest;
 }
 
-std::string describe_ray(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case,
-                         size_t setup_index, size_t ray_index)
+std::string describe_ray(Gpu& gpu, const Catalogue& catalogue, const Technique& technique,
+                         const ParameterValues& values, const HardCase& hard_case, size_t setup_index, size_t ray_index)
 {
     std::vector<Setup> setups = hard_case.setups();
     if (setup_index >= setups.size())
         throw_spec_error("case '{}' has {} setups, numbered from 0", hard_case.name, setups.size());
-    const Stage stage = put_on_device(gpu, technique, values, setups[setup_index]);
-    if (ray_index >= stage.setup.rays.size())
+    const Placed placed = put_on_device(gpu, catalogue, technique, values, setups[setup_index]);
+    if (ray_index >= placed.setup.rays.size())
         throw_spec_error("setup {} of '{}' has {} rays, numbered from 0", setup_index, hard_case.name,
-                         stage.setup.rays.size());
-    const RayInput   ray     = stage.setup.rays[ray_index];
-    const RayOutcome outcome = trace_rays(gpu, *stage.tracer, std::span(&ray, 1))[0];
-    const Judge      judge(stage.setup);
+                         placed.setup.rays.size());
+    const RayInput   ray     = placed.setup.rays[ray_index];
+    const RayOutcome outcome = trace_rays(gpu, *placed.tracer, std::span(&ray, 1))[0];
+    const Judge      judge(placed.setup);
     std::string      out = fmt::format("{} ({})\nray {}:{} of pixel ({}, {}): from ({:.9g}, {:.9g}) depth {:.9g} by "
                                             "({:.9g}, {:.9g}) depth {:.9g}, {:.9g} m\n",
                                        hard_case.name, hard_case.breaks, setup_index, ray_index, ray.pixel.x, ray.pixel.y,
@@ -279,7 +283,7 @@ std::string describe_ray(Gpu& gpu, const Technique& technique, const ParameterVa
     out += fmt::format("{}: {} after {} iterations\nexactly: {}\n", technique.id, text(outcome), outcome.steps,
                        text(judge.exact_answer(ray)));
     const RayQuestion question{&technique, values};
-    const RayReport   report = report_ray(gpu, stage.setup, ray, std::span(&question, 1));
+    const RayReport   report = report_ray(gpu, catalogue, placed.setup, ray, std::span(&question, 1));
     out += visits_table(report.techniques.front());
     const std::string broken  = judge.broken_invariant(ray, outcome);
     const Judgement   verdict = judge.judge(ray, outcome, claim_of(technique));

@@ -26,14 +26,15 @@ struct CheckOptions {
     bool double_precision = true; // fill precision_changes
 };
 
-CaseRow run_case(Gpu& gpu, const Technique& technique, const ParameterValues& values, const std::string& family,
-                 const HardCase& hard_case, const CheckOptions& options = {});
+CaseRow run_case(Gpu& gpu, const Catalogue& catalogue, const Technique& technique, const ParameterValues& values,
+                 const std::string& family, const HardCase& hard_case, const CheckOptions& options = {});
 
 /// Returns only the digest that run_case() would give.
-uint64_t digest_of(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case);
+uint64_t digest_of(Gpu& gpu, const Catalogue& catalogue, const Technique& technique, const ParameterValues& values,
+                   const HardCase& hard_case);
 
 /// Describes a ray: its numbers, its pixels, what the technique said and what is right.
-std::string describe_ray(Gpu& gpu, const Technique& technique, const ParameterValues& values, const HardCase& hard_case,
-                         size_t setup, size_t ray);
+std::string describe_ray(Gpu& gpu, const Catalogue& catalogue, const Technique& technique,
+                         const ParameterValues& values, const HardCase& hard_case, size_t setup, size_t ray);
 
 } // namespace ssrlab

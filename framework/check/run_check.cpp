@@ -38,8 +38,10 @@ std::vector<CaseRow> run_check(Gpu& gpu, Gpu* robust, const CheckRequest& reques
                             .findings  = {"left out: " + missing}});
                     continue;
                 }
-                CaseRow row = run_case(gpu, technique, values, family.name, hard_case, request.options);
-                if (robust != nullptr && digest_of(*robust, technique, values, hard_case) != row.digest) {
+                CaseRow row =
+                    run_case(gpu, request.catalogue, technique, values, family.name, hard_case, request.options);
+                if (robust != nullptr &&
+                    digest_of(*robust, request.catalogue, technique, values, hard_case) != row.digest) {
                     ++row.breaks;
                     row.findings.emplace_back(
                         "robust buffer access changes what rays find: something is read outside its bounds");

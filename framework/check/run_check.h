@@ -6,8 +6,9 @@
 namespace ssrlab {
 
 struct CheckRequest {
-    std::vector<Technique>       techniques;
-    std::string                  only_case; // empty: all
+    Catalogue                    catalogue;  // of what the techniques may use
+    std::vector<Technique>       techniques; // that are checked
+    std::string                  only_case;  // empty: all
     CheckOptions                 options;
     std::vector<ParameterValues> values = {}; // of each technique; empty: defaults
 };

@@ -3,7 +3,7 @@
 
 #include "core/gbuffer_image.h"
 #include "core/trace_result.h"
-#include "trace/ray_list.h"
+#include "trace/lab.h"
 
 #include <functional>
 #include <optional>

@@ -21,13 +21,14 @@ struct Answer {
 using Answers = std::map<std::pair<int, int>, Answer>; // by pixel (y, x)
 
 /// The answers of all mirror rays of a picture.
-Answers answers_of(Gpu& gpu, const Technique& technique, const Setup& setup)
+Answers answers_of(Gpu& gpu, const Catalogue& catalogue, const Technique& technique, const Setup& setup)
 {
-    const auto tracer = make_ray_tracer(gpu, upload_gbuffer(gpu, setup.gbuffer), technique, default_values(technique),
-                                        setup.settings, setup.gbuffer.depth.size());
-    const auto rays   = set_up_rays(gpu, *tracer);
-    const auto found  = trace_rays(gpu, *tracer, rays);
-    Answers    answers;
+    const LabPtr lab    = make_lab(gpu, catalogue, upload_gbuffer(gpu, setup.gbuffer), technique,
+                                   default_values(technique), setup.settings);
+    const auto   tracer = make_tracer(gpu, lab, setup.gbuffer.depth.size());
+    const auto   rays   = set_up_rays(gpu, *tracer);
+    const auto   found  = trace_rays(gpu, *tracer, rays);
+    Answers      answers;
     for (size_t i = 0; i < rays.size(); ++i)
         answers[{rays[i].pixel.y, rays[i].pixel.x}] = {
             found[i].status == TraceStatus::hit, found[i].hit_pixel,
@@ -50,11 +51,11 @@ double per_million(size_t n, size_t of) { return of == 0 ? 0 : 1e6 * static_cast
 
 } // namespace
 
-JitterRow measure_jitter(Gpu& gpu, const Technique& technique)
+JitterRow measure_jitter(Gpu& gpu, const Catalogue& catalogue, const Technique& technique)
 {
     const std::vector<Setup> phases = find_case("sub_pixel_jitter").setups();
     std::vector<Answers>     answers;
-    for (const Setup& phase : phases) answers.push_back(answers_of(gpu, technique, phase));
+    for (const Setup& phase : phases) answers.push_back(answers_of(gpu, catalogue, technique, phase));
 
     JitterRow           row{.technique = technique.id};
     size_t              flips = 0;
@@ -124,7 +125,7 @@ bool is_deep(const GBufferImage& gbuffer)
 
 } // namespace
 
-std::vector<FormatRow> measure_formats(Gpu& gpu, const Technique& technique)
+std::vector<FormatRow> measure_formats(Gpu& gpu, const Catalogue& catalogue, const Technique& technique)
 {
     std::map<bool, std::vector<Tally>> tallies;
     for (const CaseFamily& family : hard_cases())
@@ -133,10 +134,10 @@ std::vector<FormatRow> measure_formats(Gpu& gpu, const Technique& technique)
                 if (!setup.rays.empty() || setup.gbuffer.view.projection != Projection::perspective) continue;
                 std::vector<Tally>& of_group = tallies[is_deep(setup.gbuffer)];
                 of_group.resize(depth_formats().size());
-                const Answers exact = answers_of(gpu, technique, setup);
+                const Answers exact = answers_of(gpu, catalogue, technique, setup);
                 for (size_t f = 0; f < of_group.size(); ++f) {
                     const Setup imported = stored_and_imported(setup, depth_formats()[f]);
-                    compare(exact, answers_of(gpu, technique, imported), of_group[f]);
+                    compare(exact, answers_of(gpu, catalogue, technique, imported), of_group[f]);
                     add_errors(setup.gbuffer, imported.gbuffer, of_group[f].errors);
                 }
             }

@@ -1,8 +1,7 @@
 // Stability: how answers change when the frame is sampled elsewhere or its depth is stored differently.
 #pragma once
 
-#include "frame/frame.h"
-#include "trace/technique.h"
+#include "trace/lab.h"
 
 #include <string>
 #include <vector>
@@ -18,7 +17,7 @@ struct JitterRow {
         0; // standard deviation of a pixel's hit position over the phases in which it hits; median over pixels
     double p99_spread_px = 0;
 };
-JitterRow measure_jitter(Gpu& gpu, const Technique& technique);
+JitterRow measure_jitter(Gpu& gpu, const Catalogue& catalogue, const Technique& technique);
 
 /// Mirror rays of the perspective cases on depth that was stored in a format and imported.
 struct FormatRow {
@@ -32,7 +31,7 @@ struct FormatRow {
     double      median_moved_px     = 0; // of the hit, where the pixel changed
 };
 inline constexpr double deep_near_planes = 1e4;
-std::vector<FormatRow>  measure_formats(Gpu& gpu, const Technique& technique);
+std::vector<FormatRow>  measure_formats(Gpu& gpu, const Catalogue& catalogue, const Technique& technique);
 
 /// Returns two tables; the second has a column for each technique.
 std::string stability_markdown(const std::vector<JitterRow>& jitter, const std::vector<FormatRow>& formats);

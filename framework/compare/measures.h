@@ -6,7 +6,7 @@
 #include "core/gbuffer_image.h"
 #include "core/image.h"
 #include "core/trace_result.h"
-#include "truth/truth_class.h"
+#include "core/truth_class.h"
 
 #include <map>
 #include <optional>

@@ -4,7 +4,7 @@
 #include "core/gbuffer_image.h"
 #include "core/image.h"
 #include "core/trace_result.h"
-#include "truth/truth_class.h"
+#include "core/truth_class.h"
 
 namespace ssrlab {
 

@@ -1,36 +1,43 @@
-// The history's images. Folder-internal.
+// What one frame of a sequence leaves for the next: depth, planes, normals and reflection, and the view that they were seen from.
 #pragma once
 
-#include "frame/history.h"
-#include "frame/motion_vectors.h"
-#include "gpu/compute.h"
+#include "gpu/gpu.h"
+
+#include <glm/glm.hpp>
+
+#include <memory>
+#include <optional>
+#include <vector>
 
 namespace ssrlab {
 
-struct GBuffer;
+struct FrameHistory;
+struct ReadyFrame;
+using FrameHistoryPtr = std::shared_ptr<FrameHistory>;
 
-struct FrameHistory {
-    glm::ivec2          size_px{0, 0};
-    std::optional<View> view;      // as drawn, of the frame that it holds; empty: it holds none
-    int                 frame = 0; // its number
+/// Holds nothing yet. Made once for a sequence of frames with one technique and one set of values.
+FrameHistoryPtr make_history(Gpu& gpu, glm::ivec2 size_px);
+/// After run_frame(): this frame is what the next one finds in the history that it was made with. Until then the frame may be run
+/// again and gives the same bits. `number`: of the frame in its sequence.
+void keep_history(Gpu& gpu, const ReadyFrame& frame, int number);
+/// A cut: the next frame finds nothing.
+void drop_history(FrameHistory& history);
 
-    // Of the frame that it holds.
-    GpuImage depth;      // R32F
-    GpuImage gradient;   // R32UI, core/plane_gradient.h
-    GpuImage normal;     // RGBA32F: view space
-    GpuImage reflection; // RGBA32F: colour times weight, weight; < 0: reflects nothing
-    GpuImage facts;      // RGBA32F: frames accumulated, ray length, object that was hit (-1: unknown, -2: missed)
+/// By pixel: from the pixel to where its reflection was in the frame before, in pixels, without the jitter of either frame. NaN where
+/// nothing was hit or seen. Empty if the plan has no reprojection.
+std::vector<glm::vec2> read_reprojection(Gpu& gpu, const ReadyFrame& frame);
 
-    // Of the frame that runs.
-    GpuImage reprojected;     // RGBA32F: px to where the reflection was or NaN, ray length, object that was hit
-    GpuImage kept_reflection; // what becomes `reflection`
-    GpuImage kept_facts;
-    Buffer   counts; // HistoryCounts
+/// What became of each reflecting pixel's history; each is one of the first six.
+struct HistoryCounts {
+    uint32_t accumulated  = 0; // took something of the history
+    uint32_t unseen       = 0; // no vector: no hit, or the strategy says that it was not seen
+    uint32_t off_image    = 0; // it was outside the image
+    uint32_t other_depth  = 0; // the reflector was hidden there, or reflected nothing
+    uint32_t other_normal = 0;
+    uint32_t other_hit    = 0; // the reflector was there and reflected another object
+    uint32_t clamped      = 0; // of the accumulated: the neighbourhood changed what the history held
 };
-
-/// Why the history is not of the frame before this one; empty: it is.
-std::string history_mismatch(const FrameHistory& history, const GBuffer& gbuffer);
-/// For passes/previous_frame.glsl and history_lookup.glsl.
-Bindings history_bindings(const FrameHistory& history, const MotionBuffers& motion, const GBuffer& gbuffer);
+/// Of the last run_frame(); nothing if the plan has no history.
+std::optional<HistoryCounts> read_history_counts(Gpu& gpu, const ReadyFrame& frame);
 
 } // namespace ssrlab

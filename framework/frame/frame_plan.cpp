@@ -28,8 +28,8 @@ std::string percent(uint32_t part, uint32_t whole)
     return fmt::format("{:.3g} %", whole == 0 ? 0.0 : 100.0 * part / whole);
 }
 
-std::vector<PlannedPass> plan_frame(const FrameFacts& facts, const FrameStatistics& statistics,
-                                    const ParameterValues& values)
+std::vector<PlannedPass> plan_passes(const FrameFacts& facts, const FrameStatistics& statistics,
+                                     const ParameterValues& values)
 {
     const bool               skips        = values.at("skip_unneeded_passes") != 0;
     const bool               shading_only = choice<PassSet>(values) == PassSet::shading;
@@ -40,7 +40,7 @@ std::vector<PlannedPass> plan_frame(const FrameFacts& facts, const FrameStatisti
                                           : pass.decide(facts, statistics, values);
         const bool         runs =
             decision.verdict == PassDecision::needed || (decision.verdict == PassDecision::not_needed && !skips);
-        if (pass.prepare_structure == nullptr || facts.structures.empty())
+        if (!pass.per_structure || facts.structures.empty())
             plan.push_back({&pass, pass.id, runs, decision.reason});
         else
             for (const std::string& structure : facts.structures)
@@ -49,10 +49,33 @@ std::vector<PlannedPass> plan_frame(const FrameFacts& facts, const FrameStatisti
     return plan;
 }
 
-std::vector<std::string> describe_facts(const FrameFacts& facts, const FrameStatistics& statistics)
+FramePlan unculled(FramePlan plan)
 {
-    const GBufferCounts& gbuffer = statistics.gbuffer;
-    const TraceCounts&   trace   = statistics.trace;
+    plan.values.at("skip_unneeded_passes") = 0;
+    plan.passes                            = plan_passes(plan.facts, plan.statistics, plan.values);
+    plan.counting_s                        = 0;
+    return plan;
+}
+
+bool skips_work(const FramePlan& plan)
+{
+    if (plan.values.at("skip_unneeded_passes") == 0 || choice<PassSet>(plan.values) == PassSet::shading) return false;
+    const GBufferCounts& counts = plan.statistics.gbuffer;
+    return counts.reflecting_pixels < counts.surface_pixels ||
+           !std::ranges::equal(plan.passes, unculled(plan).passes, {}, &PlannedPass::runs, &PlannedPass::runs);
+}
+
+bool runs(const FramePlan& plan, std::string_view pass)
+{
+    return std::ranges::any_of(plan.passes, [&](const PlannedPass& row) { return row.id == pass && row.runs; });
+}
+
+std::vector<std::string> describe_facts(const FramePlan& plan)
+{
+    const FrameFacts&      facts      = plan.facts;
+    const FrameStatistics& statistics = plan.statistics;
+    const GBufferCounts&   gbuffer    = statistics.gbuffer;
+    const TraceCounts&     trace      = statistics.trace;
     return {fmt::format("{} of {} pixels reflect ({}), in {} of {} tiles; {}{}", gbuffer.reflecting_pixels,
                         statistics.pixels, percent(gbuffer.reflecting_pixels, statistics.pixels),
                         gbuffer.reflecting_tiles, statistics.tiles, roughness_range(gbuffer), facts.reflectors),

@@ -2,9 +2,8 @@
 #pragma once
 
 #include "frame/passes/pass.h"
-#include "shared.h"
-
-#include <array>
+#include "trace/counts.h"
+#include "trace/reprojection_strategy.h"
 
 namespace ssrlab {
 
@@ -20,24 +19,12 @@ struct FrameFacts {
     bool                     scene           = false; // the G-buffer was drawn from one
     bool                     environment_map = false; // without a map, one colour arrives from everywhere
     bool                     alpha_mask      = false;
-    std::string              motion          = {}; // what moved since the frame before, as facts_of_plan() says it
+    std::string              motion          = {}; // what moved since the frame before, as describe_facts() says it
     HistoryFacts             history         = {};
     bool                     solids          = false; // the surface model asks where solids end
-    std::string              reflectors      = {};    // what reflects, as facts_of_plan() says it
+    std::string              reflectors      = {};    // what reflects, as describe_facts() says it
     int                      layers          = 1;     // that a pixel holds
     std::vector<std::string> structures;              // that the technique reads, in the order in which they are built
-};
-
-/// shaders/rays/classification.comp counts these on the G-buffer.
-struct GBufferCounts {
-    uint32_t                             surface_pixels = 0, reflecting_pixels = 0, reflecting_tiles = 0;
-    std::array<uint32_t, ROUGHNESS_BINS> roughness_pixels{}; // of reflecting pixels; bin 0: roughness 0
-    bool                                 operator==(const GBufferCounts&) const = default;
-};
-
-/// shaders/trace/trace_statistics.comp counts these after tracing.
-struct TraceCounts {
-    uint32_t rays = 0, hits = 0, mirror_hits = 0; // mirror hits: the hit surface reflects, too
 };
 
 struct FrameStatistics {
@@ -53,14 +40,29 @@ struct PlannedPass {
     std::string reason;
 };
 
+/// What a frame does and why. The frame is still, so its statistics are its own.
+struct FramePlan {
+    FrameFacts               facts;
+    FrameStatistics          statistics;
+    ParameterValues          values; // of pass_parameters() and the reprojection strategy, as this frame can have them
+    Reprojection             reprojection;
+    std::vector<PlannedPass> passes;
+    double                   counting_s = 0; // that it took to trace once and count what the rays hit
+};
+
 /// With skip_unneeded_passes = false every pass runs that is not off.
-std::vector<PlannedPass> plan_frame(const FrameFacts& facts, const FrameStatistics& statistics,
-                                    const ParameterValues& values);
+std::vector<PlannedPass> plan_passes(const FrameFacts& facts, const FrameStatistics& statistics,
+                                     const ParameterValues& values);
+/// The same frame with every pass that is not off, on every surface.
+FramePlan unculled(FramePlan plan);
+/// Whether the unculled frame would do more. False with pass_set = shading.
+bool skips_work(const FramePlan& plan);
+bool runs(const FramePlan& plan, std::string_view pass);
 
 /// "12.5 %"
 std::string percent(uint32_t part, uint32_t whole);
 
 /// What the plan rests on, a line each.
-std::vector<std::string> describe_facts(const FrameFacts& facts, const FrameStatistics& statistics);
+std::vector<std::string> describe_facts(const FramePlan& plan);
 
 } // namespace ssrlab

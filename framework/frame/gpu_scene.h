@@ -1,7 +1,7 @@
 // A scene on the device: geometry, materials, textures, lights and shadow maps.
 #pragma once
 
-#include "frame/frame.h"
+#include "frame/scene_pictures.h"
 #include "gpu/compute.h"
 #include "trace/depth_buffer.h"
 

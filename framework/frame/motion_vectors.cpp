@@ -1,7 +1,7 @@
 #include "frame/motion_vectors.h"
 
-#include "frame/gbuffer.h"
 #include "shared.h"
+#include "trace/gbuffer.h"
 
 namespace ssrlab {
 namespace {
@@ -37,29 +37,30 @@ MotionBuffers make_motion_buffers(Gpu& gpu, const View& view, const FrameMotion&
     return buffers;
 }
 
-MotionVectors make_motion_vectors(Gpu& gpu, const GBuffer& gbuffer, const FrameMotion& motion)
+MotionVectors make_motion_vectors(Gpu& gpu, GBuffer& gbuffer, const FrameMotion& motion)
 {
     MotionVectors vectors;
-    vectors.motion     = make_motion_buffers(gpu, gbuffer.view, motion);
-    vectors.vectors_px = make_image(gpu, {.format  = vk::Format::eR32G32Sfloat,
-                                          .size_px = gbuffer.view.size_px,
-                                          .usage   = vk::ImageUsageFlagBits::eStorage});
+    vectors.motion    = make_motion_buffers(gpu, gbuffer.view, motion);
+    gbuffer.motion_px = make_image(gpu, {.format  = vk::Format::eR32G32Sfloat,
+                                         .size_px = gbuffer.view.size_px,
+                                         .usage   = vk::ImageUsageFlagBits::eStorage});
     Constants constants;
     constants.add(CONSTANT_ORTHOGRAPHIC, static_cast<int32_t>(gbuffer.view.projection == Projection::orthographic));
     vectors.pass = make_compute_pass(gpu, compile_shader(gpu, {.file = "gbuffer/motion_vectors.comp"}),
                                      {{"View", gbuffer.view_uniforms},
                                       {"depth_words", {gbuffer.depth.cells, gbuffer.depth.words}},
                                       {"object_image", gbuffer.object},
-                                      {"motion_image", vectors.vectors_px},
+                                      {"motion_image", *gbuffer.motion_px},
                                       {"PreviousView", vectors.motion.previous_view},
                                       {"Objects", vectors.motion.objects}},
                                      constants);
     return vectors;
 }
 
-void record_motion_vectors(const vk::raii::CommandBuffer& commands, const MotionVectors& vectors)
+void record_motion_vectors(const vk::raii::CommandBuffer& commands, const MotionVectors& vectors,
+                           const GBuffer& gbuffer)
 {
-    dispatch(commands, vectors.pass, groups_of_8(vectors.vectors_px.size_px));
+    dispatch(commands, vectors.pass, groups_of_8(gbuffer.view.size_px));
 }
 
 } // namespace ssrlab

@@ -15,7 +15,6 @@ struct MotionBuffers {
 };
 
 struct MotionVectors {
-    GpuImage      vectors_px; // RG32F, GBufferImage::motion_px
     MotionBuffers motion;
     ComputePass   pass;
 };
@@ -23,7 +22,9 @@ struct MotionVectors {
 /// previous_jitter_px: of the frame before. repeats: nothing has changed since.
 MotionBuffers make_motion_buffers(Gpu& gpu, const View& view, const FrameMotion& motion,
                                   glm::dvec2 previous_jitter_px = {}, bool repeats = false);
-MotionVectors make_motion_vectors(Gpu& gpu, const GBuffer& gbuffer, const FrameMotion& motion);
-void          record_motion_vectors(const vk::raii::CommandBuffer& commands, const MotionVectors& vectors);
+/// Makes GBuffer::motion_px, without content.
+MotionVectors make_motion_vectors(Gpu& gpu, GBuffer& gbuffer, const FrameMotion& motion);
+void          record_motion_vectors(const vk::raii::CommandBuffer& commands, const MotionVectors& vectors,
+                                    const GBuffer& gbuffer);
 
 } // namespace ssrlab

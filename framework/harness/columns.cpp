@@ -92,10 +92,11 @@ void append(std::vector<Column>& columns, const std::vector<Column>& more)
     columns.insert(columns.end(), more.begin(), more.end());
 }
 
-std::vector<Column> settings()
+std::vector<Column> settings(const Experiment& experiment)
 {
     std::vector<Column> columns;
-    for (const Setting& setting : all_settings()) columns.push_back({setting.name, setting.doc, ColumnType::setting});
+    for (const Setting& setting : experiment.known_settings)
+        columns.push_back({setting.name, setting.doc, ColumnType::setting});
     return columns;
 }
 
@@ -166,7 +167,7 @@ void refuse_same_names(const Experiment& experiment, std::span<const Technique> 
 std::vector<Column> setting_columns(const Experiment& experiment, std::span<const Technique> techniques)
 {
     std::vector<Column> columns = identity;
-    append(columns, settings());
+    append(columns, settings(experiment));
     append(columns, parameters(experiment, techniques));
     return columns;
 }
@@ -174,7 +175,7 @@ std::vector<Column> setting_columns(const Experiment& experiment, std::span<cons
 std::vector<Column> result_columns(const Experiment& experiment, std::span<const Technique> techniques)
 {
     std::vector<Column> front = identity;
-    append(front, settings());
+    append(front, settings(experiment));
     std::vector<Column> back = times;
     append(back, counts);
     append(back, structure_columns(experiment, techniques));

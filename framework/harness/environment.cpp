@@ -82,7 +82,7 @@ std::map<std::string, std::string> describe_identity(const Experiment&          
         const auto values = settings.find("surface");
         if (values == settings.end()) return;
         for (const double value : values->second) {
-            const Surface& surface            = all_surfaces()[static_cast<size_t>(value)];
+            const Surface& surface            = experiment.known_surfaces[static_cast<size_t>(value)];
             identity["surface " + surface.id] = folder_hash(surface.shaders);
         }
     };
@@ -124,8 +124,9 @@ Environment describe_environment(const Experiment& experiment, std::span<const T
     }
     for (const Measure& measure : measures())
         notes["units"] += fmt::format("{}{}={}", notes["units"].empty() ? "" : "; ", measure.name, measure.unit);
-    for (const Parameter& parameter : all_pass_settings())
-        notes["pass_parameters"] += (notes["pass_parameters"].empty() ? "" : " ") + parameter.name;
+    for (const Setting& parameter : experiment.known_settings)
+        if (parameter.table == "passes")
+            notes["pass_parameters"] += (notes["pass_parameters"].empty() ? "" : " ") + parameter.name;
     return environment;
 }
 

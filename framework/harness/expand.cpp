@@ -41,11 +41,19 @@ ValueLists settings_of(const Experiment& experiment, const TechniqueSweep& sweep
     return lists;
 }
 
-FrameSettings to_settings(const ParameterValues& values)
+/// The part of a run that its settings decide.
+Run run_with(std::span<const Setting> known, const ParameterValues& values)
 {
-    FrameSettings settings;
-    for (const Setting& setting : all_settings()) setting.set(settings, values.at(setting.name));
-    return settings;
+    Run run;
+    for (const Setting& setting : known) {
+        const double value = values.at(setting.name);
+        setting.set(run.settings, value);
+        // An effect's parameter counts when it is not at its default: a new effect leaves the ids of earlier runs alone.
+        if (setting.table != "trace" && value == setting.default_value) continue;
+        std::string& text = setting.table == "trace" ? run.trace_text : run.passes_text;
+        text += fmt::format("{}={}\n", setting.name, format_parameter(setting, value));
+    }
+    return run;
 }
 
 void refuse_cut_loops(const TechniqueSweep& sweep, const Technique& technique, const ParameterValues& values)
@@ -66,9 +74,12 @@ std::vector<Run> expand_picture(const Experiment& experiment, std::span<const Te
         const auto       values    = cross_product(sweep.values);
         for (const ParameterValues& one : values) refuse_cut_loops(sweep, technique, one);
         for (const ParameterValues& settings : cross_product(settings_of(experiment, sweep))) {
+            Run run       = run_with(experiment.known_settings, settings);
+            run.technique = sweep.id;
             for (const ParameterValues& one : values) {
-                by_settings[settings].push_back(
-                    {"", "", "", {0, 0}, to_settings(settings), sweep.id, one, {}, number++});
+                run.values = one;
+                run.number = number++;
+                by_settings[settings].push_back(run);
             }
         }
     }
@@ -97,12 +108,7 @@ std::string run_id(const Run& run)
     // A still frame has the id that it had before there were sequences.
     if (run.at != SequenceFrame{})
         identity += fmt::format("frame={}\njitter_phases={}\n", run.at.frame, run.at.jitter_phases);
-    // An effect's parameter counts when it is not at its default: a new effect leaves the ids of earlier runs alone.
-    for (const Setting& setting : all_settings()) {
-        const double value = setting.get(run.settings);
-        if (setting.table == "trace" || value != setting.default_value)
-            identity += fmt::format("{}={}\n", setting.name, format_parameter(setting, value));
-    }
+    identity += run.trace_text + run.passes_text;
     for (const auto& [name, value] : run.values) identity += fmt::format("{}={}\n", name, value);
     // The letter keeps spreadsheets from reading 12e4… as a number.
     return "r" + content_hash(identity);

@@ -152,10 +152,10 @@ const toml::node* find_setting(const TomlFile& file, const toml::table& table, c
     return toml_table(file, *inner, name.substr(0, dot)).get(name.substr(dot + 1));
 }
 
-void refuse_unknown_settings(const TomlFile& file)
+void refuse_unknown_settings(const TomlFile& file, std::span<const Setting> all)
 {
     std::map<std::string, std::vector<std::string>> known; // by table, and by table within a table
-    for (const Setting& setting : all_settings()) {
+    for (const Setting& setting : all) {
         known[setting.table].push_back(setting.name);
         const size_t dot = setting.name.find('.');
         if (dot == std::string::npos) continue;
@@ -167,11 +167,11 @@ void refuse_unknown_settings(const TomlFile& file)
             toml_known_keys(file, *node.as_table(), "setting of [" + table_name + "]", names);
 }
 
-ValueLists read_settings(const TomlFile& file)
+ValueLists read_settings(const TomlFile& file, std::span<const Setting> all)
 {
-    refuse_unknown_settings(file);
+    refuse_unknown_settings(file, all);
     ValueLists settings;
-    for (const Setting& setting : all_settings()) {
+    for (const Setting& setting : all) {
         std::vector<double>& values = settings[setting.name];
         const toml::table*   table  = optional_table(file, setting.table);
         const toml::node*    node   = table == nullptr ? nullptr : find_setting(file, *table, setting.name);
@@ -193,16 +193,16 @@ bool is_structure(const Technique& technique, const std::string& name)
 }
 
 void read_values(const TomlFile& file, const toml::table& table, const std::string& prefix, const Technique& technique,
-                 TechniqueSweep& sweep)
+                 std::span<const Setting> known, TechniqueSweep& sweep)
 {
     for (const auto& [key, node] : table) {
         const std::string name = prefix + std::string(key.str());
         if (node.is_table() && is_structure(technique, name)) {
-            read_values(file, *node.as_table(), name + ".", technique, sweep);
+            read_values(file, *node.as_table(), name + ".", technique, known, sweep);
             continue;
         }
-        const auto setting = std::ranges::find(all_settings(), name, &Setting::name);
-        if (setting != all_settings().end()) {
+        const auto setting = std::ranges::find(known, name, &Setting::name);
+        if (setting != known.end()) {
             for (const toml::node* value : values_of(file, node, name)) {
                 sweep.settings[name].push_back(parameter_value(file, *value, *setting));
             }
@@ -216,15 +216,17 @@ void read_values(const TomlFile& file, const toml::table& table, const std::stri
     }
 }
 
-TechniqueSweep read_sweep(const TomlFile& file, const toml::table& table, const Technique& technique)
+TechniqueSweep read_sweep(const TomlFile& file, const toml::table& table, const Technique& technique,
+                          std::span<const Setting> known)
 {
     TechniqueSweep sweep{technique.id, toml_place(file, table), {}, {}};
-    read_values(file, table, "", technique, sweep);
+    read_values(file, table, "", technique, known, sweep);
     for (const auto& [name, value] : default_values(technique)) sweep.values.try_emplace(name, std::vector{value});
     return sweep;
 }
 
-std::vector<TechniqueSweep> read_sweeps(const TomlFile& file, std::span<const Technique> techniques)
+std::vector<TechniqueSweep> read_sweeps(const TomlFile& file, std::span<const Technique> techniques,
+                                        std::span<const Setting> known)
 {
     const toml::table* table = optional_table(file, "techniques");
     if (table == nullptr || table->empty()) {
@@ -240,7 +242,7 @@ std::vector<TechniqueSweep> read_sweeps(const TomlFile& file, std::span<const Te
         }
         for (const toml::node* value : values_of(file, node, "techniques." + technique->id)) {
             const toml::table& one = toml_table(file, *value, "techniques." + technique->id);
-            found.emplace_back(one.source().begin, read_sweep(file, one, *technique));
+            found.emplace_back(one.source().begin, read_sweep(file, one, *technique, known));
         }
     }
     std::ranges::sort(found, [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -320,7 +322,7 @@ std::vector<Target> read_targets(const TomlFile& file, const MeasureSettings& me
 
 } // namespace
 
-Experiment load_experiment(const std::filesystem::path& path, std::span<const Technique> techniques)
+Experiment load_experiment(const std::filesystem::path& path, const Catalogue& catalogue)
 {
     static const std::vector<std::string> known = {"name",    "title",         "scenes", "views",  "sizes",
                                                    "frames",  "jitter_phases", "trace",  "passes", "techniques",
@@ -338,12 +340,14 @@ Experiment load_experiment(const std::filesystem::path& path, std::span<const Te
         throw_spec_error("{}:1: names no scene: add scenes = [\"builtin:stairs\"]", file.path);
     experiment.scenes_place = toml_place(file, *file.root.get("scenes"));
     read_views(file, experiment);
-    experiment.sizes_px   = read_sizes(file);
-    experiment.frames     = read_frames(file);
-    experiment.settings   = read_settings(file);
-    experiment.techniques = read_sweeps(file, techniques);
-    experiment.measure    = read_measure(file);
-    experiment.targets    = read_targets(file, experiment.measure);
+    experiment.sizes_px       = read_sizes(file);
+    experiment.frames         = read_frames(file);
+    experiment.known_settings = all_settings(catalogue);
+    experiment.known_surfaces = catalogue.surfaces;
+    experiment.settings       = read_settings(file, experiment.known_settings);
+    experiment.techniques     = read_sweeps(file, catalogue.techniques, experiment.known_settings);
+    experiment.measure        = read_measure(file);
+    experiment.targets        = read_targets(file, experiment.measure);
     return experiment;
 }
 

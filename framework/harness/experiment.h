@@ -1,9 +1,7 @@
 // An experiment is a TOML file in which a list is a sweep; expanded, it is a list of runs.
 #pragma once
 
-#include "frame/frame.h"
-#include "scene/sequence.h"
-#include "trace/technique.h"
+#include "frame/stage.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -48,6 +46,15 @@ struct TechniqueSweep {
     ValueLists  settings; // those that the table names itself, in place of the experiment's
 };
 
+/// A setting of [trace] or [passes]: key in the specification and column of the record, from this one table.
+struct Setting : Parameter {
+    std::string                                 table;
+    std::function<double(const FrameSettings&)> get;
+    std::function<void(FrameSettings&, double)> set;
+};
+/// Surface models and reprojection strategies are settings, too: those of the catalogue.
+std::vector<Setting> all_settings(const Catalogue& catalogue);
+
 struct Experiment {
     std::filesystem::path                           file;
     std::string                                     text; // the whole file
@@ -62,7 +69,9 @@ struct Experiment {
     ValueLists                  settings;
     std::vector<TechniqueSweep> techniques;
     MeasureSettings             measure;
-    std::vector<Target>         targets = {};
+    std::vector<Target>         targets        = {};
+    std::vector<Setting>        known_settings = {};
+    std::vector<Surface>        known_surfaces = {};
 };
 
 /// One technique with one set of values on one picture: everything that decides its outcome, and its number.
@@ -73,23 +82,16 @@ struct Run {
     FrameSettings   settings;
     std::string     technique;
     ParameterValues values;
-    SequenceFrame   at     = {};
-    int             number = 0; // among the picture's runs as the specification lists them
+    SequenceFrame   at = {};
+    std::string     trace_text, passes_text; // of the settings, as the id has them
+    int             number = 0;              // among the picture's runs as the specification lists them
 };
-
-/// A setting of [trace] or [passes]: key in the specification and column of the record, from this one table.
-struct Setting : Parameter {
-    std::string                                 table;
-    std::function<double(const FrameSettings&)> get;
-    std::function<void(FrameSettings&, double)> set;
-};
-std::span<const Setting> all_settings();
 
 inline constexpr int    max_size_px      = 16384;
 inline constexpr double max_runs_unasked = 100000;
 
 /// Throws SpecError with file and line for whatever is unknown, missing, of the wrong type or out of range.
-Experiment load_experiment(const std::filesystem::path& file, std::span<const Technique> techniques);
+Experiment load_experiment(const std::filesystem::path& file, const Catalogue& catalogue);
 
 const std::vector<std::string>& views_of(const Experiment& experiment, const std::string& scene);
 

@@ -73,25 +73,33 @@ std::string picture_name(const Run& run)
     return "pictures/" + name;
 }
 
-/// Everything on the device but the timed repeats: pipelines, warm-up, picture, counts.
-Observed observe(SweepContext& sweep, const FrameBuffersPtr& buffers, MeasuredRun& measured)
+/// The plan of the run's frame, and the frame.
+void plan_run(SweepContext& sweep, const Picture& picture, MeasuredRun& measured)
 {
-    const Run&             run     = *measured.run;
+    const Run&            run       = *measured.run;
+    const Technique&      technique = find_technique(sweep.techniques, run.technique);
+    const FrameHistoryPtr history   = history_of(sweep, run);
+    Stage&                stage     = sweep.scene->stage;
+    measured.lab                    = make_lab(stage, technique, run.values, run.settings.trace);
+    measured.plan                   = plan_frame(stage, measured.lab, picture.buffers, run.settings, history);
+    measured.frame                  = make_frame(sweep.gpu, measured.lab, picture.buffers, measured.plan, history);
+    sweep.counted_s += measured.plan.counting_s;
+}
+
+/// Everything on the device but the timed repeats: warm-up, picture, counts.
+Observed observe(SweepContext& sweep, const MeasuredRun& measured)
+{
     const MeasureSettings& measure = sweep.experiment.measure;
-    measured.frame = prepare_frame(sweep.gpu, buffers, find_technique(sweep.techniques, run.technique), run.values,
-                                   run.settings, history_of(sweep, run));
-    measured.plan  = plan_of(*measured.frame);
-    sweep.counted_s += counting_s_of(*measured.frame);
     return clocked(sweep.counted_s, [&] {
-        const PreparedCountPtr count   = prepare_count(sweep.gpu, *measured.frame);
-        const bool             doubled = measure.truth && measure.double_twin && sweep.gpu.info.float64;
-        const PreparedCountPtr twin = doubled ? prepare_count(sweep.gpu, *measured.frame, Precision::float64) : nullptr;
+        const TracerPtr tracer  = make_tracer(sweep.gpu, measured.lab);
+        const bool      doubled = measure.truth && measure.double_twin && sweep.gpu.info.float64;
+        const TracerPtr twin    = doubled ? make_tracer(sweep.gpu, measured.lab, Precision::float64) : nullptr;
         run_frame(sweep.gpu, *measured.frame);
-        Observed observed{read_shaded(sweep.gpu, *measured.frame), count_frame(sweep.gpu, *measured.frame, *count),
+        Observed observed{read_shaded(sweep.gpu, *measured.frame), trace_gbuffer(sweep.gpu, *tracer),
                           read_hidden_hits(sweep.gpu, *measured.frame)};
         observed.reprojection = read_reprojection(sweep.gpu, *measured.frame);
         observed.history      = read_history_counts(sweep.gpu, *measured.frame);
-        if (twin) observed.twin = count_frame(sweep.gpu, *measured.frame, *twin);
+        if (twin) observed.twin = trace_gbuffer(sweep.gpu, *twin);
         return observed;
     });
 }
@@ -99,12 +107,11 @@ Observed observe(SweepContext& sweep, const FrameBuffersPtr& buffers, MeasuredRu
 /// The name of the run's true picture. Runs that trace alike share it, whichever of them a sweep that is resumed begins with.
 std::string truth_name(const Run& run)
 {
-    Run named            = run;
-    named.technique      = "truth";
-    named.values         = {};
-    named.settings       = {};
-    named.settings.trace = run.settings.trace;
-    named.id             = run_id(named);
+    Run named         = run;
+    named.technique   = "truth";
+    named.values      = {};
+    named.passes_text = "";
+    named.id          = run_id(named);
     return picture_name(named);
 }
 
@@ -130,7 +137,7 @@ void make_references(SweepContext& sweep, Picture& picture, const MeasuredRun& m
     if (!picture.truths) return;
     clocked(sweep.truths_s, [&] {
         if (picture.truths->known_layers() < static_cast<size_t>(settings.trace.layers))
-            picture.truths->know_layers(read_gbuffer(sweep.gpu, *picture.gbuffer).layers);
+            picture.truths->know_layers(read_gbuffer(sweep.gpu, *sweep.scene->stage.gbuffer).layers);
         const std::string lacked = picture.truths->without_scene();
         picture.truths->make(settings.trace, image_errors);
         if (const std::string& lacks = picture.truths->without_scene(); !lacks.empty() && lacks != lacked)
@@ -193,7 +200,8 @@ void refuse_impossible(const SweepContext& sweep, const Run& run, const Observed
     const double     steps     = declared_steps(technique, run.values);
     const auto       refuse    = [&](const TraceResult& result, const char* where) {
         if (const auto found = find_impossible(result, steps))
-            throw InvalidResult(fmt::format("{}{}; {}", where, *found, trace_command(run, technique)));
+            throw InvalidResult(
+                         fmt::format("{}{}; {}", where, *found, trace_command(sweep.experiment, run, technique)));
     };
     refuse(observed.counted, "");
     if (observed.twin) refuse(*observed.twin, "in double precision: ");
@@ -205,7 +213,8 @@ void prepare(SweepContext& sweep, Picture& picture, MeasuredRun& measured)
 {
     const Observed observed = [&] {
         const UnderWay under_way(sweep.state, measured.run->id, sweep.experiment.measure.time_limit_s);
-        return observe(sweep, picture.buffers, measured);
+        plan_run(sweep, picture, measured);
+        return observe(sweep, measured);
     }();
     refuse_impossible(sweep, *measured.run, observed);
     make_references(sweep, picture, measured);
@@ -227,12 +236,13 @@ void plan_repeats(SweepContext& sweep, MeasuredRun& measured)
 }
 
 /// The same frame, unculled, where that is more.
-void prepare_comparison(SweepContext& sweep, MeasuredRun& measured)
+void prepare_comparison(SweepContext& sweep, const Picture& picture, MeasuredRun& measured)
 {
-    if (!sweep.experiment.measure.saved_time || !plan_skips_work(*measured.frame)) return;
+    if (!sweep.experiment.measure.saved_time || !skips_work(measured.plan)) return;
     const size_t   known = pipelines_made(sweep.gpu);
     const UnderWay under_way(sweep.state, measured.run->id, sweep.experiment.measure.time_limit_s);
-    measured.unculled = prepare_unculled(sweep.gpu, *measured.frame);
+    measured.unculled =
+        make_frame(sweep.gpu, measured.lab, picture.buffers, unculled(measured.plan), history_of(sweep, *measured.run));
     // A driver may compile a pipeline when it first runs.
     if (pipelines_made(sweep.gpu) != known) clocked(sweep.counted_s, [&] { run_frame(sweep.gpu, *measured.unculled); });
 }
@@ -337,7 +347,7 @@ void open_run(SweepContext& sweep, Picture& picture, const Run& run, std::vector
     for (const Structure& structure : technique.structures) measured.structures.push_back(structure.id);
     const auto prepare_all = [&] {
         prepare(sweep, picture, measured);
-        prepare_comparison(sweep, measured);
+        prepare_comparison(sweep, picture, measured);
         plan_repeats(sweep, measured);
     };
     if (!try_step(sweep, measured, prepare_all)) return;

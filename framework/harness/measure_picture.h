@@ -16,10 +16,7 @@ namespace ssrlab {
 /// Kept from one picture to the next as long as the scene stays the same.
 struct LoadedScene {
     std::string name;
-    Scene       first; // in frame 0
-    int         frame = 0;
-    Scene       scene; // in that frame
-    GpuScenePtr uploaded;
+    Stage       stage;
 };
 
 /// The mean of the pictures with the true reflection over all phases of the jitter.
@@ -31,6 +28,7 @@ struct ConvergedPicture {
 /// What all measuring works with.
 struct SweepContext {
     const Experiment&                    experiment;
+    const Catalogue&                     catalogue;
     std::span<const Technique>           techniques;
     Gpu&                                 gpu;
     ResultFolder&                        results;

@@ -51,7 +51,7 @@ Record identity_row(const Experiment& experiment, const Run& run, const Techniqu
                   {"jitter_phases", run.at.jitter_phases},
                   {"technique", run.technique},
                   {"technique_ignores", fmt::format("{}", fmt::join(technique.ignores, " "))}};
-    for (const Setting& setting : all_settings()) {
+    for (const Setting& setting : experiment.known_settings) {
         row[setting.name] = value_of(setting, setting.get(run.settings));
     }
     for (const Parameter& parameter : technique.parameters) {
@@ -159,28 +159,29 @@ void add_times(MeasuredRun& measured, double gbuffer_ms)
     }
     row["structures_ms_median"] = structures_ms;
     double shade_ms             = 0;
-    for (auto pass = std::ranges::find(measured.plan, "trace", &PlannedPass::id); pass != measured.plan.end(); ++pass)
+    for (auto pass = std::ranges::find(measured.plan.passes, "trace", &PlannedPass::id);
+         pass != measured.plan.passes.end(); ++pass)
         if (pass->id != "trace") shade_ms += median_ms(pass->id);
     row["shade_ms_median"] = shade_ms;
-    row["passes_ran"]      = std::ranges::count(measured.plan, true, &PlannedPass::runs);
+    row["passes_ran"]      = std::ranges::count(measured.plan.passes, true, &PlannedPass::runs);
     if (!measured.saved_ms.empty()) row["saved_ms"] = quantile(measured.saved_ms, 0.5);
     row["fps"]           = 1000 / frame.median;
     row["inverse_fps_s"] = frame.median / 1000;
 }
 
-std::string trace_command(const Run& run, const Technique& technique)
+std::string trace_command(const Experiment& experiment, const Run& run, const Technique& technique)
 {
     const std::filesystem::path in_tree = data_root() / "techniques";
     std::string                 text    = "ssrlab trace " + run.scene;
     if (technique.folder.parent_path() != in_tree) text += " --techniques " + short_path(technique.folder);
-    const std::filesystem::path& surface = find_surface(run.settings.trace.surface).folder;
+    const std::filesystem::path& surface = find_surface(experiment.known_surfaces, run.settings.trace.surface).folder;
     if (surface.parent_path() != data_root() / "shaders/surfaces") text += " --techniques " + short_path(surface);
     text += fmt::format(" --view {} --size {} -t {}", run.view, size_text(run.size_px), technique.id);
     if (run.at.frame != 0) text += fmt::format(" --frame {}", run.at.frame);
     if (run.at.jitter_phases != 0) text += fmt::format(" --jitter {}", run.at.jitter_phases);
     for (const Parameter& parameter : technique.parameters)
         text += fmt::format(" -p {}={}", parameter.name, format_parameter(parameter, run.values.at(parameter.name)));
-    for (const Setting& setting : all_settings())
+    for (const Setting& setting : experiment.known_settings)
         if (const double value = setting.get(run.settings); setting.table == "trace" && value != setting.default_value)
             text += fmt::format(" -p {}={}", setting.name, format_parameter(setting, value));
     return text + " -o hits.exr";

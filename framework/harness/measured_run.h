@@ -12,9 +12,10 @@ namespace ssrlab {
 
 struct MeasuredRun {
     const Run*                                 run = nullptr;
-    PreparedFramePtr                           frame, unculled; // the same without skipping, or null
+    LabPtr                                     lab;
+    FramePlan                                  plan;
+    FramePtr                                   frame, unculled; // the same without skipping, or null
     Record                                     row;
-    std::vector<PlannedPass>                   plan;
     std::vector<int>                           rounds; // one entry per timed frame, as in the lists below
     std::vector<double>                        trace_ms, frame_ms, cpu_ms, saved_ms;
     std::map<std::string, std::vector<double>> pass_ms;               // by pass, of those that ran
@@ -43,6 +44,6 @@ void add_times(MeasuredRun& measured, double gbuffer_ms);
 Record failed_row(Record row, const std::exception& error);
 
 /// The command that shows what each ray of a run found.
-std::string trace_command(const Run& run, const Technique& technique);
+std::string trace_command(const Experiment& experiment, const Run& run, const Technique& technique);
 
 } // namespace ssrlab

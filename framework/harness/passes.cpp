@@ -21,7 +21,7 @@ std::span<const Column> pass_columns()
 std::string passes_text(const MeasuredRun& measured)
 {
     std::string text;
-    for (const PlannedPass& planned : measured.plan) {
+    for (const PlannedPass& planned : measured.plan.passes) {
         Record record = {{"run_id", measured.run->id},
                          {"pass", planned.id},
                          {"ran", planned.runs ? "true" : "false"},

@@ -7,13 +7,11 @@
 namespace ssrlab {
 
 struct Picture {
-    GBufferPtr                 gbuffer;
-    FrameBuffersPtr            buffers;
-    double                     gbuffer_ms = 0;
-    int                        round      = 0; // of samples.csv
-    glm::dvec2                 jitter_px{0, 0};
-    std::optional<FrameMotion> motion; // since the frame before
-    std::optional<Truths>      truths;
+    FrameBuffersPtr       buffers;
+    double                gbuffer_ms = 0;
+    int                   round      = 0; // of samples.csv
+    glm::dvec2            jitter_px{0, 0};
+    std::optional<Truths> truths;
 
     // The picture with the true reflections under the trace settings of the last run.
     std::optional<Reference> reference;
@@ -21,9 +19,10 @@ struct Picture {
     std::string              reference_file; // relative to the results; empty: none was written
 };
 
-/// Loads and uploads a scene unless it is the one that is there, and moves it to the frame.
-const LoadedScene& scene_of(SweepContext& sweep, const std::string& name, int frame);
-Picture            make_picture(SweepContext& sweep, const Run& run);
+/// Loads and uploads a scene unless it is the one that is there.
+Stage& stage_of(SweepContext& sweep, const std::string& scene);
+/// Shows the run's picture on that stage.
+Picture make_picture(SweepContext& sweep, const Run& run);
 
 /// What a run's frames gave, before anything is said about it.
 struct Observed {

@@ -156,10 +156,11 @@ void record_lost(SweepContext& sweep, std::span<const Run> runs, const LostRun& 
 
 int run_sweep(const RunOptions& options, SweepState& state)
 {
-    const bool                   continues  = state.lost.run_id[0] != 0;
-    const std::vector<Technique> techniques = list_techniques(options.techniques);
-    Experiment                   experiment = load_experiment(options.specification, techniques);
-    std::vector<Run>             runs       = planned_runs(options, experiment, techniques);
+    const bool                    continues  = state.lost.run_id[0] != 0;
+    const Catalogue               catalogue  = load_catalogue(options.techniques);
+    const std::vector<Technique>& techniques = catalogue.techniques;
+    Experiment                    experiment = load_experiment(options.specification, catalogue);
+    std::vector<Run>              runs       = planned_runs(options, experiment, techniques);
     if (!options.only.empty()) experiment.targets.clear(); // one run is asked for, no search
     const auto columns = result_columns(experiment, techniques);
 
@@ -172,7 +173,7 @@ int run_sweep(const RunOptions& options, SweepState& state)
     std::erase_if(pending, [&](const Run& run) { return results.finished().contains(run.id); });
 
     Progress     progress(pending.size(), total_cost(pending, techniques, experiment.measure), options.quiet);
-    SweepContext sweep{experiment, techniques, gpu, results, progress, state, environment.identity};
+    SweepContext sweep{experiment, catalogue, techniques, gpu, results, progress, state, environment.identity};
     if (continues) record_lost(sweep, pending, state.lost);
     if (const std::string trouble = cache_trouble(truth_cache_dir(results.path())); !trouble.empty())
         progress.say("warning: " + trouble);
@@ -208,9 +209,9 @@ int run_sweep(const RunOptions& options, SweepState& state)
 int run_experiment(const RunOptions& options)
 {
     if (options.dry_run) {
-        const std::vector<Technique> techniques = list_techniques(options.techniques);
-        const Experiment             experiment = load_experiment(options.specification, techniques);
-        return list_runs(experiment, planned_runs(options, experiment, techniques), techniques);
+        const Catalogue  catalogue  = load_catalogue(options.techniques);
+        const Experiment experiment = load_experiment(options.specification, catalogue);
+        return list_runs(experiment, planned_runs(options, experiment, catalogue.techniques), catalogue.techniques);
     }
     SweepState* state = shared_with_parent();
     if (state == nullptr) return supervise(own_command());

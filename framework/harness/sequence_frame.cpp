@@ -12,32 +12,33 @@ bool anything_moved(const FrameMotion& motion) { return motion.camera_moves || m
 MeasureValues watch_sequence(SweepContext& sweep, const Picture& picture, const Run& run, const Observed& observed)
 {
     // Behind a cut of the camera everything is elsewhere.
-    const bool moved = picture.motion ? anything_moved(*picture.motion) : run.at.frame > 0;
+    const auto& motion = sweep.scene->stage.motion;
+    const bool  moved  = motion ? anything_moved(*motion) : run.at.frame > 0;
     return watch(sweep.sequences[sequence_id(run)], observed.shaded, observed.counted, picture.jitter_px, moved);
 }
 
-SceneInTime scene_before(const LoadedScene& loaded, const FrameMotion& motion, int frames_back)
+SceneInTime scene_before(const Stage& stage, const FrameMotion& motion, int frames_back)
 {
     if (motion.moving_draws == 0) return {{}, motion};
-    return {scene_at(loaded.first, motion.frame - frames_back), motion};
+    return {scene_at(stage.first, motion.frame - frames_back), motion};
 }
 
 void make_reprojection(SweepContext& sweep, Picture& picture, const Run& run)
 {
     if (picture.truths->has_reprojection()) return;
-    const LoadedScene&         loaded = *sweep.scene;
+    const Stage&               stage = sweep.scene->stage;
     std::optional<FrameMotion> earlier;
     int                        frames_back = ghost_frames + 1;
-    while (!earlier) earlier = motion_at(loaded.first, run.view, run.size_px, run.at.frame, --frames_back);
-    picture.truths->make_reprojection(scene_before(loaded, *picture.motion, 1),
-                                      scene_before(loaded, *earlier, frames_back));
+    while (!earlier) earlier = motion_at(stage.first, run.view, run.size_px, run.at.frame, --frames_back);
+    picture.truths->make_reprojection(scene_before(stage, *stage.motion, 1),
+                                      scene_before(stage, *earlier, frames_back));
 }
 
 /// Where something but jitter moved.
 void judge_motion(SweepContext& sweep, Picture& picture, MeasuredRun& measured, const Observed& observed)
 {
     if (!picture.truths || !picture.truths->without_scene().empty()) return;
-    if (!picture.motion || !anything_moved(*picture.motion)) return;
+    if (!sweep.scene->stage.motion || !anything_moved(*sweep.scene->stage.motion)) return;
     clocked(sweep.truths_s, [&] { make_reprojection(sweep, picture, *measured.run); });
     add_measures(measured.row, picture.truths->compare_motion(observed.counted, observed.reprojection));
     if (picture.reference)
@@ -74,14 +75,14 @@ void add_true_picture(Picture& picture, const TraceSettings& settings, Image& su
 
 FrameHistoryPtr history_of(SweepContext& sweep, const Run& run)
 {
-    if (!is_sequence(sweep.experiment) || sweep.scene->first.frame) return nullptr;
+    if (!is_sequence(sweep.experiment) || sweep.scene->stage.first.frame) return nullptr;
     SequenceState& state = sweep.sequences[sequence_id(run)];
     if (state.failed) throw_failure("a frame before this one failed, so this one has no history");
     if (!state.history) state.history = make_history(sweep.gpu, run.size_px);
     return state.history;
 }
 
-void leave_history(SweepContext& sweep, const Run& run, PreparedFrame& frame)
+void leave_history(SweepContext& sweep, const Run& run, ReadyFrame& frame)
 {
     if (history_of(sweep, run) == nullptr) return;
     clocked(sweep.counted_s, [&] {
@@ -111,14 +112,18 @@ void lose_sequence(SweepContext& sweep, const Run& run)
 void replay(SweepContext& sweep, const Picture& picture, const Run& run)
 {
     try {
-        const UnderWay         under_way(sweep.state, run.id, sweep.experiment.measure.time_limit_s);
-        const PreparedFramePtr frame =
-            prepare_frame(sweep.gpu, picture.buffers, find_technique(sweep.techniques, run.technique), run.values,
-                          run.settings, history_of(sweep, run));
+        const UnderWay        under_way(sweep.state, run.id, sweep.experiment.measure.time_limit_s);
+        const FrameHistoryPtr history = history_of(sweep, run);
+        Stage&                stage   = sweep.scene->stage;
+        const LabPtr          lab =
+            make_lab(stage, find_technique(sweep.techniques, run.technique), run.values, run.settings.trace);
+        const FramePlan plan  = plan_frame(stage, lab, picture.buffers, run.settings, history);
+        const FramePtr  frame = make_frame(sweep.gpu, lab, picture.buffers, plan, history);
         clocked(sweep.counted_s, [&] {
             run_frame(sweep.gpu, *frame);
-            watch_sequence(sweep, picture, run,
-                           {read_shaded(sweep.gpu, *frame), count_frame(sweep.gpu, *frame), std::nullopt});
+            watch_sequence(
+                sweep, picture, run,
+                {read_shaded(sweep.gpu, *frame), trace_gbuffer(sweep.gpu, *make_tracer(sweep.gpu, lab)), std::nullopt});
         });
         leave_history(sweep, run, *frame);
     } catch (const std::exception& error) {
@@ -132,7 +137,7 @@ void make_converged_pictures(SweepContext& sweep, std::span<const Run> runs, int
     const MeasureSettings& measure = sweep.experiment.measure;
     const Run&             first   = runs.front();
     if (!measure.truth || !measure.image_errors || first.at.jitter_phases == 0) return;
-    if (!nothing_moves(scene_of(sweep, first.scene, 0).first, first, last_frame)) return;
+    if (!nothing_moves(stage_of(sweep, first.scene).first, first, last_frame)) return;
     std::vector<std::pair<TraceSettings, Image>> sums;
     for (const Run& run : runs)
         if (std::ranges::none_of(sums, [&](const auto& sum) { return sum.first == run.settings.trace; }))

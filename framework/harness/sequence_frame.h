@@ -9,7 +9,7 @@ namespace ssrlab {
 FrameHistoryPtr history_of(SweepContext& sweep, const Run& run);
 
 /// The run's next frame finds what this one leaves. Runs share images, so this one runs once more.
-void leave_history(SweepContext& sweep, const Run& run, PreparedFrame& frame);
+void leave_history(SweepContext& sweep, const Run& run, ReadyFrame& frame);
 
 /// Adds the measures that need the frames before, and remembers this one.
 void judge_sequence(SweepContext& sweep, Picture& picture, MeasuredRun& measured, const Observed& observed);

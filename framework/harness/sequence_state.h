@@ -2,7 +2,7 @@
 #pragma once
 
 #include "compare/measures.h"
-#include "frame/history.h"
+#include "frame/frame_history.h"
 #include "harness/columns.h"
 #include "harness/result_folder.h"
 

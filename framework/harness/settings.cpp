@@ -1,6 +1,8 @@
 // The settings that belong to an experiment, not to a technique.
 #include "harness/experiment.h"
 
+#include "core/error.h"
+#include "core/names.h"
 #include "shared.h"
 
 #include <algorithm>
@@ -17,7 +19,8 @@ template <typename Field>
 Setting trace_setting(const char* name, ParameterType type, Field TraceSettings::*field, double max, const char* doc,
                       double min = 0)
 {
-    return {{name, type, static_cast<double>(FrameSettings{}.trace.*field), min, max, {}, doc},
+    const FrameSettings defaults;
+    return {{name, type, static_cast<double>(defaults.trace.*field), min, max, {}, doc},
             "trace",
             [=](const FrameSettings& settings) { return static_cast<double>(settings.trace.*field); },
             [=](FrameSettings& settings, double value) { settings.trace.*field = static_cast<Field>(value); }};
@@ -27,9 +30,10 @@ template <typename Choice>
 Setting trace_choice(const char* name, Choice TraceSettings::*field, std::span<const std::string_view> choices,
                      const char* doc)
 {
+    const FrameSettings defaults;
     return {{.name          = name,
              .type          = ParameterType::choice,
-             .default_value = static_cast<double>(FrameSettings{}.trace.*field),
+             .default_value = static_cast<double>(defaults.trace.*field),
              .max           = static_cast<double>(choices.size() - 1),
              .choices       = {choices.begin(), choices.end()},
              .doc           = doc},
@@ -38,27 +42,48 @@ Setting trace_choice(const char* name, Choice TraceSettings::*field, std::span<c
             [=](FrameSettings& settings, double value) { settings.trace.*field = static_cast<Choice>(value); }};
 }
 
-Setting surface_setting()
+/// A setting whose choices were found on disk.
+Setting found_choice(const char* name, const char* table, std::vector<std::string> ids, const char* doc,
+                     const std::function<std::string&(FrameSettings&)>& id_in)
 {
-    const std::span<const Surface> surfaces = all_surfaces();
-    Parameter                      parameter{.name    = "surface",
-                                             .type    = ParameterType::choice,
-                                             .max     = static_cast<double>(surfaces.size() - 1),
-                                             .choices = {},
-                                             .doc = "what a pixel holds around its depth: a surface model (ssrlab show NAME), see "
-                                                    "docs/reference/hit_contract.md"};
-    std::ranges::transform(surfaces, std::back_inserter(parameter.choices), &Surface::id);
-    const auto number_of = [=](const TraceSettings& trace) {
-        return static_cast<double>(&find_surface(trace.surface) - surfaces.data());
+    const auto get = [=](const FrameSettings& settings) {
+        FrameSettings copy  = settings;
+        const auto    found = std::ranges::find(ids, id_in(copy));
+        if (found == ids.end()) throw SpecError(unknown_name(name, id_in(copy), ids));
+        return static_cast<double>(found - ids.begin());
     };
-    parameter.default_value = number_of(FrameSettings{}.trace);
-    return {parameter, "trace", [=](const FrameSettings& settings) { return number_of(settings.trace); },
-            [=](FrameSettings& settings, double value) {
-                settings.trace.surface = surfaces[static_cast<size_t>(value)].id;
-            }};
+    const FrameSettings defaults;
+    const Parameter     parameter{.name          = name,
+                                  .type          = ParameterType::choice,
+                                  .default_value = get(defaults),
+                                  .max           = static_cast<double>(ids.size()) - 1,
+                                  .choices       = ids,
+                                  .doc           = doc};
+    return {parameter, table, get,
+            [=](FrameSettings& settings, double value) { id_in(settings) = ids[static_cast<size_t>(value)]; }};
 }
 
-std::vector<Setting> make_table()
+template <typename Item> std::vector<std::string> ids_of(const std::vector<Item>& items)
+{
+    std::vector<std::string> ids;
+    std::ranges::transform(items, std::back_inserter(ids), &Item::id);
+    return ids;
+}
+
+/// Of a pass or of a reprojection strategy; the latter are in FrameSettings::passes when they are not at their default.
+Setting pass_setting(const Parameter& parameter)
+{
+    return {parameter, "passes",
+            [=](const FrameSettings& settings) {
+                const auto found = settings.passes.find(parameter.name);
+                return found == settings.passes.end() ? parameter.default_value : found->second;
+            },
+            [=](FrameSettings& settings, double value) { settings.passes[parameter.name] = value; }};
+}
+
+} // namespace
+
+std::vector<Setting> all_settings(const Catalogue& catalogue)
 {
     using enum ParameterType;
     std::vector<Setting> table = {
@@ -81,24 +106,26 @@ std::vector<Setting> make_table()
             "behind", &TraceSettings::behind, behind_names,
             "what becomes of a ray that meets a pixel from a side that the frame does not show: hit, pass (the "
             "ray goes on) or stop (it ends without a hit)"),
-        surface_setting(),
+        found_choice("surface", "trace", ids_of(catalogue.surfaces),
+                     "what a pixel holds around its depth: a surface model (ssrlab show NAME), see "
+                     "docs/reference/hit_contract.md",
+                     [](FrameSettings& settings) -> std::string& { return settings.trace.surface; }),
         trace_setting("layers", integer, &TraceSettings::layers, MAX_LAYERS,
                       "surfaces that a pixel holds, one behind the other: the first, and the next that face the camera",
                       1),
     };
-    for (const Parameter& parameter : all_pass_settings()) {
-        const std::string name = parameter.name;
-        table.push_back({parameter, "passes", [=](const FrameSettings& s) { return s.passes.at(name); },
-                         [=](FrameSettings& s, double value) { s.passes.at(name) = value; }});
+    for (const Parameter& parameter : plan_parameters()) table.push_back(pass_setting(parameter));
+    for (const Pass& pass : all_passes()) {
+        for (const Parameter& parameter : pass.parameters) table.push_back(pass_setting(parameter));
+        if (pass.id == reprojection_pass().id)
+            table.push_back(
+                found_choice("reprojection", "passes", ids_of(catalogue.reprojections),
+                             "where a reflection was in the frame before: a folder with reprojection.toml, see "
+                             "docs/explanation/motion.md",
+                             [](FrameSettings& settings) -> std::string& { return settings.reprojection; }));
     }
-    return table;
-}
-
-} // namespace
-
-std::span<const Setting> all_settings()
-{
-    static const std::vector<Setting> table = make_table();
+    for (const Reprojection& strategy : catalogue.reprojections)
+        for (const Parameter& parameter : strategy.parameters) table.push_back(pass_setting(parameter));
     return table;
 }
 

@@ -2,7 +2,7 @@
 
 #include "core/pixel_index.h"
 #include "shared.h"
-#include "trace/frame_passes.h"
+#include "trace/lab_passes.h"
 
 #include <fmt/format.h>
 
@@ -106,28 +106,27 @@ ShaderSource shader_of(const Technique& technique, const Structure& structure, c
     return source;
 }
 
-Constants constants_of(const PreparedFrame& frame, Precision precision)
+Constants constants_of(const Lab& lab, Precision precision)
 {
-    Constants constants = settings_constants(frame, precision);
-    add_parameters(constants, frame.technique.parameters, frame.values, CONSTANT_PARAMETERS);
+    Constants constants = settings_constants(lab.gbuffer->view, lab.settings, precision);
+    add_parameters(constants, lab.technique.parameters, lab.values, CONSTANT_PARAMETERS);
     return constants;
 }
 
-int last_level(const PreparedFrame& frame, const StructurePass& pass, glm::ivec2 size_px)
+int last_level(const Lab& lab, const StructurePass& pass, glm::ivec2 size_px)
 {
     const auto* name = std::get_if<std::string>(&pass.last_level);
-    const int   last = name != nullptr ? static_cast<int>(frame.values.at(*name)) : std::get<int>(pass.last_level);
+    const int   last = name != nullptr ? static_cast<int>(lab.values.at(*name)) : std::get<int>(pass.last_level);
     return std::min(last, pyramid_levels(size_px));
 }
 
-void add_dispatches(StructureDispatch& dispatch, const PreparedFrame& frame, const StructurePass& pass,
-                    glm::ivec2 size_px)
+void add_dispatches(StructureDispatch& dispatch, const Lab& lab, const StructurePass& pass, glm::ivec2 size_px)
 {
     switch (pass.per) {
     case SizeRule::tile: dispatch.groups.push_back(groups_of_8(tiles_of(size_px, pass.tile_px))); break;
     case SizeRule::ray_group: dispatch.per_ray = true; break;
     case SizeRule::level:
-        for (int level = pass.first_level, last = last_level(frame, pass, size_px); level <= last;
+        for (int level = pass.first_level, last = last_level(lab, pass, size_px); level <= last;
              level += pass.levels_per_dispatch) {
             dispatch.levels.emplace_back(level, std::min(level + pass.levels_per_dispatch - 1, last));
             dispatch.groups.push_back(groups_of_8((level_size(size_px, level) - 1) / pass.cells_per_invocation + 1));
@@ -138,44 +137,43 @@ void add_dispatches(StructureDispatch& dispatch, const PreparedFrame& frame, con
 }
 
 /// 64 bits at once where the device can and each of the structure's buffers fits into a storage buffer.
-Defines store_defines_of(const Gpu& gpu, const Structure& structure, const GBuffer& layer, const RayBuffers& rays)
+Defines store_defines_of(const Gpu& gpu, const Structure& structure, const GBuffer& gbuffer, const RayBuffers& rays)
 {
     Defines defines;
     for (const StructureBuffer& buffer : structure.buffers) {
         if (buffer.per == SizeRule::ray_group && !rays.structures) continue;
-        const StructureBuffers& buffers = buffer.per == SizeRule::ray_group ? *rays.structures : *layer.structures;
+        const StructureBuffers& buffers = buffer.per == SizeRule::ray_group ? *rays.structures : *gbuffer.structures;
         const Buffer&           bytes =
-            buffer.per == SizeRule::depth_cell ? layer.depth.cells : buffers.at(structure.id + "." + buffer.name);
+            buffer.per == SizeRule::depth_cell ? gbuffer.depth.cells : buffers.at(structure.id + "." + buffer.name);
         defines = store_defines(gpu, bytes);
         if (defines.empty()) return {};
     }
     return defines;
 }
 
-StructureDispatch make_dispatch(Gpu& gpu, const PreparedFrame& frame, const Structure& structure,
-                                const StructurePass& pass, const GBuffer& layer, const RayBuffers& rays,
-                                const Bindings& bindings)
+StructureDispatch make_dispatch(Gpu& gpu, const Lab& lab, const Structure& structure, const StructurePass& pass,
+                                const RayBuffers& rays, const Bindings& bindings)
 {
-    ShaderSource source = shader_of(frame.technique, structure, pass, rays.precision == Precision::float64);
-    add_surface(source, frame.settings.trace);
+    ShaderSource source = shader_of(lab.technique, structure, pass, rays.precision == Precision::float64);
+    add_surface(source, lab.surface, lab.settings.layers);
     source.defines.merge(precision_defines(gpu, is_per_ray(pass) ? rays.precision : Precision::float32));
-    source.defines.merge(store_defines_of(gpu, structure, layer, rays));
+    source.defines.merge(store_defines_of(gpu, structure, *lab.gbuffer, rays));
     if (is_per_ray(pass)) source.defines.merge(ray_list_defines(gpu, rays));
     if (is_per_ray(pass) && bindings.contains("Work")) source.defines.emplace("COUNT_WORK", "1");
     StructureDispatch dispatch;
     dispatch.pass = make_compute_pass(gpu, compile_shader(gpu, source), bindings,
-                                      constants_of(frame, is_per_ray(pass) ? rays.precision : Precision::float32),
+                                      constants_of(lab, is_per_ray(pass) ? rays.precision : Precision::float32),
                                       pass.per == SizeRule::level ? sizeof(glm::ivec2) : 0);
-    add_dispatches(dispatch, frame, pass, layer.view.size_px);
+    add_dispatches(dispatch, lab, pass, lab.gbuffer->view.size_px);
     return dispatch;
 }
 
-std::vector<StructurePasses> make_structures(Gpu& gpu, const PreparedFrame& frame, const GBuffer& layer,
-                                             const RayBuffers& rays, Bindings bindings, bool per_ray)
+std::vector<StructurePasses> make_structures(Gpu& gpu, const Lab& lab, const RayBuffers& rays, Bindings bindings,
+                                             bool per_ray)
 {
-    bindings.merge(structure_bindings(gpu, frame.technique, layer, rays));
+    bindings.merge(structure_bindings(gpu, lab.technique, *lab.gbuffer, rays));
     std::vector<StructurePasses> structures;
-    for (const Structure& structure : frame.technique.structures) {
+    for (const Structure& structure : lab.technique.structures) {
         StructurePasses passes{structure.id, {}};
         if (per_ray && builds_per_ray(structure)) {
             const Buffer& fetches = rays.structures->at(group_fetches_key(structure));
@@ -183,7 +181,7 @@ std::vector<StructurePasses> make_structures(Gpu& gpu, const PreparedFrame& fram
         }
         for (const StructurePass& pass : structure.passes)
             if (is_per_ray(pass) == per_ray && is_of_style(pass, gpu.info))
-                passes.dispatches.push_back(make_dispatch(gpu, frame, structure, pass, layer, rays, bindings));
+                passes.dispatches.push_back(make_dispatch(gpu, lab, structure, pass, rays, bindings));
         structures.push_back(std::move(passes));
     }
     return structures;
@@ -218,17 +216,17 @@ std::map<std::string, std::filesystem::path> structure_include_files(const Techn
     return files;
 }
 
-std::vector<StructurePasses> make_depth_structures(Gpu& gpu, const PreparedFrame& frame, const GBuffer& layer)
+std::vector<StructurePasses> make_depth_structures(Gpu& gpu, const Lab& lab)
 {
-    Bindings bindings = surface_bindings(layer);
-    bindings.insert({"View", frame.buffers->view});
-    return make_structures(gpu, frame, layer, RayBuffers{}, bindings, false);
+    Bindings bindings = surface_bindings(*lab.gbuffer);
+    bindings.insert({"View", lab.gbuffer->view_uniforms});
+    return make_structures(gpu, lab, RayBuffers{}, bindings, false);
 }
 
-std::vector<StructurePasses> make_ray_structures(Gpu& gpu, const PreparedFrame& frame, const GBuffer& layer,
-                                                 const RayBuffers& rays, const Bindings& bindings)
+std::vector<StructurePasses> make_ray_structures(Gpu& gpu, const Lab& lab, const RayBuffers& rays,
+                                                 const Bindings& bindings)
 {
-    return make_structures(gpu, frame, layer, rays, bindings, true);
+    return make_structures(gpu, lab, rays, bindings, true);
 }
 
 void record_structure(const vk::raii::CommandBuffer& commands, const StructurePasses& structure,
@@ -245,7 +243,7 @@ void record_structure(const vk::raii::CommandBuffer& commands, const StructurePa
     }
 }
 
-Bindings structure_bindings(Gpu& gpu, const Technique& technique, const GBuffer& layer, const RayBuffers& rays)
+Bindings structure_bindings(Gpu& gpu, const Technique& technique, const GBuffer& gbuffer, const RayBuffers& rays)
 {
     Bindings bindings;
     for (const Structure& structure : technique.structures) {
@@ -253,10 +251,10 @@ Bindings structure_bindings(Gpu& gpu, const Technique& technique, const GBuffer&
             if (buffer.per == SizeRule::depth_cell) continue; // the depth's own
             const bool per_ray = buffer.per == SizeRule::ray_group;
             if (per_ray && !rays.structures) continue; // what is built on depth knows no rays
-            StructureBuffers& buffers = per_ray ? *rays.structures : *layer.structures;
+            StructureBuffers& buffers = per_ray ? *rays.structures : *gbuffer.structures;
             const std::string key     = structure.id + "." + buffer.name;
             if (!buffers.contains(key))
-                buffers.emplace(key, make_structure_buffer(gpu, buffer, layer.view.size_px, rays));
+                buffers.emplace(key, make_structure_buffer(gpu, buffer, gbuffer.view.size_px, rays));
             bindings.insert({{buffer.name + "_loaded", buffers.at(key)}, {buffer.name + "_stored", buffers.at(key)}});
         }
         if (!builds_per_ray(structure) || !rays.structures) continue;

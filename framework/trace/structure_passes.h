@@ -1,20 +1,11 @@
 // How structures are built on the device, and the GLSL by which shaders read and write them. Folder-internal.
 #pragma once
 
-#include "gpu/compute.h"
-#include "trace/technique.h"
-
-#include <map>
-#include <memory>
+#include "trace/gbuffer.h"
 
 namespace ssrlab {
 
-struct GBuffer;
-struct PreparedFrame;
 struct RayBuffers;
-
-/// The buffers of structures on one depth, or on one list of rays; allocated when a technique first asks for them.
-using StructureBuffers = std::map<std::string, Buffer>; // by "structure.buffer"
 
 /// One pass with all its dispatches.
 struct StructureDispatch {
@@ -30,17 +21,17 @@ struct StructurePasses {
     std::vector<StructureDispatch> dispatches;
 };
 
-/// Those of a technique's passes that depend on a depth alone, in the order in which structures are built.
-std::vector<StructurePasses> make_depth_structures(Gpu& gpu, const PreparedFrame& frame, const GBuffer& layer);
-/// Those that depend on a list of rays, too. bindings: the list, the layer and the view; with "Work" fetches are counted.
-std::vector<StructurePasses> make_ray_structures(Gpu& gpu, const PreparedFrame& frame, const GBuffer& layer,
-                                                 const RayBuffers& rays, const Bindings& bindings);
+/// Those of the lab's technique that depend on its depth alone, in the order in which structures are built.
+std::vector<StructurePasses> make_depth_structures(Gpu& gpu, const Lab& lab);
+/// Those that depend on a list of rays, too. bindings: the list, the G-buffer and the view; with "Work" fetches are counted.
+std::vector<StructurePasses> make_ray_structures(Gpu& gpu, const Lab& lab, const RayBuffers& rays,
+                                                 const Bindings& bindings);
 /// group_launch: groups of workgroups for the list of rays; null where no pass is per ray group.
 void record_structure(const vk::raii::CommandBuffer& commands, const StructurePasses& structure,
                       const Buffer* group_launch);
 
 /// The buffers of a technique's structures by the names of structure_declarations().
-Bindings structure_bindings(Gpu& gpu, const Technique& technique, const GBuffer& layer, const RayBuffers& rays);
+Bindings structure_bindings(Gpu& gpu, const Technique& technique, const GBuffer& gbuffer, const RayBuffers& rays);
 /// For a shader of the technique: STRUCTURE_ID, the number of each structure, and load_BUFFER(index) of their buffers, each
 /// structure followed by its read.glsl. For a shader that builds one of them (`built`), only what that one reads, and
 /// load_BUFFER and store_BUFFER(index, value) of its own.

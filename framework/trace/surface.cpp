@@ -3,7 +3,6 @@
 #include "core/files.h"
 #include "core/names.h"
 #include "trace/manifest.h"
-#include "trace/technique.h"
 
 #include <algorithm>
 
@@ -47,22 +46,6 @@ Surface load_surface(const fs::path& folder)
             throw_spec_error("{}: missing; a surface model has surface.toml, meeting.glsl and held.glsl",
                              short_path(surface.shaders / part));
     return surface;
-}
-
-std::span<const Surface> all_surfaces()
-{
-    static const std::vector<Surface> surfaces = list_surfaces({});
-    return surfaces;
-}
-
-const Surface& find_surface(std::string_view id)
-{
-    const auto surfaces = all_surfaces();
-    const auto found    = std::ranges::find(surfaces, id, &Surface::id);
-    if (found != surfaces.end()) return *found;
-    std::vector<std::string> known;
-    std::ranges::transform(surfaces, std::back_inserter(known), &Surface::id);
-    throw SpecError(unknown_name("surface model", std::string(id), known));
 }
 
 } // namespace ssrlab

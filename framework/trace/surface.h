@@ -3,9 +3,7 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace ssrlab {
@@ -24,11 +22,5 @@ struct Surface {
 
 /// Reads folder/surface.toml; throws SpecError with file and line.
 Surface load_surface(const std::filesystem::path& folder);
-
-/// Those of the tree, then those in $SSRLAB_TECHNIQUES; read once per program. Throws SpecError when two share an id.
-std::span<const Surface> all_surfaces();
-
-/// The surface model of that id; throws SpecError listing the known ones.
-const Surface& find_surface(std::string_view id);
 
 } // namespace ssrlab

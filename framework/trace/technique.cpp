@@ -6,7 +6,6 @@
 #include "trace/manifest.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <regex>
 #include <set>
 
@@ -92,65 +91,6 @@ bool may_test_itself(const Technique& technique)
     });
 }
 
-bool is_technique(const fs::path& folder)
-{
-    return fs::exists(folder / "technique.toml") || fs::exists(folder / "trace.glsl");
-}
-
-bool is_structure(const fs::path& folder) { return fs::exists(folder / "structure.toml"); }
-
-bool is_reprojection(const fs::path& folder) { return fs::exists(folder / "reprojection.toml"); }
-
-bool is_surface(const fs::path& folder) { return fs::exists(folder / "surface.toml"); }
-
-/// No technique, but what belongs beside techniques.
-bool is_addition(const fs::path& folder)
-{
-    return is_structure(folder) || is_reprojection(folder) || is_surface(folder);
-}
-
-/// Of a directory of techniques: itself or the folders in it, down to those `deepest` levels farther in.
-std::vector<fs::path> folders_in(const fs::path& dir, bool (*wanted)(const fs::path&), int deepest)
-{
-    if (!fs::is_directory(dir)) throw_spec_error("{}: no such directory of techniques", short_path(dir));
-    std::vector<fs::path> folders;
-    if (wanted(dir)) folders.push_back(fs::weakly_canonical(dir));
-    constexpr auto skip = fs::directory_options::skip_permission_denied;
-    for (auto entry = fs::recursive_directory_iterator(dir, skip); entry != fs::recursive_directory_iterator();
-         ++entry) {
-        if (entry.depth() == deepest) entry.disable_recursion_pending();
-        if (entry->is_directory() && wanted(entry->path())) folders.push_back(entry->path());
-    }
-    std::ranges::sort(folders);
-    return folders;
-}
-
-/// The in-tree directory, then those in $SSRLAB_TECHNIQUES, then the others.
-std::vector<fs::path> technique_dirs(std::span<const fs::path> extra_dirs)
-{
-    std::vector<fs::path> dirs{data_root() / "techniques"};
-    const char*           variable = std::getenv("SSRLAB_TECHNIQUES");
-    const std::string     list     = variable == nullptr ? "" : variable;
-    for (size_t start = 0; start < list.size();) {
-        const size_t end = std::min(list.find(':', start), list.size());
-        if (end > start) dirs.emplace_back(list.substr(start, end - start));
-        start = end + 1;
-    }
-    dirs.insert(dirs.end(), extra_dirs.begin(), extra_dirs.end());
-    return dirs;
-}
-
-/// The same folder may be named twice, two folders of one id may not.
-template <typename Item> void append(std::vector<Item>& items, Item item, const std::string& kind)
-{
-    const auto same = std::ranges::find(items, item.id, &Item::id);
-    if (same == items.end())
-        items.push_back(std::move(item));
-    else if (!fs::equivalent(same->folder, item.folder))
-        throw_spec_error("two {} are called '{}': {} and {}", kind, item.id, short_path(same->folder),
-                         short_path(item.folder));
-}
-
 } // namespace
 
 std::span<const Limit> known_limits()
@@ -198,57 +138,6 @@ Technique load_technique(const fs::path& folder, std::span<const Structure> know
     if (!technique.exact && !file.root.contains("ignores") && may_test_itself(technique))
         technique.ignores = {"unknown"};
     return technique;
-}
-
-std::vector<Structure> list_structures(std::span<const fs::path> extra_dirs)
-{
-    std::vector<Structure> structures;
-    for (const fs::path& dir : technique_dirs(extra_dirs))
-        for (const fs::path& folder : folders_in(dir, is_structure, 1))
-            append(structures, load_structure(folder), "structures");
-    return structures;
-}
-
-std::vector<Reprojection> list_reprojections(std::span<const fs::path> extra_dirs)
-{
-    std::vector<Reprojection> strategies;
-    for (const fs::path& dir : technique_dirs(extra_dirs))
-        for (const fs::path& folder : folders_in(dir, is_reprojection, 1))
-            append(strategies, load_reprojection(folder), "reprojection strategies");
-    return strategies;
-}
-
-std::vector<Surface> list_surfaces(std::span<const fs::path> extra_dirs)
-{
-    std::vector<fs::path> dirs = technique_dirs(extra_dirs);
-    dirs.insert(dirs.begin(), shader_folder() / "surfaces");
-    std::vector<Surface> surfaces;
-    for (const fs::path& dir : dirs)
-        for (const fs::path& folder : folders_in(dir, is_surface, 1))
-            append(surfaces, load_surface(folder), "surface models");
-    return surfaces;
-}
-
-std::vector<Technique> list_techniques(std::span<const fs::path> extra_dirs)
-{
-    const std::vector<Structure> structures = list_structures(extra_dirs);
-    std::vector<Technique>       techniques;
-    for (const fs::path& dir : technique_dirs(extra_dirs)) {
-        const std::vector<fs::path> folders = folders_in(dir, is_technique, 0);
-        if (folders.empty() && folders_in(dir, is_addition, 1).empty())
-            throw_spec_error("{}: holds no technique (a folder with technique.toml)", short_path(dir));
-        for (const fs::path& folder : folders) append(techniques, load_technique(folder, structures), "techniques");
-    }
-    return techniques;
-}
-
-const Technique& find_technique(std::span<const Technique> techniques, const std::string& id)
-{
-    const auto found = std::ranges::find(techniques, id, &Technique::id);
-    if (found != techniques.end()) return *found;
-    std::vector<std::string> known;
-    std::ranges::transform(techniques, std::back_inserter(known), &Technique::id);
-    throw SpecError(unknown_name("technique", id, known));
 }
 
 } // namespace ssrlab

@@ -1,7 +1,6 @@
 // A technique is a folder: technique.toml says what it is, trace.glsl how it traces.
 #pragma once
 
-#include "trace/reprojection.h"
 #include "trace/structure.h"
 #include "trace/surface.h"
 
@@ -44,19 +43,6 @@ std::span<const Limit> known_limits();
 
 /// Reads folder/technique.toml; throws SpecError with file and line. `known`: the structures that it may name.
 Technique load_technique(const std::filesystem::path& folder, std::span<const Structure> known = {});
-
-/// The in-tree techniques, then those in $SSRLAB_TECHNIQUES (colon-separated) and `extra_dirs`. Each directory is either one
-/// technique's folder or holds such folders. Throws SpecError when two share an id or a directory does not exist.
-std::vector<Technique> list_techniques(std::span<const std::filesystem::path> extra_dirs);
-/// The reprojection strategies in the same directories, likewise.
-std::vector<Reprojection> list_reprojections(std::span<const std::filesystem::path> extra_dirs);
-/// The surface models of the project, then those in the same directories.
-std::vector<Surface> list_surfaces(std::span<const std::filesystem::path> extra_dirs);
-/// The structures in the same directories, also in the folders of techniques.
-std::vector<Structure> list_structures(std::span<const std::filesystem::path> extra_dirs);
-
-/// The technique of that id; throws SpecError listing the known ones.
-const Technique& find_technique(std::span<const Technique> techniques, const std::string& id);
 
 ParameterValues  default_values(const Technique& technique);
 const Parameter& find_parameter(const Technique& technique, const std::string& name, const std::string& place);

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/gbuffer_image.h"
+#include "core/truth_class.h"
 #include "truth/scene_bvh.h"
-#include "truth/truth_class.h"
 
 #include <span>
 #include <vector>

@@ -11,9 +11,9 @@
 #pragma once
 
 #include "core/gbuffer_image.h"
+#include "core/truth_class.h"
 #include "scene/sequence.h"
 #include "truth/scene_bvh.h"
-#include "truth/truth_class.h"
 
 namespace ssrlab {
 

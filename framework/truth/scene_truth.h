@@ -19,9 +19,9 @@
 
 #include "core/gbuffer_image.h"
 #include "core/trace_result.h"
+#include "core/truth_class.h"
 #include "truth/reflected_rays.h"
 #include "truth/scene_bvh.h"
-#include "truth/truth_class.h"
 
 #include <optional>
 #include <string>

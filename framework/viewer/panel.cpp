@@ -97,7 +97,7 @@ void widget(Session& session, const Parameter& parameter, double value)
 
 void technique_widgets(Session& session)
 {
-    const auto& techniques = session.techniques;
+    const auto& techniques = session.stage.catalogue.techniques;
     if (const auto chosen =
             combo("technique", session.technique->id, techniques.size(), [&](size_t i) { return techniques[i].id; }))
         set_value(session, "technique", techniques[*chosen].id);
@@ -108,7 +108,7 @@ void technique_widgets(Session& session)
 
 void setting_widgets(Session& session, std::string_view table)
 {
-    for (const Setting& setting : all_settings())
+    for (const Setting& setting : session.settings)
         if (setting.table == table) widget(session, setting, setting.get(session.choice.settings));
 }
 

@@ -32,7 +32,7 @@ std::string ray_command(const Session& session, glm::ivec2 pixel)
         if (value != parameter.default_value)
             text += fmt::format(" -p {}={}", parameter.name, format_parameter(parameter, value));
     }
-    for (const Setting& setting : all_settings()) {
+    for (const Setting& setting : session.settings) {
         const double value = setting.get(session.choice.settings);
         if (setting.table == "trace" && value != setting.default_value)
             text += fmt::format(" -p {}={}", setting.name, format_parameter(setting, value));

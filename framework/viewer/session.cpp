@@ -31,10 +31,7 @@ bool wants_true_picture(const Session& session) { return session.show == "truth"
 void draw_view(Session& session)
 {
     Stage& stage = session.stage;
-    if (session.camera_moved) {
-        stage.view    = camera_to_view(session.camera, stage.view.size_px);
-        stage.gbuffer = render_gbuffer(stage.gpu, stage.uploaded, stage.view);
-    }
+    if (session.camera_moved) show(stage, camera_to_view(session.camera, stage.view.size_px));
     session.stale.view = false;
 }
 
@@ -42,12 +39,14 @@ void trace(Session& session)
 {
     Stage& stage = session.stage;
     session.times.clear();
-    session.frame = prepare_frame(stage.gpu, make_frame_buffers(stage.gpu, stage.gbuffer), *session.technique,
-                                  session.choice.values, session.choice.settings);
+    const Choice&         choice  = session.choice;
+    const LabPtr          lab     = make_lab(stage, *session.technique, choice.values, choice.settings.trace);
+    const FrameBuffersPtr buffers = make_frame_buffers(stage);
+    session.frame = make_frame(stage.gpu, lab, buffers, plan_frame(stage, lab, buffers, choice.settings));
     run_frame(stage.gpu, *session.frame); // the driver compiles
     session.times.push_back(run_frame(stage.gpu, *session.frame));
     session.shaded         = read_shaded(stage.gpu, *session.frame);
-    session.counted        = count_frame(stage.gpu, *session.frame);
+    session.counted        = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
     session.stale.trace    = false;
     session.stale.measures = session.stale.shown = true;
 }
@@ -146,13 +145,15 @@ bool step(Session& session)
 
 std::unique_ptr<Session> open_session(const CommonOptions& common, const PictureOptions& picture)
 {
-    auto     opened    = std::make_unique<Session>();
-    Session& session   = *opened;
-    session.picture    = picture;
-    session.techniques = list_techniques(common.technique_dirs);
-    session.technique  = &find_technique(session.techniques, picture.technique);
-    session.choice     = parse_choice(*session.technique, picture.parameters);
-    session.stage      = prepare_stage(common, picture);
+    auto     opened           = std::make_unique<Session>();
+    Session& session          = *opened;
+    session.picture           = picture;
+    const Catalogue catalogue = load_catalogue(common.technique_dirs);
+    session.choice =
+        parse_choice(catalogue, find_technique(catalogue.techniques, picture.technique), picture.parameters);
+    session.settings  = all_settings(catalogue);
+    session.stage     = open_stage(common, catalogue, picture);
+    session.technique = &find_technique(session.stage.catalogue.techniques, picture.technique);
     if (!camera_is_free(session)) return opened;
     session.bvh     = std::make_unique<SceneBvh>(session.stage.scene);
     session.camera  = camera_at(session.stage.scene, picture.view, picture.at);
@@ -172,7 +173,7 @@ void set_value(Session& session, const std::string& name, const std::string& tex
     };
     session.problem.clear();
     if (name == "technique") {
-        session.technique     = &find_technique(session.techniques, text);
+        session.technique     = &find_technique(session.stage.catalogue.techniques, text);
         session.choice.values = default_values(*session.technique);
         session.stale.trace   = true;
         return;
@@ -190,7 +191,7 @@ void set_value(Session& session, const std::string& name, const std::string& tex
         return;
     }
     const TraceSettings before = session.choice.settings.trace;
-    set_choice(*session.technique, session.choice, place);
+    set_choice(session.stage.catalogue, *session.technique, session.choice, place);
     session.stale.trace      = true;
     const TraceSettings& now = session.choice.settings.trace;
     if (before != now) session.stale.truth = true;

@@ -1,9 +1,10 @@
 // What the viewer shows and what was measured of it, without a window: settings in, pictures and numbers out.
 #pragma once
 
-#include "app/stage.h"
 #include "compare/display.h"
 #include "compare/measures.h"
+#include "harness/choice.h"
+#include "harness/experiment.h"
 #include "truth/scene_bvh.h"
 
 #include <array>
@@ -22,8 +23,8 @@ struct Stale {
 };
 
 struct Session {
-    PictureOptions            picture; // as the command line names it
-    std::vector<Technique>    techniques;
+    PictureOptions            picture;  // as the command line names it
+    std::vector<Setting>      settings; // of the stage's catalogue
     Stage                     stage;
     std::unique_ptr<SceneBvh> bvh; // empty: a frame of another renderer
 
@@ -38,7 +39,7 @@ struct Session {
     Stale            stale;
 
     // What work() made of them.
-    PreparedFramePtr           frame;
+    FramePtr                   frame;
     std::vector<FrameTimes>    times; // of this frame, one after another
     GBufferImage               gbuffer;
     Image                      shaded, true_picture;

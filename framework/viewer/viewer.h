@@ -1,7 +1,7 @@
 // ssrlab view: a window with one scene, in which everything that decides the picture can be changed.
 #pragma once
 
-#include "app/commands.h"
+#include "harness/choice.h"
 
 namespace ssrlab {
 

@@ -17,7 +17,7 @@
 #define CONSTANT_PASSES 64        // the passes' parameters, in the order of frame/passes/all_passes.cpp
 #define CONSTANT_REPROJECTION 256 // those of the reprojection strategy
 
-// What became of a pixel's history (framework/frame/history.h, HistoryCounts).
+// What became of a pixel's history (framework/frame/frame_history.h, HistoryCounts).
 #define HISTORY_ACCUMULATED 0
 #define HISTORY_UNSEEN 1
 #define HISTORY_OFF_IMAGE 2

@@ -1,4 +1,4 @@
-// The frame before this one as its history keeps it, and how surfaces moved since (framework/frame/frame_history.h). After view.glsl and
+// The frame before this one as its history keeps it, and how surfaces moved since (framework/frame/history_images.h). After view.glsl and
 // reflecting.glsl. Positions on the image are without jitter; _pvs is the previous frame's view space.
 
 layout(set = 0, binding = 40, scalar) uniform PreviousView

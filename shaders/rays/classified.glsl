@@ -7,7 +7,7 @@ layout(constant_id = CONSTANT_EVERY_SURFACE) const int every_surface = 0; // tra
 layout(constant_id = CONSTANT_TRACE_BLOCK_PX) const int block_px = 1;     // one pixel of each block that reflects
 
 layout(set = 0, binding = 11, scalar) writeonly buffer TileMasks { uvec2 tile_masks[]; }; // bit x + 8 y of a tile, in x and y
-layout(set = 0, binding = 6, scalar) buffer PictureStatistics // struct GBufferCounts of frame/frame_plan.h
+layout(set = 0, binding = 6, scalar) buffer PictureStatistics // struct GBufferCounts of trace/counts.h
 {
     uint surface_pixels;
     uint reflecting_pixels;

@@ -7,7 +7,7 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 
 layout(local_size_x = RAYS_PER_GROUP) in;
-layout(set = 0, binding = 10, scalar) buffer TraceStatistics // struct TraceCounts of frame/frame_plan.h
+layout(set = 0, binding = 10, scalar) buffer TraceStatistics // struct TraceCounts of trace/counts.h
 {
     uint rays;
     uint hits;

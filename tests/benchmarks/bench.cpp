@@ -73,15 +73,15 @@ template <typename Record> double Bench::measure(benchmark::State& state, Pictur
 
 Bench::Bench(const std::string& device, const std::string& tracer)
     : gpu_(open_gpu({.device = device})),
-      techniques_(list_techniques(std::vector<fs::path>{data_root() / "techniques/rivals"})),
-      tracer_{find_technique(techniques_, tracer).id, {}}
+      catalogue_(load_catalogue(std::vector<fs::path>{data_root() / "techniques/rivals"})),
+      tracer_{find_technique(catalogue_.techniques, tracer).id, {}}
 {
 }
 
 void Bench::gbuffer(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
 {
     Picture& p = picture(scene, size_px);
-    measure_calls(state, [&] { return rerender_gbuffer(gpu_, *p.gbuffer); });
+    measure_calls(state, [&] { return redraw_gbuffer(gpu_, *p.drawing); });
 }
 
 void Bench::copy(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
@@ -92,34 +92,37 @@ void Bench::copy(benchmark::State& state, const std::string& scene, glm::ivec2 s
 
 void Bench::pyramid(benchmark::State& state, const std::string& scene, glm::ivec2 size_px, const std::string& kind)
 {
-    Picture&       p     = picture(scene, size_px);
-    PreparedFrame& frame = frame_of(p, {tracer_.technique, {{"depth_pyramid.kind", kind}}});
-    measure(state, p, [&](const auto& commands) { record_depth_structures(commands, frame.structures); });
+    Picture&    p     = picture(scene, size_px);
+    ReadyFrame& frame = frame_of(p, {tracer_.technique, {{"depth_pyramid.kind", kind}}});
+    measure(state, p, [&](const auto& commands) { record_depth_structures(commands, *frame.inputs.lab); });
 }
 
 void Bench::rays(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
 {
-    Picture&       p     = picture(scene, size_px);
-    PreparedFrame& frame = frame_of(p, tracer_);
-    measure(state, p, [&](const auto& commands) { record_rays(commands, frame.trace, *p.buffers); });
+    Picture&    p     = picture(scene, size_px);
+    ReadyFrame& frame = frame_of(p, tracer_);
+    measure(state, p, [&](const auto& commands) { record_rays(commands, frame.inputs.trace, *p.gbuffer); });
 }
 
 void Bench::trace(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
 {
-    Picture&       p     = picture(scene, size_px);
-    PreparedFrame& frame = frame_of(p, tracer_);
-    prepare_trace(*p.buffers, frame);
-    measure(state, p, [&](const auto& commands) { record_technique(commands, frame.trace.technique, *frame.rays); });
+    Picture&    p     = picture(scene, size_px);
+    ReadyFrame& frame = frame_of(p, tracer_);
+    prepare_trace(frame);
+    measure(state, p, [&](const auto& commands) {
+        record_technique(commands, frame.inputs.trace.technique, *frame.inputs.rays);
+    });
 }
 
 void Bench::shade(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
 {
-    Picture&       p     = picture(scene, size_px);
-    PreparedFrame& frame = frame_of(p, tracer_);
-    prepare_trace(*p.buffers, frame);
-    submit(gpu_, [&](const auto& commands) { record_technique(commands, frame.trace.technique, *frame.rays); });
-    const RecordFunction hit_colour = hit_colour_pass().prepare(gpu_, frame),
-                         composite  = composite_pass().prepare(gpu_, frame);
+    Picture&    p     = picture(scene, size_px);
+    ReadyFrame& frame = frame_of(p, tracer_);
+    prepare_trace(frame);
+    submit(gpu_,
+           [&](const auto& commands) { record_technique(commands, frame.inputs.trace.technique, *frame.inputs.rays); });
+    const auto           prepared = [&](const Pass& pass) { return pass.prepare(gpu_, {frame.inputs, pass, pass.id}); };
+    const RecordFunction hit_colour = prepared(hit_colour_pass()), composite = prepared(composite_pass());
     measure(state, p, [&](const auto& commands) {
         hit_colour(commands);
         barrier(commands);
@@ -132,14 +135,14 @@ void Bench::scattered(benchmark::State& state, const std::string& scene, glm::iv
     Picture& p = picture(scene, size_px);
     if (!p.scattered) p.scattered = scatter(p);
     Scattered& s = *p.scattered;
-    prepare_trace(*s.buffers, *s.frame);
+    prepare_trace(*s.frame);
     measure(state, p, [&](const auto& commands) {
         if (compacted)
-            record_technique(commands, s.frame->trace.technique, *s.frame->rays);
+            record_technique(commands, s.frame->inputs.trace.technique, *s.frame->inputs.rays);
         else
             record_technique(commands, s.over_every_pixel.technique, s.every_pixel);
     });
-    state.counters["rays"] = static_cast<double>(s.frame->rays->capacity);
+    state.counters["rays"] = static_cast<double>(s.frame->inputs.rays->capacity);
 }
 
 void Bench::screen_truth(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
@@ -176,8 +179,9 @@ Bench::Picture& Bench::picture(const std::string& scene, glm::ivec2 size_px)
         loaded.gpu          = upload_scene(gpu_, loaded.scene);
         loaded.camera       = find_camera(loaded.scene, viewed ? scene.substr(colon + 1) : "default");
     }
-    p.gbuffer = render_gbuffer(gpu_, scenes_[scene].gpu, camera_to_view(scenes_[scene].camera, size_px));
-    p.buffers = make_frame_buffers(gpu_, p.gbuffer);
+    p.drawing = draw_gbuffer(gpu_, scenes_[scene].gpu, camera_to_view(scenes_[scene].camera, size_px));
+    p.gbuffer = p.drawing->gbuffer;
+    p.buffers = make_frame_buffers(gpu_, p.drawing);
     for (GpuImage* image : {&p.depth, &p.copy})
         *image = make_image(
             gpu_, {.format = vk::Format::eR32Sfloat, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
@@ -191,26 +195,27 @@ Bench::Picture& Bench::picture(const std::string& scene, glm::ivec2 size_px)
 }
 
 /// Compiled, and run once so that the driver has compiled it, too.
-PreparedFrame& Bench::frame_of(Picture& p, const Contender& c)
+ReadyFrame& Bench::frame_of(Picture& p, const Contender& c)
 {
-    PreparedFramePtr& frame = p.frames[c];
+    FramePtr& frame = p.frames[c];
     if (!frame) {
-        const Technique& technique = find_technique(techniques_, c.technique);
+        const Technique& technique = find_technique(catalogue_.techniques, c.technique);
         ParameterValues  values    = default_values(technique);
         for (const auto& [name, text] : c.values)
             values.at(name) = parse_parameter(find_parameter(technique, name, "benchmark"), text, "benchmark");
-        frame = prepare_frame(gpu_, p.buffers, technique, values, bench_settings);
+        const LabPtr lab = make_lab(gpu_, catalogue_, p.gbuffer, technique, values, bench_settings.trace);
+        frame = make_frame(gpu_, lab, p.buffers, plan_frame(gpu_, catalogue_, lab, p.buffers, bench_settings));
         run_frame(gpu_, *frame);
     }
     return *frame;
 }
 
 /// Rays and structures in place: another benchmark may have used the buffers.
-void Bench::prepare_trace(const FrameBuffers& buffers, PreparedFrame& frame)
+void Bench::prepare_trace(const ReadyFrame& frame)
 {
     submit(gpu_, [&](const auto& commands) {
-        record_rays(commands, frame.trace, buffers);
-        record_depth_structures(commands, frame.structures);
+        record_rays(commands, frame.inputs.trace, *frame.inputs.lab->gbuffer);
+        record_depth_structures(commands, *frame.inputs.lab);
     });
 }
 

@@ -1,8 +1,7 @@
 // The passes of a frame one by one, on pictures that are made once and kept: interleaved repetitions return to them.
 #pragma once
 
-#include "scene/scene.h"
-#include "trace/frame_passes.h"
+#include "frame/frame_inputs.h"
 
 #include <benchmark/benchmark.h>
 
@@ -46,20 +45,21 @@ public:
 
 private:
     struct Scattered {
-        GBufferPtr       gbuffer;
-        FrameBuffersPtr  buffers;
-        PreparedFramePtr frame;
-        RayBuffers       every_pixel; // rays of length 0 where nothing reflects
-        TracePasses      over_every_pixel;
+        GBufferPtr      gbuffer;
+        FrameBuffersPtr buffers;
+        FramePtr        frame;
+        RayBuffers      every_pixel; // rays of length 0 where nothing reflects
+        TracePasses     over_every_pixel;
     };
     struct Picture {
-        GBufferPtr                            gbuffer;
-        FrameBuffersPtr                       buffers;
-        GpuImage                              depth, copy; // R32F
-        ComputePass                           copy_pass;
-        Timestamps                            timestamps;
-        std::map<Contender, PreparedFramePtr> frames;
-        std::optional<Scattered>              scattered;
+        DrawingPtr                    drawing;
+        GBufferPtr                    gbuffer;
+        FrameBuffersPtr               buffers;
+        GpuImage                      depth, copy; // R32F
+        ComputePass                   copy_pass;
+        Timestamps                    timestamps;
+        std::map<Contender, FramePtr> frames;
+        std::optional<Scattered>      scattered;
     };
     struct LoadedScene {
         Scene       scene;
@@ -68,13 +68,13 @@ private:
     };
 
     Picture&                          picture(const std::string& scene, glm::ivec2 size_px);
-    PreparedFrame&                    frame_of(Picture& picture, const Contender& contender);
+    ReadyFrame&                       frame_of(Picture& picture, const Contender& contender);
     Scattered                         scatter(Picture& picture);
-    void                              prepare_trace(const FrameBuffers& buffers, PreparedFrame& frame);
+    void                              prepare_trace(const ReadyFrame& frame);
     template <typename Record> double measure(benchmark::State& state, Picture& picture, const Record& record);
 
     Gpu                                gpu_;
-    std::vector<Technique>             techniques_;
+    Catalogue                          catalogue_;
     Contender                          tracer_;
     std::map<std::string, LoadedScene> scenes_;
     std::map<std::string, Picture>     pictures_;

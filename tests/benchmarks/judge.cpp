@@ -34,16 +34,16 @@ size_t count_different(const TraceResult& a, const TraceResult& b, bool compare_
 void Bench::judge(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
 {
     Picture&          p      = picture(scene, size_px);
-    const TraceResult result = count_frame(gpu_, frame_of(p, tracer_));
-    const TraceResult walk   = count_frame(gpu_, frame_of(p, {"dda", {}}));
+    const TraceResult result = trace_gbuffer(gpu_, *make_tracer(gpu_, frame_of(p, tracer_).inputs.lab));
+    const TraceResult walk   = trace_gbuffer(gpu_, *make_tracer(gpu_, frame_of(p, {"dda", {}}).inputs.lab));
     const double      rays   = static_cast<double>(count_traced(result));
     for (auto _ : state) state.SetIterationTime(1e-9);
     state.counters["rays"]              = rays;
     state.counters["differs_from_walk"] = static_cast<double>(count_different(result, walk, true));
     if (size_px.x > largest_judged_px) return;
     const GBufferImage gbuffer = read_gbuffer(gpu_, *p.gbuffer);
-    const TraceResult  truth   = cached_screen_truth(
-           truth_cache_dir(data_root() / "results/bench"), gbuffer, bench_settings.trace);
+    const TraceResult  truth =
+        cached_screen_truth(truth_cache_dir(data_root() / "results/bench"), gbuffer, bench_settings.trace);
     const MeasureValues measures = compare_to_screen_truth(result, truth);
     state.counters["differs_from_truth"] =
         static_cast<double>(count_different(result, truth, false)) / std::max(rays, 1.0);

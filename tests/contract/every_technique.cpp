@@ -93,8 +93,8 @@ std::string broken(const Picture& picture, const Technique& technique, const Tra
 void expect_contract(const Case& c, const Picture& picture, const Technique& technique, const ParameterValues& values,
                      const TraceSettings& settings)
 {
-    const auto        frame  = prepare_frame(device(), picture.buffers, technique, values, {settings});
-    const TraceResult result = count_frame(device(), *frame), again = count_frame(device(), *frame);
+    const auto        frame  = prepared_frame(picture.buffers, technique, values, {settings});
+    const TraceResult result = counted(*frame), again = counted(*frame);
     const std::string repeat = repeat_command(c.scene, "default", c.size_px, technique, values, settings);
     size_t            wrong  = 0;
     for (size_t i = 0; i < result.status.size(); ++i) {
@@ -119,7 +119,7 @@ TEST_P(EveryTechnique, HoldsTheContract)
 {
     const Case&   c       = GetParam();
     const Picture picture = make_picture(c.scene, "default", c.size_px);
-    for (const Technique& t : list_techniques({}))
+    for (const Technique& t : catalogue().techniques)
         for (const TraceSettings& settings : settings_for(c.size_px))
             for (const ParameterValues& values : values_for(t, c.size_px))
                 if (missing_feature(device(), t, values).empty()) expect_contract(c, picture, t, values, settings);
@@ -131,7 +131,7 @@ TEST_P(EveryTechnique, SaysWhenTheBudgetIsSpent)
     const Case&         c       = GetParam();
     const Picture       picture = make_picture(c.scene, "default", c.size_px);
     const TraceSettings settings{.thickness_m = 0.1, .max_distance_m = infinity};
-    for (const Technique& t : list_techniques({})) {
+    for (const Technique& t : catalogue().techniques) {
         if (std::ranges::find(t.parameters, "max_steps", &Parameter::name) == t.parameters.end()) continue;
         const ParameterValues values = values_of(t, {{"max_steps", 1}});
         const TraceResult full = trace(picture, t, values_of(t), settings), cut = trace(picture, t, values, settings);

@@ -4,7 +4,7 @@
 #include "core/pixel_index.h"
 #include "gpu/device.h"
 #include "scene/scene.h"
-#include "trace/ray_list.h"
+#include "trace/lab.h"
 #include "truth/pixel_surface.h"
 #include "truth/screen_truth.h"
 #include "unit/truth_gbuffers.h"
@@ -98,8 +98,8 @@ bool same(TraceStatus status, glm::ivec2 hit_pixel, const TraceResult& walk, siz
 std::vector<ScreenRay> rays_of_the_shader(const Picture& picture, const TraceSettings& settings)
 {
     std::vector<ScreenRay> rays(picture.image.depth.size());
-    const Technique&       dda = technique("dda");
-    const auto tracer          = make_ray_tracer(device(), picture.gbuffer, dda, values_of(dda), settings, rays.size());
+    const Technique&       dda    = technique("dda");
+    const auto             tracer = tracer_on(picture.gbuffer, dda, values_of(dda), settings, rays.size());
     for (const RayInput& ray : set_up_rays(device(), *tracer)) {
         const auto i            = pixel_index(ray.pixel, picture.view.size_px);
         rays[i].traced          = true;
@@ -205,7 +205,7 @@ TEST_P(ExactTechniques, EqualThePixelWalkAndTheScreenTruth)
     const TraceResult truth = screen_truth(picture.image, settings);
     std::string       first;
 
-    for (const Technique& t : list_techniques({})) {
+    for (const Technique& t : catalogue().techniques) {
         if (!t.exact || t.id == "dda") continue;
         for (const ParameterValues& values : variants(t, c))
             EXPECT_EQ(count_differences(trace(picture, t, values, settings), walk, bit_equal_t, first), 0U)
@@ -221,9 +221,9 @@ TEST_P(ExactTechniques, EqualThePixelWalkAndTheScreenTruth)
 }
 
 struct Held {
-    std::string_view surface;
-    Behind           behind;
-    int              layers = 1;
+    std::string surface;
+    Behind      behind;
+    int         layers = 1;
 };
 const Held every_model[] = {{"box", Behind::pass},           {"box", Behind::stop},
                             {"box_two_sided", Behind::hit},  {"box_infinite", Behind::stop},
@@ -265,7 +265,7 @@ TEST_P(ExactTechniquesOnModels, EqualThePixelWalkWhateverAPixelHolds)
         if (static_cast<int>(picture.image.layers.size()) + 1 < held.layers)
             picture.image = read_gbuffer(device(), *picture.gbuffer); // with the layers that the trace has drawn
         std::string first;
-        for (const Technique& t : list_techniques({})) {
+        for (const Technique& t : catalogue().techniques) {
             if (!t.exact || t.id == "dda") continue;
             const ParameterValues values = values_of(t);
             EXPECT_EQ(count_differences(trace(picture, t, values, settings), walk, bit_equal_t, first), 0U)
@@ -305,7 +305,7 @@ TEST(TwoSidedBoxes, AreMetOnBothSidesOfTheirDepth)
     for (int y = 0; y < 8; ++y) set_pixel(image, 40, y, pole_m, {0, 0, 1}, 0);
     const GBufferPtr gbuffer       = upload_gbuffer(device(), image);
     constexpr double distances_m[] = {0.2, 3.9, 4.1, 5.9, 6.1, 10.9, 11.1};
-    for (const Technique& t : list_techniques({})) {
+    for (const Technique& t : catalogue().techniques) {
         if (!t.exact) continue;
         for (const double thickness_m : {1.0, 6.0}) {
             std::vector<RayInput> rays;
@@ -313,8 +313,8 @@ TEST(TwoSidedBoxes, AreMetOnBothSidesOfTheirDepth)
                 rays.push_back({.origin_px_depth = {5.5, 3.5, distance_to_depth(image.view, distance_m)},
                                 .delta_px_depth  = {50, 0, 0},
                                 .pixel           = {5, 3}});
-            const auto tracer = make_ray_tracer(device(), gbuffer, t, values_of(t),
-                                                {.thickness_m = thickness_m, .surface = "box_two_sided"}, rays.size());
+            const auto tracer = tracer_on(gbuffer, t, values_of(t),
+                                          {.thickness_m = thickness_m, .surface = "box_two_sided"}, rays.size());
             const auto found  = trace_rays(device(), *tracer, rays);
             for (size_t i = 0; i < rays.size(); ++i) {
                 const bool meets = std::abs(distances_m[i] - pole_m) < thickness_m;
@@ -334,7 +334,7 @@ TEST(FrontPackets, ChangeNoAnswerOfATraversalThatStopsAtTheFirstOccluder)
 {
     namespace fs                = std::filesystem;
     const fs::path   folders[]  = {data_root() / "techniques/rivals"};
-    const auto       techniques = list_techniques(folders);
+    const auto       techniques = load_catalogue(folders).techniques;
     const Technique& stops      = find_technique(techniques, "first_occluder");
     Technique        behind     = stops;
     behind.structures           = technique("hiz_packets").structures;

@@ -1,6 +1,6 @@
 #include "targets.h"
 
-#include "trace/reprojection.h"
+#include "trace/reprojection_strategy.h"
 
 namespace ssrlab::fuzz {
 

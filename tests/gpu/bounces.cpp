@@ -9,8 +9,8 @@
 namespace ssrlab::test {
 namespace {
 
-constexpr double        side_m = 2, back_m = 10;
-constexpr TraceSettings settings{.thickness_m = 0.5, .max_distance_m = 100};
+constexpr double    side_m = 2, back_m = 10;
+const TraceSettings settings{.thickness_m = 0.5, .max_distance_m = 100};
 
 /// Between mirrors at x = -2 and x = 2 the camera looks at a dull back wall 10 m away.
 GBufferImage facing_mirrors(glm::ivec2 size_px)
@@ -52,20 +52,20 @@ ParameterValues bouncing(BounceMode mode, int bounces, const ParameterValues& ch
     return passes;
 }
 
-PreparedFramePtr prepare(const Picture& picture, const ParameterValues& passes, const char* id = "hiz")
+FramePtr prepare(const Picture& picture, const ParameterValues& passes, const char* id = "hiz")
 {
-    return prepare_frame(device(), picture.buffers, technique(id), values_of(technique(id)), {settings, passes});
+    return prepared_frame(picture.buffers, technique(id), values_of(technique(id)), {settings, "plane", passes});
 }
 
-std::vector<float> shaded(PreparedFrame& frame)
+std::vector<float> shaded(ReadyFrame& frame)
 {
     run_frame(device(), frame);
     return read_shaded(device(), frame).values;
 }
 
-const PlannedPass& bounces_of(const PreparedFrame& frame)
+const PlannedPass& bounces_of(const ReadyFrame& frame)
 {
-    const auto& plan = plan_of(frame);
+    const auto& plan = plan_of(frame).passes;
     return *std::ranges::find_if(plan, [](const PlannedPass& row) { return row.pass->id == "bounces"; });
 }
 
@@ -203,9 +203,9 @@ TEST(Bounces, DoNotComeFromWhatStandsBeforeAHit)
     layered.layers        = 2;
     const auto prepared   = [&](const ParameterValues& passes) {
         const Technique& t = technique("dda");
-        return prepare_frame(device(), picture.buffers, t, values_of(t), {layered, passes});
+        return prepared_frame(picture.buffers, t, values_of(t), {layered, "plane", passes});
     };
-    const TraceResult     traced = count_frame(device(), *prepared(report_passes()));
+    const TraceResult     traced = counted(*prepared(report_passes()));
     const ParameterValues no_fades{chosen(ViewerFade::off), chosen(EdgeFade::off)};
     size_t                hidden = 0;
     for (size_t i = 0; i < traced.status.size(); ++i)

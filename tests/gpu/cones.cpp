@@ -273,7 +273,7 @@ TEST(Cones, EqualTheirHostTwin)
                                        {"cone_scale", steps == 1 ? 1 : 2},
                                        {"environment_fallback", 0}};
                 const auto        frame  = frame_with(picture, passes);
-                const TraceResult traced = count_frame(device(), *frame);
+                const TraceResult traced = counted(*frame);
                 run_frame(device(), *frame);
                 const Reflection found = read_colours(picture.buffers->reflection);
                 const Reflection cells = read_colours(picture.buffers->cone->cells);
@@ -342,9 +342,8 @@ TEST(Cones, SeeNothingOfDeeperLayers)
                                                      {"min_direction_cosine", 0.98},
                                                      {"depth_step_fade_m", 1}})
         settings.passes.at(name) = value;
-    const auto frame =
-        prepare_frame(device(), picture.buffers, technique("dda"), values_of(technique("dda")), settings);
-    const TraceResult traced = count_frame(device(), *frame);
+    const auto        frame  = prepared_frame(picture.buffers, technique("dda"), values_of(technique("dda")), settings);
+    const TraceResult traced = counted(*frame);
     run_frame(device(), *frame);
     const Reflection found  = read_colours(picture.buffers->reflection);
     size_t           deeper = 0;

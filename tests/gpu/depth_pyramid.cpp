@@ -1,8 +1,8 @@
 // The depth pyramid against brute force: every cell of every level, at sizes that halving does not divide.
 #include "core/pixel_index.h"
+#include "frame/frame_inputs.h"
 #include "gpu/device.h"
 #include "shared.h"
-#include "trace/frame_passes.h"
 #include "truth/screen_truth.h"
 #include "unit/truth_gbuffers.h"
 
@@ -35,10 +35,10 @@ Pyramid build(const Picture& picture, const TraceSettings& settings, double kind
 {
     const Technique& hiz = technique("hiz");
     const auto       frame =
-        prepare_frame(device(), picture.buffers, hiz,
-                      values_of(hiz, {{"depth_pyramid.kind", kind}, {"depth_pyramid.top_level", 14}}), {settings});
+        prepared_frame(picture.buffers, hiz,
+                       values_of(hiz, {{"depth_pyramid.kind", kind}, {"depth_pyramid.top_level", 14}}), {settings});
     submit(device(),
-           [&](const vk::raii::CommandBuffer& commands) { record_depth_structures(commands, frame->structures); });
+           [&](const vk::raii::CommandBuffer& commands) { record_depth_structures(commands, *frame->inputs.lab); });
     const Buffer& cells = picture.buffers->gbuffer->depth.cells;
     return {picture.view.size_px, download_as<glm::uvec2>(device(), cells, cells.bytes / sizeof(glm::uvec2))};
 }

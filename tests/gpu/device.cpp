@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "core/pixel_index.h"
-#include "frame/gbuffer.h"
+#include "frame/frame_inputs.h"
 #include "gpu/vulkan.h"
 
 #include <cmath>
@@ -20,11 +20,13 @@ int most_layers() { return device().impl->limits.maxPerStageDescriptorStorageIma
 
 bool draws_exactly() { return device().info.name.find("SwiftShader") == std::string::npos; }
 
-const Technique& technique(const std::string& id)
+const Catalogue& catalogue()
 {
-    static const std::vector<Technique> techniques = list_techniques({});
-    return find_technique(techniques, id);
+    static const Catalogue found = load_catalogue();
+    return found;
 }
+
+const Technique& technique(const std::string& id) { return find_technique(catalogue().techniques, id); }
 
 ParameterValues values_of(const Technique& technique, const ParameterValues& changed)
 {
@@ -58,36 +60,69 @@ const LoadedScene& load(const std::string& name)
 
 namespace {
 
-Picture make_picture(GBufferPtr gbuffer)
+Picture make_picture(GBufferPtr gbuffer, const DrawingPtr& drawing)
 {
     Picture picture;
     picture.view    = gbuffer->view;
+    picture.drawing = drawing;
     picture.gbuffer = std::move(gbuffer);
     picture.image   = read_gbuffer(device(), *picture.gbuffer);
-    picture.buffers = make_frame_buffers(device(), picture.gbuffer);
+    picture.buffers = make_frame_buffers(device(), picture.gbuffer, drawing);
     return picture;
 }
+
+Picture make_picture(const DrawingPtr& drawing) { return make_picture(drawing->gbuffer, drawing); }
 
 } // namespace
 
 Picture make_picture(const std::string& scene, const std::string& view, glm::ivec2 size_px)
 {
     const LoadedScene& loaded = load(scene);
-    return make_picture(render_gbuffer(device(), loaded.gpu, camera_to_view(find_camera(loaded.scene, view), size_px)));
+    return make_picture(draw_gbuffer(device(), loaded.gpu, camera_to_view(find_camera(loaded.scene, view), size_px)));
 }
 
 Picture make_picture(const Scene& scene, const Camera& camera, glm::ivec2 size_px)
 {
-    return make_picture(render_gbuffer(device(), upload_scene(device(), scene), camera_to_view(camera, size_px)));
+    return make_picture(draw_gbuffer(device(), upload_scene(device(), scene), camera_to_view(camera, size_px)));
 }
 
-Picture make_picture(const GBufferImage& gbuffer) { return make_picture(upload_gbuffer(device(), gbuffer)); }
+Picture make_picture(const GBufferImage& gbuffer) { return make_picture(upload_gbuffer(device(), gbuffer), nullptr); }
+
+FramePtr prepared_frame(const FrameBuffersPtr& buffers, const Technique& technique, const ParameterValues& values,
+                        const FrameSettings& settings, const FrameHistoryPtr& history)
+{
+    if (buffers->drawing) draw_layers(device(), *buffers->drawing, settings.trace.layers);
+    const LabPtr lab  = make_lab(device(), catalogue(), buffers->gbuffer, technique, values, settings.trace);
+    const auto   plan = plan_frame(device(), catalogue(), lab, buffers, settings, history);
+    return make_frame(device(), lab, buffers, plan, history);
+}
+
+const FramePlan& plan_of(const ReadyFrame& frame) { return frame.inputs.plan; }
+
+TraceResult counted(const ReadyFrame& frame, Precision precision)
+{
+    return trace_gbuffer(device(), *make_tracer(device(), frame.inputs.lab, precision));
+}
+
+LabPtr lab_on_picture(const Picture& picture, const Technique& technique, const ParameterValues& values,
+                      const TraceSettings& settings)
+{
+    if (picture.drawing) draw_layers(device(), *picture.drawing, settings.layers);
+    return make_lab(device(), catalogue(), picture.gbuffer, technique, values, settings);
+}
+
+TracerPtr tracer_on(const GBufferPtr& gbuffer, const Technique& technique, const ParameterValues& values,
+                    const TraceSettings& settings, size_t capacity, Precision precision)
+{
+    return make_tracer(device(), make_lab(device(), catalogue(), gbuffer, technique, values, settings), capacity,
+                       precision);
+}
 
 TraceResult trace(const Picture& picture, const Technique& technique, const ParameterValues& values,
                   const TraceSettings& settings, Precision precision)
 {
-    const auto frame = prepare_frame(device(), picture.buffers, technique, values, {settings});
-    return count_frame(device(), *frame, precision);
+    const LabPtr lab = lab_on_picture(picture, technique, values, settings);
+    return trace_gbuffer(device(), *make_tracer(device(), lab, precision));
 }
 
 std::string missing_for_exact()

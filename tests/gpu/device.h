@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/error.h"
-#include "frame/frame.h"
+#include "frame/stage.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,8 @@ int most_layers();
 /// SwiftShader draws less exactly than by rounding (docs/explanation/devices.md). Tests of the last digits of what is drawn leave it out.
 bool draws_exactly();
 
-/// A technique of the tree by its id.
+/// All of the tree, and what main.cpp names in $SSRLAB_TECHNIQUES.
+const Catalogue& catalogue();
 const Technique& technique(const std::string& id);
 
 /// Its defaults with some values changed.
@@ -25,6 +26,7 @@ ParameterValues values_of(const Technique& technique, const ParameterValues& cha
 /// A scene, a view and its G-buffer on the device and on the host.
 struct Picture {
     View            view;
+    DrawingPtr      drawing; // null: made by hand
     GBufferPtr      gbuffer;
     GBufferImage    image;
     FrameBuffersPtr buffers;
@@ -44,6 +46,18 @@ inline ParameterValues report_passes()
         passes.at(name) = value;
     return passes;
 }
+
+/// A frame as it is planned and made.
+FramePtr prepared_frame(const FrameBuffersPtr& buffers, const Technique& technique, const ParameterValues& values,
+                        const FrameSettings& settings, const FrameHistoryPtr& history = nullptr);
+const FramePlan& plan_of(const ReadyFrame& frame);
+/// Traces the mirror rays of the frame's G-buffer.
+TraceResult counted(const ReadyFrame& frame, Precision precision = Precision::float32);
+/// The lab on a picture, with its layers.
+LabPtr    lab_on_picture(const Picture& picture, const Technique& technique, const ParameterValues& values,
+                         const TraceSettings& settings);
+TracerPtr tracer_on(const GBufferPtr& gbuffer, const Technique& technique, const ParameterValues& values,
+                    const TraceSettings& settings, size_t capacity, Precision precision = Precision::float32);
 
 TraceResult trace(const Picture& picture, const Technique& technique, const ParameterValues& values,
                   const TraceSettings& settings, Precision precision = Precision::float32);

@@ -1,9 +1,9 @@
 // A timed frame: its times are there, its hits are the counting pipeline's, and running again changes nothing.
 #include "compare/measures.h"
 #include "core/pixel_index.h"
+#include "frame/frame_inputs.h"
 #include "gpu/device.h"
-#include "trace/frame_passes.h"
-#include "trace/ray_list.h"
+#include "trace/lab.h"
 
 #include <algorithm>
 #include <map>
@@ -18,8 +18,8 @@ TEST_P(FrameRuns, TimesAreThereAndResultsAreTheCountedOnes)
     const Picture       picture = make_picture("builtin:pole_field", "down", {161, 91});
     const TraceSettings settings{.thickness_m = 0.1, .max_distance_m = 20};
     const Technique&    t     = technique(GetParam());
-    const auto          frame = prepare_frame(device(), picture.buffers, t, values_of(t), {settings});
-    const TraceResult   first = count_frame(device(), *frame), second = count_frame(device(), *frame);
+    const auto          frame = prepared_frame(picture.buffers, t, values_of(t), {settings});
+    const TraceResult   first = counted(*frame), second = counted(*frame);
     std::string         text;
     EXPECT_EQ(count_differences(first, second, bit_equal_t, text), 0U) << text;
     EXPECT_EQ(first.steps, second.steps);
@@ -35,7 +35,7 @@ TEST_P(FrameRuns, TimesAreThereAndResultsAreTheCountedOnes)
             EXPECT_LT(ms, 60000);
         }
         for (const Structure& structure : t.structures) EXPECT_GE(times.of(structure.id), 1e-4) << structure.id;
-        const TraceResult timed = read_result<float>(device(), *frame, *frame->rays, nullptr);
+        const TraceResult timed = read_result<float>(device(), *frame->inputs.lab, *frame->inputs.rays, nullptr);
         EXPECT_EQ(count_differences(timed, first, bit_equal_t, text), 0U) << "run " << run << ": " << text;
         const auto pixels = read_shaded(device(), *frame).values;
         if (run == 0) shaded = pixels;
@@ -52,8 +52,7 @@ TEST(FrameRuns, TheOrderOfTheRaysIsThatOfTheList)
     const TraceSettings settings{.thickness_m = 0.1, .max_distance_m = 20};
     const Technique&    hiz    = technique("hiz");
     const TraceResult   result = trace(picture, hiz, values_of(hiz), settings);
-    const auto          tracer =
-        make_ray_tracer(device(), picture.gbuffer, hiz, values_of(hiz), settings, pixel_count({161, 91}));
+    const TracerPtr     tracer = make_tracer(device(), lab_on_picture(picture, hiz, values_of(hiz), settings));
     std::vector<size_t> listed;
     for (const RayInput& ray : set_up_rays(device(), *tracer)) listed.push_back(pixel_index(ray.pixel, {161, 91}));
     EXPECT_GT(listed.size(), 1000U);
@@ -67,7 +66,7 @@ TEST(FrameRuns, TheOrderOfTheRaysIsThatOfTheList)
 TEST(GBufferRuns, TheSamePictureEveryTime)
 {
     const Picture picture = make_picture("builtin:corridor", "default", {161, 91});
-    EXPECT_GT(rerender_gbuffer(device(), *picture.gbuffer), 0);
+    EXPECT_GT(redraw_gbuffer(device(), *picture.drawing), 0);
     const GBufferImage again = read_gbuffer(device(), *picture.gbuffer);
     EXPECT_EQ(again.depth, picture.image.depth);
     EXPECT_EQ(again.normal_vs, picture.image.normal_vs);
@@ -80,10 +79,10 @@ TEST(SharedBuffers, KeepNoTraceOfTheRunBefore)
 {
     const Picture                             picture = make_picture("builtin:pole_field", "default", {161, 91});
     const TraceSettings                       settings{.thickness_m = 0.1};
-    std::map<std::string, PreparedFramePtr>   frames;
+    std::map<std::string, FramePtr>           frames;
     std::map<std::string, std::vector<float>> shaded;
     for (const char* id : {"dda", "hiz", "linear"})
-        frames[id] = prepare_frame(device(), picture.buffers, technique(id), values_of(technique(id)), {settings});
+        frames[id] = prepared_frame(picture.buffers, technique(id), values_of(technique(id)), {settings});
     for (int round = 0; round < 2; ++round)
         for (auto& [id, frame] : frames) {
             run_frame(device(), *frame);

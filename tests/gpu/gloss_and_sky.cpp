@@ -283,8 +283,8 @@ TEST(EnvironmentFallback, TakesWhatDrawnRaysLeave)
                                                  chosen(BounceMode::off),
                                                  {"rays_per_pixel", 2}});
     run_frame(device(), *frame);
-    const auto           rays          = read_list<float>(device(), *frame->rays);
-    const auto           hits          = download_as<PackedHit<float>>(device(), frame->rays->hits, rays.size());
+    const auto           rays          = read_list<float>(device(), *frame->inputs.rays);
+    const auto           hits          = download_as<PackedHit<float>>(device(), frame->inputs.rays->hits, rays.size());
     const Reflection     light         = read_colours(picture.buffers->lobe_rays.at(2)->light);
     const auto           end           = download_as<glm::vec4>(device(), picture.buffers->lobe_rays.at(2)->end);
     const glm::dmat3     view_to_world = glm::transpose(glm::dmat3(picture.view.world_to_view));
@@ -436,7 +436,7 @@ TEST(HitColour, MirroredLightIsTheHighlightThatTheReflectorSees)
     const Picture     picture = make_picture(scene, find_camera(scene, "default"), {161, 91});
     const auto        frame   = frame_with(picture, {chosen(HitShading::mirrored), chosen(ViewerFade::off),
                                                      chosen(EdgeFade::off), chosen(PassSet::shading)});
-    const TraceResult traced  = count_frame(device(), *frame);
+    const TraceResult traced  = counted(*frame);
     run_frame(device(), *frame);
     const Reflection found         = read_colours(picture.buffers->reflection);
     const glm::dmat3 view_to_world = glm::transpose(glm::dmat3(picture.view.world_to_view));

@@ -54,26 +54,26 @@ ParameterValues passes_with(const ParameterValues& changed)
     return passes;
 }
 
-const PlannedPass& planned(const PreparedFrame& frame, const std::string& id)
+const PlannedPass& planned(const ReadyFrame& frame, const std::string& id)
 {
-    const auto& plan = plan_of(frame);
+    const auto& plan = plan_of(frame).passes;
     return *std::ranges::find_if(plan, [&](const PlannedPass& row) { return row.pass->id == id; });
 }
 
-PreparedFramePtr prepare(const Picture& picture, const std::string& id, const TraceSettings& settings,
-                         const ParameterValues& changed = {})
+FramePtr prepare(const Picture& picture, const std::string& id, const TraceSettings& settings,
+                 const ParameterValues& changed = {})
 {
     const Technique& t = technique(id);
-    return prepare_frame(device(), picture.buffers, t, values_of(t), {settings, passes_with(changed)});
+    return prepared_frame(picture.buffers, t, values_of(t), {settings, "plane", passes_with(changed)});
 }
 
-std::vector<float> shaded(PreparedFrame& frame)
+std::vector<float> shaded(ReadyFrame& frame)
 {
     run_frame(device(), frame);
     return read_shaded(device(), frame).values;
 }
 
-constexpr TraceSettings thin{.thickness_m = 0.5, .max_distance_m = 100};
+const TraceSettings thin{.thickness_m = 0.5, .max_distance_m = 100};
 
 /// Does the view ray through this pixel's centre meet the panel?
 bool on_panel(const View& view, glm::ivec2 pixel)
@@ -162,7 +162,7 @@ TEST_P(HiddenLayer, RaysThatMissedFindTheWallBehindThePanel)
     const Picture     with      = make_picture(panel_before_wall(), level_camera(), size_px);
     const Picture     bare      = make_picture(panel_before_wall(false), level_camera(), size_px);
     const auto        frame     = prepare(with, GetParam(), thin);
-    const TraceResult first     = count_frame(device(), *frame);
+    const TraceResult first     = counted(*frame);
     const TraceResult unblocked = trace(bare, technique(GetParam()), values_of(technique(GetParam())), thin);
     EXPECT_TRUE(planned(*frame, "hidden_layer").runs);
     EXPECT_NE(planned(*frame, "hidden_layer").reason.find("rays missed"), std::string::npos);

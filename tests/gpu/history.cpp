@@ -24,12 +24,12 @@ ParameterValues with(ParameterValues values, const ParameterValues& more)
     return values;
 }
 
-const PlannedPass& row_of(const PreparedFrame& frame, const std::string& id)
+const PlannedPass& row_of(const ReadyFrame& frame, const std::string& id)
 {
-    return *std::ranges::find(plan_of(frame), id, &PlannedPass::id);
+    return *std::ranges::find(plan_of(frame).passes, id, &PlannedPass::id);
 }
 
-std::vector<float> shaded(const PreparedFrame& frame) { return read_shaded(device(), frame).values; }
+std::vector<float> shaded(const ReadyFrame& frame) { return read_shaded(device(), frame).values; }
 
 Scene still_scene()
 {
@@ -119,7 +119,7 @@ TwoFrames second_after(const std::function<void(FrameHistory&)>& change, const P
     frames.counts          = read_history_counts(device(), *run).value();
     const HistoryCounts& c = frames.counts;
     EXPECT_EQ(c.accumulated + c.unseen + c.off_image + c.other_depth + c.other_normal + c.other_hit,
-              reflecting_pixels_of(*run));
+              plan_of(*run).statistics.gbuffer.reflecting_pixels);
     EXPECT_GT(c.accumulated + c.other_depth + c.other_normal + c.other_hit, 1000U);
     return frames;
 }
@@ -376,10 +376,11 @@ TEST(History, IsPlannedOnlyWhereSomethingChanges)
             EXPECT_THAT(row_of(*planned, pass).reason, HasSubstr(reason));
         }
         const auto planned_image = shaded(*planned);
-        const auto unculled      = prepare_unculled(device(), *planned);
-        run_frame(device(), *unculled);
-        EXPECT_TRUE(row_of(*unculled, "history").runs);
-        EXPECT_EQ(shaded(*unculled), planned_image) << reason;
+        const auto all = make_frame(device(), planned->inputs.lab, planned->inputs.buffers, unculled(plan_of(*planned)),
+                                    planned->inputs.history);
+        run_frame(device(), *all);
+        EXPECT_TRUE(row_of(*all, "history").runs);
+        EXPECT_EQ(shaded(*all), planned_image) << reason;
         const auto alone = run_picture(picture, {}, nullptr);
         EXPECT_EQ(shaded(*alone) != planned_image, changes) << reason;
         EXPECT_FALSE(row_of(*alone, "history").runs);
@@ -429,7 +430,7 @@ TEST(History, FurtherBouncesComeFromIt)
         EXPECT_FALSE(row_of(*frame, "history").runs);
         const Reflection reflection = read_colours(picture.buffers->reflection);
         vectors_px                  = read_reprojection(device(), *frame);
-        hits                        = count_frame(device(), *frame);
+        hits                        = counted(*frame);
         return reflection;
     };
     const Reflection after_dark = reflection_after(0), after_bright = reflection_after(9);
@@ -461,7 +462,7 @@ TEST(History, OfALowerResolution)
     keep_history(device(), *run_picture(picture_at(scene, "default", {0, 16}, size_px), passes, history), 0);
     const auto          run    = run_picture(picture_at(scene, "default", {1, 16}, size_px), passes, history);
     const HistoryCounts counts = read_history_counts(device(), *run).value();
-    EXPECT_GT(counts.accumulated, reflecting_pixels_of(*run) / 2);
+    EXPECT_GT(counts.accumulated, plan_of(*run).statistics.gbuffer.reflecting_pixels / 2);
 }
 
 } // namespace

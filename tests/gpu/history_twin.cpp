@@ -193,8 +193,7 @@ Frame second_frame(Projection projection, const ParameterValues& passes, TraceSe
     settings.trace                 = trace;
     const FrameHistoryPtr history  = make_history(device(), size_px);
     const auto            prepared = [&](const SequencePicture& picture, const FrameHistoryPtr& with) {
-        auto run =
-            prepare_frame(device(), picture.buffers, technique("dda"), values_of(technique("dda")), settings, with);
+        auto run = prepared_frame(picture.buffers, technique("dda"), values_of(technique("dda")), settings, with);
         run_frame(device(), *run);
         return run;
     };
@@ -208,12 +207,12 @@ Frame second_frame(Projection projection, const ParameterValues& passes, TraceSe
     prepared(picture, nullptr);
     frame.own      = read_colours(picture.buffers->reflection);
     const auto run = prepared(picture, history);
-    EXPECT_EQ(run->rays->rays_of_pixels, 0) << "the list holds rays";
+    EXPECT_EQ(run->inputs.rays->rays_of_pixels, 0) << "the list holds rays";
     frame.result          = read_colours(picture.buffers->reflection);
     frame.image           = read_gbuffer(device(), *picture.gbuffer);
     frame.gradient        = download_as<uint32_t>(device(), picture.gbuffer->gradient);
-    frame.rays            = read_list<float>(device(), *run->rays);
-    frame.hits            = download_as<PackedHit<float>>(device(), run->rays->hits, frame.rays.size());
+    frame.rays            = read_list<float>(device(), *run->inputs.rays);
+    frame.hits            = download_as<PackedHit<float>>(device(), run->inputs.rays->hits, frame.rays.size());
     frame.reprojected     = download_as<glm::vec4>(device(), history->reprojected);
     frame.kept_reflection = download_as<glm::vec4>(device(), history->kept_reflection);
     frame.kept_facts      = download_as<glm::vec4>(device(), history->kept_facts);

@@ -1,6 +1,6 @@
 // The history of pixels whose rays miss.
 #include "core/pixel_index.h"
-#include "frame/frame_history.h"
+#include "frame/history_images.h"
 #include "frame/passes/choices.h"
 #include "gpu/sequence_frames.h"
 
@@ -34,7 +34,7 @@ TEST(MissedRays, KeepNothingOfWhatHasMovedOn)
         for (int frame = 0; frame < 6; ++frame) {
             const SequencePicture picture = picture_at(scene, view, {frame, 8}, size_px);
             const auto            run     = run_picture(picture, passes, history, "dda");
-            const TraceResult     hits    = count_frame(device(), *run);
+            const TraceResult     hits    = counted(*run);
             run_frame(device(), *run);
             keep_history(device(), *run, frame);
             const auto result = download_as<glm::vec4>(device(), history->reflection);

@@ -58,7 +58,7 @@ TEST(OwnFrames, ExportImportAndTraceGiveTheSameBitsOnEveryShippedScene)
         const Picture drawn    = make_picture(listing.name, "default", size_px);
         const Picture imported = make_picture(written_and_read(drawn.image));
         expect_same(drawn.image, imported.image);
-        for (const std::string_view surface : {"box", "plane_solid"}) {
+        for (const std::string surface : {"box", "plane_solid"}) {
             const TraceSettings   settings{.thickness_m = 0.2, .max_distance_m = 20, .surface = surface};
             const ParameterValues values = values_of(technique("hiz"));
             std::string           first;

@@ -12,11 +12,11 @@ const TraceSettings sloped_slab{
 
 TEST(OwnSurface, IsFoundBesideTheShippedOnes)
 {
-    const Surface& own = find_surface("sloped_slab");
+    const Surface& own = find_surface(catalogue().surfaces, "sloped_slab");
     EXPECT_TRUE(own.needs_gradient);
     EXPECT_FALSE(own.needs_solid);
     EXPECT_FALSE(has_screen_truth(own.id));
-    for (const Surface& surface : all_surfaces()) EXPECT_EQ(has_screen_truth(surface.id), surface.id != own.id);
+    for (const Surface& surface : catalogue().surfaces) EXPECT_EQ(has_screen_truth(surface.id), surface.id != own.id);
 }
 
 TEST(OwnSurface, ExactTechniquesEqualThePixelWalk)
@@ -31,7 +31,7 @@ TEST(OwnSurface, ExactTechniquesEqualThePixelWalk)
             const TraceResult walk     = found_by(technique("dda"));
             EXPECT_GT(std::ranges::count(walk.status, TraceStatus::hit), 500);
             std::string first;
-            for (const Technique& t : list_techniques({})) {
+            for (const Technique& t : catalogue().techniques) {
                 if (!t.exact) continue;
                 EXPECT_EQ(count_differences(found_by(t), walk, bit_equal_t, first), 0U)
                     << scene << " " << layers << " " << t.id << ": " << first;
@@ -43,7 +43,7 @@ TEST(OwnSurface, ExactTechniquesEqualThePixelWalk)
 TEST(OwnSurface, IsNoneOfTheShippedOnes)
 {
     const Picture picture = make_picture("interior", "default", {161, 91});
-    const auto    found   = [&](std::string_view surface) {
+    const auto    found   = [&](const std::string& surface) {
         TraceSettings settings = sloped_slab;
         settings.surface       = surface;
         return trace(picture, technique("hiz"), values_of(technique("hiz")), settings);

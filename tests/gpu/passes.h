@@ -1,8 +1,8 @@
 // Single passes on reflections made by hand.
 #pragma once
 
+#include "frame/frame_inputs.h"
 #include "gpu/device.h"
-#include "trace/frame_passes.h"
 #include "unit/truth_gbuffers.h"
 
 #include <glm/gtc/packing.hpp>
@@ -27,14 +27,15 @@ inline size_t changes_on_the_right_alone(const Reflection& found, const Reflecti
     return changed;
 }
 
-inline PreparedFramePtr frame_with(const Picture& picture, const ParameterValues& passes,
-                                   const std::string& technique_id = "dda",
-                                   std::string_view   surface      = TraceSettings{}.surface)
+inline FramePtr frame_with(const Picture& picture, const ParameterValues& passes,
+                           const std::string& technique_id = "dda",
+                           const std::string& surface      = TraceSettings{}.surface)
 {
-    FrameSettings settings{.trace = {.thickness_m = 0.5, .max_distance_m = 50, .surface = surface}};
+    FrameSettings settings;
+    settings.trace = {.thickness_m = 0.5, .max_distance_m = 50, .surface = surface};
     for (const auto& [name, value] : passes) settings.passes.at(name) = value;
     const Technique& chosen = technique(technique_id);
-    return prepare_frame(device(), picture.buffers, chosen, values_of(chosen), settings);
+    return prepared_frame(picture.buffers, chosen, values_of(chosen), settings);
 }
 
 inline void set_reflection(const Picture& picture, const Reflection& reflection)
@@ -52,10 +53,10 @@ inline Reflection read_colours(const GpuImage& image)
 }
 
 /// Runs these passes and nothing else.
-inline void run_passes(PreparedFrame& frame, const std::vector<Pass>& passes)
+inline void run_passes(ReadyFrame& frame, const std::vector<Pass>& passes)
 {
     std::vector<RecordFunction> record_functions;
-    for (const Pass& pass : passes) record_functions.push_back(pass.prepare(device(), frame));
+    for (const Pass& pass : passes) record_functions.push_back(pass.prepare(device(), {frame.inputs, pass, pass.id}));
     submit(device(), [&](const vk::raii::CommandBuffer& commands) {
         barrier(commands);
         for (const RecordFunction& record : record_functions) {
@@ -66,7 +67,7 @@ inline void run_passes(PreparedFrame& frame, const std::vector<Pass>& passes)
 }
 
 /// Lists the tiles, then runs the pass.
-inline void run_pass(PreparedFrame& frame, const Pass& pass) { run_passes(frame, {classification_pass(), pass}); }
+inline void run_pass(ReadyFrame& frame, const Pass& pass) { run_passes(frame, {classification_pass(), pass}); }
 
 /// A wall of metal that fills the picture and faces the camera.
 inline GBufferImage metal_wall(glm::ivec2 size_px, double distance_m = 5)

@@ -1,9 +1,9 @@
 // The ground of patches of pixels, and what stands before it, against the pixels themselves.
 #include "core/files.h"
 #include "core/pixel_index.h"
+#include "frame/frame_inputs.h"
 #include "gpu/device.h"
 #include "shared.h"
-#include "trace/frame_passes.h"
 #include "unit/truth_gbuffers.h"
 
 #include <limits>
@@ -18,9 +18,9 @@ constexpr int patch_px = 16; // techniques/structures/patch_planes/structure.tom
 std::vector<glm::vec4> planes_of(const Picture& picture, const TraceSettings& settings = {},
                                  const Technique& reads = technique("hiz_packets"))
 {
-    const auto frame = prepare_frame(device(), picture.buffers, reads, values_of(reads), {settings});
+    const auto frame = prepared_frame(picture.buffers, reads, values_of(reads), {settings});
     submit(device(),
-           [&](const vk::raii::CommandBuffer& commands) { record_depth_structures(commands, frame->structures); });
+           [&](const vk::raii::CommandBuffer& commands) { record_depth_structures(commands, *frame->inputs.lab); });
     const glm::ivec2 patches = (picture.view.size_px - 1) / patch_px + 1;
     for (const auto& [name, buffer] : *picture.buffers->gbuffer->structures)
         if (name.ends_with(".planes")) return download_as<glm::vec4>(device(), buffer, pixel_count(patches));
@@ -131,10 +131,10 @@ TEST(PatchPlanesBehindBars, LieAboveThemWherePacketsStayInFront)
 {
     const Picture picture = make_picture(ground_behind_bars({128, 64}));
     TraceSettings settings;
-    settings.thickness_m                   = 0.1;
-    const std::filesystem::path folders[]  = {data_root() / "techniques/rivals"};
-    const auto                  techniques = list_techniques(folders);
-    const auto                  planes     = planes_of(picture, settings, find_technique(techniques, "first_occluder"));
+    settings.thickness_m                  = 0.1;
+    const std::filesystem::path folders[] = {data_root() / "techniques/rivals"};
+    const Catalogue             all       = load_catalogue(folders);
+    const auto                  planes = planes_of(picture, settings, find_technique(all.techniques, "first_occluder"));
     for (const Front& front : fronts_of(picture, planes)) ASSERT_GE(front.height, -1e-6F);
     for (const glm::vec4& plane : planes) ASSERT_EQ(plane.w, 0);
 }

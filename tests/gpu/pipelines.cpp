@@ -1,6 +1,6 @@
 // Pipelines are made once: for equal shaders and constants, with a store that stays small, of files as they are, and for all pictures of a scene.
 #include "core/files.h"
-#include "frame/gbuffer.h"
+#include "frame/drawing.h"
 #include "gpu/compute.h"
 #include "gpu/device.h"
 #include "shared.h"
@@ -110,11 +110,11 @@ TEST(Pipelines, OfAGBufferAreSharedByThePicturesOfAScene)
 {
     const Picture    a        = make_picture("builtin:sphere_over_mirror", "default", {31, 17});
     const Picture    b        = make_picture("builtin:sphere_over_mirror", "default", {40, 24});
-    const GBufferPtr second_a = make_second_layer(device(), *a.gbuffer),
-                     second_b = make_second_layer(device(), *b.gbuffer);
-    EXPECT_EQ(a.gbuffer->pipeline, b.gbuffer->pipeline);
+    const DrawingPtr second_a = make_second_layer(device(), *a.drawing),
+                     second_b = make_second_layer(device(), *b.drawing);
+    EXPECT_EQ(a.drawing->pipeline, b.drawing->pipeline);
     EXPECT_EQ(second_a->pipeline, second_b->pipeline);
-    EXPECT_NE(a.gbuffer->pipeline, second_a->pipeline);
+    EXPECT_NE(a.drawing->pipeline, second_a->pipeline);
 }
 
 } // namespace

@@ -1,8 +1,8 @@
 // The plane quadtree against the pixels themselves: every pixel's slab lies in every node above it, at every place of the pixel.
 #include "core/pixel_index.h"
+#include "frame/frame_inputs.h"
 #include "gpu/device.h"
 #include "shared.h"
-#include "trace/frame_passes.h"
 #include "truth/screen_truth.h"
 #include "unit/truth_gbuffers.h"
 
@@ -43,9 +43,9 @@ Quadtree build(const Picture& picture, const TraceSettings& settings, const Para
     const Technique& reads                = technique("quadtree");
     ParameterValues  values               = values_of(reads, changed);
     values.at("plane_quadtree.top_level") = 14;
-    const auto frame                      = prepare_frame(device(), picture.buffers, reads, values, {settings});
+    const auto frame                      = prepared_frame(picture.buffers, reads, values, {settings});
     submit(device(),
-           [&](const vk::raii::CommandBuffer& commands) { record_depth_structures(commands, frame->structures); });
+           [&](const vk::raii::CommandBuffer& commands) { record_depth_structures(commands, *frame->inputs.lab); });
     const Buffer& nodes = picture.buffers->gbuffer->structures->at("plane_quadtree.nodes");
     return {picture.view.size_px, download_as<glm::uvec4>(device(), nodes, nodes.bytes / sizeof(glm::uvec4))};
 }

@@ -22,7 +22,7 @@ Shown show(const Picture& picture, const char* id, const ParameterValues& passes
 {
     const TraceSettings settings{.thickness_m = 0.1, .max_distance_m = 20};
     const auto          frame =
-        prepare_frame(device(), picture.buffers, technique(id), values_of(technique(id)), {settings, passes});
+        prepared_frame(picture.buffers, technique(id), values_of(technique(id)), {settings, "plane", passes});
     Shown shown;
     for (const auto& [pass, ms] : run_frame(device(), *frame).passes_ms) shown.ran.push_back(pass);
     shown.pixels = read_shaded(device(), *frame).values;
@@ -77,8 +77,8 @@ TEST(PlannedFrame, SkipsUnneededPassesUnlessToldNotTo)
 {
     const Picture matte  = make_picture("builtin:matte", "default", {161, 91});
     const auto    leaves = [&](const ParameterValues& changed) {
-        return plan_skips_work(*prepare_frame(device(), matte.buffers, technique("hiz"), values_of(technique("hiz")),
-                                                 {{}, passes_with(changed)}));
+        return skips_work(plan_of(*prepared_frame(matte.buffers, technique("hiz"), values_of(technique("hiz")),
+                                                     {{}, "plane", passes_with(changed)})));
     };
     EXPECT_TRUE(leaves({}));
     EXPECT_FALSE(leaves({{"skip_unneeded_passes", 0}}));

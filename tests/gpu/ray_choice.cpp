@@ -14,12 +14,13 @@ struct Ray {
 };
 
 /// The list that the frame's own passes write.
-std::vector<Ray> rays_of(PreparedFrame& frame)
+std::vector<Ray> rays_of(ReadyFrame& frame)
 {
-    submit(device(),
-           [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, frame.trace, *frame.buffers); });
+    submit(device(), [&](const vk::raii::CommandBuffer& commands) {
+        record_rays(commands, frame.inputs.trace, *frame.inputs.lab->gbuffer);
+    });
     std::vector<Ray> rays;
-    for (const PackedRay<float>& ray : read_list<float>(device(), *frame.rays))
+    for (const PackedRay<float>& ray : read_list<float>(device(), *frame.inputs.rays))
         rays.push_back({unpack_pixel(ray.pixel), glm::dvec3(ray.origin), glm::dvec3(ray.delta)});
     return rays;
 }
@@ -107,7 +108,7 @@ TEST(SeveralRays, StartAtTheCentreWhereThePlaneIsSeenEdgeOn)
 }
 
 /// Puts a list of rays and their ends in the place of the traced one.
-void set_list(PreparedFrame& frame, const std::vector<glm::ivec2>& pixels, const std::vector<glm::ivec2>& hits)
+void set_list(ReadyFrame& frame, const std::vector<glm::ivec2>& pixels, const std::vector<glm::ivec2>& hits)
 {
     std::vector<PackedRay<float>> listed;
     std::vector<PackedHit<float>> ends;
@@ -118,13 +119,13 @@ void set_list(PreparedFrame& frame, const std::vector<glm::ivec2>& pixels, const
             {{glm::vec2(pixels[i]) + 0.5F, 0.02F}, 1, {10, 10, -0.01F}, pack_pixel(pixels[i], TRACE_LEFT_SCREEN)});
     }
     const auto  count = static_cast<uint32_t>(pixels.size());
-    RayBuffers& rays  = *frame.rays;
+    RayBuffers& rays  = *frame.inputs.rays;
     upload(device(), rays.count, &count, sizeof(count));
     upload(device(), rays.list, listed.data(), listed.size() * sizeof(listed[0]));
     upload(device(), rays.hits, ends.data(), ends.size() * sizeof(ends[0]));
     submit(device(), [&](const vk::raii::CommandBuffer& commands) {
         barrier(commands);
-        dispatch(commands, frame.trace.ray_launch, {1, 1, 1});
+        dispatch(commands, frame.inputs.trace.ray_launch, {1, 1, 1});
     });
 }
 
@@ -257,8 +258,7 @@ TEST_P(Skipping, LeavesEveryBit)
     EXPECT_EQ(read_shaded(device(), *unculled).values, expected.values);
     const auto  plain = frame_with(picture, {}, "hiz");
     std::string first;
-    EXPECT_EQ(count_differences(count_frame(device(), *planned), count_frame(device(), *plain), bit_equal_t, first), 0U)
-        << first;
+    EXPECT_EQ(count_differences(counted(*planned), counted(*plain), bit_equal_t, first), 0U) << first;
 }
 
 INSTANTIATE_TEST_SUITE_P(

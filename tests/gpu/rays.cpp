@@ -1,8 +1,8 @@
 // Rays as the shader sets them up against the host's double precision: also a round trip of everything that both sides share
 // (the view's uniform block, the settings' constants, packed pixels and statuses).
+#include "frame/frame_inputs.h"
 #include "gpu/device.h"
 #include "shared.h"
-#include "trace/frame_passes.h"
 #include "truth/screen_ray.h"
 #include "unit/truth_gbuffers.h"
 
@@ -17,14 +17,12 @@ using Rays = std::vector<PackedRay<double>>;
 
 template <typename Real> Rays make_rays(const Picture& picture, const TraceSettings& settings, Precision precision)
 {
-    const Technique& dda = technique("dda");
-    FrameSettings    mirrors{settings};
-    mirrors.passes.at("gloss") = choice_value(Gloss::off); // off: no ray is drawn from a lobe
-    const auto        frame    = prepare_frame(device(), picture.buffers, dda, values_of(dda), mirrors);
-    const RayBuffers  buffers  = make_ray_buffers(device(), picture.image.depth.size(), precision);
-    const Buffer      view     = upload_view(device(), picture.view, precision);
-    const TracePasses passes   = make_trace_passes(device(), *frame, buffers, view, nullptr);
-    submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, passes, *picture.buffers); });
+    const Technique&  dda     = technique("dda");
+    const LabPtr      lab     = lab_on_picture(picture, dda, values_of(dda), settings);
+    const RayBuffers  buffers = make_ray_buffers(device(), picture.image.depth.size(), precision);
+    const Buffer      view    = upload_view(device(), picture.view, precision);
+    const TracePasses passes  = make_trace_passes(device(), *lab, buffers, view);
+    submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, passes, *picture.gbuffer); });
     Rays rays;
     for (const PackedRay<Real>& ray : read_list<Real>(device(), buffers))
         rays.push_back({ray.origin, static_cast<double>(ray.length_m), ray.delta, ray.pixel});

@@ -1,6 +1,6 @@
 // The pipeline that records what a ray looks at: the answer is the same, and the visits are those of the walk.
 #include "gpu/device.h"
-#include "trace/ray_list.h"
+#include "trace/lab.h"
 
 #include <algorithm>
 
@@ -18,8 +18,8 @@ struct Rays {
 Rays rays_of(const std::string& scene)
 {
     Rays       rays{make_picture(scene, "default", size_px), {.thickness_m = 0.2, .max_distance_m = 20}, {}};
-    const auto tracer = make_ray_tracer(device(), rays.picture.gbuffer, technique("dda"), values_of(technique("dda")),
-                                        rays.settings, rays.picture.image.depth.size());
+    const auto tracer = tracer_on(rays.picture.gbuffer, technique("dda"), values_of(technique("dda")), rays.settings,
+                                  rays.picture.image.depth.size());
     const auto all    = set_up_rays(device(), *tracer);
     for (size_t i = all.size() / 13; i < all.size(); i += all.size() / 6) rays.some.push_back(all[i]);
     return rays;
@@ -28,11 +28,12 @@ Rays rays_of(const std::string& scene)
 TEST(RecordedRays, AnswersAreThoseOfTheCountedPipelineForEveryTechnique)
 {
     const Rays rays = rays_of("builtin:stairs");
-    for (const Technique& t : list_techniques({})) {
+    for (const Technique& t : catalogue().techniques) {
         const ParameterValues values = values_of(t);
-        const auto            tracer = make_ray_tracer(device(), rays.picture.gbuffer, t, values, rays.settings, 1);
+        const auto            tracer = tracer_on(rays.picture.gbuffer, t, values, rays.settings, 1);
         for (const RayInput& ray : rays.some) {
-            const RecordedRay recorded = record_ray(device(), rays.picture.gbuffer, t, values, rays.settings, ray);
+            const RecordedRay recorded =
+                record_ray(device(), lab_on_picture(rays.picture, t, values, rays.settings), ray);
             EXPECT_EQ(recorded.outcome, trace_rays(device(), *tracer, std::span(&ray, 1))[0]) << t.id;
             EXPECT_EQ(recorded.visit_count, recorded.visits.size());
             EXPECT_EQ(recorded.visits.empty(), recorded.outcome.depth_fetches + recorded.outcome.structure_fetches == 0)
@@ -54,8 +55,8 @@ TEST(RecordedRays, VisitsAreTheWalkAndThePyramidSkipsPartsOfIt)
     size_t     hits = 0, skipped = 0;
     for (const RayInput& ray : rays.some) {
         const auto record = [&](const char* id) {
-            return record_ray(device(), rays.picture.gbuffer, technique(id), values_of(technique(id)), rays.settings,
-                              ray);
+            return record_ray(
+                device(), lab_on_picture(rays.picture, technique(id), values_of(technique(id)), rays.settings), ray);
         };
         const RecordedRay           walked = record("dda"), climbed = record("hiz");
         const std::vector<RayVisit> pixels = without_result(walked), cells = without_result(climbed);
@@ -97,8 +98,8 @@ TEST(CountedWork, IsWhatTheRaysRead)
     const Rays rays = rays_of("builtin:stairs");
     for (const char* id : {"dda", "hiz", "quadtree"})
         for (const RayInput& ray : rays.some) {
-            const auto recorded =
-                record_ray(device(), rays.picture.gbuffer, technique(id), values_of(technique(id)), rays.settings, ray);
+            const auto recorded = record_ray(
+                device(), lab_on_picture(rays.picture, technique(id), values_of(technique(id)), rays.settings), ray);
             const auto pixels = std::ranges::count(recorded.visits, 0, &RayVisit::level);
             EXPECT_EQ(recorded.outcome.depth_fetches, pixels) << id;
             EXPECT_EQ(recorded.outcome.structure_fetches, recorded.visits.size() - size_t(pixels)) << id;

@@ -27,11 +27,10 @@ SecondFrame second_frame(const Scene& scene, const std::string& view, const std:
     passes.insert(changed.begin(), changed.end());
     const FrameHistoryPtr history = make_history(device(), size_px);
     for (const int frame : {0, 1}) {
-        const SequencePicture  picture = picture_at(scene, view, {frame, jitter_phases}, size_px);
-        const PreparedFramePtr run     = run_picture(picture, passes, history, "dda");
+        const SequencePicture picture = picture_at(scene, view, {frame, jitter_phases}, size_px);
+        const FramePtr        run     = run_picture(picture, passes, history, "dda");
         if (frame == 1)
-            return {read_gbuffer(device(), *picture.gbuffer), read_reprojection(device(), *run),
-                    count_frame(device(), *run)};
+            return {read_gbuffer(device(), *picture.gbuffer), read_reprojection(device(), *run), counted(*run)};
         keep_history(device(), *run, frame);
     }
     return {};

@@ -17,9 +17,8 @@ namespace {
 
 Image shaded(const GpuScenePtr& scene, const View& view)
 {
-    const FrameBuffersPtr  buffers = make_frame_buffers(device(), render_gbuffer(device(), scene, view));
-    const PreparedFramePtr frame =
-        prepare_frame(device(), buffers, technique("hiz"), values_of(technique("hiz")), FrameSettings{});
+    const FrameBuffersPtr buffers = make_frame_buffers(device(), draw_gbuffer(device(), scene, view));
+    const FramePtr frame = prepared_frame(buffers, technique("hiz"), values_of(technique("hiz")), {});
     run_frame(device(), *frame);
     return read_shaded(device(), *frame);
 }
@@ -44,9 +43,9 @@ TEST(Sequences, AMovedSceneHasTheBitsOfAFreshOne)
 GBufferImage moved_gbuffer(const Scene& first, const std::string& view, SequenceFrame at, glm::ivec2 size_px)
 {
     const Scene scene = scene_at(first, at.frame);
-    return read_gbuffer(device(),
-                        *render_gbuffer(device(), upload_scene(device(), scene), view_at(scene, view, size_px, at),
-                                        motion_at(scene, view, size_px, at.frame)));
+    return read_gbuffer(
+        device(), *gbuffer_of(*draw_gbuffer(device(), upload_scene(device(), scene), view_at(scene, view, size_px, at),
+                                            motion_at(scene, view, size_px, at.frame))));
 }
 
 /// The largest difference from a closed form, which says where the pixel's surface was: from slope (x right, y up), distance and
@@ -149,10 +148,10 @@ TEST(MotionVectors, AreDrawnOnlyWhereSomethingMoves)
     ASSERT_TRUE(motion);
     const GpuScenePtr uploaded   = upload_scene(device(), scene);
     const auto        plan_facts = [&](const std::optional<FrameMotion>& moved, SequenceFrame at) {
-        const GBufferPtr gbuffer = render_gbuffer(device(), uploaded, view_at(scene, "default", size_px, at), moved);
-        EXPECT_TRUE(read_gbuffer(device(), *gbuffer).motion_px.empty());
-        return facts_of_plan(*prepare_frame(device(), make_frame_buffers(device(), gbuffer), technique("hiz"),
-                                                   values_of(technique("hiz")), FrameSettings{}))
+        const DrawingPtr drawing = draw_gbuffer(device(), uploaded, view_at(scene, "default", size_px, at), moved);
+        EXPECT_TRUE(read_gbuffer(device(), *gbuffer_of(*drawing)).motion_px.empty());
+        return describe_facts(plan_of(*prepared_frame(make_frame_buffers(device(), drawing), technique("hiz"),
+                                                             values_of(technique("hiz")), {})))
             .back();
     };
     EXPECT_THAT(plan_facts({}, {}), ::testing::HasSubstr("no frame before this one"));

@@ -132,8 +132,8 @@ TEST_P(Shading, IsTheFormulaAtEveryPixel)
     passes.at("edge_fade_width") = border_width;
     for (const auto& [name, value] : GetParam()) passes.at(name) = value;
     const auto frame =
-        prepare_frame(device(), picture.buffers, technique("hiz"), values_of(technique("hiz")), {settings, passes});
-    const TraceResult result = count_frame(device(), *frame);
+        prepared_frame(picture.buffers, technique("hiz"), values_of(technique("hiz")), {settings, "plane", passes});
+    const TraceResult result = counted(*frame);
     run_frame(device(), *frame);
     const Image shaded = read_shaded(device(), *frame);
     size_t      hits = 0, seen = 0;
@@ -208,8 +208,8 @@ TEST(ShadingTowardTheViewer, WeighsNothing)
         ParameterValues passes = report_passes();
         for (const auto& [name, value] : ParameterValues{chosen(fade), chosen(EdgeFade::off)}) passes.at(name) = value;
         const auto frame =
-            prepare_frame(device(), picture.buffers, technique("dda"), values_of(technique("dda")), {settings, passes});
-        const TraceResult result = count_frame(device(), *frame);
+            prepared_frame(picture.buffers, technique("dda"), values_of(technique("dda")), {settings, "plane", passes});
+        const TraceResult result = counted(*frame);
         run_frame(device(), *frame);
         const Reflection found  = read_colours(picture.buffers->reflection);
         size_t           toward = 0;
@@ -228,8 +228,7 @@ TEST(ShadingOfMisses, LeavesTheLitColour)
 {
     const Picture       picture = make_picture(coloured());
     const TraceSettings settings{.thickness_m = 0, .max_distance_m = 0.001};
-    const auto          frame =
-        prepare_frame(device(), picture.buffers, technique("dda"), values_of(technique("dda")), {settings});
+    const auto frame = prepared_frame(picture.buffers, technique("dda"), values_of(technique("dda")), {settings});
     run_frame(device(), *frame);
     const Image shaded = read_shaded(device(), *frame);
     for (size_t i = 0; i < picture.image.depth.size(); ++i)

@@ -1,8 +1,8 @@
 // What a ray shows that stopped at the unseen side of a surface.
+#include "frame/frame_inputs.h"
 #include "frame/passes/choices.h"
 #include "gpu/device.h"
 #include "gpu/passes.h"
-#include "trace/frame_passes.h"
 
 namespace ssrlab::test {
 namespace {
@@ -14,8 +14,8 @@ Reflection reflection_where_rays(Behind behind, bool stopped_shows_front, Gloss 
     settings.passes.at("stopped_shows_front") = stopped_shows_front ? 1 : 0;
     settings.passes.insert_or_assign(chosen(gloss).first, chosen(gloss).second);
     const Technique& hiz   = technique("hiz");
-    const auto       frame = prepare_frame(device(), picture.buffers, hiz, values_of(hiz), settings);
-    rays                   = count_frame(device(), *frame);
+    const auto       frame = prepared_frame(picture.buffers, hiz, values_of(hiz), settings);
+    rays                   = counted(*frame);
     run_frame(device(), *frame);
     return read_colours(picture.buffers->reflection);
 }

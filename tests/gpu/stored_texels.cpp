@@ -1,8 +1,8 @@
 // Whatever way a device stores texels in, it stores the same bits: words, 64 bits at a time, or plain storage buffers. The same holds for whether
 // the passes before the trace are serial or parallel.
-#include "frame/gbuffer.h"
+#include "frame/drawing.h"
+#include "frame/frame_inputs.h"
 #include "gpu/device.h"
-#include "trace/frame_passes.h"
 
 namespace ssrlab::test {
 namespace {
@@ -25,26 +25,29 @@ Stored frame_of(const Technique& technique, const FrameSettings& settings, const
     gpu.info.plain_buffers = way.plain_buffers || gpu.info.plain_buffers;
     gpu.info.lanes         = way.parallel ? gpu.info.most_lanes : 1;
     const Scene scene      = load_scene("builtin:everything");
-    const auto  gbuffer =
-        render_gbuffer(gpu, upload_scene(gpu, scene), camera_to_view(find_camera(scene, "default"), {163, 91}));
-    const auto buffers = make_frame_buffers(gpu, gbuffer);
-    const auto frame   = prepare_frame(gpu, buffers, technique, values_of(technique), settings);
+    const auto  drawing =
+        draw_gbuffer(gpu, upload_scene(gpu, scene), camera_to_view(find_camera(scene, "default"), {163, 91}));
+    draw_layers(gpu, *drawing, settings.trace.layers);
+    const GBufferPtr gbuffer = drawing->gbuffer;
+    const auto       buffers = make_frame_buffers(gpu, drawing);
+    const LabPtr     lab     = make_lab(gpu, catalogue(), gbuffer, technique, values_of(technique), settings.trace);
+    const FramePtr   frame   = make_frame(gpu, lab, buffers, plan_frame(gpu, catalogue(), lab, buffers, settings));
     run_frame(gpu, *frame);
-    const size_t rays = download_as<uint32_t>(gpu, frame->rays->count, 1).front();
+    const size_t rays = download_as<uint32_t>(gpu, frame->inputs.rays->count, 1).front();
     EXPECT_GT(rays, 0U);
     const Buffer& cells      = gbuffer->depth.cells;
-    const auto&   structures = frame->rays->structures;
+    const auto&   structures = frame->inputs.rays->structures;
     const auto    intervals  = structures ? structures->find("ray_packets.intervals") : decltype(structures->end()){};
     const bool    packets    = structures && intervals != structures->end();
     const size_t  groups     = (rays - 1) / RAYS_PER_GROUP + 1;
-    const size_t  ray_bytes  = frame->rays->rays_of_pixels > 0 ? sizeof(uint32_t) : sizeof(PackedRay<float>);
+    const size_t  ray_bytes  = frame->inputs.rays->rays_of_pixels > 0 ? sizeof(uint32_t) : sizeof(PackedRay<float>);
     return {.cells     = download_as<char>(gpu, cells, cells.bytes),
-            .rays      = download_as<char>(gpu, frame->rays->list, rays * ray_bytes),
-            .hits      = download_as<char>(gpu, frame->rays->hits, rays * sizeof(PackedHit<float>)),
+            .rays      = download_as<char>(gpu, frame->inputs.rays->list, rays * ray_bytes),
+            .hits      = download_as<char>(gpu, frame->inputs.rays->hits, rays * sizeof(PackedHit<float>)),
             .intervals = packets ? download_as<char>(gpu, intervals->second, groups * 4 * sizeof(glm::vec2))
                                  : std::vector<char>{},
             .shaded    = read_shaded(gpu, *frame).values,
-            .counts    = frame->statistics.gbuffer};
+            .counts    = frame->inputs.plan.statistics.gbuffer};
 }
 
 void expect_alike(const std::string& id, const FrameSettings& settings)

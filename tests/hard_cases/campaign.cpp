@@ -108,10 +108,9 @@ public:
     size_t variants(bool exact) const { return (exact ? hiz_exact_ : hiz_float_).size(); }
 
 private:
-    RayTracerPtr make(const std::string& id, const ParameterValues& changed)
+    TracerPtr make(const std::string& id, const ParameterValues& changed)
     {
-        return make_ray_tracer(device(), gbuffer_, technique(id), values_of(technique(id), changed), campaign_settings,
-                               batch_);
+        return tracer_on(gbuffer_, technique(id), values_of(technique(id), changed), campaign_settings, batch_);
     }
 
     struct Variant {
@@ -132,10 +131,10 @@ private:
         {"hiz_packets", {{"depth_pyramid.kind", 2}, {"start_level", 5}, {"depth_pyramid.top_level", 3}}},
         {"hiz_waves", {}}};
 
-    GBufferPtr                gbuffer_;
-    size_t                    batch_;
-    double                    bound_;
-    std::vector<RayTracerPtr> walks_, hiz_float_, hiz_exact_;
+    GBufferPtr             gbuffer_;
+    size_t                 batch_;
+    double                 bound_;
+    std::vector<TracerPtr> walks_, hiz_float_, hiz_exact_;
 };
 
 /// Compares with the oracle; a difference of the float walk is a sliver or gross as check/judge.h says, one of the exact walk is wrong.

@@ -26,10 +26,11 @@ TEST_P(Catalogue, TechniquesHoldWhatTheyClaim)
 {
     static Gpu robust = open_gpu({.device = {}, .validation = true, .robust_buffer_access = true});
     for (const HardCase& hard_case : family(GetParam()).cases)
-        run_check(device(), &robust, {list_techniques({}), hard_case.name, {}}, [&](const CaseRow& row) {
-            EXPECT_EQ(row.non_finite, 0U);
-            EXPECT_EQ(row.breaks, 0U) << table_line(row) << "\n" << table_findings(row);
-        });
+        run_check(device(), &robust, {catalogue(), catalogue().techniques, hard_case.name, {}},
+                  [&](const CaseRow& row) {
+                      EXPECT_EQ(row.non_finite, 0U);
+                      EXPECT_EQ(row.breaks, 0U) << table_line(row) << "\n" << table_findings(row);
+                  });
     EXPECT_THAT(validation_messages(robust), testing::IsEmpty());
 }
 
@@ -42,8 +43,8 @@ TEST_P(Catalogue, ClosedFormsAgreeWithTheContract)
         size_t answered = 0;
         for (ssrlab::Setup setup : hard_case.setups()) {
             if (setup.rays.empty()) {
-                const auto tracer = make_ray_tracer(device(), upload_gbuffer(device(), setup.gbuffer), walk,
-                                                    default_values(walk), setup.settings, setup.gbuffer.depth.size());
+                const auto tracer = tracer_on(upload_gbuffer(device(), setup.gbuffer), walk, default_values(walk),
+                                              setup.settings, setup.gbuffer.depth.size());
                 setup.rays        = set_up_rays(device(), *tracer);
             }
             const Judge judge(setup);

@@ -3,7 +3,7 @@
 #include "core/pixel_index.h"
 #include "gpu/device.h"
 #include "scene/scene.h"
-#include "trace/ray_list.h"
+#include "trace/lab.h"
 
 #include <gmock/gmock.h>
 
@@ -16,8 +16,9 @@ TEST(ExactArithmetic, HoldsOnEveryHardCase)
     for (const std::string id : {"dda", "hiz", "quadtree"})
         for (const CaseFamily& family : hard_cases())
             for (const HardCase& hard_case : family.cases) {
-                const CaseRow row = run_case(device(), technique(id), values_of(technique(id), {{"arithmetic", 1}}),
-                                             family.name, hard_case, {.double_precision = false});
+                const CaseRow row =
+                    run_case(device(), catalogue(), technique(id), values_of(technique(id), {{"arithmetic", 1}}),
+                             family.name, hard_case, {.double_precision = false});
                 EXPECT_EQ(row.wrong, 0U) << hard_case.name;
                 // At twice the resolution ends lie on a finer grid: the same pixels, but other last bits of t.
                 if (hard_case.name == "resolution_doubling") continue;
@@ -38,9 +39,8 @@ TEST(ExactArithmetic, IsTheSameInFloatAndDouble)
         for (const std::string id : {"dda", "hiz", "quadtree"}) {
             const Technique&      t      = technique(id);
             const ParameterValues values = values_of(t, {{"arithmetic", 1}});
-            const auto            single = make_ray_tracer(device(), picture.gbuffer, t, values, settings, pixels);
-            const auto            twin =
-                make_ray_tracer(device(), picture.gbuffer, t, values, settings, pixels, Precision::float64);
+            const auto            single = tracer_on(picture.gbuffer, t, values, settings, pixels);
+            const auto            twin   = tracer_on(picture.gbuffer, t, values, settings, pixels, Precision::float64);
             const std::vector<RayInput>   rays  = set_up_rays(device(), *single);
             const std::vector<RayOutcome> found = trace_rays(device(), *single, rays),
                                           exact = trace_rays(device(), *twin, rays);
@@ -67,8 +67,7 @@ TEST(ExactArithmetic, RaysEndAtTheBorderOfTheImage)
     const RayInput ray{{3.5, y, 0.5}, {1, static_cast<float>(to_end), 0}, 1, TraceStatus::left_screen, {3, 100}};
     ASSERT_EQ(ray.delta_px_depth.y - to_end, 1.0 / 65536);
     for (const char* id : {"dda", "hiz", "quadtree"}) {
-        const auto tracer =
-            make_ray_tracer(device(), gbuffer, technique(id), values_of(technique(id), {{"arithmetic", 1}}), {}, 1);
+        const auto tracer = tracer_on(gbuffer, technique(id), values_of(technique(id), {{"arithmetic", 1}}), {}, 1);
         EXPECT_EQ(trace_rays(device(), *tracer, {&ray, 1})[0].status, TraceStatus::left_screen) << id;
     }
 }
@@ -79,10 +78,11 @@ TEST(ExactArithmetic, IsRefusedWhereTheDeviceHasNoIntegersForIt)
     const auto       gbuffer = upload_depth(device(), bench_view(), std::vector<float>(64 * 64, 0.0F));
     Gpu              without = device();
     without.info.int64       = false;
-    EXPECT_NO_THROW(make_ray_tracer(without, gbuffer, walk, default_values(walk), {}, 1));
+    EXPECT_NO_THROW(make_tracer(without, make_lab(without, catalogue(), gbuffer, walk, default_values(walk), {}), 1));
     EXPECT_THAT(
         [&] {
-            make_ray_tracer(without, gbuffer, walk, values_of(walk, {{"arithmetic", 1}}), {}, 1);
+            make_tracer(without,
+                        make_lab(without, catalogue(), gbuffer, walk, values_of(walk, {{"arithmetic", 1}}), {}), 1);
         },
         testing::ThrowsMessage<Failure>(
             testing::AllOf(testing::HasSubstr("arithmetic = exact"), testing::HasSubstr("shaderInt64"))));

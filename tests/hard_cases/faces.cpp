@@ -93,16 +93,15 @@ TEST(Faces, AreMetWhereTheyAreInEveryModel)
     const GBufferImage image   = picture();
     const GBufferPtr   gbuffer = upload_gbuffer(device(), image);
     const auto         rays    = rays_through();
-    for (const std::string_view surface :
-         {"box", "box_two_sided", "box_infinite", "plane", "plane_solid", "plane_infinite"})
+    for (const std::string surface : {"box", "box_two_sided", "box_infinite", "plane", "plane_solid", "plane_infinite"})
         for (const Behind behind : {Behind::hit, Behind::pass, Behind::stop}) {
             const TraceSettings settings{.thickness_m = 4, .max_distance_m = 1e9, .behind = behind, .surface = surface};
             const ScreenWalk    walk(image, settings);
             for (const double exact : {0.0, 1.0}) {
                 if (exact > 0 && !missing_for_exact().empty()) continue;
                 const auto tracer =
-                    make_ray_tracer(device(), gbuffer, technique("dda"),
-                                    values_of(technique("dda"), {{"arithmetic", exact}}), settings, rays.size());
+                    tracer_on(gbuffer, technique("dda"), values_of(technique("dda"), {{"arithmetic", exact}}), settings,
+                              rays.size());
                 const auto found = trace_rays(device(), *tracer, rays);
                 size_t     met   = 0;
                 for (size_t i = 0; i < rays.size(); ++i) {
@@ -130,7 +129,7 @@ TEST(Packets, PassBehindNothingThatTheyMeet)
     for (size_t i = 0; i < image.depth.size(); ++i)
         if (image.depth[i] > 0.1F) image.gradient[i] = glm::vec2(nan); // a slab in models with planes, too
     const GBufferPtr gbuffer = upload_gbuffer(device(), image);
-    for (const std::string_view surface : {"box", "box_two_sided", "plane"}) {
+    for (const std::string surface : {"box", "box_two_sided", "plane"}) {
         const TraceSettings   settings{.thickness_m = 0.1, .max_distance_m = 1e9, .surface = surface};
         size_t                hits = 0, misses = 0;
         std::vector<RayInput> rays;
@@ -148,9 +147,7 @@ TEST(Packets, PassBehindNothingThatTheyMeet)
             }
         const auto traced = [&](const char* id) {
             return trace_rays(
-                device(),
-                *make_ray_tracer(device(), gbuffer, technique(id), values_of(technique(id)), settings, rays.size()),
-                rays);
+                device(), *tracer_on(gbuffer, technique(id), values_of(technique(id)), settings, rays.size()), rays);
         };
         const auto walk = traced("dda"), packets = traced("hiz_packets");
         for (size_t i = 0; i < rays.size(); ++i) {

@@ -13,13 +13,13 @@ namespace {
 const Technique& fragile(const std::string& id)
 {
     static const std::filesystem::path  dirs[]     = {data_root() / "techniques/rivals"};
-    static const std::vector<Technique> techniques = list_techniques(dirs);
+    static const std::vector<Technique> techniques = load_catalogue(dirs).techniques;
     return find_technique(techniques, id);
 }
 
 CaseRow check(const std::string& id, const std::string& case_name)
 {
-    return run_case(device(), fragile(id), default_values(fragile(id)), "", find_case(case_name),
+    return run_case(device(), catalogue(), fragile(id), default_values(fragile(id)), "", find_case(case_name),
                     {.double_precision = false});
 }
 
@@ -30,9 +30,9 @@ double wrong_per_million(const std::string& id, Field field, glm::ivec2 size_px,
     const auto          gbuffer = upload_depth(device(), setup.gbuffer.view, setup.gbuffer.depth);
     const auto          rays    = random_rays(size_px, 100'000, 11);
     const Technique&    t       = fragile(id);
-    const auto tracer = make_ray_tracer(device(), gbuffer, t, values_of(t, changed), campaign_settings, rays.size());
-    const auto found  = trace_rays(device(), *tracer, rays);
-    size_t     wrong  = 0;
+    const auto          tracer  = tracer_on(gbuffer, t, values_of(t, changed), campaign_settings, rays.size());
+    const auto          found   = trace_rays(device(), *tracer, rays);
+    size_t              wrong   = 0;
     for (size_t i = 0; i < rays.size(); ++i) {
         const OracleAnswer exact = integer_oracle(setup.gbuffer, rays[i]);
         const bool         hit   = found[i].status == TraceStatus::hit;

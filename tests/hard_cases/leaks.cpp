@@ -102,8 +102,7 @@ Leaks count_leaks(Shape shape, const char* name)
         const GBufferPtr gbuffer = upload_gbuffer(device(), picture_of(wall));
         const auto       rays    = crossing_rays(wall, random);
         const auto       trace   = [&](const char* id) {
-            const auto tracer =
-                make_ray_tracer(device(), gbuffer, technique(id), default_values(technique(id)), settings, batch);
+            const auto tracer = tracer_on(gbuffer, technique(id), default_values(technique(id)), settings, batch);
             return trace_rays(device(), *tracer, rays);
         };
         const auto walk = trace("dda"), hiz = trace("hiz");

@@ -28,7 +28,7 @@ public:
                    read_file(shader_folder() / "api/forward_traversal.glsl"));
         if (!replace_in(text, from, to)) throw std::logic_error("mutation: '" + from + "' is not in " + id);
         write_file_atomically(file, text);
-        mutant_ = load_technique(folder_ / "mutant", list_structures({}));
+        mutant_ = load_technique(folder_ / "mutant", catalogue().structures);
     }
     ~Mutant() { fs::remove_all(folder_); }
     Mutant(const Mutant&)                     = delete;
@@ -156,8 +156,8 @@ size_t campaign_differences(const Technique& mutant)
             const auto          rays    = random_rays(size, 50'000, 23);
             const auto          trace   = [&](const Technique& t) {
                 // Beyond what any of these rays needs; mutants that never end then end soon.
-                const auto tracer = make_ray_tracer(device(), gbuffer, t, values_of(t, {{"max_steps", 10'000}}),
-                                                               campaign_settings, rays.size());
+                const auto tracer =
+                    tracer_on(gbuffer, t, values_of(t, {{"max_steps", 10'000}}), campaign_settings, rays.size());
                 return trace_rays(device(), *tracer, rays);
             };
             const auto walk = trace(technique("dda")), found = trace(mutant);
@@ -180,8 +180,8 @@ TEST_P(Mutations, AreNoticed)
         fmt::print("{}: {} of 400000 rays differ\n", mutation.name, differ);
         EXPECT_GT(differ, 0U);
     } else {
-        const CaseRow row = run_case(device(), *mutant, default_values(*mutant), "", find_case(mutation.seen_in),
-                                     {.double_precision = false});
+        const CaseRow row = run_case(device(), catalogue(), *mutant, default_values(*mutant), "",
+                                     find_case(mutation.seen_in), {.double_precision = false});
         fmt::print("{}: {} claims broken in {}\n", mutation.name, row.breaks, mutation.seen_in);
         EXPECT_GT(row.breaks, 0U);
     }

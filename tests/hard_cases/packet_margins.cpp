@@ -10,7 +10,7 @@
 namespace ssrlab::test {
 namespace {
 
-constexpr TraceSettings settings{.thickness_m = 1, .max_distance_m = 1e9};
+const TraceSettings settings{.thickness_m = 1, .max_distance_m = 1e9};
 
 /// Each ray alone, through a picture of one object: the same answer to the last bit. How many rays meet it.
 int same_answers(glm::ivec2 object, float depth, std::span<const RayInput> rays)
@@ -20,7 +20,7 @@ int same_answers(glm::ivec2 object, float depth, std::span<const RayInput> rays)
     depths[pixel_index(object, view.size_px)] = depth;
     const auto gbuffer                        = upload_depth(device(), view, depths);
     const auto make                           = [&](const char* id) {
-        return make_ray_tracer(device(), gbuffer, technique(id), values_of(technique(id)), settings, 1);
+        return tracer_on(gbuffer, technique(id), values_of(technique(id)), settings, 1);
     };
     const auto walk = make("dda"), packets = make("hiz_packets");
     int        hits = 0;

@@ -63,7 +63,7 @@ class PlaneCampaign : public testing::TestWithParam<glm::ivec2> {};
 /// One field of pixels under one model and one rule.
 class PlaneField {
 public:
-    PlaneField(Field field, glm::ivec2 size_px, std::string_view surface, Behind behind, int layers)
+    PlaneField(Field field, glm::ivec2 size_px, const std::string& surface, Behind behind, int layers)
         : setup_(make_field(field, size_px, 1))
     {
         setup_.settings         = campaign_settings;
@@ -100,11 +100,11 @@ public:
     }
 
 private:
-    RayTracerPtr make(const std::string& id, std::optional<double> exact)
+    TracerPtr make(const std::string& id, std::optional<double> exact)
     {
         ParameterValues values = default_values(technique(id));
         if (exact) values["arithmetic"] = *exact;
-        return make_ray_tracer(device(), gbuffer_, technique(id), values, setup_.settings, batch);
+        return tracer_on(gbuffer_, technique(id), values, setup_.settings, batch);
     }
 
     void judge(const std::vector<RayInput>& rays, const std::vector<RayOutcome>& walk, Count& count, std::string& first)
@@ -120,17 +120,17 @@ private:
         }
     }
 
-    ssrlab::Setup             setup_;
-    GBufferPtr                gbuffer_;
-    std::vector<RayTracerPtr> tracers_[2]; // in float, and with arithmetic = exact
+    ssrlab::Setup          setup_;
+    GBufferPtr             gbuffer_;
+    std::vector<TracerPtr> tracers_[2]; // in float, and with arithmetic = exact
 };
 
 TEST_P(PlaneCampaign, RandomPlanesAndSolids)
 {
     struct Model {
-        std::string_view surface;
-        Behind           behind;
-        int              layers = 1;
+        std::string surface;
+        Behind      behind;
+        int         layers = 1;
     };
     const Model  models[] = {{"plane", Behind::hit},           {"plane", Behind::pass},  {"plane_solid", Behind::stop},
                              {"plane_solid", Behind::stop, 2}, {"box", Behind::pass, 2}, {"plane", Behind::hit, 4},

@@ -45,7 +45,7 @@ HardCase case_expecting(const Expected& expected)
 
 CaseRow run(const Technique& technique, const HardCase& hard_case, bool double_precision = true)
 {
-    return run_case(device(), technique, default_values(technique), "family", hard_case,
+    return run_case(device(), catalogue(), technique, default_values(technique), "family", hard_case,
                     {.double_precision = double_precision});
 }
 
@@ -66,7 +66,7 @@ public:
         folder_.write("walk/technique.toml", manifest);
         folder_.write("walk/trace.glsl",
                       trace + "TraceResult trace(Ray ray) { TraceResult r = walked(ray); " + wrong + " return r; }\n");
-        technique_ = load_technique(folder_ / "walk", list_structures({}));
+        technique_ = load_technique(folder_ / "walk", catalogue().structures);
     }
     const Technique& operator*() const { return technique_; }
 
@@ -86,7 +86,8 @@ TEST(RunCase, ARowCountsItsRays)
     EXPECT_EQ(row.most_steps, 20U);
     EXPECT_LT(row.worst_deviation_px, 1e-4); // t is a float: 2^-24 of 50 px
     EXPECT_EQ(row.breaks, 0U) << table_findings(row);
-    EXPECT_EQ(row.digest, digest_of(device(), technique("dda"), default_values(technique("dda")), case_of_poles()));
+    EXPECT_EQ(row.digest,
+              digest_of(device(), catalogue(), technique("dda"), default_values(technique("dda")), case_of_poles()));
 }
 
 TEST(RunCase, ABudgetThatTheUserChoseIsNoMistake)

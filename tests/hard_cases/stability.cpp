@@ -37,7 +37,7 @@ TEST(DepthFormats, LoseNoMoreThanHalfAStep)
 
 TEST(DepthFormats, CostMoreTheFewerTheirBits)
 {
-    const auto rows = measure_formats(device(), technique("dda"));
+    const auto rows = measure_formats(device(), catalogue(), technique("dda"));
     ASSERT_EQ(rows.size(), 2 * depth_formats().size());
     for (size_t group : {0, 1}) {
         const auto  first = rows.begin() + static_cast<std::ptrdiff_t>(group * depth_formats().size());
@@ -56,7 +56,8 @@ TEST(DepthFormats, CostMoreTheFewerTheirBits)
 
 TEST(Jitter, ExactTechniquesShareTheSamplingsOwnFlicker)
 {
-    const JitterRow walk = measure_jitter(device(), technique("dda")), hiz = measure_jitter(device(), technique("hiz"));
+    const JitterRow walk = measure_jitter(device(), catalogue(), technique("dda")),
+                    hiz  = measure_jitter(device(), catalogue(), technique("hiz"));
     EXPECT_EQ(walk.pixels, hiz.pixels);
     EXPECT_EQ(walk.flips_percent, hiz.flips_percent);
     EXPECT_EQ(walk.p99_spread_px, hiz.p99_spread_px);
@@ -68,8 +69,8 @@ TEST(Jitter, ExactTechniquesShareTheSamplingsOwnFlicker)
 
 TEST(Jitter, ATechniqueThatMissesFlickersMore)
 {
-    EXPECT_GT(measure_jitter(device(), technique("linear_binary")).flips_percent,
-              2 * measure_jitter(device(), technique("dda")).flips_percent);
+    EXPECT_GT(measure_jitter(device(), catalogue(), technique("linear_binary")).flips_percent,
+              2 * measure_jitter(device(), catalogue(), technique("dda")).flips_percent);
 }
 
 } // namespace

@@ -58,7 +58,7 @@ std::string reason(const std::vector<PlannedPass>& plan, const std::string& pass
 
 TEST(Plan, WithoutAnythingThatReflectsNothingIsTraced)
 {
-    const auto plan = plan_frame(with_pyramid, frame(0, 0, 0, 0), values_with({chosen(Gloss::blur)}));
+    const auto plan = plan_passes(with_pyramid, frame(0, 0, 0, 0), values_with({chosen(Gloss::blur)}));
     EXPECT_EQ(running(plan), std::set<std::string>{"composite"});
     for (const char* pass : {"classification", "rays", "depth_pyramid", "trace", "hit_colour", "blur"})
         EXPECT_EQ(reason(plan, pass), "no pixel reflects") << pass;
@@ -66,7 +66,7 @@ TEST(Plan, WithoutAnythingThatReflectsNothingIsTraced)
 
 TEST(Plan, ASmoothPictureInWhichEveryRayHitsNeedsTraceAndShadingAlone)
 {
-    const auto plan = plan_frame(with_pyramid, frame(400, 0, 400, 0), values_with({chosen(Gloss::blur)}));
+    const auto plan = plan_passes(with_pyramid, frame(400, 0, 400, 0), values_with({chosen(Gloss::blur)}));
     EXPECT_EQ(running(plan),
               (std::set<std::string>{"classification", "rays", "depth_pyramid", "trace", "hit_colour", "composite"}));
     EXPECT_EQ(reason(plan, "trace"), "400 pixels reflect (40 %)");
@@ -76,7 +76,7 @@ TEST(Plan, ASmoothPictureInWhichEveryRayHitsNeedsTraceAndShadingAlone)
 
 TEST(Plan, TheNumberThatDecidedIsInTheReason)
 {
-    const auto plan = plan_frame(with_pyramid, frame(400, 100, 350, 10), values_with({chosen(Gloss::blur)}));
+    const auto plan = plan_passes(with_pyramid, frame(400, 100, 350, 10), values_with({chosen(Gloss::blur)}));
     EXPECT_TRUE(running(plan).contains("blur"));
     EXPECT_THAT(reason(plan, "blur"), HasSubstr("25 %"));
 }
@@ -84,23 +84,23 @@ TEST(Plan, TheNumberThatDecidedIsInTheReason)
 TEST(Plan, GlossIsDoneOneWay)
 {
     const auto rough = frame(400, 100, 350, 10), smooth = frame(400, 0, 350, 10);
-    const auto cones = plan_frame(with_pyramid, rough, values_with({chosen(Gloss::cone)}));
+    const auto cones = plan_passes(with_pyramid, rough, values_with({chosen(Gloss::cone)}));
     EXPECT_TRUE(running(cones).contains("cone_pyramid"));
     EXPECT_FALSE(running(cones).contains("blur"));
     EXPECT_THAT(reason(cones, "cone_pyramid"), HasSubstr("25 %"));
-    EXPECT_FALSE(running(plan_frame(with_pyramid, rough, default_pass_values())).contains("cone_pyramid"));
+    EXPECT_FALSE(running(plan_passes(with_pyramid, rough, default_pass_values())).contains("cone_pyramid"));
     EXPECT_FALSE(
-        running(plan_frame(with_pyramid, smooth, values_with({chosen(Gloss::cone)}))).contains("cone_pyramid"));
+        running(plan_passes(with_pyramid, smooth, values_with({chosen(Gloss::cone)}))).contains("cone_pyramid"));
 }
 
 TEST(Plan, LobesAreDrawnAndReusedWhereAnythingIsRough)
 {
     const FrameFacts drawn = facts_with_pyramid(true);
-    const auto       plan  = plan_frame(drawn, frame(400, 100, 350, 10), values_with({chosen(Gloss::stochastic)}));
+    const auto       plan  = plan_passes(drawn, frame(400, 100, 350, 10), values_with({chosen(Gloss::stochastic)}));
     EXPECT_TRUE(running(plan).contains("ray_reuse"));
     EXPECT_FALSE(running(plan).contains("blur") || running(plan).contains("environment"));
     EXPECT_THAT(reason(plan, "ray_reuse"), HasSubstr("25 %"));
-    EXPECT_FALSE(running(plan_frame(drawn, frame(400, 0, 350, 10), values_with({chosen(Gloss::stochastic)})))
+    EXPECT_FALSE(running(plan_passes(drawn, frame(400, 0, 350, 10), values_with({chosen(Gloss::stochastic)})))
                      .contains("ray_reuse"));
 }
 
@@ -109,19 +109,19 @@ TEST(Plan, TheBlurComesBeforeUpsamplingWhereItIsToldTo)
 {
     const ParameterValues s3   = {chosen(Gloss::blur), chosen(BlurOrder::before_upsampling),
                                   chosen(TraceResolution::half)};
-    const auto            plan = plan_frame({}, frame(400, 100, 350, 10), values_with(s3));
+    const auto            plan = plan_passes({}, frame(400, 100, 350, 10), values_with(s3));
     EXPECT_TRUE(running(plan).contains("ray_blur"));
     EXPECT_FALSE(running(plan).contains("blur"));
     const auto place = [&](const char* id) { return std::ranges::find(plan, id, &PlannedPass::id); };
     EXPECT_LT(place("ray_blur"), place("upsampling"));
-    const auto full = plan_frame({}, frame(400, 100, 350, 10),
-                                 values_with({chosen(Gloss::blur), chosen(BlurOrder::before_upsampling)}));
+    const auto full = plan_passes({}, frame(400, 100, 350, 10),
+                                  values_with({chosen(Gloss::blur), chosen(BlurOrder::before_upsampling)}));
     EXPECT_TRUE(running(full).contains("blur") && !running(full).contains("ray_blur"));
 }
 
 TEST(Plan, TechniquesWithoutAPyramidBuildNone)
 {
-    const auto plan = plan_frame({}, frame(400, 0, 400, 0), values_with({{"skip_unneeded_passes", 0}}));
+    const auto plan = plan_passes({}, frame(400, 0, 400, 0), values_with({{"skip_unneeded_passes", 0}}));
     EXPECT_FALSE(running(plan).contains("depth_pyramid"));
 }
 
@@ -129,11 +129,11 @@ TEST(Plan, TechniquesWithoutAPyramidBuildNone)
 TEST(Plan, WithoutSkippingEveryPassRunsThatIsNotOff)
 {
     const auto unculled = running(
-        plan_frame(with_pyramid, frame(0, 0, 0, 0), values_with({{"skip_unneeded_passes", 0}, chosen(Gloss::blur)})));
+        plan_passes(with_pyramid, frame(0, 0, 0, 0), values_with({{"skip_unneeded_passes", 0}, chosen(Gloss::blur)})));
     EXPECT_TRUE(unculled.contains("trace"));
     EXPECT_TRUE(unculled.contains("blur"));
-    const auto shading = running(plan_frame(with_pyramid, frame(400, 100, 300, 10),
-                                            values_with({{"skip_unneeded_passes", 0}, chosen(PassSet::shading)})));
+    const auto shading = running(plan_passes(with_pyramid, frame(400, 100, 300, 10),
+                                             values_with({{"skip_unneeded_passes", 0}, chosen(PassSet::shading)})));
     EXPECT_EQ(shading,
               (std::set<std::string>{"classification", "rays", "depth_pyramid", "trace", "hit_colour", "composite"}));
 }
@@ -143,12 +143,12 @@ TEST(Plan, FurtherRaysNeedOneRayPerPixelAtFullResolution)
 {
     const FrameFacts      drawn   = facts_with_pyramid(true);
     const FrameStatistics mirrors = frame(400, 0, 300, 10);
-    const auto            plan    = plan_frame(drawn, mirrors, values_with({{"hidden_layer", 1}}));
+    const auto            plan    = plan_passes(drawn, mirrors, values_with({{"hidden_layer", 1}}));
     EXPECT_EQ(reason(plan, "hidden_layer"), "25 % of 400 rays missed");
     EXPECT_EQ(reason(plan, "bounces"), "3.33 % of 300 hits reflect");
     for (const auto& [name, value] : ParameterValues{{"rays_per_pixel", 2}, chosen(TraceResolution::half)})
         for (const double skips : {0.0, 1.0}) {
-            const auto without = plan_frame(
+            const auto without = plan_passes(
                 drawn, mirrors, values_with({{"hidden_layer", 1}, {name, value}, {"skip_unneeded_passes", skips}}));
             for (const char* pass : {"hidden_layer", "bounces"}) {
                 EXPECT_FALSE(running(without).contains(pass)) << name;
@@ -162,8 +162,8 @@ TEST(Plan, HitsOfTheSecondLayerAreFilteredLikeOthers)
 {
     const FrameFacts      drawn{.scene = true, .structures = {}};
     const FrameStatistics misses = frame(400, 0, 0, 0);
-    EXPECT_FALSE(running(plan_frame(drawn, misses, values_with({chosen(Filter3x3::box3)}))).contains("filter_3x3"));
-    EXPECT_TRUE(running(plan_frame(drawn, misses, values_with({chosen(Filter3x3::box3), {"hidden_layer", 1}})))
+    EXPECT_FALSE(running(plan_passes(drawn, misses, values_with({chosen(Filter3x3::box3)}))).contains("filter_3x3"));
+    EXPECT_TRUE(running(plan_passes(drawn, misses, values_with({chosen(Filter3x3::box3), {"hidden_layer", 1}})))
                     .contains("filter_3x3"));
 }
 
@@ -172,7 +172,7 @@ TEST(Plan, EveryReasonIsThereForEverySetting)
     for (const Parameter& parameter : pass_parameters())
         for (const double value : {parameter.min, parameter.max})
             for (const FrameStatistics& statistics : {frame(0, 0, 0, 0), frame(1000, 1000, 0, 0), frame(1, 0, 1, 1)})
-                for (const PlannedPass& planned : plan_frame({}, statistics, values_with({{parameter.name, value}})))
+                for (const PlannedPass& planned : plan_passes({}, statistics, values_with({{parameter.name, value}})))
                     EXPECT_FALSE(planned.reason.empty()) << planned.id << " with " << parameter.name;
 }
 

@@ -35,8 +35,9 @@ const Technique walk = {"walk",
 Experiment one_technique(const std::string& id)
 {
     Experiment experiment;
-    experiment.name       = "e";
-    experiment.techniques = {{id, "e.toml:1", {}, {}}};
+    experiment.name           = "e";
+    experiment.techniques     = {{id, "e.toml:1", {}, {}}};
+    experiment.known_settings = all_settings(load_catalogue());
     return experiment;
 }
 
@@ -115,8 +116,8 @@ TEST(Rows, TimesWithKnownFigures)
     measured.pass_ms  = {{"classification", {1}}, {"rays", {2}},       {"depth_pyramid", {4}}, {"ray_packets", {8}},
                          {"hit_colour", {16}},    {"composite", {32}}, {"ray_reuse", {64}}};
     for (const char* pass : {"rays", "trace", "hit_colour", "ray_reuse", "composite"})
-        measured.plan.push_back({.id = pass, .runs = true, .reason = ""});
-    measured.plan.push_back({.id = "blur", .runs = false, .reason = ""});
+        measured.plan.passes.push_back({.id = pass, .runs = true, .reason = ""});
+    measured.plan.passes.push_back({.id = "blur", .runs = false, .reason = ""});
     measured.structures        = {"depth_pyramid", "ray_packets", "not_built"};
     measured.frames_per_submit = 3;
     add_times(measured, 20);
@@ -157,9 +158,10 @@ TEST(Rows, EveryPassHasALineWithItsTimeAndReason)
     ssrlab::Run run;
     run.id = "ra";
     MeasuredRun measured;
-    measured.run     = &run;
-    measured.plan    = {{.id = "rays", .runs = true, .reason = "a, b"}, {.id = "blur", .runs = false, .reason = "c"}};
-    measured.pass_ms = {{"rays", {1, 2, 3, 4, 5, 1.0 / 3, 9}}};
+    measured.run           = &run;
+    measured.plan.passes   = {{.id = "rays", .runs = true, .reason = "a, b"},
+                              {.id = "blur", .runs = false, .reason = "c"}};
+    measured.pass_ms       = {{"rays", {1, 2, 3, 4, 5, 1.0 / 3, 9}}};
     const std::string text = passes_text(measured);
     EXPECT_EQ(text, "ra,rays,true,3,0.333333,9,\"a, b\"\r\nra,blur,false,,,,c\r\n");
     EXPECT_THAT(count_passes(text + "rb,rays,true,1"), testing::ElementsAre(testing::Pair("ra", 1)));
@@ -182,14 +184,14 @@ TEST(Runs, IdsTellApartWhatDecidesAnOutcome)
     plain.technique = "walk";
     plain.values    = {{"steps", 25}, {"space", 1}};
     std::vector<ssrlab::Run> runs(9, plain);
-    runs[1].scene                      = "c";
-    runs[2].view                       = "c";
-    runs[3].size_px                    = {9, 16};
-    runs[4].technique                  = "run";
-    runs[5].values.at("steps")         = 26;
-    runs[6].at                         = {1, 0};
-    runs[7].at                         = {0, 8};
-    runs[8].settings.trace.thickness_m = 2;
+    runs[1].scene              = "c";
+    runs[2].view               = "c";
+    runs[3].size_px            = {9, 16};
+    runs[4].technique          = "run";
+    runs[5].values.at("steps") = 26;
+    runs[6].at                 = {1, 0};
+    runs[7].at                 = {0, 8};
+    runs[8].trace_text         = "thickness_m=2\n";
     std::set<std::string> ids;
     for (const ssrlab::Run& run : runs) ids.insert(run_id(run));
     EXPECT_EQ(ids.size(), runs.size());

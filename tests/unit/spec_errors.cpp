@@ -41,11 +41,21 @@ const std::vector<Technique>& techniques()
     return both;
 }
 
+const Catalogue& catalogue()
+{
+    static const Catalogue known = [] {
+        Catalogue found  = load_catalogue();
+        found.techniques = techniques();
+        return found;
+    }();
+    return known;
+}
+
 Experiment load_text(const std::string& text)
 {
     const auto path = std::filesystem::temp_directory_path() / fmt::format("spec_{}.toml", ::getpid());
     write_file_atomically(path, text);
-    Experiment experiment = load_experiment(path, techniques());
+    Experiment experiment = load_experiment(path, catalogue());
     std::filesystem::remove(path);
     return experiment;
 }
@@ -81,8 +91,8 @@ TEST(Spec, MistakesAtTheTop)
     EXPECT_THAT(error_of("scenes = []\ntechniques.dda = {}\n"), HasSubstr(".toml:1: 'scenes' is an empty list"));
     EXPECT_THAT(error_of("techniques.dda = {}\n"), HasSubstr("names no scene"));
     EXPECT_THAT(error_of("scenes = [\"a\"]\n"), HasSubstr("names no technique"));
-    EXPECT_THROW(load_experiment("/nonexistent/a.toml", techniques()), SpecError);
-    EXPECT_THROW(load_experiment("/dev/zero", techniques()), Failure); // which never ends
+    EXPECT_THROW(load_experiment("/nonexistent/a.toml", catalogue()), SpecError);
+    EXPECT_THROW(load_experiment("/dev/zero", catalogue()), Failure); // which never ends
 }
 
 TEST(Spec, Sizes)
@@ -101,7 +111,7 @@ TEST(Spec, Sizes)
 
 TEST(Spec, EverySettingAgainstEveryMistake)
 {
-    for (const Setting& setting : all_settings()) {
+    for (const Setting& setting : all_settings(catalogue())) {
         const auto mistake = [&](const std::string& value) {
             return error_of(with_line(fmt::format("[{}]\n{} = {}", setting.table, setting.name, value)));
         };

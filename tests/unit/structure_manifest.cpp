@@ -3,7 +3,7 @@
 #include "core/files.h"
 #include "errors.h"
 #include "temp_folder.h"
-#include "trace/technique.h"
+#include "trace/catalogue.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -165,7 +165,7 @@ TEST(Structures, AreFoundAlsoInTheFolderOfATechnique)
 {
     const std::vector<std::filesystem::path> folders = {data_root() / "techniques/rivals"};
     std::vector<std::string>                 ids;
-    for (const Structure& structure : list_structures(folders)) ids.push_back(structure.id);
+    for (const Structure& structure : load_catalogue(folders).structures) ids.push_back(structure.id);
     for (const char* id : {"depth_pyramid", "ray_packets", "front_packets"}) EXPECT_THAT(ids, testing::Contains(id));
 }
 

@@ -3,7 +3,7 @@
 #include "core/files.h"
 #include "errors.h"
 #include "temp_folder.h"
-#include "trace/technique.h"
+#include "trace/catalogue.h"
 
 #include <gmock/gmock.h>
 
@@ -235,12 +235,12 @@ TEST(TechniqueManifest, DirectoriesAreSearchedAndDuplicatesRefused)
     const fs::path twice[]      = {first.path(), first.path() / "test_walk_a"}; // the same folder again is no conflict
     const fs::path conflict[]   = {first.path(), second.path()};
     const fs::path absent[]     = {first.path() / "absent"};
-    EXPECT_EQ(find_technique(list_techniques(only_first), "test_walk_a").summary, "Walks.");
-    EXPECT_EQ(list_techniques(twice).size(), list_techniques(only_first).size());
-    EXPECT_THAT(message_of<SpecError>([&] { list_techniques(conflict); }),
+    EXPECT_EQ(find_technique(load_catalogue(only_first).techniques, "test_walk_a").summary, "Walks.");
+    EXPECT_EQ(load_catalogue(twice).techniques.size(), load_catalogue(only_first).techniques.size());
+    EXPECT_THAT(message_of<SpecError>([&] { load_catalogue(conflict); }),
                 HasSubstr("two techniques are called 'test_walk_b'"));
-    EXPECT_THAT(message_of<SpecError>([&] { list_techniques(absent); }), HasSubstr("no such directory"));
-    EXPECT_THAT(message_of<SpecError>([&] { find_technique(list_techniques(only_first), "test_wolk_a"); }),
+    EXPECT_THAT(message_of<SpecError>([&] { load_catalogue(absent); }), HasSubstr("no such directory"));
+    EXPECT_THAT(message_of<SpecError>([&] { find_technique(load_catalogue(only_first).techniques, "test_wolk_a"); }),
                 HasSubstr("did you mean 'test_walk_a'?"));
 }
 

@@ -140,9 +140,10 @@ HardCase parallel_to_the_image()
                     const View         view = bench_view();
                     std::vector<Setup> setups;
                     for (const double thickness : {3.5, 1.0}) {
+                        const TraceSettings settings{.thickness_m = thickness, .max_distance_m = 100};
                         setups.push_back({fmt::format("thickness {} m", thickness),
                                           picture_of(view, [](glm::ivec2 p) { return p.x < 16 ? 2.0 : 10.0; }),
-                                          {.thickness_m = thickness, .max_distance_m = 100},
+                                          settings,
                                           {level_ray(view, {48.5, 20.5}, {-48, 0}, 5)}});
                     }
                     return setups;

@@ -112,7 +112,7 @@ HardCase all_at(const std::string& name, bool maximum)
 std::function<void()> refused_setting(const std::string& name, double value)
 {
     return [=] {
-        for (const Setting& setting : all_settings())
+        for (const Setting& setting : all_settings(load_catalogue()))
             if (setting.name == name) check_parameter(setting, value, "hard case");
     };
 }

@@ -13,7 +13,7 @@ constexpr glm::dvec3 point{0, 0, -6};
 const glm::dvec3     normals[] = {
         glm::normalize(glm::dvec3(0, 0.9, 0.3)), glm::normalize(glm::dvec3(-0.4, 0.2, 1)), {0, 0, 1}};
 
-TraceSettings with(std::string_view surface, Behind behind)
+TraceSettings with(const std::string& surface, Behind behind)
 {
     return {.thickness_m = 1, .max_distance_m = 100, .behind = behind, .surface = surface};
 }
@@ -173,8 +173,8 @@ HardCase solid_from_its_side()
         .setups =
             [] {
                 std::vector<Setup> setups;
-                for (const std::string_view surface : {"plane", "plane_solid", "plane_infinite"}) {
-                    Setup setup{std::string(surface),
+                for (const std::string surface : {"plane", "plane_solid", "plane_infinite"}) {
+                    Setup setup{surface,
                                 picture_of(bench_view({97, 64}), [](glm::ivec2 p) { return p.x > 48 ? 4.0 : 0.0; }),
                                 with(surface, Behind::stop),
                                 {}};

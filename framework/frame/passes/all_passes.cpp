@@ -1,5 +1,4 @@
 #include "frame/passes/pass_helpers.h"
-#include "trace/reprojection.h"
 
 namespace ssrlab {
 
@@ -17,32 +16,28 @@ std::span<const Pass> all_passes()
     return passes;
 }
 
-std::span<const Parameter> pass_parameters()
+std::vector<Parameter> plan_parameters()
 {
-    static const std::vector<Parameter> parameters = [] {
-        std::vector<Parameter> all = {
-            boolean_parameter("skip_unneeded_passes", true,
+    return {boolean_parameter("skip_unneeded_passes", true,
                               "skip passes that the frame does not need; false: run every pass that is not off, on "
                               "every pixel with a surface"),
             choice_parameter(PassSet::all, "passes that may run: all, or only tracing and shading")};
+}
+
+std::span<const Parameter> pass_parameters()
+{
+    static const std::vector<Parameter> parameters = [] {
+        std::vector<Parameter> all = plan_parameters();
         for (const Pass& pass : all_passes()) all.insert(all.end(), pass.parameters.begin(), pass.parameters.end());
         return all;
     }();
     return parameters;
 }
 
-std::vector<Parameter> all_pass_settings()
-{
-    std::vector<Parameter> all(pass_parameters().begin(), pass_parameters().end());
-    for (const Reprojection& strategy : all_reprojections())
-        all.insert(all.end(), strategy.parameters.begin(), strategy.parameters.end());
-    return all;
-}
-
 ParameterValues default_pass_values()
 {
     ParameterValues values;
-    for (const Parameter& parameter : all_pass_settings()) values[parameter.name] = parameter.default_value;
+    for (const Parameter& parameter : pass_parameters()) values[parameter.name] = parameter.default_value;
     return values;
 }
 

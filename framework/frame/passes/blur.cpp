@@ -31,21 +31,25 @@ PassDecision decide_before(const FrameFacts& /*facts*/, const FrameStatistics& s
     return decide_if_blurred(statistics, values);
 }
 
-RecordFunction prepare_blur(Gpu& gpu, PreparedFrame& frame, Defines defines)
+RecordFunction prepare_blur(Gpu& gpu, const PassContext& context, Defines defines)
 {
-    auto y = make_shared_pass(gpu, frame, "passes/blur.comp", defines);
+    auto y = make_shared_pass(gpu, context, "passes/blur.comp", defines);
     defines.emplace("ALONG_X", "1");
-    auto x = make_shared_pass(gpu, frame, "passes/blur.comp", defines);
-    return [&frame, x, y](const auto& commands) {
-        record_clear_reflection(commands, frame.buffers->filtered); // of tiles that are not listed
-        dispatch_indirect(commands, *x, frame.buffers->tiles.launch);
-        barrier(commands);
-        dispatch_indirect(commands, *y, frame.buffers->tiles.launch);
-    };
+    auto x = make_shared_pass(gpu, context, "passes/blur.comp", defines);
+    return
+        [x, y, &filtered = image_of(context, Resource::filtered), &tiles = tile_launch(context)](const auto& commands) {
+            record_clear_reflection(commands, filtered); // of tiles that are not listed
+            dispatch_indirect(commands, *x, tiles);
+            barrier(commands);
+            dispatch_indirect(commands, *y, tiles);
+        };
 }
 
-RecordFunction prepare_after(Gpu& gpu, PreparedFrame& frame) { return prepare_blur(gpu, frame, {}); }
-RecordFunction prepare_before(Gpu& gpu, PreparedFrame& frame) { return prepare_blur(gpu, frame, {{"BLOCKS", "1"}}); }
+RecordFunction prepare_after(Gpu& gpu, const PassContext& context) { return prepare_blur(gpu, context, {}); }
+RecordFunction prepare_before(Gpu& gpu, const PassContext& context)
+{
+    return prepare_blur(gpu, context, {{"BLOCKS", "1"}});
+}
 
 } // namespace
 
@@ -54,6 +58,8 @@ Pass ray_blur_pass()
     return {.id             = "ray_blur",
             .summary        = "The blur at the resolution of the rays, before up-sampling",
             .cite           = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling"},
+            .reads          = {Resource::gbuffer, Resource::tiles, Resource::reflection, Resource::block_pixel},
+            .writes         = {Resource::filtered, Resource::reflection},
             .parameters     = {choice_parameter(
                     BlurOrder::after_upsampling,
                     "at half and quarter resolution: whether gloss = blur blurs the up-sampled reflection, or "
@@ -69,6 +75,8 @@ Pass blur_pass()
         .id             = "blur",
         .summary        = "Blurs the reflection by a separable Gaussian whose radius follows the roughness",
         .cite           = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling"},
+        .reads          = {Resource::gbuffer, Resource::tiles, Resource::reflection},
+        .writes         = {Resource::filtered, Resource::reflection},
         .parameters     = {choice_parameter(
                                Gloss::stochastic,
                                "how reflections widen on rough surfaces. off: not at all; blur: the reflection is blurred; "

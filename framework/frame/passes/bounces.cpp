@@ -10,32 +10,36 @@ struct Bounce {
     TechniquePasses              technique;
 };
 
-Bindings list_bindings(const FrameBuffers& buffers, const DerivedRays& derived)
+/// A list of derived rays in the place of the frame's own.
+Bindings list_bindings(const DerivedRays& derived)
 {
-    Bindings bindings = {{"RaySources", derived.sources}, {"RayThroughputs", derived.throughputs}};
-    bindings.merge(bindings_of(buffers, derived.rays));
-    return bindings;
+    return {{"RaySources", derived.sources},
+            {"RayThroughputs", derived.throughputs},
+            {"RayCount", derived.rays.count},
+            {"Rays", derived.rays.list},
+            {"Hits", derived.rays.hits}};
 }
 
 /// The rays that continue those of `from`, or of the frame where that is null.
-Bounce make_bounce(Gpu& gpu, const PreparedFrame& frame, const DerivedRays* from, int which)
+Bounce make_bounce(Gpu& gpu, const PassContext& context, const DerivedRays* from, int which)
 {
-    const FrameBuffers& buffers = *frame.buffers;
-    Bounce              bounce;
-    bounce.rays       = derived_rays(gpu, frame, which);
+    const Lab& lab = *context.frame.lab;
+    Bounce     bounce;
+    bounce.rays       = derived_rays(gpu, context, which);
     Bindings arriving = derived_bindings(*bounce.rays);
-    if (from != nullptr) arriving.merge(list_bindings(buffers, *from));
+    if (from != nullptr) arriving.merge(list_bindings(*from));
     Defines defines = precision_defines(gpu, Precision::float32);
     defines.merge(store_defines(gpu, bounce.rays->rays.list));
     if (from != nullptr) defines.emplace("FURTHER", "1");
-    Bindings traced = list_bindings(buffers, *bounce.rays);
-    traced.insert({"View", buffers.view});
-    bounce.set_up    = make_colour_pass(gpu, frame, "passes/bounce_rays.comp", defines, arriving);
+    Bindings traced = ray_bindings(*lab.gbuffer, bounce.rays->rays);
+    traced.insert({"View", lab.gbuffer->view_uniforms});
+    bounce.set_up    = make_colour_pass(gpu, context, "passes/bounce_rays.comp", defines, arriving);
     bounce.launch    = make_launch_pass(gpu, bounce.rays->rays.count, bounce.rays->rays.launch, RAYS_PER_GROUP);
-    bounce.technique = make_technique_passes(gpu, frame, *buffers.gbuffer, bounce.rays->rays, traced);
-    Defines colour_defines;
-    add_environment(gpu, frame, colour_defines, traced);
-    bounce.colour = make_colour_pass(gpu, frame, "passes/bounce_colour.comp", colour_defines, traced);
+    bounce.technique = make_technique_passes(gpu, lab, bounce.rays->rays, traced);
+    Bindings listed  = list_bindings(*bounce.rays);
+    Defines  colour_defines;
+    add_environment(gpu, context, colour_defines, listed);
+    bounce.colour = make_colour_pass(gpu, context, "passes/bounce_colour.comp", colour_defines, listed);
     return bounce;
 }
 
@@ -55,14 +59,14 @@ void record_bounce(const vk::raii::CommandBuffer& commands, const Bounce& bounce
 }
 
 /// The first bounce continues the frame's rays; the others alternate between two lists.
-RecordFunction direct(Gpu& gpu, PreparedFrame& frame, int count)
+RecordFunction direct(Gpu& gpu, const PassContext& context, int count)
 {
     auto bounces = std::make_shared<std::vector<Bounce>>();
-    bounces->push_back(make_bounce(gpu, frame, nullptr, 0));
-    if (count > 1) bounces->push_back(make_bounce(gpu, frame, bounces->at(0).rays.get(), 1));
-    if (count > 2) bounces->push_back(make_bounce(gpu, frame, bounces->at(1).rays.get(), 0));
-    return [&frame, bounces, count](const auto& commands) {
-        record_bounce(commands, bounces->at(0), frame.rays->launch);
+    bounces->push_back(make_bounce(gpu, context, nullptr, 0));
+    if (count > 1) bounces->push_back(make_bounce(gpu, context, bounces->at(0).rays.get(), 1));
+    if (count > 2) bounces->push_back(make_bounce(gpu, context, bounces->at(1).rays.get(), 0));
+    return [&rays = ray_launch(context), bounces, count](const auto& commands) {
+        record_bounce(commands, bounces->at(0), rays);
         for (int i = 1; i < count; ++i) {
             const Bounce& bounce = bounces->at(i % 2 == 1 ? 1 : 2);
             record_bounce(commands, bounce, bounces->at(i % 2 == 1 ? 0 : 1).rays->rays.launch);
@@ -71,33 +75,33 @@ RecordFunction direct(Gpu& gpu, PreparedFrame& frame, int count)
 }
 
 /// From the reflection that the frame before left in its history.
-RecordFunction real_history(Gpu& gpu, PreparedFrame& frame)
+RecordFunction from_history(Gpu& gpu, const PassContext& context)
 {
     auto pass = std::make_shared<ComputePass>(
-        make_colour_pass(gpu, frame, "passes/bounce_history.comp", {{"REPROJECTED", "1"}},
-                         history_bindings(*frame.history, frame.motion, *frame.buffers->gbuffer)));
-    return [&frame, pass](const auto& commands) { dispatch_indirect(commands, *pass, frame.rays->launch); };
+        make_colour_pass(gpu, context, "passes/bounce_history.comp", {{"REPROJECTED", "1"}}));
+    return [&rays = ray_launch(context), pass](const auto& commands) { dispatch_indirect(commands, *pass, rays); };
 }
 
-/// Without one every pass stands for the next frame of a still image.
-RecordFunction history(Gpu& gpu, PreparedFrame& frame, int count)
+/// Without a history every pass stands for the next frame of a still image.
+RecordFunction from_still_image(Gpu& gpu, const PassContext& context, int count)
 {
-    if (frame.facts.history.usable) return real_history(gpu, frame);
-    auto pass = std::make_shared<ComputePass>(
-        make_colour_pass(gpu, frame, "passes/bounce_history.comp", {}, {{"history_image", frame.buffers->filtered}}));
-    return [&frame, pass, count](const auto& commands) {
+    const GpuImage &reflection = image_of(context, Resource::reflection),
+                   &before     = image_of(context, Resource::filtered);
+    auto pass                  = std::make_shared<ComputePass>(
+        make_colour_pass(gpu, context, "passes/bounce_history.comp", {}, {{"history_image", before}}));
+    return [&rays = ray_launch(context), &reflection, &before, pass, count](const auto& commands) {
         for (int i = 0; i < count; ++i) {
-            record_copy(commands, frame.buffers->reflection, frame.buffers->filtered);
-            dispatch_indirect(commands, *pass, frame.rays->launch);
+            record_copy(commands, reflection, before);
+            dispatch_indirect(commands, *pass, rays);
         }
     };
 }
 
-RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
+RecordFunction prepare(Gpu& gpu, const PassContext& context)
 {
-    const int count = static_cast<int>(frame.settings.passes.at("bounces"));
-    return choice<BounceMode>(frame.settings.passes) == BounceMode::history ? history(gpu, frame, count)
-                                                                            : direct(gpu, frame, count);
+    const int count = static_cast<int>(context.frame.plan.values.at("bounces"));
+    if (choice<BounceMode>(context.frame.plan.values) != BounceMode::history) return direct(gpu, context, count);
+    return context.frame.plan.facts.history.usable ? from_history(gpu, context) : from_still_image(gpu, context, count);
 }
 
 PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
@@ -124,6 +128,10 @@ Pass bounces_pass()
         .id             = "bounces",
         .summary        = "Further bounces between mirrors: continues the rays whose hits reflect, too",
         .cite           = {"J. Somerville Roberts, Screen Space Reflections"},
+        .reads          = {Resource::gbuffer, Resource::light, Resource::objects, Resource::layers, Resource::solids,
+                           Resource::surroundings, Resource::structures, Resource::rays, Resource::hits, Resource::small_colour,
+                           Resource::cones, Resource::reflection, Resource::history, Resource::reprojected, Resource::lobe_rays},
+        .writes         = {Resource::filtered, Resource::reflection},
         .parameters     = {choice_parameter(BounceMode::direct,
                                             "further bounces. off: none; history: from the previous frame's "
                                                 "reflection as the camera saw it, reprojected; direct: traced in the mirror "

@@ -11,9 +11,11 @@ PassDecision decide(const FrameFacts& /*facts*/, const FrameStatistics& statisti
     return {PassDecision::needed, fmt::format("{} of {} tiles reflect", tiles, statistics.tiles)};
 }
 
-RecordFunction prepare(Gpu& /*gpu*/, PreparedFrame& frame)
+RecordFunction prepare(Gpu& /*gpu*/, const PassContext& context)
 {
-    return [&](const auto& commands) { record_classification(commands, frame.trace, *frame.buffers); };
+    return [&frame = context.frame](const auto& commands) {
+        record_classification(commands, frame.trace, *frame.lab->gbuffer);
+    };
 }
 
 } // namespace
@@ -22,6 +24,8 @@ Pass classification_pass()
 {
     return {.id      = "classification",
             .summary = "Lists the 8 x 8 pixel tiles that reflect; all later passes except composite run on these only",
+            .reads   = {Resource::gbuffer},
+            .writes  = {Resource::tiles},
             .decide  = decide,
             .prepare = prepare};
 }

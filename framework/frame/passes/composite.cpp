@@ -12,13 +12,14 @@ PassDecision decide(const FrameFacts& /*facts*/, const FrameStatistics& /*statis
     return {PassDecision::needed, "every frame"};
 }
 
-RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
+RecordFunction prepare(Gpu& gpu, const PassContext& context)
 {
     // Without rays, hit_colour does not run, which clears the reflection.
-    const bool no_rays = frame.statistics.gbuffer.reflecting_pixels == 0;
-    return [&frame, no_rays, pass = make_shared_pass(gpu, frame, "passes/composite.comp")](const auto& commands) {
-        if (no_rays) record_clear_reflection(commands, frame.buffers->reflection);
-        dispatch(commands, *pass, groups_of_8(frame.buffers->gbuffer->view.size_px));
+    const bool no_rays = context.frame.plan.statistics.gbuffer.reflecting_pixels == 0;
+    return [no_rays, &reflection = image_of(context, Resource::reflection),
+            pass = make_shared_pass(gpu, context, "passes/composite.comp")](const auto& commands) {
+        if (no_rays) record_clear_reflection(commands, reflection);
+        dispatch(commands, *pass, groups_of_8(reflection.size_px));
     };
 }
 
@@ -29,7 +30,9 @@ Pass composite_pass()
     return {
         .id      = "composite",
         .summary = "Adds the reflection to each surface's own light",
-        .cite = {"J. Somerville Roberts, Screen Space Reflections", "B. Karis 2013, Real Shading in Unreal Engine 4"},
+        .cite   = {"J. Somerville Roberts, Screen Space Reflections", "B. Karis 2013, Real Shading in Unreal Engine 4"},
+        .reads  = {Resource::gbuffer, Resource::light, Resource::reflection},
+        .writes = {Resource::reflection /* nothing, where no ray starts */, Resource::shaded},
         .parameters = {choice_parameter(Reflectance::ggx,
                                         "how much of a surface's light is its reflection. ggx: the directional albedo "
                                         "of its GGX lobe, tinted, and energy is split with what comes from below the "
@@ -40,17 +43,18 @@ Pass composite_pass()
         .prepare    = prepare};
 }
 
-Image composite_reflection(Gpu& gpu, const PreparedFrame& frame, std::span<const glm::vec4> reflection)
+Image composite_reflection(Gpu& gpu, const ReadyFrame& frame, std::span<const glm::vec4> reflection)
 {
     std::vector<uint64_t> texels;
     texels.reserve(reflection.size());
     for (const glm::vec4& value : reflection) texels.push_back(glm::packHalf4x16(value));
-    FrameBuffers& buffers = *frame.buffers;
-    upload(gpu, buffers.reflection, texels.data(), texels.size() * sizeof(uint64_t));
-    const ComputePass pass = make_pass(gpu, frame, "passes/composite.comp");
+    GpuImage& target = frame.inputs.buffers->reflection;
+    upload(gpu, target, texels.data(), texels.size() * sizeof(uint64_t));
+    const Pass        composite = composite_pass();
+    const ComputePass pass      = make_pass(gpu, {frame.inputs, composite, composite.id}, "passes/composite.comp");
     submit(gpu, [&](const auto& commands) {
         barrier(commands);
-        dispatch(commands, pass, groups_of_8(buffers.gbuffer->view.size_px));
+        dispatch(commands, pass, groups_of_8(target.size_px));
         barrier(commands);
     });
     return read_shaded(gpu, frame);

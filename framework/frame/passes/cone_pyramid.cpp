@@ -19,15 +19,13 @@ struct ConePush {
     int        row = 0; // where the level begins
 };
 
-ConePyramid& cone_pyramid_of(Gpu& gpu, FrameBuffers& buffers)
+void make_cone_pyramid(Gpu& gpu, FrameBuffers& buffers)
 {
-    if (!buffers.cone) {
-        const glm::ivec2 size_px = buffers.gbuffer->view.size_px;
-        buffers.cone             = std::make_shared<ConePyramid>();
-        buffers.cone->cells      = make_cone_image(gpu, size_px, vk::Format::eR16G16B16A16Sfloat);
-        buffers.cone->ranges     = make_cone_image(gpu, size_px, vk::Format::eR32G32Sfloat);
-    }
-    return *buffers.cone;
+    if (buffers.cone) return;
+    const glm::ivec2 size_px = buffers.gbuffer->view.size_px;
+    buffers.cone             = std::make_shared<ConePyramid>();
+    buffers.cone->cells      = make_cone_image(gpu, size_px, vk::Format::eR16G16B16A16Sfloat);
+    buffers.cone->ranges     = make_cone_image(gpu, size_px, vk::Format::eR32G32Sfloat);
 }
 
 PassDecision decide(const FrameFacts& /*facts*/, const FrameStatistics& statistics, const ParameterValues& values)
@@ -36,16 +34,14 @@ PassDecision decide(const FrameFacts& /*facts*/, const FrameStatistics& statisti
     return needed_if_anything_is_rough(statistics);
 }
 
-RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
+RecordFunction prepare(Gpu& gpu, const PassContext& context)
 {
-    const ConePyramid& cone = cone_pyramid_of(gpu, *frame.buffers);
-    const Bindings     own  = {{"cone_pyramid", cone.cells}, {"cone_ranges", cone.ranges}};
-    const auto         make = [&](const Defines& defines) {
+    make_cone_pyramid(gpu, *context.frame.buffers);
+    const auto make = [&](const Defines& defines) {
         return std::make_shared<ComputePass>(
-            make_pass(gpu, frame, "passes/cone_pyramid.comp", defines, own, sizeof(ConePush)));
+            make_pass(gpu, context, "passes/cone_pyramid.comp", defines, {}, sizeof(ConePush)));
     };
-    frame.cone               = true;
-    const glm::ivec2 size_px = frame.buffers->gbuffer->view.size_px;
+    const glm::ivec2 size_px = context.frame.lab->gbuffer->view.size_px;
     return [size_px, from_pixels = make({{"FROM_PIXELS", "1"}}), from_cells = make({})](const auto& commands) {
         for (int level = 1; level <= pyramid_levels(size_px); ++level) {
             const ComputePass& pass = level == 1 ? *from_pixels : *from_cells;
@@ -65,6 +61,8 @@ Pass cone_pyramid_pass()
         .id             = "cone_pyramid",
         .summary        = "Builds the pyramid of colours and visibility in which hit_colour looks up cones",
         .cite           = {"Y. Uludag 2014, Hi-Z Screen-Space Cone-Traced Reflections (GPU Pro 5)"},
+        .reads          = {Resource::gbuffer, Resource::light},
+        .writes         = {Resource::cones},
         .parameters     = {real_parameter("cone_scale", 0.75, 0, 2,
                                           "factor on the half angle of a cone that the article derives from the roughness"),
                            integer_parameter("cone_steps", 2, 1, 16,

@@ -4,10 +4,10 @@
 
 namespace ssrlab {
 
-std::shared_ptr<DerivedRays> derived_rays(Gpu& gpu, const PreparedFrame& frame, int which)
+std::shared_ptr<DerivedRays> derived_rays(Gpu& gpu, const PassContext& context, int which)
 {
-    const size_t                  capacity = frame.rays->capacity;
-    std::shared_ptr<DerivedRays>& derived  = frame.buffers->derived_rays[{capacity, which}];
+    const size_t                  capacity = context.frame.rays->capacity;
+    std::shared_ptr<DerivedRays>& derived  = context.frame.buffers->derived_rays[{capacity, which}];
     if (!derived) {
         const uint64_t rays = std::max<uint64_t>(capacity, 1);
         derived = std::make_shared<DerivedRays>(DerivedRays{make_ray_buffers(gpu, capacity, Precision::float32),

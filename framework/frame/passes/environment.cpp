@@ -20,13 +20,13 @@ PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, 
     return {PassDecision::not_needed, "every ray hit, and nothing fades"};
 }
 
-RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
+RecordFunction prepare(Gpu& gpu, const PassContext& context)
 {
     Defines  defines;
     Bindings bindings;
-    add_environment(gpu, frame, defines, bindings);
-    auto pass = std::make_shared<ComputePass>(make_pass(gpu, frame, "passes/environment.comp", defines, bindings));
-    return [&frame, pass](const auto& commands) { dispatch_indirect(commands, *pass, frame.buffers->tiles.launch); };
+    add_environment(gpu, context, defines, bindings);
+    auto pass = std::make_shared<ComputePass>(make_pass(gpu, context, "passes/environment.comp", defines, bindings));
+    return [&tiles = tile_launch(context), pass](const auto& commands) { dispatch_indirect(commands, *pass, tiles); };
 }
 
 } // namespace
@@ -36,6 +36,8 @@ Pass environment_pass()
     return {
         .id             = "environment",
         .summary        = "Adds the light from infinitely far away where rays missed or their hits fade",
+        .reads          = {Resource::gbuffer, Resource::surroundings, Resource::tiles, Resource::reflection},
+        .writes         = {Resource::reflection},
         .parameters     = {boolean_parameter("environment_fallback", true,
                                              "use the environment where a ray missed: its map, or the background colour")},
         .decide         = decide,

@@ -14,12 +14,14 @@ PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, 
     return {PassDecision::needed, fmt::format("{} rays hit ({})", trace.hits, percent(trace.hits, trace.rays))};
 }
 
-RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
+RecordFunction prepare(Gpu& gpu, const PassContext& context)
 {
-    return [&frame, pass = make_shared_pass(gpu, frame, "passes/filter_3x3.comp")](const auto& commands) {
-        record_clear_reflection(commands, frame.buffers->filtered); // of tiles that are not listed
-        dispatch_indirect(commands, *pass, frame.buffers->tiles.launch);
-        record_copy(commands, frame.buffers->filtered, frame.buffers->reflection);
+    return [pass = make_shared_pass(gpu, context, "passes/filter_3x3.comp"), &tiles = tile_launch(context),
+            &filtered   = image_of(context, Resource::filtered),
+            &reflection = image_of(context, Resource::reflection)](const auto& commands) {
+        record_clear_reflection(commands, filtered); // of tiles that are not listed
+        dispatch_indirect(commands, *pass, tiles);
+        record_copy(commands, filtered, reflection);
     };
 }
 
@@ -30,6 +32,8 @@ Pass filter_3x3_pass()
     return {.id             = "filter_3x3",
             .summary        = "Filters the reflection over 3 x 3 pixels, against noise",
             .cite           = {"J. Somerville Roberts, Screen Space Reflections"},
+            .reads          = {Resource::tiles, Resource::reflection},
+            .writes         = {Resource::filtered, Resource::reflection},
             .parameters     = {choice_parameter(
                     Filter3x3::off, "filter over 3 x 3 pixels: none, the mean, or the neighbour of median brightness")},
             .decide         = decide,

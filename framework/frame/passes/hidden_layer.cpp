@@ -1,27 +1,23 @@
 // The hidden layer: the scene once more without what the first layer shows, and the rays that missed, traced in it.
 #include "core/pixel_index.h"
 #include "frame/passes/pass_helpers.h"
-#include "frame/solid_backs.h"
 
 namespace ssrlab {
 namespace {
 
 struct HiddenLayer {
-    GBufferPtr                   layer;
     std::shared_ptr<DerivedRays> missed;
-    std::vector<StructurePasses> structures;
+    LabPtr                       lab; // the same technique on the second layer: it does not know which layer it sees
     ComputePass                  gather, launch, merge;
     TechniquePasses              technique;
 };
 
-/// The technique's own passes: it does not know which layer it sees.
-TechniquePasses make_layer_passes(Gpu& gpu, const PreparedFrame& frame, const RayBuffers& rays)
+/// Draws the second layer once it is recorded, with solids where the surface model asks.
+const DrawingPtr& second_layer_of(Gpu& gpu, FrameBuffers& buffers, bool solids)
 {
-    const FrameBuffers& buffers  = *frame.buffers;
-    Bindings            bindings = surface_bindings(*buffers.second_layer);
-    bindings.insert({"View", buffers.view});
-    bindings.merge(bindings_of(buffers, rays));
-    return make_technique_passes(gpu, frame, *buffers.second_layer, rays, bindings);
+    if (!buffers.second_layer) buffers.second_layer = make_second_layer(gpu, *buffers.drawing);
+    if (solids) make_solid_backs(gpu, *buffers.second_layer);
+    return buffers.second_layer;
 }
 
 PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
@@ -40,32 +36,32 @@ PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, 
     return {PassDecision::needed, reason};
 }
 
-RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
+RecordFunction prepare(Gpu& gpu, const PassContext& context)
 {
-    FrameBuffers& buffers = *frame.buffers;
-    if (!buffers.second_layer) buffers.second_layer = make_second_layer(gpu, *buffers.gbuffer);
-    frame.hidden_layer = true;
-    auto own           = std::make_shared<HiddenLayer>();
-    own->layer         = buffers.second_layer;
-    const bool solids  = find_surface(frame.settings.trace.surface).needs_solid;
-    if (solids) prepare_solid_backs(gpu, *own->layer);
-    own->missed            = derived_rays(gpu, frame, 0);
-    own->structures        = make_depth_structures(gpu, frame, *own->layer);
-    const Bindings derived = derived_bindings(*own->missed);
-    own->gather =
-        make_pass(gpu, frame, "passes/gather_misses.comp", store_defines(gpu, own->missed->rays.list), derived);
-    own->launch    = make_launch_pass(gpu, own->missed->rays.count, own->missed->rays.launch, RAYS_PER_GROUP);
-    own->technique = make_layer_passes(gpu, frame, own->missed->rays);
-    own->merge = make_pass(gpu, frame, "passes/second_layer_hits.comp", store_defines(gpu, frame.rays->hits), derived);
-    const double separation = frame.settings.passes.at("hidden_layer_separation_m");
-    return [&frame, own, separation, solids](const auto& commands) {
+    const FrameInputs& frame  = context.frame;
+    const bool         solids = frame.lab->surface.needs_solid;
+    const DrawingPtr&  layer  = second_layer_of(gpu, *frame.buffers, solids);
+    auto               own    = std::make_shared<HiddenLayer>();
+    own->missed               = derived_rays(gpu, context, 0);
+    own->lab                  = lab_on(gpu, *frame.lab, layer->gbuffer);
+    const Bindings derived    = derived_bindings(*own->missed);
+    RayBuffers&    list       = own->missed->rays;
+    Bindings       traced     = ray_bindings(*layer->gbuffer, list);
+    traced.insert({"View", layer->gbuffer->view_uniforms});
+    own->gather    = make_pass(gpu, context, "passes/gather_misses.comp", store_defines(gpu, list.list), derived);
+    own->launch    = make_launch_pass(gpu, list.count, list.launch, RAYS_PER_GROUP);
+    own->technique = make_technique_passes(gpu, *own->lab, list, traced);
+    own->merge =
+        make_pass(gpu, context, "passes/second_layer_hits.comp", store_defines(gpu, frame.rays->hits), derived);
+    const double separation_m = frame.plan.values.at("hidden_layer_separation_m");
+    return [own, layer, separation_m, solids, &rays = ray_launch(context)](const auto& commands) {
         const RayBuffers& missed = own->missed->rays;
-        record_second_layer(commands, *own->layer, separation);
-        if (solids) record_solid_backs(commands, *own->layer);
-        record_depth_structures(commands, own->structures);
+        record_second_layer(commands, *layer, separation_m);
+        if (solids) record_solid_backs(commands, *layer);
+        record_depth_structures(commands, *own->lab);
         commands.fillBuffer(*missed.count.buffer, 0, VK_WHOLE_SIZE, 0);
         barrier(commands);
-        dispatch_indirect(commands, own->gather, frame.rays->launch);
+        dispatch_indirect(commands, own->gather, rays);
         barrier(commands);
         dispatch(commands, own->launch, {1, 1, 1});
         barrier(commands);
@@ -85,6 +81,8 @@ Pass hidden_layer_pass()
         .cite           = {"C. Everitt 2001, Interactive Order-Independent Transparency",
                            "M. Mara, M. McGuire, D. Nowrouzezahrai, D. Luebke 2016, Deep G-Buffers for Stable Global "
                                      "Illumination Approximation"},
+        .reads          = {Resource::gbuffer, Resource::rays, Resource::hits},
+        .writes         = {Resource::layers, Resource::hits},
         .parameters     = {boolean_parameter("hidden_layer", false, "trace rays that missed in a second depth layer"),
                            real_parameter("hidden_layer_separation_m", 0.5, 0, 1e6,
                                           "the second layer is the nearest surface more than this far behind the first"),
@@ -96,12 +94,12 @@ Pass hidden_layer_pass()
         .beyond_shading = true};
 }
 
-std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame)
+std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const ReadyFrame& frame)
 {
-    if (!frame.hidden_layer) return std::nullopt;
-    const RayBuffers& rays    = *frame.rays;
-    const glm::ivec2  size_px = frame.buffers->gbuffer->view.size_px;
-    TraceResult       result  = read_result<float>(gpu, frame, rays, nullptr);
+    if (!hits_hidden_layer(frame.inputs)) return std::nullopt;
+    const RayBuffers& rays    = *frame.inputs.rays;
+    const glm::ivec2  size_px = frame.inputs.lab->gbuffer->view.size_px;
+    TraceResult       result  = read_result<float>(gpu, *frame.inputs.lab, rays, nullptr);
     const auto        listed  = read_list<float>(gpu, rays);
     const auto        hits    = download_as<PackedHit<float>>(gpu, rays.hits, listed.size());
     for (size_t i = 0; i < listed.size(); ++i) {
@@ -112,10 +110,10 @@ std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const PreparedFrame& frame
     return result;
 }
 
-GBufferImage read_second_layer(Gpu& gpu, const PreparedFrame& frame)
+GBufferImage read_second_layer(Gpu& gpu, const ReadyFrame& frame)
 {
-    if (!frame.hidden_layer) throw std::logic_error("read_second_layer: the frame has none");
-    return read_gbuffer(gpu, *frame.buffers->second_layer);
+    if (!hits_hidden_layer(frame.inputs)) throw std::logic_error("read_second_layer: the frame has none");
+    return read_gbuffer(gpu, *frame.inputs.buffers->second_layer->gbuffer);
 }
 
 } // namespace ssrlab

@@ -16,25 +16,21 @@ PassDecision needed_for_history(const FrameFacts& facts, const FrameStatistics& 
 
 namespace {
 
-RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
+RecordFunction prepare(Gpu& gpu, const PassContext& context)
 {
-    const FrameHistory& history = *frame.history;
-    Bindings            more    = history_bindings(history, frame.motion, *frame.buffers->gbuffer);
-    more.insert({{"kept_reflection_image", history.kept_reflection},
-                 {"kept_facts_image", history.kept_facts},
-                 {"HistoryCounts", history.counts}});
     Defines defines;
-    if (trace_block_px(frame.settings.passes) > 1) defines.emplace("BLOCKS", "1");
-    auto pass = std::make_shared<ComputePass>(make_pass(gpu, frame, "passes/history.comp", defines, more));
-    return [&frame, pass](const auto& commands) {
-        record_clear_reflection(commands, frame.buffers->filtered); // of tiles that are not listed
-        record_clear_reflection(commands, frame.history->kept_reflection);
+    if (trace_block_px(context.frame.plan.values) > 1) defines.emplace("BLOCKS", "1");
+    return [pass = make_shared_pass(gpu, context, "passes/history.comp", defines), &history = *context.frame.history,
+            &tiles = tile_launch(context), &filtered = image_of(context, Resource::filtered),
+            &reflection = image_of(context, Resource::reflection)](const auto& commands) {
+        record_clear_reflection(commands, filtered); // of tiles that are not listed
+        record_clear_reflection(commands, history.kept_reflection);
         // Beside a reflector nothing is written, and the next frame may still ask there.
-        record_clear(commands, frame.history->kept_facts, {std::array<float, 4>{1, 0, -1, 0}});
-        commands.fillBuffer(*frame.history->counts.buffer, 0, VK_WHOLE_SIZE, 0);
+        record_clear(commands, history.kept_facts, {std::array<float, 4>{1, 0, -1, 0}});
+        commands.fillBuffer(*history.counts.buffer, 0, VK_WHOLE_SIZE, 0);
         barrier(commands);
-        dispatch_indirect(commands, *pass, frame.buffers->tiles.launch);
-        record_copy(commands, frame.buffers->filtered, frame.buffers->reflection);
+        dispatch_indirect(commands, *pass, tiles);
+        record_copy(commands, filtered, reflection);
     };
 }
 
@@ -43,10 +39,13 @@ RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
 Pass history_pass()
 {
     return {
-        .id             = "history",
-        .summary        = "Accumulates the reflection over the frames of a sequence",
-        .cite           = {"B. Karis 2014, High-Quality Temporal Supersampling",
-                           "M. Salvi 2016, An Excursion in Temporal Supersampling"},
+        .id      = "history",
+        .summary = "Accumulates the reflection over the frames of a sequence",
+        .cite    = {"B. Karis 2014, High-Quality Temporal Supersampling",
+                    "M. Salvi 2016, An Excursion in Temporal Supersampling"},
+        .reads   = {Resource::gbuffer, Resource::objects, Resource::tiles, Resource::block_pixel, Resource::reflection,
+                    Resource::reprojected, Resource::history},
+        .writes  = {Resource::filtered, Resource::reflection, Resource::kept},
         .parameters     = {real_parameter("history_weight", 0.9, 0, 0.999,
                                           "weight of the frames before in the accumulated reflection, once there are "
                                               "enough for it; 0: no history"),

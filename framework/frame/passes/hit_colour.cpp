@@ -4,14 +4,15 @@
 namespace ssrlab {
 namespace {
 
-RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
+RecordFunction prepare(Gpu& gpu, const PassContext& context)
 {
-    auto pass = std::make_shared<ComputePass>(make_colour_pass(gpu, frame, "passes/hit_colour.comp"));
-    return [&frame, pass](const auto& commands) {
-        record_clear_reflection(commands, frame.buffers->reflection);
-        if (trace_block_px(frame.settings.passes) > 1)
-            record_clear(commands, frame.buffers->block_pixel, {std::array<uint32_t, 4>{NO_PIXEL, 0, 0, 0}});
-        dispatch_indirect(commands, *pass, frame.rays->launch);
+    auto       pass   = std::make_shared<ComputePass>(make_colour_pass(gpu, context, "passes/hit_colour.comp"));
+    const bool blocks = trace_block_px(context.frame.plan.values) > 1;
+    return [pass, blocks, &rays = ray_launch(context), &reflection = image_of(context, Resource::reflection),
+            &block_pixel = image_of(context, Resource::block_pixel)](const auto& commands) {
+        record_clear_reflection(commands, reflection);
+        if (blocks) record_clear(commands, block_pixel, {std::array<uint32_t, 4>{NO_PIXEL, 0, 0, 0}});
+        dispatch_indirect(commands, *pass, rays);
     };
 }
 
@@ -56,6 +57,9 @@ Pass hit_colour_pass()
             .summary = "Turns each hit into a colour and a weight: hit tests, fades, attenuation",
             .cite    = {"J. Somerville Roberts, Screen Space Reflections", "Litheon 2012, Real-Time Local Reflections",
                         "A. Biro 2015, Report on Screen-Space Reflections"},
+            .reads   = {Resource::gbuffer, Resource::light, Resource::layers, Resource::surroundings, Resource::rays,
+                        Resource::hits, Resource::small_colour, Resource::cones},
+            .writes  = {Resource::reflection, Resource::block_pixel, Resource::lobe_rays},
             .parameters = parameters(),
             .decide     = needed_if_anything_reflects,
             .prepare    = prepare};

@@ -1,5 +1,4 @@
 // What lies behind the G-buffer's surfaces, where the walk asks for it.
-#include "frame/layers.h"
 #include "frame/passes/pass_helpers.h"
 
 namespace ssrlab {
@@ -13,9 +12,10 @@ PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, 
     return {PassDecision::needed, fmt::format("layers = {}", facts.layers)};
 }
 
-RecordFunction prepare(Gpu& /*gpu*/, PreparedFrame& frame)
+RecordFunction prepare(Gpu& /*gpu*/, const PassContext& context)
 {
-    return [&](const auto& commands) { record_layers(commands, *frame.buffers->gbuffer, frame.settings.trace); };
+    return [&drawing = *context.frame.buffers->drawing, layers = context.frame.lab->settings.layers](
+               const auto& commands) { record_layers(commands, drawing, layers); };
 }
 
 } // namespace
@@ -25,6 +25,8 @@ Pass layers_pass()
     return {.id      = "layers",
             .summary = "Draws the next surfaces behind the G-buffer's that face the camera, layer by layer",
             .cite    = {"C. Everitt 2001, Interactive Order-Independent Transparency"},
+            .reads   = {Resource::gbuffer},
+            .writes  = {Resource::layers},
             .decide  = decide,
             .prepare = prepare};
 }

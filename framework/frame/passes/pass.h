@@ -17,8 +17,9 @@ namespace ssrlab {
 
 struct FrameFacts;
 struct FrameStatistics;
+struct FrameInputs;
 struct Gpu;
-struct PreparedFrame;
+struct Pass;
 
 /// Whether a frame needs a pass, and the reason with the number that decided.
 struct PassDecision {
@@ -30,17 +31,50 @@ struct PassDecision {
 /// Writes a pass's commands.
 using RecordFunction = std::function<void(const vk::raii::CommandBuffer&)>;
 
+/// What a pass finds, and what passes hand to each other.
+enum class Resource : uint8_t {
+    gbuffer,      // depth, normals and materials
+    light,        // lit colours of the G-buffer
+    objects,      // which object each pixel shows, and the plane of its depth
+    layers,       // what lies behind the G-buffer
+    solids,       // where the solids end whose fronts it shows
+    surroundings, // lights, shadow maps and environment of the scene
+    tiles,        // that reflect
+    rays,
+    structures,
+    hits,
+    reprojected, // where each reflection was in the frame before
+    small_colour,
+    cones,
+    reflection,
+    filtered, // a reflection that a filter is writing, or an earlier one
+    block_pixel,
+    lobe_rays, // what each ray of a rough pixel brought back
+    history,   // what the frame before left
+    kept,      // what this frame leaves for the next
+    shaded,
+};
+std::string_view name_of(Resource resource);
+
+/// What a pass is prepared from: the frame's inputs, of which it may use what it declares.
+struct PassContext {
+    const FrameInputs& frame;
+    const Pass&        pass;
+    std::string        id; // of the pass, or of the structure that it builds
+};
+
 /// Skipping a pass that is not needed leaves every bit of the image as it is.
 struct Pass {
     std::string              id, summary;
-    std::vector<std::string> cite       = {};
-    std::vector<Parameter>   parameters = {};
+    std::vector<std::string> cite = {};
+    /// A shader of the pass that uses anything else does not get it (std::logic_error).
+    std::vector<Resource>  reads, writes;
+    std::vector<Parameter> parameters = {};
     PassDecision (*decide)(const FrameFacts&, const FrameStatistics&, const ParameterValues&);
-    /// Makes the pass's pipelines. The record function refers to the frame, which must outlive it.
-    RecordFunction (*prepare)(Gpu&, PreparedFrame&) = nullptr;
-    bool beyond_shading                             = false; // off with pass_set = shading
-    /// In the place of prepare: runs once for each structure of the technique, under that structure's id.
-    RecordFunction (*prepare_structure)(PreparedFrame&, const std::string& structure) = nullptr;
+    /// Makes the pass's pipelines. The record function refers to the frame's inputs, which must outlive it.
+    RecordFunction (*prepare)(Gpu&, const PassContext&) = nullptr;
+    bool beyond_shading                                 = false; // off with pass_set = shading
+    bool per_structure = false; // runs once for each structure of the technique, under that structure's id
 };
 
 Pass layers_pass();
@@ -66,10 +100,10 @@ Pass composite_pass();
 
 /// In the order of a frame.
 std::span<const Pass> all_passes();
-/// The parameters of all passes, after those of the plan itself. Names are unique.
+/// Of the plan itself: what may run at all.
+std::vector<Parameter> plan_parameters();
+/// Those, then the parameters of all passes. Names are unique.
 std::span<const Parameter> pass_parameters();
-/// Those and the parameters of reprojection strategies, named "strategy.parameter".
-std::vector<Parameter> all_pass_settings();
-ParameterValues        default_pass_values();
+ParameterValues            default_pass_values();
 
 } // namespace ssrlab

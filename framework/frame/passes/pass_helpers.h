@@ -1,7 +1,7 @@
 // What several passes share. Folder-internal.
 #pragma once
 
-#include "trace/frame_passes.h"
+#include "frame/frame_inputs.h"
 
 #include <fmt/format.h>
 
@@ -31,24 +31,37 @@ bool takes_bounces_from_history(const FrameFacts& facts, const ParameterValues& 
 /// Passes that continue the rays one by one need this.
 bool one_ray_per_pixel(const ParameterValues& values);
 
+// Resources. Each throws std::logic_error for what the pass does not declare.
+/// By the names that shaders give them.
+Bindings bindings_of(Gpu& gpu, const PassContext& context, Resource resource);
+/// An image that the pass clears or copies: reflection, filtered, block_pixel.
+const GpuImage& image_of(const PassContext& context, Resource resource);
+/// Whether hits may lie in the second layer that the pass hidden_layer draws.
+bool hits_hidden_layer(const FrameInputs& frame);
+/// In how many layers hits may lie.
+int layers_of_hits(const FrameInputs& frame);
+/// For a dispatch over the tiles that reflect.
+const Buffer& tile_launch(const PassContext& context);
+/// For a dispatch over the frame's rays.
+const Buffer& ray_launch(const PassContext& context);
+
 // Pipelines.
-/// A shader with the parameters of all passes. `more` takes precedence over what the frame binds to the same names.
-ComputePass make_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader, const Defines& defines = {},
+/// A shader with the parameters of all passes. `more` is bound before what the pass
+/// declares.
+ComputePass make_pass(Gpu& gpu, const PassContext& context, const std::string& shader, const Defines& defines = {},
                       const Bindings& more = {}, uint32_t push_constant_bytes = 0);
 /// The same of a shader that is composed of several files, with the parameters of a reprojection strategy.
-ComputePass make_composed_pass(Gpu& gpu, const PreparedFrame& frame, ShaderSource source, const Bindings& more,
+ComputePass make_composed_pass(Gpu& gpu, const PassContext& context, ShaderSource source, const Bindings& more,
                                std::span<const Parameter> own = {}, uint32_t push_constant_bytes = 0);
 /// The same, to be kept by a record function.
-std::shared_ptr<ComputePass> make_shared_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader,
+std::shared_ptr<ComputePass> make_shared_pass(Gpu& gpu, const PassContext& context, const std::string& shader,
                                               const Defines& defines = {});
 /// A shader that includes passes/ray_colour.glsl.
-ComputePass make_colour_pass(Gpu& gpu, const PreparedFrame& frame, const std::string& shader, Defines defines = {},
+ComputePass make_colour_pass(Gpu& gpu, const PassContext& context, const std::string& shader, Defines defines = {},
                              Bindings more = {});
 
-/// With gloss = stochastic: what each ray found and where (passes/ray_reuse.comp).
-Bindings lobe_ray_bindings(Gpu& gpu, const PreparedFrame& frame);
 /// For a shader that looks up the environment (passes/environment_lobe.glsl), if the frame has one and falls back on it.
-void add_environment(Gpu& gpu, const PreparedFrame& frame, Defines& defines, Bindings& bindings);
+void add_environment(Gpu& gpu, const PassContext& context, Defines& defines, Bindings& bindings);
 
 // Commands.
 void record_copy(const vk::raii::CommandBuffer& commands, const GpuImage& source, const GpuImage& target);
@@ -57,7 +70,7 @@ void record_clear(const vk::raii::CommandBuffer& commands, const GpuImage& image
 void record_clear_reflection(const vk::raii::CommandBuffer& commands, const GpuImage& reflection);
 
 /// One of two ray lists that all frames with the same number of rays share.
-std::shared_ptr<DerivedRays> derived_rays(Gpu& gpu, const PreparedFrame& frame, int which);
+std::shared_ptr<DerivedRays> derived_rays(Gpu& gpu, const PassContext& context, int which);
 /// The list under the names by which shaders fill it.
 Bindings derived_bindings(const DerivedRays& derived);
 

@@ -4,9 +4,11 @@
 namespace ssrlab {
 namespace {
 
-RecordFunction prepare(Gpu& /*gpu*/, PreparedFrame& frame)
+RecordFunction prepare(Gpu& /*gpu*/, const PassContext& context)
 {
-    return [&](const auto& commands) { record_ray_setup(commands, frame.trace, *frame.buffers); };
+    return [&frame = context.frame](const auto& commands) {
+        record_ray_setup(commands, frame.trace, *frame.lab->gbuffer);
+    };
 }
 
 } // namespace
@@ -16,6 +18,8 @@ Pass rays_pass()
     return {.id      = "rays",
             .summary = "Sets up the rays of each reflecting pixel",
             .cite    = {"J. Somerville Roberts, Screen Space Reflections"},
+            .reads   = {Resource::gbuffer, Resource::tiles},
+            .writes  = {Resource::rays},
             .parameters =
                 {integer_parameter(
                      "rays_per_pixel", 1, 1, 16,

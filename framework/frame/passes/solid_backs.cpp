@@ -1,5 +1,4 @@
 // Where solids end, for the surface model that asks.
-#include "frame/solid_backs.h"
 #include "frame/passes/pass_helpers.h"
 
 namespace ssrlab {
@@ -13,13 +12,12 @@ PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, 
     return {PassDecision::needed, "the surface model has solids"};
 }
 
-RecordFunction prepare(Gpu& /*gpu*/, PreparedFrame& frame)
+RecordFunction prepare(Gpu& /*gpu*/, const PassContext& context)
 {
-    return [&](const auto& commands) {
-        const GBuffer& gbuffer = *frame.buffers->gbuffer;
-        record_solid_backs(commands, gbuffer);
-        for (int i = 0; i + 1 < frame.settings.trace.layers; ++i)
-            record_solid_backs(commands, *gbuffer.layers[static_cast<size_t>(i)]);
+    return [&drawing = *context.frame.buffers->drawing,
+            layers   = context.frame.lab->settings.layers](const auto& commands) {
+        record_solid_backs(commands, drawing);
+        for (int i = 0; i + 1 < layers; ++i) record_solid_backs(commands, *drawing.layers[static_cast<size_t>(i)]);
     };
 }
 
@@ -30,6 +28,8 @@ Pass solid_backs_pass()
     return {.id      = "solid_backs",
             .summary = "Draws the nearest surface behind each of the G-buffer's layers, to know where solids end",
             .cite    = {"D. Gustafsson 2017, Screen space path tracing (Voxagon blog)"},
+            .reads   = {Resource::gbuffer, Resource::layers},
+            .writes  = {Resource::solids},
             .decide  = decide,
             .prepare = prepare};
 }

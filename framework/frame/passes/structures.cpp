@@ -12,12 +12,12 @@ PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, 
     return needed_if_anything_reflects(facts, statistics, values);
 }
 
-RecordFunction prepare_structure(PreparedFrame& frame, const std::string& structure)
+RecordFunction prepare(Gpu& /*gpu*/, const PassContext& context)
 {
-    const auto own = [structure](const StructurePasses& passes) { return passes.id == structure; };
-    return [&frame, own](const auto& commands) {
+    return [&frame = context.frame, id = context.id](const auto& commands) {
+        const auto             own       = [&](const StructurePasses& passes) { return passes.id == id; };
         const TechniquePasses& technique = frame.trace.technique;
-        record_structure(commands, *std::ranges::find_if(frame.structures, own), nullptr);
+        record_structure(commands, *std::ranges::find_if(frame.lab->structures, own), nullptr);
         record_ray_structure(commands, technique, *std::ranges::find_if(technique.structures, own), *frame.rays);
     };
 }
@@ -26,10 +26,13 @@ RecordFunction prepare_structure(PreparedFrame& frame, const std::string& struct
 
 Pass structures_pass()
 {
-    return {.id                = "structures",
-            .summary           = "Builds what the technique reads beside depth, such as the depth pyramid",
-            .decide            = decide,
-            .prepare_structure = prepare_structure};
+    return {.id            = "structures",
+            .summary       = "Builds what the technique reads beside depth, such as the depth pyramid",
+            .reads         = {Resource::gbuffer, Resource::layers, Resource::solids, Resource::rays},
+            .writes        = {Resource::structures},
+            .decide        = decide,
+            .prepare       = prepare,
+            .per_structure = true};
 }
 
 } // namespace ssrlab

@@ -4,9 +4,11 @@
 namespace ssrlab {
 namespace {
 
-RecordFunction prepare(Gpu& /*gpu*/, PreparedFrame& frame)
+RecordFunction prepare(Gpu& /*gpu*/, const PassContext& context)
 {
-    return [&](const auto& commands) { dispatch_indirect(commands, frame.trace.technique.trace, frame.rays->launch); };
+    return [&trace = context.frame.trace.technique.trace, &rays = ray_launch(context)](const auto& commands) {
+        dispatch_indirect(commands, trace, rays);
+    };
 }
 
 } // namespace
@@ -15,6 +17,8 @@ Pass trace_pass()
 {
     return {.id      = "trace",
             .summary = "Runs the technique on the list of rays",
+            .reads   = {Resource::gbuffer, Resource::layers, Resource::solids, Resource::structures, Resource::rays},
+            .writes  = {Resource::hits},
             .decide  = needed_if_anything_reflects,
             .prepare = prepare};
 }

@@ -4,11 +4,10 @@
 namespace ssrlab {
 namespace {
 
-RecordFunction prepare(Gpu& gpu, PreparedFrame& frame)
+RecordFunction prepare(Gpu& gpu, const PassContext& context)
 {
-    return [&frame, pass = make_shared_pass(gpu, frame, "passes/upsampling.comp")](const auto& commands) {
-        dispatch_indirect(commands, *pass, frame.buffers->tiles.launch);
-    };
+    return [pass   = make_shared_pass(gpu, context, "passes/upsampling.comp"),
+            &tiles = tile_launch(context)](const auto& commands) { dispatch_indirect(commands, *pass, tiles); };
 }
 
 } // namespace
@@ -19,6 +18,8 @@ Pass upsampling_pass()
             .summary    = "Gives each pixel without rays the reflections of the 2 x 2 traced pixels around it",
             .cite       = {"B. Wronski 2014, GDC follow-up: Screenspace reflections filtering and up-sampling",
                            "B. Karis 2014, Physically Based Shading on Mobile"},
+            .reads      = {Resource::gbuffer, Resource::tiles, Resource::block_pixel, Resource::reflection},
+            .writes     = {Resource::reflection},
             .parameters = {boolean_parameter(
                                "upsampling_distance", true,
                                "the four neighbours weigh by their distance (bilinear). If all weights are zero, "

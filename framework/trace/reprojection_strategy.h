@@ -5,7 +5,6 @@
 #include "trace/parameter.h"
 
 #include <filesystem>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -22,11 +21,5 @@ struct Reprojection {
 
 /// Reads folder/reprojection.toml; throws SpecError with file and line.
 Reprojection load_reprojection(const std::filesystem::path& folder);
-
-/// Those of the tree, then those in $SSRLAB_TECHNIQUES; read once per program. Throws SpecError when two share an id.
-std::span<const Reprojection> all_reprojections();
-
-/// The one that these values of the passes' parameters name.
-const Reprojection& chosen_reprojection(const ParameterValues& passes);
 
 } // namespace ssrlab

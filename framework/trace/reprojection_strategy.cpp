@@ -1,8 +1,7 @@
-#include "trace/reprojection.h"
+#include "trace/reprojection_strategy.h"
 
 #include "core/files.h"
 #include "trace/manifest.h"
-#include "trace/technique.h"
 
 namespace ssrlab {
 
@@ -24,17 +23,6 @@ Reprojection load_reprojection(const std::filesystem::path& folder)
     if (!std::filesystem::exists(folder / "reproject.glsl"))
         throw_spec_error("{}: missing; it holds the function reproject()", short_path(folder / "reproject.glsl"));
     return strategy;
-}
-
-std::span<const Reprojection> all_reprojections()
-{
-    static const std::vector<Reprojection> strategies = list_reprojections({});
-    return strategies;
-}
-
-const Reprojection& chosen_reprojection(const ParameterValues& passes)
-{
-    return all_reprojections()[static_cast<size_t>(passes.at("reprojection"))];
 }
 
 } // namespace ssrlab

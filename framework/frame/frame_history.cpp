@@ -1,5 +1,5 @@
+#include "frame/frame_inputs.h"
 #include "shared.h"
-#include "trace/frame_passes.h"
 
 #include <fmt/format.h>
 
@@ -7,11 +7,6 @@ namespace ssrlab {
 namespace {
 
 static_assert(sizeof(HistoryCounts) == HISTORY_COUNTS * sizeof(uint32_t));
-
-bool planned(const PreparedFrame& frame, const char* pass)
-{
-    return std::ranges::any_of(frame.plan, [&](const PlannedPass& row) { return row.id == pass && row.runs; });
-}
 
 vk::ImageCopy whole(const GpuImage& image)
 {
@@ -51,44 +46,34 @@ FrameHistoryPtr make_history(Gpu& gpu, glm::ivec2 size_px)
 
 void drop_history(FrameHistory& history) { history.view.reset(); }
 
-std::string history_mismatch(const FrameHistory& history, const GBuffer& gbuffer)
+std::string history_mismatch(const FrameHistory& history, glm::ivec2 size_px, const std::optional<FrameMotion>& motion)
 {
     if (!history.view) return "no frame before this one";
-    if (!gbuffer.motion) return "a cut: nothing came before this frame";
-    const FrameMotion& motion   = *gbuffer.motion;
-    const View &       previous = motion.previous_view, &held = *history.view;
-    if (history.size_px != gbuffer.view.size_px)
+    if (!motion) return "a cut: nothing came before this frame";
+    const View &previous = motion->previous_view, &held = *history.view;
+    if (history.size_px != size_px)
         return fmt::format("a cut: the frame before had {}x{} pixels", history.size_px.x, history.size_px.y);
-    if (history.frame + 1 != motion.frame)
-        return fmt::format("a cut: frame {} follows frame {}", motion.frame, history.frame);
+    if (history.frame + 1 != motion->frame)
+        return fmt::format("a cut: frame {} follows frame {}", motion->frame, history.frame);
     if (held.world_to_view != previous.world_to_view || held.focal_px != previous.focal_px ||
         held.projection != previous.projection || held.near_m != previous.near_m)
         return "a cut: the frame before had another view";
     return "";
 }
 
-Bindings history_bindings(const FrameHistory& history, const MotionBuffers& motion, const GBuffer& gbuffer)
+void keep_history(Gpu& gpu, const ReadyFrame& frame, int number)
 {
-    return {{"PreviousView", motion.previous_view},    {"Objects", motion.objects},
-            {"object_image", gbuffer.object},          {"gradient_image", gbuffer.gradient},
-            {"previous_depth_image", history.depth},   {"previous_gradient_image", history.gradient},
-            {"previous_normal_image", history.normal}, {"previous_reflection_image", history.reflection},
-            {"previous_facts_image", history.facts},   {"reprojected_image", history.reprojected}};
-}
-
-void keep_history(Gpu& gpu, const PreparedFrame& frame, int number)
-{
-    if (!frame.history) throw std::logic_error("keep_history: the frame was prepared without a history");
-    FrameHistory& history = *frame.history;
-    GBuffer&      gbuffer = *frame.buffers->gbuffer;
-    const bool    kept    = planned(frame, "history");
-    Bindings      all     = surface_bindings(gbuffer);
-    all.insert({{"View", frame.buffers->view},
+    if (!frame.inputs.history) throw std::logic_error("keep_history: the frame was made without a history");
+    FrameHistory&  history = *frame.inputs.history;
+    const GBuffer& gbuffer = *frame.inputs.lab->gbuffer;
+    const bool     kept    = runs(frame.inputs.plan, "history");
+    Bindings       all     = surface_bindings(gbuffer);
+    all.insert({{"View", gbuffer.view_uniforms},
                 {"gradient_image", gbuffer.gradient},
                 {"previous_depth_image", history.depth},
                 {"previous_gradient_image", history.gradient},
                 {"previous_normal_image", history.normal},
-                {"reflection_image", frame.buffers->reflection},
+                {"reflection_image", frame.inputs.buffers->reflection},
                 {"previous_reflection_image", history.reflection},
                 {"previous_facts_image", history.facts}});
     ShaderSource source{.file = "gbuffer/keep_history.comp"};
@@ -107,19 +92,19 @@ void keep_history(Gpu& gpu, const PreparedFrame& frame, int number)
     history.frame = number;
 }
 
-std::vector<glm::vec2> read_reprojection(Gpu& gpu, const PreparedFrame& frame)
+std::vector<glm::vec2> read_reprojection(Gpu& gpu, const ReadyFrame& frame)
 {
     std::vector<glm::vec2> vectors_px;
-    if (!planned(frame, "reprojection")) return vectors_px;
-    for (const glm::vec4& texel : download_as<glm::vec4>(gpu, frame.history->reprojected))
+    if (!runs(frame.inputs.plan, "reprojection")) return vectors_px;
+    for (const glm::vec4& texel : download_as<glm::vec4>(gpu, frame.inputs.history->reprojected))
         vectors_px.emplace_back(texel);
     return vectors_px;
 }
 
-std::optional<HistoryCounts> read_history_counts(Gpu& gpu, const PreparedFrame& frame)
+std::optional<HistoryCounts> read_history_counts(Gpu& gpu, const ReadyFrame& frame)
 {
-    if (!planned(frame, "history")) return std::nullopt;
-    return download_as<HistoryCounts>(gpu, frame.history->counts, 1)[0];
+    if (!runs(frame.inputs.plan, "history")) return std::nullopt;
+    return download_as<HistoryCounts>(gpu, frame.inputs.history->counts, 1)[0];
 }
 
 } // namespace ssrlab

@@ -1,0 +1,31 @@
+// The history's images. Folder-internal.
+#pragma once
+
+#include "frame/frame_history.h"
+#include "frame/motion_vectors.h"
+#include "gpu/compute.h"
+
+namespace ssrlab {
+
+struct FrameHistory {
+    glm::ivec2          size_px{0, 0};
+    std::optional<View> view;      // as drawn, of the frame that it holds; empty: it holds none
+    int                 frame = 0; // its number
+
+    // Of the frame that it holds.
+    GpuImage depth;      // R32F
+    GpuImage gradient;   // R32UI, core/plane_gradient.h
+    GpuImage normal;     // RGBA32F: view space
+    GpuImage reflection; // RGBA32F: colour times weight, weight; < 0: reflects nothing
+    GpuImage facts;      // RGBA32F: frames accumulated, ray length, object that was hit (-1: unknown, -2: missed)
+
+    // Of the frame that runs.
+    GpuImage reprojected;     // RGBA32F: px to where the reflection was or NaN, ray length, object that was hit
+    GpuImage kept_reflection; // what becomes `reflection`
+    GpuImage kept_facts;
+    Buffer   counts; // HistoryCounts
+};
+
+/// Why the history is not of the frame before this one; empty: it is. motion: since that frame, if there was one.
+std::string history_mismatch(const FrameHistory& history, glm::ivec2 size_px, const std::optional<FrameMotion>& motion);
+} // namespace ssrlab

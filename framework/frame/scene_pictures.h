@@ -1,0 +1,32 @@
+// A scene on the device, and the G-buffers that its triangles draw.
+#pragma once
+
+#include "scene/sequence.h"
+#include "trace/lab.h"
+
+#include <optional>
+
+namespace ssrlab {
+
+struct GpuScene; // a scene's buffers, textures and shadow maps
+struct Drawing;  // draws one view of it into a G-buffer
+
+using GpuScenePtr = std::shared_ptr<GpuScene>;
+using DrawingPtr  = std::shared_ptr<Drawing>;
+
+/// Uploads the scene and renders its shadow maps.
+GpuScenePtr upload_scene(Gpu& gpu, const Scene& scene);
+/// The same scene with its draws elsewhere: vertices and shadow maps anew, in the buffers that are there.
+void move_scene(Gpu& gpu, GpuScene& uploaded, const Scene& moved);
+
+/// Draws a view. Throws SpecError when the size exceeds the device's limit.
+/// motion: since the frame before; where anything moved, the G-buffer has motion vectors.
+DrawingPtr        draw_gbuffer(Gpu& gpu, const GpuScenePtr& scene, const View& view,
+                               const std::optional<FrameMotion>& motion = {});
+const GBufferPtr& gbuffer_of(const Drawing& drawing);
+/// Draws into the same images again; returns milliseconds.
+double redraw_gbuffer(Gpu& gpu, Drawing& drawing);
+/// Draws those of the first `layers` layers that the G-buffer lacks, with their solids.
+void draw_layers(Gpu& gpu, Drawing& drawing, int layers);
+
+} // namespace ssrlab

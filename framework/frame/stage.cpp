@@ -1,0 +1,61 @@
+#include "frame/stage.h"
+
+namespace ssrlab {
+
+Stage open_stage(const Gpu& gpu, Catalogue catalogue, Scene scene)
+{
+    Stage stage;
+    stage.gpu       = gpu;
+    stage.catalogue = std::move(catalogue);
+    stage.first     = std::move(scene);
+    stage.scene     = stage.first;
+    if (!stage.scene.frame) stage.uploaded = upload_scene(stage.gpu, stage.scene);
+    return stage;
+}
+
+void move_stage(Stage& stage, int frame)
+{
+    if (frame != stage.frame && anything_moves(stage.first)) {
+        stage.scene = scene_at(stage.first, frame);
+        move_scene(stage.gpu, *stage.uploaded, stage.scene);
+    }
+    stage.frame = frame;
+}
+
+void show(Stage& stage, const std::string& view, glm::ivec2 size_px, SequenceFrame at, glm::dvec2 offset_px)
+{
+    move_stage(stage, at.frame);
+    stage.view   = view_at(stage.scene, view, size_px, at);
+    stage.motion = motion_at(stage.scene, view, stage.view.size_px, at.frame);
+    stage.view.centre_px += offset_px;
+    if (stage.scene.frame) {
+        stage.gbuffer = upload_gbuffer(stage.gpu, stage.scene.frame->gbuffer);
+        return;
+    }
+    stage.drawing = draw_gbuffer(stage.gpu, stage.uploaded, stage.view, stage.motion);
+    stage.gbuffer = gbuffer_of(*stage.drawing);
+}
+
+void show(Stage& stage, const View& view)
+{
+    stage.view = view;
+    stage.motion.reset();
+    stage.drawing = draw_gbuffer(stage.gpu, stage.uploaded, view);
+    stage.gbuffer = gbuffer_of(*stage.drawing);
+}
+
+LabPtr make_lab(Stage& stage, const Technique& technique, const ParameterValues& values, const TraceSettings& settings)
+{
+    if (stage.drawing) draw_layers(stage.gpu, *stage.drawing, settings.layers);
+    return make_lab(stage.gpu, stage.catalogue, stage.gbuffer, technique, values, settings);
+}
+
+FrameBuffersPtr make_frame_buffers(Stage& stage) { return make_frame_buffers(stage.gpu, stage.gbuffer, stage.drawing); }
+
+FramePlan plan_frame(Stage& stage, const LabPtr& lab, const FrameBuffersPtr& buffers, const FrameSettings& settings,
+                     const FrameHistoryPtr& history)
+{
+    return plan_frame(stage.gpu, stage.catalogue, lab, buffers, settings, history);
+}
+
+} // namespace ssrlab

@@ -1,0 +1,98 @@
+#include "harness/choice.h"
+
+#include "core/error.h"
+#include "core/printable.h"
+#include "core/size.h"
+#include "harness/experiment.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace ssrlab {
+
+void require_ending(const std::string& output, const std::vector<std::string>& endings)
+{
+    const std::string ending = std::filesystem::path(output).extension().string();
+    if (std::ranges::find(endings, ending) == endings.end())
+        throw_spec_error("-o {}: expected a file that ends in {}", output, fmt::join(endings, " or "));
+}
+
+glm::ivec2 size_option(const std::string& text)
+{
+    const std::optional<glm::ivec2> size_px = parse_size(text);
+    if (!size_px || size_px->x < 1 || size_px->y < 1)
+        throw_spec_error("--size: expected WIDTHxHEIGHT, both at least 1, got '{}'", text);
+    return *size_px;
+}
+
+Stage open_stage(const CommonOptions& common, const Catalogue& catalogue, const PictureOptions& options)
+{
+    Scene            scene   = load_scene(options.scene);
+    const glm::ivec2 size_px = options.size.empty() ? glm::ivec2(0) : size_option(options.size);
+    view_at(scene, options.view, size_px, options.at); // wrong options are refused before the device is opened
+    if (!common.quiet)
+        for (const std::string& warning : scene.warnings)
+            std::fprintf(stderr, "warning: %s\n", printable(warning).c_str());
+    Stage stage = open_stage(open_gpu(common.gpu), catalogue, std::move(scene));
+    show(stage, options.view, size_px, options.at);
+    return stage;
+}
+
+void set_choice(const Catalogue& catalogue, const Technique& technique, Choice& choice, const std::string& pair)
+{
+    const auto equals = pair.find('=');
+    if (equals == std::string::npos) throw_spec_error("-p {}: expected name=value", pair);
+    const std::string          name = pair.substr(0, equals), text = pair.substr(equals + 1), place = "-p " + pair;
+    const std::vector<Setting> settings = all_settings(catalogue);
+    const auto                 setting  = std::ranges::find(settings, name, &Setting::name);
+    if (setting == settings.end())
+        choice.values[name] = parse_parameter(find_parameter(technique, name, place), text, place);
+    else
+        setting->set(choice.settings, parse_parameter(*setting, text, place));
+}
+
+Choice parse_choice(const Catalogue& catalogue, const Technique& technique, const std::vector<std::string>& pairs)
+{
+    Choice choice{default_values(technique), {}};
+    for (const std::string& pair : pairs) set_choice(catalogue, technique, choice, pair);
+    return choice;
+}
+
+namespace {
+
+bool belongs_to(std::span<const Setting> settings, const Technique& technique, const std::string& pair)
+{
+    const std::string name = pair.substr(0, pair.find('='));
+    return std::ranges::find(settings, name, &Setting::name) != settings.end() ||
+           std::ranges::find(technique.parameters, name, &Parameter::name) != technique.parameters.end();
+}
+
+} // namespace
+
+std::vector<Choice> parse_choices(const Catalogue& catalogue, const std::vector<const Technique*>& techniques,
+                                  const std::vector<std::string>& pairs)
+{
+    const std::vector<Setting> settings = all_settings(catalogue);
+    std::vector<Choice>        choices;
+    for (const Technique* technique : techniques) {
+        std::vector<std::string> own;
+        for (const std::string& pair : pairs) {
+            const bool of_any = std::ranges::any_of(
+                techniques, [&](const Technique* other) { return belongs_to(settings, *other, pair); });
+            if (!of_any || belongs_to(settings, *technique, pair)) own.push_back(pair);
+        }
+        choices.push_back(parse_choice(catalogue, *technique, own));
+    }
+    return choices;
+}
+
+int report_messages(const Stage& stage)
+{
+    const auto messages = validation_messages(stage.gpu);
+    for (const std::string& message : messages) std::fprintf(stderr, "validation: %s\n", message.c_str());
+    return messages.empty() ? 0 : 1;
+}
+
+} // namespace ssrlab

@@ -1,0 +1,289 @@
+#include "trace/lab_passes.h"
+
+#include "core/error.h"
+#include "core/files.h"
+#include "shared.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace ssrlab {
+namespace {
+
+/// Walks by borders in whole numbers (shaders/api/grid_exact.glsl). A define, not a constant: 64-bit integers must not even
+/// be declared on a device without them.
+constexpr const char* exact_arithmetic = "EXACT_ARITHMETIC";
+
+/// The choice of a parameter that asks for integers of 128 bits, "NAME = CHOICE"; empty: none does.
+std::string exact_choice(const Technique& technique, const ParameterValues& values)
+{
+    for (const Parameter& parameter : technique.parameters) {
+        const std::string chosen = format_parameter(parameter, values.at(parameter.name));
+        const auto        define = parameter.defines.find(chosen);
+        if (define != parameter.defines.end() && define->second == exact_arithmetic)
+            return fmt::format("{} = {}", parameter.name, chosen);
+    }
+    return "";
+}
+
+/// Throws where this choice of a parameter needs what the device or the surface model does not have.
+void require_exact_arithmetic(const Gpu& gpu, const Lab& lab, const std::string& chosen)
+{
+    if (const std::string missing = missing_feature(gpu, lab.technique, lab.values); !missing.empty())
+        throw_failure("{}", missing);
+    if (!std::filesystem::exists(lab.surface.shaders / "meeting_exact.glsl"))
+        throw_spec_error("{} needs a surface model with meeting_exact.glsl, which {} does not have", chosen,
+                         short_path(lab.surface.folder));
+}
+
+} // namespace
+
+std::string missing_feature(const Gpu& gpu, const Technique& technique, const ParameterValues& values)
+{
+    const std::string chosen = exact_choice(technique, values);
+    if (chosen.empty() || (gpu.info.int64 && gpu.info.float64)) return "";
+    return fmt::format("{} needs 64-bit integers and doubles in shaders; the device '{}' has no {}", chosen,
+                       gpu.info.name, gpu.info.int64 ? "shaderFloat64" : "shaderInt64");
+}
+
+RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision, int rays_of_pixels)
+{
+    const uint64_t listed_bytes = rays_of_pixels > 0                ? sizeof(uint32_t)
+                                  : precision == Precision::float64 ? sizeof(PackedRay<double>)
+                                                                    : sizeof(PackedRay<float>);
+    const uint64_t rays         = std::max<uint64_t>(capacity, 1);
+    const uint64_t largest      = rays * sizeof(glm::uvec3); // what was counted of each, a storage buffer
+    if (largest > gpu.impl->limits.maxStorageBufferRange)
+        throw_failure("{} rays need a buffer of {} MiB; the device allows {} MiB", rays, largest >> 20,
+                      gpu.impl->limits.maxStorageBufferRange >> 20);
+    RayBuffers buffers;
+    buffers.precision      = precision;
+    buffers.capacity       = capacity;
+    buffers.count          = make_buffer(gpu, 16);
+    buffers.launch         = make_buffer(gpu, 16);
+    buffers.list           = make_texel_buffer(gpu, rays * listed_bytes,
+                                     rays_of_pixels > 0 ? vk::Format::eR32Uint : vk::Format::eR32G32B32A32Uint);
+    buffers.rays_of_pixels = rays_of_pixels;
+    buffers.hits           = precision == Precision::float64
+                                 ? make_texel_buffer(gpu, rays * sizeof(PackedHit<double>), vk::Format::eR32G32B32A32Uint)
+                                 : make_texel_buffer(gpu, rays * sizeof(PackedHit<float>), vk::Format::eR32G32Uint);
+
+    buffers.group_launch = make_buffer(gpu, 16);
+    buffers.structures   = std::make_shared<StructureBuffers>();
+    return buffers;
+}
+
+Bindings ray_bindings(const GBuffer& gbuffer, const RayBuffers& rays)
+{
+    Bindings bindings = surface_bindings(gbuffer);
+    bindings.insert({{"RayCount", rays.count},
+                     {"Rays", rays.list},
+                     {"Hits", rays.hits},
+                     {"TileMasks", gbuffer.tiles.masks},
+                     {"TileCount", gbuffer.tiles.count},
+                     {"Tiles", gbuffer.tiles.tiles},
+                     {"PictureStatistics", gbuffer.tiles.statistics}});
+    return bindings;
+}
+
+ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch, int items_per_group)
+{
+    Constants constants;
+    constants.add(CONSTANT_ITEMS_PER_GROUP, items_per_group);
+    return make_compute_pass(gpu, compile_shader(gpu, {.file = "trace/dispatch_args.comp"}),
+                             {{"ItemCount", items}, {"Launch", launch}}, constants);
+}
+
+namespace {
+
+Shader compile_trace(const Gpu& gpu, const Lab& lab, const RayBuffers& rays, const Bindings& bindings)
+{
+    const Technique& technique = lab.technique;
+    const bool       in_double = rays.precision == Precision::float64;
+    ShaderSource     source{
+            .file          = technique.rays_per_invocation == 2 ? "trace/trace_pairs.comp" : "trace/trace.comp",
+            .defines       = precision_defines(gpu, rays.precision),
+            .include_files = structure_include_files(technique),
+            .include_texts = {{"technique/parameters", parameter_declarations(technique.parameters, CONSTANT_PARAMETERS)},
+                              {"technique/structures", structure_declarations(technique, nullptr, in_double)}},
+            .include_folders = technique_folders(technique)};
+    source.include_files.emplace("technique/trace.glsl", technique.folder / "trace.glsl");
+    add_surface(source, lab.surface, lab.settings.layers);
+    source.defines.emplace("STRUCTURES", std::to_string(technique.structures.size()));
+    for (const std::string& macro : shader_macros(technique, lab.values)) source.defines.emplace(macro, "1");
+    source.defines.merge(store_defines(gpu, rays.hits));
+    source.defines.merge(ray_list_defines(gpu, rays));
+    if (technique.rays_per_invocation == 2) source.defines.emplace("PAIR_GROUPS", gpu.info.lanes > 1 ? "2" : "1");
+    if (bindings.contains("Work")) source.defines.emplace("COUNT_WORK", "1");
+    if (bindings.contains("Visits")) source.defines.emplace("RECORD_VISITS", "1");
+    return compile_shader(gpu, source);
+}
+
+/// One workgroup lists the tiles: as wide as every device allows, and as wide as this one allows where passes are parallel.
+Shader compile_tile_list(const Gpu& gpu)
+{
+    const uint32_t most        = std::min(gpu.impl->limits.maxComputeWorkGroupInvocations, 1024U);
+    const uint32_t invocations = gpu.info.lanes > 1 ? std::bit_floor(most) : 128;
+    return compile_shader(
+        gpu, {.file = "rays/tile_list.comp", .defines = {{"TILE_LIST_INVOCATIONS", std::to_string(invocations)}}});
+}
+
+} // namespace
+
+TechniquePasses make_technique_passes(Gpu& gpu, const Lab& lab, const RayBuffers& rays, const Bindings& bindings)
+{
+    const std::string exact = exact_choice(lab.technique, lab.values);
+    if (!exact.empty()) require_exact_arithmetic(gpu, lab, exact);
+    Constants constants = settings_constants(lab.gbuffer->view, lab.settings, rays.precision, !exact.empty());
+    add_parameters(constants, lab.technique.parameters, lab.values, CONSTANT_PARAMETERS);
+
+    TechniquePasses passes;
+    passes.structures   = make_ray_structures(gpu, lab, rays, bindings);
+    const auto is_built = [](const StructurePasses& structure) { return !structure.dispatches.empty(); };
+    if (std::ranges::any_of(passes.structures, is_built))
+        passes.group_launch = make_launch_pass(gpu, rays.count, rays.group_launch,
+                                               RAYS_PER_GROUP * RAY_GROUP_INVOCATIONS / gpu.info.lanes);
+    Bindings all = bindings;
+    all.merge(structure_bindings(gpu, lab.technique, *lab.gbuffer, rays));
+    passes.trace = make_compute_pass(gpu, compile_trace(gpu, lab, rays, bindings), all, constants);
+    return passes;
+}
+
+void record_depth_structures(const vk::raii::CommandBuffer& commands, const Lab& lab)
+{
+    for (const StructurePasses& structure : lab.structures) record_structure(commands, structure, nullptr);
+}
+
+void record_technique(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes, const RayBuffers& rays)
+{
+    for (const StructurePasses& structure : passes.structures) record_ray_structure(commands, passes, structure, rays);
+    dispatch_indirect(commands, passes.trace, rays.launch);
+}
+
+void record_ray_structure(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes,
+                          const StructurePasses& structure, const RayBuffers& rays)
+{
+    if (structure.dispatches.empty()) return;
+    dispatch(commands, passes.group_launch, {1, 1, 1});
+    barrier(commands);
+    record_structure(commands, structure, &rays.group_launch);
+}
+
+namespace {
+
+Classification make_classification(Gpu& gpu, const Bindings& bindings, const Constants& constants)
+{
+    const bool  by_pixel = gpu.info.lanes > 1;
+    const char* file     = by_pixel ? "rays/classification_by_pixel.comp" : "rays/classification.comp";
+    return {.pass            = make_compute_pass(gpu, compile_shader(gpu, {.file = file}), bindings, constants),
+            .tiles_per_group = by_pixel ? uint32_t{CLASSIFIED_TILES_BY_PIXEL} : uint32_t{CLASSIFIED_TILES}};
+}
+
+} // namespace
+
+TracePasses make_trace_passes(Gpu& gpu, const Lab& lab, const RayBuffers& rays, const Buffer& view,
+                              const RayChoice& choice, const Counters& counters)
+{
+    const GBuffer& gbuffer  = *lab.gbuffer;
+    Bindings       bindings = ray_bindings(gbuffer, rays);
+    bindings.insert({"View", view});
+    if (counters.work != nullptr) bindings.insert({"Work", *counters.work});
+    if (counters.visits != nullptr) bindings.insert({"Visits", *counters.visits});
+    Constants constants = settings_constants(gbuffer.view, lab.settings, rays.precision);
+    constants.add(CONSTANT_EVERY_SURFACE, choice.every_surface ? 1 : 0);
+    constants.add(CONSTANT_RAYS_PER_PIXEL, choice.per_pixel);
+    constants.add(CONSTANT_LOBE_RAYS, choice.from_lobe ? 1 : 0);
+    constants.add(CONSTANT_TRACE_BLOCK_PX, choice.block_px);
+    TracePasses passes;
+    passes.classification = make_classification(gpu, bindings, constants);
+    passes.tile_list      = make_compute_pass(gpu, compile_tile_list(gpu), bindings, constants, sizeof(glm::ivec2));
+    passes.tile_launch    = make_launch_pass(gpu, gbuffer.tiles.count, gbuffer.tiles.launch, 1);
+    Defines ray_defines   = precision_defines(gpu, rays.precision);
+    ray_defines.merge(store_defines(gpu, rays.list));
+    ray_defines.merge(ray_list_defines(gpu, rays));
+    passes.rays       = make_compute_pass(gpu, compile_shader(gpu, {.file = "rays/rays.comp", .defines = ray_defines}),
+                                          bindings, constants);
+    passes.ray_launch = make_launch_pass(gpu, rays.count, rays.launch, RAYS_PER_GROUP);
+    passes.technique  = make_technique_passes(gpu, lab, rays, bindings);
+    return passes;
+}
+
+namespace {
+
+/// Marks and counts alone, without a list.
+void record_marking(const vk::raii::CommandBuffer& commands, const Classification& classification,
+                    const GBuffer& gbuffer)
+{
+    barrier(commands);
+    commands.fillBuffer(*gbuffer.tiles.statistics.buffer, 0, VK_WHOLE_SIZE, 0);
+    barrier(commands);
+    const glm::uvec3 tiles = groups_of_8(gbuffer.view.size_px);
+    const uint32_t   each  = classification.tiles_per_group;
+    dispatch(commands, classification.pass, {(tiles.x + each - 1) / each, tiles.y, 1});
+    barrier(commands);
+}
+
+} // namespace
+
+void record_classification(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const GBuffer& gbuffer)
+{
+    record_marking(commands, passes.classification, gbuffer);
+    push(commands, passes.tile_list, glm::ivec2(groups_of_8(gbuffer.view.size_px)));
+    dispatch(commands, passes.tile_list, {1, 1, 1});
+    barrier(commands);
+    dispatch(commands, passes.tile_launch, {1, 1, 1});
+    dispatch(commands, passes.ray_launch, {1, 1, 1});
+    barrier(commands);
+}
+
+void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const GBuffer& gbuffer)
+{
+    dispatch_indirect(commands, passes.rays, gbuffer.tiles.launch);
+    barrier(commands);
+}
+
+void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const GBuffer& gbuffer)
+{
+    record_classification(commands, passes, gbuffer);
+    record_ray_setup(commands, passes, gbuffer);
+}
+
+const GBufferCounts& count_gbuffer(Gpu& gpu, GBuffer& gbuffer, const TraceSettings& settings)
+{
+    const std::pair rule(settings.dielectric_min_f0, settings.dielectric_max_roughness);
+    const auto      known = gbuffer.counts.find(rule);
+    if (known != gbuffer.counts.end()) return known->second;
+    Bindings bindings = surface_bindings(gbuffer);
+    bindings.insert({{"View", gbuffer.view_uniforms},
+                     {"TileMasks", gbuffer.tiles.masks},
+                     {"PictureStatistics", gbuffer.tiles.statistics}});
+    Constants constants;
+    add_reflecting(constants, settings);
+    const Classification classification = make_classification(gpu, bindings, constants);
+    submit(gpu, [&](const auto& commands) { record_marking(commands, classification, gbuffer); });
+    return gbuffer.counts.emplace(rule, download_as<GBufferCounts>(gpu, gbuffer.tiles.statistics, 1)[0]).first->second;
+}
+
+TraceCounts count_hits(Gpu& gpu, const Lab& lab, const RayBuffers& rays, const RayChoice& choice)
+{
+    const GBuffer&    gbuffer  = *lab.gbuffer;
+    const TracePasses passes   = make_trace_passes(gpu, lab, rays, gbuffer.view_uniforms, choice);
+    const Buffer      counts   = make_buffer(gpu, 16);
+    Bindings          bindings = ray_bindings(gbuffer, rays);
+    bindings.insert({{"View", gbuffer.view_uniforms}, {"TraceStatistics", counts}});
+    const ComputePass count = make_compute_pass(
+        gpu, compile_shader(gpu, {.file = "trace/trace_statistics.comp", .defines = ray_list_defines(gpu, rays)}),
+        bindings, settings_constants(gbuffer.view, lab.settings, Precision::float32));
+    submit(gpu, [&](const auto& commands) {
+        commands.fillBuffer(*counts.buffer, 0, VK_WHOLE_SIZE, 0);
+        record_rays(commands, passes, gbuffer);
+        record_depth_structures(commands, lab);
+        record_technique(commands, passes.technique, rays);
+        barrier(commands);
+        dispatch_indirect(commands, count, rays.launch);
+        barrier(commands);
+    });
+    return download_as<TraceCounts>(gpu, counts, 1)[0];
+}
+
+} // namespace ssrlab
