@@ -247,7 +247,7 @@ TEST(RayReport, SaysWhatTheRayMet)
     const auto        setup       = poles();
     const RayQuestion questions[] = {{&technique("dda"), default_values(technique("dda"))},
                                      {&technique("hiz"), default_values(technique("hiz"))}};
-    const RayReport   report      = report_ray(device(), setup, setup.rays[0], questions);
+    const RayReport   report      = report_ray(device(), catalogue(), setup, setup.rays[0], questions);
     ASSERT_EQ(report.walk.size(), 50U);
     const VisitReport &first = report.walk[0], &pole = report.walk[14];
     EXPECT_EQ(first.front_m, 0) << "background";
