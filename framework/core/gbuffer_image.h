@@ -28,6 +28,8 @@ struct GBufferImage {
     std::vector<glm::vec2> motion_px =
         {}; // where the surface was in the frame before, minus where it is, without jitter; NaN: it was
             // behind the camera. Empty: nothing moved, or no frame came before
+    std::vector<glm::vec3> emission =
+        {}; // linear; the part of `radiance` that the surface emits. Reflections do not take its place. Empty: 0
     std::vector<float> dielectric_f0 =
         {}; // reflectance at normal incidence of what is not metal. Empty: common_dielectric_f0
     std::vector<GBufferImage> layers =
@@ -38,6 +40,11 @@ struct GBufferImage {
 inline float dielectric_f0_at(const GBufferImage& gbuffer, size_t i)
 {
     return gbuffer.dielectric_f0.empty() ? common_dielectric_f0 : gbuffer.dielectric_f0[i];
+}
+
+inline glm::vec3 emission_at(const GBufferImage& gbuffer, size_t i)
+{
+    return gbuffer.emission.empty() ? glm::vec3(0) : gbuffer.emission[i];
 }
 
 } // namespace ssrlab

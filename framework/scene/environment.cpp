@@ -16,12 +16,11 @@
 namespace ssrlab {
 namespace {
 
-constexpr double pi               = std::numbers::pi;
-constexpr int    max_width_px     = 16384;
-constexpr float  largest_radiance = 65504; // of half precision, which pictures are kept in
-constexpr double sun_radius_deg   = 4;
-constexpr double sun_edge_deg     = 1; // so that bilinear lookups see no hard border
-constexpr int    sky_height_px    = 256;
+constexpr double pi             = std::numbers::pi;
+constexpr int    max_width_px   = 16384;
+constexpr double sun_radius_deg = 4;
+constexpr double sun_edge_deg   = 1; // so that bilinear lookups see no hard border
+constexpr int    sky_height_px  = 256;
 
 glm::vec3 texel(const EnvironmentMap& map, int column, int row)
 {
@@ -95,7 +94,8 @@ EnvironmentMap load_environment(const std::filesystem::path& file, double scale,
     if (!input || !input->open(name, spec))
         throw_failure("{}: expected an .hdr or .exr picture: {}", name, input ? input->geterror() : OIIO::geterror());
     if (spec.width > max_width_px)
-        throw_spec_error("{}: {}x{} pixels, at most {} a side can be used", name, spec.width, spec.height, max_width_px);
+        throw_spec_error("{}: {}x{} pixels, at most {} a side can be used", name, spec.width, spec.height,
+                         max_width_px);
     if (spec.width < 2 || spec.width != 2 * spec.height || spec.depth > 1)
         throw_failure("{}: expected an equirectangular picture, twice as wide as high, got {}x{}", name, spec.width,
                       spec.height);

@@ -14,6 +14,8 @@
 
 namespace ssrlab {
 
+inline constexpr float largest_radiance = 65504; // of half precision, which pictures are kept in
+
 struct EnvironmentMap {
     glm::ivec2             size_px{0, 0};
     std::vector<glm::vec3> radiance; // linear, finite, row 0 on top; empty: there is no map

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/pixel_index.h"
 #include "scene/exr_header.h"
 
 #include <OpenImageIO/imageio.h>
@@ -12,15 +13,13 @@ namespace {
 void require_usable(const ExrFile& file, const OIIO::ImageSpec& spec, int part)
 {
     if (spec.deep) throw_failure("{}: part {} is deep data, expected one value per pixel", file.shown, part);
-    // A cropped data window would move every pixel against the camera.
-    if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
-        spec.height != spec.full_height)
-        throw_failure("{}: part {} holds {}x{} pixels at ({}, {}) of a picture of {}x{}, expected all of them",
-                      file.shown, part, spec.width, spec.height, spec.x - spec.full_x, spec.y - spec.full_y,
-                      spec.full_width, spec.full_height);
-    if (part > 0 && (spec.width != file.size_px.x || spec.height != file.size_px.y))
-        throw_failure("{}: part {} has {}x{} pixels, expected {}x{} as the first part", file.shown, part, spec.width,
-                      spec.height, file.size_px.x, file.size_px.y);
+    if (part > 0 && (spec.full_width != file.size_px.x || spec.full_height != file.size_px.y))
+        throw_failure("{}: part {} is a picture of {}x{} pixels, expected {}x{} as the first part", file.shown, part,
+                      spec.full_width, spec.full_height, file.size_px.x, file.size_px.y);
+    const int x = spec.x - spec.full_x, y = spec.y - spec.full_y;
+    if (x >= spec.full_width || y >= spec.full_height || x + spec.width <= 0 || y + spec.height <= 0)
+        throw_failure("{}: part {} holds {}x{} pixels at ({}, {}), which is outside its picture of {}x{}", file.shown,
+                      part, spec.width, spec.height, x, y, spec.full_width, spec.full_height);
 }
 
 void add_channels(ExrFile& file, const OIIO::ImageSpec& spec, int part, bool several)
@@ -48,7 +47,7 @@ std::unique_ptr<OIIO::ImageInput> open_input(const std::filesystem::path& path, 
 
 ExrFile open_exr(const std::filesystem::path& path)
 {
-    ExrFile file{path, short_path(path), {0, 0}, {}, {}};
+    ExrFile file{path, short_path(path), {0, 0}, {}, {}, {}};
     if (!std::filesystem::is_regular_file(path)) throw_spec_error("{}: no such file", file.shown);
     const auto input   = open_input(path, file.shown);
     const bool several = input->spec_dimensions(1).nchannels > 0;
@@ -56,8 +55,9 @@ ExrFile open_exr(const std::filesystem::path& path)
         const OIIO::ImageSpec& spec = input->spec();
         require_usable(file, spec, part);
         add_channels(file, spec, part, several);
+        file.windows.push_back({{spec.x - spec.full_x, spec.y - spec.full_y}, {spec.width, spec.height}});
         if (part > 0) continue;
-        file.size_px = {spec.width, spec.height};
+        file.size_px = {spec.full_width, spec.full_height};
         for (const auto& attribute : spec.extra_attribs)
             if (attribute.type() == OIIO::TypeString)
                 file.attributes[attribute.name().string()] = attribute.get_string();
@@ -67,10 +67,17 @@ ExrFile open_exr(const std::filesystem::path& path)
 
 std::vector<float> read_channel(const ExrFile& file, const ExrChannel& channel)
 {
-    const auto         input = open_input(file.path, file.shown);
-    std::vector<float> values(static_cast<size_t>(file.size_px.x) * static_cast<size_t>(file.size_px.y));
-    if (!input->read_image(channel.part, 0, channel.index, channel.index + 1, OIIO::TypeDesc::FLOAT, values.data()))
+    const auto         input  = open_input(file.path, file.shown);
+    const ExrWindow    window = file.windows[static_cast<size_t>(channel.part)];
+    std::vector<float> stored(pixel_count(window.size_px));
+    if (!input->read_image(channel.part, 0, channel.index, channel.index + 1, OIIO::TypeDesc::FLOAT, stored.data()))
         throw_failure("{}: channel '{}' cannot be read: {}", file.shown, channel.name, input->geterror());
+    if (window.from_px == glm::ivec2(0) && window.size_px == file.size_px) return stored;
+    std::vector<float> values(pixel_count(file.size_px), 0.0F);
+    for (size_t i = 0; i < values.size(); ++i) {
+        const glm::ivec2 pixel = pixel_at(i, file.size_px);
+        if (window.has(pixel)) values[i] = stored[pixel_index(pixel - window.from_px, window.size_px)];
+    }
     return values;
 }
 

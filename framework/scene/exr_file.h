@@ -17,18 +17,30 @@ struct ExrChannel {
     bool        is_half = false;
 };
 
+/// The pixels that a part holds, from the picture's upper left corner; they may reach beyond it (overscan) or leave some of it empty.
+struct ExrWindow {
+    glm::ivec2 from_px{0, 0}, size_px{0, 0};
+
+    bool has(glm::ivec2 pixel) const
+    {
+        const glm::ivec2 at = pixel - from_px;
+        return at.x >= 0 && at.y >= 0 && at.x < size_px.x && at.y < size_px.y;
+    }
+};
+
 struct ExrFile {
     std::filesystem::path              path;
-    std::string                        shown; // the path as messages show it
-    glm::ivec2                         size_px{0, 0};
+    std::string                        shown;         // the path as messages show it
+    glm::ivec2                         size_px{0, 0}; // of the picture: the display window
+    std::vector<ExrWindow>             windows;       // by part
     std::vector<ExrChannel>            channels;
     std::map<std::string, std::string> attributes; // those that are text, of the first part
 };
 
-/// Reads the header. Throws SpecError if missing, Failure if damaged, cropped, deep, or of several sizes.
+/// Reads the header. Throws SpecError if missing, Failure if damaged, deep, of several sizes, or without a pixel inside its picture.
 ExrFile open_exr(const std::filesystem::path& path);
 
-/// Reads the values of a channel, row by row from the top. Throws Failure.
+/// Reads the values of a channel for the whole picture, row by row from the top; 0 where the file has none. Throws Failure.
 std::vector<float> read_channel(const ExrFile& file, const ExrChannel& channel);
 
 } // namespace ssrlab

@@ -65,7 +65,7 @@ void check_attribute(HeaderReader& reader, const std::string& name)
     if (bytes < 0 || bytes > reader.left())
         throw_failure("{}: '{}' says that it has {} bytes, but {} are left", reader.shown, name, bytes, reader.left());
     const int64_t end = reader.left() - bytes; // bytes of the file after it
-    if (name == "dataWindow" && bytes >= 16) {
+    if ((name == "dataWindow" || name == "displayWindow") && bytes >= 16) {
         const int64_t left = reader.number(), top = reader.number(), right = reader.number(), bottom = reader.number();
         const int64_t width = right - left + 1, height = bottom - top + 1;
         if (std::max(width, height) > max_side_px)

@@ -45,6 +45,7 @@ const std::vector<Rule>& rules()
         {"metallic", {"metallic", "metalness", "metal"}, {"", "r", "x", "v", "y"}},
         {"specular", {"specular", "specularcolor", "specularcolour"}, {}},
         {"base_colour", {"basecolour", "basecolor", "albedo", "diffusecolor"}, {}},
+        {"emission", {"emission", "emissive", "emit"}, {}},
         {"lit", {"", "combined", "finalimage", "beauty", "finalcolor", "scenecolor", "lit"}, {}},
     };
     return all;
@@ -67,7 +68,8 @@ bool named_by(const Rule& rule, const std::string& component, const ChannelName&
     });
     // OpenEXR's own name for depth.
     if (rule.quantity == "depth" && name.layer.empty() && name.component == "z") return true;
-    if (!layer) return false;
+    if (!layer || name.layer.find("denoising") != std::string::npos)
+        return false; // Cycles' helpers: filtered, not at the centres
     return component.empty() ? std::ranges::find(rule.components, name.component) != rule.components.end()
                              : same_component(component, name.component);
 }

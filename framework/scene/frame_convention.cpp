@@ -106,6 +106,7 @@ void read_depth_table(TomlTable table, FrameConvention& convention)
     if (!kind) table.fail("'kind' is needed: reversed, standard, distance or ray_distance");
     convention.depth        = static_cast<DepthKind>(*kind);
     convention.unit_m       = table.number("unit_m", 1e-9, 1e9).value_or(1);
+    convention.background   = table.number("background", -1e30, 1e30);
     convention.background_m = table.number("background_m", 0, 1e30).value_or(convention.background_m);
     table.refuse_unknown_keys();
 }

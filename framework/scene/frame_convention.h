@@ -16,10 +16,11 @@ struct FrameConvention {
     View                               view;
     bool                               has_axes = false; // the view's directions in the world are known
     std::optional<DepthKind>           depth;
-    double                             device_far_m = 0;         // of device depth; infinity: none
-    double                             unit_m       = 1;         // of distances in the file
-    double                             background_m = 1e6;       // a distance from which on nothing is there
-    std::string                        normal_space;             // "view", "world" or empty: the channel's name says it
+    double                             device_far_m = 0;   // of device depth; infinity: none
+    double                             unit_m       = 1;   // of distances in the file
+    double                             background_m = 1e6; // a distance from which on nothing is there
+    std::optional<double>              background;         // a value of depth where nothing is, in the file's units
+    std::string                        normal_space;       // "view", "world" or empty: the channel's name says it
     bool                               unsigned_normals = false; // 0 … 1 stands for -1 … 1
     glm::dvec3                         normal_sign{1};           // per axis, in the space of the file
     std::map<std::string, std::string> channels;                 // quantity -> "CHANNEL" or "FILE:CHANNEL"

@@ -27,7 +27,7 @@ Image frame_image(const GBufferImage& source)
         {"depth",         "normal_vs.x",   "normal_vs.y", "normal_vs.z", "roughness", "metallic",   "base_colour.R",
                "base_colour.G", "base_colour.B", "R",           "G",           "B",         "radiance.R", "radiance.G",
                "radiance.B",    "highlight.R",   "highlight.G", "highlight.B", "object_id", "gradient.x", "gradient.y",
-               "solid_back",    "dielectric_f0"},
+               "solid_back",    "dielectric_f0", "emission.R",  "emission.G",  "emission.B"},
         {},
         {}};
     image.metadata["ssrlab:world_to_view"] = matrix_text(view.world_to_view);
@@ -42,7 +42,7 @@ Image frame_image(const GBufferImage& source)
     image.values.reserve(source.depth.size() * image.channels.size());
     for (size_t i = 0; i < source.depth.size(); ++i) {
         const glm::vec3 normal = source.normal_vs[i], base = source.base_colour[i], radiance = source.radiance[i],
-                        highlight = source.highlight[i], lit = radiance + highlight;
+                        highlight = source.highlight[i], lit = radiance + highlight, emission = emission_at(source, i);
         const glm::vec2 gradient = source.gradient[i];
         for (const float value : {source.depth[i],
                                   normal.x,
@@ -66,7 +66,10 @@ Image frame_image(const GBufferImage& source)
                                   gradient.x,
                                   gradient.y,
                                   source.solid_back[i],
-                                  dielectric_f0_at(source, i)})
+                                  dielectric_f0_at(source, i),
+                                  emission.x,
+                                  emission.y,
+                                  emission.z})
             image.values.push_back(value);
         if (!moved) continue;
         image.values.push_back(source.motion_px[i].x);

@@ -12,7 +12,7 @@ namespace {
 FramePlane read_plane(const ExrFile& file, const ExrChannel& channel)
 {
     return {fmt::format("{}: channel '{}'", file.shown, channel.name), channel.name, read_channel(file, channel),
-            channel.is_half};
+            channel.is_half, file.windows[static_cast<size_t>(channel.part)]};
 }
 
 std::string channel_names(const ExrFile& file)
@@ -48,7 +48,8 @@ std::optional<FramePlane> find_plane(const FrameSource& source, const std::strin
         return read_named(source, quantity, named->second);
     if (const auto value = source.convention.values.find(quantity); value != source.convention.values.end())
         return FramePlane{source.convention.place, quantity,
-                          std::vector<float>(pixel_count(source.file.size_px), static_cast<float>(value->second))};
+                          std::vector<float>(pixel_count(source.file.size_px), static_cast<float>(value->second)),
+                          false, ExrWindow{{0, 0}, source.file.size_px}};
     const auto found = find_quantity(source.file.channels, quantity);
     if (found.empty()) return std::nullopt;
     if (found.size() > 1)

@@ -13,6 +13,7 @@ struct FramePlane {
     std::string        name;
     std::vector<float> values;
     bool               is_half = false;
+    ExrWindow          window  = {}; // where the file has values; elsewhere they are 0
 };
 
 /// A frame while it is read.

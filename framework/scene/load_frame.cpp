@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/pixel_index.h"
+#include "scene/environment.h"
 #include "scene/frame_channels.h"
 #include "scene/frame_planes.h"
 
@@ -34,6 +35,8 @@ float usable_depth_of(const FrameSource& source, const FramePlane& plane, size_t
 {
     const FrameConvention& convention = source.convention;
     const double           value      = static_cast<double>(plane.values[i]);
+    if (!plane.window.has(pixel_at(i, source.file.size_px))) return 0;
+    if (convention.background && plane.values[i] == static_cast<float>(*convention.background)) return 0;
     if (std::isnan(value)) refuse(source, plane, i, "a number");
     if (convention.depth == DepthKind::reversed || convention.depth == DepthKind::standard) {
         if (value < 0 || value > 1) refuse(source, plane, i, "device depth in 0 … 1");
@@ -49,7 +52,8 @@ float usable_depth_of(const FrameSource& source, const FramePlane& plane, size_t
     const double along = convention.depth == DepthKind::distance
                              ? metres
                              : metres * axis_share(convention.view, pixel_at(i, source.file.size_px));
-    if (along < convention.view.near_m * (1 - 1e-6)) refuse(source, plane, i, "a distance of at least near_m");
+    if (along < convention.view.near_m * (1 - 1e-6))
+        refuse(source, plane, i, "a distance of at least near_m, or [depth] background = the value where nothing is");
     const double depth = distance_to_depth(convention.view, along);
     return static_cast<float>(std::clamp(depth, 0.0, 1.0));
 }
@@ -169,7 +173,7 @@ void read_metallic(FrameSource& source)
     }
 }
 
-/// Three planes as colours; `otherwise` in their place where there are none. Not finite: black.
+/// Three planes as colours; `otherwise` in their place where there are none. Clamped to what pictures can hold; not finite: black.
 std::vector<glm::vec3> read_colour(FrameSource& source, const std::string& name, glm::vec3 otherwise,
                                    const char* without)
 {
@@ -180,17 +184,49 @@ std::vector<glm::vec3> read_colour(FrameSource& source, const std::string& name,
         return colours;
     }
     const FramePlane planes[] = {std::move(*red), need_plane(source, name + ".G"), need_plane(source, name + ".B")};
-    size_t           broken   = 0;
+    size_t           broken = 0, clamped = 0, negative = 0;
     for (size_t i = 0; i < colours.size(); ++i) {
         const glm::vec3 colour(planes[0].values[i], planes[1].values[i], planes[2].values[i]);
         const bool      finite = std::isfinite(colour.x) && std::isfinite(colour.y) && std::isfinite(colour.z);
         broken += !finite;
-        colours[i] = finite ? colour : glm::vec3(0);
+        if (!finite) {
+            colours[i] = glm::vec3(0);
+            continue;
+        }
+        clamped += std::max({colour.x, colour.y, colour.z}) > largest_radiance;
+        negative += std::min({colour.x, colour.y, colour.z}) < 0;
+        colours[i] = glm::clamp(colour, 0.0F, largest_radiance);
     }
+    if (clamped > 0)
+        source.frame.warnings.push_back(
+            fmt::format("{}: {} pixels are above {}: clamped", planes[0].shown, clamped, largest_radiance));
+    if (negative > 0)
+        source.frame.warnings.push_back(
+            fmt::format("{}: {} pixels are negative: clamped to 0", planes[0].shown, negative));
     if (broken > 0)
         source.frame.warnings.push_back(
             fmt::format("{}: {} pixels are not finite; they count as black", planes[0].shown, broken));
     return colours;
+}
+
+/// Says which pixels of the file are not used, and which of the picture are not in the file.
+void name_windows(FrameSource& source)
+{
+    const ExrFile& file = source.file;
+    for (size_t part = 0; part < file.windows.size(); ++part) {
+        const glm::ivec2 from = file.windows[part].from_px, size = file.windows[part].size_px;
+        const glm::ivec2 to     = from + size;
+        const glm::ivec2 inside = glm::min(to, file.size_px) - glm::max(from, glm::ivec2(0));
+        const size_t     used   = pixel_count(inside);
+        const auto       say    = [&](size_t count, const char* what) {
+            if (count > 0)
+                source.frame.warnings.push_back(
+                             fmt::format("{}: part {} holds {}x{} pixels at ({}, {}) of a picture of {}x{}: {} {}", file.shown,
+                                         part, size.x, size.y, from.x, from.y, file.size_px.x, file.size_px.y, count, what));
+        };
+        say(pixel_count(size) - used, "of them are overscan and left out");
+        say(pixel_count(file.size_px) - used, "of the picture are not there and count as background");
+    }
 }
 
 /// What only ssrlab's own files have.
@@ -215,6 +251,7 @@ void read_own(FrameSource& source)
 Frame load_frame(const fs::path& exr)
 {
     FrameSource source{open_exr(exr), {}, {}};
+    name_windows(source);
     source.convention         = read_convention(source.file);
     source.frame.gbuffer.view = source.convention.view;
     source.frame.reference    = source.convention.reference;
@@ -228,6 +265,7 @@ Frame load_frame(const fs::path& exr)
     gbuffer.radiance =
         read_colour(source, split ? "radiance" : "lit", glm::vec3(0), "no lit colour: surfaces are black");
     gbuffer.highlight = read_colour(source, "highlight", glm::vec3(0), "");
+    gbuffer.emission  = read_colour(source, "emission", glm::vec3(0), "");
     read_own(source);
     return std::move(source.frame);
 }

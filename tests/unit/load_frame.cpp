@@ -9,6 +9,8 @@
 #include "scene/sequence.h"
 #include "temp_folder.h"
 
+#include <OpenImageIO/imageio.h>
+
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -235,7 +237,7 @@ TEST_F(LoadFrame, WhatCannotBeRightIsSaid)
     EXPECT_THAT(refused(device), HasSubstr("channel 'depth': expected a number, got nan at pixel 7,0"));
     channels_[0].second = [](size_t) { return 0.1; };
     EXPECT_THAT(refused(std::string(camera) + "[depth]\nkind = 'distance'\n"),
-                HasSubstr("expected a distance of at least near_m, got 0.1"));
+                HasSubstr("the value where nothing is, got 0.1"));
     channels_[4].second = [](size_t) { return 7; };
     EXPECT_THAT(refused(device), HasSubstr("channel 'roughness': expected a value in 0 … 1, got 7"));
     channel("Layer.Depth.Z", [](size_t) { return 1; });
@@ -245,6 +247,83 @@ TEST_F(LoadFrame, WhatCannotBeRightIsSaid)
     EXPECT_THAT(message_of<Failure>([&] { load_frame(folder_ / "g.exr"); }), HasSubstr("g.exr: cannot be read as EXR"));
     EXPECT_THAT(message_of<SpecError>([&] { load_scene((folder_ / "h.exr").string()); }),
                 HasSubstr("h.exr: no such file"));
+}
+
+TEST_F(LoadFrame, AValueMayMeanBackground)
+{
+    for (const double nothing : {0.0, -1.0}) {
+        channels_.clear();
+        whole_frame("depth", [=](size_t i) { return covered(i) ? distance_m(i) : nothing; });
+        const std::string distances = std::string(camera) + "[depth]\nkind = 'distance'\n";
+        expect_the_wall(load(distances + fmt::format("background = {}\n", nothing)));
+        EXPECT_THAT(refused(distances), HasSubstr("or [depth] background = the value where nothing is"));
+    }
+}
+
+TEST_F(LoadFrame, DenoisersHelpersAreNoDepth)
+{
+    whole_frame("ViewLayer.Depth.Z", distance_m);
+    channel("ViewLayer.Denoising Depth.Z", [](size_t) { return 7; });
+    channel("ViewLayer.Denoising Albedo.R", [](size_t) { return 7; });
+    const Frame frame = load(std::string(camera) + "[depth]\nkind = 'distance'\n");
+    EXPECT_NEAR(frame.gbuffer.depth[0], near_m / distance_m(0), 1e-6);
+    EXPECT_EQ(frame.gbuffer.base_colour[0], glm::vec3(1));
+}
+
+TEST_F(LoadFrame, LightBeyondWhatPicturesHoldIsClamped)
+{
+    whole_frame("depth", [](size_t) { return 0.5; });
+    channel("R", [](size_t i) { return i == 3 ? 1e30 : i == 4 ? -2 : 0.25; });
+    channel("G", [](size_t) { return 65504; });
+    channel("B", [](size_t i) { return i == 5 ? std::numeric_limits<double>::infinity() : 0; });
+    const Frame frame = load(std::string(camera) + "[depth]\nkind = 'reversed'\n");
+    EXPECT_EQ(frame.gbuffer.radiance[2], glm::vec3(0.25F, 65504, 0));
+    EXPECT_EQ(frame.gbuffer.radiance[3], glm::vec3(65504, 65504, 0));
+    EXPECT_EQ(frame.gbuffer.radiance[4], glm::vec3(0, 65504, 0));
+    EXPECT_EQ(frame.gbuffer.radiance[5], glm::vec3(0));
+    EXPECT_THAT(frame.warnings, testing::IsSupersetOf({HasSubstr("channel 'R': 1 pixels are above 65504: clamped"),
+                                                       HasSubstr("channel 'R': 1 pixels are negative: clamped to 0"),
+                                                       HasSubstr("channel 'R': 1 pixels are not finite")}));
+}
+
+TEST_F(LoadFrame, EmissionIsPartOfTheLight)
+{
+    whole_frame("depth", [](size_t) { return 0.5; });
+    for (const char* c : {"R", "G", "B"}) channel(c, [](size_t) { return 3; });
+    for (const char* c : {"R", "G", "B"}) channel(std::string("ViewLayer.Emit.") + c, [](size_t) { return 2; });
+    const Frame frame = load(std::string(camera) + "[depth]\nkind = 'reversed'\n");
+    EXPECT_EQ(frame.gbuffer.radiance[7], glm::vec3(3));
+    EXPECT_EQ(emission_at(frame.gbuffer, 7), glm::vec3(2));
+}
+
+// The data window leaves two columns on the left empty and reaches a row above the picture: the wall's pixels keep their places.
+TEST_F(LoadFrame, WindowsAreCutAndPlaced)
+{
+    whole_frame("depth", [](size_t i) { return near_m / distance_m(i); });
+    const std::string  path  = write(std::string(camera) + "[depth]\nkind = 'reversed'\n");
+    const Frame        all   = load_frame(path);
+    const auto         input = OIIO::ImageInput::open(path);
+    OIIO::ImageSpec    spec  = input->spec();
+    const size_t       count = static_cast<size_t>(spec.nchannels);
+    std::vector<float> whole(pixel_count(size_px) * count), stored;
+    ASSERT_TRUE(input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, whole.data()));
+    spec.x = 2, spec.y = -1, spec.width = size_px.x - 2, spec.height = size_px.y + 1;
+    spec.full_x = spec.full_y = 0, spec.full_width = size_px.x, spec.full_height = size_px.y;
+    for (int y = -1; y < size_px.y; ++y)
+        for (int x = 2; x < size_px.x; ++x)
+            for (size_t c = 0; c < count; ++c)
+                stored.push_back(y < 0 ? 77 : whole[pixel_index({x, y}, size_px) * count + c]);
+    const auto output = OIIO::ImageOutput::create(path);
+    ASSERT_TRUE(output->open(path, spec) && output->write_image(OIIO::TypeDesc::FLOAT, stored.data()) &&
+                output->close());
+    const Frame cut = load_frame(path);
+    EXPECT_EQ(frame_size_px(path), size_px);
+    EXPECT_EQ(cut.gbuffer.view.centre_px, all.gbuffer.view.centre_px);
+    for (size_t i = 0; i < pixel_count(size_px); ++i)
+        EXPECT_EQ(cut.gbuffer.depth[i], pixel_at(i, size_px).x < 2 ? 0 : all.gbuffer.depth[i]) << i;
+    EXPECT_THAT(cut.warnings, testing::IsSupersetOf(
+                                  {HasSubstr("holds 6x7 pixels at (2, -1) of a picture of 8x6: 6 of them are overscan"),
+                                   HasSubstr("12 of the picture are not there and count as background")}));
 }
 
 TEST_F(LoadFrame, AFrameHasOneViewAtOneSize)
