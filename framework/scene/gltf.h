@@ -74,11 +74,53 @@ int                   component_count(const Import& import, int accessor, const 
 /// Adds all textures and materials, and one default material at the end. Returns which materials are left out.
 std::vector<bool> add_materials(Import& import);
 
+/// KHR_materials_pbrSpecularGlossiness. A surface is as metallic as its reflectance is above a dielectric's.
+struct SpecularGlossiness {
+    glm::vec4 diffuse{1};  // linear, with alpha
+    glm::vec3 specular{1}; // linear
+    float     glossiness = 1;
+};
+
+/// Base colour, metal, roughness and reflectance of the factors.
+void set_factors(Material& material, const SpecularGlossiness& factors);
+
+/// Textures of base colour, and of metal and roughness, with the factors; both as large as `gloss`. An empty `diffuse` is white.
+std::pair<Texture, Texture> bake(const Texture& diffuse, const Texture& gloss, const SpecularGlossiness& factors);
+
 /// Fills Import::tracks and Import::frames; refuses keys that are not numbers in order.
 void read_animations(Import& import);
 
 /// Not unit length for a quaternion between cubic keys.
 glm::dvec4 value_at(const Track& track, double time_s);
+
+/// A node's space to that of the node above it. Tracks stand for the properties that they animate.
+glm::dmat4 local_matrix(const Import& import, int node, int frame);
+
+/// Null where the node does not have it.
+const tinygltf::Value* extension_of(const tinygltf::Node& node, const char* name);
+
+/// By KHR_node_visibility; the nodes below it are hidden with it.
+bool is_hidden(const tinygltf::Node& node);
+
+/// EXT_mesh_gpu_instancing: where each copy lies in the node's own space. One at its origin without the extension.
+std::vector<glm::dmat4> instances_of(const Import& import, int node);
+
+/// Mesh space to world space by a skin's joints, in every frame if anything moves them, else in one.
+JointPoses joint_poses(Import& import, int skin);
+
+/// Poses a mesh as in frame 0; later frames stay in its skin.
+void bend(Mesh& mesh, const JointPoses& joints);
+
+/// The accessor of a primitive's attribute, -1 if it has none.
+int attribute(const tinygltf::Primitive& primitive, const char* name);
+
+/// Rows of an attribute, or nothing when it is absent; its count must be that of the positions.
+std::vector<float> rows_of(const Import& import, const tinygltf::Primitive& primitive, const char* name, int components,
+                           size_t vertex_count, const std::string& where);
+
+/// Which joints vertices follow; nothing where the primitive does not say it. As many rows as `used`, which are vertices.
+std::vector<Influences> read_influences(Import& import, const tinygltf::Primitive& primitive, size_t vertex_count,
+                                        const std::vector<uint32_t>& used, const std::string& where);
 
 /// A mesh's primitives as Meshes in the mesh's own space. Draws that cannot be shown are skipped with a warning.
 std::vector<Mesh> read_mesh(Import& import, int mesh, const std::vector<bool>& material_left_out);

@@ -86,7 +86,8 @@ double component(const unsigned char* from, int type, bool normalized)
 }
 
 /// Replaces the elements that a sparse accessor stores apart.
-void apply_sparse(const Import& import, int index, const Layout& layout, std::vector<float>& rows,
+template <typename Value>
+void apply_sparse(const Import& import, int index, const Layout& layout, std::vector<Value>& rows,
                   const std::string& where)
 {
     const auto& sparse = import.json.accessors[static_cast<size_t>(index)].sparse;
@@ -108,7 +109,7 @@ void apply_sparse(const Import& import, int index, const Layout& layout, std::ve
         if (row >= layout.count) import.fail("{}: accessor {}: sparse index {} is out of range", where, index, row);
         for (int c = 0; c < layout.components; ++c)
             rows[row * static_cast<uint64_t>(layout.components) + static_cast<uint64_t>(c)] =
-                static_cast<float>(component(values + i * element + static_cast<uint64_t>(c * size),
+                static_cast<Value>(component(values + i * element + static_cast<uint64_t>(c * size),
                                              layout.component_type, layout.normalized));
     }
 }
@@ -145,11 +146,11 @@ std::vector<uint32_t> read_indices(const Import& import, int accessor, const std
     const bool   whole  = layout.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
                        layout.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
                        layout.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-    if (layout.components != 1 || !whole || layout.data == nullptr)
-        import.fail("{}: accessor {} cannot be used as indices", where, accessor);
-    std::vector<uint32_t> indices(layout.count);
-    for (uint64_t i = 0; i < layout.count; ++i)
+    if (layout.components != 1 || !whole) import.fail("{}: accessor {} cannot be used as indices", where, accessor);
+    std::vector<uint32_t> indices(layout.count, 0);
+    for (uint64_t i = 0; layout.data != nullptr && i < layout.count; ++i)
         indices[i] = static_cast<uint32_t>(component(layout.data + i * layout.stride, layout.component_type, false));
+    apply_sparse(import, accessor, layout, indices, where);
     return indices;
 }
 

@@ -65,6 +65,8 @@ std::optional<Track>* property_of(NodeTracks& tracks, const std::string& path)
 void read_channel(Import& import, const tinygltf::Animation& animation, const tinygltf::AnimationChannel& channel,
                   const std::string& where)
 {
+    if (channel.target_path == "pointer")
+        return import.warn("animations by KHR_animation_pointer are not supported: what they move stands still");
     const int node = channel.target_node;
     if (node < 0 || static_cast<size_t>(node) >= import.json.nodes.size())
         import.fail("{}/target: there is no node {}", where, node);

@@ -169,6 +169,67 @@ void add_clearcoat(Import& import, const tinygltf::Material& source, const std::
     material.dielectric_f0 += (common_dielectric_f0 - material.dielectric_f0) * factor;
 }
 
+glm::vec4 colour_in(const tinygltf::Value& value, const char* key, size_t components)
+{
+    glm::vec4 colour(1);
+    if (!value.IsObject() || !value.Has(key)) return colour;
+    const tinygltf::Value& factors = value.Get(key);
+    if (!factors.IsArray() || factors.ArrayLen() != components) return colour;
+    for (size_t c = 0; c < components; ++c)
+        if (factors.Get(int(c)).IsNumber())
+            colour[static_cast<int>(c)] = unit_range(factors.Get(int(c)).GetNumberAsDouble(), 1);
+    return colour;
+}
+
+tinygltf::TextureInfo texture_info_in(const tinygltf::Value& value, const char* key)
+{
+    tinygltf::TextureInfo info;
+    if (!value.IsObject() || !value.Has(key)) return info;
+    const tinygltf::Value& source = value.Get(key);
+    info.index                    = static_cast<int>(number_in(source, "index", -1));
+    info.texCoord                 = static_cast<int>(number_in(source, "texCoord", 0));
+    if (source.IsObject() && source.Has("extensions") && source.Get("extensions").IsObject())
+        for (const std::string& name : source.Get("extensions").Keys())
+            info.extensions[name] = source.Get("extensions").Get(name);
+    return info;
+}
+
+void add_specular_glossiness(Import& import, Textures& textures, const tinygltf::Material& source,
+                             const std::string& where, Material& material)
+{
+    const auto found = source.extensions.find("KHR_materials_pbrSpecularGlossiness");
+    if (found == source.extensions.end()) return;
+    const tinygltf::Value&   values = found->second;
+    const SpecularGlossiness factors{colour_in(values, "diffuseFactor", 4),
+                                     glm::vec3(colour_in(values, "specularFactor", 3)),
+                                     unit_range(number_in(values, "glossinessFactor", 1), 1)};
+    material.base_colour_texture =
+        texture_use(import, textures, texture_info_in(values, "diffuseTexture"), true, where);
+    material.metallic_roughness_texture =
+        texture_use(import, textures, texture_info_in(values, "specularGlossinessTexture"), true, where);
+    const TextureUse diffuse = material.base_colour_texture, gloss = material.metallic_roughness_texture;
+    set_factors(material, factors);
+    if (gloss.texture < 0) return;
+    if (diffuse.texture >= 0 && (diffuse.uv_set != gloss.uv_set || diffuse.uv_transform != gloss.uv_transform)) {
+        import.warn(fmt::format("{}: the textures of diffuse and specular colour lie differently: drawn matt", where));
+        material.metallic_roughness_texture = {};
+        material.metallic                   = 0;
+        material.roughness                  = 1;
+        return;
+    }
+    auto& all = import.model.textures;
+    auto [base, metal] =
+        bake(diffuse.texture >= 0 ? all[size_t(diffuse.texture)] : Texture{}, all[size_t(gloss.texture)], factors);
+    material.base_colour_texture                = gloss;
+    material.base_colour_texture.texture        = static_cast<int>(all.size());
+    material.metallic_roughness_texture.texture = static_cast<int>(all.size() + 1);
+    material.base_colour                        = glm::vec4(1);
+    material.metallic = material.roughness = 1;
+    material.dielectric_f0                 = common_dielectric_f0;
+    all.push_back(std::move(base));
+    all.push_back(std::move(metal));
+}
+
 Material convert(Import& import, Textures& textures, const tinygltf::Material& source, const std::string& where)
 {
     const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
@@ -186,17 +247,21 @@ Material convert(Import& import, Textures& textures, const tinygltf::Material& s
     if (strength != source.extensions.end())
         material.emissive *=
             static_cast<float>(std::clamp(number_in(strength->second, "emissiveStrength", 1), 0.0, 1e6));
+    material.emissive = glm::min(material.emissive, largest_radiance);
     material.normal_scale =
         std::isfinite(source.normalTexture.scale) ? static_cast<float>(source.normalTexture.scale) : 1.0F;
-    material.double_sided               = source.doubleSided;
-    material.alpha_mask                 = source.alphaMode == "MASK";
-    material.alpha_cutoff               = unit_range(source.alphaCutoff, 0.5F);
+    material.double_sided = source.doubleSided;
+    material.alpha_mask   = source.alphaMode == "MASK";
+    // Above 1 nothing is drawn, glTF 2.0, 3.9.4.
+    material.alpha_cutoff =
+        std::isfinite(source.alphaCutoff) ? static_cast<float>(std::max(source.alphaCutoff, 0.0)) : 0.5F;
     material.base_colour_texture        = texture_use(import, textures, pbr.baseColorTexture, true, where);
     material.metallic_roughness_texture = texture_use(import, textures, pbr.metallicRoughnessTexture, false, where);
     material.normal_texture             = texture_use(import, textures, source.normalTexture, false, where);
     material.emissive_texture           = texture_use(import, textures, source.emissiveTexture, true, where);
     material.dielectric_f0              = dielectric_f0_of(import, source, where);
     add_clearcoat(import, source, where, material);
+    add_specular_glossiness(import, textures, source, where, material);
     if (source.extensions.contains("KHR_materials_unlit")) {
         // Unlit shows its base colour whatever the light: that is emission and nothing else.
         material.emissive         = glm::vec3(material.base_colour);

@@ -4,7 +4,6 @@
 #include <numeric>
 
 namespace ssrlab::gltf {
-namespace {
 
 int attribute(const tinygltf::Primitive& primitive, const char* name)
 {
@@ -12,7 +11,6 @@ int attribute(const tinygltf::Primitive& primitive, const char* name)
     return found == primitive.attributes.end() ? -1 : found->second;
 }
 
-/// Rows of an attribute, or nothing when it is absent; its count must be that of the positions.
 std::vector<float> rows_of(const Import& import, const tinygltf::Primitive& primitive, const char* name, int components,
                            size_t vertex_count, const std::string& where)
 {
@@ -25,6 +23,8 @@ std::vector<float> rows_of(const Import& import, const tinygltf::Primitive& prim
                     vertex_count);
     return rows;
 }
+
+namespace {
 
 /// The corners of the primitive's triangles: its indices, or all its vertices in order.
 std::vector<uint32_t> read_corners(const Import& import, const tinygltf::Primitive& primitive, size_t vertex_count,
@@ -86,7 +86,7 @@ std::vector<uint32_t> to_triangles(const std::vector<uint32_t>& corners, int mod
     return triangles;
 }
 
-void read_triangles(const Import& import, const tinygltf::Primitive& primitive, int mode, Mesh& mesh,
+void read_triangles(Import& import, const tinygltf::Primitive& primitive, int mode, Mesh& mesh,
                     const std::string& where)
 {
     const std::vector<float> positions =
@@ -115,7 +115,8 @@ void read_triangles(const Import& import, const tinygltf::Primitive& primitive, 
         mesh.vertices.push_back(vertex);
     }
     read_colours(import, primitive, count, used, mesh, where);
-    mesh.indices = to_triangles(corners, mode);
+    mesh.skin.vertices = read_influences(import, primitive, count, used, where);
+    mesh.indices       = to_triangles(corners, mode);
 }
 
 } // namespace

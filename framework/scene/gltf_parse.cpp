@@ -1,8 +1,6 @@
 // Before the parser: what it would crash on, hang on, or read from outside the asset's folder.
 #include "core/files.h"
-#include "scene/gltf.h"
-
-#include <nlohmann/json.hpp>
+#include "scene/gltf_json.h"
 
 #include <algorithm>
 #include <cstring>
@@ -74,21 +72,6 @@ json parse_json(const Import& import, const std::vector<unsigned char>& bytes)
     }
 }
 
-/// The array of that name; empty when there is none.
-const json& array_of(const Import& import, const json& object, const char* name)
-{
-    static const json empty = json::array();
-    const auto        found = object.find(name);
-    if (found == object.end()) return empty;
-    if (!found->is_array()) import.fail("/{} is no array", name);
-    if (found->size() > max_objects)
-        import.fail("/{} has {} items, at most {} can be loaded", name, found->size(), max_objects);
-    for (size_t i = 0; i < found->size(); ++i)
-        if (!(*found)[i].is_object() && std::strncmp(name, "extensions", 10) != 0)
-            import.fail("/{}/{} is no object", name, i);
-    return *found;
-}
-
 uint64_t count_of(const Import& import, const json& object, const char* key, const std::string& where,
                   uint64_t otherwise)
 {
@@ -105,41 +88,6 @@ void check_version(const Import& import, const json& root)
         import.fail("/asset/version is missing: no glTF 2.0");
     const std::string version = (*asset)["version"];
     if (!version.starts_with("2.")) import.fail("glTF version {} is not supported, only 2.x", version);
-}
-
-struct ExtensionRule {
-    std::string_view name, advice;
-};
-constexpr ExtensionRule fatal_extensions[] = {
-    {"KHR_draco_mesh_compression", "decompress the meshes first, e.g. gltf-transform copy"},
-    {"EXT_meshopt_compression", "decompress the meshes first, e.g. gltf-transform copy"},
-    {"KHR_texture_basisu", "convert the textures to PNG or JPEG first"},
-    {"EXT_texture_webp", "convert the textures to PNG or JPEG first"},
-    {"EXT_texture_avif", "convert the textures to PNG or JPEG first"},
-    {"MSFT_texture_dds", "convert the textures to PNG or JPEG first"},
-};
-constexpr std::string_view supported_extensions[] = {"KHR_lights_punctual", "KHR_texture_transform",
-                                                     "KHR_materials_emissive_strength", "KHR_materials_unlit",
-                                                     "KHR_mesh_quantization"};
-
-void check_extensions(Import& import, const json& root)
-{
-    const auto names = [&](const char* key) {
-        std::vector<std::string> result;
-        for (const json& name : array_of(import, root, key))
-            if (name.is_string()) result.push_back(name);
-        return result;
-    };
-    for (const std::string& name : names("extensionsRequired")) {
-        for (const ExtensionRule& rule : fatal_extensions)
-            if (name == rule.name) import.fail("needs the extension {}, which is not supported: {}", name, rule.advice);
-        if (!name.starts_with("KHR_materials_") &&
-            std::ranges::find(supported_extensions, name) == std::end(supported_extensions))
-            import.fail("needs the extension {}, which is not supported", name);
-    }
-    for (const std::string& name : names("extensionsUsed"))
-        if (std::ranges::find(supported_extensions, name) == std::end(supported_extensions))
-            import.warn(fmt::format("extension {} is not supported and was ignored", name));
 }
 
 /// Refuses URIs that lead elsewhere.
@@ -208,6 +156,43 @@ void check_triangle_count(const Import& import, const json& root)
             triangles += corner_count(import, root, accessors[accessor.get<size_t>()]) / 3; // strips and fans have more
             if (triangles > max_triangles) refuse_triangles(import, triangles);
         }
+}
+
+/// Indices without a buffer view are zeros, of which a sparse part replaces some; the parser refuses them. Gives them any view for as long as
+/// it parses, and returns their accessors.
+std::vector<size_t> give_indices_a_view(const Import& import, json& root)
+{
+    const size_t        accessors = array_of(import, root, "accessors").size();
+    std::vector<size_t> given;
+    if (array_of(import, root, "bufferViews").empty()) return given;
+    for (const json& mesh : array_of(import, root, "meshes")) {
+        if (!mesh.contains("primitives") || !mesh["primitives"].is_array()) continue;
+        for (const json& primitive : mesh["primitives"]) {
+            if (!primitive.is_object() || !primitive.contains("indices")) continue;
+            const json& number = primitive["indices"];
+            if (!number.is_number_unsigned() || number >= accessors) continue;
+            json& accessor = root["accessors"][number.get<size_t>()];
+            if (accessor.contains("bufferView") || !accessor.contains("sparse")) continue;
+            accessor["bufferView"] = 0;
+            given.push_back(number.get<size_t>());
+        }
+    }
+    return given;
+}
+
+/// The same file with other JSON.
+std::vector<unsigned char> with_json(const Import& import, const std::vector<unsigned char>& bytes, std::string text)
+{
+    if (!is_binary(bytes)) return {text.begin(), text.end()};
+    const size_t after = 20 + json_text(import, bytes).size();
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    std::vector<unsigned char> result(bytes.begin(), bytes.begin() + 20);
+    result.insert(result.end(), text.begin(), text.end());
+    result.insert(result.end(), bytes.begin() + static_cast<std::ptrdiff_t>(after), bytes.end());
+    const auto whole = static_cast<uint32_t>(result.size()), length = static_cast<uint32_t>(text.size());
+    std::memcpy(&result[8], &whole, sizeof whole);
+    std::memcpy(&result[12], &length, sizeof length);
+    return result;
 }
 
 bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
@@ -307,32 +292,39 @@ void parse_file(Import& import, const fs::path& file)
     import.file                             = file.string();
     fs::path                         folder = fs::weakly_canonical(file).parent_path();
     const std::vector<unsigned char> bytes  = read_regular_file(file, max_file_bytes);
+    std::vector<size_t>              zeros;
+    std::vector<unsigned char>       changed;
     {
-        const json root = parse_json(import, bytes);
+        json root = parse_json(import, bytes);
         check_version(import, root);
         check_extensions(import, root);
+        check_compressed_meshes(import, root);
         for (const char* kind : {"nodes", "meshes", "accessors", "materials", "textures", "scenes", "cameras"})
             array_of(import, root, kind);
         files_named_in(import, root, folder);
         check_buffer_views(import, root);
         check_triangle_count(import, root);
+        zeros = give_indices_a_view(import, root);
+        if (!zeros.empty()) changed = with_json(import, bytes, root.dump());
     }
-    tinygltf::TinyGLTF parser;
+    const std::vector<unsigned char>& parsed = zeros.empty() ? bytes : changed;
+    tinygltf::TinyGLTF                parser;
     parser.SetImageLoader(keep_encoded, nullptr);
     parser.SetFsCallbacks(confined_file_access(&folder));
     std::string error;
     std::string warning;
     bool        ok   = false;
-    const auto  size = static_cast<unsigned>(bytes.size());
+    const auto  size = static_cast<unsigned>(parsed.size());
     try {
-        ok = is_binary(bytes)
-                 ? parser.LoadBinaryFromMemory(&import.json, &error, &warning, bytes.data(), size, folder.string())
-                 : parser.LoadASCIIFromString(&import.json, &error, &warning, json_text(import, bytes).data(), size,
+        ok = is_binary(parsed)
+                 ? parser.LoadBinaryFromMemory(&import.json, &error, &warning, parsed.data(), size, folder.string())
+                 : parser.LoadASCIIFromString(&import.json, &error, &warning, json_text(import, parsed).data(), size,
                                               folder.string());
     } catch (const std::exception& exception) {
         error += exception.what();
     }
     if (!ok) import.fail("{}", one_line(error.empty() ? "cannot be parsed" : error));
+    for (const size_t accessor : zeros) import.json.accessors[accessor].bufferView = -1;
     if (!warning.empty()) import.warn(one_line(warning));
 }
 

@@ -17,51 +17,9 @@ struct Visit {
     int        node  = 0;
     int        depth = 0;
     glm::dmat4 to_world{1};
-    Poses      moving = {}; // node to world in each frame, if it or a node above it is animated
+    Poses      moving  = {};   // node to world in each frame, if it or a node above it is animated
+    bool       visible = true; // KHR_node_visibility, of the nodes above
 };
-
-template <size_t count> bool all_finite(const std::vector<double>& values)
-{
-    return values.size() == count && std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
-}
-
-/// Tracks stand for the properties that they animate.
-glm::dmat4 local_matrix(const Import& import, int node_index, int frame)
-{
-    tinygltf::Node node = import.json.nodes[static_cast<size_t>(node_index)];
-    if (const auto found = import.tracks.find(node_index); found != import.tracks.end()) {
-        const auto put = [&](const std::optional<Track>& track, std::vector<double>& property) {
-            if (!track) return;
-            const glm::dvec4 value = value_at(*track, frame / gltf_frames_per_second);
-            property.clear();
-            for (int c = 0; c < track->components; ++c) property.push_back(value[c]);
-        };
-        put(found->second.translation, node.translation);
-        put(found->second.rotation, node.rotation);
-        put(found->second.scale, node.scale);
-    }
-    const auto check = [&](const std::vector<double>& values, bool ok, const char* what) {
-        if (!values.empty() && !ok) import.fail("/nodes/{}/{}: wrong length, or not finite", node_index, what);
-        return !values.empty();
-    };
-    if (check(node.matrix, all_finite<16>(node.matrix), "matrix")) {
-        glm::dmat4 matrix(1);
-        for (size_t column = 0; column < 4; ++column)
-            for (size_t row = 0; row < 3; ++row)
-                matrix[static_cast<int>(column)][static_cast<int>(row)] = node.matrix[4 * column + row];
-        return matrix; // the last row is 0 0 0 1 by definition, whatever the file says
-    }
-    glm::dmat4 matrix(1);
-    if (check(node.translation, all_finite<3>(node.translation), "translation"))
-        matrix = glm::translate(matrix, {node.translation[0], node.translation[1], node.translation[2]});
-    if (check(node.rotation, all_finite<4>(node.rotation), "rotation")) {
-        const glm::dquat rotation(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-        if (glm::length(rotation) > 0) matrix *= glm::mat4_cast(glm::normalize(rotation));
-    }
-    if (check(node.scale, all_finite<3>(node.scale), "scale"))
-        matrix = glm::scale(matrix, {node.scale[0], node.scale[1], node.scale[2]});
-    return matrix;
-}
 
 Camera camera_at(const tinygltf::Camera& source, const std::string& node_name, const glm::dmat4& to_world)
 {
@@ -184,25 +142,45 @@ Poses rigid_poses(Import& import, const Visit& at)
     return still ? nullptr : poses;
 }
 
-void place_mesh(Import& import, Walk& walk, int mesh_index, const glm::dmat4& to_world, const Poses& poses)
+/// A copy of each of its parts, counted.
+std::vector<Mesh> parts_of(Import& import, Walk& walk, int mesh_index)
 {
     if (static_cast<size_t>(mesh_index) >= import.json.meshes.size()) import.fail("there is no mesh {}", mesh_index);
     if (!walk.meshes.contains(mesh_index))
         walk.meshes.emplace(mesh_index, read_mesh(import, mesh_index, walk.material_left_out));
-    for (Mesh mesh : walk.meshes.at(mesh_index)) {
-        import.triangles += mesh.indices.size() / 3;
-        if (import.triangles > max_triangles) refuse_triangles(import, import.triangles);
+    for (const Mesh& mesh : walk.meshes.at(mesh_index)) import.triangles += mesh.indices.size() / 3;
+    if (import.triangles > max_triangles) refuse_triangles(import, import.triangles);
+    return walk.meshes.at(mesh_index);
+}
+
+void place_mesh(Import& import, Walk& walk, int mesh_index, const glm::dmat4& to_world, const Poses& poses)
+{
+    for (Mesh& mesh : parts_of(import, walk, mesh_index)) {
         transform(mesh, to_world);
         mesh.motion.poses = poses;
+        mesh.skin         = {};
         import.model.meshes.push_back(std::move(mesh));
     }
 }
 
-/// To be visited in this order, before all that is pending.
-void put_first(Walk& walk, std::vector<int> nodes, int depth, const glm::dmat4& to_world, const Poses& moving)
+/// Where its joints take it, whatever the node's own matrix (glTF 2.0, 3.7.3.3).
+void place_skinned_mesh(Import& import, Walk& walk, int mesh_index, int skin)
+{
+    const JointPoses joints = joint_poses(import, skin);
+    for (Mesh& mesh : parts_of(import, walk, mesh_index)) {
+        bend(mesh, joints);
+        import.model.meshes.push_back(std::move(mesh));
+    }
+}
+
+/// To be visited in this order, before all that is pending: each as `next`, which names none yet.
+void put_first(Walk& walk, std::vector<int> nodes, Visit next)
 {
     std::ranges::reverse(nodes);
-    for (const int node : nodes) walk.pending.push_back({node, depth, to_world, moving});
+    for (const int node : nodes) {
+        next.node = node;
+        walk.pending.push_back(next);
+    }
 }
 
 /// The same visit in the node's own space, in every frame if anything moves it.
@@ -232,16 +210,23 @@ void visit(Import& import, Walk& walk, const Visit& at)
                     max_node_depth);
     if (++walk.visits > max_node_visits) import.fail("more than {} nodes with all instances", max_node_visits);
     const tinygltf::Node& node     = import.json.nodes[static_cast<size_t>(at.node)];
-    const Visit           inside   = entered(import, at);
+    Visit                 inside   = entered(import, at);
     const glm::dmat4&     to_world = inside.to_world;
-    if (node.skin >= 0) import.warn("skins are not supported: drawn in the bind pose");
-    if (node.mesh >= 0 && node.skin >= 0) place_mesh(import, walk, node.mesh, glm::dmat4(1), nullptr);
-    if (node.mesh >= 0 && node.skin < 0) place_mesh(import, walk, node.mesh, to_world, rigid_poses(import, inside));
-    if (node.camera >= 0) add_camera(import, node.camera, node.name, inside);
-    const auto light = node.extensions.find("KHR_lights_punctual");
-    if (light != node.extensions.end() && light->second.IsObject() && light->second.Has("light"))
-        add_light(import, light->second.Get("light").GetNumberAsInt(), to_world, inside.moving != nullptr);
-    put_first(walk, node.children, at.depth + 1, to_world, inside.moving);
+    inside.visible                 = at.visible && !is_hidden(node);
+    if (node.mesh >= 0 && inside.visible) {
+        if (node.skin >= 0)
+            place_skinned_mesh(import, walk, node.mesh, node.skin);
+        else {
+            const Poses poses = rigid_poses(import, inside);
+            for (const glm::dmat4& instance : instances_of(import, at.node))
+                place_mesh(import, walk, node.mesh, to_world * instance, poses);
+        }
+    }
+    if (node.camera >= 0) add_camera(import, node.camera, node.name, inside); // hidden or not
+    const tinygltf::Value* light = extension_of(node, "KHR_lights_punctual");
+    if (light != nullptr && light->Has("light") && inside.visible)
+        add_light(import, light->Get("light").GetNumberAsInt(), to_world, inside.moving != nullptr);
+    put_first(walk, node.children, {-1, at.depth + 1, to_world, inside.moving, inside.visible});
 }
 
 } // namespace
@@ -254,7 +239,7 @@ Model load_gltf(const std::filesystem::path& file)
     gltf::read_animations(import);
     gltf::Walk walk;
     walk.material_left_out = gltf::add_materials(import);
-    gltf::put_first(walk, gltf::root_nodes(import), 0, glm::dmat4(1), nullptr);
+    gltf::put_first(walk, gltf::root_nodes(import), {});
     while (!walk.pending.empty()) {
         const gltf::Visit next = walk.pending.back();
         walk.pending.pop_back();

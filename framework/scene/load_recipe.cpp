@@ -178,7 +178,8 @@ Model load_recipe(const std::filesystem::path& file)
             if (apply(recipe.changes[i], part, model)) matched[i] = true;
         for (Mesh& mesh : model.meshes) mesh.name = fmt::format("{}/{}", part.name, mesh.name);
         const bool moves = part.motion != RigidMotion{};
-        if (moves && std::ranges::any_of(model.meshes, [](const Mesh& mesh) { return mesh.motion.poses != nullptr; }))
+        if (moves &&
+            std::ranges::any_of(model.meshes, [](const Mesh& mesh) { return mesh.motion.poses || mesh.skin.joints; }))
             throw_spec_error("{}: part '{}' has 'move_m' or 'turn_deg', but its file moves by itself", part.place,
                              part.name);
         for (const glm::dvec3& position_ws : part.positions_ws) {

@@ -41,14 +41,17 @@ void keep_vertices(Mesh& mesh, const std::vector<uint32_t>& kept)
 {
     std::vector<glm::dvec3> positions;
     std::vector<Vertex>     vertices;
+    std::vector<Influences> influences;
     positions.reserve(kept.size());
     vertices.reserve(kept.size());
     for (uint32_t old_index : kept) {
         positions.push_back(mesh.positions_ws[old_index]);
         vertices.push_back(mesh.vertices[old_index]);
+        if (!mesh.skin.vertices.empty()) influences.push_back(mesh.skin.vertices[old_index]);
     }
-    mesh.positions_ws = std::move(positions);
-    mesh.vertices     = std::move(vertices);
+    mesh.positions_ws  = std::move(positions);
+    mesh.vertices      = std::move(vertices);
+    mesh.skin.vertices = std::move(influences);
 }
 
 void drop_unused_vertices(Mesh& mesh)
@@ -216,8 +219,9 @@ void make_smooth_normals(Mesh& mesh, double crease_deg)
     mesh.has_normals = true;
 }
 
-void make_tangents(Mesh& mesh, int uv_set)
+void make_tangents(Mesh& mesh, int uv_set, const glm::mat3& uv_transform)
 {
+    const glm::dmat2        turn = glm::dmat2(glm::mat2(uv_transform));
     std::vector<glm::dvec3> along_u(mesh.vertices.size(), glm::dvec3(0));
     std::vector<glm::dvec3> along_v(mesh.vertices.size(), glm::dvec3(0));
     for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
@@ -226,8 +230,8 @@ void make_tangents(Mesh& mesh, int uv_set)
             const Vertex& vertex = mesh.vertices[mesh.indices[corner]];
             return glm::dvec2(uv_set == 0 ? vertex.uv0 : vertex.uv1);
         };
-        const glm::dvec2 du          = uv(i + 1) - uv(i);
-        const glm::dvec2 dv          = uv(i + 2) - uv(i);
+        const glm::dvec2 du          = turn * (uv(i + 1) - uv(i));
+        const glm::dvec2 dv          = turn * (uv(i + 2) - uv(i));
         const double     determinant = du.x * dv.y - dv.x * du.y;
         if (determinant == 0 || !std::isfinite(determinant)) continue;
         const double     sign = determinant > 0 ? 1 : -1; // weighted by area in space, not in the texture
@@ -243,10 +247,37 @@ void make_tangents(Mesh& mesh, int uv_set)
         glm::dvec3       tangent = along_u[i] - normal * glm::dot(normal, along_u[i]);
         if (!(glm::length(tangent) > 1e-12 * glm::length(along_u[i])))
             tangent = glm::cross(normal, std::abs(normal.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0));
-        const float handedness      = glm::dot(glm::cross(normal, tangent), along_v[i]) < 0 ? -1.0F : 1.0F;
+        // A normal map's y points up in the picture, v down.
+        const float handedness      = glm::dot(glm::cross(normal, tangent), along_v[i]) > 0 ? -1.0F : 1.0F;
         mesh.vertices[i].tangent_ws = {glm::vec3(glm::normalize(tangent)), handedness};
     }
     mesh.has_tangents = true;
+}
+
+size_t replace_bad_normals(Mesh& mesh)
+{
+    const auto is_bad = [&](uint32_t index) {
+        const float length = glm::length(mesh.vertices[index].normal_ws);
+        return !std::isfinite(length) || length <= 1e-6F;
+    };
+    std::vector<uint32_t>  kept(mesh.vertices.size());
+    std::vector<glm::vec3> normals; // of those added
+    std::iota(kept.begin(), kept.end(), 0U);
+    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        const auto own = glm::vec3(glm::normalize(area_vector(corners_of(mesh, i))));
+        for (size_t corner = i; corner < i + 3; ++corner) {
+            if (!is_bad(mesh.indices[corner])) continue;
+            kept.push_back(mesh.indices[corner]);
+            normals.push_back(own);
+            mesh.indices[corner] = static_cast<uint32_t>(kept.size() - 1);
+        }
+    }
+    if (normals.empty()) return 0;
+    const size_t before = mesh.vertices.size();
+    keep_vertices(mesh, kept);
+    for (size_t i = 0; i < normals.size(); ++i) mesh.vertices[before + i].normal_ws = normals[i];
+    drop_unused_vertices(mesh);
+    return normals.size();
 }
 
 void clean_attributes(Mesh& mesh)
@@ -260,9 +291,7 @@ void clean_attributes(Mesh& mesh)
         if (!finite(vertex.uv0)) vertex.uv0 = {0, 0};
         if (!finite(vertex.uv1)) vertex.uv1 = {0, 0};
         vertex.colour              = finite(vertex.colour) ? glm::clamp(vertex.colour, 0.0F, 1.0F) : glm::vec4(1);
-        const float normal_length  = glm::length(vertex.normal_ws);
-        const bool  has_direction  = std::isfinite(normal_length) && normal_length > 1e-6F;
-        vertex.normal_ws           = has_direction ? vertex.normal_ws / normal_length : glm::vec3(0, 1, 0);
+        vertex.normal_ws           = vertex.normal_ws / glm::length(vertex.normal_ws);
         const float tangent_length = glm::length(glm::vec3(vertex.tangent_ws));
         if (!std::isfinite(tangent_length) || tangent_length < 1e-6F || vertex.tangent_ws.w == 0)
             vertex.tangent_ws = glm::vec4(0);

@@ -1,6 +1,6 @@
 #include "scene/model.h"
 
-#include <glm/gtc/matrix_inverse.hpp>
+#include "scene/skin.h"
 
 #include <algorithm>
 #include <cmath>
@@ -91,22 +91,21 @@ Poses transform(const Poses& poses, const glm::dmat4& matrix)
     return moved;
 }
 
+JointPoses transform(const JointPoses& joints, const glm::dmat4& matrix)
+{
+    if (!joints) return nullptr;
+    auto moved = std::make_shared<std::vector<std::vector<glm::dmat4>>>(*joints);
+    for (std::vector<glm::dmat4>& frame : *moved)
+        for (glm::dmat4& joint : frame) joint = matrix * joint;
+    return moved;
+}
+
 void transform(Mesh& mesh, const glm::dmat4& matrix)
 {
-    const glm::dmat3 linear      = glm::dmat3(matrix);
-    const double     determinant = glm::determinant(linear);
-    // A flattening matrix has no inverse; its triangles are dropped later, so any normal will do.
-    const glm::dmat3 normal_matrix = determinant != 0 ? glm::inverseTranspose(linear) : linear;
-    for (glm::dvec3& position : mesh.positions_ws) position = point(matrix, position);
+    for (size_t i = 0; i < mesh.vertices.size(); ++i) move_vertex(matrix, mesh.positions_ws[i], mesh.vertices[i]);
     mesh.motion.poses = transform(mesh.motion.poses, matrix);
-    for (Vertex& vertex : mesh.vertices) {
-        vertex.normal_ws = unit_or(normal_matrix * glm::dvec3(vertex.normal_ws), {0, 1, 0});
-        if (vertex.tangent_ws.w != 0) {
-            const glm::vec3 tangent = unit_or(linear * glm::dvec3(vertex.tangent_ws), {1, 0, 0});
-            vertex.tangent_ws       = {tangent, determinant < 0 ? -vertex.tangent_ws.w : vertex.tangent_ws.w};
-        }
-    }
-    if (determinant < 0)
+    mesh.skin.joints  = transform(mesh.skin.joints, matrix);
+    if (glm::determinant(glm::dmat3(matrix)) < 0)
         for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
 }
 

@@ -20,6 +20,7 @@ struct Mesh {
     bool                    has_normals  = true;
     bool                    has_tangents = false;
     RigidMotion             motion       = {};
+    Skin                    skin         = {}; // bends it from frame 0 on, whose pose the positions have
 };
 
 struct ModelLight {
@@ -57,7 +58,8 @@ Bounds bounds_of(const Model& model, const glm::dmat4& matrix = glm::dmat4(1));
 void transform(Model& model, const glm::dmat4& matrix);
 void transform(Mesh& mesh, const glm::dmat4& matrix);
 /// The same motion of a mesh that is moved by `matrix`.
-Poses transform(const Poses& poses, const glm::dmat4& matrix);
+Poses      transform(const Poses& poses, const glm::dmat4& matrix);
+JointPoses transform(const JointPoses& joints, const glm::dmat4& matrix);
 
 /// Adds everything of `part` to `model`, with indices moved along.
 void append(Model& model, Model part);

@@ -40,26 +40,50 @@ ModelLight default_key_light()
     return light;
 }
 
-/// A float resolves 1e-7 of its value: far from the world's origin that is a visible step, so the origin moves there.
-glm::dvec3 choose_origin_ws(const Bounds& bounds)
+// In near distances: from there on float positions are off by a thousandth of one.
+constexpr double far_in_near_distances = 1e4;
+
+bool is_far(const Camera& camera, glm::dvec3 origin_ws)
+{
+    return glm::length(camera.position_ws - origin_ws) > far_in_near_distances * camera.near_m;
+}
+
+/// A float resolves 1e-7 of its value: far from the world's origin that is a visible step, so the origin moves to the scene, or to the first
+/// camera where the scene is large.
+glm::dvec3 choose_origin_ws(const Bounds& bounds, const std::vector<Camera>& cameras)
 {
     if (bounds.empty()) return {0, 0, 0};
-    const bool far = glm::length(bounds.centre_ws()) > 16 * 0.5 * glm::length(bounds.size_m());
-    return far ? bounds.centre_ws() : glm::dvec3(0);
+    if (glm::length(bounds.centre_ws()) > 16 * 0.5 * glm::length(bounds.size_m())) return bounds.centre_ws();
+    const bool far = !cameras.empty() && is_far(cameras[0], glm::dvec3(0));
+    return far ? cameras[0].position_ws : glm::dvec3(0);
+}
+
+void warn_of_far_cameras(Model& model, glm::dvec3 origin_ws)
+{
+    for (const Camera& camera : model.cameras)
+        if (is_far(camera, origin_ws))
+            model.warnings.push_back(fmt::format(
+                "view '{}' is {:.3g} m away from the scene's origin: positions there are rounded to {:.2g} m",
+                camera.name, glm::length(camera.position_ws - origin_ws),
+                glm::length(camera.position_ws - origin_ws) * 0x1p-24));
 }
 
 void repair(Model& model)
 {
-    size_t dropped = 0;
+    size_t dropped = 0, turned = 0;
     for (Mesh& mesh : model.meshes) {
         dropped += drop_bad_triangles(mesh);
         if (!mesh.has_normals) make_flat_normals(mesh);
+        turned += replace_bad_normals(mesh);
         clean_attributes(mesh);
         const TextureUse& normals = model.materials.at(mesh.material).normal_texture;
-        if (normals.texture >= 0 && !mesh.has_tangents) make_tangents(mesh, normals.uv_set);
+        if (normals.texture >= 0 && !mesh.has_tangents) make_tangents(mesh, normals.uv_set, normals.uv_transform);
     }
     std::erase_if(model.meshes, [](const Mesh& mesh) { return mesh.indices.empty(); });
     if (dropped > 0) model.warnings.push_back(dropped_triangles_text(dropped));
+    if (turned > 0)
+        model.warnings.push_back(fmt::format(
+            "{} corners of triangles have normals without direction: their triangles' own are used", turned));
 }
 
 void add_draw(Scene& scene, const Mesh& mesh)
@@ -74,8 +98,12 @@ void add_draw(Scene& scene, const Mesh& mesh)
     draw.material    = mesh.material;
     draw.motion      = mesh.motion;
     draw.motion.pivot_ws -= scene.origin_ws;
-    if (scene.origin_ws != glm::dvec3(0))
-        draw.motion.poses = transform(draw.motion.poses, glm::translate(glm::dmat4(1), -scene.origin_ws));
+    draw.skin = mesh.skin;
+    if (scene.origin_ws != glm::dvec3(0)) {
+        const glm::dmat4 to_origin = glm::translate(glm::dmat4(1), -scene.origin_ws);
+        draw.motion.poses          = transform(draw.motion.poses, to_origin);
+        draw.skin.joints           = transform(draw.skin.joints, to_origin);
+    }
     const auto first_vertex = static_cast<uint32_t>(scene.vertices.size());
     for (size_t i = 0; i < mesh.vertices.size(); ++i) {
         Vertex vertex      = mesh.vertices[i];
@@ -117,7 +145,8 @@ Scene model_to_scene(Model model, const std::string& name)
 
     Scene scene;
     scene.name      = name;
-    scene.origin_ws = choose_origin_ws(bounds);
+    scene.origin_ws = choose_origin_ws(bounds, model.cameras);
+    warn_of_far_cameras(model, scene.origin_ws);
     for (const Mesh& mesh : model.meshes) add_draw(scene, mesh);
     scene.materials = std::move(model.materials);
     scene.textures  = std::move(model.textures);

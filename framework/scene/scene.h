@@ -6,6 +6,7 @@
 #include "scene/environment.h"
 #include "scene/load_frame.h"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -72,6 +73,21 @@ struct RigidMotion {
     bool operator==(const RigidMotion&) const = default;
 };
 
+/// What joints a vertex follows; weights add up to 1, or are all 0.
+struct Influences {
+    std::array<uint32_t, 8> joints{};
+    std::array<float, 8>    weights{};
+};
+
+/// By frame and joint: from the space in which a skinned mesh is stored to world space. The last frame stays.
+using JointPoses = std::shared_ptr<const std::vector<std::vector<glm::dmat4>>>;
+
+/// How joints bend a draw from frame 0 on; of each of its vertices.
+struct Skin {
+    std::vector<Influences> vertices;
+    JointPoses              joints = {}; // null: they stand still
+};
+
 /// A camera path: straight from one camera to the next. Or a moving camera, if one has this name.
 struct CameraPath {
     std::string         name;
@@ -89,6 +105,7 @@ struct Draw {
     glm::vec3   bounds_min_ws{std::numeric_limits<float>::infinity()};
     glm::vec3   bounds_max_ws{-std::numeric_limits<float>::infinity()};
     RigidMotion motion;
+    Skin        skin = {};
 };
 
 enum class LightType : uint8_t { directional, point, spot };

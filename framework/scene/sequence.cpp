@@ -1,6 +1,7 @@
 #include "scene/sequence.h"
 
 #include "core/error.h"
+#include "scene/skin.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -15,6 +16,8 @@ bool is_still(const RigidMotion& motion)
     return !motion.poses && motion.move_m == glm::dvec3(0) && motion.turn_deg == glm::dvec3(0);
 }
 
+bool is_still(const Draw& draw) { return is_still(draw.motion) && !draw.skin.joints; }
+
 double radical_inverse(int index, int base)
 {
     double value = 0, digit = 1.0 / base;
@@ -23,18 +26,25 @@ double radical_inverse(int index, int base)
 }
 
 /// A draw's vertices are its own: no other draw has indices to them.
-void move_draw(Scene& scene, Draw& draw, const glm::dmat4& matrix)
+void move_draw(Scene& scene, Draw& draw, int frame)
 {
     const auto first = scene.indices.begin() + draw.first_index, end = first + draw.index_count;
-    const auto [low, high] = std::minmax_element(first, end);
-    const glm::mat3 turn(matrix);
+    const auto [low, high]  = std::minmax_element(first, end);
+    const glm::dmat4 matrix = draw.skin.joints ? glm::dmat4(1) : pose(draw.motion, frame);
+    const glm::mat3  turn(matrix);
     draw.bounds_min_ws = Draw{}.bounds_min_ws;
     draw.bounds_max_ws = Draw{}.bounds_max_ws;
     for (uint32_t i = *low; i <= *high; ++i) {
-        Vertex& vertex     = scene.vertices[i];
-        vertex.position_ws = glm::vec3(matrix * glm::dvec4(vertex.position_ws, 1));
-        vertex.normal_ws   = turn * vertex.normal_ws;
-        vertex.tangent_ws  = glm::vec4(turn * glm::vec3(vertex.tangent_ws), vertex.tangent_ws.w);
+        Vertex& vertex = scene.vertices[i];
+        if (draw.skin.joints) {
+            glm::dvec3 position_ws = vertex.position_ws;
+            move_vertex(pose(draw.skin.vertices[i - *low], draw.skin.joints, frame), position_ws, vertex);
+            vertex.position_ws = glm::vec3(position_ws);
+        } else {
+            vertex.position_ws = glm::vec3(matrix * glm::dvec4(vertex.position_ws, 1));
+            vertex.normal_ws   = turn * vertex.normal_ws;
+            vertex.tangent_ws  = glm::vec4(turn * glm::vec3(vertex.tangent_ws), vertex.tangent_ws.w);
+        }
         draw.bounds_min_ws = glm::min(draw.bounds_min_ws, vertex.position_ws);
         draw.bounds_max_ws = glm::max(draw.bounds_max_ws, vertex.position_ws);
     }
@@ -102,7 +112,7 @@ glm::dmat4 current_to_previous(const RigidMotion& motion, int frame, int frames_
 
 bool anything_moves(const Scene& scene)
 {
-    return std::ranges::any_of(scene.draws, [](const Draw& draw) { return !is_still(draw.motion); });
+    return std::ranges::any_of(scene.draws, [](const Draw& draw) { return !is_still(draw); });
 }
 
 Scene scene_at(const Scene& scene, int frame)
@@ -110,7 +120,7 @@ Scene scene_at(const Scene& scene, int frame)
     Scene moved = scene;
     if (frame == 0) return moved;
     for (Draw& draw : moved.draws)
-        if (!is_still(draw.motion) && draw.index_count > 0) move_draw(moved, draw, pose(draw.motion, frame));
+        if (!is_still(draw) && draw.index_count > 0) move_draw(moved, draw, frame);
     return moved;
 }
 
@@ -168,8 +178,10 @@ std::optional<FrameMotion> motion_at(const Scene& scene, const std::string& view
     motion.camera_moves = now.world_to_view != before.world_to_view || now.focal_px != before.focal_px ||
                           now.centre_px != before.centre_px;
     for (const Draw& draw : scene.draws) {
-        motion.to_previous_ws.push_back(current_to_previous(draw.motion, frame, frames_back));
-        motion.moving_draws += is_still(draw.motion) ? 0 : 1;
+        // No matrix says where each point of what joints bend was.
+        motion.to_previous_ws.push_back(draw.skin.joints ? glm::dmat4(std::numeric_limits<double>::quiet_NaN())
+                                                         : current_to_previous(draw.motion, frame, frames_back));
+        motion.moving_draws += is_still(draw) ? 0 : 1;
     }
     return motion;
 }

@@ -42,7 +42,7 @@ View view_at(const Scene& scene, const std::string& view, glm::ivec2 size_px, Se
 struct FrameMotion {
     int                     frame = 0;           // to this one
     View                    view, previous_view; // without jitter
-    std::vector<glm::dmat4> to_previous_ws;      // by draw: world of this frame to world of the one before
+    std::vector<glm::dmat4> to_previous_ws; // by draw: world of this frame to world of the one before; NaN: not known
     bool                    camera_moves = false;
     int                     moving_draws = 0;
 };

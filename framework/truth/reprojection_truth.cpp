@@ -54,7 +54,8 @@ public:
         if (!surface.met || surface.surface.draw + 1 != gbuffer_.object_id[i]) return;
         const Draw& draw = now_.scene().draws[surface.surface.draw];
         if (now_.scene().materials[draw.material].normal_texture.texture >= 0) return;
-        const Mirror                    mirror = mirror_before(pixel, surface);
+        const Mirror mirror = mirror_before(pixel, surface);
+        if (std::isnan(mirror.point_ws.x) || std::isnan(mirror.reflected_ws.x)) return; // bent by joints
         const std::optional<glm::dvec2> answer =
             is_flat(now_.scene(), surface) ? flat_answer(mirror) : curved_answer(pixel, mirror);
         if (!answer) return;

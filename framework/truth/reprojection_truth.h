@@ -7,7 +7,7 @@
 //     the answer is the projection of that image.
 //   Curved mirror: Newton's method on the image of the frame before, with rays on the real triangles and interpolated normals. It
 //     starts from three places; where they lead to different answers, or none, there is no answer.
-//   Mirrors with a normal map have no answer: what they reflect depends on how the map was filtered.
+//   Mirrors with a normal map have no answer: what they reflect depends on how the map was filtered. Nor has what joints bend.
 #pragma once
 
 #include "core/gbuffer_image.h"

@@ -22,6 +22,9 @@ glm::dvec3 front_normal_ws(const Scene& scene, const SurfacePoint& point)
     return glm::cross(corner_ws(scene, point, 1) - a, corner_ws(scene, point, 2) - a);
 }
 
+// Interpolation rounds: an alpha of 1 at all corners may be a bit less between them. Alphas in files differ by 1/255.
+constexpr float alpha_rounding = 0x1p-16F;
+
 /// Where the rasteriser would not draw: alpha below the cutoff, and for rays marked so the back of a single-sided material.
 void pass_undrawn(const RTCFilterFunctionNArguments* arguments)
 {
@@ -36,7 +39,7 @@ void pass_undrawn(const RTCFilterFunctionNArguments* arguments)
         const glm::dvec3   direction(RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i));
         const bool         culls = !material.double_sided && RTCRayN_id(rays, n, i) == unsigned(Sides::as_rasterised);
         if ((culls && glm::dot(front_normal_ws(*scene, point), direction) > 0) ||
-            (material.alpha_mask && surface_alpha(*scene, point) < material.alpha_cutoff)) {
+            (material.alpha_mask && surface_alpha(*scene, point) < material.alpha_cutoff - alpha_rounding)) {
             arguments->valid[i] = 0;
         }
     }

@@ -31,3 +31,10 @@ vec4 base_colour_of(Material material, Coordinates at, vec4 vertex_colour)
 {
     return material.base_colour * vertex_colour * sample_texture(base_colour_texture, material, 0, at);
 }
+
+// Interpolation rounds: an alpha of 1 at all corners may be a bit less between them. Alphas in files differ by 1/255.
+bool is_cut_out(Material material, float alpha)
+{
+    const float rounding = 1.0 / 65536.0;
+    return material.alpha_cutoff >= 0.0 && alpha < material.alpha_cutoff - rounding;
+}

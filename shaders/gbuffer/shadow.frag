@@ -9,5 +9,5 @@ void main()
 {
     Coordinates at       = coordinates_of(uv);
     Material    material = materials[material_index];
-    if (material.alpha_cutoff >= 0.0 && base_colour_of(material, at, vertex_colour).a < material.alpha_cutoff) discard;
+    if (is_cut_out(material, base_colour_of(material, at, vertex_colour).a)) discard;
 }

@@ -26,7 +26,7 @@ void main()
 {
     Coordinates at       = coordinates_of(uv);
     Material    material = materials[material_index];
-    if (material.alpha_cutoff >= 0.0 && base_colour_of(material, at, vertex_colour).a < material.alpha_cutoff) discard;
+    if (is_cut_out(material, base_colour_of(material, at, vertex_colour).a)) discard;
     float first = load_depth(ivec2(gl_FragCoord.xy));
     if (gl_FragCoord.z >= first - first * same_surface) discard;
     solid_back = gl_FrontFacing ? 0.0 : gl_FragCoord.z;

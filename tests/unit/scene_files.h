@@ -48,6 +48,20 @@ struct GltfFile {
 
     nlohmann::json& primitive() { return root["meshes"][0]["primitives"][0]; }
 
+    /// One file; its first buffer is the binary chunk.
+    std::string glb()
+    {
+        root["buffers"][0] = {{"byteLength", binary.size()}};
+        std::string text   = root.dump();
+        text.resize((text.size() + 3) / 4 * 4, ' ');
+        const auto word = [](size_t value) {
+            const auto value32 = static_cast<uint32_t>(value);
+            return std::string(reinterpret_cast<const char*>(&value32), 4);
+        };
+        return "glTF" + word(2) + word(28 + text.size() + binary.size()) + word(text.size()) + "JSON" + text +
+               word(binary.size()) + std::string("BIN\0", 4) + binary;
+    }
+
     std::string write(const TempFolder& folder, const std::string& name = "scene.gltf")
     {
         if (!binary.empty() && !root.contains("buffers"))

@@ -292,11 +292,11 @@ TEST(SceneGltfHostile, UnsupportedThingsAreNamedOnce)
 {
     TempFolder folder;
     GltfFile   file             = GltfFile::triangle();
-    file.root["extensionsUsed"] = {"KHR_materials_clearcoat", "VENDOR_thing"};
+    file.root["extensionsUsed"] = {"KHR_materials_sheen", "VENDOR_thing"};
     file.root["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"mode", 1}});
     file.root["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"mode", 0}});
     const Scene scene = load_scene(file.write(folder));
-    EXPECT_THAT(scene.warnings, Contains(HasSubstr("KHR_materials_clearcoat")).Times(1));
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("KHR_materials_sheen")).Times(1));
     EXPECT_THAT(scene.warnings, Contains(HasSubstr("VENDOR_thing")).Times(1));
     EXPECT_THAT(scene.warnings, Contains(HasSubstr("points and lines are not drawn")).Times(1));
 }
