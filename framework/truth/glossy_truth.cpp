@@ -96,14 +96,14 @@ private:
         const Lobe lobe(normal_vs, to_eye_vs, std::isfinite(roughness) ? roughness : 0);
         truth.rays[i] = lobe.is_mirror() ? 1 : uint32_t(glossy_.rays);
         for (int k = 0; k < int(truth.rays[i]); ++k) {
-            LobeSample sample = lobe.sample(even(pixel, k, 0, glossy_.seed));
+            LobeSample sample = lobe.sample(even(pixel, glossy_.first + k, 0, glossy_.seed));
             if (lobe.is_mirror()) sample.direction = mirror_vs; // the scene truth's, to the last bit
             const size_t number = row.weights.size();
             row.weights.push_back(sample.weight > 0 ? sample.weight * fresnel(f0, sample.cos_half) : glm::dvec3(0));
             row.light.emplace_back(0);
             row.owners.push_back(row.pixels.size());
             if (!(sample.weight > 0)) continue;
-            row.paths.push_back({number, glm::dvec3(1), roughness, k, lobe.is_mirror()});
+            row.paths.push_back({number, glm::dvec3(1), roughness, glossy_.first + k, lobe.is_mirror()});
             row.rays.push_back(reflected_.ray_from(pixel, sample.direction));
         }
         row.pixels.push_back(pixel);
@@ -144,24 +144,26 @@ private:
         const Lobe       lobe(seen_normal_ws(material, end.hit, ray.direction_ws), to_eye_ws, roughness);
         const glm::dvec3 f0 = f0_of(material.base_colour, double(material.metallic), double(material.dielectric_f0));
         const glm::dvec3 stand_in = glm::dvec3(scene_.ambient * material.base_colour) * double(material.metallic);
-        const glm::dvec3 below    = glm::max(glm::dvec3(end.radiance) - stand_in, 0.0);
+        const glm::dvec3 emission = glm::dvec3(material.emissive);
+        const glm::dvec3 below    = glm::max(glm::dvec3(end.radiance) - emission - stand_in, 0.0);
         const double     side     = glm::dot(end.hit.normal_ws, ray.direction_ws) > 0 ? -1 : 1;
         const bool       spreads  = path.alone && !lobe.is_mirror();
         const int        count    = spreads ? glossy_.rays : 1;
+        light += path.throughput * emission;
         path.throughput /= count;
         path.alone     = path.alone && !spreads;
         path.roughness = roughness;
         for (int k = 0; k < count; ++k) {
-            path.number              = spreads ? k : path.number;
-            const glm::dvec2 numbers = spreads ? even(pixel, k, bounce + 1, glossy_.seed)
+            path.number              = spreads ? glossy_.first + k : path.number;
+            const glm::dvec2 numbers = spreads ? even(pixel, glossy_.first + k, bounce + 1, glossy_.seed)
                                                : random(pixel, path.number, bounce + 1, glossy_.seed);
             const LobeSample sample  = lobe.sample(numbers);
             const glm::dvec3 weight  = sample.weight * fresnel(f0, sample.cos_half);
             light += path.throughput * (1.0 - weight) * below; // its mean over the lobe is that of the albedo
             if (!(sample.weight > 0)) continue;
             if (side * glm::dot(end.hit.normal_ws, sample.direction) <= 0) {
-                light +=
-                    path.throughput * weight * glm::dvec3(end.radiance); // interpolated normals lead into the triangle
+                light += path.throughput * weight *
+                         (glm::dvec3(end.radiance) - emission); // interpolated normals lead into the triangle
                 continue;
             }
             Path onward = path;
@@ -237,7 +239,9 @@ Image true_picture(const GlossyTruth& truth, const GBufferImage& gbuffer, glm::v
         glm::vec3 colour = gbuffer.radiance[i];
         if (truth.rays[i] > 0) {
             const glm::vec3 stand_in = gbuffer.metallic[i] * ambient * gbuffer.base_colour[i];
-            colour                   = (1.0F - truth.albedo[i]) * glm::max(colour - stand_in, 0.0F) + truth.radiance[i];
+            const glm::vec3 emission = emission_at(gbuffer, i);
+            const glm::vec3 below    = glm::max(colour - emission - stand_in, 0.0F);
+            colour                   = emission + (1.0F - truth.albedo[i]) * below + truth.radiance[i];
         }
         colour += gbuffer.highlight[i];
         image.values.insert(image.values.end(), {colour.r, colour.g, colour.b});

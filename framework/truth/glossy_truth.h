@@ -4,9 +4,9 @@
 // From each such pixel many rays leave through the scene, by the lobe of truth/ggx_lobe.h around the shading normal. From a mirror it is
 // one, and as many leave from the first rough surface that this one meets. Where a ray meets a surface that reflects, too, it goes on
 // from there in the same way, one ray for each. A surface sends back
-//   (1 - albedo) * (what comes from below its surface: diffuse light and emission) + highlights of the lights + its own reflection.
-// What comes from below is the scene truth's radiance (scene_truth.h) without metal's share of the ambient light, which there stands
-// in for a metal's reflection; after the last bounce it stands in again. Lights are points, so that the highlights of a smooth surface
+//   emission + (1 - albedo) * (diffuse light from below its surface) + highlights of the lights + its own reflection,
+// since the rendering equation adds emission to all that is scattered (J. Kajiya 1986). The diffuse light is the scene truth's radiance
+// (scene_truth.h) without emission and metal's share of the ambient light, which there stands in for a metal's reflection; after the last bounce it stands in again. Lights are points, so that the highlights of a smooth surface
 // have no size: a path takes all surfaces to be at least as rough as the roughest one that it came from (A. Kaplanyan, C. Dachsbacher
 // 2013, "Path Space Regularization for Holistic and Robust Light Transport"), and at least of roughness 0.05, as the shaders do.
 //
@@ -20,8 +20,10 @@
 namespace ssrlab {
 
 struct GlossySettings {
-    int      rays    = 64; // a pixel, at least 2
-    int      bounces = 3;  // further ones
+    int rays = 64; // a pixel, at least 2
+    int first =
+        0; // ray: truths of one seed with rays 0 … n - 1, n … 2 n - 1, … fill the lobe together as evenly as one with all
+    int      bounces = 3; // further ones
     uint32_t seed    = 0;
 };
 

@@ -88,12 +88,26 @@ RayEnd ReflectedRays::classify(const SceneRay& ray, const SceneHit& hit) const
     return with(!edge_on && camera_front == ray_front && drawn ? TruthClass::visible : TruthClass::facing_away);
 }
 
+/// Whether the pixel into which a hit falls shows the same surface: at an edge its centre may lie on another one, of another colour.
+bool ReflectedRays::pixel_shows(glm::ivec2 pixel, const SceneHit& hit, glm::dvec3 point_vs) const
+{
+    constexpr double flat_px = 0.05; // off the triangle's plane, in widths of the pixel there
+    const size_t     i       = pixel_index(pixel, gbuffer_.view.size_px);
+    if (!(gbuffer_.depth[i] > 0)) return false;
+    const uint32_t object = gbuffer_.object_id.empty() ? 0 : gbuffer_.object_id[i];
+    if (object != 0 && object != hit.surface.draw + 1) return false;
+    const double width_m =
+        (gbuffer_.view.projection == Projection::perspective ? -point_vs.z : 1) / gbuffer_.view.focal_px.y;
+    const glm::dvec3 way_ws = direction_to_ws(pixel_point_vs(gbuffer_, pixel) - point_vs);
+    return std::abs(glm::dot(glm::normalize(hit.normal_ws), way_ws)) <= flat_px * width_m;
+}
+
 glm::vec3 ReflectedRays::radiance(const SceneRay& ray, const SceneHit& hit, const RayEnd& end) const
 {
     if (end.cls == TruthClass::sky) return sky_radiance(scene_, ray.direction_ws);
     if (end.cls == TruthClass::visible) {
         const glm::ivec2 pixel(end.point_px);
-        return gbuffer_.radiance[pixel_index(pixel, gbuffer_.view.size_px)];
+        if (pixel_shows(pixel, hit, end.point_vs)) return gbuffer_.radiance[pixel_index(pixel, gbuffer_.view.size_px)];
     }
     return shade_point(bvh_, scene_, hit, ray.origin_ws + hit.t * ray.direction_ws, ray.direction_ws);
 }

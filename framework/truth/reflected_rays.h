@@ -40,6 +40,7 @@ private:
     glm::dvec3 eye_vs(glm::dvec3 point_vs) const;
     SceneRay   sight_ray(glm::dvec3 point_vs) const;
     RayEnd     classify(const SceneRay& ray, const SceneHit& hit) const;
+    bool       pixel_shows(glm::ivec2 pixel, const SceneHit& hit, glm::dvec3 point_vs) const;
     glm::vec3  radiance(const SceneRay& ray, const SceneHit& hit, const RayEnd& end) const;
 
     const SceneBvh&     bvh_;

@@ -10,6 +10,8 @@
 namespace ssrlab {
 namespace {
 
+constexpr double nearest_light_m = 1e-6; // a light has no size, and lights nothing in its own place
+
 /// Light arriving at a point from one light, unshadowed.
 struct Arriving {
     glm::vec3  irradiance{0};  // on a surface that faces the light
@@ -26,7 +28,7 @@ Arriving arriving_light(const Light& light, glm::dvec3 point_ws)
     }
     const glm::dvec3 offset     = glm::dvec3(light.position_ws) - point_ws;
     const double     distance_m = glm::length(offset);
-    if (!(distance_m > 0)) return {};
+    if (!(distance_m > nearest_light_m)) return {};
     Arriving result{light.intensity, offset / distance_m, distance_m};
     double   scale = 1 / (distance_m * distance_m);
     if (light.range_m > 0) scale *= std::clamp(1 - std::pow(distance_m / double(light.range_m), 4.0), 0.0, 1.0);
@@ -101,7 +103,7 @@ glm::vec3 shade_highlight(const SceneBvh& bvh, const Scene& scene, const SceneHi
                            ggx(normal_ws, -glm::normalize(direction_ws), arriving.to_light_ws, f0, roughness);
                        if (std::max({light.x, light.y, light.z}) > negligible && !shadowed()) sum += glm::vec3(light);
                    });
-    return sum;
+    return glm::min(sum, largest_radiance);
 }
 
 glm::vec3 shade_point(const SceneBvh& bvh, const Scene& scene, const SceneHit& hit, glm::dvec3 point_ws,
@@ -114,7 +116,7 @@ glm::vec3 shade_point(const SceneBvh& bvh, const Scene& scene, const SceneHit& h
                        if (!shadowed()) irradiance += arriving.irradiance * cosine;
                    });
     const glm::vec3 diffuse = material.base_colour * (1 - material.metallic) * (1 / std::numbers::pi_v<float>);
-    return diffuse * irradiance + scene.ambient * material.base_colour + material.emissive;
+    return glm::min(diffuse * irradiance + scene.ambient * material.base_colour + material.emissive, largest_radiance);
 }
 
 } // namespace ssrlab

@@ -69,6 +69,22 @@ glm::vec4 base_colour(const Scene& scene, const SurfacePoint& point)
            sample(scene, material.base_colour_texture, point);
 }
 
+/// The interpolated normal, turned by the normal map.
+glm::dvec3 mapped_normal_ws(const Scene& scene, const SurfacePoint& point)
+{
+    const Material&  material = scene.materials[scene.draws[point.draw].material];
+    const glm::dvec3 normal   = shading_normal_ws(scene, point);
+    const glm::dvec3 along_u  = glm::dvec3(glm::vec3(interpolate(scene, point, &Vertex::tangent_ws)));
+    const glm::dvec3 across   = along_u - normal * glm::dot(normal, along_u);
+    if (material.normal_texture.texture < 0 || normal == glm::dvec3(0) || !(glm::length(across) > 0)) return normal;
+    const glm::dvec3 tangent   = glm::normalize(across);
+    const glm::dvec3 bitangent = glm::cross(normal, tangent) * double(corner(scene, point, 0).tangent_ws.w);
+    const glm::dvec3 mapped    = 2.0 * glm::dvec3(glm::vec3(sample(scene, material.normal_texture, point))) - 1.0;
+    const double     scale     = double(material.normal_scale);
+    const glm::dvec3 sum       = scale * (tangent * mapped.x + bitangent * mapped.y) + normal * mapped.z;
+    return glm::length(sum) > 0 ? glm::normalize(sum) : normal;
+}
+
 } // namespace
 
 glm::dvec3 corner_ws(const Scene& scene, const SurfacePoint& point, int i)
@@ -95,7 +111,8 @@ SurfaceMaterial surface_material(const Scene& scene, const SurfacePoint& point)
     result.roughness      = std::clamp(material.roughness * gloss.g, 0.0F, 1.0F);
     result.dielectric_f0  = material.dielectric_f0;
     result.emissive       = material.emissive * glm::vec3(sample(scene, material.emissive_texture, point));
-    result.normal_ws      = shading_normal_ws(scene, point);
+    result.emissive       = glm::min(result.emissive, largest_radiance);
+    result.normal_ws      = mapped_normal_ws(scene, point);
     return result;
 }
 

@@ -18,7 +18,7 @@ struct SurfaceMaterial {
     float      roughness     = 1;
     float      dielectric_f0 = 0; // reflectance at normal incidence of what is not metal
     glm::vec3  emissive{0};       // linear radiance
-    glm::dvec3 normal_ws{0};      // shading_normal_ws()
+    glm::dvec3 normal_ws{0};      // shading_normal_ws(), turned by the normal map
 };
 
 glm::dvec3 corner_ws(const Scene& scene, const SurfacePoint& point, int corner);

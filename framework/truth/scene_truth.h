@@ -35,8 +35,8 @@ bool same_scene_truth(const TraceSettings& a, const TraceSettings& b);
 SceneTruth empty_scene_truth(glm::ivec2 size_px);
 
 /// Returns the truth of every reflecting pixel. A visible point has the radiance of the G-buffer pixel that it falls
-/// into (the view-independent part), so a perfect tracer reproduces the reference exactly. Other points are shaded by
-/// shade_point(), and the sky by sky_radiance(). threads = 0: all cores.
+/// into (the view-independent part), if that pixel shows the same surface: beyond an edge its centre may show another
+/// one. Other points are shaded by shade_point(), and the sky by sky_radiance(). threads = 0: all cores.
 SceneTruth scene_truth(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer,
                        const TraceSettings& settings, unsigned threads = 0);
 

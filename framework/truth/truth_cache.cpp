@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Raise when the code computes another truth from the same input, or writes it in another form.
-constexpr uint32_t format_version = 9;
+constexpr uint32_t format_version = 10;
 
 struct Header {
     std::array<char, 8> magic{'S', 'S', 'R', 'T', 'R', 'U', 'T', 'H'};
@@ -70,8 +70,10 @@ void add(ContentHash& hash, const Scene& scene)
             .add(m.emissive)
             .add(m.double_sided)
             .add(m.alpha_mask)
+            .add(m.normal_scale)
             .add(m.alpha_cutoff);
-        for (const TextureUse* use : {&m.base_colour_texture, &m.metallic_roughness_texture, &m.emissive_texture})
+        for (const TextureUse* use :
+             {&m.base_colour_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emissive_texture})
             add(hash, *use);
     }
     for (const Texture& t : scene.textures) {
@@ -255,7 +257,7 @@ GlossyTruth cached_glossy_truth(const fs::path& cache_dir, const Scene& scene, c
     ContentHash hash;
     add(hash.add(format_version), gbuffer);
     hash.add(gbuffer.radiance).add(gbuffer.base_colour).add(settings.max_distance_m);
-    hash.add(glossy.rays).add(glossy.bounces).add(glossy.seed);
+    hash.add(glossy.rays).add(glossy.first).add(glossy.bounces).add(glossy.seed);
     add_reflecting(hash, settings);
     add(hash, scene);
     return cached<GlossyTruth>(cache_dir, "glossy", hash, gbuffer.view.size_px, [&] {

@@ -120,6 +120,32 @@ TEST(SceneSurface, ChannelsMultiplyFactors)
     EXPECT_NEAR(quad.at({}).emissive.b, 2 * 5 / 255.0 / 12.92, 1e-6);
 }
 
+// A map that leans by 3 to 4 towards its x or its y; the quad's normal is z.
+TEST(SceneSurface, NormalMapsTurnTheNormal)
+{
+    const auto leaning = [](uint8_t x, uint8_t y) {
+        Texture texture;
+        texture.size_px = {1, 1};
+        texture.rgba    = {x, y, 230, 255}; // 0.8 is 229.5
+        return texture;
+    };
+    const auto normal = [&](const Texture& texture, glm::vec4 tangent, float scale = 1) {
+        Textured quad(texture);
+        for (Vertex& vertex : quad.scene.vertices) vertex.tangent_ws = tangent;
+        quad.material.normal_texture.texture = 0;
+        quad.material.normal_scale           = scale;
+        return quad.at({}).normal_ws;
+    };
+    constexpr double texel = 0.01;
+    const auto near = [&](glm::dvec3 found, glm::dvec3 expected) { EXPECT_LT(glm::length(found - expected), texel); };
+    near(normal(leaning(204, 128), {1, 0, 0, 1}), {0.6, 0, 0.8});
+    near(normal(leaning(204, 128), {0, 1, 0, 1}), {0, 0.6, 0.8});
+    near(normal(leaning(128, 204), {1, 0, 0, 1}), {0, 0.6, 0.8});
+    near(normal(leaning(128, 204), {1, 0, 0, -1}), {0, -0.6, 0.8});
+    near(normal(leaning(204, 128), {1, 0, 0, 1}, 0), {0, 0, 1});
+    near(normal(leaning(204, 128), {0, 0, 0, 0}), {0, 0, 1}); // no tangents
+}
+
 TEST(SceneSurface, VerticesAreMixedByTheirWeights)
 {
     Textured quad(numbered_texture());

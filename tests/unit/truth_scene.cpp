@@ -1,6 +1,7 @@
 // The scene truth on scenes with closed-form reflections.
 #include "core/error.h"
 #include "truth/scene_truth.h"
+#include "truth/screen_ray.h"
 #include "truth_scenes.h"
 
 #include <gmock/gmock.h>
@@ -192,14 +193,59 @@ TEST(SceneTruth, HiddenPointsHaveTheirOwnColour)
     add_quad(test.scene, 1, {-100, 1, -5}, {200, 0, 0}, {0, 0.5, 0});
     test.scene.materials[1].base_colour = {0, 0, 0, 1};
     test.scene.materials[1].emissive    = {0.25F, 0, 0};
+    for (int y = 22; y < 26; ++y) // 32 (1 - Y / Z) of the plate's borders: 22.4 and 25.6
+        for (int x = 0; x < 64; ++x) set_pixel(test.gbuffer, x, y, 5, {0, 0, 1}, 0);
     std::ranges::fill(test.gbuffer.radiance, glm::vec3(0, 7, 0));
     const SceneTruth truth = test.truth();
     EXPECT_GT(count(truth, TruthClass::hidden), 0);
+    int in_the_picture = 0;
     for (size_t i = 0; i < truth.cls.size(); ++i) {
         if (truth.cls[i] == TruthClass::not_traced) continue;
-        const bool hidden = truth.cls[i] == TruthClass::hidden;
-        EXPECT_EQ(truth.radiance[i], hidden ? glm::vec3(0.25F, 0, 0) : glm::vec3(0, 7, 0)) << i;
+        // The wall above and below the plate has parts in the plate's pixels.
+        const bool shown =
+            truth.cls[i] == TruthClass::visible &&
+            std::abs(-pixel_point_vs(test.gbuffer, glm::ivec2(truth.point_px[i])).z + truth.point_vs[i].z) < 1;
+        in_the_picture += shown;
+        EXPECT_EQ(truth.radiance[i], shown ? glm::vec3(0, 7, 0) : glm::vec3(0.25F, 0, 0)) << i;
     }
+    EXPECT_GT(in_the_picture, 100);
+}
+
+// Red posts on a green floor before a blue wall. Where a reflected ray meets a post near its edge, the pixel there shows the floor or the wall.
+TEST(SceneTruth, SilhouettesDoNotLeak)
+{
+    Case test;
+    for (const glm::vec3& glow : {glm::vec3(0, 1, 0), glm::vec3(0, 0, 1), glm::vec3(1, 0, 0)}) {
+        const uint32_t material                 = add_material(test.scene, {0, 0, 0}, glow.g);
+        test.scene.materials[material].emissive = glow;
+    }
+    add_floor(test.scene, 0);
+    add_wall(test.scene, 1, 10);
+    for (double x_m = -7.9; x_m < 8; x_m += 0.83) add_quad(test.scene, 2, {x_m, -1, -6}, {0.37, 0, 0}, {0, 1.4, 0});
+    const glm::vec3 colours[] = {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
+    const SceneBvh  bvh(test.scene);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) { // what the camera sees at the pixel's centre
+            const SceneRay ray{{0, 0, 0}, {(x + 0.5 - 32) / 32, -(y + 0.5 - 32) / 32, -1}, 0.1, 1e9};
+            SceneHit       hit;
+            bvh.intersect({&ray, 1}, {&hit, 1});
+            ASSERT_TRUE(hit.met);
+            const uint32_t material = test.scene.draws[hit.surface.draw].material;
+            set_pixel(test.gbuffer, x, y, hit.t, glm::normalize(hit.normal_ws), float(material == 0));
+            test.gbuffer.radiance[at(test.gbuffer, x, y)]  = colours[material];
+            test.gbuffer.object_id[at(test.gbuffer, x, y)] = hit.surface.draw + 1;
+        }
+    const SceneTruth truth   = test.truth();
+    int              on_post = 0, leaks = 0, elsewhere = 0;
+    for (size_t i = 0; i < truth.cls.size(); ++i) {
+        if (truth.cls[i] != TruthClass::visible || std::abs(truth.point_vs[i].z + 6) > 0.01) continue;
+        ++on_post;
+        leaks += truth.radiance[i] != glm::vec3(1, 0, 0);
+        elsewhere += test.gbuffer.radiance[pixel_index(glm::ivec2(truth.point_px[i]), {64, 64})] != glm::vec3(1, 0, 0);
+    }
+    EXPECT_GT(on_post, 100);
+    EXPECT_GT(elsewhere, 10) << "pixels of other surfaces, where it leaked";
+    EXPECT_EQ(leaks, 0);
 }
 
 TEST(SceneTruth, WhatLiesBeforeTheNearPlaneHidesNothing)
