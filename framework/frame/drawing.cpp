@@ -59,7 +59,8 @@ void record_rasterisation(const vk::raii::CommandBuffer& commands, const Drawing
         cleared_attachment(gbuffer.highlight, colour(glm::vec4(0))),
         cleared_attachment(gbuffer.object, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}}),
         cleared_attachment(gbuffer.gradient, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}}),
-        cleared_attachment(gbuffer.dielectric, colour(glm::vec4(0)))};
+        cleared_attachment(gbuffer.dielectric, colour(glm::vec4(0))),
+        cleared_attachment(gbuffer.emission, colour(glm::vec4(0)))};
     // Reversed depth: background is 0.
     const auto       depth = cleared_attachment(drawing.depth_buffer, vk::ClearDepthStencilValue{0.0F, 0});
     const glm::ivec2 size  = gbuffer.view.size_px;
@@ -89,7 +90,7 @@ std::shared_ptr<const DrawPipeline> layer_pipeline(Gpu& gpu, GpuScene& scene, co
                                     .colour_formats  = {gbuffer.normal.format, gbuffer.material.format,
                                                         gbuffer.radiance.format, gbuffer.highlight.format,
                                                         gbuffer.object.format, gbuffer.gradient.format,
-                                                        gbuffer.dielectric.format}};
+                                                        gbuffer.dielectric.format, gbuffer.emission.format}};
         if (shows != Shows::first) options.fragment_defines = {{"PEELED", "1"}};
         if (shows == Shows::next) options.culling = Culling::back_faces;
         pipeline = std::make_shared<const DrawPipeline>(make_draw_pipeline(gpu, scene, options));

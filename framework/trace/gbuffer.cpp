@@ -81,6 +81,7 @@ GBufferPtr make_gbuffer(Gpu& gpu, const View& view, Filled filled)
     gbuffer->dielectric    = image(Format::eR32Sfloat);
     gbuffer->radiance      = image(Format::eR16G16B16A16Sfloat);
     gbuffer->highlight     = image(Format::eR16G16B16A16Sfloat);
+    gbuffer->emission      = image(Format::eR16G16B16A16Sfloat);
     gbuffer->object        = image(Format::eR32Uint);
     gbuffer->gradient      = image(Format::eR32Uint);
     gbuffer->solid         = image(Format::eR32Sfloat);
@@ -135,13 +136,15 @@ GBufferPtr upload_gbuffer(Gpu& gpu, const GBufferImage& image)
     GBufferPtr gbuffer = make_gbuffer(gpu, image.view, Filled::uploaded);
     upload_surfaces(gpu, *gbuffer, image);
     const size_t           count = image.depth.size();
-    std::vector<HalfTexel> radiance(count), highlight(count);
+    std::vector<HalfTexel> radiance(count), highlight(count), emission(count);
     for (size_t i = 0; i < count; ++i) {
         radiance[i]  = to_half({image.radiance[i], 1});
         highlight[i] = to_half({image.highlight[i], 1});
+        emission[i]  = to_half({emission_at(image, i), 1});
     }
     upload(gpu, gbuffer->radiance, radiance.data(), count * sizeof(HalfTexel));
     upload(gpu, gbuffer->highlight, highlight.data(), count * sizeof(HalfTexel));
+    upload(gpu, gbuffer->emission, emission.data(), count * sizeof(HalfTexel));
     upload(gpu, gbuffer->object, image.object_id.data(), count * sizeof(uint32_t));
     for (const GBufferImage& layer : image.layers) gbuffer->layers.push_back(upload_gbuffer(gpu, layer));
     return gbuffer;
@@ -164,6 +167,8 @@ GBufferImage read_gbuffer(Gpu& gpu, const GBuffer& gbuffer)
         image.radiance.emplace_back(from_half(texel));
     for (const HalfTexel& texel : download_as<HalfTexel>(gpu, gbuffer.highlight))
         image.highlight.emplace_back(from_half(texel));
+    for (const HalfTexel& texel : download_as<HalfTexel>(gpu, gbuffer.emission))
+        image.emission.emplace_back(from_half(texel));
     image.object_id = download_as<uint32_t>(gpu, gbuffer.object);
     for (const uint32_t packed : download_as<uint32_t>(gpu, gbuffer.gradient))
         image.gradient.push_back(unpack_gradient(packed));

@@ -27,6 +27,7 @@ struct GBuffer {
     GpuImage                          dielectric;    // R32F: reflectance at normal incidence of what is not metal
     GpuImage                          radiance;      // RGBA16F: the same from every direction
     GpuImage                          highlight;     // RGBA16F: depends on the view
+    GpuImage                          emission;      // RGBA16F: the part of radiance that the surface emits
     GpuImage                          object;        // R32UI
     GpuImage                          gradient;      // R32UI: of depth, core/plane_gradient.h
     GpuImage                          solid;         // R32F: where the solid behind the pixel ends, 0: thin

@@ -33,6 +33,7 @@ layout(location = 3) out vec4 highlight;            // depends on the view
 layout(location = 4) out uint object;
 layout(location = 5) out uint gradient; // of depth, as framework/core/plane_gradient.h packs it
 layout(location = 6) out float dielectric_f0;
+layout(location = 7) out vec4 emission;             // part of radiance
 
 vec3 shading_normal(Material material, Coordinates at)
 {
@@ -77,7 +78,7 @@ void main()
     Coordinates at       = coordinates_of(uv);
     Material    material = materials[material_index];
     vec4        base     = base_colour_of(material, at, vertex_colour);
-    if (material.alpha_cutoff >= 0.0 && base.a < material.alpha_cutoff) discard;
+    if (is_cut_out(material, base.a)) discard;
 #ifdef PEELED
     if (is_peeled_off()) discard;
 #endif
@@ -88,12 +89,13 @@ void main()
     vec3  to_eye    = orthographic != 0 ? -view_axis_ws : normalize(eye_ws - position_ws);
     vec3  diffuse_light, highlights;
     light_surface(Surface(position_ws, normal, base.rgb, metallic, roughness, material.dielectric_f0), light_count, to_eye, diffuse_light, highlights);
-    vec3 emissive = material.emissive * sample_texture(emissive_texture, material, 3, at).rgb;
+    vec3 emissive = min(material.emissive * sample_texture(emissive_texture, material, 3, at).rgb, largest_half);
 
     normal_and_roughness = vec4(mat3(world_to_view) * normal, roughness);
     base_and_metallic    = vec4(base.rgb, metallic);
-    radiance             = vec4(base.rgb * ((1.0 - metallic) / pi * diffuse_light + ambient) + emissive, 1.0);
+    radiance             = vec4(min(base.rgb * ((1.0 - metallic) / pi * diffuse_light + ambient) + emissive, largest_half), 1.0);
     highlight            = vec4(highlights, 1.0);
+    emission             = vec4(emissive, 1.0);
     object               = object_id;
     dielectric_f0        = material.dielectric_f0;
     gradient             = packed_gradient(gl_FragCoord.z, depth_slope);

@@ -16,7 +16,9 @@ layout(set = 0, binding = LIGHTS_BINDING, scalar) readonly buffer Lights { Light
 layout(set = 0, binding = LIGHTS_BINDING + 1, scalar) readonly buffer ShadowMatrices { mat4 world_to_shadow[]; };
 layout(set = 0, binding = LIGHTS_BINDING + 2) uniform sampler2DArrayShadow shadow_map;
 
-const float pi = 3.14159265358979;
+const float pi              = 3.14159265358979;
+const float nearest_light_m = 1e-6; // a light has no size, and lights nothing in its own place
+const float largest_half    = 65504.0; // what pictures can hold
 
 // Layer of a point light's cube: +x -x +y -y +z -z.
 int cube_face(vec3 direction)
@@ -45,6 +47,8 @@ vec3 arriving(Light light, vec3 position_ws, out vec3 to_light)
     if (light.type == 0) return light.intensity;
     vec3  offset     = light.position_ws - position_ws;
     float distance_m = length(offset);
+    to_light         = vec3(0);
+    if (distance_m <= nearest_light_m) return vec3(0);
     to_light         = offset / distance_m;
     float window     = light.range_m > 0.0 ? clamp(1.0 - pow(distance_m / light.range_m, 4.0), 0.0, 1.0) : 1.0;
     float cone       = 1.0;
@@ -61,13 +65,14 @@ vec3 arriving(Light light, vec3 position_ws, out vec3 to_light)
 
 vec3 specular(vec3 normal, vec3 to_eye, vec3 to_light, vec3 f0, float roughness)
 {
-    vec3  halfway = normalize(to_eye + to_light);
+    vec3  sum     = to_eye + to_light;
+    vec3  halfway = dot(sum, sum) > 0.0 ? normalize(sum) : normal;
     float alpha2  = pow(max(roughness, 0.05), 4.0);
     float n_h = max(dot(normal, halfway), 0.0), n_v = max(dot(normal, to_eye), 1e-4), n_l = max(dot(normal, to_light), 0.0);
     float d   = n_h * n_h * (alpha2 - 1.0) + 1.0;
     float ggx = alpha2 / (pi * d * d);
     float visibility = 0.5 / max(n_l * sqrt(n_v * n_v * (1.0 - alpha2) + alpha2) + n_v * sqrt(n_l * n_l * (1.0 - alpha2) + alpha2), 1e-6);
-    vec3  fresnel = f0 + (grazing_reflectance(f0) - f0) * pow(1.0 - max(dot(to_eye, halfway), 0.0), 5.0);
+    vec3  fresnel = f0 + (grazing_reflectance(f0) - f0) * pow(1.0 - clamp(dot(to_eye, halfway), 0.0, 1.0), 5.0);
     return ggx * visibility * fresnel;
 }
 
@@ -92,4 +97,6 @@ void light_surface(Surface surface, int light_count, vec3 to_eye_ws, out vec3 ir
         irradiance += from_light;
         highlights += from_light * specular(surface.normal_ws, to_eye_ws, to_light, f0, surface.roughness);
     }
+    irradiance = min(irradiance, largest_half);
+    highlights = min(highlights, largest_half);
 }

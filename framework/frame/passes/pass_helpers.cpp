@@ -152,7 +152,10 @@ Bindings bindings_of(Gpu& gpu, const PassContext& context, Resource resource)
                 {"normal_image", gbuffer.normal},
                 {"material_image", gbuffer.material},
                 {"dielectric_image", gbuffer.dielectric}};
-    case Resource::light: return {{"radiance_image", gbuffer.radiance}, {"highlight_image", gbuffer.highlight}};
+    case Resource::light:
+        return {{"radiance_image", gbuffer.radiance},
+                {"highlight_image", gbuffer.highlight},
+                {"emission_image", gbuffer.emission}};
     case Resource::objects: return {{"object_image", gbuffer.object}, {"gradient_image", gbuffer.gradient}};
     case Resource::layers: return layer_bindings(frame);
     case Resource::solids: return {{"solid_image", gbuffer.solid}};
