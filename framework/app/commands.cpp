@@ -41,8 +41,8 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
     image.metadata["ssrlab:technique"]    = options.technique;
     image.metadata["ssrlab:parameters"]   = fmt::format("{}", fmt::join(options.parameters, " "));
     for (size_t i = 0; i < result.status.size(); ++i) {
-        const bool hit = result.status[i] == TraceStatus::hit;
-        // A miss has no hit point: zeros, and the status says so.
+        const bool hit = has_place(result.status[i]);
+        // A miss has no hit point: zeros, and the status says so. A stopped ray has one.
         const glm::dvec3 point = hit ? result.hit_px_depth[i] : glm::dvec3(0);
         const glm::dvec2 pixel = hit ? glm::dvec2(result.hit_pixel[i]) : glm::dvec2(0);
         for (const double value :

@@ -38,6 +38,8 @@ struct ShaderSource {
     std::map<std::string, std::filesystem::path> include_files = {}; // virtual include name -> file
     std::map<std::string, std::string>           include_texts = {}; // virtual include name -> text
     std::vector<std::filesystem::path> include_folders = {}; // a plug-in's own: searched before those of the project
+    std::map<std::string, std::filesystem::path> offered =
+        {}; // what a plug-in would have to write -> the file that it would get
 };
 
 /// Returns the folder of the project's shaders.

@@ -79,6 +79,17 @@ std::string error_text(const std::string& error, const ShaderSource& source)
                        std::regex_replace(error, std::regex("^[^:]*:[0-9]+: "), ""), error.substr(0, error.find(": ")));
 }
 
+/// What the plug-in would have to write so that the name that is not found is there; empty: nothing would help.
+std::string cure_of(const std::string& error, const ShaderSource& source)
+{
+    std::smatch      found;
+    const std::regex unknown("'(\\w+)' : (no matching overloaded function found|undeclared identifier)");
+    if (!std::regex_search(error, found, unknown)) return "";
+    for (const auto& [line, file] : source.offered)
+        if (line_defining(read_file(file), found[1]) > 0) return fmt::format(" (needs {})", line);
+    return "";
+}
+
 } // namespace
 
 std::string shader_errors_in(const std::string& log, const ShaderSource& source)
@@ -89,7 +100,8 @@ std::string shader_errors_in(const std::string& log, const ShaderSource& source)
         constexpr std::string_view prefix = "ERROR: ";
         // The compiler's last line counts its errors.
         if (!line.starts_with(prefix) || line.ends_with("No code generated.")) continue;
-        const std::string error = error_text(line.substr(prefix.size()), source);
+        std::string error = error_text(line.substr(prefix.size()), source);
+        if (!error.empty()) error += cure_of(error, source);
         if (!error.empty() && std::ranges::count(errors, error) == 0) errors.push_back(error);
     }
     return errors.empty() ? log : fmt::format("{}", fmt::join(errors, "\n"));

@@ -108,6 +108,8 @@ Shader compile_trace(const Gpu& gpu, const Lab& lab, const RayBuffers& rays, con
                               {"technique/structures", structure_declarations(technique, nullptr, in_double)}},
             .include_folders = technique_folders(technique)};
     source.include_files.emplace("technique/trace.glsl", technique.folder / "trace.glsl");
+    for (const auto& [id, file] : technique.unread)
+        source.offered.emplace(fmt::format("structures = [\"{}\"] in technique.toml", id), file);
     add_surface(source, lab.surface, lab.settings.layers);
     source.defines.emplace("STRUCTURES", std::to_string(technique.structures.size()));
     for (const std::string& macro : shader_macros(technique, lab.values)) source.defines.emplace(macro, "1");

@@ -124,6 +124,9 @@ Technique load_technique(const fs::path& folder, std::span<const Structure> know
         if (technique.rays_per_invocation != 1 && technique.rays_per_invocation != 2)
             toml_refuse(file, *node, "rays_per_invocation", "1 or 2");
     }
+    for (const Structure& structure : known)
+        if (std::ranges::find(technique.structures, structure.id, &Structure::id) == technique.structures.end())
+            technique.unread.emplace(structure.id, structure.folder / "read.glsl");
     technique.parameters = read_parameters(file);
     for (const Structure& structure : technique.structures)
         technique.parameters.insert(technique.parameters.end(), structure.parameters.begin(),

@@ -33,6 +33,8 @@ struct Technique {
     /// Of "behind", "surface" and "thickness": what its own hit test does not ask. "unknown": its shaders may have
     /// such a test, and the manifest does not say.
     std::vector<std::string> ignores = {};
+    /// Structures that it could read but does not: id -> read.glsl.
+    std::map<std::string, std::filesystem::path> unread = {};
 };
 
 /// What a technique that is not exact may declare that it gets wrong. The check holds it to everything else.

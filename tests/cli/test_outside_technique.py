@@ -91,6 +91,10 @@ class Test(Case):
         out = self.shader_refused(TRACE.replace("trace(Ray", "trace_it(Ray"), ["mine/coin/trace.glsl:6: trace.glsl defines no TraceResult trace(Ray)"], never=["store_result"])
         self.assertTrue(out.startswith("ssrlab: mine/coin/trace.glsl:6:"), out)
 
+    def test_a_structure_that_is_not_asked_for_is_named(self):
+        self.shader_refused(TRACE.replace("    return miss", "    fetch_front(pixel, 3);\n    return miss", 1),
+                            ["'fetch_front' : no matching overloaded function found (needs structures = [\"depth_pyramid\"] in technique.toml)"])
+
     def test_own_main_is_said_to_be_reserved(self):
         self.shader_refused("// main()\nvoid main() {}\n" + TRACE, ["mine/coin/trace.glsl:2: 'main' is reserved"])
 

@@ -64,6 +64,10 @@ class Test(Case):
         self.assertGreater(hit.sum(), 0)
         self.assertTrue((channels["hit.t"][hit] <= 1).all() and (channels["hit.t"][hit] >= 0).all())
         self.assertTrue((channels["hit.x"][hit] <= 161).all() and (channels["hit.y"][hit] <= 91).all())
+        stopped = channels["status"] == 6
+        hit |= stopped  # they have a place, too
+        self.assertTrue((channels["hit.x"][stopped] > 0).all() and (channels["hit.z"][stopped] > 0).all())
+        self.assertGreater(stopped.sum(), 0)
         self.assertTrue((channels["hit.x"][~hit] == 0).all())
         for axis in "xy":
             pixel, place = channels[f"pixel.{axis}"][hit], channels[f"hit.{axis}"][hit]
