@@ -158,6 +158,27 @@ MeasureValues compare_images(const Image& tested, const Reference& reference, co
             {"ssim_reflective", over_reflective.ssim}, {"flip_reflective", over_reflective.flip}};
 }
 
+MeasureValues count_not_finite(const Image& picture, const GBufferImage* gbuffer)
+{
+    const size_t pixels = pixel_count(picture.size_px), channels = picture.channels.size();
+    const auto   bad        = [](float value) { return !std::isfinite(value); };
+    const auto   bad_colour = [&](glm::vec3 value) { return bad(value.x) || bad(value.y) || bad(value.z); };
+    size_t       count      = 0;
+    for (size_t i = 0; i < pixels; ++i) {
+        bool found = false;
+        for (size_t c = 0; c < channels; ++c) found = found || bad(picture.values[i * channels + c]);
+        if (gbuffer != nullptr) {
+            for (const std::vector<float>* plane : {&gbuffer->depth, &gbuffer->roughness, &gbuffer->metallic})
+                found = found || (i < plane->size() && bad((*plane)[i]));
+            for (const std::vector<glm::vec3>* plane : {&gbuffer->normal_vs, &gbuffer->base_colour, &gbuffer->radiance,
+                                                        &gbuffer->highlight, &gbuffer->emission})
+                found = found || (i < plane->size() && bad_colour((*plane)[i]));
+        }
+        count += found;
+    }
+    return {{"not_finite", double(count)}};
+}
+
 MeasureValues compare_pictures(const Image& tested, const Reference& reference, const SceneTruth& truth,
                                const GBufferImage& gbuffer)
 {

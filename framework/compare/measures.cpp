@@ -170,6 +170,9 @@ constexpr auto table = std::to_array<Measure>({
     {"picture_visible_rmse", "display value", "as picture_rmse, over visible rays alone", own},
     {"picture_visible_border_rmse", "display value", "as picture_border_rmse, over visible rays alone", own},
 
+    {"not_finite", "pixels", "pixels of the finished picture or of its G-buffer with a value that is NaN or infinite",
+     own},
+
     {"disocclusion_share", "share",
      "rays whose reflection the frame before did not show: hidden or outside the image, of rays for which this is "
      "known",

@@ -55,6 +55,10 @@ MeasureValues compare_depth_to_scene(const SceneTruth& scene_truth);
 /// Returns what the pass hidden_layer adds. `first` and `second` are the results in each depth layer.
 MeasureValues compare_hidden_layer(const TraceResult& first, const TraceResult& second, const SceneTruth& scene_truth);
 
+/// Returns not_finite: pixels of the finished picture, or of its G-buffer (null: not looked at), with a value that is
+/// NaN or infinite. Gradients and motion vectors may be NaN where they are not known.
+MeasureValues count_not_finite(const Image& picture, const GBufferImage* gbuffer);
+
 /// Returns mean and largest work per ray, and the work of rays that run in groups.
 MeasureValues count_work(const TraceResult& result);
 

@@ -172,6 +172,18 @@ void write_pictures(const std::filesystem::path& path, const Picture& picture, c
     });
 }
 
+/// A value that is no number spreads into every mean.
+void warn_of_not_finite(const SweepContext& sweep, const Picture& picture, MeasuredRun& measured,
+                        const Observed& observed)
+{
+    const MeasureValues found =
+        count_not_finite(observed.shaded, picture.truths ? &picture.truths->gbuffer() : nullptr);
+    add_measures(measured.row, found);
+    if (const double pixels = found.at("not_finite").value_or(0); pixels > 0)
+        sweep.progress.say(fmt::format("warning: {}: {} pixels of the picture or its G-buffer are not finite",
+                                       measured.run->id, pixels));
+}
+
 /// Pictures, counts and comparisons with the truths.
 void judge(const SweepContext& sweep, Picture& picture, MeasuredRun& measured, const Observed& observed)
 {
@@ -183,6 +195,7 @@ void judge(const SweepContext& sweep, Picture& picture, MeasuredRun& measured, c
         if (!picture.reference_file.empty()) measured.row["truth_picture"] = picture.reference_file;
     }
     add_counts(measured.row, observed.counted);
+    warn_of_not_finite(sweep, picture, measured, observed);
     if (!picture.truths) return;
     const auto pointer = [](const std::optional<TraceResult>& result) { return result ? &*result : nullptr; };
     measured.row["no_scene_truth"]  = picture.truths->without_scene();

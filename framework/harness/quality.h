@@ -30,6 +30,9 @@ public:
     /// images are measured against, or without.
     void make(const TraceSettings& settings, bool image_errors);
 
+    /// What they are the truths of.
+    const GBufferImage& gbuffer() const { return gbuffer_; }
+
     /// Every measure of `counted`. `twin` is the same trace in double, `hidden` what was found in the second layer; or null.
     MeasureValues compare(const TraceResult& counted, const TraceResult* twin, const TraceResult* hidden) const;
 

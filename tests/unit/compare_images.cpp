@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <functional>
 #include <numbers>
 #include <random>
@@ -386,6 +387,23 @@ TEST(ImageMeasures, OfDisplayValues)
         uniform({12, 12}, glm::vec3(7)), Reference(uniform({12, 12}, glm::vec3(0.2140411F))), half_visible({12, 12}));
     EXPECT_NEAR(values.at("rmse_visible").value(), 0.5, 1e-5);
     EXPECT_NEAR(values.at("psnr_visible_db").value(), 20 * std::log10(2), 1e-4);
+}
+
+TEST(NotFinite, PixelsOfThePictureAndOfItsGBufferCountOnce)
+{
+    const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+    constexpr glm::ivec2 four{4, 1};
+    Image                picture{four, {"R", "G", "B"}, std::vector<float>(12, 0.5F), {}};
+    GBufferImage         gbuffer;
+    gbuffer.depth.assign(4, 0.5F);
+    gbuffer.highlight.assign(4, glm::vec3(0));
+    gbuffer.gradient.assign(4, glm::vec2(nan)); // not known
+    EXPECT_EQ(count_not_finite(picture, &gbuffer).at("not_finite"), 0);
+    picture.values[3 * 1 + 2] = nan;
+    gbuffer.highlight[1].g    = infinity;
+    gbuffer.highlight[3].r    = nan;
+    EXPECT_EQ(count_not_finite(picture, &gbuffer).at("not_finite"), 2);
+    EXPECT_EQ(count_not_finite(picture, nullptr).at("not_finite"), 1);
 }
 
 } // namespace
