@@ -121,8 +121,8 @@ public:
         // As many rays a pixel in all as one picture has.
         const int rays = std::max(2, (GlossySettings{}.rays + samples_ - 1) / samples_);
         return true_picture(
-            glossy_truth(*bvh_, stage_.scene, gbuffer, settings, {.rays = rays, .first = sample * rays}),
-            gbuffer, stage_.scene.ambient);
+            glossy_truth(*bvh_, stage_.scene, gbuffer, settings, {.rays = rays, .first = sample * rays}), gbuffer,
+            stage_.scene.ambient);
     }
 
 private:
