@@ -11,71 +11,106 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace ssrlab::test {
 namespace {
 
+enum class Frames { small, medium, large };
+
+/// Frames of one scene, in one test: they share its pipelines.
 struct Case {
-    std::string scene, view;
-    glm::ivec2  size_px;
+    std::string scene;
+    Frames      frames = Frames::small;
 };
 
-void PrintTo(const Case& c, std::ostream* out)
-{
-    *out << c.scene << " " << c.view << " " << c.size_px.x << "x" << c.size_px.y;
-}
+constexpr const char* frames_names[] = {"small", "medium", "large"};
+
+void PrintTo(const Case& c, std::ostream* out) { *out << c.scene << ", " << frames_names[static_cast<int>(c.frames)]; }
 
 std::string case_name(const testing::TestParamInfo<Case>& info)
 {
-    std::string name = info.param.scene + "_" + info.param.view + "_" + std::to_string(info.param.size_px.x) + "x" +
-                       std::to_string(info.param.size_px.y);
+    std::string name = info.param.scene + "_" + frames_names[static_cast<int>(info.param.frames)];
     std::ranges::replace_if(
         name, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
     return name;
 }
 
-constexpr glm::ivec2 sizes[] = {{640, 360}, {641, 363}, {1, 1}, {3, 2}, {97, 1}};
-/// Each with its views besides the default one; a level one is among them.
-const std::pair<const char*, std::vector<std::string>> real_scenes[] = {{"animal_on_metal", {"level", "steep"}},
-                                                                        {"teapot_bunnies", {"level", "close"}},
-                                                                        {"thin_yard", {"level", "close", "fence"}},
-                                                                        {"interior", {"mirror", "low", "piano"}},
-                                                                        {"engine", {"level", "close"}},
-                                                                        {"forest_clearing", {"level", "close"}}};
+struct Frame {
+    std::string view;
+    glm::ivec2  size_px;
+};
 
-std::vector<Case> all_cases()
+constexpr glm::ivec2 odd{641, 363}, even{640, 360}, row{97, 1}, large{1919, 1079}, for_models{321, 181};
+
+/// Real scenes with their views besides the default one; a level one is among them.
+const std::map<std::string, std::vector<std::string>> real_scenes = {{"animal_on_metal", {"level", "steep"}},
+                                                                     {"teapot_bunnies", {"level", "close"}},
+                                                                     {"thin_yard", {"level", "close", "fence"}},
+                                                                     {"interior", {"mirror", "low", "piano"}},
+                                                                     {"engine", {"level", "close"}},
+                                                                     {"forest_clearing", {"level", "close"}}};
+
+/// Here every level of the pyramid is tried, and large frames are traced; in other scenes the default levels.
+bool is_thorough(const std::string& scene)
 {
+    return scene == "builtin:stairs" || scene == "builtin:pole_field" || real_scenes.contains(scene);
+}
+
+/// Without loading a scene: every process of this program lists its tests.
+std::vector<Case> cases_where(bool (*has_large_frame)(const std::string& scene))
+{
+    std::vector<std::string> scenes;
+    for (const auto& [scene, views] : real_scenes) scenes.push_back(scene);
+    for (const SceneListing& listing : list_scenes())
+        if (listing.name.starts_with("builtin:")) scenes.push_back(listing.name);
     std::vector<Case> cases;
-    const auto        add = [&](const std::string& scene, const std::vector<std::string>& other_views) {
-        for (const glm::ivec2& size : sizes) cases.push_back({scene, "default", size});
-        cases.push_back({scene, "default", {1919, 1079}});
-        for (const std::string& view : other_views) cases.push_back({scene, view, {641, 363}});
-    };
-    for (const SceneListing& listing : list_scenes()) {
-        if (!listing.name.starts_with("builtin:")) continue;
-        std::vector<std::string> other_views;
-        for (const Camera& camera : load_scene(listing.name).cameras)
-            if (camera.name != "default") other_views.push_back(camera.name);
-        add(listing.name, other_views);
-    }
-    for (const auto& [scene, views] : real_scenes) add(scene, views);
+    for (const std::string& scene : scenes)
+        for (const Frames frames : {Frames::small, Frames::medium, Frames::large})
+            if (frames != Frames::large || has_large_frame(scene)) cases.push_back({scene, frames});
     return cases;
 }
 
-bool is_large(const Case& c) { return c.size_px.x > 700; }
+std::vector<std::string> other_views(const std::string& scene)
+{
+    if (const auto real = real_scenes.find(scene); real != real_scenes.end()) return real->second;
+    std::vector<std::string> views;
+    for (const Camera& camera : load_scene(scene).cameras)
+        if (camera.name != "default") views.push_back(camera.name);
+    return views;
+}
+
+/// Each view of the scene in this size.
+std::vector<Frame> in_every_view(const std::string& scene, glm::ivec2 size_px)
+{
+    std::vector<Frame> frames{{"default", size_px}};
+    for (const std::string& view : other_views(scene)) frames.push_back({view, size_px});
+    return frames;
+}
+
+std::vector<Frame> frames_of(const Case& c)
+{
+    if (c.frames == Frames::small) return {{"default", {1, 1}}, {"default", {3, 2}}, {"default", row}};
+    if (c.frames == Frames::large) return {{"default", large}};
+    std::vector<Frame> frames = in_every_view(c.scene, odd);
+    if (is_thorough(c.scene)) frames.push_back({"default", even});
+    return frames;
+}
+
+bool is_large(const Frame& frame) { return frame.size_px == large; }
 
 /// Large frames trace metals alone: dielectrics, which the smaller frames have as well, would multiply their rays.
-double dielectric_min_f0_for(const Case& c) { return is_large(c) ? 1 : TraceSettings{}.dielectric_min_f0; }
+double dielectric_min_f0_for(const Frame& frame) { return is_large(frame) ? 1 : TraceSettings{}.dielectric_min_f0; }
 
 /// Every setting of the parameters that may change the way a technique walks, and must not change what it finds.
-std::vector<ParameterValues> variants(const Technique& technique, const Case& c)
+std::vector<ParameterValues> variants(const Technique& technique, const std::string& scene, glm::ivec2 size_px)
 {
     const bool walks_cells = std::ranges::count(technique.parameters, "start_level", &Parameter::name) > 0 &&
                              std::ranges::count(technique.parameters, "depth_pyramid.kind", &Parameter::name) > 0;
     if (!walks_cells) return {default_values(technique)};
     // Every kind of pyramid at its default levels; every level at the sizes with odd borders, which is where a level may go wrong.
     std::vector<std::pair<int, int>> levels{{0, 7}};
-    if (c.size_px == glm::ivec2(641, 363) || c.size_px == glm::ivec2(97, 1))
+    if (is_thorough(scene) && (size_px == odd || size_px == row))
         levels = {{0, 7}, {0, 0}, {0, 14}, {14, 14}, {5, 3}, {1, 5}};
     std::vector<ParameterValues> list;
     const size_t                 kinds = find_parameter(technique, "depth_pyramid.kind", "test").choices.size();
@@ -130,13 +165,16 @@ size_t most_by_chance(double share, size_t rays)
     return count;
 }
 
-/// Over all default views of this run, which have enough rays that chance matters little: by the same rays, and by rays of their own.
-Count all_same_rays, all_own_rays;
+/// What single and double precision decide otherwise: by the same rays, and by rays of their own.
+struct Rounding {
+    Count same_rays, own_rays;
+};
 
 /// What rounding does, in two parts. The walk: the same rays, walked in double precision. The rays: made and walked in double precision, which is
 /// the screen truth. Only rays may differ that pass within rounding of a corner or a slab's face.
+/// Adds to `all` what it counts in default views.
 void expect_rounding_only(const Picture& picture, const TraceSettings& settings, const TraceResult& truth,
-                          const TraceResult& walk)
+                          const TraceResult& walk, Rounding& all)
 {
     const ScreenWalk             exact_walk(picture.image, settings);
     const std::vector<ScreenRay> shader_rays = rays_of_the_shader(picture, settings);
@@ -169,10 +207,10 @@ void expect_rounding_only(const Picture& picture, const TraceSettings& settings,
     const double most = device().info.type == "Cpu" ? 1e-4 : 5e-4;
     for (const Count& count : {same_rays, own_rays})
         EXPECT_LE(count.disputed - (counts_ties ? 0 : count.ties), most_by_chance(most, count.rays));
-    for (auto [all, count] : {std::pair(&all_same_rays, same_rays), {&all_own_rays, own_rays}}) {
+    for (auto [sum, count] : {std::pair(&all.same_rays, same_rays), {&all.own_rays, own_rays}}) {
         if (!counts_ties) continue;
-        all->rays += count.rays;
-        all->disputed += count.disputed;
+        sum->rays += count.rays;
+        sum->disputed += count.disputed;
     }
     for (const auto& [what, count] : {std::pair("walk", same_rays), std::pair("rays_and_walk", own_rays)}) {
         testing::Test::RecordProperty(std::string(what) + "_disputed", static_cast<int>(count.disputed));
@@ -182,24 +220,13 @@ void expect_rounding_only(const Picture& picture, const TraceSettings& settings,
     }
 }
 
-class ExactTechniques : public testing::TestWithParam<Case> {
-protected:
-    /// About 17 of a million rays are decided by rounding at 640 x 360 and 35 at 1919 x 1079, on lavapipe, SwiftShader and an H100 alike.
-    static void TearDownTestSuite()
-    {
-        for (const Count& all : {all_same_rays, all_own_rays}) {
-            fmt::print("all default views: {} of {} rays differ from double precision\n", all.disputed, all.rays);
-            EXPECT_LE(all.disputed, most_by_chance(5e-5, all.rays));
-        }
-    }
-};
+class ExactTechniques : public testing::TestWithParam<Case> {};
 
-TEST_P(ExactTechniques, EqualThePixelWalkAndTheScreenTruth)
+void expect_exact(const std::string& scene, const Frame& frame, Rounding& rounding)
 {
-    const Case&         c       = GetParam();
-    const Picture       picture = make_picture(c.scene, c.view, c.size_px);
+    const Picture       picture = make_picture(scene, frame.view, frame.size_px);
     const TraceSettings settings{
-        .thickness_m = 0.1, .max_distance_m = 1e9, .dielectric_min_f0 = dielectric_min_f0_for(c)};
+        .thickness_m = 0.1, .max_distance_m = 1e9, .dielectric_min_f0 = dielectric_min_f0_for(frame)};
     const Technique&  dda   = technique("dda");
     const TraceResult walk  = trace(picture, dda, values_of(dda), settings);
     const TraceResult truth = screen_truth(picture.image, settings);
@@ -207,17 +234,26 @@ TEST_P(ExactTechniques, EqualThePixelWalkAndTheScreenTruth)
 
     for (const Technique& t : catalogue().techniques) {
         if (!t.exact || t.id == "dda") continue;
-        for (const ParameterValues& values : variants(t, c))
+        for (const ParameterValues& values : variants(t, scene, frame.size_px))
             EXPECT_EQ(count_differences(trace(picture, t, values, settings), walk, bit_equal_t, first), 0U)
                 << first << "\n"
-                << repeat_command(c.scene, c.view, c.size_px, t, values, settings);
+                << repeat_command(scene, frame.view, frame.size_px, t, values, settings);
     }
-    expect_rounding_only(picture, settings, truth, walk);
-    if (is_large(c) || !device().info.float64) return;
+    expect_rounding_only(picture, settings, truth, walk, rounding);
+    if (is_large(frame) || !device().info.float64) return;
     EXPECT_EQ(count_differences(trace(picture, dda, values_of(dda), settings, Precision::float64), truth,
                                 double_twins_t, first),
               0U)
         << "double twin: " << first;
+}
+
+TEST_P(ExactTechniques, EqualThePixelWalkAndTheScreenTruth)
+{
+    Rounding rounding;
+    for (const Frame& frame : frames_of(GetParam())) expect_exact(GetParam().scene, frame, rounding);
+    // About 17 of a million rays are decided by rounding at 640 x 360 and 35 at 1919 x 1079, on lavapipe, SwiftShader and an H100 alike.
+    for (const Count& all : {rounding.same_rays, rounding.own_rays})
+        EXPECT_LE(all.disputed, most_by_chance(5e-5, all.rays)) << all.rays << " rays of default views";
 }
 
 struct Held {
@@ -233,68 +269,72 @@ const Held every_model[] = {{"box", Behind::pass},           {"box", Behind::sto
                             {"plane_solid", Behind::hit, 4}, {"plane_infinite", Behind::stop},
                             {"sloped_slab", Behind::stop}};
 
-std::vector<Case> cases_of_models()
+std::vector<Frame> frames_for_models(const Case& c)
 {
-    std::vector<Case> cases;
-    for (const Case& c : all_cases()) {
-        if (c.size_px == glm::ivec2(641, 363)) cases.push_back({c.scene, c.view, {321, 181}});
-        if (c.size_px == glm::ivec2(97, 1)) cases.push_back(c);
-    }
-    for (const auto& [scene, views] : real_scenes) cases.push_back({scene, "default", {1919, 1079}});
-    return cases;
+    if (c.frames == Frames::small) return {{"default", row}};
+    if (c.frames == Frames::large) return {{"default", large}};
+    return in_every_view(c.scene, for_models);
 }
 
 class ExactTechniquesOnModels : public testing::TestWithParam<Case> {};
 
+void expect_exact(const std::string& scene, const Frame& frame, Picture& picture, const Held& held)
+{
+    const TraceSettings settings{.thickness_m       = 0.1,
+                                 .max_distance_m    = 1e9,
+                                 .behind            = held.behind,
+                                 .surface           = held.surface,
+                                 .layers            = held.layers,
+                                 .dielectric_min_f0 = dielectric_min_f0_for(frame)};
+    const Technique&    dda  = technique("dda");
+    const TraceResult   walk = trace(picture, dda, values_of(dda), settings);
+    if (static_cast<int>(picture.image.layers.size()) + 1 < held.layers)
+        picture.image = read_gbuffer(device(), *picture.gbuffer); // with the layers that the trace has drawn
+    const auto repeat = [&](const Technique& t) {
+        return repeat_command(scene, frame.view, frame.size_px, t, values_of(t), settings);
+    };
+    std::string first;
+    for (const Technique& t : catalogue().techniques) {
+        if (!t.exact || t.id == "dda") continue;
+        EXPECT_EQ(count_differences(trace(picture, t, values_of(t), settings), walk, bit_equal_t, first), 0U)
+            << first << "\n"
+            << repeat(t);
+    }
+    if (!has_screen_truth(held.surface)) return;
+    const TraceResult truth = screen_truth(picture.image, settings);
+    const auto        rays  = static_cast<size_t>(
+        std::ranges::count_if(truth.status, [](TraceStatus s) { return s != TraceStatus::not_traced; }));
+    const size_t near_ties = count_differences(walk, truth, any_t, first);
+    // Other views than the default one have ties at exact corners, see expect_rounding_only().
+    if (frame.view == "default") {
+        EXPECT_LE(near_ties, most_by_chance(2e-4, rays)) << first << "\n" << repeat(dda);
+    }
+    if (is_large(frame) || !device().info.float64) return;
+    EXPECT_EQ(count_differences(trace(picture, dda, values_of(dda), settings, Precision::float64), truth,
+                                double_twins_t, first),
+              0U)
+        << "double twin: " << first << "\n"
+        << repeat(dda);
+}
+
 TEST_P(ExactTechniquesOnModels, EqualThePixelWalkWhateverAPixelHolds)
 {
-    const Case& c       = GetParam();
-    Picture     picture = make_picture(c.scene, c.view, c.size_px);
-    for (const Held& held : every_model) {
-        if (held.layers > most_layers()) continue;
-        const bool large = is_large(c);
-        if (large && (held.surface != "plane_solid" || held.behind != Behind::stop)) continue;
-        const TraceSettings settings{.thickness_m       = 0.1,
-                                     .max_distance_m    = 1e9,
-                                     .behind            = held.behind,
-                                     .surface           = held.surface,
-                                     .layers            = held.layers,
-                                     .dielectric_min_f0 = dielectric_min_f0_for(c)};
-        const Technique&    dda  = technique("dda");
-        const TraceResult   walk = trace(picture, dda, values_of(dda), settings);
-        if (static_cast<int>(picture.image.layers.size()) + 1 < held.layers)
-            picture.image = read_gbuffer(device(), *picture.gbuffer); // with the layers that the trace has drawn
-        std::string first;
-        for (const Technique& t : catalogue().techniques) {
-            if (!t.exact || t.id == "dda") continue;
-            const ParameterValues values = values_of(t);
-            EXPECT_EQ(count_differences(trace(picture, t, values, settings), walk, bit_equal_t, first), 0U)
-                << first << "\n"
-                << repeat_command(c.scene, c.view, c.size_px, t, values, settings);
+    const Case& c = GetParam();
+    for (const Frame& frame : frames_for_models(c)) {
+        Picture picture = make_picture(c.scene, frame.view, frame.size_px);
+        for (const Held& held : every_model) {
+            const bool skipped = is_large(frame) && (held.surface != "plane_solid" || held.behind != Behind::stop);
+            if (held.layers <= most_layers() && !skipped) expect_exact(c.scene, frame, picture, held);
         }
-        if (!has_screen_truth(held.surface)) continue;
-        const TraceResult truth = screen_truth(picture.image, settings);
-        const auto        rays  = static_cast<size_t>(
-            std::ranges::count_if(truth.status, [](TraceStatus s) { return s != TraceStatus::not_traced; }));
-        const size_t near_ties = count_differences(walk, truth, any_t, first);
-        // Other views than the default one have ties at exact corners, see expect_rounding_only().
-        if (c.view == "default") {
-            EXPECT_LE(near_ties, most_by_chance(2e-4, rays))
-                << first << "\n"
-                << repeat_command(c.scene, c.view, c.size_px, dda, values_of(dda), settings);
-        }
-        if (large || !device().info.float64) continue;
-        EXPECT_EQ(count_differences(trace(picture, dda, values_of(dda), settings, Precision::float64), truth,
-                                    double_twins_t, first),
-                  0U)
-            << "double twin: " << first << "\n"
-            << repeat_command(c.scene, c.view, c.size_px, dda, values_of(dda), settings);
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, ExactTechniquesOnModels, testing::ValuesIn(cases_of_models()), case_name);
+INSTANTIATE_TEST_SUITE_P(Scenes, ExactTechniquesOnModels, testing::ValuesIn(cases_where([](const std::string& scene) {
+                             return real_scenes.contains(scene);
+                         })),
+                         case_name);
 
-INSTANTIATE_TEST_SUITE_P(Scenes, ExactTechniques, testing::ValuesIn(all_cases()), case_name);
+INSTANTIATE_TEST_SUITE_P(Scenes, ExactTechniques, testing::ValuesIn(cases_where(is_thorough)), case_name);
 
 // A pole in the sky, and rays across the picture that keep their distance: they meet it up to its thickness before and behind it. Six metres reach
 // behind the eye.

@@ -1,6 +1,7 @@
 // Runs the GPU tests; a test during which the validation layer said anything has failed.
 #include "core/files.h"
 #include "gpu/device.h"
+#include "repeat_command.h"
 
 #include <cstdlib>
 
@@ -27,6 +28,7 @@ int main(int argc, char** argv)
     auto& listeners = testing::UnitTest::GetInstance()->listeners();
     auto* printer   = listeners.Release(listeners.default_result_printer());
     listeners.Append(printer);
+    ssrlab::test::print_repeat_commands(argv[0]);
     listeners.Append(new FailOnValidationMessages);
     return RUN_ALL_TESTS();
 }

@@ -40,22 +40,23 @@ class PlannedFrames : public testing::TestWithParam<std::string> {};
 
 TEST_P(PlannedFrames, AreBitIdenticalToUnculledOnes)
 {
-    for (const glm::ivec2& size_px : {glm::ivec2(161, 91), glm::ivec2(320, 180)}) {
-        const Picture picture = make_picture(GetParam(), "default", size_px);
-        for (const auto& [id, gloss] : {std::pair("hiz", Gloss::blur),
-                                        {"linear", Gloss::blur},
-                                        {"hiz", Gloss::cone},
-                                        {"hiz", Gloss::stochastic}}) {
-            const Shown planned = show(picture, id, passes_with({chosen(gloss)})),
-                        all     = show(picture, id, passes_with({chosen(gloss), {"skip_unneeded_passes", 0}}));
-            EXPECT_GE(all.ran.size(), planned.ran.size());
-            EXPECT_EQ(different(planned.pixels, all.pixels), 0U)
-                << "ssrlab plan " << GetParam() << " -t " << id << " --size " << size_px.x << "x" << size_px.y
-                << " -p thickness_m=0.1 -p max_distance_m=20 -p gloss="
-                << (gloss == Gloss::cone   ? "cone"
-                    : gloss == Gloss::blur ? "blur"
-                                           : "stochastic");
-        }
+    struct Shot {
+        glm::ivec2  size_px;
+        const char* technique;
+        Gloss       gloss;
+        const char* gloss_name;
+    };
+    for (const Shot& shot : {Shot{{161, 91}, "hiz", Gloss::blur, "blur"},
+                             {{161, 91}, "hiz", Gloss::stochastic, "stochastic"},
+                             {{320, 180}, "linear", Gloss::blur, "blur"},
+                             {{320, 180}, "hiz", Gloss::cone, "cone"}}) {
+        const Picture picture = make_picture(GetParam(), "default", shot.size_px);
+        const Shown   planned = show(picture, shot.technique, passes_with({chosen(shot.gloss)})),
+                    all = show(picture, shot.technique, passes_with({chosen(shot.gloss), {"skip_unneeded_passes", 0}}));
+        EXPECT_GE(all.ran.size(), planned.ran.size());
+        EXPECT_EQ(different(planned.pixels, all.pixels), 0U)
+            << "ssrlab plan " << GetParam() << " -t " << shot.technique << " --size " << shot.size_px.x << "x"
+            << shot.size_px.y << " -p thickness_m=0.1 -p max_distance_m=20 -p gloss=" << shot.gloss_name;
     }
 }
 

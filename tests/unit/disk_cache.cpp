@@ -2,6 +2,7 @@
 #include "gpu/disk_cache.h"
 
 #include "core/files.h"
+#include "environment_variable.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -16,9 +17,8 @@ namespace fs = std::filesystem;
 
 class DiskCache : public testing::Test {
 protected:
-    DiskCache() { ::setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1); }
-
-    TempFolder folder_;
+    TempFolder                folder_;
+    test::EnvironmentVariable cache_{"XDG_CACHE_HOME", folder_.path().string()};
 };
 
 TEST_F(DiskCache, ReturnsWhatWasKept)
@@ -55,11 +55,11 @@ TEST_F(DiskCache, IgnoresFilesUnderAnothersName)
 
 TEST_F(DiskCache, DoesWithoutAFolder)
 {
-    ::setenv("XDG_CACHE_HOME", "/proc", 1);
+    const test::EnvironmentVariable unwritable("XDG_CACHE_HOME", "/proc");
     write_cached("thing", "bytes");
     EXPECT_EQ(read_cached("thing"), std::nullopt);
-    ::setenv("XDG_CACHE_HOME", "relative", 1);
-    ::unsetenv("HOME");
+    const test::EnvironmentVariable relative("XDG_CACHE_HOME", "relative");
+    const test::EnvironmentVariable home("HOME", std::nullopt);
     write_cached("thing", "bytes");
     EXPECT_EQ(read_cached("thing"), std::nullopt);
 }

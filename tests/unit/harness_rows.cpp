@@ -1,6 +1,7 @@
 // What a row says about a run, from results whose figures are known.
 #include "compare/validate_result.h"
 #include "core/error.h"
+#include "environment_variable.h"
 #include "harness/columns.h"
 #include "harness/measured_run.h"
 #include "harness/passes.h"
@@ -446,11 +447,10 @@ TEST(Rows, AFrameWithoutTrianglesIsJudgedWhereItReflects)
 
 TEST(Rows, TheTruthCacheLiesBesideTheResults)
 {
-    ::unsetenv("SSRLAB_CACHE");
+    const test::EnvironmentVariable none("SSRLAB_CACHE", std::nullopt);
     EXPECT_EQ(truth_cache_dir("/a/results/steps"), "/a/results/.truth_cache");
-    ::setenv("SSRLAB_CACHE", "/elsewhere", 1);
+    const test::EnvironmentVariable elsewhere("SSRLAB_CACHE", "/elsewhere");
     EXPECT_EQ(truth_cache_dir("/a/results/steps"), "/elsewhere");
-    ::unsetenv("SSRLAB_CACHE");
 }
 
 // What two cores took for a frame of thin_yard (results/reference/lavapipe/resolution), within a factor of two.

@@ -1,3 +1,4 @@
+#include "environment_variable.h"
 #include "scene_files.h"
 
 #include "core/files.h"
@@ -39,18 +40,6 @@ Kd 0.9 0.7 0.1
 Ks 0.5 0.5 0.5
 Ns 30
 )";
-
-/// Sets a variable for one test.
-class Environment {
-public:
-    Environment(const char* name, const std::string& value) : name_(name) { ::setenv(name, value.c_str(), 1); }
-    ~Environment() { ::unsetenv(name_); }
-    Environment(const Environment&)            = delete;
-    Environment& operator=(const Environment&) = delete;
-
-private:
-    const char* name_;
-};
 
 TempFolder& folder_with_pyramid()
 {
@@ -262,9 +251,9 @@ TEST(SceneRecipe, DataAndRecipesAreFoundThroughTheEnvironment)
     folder.write("mine/my_scene.toml",
                  "summary = 'Mine'\n[[part]]\nfile = 'package:pkg/usr/share/ssrlab-test/pyramid.obj'\n"
                  "[[part]]\nfile = 'sweethome3d:stool'\nposition = [5, 0, 0]\n");
-    const Environment data("SSRLAB_DATA", (folder / "data").string());
-    const Environment scenes("SSRLAB_SCENES", "/nowhere:" + (folder / "mine").string());
-    const Scene       scene = load_scene("my_scene");
+    const test::EnvironmentVariable data("SSRLAB_DATA", (folder / "data").string());
+    const test::EnvironmentVariable scenes("SSRLAB_SCENES", "/nowhere:" + (folder / "mine").string());
+    const Scene                     scene = load_scene("my_scene");
     EXPECT_EQ(scene.name, "my_scene");
     EXPECT_NEAR(scene.draws.back().bounds_max_ws.y, 0.4, 1e-6) << "furniture is in centimetres";
     bool listed = false;
