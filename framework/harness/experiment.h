@@ -20,7 +20,7 @@ struct MeasureSettings {
     int      min_repeats     = 9;   // below 6 there is no 95 % interval
     int      max_repeats     = 100;
     int    frames_per_submit = 0;  // one after another, of which the last is timed; 0: one on a CPU, more on a fast GPU
-    double time_limit_s      = 60; // a run fails whose preparation or frame takes longer on the device
+    double time_limit_s      = 60; // a run fails whose preparation or frame takes longer; waiting for a processor does not count
     double budget_s          = 1;  // a run has as many repeats as its pilot frame says fit into this
     bool   truth             = true; // compare with the truths
     bool   image_errors = true; // also compare the pictures (SSIM, FLIP …), which takes longer than comparing rays

@@ -15,6 +15,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
 #include <new>
 #include <sstream>
 #include <thread>
@@ -72,11 +75,55 @@ struct End {
     bool lost   = false; // a run, which the state names
 };
 
+/// Nanoseconds that each thread of a process has waited for a processor while others had it. Empty where the kernel does not tell.
+std::map<std::string, int64_t> waits_ns(pid_t process)
+{
+    std::map<std::string, int64_t> waits;
+    std::error_code                gone;
+    const std::filesystem::path    threads = fmt::format("/proc/{}/task", process);
+    for (const auto& thread : std::filesystem::directory_iterator(threads, gone)) {
+        std::ifstream file(thread.path() / "schedstat");
+        int64_t       ran_ns = 0, waited_ns = 0;
+        if (file >> ran_ns >> waited_ns) waits.emplace(thread.path().filename(), waited_ns);
+    }
+    return waits;
+}
+
+/// Postpones a run's deadline by the time that its process had to wait for others, so that a busy machine ends no run.
+class Patience {
+public:
+    explicit Patience(pid_t child) : child_(child), waits_ns_(waits_ns(child)) {}
+
+    void postpone(std::atomic<int64_t>& deadline_ms)
+    {
+        int64_t longest_ns = 0;
+        auto    now        = waits_ns(child_);
+        for (const auto& [thread, waited_ns] : now) {
+            const auto before = waits_ns_.find(thread);
+            longest_ns        = std::max(longest_ns, waited_ns - (before == waits_ns_.end() ? 0 : before->second));
+        }
+        waits_ns_    = std::move(now);
+        int64_t then = deadline_ms;
+        // Where the deadline has changed meanwhile, another run is under way, or none.
+        if (then != 0) deadline_ms.compare_exchange_strong(then, then + longest_ns / 1'000'000);
+        checked_ms_ = now_ms();
+    }
+    bool is_due() const { return now_ms() > checked_ms_ + 1000; }
+
+private:
+    pid_t                          child_;
+    std::map<std::string, int64_t> waits_ns_;
+    int64_t                        checked_ms_ = now_ms();
+};
+
+bool is_past(int64_t deadline_ms) { return deadline_ms != 0 && now_ms() > deadline_ms; }
+
 /// Passes on the first signal that asks to stop, and ends the child at its deadline.
 End wait_for(pid_t child, SweepState& state)
 {
-    End  end;
-    bool passed_on = false;
+    End      end;
+    Patience patience(child);
+    bool     passed_on = false;
     for (;;) {
         const pid_t ended = ::waitpid(child, &end.status, WNOHANG);
         if (ended == child) break;
@@ -85,8 +132,8 @@ End wait_for(pid_t child, SweepState& state)
             passed_on = true;
             ::kill(child, stop_requested());
         }
-        const int64_t deadline_ms = state.deadline_ms;
-        if (deadline_ms != 0 && now_ms() > deadline_ms && !end.lost) {
+        if (patience.is_due() || is_past(state.deadline_ms)) patience.postpone(state.deadline_ms);
+        if (is_past(state.deadline_ms) && !end.lost) {
             end.lost = true;
             lose(state, fmt::format("did not end within {} s (time_limit_s)", state.limit_s));
             ::kill(child, SIGKILL);

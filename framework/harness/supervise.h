@@ -26,7 +26,8 @@ struct SweepState {
     uint64_t written = 0, failed = 0, messages = 0; // rows, and messages of the validation layer, by all children
 };
 
-/// A run is under way as long as this lives. limit_s: how long that may be; 0: without a limit.
+/// A run is under way as long as this lives. limit_s: how long that may be, not counting the time in which its threads
+/// wait for a processor that other programs use; 0: without a limit.
 class UnderWay {
 public:
     UnderWay(SweepState& state, const std::string& run_id, double limit_s, bool whole_picture = false);

@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <ctime>
+#include <sched.h>
+#include <sys/prctl.h>
 #include <thread>
 #include <unistd.h>
 
@@ -70,6 +74,47 @@ TEST(Child, DISABLED_RunEndsInTime)
     ::_exit(4);
 }
 
+void pin_to_first_processor()
+{
+    cpu_set_t mine, first;
+    ::sched_getaffinity(0, sizeof(mine), &mine);
+    CPU_ZERO(&first);
+    for (size_t i = 0; i < CPU_SETSIZE; ++i)
+        if (CPU_ISSET(i, &mine)) {
+            CPU_SET(i, &first);
+            break;
+        }
+    ::sched_setaffinity(0, sizeof(first), &first);
+}
+
+double processor_s()
+{
+    timespec spent{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &spent);
+    return static_cast<double>(spent.tv_sec) + 1e-9 * static_cast<double>(spent.tv_nsec);
+}
+
+/// Five other processes want its processor: 0.3 s of work take some 2 s.
+TEST(Child, DISABLED_RunWaitsForOthers)
+{
+    SweepState& state = state_in_child();
+    pin_to_first_processor();
+    std::array<pid_t, 5> others{};
+    for (pid_t& other : others) {
+        other = ::fork();
+        if (other == 0) ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+        while (other == 0) {}
+    }
+    {
+        const UnderWay under_way(state, "r1", 0.8);
+        const auto     begun = std::chrono::steady_clock::now();
+        while (processor_s() < 0.3) {}
+        if (std::chrono::steady_clock::now() - begun < std::chrono::seconds(1)) ::_exit(3); // nobody was in its way
+    }
+    for (const pid_t other : others) ::kill(other, SIGKILL);
+    ::_exit(4);
+}
+
 TEST(Child, DISABLED_CrashesOutsideOfARun)
 {
     {
@@ -91,6 +136,7 @@ TEST(Supervise, GoesOnAfterARunThatEndsTheProcess) { EXPECT_EQ(run_child("RunCra
 TEST(Supervise, GoesOnAfterAPictureThatEndsTheProcess) { EXPECT_EQ(run_child("PictureCrashes"), 1); }
 TEST(Supervise, EndsARunThatTakesTooLong) { EXPECT_EQ(run_child("RunHangs"), 1); }
 TEST(Supervise, LeavesWhatIsNotUnderWayAlone) { EXPECT_EQ(run_child("RunEndsInTime"), 4); }
+TEST(Supervise, ABusyMachineEndsNoRun) { EXPECT_EQ(run_child("RunWaitsForOthers"), 4); }
 TEST(Supervise, ADeathOutsideOfEveryRunIsTheSweeps) { EXPECT_EQ(run_child("CrashesOutsideOfARun"), 128 + SIGKILL); }
 TEST(Supervise, PassesOnWhatAsksToStop) { EXPECT_EQ(run_child("WaitsForASignal"), SIGTERM); }
 
