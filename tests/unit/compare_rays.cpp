@@ -380,6 +380,7 @@ TEST(Measures, TableIsCompleteAndUnique)
     const Reference reference(reference_image(test.truth));
     all.merge(compare_images(reference_image(test.truth), reference, test.truth));
     all.merge(compare_pictures(reference_image(test.truth), reference, test.truth, test.gbuffer));
+    all.merge(count_not_finite(reference_image(test.truth), nullptr));
     set_hit(test.tested, 0, 12.5); // found, so that its vector counts
     test.truth.cls[0]                 = TruthClass::visible;
     const size_t                 rays = test.tested.status.size();
