@@ -60,13 +60,13 @@ INSTANTIATE_TEST_SUITE_P(
                     Furnace{float(Reflectance::ggx), 0, 0.7F}, Furnace{float(Reflectance::ggx), 0.5F, 0.3F},
                     Furnace{float(Reflectance::ggx), 1, 0}, Furnace{float(Reflectance::ggx), 1, 0.7F}));
 
-Scene glowing_plane(float metallic)
+Scene glowing_plane(float metallic, double half_m = 5)
 {
     Material material = make_material("neon", {1, 1, 1}, metallic, 0.1F);
     material.emissive = {4, 0.5F, 70000};
     Model model;
     model.materials.push_back(material);
-    model.meshes.push_back(make_quad({-5, 0, 5}, {10, 0, 0}, {0, 0, -10}));
+    model.meshes.push_back(make_quad({-half_m, 0, half_m}, {2 * half_m, 0, 0}, {0, 0, -2 * half_m}));
     model.ambient = glm::vec3(0);
     ModelLight lamp;
     lamp.light.type         = LightType::point;
@@ -100,7 +100,7 @@ TEST(GlowingMetal, IsInTheGBufferWithWhatItEmits)
 TEST(LampAtTheCamera, LightsEveryPixelFinitely)
 {
     for (const glm::dvec3& position_ws : {glm::dvec3(0, 2, 3), glm::dvec3(0, 2, 3.0001), glm::dvec3(0, 5547, 8321)}) {
-        Scene scene                 = glowing_plane(0);
+        Scene scene                 = glowing_plane(0, 2 * glm::length(position_ws));
         scene.lights[0].position_ws = glm::vec3(position_ws);
         scene.lights[0].intensity   = glm::vec3(static_cast<float>(30 * glm::dot(position_ws, position_ws)));
         const Picture picture       = make_picture(scene, camera_at(position_ws), {160, 90});

@@ -42,13 +42,6 @@ TEST(RecordedRays, AnswersAreThoseOfTheCountedPipelineForEveryTechnique)
     }
 }
 
-/// The result reads its pixel once more.
-std::vector<RayVisit> without_result(RecordedRay recorded)
-{
-    if (recorded.outcome.status == TraceStatus::hit) recorded.visits.pop_back();
-    return recorded.visits;
-}
-
 TEST(RecordedRays, VisitsAreTheWalkAndThePyramidSkipsPartsOfIt)
 {
     const Rays rays = rays_of("builtin:stairs");
@@ -59,7 +52,7 @@ TEST(RecordedRays, VisitsAreTheWalkAndThePyramidSkipsPartsOfIt)
                 device(), lab_on_picture(rays.picture, technique(id), values_of(technique(id)), rays.settings), ray);
         };
         const RecordedRay           walked = record("dda"), climbed = record("hiz");
-        const std::vector<RayVisit> pixels = without_result(walked), cells = without_result(climbed);
+        const std::vector<RayVisit>&pixels = walked.visits, &cells = climbed.visits;
         ASSERT_EQ(pixels.size(), walked.outcome.steps);
         ASSERT_EQ(cells.size(), climbed.outcome.steps);
         glm::ivec2 before(glm::floor(glm::dvec2(ray.origin_px_depth)));

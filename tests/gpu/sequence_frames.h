@@ -32,7 +32,7 @@ inline FrameSettings sequence_settings(const ParameterValues& changed)
         if (name == "reprojection")
             settings.reprojection = catalogue().reprojections.at(static_cast<size_t>(value)).id;
         else
-            settings.passes.at(name) = value;
+            settings.passes.insert_or_assign(name, value); // or of a strategy's own
     return settings;
 }
 
