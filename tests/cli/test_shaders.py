@@ -69,7 +69,7 @@ class Test(Case):
         self.assertRegex(said["commit"], r"^[0-9a-f]{40}( with changes)?$|^not known$")
 
     def test_a_technique_from_outside(self):
-        folder = os.path.join(SOURCE, "tests", "techniques")
+        folder = os.path.join(SOURCE, "techniques", "rivals")
         pipelines = self.compiled("unity_hiz", "--techniques", folder, "--chip", "navi21")
         self.assert_plausible(self.trace_of(pipelines, "unity_hiz"))
 
