@@ -263,7 +263,7 @@ TEST(RayReport, SaysWhatTheRayMet)
     const TechniqueReport &dda = report.techniques.at(0), &hiz = report.techniques.at(1);
     EXPECT_EQ(dda.verdict, "the hit contract's answer");
     ASSERT_EQ(dda.visits.size(), 15U);
-    EXPECT_EQ(dda.visit_count, 16U) << "the result reads its pixel again";
+    EXPECT_EQ(dda.visit_count, 15U);
     for (size_t i = 0; i < 15; ++i) EXPECT_STREQ(dda.visits[i].then, i < 14 ? "passes" : "hit") << i;
     EXPECT_THAT(dda.ending, HasSubstr("hit at pixel (20, 10), t 0.290000, 14.500 px on screen, 4.5 m from the camera"));
     bool opened = false;
