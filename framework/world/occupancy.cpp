@@ -1,0 +1,113 @@
+#include "world/occupancy.h"
+
+#include "core/pixel_index.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ssrlab {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double slack    = 1e-6; // of a cell: wider than any rounding of a place in the grid
+
+size_t cell_index(const Occupancy& grid, glm::ivec3 cell)
+{
+    return (size_t(cell.z) * size_t(grid.cells.y) + size_t(cell.y)) * size_t(grid.cells.x) + size_t(cell.x);
+}
+
+bool all_finite(glm::dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// In units of cells.
+void mark(Occupancy& grid, const glm::dvec3 (&corners)[3])
+{
+    const glm::dvec3 low  = glm::min(glm::min(corners[0], corners[1]), corners[2]) - slack;
+    const glm::dvec3 high = glm::max(glm::max(corners[0], corners[1]), corners[2]) + slack;
+    const glm::ivec3 last = grid.cells - 1, first = glm::clamp(glm::ivec3(glm::floor(low)), glm::ivec3(0), last),
+                     end    = glm::clamp(glm::ivec3(glm::floor(high)), glm::ivec3(0), last);
+    const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const double     reach  = (0.5 + slack) * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
+    for (int z = first.z; z <= end.z; ++z)
+        for (int y = first.y; y <= end.y; ++y)
+            for (int x = first.x; x <= end.x; ++x) {
+                const glm::dvec3 centre = glm::dvec3(x, y, z) + 0.5;
+                if (std::abs(glm::dot(normal, centre - corners[0])) <= reach)
+                    grid.occupied[cell_index(grid, {x, y, z})] = 1;
+            }
+}
+
+} // namespace
+
+Occupancy make_occupancy(const Scene& scene, int side)
+{
+    Occupancy  grid;
+    glm::dvec3 low(infinity), high(-infinity);
+    const auto corner = [&](const Draw& draw, uint32_t i) {
+        return glm::dvec3(scene.vertices[scene.indices[draw.first_index + i]].position_ws);
+    };
+    for (const Draw& draw : scene.draws)
+        for (uint32_t i = 0; i < draw.index_count; ++i) {
+            if (!all_finite(corner(draw, i))) continue;
+            low  = glm::min(low, corner(draw, i));
+            high = glm::max(high, corner(draw, i));
+        }
+    if (!(low.x <= high.x)) return grid;
+    const glm::dvec3 extent = glm::max(high - low, glm::dvec3(1e-3 * glm::length(high - low) + 1e-9));
+    grid.cells              = glm::ivec3(side);
+    grid.cell_m             = extent * (1 + 1e-3) / double(side);
+    grid.low_ws             = (low + high) / 2.0 - grid.cell_m * (double(side) / 2);
+    grid.occupied.assign(size_t(side) * size_t(side) * size_t(side), 0);
+    for (const Draw& draw : scene.draws)
+        for (uint32_t i = 0; i + 2 < draw.index_count; i += 3) {
+            glm::dvec3 corners[3];
+            for (uint32_t k = 0; k < 3; ++k) corners[k] = (corner(draw, i + k) - grid.low_ws) / grid.cell_m;
+            if (all_finite(corners[0]) && all_finite(corners[1]) && all_finite(corners[2])) mark(grid, corners);
+        }
+    return grid;
+}
+
+double first_occupied(const Occupancy& grid, glm::dvec3 origin_ws, glm::dvec3 direction_ws, double from_m, double to_m)
+{
+    if (grid.cells.x == 0) return infinity;
+    const glm::dvec3 origin = (origin_ws - grid.low_ws) / grid.cell_m, rate = direction_ws / grid.cell_m;
+    double           t = from_m, t_end = to_m;
+    for (int axis : {0, 1, 2}) {
+        const double size = grid.cells[axis];
+        if (rate[axis] == 0) {
+            if (origin[axis] < 0 || origin[axis] > size) return infinity;
+            continue;
+        }
+        const double a = -origin[axis] / rate[axis], b = (size - origin[axis]) / rate[axis];
+        t     = std::max(t, std::min(a, b));
+        t_end = std::min(t_end, std::max(a, b));
+    }
+    if (!(t <= t_end)) return infinity;
+    // From the cell of the first point on, across one border after another; the cells beside a point on a border hold
+    // the slack.
+    glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(origin + t * rate)), glm::ivec3(0), grid.cells - 1);
+    while (true) {
+        if (grid.occupied[cell_index(grid, cell)] != 0) return t;
+        int    next_axis = 0;
+        double next_t    = infinity;
+        for (int axis : {0, 1, 2}) {
+            if (rate[axis] == 0) continue;
+            const double border = (double(cell[axis] + (rate[axis] > 0 ? 1 : 0)) - origin[axis]) / rate[axis];
+            if (border < next_t) {
+                next_t    = border;
+                next_axis = axis;
+            }
+        }
+        if (!(next_t <= t_end)) return infinity;
+        t = std::max(t, next_t);
+        cell[next_axis] += rate[next_axis] > 0 ? 1 : -1;
+        if (cell[next_axis] < 0 || cell[next_axis] >= grid.cells[next_axis]) return infinity;
+    }
+}
+
+bool may_meet(const Occupancy& grid, glm::dvec3 origin_ws, glm::dvec3 direction_ws, double from_m, double to_m)
+{
+    return first_occupied(grid, origin_ws, direction_ws, from_m, to_m) < infinity;
+}
+
+} // namespace ssrlab

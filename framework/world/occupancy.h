@@ -1,0 +1,27 @@
+// A coarse grid of the cells that hold geometry: a ray through empty cells meets nothing.
+#pragma once
+
+#include "scene/scene.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace ssrlab {
+
+struct Occupancy {
+    glm::dvec3           low_ws{0}; // of the grid, a little outside of the scene
+    glm::dvec3           cell_m{1};
+    glm::ivec3           cells{0}; // along each axis; 0: the scene has no triangles
+    std::vector<uint8_t> occupied; // x fastest, then y
+};
+
+/// `side` cells along each axis. Conservative: a cell is empty only if no triangle touches it.
+Occupancy make_occupancy(const Scene& scene, int side = 64);
+
+/// May a ray meet geometry between two distances along a direction? Never false where it does. to_m may be +inf.
+bool may_meet(const Occupancy& grid, glm::dvec3 origin_ws, glm::dvec3 direction_ws, double from_m, double to_m);
+
+/// Where a ray first enters a cell that holds geometry, at or behind from_m; +inf: nowhere before to_m.
+double first_occupied(const Occupancy& grid, glm::dvec3 origin_ws, glm::dvec3 direction_ws, double from_m, double to_m);
+
+} // namespace ssrlab

@@ -1,0 +1,139 @@
+#include "world/world.h"
+
+#include "shared.h"
+
+namespace ssrlab {
+namespace {
+
+/// shaders/world/materials.glsl, scalar layout.
+struct MaterialBlock {
+    glm::vec4  base_colour;
+    glm::vec3  emissive;
+    float      metallic;
+    float      roughness;
+    float      dielectric_f0;
+    float      alpha_cutoff;
+    float      normal_scale;
+    glm::ivec4 texture; // base colour, metallic-roughness, normal, emissive; -1: none
+    glm::ivec4 uv_set;
+    glm::mat3  uv_transform[4];
+};
+static_assert(sizeof(MaterialBlock) == 224);
+
+struct TextureBlock {
+    glm::ivec2 size_px;
+    uint32_t   first; // texel
+    uint32_t   flags; // wrap u, wrap v: two bits each; nearest; sRGB
+};
+
+MaterialBlock to_block(const Material& material)
+{
+    MaterialBlock     block{material.base_colour,
+                        material.emissive,
+                        material.metallic,
+                        material.roughness,
+                        material.dielectric_f0,
+                        material.alpha_mask ? material.alpha_cutoff : -1.0F,
+                        material.normal_scale,
+                        glm::ivec4(-1),
+                        {},
+                        {}};
+    const TextureUse* uses[] = {&material.base_colour_texture, &material.metallic_roughness_texture,
+                                &material.normal_texture, &material.emissive_texture};
+    for (int i = 0; i < 4; ++i) {
+        block.texture[i]      = uses[i]->texture;
+        block.uv_set[i]       = uses[i]->uv_set;
+        block.uv_transform[i] = uses[i]->uv_transform;
+    }
+    return block;
+}
+
+void upload_textures(Gpu& gpu, const Scene& scene, World& world)
+{
+    std::vector<TextureBlock> blocks;
+    std::vector<uint8_t>      texels;
+    for (const Texture& texture : scene.textures) {
+        blocks.push_back({texture.rgba.empty() ? glm::ivec2(0) : texture.size_px,
+                          static_cast<uint32_t>(texels.size() / 4),
+                          uint32_t(texture.wrap_u) | uint32_t(texture.wrap_v) << 2U | uint32_t(texture.nearest) << 4U |
+                              uint32_t(texture.srgb) << 5U});
+        texels.insert(texels.end(), texture.rgba.begin(), texture.rgba.end());
+    }
+    world.textures = make_buffer_with<TextureBlock>(gpu, blocks);
+    world.texels   = make_buffer_with<uint8_t>(gpu, texels);
+    world.bytes += blocks.size() * sizeof(TextureBlock) + texels.size();
+}
+
+template <typename T> Buffer make_texels(Gpu& gpu, const std::vector<T>& values)
+{
+    Buffer buffer =
+        make_texel_buffer(gpu, std::max<uint64_t>(values.size() * sizeof(T), 16), vk::Format::eR32G32B32A32Uint);
+    if (!values.empty()) upload(gpu, buffer, values.data(), values.size() * sizeof(T));
+    return buffer;
+}
+
+} // namespace
+
+glm::uvec3 groups_for(size_t rays)
+{
+    const auto groups = static_cast<uint32_t>((rays + RAYS_PER_GROUP - 1) / RAYS_PER_GROUP);
+    return {std::min<uint32_t>(groups, LAUNCH_ROW_GROUPS), (groups + LAUNCH_ROW_GROUPS - 1) / LAUNCH_ROW_GROUPS, 1};
+}
+
+Bindings material_bindings(const World& world)
+{
+    return {{"Triangles", world.triangles}, {"Vertices", world.vertices}, {"Indices", world.indices},
+            {"Materials", world.materials}, {"Textures", world.textures}, {"Texels", world.texels}};
+}
+
+WorldPtr upload_world(Gpu& gpu, const Scene& scene)
+{
+    auto world       = std::make_shared<World>();
+    world->tree      = build_triangle_tree(scene);
+    world->nodes     = make_texels(gpu, world->tree.nodes);
+    world->triangles = make_texels(gpu, world->tree.triangles);
+    world->vertices  = make_buffer_with<Vertex>(gpu, scene.vertices);
+    world->indices   = make_buffer_with<uint32_t>(gpu, scene.indices);
+    std::vector<MaterialBlock> blocks;
+    for (const Material& material : scene.materials) blocks.push_back(to_block(material));
+    world->materials = make_buffer_with<MaterialBlock>(gpu, blocks);
+    world->bytes = world->tree.nodes.size() * sizeof(TreeNode) + world->tree.triangles.size() * sizeof(TreeTriangle) +
+                   scene.vertices.size() * sizeof(Vertex) + scene.indices.size() * sizeof(uint32_t) +
+                   blocks.size() * sizeof(MaterialBlock);
+    upload_textures(gpu, scene, *world);
+    return world;
+}
+
+WorldTrace trace_world(Gpu& gpu, const World& world, std::span<const WorldRay> rays)
+{
+    WorldTrace trace;
+    trace.hits.resize(rays.size());
+    if (rays.empty() || world.tree.nodes.empty()) return trace;
+    const Buffer listed   = make_buffer_with<WorldRay>(gpu, rays);
+    const Buffer hits     = make_buffer(gpu, rays.size() * sizeof(WorldHit));
+    const Buffer visits   = make_buffer(gpu, rays.size() * sizeof(uint32_t));
+    Bindings     bindings = material_bindings(world);
+    bindings.insert({{"Nodes", world.nodes}, {"WorldRays", listed}, {"WorldHits", hits}, {"NodeVisits", visits}});
+    const Timestamps timestamps = make_timestamps(gpu, 2);
+    const auto       walk       = [&](const std::map<std::string, std::string>& defines) {
+        const Shader      shader = compile_shader(gpu, {.file = "world/walk.comp", .defines = defines});
+        const ComputePass pass   = make_compute_pass(gpu, shader, bindings, {}, sizeof(uint32_t));
+        submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+            barrier(commands);
+            push(commands, pass, static_cast<uint32_t>(rays.size()));
+            write_timestamp(commands, timestamps, 0);
+            dispatch(commands, pass, groups_for(rays.size()));
+            barrier(commands);
+            write_timestamp(commands, timestamps, 1);
+        });
+    };
+    walk({{"COUNT_WORK", "1"}});
+    for (const uint32_t of_ray : download_as<uint32_t>(gpu, visits, rays.size())) trace.node_visits += of_ray;
+    walk({}); // a driver may compile a pipeline when it first runs
+    walk({});
+    trace.ms   = read_intervals_ms(gpu, timestamps)[0];
+    trace.hits = download_as<WorldHit>(gpu, hits, rays.size());
+    return trace;
+}
+
+} // namespace ssrlab

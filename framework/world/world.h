@@ -1,0 +1,54 @@
+// The scene's triangles on the device: any rays in, the first triangle that each meets out. Both sides of a triangle
+// stop a ray; alpha masks are looked up at the textures' finest level.
+#pragma once
+
+#include "gpu/compute.h"
+#include "world/triangle_tree.h"
+
+#include <memory>
+#include <span>
+
+namespace ssrlab {
+
+/// From t_min to t_max along the direction, which need not be of unit length. shaders/world/rays.glsl
+struct WorldRay {
+    glm::vec3 origin_ws{0};
+    float     t_min = 0;
+    glm::vec3 direction_ws{0};
+    float     t_max = 0; // finite
+};
+
+inline constexpr uint32_t no_triangle = 0xFFFFFFFFU, walk_unfinished = 0xFFFFFFFEU;
+
+struct WorldHit {
+    float     t        = 0;           // undefined unless a triangle was met
+    uint32_t  triangle = no_triangle; // index into TriangleTree::triangles, or one of the two above
+    glm::vec2 barycentric{0};         // weights of the second and third corner
+};
+
+struct World {
+    TriangleTree tree;
+    Buffer       nodes, triangles, vertices, indices, materials, textures, texels;
+    uint64_t     bytes = 0; // of these buffers
+};
+using WorldPtr = std::shared_ptr<const World>;
+
+/// Builds the tree and uploads it with the scene's vertices, materials and textures. Throws Failure as
+/// build_triangle_tree().
+WorldPtr upload_world(Gpu& gpu, const Scene& scene);
+
+/// Workgroups of a shader with RAYS_PER_GROUP rays in each.
+glm::uvec3 groups_for(size_t rays);
+/// What shaders/world/materials.glsl reads, and the triangles.
+Bindings material_bindings(const World& world);
+
+struct WorldTrace {
+    std::vector<WorldHit> hits;            // of each ray
+    double                ms          = 0; // of the timed pipeline
+    uint64_t              node_visits = 0; // of all rays
+};
+
+/// Walks the tree twice: once timed, once to count.
+WorldTrace trace_world(Gpu& gpu, const World& world, std::span<const WorldRay> rays);
+
+} // namespace ssrlab
