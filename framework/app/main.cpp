@@ -6,6 +6,7 @@
 #include "app/ray_command.h"
 #include "app/render_command.h"
 #include "app/shaders_command.h"
+#include "app/sources_command.h"
 #include "core/error.h"
 #include "core/names.h"
 #include "core/printable.h"
@@ -117,8 +118,10 @@ void add_presentation_options(CLI::App& command, ssrlab::RenderOptions& options)
     command
         .add_option("--show", options.show,
                     "False colours instead of the picture (docs/how-to/read_the_report.md): agreement (right and wrong "
-                    "rays), causes (why rays are wrong), fetches (work per ray)")
-        ->check(CLI::IsMember({"agreement", "causes", "fetches"}));
+                    "rays), causes (why rays are wrong), fetches (work per ray), sources (which source answered)")
+        ->check(CLI::IsMember({"agreement", "causes", "fetches", "sources"}));
+    command.add_option("--sources", options.sources, "Sources that --show sources asks, in this order")
+        ->capture_default_str();
     auto* truth = command.add_flag("--truth", options.truth, "The true reflection instead of the traced one");
     command
         .add_flag("--side-by-side", options.side_by_side,
@@ -217,6 +220,25 @@ int main(int argc, char** argv)
     add_default_technique(*planned, plan.picture);
     planned->add_option("--repeats", plan.repeats, "Timed frames")->capture_default_str()->check(CLI::PositiveNumber);
     planned->callback([&] { command = [&] { return print_plan(common, plan); }; });
+
+    SourcesOptions sources;
+    auto*          asked = app.add_subcommand(
+                 "sources", "Measure which source answers each ray, how rightly and at what price");
+    add_scene_options(*asked, sources.picture);
+    add_default_technique(*asked, sources.picture);
+    asked
+        ->add_option("--sources", sources.lists,
+                     "Sources in the order in which they are asked, as frame,layers:count=2,world; several lists may "
+                     "be compared")
+        ->default_val(std::vector<std::string>{"frame,world", "world"})
+        ->allow_extra_args(false);
+    asked
+        ->add_option(
+            "--hand-on", sources.hand_on,
+            "Which rays the next source gets: lost (no answer) or uncertain (those that no source vouches for, too)")
+        ->capture_default_str();
+    asked->add_option("-o,--output", sources.picture.output, "Append a row for each source of each list to this .csv");
+    asked->callback([&] { command = [&] { return compare_sources(common, sources); }; });
 
     auto* sweep =
         app.add_subcommand("run", "Run an experiment: every combination of its lists becomes a row of results.csv");

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "harness/choice.h"
 #include "harness/quality.h"
+#include "sources/answer_rays.h"
 #include "truth/glossy_truth.h"
 #include "truth/scene_truth.h"
 #include "truth/screen_truth.h"
@@ -75,6 +76,7 @@ std::string command_of(const RenderOptions& options, int at_frame)
     if (options.exposure_ev != 0) text += fmt::format(" --exposure {}", options.exposure_ev);
     if (options.display != "clip") text += " --display " + options.display;
     if (!options.show.empty()) text += " --show " + options.show;
+    if (options.show == "sources") text += " --sources " + options.sources;
     if (options.truth) text += " --truth";
     if (options.side_by_side) text += " --side-by-side";
     return text;
@@ -146,6 +148,17 @@ Image false_colours(Stage& stage, const TraceResult& counted, const TraceSetting
     return agreement_picture(counted, screen_truth(gbuffer, settings));
 }
 
+/// Which source answered each ray, and whether rightly.
+Image source_colours(Stage& stage, const Technique& technique, const Choice& choice, const std::string& list)
+{
+    const auto         sources  = parse_sources(list, "--sources " + list);
+    SourceContext      context  = make_source_context(stage, technique, choice.values, choice.settings);
+    const AnsweredRays answered = answer_rays(context, sources, HandOn::uncertain);
+    const SceneTruth   truth    = scene_truth(SceneBvh(stage.scene), stage.scene, context.image, choice.settings.trace);
+    refuse_false(off_surface_share(truth));
+    return sources_picture(answered.answers, truth, context.image);
+}
+
 struct Rendered {
     std::vector<LabelledImage> pictures;
     double                     trace_ms = 0;
@@ -213,7 +226,9 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
             std::optional<TraceResult> counted;
             if (first || !options.show.empty()) counted = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
             if (first) impossible = find_impossible(*counted, declared_steps(technique, choice.values));
-            if (!options.show.empty())
+            if (options.show == "sources")
+                rendered.pictures.front().image = source_colours(stage, technique, choice, options.sources);
+            else if (!options.show.empty())
                 rendered.pictures.front().image = false_colours(stage, *counted, choice.settings.trace, options.show);
             else
                 add_sample(stage, *frame, options, choice.settings.trace, truth, sample, picture.at.frame + i,

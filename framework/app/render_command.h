@@ -13,7 +13,8 @@ struct RenderOptions {
     int            samples     = 1; // places of the camera within a pixel, whose pictures are averaged
     double         exposure_ev = 0;
     std::string    display     = "clip"; // or agx
-    std::string    show; // false colours in the picture's place: agreement, causes, fetches; empty: none
+    std::string    show; // false colours in the picture's place: agreement, causes, fetches, sources; empty: none
+    std::string    sources = "frame,world"; // that show = sources asks, in this order
     bool           truth = false, side_by_side = false;
 };
 

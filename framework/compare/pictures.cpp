@@ -1,5 +1,6 @@
 #include "compare/pictures.h"
 
+#include "compare/all_rays.h"
 #include "compare/causes.h"
 #include "compare/image_filter.h"
 #include "compare/measures.h"
@@ -89,6 +90,18 @@ Image causes_picture(const TraceResult& tested, const SceneTruth& truth, const G
     const std::vector<WrongCause>                         causes  = wrong_causes(tested, truth, gbuffer);
     return paint(tested.size_px,
                  [&](size_t i) { return truth.cls[i] == TruthClass::not_traced ? black : colours[size_t(causes[i])]; });
+}
+
+Image sources_picture(std::span<const RayAnswer> answers, const SceneTruth& truth, const GBufferImage& gbuffer)
+{
+    const std::array of_source = {green, sky_blue, yellow, pink, orange};
+    return paint(truth.size_px, [&](size_t i) {
+        if (truth.cls[i] == TruthClass::not_traced) return black;
+        if (is_right(answers[i], truth, gbuffer, i))
+            return of_source[std::min<size_t>(answers[i].source, of_source.size() - 1)];
+        if (answers[i].kind == AnswerKind::point) return vermilion;
+        return meets_geometry(truth.cls[i]) ? white : grey;
+    });
 }
 
 Image fetch_heat_map(const TraceResult& tested)

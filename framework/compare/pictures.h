@@ -3,8 +3,11 @@
 
 #include "core/gbuffer_image.h"
 #include "core/image.h"
+#include "core/ray_answer.h"
 #include "core/trace_result.h"
 #include "core/truth_class.h"
+
+#include <span>
 
 namespace ssrlab {
 
@@ -20,6 +23,11 @@ Image agreement_picture(const TraceResult& tested, const SceneTruth& scene_truth
 /// Shows why rays are wrong (compare/causes.h): own surface orange, not shown light blue, thin yellow, silhouette pink,
 /// edge green, stopped orange-red, other white; right grey.
 Image causes_picture(const TraceResult& tested, const SceneTruth& scene_truth, const GBufferImage& gbuffer);
+
+/// Shows which source answered each ray rightly (compare/all_rays.h), by its place in the list: first green, second light
+/// blue, third yellow, fourth pink, further ones orange. A wrong point is orange-red; a ray without an answer is white if
+/// it meets geometry, else grey.
+Image sources_picture(std::span<const RayAnswer> answers, const SceneTruth& scene_truth, const GBufferImage& gbuffer);
 
 /// Shows the fetches of each ray (steps, if fetches were not counted) on a fixed logarithmic scale: black 0, dark
 /// violet 1, violet 8, pink 64, orange 512, pale yellow 4096 and more.

@@ -1,4 +1,4 @@
-#include "frame/drawing.h"
+#include "frame/both_sides.h"
 
 #include "core/error.h"
 #include "shared.h"
@@ -77,12 +77,19 @@ void record_rasterisation(const vk::raii::CommandBuffer& commands, const Drawing
     commands.endRendering();
 }
 
-/// Which surfaces a G-buffer shows: the nearest, the nearest so far behind another G-buffer, or the next that face the camera.
-enum class Shows { first, far_behind, next };
+/// Which surfaces a G-buffer shows: the nearest, the nearest so far behind another G-buffer, the next that face the
+/// camera, or the next of either side.
+enum class Shows { first, far_behind, next, next_side };
 
-std::shared_ptr<const DrawPipeline> layer_pipeline(Gpu& gpu, GpuScene& scene, const GBuffer& gbuffer, Shows shows)
+/// before: as make_drawing() has it.
+std::shared_ptr<const DrawPipeline> layer_pipeline(Gpu& gpu, GpuScene& scene, const GBuffer& gbuffer, Shows shows,
+                                                   const Drawing* before)
 {
-    std::shared_ptr<const DrawPipeline>& pipeline = shows == Shows::first        ? scene.first_layer_pipeline
+    // Layers of both sides share the pipeline of the first of them.
+    std::shared_ptr<const DrawPipeline> of_sides;
+    if (shows == Shows::next_side && before->pipeline->culling == Culling::nothing) of_sides = before->pipeline;
+    std::shared_ptr<const DrawPipeline>& pipeline = shows == Shows::next_side    ? of_sides
+                                                    : shows == Shows::first      ? scene.first_layer_pipeline
                                                     : shows == Shows::far_behind ? scene.second_layer_pipeline
                                                                                  : scene.layer_pipeline;
     if (!pipeline) {
@@ -93,6 +100,7 @@ std::shared_ptr<const DrawPipeline> layer_pipeline(Gpu& gpu, GpuScene& scene, co
                                                         gbuffer.dielectric.format, gbuffer.emission.format}};
         if (shows != Shows::first) options.fragment_defines = {{"PEELED", "1"}};
         if (shows == Shows::next) options.culling = Culling::back_faces;
+        if (shows == Shows::next_side) options.culling = Culling::nothing;
         pipeline = std::make_shared<const DrawPipeline>(make_draw_pipeline(gpu, scene, options));
     }
     return pipeline;
@@ -112,7 +120,7 @@ DrawingPtr make_drawing(Gpu& gpu, const GpuScenePtr& scene, const View& view, Sh
     const GBuffer& gbuffer = *drawing->gbuffer;
     drawing->frame_set =
         make_frame_set(gpu, *scene, drawing->frame_uniforms, before == nullptr ? nullptr : &before->gbuffer->depth);
-    drawing->pipeline = layer_pipeline(gpu, *scene, gbuffer, shows);
+    drawing->pipeline = layer_pipeline(gpu, *scene, gbuffer, shows, before);
     drawing->sampler  = {gpu.impl->device, vk::SamplerCreateInfo{}};
     Constants constants;
     constants.add(CONSTANT_ORTHOGRAPHIC, static_cast<int32_t>(view.projection == Projection::orthographic));
@@ -168,6 +176,11 @@ DrawingPtr make_second_layer(Gpu& gpu, const Drawing& first)
 DrawingPtr make_next_layer(Gpu& gpu, const Drawing& before)
 {
     return make_drawing(gpu, before.scene, before.gbuffer->view, Shows::next, &before);
+}
+
+DrawingPtr make_next_side(Gpu& gpu, const Drawing& before)
+{
+    return make_drawing(gpu, before.scene, before.gbuffer->view, Shows::next_side, &before);
 }
 
 void record_second_layer(const vk::raii::CommandBuffer& commands, const Drawing& second, double separation_m)

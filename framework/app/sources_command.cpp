@@ -1,0 +1,139 @@
+#include "app/sources_command.h"
+
+#include "compare/all_rays.h"
+#include "core/error.h"
+#include "core/size.h"
+#include "harness/choice.h"
+#include "harness/experiment.h"
+#include "sources/answer_rays.h"
+#include "truth/scene_truth.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+namespace ssrlab {
+namespace {
+
+constexpr std::array lost_classes = {TruthClass::hidden, TruthClass::off_screen, TruthClass::behind_camera,
+                                     TruthClass::facing_away};
+
+std::string header()
+{
+    std::string text =
+        "scene,view,size,technique,surface,settings,sources,hand_on,place,source,handed,meeting,points,right,"
+        "certain_points,certain_right,certain_nothing,certain_nothing_right";
+    for (const TruthClass cls : {TruthClass::visible, TruthClass::hidden, TruthClass::off_screen,
+                                 TruthClass::behind_camera, TruthClass::facing_away}) {
+        const std::string_view name = truth_class_names[static_cast<size_t>(cls)];
+        text += fmt::format(",handed_{},right_{}", name, name);
+    }
+    return text + ",draw_ms,trace_ms,shade_ms,merge_ms,megabytes,node_visits,all_rays,all_meeting,all_recall,all_"
+                  "precision,all_f1,device";
+}
+
+std::string csv_cell(const std::string& text) { return text.find(',') == std::string::npos ? text : '"' + text + '"'; }
+
+std::string optional_text(std::optional<double> value) { return value ? fmt::format("{:.6g}", *value) : ""; }
+
+/// One source's line of the file. so_far: the merged answers of the list up to it.
+std::string line_of(const std::string& identity, size_t place, const SourceTurn& turn, const SourceCounts& counts,
+                    const AllRays& so_far, const std::string& device)
+{
+    std::string text = fmt::format("{},{},{},{},{},{},{},{},{},{},{}", identity, place, turn.source, counts.handed,
+                                   counts.meeting, counts.points, counts.right, counts.certain_points,
+                                   counts.certain_right, counts.certain_nothing, counts.certain_nothing_right);
+    for (const TruthClass cls : {TruthClass::visible, TruthClass::hidden, TruthClass::off_screen,
+                                 TruthClass::behind_camera, TruthClass::facing_away})
+        text += fmt::format(",{},{}", counts.handed_of_class[static_cast<size_t>(cls)],
+                            counts.right_of_class[static_cast<size_t>(cls)]);
+    return text + fmt::format(",{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{},{},{},{},{},{},{}\n", turn.draw_ms, turn.trace_ms,
+                              turn.shade_ms, turn.merge_ms, turn.megabytes, turn.node_visits, so_far.rays,
+                              so_far.meeting, optional_text(so_far.recall), optional_text(so_far.precision),
+                              optional_text(so_far.f1), csv_cell(device));
+}
+
+double percent(std::optional<double> share) { return share ? 100 * *share : 0; }
+double percent(size_t part, size_t whole) { return whole > 0 ? 100 * double(part) / double(whole) : 0; }
+
+void print_line(const SourceTurn& turn, const SourceCounts& counts, const AllRays& so_far)
+{
+    std::puts(fmt::format("  {:8} handed {:6} ({:5.1f} % meet)  points {:6}, {:5.1f} % right  certain {:6}, {:5.1f} % "
+                          "right  nothing {:6}, {:5.1f} % right"
+                          "  all: recall {:5.1f} precision {:5.1f} F1 {:5.2f} %  draw {:.1f} ms, trace {:.1f} ms, "
+                          "{:.1f} MB, {} visits",
+                          turn.source, counts.handed, percent(counts.meeting, counts.handed), counts.points,
+                          percent(counts.right, counts.points), counts.certain_points,
+                          percent(counts.certain_right, counts.certain_points), counts.certain_nothing,
+                          percent(counts.certain_nothing_right, counts.certain_nothing), percent(so_far.recall),
+                          percent(so_far.precision), percent(so_far.f1), turn.draw_ms, turn.trace_ms, turn.megabytes,
+                          turn.node_visits)
+                  .c_str());
+}
+
+void append(const std::string& file, const std::string& lines)
+{
+    const bool    fresh = !std::filesystem::exists(file) || std::filesystem::file_size(file) == 0;
+    std::ofstream stream(file, std::ios::app);
+    if (fresh) stream << header() << '\n';
+    stream << lines;
+    if (!stream.flush()) throw_failure("{}: could not be written", file);
+}
+
+HandOn parse_hand_on(const std::string& text)
+{
+    const auto found = std::ranges::find(hand_on_names, text);
+    if (found == hand_on_names.end()) throw_spec_error("--hand-on: expected lost or uncertain, got '{}'", text);
+    return static_cast<HandOn>(found - hand_on_names.begin());
+}
+
+} // namespace
+
+int compare_sources(const CommonOptions& common, const SourcesOptions& options)
+{
+    const PictureOptions& picture = options.picture;
+    if (!picture.output.empty()) require_ending(picture.output, {".csv"});
+    std::vector<std::vector<ListedSource>> lists;
+    for (const std::string& list : options.lists) lists.push_back(parse_sources(list, "--sources " + list));
+    const HandOn      hand_on   = parse_hand_on(options.hand_on);
+    const std::string settings  = fmt::format("{}", fmt::join(picture.parameters, ";"));
+    const Catalogue   catalogue = load_catalogue(common.technique_dirs);
+    const Technique&  technique = find_technique(catalogue.techniques, picture.technique);
+    const Choice      choice    = parse_choice(catalogue, technique, picture.parameters);
+    Stage             stage     = open_stage(common, catalogue, picture);
+    SourceContext     context   = make_source_context(stage, technique, choice.values, choice.settings);
+    for (int frame = picture.at.frame - 1; frame >= 0; --frame)
+        context.earlier.push_back(
+            view_at(stage.scene, picture.view, stage.view.size_px, {frame, picture.at.jitter_phases}));
+    const SceneTruth truth = scene_truth(SceneBvh(stage.scene), stage.scene, context.image, choice.settings.trace);
+    if (const std::string why = drawn_elsewhere(off_surface_share(truth)); !why.empty())
+        throw_failure("no scene truth: {}", why);
+    std::puts(fmt::format("{} {} {}, {}, surface {}", picture.scene, picture.view, size_text(stage.view.size_px),
+                          technique.id, choice.settings.trace.surface)
+                  .c_str());
+    for (size_t l = 0; l < lists.size(); ++l) {
+        const AnsweredRays answered = answer_rays(context, lists[l], hand_on);
+        const std::string  identity =
+            fmt::format("{},{},{},{},{},{},{},{}", csv_cell(picture.scene), csv_cell(picture.view),
+                        size_text(stage.view.size_px), technique.id, choice.settings.trace.surface, csv_cell(settings),
+                        csv_cell(options.lists[l]), options.hand_on);
+        std::vector<RayAnswer> so_far(answered.answers.size());
+        std::string            lines;
+        for (size_t place = 0; place < answered.turns.size(); ++place) {
+            const SourceTurn& turn = answered.turns[place];
+            for (size_t k = 0; k < turn.pixels.size(); ++k)
+                so_far[turn.pixels[k]] = merged(so_far[turn.pixels[k]], turn.answers[k]);
+            const SourceCounts counts = count_source(turn, truth, context.image);
+            const AllRays      all    = compare_all_rays(so_far, truth, context.image);
+            print_line(turn, counts, all);
+            lines += line_of(identity, place, turn, counts, all, stage.gpu.info.name);
+        }
+        if (!picture.output.empty()) append(picture.output, lines);
+    }
+    return report_messages(stage);
+}
+
+} // namespace ssrlab

@@ -1,0 +1,29 @@
+// The loop over sources: each gets the rays that have no certain answer yet, and its answers are merged into those
+// before.
+#pragma once
+
+#include "sources/source.h"
+
+namespace ssrlab {
+
+/// Which rays the next source gets.
+enum class HandOn : uint8_t {
+    lost,      // those without an answer
+    uncertain, // those whose answer no source vouches for, too
+};
+inline constexpr std::array<std::string_view, 2> hand_on_names = {"lost", "uncertain"};
+
+struct AnsweredRays {
+    std::vector<RayAnswer>   answers; // of each pixel
+    std::vector<SourceTurn>  turns;   // of each source
+    std::vector<std::string> reasons; // why each source was asked or not, with the number that decided
+};
+
+/// Traces what the stage shows once for its counts, and twice for its times. Throws Failure for a frame of another
+/// renderer, which has no scene.
+SourceContext make_source_context(Stage& stage, const Technique& technique, const ParameterValues& values,
+                                  const FrameSettings& settings);
+
+AnsweredRays answer_rays(SourceContext& context, std::span<const ListedSource> sources, HandOn hand_on);
+
+} // namespace ssrlab

@@ -1,0 +1,69 @@
+// The frame itself: what its own rays found, and how sure that is.
+#include "core/pixel_index.h"
+#include "core/stopwatch.h"
+#include "frame/passes/pass_helpers.h"
+#include "sources/gbuffer_rays.h"
+#include "world/occupancy.h"
+
+namespace ssrlab {
+namespace {
+
+constexpr double back_px = 2; // a ray is followed again from so many pixels before where the frame lost it
+
+RayAnswer answer_of(const SourceContext& context, const OpenRay& ray, bool in_sight)
+{
+    const GBufferImage& image  = context.image;
+    const TraceResult&  traced = context.traced;
+    const size_t        i      = ray.pixel;
+    const TraceStatus   status = traced.status[i];
+    RayAnswer           answer{.kind = AnswerKind::open};
+    const auto          part = seen_part(image.view, ray);
+    if (!part) return answer;
+    if (status == TraceStatus::hit) {
+        const glm::dvec3 at = traced.hit_px_depth[i];
+        answer.kind         = AnswerKind::point;
+        answer.certain      = in_sight && neighbours_agree(image, traced.hit_pixel[i]);
+        answer.point_ws     = glm::dvec3(glm::inverse(image.view.world_to_view) *
+                                         glm::dvec4(px_to_vs(image.view, glm::dvec2(at), at.z), 1));
+        answer.light =
+            light_of(traced.hit_layer[i] == 0 ? image : image.layers[traced.hit_layer[i] - 1U], traced.hit_pixel[i]);
+    }
+    if (status == TraceStatus::past_max_distance) {
+        answer.kind    = AnswerKind::nothing;
+        answer.certain = in_sight;
+        answer.light   = sky_radiance(context.stage.scene, ray.direction_ws);
+    }
+    if (!in_sight) return answer;
+    if (has_place(status)) answer.clear_m = metres_before(image.view, ray, *part, traced.hit_px_depth[i], back_px);
+    if (status == TraceStatus::left_screen && part->leaves) {
+        const RayInput input = to_input(image.view, ray, *part);
+        answer.clear_m = metres_before(image.view, ray, *part, input.origin_px_depth + input.delta_px_depth, back_px);
+        if (!may_meet(*context.occupancy, ray.origin_ws, ray.direction_ws, answer.clear_m, ray.reach_m)) {
+            answer.kind    = AnswerKind::nothing;
+            answer.certain = true;
+            answer.light   = sky_radiance(context.stage.scene, ray.direction_ws);
+        }
+    }
+    return answer;
+}
+
+SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
+{
+    SourceTurn turn;
+    if (!context.occupancy) context.occupancy = std::make_shared<const Occupancy>(make_occupancy(context.stage.scene));
+    const Stopwatch stopwatch;
+    const bool      in_sight = stays_in_sight(context, context.trace);
+    for (const OpenRay& ray : rays) turn.answers.push_back(answer_of(context, ray, in_sight));
+    turn.merge_ms = 1000 * stopwatch.seconds();
+    turn.trace_ms = context.trace_ms;
+    return turn;
+}
+
+} // namespace
+
+Source frame_source()
+{
+    return {.id = "frame", .summary = "What the frame shows: its own rays, traced by the technique", .answer = answer};
+}
+
+} // namespace ssrlab

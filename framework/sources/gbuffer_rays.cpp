@@ -1,0 +1,249 @@
+#include "sources/gbuffer_rays.h"
+
+#include "core/pixel_index.h"
+#include "trace/lab_passes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ssrlab {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+glm::dvec3 to_view(const View& view, glm::dvec3 direction_ws) { return glm::dmat3(view.world_to_view) * direction_ws; }
+
+glm::dvec3 point_vs(const View& view, const OpenRay& ray, double t_m)
+{
+    return glm::dvec3(view.world_to_view * glm::dvec4(ray.origin_ws + t_m * ray.direction_ws, 1));
+}
+
+/// x, y in pixels and depth at a distance along the ray, which may be infinite.
+glm::dvec3 screen_point(const View& view, const OpenRay& ray, double t_m)
+{
+    if (t_m < infinity) return vs_to_px(view, point_vs(view, ray, t_m));
+    const glm::dvec3 direction = to_view(view, ray.direction_ws);
+    return {view.centre_px.x + view.focal_px.x * direction.x / -direction.z,
+            view.centre_px.y - view.focal_px.y * direction.y / -direction.z, 0};
+}
+
+/// height + t * rate >= 0 from here on, or up to here.
+void clip(SeenPart& part, double height, double rate)
+{
+    if (rate > 0) part.t_in_m = std::max(part.t_in_m, -height / rate);
+    if (rate == 0 && height < 0) part.t_out_m = -infinity;
+    if (rate >= 0 || -height / rate >= part.t_out_m) return;
+    part.t_out_m = -height / rate;
+    part.leaves  = true;
+}
+
+} // namespace
+
+std::optional<SeenPart> seen_part(const View& view, const OpenRay& ray)
+{
+    const glm::dvec3 p = point_vs(view, ray, 0), d = to_view(view, ray.direction_ws);
+    SeenPart         part{ray.clear_m, ray.reach_m, false};
+    const bool       perspective = view.projection == Projection::perspective;
+    // By how much the nearer border lies inside, times the distance where that is what a pixel stands for.
+    const double p_w = perspective ? -p.z : 1, d_w = perspective ? -d.z : 0;
+    if (!perspective) clip(part, view.far_m + p.z, d.z);
+    part.leaves = false; // the far plane ends a ray as its reach does
+    clip(part, -p.z - view.near_m, -d.z);
+    clip(part, view.focal_px.x * p.x + view.centre_px.x * p_w, view.focal_px.x * d.x + view.centre_px.x * d_w);
+    clip(part, -view.focal_px.y * p.y + view.centre_px.y * p_w, -view.focal_px.y * d.y + view.centre_px.y * d_w);
+    clip(part, (view.size_px.x - view.centre_px.x) * p_w - view.focal_px.x * p.x,
+         (view.size_px.x - view.centre_px.x) * d_w - view.focal_px.x * d.x);
+    clip(part, (view.size_px.y - view.centre_px.y) * p_w + view.focal_px.y * p.y,
+         (view.size_px.y - view.centre_px.y) * d_w + view.focal_px.y * d.y);
+    if (!(part.t_out_m > part.t_in_m)) return std::nullopt;
+    return part;
+}
+
+RayInput to_input(const View& view, const OpenRay& ray, const SeenPart& part)
+{
+    const glm::dvec2 size = view.size_px;
+    glm::dvec3       from = screen_point(view, ray, part.t_in_m), to = screen_point(view, ray, part.t_out_m);
+    for (glm::dvec3* end : {&from, &to})
+        for (int axis : {0, 1}) (*end)[axis] = std::clamp((*end)[axis], 0.0, size[axis]);
+    return {from, to - from, part.t_out_m - part.t_in_m,
+            part.leaves ? TraceStatus::left_screen : TraceStatus::past_max_distance, glm::ivec2(0)};
+}
+
+double metres_before(const View& view, const OpenRay& ray, const SeenPart& part, glm::dvec3 at_px_depth, double back_px)
+{
+    const glm::dvec3 from      = screen_point(view, ray, part.t_in_m);
+    const double     length_px = glm::length(glm::dvec2(at_px_depth - from));
+    if (!(length_px > back_px)) return part.t_in_m;
+    const glm::dvec3 before  = glm::mix(at_px_depth, from, back_px / length_px);
+    const glm::dvec3 from_vs = point_vs(view, ray, 0), before_vs = px_to_vs(view, glm::dvec2(before), before.z);
+    return std::max(part.t_in_m, glm::dot(before_vs - from_vs, to_view(view, ray.direction_ws)));
+}
+
+bool neighbours_agree(const GBufferImage& image, glm::ivec2 pixel)
+{
+    const glm::ivec2 size     = image.view.size_px;
+    const size_t     i        = pixel_index(pixel, size);
+    const glm::vec2  gradient = image.gradient.empty() ? glm::vec2(0) : image.gradient[i];
+    const double     depth    = double(image.depth[i]);
+    if (!(depth > 0) || !std::isfinite(gradient.x) || !std::isfinite(gradient.y)) return false;
+    // A curved surface bends away from its plane by much less than the plane falls.
+    constexpr double curvature = 0.5, flat = 0.004;
+    for (int dy : {-1, 0, 1})
+        for (int dx : {-1, 0, 1}) {
+            const glm::ivec2 at = pixel + glm::ivec2(dx, dy);
+            if (at.x < 0 || at.y < 0 || at.x >= size.x || at.y >= size.y) return false;
+            const double fall = double(gradient.x) * dx + double(gradient.y) * dy;
+            const double own  = double(image.depth[pixel_index(at, size)]);
+            if (std::abs(own - depth - fall) > flat * depth + curvature * std::abs(fall)) return false;
+        }
+    return true;
+}
+
+glm::vec3 light_of(const GBufferImage& image, glm::ivec2 pixel)
+{
+    const size_t i = pixel_index(pixel, image.view.size_px);
+    return image.radiance[i] + image.highlight[i];
+}
+
+bool stays_in_sight(const SourceContext& context, const TraceSettings& settings)
+{
+    const Surface surface = find_surface(context.stage.catalogue.surfaces, std::string(settings.surface));
+    const auto    has     = [&](const char* name) {
+        return std::ranges::find(surface.defines, name) != surface.defines.end();
+    };
+    return settings.behind == Behind::stop && settings.layers == 1 && (has("SOLID_ENDLESS") || has("SURFACE_ENDLESS"));
+}
+
+double megabytes_of(const GBuffer& gbuffer)
+{
+    // Depth twice, normal 16, radiance, highlight and material 8 each, object, gradient, solid and dielectric 4 each.
+    constexpr double bytes_a_pixel = 4 + 16 + 3 * 8 + 4 * 4;
+    return (bytes_a_pixel * double(pixel_count(gbuffer.view.size_px)) + double(gbuffer.depth.cells.bytes)) / 1e6;
+}
+
+namespace {
+
+constexpr double back_px = 2; // a ray is followed again from so many pixels before where it was lost
+
+RayAnswer to_answer(const SourceContext& context, const GBufferImage& image, const OpenRay& ray, const SeenPart& part,
+                    const RayInput& input, const RayOutcome& outcome, bool in_sight, bool all_layers)
+{
+    RayAnswer        answer{.kind = AnswerKind::open, .clear_m = ray.clear_m};
+    const glm::dvec3 at = input.origin_px_depth + outcome.t * input.delta_px_depth;
+    if (outcome.status == TraceStatus::hit) {
+        const GBufferImage& met = outcome.hit_layer == 0 ? image : image.layers[outcome.hit_layer - 1U];
+        answer.kind             = AnswerKind::point;
+        answer.certain          = (in_sight || all_layers) && neighbours_agree(met, outcome.hit_pixel);
+        answer.point_ws         = glm::dvec3(glm::inverse(image.view.world_to_view) *
+                                             glm::dvec4(px_to_vs(image.view, glm::dvec2(at), at.z), 1));
+        answer.light            = light_of(met, outcome.hit_pixel);
+    }
+    if (outcome.status == TraceStatus::past_max_distance) {
+        answer.kind    = AnswerKind::nothing;
+        answer.certain = in_sight;
+        answer.light   = sky_radiance(context.stage.scene, ray.direction_ws);
+    }
+    if (!in_sight) return answer;
+    if (has_place(outcome.status)) answer.clear_m = metres_before(image.view, ray, part, at, back_px);
+    if (outcome.status == TraceStatus::left_screen)
+        answer.clear_m = metres_before(image.view, ray, part, input.origin_px_depth + input.delta_px_depth, back_px);
+    return answer;
+}
+
+/// As trace_rays(), by the pipelines that do not count; ms: of the structures and the trace.
+std::vector<RayOutcome> trace_timed(Gpu& gpu, const Lab& lab, std::span<const RayInput> rays, double& ms)
+{
+    std::vector<PackedRay<float>> listed;
+    for (const RayInput& ray : rays)
+        listed.push_back({ray.origin_px_depth, static_cast<float>(ray.length_m), ray.delta_px_depth,
+                          pack_pixel(ray.pixel, static_cast<int>(ray.end_status))});
+    RayBuffers        buffers = make_ray_buffers(gpu, rays.size(), Precision::float32);
+    const TracePasses passes  = make_trace_passes(gpu, lab, buffers, lab.gbuffer->view_uniforms);
+    const auto        count   = static_cast<uint32_t>(rays.size());
+    upload(gpu, buffers.count, &count, sizeof(count));
+    upload(gpu, buffers.list, listed.data(), listed.size() * sizeof(listed[0]));
+    const Timestamps timestamps = make_timestamps(gpu, 2);
+    for (int turn = 0; turn < 2; ++turn) // a driver may compile a pipeline when it first runs
+        submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+            barrier(commands);
+            dispatch(commands, passes.ray_launch, {1, 1, 1});
+            barrier(commands);
+            write_timestamp(commands, timestamps, 0);
+            record_depth_structures(commands, lab);
+            record_technique(commands, passes.technique, buffers);
+            barrier(commands);
+            write_timestamp(commands, timestamps, 1);
+        });
+    ms = read_intervals_ms(gpu, timestamps)[0];
+    std::vector<RayOutcome> outcomes;
+    for (const PackedHit<float>& hit : download_as<PackedHit<float>>(gpu, buffers.hits, rays.size())) {
+        RayOutcome& outcome = outcomes.emplace_back();
+        outcome.status      = unpack_status(hit.pixel);
+        outcome.hit_pixel   = unpack_pixel(hit.pixel);
+        outcome.hit_layer   = unpack_layer(hit.pixel);
+        outcome.t           = double(hit.t);
+    }
+    return outcomes;
+}
+
+} // namespace
+
+GBufferTrace trace_in_gbuffer(SourceContext& context, const GBufferPtr& gbuffer, const GBufferImage& image,
+                              const TraceSettings& settings, RayStart start, std::span<const OpenRay> rays)
+{
+    std::vector<RayInput> inputs;
+    std::vector<SeenPart> parts;
+    std::vector<size_t>   asked;
+    GBufferTrace          trace;
+    for (size_t k = 0; k < rays.size(); ++k) {
+        trace.answers.push_back({.kind = AnswerKind::open, .clear_m = rays[k].clear_m});
+        const std::optional<SeenPart> part = seen_part(gbuffer->view, rays[k]);
+        if (!part) continue;
+        inputs.push_back(to_input(gbuffer->view, rays[k], *part));
+        parts.push_back(*part);
+        asked.push_back(k);
+    }
+    trace.status.resize(rays.size());
+    trace.left_at_m.resize(rays.size());
+    if (inputs.empty()) return trace;
+    const LabPtr lab = make_lab(context.stage.gpu, context.stage.catalogue, gbuffer, context.lab->technique,
+                                context.lab->values, settings);
+    const std::vector<RayOutcome> outcomes = trace_timed(context.stage.gpu, *lab, inputs, trace.ms);
+    const bool                    in_sight = start == RayStart::in_sight && stays_in_sight(context, settings);
+    for (size_t k = 0; k < inputs.size(); ++k) {
+        const size_t ray = asked[k];
+        trace.answers[ray] =
+            to_answer(context, image, rays[ray], parts[k], inputs[k], outcomes[k], in_sight, settings.layers > 1);
+        trace.status[ray]    = outcomes[k].status;
+        trace.left_at_m[ray] = parts[k].t_out_m;
+    }
+    return trace;
+}
+
+void ask_elsewhere(const SourceContext& context, std::span<const OpenRay> rays, std::vector<RayAnswer>& answers,
+                   const TraceElsewhere& trace)
+{
+    TraceSettings in_sight = context.trace, in_passing = context.trace;
+    in_sight.surface   = "plane_infinite";
+    in_sight.behind    = Behind::stop;
+    in_passing.surface = "plane";
+    in_passing.behind  = Behind::pass;
+    in_sight.layers = in_passing.layers = 1;
+    const auto ask                      = [&](const TraceSettings& settings, RayStart start) {
+        std::vector<OpenRay> open;
+        std::vector<size_t>  places;
+        for (size_t k = 0; k < rays.size(); ++k) {
+            if (answers[k].kind == AnswerKind::point) continue;
+            open.push_back(rays[k]);
+            places.push_back(k);
+        }
+        const std::vector<RayAnswer> found = trace(settings, start, open);
+        for (size_t k = 0; k < open.size(); ++k)
+            if (found[k].kind == AnswerKind::point) answers[places[k]] = merged(answers[places[k]], found[k]);
+    };
+    ask(in_sight, RayStart::in_sight);
+    ask(in_passing, RayStart::anywhere);
+}
+
+} // namespace ssrlab

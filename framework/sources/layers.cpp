@@ -1,0 +1,65 @@
+// Further layers of the frame by depth peeling, of the sides that face the camera or of both: a back face is a surface
+// that a ray may meet from its outer side.
+#include "frame/both_sides.h"
+#include "frame/passes/pass_helpers.h"
+#include "sources/gbuffer_rays.h"
+
+namespace ssrlab {
+namespace {
+
+/// The frame again, with its layers. A drawing refers to those before it, so all are kept.
+struct Layered {
+    DrawingPtr              first;
+    std::vector<DrawingPtr> further;
+};
+
+Layered draw_layered(SourceContext& context, int layers, bool both_sides, SourceTurn& turn)
+{
+    Gpu&    gpu = context.stage.gpu;
+    Layered drawn{draw_gbuffer(gpu, context.stage.uploaded, context.image.view), {}};
+    for (int layer = 1; layer < layers; ++layer) {
+        const Drawing& before = drawn.further.empty() ? *drawn.first : *drawn.further.back();
+        Drawing&       own =
+            *drawn.further.emplace_back(both_sides ? make_next_side(gpu, before) : make_next_layer(gpu, before));
+        redraw_gbuffer(gpu, own); // a driver may compile a pipeline when it first draws
+        turn.draw_ms += redraw_gbuffer(gpu, own);
+        turn.megabytes += megabytes_of(*own.gbuffer);
+        drawn.first->gbuffer->layers.push_back(own.gbuffer);
+    }
+    return drawn;
+}
+
+SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
+{
+    SourceTurn         turn;
+    const auto         layers     = static_cast<int>(context.parameters.at("count"));
+    const bool         both_sides = context.parameters.at("sides") == 1;
+    const Layered      drawn      = draw_layered(context, layers, both_sides, turn);
+    const GBufferPtr&  gbuffer    = drawn.first->gbuffer;
+    const GBufferImage image      = read_gbuffer(context.stage.gpu, *gbuffer);
+    // All surfaces are there, so each is a plane that a ray passes or meets, and there is nothing between them.
+    TraceSettings settings = context.trace;
+    settings.surface       = "plane";
+    settings.behind        = both_sides ? Behind::hit : Behind::pass;
+    settings.layers        = layers;
+    GBufferTrace trace     = trace_in_gbuffer(context, gbuffer, image, settings, RayStart::anywhere, rays);
+    turn.answers           = std::move(trace.answers);
+    turn.trace_ms          = trace.ms;
+    return turn;
+}
+
+} // namespace
+
+Source layers_source()
+{
+    return {.id         = "layers",
+            .summary    = "Further layers of the frame by depth peeling, of one side or of both",
+            .cite       = {"C. Everitt 2001, Interactive Order-Independent Transparency",
+                           "M. Mara et al. 2016, Deep G-Buffers for Stable Global Illumination Approximation"},
+            .parameters = {integer_parameter("count", 4, 2, MAX_LAYERS, "layers in all, the frame's own included"),
+                           choice_parameter({"sides", "front, both"}, 1,
+                                            "front: sides that face the camera; both: back faces, too")},
+            .answer     = answer};
+}
+
+} // namespace ssrlab

@@ -1,0 +1,58 @@
+// The grid of occupied cells against Embree: a ray that meets a triangle never passes it by.
+#include "world/occupancy.h"
+#include "truth/scene_bvh.h"
+#include "unit/truth_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+namespace ssrlab::test {
+namespace {
+
+TEST(Occupancy, NeverDeniesWhatARayMeets)
+{
+    Scene          scene;
+    const uint32_t grey = add_material(scene, {0.5, 0.5, 0.5}, 0);
+    add_quad(scene, grey, {-9, 0, -9}, {18, 0, 0}, {0, 0, 18});
+    add_quad(scene, grey, {-3, 0.5, -4}, {1, 2, 0.3}, {0.2, 0.1, 1});
+    add_sphere(scene, grey, {2, 2, -3}, 1, 20);
+    for (const int side : {1, 7, 64}) {
+        const Occupancy                        grid = make_occupancy(scene, side);
+        const SceneBvh                         embree(scene);
+        std::mt19937                           random(3);
+        std::uniform_real_distribution<double> unit(-1, 1);
+        std::vector<SceneRay>                  rays;
+        for (int i = 0; i < 20000; ++i) {
+            glm::dvec3 direction(unit(random), unit(random), unit(random));
+            if (i % 5 == 0) direction[i / 5 % 3] = 0;
+            rays.push_back({12.0 * glm::dvec3(unit(random), unit(random), unit(random)), direction, 0,
+                            std::numeric_limits<double>::infinity()});
+        }
+        std::vector<SceneHit> hits(rays.size());
+        embree.intersect(rays, hits);
+        size_t denied = 0, missed = 0;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            const bool possible = may_meet(grid, rays[i].origin_ws, rays[i].direction_ws, 0, rays[i].t_max);
+            EXPECT_TRUE(possible || !hits[i].met) << "ray " << i << " with " << side << " cells a side";
+            missed += !hits[i].met;
+            denied += !hits[i].met && !possible;
+        }
+        EXPECT_GT(double(denied), (side == 64 ? 0.8 : 0.1) * double(missed)); // it is of use
+    }
+}
+
+TEST(Occupancy, OfNothingIsEmpty)
+{
+    EXPECT_FALSE(may_meet(make_occupancy(Scene{}), {0, 0, 0}, {0, 0, 1}, 0, 1e9));
+    Scene flat;
+    add_quad(flat, add_material(flat, {1, 1, 1}, 1), {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    const Occupancy grid = make_occupancy(flat);
+    EXPECT_TRUE(may_meet(grid, {0.5, 0.5, 5}, {0, 0, -1}, 0, 9));
+    EXPECT_FALSE(may_meet(grid, {0.5, 0.5, 5}, {0, 0, -1}, 0, 4)); // ends before it
+    EXPECT_FALSE(may_meet(grid, {0.5, 0.5, 5}, {0, 0, 1}, 0, 1e9));
+}
+
+} // namespace
+} // namespace ssrlab::test

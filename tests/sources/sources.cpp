@@ -1,0 +1,193 @@
+// Sources of answers beyond the frame: what each gets, what it says, and that the frame stays as it is.
+#include "compare/all_rays.h"
+#include "gpu/device.h"
+#include "sources/answer_rays.h"
+#include "sources/cube_rays.h"
+#include "truth/scene_truth.h"
+
+#include <gtest/gtest.h>
+
+namespace ssrlab::test {
+namespace {
+
+const TraceSettings in_sight{.behind = Behind::stop, .surface = "plane_infinite"};
+
+/// A frame and its truth.
+struct Traced {
+    std::unique_ptr<Stage> stage;
+    SourceContext          context;
+    SceneTruth             truth;
+};
+
+Traced trace_frame(const std::string& name, glm::ivec2 size_px)
+{
+    auto stage = std::make_unique<Stage>(open_stage(device(), catalogue(), load_scene(name)));
+    show(*stage, "default", size_px);
+    const Technique& hiz = technique("hiz");
+    FrameSettings    settings;
+    settings.trace        = in_sight;
+    SourceContext context = make_source_context(*stage, hiz, values_of(hiz), settings);
+    SceneTruth    truth   = scene_truth(SceneBvh(stage->scene), stage->scene, context.image, in_sight);
+    return {std::move(stage), std::move(context), std::move(truth)};
+}
+
+AnsweredRays ask(Traced& traced, const std::string& list, HandOn hand_on = HandOn::uncertain)
+{
+    return answer_rays(traced.context, parse_sources(list, "test"), hand_on);
+}
+
+AllRays judge(const Traced& traced, const AnsweredRays& answered)
+{
+    return compare_all_rays(answered.answers, traced.truth, traced.context.image);
+}
+
+TEST(Sources, TheFrameAloneSaysWhatItTraced)
+{
+    Traced             traced   = trace_frame("builtin:corridor", {160, 90});
+    const AnsweredRays answered = ask(traced, "frame");
+    ASSERT_EQ(answered.turns.size(), 1U);
+    const glm::dmat4 view_to_world = glm::inverse(traced.context.image.view.world_to_view);
+    size_t           hits          = 0;
+    for (size_t i = 0; i < answered.answers.size(); ++i) {
+        const TraceStatus status = traced.context.traced.status[i];
+        EXPECT_EQ(answered.answers[i].kind == AnswerKind::not_traced, status == TraceStatus::not_traced);
+        EXPECT_EQ(answered.answers[i].kind == AnswerKind::point, status == TraceStatus::hit);
+        if (status != TraceStatus::hit) continue;
+        const glm::dvec3 at = traced.context.traced.hit_px_depth[i];
+        EXPECT_EQ(answered.answers[i].point_ws,
+                  glm::dvec3(view_to_world * glm::dvec4(px_to_vs(traced.context.image.view, glm::dvec2(at), at.z), 1)));
+        ++hits;
+    }
+    EXPECT_GT(hits, 1000U);
+}
+
+TEST(Sources, ThePictureStaysAsItWas)
+{
+    Traced           traced = trace_frame("builtin:corridor", {160, 90});
+    const Technique& hiz    = technique("hiz");
+    const FramePtr   frame  = prepared_frame(make_frame_buffers(*traced.stage), hiz, values_of(hiz), FrameSettings{});
+    run_frame(device(), *frame);
+    const Image before = read_shaded(device(), *frame);
+    ask(traced, "frame,layers,wider,cube,views,world");
+    run_frame(device(), *frame);
+    EXPECT_EQ(read_shaded(device(), *frame).values, before.values);
+}
+
+TEST(Sources, TheWorldAnswersEveryRay)
+{
+    for (const char* scene : {"builtin:corridor", "builtin:everything"}) {
+        SCOPED_TRACE(scene);
+        Traced        traced = trace_frame(scene, {160, 90});
+        const AllRays all    = judge(traced, ask(traced, "world"));
+        EXPECT_GT(all.meeting, 500U);
+        EXPECT_GE(*all.f1, 0.9995);
+    }
+}
+
+TEST(Sources, TheWorldGetsWhatTheFrameIsNotSureOf)
+{
+    for (const char* scene : {"builtin:corridor", "builtin:everything"}) {
+        SCOPED_TRACE(scene);
+        Traced             traced   = trace_frame(scene, {320, 180});
+        const AnsweredRays answered = ask(traced, "frame,world");
+        const SourceCounts frame    = count_source(answered.turns[0], traced.truth, traced.context.image);
+        const SourceCounts world    = count_source(answered.turns[1], traced.truth, traced.context.image);
+        EXPECT_GE(*judge(traced, answered).f1, 0.99);
+        EXPECT_GE(double(frame.certain_right), 0.99 * double(frame.certain_points));
+        EXPECT_GE(double(frame.certain_nothing_right), 0.99 * double(frame.certain_nothing));
+        EXPECT_LT(world.handed, frame.handed * 3 / 4);
+        EXPECT_EQ(world.handed, frame.handed - frame.certain_points - frame.certain_nothing);
+        EXPECT_GE(*judge(traced, answered).f1, *judge(traced, ask(traced, "frame")).f1);
+        // Rays with an uncertain answer are not lost.
+        const AnsweredRays lost = ask(traced, "frame,world", HandOn::lost);
+        EXPECT_LT(lost.turns[1].pixels.size(), world.handed);
+    }
+}
+
+TEST(Sources, FurtherFramesFindWhatTheFrameLacks)
+{
+    Traced             traced = trace_frame("builtin:corridor", {160, 90});
+    const SourceCounts frame  = count_source(ask(traced, "frame").turns[0], traced.truth, traced.context.image);
+    ASSERT_LT(frame.right, frame.meeting * 9 / 10);
+    for (const char* id : {"wider", "cube", "layers", "views"}) {
+        SCOPED_TRACE(id);
+        const AnsweredRays answered = ask(traced, std::string("frame,") + id, HandOn::lost);
+        const SourceCounts counts   = count_source(answered.turns[1], traced.truth, traced.context.image);
+        EXPECT_GT(counts.right, counts.meeting / 20);
+        EXPECT_GE(double(counts.right), 0.8 * double(counts.points));
+        EXPECT_GT(answered.turns[1].draw_ms, 0);
+        EXPECT_GT(answered.turns[1].megabytes, 0);
+    }
+}
+
+Camera camera_at(glm::dvec3 position_ws, glm::dvec3 target_ws)
+{
+    Camera camera;
+    camera.position_ws = position_ws;
+    camera.target_ws   = target_ws;
+    camera.fov_y_deg   = 90;
+    camera.near_m      = 0.5;
+    return camera;
+}
+
+TEST(Sources, FacesOfACubeMeetAtTheirEdges)
+{
+    const View centre = camera_to_view(camera_at({1, 2, 3}, {4, 1, -2}), {64, 64});
+    size_t     faces  = 0;
+    for (int face = 0; face < 6; ++face) {
+        const View       view   = face_view(centre, face, 64);
+        const glm::dmat4 to_own = view.world_to_view * glm::inverse(centre.world_to_view);
+        EXPECT_NEAR(glm::determinant(glm::dmat3(to_own)), 1, 1e-12); // turned, not mirrored
+        EXPECT_NEAR(glm::length(glm::dvec3(to_own[3])), 0, 1e-12);   // in the same place
+        glm::dvec3 forward(0);
+        forward[face / 2] = face % 2 == 0 ? 1 : -1;
+        EXPECT_NEAR(glm::dvec3(to_own * glm::dvec4(forward, 0)).z, -1, 1e-12);
+        ++faces;
+    }
+    EXPECT_EQ(faces, 6U);
+}
+
+TEST(Sources, ARayIsSeenWhereItIsInsideThePicture)
+{
+    const View       view     = camera_to_view(camera_at({0, 0, 0}, {0, 0, -1}), {100, 100});
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    // From 2 m ahead to the right: it leaves where x = 2.
+    OpenRay ray{0, {0, 0, -2}, {1, 0, 0}, 2, 0, infinity};
+    auto    part = seen_part(view, ray);
+    ASSERT_TRUE(part.has_value());
+    EXPECT_NEAR(part->t_in_m, 0, 1e-12);
+    EXPECT_NEAR(part->t_out_m, 2, 1e-12);
+    EXPECT_TRUE(part->leaves);
+    EXPECT_NEAR(to_input(view, ray, *part).delta_px_depth.x, 50, 1e-9);
+    // Straight ahead, it ends at infinity in the middle.
+    ray  = {0, {1, 0, -2}, {0, 0, -1}, 2, 0, infinity};
+    part = seen_part(view, ray);
+    ASSERT_TRUE(part.has_value());
+    EXPECT_FALSE(part->leaves);
+    EXPECT_EQ(to_input(view, ray, *part).end_status, TraceStatus::past_max_distance);
+    EXPECT_NEAR(to_input(view, ray, *part).delta_px_depth.x, -25, 1e-9);
+    // Toward the camera, the near plane ends it; from behind, it begins there.
+    ray  = {0, {0, 0, -2}, {0, 0, 1}, 2, 0, infinity};
+    part = seen_part(view, ray);
+    EXPECT_NEAR(part.value().t_out_m, 1.5, 1e-12);
+    ray  = {0, {0, 0, 4}, {0, 0, -1}, 4, 0, infinity};
+    part = seen_part(view, ray);
+    EXPECT_NEAR(part.value().t_in_m, 4.5, 1e-12);
+    // Away behind the camera, and what is clear already.
+    EXPECT_FALSE(seen_part(view, {0, {0, 0, 4}, {0, 0, 1}, 4, 0, infinity}).has_value());
+    EXPECT_FALSE(seen_part(view, {0, {0, 0, -2}, {1, 0, 0}, 2, 2.5, infinity}).has_value());
+}
+
+TEST(Sources, ListsAreChecked)
+{
+    const auto list = parse_sources("frame,layers:count=3:sides=front,world", "here");
+    ASSERT_EQ(list.size(), 3U);
+    EXPECT_EQ(list[1].source->id, "layers");
+    EXPECT_EQ(list[1].values, (ParameterValues{{"count", 3}, {"sides", 0}}));
+    for (const char* wrong :
+         {"", ",", "frame,wurld", "layers:count=9", "layers:count", "world:count=2", "layers:sides=left"})
+        EXPECT_THROW(parse_sources(wrong, "here"), SpecError) << wrong;
+}
+
+} // namespace
+} // namespace ssrlab::test
