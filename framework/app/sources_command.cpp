@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -18,16 +19,15 @@
 namespace ssrlab {
 namespace {
 
-constexpr std::array lost_classes = {TruthClass::hidden, TruthClass::off_screen, TruthClass::behind_camera,
-                                     TruthClass::facing_away};
+constexpr std::array meeting_classes = {TruthClass::visible, TruthClass::hidden, TruthClass::off_screen,
+                                        TruthClass::behind_camera, TruthClass::facing_away};
 
 std::string header()
 {
     std::string text =
         "scene,view,size,technique,surface,settings,sources,hand_on,place,source,handed,meeting,points,right,"
         "certain_points,certain_right,certain_nothing,certain_nothing_right";
-    for (const TruthClass cls : {TruthClass::visible, TruthClass::hidden, TruthClass::off_screen,
-                                 TruthClass::behind_camera, TruthClass::facing_away}) {
+    for (const TruthClass cls : meeting_classes) {
         const std::string_view name = truth_class_names[static_cast<size_t>(cls)];
         text += fmt::format(",handed_{},right_{}", name, name);
     }
@@ -46,8 +46,7 @@ std::string line_of(const std::string& identity, size_t place, const SourceTurn&
     std::string text = fmt::format("{},{},{},{},{},{},{},{},{},{},{}", identity, place, turn.source, counts.handed,
                                    counts.meeting, counts.points, counts.right, counts.certain_points,
                                    counts.certain_right, counts.certain_nothing, counts.certain_nothing_right);
-    for (const TruthClass cls : {TruthClass::visible, TruthClass::hidden, TruthClass::off_screen,
-                                 TruthClass::behind_camera, TruthClass::facing_away})
+    for (const TruthClass cls : meeting_classes)
         text += fmt::format(",{},{}", counts.handed_of_class[static_cast<size_t>(cls)],
                             counts.right_of_class[static_cast<size_t>(cls)]);
     return text + fmt::format(",{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{},{},{},{},{},{},{}\n", turn.draw_ms, turn.trace_ms,

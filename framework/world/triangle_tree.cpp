@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 namespace ssrlab {
@@ -106,7 +107,7 @@ struct Flattening {
     }
 };
 
-/// A tree of one leaf: its other child is empty, with bounds that no ray meets.
+/// A tree of one leaf: its other child is empty, and infinitely far away, where no ray meets it.
 void add_root_of_leaf(const BuiltNode& leaf, const RTCBuildPrimitive& bounds, Flattening& flattening)
 {
     constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -119,7 +120,7 @@ void add_root_of_leaf(const BuiltNode& leaf, const RTCBuildPrimitive& bounds, Fl
                                  count,
                                  glm::vec3(infinity),
                                  0,
-                                 glm::vec3(-infinity),
+                                 glm::vec3(infinity),
                                  0};
 }
 

@@ -1,5 +1,5 @@
 // A scene's triangles in a bounding-volume hierarchy, flattened into arrays that a shader walks
-// (shaders/world/walk.glsl). Built by Embree's rtcBuildBVH; alpha masks and textures lie beside it as words.
+// (shaders/world/walk.comp). Built by Embree's rtcBuildBVH; alpha masks and textures lie beside it as words.
 #pragma once
 
 #include "scene/scene.h"

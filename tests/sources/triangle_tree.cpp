@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -32,7 +33,7 @@ void walk(const TriangleTree& tree, uint32_t first, uint32_t count, glm::vec3 lo
     EXPECT_TRUE(glm::all(glm::greaterThanEqual(node.left_min_ws, low)) &&
                 glm::all(glm::lessThanEqual(node.left_max_ws, high)));
     walk(tree, node.left_first, node.left_count, node.left_min_ws, node.left_max_ws, depth + 1, walked);
-    if (node.right_min_ws.x <= node.right_max_ws.x)
+    if (std::isfinite(node.right_min_ws.x)) // else there is none
         walk(tree, node.right_first, node.right_count, node.right_min_ws, node.right_max_ws, depth + 1, walked);
 }
 

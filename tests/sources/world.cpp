@@ -3,6 +3,7 @@
 #include "gpu/device.h"
 #include "scene/scene.h"
 #include "truth/scene_bvh.h"
+#include "unit/truth_scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -97,6 +98,26 @@ TEST(World, MeetsWhatEmbreeMeets)
         EXPECT_EQ(differences.wrong, 0U);
         EXPECT_LE(differences.nearer_edge, 20U);
         EXPECT_GT(differences.same, 190000U);
+    }
+}
+
+// A tree of one leaf has a child that holds nothing.
+TEST(World, OfTwoTrianglesIsWalkedToItsEnd)
+{
+    Scene scene;
+    add_quad(scene, add_material(scene, {1, 1, 1}, 1), {-1, 0, -1}, {2, 0, 0}, {0, 0, 2});
+    std::vector<WorldRay> rays;
+    for (const float x : {-1.0F, 1.0F})
+        for (const float y : {-1.0F, 1.0F})
+            for (const float z : {-1.0F, 1.0F}) rays.push_back({{0.1F, 2 * y, 0.2F}, 0, {0.1F * x, -y, 0.1F * z}, far_m});
+    const size_t meeting = rays.size();
+    for (size_t i = 0; i < meeting; ++i)
+        rays.push_back({rays[i].origin_ws, 0, -rays[i].direction_ws, far_m}); // away from it
+    const WorldTrace trace = trace_world(device(), *upload_world(device(), scene), rays);
+    for (size_t i = 0; i < meeting; ++i) {
+        ASSERT_LT(trace.hits[i].triangle, 2U) << i;
+        EXPECT_NEAR(trace.hits[i].t, 2, 1e-5);
+        EXPECT_EQ(trace.hits[meeting + i].triangle, no_triangle) << i;
     }
 }
 
