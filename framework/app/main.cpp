@@ -222,8 +222,7 @@ int main(int argc, char** argv)
     planned->callback([&] { command = [&] { return print_plan(common, plan); }; });
 
     SourcesOptions sources;
-    auto*          asked = app.add_subcommand(
-                 "sources", "Measure which source answers each ray, how rightly and at what price");
+    auto* asked = app.add_subcommand("sources", "Measure which source answers each ray, how rightly and at what price");
     add_scene_options(*asked, sources.picture);
     add_default_technique(*asked, sources.picture);
     asked

@@ -127,14 +127,14 @@ namespace {
 constexpr double back_px = 2; // a ray is followed again from so many pixels before where it was lost
 
 RayAnswer to_answer(const SourceContext& context, const GBufferImage& image, const OpenRay& ray, const SeenPart& part,
-                    const RayInput& input, const RayOutcome& outcome, bool in_sight, bool all_layers)
+                    const RayInput& input, const RayOutcome& outcome, bool in_sight)
 {
     RayAnswer        answer{.kind = AnswerKind::open, .clear_m = ray.clear_m};
     const glm::dvec3 at = input.origin_px_depth + outcome.t * input.delta_px_depth;
     if (outcome.status == TraceStatus::hit) {
         const GBufferImage& met = outcome.hit_layer == 0 ? image : image.layers[outcome.hit_layer - 1U];
         answer.kind             = AnswerKind::point;
-        answer.certain          = (in_sight || all_layers) && neighbours_agree(met, outcome.hit_pixel);
+        answer.certain          = in_sight && neighbours_agree(met, outcome.hit_pixel);
         answer.point_ws         = glm::dvec3(glm::inverse(image.view.world_to_view) *
                                              glm::dvec4(px_to_vs(image.view, glm::dvec2(at), at.z), 1));
         answer.light            = light_of(met, outcome.hit_pixel);
@@ -212,9 +212,8 @@ GBufferTrace trace_in_gbuffer(SourceContext& context, const GBufferPtr& gbuffer,
     const std::vector<RayOutcome> outcomes = trace_timed(context.stage.gpu, *lab, inputs, trace.ms);
     const bool                    in_sight = start == RayStart::in_sight && stays_in_sight(context, settings);
     for (size_t k = 0; k < inputs.size(); ++k) {
-        const size_t ray = asked[k];
-        trace.answers[ray] =
-            to_answer(context, image, rays[ray], parts[k], inputs[k], outcomes[k], in_sight, settings.layers > 1);
+        const size_t ray     = asked[k];
+        trace.answers[ray]   = to_answer(context, image, rays[ray], parts[k], inputs[k], outcomes[k], in_sight);
         trace.status[ray]    = outcomes[k].status;
         trace.left_at_m[ray] = parts[k].t_out_m;
     }

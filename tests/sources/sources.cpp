@@ -104,9 +104,10 @@ TEST(Sources, TheWorldGetsWhatTheFrameIsNotSureOf)
     }
 }
 
+// Under the board lies what only another layer or place shows, and at its sides what a wider picture does.
 TEST(Sources, FurtherFramesFindWhatTheFrameLacks)
 {
-    Traced             traced = trace_frame("builtin:corridor", {160, 90});
+    Traced             traced = trace_frame("builtin:hidden_shelf", {160, 90});
     const SourceCounts frame  = count_source(ask(traced, "frame").turns[0], traced.truth, traced.context.image);
     ASSERT_LT(frame.right, frame.meeting * 9 / 10);
     for (const char* id : {"wider", "cube", "layers", "views"}) {
@@ -114,7 +115,7 @@ TEST(Sources, FurtherFramesFindWhatTheFrameLacks)
         const AnsweredRays answered = ask(traced, std::string("frame,") + id, HandOn::lost);
         const SourceCounts counts   = count_source(answered.turns[1], traced.truth, traced.context.image);
         EXPECT_GT(counts.right, counts.meeting / 20);
-        EXPECT_GE(double(counts.right), 0.8 * double(counts.points));
+        EXPECT_GE(double(counts.right), 0.9 * double(counts.points));
         EXPECT_GT(answered.turns[1].draw_ms, 0);
         EXPECT_GT(answered.turns[1].megabytes, 0);
     }

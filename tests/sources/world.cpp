@@ -109,7 +109,8 @@ TEST(World, OfTwoTrianglesIsWalkedToItsEnd)
     std::vector<WorldRay> rays;
     for (const float x : {-1.0F, 1.0F})
         for (const float y : {-1.0F, 1.0F})
-            for (const float z : {-1.0F, 1.0F}) rays.push_back({{0.1F, 2 * y, 0.2F}, 0, {0.1F * x, -y, 0.1F * z}, far_m});
+            for (const float z : {-1.0F, 1.0F})
+                rays.push_back({{0.1F, 2 * y, 0.2F}, 0, {0.1F * x, -y, 0.1F * z}, far_m});
     const size_t meeting = rays.size();
     for (size_t i = 0; i < meeting; ++i)
         rays.push_back({rays[i].origin_ws, 0, -rays[i].direction_ws, far_m}); // away from it
