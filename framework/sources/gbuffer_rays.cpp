@@ -3,6 +3,8 @@
 #include "core/pixel_index.h"
 #include "trace/lab_passes.h"
 
+#include <vulkan/vulkan_format_traits.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -117,9 +119,14 @@ bool stays_in_sight(const SourceContext& context, const TraceSettings& settings)
 
 double megabytes_of(const GBuffer& gbuffer)
 {
-    // Depth twice, normal 16, radiance, highlight and material 8 each, object, gradient, solid and dielectric 4 each.
-    constexpr double bytes_a_pixel = 4 + 16 + 3 * 8 + 4 * 4;
-    return (bytes_a_pixel * double(pixel_count(gbuffer.view.size_px)) + double(gbuffer.depth.cells.bytes)) / 1e6;
+    // The depth attachment that draws it is not among its images.
+    double bytes = double(gbuffer.depth.cells.bytes) +
+                   double(vk::blockSize(vk::Format::eD32Sfloat)) * double(pixel_count(gbuffer.view.size_px));
+    for (const GpuImage* image :
+         {&gbuffer.normal, &gbuffer.material, &gbuffer.dielectric, &gbuffer.radiance, &gbuffer.highlight,
+          &gbuffer.emission, &gbuffer.object, &gbuffer.gradient, &gbuffer.solid})
+        bytes += double(vk::blockSize(image->format)) * double(pixel_count(image->size_px));
+    return bytes / 1e6;
 }
 
 namespace {
