@@ -83,12 +83,7 @@ std::vector<VisitReport> describe(const Setup& setup, const RayInput& ray, const
 {
     std::vector<VisitReport> reports;
     const RayOutcome&        outcome = recorded.outcome;
-    for (const RayVisit& visit : recorded.visits) {
-        // The result reads its pixel again.
-        const bool again = !reports.empty() && visit.level == 0 && visit.t_in < 0 &&
-                           visit.pixel == reports.back().visit.pixel && reports.back().visit.level == 0;
-        if (!again) reports.push_back(describe(setup, ray, visit));
-    }
+    for (const RayVisit& visit : recorded.visits) reports.push_back(describe(setup, ray, visit));
     for (size_t i = 0; i < reports.size(); ++i) {
         const bool last = i + 1 == reports.size(), leaf = reports[i].visit.level == 0;
         const bool ends = last && leaf && has_place(outcome.status) && reports[i].visit.pixel == outcome.hit_pixel;
