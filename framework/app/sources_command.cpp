@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/size.h"
 #include "harness/choice.h"
+#include "harness/csv.h"
 #include "harness/experiment.h"
 #include "sources/answer_rays.h"
 #include "truth/scene_truth.h"
@@ -15,6 +16,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 namespace ssrlab {
 namespace {
@@ -22,37 +24,52 @@ namespace {
 constexpr std::array meeting_classes = {TruthClass::visible, TruthClass::hidden, TruthClass::off_screen,
                                         TruthClass::behind_camera, TruthClass::facing_away};
 
-std::string header()
+/// A row of the file: columns and their texts, in order.
+using Row = std::vector<std::pair<std::string, std::string>>;
+
+std::string line_of(const Row& row, std::string Row::value_type::*part)
 {
-    std::string text =
-        "scene,view,size,technique,surface,settings,sources,hand_on,place,source,handed,meeting,points,right,"
-        "certain_points,certain_right,certain_nothing,certain_nothing_right";
-    for (const TruthClass cls : meeting_classes) {
-        const std::string_view name = truth_class_names[static_cast<size_t>(cls)];
-        text += fmt::format(",handed_{},right_{}", name, name);
-    }
-    return text + ",draw_ms,trace_ms,shade_ms,merge_ms,megabytes,node_visits,all_rays,all_meeting,all_recall,all_"
-                  "precision,all_f1,device";
+    CsvRecord fields;
+    for (const auto& entry : row) fields.push_back(entry.*part);
+    return csv_line(fields);
 }
 
-std::string csv_cell(const std::string& text) { return text.find(',') == std::string::npos ? text : '"' + text + '"'; }
+std::string text_of(double value) { return fmt::format("{:.4g}", value); }
+std::string text_of(size_t value) { return std::to_string(value); }
+std::string text_of(std::optional<double> value) { return value ? fmt::format("{:.6g}", *value) : ""; }
 
-std::string optional_text(std::optional<double> value) { return value ? fmt::format("{:.6g}", *value) : ""; }
-
-/// One source's line of the file. so_far: the merged answers of the list up to it.
-std::string line_of(const std::string& identity, size_t place, const SourceTurn& turn, const SourceCounts& counts,
-                    const AllRays& so_far, const std::string& device)
+/// One source's columns. so_far: the merged answers of the list up to it.
+void add_source(Row& row, size_t place, const SourceTurn& turn, const SourceCounts& counts, const AllRays& so_far)
 {
-    std::string text = fmt::format("{},{},{},{},{},{},{},{},{},{},{}", identity, place, turn.source, counts.handed,
-                                   counts.meeting, counts.points, counts.right, counts.certain_points,
-                                   counts.certain_right, counts.certain_nothing, counts.certain_nothing_right);
-    for (const TruthClass cls : meeting_classes)
-        text += fmt::format(",{},{}", counts.handed_of_class[static_cast<size_t>(cls)],
-                            counts.right_of_class[static_cast<size_t>(cls)]);
-    return text + fmt::format(",{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{},{},{},{},{},{},{}\n", turn.draw_ms, turn.trace_ms,
-                              turn.shade_ms, turn.merge_ms, turn.megabytes, turn.node_visits, so_far.rays,
-                              so_far.meeting, optional_text(so_far.recall), optional_text(so_far.precision),
-                              optional_text(so_far.f1), csv_cell(device));
+    const auto add = [&](std::string column, const auto& value) {
+        row.emplace_back(std::move(column), text_of(value));
+    };
+    add("place", place);
+    row.emplace_back("source", turn.source);
+    add("handed", counts.handed);
+    add("meeting", counts.meeting);
+    add("points", counts.points);
+    add("right", counts.right);
+    add("certain_points", counts.certain_points);
+    add("certain_right", counts.certain_right);
+    add("certain_nothing", counts.certain_nothing);
+    add("certain_nothing_right", counts.certain_nothing_right);
+    for (const TruthClass cls : meeting_classes) {
+        const auto index = static_cast<size_t>(cls);
+        add(fmt::format("handed_{}", truth_class_names[index]), counts.handed_of_class[index]);
+        add(fmt::format("right_{}", truth_class_names[index]), counts.right_of_class[index]);
+    }
+    add("draw_ms", turn.draw_ms);
+    add("trace_ms", turn.trace_ms);
+    add("shade_ms", turn.shade_ms);
+    add("merge_ms", turn.merge_ms);
+    add("megabytes", turn.megabytes);
+    add("node_visits", static_cast<size_t>(turn.node_visits));
+    add("all_rays", so_far.rays);
+    add("all_meeting", so_far.meeting);
+    add("all_recall", so_far.recall);
+    add("all_precision", so_far.precision);
+    add("all_f1", so_far.f1);
 }
 
 double percent(std::optional<double> share) { return share ? 100 * *share : 0; }
@@ -73,12 +90,12 @@ void print_line(const SourceTurn& turn, const SourceCounts& counts, const AllRay
                   .c_str());
 }
 
-void append(const std::string& file, const std::string& lines)
+void append(const std::string& file, const std::vector<Row>& rows)
 {
     const bool    fresh = !std::filesystem::exists(file) || std::filesystem::file_size(file) == 0;
     std::ofstream stream(file, std::ios::app);
-    if (fresh) stream << header() << '\n';
-    stream << lines;
+    if (fresh) stream << line_of(rows.front(), &Row::value_type::first);
+    for (const Row& row : rows) stream << line_of(row, &Row::value_type::second);
     if (!stream.flush()) throw_failure("{}: could not be written", file);
 }
 
@@ -114,13 +131,17 @@ int compare_sources(const CommonOptions& common, const SourcesOptions& options)
                           technique.id, choice.settings.trace.surface)
                   .c_str());
     for (size_t l = 0; l < lists.size(); ++l) {
-        const AnsweredRays answered = answer_rays(context, lists[l], hand_on);
-        const std::string  identity =
-            fmt::format("{},{},{},{},{},{},{},{}", csv_cell(picture.scene), csv_cell(picture.view),
-                        size_text(stage.view.size_px), technique.id, choice.settings.trace.surface, csv_cell(settings),
-                        csv_cell(options.lists[l]), options.hand_on);
+        const AnsweredRays     answered = answer_rays(context, lists[l], hand_on);
+        const Row              identity = {{"scene", picture.scene},
+                                           {"view", picture.view},
+                                           {"size", size_text(stage.view.size_px)},
+                                           {"technique", technique.id},
+                                           {"surface", choice.settings.trace.surface},
+                                           {"settings", settings},
+                                           {"sources", options.lists[l]},
+                                           {"hand_on", options.hand_on}};
+        std::vector<Row>       rows;
         std::vector<RayAnswer> so_far(answered.answers.size());
-        std::string            lines;
         for (size_t place = 0; place < answered.turns.size(); ++place) {
             const SourceTurn& turn = answered.turns[place];
             for (size_t k = 0; k < turn.pixels.size(); ++k)
@@ -128,9 +149,11 @@ int compare_sources(const CommonOptions& common, const SourcesOptions& options)
             const SourceCounts counts = count_source(turn, truth, context.image);
             const AllRays      all    = compare_all_rays(so_far, truth, context.image);
             print_line(turn, counts, all);
-            lines += line_of(identity, place, turn, counts, all, stage.gpu.info.name);
+            Row& row = rows.emplace_back(identity);
+            add_source(row, place, turn, counts, all);
+            row.emplace_back("device", stage.gpu.info.name);
         }
-        if (!picture.output.empty()) append(picture.output, lines);
+        if (!picture.output.empty()) append(picture.output, rows);
     }
     return report_messages(stage);
 }

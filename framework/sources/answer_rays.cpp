@@ -39,11 +39,6 @@ bool is_handed_on(const RayAnswer& answer, HandOn hand_on)
     return answer.kind == AnswerKind::open || (hand_on == HandOn::uncertain && !answer.certain);
 }
 
-std::string percent_of(size_t part, size_t whole)
-{
-    return fmt::format("{:.3g} %", whole > 0 ? 100 * double(part) / double(whole) : 0);
-}
-
 } // namespace
 
 SourceContext make_source_context(Stage& stage, const Technique& technique, const ParameterValues& values,
@@ -72,18 +67,14 @@ AnsweredRays answer_rays(SourceContext& context, std::span<const ListedSource> s
     AnsweredRays         result;
     result.answers.resize(context.image.depth.size());
     for (const OpenRay& ray : rays) result.answers[ray.pixel].kind = AnswerKind::open;
-    const size_t all = rays.size();
     for (const ListedSource& listed : sources) {
         const Stopwatch choosing;
         std::erase_if(rays, [&](const OpenRay& ray) { return !is_handed_on(result.answers[ray.pixel], hand_on); });
         for (OpenRay& ray : rays) ray.clear_m = result.answers[ray.pixel].clear_m;
         const double chosen_ms = 1000 * choosing.seconds();
-        result.reasons.push_back(fmt::format("{}: {} of {} rays have no {}answer", listed.text,
-                                             percent_of(rays.size(), all), all,
-                                             hand_on == HandOn::uncertain ? "certain " : ""));
-        context.parameters = listed.values;
-        SourceTurn turn    = rays.empty() ? SourceTurn{} : listed.source->answer(context, rays);
-        turn.source        = listed.text;
+        context.parameters     = listed.values;
+        SourceTurn turn        = rays.empty() ? SourceTurn{} : listed.source->answer(context, rays);
+        turn.source            = listed.text;
         const Stopwatch merging;
         for (size_t k = 0; k < rays.size(); ++k) {
             turn.pixels.push_back(rays[k].pixel);

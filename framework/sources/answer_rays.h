@@ -14,9 +14,8 @@ enum class HandOn : uint8_t {
 inline constexpr std::array<std::string_view, 2> hand_on_names = {"lost", "uncertain"};
 
 struct AnsweredRays {
-    std::vector<RayAnswer>   answers; // of each pixel
-    std::vector<SourceTurn>  turns;   // of each source
-    std::vector<std::string> reasons; // why each source was asked or not, with the number that decided
+    std::vector<RayAnswer>  answers; // of each pixel
+    std::vector<SourceTurn> turns;   // of each source
 };
 
 /// Traces what the stage shows once for its counts, and twice for its times. Throws Failure for a frame of another
