@@ -8,7 +8,7 @@
 namespace ssrlab {
 
 int list_everything(const CommonOptions& common, bool json);
-/// docs/reference/settings.md: every setting and parameter with its range, default and meaning.
+/// Prints every setting and parameter with its range, default and meaning, as Markdown tables.
 int list_as_markdown(const CommonOptions& common);
 /// A technique, a surface model, or a setting of [trace] and [passes].
 int show_entry(const CommonOptions& common, const std::string& name, bool json);
@@ -16,7 +16,7 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options);
 int write_gbuffer(const CommonOptions& common, const PictureOptions& options);
 /// Plots, derived rows and report of a results folder, by the plot script.
 int plot_results(const std::string& folder);
-/// docs/reference/columns.md: every column of results.csv.
+/// Prints every column of a results folder with its unit and definition, as Markdown tables.
 int print_measures(const CommonOptions& common);
 
 } // namespace ssrlab

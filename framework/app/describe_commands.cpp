@@ -170,10 +170,9 @@ std::string row_of(const Parameter& parameter)
 
 constexpr const char* markdown_introduction = R"(# Settings and parameters
 
-`ssrlab list --markdown` writes this page; do not edit it. Settings belong to the experiment and are
-equal for all techniques: tables `[trace]` and `[passes]` of a specification. Parameters belong to a
-technique: its table `[techniques.NAME]`. On the command line both are `-p NAME=VALUE`, and both are
-columns of `results.csv`.
+Settings belong to the experiment and are equal for all techniques: tables `[trace]` and `[passes]`
+of a specification. Parameters belong to a technique: its table `[techniques.NAME]`. On the command
+line both are `-p NAME=VALUE`, and both are columns of `results.csv`.
 )";
 
 } // namespace

@@ -175,7 +175,7 @@ int main(int argc, char** argv)
     auto* list = app.add_subcommand("list", "List techniques, surface models, scenes, settings and devices");
     list->add_flag("--json", json, "As JSON, with everything that show prints");
     bool markdown = false;
-    list->add_flag("--markdown", markdown, "Settings and parameters alone, as docs/reference/settings.md has them");
+    list->add_flag("--markdown", markdown, "Settings and parameters alone, as Markdown tables");
     list->callback(
         [&] { command = [&] { return markdown ? list_as_markdown(common) : list_everything(common, json); }; });
     auto* show = app.add_subcommand("show", "Describe a technique, a surface model or a setting");

@@ -13,15 +13,14 @@ namespace {
 
 constexpr const char* introduction = R"(# Columns
 
-`ssrlab measures` writes this page; do not edit it. `results.csv` has one row per run, in the columns
-below. The settings and parameters of the run are columns, too: [settings.md](settings.md). A field
-without a value is empty, never NaN.
+`results.csv` has one row per run, in the columns below. The settings and parameters of the run are
+columns, too (`ssrlab list --markdown`). A field without a value is empty, never NaN.
 
 | in a results folder | |
 |---|---|
 | `results.csv` | one row per run |
 | `sequence_summary.csv` | for an experiment with several frames: one row per run without its frame, in the columns of the last table |
-| `samples.csv` | every timed frame: run_id, round, pass, ms, cpu_ms; [measuring](../explanation/measuring.md) says what a round is |
+| `samples.csv` | every timed frame: run_id, round, pass, ms, cpu_ms; docs/explanation/measuring.md says what a round is |
 | `passes.csv` | the passes of each run's frame: whether each ran, how long it took, and why |
 | `environment.json` | device, driver, commit, command line, seed, specification, and hashes of everything that decides a result |
 | `pictures/` | per run: the reflection, right and wrong rays in false colours, and the work per ray |
@@ -42,7 +41,7 @@ int print_measures(const CommonOptions& common)
     everything.known_settings = all_settings(catalogue);
     for (const Technique& technique : techniques) everything.techniques.push_back({technique.id, {}, {}, {}});
 
-    // Settings and parameters have a page of their own.
+    // Settings and parameters are listed by `ssrlab list --markdown`.
     std::vector<std::string> elsewhere;
     for (const Setting& setting : everything.known_settings) elsewhere.push_back(setting.name);
     for (const Technique& technique : techniques)

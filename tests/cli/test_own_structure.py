@@ -1,6 +1,6 @@
-"""A structure outside the source tree and a technique that reads it, as docs/how-to/write_a_structure.md shows them."""
+"""A structure outside the source tree and a technique that reads it: those of docs/how-to/write_a_structure.md."""
 import os
-import re
+import shutil
 
 from support import SOURCE, Case, main
 
@@ -19,15 +19,8 @@ max_repeats = 1
 class Test(Case):
     def setUp(self):
         super().setUp()
-        with open(os.path.join(SOURCE, "docs/how-to/write_a_structure.md"), encoding="utf-8") as file:
-            self.blocks = dict(re.findall(r"```\w+\n(?:#|//) (mine/\S+\.\w+)\n(.*?)```", file.read(), re.S))
-        for name, text in self.blocks.items():
-            self.write(name, text)
-
-    def test_examples_are_found(self):
-        self.assertEqual(set(self.blocks), {f"mine/{name}" for name in (
-            "tile_fronts/structure.toml", "tile_fronts/build.comp", "tile_fronts/read.glsl",
-            "tile_walk/technique.toml", "tile_walk/trace.glsl")})
+        for folder in ("tile_fronts", "tile_walk"):
+            shutil.copytree(os.path.join(SOURCE, "tests/techniques", folder), self.path(f"mine/{folder}"))
 
     def test_it_is_listed_and_shown(self):
         self.ssrlab("--techniques", "mine", "list", says=["tile_walk", "reads a pixel only"])
@@ -53,11 +46,17 @@ class Test(Case):
         self.assertLess(float(own["depth_fetches_mean"]), float(walk["depth_fetches_mean"]))
         self.assertEqual({row["depth_pyramid.kind"] for row in rows if row["technique"] == "hiz"}, {"occupancy", "nearest"})
 
+    def misspell(self, name, right, wrong):
+        with open(self.path(f"mine/{name}"), encoding="utf-8") as file:
+            text = file.read()
+        self.assertIn(right, text)
+        self.write(f"mine/{name}", text.replace(right, wrong))
+
     def test_mistakes_name_the_file_and_line(self):
-        self.write("mine/tile_fronts/build.comp", self.blocks["mine/tile_fronts/build.comp"].replace("load_cell(pixel", "load_clel(pixel"))
+        self.misspell("tile_fronts/build.comp", "load_cell(pixel", "load_clel(pixel")
         self.refused("--techniques", "mine", "render", "builtin:stairs", "-t", "tile_walk", "--size", "64x36", "-o", "a.png", code=2,
                      says=["mine/tile_fronts/build.comp:16", "load_clel"])
-        self.write("mine/tile_walk/technique.toml", self.blocks["mine/tile_walk/technique.toml"].replace('["tile_fronts"]', '["tile_front"]'))
+        self.misspell("tile_walk/technique.toml", '["tile_fronts"]', '["tile_front"]')
         self.refused("--techniques", "mine", "list", code=2,
                      says=["mine/tile_walk/technique.toml:3", "unknown structure 'tile_front'", "did you mean 'tile_fronts'"])
 
