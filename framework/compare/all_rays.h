@@ -25,15 +25,15 @@ inline constexpr double least_footprint_sine = 0.1;
 /// meets_geometry().
 double allowed_distance_m(const SceneTruth& truth, const GBufferImage& gbuffer, size_t pixel);
 
-/// Within the maximum distance.
+/// Returns whether the class means a point within the maximum distance.
 bool meets_geometry(TruthClass cls);
 
 bool is_right(const RayAnswer& answer, const SceneTruth& truth, const GBufferImage& gbuffer, size_t pixel);
 
-/// Shares are empty where there is nothing to count.
+/// Measures over all rays; a share is nullopt if there is nothing to count.
 struct AllRays {
     size_t                rays    = 0; // traced
-    size_t                meeting = 0; // that truly meet geometry
+    size_t                meeting = 0; // of those, rays that truly meet geometry
     size_t                points  = 0; // answered by a point
     size_t                right   = 0;
     std::optional<double> recall, precision, f1;
@@ -42,10 +42,10 @@ struct AllRays {
 /// answers: one per pixel, row-major.
 AllRays compare_all_rays(std::span<const RayAnswer> answers, const SceneTruth& truth, const GBufferImage& gbuffer);
 
-/// What one source did, before its answers were merged.
+/// The answers of one source, before merging.
 struct SourceCounts {
     size_t handed         = 0; // rays that it was asked about
-    size_t meeting        = 0; // of those, that truly meet geometry
+    size_t meeting        = 0; // of those, rays that truly meet geometry
     size_t points         = 0; // answered by a point
     size_t right          = 0;
     size_t certain_points = 0, certain_right = 0;

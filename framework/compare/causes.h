@@ -8,18 +8,18 @@ namespace ssrlab {
 /// A ray that ends on its own object at a smaller angle above its tangent plane hits itself.
 inline constexpr double self_hit_sine = 0.01;
 
-/// A ray is wrong if it does not find a visible true point within 1 px, or if it hits where no visible point is (a hidden one counts where it
-/// is met in a layer behind the first). A ray that ends before the true point is judged by the pixel where it ends, one that passes a visible
-/// true point by the pixel that shows this point. The cause is the first of these that applies.
+/// A ray is wrong if it misses a visible true point by more than 1 px, or hits where no visible point is (a hidden one
+/// counts if met in a layer behind the first). A ray that ends before the true point is judged by the pixel where it
+/// ends, one that passes a visible true point by the pixel that shows it. The cause is the first that applies.
 enum class WrongCause : uint8_t {
     right = 0, // or not traced
     own_surface =
-        1, // the mirror direction leads below the plane of the ray's own pixel, or the ray ends on its own object in that plane
+        1, // the mirror direction leads below the plane of the ray's pixel, or the ray ends on its own object there
     not_shown  = 2, // it passed its true point, which the frame does not show
-    thin       = 3, // neither the pixel that should show the true point nor one of the eight around it holds it
-    silhouette = 4, // that pixel holds something else than its neighbour, or stands before or behind one
+    thin       = 3, // no pixel within 3 x 3 of the true point's holds it
+    silhouette = 4, // a neighbour of that pixel lies far off its plane, or holds the true point
     edge       = 5, // two planes meet there
-    stopped    = 6, // it was stopped, at a pixel in the midst of a plane
+    stopped    = 6, // stopped in the middle of a plane
     other      = 7,
 };
 inline constexpr std::array<std::string_view, 8> wrong_cause_names = {

@@ -1,7 +1,7 @@
-// Pictures for people: exposure, display transform, and pictures side by side. Measurements use linear radiance instead.
+// Pictures for people: exposure, display transform, pictures side by side. Measurements use linear radiance instead.
 //
-// agx is the base look of AgX (Troy Sobotka 2022) in the fit by B. Wrensch 2023, "Minimal AgX Implementation": the inset matrix, log2
-// exposure over 16.5 stops around middle grey, a polynomial of degree 6 for the contrast curve, the outset matrix, a power of 2.2.
+// agx is the base look of AgX (Troy Sobotka 2022) in the fit by B. Wrensch 2023, "Minimal AgX Implementation": inset
+// matrix, log2 exposure over 16.5 stops around grey, contrast polynomial of degree 6, outset matrix, a power of 2.2.
 #pragma once
 
 #include "core/image.h"
@@ -22,7 +22,7 @@ Image to_display(const Image& radiance, const Display& display);
 
 /// Returns the mean of `count` pictures from their sum.
 Image mean_of(Image sum, int count);
-/// sum + image; `sum` may be empty.
+/// Adds the image to `sum`, which may be empty.
 void add_to(Image& sum, const Image& image);
 
 struct LabelledImage {

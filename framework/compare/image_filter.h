@@ -18,7 +18,7 @@ struct Plane {
 using Mask = std::vector<uint8_t>;
 inline bool is_inside(const Mask& mask, size_t pixel) { return mask.empty() || mask[pixel] != 0; }
 
-/// sum over dx, dy of kernel_x[dx] kernel_y[dy] plane(x + dx, y + dy); odd kernels; the border pixel continues outside.
+/// Returns sum over dx, dy of kernel_x[dx] kernel_y[dy] plane(x + dx, y + dy), with odd kernels and clamped borders.
 Plane filter_separable(const Plane& plane, std::span<const float> kernel_x, std::span<const float> kernel_y);
 
 float srgb_to_linear(float value);

@@ -24,10 +24,10 @@ struct Measure {
     std::string_view source;
 };
 
-/// In the order of the CSV's columns.
+/// Returns all measures in the order of the CSV's columns.
 std::span<const Measure> measures();
 
-/// By Measure::name. nullopt: no value here (no rays, no truth, identical images …); never NaN.
+/// Values by Measure::name; nullopt if there is none (no rays, no truth, identical images …), never NaN.
 using MeasureValues = std::map<std::string_view, std::optional<double>>;
 
 /// Returns part / whole; nullopt if `whole` is 0.

@@ -24,9 +24,9 @@ Image agreement_picture(const TraceResult& tested, const SceneTruth& scene_truth
 /// edge green, stopped orange-red, other white; right grey.
 Image causes_picture(const TraceResult& tested, const SceneTruth& scene_truth, const GBufferImage& gbuffer);
 
-/// Shows which source answered each ray rightly (compare/all_rays.h), by its place in the list: first green, second light
-/// blue, third yellow, fourth pink, further ones orange. A wrong point is orange-red; a ray without an answer is white if
-/// it meets geometry, else grey.
+/// Shows which source answered each ray rightly (compare/all_rays.h), by its place in the list: green, light blue,
+/// yellow, pink, then orange. A wrong point is orange-red; a ray without an answer is white if it meets geometry, else
+/// grey.
 Image sources_picture(std::span<const RayAnswer> answers, const SceneTruth& scene_truth, const GBufferImage& gbuffer);
 
 /// Shows the fetches of each ray (steps, if fetches were not counted) on a fixed logarithmic scale: black 0, dark

@@ -7,7 +7,7 @@
 
 namespace ssrlab {
 
-/// Roughness by row, square root of the cosine by column, both from 0 to 1, DFG_TABLE_ENTRIES of each.
+/// Returns the table: roughness by row, square root of the cosine by column, DFG_TABLE_ENTRIES of each from 0 to 1.
 /// A surface with reflectance f0 at normal incidence has the directional albedo f0 * x + y.
 const std::vector<glm::vec2>& dfg_table();
 

@@ -1,4 +1,4 @@
-// What a frame does with hits: it plans which passes it needs, compiles them, and runs them.
+// A frame turns hits into a picture: it plans the passes that it needs, compiles them, and runs them.
 //
 //     FramePlan  plan  = plan_frame(gpu, catalogue, lab, buffers, settings); // traces once where passes depend on hits
 //     FramePtr   frame = make_frame(gpu, lab, buffers, plan);
@@ -16,60 +16,60 @@
 
 namespace ssrlab {
 
-/// A frame's defaults are what measures best (docs/explanation/surfaces.md); TraceSettings alone are the simplest contract.
+/// The defaults of frames are those that measure best (docs/explanation/effects.md).
 struct FrameSettings {
     TraceSettings   trace        = {.behind = Behind::stop, .surface = "plane_solid"};
-    std::string     reprojection = "plane";         // id of the strategy
-    ParameterValues passes = default_pass_values(); // by the names of pass_parameters(), and of the strategy's own
-                                                    // parameters those that are not at their default
+    std::string     reprojection = "plane";               // id of the strategy
+    ParameterValues passes       = default_pass_values(); // of pass_parameters(), and those parameters of the strategy
+                                                          // that are not at their default
 
     bool operator==(const FrameSettings&) const = default;
 };
 
-/// Milliseconds by GPU timestamps, of the passes that ran, in their order.
+/// GPU times in milliseconds of the passes that ran, in their order.
 struct FrameTimes {
     std::vector<std::pair<std::string, double>> passes_ms;
 
-    double of(const std::string& pass) const; // 0 when it did not run
+    double of(const std::string& pass) const; // 0 if it did not run
     double total_ms() const;
 };
 
-struct FrameBuffers; // what passes write: allocated once per G-buffer, shared by all frames on it
+struct FrameBuffers; // targets of passes: allocated once per G-buffer, shared by all frames on it
 struct ReadyFrame;   // the pipelines of one run
 
 using FrameBuffersPtr = std::shared_ptr<FrameBuffers>;
 using FramePtr        = std::shared_ptr<ReadyFrame>;
 
-/// drawing: what draws the G-buffer; null: it was made elsewhere.
+/// Return the targets of passes on a G-buffer. `drawing`: what draws it; null if it was made elsewhere.
 FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer, const DrawingPtr& drawing = nullptr);
 FrameBuffersPtr make_frame_buffers(Gpu& gpu, const DrawingPtr& drawing);
 
-/// Counts the G-buffer and, if passes depend on hits, traces once. history: what the frame before left, or null for a
-/// single frame. Throws SpecError for a reprojection strategy that the catalogue lacks.
+/// Returns the plan. Counts the G-buffer and, if passes depend on hits, traces once. `history`: what the frame before
+/// left; null for a single frame. Throws SpecError for an unknown reprojection strategy.
 FramePlan plan_frame(Gpu& gpu, const Catalogue& catalogue, const LabPtr& lab, const FrameBuffersPtr& buffers,
                      const FrameSettings& settings, const FrameHistoryPtr& history = nullptr);
-/// Compiles what the plan needs. Throws SpecError with the technique's file and line when its shader does not compile.
+/// Compiles the planned passes. Throws SpecError with file and line if the technique's shader does not compile.
 FramePtr make_frame(Gpu& gpu, const LabPtr& lab, const FrameBuffersPtr& buffers, const FramePlan& plan,
                     const FrameHistoryPtr& history = nullptr);
 
-/// On a device that only compiles (gpu/compiled.h): every pipeline of a frame at 1080p, as if every pixel reflected, one
-/// half of them as mirrors and one half with a roughness of a quarter, and every ray hit. There is no scene: what draws
-/// it is left out.
+/// Returns every pipeline of a 1080p frame on a device that only compiles (gpu/compiled.h), as if every pixel
+/// reflected, half of them as mirrors and half with roughness 0.25, and every ray hit. Passes that draw the scene are
+/// left out, since there is none.
 std::vector<CompiledPtr> compile_frame(Gpu& gpu, const Catalogue& catalogue, const Technique& technique,
                                        const ParameterValues& values, const FrameSettings& settings);
 
-/// Runs the planned passes and waits. The first call of a frame includes driver compilation: warm up.
-/// frames: so many times, one after another, in one submit. The times are those of the last.
+/// Runs the planned passes `frames` times in one submit, waits, and returns the times of the last. The first call
+/// includes driver compilation: warm up.
 FrameTimes run_frame(Gpu& gpu, ReadyFrame& frame, int frames = 1);
-/// The image that the last run_frame of this frame left in the shared buffers. Linear RGB.
+/// Returns the picture of the last run_frame(), linear RGB.
 Image read_shaded(Gpu& gpu, const ReadyFrame& frame);
-/// What the last run_frame of this frame found in the second layer: `hit` there, not_traced elsewhere. Empty when the
-/// plan has no hidden layer.
+/// Returns what the last run_frame() found in the second layer: `hit`, else not_traced. nullopt if the plan has no
+/// hidden layer.
 std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const ReadyFrame& frame);
-/// The second layer itself, of a frame whose plan has one.
+/// Returns the second layer of a frame whose plan has one.
 GBufferImage read_second_layer(Gpu& gpu, const ReadyFrame& frame);
-/// The image with this reflection in place of the traced one: colour and weight of each pixel, weight < 0 where nothing
-/// reflects. Leaves this reflection in the shared buffers.
+/// Returns the picture with this reflection instead of the traced one: colour and weight per pixel, weight < 0 if
+/// nothing reflects. Overwrites the reflection in the shared buffers.
 Image composite_reflection(Gpu& gpu, const ReadyFrame& frame, std::span<const glm::vec4> reflection);
 
 } // namespace ssrlab

@@ -1,4 +1,4 @@
-// What the passes of a frame work on. Folder-internal.
+// The inputs and buffers of a frame's passes. Folder-internal.
 #pragma once
 
 #include "frame/drawing.h"
@@ -8,44 +8,44 @@
 
 namespace ssrlab {
 
-/// Rays that come from other rays: a list of their own, and of each the ray or pixel that it belongs to.
+/// Secondary rays, with the index of each parent ray or pixel.
 struct DerivedRays {
     RayBuffers rays;
     Buffer     sources;
-    Buffer     throughputs; // bounces: what a ray's light still weighs in the reflection it belongs to, RGB
+    Buffer     throughputs; // bounces: weight of a ray's light in the reflection that it belongs to, RGB
 };
 
-/// What cones look up (shaders/passes/cone_pyramid.comp).
+/// The images that cones read (shaders/passes/cone_pyramid.comp).
 struct ConePyramid {
     GpuImage cells;  // RGBA16F: colour, visibility
     GpuImage ranges; // RG32F: nearest and farthest distance in metres
 };
 
-/// What each ray of a rough pixel brought back, ray after ray, each an image high (shaders/passes/ray_reuse.comp).
+/// Light and end of each ray of rough pixels; one image per ray, stacked vertically (shaders/passes/ray_reuse.comp).
 struct LobeRayImages {
-    GpuImage light; // RGBA16F: colour, weight; with one ray per pixel the reflection takes its place
+    GpuImage light; // RGBA16F: colour, weight; unused with one ray per pixel: `reflection` has it
     GpuImage end;   // RGBA32F: the point in view space, and the density of the ray's direction
 };
 
 struct FrameBuffers {
     GBufferPtr gbuffer;
     DrawingPtr drawing;                                                        // null: the G-buffer was made elsewhere
-    std::map<std::tuple<size_t, int, bool>, std::shared_ptr<RayBuffers>> rays; // by capacity and what they hold; float
+    std::map<std::tuple<size_t, int, bool>, std::shared_ptr<RayBuffers>> rays; // by capacity and content; float
     DrawingPtr                                                     second_layer; // empty until a frame asks for it
     std::shared_ptr<ConePyramid>                                   cone;         // empty until a frame asks for it
-    std::map<std::pair<size_t, int>, std::shared_ptr<DerivedRays>> derived_rays; // by capacity, and which of two
+    std::map<std::pair<size_t, int>, std::shared_ptr<DerivedRays>> derived_rays; // by capacity and number, 0 or 1
     std::map<int, std::shared_ptr<LobeRayImages>>                  lobe_rays;    // by rays per pixel
-    GpuImage          reflection;   // RGBA16F: colour, weight; weight < 0 where no ray started
-    GpuImage          filtered;     // RGBA16F: a reflection that a filter is writing, or an earlier one
-    GpuImage          small_colour; // RGBA16F, half size or less: lit colour as rays at a lower resolution find it
-    GpuImage          block_pixel;  // R32UI, half size or less: which pixel of a block has rays, or NO_PIXEL
+    GpuImage          reflection;   // RGBA16F: colour, weight; weight < 0 if no ray started
+    GpuImage          filtered;     // RGBA16F: the target of a filter, or an earlier reflection
+    GpuImage          small_colour; // RGBA16F, half size or less: lit colour for rays at a lower resolution
+    GpuImage          block_pixel;  // R32UI, half size or less: the pixel of a block that has rays, or NO_PIXEL
     GpuImage          shaded;       // RGBA16F
     GpuImage          dfg_table;    // RG16F: dfg_table()
     Buffer            ambient;      // vec3: the scene's ambient radiance, or 0
     vk::raii::Sampler dfg_sampler = nullptr;
 };
 
-/// All that decides what the passes of one frame do.
+/// Everything that determines the passes of one frame.
 struct FrameInputs {
     LabPtr                      lab;
     FrameBuffersPtr             buffers;
@@ -62,16 +62,16 @@ struct ReadyFrame {
     Timestamps                  timestamps;
 };
 
-/// The rays of a plan's values, and room for them.
+/// Return the choice of rays that a plan's values describe, and buffers with room for them.
 RayChoice                   rays_of(const ParameterValues& passes);
 std::shared_ptr<RayBuffers> ray_buffers(Gpu& gpu, FrameBuffers& buffers, const GBufferCounts& counts,
                                         const ParameterValues& passes);
-/// The plan of a frame whose pixels and hits are already counted.
+/// Returns the plan of a frame whose pixels and hits are already counted.
 FramePlan plan_with(const Catalogue& catalogue, const Lab& lab, const FrameBuffers& buffers,
                     const FrameSettings& settings, const FrameHistory* history, const GBufferCounts& counts,
                     const TraceCounts& hits);
 
-/// The scene that the G-buffer shows; null: it was made elsewhere.
+/// Returns the scene that the G-buffer shows; null if it was made elsewhere.
 GpuScene* scene_of(const FrameBuffers& buffers);
 
 } // namespace ssrlab

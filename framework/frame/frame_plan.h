@@ -7,24 +7,24 @@
 
 namespace ssrlab {
 
-/// What a frame may take of the frame before it.
+/// Whether a frame can use the frame before it.
 struct HistoryFacts {
-    bool        usable  = false; // there is one, and it is of the frame before
-    bool        changes = false; // something moved or is jittered since
-    std::string state   = {};    // what moved since, or why nothing is usable; empty: a single frame
+    bool        usable  = false; // there is a history, and it is of the frame before
+    bool        changes = false; // something moved or was jittered since
+    std::string state   = {};    // what moved since, or why it is not usable; empty: a single frame
 };
 
-/// What is known of scene and technique before anything is drawn.
+/// Facts of scene and technique, known before anything is drawn.
 struct FrameFacts {
     bool                     scene           = false; // the G-buffer was drawn from one
-    bool                     environment_map = false; // without a map, one colour arrives from everywhere
+    bool                     environment_map = false; // if not, the environment has one colour
     bool                     alpha_mask      = false;
     std::string              motion          = {}; // what moved since the frame before, as describe_facts() says it
     HistoryFacts             history         = {};
-    bool                     solids          = false; // the surface model asks where solids end
+    bool                     solids          = false; // the surface model needs the ends of solids
     std::string              reflectors      = {};    // what reflects, as describe_facts() says it
     int                      layers          = 1;     // that a pixel holds
-    std::vector<std::string> structures;              // that the technique reads, in the order in which they are built
+    std::vector<std::string> structures;              // that the technique reads, in the order of building
 };
 
 struct FrameStatistics {
@@ -40,29 +40,29 @@ struct PlannedPass {
     std::string reason;
 };
 
-/// What a frame does and why. The frame is still, so its statistics are its own.
+/// The passes of a frame, and why. The statistics are those of the very frame that is planned.
 struct FramePlan {
     FrameFacts               facts;
     FrameStatistics          statistics;
-    ParameterValues          values; // of pass_parameters() and the reprojection strategy, as this frame can have them
+    ParameterValues          values; // of pass_parameters() and the strategy, adjusted to what this frame can do
     Reprojection             reprojection;
     std::vector<PlannedPass> passes;
-    double                   counting_s = 0; // that it took to trace once and count what the rays hit
+    double                   counting_s = 0; // time of tracing once and counting the hits
 };
 
-/// With skip_unneeded_passes = false every pass runs that is not off.
+/// Returns the decision for every pass. With skip_unneeded_passes = false every pass runs that is not off.
 std::vector<PlannedPass> plan_passes(const FrameFacts& facts, const FrameStatistics& statistics,
                                      const ParameterValues& values);
-/// The same frame with every pass that is not off, on every surface.
+/// Returns the plan of the unculled frame: every pass that is not off, on every surface.
 FramePlan unculled(FramePlan plan);
-/// Whether the unculled frame would do more. False with pass_set = shading.
+/// Returns whether the unculled frame does more work. False with pass_set = shading.
 bool skips_work(const FramePlan& plan);
 bool runs(const FramePlan& plan, std::string_view pass);
 
-/// "12.5 %"
+/// Returns part / whole as "12.5 %".
 std::string percent(uint32_t part, uint32_t whole);
 
-/// What the plan rests on, a line each.
+/// Returns the facts behind the plan, one per line.
 std::vector<std::string> describe_facts(const FramePlan& plan);
 
 } // namespace ssrlab

@@ -34,16 +34,16 @@ struct GpuScene {
     std::vector<vk::raii::Sampler>       samplers; // one per texture; the last is the default
     vk::raii::Sampler                    shadow_sampler = nullptr;
     GpuImage                             shadow_map; // one layer per directional or spot light, six per point light
-    GpuImage                             environment_map; // RGBA32F; one texel of Scene::background where there is none
+    GpuImage                             environment_map; // RGBA32F; without one, a texel of Scene::background
     vk::raii::Sampler                    environment_sampler = nullptr;
-    EnvironmentMap                       environment;               // on the host; empty where there is none
+    EnvironmentMap                       environment;               // on the host; empty if there is none
     std::optional<GpuImage>              blurred_environment;       // RGBA16F, when a frame first needs it
     vk::raii::DescriptorSetLayout        frame_layout    = nullptr; // set 0
     vk::raii::DescriptorSetLayout        material_layout = nullptr; // set 1
     vk::raii::DescriptorPool             pool            = nullptr;
     std::vector<vk::raii::DescriptorSet> material_sets;
     std::vector<DrawCall>                draws;
-    // Of the G-buffer and what lies behind it, made when one is first drawn: lavapipe keeps memory for every graphics pipeline that it ever made.
+    // Made when first drawn: lavapipe never frees the memory of a graphics pipeline.
     std::shared_ptr<const DrawPipeline> first_layer_pipeline, second_layer_pipeline, layer_pipeline,
         solid_back_pipeline, shadow_pipeline;
     uint32_t  light_count = 0;
@@ -65,7 +65,7 @@ DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipel
 void draw_scene(const vk::raii::CommandBuffer& commands, const GpuScene& scene, const DrawPipeline& pipeline,
                 vk::DescriptorSet frame_set, const glm::dmat4& world_to_clip);
 
-/// A descriptor set for set 0 with frame uniforms and, for the second layer, the first one's depth; kept by the caller.
+/// Descriptor set 0: frame uniforms and, for the second layer, the depth of the first. Kept by the caller.
 struct FrameSet {
     vk::raii::DescriptorPool pool = nullptr;
     vk::raii::DescriptorSet  set  = nullptr;
@@ -73,12 +73,12 @@ struct FrameSet {
 FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uniforms,
                         const DepthBuffer* first_depth = nullptr);
 
-/// The environment as rough surfaces reflect it; without a map, the one colour that there is.
+/// Returns the environment blurred for rough surfaces; without a map, its one colour.
 const GpuImage& blurred_environment(Gpu& gpu, GpuScene& scene);
 
-/// Light matrices, and shadow maps without content.
+/// Makes light matrices, and shadow maps with undefined content.
 void make_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source);
-/// Draws them, with matrices that fit what moved.
+/// Draws the shadow maps, with matrices updated for what moved.
 void render_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source);
 
 } // namespace ssrlab

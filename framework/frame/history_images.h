@@ -16,16 +16,16 @@ struct FrameHistory {
     GpuImage depth;      // R32F
     GpuImage gradient;   // R32UI, core/plane_gradient.h
     GpuImage normal;     // RGBA32F: view space
-    GpuImage reflection; // RGBA32F: colour times weight, weight; < 0: reflects nothing
-    GpuImage facts;      // RGBA32F: frames accumulated, ray length, object that was hit (-1: unknown, -2: missed)
+    GpuImage reflection; // RGBA32F: colour times weight, weight; < 0: does not reflect
+    GpuImage facts;      // RGBA32F: accumulated frames, ray length, hit object (-1: unknown, -2: missed)
 
     // Of the frame that runs.
-    GpuImage reprojected;     // RGBA32F: px to where the reflection was or NaN, ray length, object that was hit
-    GpuImage kept_reflection; // what becomes `reflection`
+    GpuImage reprojected;     // RGBA32F: vector in px to where the reflection was, or NaN; ray length; hit object
+    GpuImage kept_reflection; // becomes `reflection`
     GpuImage kept_facts;
     Buffer   counts; // HistoryCounts
 };
 
-/// Why the history is not of the frame before this one; empty: it is. motion: since that frame, if there was one.
+/// Returns why the history is not of the frame before; empty if it is. `motion`: since that frame, if there was one.
 std::string history_mismatch(const FrameHistory& history, glm::ivec2 size_px, const std::optional<FrameMotion>& motion);
 } // namespace ssrlab

@@ -1,4 +1,4 @@
-// Every column of results.csv, once: name with unit, what it means, and the type of its values.
+// Every column of results.csv, once: name with unit, meaning, and type of its values.
 #pragma once
 
 #include "harness/experiment.h"
@@ -6,11 +6,11 @@
 
 namespace ssrlab {
 
-/// Identity, settings and parameters of the experiment's techniques: what tells rows apart.
+/// Returns the columns that tell rows apart: identity, settings and parameters of the experiment's techniques.
 std::vector<Column> setting_columns(const Experiment& experiment, std::span<const Technique> techniques);
 
-/// Identity, settings, parameters, measures, outcome, message: known before the first row. Parameters are those of the
-/// experiment's techniques. Throws SpecError when one has the name of another column.
+/// Returns all columns: identity, settings, parameters of the experiment's techniques, measures, outcome, message.
+/// Throws SpecError if a parameter has the name of another column.
 std::vector<Column> result_columns(const Experiment& experiment, std::span<const Technique> techniques);
 
 } // namespace ssrlab

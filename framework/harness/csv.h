@@ -1,4 +1,4 @@
-// RFC 4180: fields with commas, quotes or line ends are quoted, quotes doubled, records end with CR LF.
+// CSV by RFC 4180: fields with commas, quotes or line ends are quoted, quotes doubled, records end with CR LF.
 #pragma once
 
 #include <optional>
@@ -13,10 +13,10 @@ using CsvRecord = std::vector<std::string>;
 
 std::string csv_line(const CsvRecord& fields);
 
-/// Takes one record off the front of `text`; nothing when the rest is empty or torn (no line end outside quotes).
+/// Removes one record from the front of `text`; nullopt if the rest is empty or torn (no line end outside quotes).
 std::optional<CsvRecord> take_csv_record(std::string_view& text);
 
-/// The header and those of the records that begin with one of `ids`; a torn last record is left out.
+/// Returns the header and the records that begin with one of `ids`; a torn last record is left out.
 std::string lines_of(const CsvRecord& header, std::string_view records, const std::set<std::string>& ids);
 
 } // namespace ssrlab

@@ -1,4 +1,4 @@
-// What a results folder came from.
+// The origin of a results folder.
 #pragma once
 
 #include "gpu/gpu.h"
@@ -7,11 +7,11 @@
 
 namespace ssrlab {
 
-/// Hashes of specification, program, shaders, techniques and scene files, as they are now, and the device with its threads.
+/// Returns current hashes of specification, program, shaders, techniques and scene files, and device and threads.
 std::map<std::string, std::string> describe_identity(const Experiment&          experiment,
                                                      std::span<const Technique> techniques, const GpuInfo& device);
 
-/// The identity and all else that a reader may ask.
+/// Returns the identity and everything else that environment.json records.
 Environment describe_environment(const Experiment& experiment, std::span<const Technique> techniques,
                                  const GpuInfo& device, const std::string& command_line);
 

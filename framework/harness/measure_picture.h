@@ -1,4 +1,4 @@
-// All runs on one picture: scene, view and size are the same, so the G-buffer is made once and the timings are comparable.
+// All runs on one frame: they share scene, view and size, so the G-buffer is made once and timings compare.
 #pragma once
 
 #include "harness/measured_run.h"
@@ -13,19 +13,19 @@
 
 namespace ssrlab {
 
-/// Kept from one picture to the next as long as the scene stays the same.
+/// The scene in use, kept until another one is needed.
 struct LoadedScene {
     std::string name;
     Stage       stage;
 };
 
-/// The mean of the pictures with the true reflection over all phases of the jitter.
+/// The mean image with the true reflection over all phases of the jitter.
 struct ConvergedPicture {
-    TraceSettings settings; // what it depends on, of all
+    TraceSettings settings; // under which it was made
     Reference     picture;
 };
 
-/// What all measuring works with.
+/// What all steps of a sweep share.
 struct SweepContext {
     const Experiment&                    experiment;
     const Catalogue&                     catalogue;
@@ -34,23 +34,23 @@ struct SweepContext {
     ResultFolder&                        results;
     Progress&                            progress;
     SweepState&                          state;
-    std::map<std::string, std::string>   identity; // what environment.json says
+    std::map<std::string, std::string>   identity; // as in environment.json
     std::mt19937_64                      random{experiment.measure.seed};
     std::unique_ptr<LoadedScene>         scene = nullptr;
     std::map<std::string, SequenceState> sequences =
         {}; // of one scene, view and size, by sequence_id(); empty for a single frame
-    std::vector<ConvergedPicture> converged = {}; // of the same; empty where more than the jitter moves
-    // Wall time of frames that were timed, of those that were judged and counted instead, and of making or reading truths.
+    std::vector<ConvergedPicture> converged = {}; // likewise; empty if more than the jitter moves
+    // Wall time of timing, of counting and judging, and of making or reading truths.
     double timed_s = 0, counted_s = 0, truths_s = 0;
 };
 
-/// Appends the row of a run that is over.
+/// Appends the row of a finished run.
 void finish(SweepContext& sweep, const Run& run, const Record& row, std::string_view samples = "",
             std::string_view passes = "");
 
-/// Appends a row for each run that has none, as soon as it is final, and for those that the search for the experiment's targets adds; a
-/// run that fails is a row with the reason. Returns early, with the rows so far complete, when a stop was requested.
-/// `replayed`: runs whose frame is only carried to the next one of their sequence.
+/// Measures the runs without a row, and those that a search for targets adds, and appends each row when it is final. A
+/// run that fails is a row with the reason. Returns early, with complete rows, if a stop was requested. `replayed`:
+/// runs whose frame is only run for the next frame of their sequence.
 void measure_picture(SweepContext& sweep, std::span<const Run> runs, std::span<const Run> replayed = {});
 
 } // namespace ssrlab

@@ -5,9 +5,9 @@
 
 namespace ssrlab {
 
-/// Like measure_picture(), for each frame in the order of time. A run finds what it left in the frame before. Frames that have their
-/// rows, or that the specification does not list, are replayed without a row, where a later one follows from them. At the end of a
-/// sequence its summary is written.
+/// Like measure_picture(), for each frame in the order of time; a run finds its history of the frame before. Frames
+/// that have rows, or that the specification does not list, are replayed without a row if a later frame depends on
+/// them. Writes a summary at the end of each sequence.
 void measure_sequence(SweepContext& sweep, std::span<const Run> runs);
 
 } // namespace ssrlab

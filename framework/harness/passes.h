@@ -1,4 +1,4 @@
-// passes.csv: the passes of each run's frame in their order, a row each: whether it ran, how long it took, and why.
+// passes.csv: one row for each pass of each run's frame: whether it ran, how long it took, and why.
 #pragma once
 
 #include "harness/measured_run.h"
@@ -14,7 +14,7 @@ std::span<const Column> pass_columns();
 
 std::string passes_text(const MeasuredRun& measured);
 
-/// How many passes of each run ran, by run id. `records`: the file without its header; a torn last record is left out.
+/// Returns the number of passes that ran, by run id. `records`: the file without header; a torn last one is left out.
 std::map<std::string, int64_t> count_passes(std::string_view records);
 
 } // namespace ssrlab

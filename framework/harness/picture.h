@@ -1,4 +1,4 @@
-// One frame of a scene on the device, and what a run's frames on it gave. Folder-internal.
+// One frame of a scene on the device, and the outputs of a run on it. Folder-internal.
 #pragma once
 
 #include "core/stopwatch.h"
@@ -13,27 +13,27 @@ struct Picture {
     glm::dvec2            jitter_px{0, 0};
     std::optional<Truths> truths;
 
-    // The picture with the true reflections under the trace settings of the last run.
+    // The image with the true reflections, under the trace settings of the last run.
     std::optional<Reference> reference;
     TraceSettings            reference_for;
-    std::string              reference_file; // relative to the results; empty: none was written
+    std::string              reference_file; // relative to the results; empty if none was written
 };
 
-/// Loads and uploads a scene unless it is the one that is there.
+/// Returns the stage of a scene; loads and uploads the scene unless it is the current one.
 Stage& stage_of(SweepContext& sweep, const std::string& scene);
-/// Shows the run's picture on that stage.
+/// Shows the run's frame on that stage.
 Picture make_picture(SweepContext& sweep, const Run& run);
 
-/// What a run's frames gave, before anything is said about it.
+/// The outputs of a run's frames, not yet judged.
 struct Observed {
     Image                        shaded;
     TraceResult                  counted;
     std::optional<TraceResult>   hidden, twin = {}; // the second layer's hits; the same trace in double
-    std::vector<glm::vec2>       reprojection = {}; // empty: the pass did not run
-    std::optional<HistoryCounts> history      = {}; // empty: the pass did not run
+    std::vector<glm::vec2>       reprojection = {}; // empty if the pass did not run
+    std::optional<HistoryCounts> history      = {}; // likewise
 };
 
-/// Runs a step and adds how long it took.
+/// Runs a step and adds its wall time to `seconds`.
 template <typename Step> decltype(auto) clocked(double& seconds, const Step& step)
 {
     struct Adding {

@@ -1,4 +1,4 @@
-// "12 of 84 runs, yard default 1280x720, 0:42 so far, about 3:10 left" on stderr, seldom enough to read.
+// Progress on stderr: "12 of 84 runs, yard default 1280x720, 0:42 so far, about 3:10 left".
 #pragma once
 
 #include "core/stopwatch.h"
@@ -10,25 +10,25 @@
 
 namespace ssrlab {
 
-/// Roughly, on two CPU cores without a GPU: enough to say minutes from hours before anything was measured.
+/// Returns a rough estimate for two CPU cores without a GPU: enough to tell minutes from hours.
 double estimated_seconds(const Run& run, const Technique& technique, const MeasureSettings& measure);
 
 std::string duration_text(double seconds); // "3:07", "1:02:09"
 
 class Progress {
 public:
-    /// `total_cost`: the sum of estimated_seconds over all runs to do; the time left scales with what is left of it.
+    /// `total_cost`: the sum of estimated_seconds() over all runs to do; the time left is scaled by it.
     Progress(size_t total_runs, double total_cost, bool quiet = false);
 
-    /// More runs than were known: a search tries further settings.
+    /// Adds runs that a search tries.
     void add_runs(size_t count, double cost);
     void start_picture(const std::string& what);
-    /// Everything but the timed repeats is done.
+    /// Call when only the timed repeats of a run are left.
     void prepared_run(const std::string& id, double cost);
     void finish_run(const std::string& id, double cost);
-    /// Says where we are if the last line is old enough.
+    /// Prints a line if the last one is old enough.
     void tick();
-    /// A line that is never swallowed.
+    /// Prints a line in any case.
     void say(const std::string& line);
 
 private:

@@ -15,14 +15,14 @@ namespace ssrlab {
 
 using Value = std::variant<std::string, int64_t, double>;
 
-/// Values by column name. What is not known has no entry, and an empty field.
+/// Values by column name. An unknown value has no entry, and an empty field.
 using Record = std::map<std::string, Value>;
 
-/// What a column holds, and how results.csv says its numbers.
+/// The type of a column, and how results.csv writes its numbers.
 enum class ColumnType : uint8_t {
-    measure, // a number, by six significant digits
+    measure, // a number with six significant digits
     whole,
-    setting, // words, or a number by the shortest text that reads back as the same
+    setting, // words, or a number as the shortest text that reads back as the same
     words,
 };
 
@@ -36,14 +36,14 @@ std::vector<std::string> names_of(std::span<const Column> columns);
 /// Adds a number unless it is NaN.
 void put(Record& record, const std::string& column, double value);
 
-/// Empty without an entry that is a number.
+/// Returns the number in a column; nullopt if there is none.
 std::optional<double> number_of(const Record& record, const std::string& column);
-/// "" without an entry that is words.
+/// Returns the text in a column; empty if there is none.
 std::string words_of(const Record& record, const std::string& column);
 
-/// The fields of a record in the order of the columns.
+/// Returns the fields of a record in the order of the columns.
 CsvRecord fields_of(const Record& record, std::span<const Column> columns);
-/// The record that has these fields, one for each column.
+/// Returns the record with these fields, one per column.
 Record record_of(const CsvRecord& fields, std::span<const Column> columns);
 
 } // namespace ssrlab

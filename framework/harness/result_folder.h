@@ -1,4 +1,4 @@
-// A folder of results: results.csv has a row for each run, written whole or not at all, samples.csv the timed frames
+// A results folder: results.csv has a row for each run, written whole or not at all, samples.csv the timed frames
 // behind the rows, passes.csv the passes of their frames.
 #pragma once
 
@@ -15,47 +15,47 @@ namespace ssrlab {
 
 struct SampleCounts;
 
-/// What results came from, as written to environment.json.
+/// The origin of results, as written to environment.json.
 struct Environment {
-    std::map<std::string, std::string> identity; // must be the same when a sweep is resumed
+    std::map<std::string, std::string> identity; // must be equal when a sweep is resumed
     std::map<std::string, std::string> notes;
 };
 
-/// Names of entries that differ or that only one of the two has.
+/// Returns the names of entries that differ or that only one of the two has.
 std::vector<std::string> differences(const std::map<std::string, std::string>& a,
                                      const std::map<std::string, std::string>& b);
 
-/// SpecError if an older ssrlab wrote this results.csv: it packed the times of passes into columns.
+/// Throws SpecError if an older version wrote this results.csv, which packed the times of passes into columns.
 void refuse_old_form(const std::filesystem::path& results_csv, const CsvRecord& header);
 
-/// A results folder that is open for writing: locked against other writers until the object is gone.
+/// A results folder open for writing, locked against other writers until it is destroyed.
 class ResultFolder {
 public:
-    /// Fresh: creates the folder, environment.json and the header; refuses (Failure) a folder that has results.
-    /// Resuming: cuts off a torn row; takes out the rows that lack samples or passes and, with `retry`, those that
-    /// failed, so that these runs are tried again; takes out the samples and passes of runs without a row. SpecError
-    /// when columns or identity differ, naming what does.
+    /// Without `resume`: creates the folder, environment.json and the header; throws Failure if it has results.
+    /// With it: removes a torn row, rows that lack samples or passes, samples and passes without a row and, with
+    /// `retry`, rows of failed runs, so that these runs are tried again. Throws SpecError that names what differs in
+    /// columns or identity.
     ResultFolder(std::filesystem::path folder, std::vector<Column> columns, const Environment& environment, bool resume,
                  bool retry = true);
     ~ResultFolder();
     ResultFolder(const ResultFolder&)            = delete;
     ResultFolder& operator=(const ResultFolder&) = delete;
 
-    /// The runs that have a row.
+    /// Returns the runs that have a row.
     const std::set<std::string>& finished() const { return finished_; }
 
-    /// The rows that stand, by run id.
+    /// Returns the rows by run id.
     std::map<std::string, Record> rows() const;
 
-    /// Above every round in samples.csv.
+    /// Returns a number above every round in samples.csv.
     int next_round() const { return next_round_; }
 
-    /// Writes the run's samples, its passes, then its row, each by one checked write with a sync. On failure it cuts
-    /// off the torn bytes and throws a Failure that names the file: the files are always correct prefixes, and a row
-    /// has its samples and passes.
+    /// Writes the run's samples, its passes, then its row, each by one checked write with a sync. If that fails, it
+    /// removes the torn bytes and throws a Failure that names the file: a row always has its samples and
+    /// passes.
     void append(const Record& row, std::string_view samples = "", std::string_view passes = "");
 
-    /// Throws Failure when the folder's files are no longer those that were written.
+    /// Throws Failure if the folder's files are no longer those that were opened.
     void require_unmoved() const;
 
     const std::filesystem::path& path() const { return folder_; }

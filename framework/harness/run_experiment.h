@@ -15,7 +15,7 @@ struct RunOptions {
     std::vector<std::filesystem::path> techniques; // more directories of techniques
     GpuOptions                         gpu;
     std::string                        only;  // a run id; empty: all runs
-    std::string                        shard; // "2/8": the second of eight parts, cut between pictures; empty: all
+    std::string                        shard; // "2/8": the second of eight parts, cut between frames; empty: all
     bool                               resume  = false;
     bool                               dry_run = false; // list runs and estimated time, touch nothing
     bool                               quiet   = false; // no progress
@@ -23,8 +23,8 @@ struct RunOptions {
     std::string                        command_line;
 };
 
-/// 0 when every row is ok (or had nothing to trace), 1 when a run failed, 128 + the signal after one that asked to stop (130: SIGINT): the rows
-/// so far are complete and --resume does the others. Throws SpecError before anything is written, Failure when writing is refused.
+/// Returns 0 if every row is ok or had nothing to trace, 1 if a run failed, 128 + the signal that asked to stop (130:
+/// SIGINT; --resume does the others). Throws SpecError before anything is written, and Failure if writing fails.
 int run_experiment(const RunOptions& options);
 
 } // namespace ssrlab

@@ -1,26 +1,26 @@
-// What only a frame among others of a sequence needs: its history, its measures, and frames that are replayed. Folder-internal.
+// What a frame of a sequence needs besides: history, measures, and replayed frames. Folder-internal.
 #pragma once
 
 #include "harness/picture.h"
 
 namespace ssrlab {
 
-/// What the run's frame before left; null where frames do not follow each other. Throws Failure where that frame failed.
+/// Returns the history of the run's frame before; null for single frames. Throws Failure if that frame failed.
 FrameHistoryPtr history_of(SweepContext& sweep, const Run& run);
 
-/// The run's next frame finds what this one leaves. Runs share images, so this one runs once more.
+/// Keeps the frame's history for the next one. Runs share images, so the frame runs once more.
 void leave_history(SweepContext& sweep, const Run& run, ReadyFrame& frame);
 
-/// Adds the measures that need the frames before, and remembers this one.
+/// Adds the measures that compare with earlier frames, and remembers this one.
 void judge_sequence(SweepContext& sweep, Picture& picture, MeasuredRun& measured, const Observed& observed);
 
-/// After a frame that failed: what follows does not follow from it.
+/// Marks the run's sequence as failed, after a frame that failed.
 void lose_sequence(SweepContext& sweep, const Run& run);
 
-/// Carries a run to its next frame, without a row.
+/// Runs a frame only for the history of the next one, without a row.
 void replay(SweepContext& sweep, const Picture& picture, const Run& run);
 
-/// Makes SweepContext::converged for the settings of these runs, if nothing but jitter moves from their first frame to `last_frame`.
+/// Makes SweepContext::converged for the settings of these runs, if only jitter moves up to `last_frame`.
 void make_converged_pictures(SweepContext& sweep, std::span<const Run> runs, int last_frame);
 
 } // namespace ssrlab

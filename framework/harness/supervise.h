@@ -1,5 +1,5 @@
-// A sweep works in a child process: what ends or hangs that process costs one run, not the sweep. On a software device nothing else can end
-// a shader that does not end by itself. The child is a program started anew: libraries start threads early, which a fork would not have.
+// A sweep works in a child process, so a crash or hang costs one run, not the sweep. Nothing else ends an endless
+// shader on a software device. The child is a new process: a fork would lose threads that libraries start early.
 #pragma once
 
 #include <atomic>
@@ -9,25 +9,25 @@
 
 namespace ssrlab {
 
-/// The run at which an earlier child ended, and why. Plain bytes: they lie in memory that two processes share.
+/// The run at which an earlier child ended, and why. Plain bytes in memory that two processes share.
 struct LostRun {
     char run_id[24]    = {}; // empty: none was lost
     char why[160]      = {};
-    bool whole_picture = false; // it was lost with all runs on its picture
+    bool whole_picture = false; // all runs on its frame were lost
 };
 
-/// What the parent sees of its child, and tells it: memory that both have.
+/// Memory shared by parent and child.
 struct SweepState {
-    std::atomic<int64_t> deadline_ms{0};        // of what is under way, on the steady clock; 0: none
-    double               limit_s       = 0;     // that the deadline follows from
-    char                 run_id[24]    = {};    // of the run that is under way; empty: none
-    bool                 whole_picture = false; // what is under way concerns all runs on that run's picture
+    std::atomic<int64_t> deadline_ms{0};        // of the current step, on the steady clock; 0: none
+    double               limit_s       = 0;     // from which the deadline follows
+    char                 run_id[24]    = {};    // of the current run; empty: none
+    bool                 whole_picture = false; // the current step concerns all runs on that run's frame
     LostRun              lost          = {};
     uint64_t written = 0, failed = 0, messages = 0; // rows, and messages of the validation layer, by all children
 };
 
-/// A run is under way as long as this lives. limit_s: how long that may be, not counting the time in which its threads
-/// wait for a processor that other programs use; 0: without a limit.
+/// Marks a run as current while this object lives. `limit_s`: time limit, without the time in which its threads wait
+/// for a processor that other programs use; 0: no limit.
 class UnderWay {
 public:
     UnderWay(SweepState& state, const std::string& run_id, double limit_s, bool whole_picture = false);
@@ -39,14 +39,14 @@ private:
     SweepState& state_;
 };
 
-/// In a child of supervise(): what it shares with its parent. In any other process: null.
+/// Returns the memory shared with the parent in a child of supervise(), else null.
 SweepState* shared_with_parent();
 
-/// Runs `command` in a child process and, whenever one ends within a run, again in another, in which SweepState::lost says which run that was.
-/// Returns the exit code: that of the last child, but not 0 when a run was lost; 128 + its signal when a child was ended outside of every run.
+/// Runs `command` in a child process, and in a new one whenever a child ends within a run (SweepState::lost). Returns
+/// the last child's exit code, but not 0 if a run was lost; 128 + signal if a child was ended outside of runs.
 int supervise(const std::vector<std::string>& command);
 
-/// The command of this very process.
+/// Returns the command line of this process.
 std::vector<std::string> own_command();
 
 } // namespace ssrlab

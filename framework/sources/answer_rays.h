@@ -1,5 +1,5 @@
-// The loop over sources: each gets the rays that have no certain answer yet, and its answers are merged into those
-// before.
+// The loop over sources: each source gets the rays that have no certain answer yet, and its answers are merged into
+// the earlier ones.
 #pragma once
 
 #include "sources/source.h"
@@ -9,7 +9,7 @@ namespace ssrlab {
 /// Which rays the next source gets.
 enum class HandOn : uint8_t {
     lost,      // those without an answer
-    uncertain, // those whose answer no source vouches for, too
+    uncertain, // also those whose answer no source vouches for
 };
 inline constexpr std::array<std::string_view, 2> hand_on_names = {"lost", "uncertain"};
 
@@ -18,8 +18,8 @@ struct AnsweredRays {
     std::vector<SourceTurn> turns;   // of each source
 };
 
-/// Traces what the stage shows once for its counts, and twice for its times. Throws Failure for a frame of another
-/// renderer, which has no scene.
+/// Traces the shown frame once for its counts and twice for its times. Throws Failure for a frame file, which has no
+/// scene.
 SourceContext make_source_context(Stage& stage, const Technique& technique, const ParameterValues& values,
                                   const FrameSettings& settings);
 

@@ -1,4 +1,4 @@
-// Rays in a cube of frames about one point: a ray that leaves a face goes on in the face that it enters.
+// Rays in a cube of frames around one point: a ray that leaves a face continues in the face that it enters.
 #pragma once
 
 #include "sources/gbuffer_rays.h"
@@ -14,10 +14,10 @@ struct CubeOfFrames {
     std::array<GBufferImage, 6> images; // the same on the host
 };
 
-/// 90 degrees wide, as a square of so many pixels.
+/// Returns the square view of a face, 90 degrees wide.
 View face_view(const View& centre, int face, int size_px);
 
-/// Draws the faces that rays enter, and adds what drawing and tracing took to the turn. Entry by entry of `rays`.
+/// Draws the faces that rays enter and traces; returns one answer per ray. Adds the times of both to the turn.
 std::vector<RayAnswer> trace_in_cube(SourceContext& context, CubeOfFrames& cube, const TraceSettings& settings,
                                      RayStart start, std::span<const OpenRay> rays, SourceTurn& turn);
 

@@ -1,4 +1,4 @@
-// Rays of the world in a G-buffer of any camera: what part of each it sees, and how far a pixel's answer can be
+// World-space rays in a G-buffer of any camera: which part of each ray it sees, and whether a pixel's answer can be
 // trusted.
 #pragma once
 
@@ -10,39 +10,39 @@
 
 namespace ssrlab {
 
-/// From t_in to t_out metres along a ray, both ends inside the image, before the near plane, and within the reach.
+/// The part of a ray from t_in_m to t_out_m metres: inside the image, beyond the near plane, and within reach.
 struct SeenPart {
     double t_in_m = 0, t_out_m = 0; // t_out_m may be +inf
-    bool   leaves = false;          // the image or the near plane end it, not the reach
+    bool   leaves = false;          // it ends at the image border or the near plane, not at the reach
 };
 
-/// Empty where the camera sees none of it behind clear_m.
+/// Returns the part beyond clear_m that the camera sees; nullopt if it sees none.
 std::optional<SeenPart> seen_part(const View& view, const OpenRay& ray);
 
-/// That part as a technique gets it.
+/// Returns that part as techniques get it.
 RayInput to_input(const View& view, const OpenRay& ray, const SeenPart& part);
 
-/// Metres along the ray at which it stands `back_px` pixels before a point of the screen that it reaches, or at its
+/// Returns the distance in metres along the ray at which it is `back_px` pixels before a point on screen, or at its
 /// beginning.
 double metres_before(const View& view, const OpenRay& ray, const SeenPart& part, glm::dvec3 at_px_depth,
                      double back_px);
 
-/// Do the pixels around one hold the surface that it holds? Not at silhouettes, nor on what is thinner than a pixel.
+/// Returns whether the pixels around one show the same surface: false at silhouettes and on things thinner than that.
 bool neighbours_agree(const GBufferImage& image, glm::ivec2 pixel);
 
-/// Radiance that leaves the surface of a pixel toward the camera.
+/// Returns the radiance from the surface of a pixel toward the camera, linear RGB.
 glm::vec3 light_of(const GBufferImage& image, glm::ivec2 pixel);
 
-/// Does a camera see every ray where it begins?
+/// Whether a camera sees every ray where it begins.
 enum class RayStart : uint8_t {
-    in_sight, // it is the camera that followed them so far, or one in the same place
+    in_sight, // yes: the camera that followed them so far, or one in the same place
     anywhere,
 };
 
-/// May a ray pass behind something that the camera shows? If not, it was in sight up to where it ended.
+/// Returns whether no ray may pass behind what the camera shows: then it was in sight up to where it ended.
 bool stays_in_sight(const SourceContext& context, const TraceSettings& settings);
 
-/// What tracing made of each ray in a G-buffer.
+/// The results of tracing rays in a G-buffer, one entry per ray.
 struct GBufferTrace {
     std::vector<RayAnswer>   answers;
     std::vector<TraceStatus> status;    // not_traced: the camera sees none of it
@@ -50,18 +50,18 @@ struct GBufferTrace {
     double                   ms = 0;
 };
 
-/// Traces what a G-buffer sees of each ray. image: the same G-buffer on the host, with its layers.
+/// Traces the part of each ray that a G-buffer sees. `image`: the same G-buffer on the host, with its layers.
 GBufferTrace trace_in_gbuffer(SourceContext& context, const GBufferPtr& gbuffer, const GBufferImage& image,
                               const TraceSettings& settings, RayStart start, std::span<const OpenRay> rays);
 
 using TraceElsewhere = std::function<std::vector<RayAnswer>(const TraceSettings&, RayStart, std::span<const OpenRay>)>;
-/// Asks a camera in another place about the rays that have no point yet, and merges what it says: for certain about
-/// what it saw of a ray from its beginning to its end, else about what lies on the ray's way. trace: traces rays in
-/// what that camera shows.
+/// Asks a camera elsewhere about the rays that have no point yet, and merges its answers. An answer is certain if the
+/// camera saw the ray from its beginning to its end. `trace`: traces rays in the frame
+/// of that camera.
 void ask_elsewhere(const SourceContext& context, std::span<const OpenRay> rays, std::vector<RayAnswer>& answers,
                    const TraceElsewhere& trace);
 
-/// Megabytes of device memory of a G-buffer's images.
+/// Returns the device memory of a G-buffer's images in megabytes.
 double megabytes_of(const GBuffer& gbuffer);
 
 } // namespace ssrlab

@@ -1,5 +1,5 @@
-// A source: where the answer to a reflected ray may come from. Each has a file of its own in this folder. Sources are
-// asked in order, and each gets the rays that have no certain answer yet (answer_rays.h).
+// A source: where the answer to a reflected ray may come from. Each has a file in this folder. Sources are asked in
+// order, and each gets the rays that have no certain answer yet (answer_rays.h).
 #pragma once
 
 #include "core/gbuffer_image.h"
@@ -18,24 +18,24 @@ struct World;
 
 /// A ray that a source is asked about, in world space.
 struct OpenRay {
-    size_t     pixel = 0; // that reflects
+    size_t     pixel = 0; // index of the reflecting pixel
     glm::dvec3 origin_ws{0};
     glm::dvec3 direction_ws{0}; // unit
     double     eye_m   = 0;     // from the eye to the origin
-    double     clear_m = 0;     // nothing is met nearer than this
+    double     clear_m = 0;     // it is known to meet nothing nearer
     double     reach_m = 0;     // nothing farther counts; may be +inf
 };
 
-/// One frame that was traced, and what sources need beside it. Sources keep what they build here, so that a later list
-/// finds it.
+/// A traced frame and what sources need besides. Sources keep here what they build, so that a later list can
+/// use it.
 struct SourceContext {
     Stage&                           stage;
     LabPtr                           lab;          // of the frame
     TraceSettings                    trace;        // likewise
     GBufferImage                     image;        // what the stage shows, on the host
     ParameterValues                  parameters;   // of the source that is asked
-    TraceResult                      traced;       // what the frame's rays found
-    double                           trace_ms = 0; // of the frame: set-up of its rays, structures, trace
+    TraceResult                      traced;       // results of the frame's rays
+    double                           trace_ms = 0; // of the frame: ray set-up, structures, trace
     std::vector<View>                earlier; // of the frames before this one, the latest first; empty: a single frame
     std::shared_ptr<const World>     world;   // these are empty until a source asks for them
     std::shared_ptr<const Occupancy> occupancy;
@@ -45,7 +45,7 @@ struct Source {
     std::string              id, summary;
     std::vector<std::string> cite       = {};
     std::vector<Parameter>   parameters = {};
-    /// Answers each ray; the turn's `source`, `pixels` and merge_ms are filled in by the loop.
+    /// Answers each ray. The loop sets `source`, `pixels` and merge_ms of the turn.
     SourceTurn (*answer)(SourceContext&, std::span<const OpenRay>);
 };
 
@@ -57,18 +57,18 @@ Source views_source();
 Source past_source();
 Source world_source();
 
-/// In the order in which a list usually names them: cheapest first.
+/// Returns all sources, cheapest first, as lists usually name them.
 std::span<const Source> all_sources();
 
 /// A source of a list, with the values of its parameters.
 struct ListedSource {
     const Source*   source = nullptr;
-    std::string     text; // as the list has it: "layers:count=4:sides=both"
+    std::string     text; // as in the list: "layers:count=4:sides=both"
     ParameterValues values;
 };
 
-/// "frame,layers:count=4,world". Throws SpecError "PLACE: …" for an unknown source or parameter, a value outside its
-/// range and an empty list.
+/// Reads a list such as "frame,layers:count=4,world". Throws SpecError "PLACE: …" for an unknown source or parameter,
+/// a value out of range, and an empty list.
 std::vector<ListedSource> parse_sources(const std::string& text, const std::string& place);
 
 } // namespace ssrlab

@@ -1,4 +1,4 @@
-// Light of what rays of the world met, by the G-buffer's own shading code.
+// Light at the hits of world-space rays, by the G-buffer's own shading code.
 #pragma once
 
 #include "frame/gpu_scene.h"
@@ -7,7 +7,7 @@
 namespace ssrlab {
 
 struct WorldLight {
-    std::vector<glm::vec3> light; // linear radiance toward where each ray came from; 0 where it met nothing
+    std::vector<glm::vec3> light; // linear radiance back along each ray; 0 if it met nothing
     double                 ms = 0;
 };
 

@@ -1,4 +1,4 @@
-// The images of one view, which the lab traces. Folder-internal, and for frame/, which draws them.
+// The images of one view. For the folders trace/, which traces them, and frame/, which draws them.
 #pragma once
 
 #include "gpu/compute.h"
@@ -10,7 +10,7 @@
 
 namespace ssrlab {
 
-/// The buffers of structures on one depth, or on one list of rays; allocated when a technique first asks for them.
+/// Buffers of structures, for one depth buffer or one list of rays; allocated when a technique first needs them.
 using StructureBuffers = std::map<std::string, Buffer>; // by "structure.buffer"
 
 /// The tiles to trace and the counts of the G-buffer (shaders/rays/classification.comp).
@@ -25,8 +25,8 @@ struct GBuffer {
     GpuImage                          normal;        // RGBA32F: view-space normal, roughness
     GpuImage                          material;      // RGBA16F: base colour, metallic
     GpuImage                          dielectric;    // R32F: reflectance at normal incidence of what is not metal
-    GpuImage                          radiance;      // RGBA16F: the same from every direction
-    GpuImage                          highlight;     // RGBA16F: depends on the view
+    GpuImage                          radiance;      // RGBA16F: the part that is the same from every direction
+    GpuImage                          highlight;     // RGBA16F: the part that depends on the view
     GpuImage                          emission;      // RGBA16F: the part of radiance that the surface emits
     GpuImage                          object;        // R32UI
     GpuImage                          gradient;      // R32UI: of depth, core/plane_gradient.h
@@ -35,26 +35,26 @@ struct GBuffer {
     TileBuffers                       tiles;
     std::shared_ptr<StructureBuffers> structures = std::make_shared<StructureBuffers>(); // on this depth
     std::vector<GBufferPtr>           layers; // behind this one, the nearest first
-    /// By the rule of what reflects: dielectric_min_f0 and dielectric_max_roughness.
+    /// Counts by dielectric_min_f0 and dielectric_max_roughness, which decide what reflects.
     std::map<std::pair<double, double>, GBufferCounts> counts;
 };
 
-/// By triangles, or by what somebody else drew: then the device's limits on what it can draw do not count.
+/// How a G-buffer gets its content. The device's limits on drawing apply to `drawn` only.
 enum class Filled { drawn, uploaded };
 
-/// The images of a view, without content. Throws SpecError for a size over MAX_IMAGE_PX.
+/// Returns the images of a view, with undefined content. Throws SpecError for a size over MAX_IMAGE_PX.
 GBufferPtr make_gbuffer(Gpu& gpu, const View& view, Filled filled);
-/// Depth, normal and material of a picture of the same size.
+/// Uploads depth, normal and material of an image of the same size.
 void upload_surfaces(Gpu& gpu, GBuffer& gbuffer, const GBufferImage& image);
-/// Depth as tracers read it: what shaders/gbuffer/background.comp makes of a depth buffer.
+/// Returns depth with background as tracers expect it, as shaders/gbuffer/background.comp does.
 std::vector<float> usable_depth(std::span<const float> depth);
 
-/// What a picture shows at each pixel, and each of its layers, by the names that shaders give them.
+/// Returns the images of a G-buffer and of its layers, by their names in shaders.
 Bindings surface_bindings(const GBuffer& gbuffer);
-/// Layer 1, layer 2 … by the names that shaders give their images.
+/// Adds the images of layers 1, 2 …, by their names in shaders.
 void add_layers(Bindings& bindings, std::span<const GBufferPtr> layers);
 
-/// The uniform block of shaders/api/view.glsl.
+/// Returns the uniform block of shaders/api/view.glsl.
 Buffer upload_view(Gpu& gpu, const View& view, Precision precision);
 void   write_view(Gpu& gpu, Buffer& target, const View& view, Precision precision);
 

@@ -1,5 +1,5 @@
-// A number or choice that a technique, a structure or a pass declares once: command line, sweeps, CSV columns, help and
-// the shader's constant all come from the declaration.
+// A parameter that a technique, structure or pass declares. Command line, sweeps, CSV columns, help and the shader's
+// constant all come from the declaration.
 #pragma once
 
 #include <map>
@@ -11,7 +11,7 @@ namespace ssrlab {
 enum class ParameterType { integer, real, boolean, choice };
 
 struct Parameter {
-    std::string                        name; // of a structure's "structure.parameter"
+    std::string                        name; // "structure.parameter" if a structure declares it
     ParameterType                      type          = ParameterType::integer;
     double                             default_value = 0; // boolean: 0 or 1; choice: index into choices
     double                             min           = 0;
@@ -24,9 +24,9 @@ struct Parameter {
 /// Values by parameter name, in the representation of Parameter::default_value.
 using ParameterValues = std::map<std::string, double>;
 
-/// "10", "0.5", "true", "view" -> value. Throws SpecError "PLACE: …" naming parameter, expected and got (NaN included).
+/// Returns the value of "10", "0.5", "true" or "view". Throws SpecError "PLACE: …" with expected and got; also for NaN.
 double parse_parameter(const Parameter& parameter, const std::string& text, const std::string& place);
-/// Checks type and range; throws SpecError likewise.
+/// Throws SpecError likewise if the value has the wrong type or is out of range.
 void        check_parameter(const Parameter& parameter, double value, const std::string& place);
 std::string format_parameter(const Parameter& parameter, double value);
 

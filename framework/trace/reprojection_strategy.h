@@ -1,5 +1,5 @@
-// A reprojection strategy is a folder: reprojection.toml says what it is, reproject.glsl where a reflection was in the frame before
-// (docs/explanation/motion.md).
+// A reprojection strategy is a folder: reprojection.toml describes it, reproject.glsl says where a reflection was in
+// the frame before (docs/explanation/motion.md).
 #pragma once
 
 #include "trace/parameter.h"

@@ -1,4 +1,4 @@
-// A surface model is a folder: surface.toml says what it is and what it needs of the G-buffer; meeting.glsl and held.glsl say what a pixel
+// A surface model is a folder: surface.toml says what it needs of the G-buffer, meeting.glsl and held.glsl what a pixel
 // holds around its depth sample (shaders/surfaces/README.md).
 #pragma once
 

@@ -1,4 +1,4 @@
-// A name for a piece of content: XXH3, 128 bit, over values in the order in which they are added.
+// A hash of content: XXH3, 128 bit, over values in the order in which they are added.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -18,7 +18,7 @@ class ContentHash {
 public:
     ContentHash() : state_(XXH3_createState(), XXH3_freeState) { XXH3_128bits_reset(state_.get()); }
 
-    /// Numbers, enums and GLM types: nothing with padding.
+    /// Adds numbers, enums and GLM types: nothing with padding.
     template <typename T>
     requires std::is_arithmetic_v<T> || std::is_enum_v<T> ContentHash& add(T value)
     {
@@ -48,7 +48,7 @@ public:
 
     XXH128_hash_t digest() const { return XXH3_128bits_digest(state_.get()); }
 
-    /// 32 hexadecimal digits.
+    /// Returns 32 hexadecimal digits.
     std::string hex() const
     {
         const XXH128_hash_t hash = digest();

@@ -1,10 +1,10 @@
-// The reflected lobe of a rough surface: GGX microfacets with Smith's height-correlated masking, single scattering, as glTF's
-// appendix B describes it.
+// The reflected lobe of a rough surface: GGX with Smith's height-correlated masking, single scattering (appendix B of
+// glTF).
 //
-// Half vectors h are drawn from the normals that are visible from the viewer v (E. Heitz 2018, "Sampling the GGX Distribution of
-// Visible Normals", JCGT 7(4)), with alpha = roughness^2. A ray leaves along l, the mirror image of v at h. It weighs
-// F(v.h) G2(v, l) / G1(v), and 0 below the horizon. So the mean of weight * radiance is the integral of radiance * F D G2 / (4 n.v),
-// and the mean weight is the directional albedo. Below mirror_roughness it is the mirror ray alone.
+// Half vectors h are drawn from the normals visible to the viewer v (E. Heitz 2018, "Sampling the GGX Distribution of
+// Visible Normals", JCGT 7(4)), with alpha = roughness^2. A ray leaves along l, the mirror image of v at h, with the
+// weight F(v.h) G2(v, l) / G1(v), or 0 below the horizon. So the mean of weight * radiance is the integral of radiance
+// * F D G2 / (4 n.v), the mean weight the directional albedo. Below mirror_roughness it is the mirror ray alone.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -21,11 +21,11 @@ struct LobeSample {
 
 class Lobe {
 public:
-    /// Unit vectors. A viewer behind the surface counts as grazing it.
+    /// Takes unit vectors. A viewer behind the surface counts as grazing it.
     Lobe(glm::dvec3 normal, glm::dvec3 to_eye, double roughness);
 
     bool is_mirror() const { return alpha_ == 0; }
-    /// u: two numbers in [0, 1).
+    /// Returns a ray for two random numbers in [0, 1).
     LobeSample sample(glm::dvec2 u) const;
 
 private:
@@ -37,7 +37,7 @@ private:
 /// Returns the reflectance at normal incidence of a material that is partly metal.
 glm::dvec3 f0_of(glm::dvec3 base_colour, double metallic, double dielectric_f0);
 
-/// Schlick 1994: 1 at grazing incidence, but 50 f0 where f0 is below 2 %, which means "no reflection".
+/// Returns Fresnel's factor (Schlick 1994): 1 at grazing incidence, or 50 f0 if f0 is below 2 % ("no reflection").
 glm::dvec3 fresnel(glm::dvec3 f0, double cosine);
 
 } // namespace ssrlab

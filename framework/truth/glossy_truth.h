@@ -1,16 +1,16 @@
-// Glossy truth: what every pixel that reflects truly reflects, and the finished picture that follows from it. Nothing of it is shared
-// with the shaders that it judges.
+// Glossy truth: what every reflecting pixel truly reflects, and the picture that follows. It shares no code with the
+// shaders.
 //
-// From each such pixel many rays leave through the scene, by the lobe of truth/ggx_lobe.h around the shading normal. From a mirror it is
-// one, and as many leave from the first rough surface that this one meets. Where a ray meets a surface that reflects, too, it goes on
-// from there in the same way, one ray for each. A surface sends back
+// From each such pixel many rays leave by the lobe of truth/ggx_lobe.h around the shading normal. A mirror has one, and
+// the first rough surface that this ray meets has as many. At each further surface that reflects, one ray goes on. A
+// surface sends
 //   emission + (1 - albedo) * (diffuse light from below its surface) + highlights of the lights + its own reflection,
-// since the rendering equation adds emission to all that is scattered (J. Kajiya 1986). The diffuse light is the scene truth's radiance
-// (scene_truth.h) without emission and metal's share of the ambient light, which there stands in for a metal's reflection; after the last bounce it stands in again. Lights are points, so that the highlights of a smooth surface
-// have no size: a path takes all surfaces to be at least as rough as the roughest one that it came from (A. Kaplanyan, C. Dachsbacher
-// 2013, "Path Space Regularization for Holistic and Robust Light Transport"), and at least of roughness 0.05, as the shaders do.
-//
-// Rays follow the rules of scene_truth.h. Their random numbers come from a hash of pixel, ray and seed, so the result is always the same.
+// since the rendering equation adds emission to all that is scattered (J. Kajiya 1986). Diffuse light is the radiance
+// of scene_truth.h without emission and metal's share of the ambient light, which replaces the reflection after the
+// last bounce. Lights are points, so a path takes all surfaces to be at least as rough as the roughest before (A.
+// Kaplanyan, C. Dachsbacher 2013, "Path Space Regularization for Holistic and Robust Light Transport") and at least
+// 0.05, as the shaders do.
+// Rays follow the rules of scene_truth.h. Random numbers are a hash of pixel, ray and seed, so results repeat.
 #pragma once
 
 #include "core/image.h"
@@ -20,20 +20,20 @@
 namespace ssrlab {
 
 struct GlossySettings {
-    int rays = 64; // a pixel, at least 2
+    int rays = 64; // per pixel, at least 2
     int first =
-        0; // ray: truths of one seed with rays 0 … n - 1, n … 2 n - 1, … fill the lobe together as evenly as one with all
+        0; // number of the first ray: truths with rays 0 … n - 1, n … 2 n - 1 … of a seed combine like a single one
     int      bounces = 3; // further ones
     uint32_t seed    = 0;
 };
 
-/// One entry per pixel, row-major; all 0 where nothing was traced.
+/// One entry per pixel, row-major; 0 if not traced.
 struct GlossyTruth {
     glm::ivec2             size_px{0, 0};
-    std::vector<uint32_t>  rays;     // that were traced: 0, 1 (mirror) or GlossySettings::rays
+    std::vector<uint32_t>  rays;     // traced rays: 0, 1 (mirror) or GlossySettings::rays
     std::vector<glm::vec3> radiance; // linear, mean of weight * radiance
     std::vector<glm::vec3>
-        standard_error;            // of that mean if the rays were independent; they fill the lobe evenly and err less
+        standard_error;            // of that mean, as for independent rays; these fill the lobe evenly and err less
     std::vector<glm::vec3> albedo; // mean weight: the share of light that is reflected
 };
 

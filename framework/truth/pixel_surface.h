@@ -17,7 +17,7 @@ struct PixelSurface {
     double     back  = 0;                                                 // at the centre; -inf: there is none
     glm::dvec2 gradient{0, 0};                                            // depth per px; 0: level
     double     solid_back      = std::numeric_limits<double>::infinity(); // where the solid ends; +inf: there is none
-    bool       sides_by_height = false; // met from behind where the ray comes from below; else where the normal says so
+    bool       sides_by_height = false; // met from behind if the ray comes from below; else if the normal says so
 
     double front_at(glm::dvec2 position_px) const { return front + glm::dot(gradient, position_px - centre_px); }
     double back_at(glm::dvec2 position_px) const { return back + glm::dot(gradient, position_px - centre_px); }
@@ -32,7 +32,7 @@ struct RayPart {
     glm::dvec3 at(double t) const { return origin_px_depth + t * delta_px_depth; }
 };
 
-/// Undefined unless `meets`.
+/// Where a ray meets a pixel; undefined unless `meets`.
 struct Meeting {
     bool   meets       = false;
     bool   from_behind = false;
@@ -46,7 +46,7 @@ double slab_front(const View& view, double depth, const TraceSettings& settings)
 /// Returns how far the back of a plane lies below its front, in depth.
 double plane_tolerance(const View& view, double depth);
 
-/// Whether this file knows the surface model. It does not know models from outside the tree.
+/// Returns whether this file knows the surface model; models from outside the tree are not known.
 bool has_screen_truth(std::string_view surface);
 
 /// Throws SpecError unless the model is known here, and Failure unless the G-buffer has what it needs.
@@ -60,7 +60,7 @@ int layer_count(const GBufferImage& gbuffer, const TraceSettings& settings);
 /// Returns one layer; 0 is the G-buffer itself.
 const GBufferImage& layer_of(const GBufferImage& gbuffer, int layer);
 
-/// `facing`: the sign of normal · direction, which decides from which side a box is met.
+/// Returns where the ray meets the pixel. `facing`: sign of normal · direction, from which side a box is met.
 Meeting meet(const PixelSurface& surface, const RayPart& ray, double facing);
 
 } // namespace ssrlab

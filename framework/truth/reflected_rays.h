@@ -17,7 +17,7 @@ struct RayEnd {
     TruthClass cls        = TruthClass::not_traced;
     double     distance_m = 0; // infinite for sky
     glm::dvec3 point_vs{0};    // 0 for sky
-    glm::dvec2 point_px{0};    // 0 where there is none
+    glm::dvec2 point_px{0};    // 0 if there is none
     glm::vec3  radiance{0};    // linear
     SceneHit   hit;            // undefined for sky
 };

@@ -1,20 +1,20 @@
-// Scene truth: the true reflected point of every pixel, from the scene's triangles, and whether this frame could show it.
+// Scene truth: the true reflected point of every pixel, from the scene's triangles, and whether this frame shows it.
 //
-// The reflected ray starts at the G-buffer's point P (pixel centre, pixel depth) and follows the contract's mirror direction,
-// both in double. Hits nearer than self_hit_share * distance(eye, P) are the reflecting surface itself and do not count: the
-// depth is a rounded float. TraceSettings::ray_offset_m does not matter here, the true point does not depend on it.
+// The reflected ray starts at the G-buffer's point P (pixel centre and depth) and follows the contract's mirror
+// direction, both in double. Hits nearer than self_hit_share * distance(eye, P) are the reflecting surface itself and
+// do not count, because depth is a rounded float. TraceSettings::ray_offset_m does not matter.
 //
 // The class is the first of these that applies:
 //   sky            the ray meets nothing
 //   beyond         the point is farther along the ray than max_distance_m
 //   behind_camera  its distance is less than the near plane's
 //   off_screen     it projects outside the image
-//   facing_away    the frame does not draw the side that the ray sees: the camera looks at the other one, or along the surface,
-//                  or it is the back of a material that is not double-sided
-//   hidden         something lies between the near plane and the point: an occlusion ray from the eye (orthographic: along
-//                  the view axis) is blocked before (1 - visibility_tolerance) of the way by something that the frame draws
-//   visible        everything else: an SSR could find it
-// The reflected ray is stopped by both sides of every triangle, also of materials that are not double-sided.
+//   facing_away    the frame does not draw the side that the ray sees: the camera looks at the other one, or along the
+//                  surface, or it is the back of a material that is not double-sided
+//   hidden         an occlusion ray from the eye (orthographic: along the view axis) is blocked beyond the near plane
+//                  and before (1 - visibility_tolerance) of the way by something that the frame draws
+//   visible        everything else: a tracer could find it
+// Both sides of every triangle stop the reflected ray, also of materials that are not double-sided.
 #pragma once
 
 #include "core/gbuffer_image.h"
@@ -28,7 +28,7 @@
 
 namespace ssrlab {
 
-/// Whether both settings have the same truths: the same maximum distance and materials that reflect.
+/// Returns whether both settings have the same truths: equal maximum distance and materials that reflect.
 bool same_scene_truth(const TraceSettings& a, const TraceSettings& b);
 
 /// Returns a truth in which no pixel is traced.

@@ -12,18 +12,18 @@ struct ScreenRay {
     glm::dvec3  origin_px_depth{0};
     glm::dvec3  delta_px_depth{0}; // all zero when the ray visits nothing
     glm::ivec2  start_pixel{0, 0};
-    TraceStatus end_status = TraceStatus::not_traced; // how the ray ends if it meets no slab
+    TraceStatus end_status = TraceStatus::not_traced; // if it meets nothing
     double      length_m   = 0;                       // from the reflecting point to the clipped end; may be +inf
     glm::dvec3  direction_vs{0};                      // unit
 };
 
-/// Whether the pixel reflects: finite depth > 0, a finite non-zero normal, and a material that reflects.
+/// Returns whether the pixel reflects: finite depth > 0, a finite non-zero normal, and a material that reflects.
 bool reflects(const GBufferImage& gbuffer, glm::ivec2 pixel, const TraceSettings& settings = {});
 
-/// The view-space point at the pixel's centre and depth.
+/// Returns the view-space point at the pixel's centre and depth.
 glm::dvec3 pixel_point_vs(const GBufferImage& gbuffer, glm::ivec2 pixel);
 
-/// Unit mirror direction at a pixel that reflects.
+/// Returns the unit mirror direction at a reflecting pixel.
 glm::dvec3 mirror_direction_vs(const GBufferImage& gbuffer, glm::ivec2 pixel);
 
 ScreenRay make_screen_ray(const GBufferImage& gbuffer, glm::ivec2 pixel, const TraceSettings& settings);

@@ -11,7 +11,7 @@
 
 namespace ssrlab {
 
-/// What one ray found. The last four fields are undefined unless hit or stopped.
+/// The result of one ray. The last four fields are undefined unless hit or stopped.
 struct WalkResult {
     TraceStatus status = TraceStatus::not_traced;
     uint32_t    pixels = 0; // visited; the start pixel is not one of them
@@ -43,7 +43,7 @@ private:
     std::vector<Cell>   cells_;
 };
 
-/// Shares no code with the shaders. threads = 0: all cores. `steps` counts the visited pixels.
+/// Returns the truth of every pixel; `steps` is the number of visited pixels. threads = 0: all cores.
 TraceResult screen_truth(const GBufferImage& gbuffer, const TraceSettings& settings, unsigned threads = 0);
 
 } // namespace ssrlab

@@ -40,22 +40,22 @@ template <typename Enum> Enum choice(const ParameterValues& values)
     return static_cast<Enum>(static_cast<int>(values.at(std::string(choice_names(Enum{}).parameter))));
 }
 
-/// The value by which a choice is stored.
+/// Returns the number that stores a choice.
 template <typename Enum> constexpr double choice_value(Enum chosen) { return static_cast<double>(chosen); }
 
-/// Parameter and value of a choice, to be put among other values.
+/// Returns parameter and value of a choice, for a ParameterValues.
 template <typename Enum> ParameterValues::value_type chosen(Enum value)
 {
     return {std::string(choice_names(value).parameter), choice_value(value)};
 }
 
-/// Whether the rays of rough surfaces are drawn from their lobes; the pass ray_reuse makes reflections of them.
+/// Returns whether rays of rough surfaces are drawn from their lobes, for the pass ray_reuse.
 inline bool draws_lobe_rays(const ParameterValues& values)
 {
     return choice<Gloss>(values) == Gloss::stochastic && choice<PassSet>(values) == PassSet::all;
 }
 
-/// Side in pixels of the blocks in which one pixel has rays.
+/// Returns the side in pixels of the blocks in which one pixel has rays.
 inline int trace_block_px(const ParameterValues& values)
 {
     return 1 << static_cast<int>(choice<TraceResolution>(values));

@@ -28,15 +28,15 @@ struct PassDecision {
     std::string reason;
 };
 
-/// Writes a pass's commands.
+/// Records a pass's commands.
 using RecordFunction = std::function<void(const vk::raii::CommandBuffer&)>;
 
-/// What a pass finds, and what passes hand to each other.
+/// The inputs of passes, and what passes hand to each other.
 enum class Resource : uint8_t {
     gbuffer,      // depth, normals and materials
     light,        // lit colours of the G-buffer
     objects,      // which object each pixel shows, and the plane of its depth
-    layers,       // what lies behind the G-buffer
+    layers,       // the layers behind the G-buffer
     solids,       // where the solids end whose fronts it shows
     surroundings, // lights, shadow maps and environment of the scene
     tiles,        // that reflect
@@ -47,34 +47,34 @@ enum class Resource : uint8_t {
     small_colour,
     cones,
     reflection,
-    filtered, // a reflection that a filter is writing, or an earlier one
+    filtered, // the target of a filter, or an earlier reflection
     block_pixel,
-    lobe_rays, // what each ray of a rough pixel brought back
+    lobe_rays, // light and end of each ray of rough pixels
     history,   // what the frame before left
     kept,      // what this frame leaves for the next
     shaded,
 };
 std::string_view name_of(Resource resource);
 
-/// What a pass is prepared from: the frame's inputs, of which it may use what it declares.
+/// What prepare() gets: the frame's inputs, of which the pass may use what it declares.
 struct PassContext {
     const FrameInputs& frame;
     const Pass&        pass;
     std::string        id; // of the pass, or of the structure that it builds
 };
 
-/// Skipping a pass that is not needed leaves every bit of the image as it is.
+/// A step of a frame. Skipping it when it is not needed changes no bit of the image.
 struct Pass {
     std::string              id, summary;
     std::vector<std::string> cite = {};
-    /// A shader of the pass that uses anything else does not get it (std::logic_error).
+    /// Using anything else throws std::logic_error.
     std::vector<Resource>  reads, writes;
     std::vector<Parameter> parameters = {};
     PassDecision (*decide)(const FrameFacts&, const FrameStatistics&, const ParameterValues&);
-    /// Makes the pass's pipelines. The record function refers to the frame's inputs, which must outlive it.
+    /// Compiles the pass and returns its record function, which refers to the frame's inputs: they must outlive it.
     RecordFunction (*prepare)(Gpu&, const PassContext&) = nullptr;
     bool beyond_shading                                 = false; // off with pass_set = shading
-    bool per_structure = false; // runs once for each structure of the technique, under that structure's id
+    bool per_structure = false; // runs once per structure of the technique, under its id
 };
 
 Pass layers_pass();
@@ -98,11 +98,11 @@ Pass environment_pass();
 Pass history_pass();
 Pass composite_pass();
 
-/// In the order of a frame.
+/// Returns all passes in the order of a frame.
 std::span<const Pass> all_passes();
-/// Of the plan itself: what may run at all.
+/// Returns the parameters of the plan itself: what may run at all.
 std::vector<Parameter> plan_parameters();
-/// Those, then the parameters of all passes. Names are unique.
+/// Returns these, then the parameters of all passes. Names are unique.
 std::span<const Parameter> pass_parameters();
 ParameterValues            default_pass_values();
 
