@@ -55,7 +55,8 @@ int print_measures(const CommonOptions& common)
         text += fmt::format("| {} | {} |\n", code(column.name), column.meaning);
     }
     text += "\n## Measures\nAlso columns. A share is between 0 and 1.\n\n" + measures_markdown();
-    text += "\n## Summary of a sequence\n`sequence_summary.csv` has the settings and parameters of the runs, and these:\n\n";
+    text += "\n## Summary of a sequence\n`sequence_summary.csv` has the settings and parameters of the runs, and "
+            "these:\n\n";
     text += "| column | meaning |\n|---|---|\n";
     const std::vector<Column> settings = setting_columns(everything, techniques);
     for (const Column& column : summary_columns(everything, techniques))

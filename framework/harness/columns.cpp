@@ -32,7 +32,7 @@ const std::vector<Column> identity = {
 const std::vector<Column> times = {
     {"trace_ms_median", "GPU time of the trace pass, median over the repeats"},
     {"trace_ms_mad", "its median absolute deviation"},
-    {"trace_ms_ci_low", "lower end of the 95 % interval of the median, from order statistics; empty below six repeats"},
+    {"trace_ms_ci_low", "lower end of the 95 % confidence interval of the median; empty below six repeats"},
     {"trace_ms_ci_high", "upper end"},
     {"repeats", "timed frames", whole},
     {"frames_per_submit", "frames that a repeat submits together; the last is timed", whole},
@@ -51,7 +51,7 @@ const std::vector<Column> times = {
      "pass_set = shading)"},
     {"frame_ms_median", "sum of all passes with the G-buffer's median, per repeat; median over the repeats"},
     {"frame_ms_mad", "its median absolute deviation"},
-    {"frame_ms_ci_low", "lower end of the 95 % interval of the median"},
+    {"frame_ms_ci_low", "lower end of the 95 % confidence interval of the median"},
     {"frame_ms_ci_high", "upper end"},
     {"fps", "1000 / frame_ms_median"},
     {"inverse_fps_s", "frame_ms_median / 1000"},
