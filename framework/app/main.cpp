@@ -283,6 +283,8 @@ int main(int argc, char** argv)
     compiled->add_option("-p,--parameter", shaders.parameters,
                          "name=value, as for render; for every technique that has it");
     compiled->add_option("--assembly", shaders.assembly, "Also write the assembly of each pass into this folder");
+    compiled->add_flag("--files", shaders.files,
+                       "Instead: the files that the compiler reads of each technique, and their lines of code");
     compiled->add_flag("--json", shaders.json, "As JSON, with all that the driver says");
     compiled->callback([&] { command = [&] { return describe_shaders(common, shaders); }; });
 

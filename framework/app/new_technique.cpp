@@ -20,6 +20,8 @@ max_steps = {{ default = 1024, min = 1, max = 60000, doc = "Places before the ra
 )";
 
 constexpr const char* trace = R"(// Place after place along the ray, until the ray meets a surface at one.
+#include "api/sampling.glsl"
+
 TraceResult trace(Ray ray)
 {
     real  dt = real(stride_px) / max(length(ray.delta.xy), real(stride_px)), t = real(0);

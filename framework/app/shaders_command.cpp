@@ -4,12 +4,14 @@
 #include "core/files.h"
 #include "core/version.h"
 #include "harness/choice.h"
+#include "trace/technique_files.h"
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdio>
+#include <numeric>
 
 namespace ssrlab {
 namespace {
@@ -131,6 +133,35 @@ void write_assembly(const std::vector<Row>& rows, const std::filesystem::path& f
     }
 }
 
+/// "  35  techniques/hiz/trace.glsl" for each, then the sum; generated texts have the names under which they are included.
+void print_files(const std::vector<ShaderFile>& files, const std::string& title)
+{
+    const auto add = [](int sum, const ShaderFile& file) { return sum + file.code_lines; };
+    std::puts(fmt::format("{}: {} lines of code in {} files", title,
+                          std::accumulate(files.begin(), files.end(), 0, add), files.size())
+                  .c_str());
+    for (const ShaderFile& file : files) {
+        const std::string inside = std::filesystem::path(file.name).lexically_relative(data_root()).string();
+        const bool        own    = !inside.empty() && !inside.starts_with("..");
+        std::puts(fmt::format("  {:4}  {}", file.code_lines, own ? inside : file.name).c_str());
+    }
+}
+
+/// What the compiler reads of each technique, on an image of one pixel.
+void print_technique_files(Gpu& gpu, const Catalogue& catalogue, const std::vector<const Technique*>& techniques,
+                           const std::vector<Choice>& choices)
+{
+    const std::vector<float> depth   = {0.5F};
+    const GBufferPtr         gbuffer = upload_depth(gpu, camera_to_view(Camera{}, {1, 1}), depth);
+    for (size_t i = 0; i < techniques.size(); ++i) {
+        const TraceSettings& settings = choices[i].settings.trace;
+        const LabPtr         lab      = make_lab(gpu, catalogue, gbuffer, *techniques[i], choices[i].values, settings);
+        const TechniqueFiles files    = technique_files(gpu, lab);
+        print_files(files.technique, techniques[i]->id);
+        print_files(files.ray_setup, "ray set-up, the same for all techniques, adds");
+    }
+}
+
 } // namespace
 
 int describe_shaders(const CommonOptions& common, const ShadersOptions& options)
@@ -144,9 +175,13 @@ int describe_shaders(const CommonOptions& common, const ShadersOptions& options)
     const std::vector<Choice> choices = parse_choices(catalogue, techniques, options.parameters);
 
     GpuOptions device    = common.gpu;
-    device.compiles_only = true;
+    device.compiles_only = !options.files;
     if (!options.chip.empty()) pretend_chip(options.chip);
-    Gpu                    gpu  = open_gpu(device);
+    Gpu gpu = open_gpu(device);
+    if (options.files) {
+        print_technique_files(gpu, catalogue, techniques, choices);
+        return 0;
+    }
     const std::vector<Row> rows = compile(gpu, catalogue, techniques, choices);
     if (options.json)
         print_json(rows, gpu.info);

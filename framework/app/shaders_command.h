@@ -10,7 +10,8 @@ struct ShadersOptions {
     std::vector<std::string> parameters; // name=value; of every technique that has it
     std::string              chip;       // of AMD, by Mesa's compiler; empty: the device's own compiler
     std::string              assembly;   // folder for the assembly of each pipeline; empty: not written
-    bool                     json = false;
+    bool                     json  = false;
+    bool                     files = false; // instead: what the compiler reads of each technique
 };
 
 int describe_shaders(const CommonOptions& common, const ShadersOptions& options);

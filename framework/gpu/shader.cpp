@@ -165,15 +165,15 @@ fs::path shader_folder() { return data_root() / "shaders"; }
 fs::path technique_folder() { return data_root() / "techniques"; }
 
 namespace {
-Shader compile(const ShaderSource& source)
+Shader compile(const ShaderSource& source, ShaderIncluder& includer)
 {
     static const GlslangProcess process;
-    const std::filesystem::path path  = shader_folder() / source.file;
-    const std::string           text  = read_file(path);
-    const std::string           shown = path.string();
+    const std::string           text  = includer.read_main_file();
+    const std::string           shown = (shader_folder() / source.file).string();
     std::string                 preamble =
         "#extension GL_GOOGLE_include_directive : require\n#extension GL_GOOGLE_cpp_style_line_directive : require\n"
-        "#extension GL_EXT_scalar_block_layout : require\n";
+        "#extension GL_EXT_scalar_block_layout : require\n"
+        "#define SHARED_FUNCTION\n"; // of headers that C++ includes, too
     for (const auto& [name, value] : source.defines) preamble += fmt::format("#define {} {}\n", name, value);
 
     const EShLanguage language = language_of(source.stage);
@@ -186,14 +186,14 @@ Shader compile(const ShaderSource& source)
     stage.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, 100);
     stage.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
     stage.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
-    ShaderIncluder includer(source);
     // Cascading: it goes on after the first error.
     const auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules | EShMsgCascadingErrors);
     if (!stage.parse(GetDefaultResources(), 460, ECoreProfile, false, false, messages, includer))
-        throw SpecError(shader_errors_in(stage.getInfoLog(), source));
+        throw SpecError(shader_errors_in(stage.getInfoLog(), source, includer.files()));
     glslang::TProgram program;
     program.addShader(&stage);
-    if (!program.link(messages)) throw_spec_error("{}: {}", shown, shader_errors_in(program.getInfoLog(), source));
+    if (!program.link(messages))
+        throw_spec_error("{}: {}", shown, shader_errors_in(program.getInfoLog(), source, includer.files()));
     program.buildReflection(EShReflectionSeparateBuffers);
 
     Shader shader;
@@ -240,7 +240,8 @@ Shader compile_or_read(const ShaderSource& source, std::span<const std::filesyst
     const std::string      name    = fmt::format("shader-{}-{}.{}.{}", content_hash(key_of(source, files, read_file)),
                                                  version.major, version.minor, version.patch);
     const auto             kept    = read_cached(name);
-    Shader                 shader  = kept ? from_bytes(*kept, source) : compile(source);
+    ShaderIncluder         includer(source);
+    Shader                 shader = kept ? from_bytes(*kept, source) : compile(source, includer);
     if (!kept) write_cached(name, to_bytes(shader));
     shader.constants = constants_used(shader.spirv);
     return shader;
@@ -280,10 +281,28 @@ ShaderFilesHeld::~ShaderFilesHeld()
     --seen_files().holders;
 }
 
-Shader compile_shader(const Gpu& gpu, ShaderSource source)
+namespace {
+
+/// What all shaders of a device are compiled with.
+void add_device_defines(const Gpu& gpu, ShaderSource& source)
 {
     if (gpu.info.plain_buffers) source.defines.emplace("PLAIN_BUFFERS", "1");
     source.defines.emplace("GROUP_LANES", std::to_string(gpu.info.lanes));
+}
+
+} // namespace
+
+std::vector<ShaderFile> shader_files(const Gpu& gpu, ShaderSource source)
+{
+    add_device_defines(gpu, source);
+    ShaderIncluder includer(source);
+    compile(source, includer);
+    return includer.files();
+}
+
+Shader compile_shader(const Gpu& gpu, ShaderSource source)
+{
+    add_device_defines(gpu, source);
     // A sweep and the checks ask for the same shader hundreds of times, with other constants.
     static std::map<std::string, Shader> compiled;
     SeenFiles&                           seen = seen_files();

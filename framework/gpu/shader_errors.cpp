@@ -9,11 +9,9 @@
 #include <sstream>
 
 namespace ssrlab {
-namespace {
 
 namespace fs = std::filesystem;
 
-/// Comments turned into blanks; lines stay lines.
 std::string without_comments(std::string text)
 {
     for (size_t i = 0; i + 1 < text.size(); ++i) {
@@ -25,6 +23,8 @@ std::string without_comments(std::string text)
     }
     return text;
 }
+
+namespace {
 
 /// The line of the first '{' that is not closed; 0: none.
 int unclosed_brace(const std::string& text)
@@ -80,19 +80,26 @@ std::string error_text(const std::string& error, const ShaderSource& source)
 }
 
 /// What the plug-in would have to write so that the name that is not found is there; empty: nothing would help.
-std::string cure_of(const std::string& error, const ShaderSource& source)
+std::string cure_of(const std::string& error, const ShaderSource& source, const std::vector<ShaderFile>& read)
 {
     std::smatch      found;
     const std::regex unknown("'(\\w+)' : (no matching overloaded function found|undeclared identifier)");
     if (!std::regex_search(error, found, unknown)) return "";
     for (const auto& [line, file] : source.offered)
         if (line_defining(read_file(file), found[1]) > 0) return fmt::format(" (needs {})", line);
+    for (const fs::directory_entry& entry : fs::directory_iterator(shader_folder() / "api")) {
+        const fs::path& file = entry.path();
+        const auto      same = [&](const ShaderFile& other) { return other.name == file.string(); };
+        if (file.stem().has_extension() || std::ranges::any_of(read, same)) continue; // a variant of another file
+        if (line_defining(read_file(file), found[1]) > 0)
+            return fmt::format(" (needs #include \"api/{}\")", file.filename().string());
+    }
     return "";
 }
 
 } // namespace
 
-std::string shader_errors_in(const std::string& log, const ShaderSource& source)
+std::string shader_errors_in(const std::string& log, const ShaderSource& source, const std::vector<ShaderFile>& read)
 {
     std::istringstream       lines(log);
     std::vector<std::string> errors;
@@ -101,7 +108,7 @@ std::string shader_errors_in(const std::string& log, const ShaderSource& source)
         // The compiler's last line counts its errors.
         if (!line.starts_with(prefix) || line.ends_with("No code generated.")) continue;
         std::string error = error_text(line.substr(prefix.size()), source);
-        if (!error.empty()) error += cure_of(error, source);
+        if (!error.empty()) error += cure_of(error, source, read);
         if (!error.empty() && std::ranges::count(errors, error) == 0) errors.push_back(error);
     }
     return errors.empty() ? log : fmt::format("{}", fmt::join(errors, "\n"));

@@ -1,7 +1,6 @@
 #include "trace/depth_buffer.h"
 
 #include "core/pixel_index.h"
-#include "planes.h"
 #include "shared.h"
 
 #include <bit>
@@ -43,8 +42,10 @@ glm::ivec2 level_size(glm::ivec2 size_px, int level) { return ((size_px - 1) >> 
 
 DepthBuffer make_depth_buffer(Gpu& gpu, glm::ivec2 size_px)
 {
-    const int   first  = planes_first(size_px.x, pyramid_rows(pyramid_root(size_px), size_px.y));
-    const auto  texels = static_cast<size_t>(planes_end(size_px.x, size_px.y, first));
+    const int  first = planes_first(size_px.x, pyramid_rows(pyramid_root(size_px), size_px.y));
+    const int  rows  = planes_rows(size_px.y);
+    const auto texels =
+        static_cast<size_t>(first + strip_index(((size_px.x - 1) >> STRIP_BITS) << STRIP_BITS, rows, rows));
     DepthBuffer depth;
     depth.size_px = size_px;
     depth.cells   = make_texel_buffer(gpu, texels * sizeof(glm::uvec2), vk::Format::eR32G32Uint);

@@ -83,19 +83,23 @@ Defines ray_list_defines(const Gpu& gpu, const RayBuffers& rays)
 
 void add_surface(ShaderSource& source, const Surface& surface, int layers)
 {
-    for (const char* part : {"meeting.glsl", "meeting_exact.glsl", "held.glsl"})
-        if (std::filesystem::exists(surface.shaders / part)) // only the exact one may be missing
+    for (const char* part : {"meeting.glsl", "meeting_exact.glsl", "held.glsl", "order.glsl"})
+        if (std::filesystem::exists(surface.shaders / part))
             source.include_files.emplace(fmt::format("surface/{}", part), surface.shaders / part);
+    if (!source.include_files.contains("surface/order.glsl")) // held.glsl has it
+        source.include_texts.emplace("surface/order.glsl", "");
     source.include_folders.push_back(surface.shaders);
     if (surface.needs_gradient) source.defines.emplace("PIXEL_PLANES", "1");
     if (surface.needs_solid) source.defines.emplace("SURFACE_SOLID", "1");
     for (const std::string& macro : surface.defines) source.defines.emplace(macro, "1");
     source.defines.emplace("LAYERS", std::to_string(layers));
+    if (layers > 1) source.defines.emplace("LAYERED", "1");
 }
 
 Defines store_defines(const Gpu& gpu, const Buffer& texels)
 {
-    const bool storable = gpu.info.int64 && texels.bytes <= gpu.impl->limits.maxStorageBufferRange;
+    const bool storable =
+        gpu.info.int64 && !gpu.info.plain_buffers && texels.bytes <= gpu.impl->limits.maxStorageBufferRange;
     return storable ? Defines{{"STORES_64_BITS", "1"}} : Defines{};
 }
 
@@ -135,7 +139,9 @@ std::string parameter_declarations(std::span<const Parameter> parameters, uint32
         text += fmt::format("layout(constant_id = {}) const {};\n", id++,
                             fmt::format(fmt::runtime(declaration), glsl_name(parameter)));
         for (size_t i = 0; i < parameter.choices.size(); ++i)
-            text += fmt::format("const int {}_{} = {};\n", glsl_name(parameter), parameter.choices[i], i);
+            text +=
+                fmt::format("{} {}_{} = {}", i == 0 ? "const int" : ",", glsl_name(parameter), parameter.choices[i], i);
+        if (!parameter.choices.empty()) text += ";\n";
     }
     return text;
 }

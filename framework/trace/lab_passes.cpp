@@ -10,8 +10,8 @@
 namespace ssrlab {
 namespace {
 
-/// Walks by borders in whole numbers (shaders/api/grid_exact.glsl). A define, not a constant: 64-bit integers must not even
-/// be declared on a device without them.
+/// Walks by borders in whole numbers (shaders/api/grid.exact_arithmetic.glsl). A define, not a constant: 64-bit integers
+/// must not even be declared on a device without them.
 constexpr const char* exact_arithmetic = "EXACT_ARITHMETIC";
 
 /// The choice of a parameter that asks for integers of 128 bits, "NAME = CHOICE"; empty: none does.
@@ -94,9 +94,7 @@ ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch
                              {{"ItemCount", items}, {"Launch", launch}}, constants);
 }
 
-namespace {
-
-Shader compile_trace(const Gpu& gpu, const Lab& lab, const RayBuffers& rays, const Bindings& bindings)
+ShaderSource trace_source(const Gpu& gpu, const Lab& lab, const RayBuffers& rays, const Bindings& bindings)
 {
     const Technique& technique = lab.technique;
     const bool       in_double = rays.precision == Precision::float64;
@@ -115,11 +113,22 @@ Shader compile_trace(const Gpu& gpu, const Lab& lab, const RayBuffers& rays, con
     for (const std::string& macro : shader_macros(technique, lab.values)) source.defines.emplace(macro, "1");
     source.defines.merge(store_defines(gpu, rays.hits));
     source.defines.merge(ray_list_defines(gpu, rays));
-    if (technique.rays_per_invocation == 2) source.defines.emplace("PAIR_GROUPS", gpu.info.lanes > 1 ? "2" : "1");
+    if (technique.rays_per_invocation == 2)
+        source.defines.insert({{"TRACES_PAIRS", "1"}, {"PAIR_GROUPS", gpu.info.lanes > 1 ? "2" : "1"}});
     if (bindings.contains("Work")) source.defines.emplace("COUNT_WORK", "1");
     if (bindings.contains("Visits")) source.defines.emplace("RECORD_VISITS", "1");
-    return compile_shader(gpu, source);
+    return source;
 }
+
+ShaderSource ray_setup_source(const Gpu& gpu, const RayBuffers& rays)
+{
+    Defines defines = precision_defines(gpu, rays.precision);
+    defines.merge(store_defines(gpu, rays.list));
+    defines.merge(ray_list_defines(gpu, rays));
+    return {.file = "rays/rays.comp", .defines = defines};
+}
+
+namespace {
 
 /// One workgroup lists the tiles: as wide as every device allows, and as wide as this one allows where passes are parallel.
 Shader compile_tile_list(const Gpu& gpu)
@@ -147,7 +156,7 @@ TechniquePasses make_technique_passes(Gpu& gpu, const Lab& lab, const RayBuffers
                                                RAYS_PER_GROUP * RAY_GROUP_INVOCATIONS / gpu.info.lanes);
     Bindings all = bindings;
     all.merge(structure_bindings(gpu, lab.technique, *lab.gbuffer, rays));
-    passes.trace = make_compute_pass(gpu, compile_trace(gpu, lab, rays, bindings), all, constants);
+    passes.trace = make_compute_pass(gpu, compile_shader(gpu, trace_source(gpu, lab, rays, bindings)), all, constants);
     return passes;
 }
 
@@ -200,11 +209,7 @@ TracePasses make_trace_passes(Gpu& gpu, const Lab& lab, const RayBuffers& rays, 
     passes.classification = make_classification(gpu, bindings, constants);
     passes.tile_list      = make_compute_pass(gpu, compile_tile_list(gpu), bindings, constants, sizeof(glm::ivec2));
     passes.tile_launch    = make_launch_pass(gpu, gbuffer.tiles.count, gbuffer.tiles.launch, 1);
-    Defines ray_defines   = precision_defines(gpu, rays.precision);
-    ray_defines.merge(store_defines(gpu, rays.list));
-    ray_defines.merge(ray_list_defines(gpu, rays));
-    passes.rays       = make_compute_pass(gpu, compile_shader(gpu, {.file = "rays/rays.comp", .defines = ray_defines}),
-                                          bindings, constants);
+    passes.rays       = make_compute_pass(gpu, compile_shader(gpu, ray_setup_source(gpu, rays)), bindings, constants);
     passes.ray_launch = make_launch_pass(gpu, rays.count, rays.launch, RAYS_PER_GROUP);
     passes.technique  = make_technique_passes(gpu, lab, rays, bindings);
     return passes;

@@ -111,7 +111,7 @@ Defines ray_list_defines(const Gpu& gpu, const RayBuffers& rays);
 Defines precision_defines(const Gpu& gpu, Precision precision);
 /// Adds the surface model and the layers to a shader (shaders/surfaces/).
 void add_surface(ShaderSource& source, const Surface& surface, int layers);
-/// Returns the macros for a shader that stores texels of this buffer (shaders/layout/store_texel.glsl).
+/// Returns the macros for a shader that stores texels of this buffer (shaders/layout/stored_texels.glsl).
 Defines store_defines(const Gpu& gpu, const Buffer& texels);
 /// Adds the constants of shaders/rays/reflecting.glsl.
 void add_reflecting(Constants& constants, const TraceSettings& settings);
@@ -122,8 +122,12 @@ std::string parameter_declarations(std::span<const Parameter> parameters, uint32
 void        add_parameters(Constants& constants, std::span<const Parameter> parameters, const ParameterValues& values,
                            uint32_t id);
 
+/// Returns the shaders that trace and that set rays up. With "Work" and "Visits" in bindings, one that counts.
+ShaderSource trace_source(const Gpu& gpu, const Lab& lab, const RayBuffers& rays, const Bindings& bindings);
+ShaderSource ray_setup_source(const Gpu& gpu, const RayBuffers& rays);
+
 // What shaders wrote.
-/// Packs a pixel and a number into one word, as shaders/api/view.glsl does.
+/// Packs a pixel and a number into one word, as shaders/layout/packed_pixel.glsl does.
 uint32_t   pack_pixel(glm::ivec2 pixel, int number);
 glm::ivec2 unpack_pixel(uint32_t packed);
 /// Returns how a ray ended, in any layer.

@@ -151,16 +151,23 @@ Defines store_defines_of(const Gpu& gpu, const Structure& structure, const GBuff
     return defines;
 }
 
-StructureDispatch make_dispatch(Gpu& gpu, const Lab& lab, const Structure& structure, const StructurePass& pass,
-                                const RayBuffers& rays, const Bindings& bindings)
+ShaderSource pass_source(const Gpu& gpu, const Lab& lab, const Structure& structure, const StructurePass& pass,
+                         const RayBuffers& rays, bool counts)
 {
     ShaderSource source = shader_of(lab.technique, structure, pass, rays.precision == Precision::float64);
     add_surface(source, lab.surface, lab.settings.layers);
     source.defines.merge(precision_defines(gpu, is_per_ray(pass) ? rays.precision : Precision::float32));
     source.defines.merge(store_defines_of(gpu, structure, *lab.gbuffer, rays));
     if (is_per_ray(pass)) source.defines.merge(ray_list_defines(gpu, rays));
-    if (is_per_ray(pass) && bindings.contains("Work")) source.defines.emplace("COUNT_WORK", "1");
-    StructureDispatch dispatch;
+    if (is_per_ray(pass) && counts) source.defines.emplace("COUNT_WORK", "1");
+    return source;
+}
+
+StructureDispatch make_dispatch(Gpu& gpu, const Lab& lab, const Structure& structure, const StructurePass& pass,
+                                const RayBuffers& rays, const Bindings& bindings)
+{
+    const ShaderSource source = pass_source(gpu, lab, structure, pass, rays, bindings.contains("Work"));
+    StructureDispatch  dispatch;
     dispatch.pass = make_compute_pass(gpu, compile_shader(gpu, source), bindings,
                                       constants_of(lab, is_per_ray(pass) ? rays.precision : Precision::float32),
                                       pass.per == SizeRule::level ? sizeof(glm::ivec2) : 0);
@@ -229,6 +236,16 @@ std::vector<StructurePasses> make_ray_structures(Gpu& gpu, const Lab& lab, const
     return make_structures(gpu, lab, rays, bindings, true);
 }
 
+std::vector<ShaderSource> structure_sources(Gpu& gpu, const Lab& lab, const RayBuffers& rays)
+{
+    structure_bindings(gpu, lab.technique, *lab.gbuffer, rays); // makes the buffers
+    std::vector<ShaderSource> sources;
+    for (const Structure& structure : lab.technique.structures)
+        for (const StructurePass& pass : structure.passes)
+            if (is_of_style(pass, gpu.info)) sources.push_back(pass_source(gpu, lab, structure, pass, rays, false));
+    return sources;
+}
+
 void record_structure(const vk::raii::CommandBuffer& commands, const StructurePasses& structure,
                       const Buffer* group_launch)
 {
@@ -268,7 +285,7 @@ Bindings structure_bindings(Gpu& gpu, const Technique& technique, const GBuffer&
 std::string structure_declarations(const Technique& technique, const Structure* built, bool in_double)
 {
     const std::set<std::string> ids     = built == nullptr ? std::set<std::string>{} : read_by(technique, built->id);
-    std::string                 text    = "#include \"api/structure_api.glsl\"\n";
+    std::string                 text    = technique.structures.empty() ? "" : "#include \"api/structure_api.glsl\"\n";
     int                         binding = first_binding;
     for (size_t i = 0; i < technique.structures.size(); ++i)
         text += fmt::format("const int STRUCTURE_{} = {};\n", technique.structures[i].id, i);

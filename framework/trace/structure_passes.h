@@ -26,6 +26,8 @@ std::vector<StructurePasses> make_depth_structures(Gpu& gpu, const Lab& lab);
 /// Returns those that depend on a list of rays. `bindings`: list, G-buffer and view; with "Work" fetches are counted.
 std::vector<StructurePasses> make_ray_structures(Gpu& gpu, const Lab& lab, const RayBuffers& rays,
                                                  const Bindings& bindings);
+/// Returns the shaders of both, timed, not counted.
+std::vector<ShaderSource> structure_sources(Gpu& gpu, const Lab& lab, const RayBuffers& rays);
 /// Records building a structure. `group_launch`: dispatch arguments for the list of rays; null without such a pass.
 void record_structure(const vk::raii::CommandBuffer& commands, const StructurePasses& structure,
                       const Buffer* group_launch);

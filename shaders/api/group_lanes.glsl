@@ -1,8 +1,7 @@
 // For the passes of a structure per ray group, RAY_GROUP_INVOCATIONS invocations a workgroup: those that share a group. On a CPU device each has a group
 // of its own, GROUP_LANES == 1. On a GPU several lanes of a subgroup work on one, so that they wait for memory together. Whoever asks other lanes must do
 // so where the whole subgroup is: loops go on while any_in_subgroup().
-#ifndef SSRLAB_GROUP_LANES
-#define SSRLAB_GROUP_LANES
+#include "layout/frame_shared.h"
 #include "layout/workgroups.glsl"
 #if GROUP_LANES > 1
 #extension GL_KHR_shader_subgroup_basic : require
@@ -42,4 +41,3 @@ uint sum_of_group_lanes(uint own) { return own; }
 #endif
 
 int ray_group() { return int(work_group() * (RAY_GROUP_INVOCATIONS / GROUP_LANES)) + ray_group_in_workgroup(); }
-#endif

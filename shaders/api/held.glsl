@@ -1,4 +1,7 @@
-// What a pixel holds, for structures: they must know where no ray can meet it. After api/view.glsl and api/slab.glsl.
+// What a pixel holds, for structures: they must know where no ray can meet it.
+#include "api/camera.glsl"
+#include "api/slab.glsl"
+
 struct Held
 {
     vec2  gradient;    // of a plane through 0 at the pixel's centre, from one pixel to the next
@@ -19,9 +22,4 @@ vec2 held_depths(ivec2 pixel, int layer, float depth, uint gradient)
     return vec2(held.front + spread, held.back - spread);
 }
 
-// In all layers. depth, gradient: of the first one.
-#if LAYERS > 1
 #include "api/held_layers.glsl"
-#else
-vec2 held_depths(ivec2 pixel, float depth, uint gradient) { return held_depths(pixel, 0, depth, gradient); }
-#endif

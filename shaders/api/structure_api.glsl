@@ -1,7 +1,8 @@
-// What the shaders of a structure and the techniques that read it share: where elements lie in a buffer of each size rule. After api/view.glsl.
+// What the shaders of a structure and the techniques that read it share: where elements lie in a buffer of each size rule. After api/camera.glsl.
 // A buffer NAME of the manifest has load_NAME(index); in the structure's own passes also store_NAME(index, value); with `count` elements each, NAME_count.
 #include "layout/load_cell.glsl"
 #include "layout/workgroups.glsl"
+#include "api/ray_group.glsl"
 
 // per = "pixel"
 int pixel_index(ivec2 pixel) { return pixel.y * size_px.x + pixel.x; }
@@ -14,8 +15,3 @@ int level_cell_index(ivec2 pixel, int level) { return ((pyramid_root | pixel.y) 
 
 // Cells of a level; level 0 is the pixels.
 ivec2 level_size(int level) { return ((size_px - 1) >> level) + 1; }
-
-// per = "ray_group": of this invocation; a pass per ray group includes api/group_lanes.glsl.
-#ifndef BUILDS_STRUCTURE
-int ray_group() { return int(work_group()); }
-#endif

@@ -1,15 +1,9 @@
 // Where the depth and the cells above it lie. One buffer holds the depth of every pixel, BACKGROUND_DEPTH where there is nothing, as level 0, and above
-// it two words for each cell of each level, in strips one cache line wide, with rows as a binary heap (layout/shared.h). A structure may fill the cells.
+// it two words for each cell of each level, in strips one cache line wide, with rows as a binary heap (layout/places.h). A structure may fill the cells.
 // After size_px, the image's size.
-#ifndef SSRLAB_CELL_PLACES
-#define SSRLAB_CELL_PLACES
-#include "layout/shared.h"
+#include "layout/places.h"
 
 // Levels above 0: until one row of cells is left.
 int pyramid_levels() { return findMSB(2 * size_px.y - 1); }
 
 int pyramid_root = 1 << pyramid_levels(), pyramid_height = pyramid_rows(pyramid_root, size_px.y);
-
-// Of the cell of a level that holds a pixel, or at level 0 of the two pixels of which it is one.
-int cell_index(ivec2 pixel, int level) { return pixel_to_cell_index(pixel.x, pixel.y, level, pyramid_root, pyramid_height); }
-#endif

@@ -1,11 +1,9 @@
 // The depth of a pixel, as one word.
-#ifndef SSRLAB_DEPTH_WORDS
-#define SSRLAB_DEPTH_WORDS
-#include "layout/cell_places.glsl"
+#include "layout/numbers.h"
+#include "layout/cell_index.glsl"
 
 #ifndef DEPTH_BINDING
 #define DEPTH_BINDING 1
 #endif
 
 int depth_word(ivec2 pixel) { return 2 * cell_index(pixel, 0) + (pixel.x & 1); }
-#endif

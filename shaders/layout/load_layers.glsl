@@ -1,6 +1,4 @@
 // What lies in the layers behind the first one (docs/reference/hit_contract.md). LAYERS: how many there are, the first one among them.
-#ifndef SSRLAB_LOAD_LAYERS
-#define SSRLAB_LOAD_LAYERS
 #include "layout/plane_places.glsl"
 #include "layout/texels.glsl"
 
@@ -40,4 +38,3 @@ uvec2 load_layer(ivec2 pixel, int layer)
 float load_layer_solid(ivec2 pixel, int layer) { return OF_LAYER(LOAD_LAYER_SOLID, pixel).x; }
 
 vec3 load_layer_normal(ivec2 pixel, int layer) { return OF_LAYER(LOAD_LAYER_NORMAL, pixel).xyz; }
-#endif

@@ -1,5 +1,2 @@
 // The normal of each pixel.
-#ifndef SSRLAB_NORMAL_IMAGE
-#define SSRLAB_NORMAL_IMAGE
 layout(set = 0, binding = 2, rgba32f) uniform readonly image2D normal_image; // xyz = view-space normal, w = roughness
-#endif

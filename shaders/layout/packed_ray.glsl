@@ -1,7 +1,5 @@
 // A ray as the list of rays holds it, in texels of four words: lavapipe reads one with a load for each lane. A texel of one word costs it almost as
 // much, a word of a storage buffer a dozen instructions for each lane (docs/explanation/performance.md).
-#ifndef SSRLAB_PACKED_RAY
-#define SSRLAB_PACKED_RAY
 #include "api/real.glsl"
 #include "layout/texels.glsl"
 
@@ -13,9 +11,6 @@ struct PackedRay
     uint  pixel; // pack_pixel() of the pixel and of the status of a miss
 };
 
-#ifdef REAL_IS_DOUBLE
-#include "layout/packed_ray_double.glsl"
-#else
 PackedRay texels_to_ray(uvec4 start, uvec4 delta)
 {
     vec4 origin = uintBitsToFloat(start);
@@ -24,8 +19,3 @@ PackedRay texels_to_ray(uvec4 start, uvec4 delta)
 
 #define LOAD_RAY(rays, index) texels_to_ray(LOAD_TEXEL(rays, (index) * 2), LOAD_TEXEL(rays, (index) * 2 + 1))
 #define LOAD_RAY_PIXEL(rays, index) LOAD_TEXEL(rays, (index) * 2 + 1).w
-#define STORE_RAY(rays, index, ray)                                                                                                        \
-    STORE_TEXEL(rays, (index) * 2, floatBitsToUint(vec4((ray).origin, (ray).length_m)));                                                   \
-    STORE_TEXEL(rays, (index) * 2 + 1, uvec4(floatBitsToUint((ray).delta), (ray).pixel))
-#endif
-#endif

@@ -1,7 +1,7 @@
 // The buffers of structures.
-#ifndef SSRLAB_STRUCTURE_BUFFERS
-#define SSRLAB_STRUCTURE_BUFFERS
 #include "layout/texels.glsl"
+#include "layout/stored_texels.glsl"
+#include "layout/stored_words.glsl"
 
 // The buffers of structures are declared through these (framework/trace/structure_passes.cpp): load_NAME(index), store_NAME(index, value).
 #define LOADED_BUFFER(place, name, type, words, from_bits, swizzle) \
@@ -23,4 +23,3 @@
 #define STORED_DOUBLES(place, name, type)                                                                    \
     layout(set = 0, binding = place, scalar) writeonly buffer name##_stored { type name##_stored_elements[]; }; \
     void store_##name(int index, type value) { name##_stored_elements[index] = value; }
-#endif

@@ -1,7 +1,5 @@
 // Which part of a list a workgroup takes.
-#ifndef SSRLAB_WORKGROUPS
-#define SSRLAB_WORKGROUPS
-#include "layout/shared.h"
+#include "layout/numbers.h"
 
 // A launch is folded into rows. A CPU device gives the upper rows to one thread and the lower rows to another: neighbours in a list go to different
 // threads, since they cost about the same.
@@ -14,4 +12,3 @@ uint unfold_group(uvec2 group, uint rows)
 
 // Number of this workgroup in a launch over a list.
 #define work_group() unfold_group(gl_WorkGroupID.xy, gl_NumWorkGroups.y)
-#endif

@@ -1,6 +1,7 @@
 // From each surface that a ray hit and that reflects, the next ray: in the mirror direction of the ray that arrived.
 #include "layout/workgroups.glsl"
 #include "api/view.glsl"
+#include "layout/store_ray.glsl"
 #include "trace/ray_list.glsl"
 #include "trace/hit_list.glsl"
 #include "rays/segment.glsl"

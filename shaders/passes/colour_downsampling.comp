@@ -1,6 +1,6 @@
 // The colours that rays find, at the resolution at which they are traced: each texel the mean of its block of pixels, slightly blurred in the
 // shape of a cross. B. Wronski 2014, "GDC follow-up: Screenspace reflections filtering and up-sampling".
-#include "layout/shared.h"
+#include "layout/numbers.h"
 #include "pass/parameters"
 #include "passes/blocks.glsl"
 

@@ -1,6 +1,6 @@
 // A 3 x 3 filter over what neighbouring pixels reflect: the third pass that J. Somerville Roberts, "Screen Space Reflections",
 // recommends against noise. Pixels that do not reflect have no part in it.
-#include "layout/shared.h"
+#include "layout/numbers.h"
 #include "pass/parameters"
 #include "rays/tiles.glsl"
 #include "passes/mean_reflection.glsl"

@@ -1,6 +1,7 @@
 // Lists the rays of reflecting pixels that found nothing, as they are, to be traced in the second layer.
 #include "layout/workgroups.glsl"
 #include "api/view.glsl"
+#include "layout/store_ray.glsl"
 #include "trace/ray_list.glsl"
 #include "trace/hit_list.glsl"
 #include "rays/reflecting.glsl"

@@ -1,6 +1,4 @@
 // The beginning of gbuffer.frag's uniform Frame, for passes of frames that were drawn from a scene.
-#ifndef SSRLAB_SCENE_FRAME
-#define SSRLAB_SCENE_FRAME
 layout(set = 0, binding = 34, scalar) uniform Frame
 {
     mat4 world_to_view;
@@ -9,4 +7,3 @@ layout(set = 0, binding = 34, scalar) uniform Frame
     vec3 view_axis_ws;
     int  light_count;
 };
-#endif

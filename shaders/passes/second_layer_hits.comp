@@ -2,6 +2,7 @@
 #include "layout/workgroups.glsl"
 #include "api/view.glsl"
 #include "layout/packed_hit.glsl"
+#include "layout/store_hit.glsl"
 
 layout(local_size_x = RAYS_PER_GROUP) in;
 STORED_HITS(9, Hits)
@@ -16,5 +17,5 @@ void main()
     PackedHit hit = texel_to_hit(LOAD_TEXEL(DerivedHits, index));
     if (unpack_status(hit.pixel) != TRACE_HIT) return;
     hit.pixel = pack_pixel(unpack_pixel(hit.pixel), status_to_number(TRACE_HIT, 1));
-    STORE_TEXEL(Hits, derived_source[index], hit_to_texel(hit));
+    STORE_TEXEL(Hits, derived_source[index], hit_to_texel(hit.pixel, hit.t));
 }

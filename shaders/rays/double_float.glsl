@@ -1,8 +1,6 @@
 // Numbers of twice the precision, for the ray set-up: the sum x + y of two floats, y at most half of x's last place (T. J. Dekker 1971, A
 // Floating-Point Technique for Extending the Available Precision; D. E. Knuth, The Art of Computer Programming 2, 4.2.2), or a double where
 // those are cheap (-D DF64_IS_DOUBLE) and in the double twin, which is what float is held to.
-#ifndef SSRLAB_DOUBLE_FLOAT
-#define SSRLAB_DOUBLE_FLOAT
 #include "api/real.glsl"
 
 #if defined(REAL_IS_DOUBLE) || defined(DF64_IS_DOUBLE)
@@ -100,4 +98,3 @@ Df64x3 scaled(df64 factor, Df64x3 v) { return Df64x3(product(factor, v.x), produ
 Df64x3 sum(Df64x3 a, Df64x3 b) { return Df64x3(sum(a.x, b.x), sum(a.y, b.y), sum(a.z, b.z)); }
 
 df64 inner_product(Df64x3 a, Df64x3 b) { return sum(sum(product(a.x, b.x), product(a.y, b.y)), product(a.z, b.z)); }
-#endif

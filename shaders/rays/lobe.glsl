@@ -1,8 +1,6 @@
 // The GGX lobe of a rough surface, whose half vectors are drawn from the normals that are visible to the eye. After api/hash.glsl.
 // J. Dupuy, A. Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps"; E. Heitz 2014, "Understanding the Masking-Shadowing Function
 // in Microfacet-Based BRDFs".
-#ifndef SSRLAB_LOBE
-#define SSRLAB_LOBE
 #include "rays/lobe_threshold.glsl"
 
 float smith_lambda(float cosine, float alpha)
@@ -58,4 +56,3 @@ vec2 lobe_random(ivec2 pixel, int ray, int rays, int attempt)
     vec2 shift = vec2(block & 0xFFFFu, block >> 16) / 65536.0;
     return fract(shift + float(place * rays + ray + 1) * vec2(0.75487767, 0.56984029));
 }
-#endif

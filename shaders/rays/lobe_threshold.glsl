@@ -1,4 +1,1 @@
-#ifndef SSRLAB_LOBE_THRESHOLD
-#define SSRLAB_LOBE_THRESHOLD
 const float mirror_roughness = 0.02; // below it a surface is a mirror
-#endif

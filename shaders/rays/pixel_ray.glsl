@@ -1,6 +1,4 @@
 // The rays of a pixel: the mirror ray from its centre, several from places inside it, or rays drawn from the lobe of a rough surface.
-#ifndef SSRLAB_PIXEL_RAY
-#define SSRLAB_PIXEL_RAY
 #include "rays/segment.glsl"
 #include "layout/load_depth.glsl"
 #include "layout/frame_shared.h"
@@ -63,4 +61,3 @@ PackedRay pixel_ray(ivec2 pixel, int ray, int rays_per_pixel, bool from_lobe)
     real3 mirror_normal = from_lobe ? drawn_normal(pixel, ray, rays_per_pixel, normal) : normal;
     return segment_to_packed_ray(make_segment(start_px, start_depth, mirrored(view_direction(start_px), mirror_normal)), pixel);
 }
-#endif

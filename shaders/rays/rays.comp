@@ -1,31 +1,13 @@
 // The list of rays: those of each pixel that is marked in a listed tile, one pixel's after the other's. Other pixels leave no trace in it. It holds
-// the rays, ready to trace, or with RAYS_OF_PIXELS their pixels alone (trace/ray_list.glsl).
+// the rays, ready to trace, or their pixels alone (rays/store_listed.rays_of_pixels.glsl).
 #include "api/view.glsl"
-#ifndef RAYS_OF_PIXELS
-#include "rays/pixel_ray.glsl"
-#endif
 #include "rays/tiles.glsl"
 #include "layout/frame_shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-
 layout(constant_id = CONSTANT_RAYS_PER_PIXEL) const int rays_per_pixel = 1;
 
-#ifdef RAYS_OF_PIXELS
-STORED_WORDS(5, Rays)
-
-void store_ray(uint index, ivec2 pixel, int ray) { STORE_WORD(Rays, index, pack_pixel(pixel, 0)); }
-#else
-layout(constant_id = CONSTANT_LOBE_RAYS) const int lobe_rays = 0; // rough surfaces: drawn from the lobe, else the mirror ray
-
-STORED_TEXELS_4(5, Rays)
-
-void store_ray(uint index, ivec2 pixel, int ray)
-{
-    PackedRay made = pixel_ray(pixel, ray, rays_per_pixel, lobe_rays != 0);
-    STORE_RAY(Rays, index, made);
-}
-#endif
+#include "rays/store_listed.glsl"
 LOADED_TEXELS_1(11, TileMasks) // two words a tile: bit x + 8 y
 
 void main()

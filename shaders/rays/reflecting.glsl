@@ -1,6 +1,4 @@
 // Which pixels reflect: those with a surface, a usable normal and a material that reflects. After view.glsl.
-#ifndef SSRLAB_REFLECTING
-#define SSRLAB_REFLECTING
 #include "layout/load_depth.glsl"
 #include "layout/frame_shared.h"
 #include "layout/normal_image.glsl"
@@ -31,4 +29,3 @@ bool reflects(ivec2 pixel)
 {
     return has_surface(pixel) && material_reflects(pixel);
 }
-#endif

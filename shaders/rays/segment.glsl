@@ -1,10 +1,12 @@
 // A ray in screen space: the segment from a pixel's surface, clipped to the near plane, the image and the maximum distance
-// (docs/reference/hit_contract.md). After api/view.glsl. Set up in double-floats (df64): its ends are the nearest floats to those of exact numbers, nearly always.
-#ifndef SSRLAB_SEGMENT
-#define SSRLAB_SEGMENT
+// (docs/reference/hit_contract.md). Set up in double-floats (df64): its ends are the nearest floats to those of exact numbers, nearly always.
+#include "api/view.glsl"
 #include "rays/double_float.glsl"
+#include "layout/frame_shared.h"
 #include "layout/normal_image.glsl"
 #include "layout/packed_ray.glsl"
+
+layout(constant_id = CONSTANT_RAY_OFFSET_M) const real ray_offset_m = 0; // how far along its direction a ray starts
 
 struct Segment
 {
@@ -152,4 +154,3 @@ PackedRay segment_to_packed_ray(Segment segment, ivec2 pixel)
 {
     return PackedRay(segment.origin, segment.length_m, segment.delta, pack_pixel(pixel, segment.end_status));
 }
-#endif

@@ -1,7 +1,7 @@
 // From the masks of all tiles: which tiles are listed, how many pixels are traced in those before each, and how many rays there will be.
 // Tiles traced as a whole come first, so that their rays fill groups of RAYS_PER_GROUP; both parts row by row. The same picture gives the
 // same list.
-#include "layout/shared.h"
+#include "layout/numbers.h"
 #include "layout/frame_shared.h"
 
 layout(local_size_x = TILE_LIST_INVOCATIONS) in;

@@ -1,5 +1,5 @@
 // Turns a number of items into the size of the launch that works on them.
-#include "layout/shared.h"
+#include "layout/numbers.h"
 #include "layout/frame_shared.h"
 
 layout(local_size_x = 1) in;

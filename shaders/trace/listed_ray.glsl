@@ -1,6 +1,8 @@
 // Loads a ray of the list and stores what was found of it. After the technique.
 #include "trace/ray_list.glsl"
-#include "layout/packed_hit.glsl"
+#include "trace/work_store.glsl"
+#include "layout/packed_pixel.glsl"
+#include "layout/store_hit.glsl"
 #include "layout/workgroups.glsl"
 
 STORED_HITS(9, Hits)
@@ -9,7 +11,7 @@ Ray load_ray(uint index)
 {
     PackedRay listed = packed_ray(index);
     ivec2     start  = clamp(ivec2(floor(listed.origin.xy)), ivec2(0), size_px - 1);
-    real      slack  = depth_rounding(listed.delta);
+    real      slack  = abs(listed.delta.z) * t_rounding;
     Ray       ray    = Ray(listed.origin, listed.delta, start, listed.length_m, unpack_status(listed.pixel), slack);
 
     // A ray that runs exactly along the right or lower image border runs in the last column or row: off the border, it crosses none.
@@ -28,17 +30,11 @@ bool is_answer(TraceResult result)
     return known && (on_image || !has_place(result));
 }
 
-#ifdef COUNT_WORK
-#include "trace/stored_work.glsl"
-#else
-void store_work(uint index, TraceResult result, bool answers, int own_lane) {}
-#endif
-
-// own_lane: that of the ray (trace/work_counters.glsl).
+// own_lane: that of the ray (trace/lanes.glsl).
 void store_result(uint index, TraceResult result, int own_lane)
 {
     bool  answers = is_answer(result);
     ivec2 pixel   = answers && has_place(result) ? result.pixel : ivec2(0);
-    STORE_TEXEL(Hits, index, hit_to_texel(PackedHit(pack_pixel(pixel, answers ? result.status : TRACE_IMPOSSIBLE), result.t)));
+    STORE_TEXEL(Hits, index, hit_to_texel(pack_pixel(pixel, answers ? result.status : TRACE_IMPOSSIBLE), result.t));
     store_work(index, result, answers, own_lane);
 }

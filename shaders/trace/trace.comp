@@ -10,6 +10,6 @@ layout(local_size_x = RAYS_PER_GROUP) in;
 void main()
 {
     uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    reset_counters();
+    begin_work();
     if (index < ray_count) store_result(index, trace(load_ray(index)), 0);
 }

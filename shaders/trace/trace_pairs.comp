@@ -1,5 +1,4 @@
 // As trace.comp, two rays an invocation: the technique defines trace_pair(Ray a, Ray b, out TraceResult result_a, out TraceResult result_b).
-#define TRACES_PAIRS
 #include "layout/workgroups.glsl"
 // On a GPU a workgroup takes two groups of 64 rays, so that no wave of 64 is half empty (PAIR_GROUPS). The launch has a workgroup for each group: half of
 // them find no rays.
@@ -17,7 +16,7 @@ void main()
 {
     // Eight neighbouring invocations take 16 rays that follow each other: the first eight, and the eight after those.
     uint place = gl_LocalInvocationID.x % (RAYS_PER_GROUP / 2), index = work_group() * RAYS_PER_GROUP + (place & ~7) + place, second = index + 8;
-    reset_counters();
+    begin_work();
     if (index >= ray_count) return;
     bool        is_pair = second < ray_count;
     TraceResult result, second_result;

@@ -1,3 +1,5 @@
+#include "api/test_pixel.glsl"
+
 TraceResult trace(Ray ray)
 {
     Grid      grid     = make_grid(ray);

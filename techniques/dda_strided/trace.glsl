@@ -1,3 +1,4 @@
+#include "api/sampling.glsl"
 #include "api/random.glsl"
 
 TraceResult trace(Ray ray)

@@ -1,3 +1,6 @@
+#include "api/sampling.glsl"
+#include "api/span.glsl"
+
 // Screen t of sample i; > 1 beyond the end of the segment.
 real sample_t(Ray ray, int i)
 {

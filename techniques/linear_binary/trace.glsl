@@ -1,3 +1,5 @@
+#include "api/sampling.glsl"
+
 // Screen t of sample i; > 1 beyond the end of the segment.
 real sample_t(Ray ray, int i)
 {

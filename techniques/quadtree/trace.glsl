@@ -1,5 +1,7 @@
 // Walks the cells of the plane quadtree. A node that the ray may touch is opened, at the quarter where it may touch
 // first. Else the ray goes on to the next cell, and climbs as long as the border that it crosses bounds the parent, too.
+#include "api/test_pixel.glsl"
+
 TraceResult trace(Ray ray)
 {
     Grid      grid     = make_grid(ray);

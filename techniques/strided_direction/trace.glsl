@@ -1,3 +1,6 @@
+#include "api/directions.glsl"
+#include "api/sampling.glsl"
+#include "api/span.glsl"
 #include "api/random.glsl"
 
 struct Look

@@ -2,7 +2,6 @@
 import glob
 import os
 import re
-import subprocess
 import unittest
 
 from support import SOURCE
@@ -12,12 +11,11 @@ CODE_FOLDERS = ("experiments", "framework", "shaders", "structures", "techniques
 # What runs write is not in the tree; results/reference is.
 WRITTEN_BY_RUNS = re.compile(r"results/(?!reference\b)")
 MOST_COLUMNS = 100
-# Of code, without comments and empty lines, in the shader files that have to be read to understand a technique.
-MOST_LINES_TO_READ = {"dda": 600, "hiz": 800}
 # Shaders whose functions a tracer may use, and those of them that only the framework calls.
-API = ("trace_api", "view", "slab", "grid_float", "grid_exact")
-FRAMEWORK_ONLY = {"depth_rounding", "ends_at", "fetch_pixel", "first_of_layers", "surface_of", "test_interval", "unpack_layer", "meets", "pack_pixel", "unpack_pixel", "unpack_status",
-                  "slab_front_of", "slab_back_of", "reaches_slab_back", "scaled_depth", "nearest_steps"}
+API = ("box", "covered_depths", "depth_interval", "directions", "grid", "grid.exact_arithmetic", "random", "sampling", "slab", "slab_front", "span",
+       "test_pixel", "trace_api", "view")
+FRAMEWORK_ONLY = {"ends_at", "fetch_pixel", "surface_of", "test_interval", "meets", "slab_front_of", "reaches_slab_back", "nearest_steps",
+                  "scaled_depth"}
 
 
 def read(path):
@@ -155,14 +153,6 @@ class Test(unittest.TestCase):
 
     def test_readme_is_short(self):
         self.assertLessEqual(read("README.md").count("\n"), 120)
-
-    def test_what_an_author_has_to_read_stays_short(self):
-        printed = subprocess.run([os.path.join(SOURCE, "experiments/include_closure"), "dda", "hiz"], check=True, capture_output=True,
-                                 text=True).stdout
-        lines = {name: int(count) for name, count in re.findall(r"^(\w+): (\d+) lines of code", printed, flags=re.M)}
-        self.assertEqual(set(lines), {"dda", "hiz"}, printed)
-        for name, most in MOST_LINES_TO_READ.items():
-            self.assertLessEqual(lines[name], most, printed)
 
     def test_what_is_wrong_is_found(self):
         page = "docs/explanation/hard_cases.md"

@@ -13,9 +13,7 @@ shader  = "build.comp"
 per     = "tile"
 tile_px = 8
 """
-BUILD = """#include "api/view.glsl"
-#include "api/slab.glsl"
-#include "api/held.glsl"
+BUILD = """#include "api/held.glsl"
 #include "structure/parameters"
 #include "structure/buffers"
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -59,7 +57,10 @@ bounded_by = ["max_steps"]
 [parameters]
 max_steps = { default = 60000, min = 0, max = 60000, doc = "Tiles and pixels visited before the ray gives up." }
 """
-TRACE = """TraceResult trace(Ray ray)
+TRACE = """#include "api/covered_depths.glsl"
+#include "api/test_pixel.glsl"
+
+TraceResult trace(Ray ray)
 {
     Grid      grid     = make_grid(ray);
     crossing2 t_border = border_t(ray, grid, ray.start_pixel + grid.forward);
@@ -163,7 +164,7 @@ class Test(Case):
     def test_error_in_its_shader_names_file_and_line(self):
         self.write("mine/tile_fronts/build.comp", BUILD.replace("float front = BACK", "float front = BAKC"))
         self.refused("render", "builtin:stairs", "-t", "tile_skip", "--techniques", "mine", "--size", "64x36", "-o", "a.png", code=2,
-                     says=["mine/tile_fronts/build.comp:12", "BAKCGROUND_DEPTH"])
+                     says=["mine/tile_fronts/build.comp:10", "BAKCGROUND_DEPTH"])
 
 
 if __name__ == "__main__":

@@ -9,7 +9,8 @@ summary = "Looks at one place along the ray."
 [parameters]
 place = { default = 0.5, min = 0.0, max = 1.0, doc = "Where, as a part of the ray on screen." }
 """
-TRACE = """TraceResult trace(Ray ray)
+TRACE = """#include "api/sampling.glsl"
+TraceResult trace(Ray ray)
 {
     ivec2 pixel = pixel_at(ray, real(place));
     Contact contact = test_sample(ray, pixel, real(place));
@@ -17,7 +18,8 @@ TRACE = """TraceResult trace(Ray ray)
     return miss(ray, 1);
 }
 """
-OWN_TEST = """TraceResult trace(Ray ray)
+OWN_TEST = """#include "api/sampling.glsl"
+TraceResult trace(Ray ray)
 {
     ivec2 pixel = pixel_at(ray, real(place));
     if (fetch_depth(pixel) > ray.origin.z) return TraceResult(TRACE_HIT, pixel, real(place), 1);
@@ -73,7 +75,7 @@ class Test(Case):
     def test_error_in_its_shader_names_file_and_line(self):
         self.write("mine/coin/trace.glsl", TRACE.replace("ivec2 pixel = pixel_at", "ivec2 pixel = pixle_at"))
         self.refused("render", "builtin:mirror_floor_wall", "-t", "coin", "--techniques", "mine", "--size", "64x36", "-o", "a.png",
-                     code=2, says=["mine/coin/trace.glsl:3", "pixle_at"])
+                     code=2, says=["mine/coin/trace.glsl:4", "pixle_at"])
 
     def shader_refused(self, text, says, never=()):
         self.write("mine/coin/trace.glsl", text)
@@ -85,15 +87,35 @@ class Test(Case):
 
     def test_all_errors_in_its_shader_are_named(self):
         self.shader_refused(TRACE.replace("ivec2 pixel = pixel_at", "ivec2 pixel = pixle_at").replace("return miss(ray, 1)", "return mis(ray, 1)"),
-                            ["mine/coin/trace.glsl:3: 'pixle_at'", "mine/coin/trace.glsl:6: 'mis'"])
+                            ["mine/coin/trace.glsl:4: 'pixle_at'", "mine/coin/trace.glsl:7: 'mis'"])
 
     def test_missing_trace_function_is_said_of_its_file(self):
-        out = self.shader_refused(TRACE.replace("trace(Ray", "trace_it(Ray"), ["mine/coin/trace.glsl:7: trace.glsl defines no TraceResult trace(Ray)"], never=["store_result"])
-        self.assertTrue(out.startswith("ssrlab: mine/coin/trace.glsl:7:"), out)
+        out = self.shader_refused(TRACE.replace("trace(Ray", "trace_it(Ray"), ["mine/coin/trace.glsl:8: trace.glsl defines no TraceResult trace(Ray)"], never=["store_result"])
+        self.assertTrue(out.startswith("ssrlab: mine/coin/trace.glsl:8:"), out)
 
     def test_a_structure_that_is_not_asked_for_is_named(self):
         self.shader_refused(TRACE.replace("    return miss", "    fetch_cell(pixel, 3);\n    return miss", 1),
                             ["'fetch_cell' : no matching overloaded function found", "(needs structures = [\"depth_pyramid\"] in technique.toml)"])
+
+    def test_a_file_of_the_api_that_is_not_included_is_named(self):
+        self.shader_refused(TRACE.split("\n", 1)[1], ["mine/coin/trace.glsl:3: 'pixel_at'", '(needs #include "api/sampling.glsl")'])
+
+    def test_a_file_is_included_once(self):
+        self.write("mine/coin/half.glsl", "const int taken = 1;\n")
+        twice = '#include "half.glsl"\n#include "half.glsl"\n' + TRACE.replace("ray, 1)", "ray, taken)")
+        self.write("mine/coin/trace.glsl", twice)
+        self.ssrlab("render", "builtin:mirror_floor_wall", "-t", "coin", "--techniques", "mine", "--size", "64x36", "-o", "a.png")
+        self.shader_refused(twice.replace("ivec2 pixel = pixel_at", "ivec2 pixel = pixle_at"), ["mine/coin/trace.glsl:6: 'pixle_at'"])
+
+    def test_a_variant_stands_for_its_file_where_its_macro_is_defined(self):
+        self.write("mine/coin/look.glsl", "const real look_t = real(0.5);\n")
+        self.write("mine/coin/look.pixel_planes.glsl", "const real look_t = real(nowhere);\n")
+        self.write("mine/coin/trace.glsl", '#include "look.glsl"\n' + TRACE.replace("real(place)", "look_t"))
+        render = ("render", "builtin:mirror_floor_wall", "-t", "coin", "--techniques", "mine", "--size", "64x36", "-o", "a.png", "-p")
+        self.ssrlab(*render, "surface=box")
+        self.refused(*render, "surface=plane", code=2, says=["mine/coin/look.pixel_planes.glsl:1: 'nowhere'"])
+        self.write("mine/coin/look.layered.glsl", "")
+        self.refused(*render, "surface=plane", "-p", "layers=2", code=2, says=["mine/coin/look.layered.glsl or ", "look.pixel_planes.glsl"])
 
     def test_own_main_is_said_to_be_reserved(self):
         self.shader_refused("// main()\nvoid main() {}\n" + TRACE, ["mine/coin/trace.glsl:2: 'main' is reserved"])
@@ -104,8 +126,8 @@ class Test(Case):
         self.assertRegex(out.splitlines()[-1], r"^the check fails: \d+ findings, each above$")
 
     def test_unbalanced_braces_are_said_of_its_file(self):
-        self.shader_refused(TRACE.rstrip().removesuffix("}"), ["mine/coin/trace.glsl:2: this '{' is never closed"])
-        self.shader_refused("// { in a comment\n" + TRACE + "}\n", ["mine/coin/trace.glsl:9: "])
+        self.shader_refused(TRACE.rstrip().removesuffix("}"), ["mine/coin/trace.glsl:3: this '{' is never closed"])
+        self.shader_refused("// { in a comment\n" + TRACE + "}\n", ["mine/coin/trace.glsl:10: "])
 
     def test_includes_come_from_its_folder_and_the_project_alone(self):
         secret = self.write("mine/secret.glsl", "top secret text\n")
@@ -143,7 +165,7 @@ class Test(Case):
         self.write("mine/coin/trace.glsl", TRACE.replace("ivec2 pixel = pixel_at", "ivec2 pixel = pixle_at"))
         self.ssrlab("run", self.spec, "-o", "out", "--techniques", "mine", code=1)
         with open(self.path("out/results.csv"), encoding="utf-8", newline="") as file:
-            outcome = {(row["technique"], row["outcome"], "coin/trace.glsl:3" in row["message"]) for row in csv.DictReader(file)}
+            outcome = {(row["technique"], row["outcome"], "coin/trace.glsl:4" in row["message"]) for row in csv.DictReader(file)}
         self.assertEqual(outcome, {("coin", "failed", True), ("dda", "ok", False)})
 
     def test_error_in_its_manifest_names_file_and_line(self):

@@ -10,7 +10,9 @@ limits  = ["point_sampled"]
 [parameters]
 looks = { default = 3, min = 1, max = 9, doc = "Places." }
 """
-TRACE = """TraceResult trace(Ray ray)
+TRACE = """#include "api/sampling.glsl"
+
+TraceResult trace(Ray ray)
 {
     Contact contact = no_contact();
     int     taken   = 0;

@@ -1,7 +1,8 @@
-"""ssrlab shaders: what Mesa's compiler for AMD GPUs makes of each pass, without a GPU."""
+"""ssrlab shaders: what Mesa's compiler for AMD GPUs makes of each pass, without a GPU, and what the compiler reads of a technique."""
 import glob
 import json
 import os
+import re
 
 from support import SOURCE, Case, main
 
@@ -78,6 +79,38 @@ class Test(Case):
         self.refused("shaders", "hizz", "--chip", "navi21", code=2, says=["hizz", "'hiz'"])
         self.refused("shaders", "hiz", "--chip", "navi21", "-p", "steps=3", code=2, says=["steps"])
         self.refused("shaders", "hiz", "--device", "llvmpipe", code=1, says=["llvmpipe", "VK_KHR_pipeline_executable"])
+
+
+class Files(Case):
+    # Of code, without comments and empty lines: all that has to be read to understand a technique.
+    MOST_LINES = {"dda": 450, "hiz": 600}
+
+    def files_of(self, technique, *arguments):
+        """(lines in all, {file: lines}) of the technique."""
+        text = self.ssrlab("--quiet", *arguments, "shaders", technique, "--files")
+        head, rest = re.fullmatch(rf"{technique}: (.*?\n)(.*)", text.split("ray set-up")[0], re.S).groups()
+        rows = [(name, int(lines)) for lines, name in re.findall(r"^ +(\d+)  (.+)$", rest, re.M)]
+        files = dict(rows)
+        self.assertEqual(len(files), len(rows), text)
+        self.assertEqual(head, f"{sum(files.values())} lines of code in {len(files)} files\n")
+        return sum(files.values()), files
+
+    def test_what_an_author_has_to_read_stays_short(self):
+        for technique, most in self.MOST_LINES.items():
+            lines, files = self.files_of(technique)
+            self.assertLessEqual(lines, most, files)
+            self.assertIn(f"techniques/{technique}/trace.glsl", files)
+            self.assertIn("shaders/surfaces/plane/meeting.glsl", files)
+        self.assertIn("techniques/structures/depth_pyramid/make_cells.glsl", files)
+
+    def test_lines_of_code_are_counted(self):
+        self.write("mine/none/technique.toml", 'name = "None"\nsummary = "Misses."\n')
+        self.write("mine/none/part.glsl", "/* not\n   this */\nconst int one = 1; // but this\n")
+        self.write("mine/none/trace.glsl", '#include "part.glsl"\n\n// Nothing.\nTraceResult trace(Ray ray) { return miss(ray, one); }\n')
+        lines, files = self.files_of("none", "--techniques", "mine")
+        own = {os.path.basename(name): count for name, count in files.items() if "none" in name}
+        self.assertEqual(own, {"trace.glsl": 2, "part.glsl": 1})
+        self.assertLess(lines, self.files_of("dda")[0])
 
 
 if __name__ == "__main__":

@@ -56,11 +56,13 @@ struct Mutation {
 
 void PrintTo(const Mutation& mutation, std::ostream* out) { *out << mutation.name; }
 
-/// A function put before all others, and a name that then stands for it.
+/// A function put before the technique's own, and a name that then stands for it.
 Mutation replaced(const std::string& name, const std::string& function, const std::string& text,
                   const std::string& seen_in = {}, const std::string& id = "hiz")
 {
-    return {name, id, "", text + "\n#define " + function + " mutated_" + function + "\n", seen_in};
+    const std::string api = "#include \"api/test_pixel.glsl\"\n#include \"api/box.glsl\"\n"
+                            "#include \"api/depth_interval.glsl\"\n";
+    return {name, id, "", api + text + "\n#define " + function + " mutated_" + function + "\n", seen_in};
 }
 
 std::vector<Mutation> mutations()
@@ -105,7 +107,8 @@ std::vector<Mutation> mutations()
                  "ivec2 mutated_cross_borders(Grid grid, ivec2 cell, real2 t_border, real t) { return cell; }", {},
                  "dda"),
         {"BorderlineDepthIsAMiss", "dda", "contact       = test_pixel(ray, grid, pixel, t_in, t_out);",
-         "contact = test_pixel(ray, grid, pixel, t_in, t_out); contact.found = contact.found && fetch_depth(pixel) > "
+         "contact = test_pixel(ray, grid, pixel, t_in, t_out); contact.found = contact.found && "
+         "depth_in(contact.words, pixel) > "
          "min(depth_at(ray, t_in), depth_at(ray, t_out));",
          "equality_counts"},
         replaced("EmptyIntervalsEndTooLate", "empty_interval",
@@ -118,14 +121,15 @@ std::vector<Mutation> mutations()
                  {}, "hiz_packets"),
         {"OutOfStepsIsAMiss", "hiz", "out_of_steps(visited)", "miss(ray, visited)", "seven_steps"},
         {"StopsBehindTheFirstObject", "dda", "while (!contact.found && t_out < grid.t_end",
-         "while (!contact.found && (visited == 0 || depth_at(ray, t_out) >= fetch_depth(contact.pixel)) && t_out < "
+         "while (!contact.found && (visited == 0 || depth_at(ray, t_out) >= depth_in(contact.words, contact.pixel)) && "
+         "t_out < "
          "grid.t_end",
          "floating_beam"},
         {"HitBeyondTheEnd", "dda", "if (contact.found) return hit(ray, contact, visited);",
          "if (contact.found) return hit_at(ray, contact, contact.t_in + real(1), visited);", "axis_aligned"},
         replaced("FacesIsAlwaysTrue", "test_pixel",
                  "Contact mutated_test_pixel(Ray ray, Grid grid, ivec2 pixel, real a, real b) { Contact c = "
-                 "test_pixel(ray, grid, pixel, a, b); c.found = interval_touches(fetch_depth(pixel), "
+                 "test_pixel(ray, grid, pixel, a, b); c.found = interval_touches(depth_in(c.words, pixel), "
                  "depth_interval(ray, depth_at(ray, a), depth_at(ray, b))); return c; }",
                  "facing_rule", "dda"),
         replaced("FacingAwayWithoutReason", "miss",

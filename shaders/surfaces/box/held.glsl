@@ -1,5 +1,7 @@
 // What a box holds, rounded outward: wider than any rounding of the hit test on the pixel itself.
+#include "api/box.glsl"
 const float held_margin = 1.0 / 1048576.0;
+#include "surfaces/box/held_front.glsl"
 
 Held held_by(ivec2 pixel, int layer, float depth, uint gradient)
 {
@@ -7,24 +9,6 @@ Held held_by(ivec2 pixel, int layer, float depth, uint gradient)
     held.gradient = vec2(0);
     held.back     = float(slab_back(real(depth)));
     held.back -= abs(held.back) * held_margin + abs(float(slab_shift)) * held_margin;
-#ifdef SURFACE_TWO_SIDED
-    held.front = float(slab_front(real(depth)));
-    held.front += abs(held.front) * held_margin + abs(float(slab_shift)) * held_margin;
-#else
-    held.front = depth;
-#endif
+    held.front = held_front(depth);
     return held;
 }
-
-// A front counts at its pixel's centre, and is level across it.
-const bool level_fronts = true;
-float front_above(Held held, vec2 gradient) { return held.front; }
-
-// A number that is larger the nearer the back is: the depth itself, since a slab's back is monotone in its front.
-float back_key(Held held, float depth) { return depth; }
-
-// The key of a pixel whose back lies at that depth.
-float key_of_back(float back) { return (back + float(slab_shift)) / (float(slab_scale) - back * float(slab_slope)); }
-
-// Does a ray of this depth pass behind all pixels whose keys are at least this one?
-bool passes_behind(real key, real z_near) { return !reaches_slab_back(key, z_near); }

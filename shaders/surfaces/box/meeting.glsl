@@ -1,5 +1,9 @@
 // A pixel as a box: a level front, and a slab behind it. `box_two_sided` (SURFACE_TWO_SIDED) reaches as far before its depth as behind it;
 // `box_infinite` has a slab without an end. shaders/surfaces/README.md says what each function answers.
+#include "api/box.glsl"
+#include "api/depth_interval.glsl"
+#include "api/directions.glsl"
+
 struct PixelSurface
 {
     real  depth;

@@ -1,5 +1,6 @@
 // What a plane holds, rounded outward: wider than any rounding of the hit test on the pixel itself.
 #include "surfaces/plane/stored.glsl"
+#include "surfaces/plane/solid.glsl"
 const float held_margin = 1.0 / 65536.0;
 
 Held held_by(ivec2 pixel, int layer, float depth, uint gradient)
@@ -15,5 +16,3 @@ Held held_by(ivec2 pixel, int layer, float depth, uint gradient)
     held.back = min(back, solid - tilt * held_reach_px) - margin;
     return held;
 }
-
-#include "surfaces/plane/sloped.glsl"

@@ -1,6 +1,7 @@
-// A pixel as a plane with a small tolerance behind it, and with SURFACE_SOLID as what lies between the plane and the next surface, where that is the
-// solid's far side. With SOLID_ENDLESS everything behind it is solid. shaders/surfaces/README.md says what each function answers.
+// A pixel as a plane with a small tolerance behind it, and what lies between the plane and the next surface where that is the far side of a solid
+// (solid.glsl: nothing; solid.surface_solid.glsl, solid.solid_endless.glsl). shaders/surfaces/README.md says what each function answers.
 #include "surfaces/plane/stored.glsl"
+#include "surfaces/plane/solid.glsl"
 
 struct PixelSurface
 {
@@ -38,14 +39,9 @@ real height_at(PixelSurface surface, real t)
 
 bool meets(Ray ray, PixelSurface surface, real t_in, real t_out)
 {
-    real a = height_at(surface, t_in), b = height_at(surface, t_out);
+    real a = height_at(surface, t_in), b = height_at(surface, t_out), z_a = depth_at(ray, t_in), z_b = depth_at(ray, t_out);
     real low = a < b ? a : b, high = a < b ? b : a;
-    bool met = low <= real(0) && high >= surface.back;
-#ifdef HOLDS_SOLID
-    real z_a = depth_at(ray, t_in), z_b = depth_at(ray, t_out);
-    met = met || (high < surface.back && (z_a > z_b ? z_a : z_b) >= surface.solid);
-#endif
-    return met;
+    return low <= real(0) && high >= surface.back || (high < surface.back && (z_a > z_b ? z_a : z_b) >= surface.solid);
 }
 
 // It comes from below.
@@ -57,16 +53,11 @@ real contact_t(Ray ray, PixelSurface surface, real t_in, real t_out)
     real face   = height > real(0) ? real(0) : surface.back;
     precise real t_face = (face - surface.start) / surface.rate;
     real t = height <= real(0) && height >= surface.back || surface.rate == real(0) ? t_in : clamp(t_face, t_in, t_out);
-#ifdef HOLDS_SOLID
-    if (height < surface.back)
-    {
-        // Only a back that the ray reaches counts: one that it leaves lies before t_in.
-        if (height_at(surface, t_out) < surface.back) t = t_out;
-        precise real t_solid = (surface.solid - ray.origin.z) / ray.delta.z;
-        bool inside = depth_at(ray, t_in) >= surface.solid;
-        if (inside) t = t_in;
-        else if (depth_at(ray, t_out) >= surface.solid) t = clamp(min(t, t_solid), t_in, t_out);
-    }
-#endif
-    return t;
+    if (!(height < surface.back)) return t;
+
+    // Only a back that the ray reaches counts: one that it leaves lies before t_in.
+    if (height_at(surface, t_out) < surface.back) t = t_out;
+    precise real t_solid = (surface.solid - ray.origin.z) / ray.delta.z;
+    if (depth_at(ray, t_in) >= surface.solid) return t_in;
+    return depth_at(ray, t_out) >= surface.solid ? clamp(min(t, t_solid), t_in, t_out) : t;
 }

@@ -1,6 +1,8 @@
 // Fragile on purpose: the pixel is found again from the position at every step, and an epsilon beyond the border keeps it moving.
 // Too small where coordinates are large (the step rounds away), too large where a ray cuts a corner (that pixel is skipped).
 // FidelityFX's 0.005 px.
+#include "api/sampling.glsl"
+
 real2 epsilon_px()
 {
     return real2(0.005);

@@ -1,6 +1,8 @@
 // Fragile on purpose: the pixel is found again from the position at every step, and an epsilon beyond the border keeps it moving.
 // Too small where coordinates are large (the step rounds away), too large where a ray cuts a corner (that pixel is skipped).
 // Stingray's hi-z trace: an absolute 1e-5 of the image.
+#include "api/sampling.glsl"
+
 real2 epsilon_px()
 {
     return real2(1e-5) * real2(size_px);

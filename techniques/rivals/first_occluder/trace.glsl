@@ -1,5 +1,6 @@
 // Fragile on purpose: the cell's nearest depth is all it looks at, and where the ray has gone behind a surface the search is over.
 // Walks as techniques/hiz_packets does, two rays at a time.
+#include "api/sampling.glsl"
 #include "structures/depth_pyramid/front.glsl"
 #include "api/forward_traversal.glsl"
 

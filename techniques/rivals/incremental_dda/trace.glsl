@@ -1,4 +1,6 @@
 // Fragile on purpose: each addition rounds, so t drifts from the border it stands for. Corners are broken by "x first unless y is nearer".
+#include "api/sampling.glsl"
+
 bool on_screen(ivec2 pixel)
 {
     return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size_px));

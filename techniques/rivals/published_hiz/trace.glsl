@@ -1,5 +1,8 @@
 // Written from the description, in its own terms: position.xy in uv, a cell's surface is one plane, the ray advances to the nearest of the
 // cell's two borders and that plane. It ends where level 0 is passed downward; a hit if that is within the thickness.
+#include "api/box.glsl"
+#include "api/depth_interval.glsl"
+#include "api/test_pixel.glsl"
 #include "structures/depth_pyramid/front.glsl"
 
 TraceResult trace(Ray ray)

@@ -1,5 +1,6 @@
 // Written from the description, in its own terms: a cell has two walls ahead of the ray, and below it a floor (its nearest depth) and a base (the back of
 // that depth's slab; HDRP's is relative to the distance). Without HDRP's bias of the ray's origin: here every technique gets the same ray.
+#include "api/sampling.glsl"
 #include "structures/depth_pyramid/front.glsl"
 
 TraceResult trace(Ray ray)

@@ -1,5 +1,6 @@
 // The walk of techniques/dda, two rays at a time and two pixels of each in one iteration, in a picture mirrored so that they run forward.
 #include "api/forward_traversal.glsl"
+#include "api/test_pixel.glsl"
 
 // In pixels, level 0.
 void visit(Ray ray, inout Traversal walk, int own_lane)

@@ -2,10 +2,7 @@
 //   x = the nearest front of its pixels, as the bits of a float rounded up to a multiple of 32; bin_shift in the low 5 bits
 //   y = 32 bins of depth from there away from the camera, set where any of its pixels' slabs lies; 0: nothing to hit
 // Bits of positive floats order like the floats. A bin is 2^bin_shift of them, begins at a multiple of its width, and is as narrow as 32
-// bins allow: so the bins of a wider cell are unions of those of its quarters.
-
-#define FINEST_BIN_SHIFT 5
-const uvec2 empty_cell = uvec2(0);
+// bins allow, 2^5 at least: so the bins of a wider cell are unions of those of its quarters.
 
 int bin_shift(uvec2 cell) { return int(cell.x & 31u); }
 

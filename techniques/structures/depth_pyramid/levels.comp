@@ -17,17 +17,18 @@ void store_made(ivec2 cell, int above, uvec2 words)
 // Two cells side by side of the first level, stored; empty where the level ends.
 uvec4 stored_pair(ivec2 cell)
 {
-    if (any(greaterThanEqual(cell, size))) return uvec4(empty_cell, empty_cell);
-    uvec4 cells = level == 1 ? two_cells_of_pixels(cell) : two_cells_of_cells(cell);
+    ivec2 size = level_size(level);
+    if (any(greaterThanEqual(cell, size))) return uvec4(0);
+    uvec4 cells = two_cells(cell);
     store_cells(cell, cells);
-    return uvec4(cells.xy, cell.x + 1 < size.x ? cells.zw : empty_cell);
+    return uvec4(cells.xy, cell.x + 1 < size.x ? cells.zw : uvec2(0));
 }
 
 void main()
 {
     ivec2 lane = ivec2(gl_LocalInvocationID.xy), group = ivec2(gl_WorkGroupID.xy), first = 2 * (SIDE * group + lane);
     uvec4 upper = stored_pair(first), lower = stored_pair(first + ivec2(0, 1));
-    uvec2 made_here = cell_of_quarters(upper, lower);
+    uvec2 made_here = cell_of(false, ivec2(0), upper, lower);
     for (int above = level + 1; above <= last_level; ++above)
     {
         int side = SIDE >> (above - level - 1), place = SIDE * lane.y + lane.x;
@@ -40,7 +41,7 @@ void main()
         if (all(lessThan(2 * lane, ivec2(side))))
         {
             int quarter = 2 * place;
-            made_here = cell_of_quarters(uvec4(made[quarter], made[quarter + 1]), uvec4(made[quarter + SIDE], made[quarter + SIDE + 1]));
+            made_here = cell_of(false, ivec2(0), uvec4(made[quarter], made[quarter + 1]), uvec4(made[quarter + SIDE], made[quarter + SIDE + 1]));
         }
         barrier();
     }

@@ -1,4 +1,5 @@
 // How techniques read the depth pyramid. A cell is named by its level and any of its pixels; level 0 is the pixels themselves.
+#include "api/covered_depths.glsl"
 #include "cell.glsl"
 
 // The coarsest level that is there.

@@ -5,8 +5,10 @@
 #include "api/view.glsl"
 #include "api/slab.glsl"
 #include "api/held.glsl"
+#include "surface/order.glsl"
 #include "layout/load_depth.glsl"
 #include "layout/cell_pairs.glsl"
+#include "layout/load_gradients.glsl"
 #include "structure/buffers"
 #include "patch.glsl"
 #if PATCH_BITS != STRIP_BITS + 1

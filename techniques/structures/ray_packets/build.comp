@@ -4,6 +4,7 @@
 // of the patch they start from, how far any patch under the box rises above it, and the occluders of a patch that they must pass behind (patch_planes).
 #include "api/trace_api.glsl"
 #include "api/held.glsl"
+#include "surface/order.glsl"
 #include "api/group_lanes.glsl"
 #include "trace/ray_list.glsl"
 #include "structure/parameters"

@@ -1,3 +1,6 @@
+#include "api/depth_interval.glsl"
+#include "api/test_pixel.glsl"
+
 TraceResult trace(Ray ray)
 {
     Grid  grid     = make_grid(ray);

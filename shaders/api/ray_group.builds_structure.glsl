@@ -1,0 +1,1 @@
+// Its passes have it from api/group_lanes.glsl.

@@ -1,0 +1,2 @@
+// slab_real.glsl for arithmetic = exact.
+#define slab_real double

@@ -1,0 +1,2 @@
+// The number type of the slab's constants.
+#define slab_real real

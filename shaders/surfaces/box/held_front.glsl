@@ -1,0 +1,1 @@
+float held_front(float depth) { return depth; }

@@ -1,3 +1,0 @@
-// Of two rays an invocation, `lane` says for which one counts; 2 counts for none.
-#define LANES 3
-int lane = 0;
