@@ -22,7 +22,7 @@ RayAnswer answer_of(const SourceContext& context, const OpenRay& ray, bool in_si
     if (status == TraceStatus::hit) {
         const glm::dvec3 at = traced.hit_px_depth[i];
         answer.kind         = AnswerKind::point;
-        answer.certain      = in_sight && neighbours_agree(image, traced.hit_pixel[i]);
+        answer.certain      = in_sight && neighbours_agree(image, traced.hit_pixel[i], glm::dvec2(at));
         answer.point_ws     = glm::dvec3(glm::inverse(image.view.world_to_view) *
                                          glm::dvec4(px_to_vs(image.view, glm::dvec2(at), at.z), 1));
         answer.light =

@@ -82,22 +82,26 @@ double metres_before(const View& view, const OpenRay& ray, const SeenPart& part,
     return std::max(part.t_in_m, glm::dot(before_vs - from_vs, to_view(view, ray.direction_ws)));
 }
 
-bool neighbours_agree(const GBufferImage& image, glm::ivec2 pixel)
+bool neighbours_agree(const GBufferImage& image, glm::ivec2 pixel, glm::dvec2 at_px)
 {
-    const glm::ivec2 size     = image.view.size_px;
+    const View&      view     = image.view;
+    const glm::ivec2 size     = view.size_px;
     const size_t     i        = pixel_index(pixel, size);
     const glm::vec2  gradient = image.gradient.empty() ? glm::vec2(0) : image.gradient[i];
     const double     depth    = double(image.depth[i]);
     if (!(depth > 0) || !std::isfinite(gradient.x) || !std::isfinite(gradient.y)) return false;
-    // A curved surface bends away from its plane by much less than the plane falls.
-    constexpr double curvature = 0.5, flat = 0.004;
-    for (int dy : {-1, 0, 1})
-        for (int dx : {-1, 0, 1}) {
-            const glm::ivec2 at = pixel + glm::ivec2(dx, dy);
-            if (at.x < 0 || at.y < 0 || at.x >= size.x || at.y >= size.y) return false;
-            const double fall = double(gradient.x) * dx + double(gradient.y) * dy;
-            const double own  = double(image.depth[pixel_index(at, size)]);
-            if (std::abs(own - depth - fall) > flat * depth + curvature * std::abs(fall)) return false;
+    // As far as a pixel is wide there. And a curved surface bends away from its plane by much less than the plane falls.
+    const double     distance_m = depth_to_distance(view, depth);
+    const double     wide_m     = (view.projection == Projection::perspective ? distance_m : 1) / view.focal_px.x;
+    const double     covered    = depth - distance_to_depth(view, distance_m + wide_m);
+    constexpr double curvature  = 0.5;
+    const glm::ivec2 first      = glm::floor(at_px - 0.5);
+    for (int y : {first.y, first.y + 1})
+        for (int x : {first.x, first.x + 1}) {
+            if (x < 0 || y < 0 || x >= size.x || y >= size.y) continue;
+            const double fall = double(gradient.x) * (x - pixel.x) + double(gradient.y) * (y - pixel.y);
+            const double own  = double(image.depth[pixel_index(glm::ivec2(x, y), size)]);
+            if (std::abs(own - depth - fall) > covered + curvature * std::abs(fall)) return false;
         }
     return true;
 }
@@ -141,7 +145,7 @@ RayAnswer to_answer(const SourceContext& context, const GBufferImage& image, con
     if (outcome.status == TraceStatus::hit) {
         const GBufferImage& met = outcome.hit_layer == 0 ? image : image.layers[outcome.hit_layer - 1U];
         answer.kind             = AnswerKind::point;
-        answer.certain          = in_sight && neighbours_agree(met, outcome.hit_pixel);
+        answer.certain          = in_sight && neighbours_agree(met, outcome.hit_pixel, glm::dvec2(at));
         answer.point_ws         = glm::dvec3(glm::inverse(image.view.world_to_view) *
                                              glm::dvec4(px_to_vs(image.view, glm::dvec2(at), at.z), 1));
         answer.light            = light_of(met, outcome.hit_pixel);

@@ -27,8 +27,9 @@ RayInput to_input(const View& view, const OpenRay& ray, const SeenPart& part);
 double metres_before(const View& view, const OpenRay& ray, const SeenPart& part, glm::dvec3 at_px_depth,
                      double back_px);
 
-/// Returns whether the pixels around one show the same surface: false at silhouettes and on things thinner than that.
-bool neighbours_agree(const GBufferImage& image, glm::ivec2 pixel);
+/// Returns whether the four pixels around a place of `pixel` show the same surface: false at silhouettes and on things
+/// thinner than two pixels.
+bool neighbours_agree(const GBufferImage& image, glm::ivec2 pixel, glm::dvec2 at_px);
 
 /// Returns the radiance from the surface of a pixel toward the camera, linear RGB.
 glm::vec3 light_of(const GBufferImage& image, glm::ivec2 pixel);
