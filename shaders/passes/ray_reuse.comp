@@ -20,14 +20,7 @@ const float largest_ratio = 8.0; // a ray that its own pixel hardly ever draws m
 
 #include "passes/reflector.glsl"
 #include "passes/mean_reflection.glsl"
-
-// The pixel that was traced in place of this one.
-ivec2 traced_pixel(ivec2 pixel)
-{
-    if (block_px == 1) return pixel;
-    uint found = imageLoad(block_pixel_image, pixel / block_px).x;
-    return found == NO_PIXEL ? ivec2(-1) : unpack_pixel(found);
-}
+#include "passes/lobe_spread.glsl"
 
 // Evenly over a disk, the pixel itself first: H. Vogel 1979, "A better way to construct the sunflower head".
 ivec2 neighbour(ivec2 pixel, int i, float radius_px, float turn)
@@ -46,18 +39,22 @@ void main()
     if (!(roughness >= mirror_roughness)) return;
 
     Reflector own    = reflector_at(pixel);
-    float radius_px  = max(float(block_px) * 1.5, reuse_radius * roughness * float(size_px.y));
+    float spread     = spread_px(own, pixel, pixel_width_m(own, pixel));
+    float radius_px  = max(float(block_px) * 1.5, min(reuse_radius * roughness * float(size_px.y), 3.0 * spread));
     float turn       = 6.2831853 * float(pcg(uint(pixel.x) + pcg(uint(pixel.y) + offset_seed()))) / 4294967296.0;
     vec4  sum        = vec4(0);
     vec3  brightest  = vec3(0);
     float total = 0.0, most = 0.0, next = 0.0;
+    int   rays  = 0;
     for (int i = 0; i < reuse_neighbours; ++i)
     {
         ivec2 place = neighbour(pixel, i, radius_px, turn);
         if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size_px))) continue;
         place = traced_pixel(place);
-        if (place.x < 0 || !reflects(place)) continue;
-        float alike = same_surface(own, place);
+        if (place.x < 0) continue;
+        float near = spread_weight(distance(vec2(place), vec2(pixel)) / spread);
+        if (near == 0.0 || !reflects(place)) continue;
+        float alike = near * same_surface(own, place);
         for (int ray = 0; ray < rays_per_pixel; ++ray)
         {
             ivec2 texel = place + ivec2(0, ray * size_px.y);
@@ -67,6 +64,7 @@ void main()
             float ratio = alike * min(lobe_value(own.normal_vs, own.to_eye_vs, to_light, own.alpha) / end.w, largest_ratio);
             sum += ratio * vec4(light.rgb * light.a, light.a);
             total += ratio;
+            ++rays;
             float bright = light.a * dot(light.rgb, vec3(0.2126, 0.7152, 0.0722));
             if (bright > most) brightest = ratio * light.a * light.rgb;
             next = max(next, min(bright, most));
@@ -74,6 +72,6 @@ void main()
         }
     }
     // One ray that alone met something bright is a speck: it counts for no more than the next brightest.
-    if (most > 0.0) sum.rgb -= brightest * (1.0 - next / most);
+    if (rays > 1 && most > 0.0) sum.rgb -= brightest * (1.0 - next / most);
     if (total > 0.0) imageStore(filtered_image, pixel, mean_reflection(sum, total));
 }

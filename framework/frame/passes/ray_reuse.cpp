@@ -43,6 +43,9 @@ Pass ray_reuse_pass()
                                              "pixels whose rays a rough pixel uses, itself among them"),
                            real_parameter("reuse_radius", 0.15, 0, 1,
                                           "radius of these pixels' disk at roughness 1, as a share of the image's height"),
+                           real_parameter("reuse_spread", 0.8, 0, 1e6,
+                                          "how near pixels must be to share rays and to be filtered together, as a share "
+                                              "of the width of the lobe where it meets the nearest thing"),
                            real_parameter(
                                "reuse_depth_tolerance", 0.001, 1e-6, 1e6,
                                "distance from the pixel's plane, as a share of the view distance, at which another "
