@@ -74,7 +74,7 @@ class Test(Case):
     def test_what_it_cannot_do_is_said(self):
         self.refused("trace", "builtin:stairs", "-t", "dda", "-p", "arithmetic=exact", "-o", "a.exr", code=1,
                      says=["arithmetic = exact", "SwiftShader", "shaderInt64"], VK_ICD_FILENAMES=DRIVER)
-        self.refused("trace", "builtin:stairs", "-t", "dda", "-p", "layers=4", "-o", "a.exr", code=1,
+        self.refused("render", "builtin:stairs", "-t", "dda", "-p", "layers=4", "-o", "a.png", code=1,
                      says=["images are needed", "SwiftShader", "allows 16"], VK_ICD_FILENAMES=DRIVER)
         self.second("check", "dda", "--quick", "--case", "parameters_at_their_maximum", says=["left out", "shaderInt64"])
 
