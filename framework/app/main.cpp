@@ -1,6 +1,7 @@
 // The command line: names and help here, the work in commands.cpp and harness/.
 #include "app/check_command.h"
 #include "app/commands.h"
+#include "app/export_command.h"
 #include "app/new_technique.h"
 #include "app/plan_command.h"
 #include "app/ray_command.h"
@@ -287,6 +288,36 @@ int main(int argc, char** argv)
                        "Instead: the files that the compiler reads of each technique, and their lines of code");
     compiled->add_flag("--json", shaders.json, "As JSON, with all that the driver says");
     compiled->callback([&] { command = [&] { return describe_shaders(common, shaders); }; });
+
+    ExportOptions exported;
+    auto*         taken = app.add_subcommand(
+                "export",
+                "Write a technique as shaders for an engine, with frames that prove them (docs/how-to/export_a_tracer.md)");
+    taken->add_option("TECHNIQUE", exported.picture.technique, "Technique (see ssrlab list)");
+    add_parameter_option(*taken, exported.picture);
+    taken->add_option("--to", exported.language, "Shading language")
+        ->check(CLI::IsMember({"glsl", "hlsl", "msl", "essl"}));
+    taken->add_option("-o,--output", exported.picture.output, "Folder to write: new or empty");
+    taken
+        ->add_option("--scene", exported.picture.scene,
+                     "Scene or frame file of the proof; its view decides projection, near and far plane")
+        ->default_val("builtin:corridor")
+        ->capture_default_str();
+    taken->add_option("--view", exported.picture.view, "View of that scene")->capture_default_str();
+    taken->add_option("--size", exported.picture.size, "Size of its image")
+        ->default_val("160x90")
+        ->capture_default_str();
+    taken->add_option("--near", exported.near_m, "Near plane in metres; default: that of the view")
+        ->check(CLI::PositiveNumber);
+    taken->add_option("--verify", exported.verified,
+                      "Run the shaders of a folder that was exported, and compare every ray");
+    taken->add_flag("--hard-cases", exported.hard_cases,
+                    "Export every hard case, run it and compare, instead of writing a folder");
+    taken->callback([&] {
+        command = [&] {
+            return export_technique(common, exported, fmt::format("ssrlab {}", fmt::join(argv + 1, argv + argc, " ")));
+        };
+    });
 
     auto* begin = app.add_subcommand("new-technique", "Write a folder to begin with: a tracer that passes check");
     begin->add_option("FOLDER", results, "Its name becomes the technique's id")->required();

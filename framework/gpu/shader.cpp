@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "gpu/disk_cache.h"
+#include "gpu/glslang_process.h"
 #include "gpu/shader_errors.h"
 #include "gpu/shader_includes.h"
 
@@ -154,27 +155,36 @@ std::set<uint32_t> constants_used(std::span<const uint32_t> spirv)
     return used;
 }
 
-struct GlslangProcess {
-    GlslangProcess() { glslang::InitializeProcess(); }
-    ~GlslangProcess() { glslang::FinalizeProcess(); }
-};
-
 } // namespace
 
 fs::path shader_folder() { return data_root() / "shaders"; }
 fs::path technique_folder() { return data_root() / "techniques"; }
 
-namespace {
-Shader compile(const ShaderSource& source, ShaderIncluder& includer)
+void add_device_defines(const Gpu& gpu, ShaderSource& source)
 {
-    static const GlslangProcess process;
-    const std::string           text  = includer.read_main_file();
-    const std::string           shown = (shader_folder() / source.file).string();
-    std::string                 preamble =
+    if (gpu.info.plain_buffers) source.defines.emplace("PLAIN_BUFFERS", "1");
+    source.defines.emplace("GROUP_LANES", std::to_string(gpu.info.lanes));
+}
+
+std::string preamble_of(const ShaderSource& source)
+{
+    std::string preamble =
         "#extension GL_GOOGLE_include_directive : require\n#extension GL_GOOGLE_cpp_style_line_directive : require\n"
         "#extension GL_EXT_scalar_block_layout : require\n"
         "#define SHARED_FUNCTION\n"; // of headers that C++ includes, too
     for (const auto& [name, value] : source.defines) preamble += fmt::format("#define {} {}\n", name, value);
+    return preamble;
+}
+
+namespace {
+Shader compile(const ShaderSource& source, ShaderIncluder& includer)
+{
+    start_glslang();
+    const std::filesystem::path path     = shader_folder() / source.file;
+    const std::string           text     = includer.read_main_file();
+    const std::string           shown    = path.string();
+    const bool                  is_hlsl  = path.extension() == ".hlsl"; // an export's
+    const std::string           preamble = is_hlsl ? "" : preamble_of(source);
 
     const EShLanguage language = language_of(source.stage);
     glslang::TShader  stage(language);
@@ -183,11 +193,14 @@ Shader compile(const ShaderSource& source, ShaderIncluder& includer)
     const int         lengths[] = {static_cast<int>(text.size())};
     stage.setStringsWithLengthsAndNames(strings, lengths, names, 1);
     stage.setPreamble(preamble.c_str());
-    stage.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, 100);
+    stage.setEnvInput(is_hlsl ? glslang::EShSourceHlsl : glslang::EShSourceGlsl, language, glslang::EShClientVulkan,
+                      100);
+    stage.setEntryPoint("main");
     stage.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
     stage.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
     // Cascading: it goes on after the first error.
-    const auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules | EShMsgCascadingErrors);
+    const auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules | EShMsgCascadingErrors |
+                                                   (is_hlsl ? EShMsgReadHlsl | EShMsgHlslLegalization : 0));
     if (!stage.parse(GetDefaultResources(), 460, ECoreProfile, false, false, messages, includer))
         throw SpecError(shader_errors_in(stage.getInfoLog(), source, includer.files()));
     glslang::TProgram program;
@@ -280,17 +293,6 @@ ShaderFilesHeld::~ShaderFilesHeld()
     const std::lock_guard lock(seen_files().mutex);
     --seen_files().holders;
 }
-
-namespace {
-
-/// What all shaders of a device are compiled with.
-void add_device_defines(const Gpu& gpu, ShaderSource& source)
-{
-    if (gpu.info.plain_buffers) source.defines.emplace("PLAIN_BUFFERS", "1");
-    source.defines.emplace("GROUP_LANES", std::to_string(gpu.info.lanes));
-}
-
-} // namespace
 
 std::vector<ShaderFile> shader_files(const Gpu& gpu, ShaderSource source)
 {

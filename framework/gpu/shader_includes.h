@@ -10,6 +10,11 @@
 
 namespace ssrlab {
 
+/// Adds what every shader of this device is compiled with.
+void add_device_defines(const Gpu& gpu, ShaderSource& source);
+/// What comes before the text of a source: extensions and its defines.
+std::string preamble_of(const ShaderSource& source);
+
 /// Whether the folder is `other` or lies inside it.
 bool lies_in(const std::filesystem::path& folder, const std::filesystem::path& other);
 

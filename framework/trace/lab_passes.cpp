@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "shared.h"
+#include "trace/shader_sources.h"
 
 #include <algorithm>
 #include <bit>
@@ -141,13 +142,18 @@ Shader compile_tile_list(const Gpu& gpu)
 
 } // namespace
 
-TechniquePasses make_technique_passes(Gpu& gpu, const Lab& lab, const RayBuffers& rays, const Bindings& bindings)
+Constants trace_constants(const Gpu& gpu, const Lab& lab, const RayBuffers& rays)
 {
     const std::string exact = exact_choice(lab.technique, lab.values);
     if (!exact.empty()) require_exact_arithmetic(gpu, lab, exact);
     Constants constants = settings_constants(lab.gbuffer->view, lab.settings, rays.precision, !exact.empty());
     add_parameters(constants, lab.technique.parameters, lab.values, CONSTANT_PARAMETERS);
+    return constants;
+}
 
+TechniquePasses make_technique_passes(Gpu& gpu, const Lab& lab, const RayBuffers& rays, const Bindings& bindings)
+{
+    const Constants constants = trace_constants(gpu, lab, rays);
     TechniquePasses passes;
     passes.structures   = make_ray_structures(gpu, lab, rays, bindings);
     const auto is_built = [](const StructurePasses& structure) { return !structure.dispatches.empty(); };

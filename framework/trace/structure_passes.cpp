@@ -2,7 +2,7 @@
 
 #include "core/pixel_index.h"
 #include "shared.h"
-#include "trace/lab_passes.h"
+#include "trace/shader_sources.h"
 
 #include <fmt/format.h>
 
@@ -106,13 +106,6 @@ ShaderSource shader_of(const Technique& technique, const Structure& structure, c
     return source;
 }
 
-Constants constants_of(const Lab& lab, Precision precision)
-{
-    Constants constants = settings_constants(lab.gbuffer->view, lab.settings, precision);
-    add_parameters(constants, lab.technique.parameters, lab.values, CONSTANT_PARAMETERS);
-    return constants;
-}
-
 int last_level(const Lab& lab, const StructurePass& pass, glm::ivec2 size_px)
 {
     const auto* name = std::get_if<std::string>(&pass.last_level);
@@ -151,27 +144,14 @@ Defines store_defines_of(const Gpu& gpu, const Structure& structure, const GBuff
     return defines;
 }
 
-ShaderSource pass_source(const Gpu& gpu, const Lab& lab, const Structure& structure, const StructurePass& pass,
-                         const RayBuffers& rays, bool counts)
-{
-    ShaderSource source = shader_of(lab.technique, structure, pass, rays.precision == Precision::float64);
-    add_surface(source, lab.surface, lab.settings.layers);
-    source.defines.merge(precision_defines(gpu, is_per_ray(pass) ? rays.precision : Precision::float32));
-    source.defines.merge(store_defines_of(gpu, structure, *lab.gbuffer, rays));
-    if (is_per_ray(pass)) source.defines.merge(ray_list_defines(gpu, rays));
-    if (is_per_ray(pass) && counts) source.defines.emplace("COUNT_WORK", "1");
-    return source;
-}
-
 StructureDispatch make_dispatch(Gpu& gpu, const Lab& lab, const Structure& structure, const StructurePass& pass,
                                 const RayBuffers& rays, const Bindings& bindings)
 {
-    const ShaderSource source = pass_source(gpu, lab, structure, pass, rays, bindings.contains("Work"));
-    StructureDispatch  dispatch;
-    dispatch.pass = make_compute_pass(gpu, compile_shader(gpu, source), bindings,
-                                      constants_of(lab, is_per_ray(pass) ? rays.precision : Precision::float32),
+    const ShaderSource source   = build_source(gpu, lab, structure, pass, rays, bindings.contains("Work"));
+    StructureDispatch  dispatch = dispatches_of(lab, pass);
+    dispatch.pass               = make_compute_pass(gpu, compile_shader(gpu, source), bindings,
+                                                    build_constants(lab, is_per_ray(pass) ? rays.precision : Precision::float32),
                                       pass.per == SizeRule::level ? sizeof(glm::ivec2) : 0);
-    add_dispatches(dispatch, lab, pass, lab.gbuffer->view.size_px);
     return dispatch;
 }
 
@@ -186,8 +166,8 @@ std::vector<StructurePasses> make_structures(Gpu& gpu, const Lab& lab, const Ray
             const Buffer& fetches = rays.structures->at(group_fetches_key(structure));
             bindings.insert_or_assign("group_fetches_stored", fetches);
         }
-        for (const StructurePass& pass : structure.passes)
-            if (is_per_ray(pass) == per_ray && is_of_style(pass, gpu.info))
+        for (const StructurePass& pass : passes_on(gpu, structure))
+            if (is_per_ray(pass) == per_ray)
                 passes.dispatches.push_back(make_dispatch(gpu, lab, structure, pass, rays, bindings));
         structures.push_back(std::move(passes));
     }
@@ -213,6 +193,46 @@ std::string buffer_declarations(const StructureBuffer& buffer, int binding, bool
 }
 
 } // namespace
+
+ShaderSource build_source(const Gpu& gpu, const Lab& lab, const Structure& structure, const StructurePass& pass,
+                          const RayBuffers& rays, bool counts_work)
+{
+    ShaderSource source = shader_of(lab.technique, structure, pass, rays.precision == Precision::float64);
+    add_surface(source, lab.surface, lab.settings.layers);
+    source.defines.merge(precision_defines(gpu, is_per_ray(pass) ? rays.precision : Precision::float32));
+    source.defines.merge(store_defines_of(gpu, structure, *lab.gbuffer, rays));
+    if (is_per_ray(pass)) source.defines.merge(ray_list_defines(gpu, rays));
+    if (is_per_ray(pass) && counts_work) source.defines.emplace("COUNT_WORK", "1");
+    return source;
+}
+
+Constants build_constants(const Lab& lab, Precision precision)
+{
+    Constants constants = settings_constants(lab.gbuffer->view, lab.settings, precision);
+    add_parameters(constants, lab.technique.parameters, lab.values, CONSTANT_PARAMETERS);
+    return constants;
+}
+
+StructureDispatch dispatches_of(const Lab& lab, const StructurePass& pass)
+{
+    StructureDispatch dispatch;
+    add_dispatches(dispatch, lab, pass, lab.gbuffer->view.size_px);
+    return dispatch;
+}
+
+std::vector<StructurePass> passes_on(const Gpu& gpu, const Structure& structure)
+{
+    std::vector<StructurePass> passes;
+    std::ranges::copy_if(structure.passes, std::back_inserter(passes),
+                         [&](const StructurePass& pass) { return is_of_style(pass, gpu.info); });
+    return passes;
+}
+
+size_t structure_buffer_bytes(const StructureBuffer& buffer, glm::ivec2 size_px, const RayBuffers& rays)
+{
+    const size_t word = is_double(buffer, rays.precision == Precision::float64) ? sizeof(double) : sizeof(uint32_t);
+    return element_count(buffer, size_px, rays) * static_cast<size_t>(element_type(buffer.type).words) * word;
+}
 
 std::map<std::string, std::filesystem::path> structure_include_files(const Technique& technique)
 {
@@ -242,7 +262,7 @@ std::vector<ShaderSource> structure_sources(Gpu& gpu, const Lab& lab, const RayB
     std::vector<ShaderSource> sources;
     for (const Structure& structure : lab.technique.structures)
         for (const StructurePass& pass : structure.passes)
-            if (is_of_style(pass, gpu.info)) sources.push_back(pass_source(gpu, lab, structure, pass, rays, false));
+            if (is_of_style(pass, gpu.info)) sources.push_back(build_source(gpu, lab, structure, pass, rays, false));
     return sources;
 }
 

@@ -3,12 +3,12 @@
 
 // A launch is folded into rows. A CPU device gives the upper rows to one thread and the lower rows to another: neighbours in a list go to different
 // threads, since they cost about the same.
-uint unfold_group(uvec2 group, uint rows)
+uint folded_group()
 {
-    uint upper = (rows + 1) / 2;
-    uint row   = group.y < upper ? 2 * group.y : 2 * (group.y - upper) + 1;
-    return row * LAUNCH_ROW_GROUPS + group.x;
+    uint upper = (gl_NumWorkGroups.y + 1) / 2;
+    uint row   = gl_WorkGroupID.y < upper ? 2 * gl_WorkGroupID.y : 2 * (gl_WorkGroupID.y - upper) + 1;
+    return row * LAUNCH_ROW_GROUPS + gl_WorkGroupID.x;
 }
 
 // Number of this workgroup in a launch over a list.
-#define work_group() unfold_group(gl_WorkGroupID.xy, gl_NumWorkGroups.y)
+#define work_group() folded_group()

@@ -3,7 +3,7 @@
 // On a GPU a workgroup takes two groups of 64 rays, so that no wave of 64 is half empty (PAIR_GROUPS). The launch has a workgroup for each group: half of
 // them find no rays.
 #undef work_group
-#define work_group() (unfold_group(gl_WorkGroupID.xy, gl_NumWorkGroups.y) * PAIR_GROUPS + gl_LocalInvocationID.x / (RAYS_PER_GROUP / 2))
+#define work_group() (folded_group() * PAIR_GROUPS + gl_LocalInvocationID.x / (RAYS_PER_GROUP / 2))
 #include "api/trace_api.glsl"
 #include "technique/parameters"
 #include "technique/structures"

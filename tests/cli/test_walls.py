@@ -15,6 +15,7 @@ WALLS = {
     "scene": ("core/view.h", ["gpu/gpu.h", "trace/lab.h", "truth/scene_bvh.h"]),
     "gpu": ("gpu/gpu.h", ["scene/scene.h", "trace/lab.h"]),
     "trace": ("gpu/gpu.h", ["scene/scene.h", "frame/frame.h", "compare/measures.h"]),
+    "export": ("trace/lab.h", ["scene/scene.h", "frame/frame.h", "check/judge.h", "harness/experiment.h"]),
     "frame": ("trace/lab.h", ["truth/scene_bvh.h", "compare/measures.h", "harness/experiment.h"]),
     "truth": ("scene/scene.h", ["gpu/gpu.h", "trace/lab.h", "compare/measures.h"]),
     "compare": ("core/trace_result.h", ["truth/scene_truth.h", "scene/scene.h", "gpu/gpu.h"]),

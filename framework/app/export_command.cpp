@@ -1,0 +1,167 @@
+#include "app/export_command.h"
+
+#include "check/run_check.h"
+#include "core/error.h"
+#include "export/export.h"
+#include "harness/experiment.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+
+namespace ssrlab {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Hard cases whose rays a port gets wrong first.
+constexpr std::array proof_cases = {"axis_aligned", "exact_diagonal", "crossings_of_odd_sizes", "sphere_on_floor",
+                                    "orthographic"};
+
+ExportLanguage language_of(const std::string& name)
+{
+    static const std::map<std::string, ExportLanguage> languages = {{"glsl", ExportLanguage::glsl},
+                                                                    {"hlsl", ExportLanguage::hlsl},
+                                                                    {"msl", ExportLanguage::msl},
+                                                                    {"essl", ExportLanguage::essl}};
+    return languages.at(name);
+}
+
+/// Every setting of [trace] and every parameter with its value, as -p takes them.
+std::vector<std::pair<std::string, std::string>> chosen_values(const Catalogue& catalogue, const Technique& technique,
+                                                               const Choice& choice)
+{
+    std::vector<std::pair<std::string, std::string>> chosen;
+    for (const Setting& setting : all_settings(catalogue))
+        if (setting.table == "trace")
+            chosen.emplace_back(setting.name, format_parameter(setting, setting.get(choice.settings)));
+    for (const Parameter& parameter : technique.parameters)
+        chosen.emplace_back(parameter.name, format_parameter(parameter, choice.values.at(parameter.name)));
+    return chosen;
+}
+
+/// Of the device that exports: what every device can do, by the passes that need no subgroups.
+GpuOptions portable(GpuOptions options)
+{
+    options.storage = TexelStorage::plain_buffers;
+    if (options.passes == PassStyle::by_device) options.passes = PassStyle::serial;
+    return options;
+}
+
+/// The frame under the near and far plane of the export.
+ExportFrame on_view(ExportFrame frame, const View& view)
+{
+    frame.gbuffer.view.near_m = view.near_m;
+    frame.gbuffer.view.far_m  = view.far_m;
+    return frame;
+}
+
+/// A few hard cases with the projection of the view, and the scene.
+std::vector<ExportFrame> proof_frames(const GBufferImage& scene, const ExportOptions& options)
+{
+    std::vector<ExportFrame> frames;
+    for (const char* name : proof_cases) {
+        const HardCase& hard_case = find_case(name);
+        for (Setup& setup : hard_case.setups()) {
+            if (setup.gbuffer.view.projection != scene.view.projection || setup.gbuffer.depth.size() > 65536) continue;
+            ExportFrame frame{name, fmt::format("hard case: {}", hard_case.breaks), std::move(setup.gbuffer),
+                              setup.rays};
+            frames.push_back(on_view(std::move(frame), scene.view));
+            break;
+        }
+    }
+    frames.push_back({"scene", options.picture.scene, scene});
+    return frames;
+}
+
+int print_verdicts(std::span<const FrameVerdict> verdicts, const GpuInfo& device)
+{
+    size_t rays = 0, differing = 0;
+    for (const FrameVerdict& verdict : verdicts) {
+        rays += verdict.rays + verdict.set_up;
+        differing += verdict.differing + verdict.set_up_differing;
+        std::puts(
+            fmt::format("{}: {} of {} rays differ{}", verdict.frame, verdict.differing, verdict.rays,
+                        verdict.set_up == 0 ? "" : fmt::format("; {} are set up otherwise", verdict.set_up_differing))
+                .c_str());
+        if (!verdict.first.empty()) std::puts(("  " + verdict.first).c_str());
+    }
+    std::puts(fmt::format("{} of {} answers differ on {}", differing, rays, device.name).c_str());
+    return differing == 0 && rays > 0 ? 0 : 1;
+}
+
+/// Exports each hard case by itself, since each has its own settings, and runs it.
+int verify_hard_cases(Gpu& gpu, const Catalogue& catalogue, const Technique& technique, const Choice& choice,
+                      const ExportOptions& options)
+{
+    std::string name = (fs::temp_directory_path() / "ssrlab_hard_cases_XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw_failure("{}: cannot be created", name);
+    const fs::path            folder = fs::path(name) / "export";
+    std::vector<FrameVerdict> verdicts;
+    for (const CaseFamily& family : hard_cases())
+        for (const HardCase& hard_case : family.cases) {
+            FrameVerdict          sum{.frame = hard_case.name};
+            const ParameterValues values = adjusted(hard_case, technique, choice.values);
+            for (Setup& setup : hard_case.setups()) {
+                if (std::ranges::count(technique.ignores, "behind") > 0) setup.settings.behind = Behind::hit;
+                if (setup.settings.layers > 1) continue; // no export holds them
+                const Export      what{catalogue, technique, values, setup.settings, language_of(options.language), ""};
+                const ExportFrame frame{"case", "", setup.gbuffer, setup.rays};
+                write_export(gpu, what, std::span(&frame, 1), folder);
+                const FrameVerdict one = verify_export(gpu, folder).front();
+                fs::remove_all(folder);
+                sum.rays += one.rays;
+                sum.differing += one.differing;
+                sum.set_up += one.set_up;
+                sum.set_up_differing += one.set_up_differing;
+                if (sum.first.empty() && !one.first.empty()) sum.first = setup.label + " " + one.first;
+            }
+            verdicts.push_back(std::move(sum));
+        }
+    fs::remove_all(name);
+    return print_verdicts(verdicts, gpu.info);
+}
+
+} // namespace
+
+int export_technique(const CommonOptions& common, const ExportOptions& options, const std::string& command_line)
+{
+    if (!options.verified.empty()) {
+        if (!options.picture.technique.empty() || !options.picture.output.empty())
+            throw_spec_error("--verify runs a folder that was exported: give no technique and no -o");
+        Gpu gpu = open_gpu(common.gpu);
+        return print_verdicts(verify_export(gpu, options.verified), gpu.info);
+    }
+    if (options.picture.technique.empty())
+        throw_spec_error("export: expected a technique (see ssrlab list) or --verify");
+    if (options.language.empty()) throw_spec_error("--to: expected glsl, hlsl, msl or essl");
+    if (options.picture.output.empty() != options.hard_cases)
+        throw_spec_error("-o: expected a folder to write, or --hard-cases instead of it");
+    const Catalogue  catalogue = load_catalogue(common.technique_dirs);
+    const Technique& technique = find_technique(catalogue.techniques, options.picture.technique);
+    const Choice     choice    = parse_choice(catalogue, technique, options.picture.parameters);
+    CommonOptions    device    = common;
+    device.gpu                 = portable(common.gpu);
+    if (options.hard_cases) {
+        Gpu gpu                = open_gpu(device.gpu);
+        gpu.info.cheap_doubles = false; // rays are set up by floats, as on every device
+        return verify_hard_cases(gpu, catalogue, technique, choice, options);
+    }
+    Stage stage                  = open_stage(device, catalogue, options.picture);
+    stage.gpu.info.cheap_doubles = false;
+    GBufferImage scene           = read_gbuffer(stage.gpu, *stage.gbuffer);
+    if (options.near_m > 0) scene.view.near_m = options.near_m;
+    const Export what{catalogue,
+                      technique,
+                      choice.values,
+                      choice.settings.trace,
+                      language_of(options.language),
+                      command_line,
+                      chosen_values(catalogue, technique, choice)};
+    write_export(stage.gpu, what, proof_frames(scene, options), options.picture.output);
+    std::puts(fmt::format("wrote {0}; ssrlab export --verify {0} runs it", options.picture.output).c_str());
+    return 0;
+}
+
+} // namespace ssrlab

@@ -1,0 +1,123 @@
+#include "export/export.h"
+
+#include "core/error.h"
+#include "core/files.h"
+#include "export/passes.h"
+#include "export/translate.h"
+#include "trace/lab_passes.h"
+
+namespace ssrlab {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One frame inside the lab: its rays, and what they found.
+struct Traced {
+    LabPtr                  lab;
+    std::vector<RayInput>   rays;
+    std::vector<RayOutcome> outcomes;
+};
+
+Traced trace(Gpu& gpu, const Export& what, const ExportFrame& frame)
+{
+    Traced traced;
+    traced.lab =
+        make_lab(gpu, what.catalogue, upload_gbuffer(gpu, frame.gbuffer), what.technique, what.values, what.settings);
+    const size_t    pixels = frame.gbuffer.depth.size();
+    const TracerPtr tracer = make_tracer(gpu, traced.lab, frame.rays.empty() ? pixels : frame.rays.size());
+    traced.rays            = frame.rays.empty() ? set_up_rays(gpu, *tracer) : frame.rays;
+    traced.outcomes        = trace_rays(gpu, *tracer, traced.rays);
+    return traced;
+}
+
+Cost cost_of(const std::string& frame, std::span<const RayOutcome> outcomes)
+{
+    Cost cost{.frame = frame};
+    for (const RayOutcome& outcome : outcomes) {
+        cost.steps += outcome.steps;
+        cost.depth_fetches += outcome.depth_fetches;
+        cost.structure_fetches += outcome.structure_fetches;
+    }
+    const double rays = std::max<double>(1, static_cast<double>(outcomes.size()));
+    return {frame, cost.steps / rays, cost.depth_fetches / rays, cost.structure_fetches / rays};
+}
+
+void make_folders(const fs::path& folder)
+{
+    std::error_code error;
+    if (fs::exists(folder, error) && !fs::is_empty(folder, error))
+        throw_spec_error("-o {}: expected a new or empty folder", folder.string());
+    for (const char* name : {"frames", "expected"})
+        if (!fs::create_directories(folder / name, error) && error)
+            throw_failure("{}: cannot be created: {}", (folder / name).string(), error.message());
+}
+
+/// What a file begins with, above its shader.
+std::string comment_of(const Export& what, const View& view, const ExportedPass& pass, bool is_trace)
+{
+    if (is_trace) return head_comment(what, view, pass);
+    return fmt::format("// {}: a pass of the technique '{}'. README.md says how to run it.\n"
+                       "// SPDX-License-Identifier: MIT. Copyright (c) 2026 the ssrlab authors\n\n",
+                       pass.name, what.technique.id);
+}
+
+/// Behind the line #version, which comes first.
+std::string with_comment(const std::string& glsl, const std::string& comment)
+{
+    const size_t line = glsl.find('\n') + 1;
+    return glsl.substr(0, line) + comment + glsl.substr(line);
+}
+
+void write_passes(Gpu& gpu, const Export& what, const View& view, const ComposedLab& composed,
+                  std::vector<ExportedPass>& passes, const fs::path& folder)
+{
+    for (ExportedPass& pass : passes) {
+        const std::string comment = comment_of(what, view, pass, &pass == &passes.back());
+        const fs::path    glsl    = fs::absolute(folder / (pass.name + file_ending(ExportLanguage::glsl)));
+        write_file_atomically(glsl, with_comment(pass.glsl, comment));
+        const Shader shader = compile_shader(gpu, {.file = glsl});
+        for (const auto& [name, binding] : shader.bindings)
+            pass.bindings.emplace(binding.binding, resource_of(name, composed, short_path(pass.pass.source.file)));
+        if (what.language == ExportLanguage::glsl) continue;
+        write_file_atomically(folder / (pass.name + file_ending(what.language)),
+                              translated(shader, what.language, comment));
+        fs::remove(glsl);
+    }
+}
+
+} // namespace
+
+const char* file_ending(ExportLanguage language)
+{
+    switch (language) {
+    case ExportLanguage::glsl: return ".comp";
+    case ExportLanguage::hlsl: return ".hlsl";
+    case ExportLanguage::msl: return ".metal";
+    case ExportLanguage::essl: return ".essl";
+    }
+    return "";
+}
+
+void write_export(Gpu& gpu, const Export& what, std::span<const ExportFrame> frames, const fs::path& folder)
+{
+    make_folders(folder);
+    std::vector<ExportedPass> passes;
+    for (const ExportFrame& frame : frames) {
+        const Traced              traced   = trace(gpu, what, frame);
+        const ComposedLab         composed = compose_lab(gpu, *traced.lab, traced.rays.size());
+        std::vector<ExportedPass> of_frame = export_passes(gpu, *traced.lab, composed);
+        if (passes.empty()) write_passes(gpu, what, frame.gbuffer.view, composed, of_frame, folder);
+        for (size_t i = 0; i < of_frame.size() && !passes.empty(); ++i) {
+            if (of_frame[i].glsl != passes[i].glsl)
+                throw std::logic_error("write_export: frames need different shaders");
+            of_frame[i].bindings = passes[i].bindings;
+        }
+        passes = std::move(of_frame);
+        write_frame(gpu, *traced.lab, composed, passes, frame, traced.rays, traced.outcomes, what.language, folder);
+        if (&frame == &frames.back())
+            write_file_atomically(folder / "README.md", readme(what, frame.gbuffer.view, passes, composed,
+                                                               cost_of(frame.name, traced.outcomes)));
+    }
+}
+
+} // namespace ssrlab

@@ -1,0 +1,57 @@
+// Takes a technique out of the lab: a folder with one shader for each pass, frames with right answers, and their proof.
+//
+//     FOLDER/README.md            what the host provides, what comes back, how to dispatch
+//     FOLDER/1_depth.comp …       the passes, in the order in which they run
+//     FOLDER/frames/NAME.json     buffers, bindings and dispatches of one frame as numbers, with NAME.*.bin beside it
+//     FOLDER/expected/NAME.bin    what each of its rays found inside the lab
+#pragma once
+
+#include "trace/lab.h"
+
+#include <filesystem>
+#include <string>
+#include <utility>
+
+namespace ssrlab {
+
+enum class ExportLanguage { glsl, hlsl, msl, essl };
+
+struct Export {
+    const Catalogue&                                 catalogue;
+    const Technique&                                 technique;
+    const ParameterValues&                           values;
+    const TraceSettings&                             settings;
+    ExportLanguage                                   language = ExportLanguage::glsl;
+    std::string                                      command;     // that repeats it
+    std::vector<std::pair<std::string, std::string>> chosen = {}; // settings and parameters with their values
+};
+
+/// A frame of the proof. All frames of an export have the same projection, near and far plane: those of the shaders.
+struct ExportFrame {
+    std::string           name, what;
+    GBufferImage          gbuffer;
+    std::vector<RayInput> rays =
+        {}; // empty: the mirror ray of each pixel that reflects, which the ray set-up makes, too
+};
+
+/// The ending of the language's files.
+const char* file_ending(ExportLanguage language);
+
+/// Writes the folder, which must be missing or empty. Throws SpecError for settings that an export cannot hold and for
+/// shaders that do not compile, Failure for a folder that cannot be written.
+void write_export(Gpu& gpu, const Export& what, std::span<const ExportFrame> frames,
+                  const std::filesystem::path& folder);
+
+/// How the exported shaders answered one frame.
+struct FrameVerdict {
+    std::string frame;
+    size_t      rays = 0, differing = 0;          // by status, by pixel, or by any bit of t
+    size_t      set_up = 0, set_up_differing = 0; // rays of the ray set-up, where the frame has it
+    std::string first = {};                       // the first that differs, in words
+};
+
+/// Runs the folder's shaders on its frames, and nothing of the lab. Throws SpecError for a folder that is no export, or
+/// whose shaders do not compile.
+std::vector<FrameVerdict> verify_export(Gpu& gpu, const std::filesystem::path& folder);
+
+} // namespace ssrlab

@@ -1,0 +1,165 @@
+// What an export says of itself.
+#include "core/version.h"
+#include "export/passes.h"
+
+#include <fmt/format.h>
+
+namespace ssrlab {
+namespace {
+
+bool uses(std::span<const ExportedPass> passes, const std::string& resource)
+{
+    for (const ExportedPass& pass : passes)
+        for (const auto& [binding, name] : pass.bindings)
+            if (name == resource) return true;
+    return false;
+}
+
+std::string projection_text(const View& view)
+{
+    if (view.projection == Projection::perspective)
+        return fmt::format("a perspective view with near_m = {:g}; depth = near_m / distance, 0 for the sky",
+                           view.near_m);
+    return fmt::format(
+        "an orthographic view with near_m = {:g} and far_m = {:g}; depth = (far_m - distance) / (far_m - "
+        "near_m), 0 for the sky",
+        view.near_m, view.far_m);
+}
+
+std::string settings_text(const Export& what, const char* line)
+{
+    std::string text;
+    for (const auto& [name, value] : what.chosen) text += fmt::format(fmt::runtime(line), name, value);
+    return text;
+}
+
+std::string dispatch_text(const ExportedPass& pass)
+{
+    if (pass.pass.rays_per_workgroup == 0) return pass.pass.rule;
+    return fmt::format("{} rays a workgroup, {} workgroups a row", pass.pass.rays_per_workgroup, 256);
+}
+
+std::string passes_table(std::span<const ExportedPass> passes, ExportLanguage language)
+{
+    std::string text = "| file | workgroups, rounded up | bindings |\n|---|---|---|\n";
+    for (const ExportedPass& pass : passes) {
+        std::string bindings;
+        for (const auto& [binding, resource] : pass.bindings)
+            bindings += fmt::format("{}{} `{}`", bindings.empty() ? "" : ", ", binding, resource);
+        text += fmt::format("| `{}{}` | {} | {} |\n", pass.name, file_ending(language), dispatch_text(pass), bindings);
+    }
+    return text;
+}
+
+constexpr const char* view_text =
+    "uniform block of 48 bytes: `ivec2 size_px`, `vec2 focal_px` (pixels per unit of "
+    "slope: width / 2 / tan(fov_x / 2); orthographic: per metre), `vec2 centre_px` (where "
+    "the view axis meets the image), `vec2 focal_low_px`, `vec2 centre_low_px` (what "
+    "rounding to float took from the two; 0 will do), `float near_m`, `float far_m`";
+
+constexpr const char* gradient_text =
+    "a word for each pixel, row by row: how depth changes from one pixel to the next along x (upper 16 bits) and y "
+    "(lower "
+    "16 bits), each the upper half of a float, rounded to nearest; all bits set where there is no plane. From a "
+    "geometric "
+    "normal n in view space: `depth * (n.x / focal.x, -n.y / focal.y) / dot(n, v)` with v = (x, y, -1) toward the "
+    "pixel's "
+    "centre and `|dot(n, v)| >= 0.02 |n| |v|`; orthographic: `-(n.x / focal.x, -n.y / focal.y) / n.z / (far - near)`";
+
+std::string resources_table(std::span<const ExportedPass> passes, const ComposedLab& composed)
+{
+    std::string text = "| resource | what it holds |\n|---|---|\n";
+    const auto  row  = [&](const std::string& name, const std::string& what) {
+        if (uses(passes, name)) text += fmt::format("| `{}` | {} |\n", name, what);
+    };
+    row("view", view_text);
+    row("host_depth", "your depth: a float for each pixel, row by row. To read a texture or another convention, change "
+                      "`host_depth()` in the first file");
+    row("host_gradients", gradient_text);
+    row("normals", "image of format rgba32f: the normal in view space (x right, y up, looking along -z), any length");
+    row("solids", "image of format r32f: the depth where the solid behind the pixel ends; 0: it is thin");
+    row("cells",
+        "depth, and what structures know above it: 8 bytes times `(((w - 1) >> 4) + 1) * odd(2^ceil(log2(h)) + h + "
+        "1) * 8 + (((w - 1) >> 3) + 1) * odd(h + 1) * 8` for an image of w x h pixels, where odd(n) is n, or n + 1 "
+        "if n is even. Fill it with the float -1 once, before the first frame");
+    row("ray_count",
+        "one word: the number of rays. Set it to 0 before the ray set-up, or to the length of your own list");
+    row("rays",
+        "32 bytes a ray: x_px, y_px and depth where it starts, its length in metres, the same three from there to "
+        "its end, and a word: pixel x in bits 0-13, y in 14-27, and above them the status of a ray that hits "
+        "nothing. The segment lies on the image");
+    row("hits",
+        "8 bytes a ray: a word with pixel x in bits 0-13, y in 14-27 and the status above them; and the float t");
+    row("push", "uniform block: two ints, `level` and `last_level`, for each dispatch its own");
+    for (const ComposedBuffer& buffer : composed.buffers)
+        row(buffer.structure + "." + buffer.name, buffer.rule + ", as words of 32 bits");
+    return text;
+}
+
+constexpr const char* statuses = "1 hit: `t` and the pixel say where. 2 left the screen. 3 reached the maximum "
+                                 "distance. 4 out of steps: unknown, never "
+                                 "a hit. 5 met only surfaces that face away. 6 stopped behind what the frame shows: "
+                                 "unknown, and `t` and the pixel say "
+                                 "where. 7 an answer that cannot be: a bug.";
+
+} // namespace
+
+std::string head_comment(const Export& what, const View& view, const ExportedPass& trace)
+{
+    return fmt::format(
+        "// {}: {}\n"
+        "// {}\n//\n"
+        "// SPDX-License-Identifier: MIT. Copyright (c) 2026 the ssrlab authors\n"
+        "// Written by ssrlab {}: {}\n//\n"
+        "// Made for {}.\n"
+        "// Settings:{}\n//\n"
+        "// The host provides View, the depth that the passes before this one laid out, and the list of rays:\n"
+        "//   Rays      origin (x_px, y_px, depth), length_m, delta to the end of the segment, pixel and status of a "
+        "miss\n"
+        "//   RayCount  how many; {} rays a workgroup, workgroups in rows of 256\n"
+        "// and gets of each ray:\n"
+        "//   Hits      x in bits 0-13, y in 14-27, status in 28-31; and t: 0 at the ray's origin, 1 at its end\n"
+        "// Status: 1 hit, 2 left the screen, 3 maximum distance, 4 out of steps (no hit), 5 met surfaces that face "
+        "away only,\n"
+        "// 6 stopped behind what the frame shows (no hit). The point of a hit is origin + t * delta.\n"
+        "// normal_image is read only with behind = pass or stop. README.md has all formats, the dispatches and the "
+        "cost.\n",
+        trace.name, what.technique.name, what.technique.summary, version_text(), what.command, projection_text(view),
+        settings_text(what, " {} = {},"), trace.pass.rays_per_workgroup);
+}
+
+std::string readme(const Export& what, const View& view, std::span<const ExportedPass> passes,
+                   const ComposedLab& composed, const Cost& cost)
+{
+    std::string text = fmt::format("# {}\n{}\n\n", what.technique.name, what.technique.summary);
+    for (const std::string& cite : what.technique.cite) text += fmt::format("- {}\n", cite);
+    text +=
+        fmt::format("\nMade for {}. Another near plane, thickness or setting needs another export: the shaders hold "
+                    "their values as constants. Written by\n\n    {}\n\n",
+                    projection_text(view), what.command);
+    text +=
+        fmt::format("## Passes, in their order\n{}\nA barrier belongs between each two dispatches. A list of rays of "
+                    "your own replaces the ray set-up.\n\n",
+                    passes_table(passes, what.language));
+    text +=
+        fmt::format("## Resources\n{}\nBindings are those of set 0 (HLSL: register numbers). Names that a shader gives "
+                    "to one resource may differ. `normals` is read by the trace only with behind = pass or stop.\n\n",
+                    resources_table(passes, composed));
+    text +=
+        fmt::format("## What comes back\n{} The hit point is `origin + t * delta`, in pixels and depth.\n\n", statuses);
+    text += fmt::format("## Settings\n{}\n", settings_text(what, "- {} = {}\n"));
+    text +=
+        fmt::format("## Cost\nOn the frame `{}` a ray takes {:.1f} steps, {:.1f} depth fetches and {:.1f} structure "
+                    "fetches. `ssrlab shaders {} --chip navi21` shows instructions and registers.\n\n",
+                    cost.frame, cost.steps, cost.depth_fetches, cost.structure_fetches, what.technique.id);
+    text +=
+        "## Proof\n`frames/` has inputs and `expected/` has the answer of every ray. `ssrlab export --verify FOLDER` "
+        "runs these files and compares. A host of your own reads `frames/NAME.json`: it lists each resource (its "
+        "bytes, its file, or the word that fills it), and each pass with its bindings and dispatches as numbers. "
+        "Status "
+        "and pixel must be equal, and t to the bit.\n\n";
+    return text + "## Licence\nMIT, copyright 2026 the ssrlab authors. A technique from another folder is under its "
+                  "author's licence.\n";
+}
+
+} // namespace ssrlab

@@ -1,0 +1,13 @@
+// From SPIR-V to other shading languages, by the program spirv-cross. Folder-internal.
+#pragma once
+
+#include "export/export.h"
+#include "gpu/shader.h"
+
+namespace ssrlab {
+
+/// The shader in that language, behind a comment, with its names and binding numbers. Throws Failure where spirv-cross is
+/// missing or cannot translate the shader.
+std::string translated(const Shader& shader, ExportLanguage language, const std::string& comment);
+
+} // namespace ssrlab

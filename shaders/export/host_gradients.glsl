@@ -1,0 +1,2 @@
+// Surfaces without planes need no gradients.
+uint host_gradient(ivec2 pixel) { return 0; }

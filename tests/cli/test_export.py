@@ -1,0 +1,156 @@
+"""ssrlab export: techniques as shaders for an engine, and the proof in their folder."""
+import glob
+import json
+import os
+import re
+import shutil
+import subprocess
+
+from support import Case, main
+
+SWIFTSHADER = "/usr/lib/chromium/vk_swiftshader_icd.json"
+
+OWN = {
+    "technique.toml": 'name = "Two stops"\nsummary = "Looks at the middle and at the end."\nexact = false\n'
+                      'structures = ["own_rows"]\nbounded_by = ["looks"]\nlimits = ["point_sampled"]\n'
+                      "[parameters]\nlooks = { default = 12, min = 1, max = 64, doc = \"Samples.\" }\n",
+    "trace.glsl": "#define STOP(i) (real(i) / real(looks))\n"
+                  "TraceResult trace(Ray ray)\n{\n"
+                  "    Contact contact = no_contact();\n    int taken = 0;\n"
+                  "    while (!contact.found && taken < looks)\n    {\n        ++taken;\n"
+                  "        ivec2 pixel = pixel_at(ray, STOP(taken));\n"
+                  "        bool  empty = row_is_empty(pixel.y);\n"
+                  "        if (!empty && pixel != ray.start_pixel) contact = test_sample(ray, pixel, STOP(taken));\n"
+                  "    }\n    return contact.found ? hit(ray, contact, taken) : miss(ray, taken);\n}\n",
+    "own_rows/structure.toml": 'name = "Rows"\nsummary = "Which tiles have a surface."\n'
+                               '[buffers]\nfilled = { per = "tile", tile_px = 8, type = "uint" }\n'
+                               '[[passes]]\nshader = "build.comp"\nper = "tile"\ntile_px = 8\n',
+    "own_rows/build.comp": '#include "api/view.glsl"\n#include "api/slab.glsl"\n#include "structure/parameters"\n'
+                           '#include "structure/buffers"\nlayout(local_size_x = 8, local_size_y = 8) in;\n'
+                           "void main()\n{\n    ivec2 tile = ivec2(gl_GlobalInvocationID.xy), tiles = (size_px - 1) / 8 + 1;\n"
+                           "    if (any(greaterThanEqual(tile, tiles))) return;\n"
+                           "    uint filled = 0;\n"
+                           "    for (int i = 0; i < 64; ++i)\n    {\n"
+                           "        ivec2 pixel = min(8 * tile + ivec2(i % 8, i / 8), size_px - 1);\n"
+                           "        filled |= uint(depth_in(load_cell(pixel, 0), pixel) > 0.0);\n    }\n"
+                           "    store_filled(tile_index(8 * tile, 8), filled);\n}\n",
+    "own_rows/read.glsl": "bool row_is_empty(int y)\n{\n    uint any_filled = 0;\n"
+                          "    for (int x = 0; x < size_px.x; x += 8) any_filled |= load_filled(tile_index(ivec2(x, y), 8));\n"
+                          "    count_fetch(STRUCTURE_own_rows);\n    return any_filled == 0;\n}\n",
+}
+
+
+class Test(Case):
+    def export(self, technique, language, *more, folder=None):
+        folder = folder or self.path(f"{technique}_{language}")
+        self.ssrlab("--quiet", "export", technique, "--to", language, "-o", folder, "--size", "64x36", *more)
+        return folder
+
+    def verified(self, folder, code=0, **environment):
+        """The rays of each frame that differ, and all that was said."""
+        said = self.ssrlab("export", "--verify", folder, code=code, **environment)
+        found = re.findall(r"^(\w+): (\d+) of (\d+) rays differ", said, re.M)
+        self.assertEqual({name for name, _, _ in found},
+                         {os.path.basename(path)[:-5] for path in glob.glob(f"{folder}/frames/*.json")}, said)
+        for _, _, rays in found:
+            self.assertGreater(int(rays), 0, said)
+        return {name: int(differing) for name, differing, _ in found}, said
+
+    def assert_equal_on_every_ray(self, folder, **environment):
+        differing, said = self.verified(folder, **environment)
+        self.assertEqual(set(differing.values()), {0}, said)
+        self.assertGreaterEqual(len(differing), 4, said)
+        self.assertIn("0 are set up otherwise", said)
+
+    def read(self, *path):
+        with open(os.path.join(*path), encoding="utf-8") as file:
+            return file.read()
+
+    def check_language(self, language):
+        for technique, surface in (("linear", "box"), ("dda", "plane"), ("hiz", "box"), ("hiz", "plane")):
+            with self.subTest(technique=technique, surface=surface):
+                folder = self.export(technique, language, "-p", f"surface={surface}",
+                                     folder=self.path(f"{technique}_{surface}_{language}"))
+                self.assert_equal_on_every_ray(folder)
+
+    def test_glsl_answers_as_the_lab_does(self):
+        self.check_language("glsl")
+
+    def test_hlsl_answers_as_the_lab_does(self):
+        self.check_language("hlsl")
+
+    def test_ray_packets_and_a_second_driver(self):
+        for language in ("glsl", "hlsl"):
+            folder = self.export("hiz_waves", language)
+            self.assert_equal_on_every_ray(folder)
+            if os.path.exists(SWIFTSHADER):
+                self.assert_equal_on_every_ray(folder, VK_ICD_FILENAMES=SWIFTSHADER)
+
+    def test_glsl_is_plain(self):
+        folder = self.export("hiz", "glsl", "-p", "max_steps=77")
+        files = sorted(glob.glob(f"{folder}/*.comp"))
+        self.assertEqual([os.path.basename(path) for path in files],
+                         ["1_depth.comp", "2_depth_pyramid_level_of_pixels.comp", "3_depth_pyramid_level_of_cells.comp",
+                          "4_rays.comp", "5_trace.comp"])
+        for path in files:
+            text = self.read(path)
+            for absent in ("#include", "#if", "##", "constant_id", "push_constant", "scalar"):
+                self.assertNotIn(absent, text, path)
+            done = subprocess.run(["glslangValidator", "-V", path, "-o", self.path("out.spv")], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, f"{path}: {done.stdout}")
+        trace = self.read(folder, "5_trace.comp")
+        self.assertIn("const int max_steps = 77;", trace)
+        self.assertIn("TraceResult trace(Ray ray)", trace)
+        self.assertNotIn("first_of_layers(Ray ray, Contact front)\n", trace)
+        readme = self.read(folder, "README.md")
+        for told in ("max_steps = 77", "--to glsl", "host_depth", "## Licence"):
+            self.assertIn(told, readme)
+
+    def test_a_wrong_shader_is_found(self):
+        folder = self.export("dda", "glsl")
+        path = os.path.join(folder, "3_trace.comp")
+        text = self.read(path)
+        self.assertEqual(text.count("t_border.x < t_border.y ?"), 1)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text.replace("t_border.x < t_border.y ?", "t_border.x > t_border.y ?"))
+        differing, said = self.verified(folder, code=1)
+        self.assertGreater(sum(differing.values()), 0)
+        self.assertRegex(said, r"ray \d+ of pixel \(\d+, \d+\): .*, expected ")
+
+    def test_a_technique_of_ones_own(self):
+        for name, text in OWN.items():
+            self.write(f"own/{name}" if not name.startswith("own_rows") else f"own_structures/{name}", text)
+        more = ("--techniques", self.path("own"), "--techniques", self.path("own_structures"))
+        for language in ("glsl", "hlsl"):
+            self.assert_equal_on_every_ray(self.export("own", language, *more))
+        self.assertNotIn("STOP", self.read(self.path("own_glsl"), "4_trace.comp"))
+
+    def test_languages_that_are_not_run(self):
+        for language, ending, holds in (("msl", "metal", "kernel void main0"), ("essl", "essl", "#version 310 es")):
+            folder = self.export("hiz", language)
+            files = glob.glob(f"{folder}/*.{ending}")
+            self.assertEqual(len(files), 5)
+            for path in files:
+                self.assertIn(holds, self.read(path))
+            self.refused("export", "--verify", folder, code=2, says=["other languages are not run"])
+
+    def test_wrong_usage(self):
+        self.refused("export", code=2, says=["expected a technique"])
+        self.refused("export", "dda", "-o", self.path("out"), code=2, says=["--to: expected glsl, hlsl"])
+        self.refused("export", "dda", "--to", "glsl", code=2, says=["-o: expected a folder"])
+        self.refused("export", "nothing", "--to", "glsl", "-o", self.path("out"), code=2, says=["nothing"])
+        self.refused("export", "dda", "--to", "glsl", "-o", self.path("out"), "-p", "layers=2", code=2, says=["layers = 2"])
+        self.refused("export", "--verify", self.path("none"), code=2, says=["no export"])
+        self.ssrlab("export", "dda", "--to", "wgsl", "-o", self.path("out"), code=2, says=["wgsl"])
+        self.write("full/file", "")
+        self.refused("export", "dda", "--to", "glsl", "-o", self.path("full"), code=2, says=["new or empty folder"])
+        folder = self.export("dda", "glsl")
+        shutil.copy(os.path.join(folder, "frames", "scene.json"), self.path("kept"))
+        frame = json.loads(self.read(self.path("kept")))
+        del frame["resources"]["rays"]
+        self.write("dda_glsl/frames/scene.json", json.dumps(frame))
+        self.refused("export", "--verify", folder, code=2, says=["scene.json"])
+
+
+if __name__ == "__main__":
+    main()
