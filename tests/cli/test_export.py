@@ -14,7 +14,8 @@ OWN = {
     "technique.toml": 'name = "Two stops"\nsummary = "Looks at the middle and at the end."\nexact = false\n'
                       'structures = ["own_rows"]\nbounded_by = ["looks"]\nlimits = ["point_sampled"]\n'
                       "[parameters]\nlooks = { default = 12, min = 1, max = 64, doc = \"Samples.\" }\n",
-    "trace.glsl": "#define STOP(i) (real(i) / real(looks))\n"
+    "trace.glsl": '#include "api/sampling.glsl"\n'
+                  "#define STOP(i) (real(i) / real(looks))\n"
                   "TraceResult trace(Ray ray)\n{\n"
                   "    Contact contact = no_contact();\n    int taken = 0;\n"
                   "    while (!contact.found && taken < looks)\n    {\n        ++taken;\n"
@@ -90,15 +91,14 @@ class Test(Case):
         folder = self.export("hiz", "glsl", "-p", "max_steps=77")
         files = sorted(glob.glob(f"{folder}/*.comp"))
         self.assertEqual([os.path.basename(path) for path in files],
-                         ["1_depth.comp", "2_depth_pyramid_level_of_pixels.comp", "3_depth_pyramid_level_of_cells.comp",
-                          "4_rays.comp", "5_trace.comp"])
+                         ["1_depth.comp", "2_depth_pyramid_level.comp", "3_rays.comp", "4_trace.comp"])
         for path in files:
             text = self.read(path)
             for absent in ("#include", "#if", "##", "constant_id", "push_constant", "scalar"):
                 self.assertNotIn(absent, text, path)
             done = subprocess.run(["glslangValidator", "-V", path, "-o", self.path("out.spv")], capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, f"{path}: {done.stdout}")
-        trace = self.read(folder, "5_trace.comp")
+        trace = self.read(folder, "4_trace.comp")
         self.assertIn("const int max_steps = 77;", trace)
         self.assertIn("TraceResult trace(Ray ray)", trace)
         self.assertNotIn("stride_to_t", trace) # of the API, and not used here
@@ -129,7 +129,7 @@ class Test(Case):
         for language, ending, holds in (("msl", "metal", "kernel void main0"), ("essl", "essl", "#version 310 es")):
             folder = self.export("hiz", language)
             files = glob.glob(f"{folder}/*.{ending}")
-            self.assertEqual(len(files), 5)
+            self.assertEqual(len(files), 4)
             for path in files:
                 self.assertIn(holds, self.read(path))
             self.refused("export", "--verify", folder, code=2, says=["other languages are not run"])
