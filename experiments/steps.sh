@@ -13,6 +13,7 @@ packages=(
     "vulkan-validationlayers  file:/usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json"
     "glslang-dev              header:glslang/Public/ShaderLang.h"
     "glslang-tools            command:glslangValidator"
+    "spirv-cross              command:spirv-cross"
     "libopenimageio-dev       header:OpenImageIO/imagebufalgo.h"
     "libembree-dev            header:embree3/rtcore.h"
     "libtinygltf-dev          header:tiny_gltf.h"
