@@ -1,5 +1,6 @@
 // One frame of the proof: its buffers as files, and a JSON file that says which pass gets which, and the dispatches.
 #include "core/files.h"
+#include "core/pixel_index.h"
 #include "export/glsl.h"
 #include "export/passes.h"
 #include "shared.h"
@@ -49,7 +50,7 @@ Json resources(Gpu& gpu, const Lab& lab, const ComposedLab& composed, std::span<
     for (const ComposedBuffer& buffer : composed.buffers) room(buffer.structure + "." + buffer.name, buffer.bytes, 0);
     // The ray set-up appends to a list of its own, which is then compared with the other one.
     room("made_count", 4, 0);
-    room("made_rays", capacity * sizeof(PackedRay<float>), 0);
+    room("made_rays", pixel_count(lab.gbuffer->view.size_px) * sizeof(PackedRay<float>), 0);
     return all;
 }
 

@@ -10,8 +10,7 @@ TECHNIQUES = ("hiz", "hiz_packets", "hiz_waves", "dda", "linear")
 
 
 class Test(Case):
-    def setUp(self):
-        super().setUp()
+    def need_amd(self):
         if not glob.glob("/usr/share/vulkan/icd.d/radeon_icd.*"):
             self.skipTest("no driver for AMD GPUs: install Debian's package mesa-vulkan-drivers")
 
@@ -33,6 +32,7 @@ class Test(Case):
         self.assertIn(pipeline["lanes"], (32, 64))
 
     def test_every_technique_on_navi21(self):
+        self.need_amd()
         pipelines = self.compiled(*TECHNIQUES, "--chip", "navi21")
         for pipeline in pipelines:
             self.assert_plausible(pipeline)
@@ -49,6 +49,7 @@ class Test(Case):
         self.assertEqual([one["techniques"] for one in pyramid], [["hiz", "hiz_packets", "hiz_waves"]])
 
     def test_table_and_assembly(self):
+        self.need_amd()
         text = self.ssrlab("shaders", "linear", "--chip", "navi21", "--assembly", "code", says=["NAVI21", "| linear |"])
         rows = [line.split("|")[1:-1] for line in text.splitlines() if line.startswith("|")]
         self.assertEqual({len(row) for row in rows}, {14}, text)
@@ -59,6 +60,7 @@ class Test(Case):
             self.assertIn("s_endpgm", file.read())
 
     def test_settings_and_other_chips(self):
+        self.need_amd()
         default = self.trace_of(self.compiled("hiz", "--chip", "navi10"), "hiz")
         box = self.trace_of(self.compiled("hiz", "--chip", "navi10", "-p", "surface=box", "-p", "behind=hit"), "hiz")
         self.assertLess(box["statistics"]["Code size"], default["statistics"]["Code size"])
@@ -66,22 +68,23 @@ class Test(Case):
             self.assert_plausible(self.trace_of(self.compiled("hiz", "--chip", chip), "hiz"))
 
     def test_the_commit_is_named(self):
+        self.need_amd()
         said = json.loads(self.ssrlab("--quiet", "shaders", "linear", "--chip", "navi21", "--json"))
         self.assertRegex(said["commit"], r"^[0-9a-f]{40}( with changes)?$|^not known$")
 
     def test_a_technique_from_outside(self):
+        self.need_amd()
         folder = os.path.join(SOURCE, "techniques", "rivals")
         pipelines = self.compiled("unity_hiz", "--techniques", folder, "--chip", "navi21")
         self.assert_plausible(self.trace_of(pipelines, "unity_hiz"))
 
     def test_refusals(self):
+        self.need_amd()
         self.refused("shaders", "hiz", "--chip", "navi2", code=2, says=["--chip", "'navi2'", "navi21"])
         self.refused("shaders", "hizz", "--chip", "navi21", code=2, says=["hizz", "'hiz'"])
         self.refused("shaders", "hiz", "--chip", "navi21", "-p", "steps=3", code=2, says=["steps"])
         self.refused("shaders", "hiz", "--device", "llvmpipe", code=1, says=["llvmpipe", "VK_KHR_pipeline_executable"])
 
-
-class Files(Case):
     # Of code, without comments and empty lines: all that has to be read to understand a technique.
     MOST_LINES = {"dda": 450, "hiz": 600}
 
