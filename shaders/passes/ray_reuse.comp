@@ -16,6 +16,8 @@ layout(set = 0, binding = 6, r32ui) uniform readonly uimage2D block_pixel_image;
 layout(set = 0, binding = 7, rgba16f) uniform readonly image2D ray_light_image; // of each ray: colour, weight; ray after ray, an image high
 layout(set = 0, binding = 8, rgba32f) uniform readonly image2D ray_end_image;   // what it met, in view space; the density of its direction
 
+const float least_total   = 1e-6; // below it the pixel's own rays stand: next to nothing is left of the digits of a sum
+const float least_cosine  = 1e-3; // below it a ray has met its own plane, by rounding
 const float largest_ratio = 8.0; // a ray that its own pixel hardly ever draws must not decide
 
 #include "passes/reflector.glsl"
@@ -60,7 +62,7 @@ void main()
             ivec2 texel = place + ivec2(0, ray * size_px.y);
             vec4  light = imageLoad(ray_light_image, texel), end = imageLoad(ray_end_image, texel);
             vec3  to_light = normalize(end.xyz - own.position_vs);
-            if (light.a < 0.0 || !(end.w > 0.0) || !(dot(own.normal_vs, to_light) > 0.0)) continue;
+            if (light.a < 0.0 || !(end.w > 0.0) || !(dot(own.normal_vs, to_light) > least_cosine)) continue;
             float ratio = alike * min(lobe_value(own.normal_vs, own.to_eye_vs, to_light, own.alpha) / end.w, largest_ratio);
             sum += ratio * vec4(light.rgb * light.a, light.a);
             total += ratio;
@@ -73,5 +75,5 @@ void main()
     }
     // One ray that alone met something bright is a speck: it counts for no more than the next brightest.
     if (rays > 1 && most > 0.0) sum.rgb -= brightest * (1.0 - next / most);
-    if (total > 0.0) imageStore(filtered_image, pixel, mean_reflection(sum, total));
+    if (total > least_total) imageStore(filtered_image, pixel, mean_reflection(sum, total));
 }

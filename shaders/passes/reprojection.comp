@@ -4,6 +4,7 @@
 #include "api/view.glsl"
 #include "trace/ray_list.glsl"
 #include "trace/hit_list.glsl"
+#include "rays/ray_offset.glsl"
 #include "rays/reflecting.glsl"
 #include "rays/lobe_threshold.glsl"
 #include "passes/camera.glsl"

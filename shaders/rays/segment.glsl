@@ -4,9 +4,8 @@
 #include "rays/double_float.glsl"
 #include "layout/frame_shared.h"
 #include "layout/normal_image.glsl"
+#include "rays/ray_offset.glsl"
 #include "layout/packed_ray.glsl"
-
-layout(constant_id = CONSTANT_RAY_OFFSET_M) const real ray_offset_m = 0; // how far along its direction a ray starts
 
 struct Segment
 {

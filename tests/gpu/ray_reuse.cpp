@@ -160,8 +160,8 @@ std::optional<glm::dvec4> reused(const GBufferImage& image, const Rays& rays, gl
             const glm::dvec4 light(rays.light[texel]), end(rays.end[texel]);
             const glm::dvec3 to_light = glm::normalize(glm::dvec3(end) - own.position_vs);
             const double     cosine   = glm::dot(own.normal_vs, to_light);
-            if (std::abs(cosine) < 1e-4) return std::nullopt; // above or below the horizon?
-            if (light.a < 0 || end.w <= 0 || cosine < 0) continue;
+            if (std::abs(cosine - 1e-3) < 1e-4) return std::nullopt; // above or below?
+            if (light.a < 0 || end.w <= 0 || cosine < 1e-3) continue;
             const double ratio = spread_weight(away) * same_surface(image, own, place) *
                                  std::min(lobe_value(own, to_light) / end.w, 8.0);
             const double bright = light.a * (0.2126 * light.r + 0.7152 * light.g + 0.0722 * light.b);
