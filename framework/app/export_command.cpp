@@ -2,13 +2,13 @@
 
 #include "check/run_check.h"
 #include "core/error.h"
+#include "core/temporary_folder.h"
 #include "export/export.h"
 #include "harness/experiment.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 
 namespace ssrlab {
 namespace {
@@ -95,9 +95,8 @@ int print_verdicts(std::span<const FrameVerdict> verdicts, const GpuInfo& device
 int verify_hard_cases(Gpu& gpu, const Catalogue& catalogue, const Technique& technique, const Choice& choice,
                       const ExportOptions& options)
 {
-    std::string name = (fs::temp_directory_path() / "ssrlab_hard_cases_XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw_failure("{}: cannot be created", name);
-    const fs::path            folder = fs::path(name) / "export";
+    const TemporaryFolder     temporary("ssrlab_hard_cases");
+    const fs::path            folder = temporary.path / "export";
     std::vector<FrameVerdict> verdicts;
     for (const CaseFamily& family : hard_cases())
         for (const HardCase& hard_case : family.cases) {
@@ -119,7 +118,6 @@ int verify_hard_cases(Gpu& gpu, const Catalogue& catalogue, const Technique& tec
             }
             verdicts.push_back(std::move(sum));
         }
-    fs::remove_all(name);
     return print_verdicts(verdicts, gpu.info);
 }
 

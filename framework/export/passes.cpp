@@ -74,11 +74,4 @@ std::string resource_of(const std::string& name, const ComposedLab& composed, co
     throw_spec_error("{}: '{}' is a resource that an export does not have", file, name);
 }
 
-glm::uvec3 groups_for_rays(size_t rays, int rays_per_workgroup)
-{
-    const auto     each   = static_cast<size_t>(rays_per_workgroup);
-    const uint32_t groups = static_cast<uint32_t>((rays + each - 1) / each);
-    return {std::min<uint32_t>(groups, LAUNCH_ROW_GROUPS), (groups + LAUNCH_ROW_GROUPS - 1) / LAUNCH_ROW_GROUPS, 1};
-}
-
 } // namespace ssrlab

@@ -23,9 +23,6 @@ std::vector<ExportedPass> export_passes(Gpu& gpu, const Lab& lab, const Composed
 /// export does not have.
 std::string resource_of(const std::string& name, const ComposedLab& composed, const std::string& file);
 
-/// The workgroups for a list of rays, in rows of LAUNCH_ROW_GROUPS.
-glm::uvec3 groups_for_rays(size_t rays, int rays_per_workgroup);
-
 /// "frames" and "expected" of the folder.
 void write_frame(Gpu& gpu, const Lab& lab, const ComposedLab& composed, std::span<const ExportedPass> passes,
                  const ExportFrame& frame, std::span<const RayInput> rays, std::span<const RayOutcome> outcomes,

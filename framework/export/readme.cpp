@@ -1,6 +1,7 @@
 // What an export says of itself.
 #include "core/version.h"
 #include "export/passes.h"
+#include "shared.h"
 
 #include <fmt/format.h>
 
@@ -36,7 +37,7 @@ std::string settings_text(const Export& what, const char* line)
 std::string dispatch_text(const ExportedPass& pass)
 {
     if (pass.pass.rays_per_workgroup == 0) return pass.pass.rule;
-    return fmt::format("{} rays a workgroup, {} workgroups a row", pass.pass.rays_per_workgroup, 256);
+    return fmt::format("{} rays a workgroup, {} workgroups a row", pass.pass.rays_per_workgroup, LAUNCH_ROW_GROUPS);
 }
 
 std::string passes_table(std::span<const ExportedPass> passes, ExportLanguage language)
@@ -59,12 +60,12 @@ constexpr const char* view_text =
 
 constexpr const char* gradient_text =
     "a word for each pixel, row by row: how depth changes from one pixel to the next along x (upper 16 bits) and y "
-    "(lower "
-    "16 bits), each the upper half of a float, rounded to nearest; all bits set where there is no plane. From a "
+    "(lower 16 "
+    "bits), each the upper half of a float, rounded to nearest; all bits set where there is no plane. From a "
     "geometric "
     "normal n in view space: `depth * (n.x / focal.x, -n.y / focal.y) / dot(n, v)` with v = (x, y, -1) toward the "
-    "pixel's "
-    "centre and `|dot(n, v)| >= 0.02 |n| |v|`; orthographic: `-(n.x / focal.x, -n.y / focal.y) / n.z / (far - near)`";
+    "pixel's centre and `|dot(n, v)| >= 0.02 |n| |v|`; orthographic: `-(n.x / focal.x, -n.y / focal.y) / n.z / (far - "
+    "near)`";
 
 std::string resources_table(std::span<const ExportedPass> passes, const ComposedLab& composed)
 {
@@ -116,7 +117,7 @@ std::string head_comment(const Export& what, const View& view, const ExportedPas
         "// The host provides View, the depth that the passes before this one laid out, and the list of rays:\n"
         "//   Rays      origin (x_px, y_px, depth), length_m, delta to the end of the segment, pixel and status of a "
         "miss\n"
-        "//   RayCount  how many; {} rays a workgroup, workgroups in rows of 256\n"
+        "//   RayCount  how many; {} rays a workgroup, workgroups in rows of {}\n"
         "// and gets of each ray:\n"
         "//   Hits      x in bits 0-13, y in 14-27, status in 28-31; and t: 0 at the ray's origin, 1 at its end\n"
         "// Status: 1 hit, 2 left the screen, 3 maximum distance, 4 out of steps (no hit), 5 met surfaces that face "
@@ -125,7 +126,7 @@ std::string head_comment(const Export& what, const View& view, const ExportedPas
         "// normal_image is read only with behind = pass or stop. README.md has all formats, the dispatches and the "
         "cost.\n",
         trace.name, what.technique.name, what.technique.summary, version_text(), what.command, projection_text(view),
-        settings_text(what, " {} = {},"), trace.pass.rays_per_workgroup);
+        settings_text(what, " {} = {},"), trace.pass.rays_per_workgroup, LAUNCH_ROW_GROUPS);
 }
 
 std::string readme(const Export& what, const View& view, std::span<const ExportedPass> passes,

@@ -2,6 +2,8 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/temporary_folder.h"
+#include "gpu/spirv.h"
 
 #include <cctype>
 #include <cerrno>
@@ -17,14 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Calls visit(words) for each instruction of a module.
-template <typename Visit> void for_each_instruction(std::span<const uint32_t> spirv, const Visit& visit)
-{
-    constexpr size_t header_words = 5;
-    for (size_t first = header_words; first < spirv.size(); first += spirv[first] >> 16)
-        visit(spirv.subspan(first, spirv[first] >> 16));
-}
-
 /// Gives the variable of each block without a name the name of the block, "View" becomes "view": translators write
 /// "view_size_px" then, and not "_376_size_px".
 std::vector<uint32_t> with_named_blocks(const std::vector<uint32_t>& spirv)
@@ -33,14 +27,14 @@ std::vector<uint32_t> with_named_blocks(const std::vector<uint32_t>& spirv)
     std::map<uint32_t, std::string> names;                                               // by id
     std::map<uint32_t, uint32_t>    pointed, type_of;
     for_each_instruction(spirv, [&](std::span<const uint32_t> words) {
-        const uint32_t opcode = words[0] & 0xFFFF;
+        const uint32_t opcode = opcode_of(words);
         if (opcode == op_name) names[words[1]] = reinterpret_cast<const char*>(&words[2]);
         if (opcode == op_type_pointer) pointed[words[1]] = words[3];
         if (opcode == op_variable) type_of[words[2]] = words[1];
     });
-    std::vector<uint32_t> named(spirv.begin(), spirv.begin() + 5);
+    std::vector<uint32_t> named(spirv.begin(), spirv.begin() + spirv_header_words);
     for_each_instruction(spirv, [&](std::span<const uint32_t> words) {
-        const bool  is_nameless = (words[0] & 0xFFFF) == op_name && words[2] == 0 && type_of.contains(words[1]);
+        const bool  is_nameless = opcode_of(words) == op_name && words[2] == 0 && type_of.contains(words[1]);
         std::string name        = is_nameless ? names[pointed[type_of[words[1]]]] : "";
         if (name.empty()) {
             named.insert(named.end(), words.begin(), words.end());
@@ -88,29 +82,11 @@ int run_program(const std::vector<std::string>& words, const fs::path& output)
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// A folder of its own, gone with its content at the end.
-struct TemporaryFolder {
-    fs::path path;
-    TemporaryFolder()
-    {
-        std::string name = (fs::temp_directory_path() / "ssrlab_export_XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr) throw_failure("{}: cannot be created: {}", name, std::strerror(errno));
-        path = name;
-    }
-    ~TemporaryFolder()
-    {
-        std::error_code ignored;
-        fs::remove_all(path, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&)            = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-};
-
 } // namespace
 
 std::string translated(const Shader& shader, ExportLanguage language, const std::string& comment)
 {
-    const TemporaryFolder folder;
+    const TemporaryFolder folder("ssrlab_export");
     const fs::path        spirv = folder.path / "shader.spv", text = folder.path / "text", said = folder.path / "said";
     const std::vector<uint32_t> named = with_named_blocks(shader.spirv);
     write_file_atomically(spirv, {reinterpret_cast<const char*>(named.data()), named.size() * sizeof(uint32_t)});

@@ -114,21 +114,30 @@ void run_frame(Gpu& gpu, const json& frame, const Resources& resources, const fs
     });
 }
 
+/// "(x, y)" of a ray's or hit's word.
+std::string pixel_text(uint32_t word)
+{
+    return fmt::format("({}, {})", word & (MAX_IMAGE_PX - 1), (word >> PIXEL_BITS) & (MAX_IMAGE_PX - 1));
+}
+
+TraceStatus status_of(uint32_t word)
+{
+    return static_cast<TraceStatus>(number_to_status(static_cast<int>(word >> (2 * PIXEL_BITS))));
+}
+
 std::string hit_text(const uint32_t* hit)
 {
     float t = 0;
     std::memcpy(&t, hit + 1, sizeof(t));
-    const auto status = static_cast<TraceStatus>(number_to_status(static_cast<int>(hit[0] >> (2 * PIXEL_BITS))));
+    const TraceStatus status = status_of(hit[0]);
     if (!has_place(status)) return std::string(status_name(status));
-    return fmt::format("{} ({}, {}) t {:.9g}", status_name(status), hit[0] & (MAX_IMAGE_PX - 1),
-                       (hit[0] >> PIXEL_BITS) & (MAX_IMAGE_PX - 1), t);
+    return fmt::format("{} {} t {:.9g}", status_name(status), pixel_text(hit[0]), t);
 }
 
 /// Pixel and status in one word; t counts where there is a pixel.
 bool same_hit(const uint32_t* a, const uint32_t* b)
 {
-    const auto status = static_cast<TraceStatus>(number_to_status(static_cast<int>(a[0] >> (2 * PIXEL_BITS))));
-    return a[0] == b[0] && (!has_place(status) || a[1] == b[1]);
+    return a[0] == b[0] && (!has_place(status_of(a[0])) || a[1] == b[1]);
 }
 
 void compare_hits(FrameVerdict& verdict, const Words& rays, const Words& expected, const Words& answered)
@@ -138,9 +147,8 @@ void compare_hits(FrameVerdict& verdict, const Words& rays, const Words& expecte
         const uint32_t *right = &expected[i * hit_words], *given = &answered[i * hit_words];
         if (same_hit(right, given)) continue;
         if (verdict.differing++ > 0) continue;
-        const uint32_t pixel = rays[i * ray_words + 7];
-        verdict.first        = fmt::format("ray {} of pixel ({}, {}): {}, expected {}", i, pixel & (MAX_IMAGE_PX - 1),
-                                           (pixel >> PIXEL_BITS) & (MAX_IMAGE_PX - 1), hit_text(given), hit_text(right));
+        verdict.first = fmt::format("ray {} of pixel {}: {}, expected {}", i, pixel_text(rays[i * ray_words + 7]),
+                                    hit_text(given), hit_text(right));
     }
 }
 
@@ -165,8 +173,7 @@ void compare_set_up(FrameVerdict& verdict, const Words& rays, const Words& made,
         while (next != given.end() && pixel_word(*next) < pixel_word(ray)) ++next;
         if (next != given.end() && *next == ray) continue;
         if (verdict.set_up_differing++ == 0 && verdict.first.empty())
-            verdict.first = fmt::format("the ray of pixel ({}, {}) is set up otherwise", ray[7] & (MAX_IMAGE_PX - 1),
-                                        (ray[7] >> PIXEL_BITS) & (MAX_IMAGE_PX - 1));
+            verdict.first = fmt::format("the ray of pixel {} is set up otherwise", pixel_text(ray[7]));
     }
 }
 

@@ -58,7 +58,8 @@ Json dispatches(const ExportedPass& pass, size_t rays)
 {
     Json all = Json::array();
     if (pass.pass.rays_per_workgroup > 0) {
-        const glm::uvec3 groups = groups_for_rays(rays, pass.pass.rays_per_workgroup);
+        const glm::uvec3 groups =
+            groups_in_rows(rays, static_cast<size_t>(pass.pass.rays_per_workgroup), LAUNCH_ROW_GROUPS);
         all.push_back({{"groups", {groups.x, groups.y, groups.z}}});
     }
     for (size_t i = 0; i < pass.pass.groups.size(); ++i) {

@@ -60,6 +60,13 @@ inline glm::uvec3 groups_of_8(glm::ivec2 size_px)
     return {static_cast<uint32_t>(size_px.x + 7) / 8, static_cast<uint32_t>(size_px.y + 7) / 8, 1};
 }
 
+/// Returns the workgroups for a list of items, in rows of `row_groups`: devices limit how long a row may be.
+inline glm::uvec3 groups_in_rows(size_t items, size_t items_per_group, uint32_t row_groups)
+{
+    const auto groups = static_cast<uint32_t>((items + items_per_group - 1) / items_per_group);
+    return {std::min(groups, row_groups), (groups + row_groups - 1) / row_groups, 1};
+}
+
 void dispatch(const vk::raii::CommandBuffer& commands, const ComputePass& pass, glm::uvec3 groups);
 void dispatch_indirect(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const Buffer& arguments);
 template <typename T> void push(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const T& value)

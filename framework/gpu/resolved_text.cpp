@@ -159,9 +159,7 @@ std::string resolved_text(const Gpu& gpu, ShaderSource source)
     const int        lengths[] = {static_cast<int>(marked.size())};
     shader.setStringsWithLengthsAndNames(strings, lengths, names, 1);
     shader.setPreamble(preamble.c_str());
-    shader.setEnvInput(glslang::EShSourceGlsl, EShLangCompute, glslang::EShClientVulkan, 100);
-    shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
-    shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
+    target_vulkan(shader, glslang::EShSourceGlsl, EShLangCompute);
     const auto  messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
     std::string preprocessed;
     if (!shader.preprocess(GetDefaultResources(), 460, ECoreProfile, false, false, messages, &preprocessed, includer))

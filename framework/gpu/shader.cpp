@@ -6,6 +6,7 @@
 #include "gpu/glslang_process.h"
 #include "gpu/shader_errors.h"
 #include "gpu/shader_includes.h"
+#include "gpu/spirv.h"
 
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
@@ -127,16 +128,6 @@ const std::string& state_of(const std::filesystem::path& path)
     return states.emplace(path.native(), std::move(text)).first->second;
 }
 
-/// Calls visit(words) for each instruction of a module.
-template <typename Visit> void for_each_instruction(std::span<const uint32_t> spirv, const Visit& visit)
-{
-    constexpr size_t header_words = 5; // of the module; of an instruction one: words << 16 | opcode
-    for (size_t first = header_words; first < spirv.size(); first += spirv[first] >> 16)
-        visit(spirv.subspan(first, spirv[first] >> 16));
-}
-
-uint32_t opcode_of(std::span<const uint32_t> words) { return words[0] & 0xFFFF; }
-
 /// The compiler declares every specialization constant that it read, used or not. A number that happens to equal a constant's id
 /// counts as a use, too.
 std::set<uint32_t> constants_used(std::span<const uint32_t> spirv)
@@ -193,11 +184,8 @@ Shader compile(const ShaderSource& source, ShaderIncluder& includer)
     const int         lengths[] = {static_cast<int>(text.size())};
     stage.setStringsWithLengthsAndNames(strings, lengths, names, 1);
     stage.setPreamble(preamble.c_str());
-    stage.setEnvInput(is_hlsl ? glslang::EShSourceHlsl : glslang::EShSourceGlsl, language, glslang::EShClientVulkan,
-                      100);
+    target_vulkan(stage, is_hlsl ? glslang::EShSourceHlsl : glslang::EShSourceGlsl, language);
     stage.setEntryPoint("main");
-    stage.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
-    stage.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
     // Cascading: it goes on after the first error.
     const auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules | EShMsgCascadingErrors |
                                                    (is_hlsl ? EShMsgReadHlsl | EShMsgHlslLegalization : 0));

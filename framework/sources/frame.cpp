@@ -20,13 +20,9 @@ RayAnswer answer_of(const SourceContext& context, const OpenRay& ray, bool in_si
     const auto          part = seen_part(image.view, ray);
     if (!part) return answer;
     if (status == TraceStatus::hit) {
-        const glm::dvec3 at = traced.hit_px_depth[i];
-        answer.kind         = AnswerKind::point;
-        answer.certain      = in_sight && neighbours_agree(image, traced.hit_pixel[i], glm::dvec2(at));
-        answer.point_ws     = glm::dvec3(glm::inverse(image.view.world_to_view) *
-                                         glm::dvec4(px_to_vs(image.view, glm::dvec2(at), at.z), 1));
-        answer.light =
-            light_of(traced.hit_layer[i] == 0 ? image : image.layers[traced.hit_layer[i] - 1U], traced.hit_pixel[i]);
+        const int layer = traced.hit_layer[i];
+        set_point(answer, layer == 0 ? image : image.layers[static_cast<size_t>(layer) - 1], traced.hit_pixel[i],
+                  traced.hit_px_depth[i], in_sight);
     }
     if (status == TraceStatus::past_max_distance) {
         answer.kind    = AnswerKind::nothing;

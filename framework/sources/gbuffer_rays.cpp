@@ -82,6 +82,9 @@ double metres_before(const View& view, const OpenRay& ray, const SeenPart& part,
     return std::max(part.t_in_m, glm::dot(before_vs - from_vs, to_view(view, ray.direction_ws)));
 }
 
+namespace {
+
+/// Whether the four pixels around a place of `pixel` show the same surface.
 bool neighbours_agree(const GBufferImage& image, glm::ivec2 pixel, glm::dvec2 at_px)
 {
     const View&      view     = image.view;
@@ -106,10 +109,16 @@ bool neighbours_agree(const GBufferImage& image, glm::ivec2 pixel, glm::dvec2 at
     return true;
 }
 
-glm::vec3 light_of(const GBufferImage& image, glm::ivec2 pixel)
+} // namespace
+
+void set_point(RayAnswer& answer, const GBufferImage& met, glm::ivec2 pixel, glm::dvec3 at_px_depth, bool in_sight)
 {
-    const size_t i = pixel_index(pixel, image.view.size_px);
-    return image.radiance[i] + image.highlight[i];
+    const size_t     i     = pixel_index(pixel, met.view.size_px);
+    const glm::dvec3 at_vs = px_to_vs(met.view, glm::dvec2(at_px_depth), at_px_depth.z);
+    answer.kind            = AnswerKind::point;
+    answer.certain         = in_sight && neighbours_agree(met, pixel, glm::dvec2(at_px_depth));
+    answer.point_ws        = glm::dvec3(glm::inverse(met.view.world_to_view) * glm::dvec4(at_vs, 1));
+    answer.light           = met.radiance[i] + met.highlight[i];
 }
 
 bool stays_in_sight(const SourceContext& context, const TraceSettings& settings)
@@ -144,11 +153,7 @@ RayAnswer to_answer(const SourceContext& context, const GBufferImage& image, con
     const glm::dvec3 at = input.origin_px_depth + outcome.t * input.delta_px_depth;
     if (outcome.status == TraceStatus::hit) {
         const GBufferImage& met = outcome.hit_layer == 0 ? image : image.layers[outcome.hit_layer - 1U];
-        answer.kind             = AnswerKind::point;
-        answer.certain          = in_sight && neighbours_agree(met, outcome.hit_pixel, glm::dvec2(at));
-        answer.point_ws         = glm::dvec3(glm::inverse(image.view.world_to_view) *
-                                             glm::dvec4(px_to_vs(image.view, glm::dvec2(at), at.z), 1));
-        answer.light            = light_of(met, outcome.hit_pixel);
+        set_point(answer, met, outcome.hit_pixel, at, in_sight);
     }
     if (outcome.status == TraceStatus::past_max_distance) {
         answer.kind    = AnswerKind::nothing;

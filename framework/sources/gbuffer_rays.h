@@ -27,12 +27,10 @@ RayInput to_input(const View& view, const OpenRay& ray, const SeenPart& part);
 double metres_before(const View& view, const OpenRay& ray, const SeenPart& part, glm::dvec3 at_px_depth,
                      double back_px);
 
-/// Returns whether the four pixels around a place of `pixel` show the same surface: false at silhouettes and on things
-/// thinner than two pixels.
-bool neighbours_agree(const GBufferImage& image, glm::ivec2 pixel, glm::dvec2 at_px);
-
-/// Returns the radiance from the surface of a pixel toward the camera, linear RGB.
-glm::vec3 light_of(const GBufferImage& image, glm::ivec2 pixel);
+/// Makes `answer` the point where a ray met `pixel` of `met`: its place in the world, its light toward the camera, and whether
+/// it is certain. It is if the ray stayed in sight and the four pixels around the place show the same surface, which they do
+/// not at silhouettes and on things thinner than two pixels. Leaves clear_m as it is.
+void set_point(RayAnswer& answer, const GBufferImage& met, glm::ivec2 pixel, glm::dvec3 at_px_depth, bool in_sight);
 
 /// Whether a camera sees every ray where it begins.
 enum class RayStart : uint8_t {

@@ -261,8 +261,8 @@ std::vector<ShaderSource> structure_sources(Gpu& gpu, const Lab& lab, const RayB
     structure_bindings(gpu, lab.technique, *lab.gbuffer, rays); // makes the buffers
     std::vector<ShaderSource> sources;
     for (const Structure& structure : lab.technique.structures)
-        for (const StructurePass& pass : structure.passes)
-            if (is_of_style(pass, gpu.info)) sources.push_back(build_source(gpu, lab, structure, pass, rays, false));
+        for (const StructurePass& pass : passes_on(gpu, structure))
+            sources.push_back(build_source(gpu, lab, structure, pass, rays, false));
     return sources;
 }
 

@@ -74,11 +74,7 @@ template <typename T> Buffer make_texels(Gpu& gpu, const std::vector<T>& values)
 
 } // namespace
 
-glm::uvec3 groups_for(size_t rays)
-{
-    const auto groups = static_cast<uint32_t>((rays + RAYS_PER_GROUP - 1) / RAYS_PER_GROUP);
-    return {std::min<uint32_t>(groups, LAUNCH_ROW_GROUPS), (groups + LAUNCH_ROW_GROUPS - 1) / LAUNCH_ROW_GROUPS, 1};
-}
+glm::uvec3 groups_for(size_t rays) { return groups_in_rows(rays, RAYS_PER_GROUP, LAUNCH_ROW_GROUPS); }
 
 Bindings material_bindings(const World& world)
 {

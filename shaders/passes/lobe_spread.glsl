@@ -28,5 +28,7 @@ float spread_px(Reflector reflector, ivec2 pixel, float pixel_m)
     return max(reuse_spread * 1.3 * reflector.alpha * nearest_m / pixel_m, least);
 }
 
-// Of a pixel so many standard deviations away; beyond three of them nothing.
-float spread_weight(float away) { return away > 3.0 ? 0.0 : exp(-0.5 * away * away); }
+const float spread_reach = 3.0; // standard deviations beyond which no pixel counts
+
+// Of a pixel so many standard deviations away.
+float spread_weight(float away) { return away > spread_reach ? 0.0 : exp(-0.5 * away * away); }

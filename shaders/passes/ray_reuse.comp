@@ -42,7 +42,7 @@ void main()
 
     Reflector own    = reflector_at(pixel);
     float spread     = spread_px(own, pixel, pixel_width_m(own, pixel));
-    float radius_px  = max(float(block_px) * 1.5, min(reuse_radius * roughness * float(size_px.y), 3.0 * spread));
+    float radius_px  = max(float(block_px) * 1.5, min(reuse_radius * roughness * float(size_px.y), spread_reach * spread));
     float turn       = 6.2831853 * float(pcg(uint(pixel.x) + pcg(uint(pixel.y) + offset_seed()))) / 4294967296.0;
     vec4  sum        = vec4(0);
     vec3  brightest  = vec3(0);

@@ -44,7 +44,7 @@ void main()
         ivec2 place = pixel + ivec2(round(vec2(step) * spacing_px));
         if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size_px))) continue;
         float away_px = distance(vec2(place), vec2(pixel));
-        if (away_px > 3.0 * own_spread) continue;
+        if (away_px > spread_reach * own_spread) continue;
         vec4 other = imageLoad(filtered_image, place);
         if (other.a < 0.0) continue;
         float off    = abs(imageLoad(normal_image, place).w - roughness);

@@ -38,18 +38,18 @@ Pass ray_reuse_pass()
                    "filters them",
         .cite    = {"T. Stachowiak 2015, Stochastic Screen-Space Reflections (SIGGRAPH)"},
         .reads = {Resource::gbuffer, Resource::tiles, Resource::block_pixel, Resource::lobe_rays, Resource::reflection},
-        .writes         = {Resource::filtered, Resource::reflection},
-        .parameters     = {integer_parameter("reuse_neighbours", 32, 1, 256,
-                                             "pixels whose rays a rough pixel uses, itself among them"),
-                           real_parameter("reuse_radius", 0.15, 0, 1,
-                                          "radius of these pixels' disk at roughness 1, as a share of the image's height"),
-                           real_parameter("reuse_spread", 0.8, 0, 1e6,
-                                          "how near pixels must be to share rays and to be filtered together, as a share "
-                                              "of the width of the lobe where it meets the nearest thing"),
-                           real_parameter(
-                               "reuse_depth_tolerance", 0.001, 1e-6, 1e6,
-                               "distance from the pixel's plane, as a share of the view distance, at which another "
-                                   "pixel's rays weigh 1/e")},
+        .writes = {Resource::filtered, Resource::reflection},
+        .parameters =
+            {integer_parameter("reuse_neighbours", 32, 1, 256,
+                               "pixels whose rays a rough pixel uses, itself among them"),
+             real_parameter("reuse_radius", 0.15, 0, 1,
+                            "radius of these pixels' disk at roughness 1, as a share of the image's height"),
+             real_parameter("reuse_spread", 0.8, 0, 1e6,
+                            "standard deviation of the kernel that shares and filters rays, as a share of the "
+                            "lobe's half width at the pixel's nearest hit"),
+             real_parameter("reuse_depth_tolerance", 0.001, 1e-6, 1e6,
+                            "distance from the pixel's plane, as a share of the view distance, at which another "
+                            "pixel's rays weigh 1/e")},
         .decide         = decide,
         .prepare        = prepare,
         .beyond_shading = true};
