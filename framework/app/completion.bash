@@ -7,14 +7,14 @@ _ssrlab()
     done
     local names=""
     if [[ -z $command ]]; then
-        names=$("$1" --help 2> /dev/null | sed -n '/^Subcommands:/,$ s/^  \([a-z]\+\) .*/\1/p')
+        names=$("$1" --help 2> /dev/null | sed -n '/^Subcommands:/,$ s/^  \([a-z-]\+\) .*/\1/p')
     elif [[ $current == -* ]]; then
         names=$("$1" "$command" --help 2> /dev/null | grep -o -- '--[a-z-]\+' | sort -u)
     elif [[ $command == show ]]; then
         names=$("$1" list 2> /dev/null | sed -n '/^\(Techniques\|Surface models\)/,/^$/ s/^  \([^ ]\+\) .*/\1/p')
     elif [[ $previous == -t || $previous == --technique || $command == check || $command == shaders || $command == export ]]; then
         names=$("$1" list 2> /dev/null | sed -n '/^Techniques/,/^$/ s/^  \([^ ]\+\) .*/\1/p')
-    elif [[ $command =~ ^(render|trace|gbuffer|ray|view|plan|sources)$ && $previous == "$command" ]]; then
+    elif [[ $previous == --scene || ( $command =~ ^(render|trace|gbuffer|ray|view|plan|sources)$ && $previous == "$command" ) ]]; then
         names=$("$1" list 2> /dev/null | sed -n '/^Scenes/,/^$/ s/^  \([^ ]\+\) .*/\1/p')
     fi
     mapfile -t COMPREPLY < <(compgen -W "$names" -- "$current"; compgen -f -- "$current")

@@ -2,6 +2,7 @@
 #include "app/check_command.h"
 #include "app/commands.h"
 #include "app/export_command.h"
+#include "app/judge_command.h"
 #include "app/new_technique.h"
 #include "app/plan_command.h"
 #include "app/ray_command.h"
@@ -130,6 +131,28 @@ void add_presentation_options(CLI::App& command, ssrlab::RenderOptions& options)
         ->excludes(truth);
 }
 
+void add_judge_options(CLI::App& command, ssrlab::JudgeOptions& options)
+{
+    command.add_option("FRAME", options.frame, "Frame file (.exr), or the folder that export-cases wrote")->required();
+    command
+        .add_option("HITS", options.hits,
+                    "Hits of that frame (.exr; docs/reference/hit_files.md), or a folder with NAME.exr for each case")
+        ->required();
+    command.add_option("--scene", options.scene, "Scene of the frame: also judge by its triangles");
+    command.add_option("--frame", options.at_frame, "Frame of that scene's motion")
+        ->capture_default_str()
+        ->check(CLI::Range(0, ssrlab::max_frames));
+    command.add_option("-p,--parameter", options.parameters,
+                       "name=value: a setting of [trace] under which the renderer traced, such as thickness_m");
+    command.add_option("-o,--output", options.output, "Also write a picture in false colours (.png)");
+    command.add_option("--show", options.show, "What it shows: agreement, or causes (needs --scene)")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"agreement", "causes"}));
+    command.add_option("--min-f1", options.min_f1, "Exit code 1 if F1 is lower; with --scene that of the scene truth")
+        ->check(CLI::Range(0.0, 1.0));
+    command.add_flag("--json", options.json, "As JSON, with every wrong ray");
+}
+
 /// One line in a terminal, whatever a file holds.
 void say_error(const std::string& what) { std::fprintf(stderr, "ssrlab: %s\n", ssrlab::printable(what).c_str()); }
 
@@ -206,6 +229,12 @@ int main(int argc, char** argv)
     explained->add_option("-o,--output", ray.picture.output, "Also write a picture (.png) or all numbers (.json)");
     explained->add_flag("--json", ray.json, "Print all numbers as JSON instead of the table");
     explained->callback([&] { command = [&] { return explain_ray(common, ray); }; });
+
+    JudgeOptions judged;
+    auto*        judge = app.add_subcommand(
+               "judge", "Judge the hits of any renderer by the hit contract and the truths (docs/how-to/judge_a_renderer.md)");
+    add_judge_options(*judge, judged);
+    judge->callback([&] { command = [&] { return judge_hits(common, judged); }; });
 
     ViewOptions view;
     auto* viewed = app.add_subcommand("view", "Open a window in which camera, technique and settings change live");

@@ -19,7 +19,7 @@ struct SceneInTime {
 /// The truths of one frame, for one TraceSettings at a time. Before make(), all other functions throw Failure.
 class Truths {
 public:
-    /// Keeps a reference to `scene`.
+    /// Keeps a reference to `scene`. An empty cache_dir stands for no cache.
     Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path cache_dir);
 
     /// Adds the layers behind the first, as many as the settings of make() will ask for.

@@ -11,7 +11,7 @@ namespace ssrlab {
 
 /// Like screen_truth(), scene_truth() and glossy_truth(), but reads the result from cache_dir if it is there and
 /// intact. A damaged file is computed anew, and a file that cannot be written is not an error. Files appear whole or
-/// not at all, so processes may share the folder.
+/// not at all, so processes may share the folder. An empty cache_dir stands for no cache.
 TraceResult cached_screen_truth(const std::filesystem::path& cache_dir, const GBufferImage& gbuffer,
                                 const TraceSettings& settings, unsigned threads = 0);
 

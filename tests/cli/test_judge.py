@@ -1,0 +1,102 @@
+"""The hits of a renderer, judged: what a run measures of them, and exit codes for a CI."""
+import json
+import os
+
+from support import Case, main
+
+SPEC = """scenes = ["builtin:corridor"]
+sizes  = ["160x90"]
+[trace]
+max_distance_m = 20
+[techniques.hiz]
+[techniques.linear]
+steps = 24
+[measure]
+min_repeats = 1
+max_repeats = 1
+double_twin = false
+pictures = false
+image_errors = false
+"""
+
+
+class Test(Case):
+    def setUp(self):
+        super().setUp()
+        self.ssrlab("gbuffer", "builtin:corridor", "--size", "160x90", "-o", "frame.exr")
+
+    def trace(self, technique, *pairs, scene="frame.exr"):
+        settings = [word for pair in ("max_distance_m=20",) + pairs for word in ("-p", pair)]
+        self.ssrlab("trace", scene, "-t", technique, *settings, "-o", "hits.exr")
+
+    def judged(self, *arguments, code=0):
+        return json.loads(self.ssrlab("judge", "frame.exr", "hits.exr", "--json", *arguments, code=code))
+
+    def test_has_the_measures_of_a_run(self):
+        self.ssrlab("run", self.write("s.toml", SPEC), "-o", "out")
+        rows = {row["technique"]: row for row in self.rows()}
+        for technique, pairs in (("hiz", ()), ("linear", ("steps=24",))):
+            self.trace(technique, *pairs)
+            judged = self.judged("--scene", "builtin:corridor")
+            row, measures = rows[technique], judged["measures"]
+            self.assertGreater(len(measures), 50)
+            for name, value in measures.items():
+                if "displacement" in name:  # the file rounds hit points to float
+                    self.assertAlmostEqual(value, float(row[name]), delta=1e-4, msg=name)
+                else:
+                    self.assertEqual(f"{value:.6g}", row[name], f"{technique} {name}")
+            lacking = [name for name in row if row[name] and name.startswith(("screen_", "wrong_", "recall", "missed", "false_", "truth_v", "f1_"))
+                       and name not in measures]
+            self.assertEqual(lacking, [])
+            self.assertEqual(f"{judged['f1']:.6g}", row["f1_1px"])
+            self.assertEqual(f"{self.judged()['f1']:.6g}", row["screen_f1_1px"])
+        self.assertGreater(float(rows["linear"]["wrong_rays"]), 0)
+
+    def test_exact_hits_are_right_and_others_are_named(self):
+        self.trace("hiz")
+        self.assertEqual((self.judged()["wrong"], self.judged()["settings"]), (0, ["max_distance_m=20"]))
+        self.ssrlab("judge", "frame.exr", "hits.exr", "--min-f1", "1", says=["0 wrong", "F1 1 against the screen truth, at least 1: passes"])
+        self.trace("linear", "steps=8")
+        judged = self.judged("--min-f1", "0.95", code=1)
+        self.assertFalse(judged["passed"])
+        self.assertEqual(sum(judged["by_contract"].values()), judged["rays"])
+        self.assertEqual(len(judged["findings"]), judged["wrong"])
+        self.assertEqual({"pixel", "fault", "expected", "got", "why"}, set(judged["findings"][0]))
+        self.ssrlab("judge", "frame.exr", "hits.exr", "--scene", "builtin:corridor", says=["by cause: ", "and ", " more; --json lists all"])
+        # Another contract than that of the file is another question.
+        self.assertEqual(self.judged("-p", "thickness_m=2", "-p", "surface=box")["settings"], ["thickness_m=2", "max_distance_m=20", "surface=box"])
+
+    def test_pictures_are_those_of_render(self):
+        self.trace("linear", "steps=8")
+        for show, more in (("agreement", ()), ("causes", ("--scene", "builtin:corridor"))):
+            self.ssrlab("judge", "frame.exr", "hits.exr", "-o", f"{show}.png", "--show", show, *more, says=[f"{show}.png"])
+            scene, size = ("builtin:corridor", ("--size", "160x90")) if more else ("frame.exr", ())
+            self.ssrlab("render", scene, *size, "-t", "linear", "-p", "steps=8", "-p", "max_distance_m=20", "--show", show, "-o", "same.png")
+            for name in (f"{show}.png", "same.png"):
+                self.assertGreater(os.path.getsize(self.path(name)), 100)
+            self.assertEqual(self.pixels(f"{show}.png"), self.pixels("same.png"), show)
+
+    def pixels(self, name):
+        import OpenImageIO
+        return OpenImageIO.ImageBuf(self.path(name)).get_pixels(OpenImageIO.UINT8).tobytes()
+
+    def test_wrong_input_is_refused(self):
+        self.trace("linear")
+        for arguments, says in ((("frame.exr", "none.exr"), "none.exr: no such file"),
+                                (("frame.exr", "frame.exr"), "frame.exr: nothing says which rays hit"),
+                                (("hits.exr", "hits.exr"), "hits.exr: nothing says how the camera looks"),
+                                (("builtin:corridor", "hits.exr"), "builtin:corridor: expected a frame file"),
+                                (("frame.exr", "hits.exr", "-p", "steps=8"), "-p steps=8: expected name=value of a setting of [trace]"),
+                                (("frame.exr", "hits.exr", "-p", "layers=2"), "layers = 2"),
+                                (("frame.exr", "hits.exr", "--scene", "frame.exr"), "--scene frame.exr: a frame has no triangles"),
+                                (("frame.exr", "hits.exr", "--show", "causes"), "give --scene"),
+                                (("frame.exr", "hits.exr", "-o", "x.exr"), "expected a file that ends in .png"),
+                                ((".", "hits.exr"), "manifest.json: no such file")):
+            self.refused("judge", *arguments, code=2, says=[says])
+        self.refused("judge", "frame.exr", "hits.exr", "--scene", "builtin:stairs", code=1, says=["pixels this scene has no surface"])
+        self.write("hits.exr", "no EXR")
+        self.refused("judge", "frame.exr", "hits.exr", code=1, says=["hits.exr"])
+
+
+if __name__ == "__main__":
+    main()
