@@ -4,6 +4,7 @@
 #include "compare/measures.h"
 #include "harness/passes.h"
 #include "harness/sequence_state.h"
+#include "harness/source_rows.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -22,6 +23,7 @@ columns, too (`ssrlab list --markdown`). A field without a value is empty, never
 | `sequence_summary.csv` | for an experiment with several frames: one row per run without its frame, in the columns of the last table |
 | `samples.csv` | every timed frame: run_id, round, pass, ms, cpu_ms; docs/explanation/measuring.md says what a round is |
 | `passes.csv` | the passes of each run's frame: whether each ran, how long it took, and why |
+| `sources.csv` | for an experiment with `[sources]`: what each source of each run's list answered, and its price |
 | `environment.json` | device, driver, commit, command line, seed, specification, and hashes of everything that decides a result |
 | `pictures/` | per run: the reflection, right and wrong rays in false colours, and the work per ray |
 | `report.html`, `report.md`, `summary.csv`, `plots/` | made from the above by `ssrlab plot` |
@@ -65,6 +67,11 @@ int print_measures(const CommonOptions& common)
     text += "\n## Passes of the frames\n`passes.csv` has a row for each pass of each run, in the order of a frame:\n\n";
     text += "| column | meaning |\n|---|---|\n";
     for (const Column& column : pass_columns()) text += fmt::format("| {} | {} |\n", code(column.name), column.meaning);
+    text += "\n## Sources of answers\n`sources.csv` has a row for each source of each run's list, in the order of the "
+            "list:\n\n";
+    text += "| column | meaning |\n|---|---|\n";
+    for (const Column& column : source_file_columns())
+        text += fmt::format("| {} | {} |\n", code(column.name), column.meaning);
     std::fputs(text.c_str(), stdout);
     return 0;
 }

@@ -1,101 +1,61 @@
 #include "app/sources_command.h"
 
-#include "compare/all_rays.h"
 #include "core/error.h"
-#include "core/size.h"
 #include "harness/choice.h"
-#include "harness/csv.h"
 #include "harness/experiment.h"
-#include "sources/answer_rays.h"
-#include "truth/scene_truth.h"
+#include "harness/source_rows.h"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <utility>
 
 namespace ssrlab {
 namespace {
 
-constexpr std::array meeting_classes = {TruthClass::visible, TruthClass::hidden, TruthClass::off_screen,
-                                        TruthClass::behind_camera, TruthClass::facing_away};
-
-/// A row of the file: columns and their texts, in order.
-using Row = std::vector<std::pair<std::string, std::string>>;
-
-std::string line_of(const Row& row, std::string Row::value_type::*part)
+/// What a row of the file begins with: the frame, and what was asked.
+const std::vector<Column>& asked_columns()
 {
-    CsvRecord fields;
-    for (const auto& entry : row) fields.push_back(entry.*part);
-    return csv_line(fields);
+    using enum ColumnType;
+    static const std::vector<Column> columns = {
+        {"scene", "", words},     {"view", "", words},    {"size", "", words},
+        {"technique", "", words}, {"surface", "", words}, {"settings", "", words},
+        {"sources", "", words},   {"hand_on", "", words}, {"device", "", words}};
+    return columns;
 }
 
-std::string text_of(double value) { return fmt::format("{:.4g}", value); }
-std::string text_of(size_t value) { return std::to_string(value); }
-std::string text_of(std::optional<double> value) { return value ? fmt::format("{:.6g}", *value) : ""; }
-
-/// One source's columns. so_far: the merged answers of the list up to it.
-void add_source(Row& row, size_t place, const SourceTurn& turn, const SourceCounts& counts, const AllRays& so_far)
+void print_line(const Record& source)
 {
-    const auto add = [&](std::string column, const auto& value) {
-        row.emplace_back(std::move(column), text_of(value));
+    const auto number  = [&](const char* column) { return number_of(source, column).value_or(0); };
+    const auto percent = [&](const char* part, const char* whole) {
+        return number(whole) > 0 ? 100 * number(part) / number(whole) : 0;
     };
-    add("place", place);
-    row.emplace_back("source", turn.source);
-    add("handed", counts.handed);
-    add("meeting", counts.meeting);
-    add("points", counts.points);
-    add("right", counts.right);
-    add("certain_points", counts.certain_points);
-    add("certain_right", counts.certain_right);
-    add("certain_nothing", counts.certain_nothing);
-    add("certain_nothing_right", counts.certain_nothing_right);
-    for (const TruthClass cls : meeting_classes) {
-        const auto index = static_cast<size_t>(cls);
-        add(fmt::format("handed_{}", truth_class_names[index]), counts.handed_of_class[index]);
-        add(fmt::format("right_{}", truth_class_names[index]), counts.right_of_class[index]);
-    }
-    add("draw_ms", turn.draw_ms);
-    add("trace_ms", turn.trace_ms);
-    add("shade_ms", turn.shade_ms);
-    add("merge_ms", turn.merge_ms);
-    add("megabytes", turn.megabytes);
-    add("node_visits", static_cast<size_t>(turn.node_visits));
-    add("all_rays", so_far.rays);
-    add("all_meeting", so_far.meeting);
-    add("all_recall", so_far.recall);
-    add("all_precision", so_far.precision);
-    add("all_f1", so_far.f1);
-}
-
-double percent(std::optional<double> share) { return share ? 100 * *share : 0; }
-double percent(size_t part, size_t whole) { return whole > 0 ? 100 * double(part) / double(whole) : 0; }
-
-void print_line(const SourceTurn& turn, const SourceCounts& counts, const AllRays& so_far)
-{
     std::puts(fmt::format("  {:8} handed {:6} ({:5.1f} % meet)  points {:6}, {:5.1f} % right  certain {:6}, {:5.1f} % "
                           "right  nothing {:6}, {:5.1f} % right"
                           "  all: recall {:5.1f} precision {:5.1f} F1 {:5.2f} %  draw {:.1f} ms, trace {:.1f} ms, "
                           "{:.1f} MB, {} visits",
-                          turn.source, counts.handed, percent(counts.meeting, counts.handed), counts.points,
-                          percent(counts.right, counts.points), counts.certain_points,
-                          percent(counts.certain_right, counts.certain_points), counts.certain_nothing,
-                          percent(counts.certain_nothing_right, counts.certain_nothing), percent(so_far.recall),
-                          percent(so_far.precision), percent(so_far.f1), turn.draw_ms, turn.trace_ms, turn.megabytes,
-                          turn.node_visits)
+                          words_of(source, "source"), number("handed"), percent("meeting", "handed"), number("points"),
+                          percent("right", "points"), number("certain_points"),
+                          percent("certain_right", "certain_points"), number("certain_nothing"),
+                          percent("certain_nothing_right", "certain_nothing"), 100 * number("all_recall"),
+                          100 * number("all_precision"), 100 * number("all_f1"), number("draw_ms"), number("trace_ms"),
+                          number("megabytes"), number("node_visits"))
                   .c_str());
 }
 
-void append(const std::string& file, const std::vector<Row>& rows)
+void append(const std::string& file, const Record& asked, std::span<const Record> sources)
 {
+    std::vector<Column> columns = asked_columns();
+    columns.insert(columns.end(), source_columns().begin(), source_columns().end());
     const bool    fresh = !std::filesystem::exists(file) || std::filesystem::file_size(file) == 0;
-    std::ofstream stream(file, std::ios::app);
-    if (fresh) stream << line_of(rows.front(), &Row::value_type::first);
-    for (const Row& row : rows) stream << line_of(row, &Row::value_type::second);
+    std::ofstream stream(file, std::ios::app | std::ios::binary);
+    if (fresh) stream << csv_line(names_of(columns));
+    for (Record row : sources) {
+        row.insert(asked.begin(), asked.end());
+        stream << csv_line(fields_of(row, columns));
+    }
     if (!stream.flush()) throw_failure("{}: could not be written", file);
 }
 
@@ -120,10 +80,8 @@ int compare_sources(const CommonOptions& common, const SourcesOptions& options)
     const Technique&  technique = find_technique(catalogue.techniques, picture.technique);
     const Choice      choice    = parse_choice(catalogue, technique, picture.parameters);
     Stage             stage     = open_stage(common, catalogue, picture);
-    SourceContext     context   = make_source_context(stage, technique, choice.values, choice.settings);
-    for (int frame = picture.at.frame - 1; frame >= 0; --frame)
-        context.earlier.push_back(
-            view_at(stage.scene, picture.view, stage.view.size_px, {frame, picture.at.jitter_phases}));
+    SourceContext     context =
+        context_of_frame(stage, technique, choice.values, choice.settings, picture.view, picture.at);
     const SceneTruth truth = scene_truth(SceneBvh(stage.scene), stage.scene, context.image, choice.settings.trace);
     if (const std::string why = drawn_elsewhere(off_surface_share(truth)); !why.empty())
         throw_failure("no scene truth: {}", why);
@@ -131,29 +89,18 @@ int compare_sources(const CommonOptions& common, const SourcesOptions& options)
                           technique.id, choice.settings.trace.surface)
                   .c_str());
     for (size_t l = 0; l < lists.size(); ++l) {
-        const AnsweredRays     answered = answer_rays(context, lists[l], hand_on);
-        const Row              identity = {{"scene", picture.scene},
-                                           {"view", picture.view},
-                                           {"size", size_text(stage.view.size_px)},
-                                           {"technique", technique.id},
-                                           {"surface", choice.settings.trace.surface},
-                                           {"settings", settings},
-                                           {"sources", options.lists[l]},
-                                           {"hand_on", options.hand_on}};
-        std::vector<Row>       rows;
-        std::vector<RayAnswer> so_far(answered.answers.size());
-        for (size_t place = 0; place < answered.turns.size(); ++place) {
-            const SourceTurn& turn = answered.turns[place];
-            for (size_t k = 0; k < turn.pixels.size(); ++k)
-                so_far[turn.pixels[k]] = merged(so_far[turn.pixels[k]], turn.answers[k]);
-            const SourceCounts counts = count_source(turn, truth, context.image);
-            const AllRays      all    = compare_all_rays(so_far, truth, context.image);
-            print_line(turn, counts, all);
-            Row& row = rows.emplace_back(identity);
-            add_source(row, place, turn, counts, all);
-            row.emplace_back("device", stage.gpu.info.name);
-        }
-        if (!picture.output.empty()) append(picture.output, rows);
+        const std::vector<Record> sources = ask_sources(context, lists[l], hand_on, truth);
+        for (const Record& source : sources) print_line(source);
+        const Record asked = {{"scene", picture.scene},
+                              {"view", picture.view},
+                              {"size", size_text(stage.view.size_px)},
+                              {"technique", technique.id},
+                              {"surface", choice.settings.trace.surface},
+                              {"settings", settings},
+                              {"sources", options.lists[l]},
+                              {"hand_on", options.hand_on},
+                              {"device", stage.gpu.info.name}};
+        if (!picture.output.empty()) append(picture.output, asked, sources);
     }
     return report_messages(stage);
 }

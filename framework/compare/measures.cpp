@@ -13,6 +13,7 @@ constexpr std::string_view truth      = "framework/truth/scene_truth.h";
 constexpr std::string_view before     = "framework/truth/reprojection_truth.h";
 constexpr std::string_view causes     = "framework/compare/causes.h";
 constexpr std::string_view own        = "ssrlab";
+constexpr std::string_view beyond     = "docs/explanation/beyond.md";
 constexpr std::string_view divergence = "docs/explanation/devices.md";
 
 // px distance = the larger of |dx| and |dy| between two hit points. "Found" = the truth has a point, the technique hits, and
@@ -119,6 +120,13 @@ constexpr auto table = std::to_array<Measure>({
      "pixels at whose drawn depth the scene has no surface, within 0.0001 of their distance, of traced rays: some lie "
      "at silhouettes; with more than 0.05 the driver draws another scene, and there is no scene truth",
      truth},
+
+    {"all_recall", "share",
+     "rays that the list of sources answers by a point within the footprint of 1 px of the true one, of rays that meet "
+     "geometry within max_distance_m",
+     beyond},
+    {"all_precision", "share", "the same rays, of rays that it answers by a point", beyond},
+    {"all_f1", "share", "harmonic mean of all_recall and all_precision", beyond},
 
     {"hidden_recovered_share", "share",
      "rays that the second depth layer answers within 1 px of the true point, of rays whose true point is hidden; this "

@@ -105,6 +105,19 @@ inline int64_t toml_integer(const TomlFile& file, const toml::node& node, const 
     return node.as_integer()->get();
 }
 
+/// Returns a value, or all values of a list. An empty list would silently sweep nothing.
+inline std::vector<const toml::node*> toml_values(const TomlFile& file, const toml::node& node, const std::string& name)
+{
+    std::vector<const toml::node*> values;
+    if (const toml::array* list = node.as_array()) {
+        for (const toml::node& element : *list) values.push_back(&element);
+    } else {
+        values.push_back(&node);
+    }
+    if (values.empty()) throw_spec_error("{}: '{}' is an empty list", toml_place(file, node), name);
+    return values;
+}
+
 inline std::vector<std::string> toml_texts(const TomlFile& file, const toml::node& node, const std::string& name)
 {
     if (!node.is_array()) toml_refuse(file, node, name, "a list of strings");

@@ -27,6 +27,8 @@ const std::vector<Column> identity = {
     {"frame", "of the sequence: 0 is the scene as loaded and the start of a camera path", whole},
     {"jitter_phases", "sub-pixel offsets of the camera (Halton 2, 3) that repeat after so many frames; 0: none", whole},
     {"technique", "folder of the technique", words},
+    {"sources", "list of sources asked for answers beyond the frame; empty: none", words},
+    {"hand_on", "which rays each further source of the list gets: lost or uncertain", words},
 };
 
 const std::vector<Column> times = {
@@ -64,6 +66,12 @@ const std::vector<Column> counts = {
     {"fetches_p99", "99th percentile over the rays"},
     {"fetches_max", "of the worst ray"},
     {"steps_p99", "loop iterations, 99th percentile over the rays"},
+};
+
+const std::vector<Column> price_of_sources = {
+    {"sources_asked", "sources of the list; sources.csv says of each what it answered and at what price", whole},
+    {"sources_ms", "time of drawing, tracing and shading all sources of the list"},
+    {"sources_megabytes", "device memory of all sources of the list beyond what the frame needs"},
 };
 
 const std::vector<Column> ending = {
@@ -180,6 +188,7 @@ std::vector<Column> result_columns(const Experiment& experiment, std::span<const
     append(back, counts);
     append(back, structure_columns(experiment, techniques));
     append(back, quality());
+    append(back, price_of_sources);
     append(back, shares());
     append(back, ending);
     refuse_same_names(experiment, techniques, front);

@@ -76,11 +76,13 @@ std::vector<Run> expand_picture(const Experiment& experiment, std::span<const Te
         for (const ParameterValues& settings : cross_product(settings_of(experiment, sweep))) {
             Run run       = run_with(experiment.known_settings, settings);
             run.technique = sweep.id;
-            for (const ParameterValues& one : values) {
-                run.values = one;
-                run.number = number++;
-                by_settings[settings].push_back(run);
-            }
+            for (const ParameterValues& one : values)
+                for (const AskedSources& asked : experiment.sources) {
+                    run.values  = one;
+                    run.sources = asked;
+                    run.number  = number++;
+                    by_settings[settings].push_back(run);
+                }
         }
     }
     std::vector<Run> runs;
@@ -108,6 +110,9 @@ std::string run_id(const Run& run)
     // A still frame has the id that it had before there were sequences.
     if (run.at != SequenceFrame{})
         identity += fmt::format("frame={}\njitter_phases={}\n", run.at.frame, run.at.jitter_phases);
+    if (!run.sources.list.empty())
+        identity += fmt::format("sources={}\nhand_on={}\n", run.sources.text,
+                                hand_on_names[static_cast<size_t>(run.sources.hand_on)]);
     identity += run.trace_text + run.passes_text;
     for (const auto& [name, value] : run.values) identity += fmt::format("{}={}\n", name, value);
     // The letter keeps spreadsheets from reading 12e4… as a number.
@@ -137,7 +142,9 @@ double count_runs(const Experiment& experiment)
     }
     size_t views = 0;
     for (const std::string& scene : experiment.scenes) views += views_of(experiment, scene).size();
-    return static_cast<double>(views * experiment.sizes_px.size() * experiment.frames.size()) * sweeps;
+    return static_cast<double>(views * experiment.sizes_px.size() * experiment.frames.size() *
+                               experiment.sources.size()) *
+           sweeps;
 }
 
 std::vector<Run> expand(const Experiment& experiment, std::span<const Technique> techniques, bool many)

@@ -2,6 +2,7 @@
 
 #include "core/size.h"
 #include "core/toml_reading.h"
+#include "harness/read_sources.h"
 #include "harness/search.h"
 
 #include <algorithm>
@@ -15,19 +16,6 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 // Below that after which the device is given up (gpu.cpp).
 constexpr double most_time_limit_s = 240;
-
-/// A value or a list of values. An empty list would silently sweep nothing.
-std::vector<const toml::node*> values_of(const TomlFile& file, const toml::node& node, const std::string& name)
-{
-    std::vector<const toml::node*> values;
-    if (const toml::array* list = node.as_array()) {
-        for (const toml::node& element : *list) values.push_back(&element);
-    } else {
-        values.push_back(&node);
-    }
-    if (values.empty()) throw_spec_error("{}: '{}' is an empty list", toml_place(file, node), name);
-    return values;
-}
 
 double number_within(const TomlFile& file, const toml::node& node, const std::string& name, double min, double max)
 {
@@ -61,7 +49,7 @@ std::string read_name(const TomlFile& file, const std::filesystem::path& path)
 std::vector<std::string> texts_of(const TomlFile& file, const toml::node& node, const std::string& name)
 {
     std::vector<std::string> texts;
-    for (const toml::node* value : values_of(file, node, name)) texts.push_back(toml_text(file, *value, name));
+    for (const toml::node* value : toml_values(file, node, name)) texts.push_back(toml_text(file, *value, name));
     return texts;
 }
 
@@ -98,7 +86,7 @@ std::vector<glm::ivec2> read_sizes(const TomlFile& file)
     const toml::node* node = file.root.get("sizes");
     if (node == nullptr) return {{1280, 720}};
     std::vector<glm::ivec2> sizes_px;
-    for (const toml::node* value : values_of(file, *node, "sizes")) sizes_px.push_back(read_size(file, *value));
+    for (const toml::node* value : toml_values(file, *node, "sizes")) sizes_px.push_back(read_size(file, *value));
     return sizes_px;
 }
 
@@ -116,7 +104,7 @@ std::vector<SequenceFrame> read_frames(const TomlFile& file)
         for (int frame = 0; frame < count; ++frame) frames.push_back({frame, phases});
         return frames;
     }
-    for (const toml::node* value : values_of(file, *node, "frames"))
+    for (const toml::node* value : toml_values(file, *node, "frames"))
         frames.push_back({static_cast<int>(integer_within(file, *value, "frames", 0, max_frames)), phases});
     return frames;
 }
@@ -179,7 +167,7 @@ ValueLists read_settings(const TomlFile& file, std::span<const Setting> all)
             values = {setting.default_value};
             continue;
         }
-        for (const toml::node* value : values_of(file, *node, setting.name)) {
+        for (const toml::node* value : toml_values(file, *node, setting.name)) {
             values.push_back(parameter_value(file, *value, setting));
         }
     }
@@ -203,14 +191,14 @@ void read_values(const TomlFile& file, const toml::table& table, const std::stri
         }
         const auto setting = std::ranges::find(known, name, &Setting::name);
         if (setting != known.end()) {
-            for (const toml::node* value : values_of(file, node, name)) {
+            for (const toml::node* value : toml_values(file, node, name)) {
                 sweep.settings[name].push_back(parameter_value(file, *value, *setting));
             }
             continue;
         }
         const std::string place     = fmt::format("{}:{}", file.path, key.source().begin.line);
         const Parameter&  parameter = find_parameter(technique, name, place);
-        for (const toml::node* value : values_of(file, node, name)) {
+        for (const toml::node* value : toml_values(file, node, name)) {
             sweep.values[name].push_back(parameter_value(file, *value, parameter));
         }
     }
@@ -240,7 +228,7 @@ std::vector<TechniqueSweep> read_sweeps(const TomlFile& file, std::span<const Te
         } catch (const SpecError& error) {
             throw_spec_error("{}:{}: {}", file.path, key.source().begin.line, error.what());
         }
-        for (const toml::node* value : values_of(file, node, "techniques." + technique->id)) {
+        for (const toml::node* value : toml_values(file, node, "techniques." + technique->id)) {
             const toml::table& one = toml_table(file, *value, "techniques." + technique->id);
             found.emplace_back(one.source().begin, read_sweep(file, one, *technique, known));
         }
@@ -313,7 +301,7 @@ std::vector<Target> read_targets(const TomlFile& file, const MeasureSettings& me
             throw_spec_error("{}: 'flip_visible' needs image_errors = true in [measure], got false",
                              toml_place(file, *node));
         Target target{one.name, {}, one.higher_is_better};
-        for (const toml::node* value : values_of(file, *node, one.name))
+        for (const toml::node* value : toml_values(file, *node, one.name))
             target.values.push_back(number_within(file, *value, one.name, 0, 1));
         targets.push_back(std::move(target));
     }
@@ -324,9 +312,9 @@ std::vector<Target> read_targets(const TomlFile& file, const MeasureSettings& me
 
 Experiment load_experiment(const std::filesystem::path& path, const Catalogue& catalogue)
 {
-    static const std::vector<std::string> known = {"name",    "title",         "scenes", "views",  "sizes",
-                                                   "frames",  "jitter_phases", "trace",  "passes", "techniques",
-                                                   "measure", "targets",       "figures"};
+    static const std::vector<std::string> known = {"name",          "title",   "scenes",  "views",      "sizes",
+                                                   "frames",        "trace",   "passes",  "techniques", "sources",
+                                                   "jitter_phases", "measure", "targets", "figures"};
     const TomlFile                        file  = read_toml(path);
     toml_known_keys(file, file.root, "key", known);
     Experiment experiment;
@@ -348,6 +336,7 @@ Experiment load_experiment(const std::filesystem::path& path, const Catalogue& c
     experiment.techniques     = read_sweeps(file, catalogue.techniques, experiment.known_settings);
     experiment.measure        = read_measure(file);
     experiment.targets        = read_targets(file, experiment.measure);
+    experiment.sources        = read_sources(file, experiment.measure);
     return experiment;
 }
 

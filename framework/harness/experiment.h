@@ -2,6 +2,7 @@
 #pragma once
 
 #include "frame/stage.h"
+#include "sources/answer_rays.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -55,6 +56,13 @@ struct Setting : Parameter {
 /// Returns all settings; the catalogue's surface models and reprojection strategies are choices among them.
 std::vector<Setting> all_settings(const Catalogue& catalogue);
 
+/// A list of [sources] that a run asks for answers beyond its frame.
+struct AskedSources {
+    std::string               text; // as in the specification: "frame,world"
+    std::vector<ListedSource> list; // empty: none is asked
+    HandOn                    hand_on = HandOn::uncertain;
+};
+
 struct Experiment {
     std::filesystem::path                           file;
     std::string                                     text; // the whole file
@@ -68,6 +76,7 @@ struct Experiment {
     /// The values of every setting by Setting::name, with defaults.
     ValueLists                  settings;
     std::vector<TechniqueSweep> techniques;
+    std::vector<AskedSources>   sources = {{}}; // each list makes a run
     MeasureSettings             measure;
     std::vector<Target>         targets        = {};
     std::vector<Setting>        known_settings = {};
@@ -82,7 +91,8 @@ struct Run {
     FrameSettings   settings;
     std::string     technique;
     ParameterValues values;
-    SequenceFrame   at = {};
+    AskedSources    sources = {};
+    SequenceFrame   at      = {};
     std::string     trace_text, passes_text; // the settings as text, for the id
     int             number = 0;              // among the frame's runs, in the order of the specification
 };

@@ -13,6 +13,7 @@
 #include "harness/samples.h"
 #include "harness/search.h"
 #include "harness/sequence_frame.h"
+#include "harness/source_rows.h"
 #include "harness/statistics.h"
 #include "harness/stop_signal.h"
 
@@ -110,6 +111,7 @@ std::string truth_name(const Run& run)
     Run named         = run;
     named.technique   = "truth";
     named.values      = {};
+    named.sources     = {};
     named.passes_text = "";
     named.id          = run_id(named);
     return picture_name(named);
@@ -221,6 +223,33 @@ void refuse_impossible(const SweepContext& sweep, const Run& run, const Observed
     if (observed.hidden) refuse(*observed.hidden, "in the second layer: ");
 }
 
+/// What sources build is kept for the next run that traces alike.
+SourceContext& sources_of(SweepContext& sweep, Picture& picture, const Run& run)
+{
+    const Run& last  = picture.sources_for;
+    const bool alike = last.technique == run.technique && last.values == run.values && last.settings == run.settings;
+    if (picture.sources && alike) return *picture.sources;
+    picture.sources.reset(); // before the next one is made: one in memory at a time
+    picture.sources     = std::make_unique<SourceContext>(context_of_frame(sweep.scene->stage,
+                                                                           find_technique(sweep.techniques, run.technique),
+                                                                           run.values, run.settings, run.view, run.at));
+    picture.sources_for = run;
+    return *picture.sources;
+}
+
+void ask_listed_sources(SweepContext& sweep, Picture& picture, MeasuredRun& measured)
+{
+    const AskedSources& asked = measured.run->sources;
+    if (asked.list.empty()) return;
+    if (const std::string& why = picture.truths->without_scene(); !why.empty())
+        throw_failure("sources cannot be judged: no scene truth: {}", why);
+    const UnderWay under_way(sweep.state, measured.run->id, sweep.experiment.measure.time_limit_s);
+    clocked(sweep.counted_s, [&] {
+        SourceContext& context = sources_of(sweep, picture, *measured.run);
+        measured.sources       = ask_sources(context, asked.list, asked.hand_on, picture.truths->scene_truth());
+    });
+}
+
 /// Everything but the timed repeats.
 void prepare(SweepContext& sweep, Picture& picture, MeasuredRun& measured)
 {
@@ -233,6 +262,7 @@ void prepare(SweepContext& sweep, Picture& picture, MeasuredRun& measured)
     make_references(sweep, picture, measured);
     judge(sweep, picture, measured, observed);
     judge_sequence(sweep, picture, measured, observed);
+    ask_listed_sources(sweep, picture, measured);
 }
 
 /// The pilot: one warm frame, whose time is not recorded, says how many repeats fit into the budget.
@@ -302,6 +332,13 @@ void warm_up(SweepContext& sweep, std::vector<MeasuredRun>& open)
     });
 }
 
+void finish_measured(SweepContext& sweep, const Picture& picture, MeasuredRun& measured)
+{
+    add_times(measured, picture.gbuffer_ms);
+    add_sources(measured.row, measured.sources);
+    finish(sweep, *measured.run, measured.row, {samples_text(measured), passes_text(measured), sources_text(measured)});
+}
+
 /// Timed repeats, every round in another order, until each run has those planned for it or a stop was requested.
 void repeat_until_final(SweepContext& sweep, Picture& picture, std::vector<MeasuredRun>& open)
 {
@@ -318,8 +355,7 @@ void repeat_until_final(SweepContext& sweep, Picture& picture, std::vector<Measu
                 if (is_last(measured)) leave_history(sweep, *measured.run, *measured.frame);
             });
             if (is_over(measured) || !is_last(measured)) continue;
-            add_times(measured, picture.gbuffer_ms);
-            finish(sweep, *measured.run, measured.row, samples_text(measured), passes_text(measured));
+            finish_measured(sweep, picture, measured);
             measured.run = nullptr;
         }
         std::erase_if(open, is_over);
@@ -333,8 +369,7 @@ void keep_measured(SweepContext& sweep, const Picture& picture, std::vector<Meas
 {
     for (MeasuredRun& measured : open) {
         if (static_cast<int>(measured.trace_ms.size()) < sweep.experiment.measure.min_repeats) continue;
-        add_times(measured, picture.gbuffer_ms);
-        finish(sweep, *measured.run, measured.row, samples_text(measured), passes_text(measured));
+        finish_measured(sweep, picture, measured);
     }
 }
 
@@ -443,9 +478,9 @@ void search_and_measure(SweepContext& sweep, std::span<const Run> listed)
 
 } // namespace
 
-void finish(SweepContext& sweep, const Run& run, const Record& row, std::string_view samples, std::string_view passes)
+void finish(SweepContext& sweep, const Run& run, const Record& row, const RunLines& lines)
 {
-    sweep.results.append(row, samples, passes);
+    sweep.results.append(row, lines);
     ++sweep.state.written;
     if (row.contains("message")) {
         ++sweep.state.failed;

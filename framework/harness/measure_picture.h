@@ -45,8 +45,7 @@ struct SweepContext {
 };
 
 /// Appends the row of a finished run.
-void finish(SweepContext& sweep, const Run& run, const Record& row, std::string_view samples = "",
-            std::string_view passes = "");
+void finish(SweepContext& sweep, const Run& run, const Record& row, const RunLines& lines = {});
 
 /// Measures the runs without a row, and those that a search for targets adds, and appends each row when it is final. A
 /// run that fails is a row with the reason. Returns early, with complete rows, if a stop was requested. `replayed`:

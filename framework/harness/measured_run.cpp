@@ -57,6 +57,9 @@ Record identity_row(const Experiment& experiment, const Run& run, const Techniqu
     for (const Parameter& parameter : technique.parameters) {
         row[parameter.name] = value_of(parameter, run.values.at(parameter.name));
     }
+    if (run.sources.list.empty()) return row;
+    row["sources"] = run.sources.text;
+    row["hand_on"] = std::string(hand_on_names[static_cast<size_t>(run.sources.hand_on)]);
     return row;
 }
 

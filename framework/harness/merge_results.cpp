@@ -5,6 +5,7 @@
 #include "harness/passes.h"
 #include "harness/result_folder.h"
 #include "harness/samples.h"
+#include "harness/source_rows.h"
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -134,16 +135,18 @@ int merge_results(const fs::path& merged, const std::vector<fs::path>& folders)
         if (!fs::exists(folder / results_file))
             throw_spec_error("{}: no such file; ssrlab run writes it", short_path(folder / results_file));
     const std::string environment = joined_environment(folders);
-    // Rows first: a sweep that still runs writes a run's samples and passes before its row.
+    // Rows first: a sweep that still runs writes a run's other lines before its row.
     const Table       results = joined(folders, results_file), summaries = joined(folders, summary_file);
     const std::string samples = joined_lines(folders, "samples.csv", sample_columns(), results);
     const std::string passes  = joined_lines(folders, "passes.csv", names_of(pass_columns()), results);
+    const std::string sources = joined_lines(folders, "sources.csv", names_of(source_file_columns()), results);
 
     fs::create_directories(merged);
     for (const fs::path& folder : folders) copy_pictures(folder / "pictures", merged / "pictures");
     write_file_atomically(merged / "environment.json", environment);
     write_file_atomically(merged / "samples.csv", samples);
     write_file_atomically(merged / "passes.csv", passes);
+    write_file_atomically(merged / "sources.csv", sources);
     if (!summaries.header.empty()) write_file_atomically(merged / summary_file, text_of(summaries));
     // Last, because a results.csv promises that everything else is there.
     write_file_atomically(merged / results_file, text_of(results));

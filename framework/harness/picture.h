@@ -17,6 +17,10 @@ struct Picture {
     std::optional<Reference> reference;
     TraceSettings            reference_for;
     std::string              reference_file; // relative to the results; empty if none was written
+
+    // What the sources of the last run with a list built, and that run.
+    std::unique_ptr<SourceContext> sources;
+    Run                            sources_for;
 };
 
 /// Returns the stage of a scene; loads and uploads the scene unless it is the current one.

@@ -99,6 +99,12 @@ const TraceSettings& Truths::made_for() const
     return *made_for_;
 }
 
+const SceneTruth& Truths::scene_truth() const
+{
+    made_for();
+    return scene_truth_;
+}
+
 std::optional<Image> Truths::agreement(const TraceResult& counted) const
 {
     made_for();

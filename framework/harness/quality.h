@@ -36,6 +36,9 @@ public:
     /// Returns every measure of `counted`. `twin`: the trace in double; `hidden`: hits in the second layer; or null.
     MeasureValues compare(const TraceResult& counted, const TraceResult* twin, const TraceResult* hidden) const;
 
+    /// Returns the truth of every reflecting pixel; without_scene() says whether it has true points.
+    const SceneTruth& scene_truth() const;
+
     /// Returns the image with the true reflections (truth/glossy_truth.h). Needs a scene truth.
     const Image& true_picture();
 

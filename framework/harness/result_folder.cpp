@@ -4,6 +4,7 @@
 #include "core/files.h"
 #include "harness/passes.h"
 #include "harness/samples.h"
+#include "harness/source_rows.h"
 
 #include <nlohmann/json.hpp>
 
@@ -64,10 +65,13 @@ std::string_view take_header(std::string_view text, const fs::path& file, const 
 
 void refuse_old_form(const fs::path& results_csv, const CsvRecord& header)
 {
-    if (std::ranges::count(header, "passes_why") + std::ranges::count(header, "passes") == 0) return;
-    throw_spec_error("{}: an older ssrlab wrote it, without passes.csv; measure it anew: ssrlab run SPECIFICATION.toml "
+    const bool packs_passes = std::ranges::count(header, "passes_why") + std::ranges::count(header, "passes") > 0;
+    const bool knows_passes = std::ranges::count(header, "passes_ran") > 0;
+    const bool old          = packs_passes || (knows_passes && std::ranges::count(header, "sources_asked") == 0);
+    if (!old) return;
+    throw_spec_error("{}: an older ssrlab wrote it, without {}.csv; measure it anew: ssrlab run SPECIFICATION.toml "
                      "-o ANOTHER_FOLDER",
-                     short_path(results_csv));
+                     short_path(results_csv), packs_passes ? "passes" : "sources");
 }
 
 std::vector<std::string> differences(const std::map<std::string, std::string>& a,
@@ -85,8 +89,11 @@ std::vector<std::string> differences(const std::map<std::string, std::string>& a
 
 ResultFolder::ResultFolder(fs::path folder, std::vector<Column> columns, const Environment& environment, bool resuming,
                            bool retry)
-    : folder_(std::move(folder)), csv_(folder_ / "results.csv"), samples_(folder_ / "samples.csv"),
-      passes_(folder_ / "passes.csv"), columns_(std::move(columns))
+    : folder_(std::move(folder)), csv_(folder_ / "results.csv"),
+      beside_({{{folder_ / "samples.csv", sample_columns(), &RunLines::samples},
+                {folder_ / "passes.csv", names_of(pass_columns()), &RunLines::passes},
+                {folder_ / "sources.csv", names_of(source_file_columns()), &RunLines::sources}}}),
+      columns_(std::move(columns))
 {
     std::error_code error;
     fs::create_directories(folder_, error);
@@ -103,18 +110,19 @@ ResultFolder::ResultFolder(fs::path folder, std::vector<Column> columns, const E
         else
             start(environment);
     } catch (...) {
-        for (const int fd : {csv_fd_, samples_fd_, passes_fd_, lock_fd_})
-            if (fd >= 0) ::close(fd);
+        close_files();
         throw;
     }
 }
 
-ResultFolder::~ResultFolder()
+ResultFolder::~ResultFolder() { close_files(); }
+
+void ResultFolder::close_files() const
 {
-    ::close(csv_fd_);
-    ::close(samples_fd_);
-    ::close(passes_fd_);
-    ::close(lock_fd_); // releases the lock; so does the end of the process, however it ends
+    for (const SideFile& file : beside_)
+        if (file.fd >= 0) ::close(file.fd);
+    if (csv_fd_ >= 0) ::close(csv_fd_);
+    if (lock_fd_ >= 0) ::close(lock_fd_); // releases the lock; so does the end of the process, however it ends
 }
 
 void ResultFolder::lock()
@@ -140,8 +148,7 @@ void ResultFolder::lock()
 void ResultFolder::start(const Environment& environment)
 {
     write_file_atomically(folder_ / "environment.json", to_json(environment));
-    write_file_atomically(samples_, csv_line(sample_columns()));
-    write_file_atomically(passes_, csv_line(names_of(pass_columns())));
+    for (const SideFile& file : beside_) write_file_atomically(file.path, csv_line(file.header));
     // Last, because a results.csv promises that everything else is there.
     write_file_atomically(csv_, csv_line(names_of(columns_)));
     open_files();
@@ -149,11 +156,13 @@ void ResultFolder::start(const Environment& environment)
 
 void ResultFolder::open_files()
 {
-    for (const auto& [file, fd] :
-         {std::pair{&csv_, &csv_fd_}, std::pair{&samples_, &samples_fd_}, std::pair{&passes_, &passes_fd_}}) {
-        *fd = ::open(file->c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-        if (*fd < 0) throw_failure("{}: cannot be written: {}", short_path(*file), std::strerror(errno));
-    }
+    const auto open = [](const fs::path& file) {
+        const int fd = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+        if (fd < 0) throw_failure("{}: cannot be written: {}", short_path(file), std::strerror(errno));
+        return fd;
+    };
+    csv_fd_ = open(csv_);
+    for (SideFile& file : beside_) file.fd = open(file.path);
 }
 
 void ResultFolder::resume(const Environment& environment, bool retry)
@@ -172,26 +181,28 @@ void ResultFolder::resume(const Environment& environment, bool retry)
             "{}: cannot be resumed, its columns are not those of this version; choose another folder with -o",
             short_path(csv_));
     }
-    const std::string  samples = read_file(samples_), passes = read_file(passes_);
-    std::string_view   sample_rest = take_header(samples, samples_, sample_columns());
-    std::string_view   pass_rest   = take_header(passes, passes_, names_of(pass_columns()));
-    const SampleCounts counts      = count_samples(sample_rest);
-    next_round_                    = counts.next_round;
+    std::vector<std::string>      texts;
+    std::vector<std::string_view> rests;
+    for (const SideFile& file : beside_) texts.push_back(read_file(file.path));
+    for (size_t i = 0; i < beside_.size(); ++i)
+        rests.push_back(take_header(texts[i], beside_[i].path, beside_[i].header));
     // Each file is replaced as a whole: a kill in between leaves the old one, and resuming again comes to the same.
-    const std::string kept = finished_rows(rest, counts, count_passes(pass_rest), retry);
+    const std::string kept = finished_rows(rest, rests, retry);
     if (kept != text) write_file_atomically(csv_, kept);
-    const std::string kept_samples = lines_of(sample_columns(), sample_rest, finished_);
-    if (kept_samples != samples) write_file_atomically(samples_, kept_samples);
-    const std::string kept_passes = lines_of(names_of(pass_columns()), pass_rest, finished_);
-    if (kept_passes != passes) write_file_atomically(passes_, kept_passes);
+    for (size_t i = 0; i < beside_.size(); ++i) {
+        const std::string kept_lines = lines_of(beside_[i].header, rests[i], finished_);
+        if (kept_lines != texts[i]) write_file_atomically(beside_[i].path, kept_lines);
+    }
     open_files();
 }
 
-/// Header and rows that stand: not those whose samples or passes are incomplete, not those that failed with `retry`,
-/// and not a last one that a kill tore. `passes`: how many of each run ran.
-std::string ResultFolder::finished_rows(std::string_view rows, const SampleCounts& samples,
-                                        const std::map<std::string, int64_t>& passes, bool retry)
+/// Header and rows that stand: not those whose other lines are incomplete, not those that failed with `retry`, and not a
+/// last one that a kill tore. `beside`: the records of the files beside results.csv.
+std::string ResultFolder::finished_rows(std::string_view rows, std::span<const std::string_view> beside, bool retry)
 {
+    const SampleCounts samples = count_samples(beside[0]);
+    const auto         passes = count_passes(beside[1]), sources = count_sources(beside[2]);
+    next_round_      = samples.next_round;
     const auto lacks = [](const Record& row, const char* column, const auto& counts) {
         const auto said  = number_of(row, column);
         const auto found = counts.find(words_of(row, "run_id"));
@@ -208,6 +219,7 @@ std::string ResultFolder::finished_rows(std::string_view rows, const SampleCount
         const std::string how = words_of(row, "outcome");
         if (retry && (how == "failed" || how == "invalid")) continue;
         if (lacks(row, "repeats", samples.frames) || lacks(row, "passes_ran", passes)) continue;
+        if (lacks(row, "sources_asked", sources)) continue;
         kept += csv_line(*record);
         finished_.insert(record->front());
     }
@@ -226,8 +238,7 @@ void ResultFolder::require_unmoved(const fs::path& file, int fd) const
 void ResultFolder::require_unmoved() const
 {
     require_unmoved(csv_, csv_fd_);
-    require_unmoved(samples_, samples_fd_);
-    require_unmoved(passes_, passes_fd_);
+    for (const SideFile& file : beside_) require_unmoved(file.path, file.fd);
     require_unmoved(folder_ / ".lock", lock_fd_);
 }
 
@@ -247,7 +258,7 @@ void append_whole(int fd, const fs::path& file, std::string_view bytes, const st
 
 } // namespace
 
-void ResultFolder::append(const Record& row, std::string_view samples, std::string_view passes)
+void ResultFolder::append(const Record& row, const RunLines& lines)
 {
     const auto known = [&](const auto& entry) {
         return std::ranges::find(columns_, entry.first, &Column::name) != columns_.end();
@@ -257,8 +268,9 @@ void ResultFolder::append(const Record& row, std::string_view samples, std::stri
 
     const std::string id = words_of(row, "run_id");
     require_unmoved();
-    if (!samples.empty()) append_whole(samples_fd_, samples_, samples, "the samples of run " + id);
-    if (!passes.empty()) append_whole(passes_fd_, passes_, passes, "the passes of run " + id);
+    for (const SideFile& file : beside_)
+        if (const std::string& own = lines.*file.lines; !own.empty())
+            append_whole(file.fd, file.path, own, "the lines of run " + id);
     append_whole(csv_fd_, csv_, csv_line(fields_of(row, columns_)), "the row of run " + id);
     finished_.insert(id);
 }
@@ -281,9 +293,10 @@ void ResultFolder::remove_partial_files() const
         if (!fs::is_directory(folder)) continue;
         for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
             const std::string name = entry.path().filename().string();
-            const bool        text = name.starts_with("environment.json.tmp") || name.starts_with("results.csv.tmp") ||
-                              name.starts_with("samples.csv.tmp") || name.starts_with("passes.csv.tmp") ||
-                              name.starts_with("sequence_summary.csv.tmp");
+            const bool        text =
+                std::ranges::any_of(std::array{"environment.json.tmp", "results.csv.tmp", "samples.csv.tmp",
+                                               "passes.csv.tmp", "sources.csv.tmp", "sequence_summary.csv.tmp"},
+                                    [&](const char* start) { return name.starts_with(start); });
             const bool picture = name.starts_with(".") && name.find(".tmp.") != std::string::npos;
             if (text || (picture && folder != folder_)) partial.push_back(entry.path());
         }

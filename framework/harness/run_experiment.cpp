@@ -123,6 +123,9 @@ int list_runs(const Experiment& experiment, std::span<const Run> runs, std::span
         for (const Parameter& parameter : technique.parameters) {
             values += fmt::format(" {}={}", parameter.name, format_parameter(parameter, run.values.at(parameter.name)));
         }
+        if (!run.sources.list.empty())
+            values += fmt::format("  sources={} hand_on={}", run.sources.text,
+                                  hand_on_names[static_cast<size_t>(run.sources.hand_on)]);
         fmt::print("{}  {} {} {}  thickness_m={} max_distance_m={}  {}{}\n", run.id, run.scene, run.view,
                    size_text(run.size_px), run.settings.trace.thickness_m, run.settings.trace.max_distance_m,
                    run.technique, values);

@@ -18,7 +18,7 @@ struct AnsweredRays {
     std::vector<SourceTurn> turns;   // of each source
 };
 
-/// Traces the shown frame once for its counts and twice for its times. Throws Failure for a frame file, which has no
+/// Traces the shown frame once for its counts; its time is the median of three more frames. Throws Failure for a frame file, which has no
 /// scene.
 SourceContext make_source_context(Stage& stage, const Technique& technique, const ParameterValues& values,
                                   const FrameSettings& settings);

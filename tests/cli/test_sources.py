@@ -4,6 +4,24 @@ import os
 
 from support import Case, main
 
+SPEC = """
+scenes = ["builtin:corridor"]
+sizes = ["96x54"]
+[trace]
+surface = "plane_infinite"
+behind = "stop"
+[techniques.hiz]
+[sources]
+lists = ["frame,wider:margin=0.5,world", "world"]
+[measure]
+min_repeats = 1
+max_repeats = 1
+warmup_s = 0
+image_errors = false
+double_twin = false
+pictures = false
+saved_time = false
+"""
 SOURCES = ("sources", "builtin:corridor", "--size", "96x54", "-p", "surface=plane_infinite", "-p", "behind=stop")
 
 
@@ -31,6 +49,33 @@ class Test(Case):
         # A second command appends.
         self.ssrlab(*SOURCES, "--sources", "frame", "-o", "sources.csv")
         self.assertEqual(len(self.read("sources.csv")), 5)
+
+    def test_a_sweep_writes_what_the_command_writes(self):
+        """Every number but times, with results.csv in accord; lost lines are measured again, and merging keeps them."""
+        spec = self.write("s.toml", SPEC)
+        self.ssrlab("run", spec, "-o", "out")
+        rows, asked = self.rows("out"), self.rows("out", "sources.csv")
+        self.assert_complete(rows, 2)
+        lists = [row["sources"] for row in rows]
+        self.assertEqual(sorted(lists), ["frame,wider:margin=0.5,world", "world"])
+        self.ssrlab(*SOURCES, *(word for one in lists for word in ("--sources", one)), "-o", "sources.csv")
+        said = self.read("sources.csv")
+        self.assertEqual([row["run_id"] for row in asked], [row["run_id"] for row in rows for _ in row["sources"].split(",")])
+        same = [name for name in asked[0] if name != "run_id" and not name.endswith("_ms")]
+        self.assertGreater(len(same), 25)
+        self.assertEqual([[row[name] for name in same] for row in asked], [[row[name] for name in same] for row in said])
+        for row in rows:
+            own = [one for one in asked if one["run_id"] == row["run_id"]]
+            self.assertEqual([row[name] for name in ("all_recall", "all_precision", "all_f1")], [own[-1][name] for name in ("all_recall", "all_precision", "all_f1")])
+            self.assertEqual(int(row["sources_asked"]), len(own))
+            spent = sum(float(one[name]) for one in own for name in ("draw_ms", "trace_ms", "shade_ms"))
+            self.assertAlmostEqual(float(row["sources_ms"]) / spent, 1, 4)
+        self.ssrlab("merge", "out", "-o", "merged")
+        self.assertEqual(self.rows("merged", "sources.csv"), asked)
+        os.truncate(self.path("out/sources.csv"), os.path.getsize(self.path("out/sources.csv")) - 40)
+        self.ssrlab("run", spec, "-o", "out", "--resume", says=["2 rows, 1 written now"])
+        again = self.rows("out", "sources.csv")
+        self.assertEqual(sorted((row["run_id"], row["place"], row["all_f1"]) for row in again), sorted((row["run_id"], row["place"], row["all_f1"]) for row in asked))
 
     def test_shows_which_source_answered(self):
         self.ssrlab("render", *SOURCES[1:], "-t", "hiz", "--show", "sources", "--sources", "frame,world", "-o", "shown.png")

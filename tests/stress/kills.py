@@ -27,7 +27,7 @@ min_repeats = 2
 max_repeats = 2
 """
 STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGPIPE)
-FILES = ("environment.json", "samples.csv", "passes.csv", "results.csv")
+FILES = ("environment.json", "samples.csv", "passes.csv", "sources.csv", "results.csv")
 
 
 class Broken(Exception):

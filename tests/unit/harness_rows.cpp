@@ -9,6 +9,7 @@
 #include "harness/quality.h"
 #include "harness/samples.h"
 #include "harness/sequence_state.h"
+#include "harness/source_rows.h"
 #include "temp_folder.h"
 #include "truth_gbuffers.h"
 
@@ -170,6 +171,34 @@ TEST(Rows, EveryPassHasALineWithItsTimeAndReason)
     EXPECT_THAT(passes_text(measured), testing::StartsWith("ra,rays,true,2.25,,,")) << "of two repeats";
 }
 
+TEST(Rows, EverySourceHasALineAndTheirSumIsInTheRow)
+{
+    ssrlab::Run run;
+    run.id = "ra";
+    MeasuredRun measured;
+    measured.run      = &run;
+    const auto source = [](int64_t place, const char* name, double ms, double f1) {
+        return Record{{"place", place},     {"source", name},  {"draw_ms", ms},
+                      {"trace_ms", 2 * ms}, {"shade_ms", 0.5}, {"merge_ms", 100.0},
+                      {"megabytes", 1.25},  {"all_f1", f1},    {"handed", 7}};
+    };
+    measured.sources         = {source(0, "frame", 1, 0.5), source(1, "views:count=2", 10, 0.75)};
+    const std::string   text = sources_text(measured);
+    std::string_view    rest = text;
+    std::vector<Record> rows;
+    while (const auto fields = take_csv_record(rest)) rows.push_back(record_of(*fields, source_file_columns()));
+    for (Record& record : measured.sources) record["run_id"] = "ra";
+    EXPECT_EQ(rows, measured.sources);
+    EXPECT_THAT(count_sources(text + "rb,0,frame"), testing::ElementsAre(testing::Pair("ra", 2)));
+    add_sources(measured.row, measured.sources);
+    // Merging on the CPU is part of no total, and the last source knows the answers of all.
+    EXPECT_EQ(measured.row,
+              (Record{{"sources_asked", 2}, {"sources_ms", 34.0}, {"sources_megabytes", 2.5}, {"all_f1", 0.75}}));
+    measured.row = {};
+    add_sources(measured.row, {});
+    EXPECT_TRUE(measured.row.empty()) << "without [sources]";
+}
+
 TEST(Rows, WhatFailedIsToldFromWhatCannotBe)
 {
     EXPECT_EQ(failed_row({}, Failure("no")), (Record{{"outcome", "failed"}, {"message", "no"}}));
@@ -184,7 +213,7 @@ TEST(Runs, IdsTellApartWhatDecidesAnOutcome)
     plain.size_px   = {16, 9};
     plain.technique = "walk";
     plain.values    = {{"steps", 25}, {"space", 1}};
-    std::vector<ssrlab::Run> runs(9, plain);
+    std::vector<ssrlab::Run> runs(12, plain);
     runs[1].scene              = "c";
     runs[2].view               = "c";
     runs[3].size_px            = {9, 16};
@@ -193,11 +222,14 @@ TEST(Runs, IdsTellApartWhatDecidesAnOutcome)
     runs[6].at                 = {1, 0};
     runs[7].at                 = {0, 8};
     runs[8].trace_text         = "thickness_m=2\n";
+    runs[9].sources            = {"frame", parse_sources("frame", ""), HandOn::lost};
+    runs[10].sources           = {"frame", parse_sources("frame", ""), HandOn::uncertain};
+    runs[11].sources           = {"world", parse_sources("world", ""), HandOn::lost};
     std::set<std::string> ids;
     for (const ssrlab::Run& run : runs) ids.insert(run_id(run));
     EXPECT_EQ(ids.size(), runs.size());
     for (const size_t other : {1, 2, 3, 7}) EXPECT_FALSE(same_sequence(plain, runs[other])) << other;
-    for (const size_t same : {4, 5, 6, 8}) EXPECT_TRUE(same_sequence(plain, runs[same])) << same;
+    for (const size_t same : {4, 5, 6, 8, 9}) EXPECT_TRUE(same_sequence(plain, runs[same])) << same;
     EXPECT_FALSE(same_picture(plain, runs[6]));
     EXPECT_TRUE(same_picture(plain, runs[5]));
 }

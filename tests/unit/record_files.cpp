@@ -5,6 +5,7 @@
 #include "harness/passes.h"
 #include "harness/result_folder.h"
 #include "harness/samples.h"
+#include "harness/source_rows.h"
 #include "temp_folder.h"
 
 #include <gmock/gmock.h>
@@ -54,6 +55,14 @@ Record row_of(int i)
     return {{"run_id", "r" + std::to_string(i)},
             {"value", std::string(200, 'x')},
             {"message", "a\n\"b\",ü" + std::to_string(i)}};
+}
+
+/// A line of sources.csv.
+std::string source_line(const std::string& id)
+{
+    CsvRecord fields(source_file_columns().size(), "1");
+    fields.front() = id;
+    return csv_line(fields);
 }
 
 TEST_F(RecordFiles, OddTextComesBackAsItWas)
@@ -191,15 +200,19 @@ TEST_F(RecordFiles, FailedRowsAreTriedAgainOnceAndInNoWayDoubled)
     EXPECT_EQ(read_file(folder / "results.csv"), whole);
 }
 
-// r1 has both of its samples and passes, r2 one of two samples, r3 is invalid, r4 lacks a pass.
-TEST_F(RecordFiles, RowsWithoutAllOfTheirSamplesOrPassesAreMeasuredAnew)
+// r1 has all of its samples, passes and sources, r2 one of two samples, r3 is invalid, r4 lacks a pass, r5 a source.
+TEST_F(RecordFiles, RowsWithoutAllOfTheirOtherLinesAreMeasuredAnew)
 {
-    const std::vector<Column> with_repeats = {
-        {"run_id", "", words}, {"outcome", "", words}, {"repeats", "", whole}, {"passes_ran", "", whole}};
-    const auto row = [](const char* id, int repeats) {
-        return Record{{"run_id", id}, {"outcome", "ok"}, {"repeats", repeats}, {"passes_ran", 2}};
+    const std::vector<Column> with_repeats = {{"run_id", "", words},
+                                              {"outcome", "", words},
+                                              {"repeats", "", whole},
+                                              {"passes_ran", "", whole},
+                                              {"sources_asked", "", whole}};
+    const auto                row          = [](const char* id, int repeats) {
+        return Record{{"run_id", id}, {"outcome", "ok"}, {"repeats", repeats}, {"passes_ran", 2}, {"sources_asked", 2}};
     };
-    const auto passes = [](const std::string& id) {
+    const auto sources = [](const char* id) { return source_line(id) + source_line(id); };
+    const auto passes  = [](const std::string& id) {
         return id + ",rays,true,1,,,a\r\n" + id + ",blur,false,,,,\"b, c\"\r\n" + id + ",trace,true,2,1,3,d\r\n";
     };
     const auto sample = [](const char* id, int round) {
@@ -208,17 +221,20 @@ TEST_F(RecordFiles, RowsWithoutAllOfTheirSamplesOrPassesAreMeasuredAnew)
     };
     {
         ResultFolder results(folder, with_repeats, here, false);
-        results.append(row("r1", 2), sample("r1", 0) + sample("r1", 4), passes("r1"));
-        results.append(row("r2", 2), sample("r2", 3), passes("r2"));
+        results.append(row("r1", 2), {sample("r1", 0) + sample("r1", 4), passes("r1"), sources("r1")});
+        results.append(row("r2", 2), {sample("r2", 3), passes("r2"), sources("r2")});
         results.append({{"run_id", "r3"}, {"outcome", "invalid"}});
-        results.append(row("r4", 1), sample("r4", 3), "r4,trace,true,2,1,3,d\r\n");
+        results.append(row("r4", 1), {sample("r4", 3), "r4,trace,true,2,1,3,d\r\n", sources("r4")});
+        results.append(row("r5", 1), {sample("r5", 3), passes("r5"), source_line("r5")});
     }
     const ResultFolder resumed(folder, with_repeats, here, true);
     EXPECT_EQ(resumed.finished(), std::set<std::string>{"r1"});
     EXPECT_EQ(resumed.next_round(), 5);
     EXPECT_EQ(read_file(folder / "samples.csv"), csv_line(sample_columns()) + sample("r1", 0) + sample("r1", 4));
     EXPECT_EQ(read_file(folder / "passes.csv"), csv_line(names_of(pass_columns())) + passes("r1"));
-    EXPECT_EQ(read_file(folder / "results.csv"), csv_line(names_of(with_repeats)) + csv_line({"r1", "ok", "2", "2"}));
+    EXPECT_EQ(read_file(folder / "sources.csv"), csv_line(names_of(source_file_columns())) + sources("r1"));
+    EXPECT_EQ(read_file(folder / "results.csv"),
+              csv_line(names_of(with_repeats)) + csv_line({"r1", "ok", "2", "2", "2"}));
 }
 
 TEST_F(RecordFiles, AFolderOfTheOldFormIsRefusedWithTheWayOut)
@@ -226,7 +242,11 @@ TEST_F(RecordFiles, AFolderOfTheOldFormIsRefusedWithTheWayOut)
     ResultFolder(folder, columns, here, false).append(row_of(1));
     write_file_atomically(folder / "results.csv", "run_id,passes,passes_why\r\nr1,trace=1,trace: a\r\n");
     EXPECT_THAT(message_of<SpecError>([&] { ResultFolder(folder, columns, here, true); }),
-                HasSubstr("measure it anew: ssrlab run"));
+                HasSubstr("without passes.csv; measure it anew: ssrlab run"));
+    write_file_atomically(folder / "results.csv", "run_id,passes_ran\r\nr1,1\r\n");
+    fs::remove(folder / "sources.csv");
+    EXPECT_THAT(message_of<SpecError>([&] { ResultFolder(folder, columns, here, true); }),
+                HasSubstr("without sources.csv; measure it anew: ssrlab run"));
 }
 
 TEST_F(RecordFiles, ValuesComeBackByTheTypeOfTheirColumn)
@@ -296,7 +316,9 @@ TEST_F(RecordFiles, KillsLoseDoubleOrTearNoRow)
                 for (int i = 0; i < row_count; ++i) {
                     const std::string id = "r" + std::to_string(i);
                     if (!results.finished().contains(id))
-                        results.append(row_of(i), id + ",0,frame,1,1\r\n", id + ",trace,true,1,,,\r\n");
+                        results.append(row_of(i), {.samples = id + ",0,frame,1,1\r\n",
+                                                   .passes  = id + ",trace,true,1,,,\r\n",
+                                                   .sources = source_line(id)});
                 }
             };
             const int status = in_child(sweep, useconds_t(500 + random() % 20000));
@@ -313,6 +335,9 @@ TEST_F(RecordFiles, KillsLoseDoubleOrTearNoRow)
         const auto passes = count_passes(read_file(folder / "passes.csv"));
         ASSERT_EQ(passes.size(), static_cast<size_t>(row_count));
         for (const auto& [id, ran] : passes) ASSERT_EQ(ran, 1) << id;
+        const auto sources = count_sources(read_file(folder / "sources.csv"));
+        ASSERT_EQ(sources.size(), static_cast<size_t>(row_count) + 1) << "with the header";
+        for (const auto& [id, asked] : sources) ASSERT_EQ(asked, 1) << id;
         for (int i = 0; i < row_count; ++i) {
             ASSERT_EQ(records[static_cast<size_t>(i)], fields_of(row_of(i), columns));
         }

@@ -245,6 +245,52 @@ TEST(Spec, ATechniquesTableMayNameSettingsOfItsOwn)
                 HasSubstr(".toml:3: 'thickness_m' must be a number in [0, "));
 }
 
+TEST(Spec, EveryListOfSourcesIsARun)
+{
+    const std::string head     = "scenes = \"a\"\n[techniques.linear]\nsteps = [32, 64]\n";
+    const auto        asked_by = [&](const std::string& table) {
+        const Experiment         experiment = load_text(head + table);
+        std::vector<std::string> asked;
+        for (const ssrlab::Run& run : expand(experiment, techniques()))
+            asked.push_back(fmt::format("{} {} {}", run.values.at("steps"), run.sources.text,
+                                               hand_on_names[static_cast<size_t>(run.sources.hand_on)]));
+        EXPECT_EQ(count_runs(experiment), asked.size());
+        return asked;
+    };
+    EXPECT_THAT(asked_by("[sources]\nlists = [\"world\", \"frame,layers:count=2\"]\nhand_on = \"lost\"\n"),
+                testing::ElementsAre("32 world lost", "32 frame,layers:count=2 lost", "64 world lost",
+                                     "64 frame,layers:count=2 lost"));
+    EXPECT_THAT(asked_by("[[sources]]\nlists = \"world\"\n[[sources]]\nlists = \"frame\"\nhand_on = [\"lost\", "
+                         "\"uncertain\"]\n"),
+                testing::ElementsAre("32 world uncertain", "32 frame lost", "32 frame uncertain", "64 world uncertain",
+                                     "64 frame lost", "64 frame uncertain"));
+    const auto list = load_text(head + "[sources]\nlists = \"frame,layers:count=2\"\n").sources.front().list;
+    ASSERT_EQ(list.size(), 2U);
+    EXPECT_EQ(list[0].source->id, "frame");
+    EXPECT_EQ(list[1].source->id, "layers");
+    EXPECT_EQ(list[1].values.at("count"), 2);
+    EXPECT_TRUE(load_text(head).sources.front().list.empty()) << "none without the table";
+}
+
+TEST(Spec, MistakesInSources)
+{
+    const auto mistake = [](const std::string& lines) { return error_of(with_line("[sources]\n" + lines)); };
+    EXPECT_THAT(mistake("lists = [\"frame\", \"frame,wurld\"]"),
+                HasSubstr(".toml:4: 'frame,wurld': unknown source 'wurld': did you mean 'world'?"));
+    EXPECT_THAT(mistake("lists = \"layers:count=9\""), HasSubstr(".toml:4: 'layers:count=9': "));
+    EXPECT_THAT(mistake("lists = \"layers:colour=9\""), HasSubstr("unknown parameter of source 'layers'"));
+    EXPECT_THAT(mistake("lists = []"), HasSubstr(".toml:4: 'lists' is an empty list"));
+    EXPECT_THAT(mistake("lists = 7"), HasSubstr(".toml:4: 'lists' must be a non-empty string, got the integer 7"));
+    EXPECT_THAT(mistake("hand_on = \"lost\""), HasSubstr(".toml:3: [sources] names no list: add lists = "));
+    EXPECT_THAT(mistake("lists = \"frame\"\nhand_on = \"some\""),
+                HasSubstr(".toml:5: 'hand_on' must be \"lost\" or \"uncertain\", got the string \"some\""));
+    EXPECT_THAT(mistake("list = \"frame\""),
+                HasSubstr(".toml:4: unknown key of [sources] 'list': did you mean 'lists'?"));
+    EXPECT_THAT(mistake("lists = \"frame\"\n[measure]\ntruth = false"),
+                HasSubstr(".toml:3: [sources] are judged by the truths: needs truth = true in [measure], got false"));
+    EXPECT_THAT(error_of(with_line("sources = \"frame\"")), HasSubstr(".toml:3: 'sources' must be a table"));
+}
+
 TEST(Spec, AFrameOfASequenceIsPartOfARunsIdentity)
 {
     const auto ids_of = [](const std::string& lines) {

@@ -1,0 +1,13 @@
+// The table [sources] of a specification. Folder-internal: those who include it link toml++.
+#pragma once
+
+#include "core/toml_reading.h"
+#include "harness/experiment.h"
+
+namespace ssrlab {
+
+/// Returns every list with every value of hand_on, or one entry without a list if there is no table. Throws SpecError
+/// for what is unknown, and if there will be no truths to judge by.
+std::vector<AskedSources> read_sources(const TomlFile& file, const MeasureSettings& measure);
+
+} // namespace ssrlab
