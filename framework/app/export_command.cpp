@@ -24,7 +24,8 @@ ExportLanguage language_of(const std::string& name)
     static const std::map<std::string, ExportLanguage> languages = {{"glsl", ExportLanguage::glsl},
                                                                     {"hlsl", ExportLanguage::hlsl},
                                                                     {"msl", ExportLanguage::msl},
-                                                                    {"essl", ExportLanguage::essl}};
+                                                                    {"essl", ExportLanguage::essl},
+                                                                    {"wgsl", ExportLanguage::wgsl}};
     return languages.at(name);
 }
 
@@ -75,20 +76,24 @@ std::vector<ExportFrame> proof_frames(const GBufferImage& scene, const ExportOpt
     return frames;
 }
 
-int print_verdicts(std::span<const FrameVerdict> verdicts, const GpuInfo& device)
+/// are_ties_right: WGSL has no `precise`, so that its compilers may round otherwise.
+int print_verdicts(std::span<const FrameVerdict> verdicts, const std::string& device, bool are_ties_right = false)
 {
-    size_t rays = 0, differing = 0;
+    size_t rays = 0, differing = 0, near_ties = 0;
     for (const FrameVerdict& verdict : verdicts) {
         rays += verdict.rays + verdict.set_up;
         differing += verdict.differing + verdict.set_up_differing;
+        near_ties += verdict.near_ties;
         std::puts(
             fmt::format("{}: {} of {} rays differ{}", verdict.frame, verdict.differing, verdict.rays,
                         verdict.set_up == 0 ? "" : fmt::format("; {} are set up otherwise", verdict.set_up_differing))
                 .c_str());
-        if (!verdict.first.empty()) std::puts(("  " + verdict.first).c_str());
+        for (const std::string& line : verdict.listed) std::puts(("  " + line).c_str());
     }
-    std::puts(fmt::format("{} of {} answers differ on {}", differing, rays, device.name).c_str());
-    return differing == 0 && rays > 0 ? 0 : 1;
+    std::puts(fmt::format("{} of {} answers differ on {}{}", differing, rays, device,
+                          differing == 0 ? "" : fmt::format(", {} of them by rounding alone", near_ties))
+                  .c_str());
+    return differing == (are_ties_right ? near_ties : 0) && rays > 0 ? 0 : 1;
 }
 
 /// Exports each hard case by itself, since each has its own settings, and runs it.
@@ -114,11 +119,13 @@ int verify_hard_cases(Gpu& gpu, const Catalogue& catalogue, const Technique& tec
                 sum.differing += one.differing;
                 sum.set_up += one.set_up;
                 sum.set_up_differing += one.set_up_differing;
-                if (sum.first.empty() && !one.first.empty()) sum.first = setup.label + " " + one.first;
+                sum.near_ties += one.near_ties;
+                if (sum.listed.empty() && !one.listed.empty())
+                    sum.listed.push_back(setup.label + " " + one.listed.front());
             }
             verdicts.push_back(std::move(sum));
         }
-    return print_verdicts(verdicts, gpu.info);
+    return print_verdicts(verdicts, gpu.info.name);
 }
 
 } // namespace
@@ -128,12 +135,16 @@ int export_technique(const CommonOptions& common, const ExportOptions& options, 
     if (!options.verified.empty()) {
         if (!options.picture.technique.empty() || !options.picture.output.empty())
             throw_spec_error("--verify runs a folder that was exported: give no technique and no -o");
+        if (is_wgsl_export(options.verified)) {
+            const WgslVerdicts found = verify_wgsl_export(options.verified);
+            return print_verdicts(found.frames, found.device, true);
+        }
         Gpu gpu = open_gpu(common.gpu);
-        return print_verdicts(verify_export(gpu, options.verified), gpu.info);
+        return print_verdicts(verify_export(gpu, options.verified), gpu.info.name);
     }
     if (options.picture.technique.empty())
         throw_spec_error("export: expected a technique (see ssrlab list) or --verify");
-    if (options.language.empty()) throw_spec_error("--to: expected glsl, hlsl, msl or essl");
+    if (options.language.empty()) throw_spec_error("--to: expected glsl, hlsl, msl, essl or wgsl");
     if (options.picture.output.empty() != options.hard_cases)
         throw_spec_error("-o: expected a folder to write, or --hard-cases instead of it");
     const Catalogue  catalogue = load_catalogue(common.technique_dirs);
@@ -142,6 +153,8 @@ int export_technique(const CommonOptions& common, const ExportOptions& options, 
     CommonOptions    device    = common;
     device.gpu                 = portable(common.gpu);
     if (options.hard_cases) {
+        if (options.language != "glsl" && options.language != "hlsl")
+            throw_spec_error("--hard-cases: expected --to glsl or hlsl, which are run here");
         Gpu gpu                = open_gpu(device.gpu);
         gpu.info.cheap_doubles = false; // rays are set up by floats, as on every device
         return verify_hard_cases(gpu, catalogue, technique, choice, options);

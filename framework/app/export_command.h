@@ -7,7 +7,7 @@ namespace ssrlab {
 
 struct ExportOptions {
     PictureOptions picture;    // technique, parameters, folder to write; the scene's view decides the projection
-    std::string    language;   // glsl, hlsl, msl, essl
+    std::string    language;   // glsl, hlsl, msl, essl, wgsl
     double         near_m = 0; // above 0: in the place of the view's
     std::string    verified;   // a folder whose shaders are run, instead of an export
     bool           hard_cases = false; // export, run and compare every hard case, and keep nothing

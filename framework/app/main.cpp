@@ -325,7 +325,7 @@ int main(int argc, char** argv)
     taken->add_option("TECHNIQUE", exported.picture.technique, "Technique (see ssrlab list)");
     add_parameter_option(*taken, exported.picture);
     taken->add_option("--to", exported.language, "Shading language")
-        ->check(CLI::IsMember({"glsl", "hlsl", "msl", "essl"}));
+        ->check(CLI::IsMember({"glsl", "hlsl", "msl", "essl", "wgsl"}));
     taken->add_option("-o,--output", exported.picture.output, "Folder to write: new or empty");
     taken
         ->add_option("--scene", exported.picture.scene,

@@ -3,7 +3,9 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "export/passes.h"
+#include "export/run_program.h"
 #include "export/translate.h"
+#include "export/wgsl.h"
 #include "trace/lab_passes.h"
 
 namespace ssrlab {
@@ -72,12 +74,15 @@ void write_passes(Gpu& gpu, const Export& what, const View& view, const Composed
                   std::vector<ExportedPass>& passes, const fs::path& folder)
 {
     for (ExportedPass& pass : passes) {
-        const std::string comment = comment_of(what, view, pass, &pass == &passes.back());
-        const fs::path    glsl    = fs::absolute(folder / (pass.name + file_ending(ExportLanguage::glsl)));
-        write_file_atomically(glsl, with_comment(pass.glsl, comment));
+        const std::string comment  = comment_of(what, view, pass, &pass == &passes.back());
+        const fs::path    glsl     = fs::absolute(folder / (pass.name + file_ending(ExportLanguage::glsl)));
+        const auto        resource = [&](const std::string& name) {
+            return resource_of(name, composed, short_path(pass.pass.source.file));
+        };
+        const bool is_wgsl = what.language == ExportLanguage::wgsl;
+        write_file_atomically(glsl, is_wgsl ? glsl_for_wgsl(pass.glsl, resource) : with_comment(pass.glsl, comment));
         const Shader shader = compile_shader(gpu, {.file = glsl});
-        for (const auto& [name, binding] : shader.bindings)
-            pass.bindings.emplace(binding.binding, resource_of(name, composed, short_path(pass.pass.source.file)));
+        for (const auto& [name, binding] : shader.bindings) pass.bindings.emplace(binding.binding, resource(name));
         if (what.language == ExportLanguage::glsl) continue;
         write_file_atomically(folder / (pass.name + file_ending(what.language)),
                               translated(shader, what.language, comment));
@@ -94,6 +99,7 @@ const char* file_ending(ExportLanguage language)
     case ExportLanguage::hlsl: return ".hlsl";
     case ExportLanguage::msl: return ".metal";
     case ExportLanguage::essl: return ".essl";
+    case ExportLanguage::wgsl: return ".wgsl";
     }
     return "";
 }
@@ -101,6 +107,8 @@ const char* file_ending(ExportLanguage language)
 void write_export(Gpu& gpu, const Export& what, std::span<const ExportFrame> frames, const fs::path& folder)
 {
     make_folders(folder);
+    if (what.language == ExportLanguage::wgsl)
+        write_file_atomically(folder / "run.js", read_file(web_folder() / "run.js"));
     std::vector<ExportedPass> passes;
     for (const ExportFrame& frame : frames) {
         const Traced              traced   = trace(gpu, what, frame);

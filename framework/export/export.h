@@ -14,7 +14,7 @@
 
 namespace ssrlab {
 
-enum class ExportLanguage { glsl, hlsl, msl, essl };
+enum class ExportLanguage { glsl, hlsl, msl, essl, wgsl };
 
 struct Export {
     const Catalogue&                                 catalogue;
@@ -44,14 +44,24 @@ void write_export(Gpu& gpu, const Export& what, std::span<const ExportFrame> fra
 
 /// How the exported shaders answered one frame.
 struct FrameVerdict {
-    std::string frame;
-    size_t      rays = 0, differing = 0;          // by status, by pixel, or by any bit of t
-    size_t      set_up = 0, set_up_differing = 0; // rays of the ray set-up, where the frame has it
-    std::string first = {};                       // the first that differs, in words
+    std::string              frame;
+    size_t                   rays = 0, differing = 0;          // by status, by pixel, or by any bit of t
+    size_t                   set_up = 0, set_up_differing = 0; // rays of the ray set-up, where the frame has it
+    size_t                   near_ties = 0;  // of those that differ: hits that rounding moved by less than 0.05 px
+    std::vector<std::string> listed    = {}; // the first that differ, in words
 };
 
 /// Runs the folder's shaders on its frames, and nothing of the lab. Throws SpecError for a folder that is no export, or
 /// whose shaders do not compile.
 std::vector<FrameVerdict> verify_export(Gpu& gpu, const std::filesystem::path& folder);
+
+struct WgslVerdicts {
+    std::vector<FrameVerdict> frames;
+    std::string               device; // as the browser names it
+};
+bool is_wgsl_export(const std::filesystem::path& folder);
+/// The same for an export to WGSL, by WebGPU in Chromium without a window, on its software device. Throws Failure if the
+/// browser or node is missing, or does not run the shaders.
+WgslVerdicts verify_wgsl_export(const std::filesystem::path& folder);
 
 } // namespace ssrlab

@@ -52,24 +52,16 @@ std::vector<ExportedPass> export_passes(Gpu& gpu, const Lab& lab, const Composed
 
 std::string resource_of(const std::string& name, const ComposedLab& composed, const std::string& file)
 {
-    static const std::map<std::string, std::string> known = {{"View", "view"},
-                                                             {"HostDepth", "host_depth"},
-                                                             {"HostGradients", "host_gradients"},
-                                                             {"depth_cells", "cells"},
-                                                             {"cell_pairs", "cells"},
-                                                             {"StoredCells", "cells"},
-                                                             {"StoredCell", "cells"},
-                                                             {"depth_words", "cells"},
-                                                             {"StoredPlanes", "cells"},
-                                                             {"RayCount", "ray_count"},
-                                                             {"Rays", "rays"},
-                                                             {"Hits", "hits"},
-                                                             {"normal_image", "normals"},
-                                                             {"solid_image", "solids"},
-                                                             {"Push", "push"}};
+    static const std::map<std::string, std::string> known = {
+        {"View", "view"},         {"HostDepth", "host_depth"}, {"HostGradients", "host_gradients"},
+        {"depth_cells", "cells"}, {"cell_pairs", "cells"},     {"StoredCells", "cells"},
+        {"StoredCell", "cells"},  {"depth_words", "cells"},    {"StoredPlanes", "cells"},
+        {"cells_both", "cells"},  {"RayCount", "ray_count"},   {"Rays", "rays"},
+        {"Hits", "hits"},         {"normal_image", "normals"}, {"solid_image", "solids"},
+        {"Push", "push"}};
     if (const auto found = known.find(name); found != known.end()) return found->second;
     for (const ComposedBuffer& buffer : composed.buffers)
-        if (name == buffer.name + "_loaded" || name == buffer.name + "_stored")
+        if (name == buffer.name + "_loaded" || name == buffer.name + "_stored" || name == buffer.name + "_both")
             return buffer.structure + "." + buffer.name;
     throw_spec_error("{}: '{}' is a resource that an export does not have", file, name);
 }

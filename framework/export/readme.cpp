@@ -143,7 +143,8 @@ std::string readme(const Export& what, const View& view, std::span<const Exporte
                     "your own replaces the ray set-up.\n\n",
                     passes_table(passes, what.language));
     text +=
-        fmt::format("## Resources\n{}\nBindings are those of set 0 (HLSL: register numbers). Names that a shader gives "
+        fmt::format("## Resources\n{}\nBindings are those of set 0 (HLSL: register numbers; WGSL: group 0). Names that "
+                    "a shader gives "
                     "to one resource may differ. `normals` is read by the trace only with behind = pass or stop.\n\n",
                     resources_table(passes, composed));
     text +=
@@ -153,6 +154,12 @@ std::string readme(const Export& what, const View& view, std::span<const Exporte
         fmt::format("## Cost\nOn the frame `{}` a ray takes {:.1f} steps, {:.1f} depth fetches and {:.1f} structure "
                     "fetches. `ssrlab shaders {} --chip navi21` shows instructions and registers.\n\n",
                     cost.frame, cost.steps, cost.depth_fetches, cost.structure_fetches, what.technique.id);
+    if (what.language == ExportLanguage::wgsl)
+        text +=
+            "## Host\n`run.js` is a host for WebGPU without dependencies: it makes the resources and pipelines of a "
+            "frame, runs its passes and reads hits back. In a page that a server gives out of this folder, "
+            "`verifyFolder([\"scene\"], console.log)` runs the proof on the visitor's GPU. WGSL has no `precise`, so "
+            "a GPU may round otherwise than `expected/`.\n\n";
     text +=
         "## Proof\n`frames/` has inputs and `expected/` has the answer of every ray. `ssrlab export --verify FOLDER` "
         "runs these files and compares. A host of your own reads `frames/NAME.json`: it lists each resource (its "

@@ -3,16 +3,14 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/temporary_folder.h"
+#include "export/run_program.h"
+#include "export/wgsl.h"
 #include "gpu/spirv.h"
 
 #include <cctype>
-#include <cerrno>
 #include <cstring>
-#include <fcntl.h>
 #include <map>
 #include <span>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace ssrlab {
 namespace {
@@ -20,8 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Gives the variable of each block without a name the name of the block, "View" becomes "view": translators write
-/// "view_size_px" then, and not "_376_size_px".
-std::vector<uint32_t> with_named_blocks(const std::vector<uint32_t>& spirv)
+/// "view_size_px" then, and not "_376_size_px". Takes the types of the arguments from the names of functions.
+std::vector<uint32_t> with_plain_names(const std::vector<uint32_t>& spirv)
 {
     constexpr uint32_t              op_name = 5, op_type_pointer = 32, op_variable = 59; // SPIR-V 1.6, section 3
     std::map<uint32_t, std::string> names;                                               // by id
@@ -36,12 +34,15 @@ std::vector<uint32_t> with_named_blocks(const std::vector<uint32_t>& spirv)
     for_each_instruction(spirv, [&](std::span<const uint32_t> words) {
         const bool  is_nameless = opcode_of(words) == op_name && words[2] == 0 && type_of.contains(words[1]);
         std::string name        = is_nameless ? names[pointed[type_of[words[1]]]] : "";
+        if (!name.empty()) {
+            const char first = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
+            name             = first == name[0] ? name + "_buffer" : first + name.substr(1);
+        } else if (opcode_of(words) == op_name)
+            name = names[words[1]].substr(0, names[words[1]].find('('));
         if (name.empty()) {
             named.insert(named.end(), words.begin(), words.end());
             return;
         }
-        const char first = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
-        name             = first == name[0] ? name + "_buffer" : first + name.substr(1);
         std::vector<uint32_t> text(name.size() / 4 + 1);
         std::memcpy(text.data(), name.data(), name.size());
         named.push_back(static_cast<uint32_t>(text.size() + 2) << 16 | op_name);
@@ -54,7 +55,8 @@ std::vector<uint32_t> with_named_blocks(const std::vector<uint32_t>& spirv)
 std::vector<std::string> options_of(ExportLanguage language)
 {
     switch (language) {
-    case ExportLanguage::glsl: return {};
+    case ExportLanguage::glsl:
+    case ExportLanguage::wgsl: return {};
     case ExportLanguage::hlsl: return {"--hlsl", "--shader-model", "60"};
     case ExportLanguage::msl: return {"--msl", "--msl-version", "20200", "--msl-decoration-binding"};
     case ExportLanguage::essl: return {"--es", "--version", "310"};
@@ -62,24 +64,44 @@ std::vector<std::string> options_of(ExportLanguage language)
     return {};
 }
 
-/// Exit code of the program with its output in a file; 127: it is not there.
-int run_program(const std::vector<std::string>& words, const fs::path& output)
+/// The shader as a file of SPIR-V, with names for the translators.
+void write_spirv(const std::vector<uint32_t>& spirv, const fs::path& file)
 {
-    std::vector<char*> arguments;
-    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
-    const pid_t child = ::fork();
-    if (child < 0) throw_failure("{} cannot be started: {}", words[0], std::strerror(errno));
-    if (child == 0) {
-        const int file = ::open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-        ::dup2(file, STDOUT_FILENO);
-        ::dup2(file, STDERR_FILENO);
-        ::execvp(arguments[0], arguments.data());
-        ::_exit(127);
-    }
-    int status = 0;
-    if (::waitpid(child, &status, 0) != child) throw_failure("{} was lost: {}", words[0], std::strerror(errno));
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    const std::vector<uint32_t> named = with_plain_names(spirv);
+    write_file_atomically(file, {reinterpret_cast<const char*>(named.data()), named.size() * sizeof(uint32_t)});
+}
+
+/// Runs a translator, which leaves its text in `text`.
+std::string run_translator(const Shader& shader, const std::vector<std::string>& words, const fs::path& text,
+                           const std::string& package)
+{
+    const ProgramOutput done = run_program(words);
+    const std::string&  name = words[0];
+    if (done.code == program_is_missing)
+        throw_failure("{} is not installed: install Debian's package {}", name, package);
+    if (done.code != 0)
+        throw_failure("{}: {} cannot translate it: {}", short_path(shader.name), name,
+                      done.text.substr(0, done.text.find('\n')));
+    return read_file(text);
+}
+
+/// naga takes SPIR-V up to version 1.3, so the file is compiled again. It is written in GLSL by glsl_for_wgsl().
+std::string translated_to_wgsl(const Shader& shader, const fs::path& folder)
+{
+    const fs::path spirv = folder / "shader.spv", text = folder / "text";
+    const fs::path web = web_folder();
+    if (!fs::exists(web / "node_modules/naga-wasm"))
+        throw_failure("naga-wasm, which writes WGSL, is not installed: npm ci --prefix {}", web.string());
+    run_translator(
+        shader, {"glslangValidator", "-V", "--target-env", "vulkan1.1", "--quiet", shader.name, "-o", spirv.string()},
+        spirv, "glslang-tools");
+    const std::string     bytes = read_file(spirv);
+    std::vector<uint32_t> words(bytes.size() / sizeof(uint32_t));
+    std::memcpy(words.data(), bytes.data(), words.size() * sizeof(uint32_t));
+    write_spirv(words, spirv);
+    const std::string wgsl =
+        run_translator(shader, {"node", (web / "to_wgsl.mjs").string(), spirv.string(), text.string()}, text, "nodejs");
+    return with_read_access(wgsl, read_file(shader.name), shader);
 }
 
 } // namespace
@@ -87,19 +109,12 @@ int run_program(const std::vector<std::string>& words, const fs::path& output)
 std::string translated(const Shader& shader, ExportLanguage language, const std::string& comment)
 {
     const TemporaryFolder folder("ssrlab_export");
-    const fs::path        spirv = folder.path / "shader.spv", text = folder.path / "text", said = folder.path / "said";
-    const std::vector<uint32_t> named = with_named_blocks(shader.spirv);
-    write_file_atomically(spirv, {reinterpret_cast<const char*>(named.data()), named.size() * sizeof(uint32_t)});
+    if (language == ExportLanguage::wgsl) return comment + translated_to_wgsl(shader, folder.path);
+    const fs::path spirv = folder.path / "shader.spv", text = folder.path / "text";
+    write_spirv(shader.spirv, spirv);
     std::vector<std::string> words{"spirv-cross", spirv.string(), "--output", text.string()};
     for (const std::string& option : options_of(language)) words.push_back(option);
-    const int code = run_program(words, said);
-    if (code == 127) throw_failure("spirv-cross is not installed: install Debian's package spirv-cross");
-    if (code != 0) {
-        std::string why = read_file(said);
-        why             = why.substr(0, why.find('\n'));
-        throw_failure("{}: spirv-cross cannot translate it: {}", short_path(shader.name), why);
-    }
-    const std::string result = read_file(text);
+    const std::string result = run_translator(shader, words, text, "spirv-cross");
     // GLSL's #version stays the first line.
     const size_t first = result.starts_with("#version") ? result.find('\n') + 1 : 0;
     return result.substr(0, first) + comment + result.substr(first);

@@ -1,4 +1,4 @@
-// From SPIR-V to other shading languages, by the program spirv-cross. Folder-internal.
+// From SPIR-V to other shading languages, by the program spirv-cross and, for WGSL, by naga. Folder-internal.
 #pragma once
 
 #include "export/export.h"
@@ -6,7 +6,7 @@
 
 namespace ssrlab {
 
-/// The shader in that language, behind a comment, with its names and binding numbers. Throws Failure where spirv-cross is
+/// The shader in that language, behind a comment, with its names and binding numbers. Throws Failure where the translator is
 /// missing or cannot translate the shader.
 std::string translated(const Shader& shader, ExportLanguage language, const std::string& comment);
 

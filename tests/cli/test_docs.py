@@ -96,7 +96,7 @@ def long_lines(text):
 def code_files():
     for folder in CODE_FOLDERS:
         for parent, folders, names in os.walk(os.path.join(SOURCE, folder)):
-            folders[:] = [one for one in folders if one != "kept"]  # inputs found by fuzzing
+            folders[:] = [one for one in folders if one not in ("kept", "node_modules")]  # inputs found by fuzzing; npm's
             for name in names:
                 if not name.endswith((".md", ".pyc", ".png", ".json", ".csv", ".bin")):
                     yield os.path.join(parent, name)

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shutil
+import struct
 import subprocess
 
 from support import Case, main
@@ -87,6 +88,45 @@ class Test(Case):
             if os.path.exists(SWIFTSHADER):
                 self.assert_equal_on_every_ray(folder, VK_ICD_FILENAMES=SWIFTSHADER)
 
+    def test_wgsl_answers_as_the_lab_does(self):
+        folder = self.export("hiz", "wgsl")
+        trace = self.read(folder, "4_trace.wgsl")
+        self.assertIn("fn strip_index(", trace)
+        self.assertIn("var<storage, read> ", trace)
+        self.assertLessEqual(len(self.read(folder, "run.js").splitlines()), 150)
+
+        frame = json.loads(self.read(folder, "frames", "scene.json"))
+        path = os.path.join(folder, "expected", "scene.bin")
+        with open(path, "rb") as file:
+            words = list(struct.unpack(f"<{2 * frame['rays']}I", file.read()))
+        first = next(i for i in range(0, len(words), 2) if words[i] >> 28 == 1)
+        words[first + 1] += 1 # the next larger t
+        with open(path, "wb") as file:
+            file.write(struct.pack(f"<{len(words)}I", *words))
+        differing, said = self.verified(folder)
+        self.assertEqual((differing["scene"], sum(differing.values())), (1, 1), said)
+        self.assertGreaterEqual(len(differing), 4)
+        self.assertIn("0 are set up otherwise", said)
+        self.assertRegex(said, r"ray \d+ of pixel \(\d+, \d+\): .* px apart: rounding\)")
+
+        for other in set(glob.glob(f"{folder}/frames/*.json")) - {os.path.join(folder, "frames", "scene.json")}:
+            os.remove(other)
+        path = os.path.join(folder, "4_trace.wgsl")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(re.sub(r"@workgroup_size\(64, 1, 1\)", "@workgroup_size(32, 1, 1)", trace))
+        differing, said = self.verified(folder, code=1)
+        self.assertGreater(differing["scene"], 100, said)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(trace + "no WGSL")
+        self.ssrlab("export", "--verify", folder, code=1, says=["4_trace.wgsl:"])
+
+    def test_wgsl_without_its_translator(self):
+        os.makedirs(self.path("bin"))
+        os.symlink(shutil.which("glslangValidator"), self.path("bin/glslangValidator"))
+        said = self.ssrlab("export", "dda", "--to", "wgsl", "-o", self.path("out"), "--size", "64x36", code=1,
+                           PATH=self.path("bin"))
+        self.assertIn("node is not installed: install Debian's package nodejs", said)
+
     def test_glsl_is_plain(self):
         folder = self.export("hiz", "glsl", "-p", "max_steps=77")
         files = sorted(glob.glob(f"{folder}/*.comp"))
@@ -123,6 +163,7 @@ class Test(Case):
         more = ("--techniques", self.path("own"), "--techniques", self.path("own_structures"))
         for language in ("glsl", "hlsl"):
             self.assert_equal_on_every_ray(self.export("own", language, *more))
+        self.verified(self.export("own", "wgsl", *more)) # equal but for rounding
         self.assertNotIn("STOP(", self.read(self.path("own_glsl"), "4_trace.comp"))
 
     def test_languages_that_are_not_run(self):
@@ -141,7 +182,7 @@ class Test(Case):
         self.refused("export", "nothing", "--to", "glsl", "-o", self.path("out"), code=2, says=["nothing"])
         self.refused("export", "dda", "--to", "glsl", "-o", self.path("out"), "-p", "layers=2", code=2, says=["layers = 2"])
         self.refused("export", "--verify", self.path("none"), code=2, says=["no export"])
-        self.ssrlab("export", "dda", "--to", "wgsl", "-o", self.path("out"), code=2, says=["wgsl"])
+        self.ssrlab("export", "dda", "--to", "spirv", "-o", self.path("out"), code=2, says=["spirv"])
         self.write("full/file", "")
         self.refused("export", "dda", "--to", "glsl", "-o", self.path("full"), code=2, says=["new or empty folder"])
         folder = self.export("dda", "glsl")
