@@ -120,8 +120,8 @@ public:
             bvh_ = std::make_unique<SceneBvh>(stage_.scene);
             refuse_false(off_surface_share(*bvh_, stage_.scene, gbuffer, settings));
         }
-        // As many rays a pixel in all as one picture has.
-        const int rays = std::max(2, (GlossySettings{}.rays + samples_ - 1) / samples_);
+        // As many rays a pixel in all as one picture has; an even number.
+        const int rays = 2 * std::max(1, (GlossySettings{}.rays / 2 + samples_ - 1) / samples_);
         return true_picture(
             glossy_truth(*bvh_, stage_.scene, gbuffer, settings, {.rays = rays, .first = sample * rays}), gbuffer,
             stage_.scene.ambient);

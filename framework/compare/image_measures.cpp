@@ -57,26 +57,41 @@ double mean_inside(const std::vector<float>& values, const Mask& mask)
     return sum / count;
 }
 
-/// Over all three channels.
-std::optional<double> rmse_inside(const Image& tested, const Image& reference, const Mask& mask)
+/// A root mean square over all three channels, without the noise of the reference.
+struct Rmse {
+    std::optional<double> value;
+    double                noise = 0, low = 0, high = 0; // that was taken off; 95 % interval that it leaves
+};
+
+/// Expected: (tested - reference)² = (tested - truth)² + noise. Where d² is that difference and n the noise of a pixel, chance moves d²
+/// by 4 d² n + 2 n² (variance of a normal variable's square); pixels are independent.
+Rmse rmse_inside(const Image& tested, const Reference& reference, const Mask& mask)
 {
-    double sum = 0, count = 0;
+    double squares = 0, noise = 0, variance = 0, count = 0;
     for (size_t i = 0; i < mask.size(); ++i) {
         if (mask[i] == 0) continue;
+        double square = 0;
         for (size_t c = 0; c < 3; ++c) {
-            const double difference = double(tested.values[3 * i + c]) - double(reference.values[3 * i + c]);
-            sum += difference * difference;
+            const double off = double(tested.values[3 * i + c]) - double(reference.display.values[3 * i + c]);
+            square += off * off;
         }
+        squares += square;
         count += 3;
+        if (reference.noise.empty()) continue;
+        const auto own = double(reference.noise[i]);
+        noise += own;
+        variance += 4 * square * own + 2 * own * own;
     }
-    if (count == 0) return std::nullopt;
-    return std::sqrt(sum / count);
+    if (count == 0) return {};
+    const double square = (squares - noise) / count, spread = 1.96 * std::sqrt(variance) / count;
+    const auto   root = [](double value) { return std::sqrt(std::max(value, 0.0)); };
+    return {root(square), root(noise / count), root(square - spread), root(square + spread)};
 }
 
 ImageErrors compare_inside(const Image& tested, const Reference& reference, const Mask& mask)
 {
     ImageErrors errors;
-    errors.rmse = rmse_inside(tested, reference.display, mask);
+    errors.rmse = rmse_inside(tested, reference, mask).value;
     if (!errors.rmse) return errors;
     if (*errors.rmse > 0) errors.psnr_db = -20 * std::log10(*errors.rmse);
     // The windows of SSIM and FLIP reach outside the mask, where nothing is to be judged: there both show the reference.
@@ -125,11 +140,18 @@ bool at_material_border(const GBufferImage& gbuffer, glm::ivec2 pixel)
 
 } // namespace
 
-Reference::Reference(const Image& linear_radiance)
+Reference::Reference(const Image& linear_radiance, std::span<const Image> halves)
     : display(to_display(linear_radiance, {})),
       ssim(ssim_view(to_luma(display, {display.size_px, std::vector<float>(display.values.size() / 3)}, {}))),
       flip(flip_view(display))
 {
+    if (halves.size() != 2) return;
+    const Image even = to_display(halves[0], {}), odd = to_display(halves[1], {});
+    noise.resize(pixel_count(display.size_px));
+    for (size_t v = 0; v < even.values.size(); ++v) {
+        const float off = (even.values[v] - odd.values[v]) / 2;
+        noise[v / 3] += off * off;
+    }
 }
 
 Image reference_image(const SceneTruth& truth)
@@ -191,8 +213,13 @@ MeasureValues compare_pictures(const Image& tested, const Reference& reference, 
     const Mask  visible_border = make_mask(truth.size_px, [&](size_t i) { return visible[i] != 0 && border[i] != 0; });
     const Image display        = to_display(tested, reflective);
     const ImageErrors errors   = compare_inside(display, reference, reflective);
-    const auto        rmse     = [&](const Mask& mask) { return rmse_inside(display, reference.display, mask); };
+    const auto        rmse     = [&](const Mask& mask) { return rmse_inside(display, reference, mask).value; };
+    const Rmse        whole    = rmse_inside(display, reference, reflective);
+    const auto        known    = [&](double value) { return whole.value ? std::optional(value) : std::nullopt; };
     return {{"picture_rmse", errors.rmse},
+            {"picture_rmse_low", known(whole.low)},
+            {"picture_rmse_high", known(whole.high)},
+            {"picture_noise_rmse", known(whole.noise)},
             {"picture_psnr_db", errors.psnr_db},
             {"picture_ssim", errors.ssim},
             {"picture_flip", errors.flip},
@@ -210,7 +237,7 @@ MeasureValues compare_ghosts(const Image& tested, const Reference& reference, co
     const Mask behind_edges = make_mask(truth.size_px, [&](size_t i) {
         return truth.cls[i] == TruthClass::visible && earlier.cls[i] == ReprojectionClass::hidden;
     });
-    return {{"ghosting_rmse", rmse_inside(to_display(tested, behind_edges), reference.display, behind_edges)}};
+    return {{"ghosting_rmse", rmse_inside(to_display(tested, behind_edges), reference, behind_edges).value}};
 }
 
 MeasureValues compare_converged(const Image& tested, const Reference& converged, const SceneTruth& truth)
@@ -218,7 +245,7 @@ MeasureValues compare_converged(const Image& tested, const Reference& converged,
     require_comparable(tested, truth);
     require_comparable(converged.display, truth);
     const Mask reflective = reflective_pixels(truth);
-    return {{"converged_rmse", rmse_inside(to_display(tested, reflective), converged.display, reflective)}};
+    return {{"converged_rmse", rmse_inside(to_display(tested, reflective), converged, reflective).value}};
 }
 
 Image flip_of_picture(const Image& tested, const Reference& reference, const SceneTruth& truth)

@@ -166,7 +166,14 @@ constexpr auto table = std::to_array<Measure>({
 
     {"picture_rmse", "display value",
      "as rmse_visible, of the finished picture against the picture with the scene truth's reflection at full weight, "
-     "over pixels that reflect",
+     "over pixels that reflect; the noise of that picture is taken off: root of (mean square difference - "
+     "picture_noise_rmse²)",
+     own},
+    {"picture_rmse_low", "display value", "lower end of the 95 % interval that this noise leaves to picture_rmse", own},
+    {"picture_rmse_high", "display value", "its upper end", own},
+    {"picture_noise_rmse", "display value",
+     "noise of the picture with the true reflection: root of the mean square of half of what the pictures by its even "
+     "and its odd rays differ by",
      own},
     {"picture_psnr_db", "dB", "20 log10(1 / picture_rmse); empty when identical", own},
     {"picture_ssim", "index", "as ssim_visible, of the same pictures over the same pixels", "Wang et al. 2004"},

@@ -69,13 +69,15 @@ std::optional<double> count_flips(const TraceResult& float_result, const TraceRe
 MeasureValues split_error(const TraceResult& float_result, const TraceResult* double_result,
                           const TraceResult* screen_truth, const SceneTruth* scene_truth);
 
-/// A reference picture, prepared to judge many pictures. Throws Failure unless it has three channels.
+/// A reference picture, prepared to judge many pictures. Throws Failure unless it has three channels. `halves`: two
+/// pictures that err independently and whose mean it is; empty if it has no noise.
 struct Reference {
-    explicit Reference(const Image& linear_radiance);
+    explicit Reference(const Image& linear_radiance, std::span<const Image> halves = {});
 
-    Image    display; // sRGB-encoded
-    SsimView ssim;
-    FlipView flip;
+    Image              display; // sRGB-encoded
+    SsimView           ssim;
+    FlipView           flip;
+    std::vector<float> noise; // of each pixel: expected square of the error of `display`, sum over channels; or empty
 };
 
 /// Compares linear reflections: "reflective" over traced pixels, "visible" over those with a visible point.

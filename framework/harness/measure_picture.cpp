@@ -148,12 +148,11 @@ void make_references(SweepContext& sweep, Picture& picture, const MeasuredRun& m
         if (!image_errors || (picture.reference && picture.reference_for == settings.trace)) return;
         picture.reference.reset();
         picture.reference_file.clear();
-        std::optional<Image> truth = picture.truths->given_picture();
-        if (!truth && picture.truths->without_scene().empty()) truth = picture.truths->true_picture();
-        if (!truth) return;
-        picture.reference.emplace(*truth);
+        const std::optional<Image> given = picture.truths->given_picture();
+        if (!given && !picture.truths->without_scene().empty()) return;
+        picture.reference     = given ? Reference(*given) : picture.truths->true_reference();
         picture.reference_for = settings.trace;
-        write_references(sweep, picture, measured, *truth);
+        write_references(sweep, picture, measured, given ? *given : picture.truths->true_picture());
     });
 }
 

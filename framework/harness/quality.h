@@ -41,6 +41,8 @@ public:
 
     /// Returns the image with the true reflections (truth/glossy_truth.h). Needs a scene truth.
     const Image& true_picture();
+    /// Returns it as a reference whose noise is known. Needs a scene truth.
+    Reference true_reference();
 
     /// Returns why there is no screen truth for these settings; empty if there is one.
     static std::string without_screen(const TraceSettings& settings);
@@ -83,6 +85,7 @@ private:
     MeasureValues                    depth_to_scene_;   // empty without triangles
     std::optional<Reference>         reference_;        // with image_errors: the scene truth's reflection
     std::optional<Image>             true_picture_;     // once asked for
+    std::array<Image, 2>             true_halves_;      // likewise: by even rays and by odd ones
     std::optional<ReprojectionTruth> before_, earlier_; // once asked for
 };
 

@@ -6,6 +6,7 @@
 #include "truth/screen_ray.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ssrlab {
@@ -32,13 +33,19 @@ glm::dvec2 random(glm::ivec2 pixel, int ray, int bounce, uint32_t seed)
     return glm::dvec2(glm::uvec2(hash(key))) * 0x1p-32;
 }
 
-/// The same for rays that fill one lobe evenly: a sequence of low discrepancy (M. Roberts 2018, "The Unreasonable Effectiveness of
-/// Quasirandom Sequences": R2), moved by a random offset for each pixel.
+/// Even and odd rays are two halves that know nothing of each other: what they differ by tells their noise.
+int half_of(int ray) { return ray % 2; }
+
+/// The same for rays of which each half fills one lobe evenly: a sequence of low discrepancy (M. Roberts 2018, "The Unreasonable
+/// Effectiveness of Quasirandom Sequences": R2), moved by a random offset for each pixel.
 glm::dvec2 even(glm::ivec2 pixel, int ray, int bounce, uint32_t seed)
 {
-    return glm::fract(random(pixel, 0, bounce, seed) +
-                      double(ray) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
+    return glm::fract(random(pixel, half_of(ray), bounce, seed) +
+                      double(ray / 2) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
 }
+
+/// Light of the two halves; their mean is the light.
+using Halves = std::array<glm::dvec3, 2>;
 
 /// A ray under way, and what the light at its end will count for.
 struct Path {
@@ -54,11 +61,21 @@ struct RowPaths {
     std::vector<glm::ivec2> pixels;  // that reflect
     std::vector<size_t>     ends;    // of each pixel's samples
     std::vector<glm::dvec3> weights; // of each sample; 0: below the horizon
-    std::vector<glm::dvec3> light;   // of each sample
+    std::vector<Halves>     light;   // of each sample
     std::vector<size_t>     owners;  // of each sample in `pixels`
     std::vector<Path>       paths;   // that go on
     std::vector<SceneRay>   rays;    // of those
 };
+
+/// A path that is alone stands for both halves.
+void add_light(RowPaths& row, const Path& path, glm::dvec3 value)
+{
+    Halves& light = row.light[path.sample];
+    if (path.alone)
+        for (glm::dvec3& half : light) half += value;
+    else
+        light[half_of(path.number)] += 2.0 * value;
+}
 
 class PathTracer {
 public:
@@ -100,7 +117,7 @@ private:
             if (lobe.is_mirror()) sample.direction = mirror_vs; // the scene truth's, to the last bit
             const size_t number = row.weights.size();
             row.weights.push_back(sample.weight > 0 ? sample.weight * fresnel(f0, sample.cos_half) : glm::dvec3(0));
-            row.light.emplace_back(0);
+            row.light.push_back({glm::dvec3(0), glm::dvec3(0)});
             row.owners.push_back(row.pixels.size());
             if (!(sample.weight > 0)) continue;
             row.paths.push_back({number, glm::dvec3(1), roughness, glossy_.first + k, lobe.is_mirror()});
@@ -123,23 +140,17 @@ private:
 
     void arrive(RowPaths& row, Path path, const SceneRay& ray, const RayEnd& end, int bounce) const
     {
-        glm::dvec3& light = row.light[path.sample];
-        if (end.cls == TruthClass::sky) {
-            light += path.throughput * glm::dvec3(end.radiance);
-            return;
-        }
+        if (end.cls == TruthClass::sky) return add_light(row, path, path.throughput * glm::dvec3(end.radiance));
         const SurfaceMaterial material  = surface_material(scene_, end.hit.surface);
         const glm::dvec3      point_ws  = ray.origin_ws + end.hit.t * ray.direction_ws;
         const glm::dvec3      to_eye_ws = -glm::normalize(ray.direction_ws);
         const double          roughness = std::max(double(material.roughness), path.roughness);
-        light +=
-            path.throughput * glm::dvec3(shade_highlight(bvh_, scene_, end.hit, point_ws, ray.direction_ws, roughness));
+        add_light(row, path,
+                  path.throughput *
+                      glm::dvec3(shade_highlight(bvh_, scene_, end.hit, point_ws, ray.direction_ws, roughness)));
         const bool goes_on = bounce < glossy_.bounces &&
                              settings_.material_reflects(material.metallic, material.dielectric_f0, material.roughness);
-        if (!goes_on) {
-            light += path.throughput * glm::dvec3(end.radiance);
-            return;
-        }
+        if (!goes_on) return add_light(row, path, path.throughput * glm::dvec3(end.radiance));
         const glm::ivec2 pixel = row.pixels[row.owners[path.sample]];
         const Lobe       lobe(seen_normal_ws(material, end.hit, ray.direction_ws), to_eye_ws, roughness);
         const glm::dvec3 f0 = f0_of(material.base_colour, double(material.metallic), double(material.dielectric_f0));
@@ -149,7 +160,7 @@ private:
         const double     side     = glm::dot(end.hit.normal_ws, ray.direction_ws) > 0 ? -1 : 1;
         const bool       spreads  = path.alone && !lobe.is_mirror();
         const int        count    = spreads ? glossy_.rays : 1;
-        light += path.throughput * emission;
+        add_light(row, path, path.throughput * emission);
         path.throughput /= count;
         path.alone     = path.alone && !spreads;
         path.roughness = roughness;
@@ -159,11 +170,12 @@ private:
                                                : random(pixel, path.number, bounce + 1, glossy_.seed);
             const LobeSample sample  = lobe.sample(numbers);
             const glm::dvec3 weight  = sample.weight * fresnel(f0, sample.cos_half);
-            light += path.throughput * (1.0 - weight) * below; // its mean over the lobe is that of the albedo
+            add_light(row, path,
+                      path.throughput * (1.0 - weight) * below); // its mean over the lobe is that of the albedo
             if (!(sample.weight > 0)) continue;
             if (side * glm::dot(end.hit.normal_ws, sample.direction) <= 0) {
-                light += path.throughput * weight *
-                         (glm::dvec3(end.radiance) - emission); // interpolated normals lead into the triangle
+                // Interpolated normals lead into the triangle.
+                add_light(row, path, path.throughput * weight * (glm::dvec3(end.radiance) - emission));
                 continue;
             }
             Path onward = path;
@@ -174,23 +186,19 @@ private:
         }
     }
 
-    /// Mean and standard error of one pixel's samples.
+    /// Mean and noise of one pixel's samples.
     static void reduce(const RowPaths& row, size_t first, size_t last, size_t i, GlossyTruth& truth)
     {
         const auto count = double(last - first);
-        glm::dvec3 sum(0), squares(0), weight(0);
+        Halves     sums{glm::dvec3(0), glm::dvec3(0)};
+        glm::dvec3 weight(0);
         for (size_t k = first; k < last; ++k) {
-            sum += row.weights[k] * row.light[k];
+            for (size_t half : {0, 1}) sums[half] += row.weights[k] * row.light[k][half];
             weight += row.weights[k];
         }
-        const glm::dvec3 mean = sum / count;
-        for (size_t k = first; k < last; ++k) {
-            const glm::dvec3 off = row.weights[k] * row.light[k] - mean;
-            squares += off * off;
-        }
-        truth.radiance[i] = glm::vec3(mean);
+        truth.radiance[i] = glm::vec3(0.5 * (sums[0] + sums[1]) / count);
+        truth.noise[i]    = glm::vec3(0.5 * (sums[0] - sums[1]) / count);
         truth.albedo[i]   = glm::vec3(weight / count);
-        if (count > 1) truth.standard_error[i] = glm::vec3(glm::sqrt(squares / (count - 1) / count));
     }
 
     const SceneBvh&       bvh_;
@@ -210,7 +218,7 @@ GlossyTruth empty_glossy_truth(glm::ivec2 size_px)
     truth.size_px = size_px;
     truth.rays.resize(count);
     truth.radiance.resize(count);
-    truth.standard_error.resize(count);
+    truth.noise.resize(count);
     truth.albedo.resize(count);
     return truth;
 }
@@ -224,14 +232,16 @@ GlossyTruth glossy_truth(const SceneBvh& bvh, const Scene& scene, const GBufferI
         if (count != gbuffer.depth.size())
             throw_failure("G-buffer of view '{}': expected {} values of {}, found {}", gbuffer.view.name,
                           gbuffer.depth.size(), name, count);
-    if (glossy.rays < 2) throw_failure("glossy truth: expected at least 2 rays a pixel, got {}", glossy.rays);
+    if (glossy.rays < 2 || glossy.rays % 2 != 0 || glossy.first % 2 != 0)
+        throw_failure("glossy truth: expected an even number of rays a pixel, got {} from {} on", glossy.rays,
+                      glossy.first);
     GlossyTruth      truth = empty_glossy_truth(gbuffer.view.size_px);
     const PathTracer tracer(bvh, scene, gbuffer, settings, glossy);
     parallel_rows(truth.size_px.y, threads, [&](int y) { tracer.fill_row(y, truth); });
     return truth;
 }
 
-Image true_picture(const GlossyTruth& truth, const GBufferImage& gbuffer, glm::vec3 ambient)
+Image true_picture(const GlossyTruth& truth, const GBufferImage& gbuffer, glm::vec3 ambient, float noises)
 {
     Image image{truth.size_px, {"R", "G", "B"}, {}, {}};
     image.values.reserve(3 * truth.rays.size());
@@ -241,7 +251,7 @@ Image true_picture(const GlossyTruth& truth, const GBufferImage& gbuffer, glm::v
             const glm::vec3 stand_in = gbuffer.metallic[i] * ambient * gbuffer.base_colour[i];
             const glm::vec3 emission = emission_at(gbuffer, i);
             const glm::vec3 below    = glm::max(colour - emission - stand_in, 0.0F);
-            colour                   = emission + (1.0F - truth.albedo[i]) * below + truth.radiance[i];
+            colour = emission + (1.0F - truth.albedo[i]) * below + truth.radiance[i] + noises * truth.noise[i];
         }
         colour += gbuffer.highlight[i];
         image.values.insert(image.values.end(), {colour.r, colour.g, colour.b});

@@ -20,11 +20,10 @@
 namespace ssrlab {
 
 struct GlossySettings {
-    int rays = 64; // per pixel, at least 2
-    int first =
-        0; // number of the first ray: truths with rays 0 … n - 1, n … 2 n - 1 … of a seed combine like a single one
-    int      bounces = 3; // further ones
-    uint32_t seed    = 0;
+    int rays    = 256; // per pixel, even
+    int first   = 0; // number of the first ray, even: truths with rays 0 … n - 1, n … 2 n - 1 … of a seed combine
+    int bounces = 3; // further ones
+    uint32_t seed = 0;
 };
 
 /// One entry per pixel, row-major; 0 if not traced.
@@ -32,18 +31,20 @@ struct GlossyTruth {
     glm::ivec2             size_px{0, 0};
     std::vector<uint32_t>  rays;     // traced rays: 0, 1 (mirror) or GlossySettings::rays
     std::vector<glm::vec3> radiance; // linear, mean of weight * radiance
-    std::vector<glm::vec3>
-        standard_error;            // of that mean, as for independent rays; these fill the lobe evenly and err less
+    /// Half of what the means of even and odd rays differ by. Both fill the lobe evenly, each by a sequence of its own,
+    /// so its square is, on average, the square of the radiance's error.
+    std::vector<glm::vec3> noise;
     std::vector<glm::vec3> albedo; // mean weight: the share of light that is reflected
 };
 
 GlossyTruth empty_glossy_truth(glm::ivec2 size_px);
 
-/// Returns the truth of every reflecting pixel. threads = 0: all cores.
+/// Returns the truth of every reflecting pixel. threads = 0: all cores. Throws Failure for an odd number of rays.
 GlossyTruth glossy_truth(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer,
                          const TraceSettings& settings, const GlossySettings& glossy, unsigned threads = 0);
 
-/// Returns the G-buffer's own light with the true reflections; linear, channels R, G, B.
-Image true_picture(const GlossyTruth& truth, const GBufferImage& gbuffer, glm::vec3 ambient);
+/// Returns the G-buffer's own light with the true reflections; linear, channels R, G, B. `noises`: 1 for the picture by
+/// the even rays alone, -1 by the odd ones.
+Image true_picture(const GlossyTruth& truth, const GBufferImage& gbuffer, glm::vec3 ambient, float noises = 0);
 
 } // namespace ssrlab

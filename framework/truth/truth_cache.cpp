@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Raise when the code computes another truth from the same input, or writes it in another form.
-constexpr uint32_t format_version = 10;
+constexpr uint32_t format_version = 11;
 
 struct Header {
     std::array<char, 8> magic{'S', 'S', 'R', 'T', 'R', 'U', 'T', 'H'};
@@ -191,7 +191,7 @@ template <typename Pass> void pass_values(Pass& pass, GlossyTruth& truth)
         pass(truth.rays[i]);
         if (truth.rays[i] == 0) continue;
         pass(truth.radiance[i]);
-        pass(truth.standard_error[i]);
+        pass(truth.noise[i]);
         pass(truth.albedo[i]);
     }
 }

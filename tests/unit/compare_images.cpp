@@ -9,8 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -366,6 +366,37 @@ TEST(CompareImages, PicturesOverAllThatReflectsAndAtTheBorderOfMaterials)
     gbuffer.metallic.assign(gbuffer.metallic.size(), 1);
     gbuffer.roughness.assign(gbuffer.roughness.size(), 0.3F);
     EXPECT_FALSE(compare_pictures(tested, Reference(reference), truth, gbuffer).at("picture_border_rmse"));
+}
+
+// A picture that is off by 0.1 everywhere, judged by the mean of two halves with normal errors of 0.05: the error is found without the
+// noise, and the interval holds it. The display values are 0.5, where no half is clipped.
+TEST(ComparePictures, TheNoiseOfTheReferenceIsTakenOff)
+{
+    const glm::ivec2                 size_px{64, 64};
+    std::mt19937                     random(1);
+    std::normal_distribution<double> error(0, 0.05);
+    Image                            even = uniform(size_px, glm::vec3(0)), odd = even, mean = even;
+    for (size_t v = 0; v < even.values.size(); ++v) {
+        const double a = 0.5 + error(random), b = 0.5 + error(random);
+        even.values[v] = srgb_to_linear(float(a));
+        odd.values[v]  = srgb_to_linear(float(b));
+        mean.values[v] = srgb_to_linear(float((a + b) / 2));
+    }
+    const SceneTruth truth = half_visible(size_px);
+    GBufferImage     plain;
+    plain.view.size_px = size_px;
+    plain.depth.assign(pixel_count(size_px), 0);
+    const Image         tested = uniform(size_px, glm::vec3(srgb_to_linear(0.6F)));
+    const MeasureValues values = compare_pictures(tested, Reference(mean, std::array{even, odd}), truth, plain);
+    const double        low = values.at("picture_rmse_low").value(), high = values.at("picture_rmse_high").value();
+    EXPECT_NEAR(values.at("picture_noise_rmse").value(), 0.05 / std::sqrt(2.0), 5e-4);
+    EXPECT_NEAR(values.at("picture_rmse").value(), 0.1, 1e-3);
+    EXPECT_LT(low, 0.1);
+    EXPECT_GT(high, 0.1);
+    EXPECT_LT(high - low, 0.01);
+    const MeasureValues with_noise = compare_pictures(tested, Reference(mean), truth, plain);
+    EXPECT_NEAR(with_noise.at("picture_rmse").value(), std::sqrt(0.01 + 0.05 * 0.05 / 2), 1e-3);
+    EXPECT_EQ(with_noise.at("picture_noise_rmse").value(), 0);
 }
 
 // SSIM sees luma alone, which is 0.5 in both.

@@ -170,11 +170,11 @@ TEST_F(TruthCache, GlossyTruthReadsWhatItWrote)
         const GlossyTruth cached = cached_glossy_truth(folder_, scene, gbuffer, {}, glossy);
         EXPECT_EQ(cached.rays, computed.rays);
         EXPECT_EQ(cached.radiance, computed.radiance);
-        EXPECT_EQ(cached.standard_error, computed.standard_error);
+        EXPECT_EQ(cached.noise, computed.noise);
         EXPECT_EQ(cached.albedo, computed.albedo);
     }
     EXPECT_EQ(files().size(), 1U);
-    cached_glossy_truth(folder_, scene, gbuffer, {}, {.rays = 9});
+    cached_glossy_truth(folder_, scene, gbuffer, {}, {.rays = 10});
     cached_glossy_truth(folder_, scene, gbuffer, {}, {.rays = 8, .seed = 1});
     gbuffer.roughness[0] = 0.7F;
     cached_glossy_truth(folder_, scene, gbuffer, {}, glossy);
