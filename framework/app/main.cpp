@@ -122,8 +122,9 @@ void add_presentation_options(CLI::App& command, ssrlab::RenderOptions& options)
                     "False colours instead of the picture (docs/how-to/read_the_report.md): agreement (right and wrong "
                     "rays), causes (why rays are wrong), fetches (work per ray), sources (which source answered)")
         ->check(CLI::IsMember({"agreement", "causes", "fetches", "sources"}));
-    command.add_option("--sources", options.sources, "Sources that --show sources asks, in this order")
-        ->capture_default_str();
+    command.add_option("--sources", options.sources,
+                       "Sources that answer the rays, in this order: frame,world (ssrlab sources); without: the frame");
+    command.add_flag("--errors", options.errors, "Print the errors of the picture against the true reflection");
     auto* truth = command.add_flag("--truth", options.truth, "The true reflection instead of the traced one");
     command
         .add_flag("--side-by-side", options.side_by_side,

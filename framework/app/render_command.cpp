@@ -6,10 +6,11 @@
 #include "core/error.h"
 #include "harness/choice.h"
 #include "harness/quality.h"
-#include "sources/answer_rays.h"
+#include "sources/answered_frame.h"
 #include "truth/glossy_truth.h"
 #include "truth/scene_truth.h"
 #include "truth/screen_truth.h"
+#include "truth/truth_cache.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,6 +49,8 @@ Choice checked_choice(const Catalogue& catalogue, const Technique& technique, co
                          options.show);
     if (!(std::abs(options.exposure_ev) <= most_stops)) // NaN, too
         throw_spec_error("--exposure {}: expected stops from -{} to {}", options.exposure_ev, most_stops, most_stops);
+    if (options.errors && (!options.show.empty() || options.truth || options.samples > 1))
+        throw_spec_error("--errors: of one traced picture; expected none of --show, --truth and --samples");
     if (exr && (options.exposure_ev != 0 || options.display != "clip"))
         throw_spec_error("-o {}: an EXR holds linear radiance; --exposure and --display need a .png",
                          options.picture.output);
@@ -76,7 +79,7 @@ std::string command_of(const RenderOptions& options, int at_frame)
     if (options.exposure_ev != 0) text += fmt::format(" --exposure {}", options.exposure_ev);
     if (options.display != "clip") text += " --display " + options.display;
     if (!options.show.empty()) text += " --show " + options.show;
-    if (options.show == "sources") text += " --sources " + options.sources;
+    if (!options.sources.empty()) text += " --sources " + options.sources;
     if (options.truth) text += " --truth";
     if (options.side_by_side) text += " --side-by-side";
     return text;
@@ -149,9 +152,9 @@ Image false_colours(Stage& stage, const TraceResult& counted, const TraceSetting
 }
 
 /// Which source answered each ray, and whether rightly.
-Image source_colours(Stage& stage, const Technique& technique, const Choice& choice, const std::string& list)
+Image source_colours(Stage& stage, const Technique& technique, const Choice& choice,
+                     std::span<const ListedSource> sources)
 {
-    const auto         sources  = parse_sources(list, "--sources " + list);
     SourceContext      context  = make_source_context(stage, technique, choice.values, choice.settings);
     const AnsweredRays answered = answer_rays(context, sources, HandOn::uncertain);
     const SceneTruth   truth    = scene_truth(SceneBvh(stage.scene), stage.scene, context.image, choice.settings.trace);
@@ -164,15 +167,61 @@ struct Rendered {
     double                     trace_ms = 0;
 };
 
+/// What may answer rays beside the frame, and what the last picture's sources built of the scene.
+struct PictureSources {
+    std::vector<ListedSource>        list; // empty: the frame answers alone
+    std::shared_ptr<const World>     world;
+    std::shared_ptr<const Occupancy> occupancy;
+};
+
+/// Draws the traced picture, and returns the milliseconds of the trace.
+double run_traced(Stage& stage, ReadyFrame& frame, const LabPtr& lab, const RenderOptions& options,
+                  PictureSources& asked, int number)
+{
+    if (asked.list.empty()) {
+        run_frame(stage.gpu, frame); // a driver may compile a pipeline when it first runs
+        return run_frame(stage.gpu, frame).of("trace");
+    }
+    SourceContext context = make_source_context(stage, lab);
+    if (!anything_moves(stage.first)) {
+        context.world     = asked.world;
+        context.occupancy = asked.occupancy;
+    }
+    for (int before = number - 1; before >= 0; --before)
+        context.earlier.push_back(
+            view_at(stage.scene, options.picture.view, stage.view.size_px, {before, options.picture.at.jitter_phases}));
+    const double trace_ms = run_answered_frame(context, frame, asked.list, HandOn::uncertain).of("trace");
+    asked.world           = context.world;
+    asked.occupancy       = context.occupancy;
+    return trace_ms;
+}
+
+/// Says how far the traced picture is from the one with the true reflections.
+void print_errors(Stage& stage, const ReadyFrame& frame, const RenderOptions& options, const TraceSettings& settings)
+{
+    if (stage.scene.frame)
+        throw_spec_error("--errors: needs the scene's triangles, which a frame of another renderer does not have");
+    const GBufferImage gbuffer = read_gbuffer(stage.gpu, *stage.gbuffer);
+    const auto         cache   = truth_cache_dir(options.picture.output);
+    const SceneTruth   truth   = cached_scene_truth(cache, stage.scene, gbuffer, settings);
+    refuse_false(off_surface_share(truth));
+    const Image real =
+        true_picture(cached_glossy_truth(cache, stage.scene, gbuffer, settings, {}), gbuffer, stage.scene.ambient);
+    const MeasureValues errors = compare_pictures(read_shaded(stage.gpu, frame), Reference(real), truth, gbuffer);
+    for (const char* name : {"picture_flip", "picture_rmse", "picture_visible_rmse"})
+        std::puts(fmt::format("{} {:.4f}", name, errors.at(name).value_or(0)).c_str());
+}
+
 /// Adds the pictures of one place of the camera.
-void add_sample(Stage& stage, ReadyFrame& frame, const RenderOptions& options, const TraceSettings& settings,
-                TrueReflections& truth, int sample, int number, Rendered& rendered)
+void add_sample(Stage& stage, ReadyFrame& frame, const LabPtr& lab, const TraceSettings& settings,
+                const RenderOptions& options, PictureSources& asked, TrueReflections& truth, int sample, int number,
+                Rendered& rendered)
 {
     const auto    kinds = shown_by(options);
     const Display display{options.exposure_ev,
                           options.display == "agx" ? Display::Transform::agx : Display::Transform::clip};
-    run_frame(stage.gpu, frame);
-    rendered.trace_ms += run_frame(stage.gpu, frame).of("trace") / options.samples;
+    rendered.trace_ms += run_traced(stage, frame, lab, options, asked, number) / options.samples;
+    if (options.errors) print_errors(stage, frame, options, settings);
     if (options.frames > 0)
         keep_history(stage.gpu, frame, number); // before other reflections take the place of the traced one
     // The traced picture first: the others leave theirs in its buffers.
@@ -199,7 +248,11 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
     const Catalogue       catalogue = load_catalogue(common.technique_dirs);
     const Technique&      technique = find_technique(catalogue.techniques, picture.technique);
     const Choice          choice    = checked_choice(catalogue, technique, options);
-    Stage                 stage     = open_stage(common, catalogue, picture);
+    const std::string     list =
+        options.sources.empty() && options.show == "sources" ? std::string("frame,world") : options.sources;
+    const auto     sources = list.empty() ? std::vector<ListedSource>{} : parse_sources(list, "--sources " + list);
+    Stage          stage   = open_stage(common, catalogue, picture);
+    PictureSources asked{sources, {}, {}};
     if (options.samples > 1 && stage.scene.frame)
         throw_spec_error("--samples: expected 1 for a frame of another renderer, which cannot be rendered anew; got {}",
                          options.samples);
@@ -220,19 +273,20 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
             const LabPtr           lab     = make_lab(stage, technique, choice.values, choice.settings.trace);
             const FrameBuffersPtr  buffers = make_frame_buffers(stage);
             const FramePlan        plan    = plan_frame(stage, lab, buffers, choice.settings, history);
-            const FramePtr         frame   = make_frame(stage.gpu, lab, buffers, plan, history);
+            const FramePtr         frame =
+                make_frame(stage.gpu, lab, buffers, plan, history, asked.list.empty() ? Answers::own : Answers::given);
             if (sample == 0) warn_without_reflections(common, plan);
             const bool                 first = i == 0 && sample == 0 && !options.truth;
             std::optional<TraceResult> counted;
             if (first || !options.show.empty()) counted = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
             if (first) impossible = find_impossible(*counted, declared_steps(technique, choice.values));
             if (options.show == "sources")
-                rendered.pictures.front().image = source_colours(stage, technique, choice, options.sources);
+                rendered.pictures.front().image = source_colours(stage, technique, choice, asked.list);
             else if (!options.show.empty())
                 rendered.pictures.front().image = false_colours(stage, *counted, choice.settings.trace, options.show);
             else
-                add_sample(stage, *frame, options, choice.settings.trace, truth, sample, picture.at.frame + i,
-                           rendered);
+                add_sample(stage, *frame, lab, choice.settings.trace, options, asked, truth, sample,
+                           picture.at.frame + i, rendered);
         }
         for (LabelledImage& one : rendered.pictures) one.image = mean_of(std::move(one.image), options.samples);
         Image image = options.side_by_side ? side_by_side(rendered.pictures) : rendered.pictures.front().image;

@@ -14,8 +14,9 @@ struct RenderOptions {
     double         exposure_ev = 0;
     std::string    display     = "clip"; // or agx
     std::string    show; // false colours in the picture's place: agreement, causes, fetches, sources; empty: none
-    std::string    sources = "frame,world"; // that show = sources asks, in this order
+    std::string    sources; // asked about the rays, in this order; empty: the frame alone, with show = sources "frame,world"
     bool           truth = false, side_by_side = false;
+    bool           errors = false; // of the traced picture: printed
 };
 
 inline constexpr int max_samples = 256;

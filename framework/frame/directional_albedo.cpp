@@ -2,6 +2,8 @@
 
 #include "shared.h"
 
+#include <glm/gtc/packing.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -52,6 +54,21 @@ const std::vector<glm::vec2>& dfg_table()
                 entries.emplace_back(dfg(row / last, std::max(std::pow(column / last, 2), 1e-4)));
         return entries;
     }();
+    return table;
+}
+
+SampledTable upload_dfg_table(Gpu& gpu)
+{
+    std::vector<uint32_t> texels;
+    for (const glm::vec2& entry : dfg_table()) texels.push_back(glm::packHalf2x16(entry));
+    SampledTable table{make_image(gpu, {.format  = vk::Format::eR16G16Sfloat,
+                                        .size_px = glm::ivec2(DFG_TABLE_ENTRIES),
+                                        .usage   = vk::ImageUsageFlagBits::eSampled}),
+                       {gpu.impl->device, vk::SamplerCreateInfo{.magFilter    = vk::Filter::eLinear,
+                                                                .minFilter    = vk::Filter::eLinear,
+                                                                .addressModeU = vk::SamplerAddressMode::eClampToEdge,
+                                                                .addressModeV = vk::SamplerAddressMode::eClampToEdge}}};
+    upload(gpu, table.image, texels.data(), texels.size() * sizeof(uint32_t));
     return table;
 }
 

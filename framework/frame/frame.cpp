@@ -1,11 +1,8 @@
 #include "frame/frame.h"
 
 #include "core/pixel_index.h"
-#include "frame/directional_albedo.h"
 #include "frame/frame_inputs.h"
 #include "shared.h"
-
-#include <glm/gtc/packing.hpp>
 
 #include <algorithm>
 #include <numeric>
@@ -25,21 +22,6 @@ double FrameTimes::total_ms() const
 }
 
 namespace {
-
-void upload_dfg_table(Gpu& gpu, FrameBuffers& buffers)
-{
-    std::vector<uint32_t> texels;
-    for (const glm::vec2& entry : dfg_table()) texels.push_back(glm::packHalf2x16(entry));
-    buffers.dfg_table   = make_image(gpu, {.format  = vk::Format::eR16G16Sfloat,
-                                           .size_px = glm::ivec2(DFG_TABLE_ENTRIES),
-                                           .usage   = vk::ImageUsageFlagBits::eSampled});
-    buffers.dfg_sampler = {gpu.impl->device,
-                           vk::SamplerCreateInfo{.magFilter    = vk::Filter::eLinear,
-                                                 .minFilter    = vk::Filter::eLinear,
-                                                 .addressModeU = vk::SamplerAddressMode::eClampToEdge,
-                                                 .addressModeV = vk::SamplerAddressMode::eClampToEdge}};
-    upload(gpu, buffers.dfg_table, texels.data(), texels.size() * sizeof(uint32_t));
-}
 
 MotionBuffers motion_since(Gpu& gpu, const FrameInputs& inputs)
 {
@@ -98,7 +80,7 @@ FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer, const Dr
     buffers->small_colour   = image(colour, half_size_px);
     buffers->block_pixel    = image(vk::Format::eR32Uint, half_size_px);
     buffers->shaded         = image(colour, size_px);
-    upload_dfg_table(gpu, *buffers);
+    buffers->dfg_table      = upload_dfg_table(gpu);
     const glm::vec3 ambient = drawing ? drawing->scene->ambient : glm::vec3(0);
     buffers->ambient        = make_buffer(gpu, 16);
     upload(gpu, buffers->ambient, &ambient, sizeof(ambient));
@@ -106,7 +88,7 @@ FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer, const Dr
 }
 
 FramePtr make_frame(Gpu& gpu, const LabPtr& lab, const FrameBuffersPtr& buffers, const FramePlan& plan,
-                    const FrameHistoryPtr& history)
+                    const FrameHistoryPtr& history, Answers answers)
 {
     const ShaderFilesHeld held;
     auto                  frame  = std::make_shared<ReadyFrame>();
@@ -115,8 +97,14 @@ FramePtr make_frame(Gpu& gpu, const LabPtr& lab, const FrameBuffersPtr& buffers,
     inputs.buffers               = buffers;
     inputs.plan                  = plan;
     inputs.history               = history;
-    inputs.rays                  = ray_buffers(gpu, *buffers, plan.statistics.gbuffer, plan.values);
-    inputs.trace = make_trace_passes(gpu, *lab, *inputs.rays, lab->gbuffer->view_uniforms, rays_of(plan.values));
+    // Whoever answers rays reads them from the list.
+    if (answers == Answers::given)
+        inputs.plan.values.insert_or_assign(chosen(RayList::rays).first, chosen(RayList::rays).second);
+    const ParameterValues& values = inputs.plan.values;
+    inputs.rays                   = ray_buffers(gpu, *buffers, plan.statistics.gbuffer, values);
+    inputs.trace = make_trace_passes(gpu, *lab, *inputs.rays, lab->gbuffer->view_uniforms, rays_of(values));
+    if (answers == Answers::given)
+        inputs.answers = make_buffer(gpu, std::max<uint64_t>(inputs.rays->capacity, 1) * sizeof(RayLight));
     if (plan.facts.history.usable) inputs.motion = motion_since(gpu, inputs);
     for (const PlannedPass& planned : plan.passes)
         if (planned.runs)
@@ -139,27 +127,38 @@ std::vector<CompiledPtr> compile_frame(Gpu& gpu, const Catalogue& catalogue, con
     return take_compiled(gpu);
 }
 
-FrameTimes run_frame(Gpu& gpu, ReadyFrame& frame, int frames)
+FrameTimes run_passes(Gpu& gpu, const ReadyFrame& frame, const Timestamps& timestamps, size_t first, size_t last,
+                      int frames)
 {
+    const auto records = std::span(frame.record_functions).subspan(first, last - first);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         for (int untimed = 1; untimed < frames; ++untimed)
-            for (const RecordFunction& record : frame.record_functions) {
+            for (const RecordFunction& record : records) {
                 record(commands);
                 barrier(commands);
             }
         uint32_t timestamp = 0;
-        write_timestamp(commands, frame.timestamps, timestamp++);
-        for (const RecordFunction& record : frame.record_functions) {
+        write_timestamp(commands, timestamps, timestamp++);
+        for (const RecordFunction& record : records) {
             record(commands);
             barrier(commands);
-            write_timestamp(commands, frame.timestamps, timestamp++);
+            write_timestamp(commands, timestamps, timestamp++);
         }
     });
-    const auto intervals_ms = read_intervals_ms(gpu, frame.timestamps);
+    const auto intervals_ms = read_intervals_ms(gpu, timestamps);
     FrameTimes times;
-    for (const PlannedPass& planned : frame.inputs.plan.passes)
-        if (planned.runs) times.passes_ms.emplace_back(planned.id, intervals_ms[times.passes_ms.size()]);
+    size_t     place = 0;
+    for (const PlannedPass& planned : frame.inputs.plan.passes) {
+        if (!planned.runs) continue;
+        if (place >= first && place < last) times.passes_ms.emplace_back(planned.id, intervals_ms[place - first]);
+        ++place;
+    }
     return times;
+}
+
+FrameTimes run_frame(Gpu& gpu, ReadyFrame& frame, int frames)
+{
+    return run_passes(gpu, frame, frame.timestamps, 0, frame.record_functions.size(), frames);
 }
 
 Image read_shaded(Gpu& gpu, const ReadyFrame& frame)

@@ -34,6 +34,22 @@ struct FrameTimes {
     double total_ms() const;
 };
 
+/// The light that a ray brings back, where something else than the frame answered it (sources/).
+struct RayLight {
+    glm::vec3 light{0};        // linear radiance; undefined without a distance
+    float     distance_m = -1; // from the reflecting point on; +inf: it meets nothing; below 0: the frame answers
+};
+
+/// What a frame's own rays found, one entry per ray, pixel after pixel.
+struct FrameRays {
+    std::vector<RayInput>   rays;          // as the pass `rays` made them
+    std::vector<RayOutcome> outcomes;      // without counts of work
+    int                     per_pixel = 1; // rays of a pixel follow each other
+};
+
+/// Who answers a frame's rays: the frame alone, or others, too, between trace_frame() and shade_frame().
+enum class Answers : uint8_t { own, given };
+
 struct FrameBuffers; // targets of passes: allocated once per G-buffer, shared by all frames on it
 struct ReadyFrame;   // the pipelines of one run
 
@@ -50,7 +66,7 @@ FramePlan plan_frame(Gpu& gpu, const Catalogue& catalogue, const LabPtr& lab, co
                      const FrameSettings& settings, const FrameHistoryPtr& history = nullptr);
 /// Compiles the planned passes. Throws SpecError with file and line if the technique's shader does not compile.
 FramePtr make_frame(Gpu& gpu, const LabPtr& lab, const FrameBuffersPtr& buffers, const FramePlan& plan,
-                    const FrameHistoryPtr& history = nullptr);
+                    const FrameHistoryPtr& history = nullptr, Answers answers = Answers::own);
 
 /// Returns every pipeline of a 1080p frame on a device that only compiles (gpu/compiled.h), as if every pixel
 /// reflected, half of them as mirrors and half with roughness 0.25, and every ray hit. Passes that draw the scene are
@@ -61,7 +77,11 @@ std::vector<CompiledPtr> compile_frame(Gpu& gpu, const Catalogue& catalogue, con
 /// Runs the planned passes `frames` times in one submit, waits, and returns the times of the last. The first call
 /// includes driver compilation: warm up.
 FrameTimes run_frame(Gpu& gpu, ReadyFrame& frame, int frames = 1);
-/// Returns the picture of the last run_frame(), linear RGB.
+/// Run a frame with Answers::given in two parts: all passes up to the trace, then the others. `answers`: one per ray,
+/// or none, if the frame answers them all. `rays`: from trace_frame().
+FrameTimes trace_frame(Gpu& gpu, ReadyFrame& frame, FrameRays& rays);
+FrameTimes shade_frame(Gpu& gpu, ReadyFrame& frame, const FrameRays& rays, std::span<const RayLight> answers);
+/// Returns the picture of the last run, linear RGB.
 Image read_shaded(Gpu& gpu, const ReadyFrame& frame);
 /// Returns what the last run_frame() found in the second layer: `hit`, else not_traced. nullopt if the plan has no
 /// hidden layer.

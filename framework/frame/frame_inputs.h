@@ -1,6 +1,7 @@
 // The inputs and buffers of a frame's passes. Folder-internal.
 #pragma once
 
+#include "frame/directional_albedo.h"
 #include "frame/drawing.h"
 #include "frame/frame.h"
 #include "frame/history_images.h"
@@ -35,14 +36,13 @@ struct FrameBuffers {
     std::shared_ptr<ConePyramid>                                   cone;         // empty until a frame asks for it
     std::map<std::pair<size_t, int>, std::shared_ptr<DerivedRays>> derived_rays; // by capacity and number, 0 or 1
     std::map<int, std::shared_ptr<LobeRayImages>>                  lobe_rays;    // by rays per pixel
-    GpuImage          reflection;   // RGBA16F: colour, weight; weight < 0 if no ray started
-    GpuImage          filtered;     // RGBA16F: the target of a filter, or an earlier reflection
-    GpuImage          small_colour; // RGBA16F, half size or less: lit colour for rays at a lower resolution
-    GpuImage          block_pixel;  // R32UI, half size or less: the pixel of a block that has rays, or NO_PIXEL
-    GpuImage          shaded;       // RGBA16F
-    GpuImage          dfg_table;    // RG16F: dfg_table()
-    Buffer            ambient;      // vec3: the scene's ambient radiance, or 0
-    vk::raii::Sampler dfg_sampler = nullptr;
+    GpuImage     reflection;   // RGBA16F: colour, weight; weight < 0 if no ray started
+    GpuImage     filtered;     // RGBA16F: the target of a filter, or an earlier reflection
+    GpuImage     small_colour; // RGBA16F, half size or less: lit colour for rays at a lower resolution
+    GpuImage     block_pixel;  // R32UI, half size or less: the pixel of a block that has rays, or NO_PIXEL
+    GpuImage     shaded;       // RGBA16F
+    SampledTable dfg_table;    // dfg_table()
+    Buffer       ambient;      // vec3: the scene's ambient radiance, or 0
 };
 
 /// Everything that determines the passes of one frame.
@@ -53,7 +53,8 @@ struct FrameInputs {
     FrameHistoryPtr             history; // of the frame before, or null
     MotionBuffers               motion;  // since that frame; empty without a history to use
     std::shared_ptr<RayBuffers> rays;
-    TracePasses                 trace; // of these rays
+    TracePasses                 trace;   // of these rays
+    Buffer                      answers; // Answers::given: a RayLight per ray; else empty
 };
 
 struct ReadyFrame {
@@ -61,6 +62,11 @@ struct ReadyFrame {
     std::vector<RecordFunction> record_functions; // of the passes that run; they refer to `inputs`
     Timestamps                  timestamps;
 };
+
+/// Runs the passes from `first` to before `last`, in one submit, `frames` times, and returns the times of the last.
+/// `timestamps`: one more than passes.
+FrameTimes run_passes(Gpu& gpu, const ReadyFrame& frame, const Timestamps& timestamps, size_t first, size_t last,
+                      int frames = 1);
 
 /// Return the choice of rays that a plan's values describe, and buffers with room for them.
 RayChoice                   rays_of(const ParameterValues& passes);

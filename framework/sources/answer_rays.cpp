@@ -4,6 +4,7 @@
 #include "core/pixel_index.h"
 #include "core/quantile.h"
 #include "core/stopwatch.h"
+#include "trace/lab_passes.h"
 
 namespace ssrlab {
 namespace {
@@ -17,8 +18,8 @@ glm::dvec3 mirrored_vs(const GBufferImage& image, size_t pixel, glm::dvec3 point
     return glm::normalize(sight - 2 * glm::dot(sight, normal) * normal);
 }
 
-/// The rays of all pixels that reflect.
-std::vector<OpenRay> all_rays(const SourceContext& context)
+/// The mirror rays of all pixels that reflect.
+std::vector<OpenRay> mirror_rays(const SourceContext& context)
 {
     const GBufferImage&  image         = context.image;
     const glm::dmat4     view_to_world = glm::inverse(image.view.world_to_view);
@@ -30,7 +31,7 @@ std::vector<OpenRay> all_rays(const SourceContext& context)
         const double eye_m = image.view.projection == Projection::perspective ? glm::length(point_vs) : -point_vs.z;
         rays.push_back({i, glm::dvec3(view_to_world * glm::dvec4(point_vs, 1)),
                         glm::dmat3(view_to_world) * mirrored_vs(image, i, point_vs), eye_m, 0,
-                        context.trace.max_distance_m});
+                        context.trace.max_distance_m, double(image.roughness[i])});
     }
     return rays;
 }
@@ -42,18 +43,23 @@ bool is_handed_on(const RayAnswer& answer, HandOn hand_on)
 
 } // namespace
 
-SourceContext make_source_context(Stage& stage, const Technique& technique, const ParameterValues& values,
-                                  const FrameSettings& settings)
+SourceContext make_source_context(Stage& stage, const LabPtr& lab)
 {
     if (stage.scene.frame)
         throw_failure("'{}' is a frame of another renderer: it has no triangles that further sources could answer from",
                       stage.scene.name);
-    const LabPtr          lab = make_lab(stage, technique, values, settings.trace);
-    SourceContext         context{stage, lab, settings.trace, {}, {}, {}, 0, {}, {}, {}};
+    return {stage, lab, lab->settings, read_gbuffer(stage.gpu, *stage.gbuffer), {}, {}, {}, 0, {}, {}, {}};
+}
+
+SourceContext make_source_context(Stage& stage, const Technique& technique, const ParameterValues& values,
+                                  const FrameSettings& settings)
+{
+    const LabPtr          lab     = make_lab(stage, technique, values, settings.trace);
+    SourceContext         context = make_source_context(stage, lab);
     const FrameBuffersPtr buffers = make_frame_buffers(stage);
     const FramePtr        frame   = make_frame(stage.gpu, lab, buffers, plan_frame(stage, lab, buffers, settings));
     context.traced                = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
-    context.image                 = read_gbuffer(stage.gpu, *stage.gbuffer);
+    context.rays                  = mirror_rays(context);
     run_frame(stage.gpu, *frame);
     std::vector<double> times_ms(3);
     for (double& time_ms : times_ms)
@@ -67,7 +73,7 @@ SourceContext make_source_context(Stage& stage, const Technique& technique, cons
 
 AnsweredRays answer_rays(SourceContext& context, std::span<const ListedSource> sources, HandOn hand_on)
 {
-    std::vector<OpenRay> rays = all_rays(context);
+    std::vector<OpenRay> rays = context.rays;
     AnsweredRays         result;
     result.answers.resize(context.image.depth.size());
     for (const OpenRay& ray : rays) result.answers[ray.pixel].kind = AnswerKind::open;

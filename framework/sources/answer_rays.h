@@ -18,11 +18,14 @@ struct AnsweredRays {
     std::vector<SourceTurn> turns;   // of each source
 };
 
-/// Traces the shown frame once for its counts; its time is the median of three more frames. Throws Failure for a frame file, which has no
-/// scene.
+/// Returns a context without rays. Throws Failure for a frame file, which has no scene.
+SourceContext make_source_context(Stage& stage, const LabPtr& lab);
+/// Returns a context with the mirror rays of the shown frame, which is traced once for its counts; its time is the
+/// median of three more frames. Throws likewise.
 SourceContext make_source_context(Stage& stage, const Technique& technique, const ParameterValues& values,
                                   const FrameSettings& settings);
 
+/// Answers the context's rays.
 AnsweredRays answer_rays(SourceContext& context, std::span<const ListedSource> sources, HandOn hand_on);
 
 } // namespace ssrlab

@@ -21,9 +21,10 @@ struct OpenRay {
     size_t     pixel = 0; // index of the reflecting pixel
     glm::dvec3 origin_ws{0};
     glm::dvec3 direction_ws{0}; // unit
-    double     eye_m   = 0;     // from the eye to the origin
-    double     clear_m = 0;     // it is known to meet nothing nearer
-    double     reach_m = 0;     // nothing farther counts; may be +inf
+    double     eye_m     = 0;   // from the eye to the origin
+    double     clear_m   = 0;   // it is known to meet nothing nearer
+    double     reach_m   = 0;   // nothing farther counts; may be +inf
+    double     roughness = 0;   // of the reflecting surface: it blurs highlights
 };
 
 /// A traced frame and what sources need besides. Sources keep here what they build, so that a later list can
@@ -35,6 +36,7 @@ struct SourceContext {
     GBufferImage                     image;        // what the stage shows, on the host
     ParameterValues                  parameters;   // of the source that is asked
     TraceResult                      traced;       // results of the frame's rays
+    std::vector<OpenRay>             rays;         // these rays, at most one of each pixel
     double                           trace_ms = 0; // of the frame: ray set-up, structures, trace
     std::vector<View>                earlier; // of the frames before this one, the latest first; empty: a single frame
     std::shared_ptr<const World>     world;   // these are empty until a source asks for them

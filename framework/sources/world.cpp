@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace ssrlab {
 namespace {
@@ -18,7 +19,8 @@ WorldRay to_world_ray(const OpenRay& ray)
 {
     const double start_m = std::max(ray.clear_m, start_share * ray.eye_m);
     return {glm::vec3(ray.origin_ws), static_cast<float>(start_m), glm::vec3(ray.direction_ws),
-            static_cast<float>(std::min(ray.reach_m, double(std::numeric_limits<float>::max()) / 4))};
+            static_cast<float>(std::min(ray.reach_m, double(std::numeric_limits<float>::max()) / 4)),
+            static_cast<float>(ray.roughness)};
 }
 
 RayAnswer to_answer(const SourceContext& context, const OpenRay& ray, const WorldHit& hit)
@@ -36,6 +38,44 @@ RayAnswer to_answer(const SourceContext& context, const OpenRay& ray, const Worl
     return answer;
 }
 
+/// Adds what the scene's reflecting surfaces show to the light of the answers, one bounce after the other.
+void follow_reflections(SourceContext& context, std::vector<WorldRay> rays, std::vector<WorldHit> hits,
+                        SourceTurn& turn)
+{
+    Gpu&                   gpu     = context.stage.gpu;
+    const int              bounces = static_cast<int>(context.parameters.at("bounces"));
+    const SampledTable     table   = upload_dfg_table(gpu);
+    std::vector<size_t>    owners(rays.size()); // of each ray: the answer
+    std::vector<glm::vec3> weights(rays.size(), glm::vec3(1));
+    std::iota(owners.begin(), owners.end(), 0);
+    for (int bounce = 0; !rays.empty(); ++bounce) {
+        const WorldLight shaded = shade_world(gpu, *context.world, *context.stage.uploaded, table, context.trace,
+                                              bounce < bounces, rays, hits);
+        turn.shade_ms += shaded.ms;
+        std::vector<WorldRay>  next_rays;
+        std::vector<size_t>    next_owners;
+        std::vector<glm::vec3> next_weights;
+        for (size_t k = 0; k < rays.size(); ++k) {
+            glm::vec3& light = turn.answers[owners[k]].light;
+            if (hits[k].triangle == no_triangle && bounce > 0)
+                light += weights[k] * sky_radiance(context.stage.scene, glm::dvec3(rays[k].direction_ws));
+            if (hits[k].triangle >= walk_unfinished) continue;
+            light += weights[k] * shaded.light[k];
+            if (shaded.next[k].weight == glm::vec3(0)) continue;
+            next_rays.push_back(shaded.next[k].ray);
+            next_owners.push_back(owners[k]);
+            next_weights.push_back(weights[k] * shaded.next[k].weight);
+        }
+        rays    = std::move(next_rays);
+        owners  = std::move(next_owners);
+        weights = std::move(next_weights);
+        if (rays.empty()) break;
+        WorldTrace trace = trace_world(gpu, *context.world, rays);
+        turn.shade_ms += trace.ms;
+        hits = std::move(trace.hits);
+    }
+}
+
 SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
 {
     if (!context.world) context.world = upload_world(context.stage.gpu, context.stage.scene);
@@ -44,11 +84,7 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
     const WorldTrace trace = trace_world(context.stage.gpu, *context.world, listed);
     SourceTurn       turn;
     for (size_t k = 0; k < rays.size(); ++k) turn.answers.push_back(to_answer(context, rays[k], trace.hits[k]));
-    const WorldLight shaded =
-        shade_world(context.stage.gpu, *context.world, *context.stage.uploaded, listed, trace.hits);
-    for (size_t k = 0; k < rays.size(); ++k)
-        if (turn.answers[k].kind == AnswerKind::point) turn.answers[k].light = shaded.light[k];
-    turn.shade_ms    = shaded.ms;
+    follow_reflections(context, std::move(listed), trace.hits, turn);
     turn.trace_ms    = trace.ms;
     turn.node_visits = trace.node_visits;
     turn.megabytes   = double(context.world->bytes) / 1e6;
@@ -59,11 +95,14 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
 
 Source world_source()
 {
-    return {.id      = "world",
-            .summary = "The scene's triangles, in a hierarchy that a shader walks",
-            .cite    = {"I. Wald et al. 2014, Embree: A Kernel Framework for Efficient CPU Ray Tracing",
-                        "T. Ize 2013, Robust BVH Ray Traversal, JCGT 2(2)"},
-            .answer  = answer};
+    return {.id         = "world",
+            .summary    = "The scene's triangles, in a hierarchy that a shader walks",
+            .cite       = {"I. Wald et al. 2014, Embree: A Kernel Framework for Efficient CPU Ray Tracing",
+                           "T. Ize 2013, Robust BVH Ray Traversal, JCGT 2(2)"},
+            .parameters = {integer_parameter("bounces", 2, 0, 16,
+                                             "reflections that are followed at what the rays meet; their time "
+                                             "counts as shading")},
+            .answer     = answer};
 }
 
 } // namespace ssrlab

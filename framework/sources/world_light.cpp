@@ -8,24 +8,32 @@ struct ShadePush {
     glm::vec3 ambient;
     uint32_t  ray_count;
     int32_t   light_count;
+    float     dielectric_min_f0;
+    float     dielectric_max_roughness;
+    uint32_t  follows;
 };
 
 } // namespace
 
-WorldLight shade_world(Gpu& gpu, const World& world, const GpuScene& scene, std::span<const WorldRay> rays,
+WorldLight shade_world(Gpu& gpu, const World& world, const GpuScene& scene, const SampledTable& dfg_table,
+                       const TraceSettings& trace, bool follows, std::span<const WorldRay> rays,
                        std::span<const WorldHit> hits)
 {
     WorldLight result;
     if (rays.empty() || world.tree.nodes.empty()) {
         result.light.resize(rays.size());
+        result.next.resize(rays.size());
         return result;
     }
     const Buffer listed = make_buffer_with<WorldRay>(gpu, rays), found = make_buffer_with<WorldHit>(gpu, hits);
     const Buffer light    = make_buffer(gpu, rays.size() * sizeof(glm::vec3));
+    const Buffer next     = make_buffer(gpu, rays.size() * sizeof(NextRay));
     Bindings     bindings = material_bindings(world);
     bindings.insert({{"WorldRays", listed},
                      {"WorldHits", found},
                      {"WorldLight", light},
+                     {"NextRays", next},
+                     {"dfg_table", {dfg_table.image, dfg_table.sampler}},
                      {"Lights", scene.lights},
                      {"ShadowMatrices", scene.shadow_matrices},
                      {"shadow_map", {scene.shadow_map, scene.shadow_sampler}}});
@@ -37,7 +45,9 @@ WorldLight shade_world(Gpu& gpu, const World& world, const GpuScene& scene, std:
         submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
             barrier(commands);
             push(commands, pass,
-                 ShadePush{scene.ambient, static_cast<uint32_t>(rays.size()), static_cast<int32_t>(scene.light_count)});
+                 ShadePush{scene.ambient, static_cast<uint32_t>(rays.size()), static_cast<int32_t>(scene.light_count),
+                           static_cast<float>(trace.dielectric_min_f0),
+                           static_cast<float>(trace.dielectric_max_roughness), follows ? 1U : 0U});
             write_timestamp(commands, timestamps, 0);
             dispatch(commands, pass, groups_for(rays.size()));
             barrier(commands);
@@ -46,6 +56,7 @@ WorldLight shade_world(Gpu& gpu, const World& world, const GpuScene& scene, std:
     }
     result.ms    = read_intervals_ms(gpu, timestamps)[0];
     result.light = download_as<glm::vec3>(gpu, light, rays.size());
+    result.next  = download_as<NextRay>(gpu, next, rays.size());
     return result;
 }
 

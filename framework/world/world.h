@@ -15,7 +15,8 @@ struct WorldRay {
     glm::vec3 origin_ws{0};
     float     t_min = 0;
     glm::vec3 direction_ws{0};
-    float     t_max = 0; // finite
+    float     t_max     = 0; // finite
+    float     roughness = 0; // of what it left: highlights are blurred by it
 };
 
 inline constexpr uint32_t no_triangle = 0xFFFFFFFFU, walk_unfinished = 0xFFFFFFFEU;

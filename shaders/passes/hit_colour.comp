@@ -6,6 +6,7 @@
 #include "rays/reflecting.glsl"
 #include "pass/parameters"
 #include "passes/ray_colour.glsl"
+#include "passes/given_light.glsl"
 #include "passes/mean_reflection.glsl"
 #ifdef LOBE_RAYS
 #include "passes/lobe_rays.glsl"
@@ -19,6 +20,8 @@ layout(set = 0, binding = 15, r32ui) uniform writeonly uimage2D block_pixel_imag
 // Colour and weight.
 vec4 reflection_of(uint index, PackedHit hit)
 {
+    GivenLight given = given_light(index);
+    if (meets_given(given)) return vec4(given.light * attenuation_at(given.distance_m), 1);
     Found found = found_by(packed_ray(index), hit);
     return vec4(found.light * found.attenuation, found.weight);
 }
@@ -36,7 +39,7 @@ vec4 mean_of_rays(uint first)
     for (int ray = 0; ray < rays_per_pixel; ++ray)
     {
         PackedHit hit = packed_hit(first + ray);
-        if (shows_surface(hit))
+        if (shows_surface(hit) || meets_given(given_light(first + ray)))
         {
             vec4 reflection = reflection_of(first + ray, hit);
             sum += vec4(reflection.rgb * reflection.a, reflection.a);

@@ -8,6 +8,14 @@ struct WorldRay
     float t_min;
     vec3  direction_ws;
     float t_max;
+    float roughness; // of what it left: highlights are blurred by it
+};
+
+// Where what a ray met reflects: the ray that goes on, and the weight of what it finds (0: none does).
+struct NextRay // framework/sources/world_light.h
+{
+    WorldRay ray;
+    vec3     weight;
 };
 
 struct WorldHit

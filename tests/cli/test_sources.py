@@ -81,6 +81,15 @@ class Test(Case):
         self.ssrlab("render", *SOURCES[1:], "-t", "hiz", "--show", "sources", "--sources", "frame,world", "-o", "shown.png")
         self.assertGreater(os.path.getsize(self.path("shown.png")), 500)
 
+    def test_draws_with_the_answers(self):
+        def flip(*options):
+            said = self.ssrlab("render", *SOURCES[1:], "-t", "hiz", "--errors", "-o", "drawn.png", *options, says=["picture_flip", "picture_visible_rmse"])
+            return float(said.split("picture_flip ")[1].split()[0])
+        alone = flip()
+        self.assertEqual(flip("--sources", "frame"), alone)
+        self.assertLess(flip("--sources", "frame,world"), alone)
+        self.refused("render", *SOURCES[1:], "-t", "hiz", "--errors", "--truth", "-o", "drawn.png", code=2, says=["--errors"])
+
     def test_refuses_what_is_no_list(self):
         self.refused(*SOURCES, "--sources", "frame,wurld", code=2, says=["--sources frame,wurld", "unknown source 'wurld'", "world"])
         self.refused(*SOURCES, "--sources", "layers:count=9", code=2, says=["count", "9"])

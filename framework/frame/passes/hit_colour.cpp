@@ -6,7 +6,14 @@ namespace {
 
 RecordFunction prepare(Gpu& gpu, const PassContext& context)
 {
-    auto       pass   = std::make_shared<ComputePass>(make_colour_pass(gpu, context, "passes/hit_colour.comp"));
+    Defines  defines;
+    Bindings bindings;
+    if (context.frame.answers.bytes > 0) {
+        defines.emplace("ANSWERS_GIVEN", "1");
+        bindings.insert({"RayLights", context.frame.answers});
+    }
+    auto pass =
+        std::make_shared<ComputePass>(make_colour_pass(gpu, context, "passes/hit_colour.comp", defines, bindings));
     const bool blocks = trace_block_px(context.frame.plan.values) > 1;
     return [pass, blocks, &rays = ray_launch(context), &reflection = image_of(context, Resource::reflection),
             &block_pixel = image_of(context, Resource::block_pixel)](const auto& commands) {

@@ -234,7 +234,7 @@ ComputePass make_composed_pass(Gpu& gpu, const PassContext& context, ShaderSourc
     if (!bindings.contains("Rays")) source.defines.merge(ray_list_defines(gpu, *frame.rays));
     bindings.insert({{"View", gbuffer.view_uniforms},
                      {"Ambient", buffers.ambient},
-                     {"dfg_table", {buffers.dfg_table, buffers.dfg_sampler}}});
+                     {"dfg_table", {buffers.dfg_table.image, buffers.dfg_table.sampler}}});
     for (const std::vector<Resource>& declared : {context.pass.reads, context.pass.writes})
         for (const Resource resource : declared) bindings.merge(bindings_of(gpu, context, resource));
     source.include_texts.emplace("pass/parameters", parameter_declarations(pass_parameters(), CONSTANT_PASSES));

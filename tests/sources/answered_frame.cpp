@@ -1,0 +1,119 @@
+// Pictures with the answers of sources: what the frame does not show reaches them, and what it shows stays.
+#include "sources/answered_frame.h"
+#include "gpu/device.h"
+#include "scene/model.h"
+#include "scene/shapes.h"
+
+#include <gtest/gtest.h>
+
+namespace ssrlab::test {
+namespace {
+
+const glm::vec3 glow{2, 0.5F, 0.25F}; // numbers of half precision
+
+/// A mirror that faces the camera, and behind the camera a wall without end that glows. Nothing else gives light.
+Scene mirror_before_glowing_wall(float mirror_roughness, float wall_metallic)
+{
+    Material mirror = make_material("mirror", {1, 1, 1}, 1, mirror_roughness);
+    Material wall   = make_material("wall", glm::vec3(wall_metallic), wall_metallic, wall_metallic > 0 ? 0 : 1);
+    wall.emissive   = glow;
+    Model          model;
+    constexpr auto half_m = 4000.0;
+    model.materials       = {mirror, wall};
+    model.meshes.push_back(make_quad({-half_m, -half_m, -4}, {2 * half_m, 0, 0}, {0, 2 * half_m, 0}));
+    model.meshes.push_back(make_quad({half_m, -half_m, 6}, {-2 * half_m, 0, 0}, {0, 2 * half_m, 0}));
+    model.meshes[1].material = 1;
+    model.ambient            = glm::vec3(0);
+    return model_to_scene(std::move(model), "mirror");
+}
+
+struct Shown {
+    Image picture, expected; // with the sources' answers; with the same light from everywhere
+};
+
+Shown shown_by(const Scene& scene, const std::string& list, glm::vec3 light, const FrameSettings& settings)
+{
+    Stage  stage = open_stage(device(), catalogue(), scene);
+    Camera camera;
+    camera.position_ws = {0, 0, 0};
+    camera.target_ws   = {0, 0, -1};
+    show(stage, camera_to_view(camera, {64, 36}));
+    const Technique&      hiz     = technique("hiz");
+    const LabPtr          lab     = make_lab(stage, hiz, values_of(hiz), settings.trace);
+    const FrameBuffersPtr buffers = make_frame_buffers(stage);
+    const FramePtr        frame =
+        make_frame(stage.gpu, lab, buffers, plan_frame(stage, lab, buffers, settings), nullptr, Answers::given);
+    SourceContext context = make_source_context(stage, lab);
+    run_answered_frame(context, *frame, parse_sources(list, "test"), HandOn::uncertain);
+    Shown                        shown{read_shaded(stage.gpu, *frame), {}};
+    const std::vector<glm::vec4> everywhere(context.image.depth.size(), glm::vec4(light, 1));
+    shown.expected = composite_reflection(stage.gpu, *frame, everywhere);
+    return shown;
+}
+
+void expect_near(const Image& picture, const Image& expected, double tolerance)
+{
+    ASSERT_EQ(picture.values.size(), expected.values.size());
+    double farthest = 0;
+    for (size_t i = 0; i < picture.values.size(); ++i)
+        farthest = std::max(farthest, std::abs(double(picture.values[i]) - double(expected.values[i])));
+    EXPECT_LE(farthest, tolerance);
+}
+
+TEST(AnsweredFrame, AMirrorShowsWhatStandsBehindTheCamera)
+{
+    const Scene scene = mirror_before_glowing_wall(0, 0);
+    const Shown world = shown_by(scene, "frame,world", glow, {});
+    EXPECT_EQ(world.picture.values, world.expected.values);
+    EXPECT_GT(world.picture.values[0], 0.95F * glow.r);
+    // The frame does not show the wall, and there is no other light.
+    const Shown frame = shown_by(scene, "frame", glm::vec3(0), {});
+    EXPECT_EQ(frame.picture.values, frame.expected.values);
+}
+
+TEST(AnsweredFrame, ARoughMirrorShowsItByTheRaysOfItsLobe)
+{
+    FrameSettings settings;
+    for (const int rays : {1, 2}) {
+        settings.passes.at("rays_per_pixel") = rays;
+        const Shown world                    = shown_by(mirror_before_glowing_wall(0.3F, 0), "world", glow, settings);
+        expect_near(world.picture, world.expected, 4 * double(glow.r) / 1024);
+    }
+}
+
+// Light goes from the wall to the mirror and back once more: L = e + e, for white mirrors keep all of it.
+TEST(AnsweredFrame, TheWorldFollowsFurtherReflections)
+{
+    const Scene scene = mirror_before_glowing_wall(0, 1);
+    const Shown once  = shown_by(scene, "world:bounces=0", glow, {});
+    EXPECT_EQ(once.picture.values, once.expected.values);
+    const Shown again = shown_by(scene, "world:bounces=2", 2.0F * glow, {});
+    expect_near(again.picture, again.expected, 8 * double(glow.r) / 1024);
+}
+
+TEST(AnsweredFrame, TheSourceFrameChangesNoBit)
+{
+    Stage stage = open_stage(device(), catalogue(), load_scene("builtin:everything"));
+    show(stage, "default", {160, 90});
+    const Technique&      hiz      = technique("hiz");
+    const FrameSettings   settings = {};
+    const LabPtr          lab      = make_lab(stage, hiz, values_of(hiz), settings.trace);
+    const FrameBuffersPtr buffers  = make_frame_buffers(stage);
+    const FramePlan       plan     = plan_frame(stage, lab, buffers, settings);
+    const FramePtr        own      = make_frame(stage.gpu, lab, buffers, plan);
+    const FrameTimes      times    = run_frame(stage.gpu, *own);
+    const Image           alone    = read_shaded(stage.gpu, *own);
+    const FramePtr        given    = make_frame(stage.gpu, lab, buffers, plan, nullptr, Answers::given);
+    SourceContext         context  = make_source_context(stage, lab);
+    const FrameTimes answered = run_answered_frame(context, *given, parse_sources("frame", "test"), HandOn::uncertain);
+    EXPECT_EQ(read_shaded(stage.gpu, *given).values, alone.values);
+    ASSERT_EQ(answered.passes_ms.size(), times.passes_ms.size());
+    for (size_t i = 0; i < times.passes_ms.size(); ++i)
+        EXPECT_EQ(answered.passes_ms[i].first, times.passes_ms[i].first);
+    const FramePtr world = make_frame(stage.gpu, lab, buffers, plan, nullptr, Answers::given);
+    run_answered_frame(context, *world, parse_sources("frame,world", "test"), HandOn::uncertain);
+    EXPECT_NE(read_shaded(stage.gpu, *world).values, alone.values);
+}
+
+} // namespace
+} // namespace ssrlab::test
