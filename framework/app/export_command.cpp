@@ -42,6 +42,17 @@ std::vector<std::pair<std::string, std::string>> chosen_values(const Catalogue& 
     return chosen;
 }
 
+/// Throws SpecError for a parameter that is no number of the technique.
+std::set<std::string> kept_numbers(const Technique& technique, std::span<const std::string> names)
+{
+    for (const std::string& name : names) {
+        const auto found = std::ranges::find(technique.parameters, name, &Parameter::name);
+        if (found == technique.parameters.end() || !found->choices.empty() || name.find('.') != std::string::npos)
+            throw_spec_error("--keep {}: expected a number among the parameters of {}", name, technique.id);
+    }
+    return {names.begin(), names.end()};
+}
+
 /// Of the device that exports: what every device can do, by the passes that need no subgroups.
 GpuOptions portable(GpuOptions options)
 {
@@ -169,7 +180,8 @@ int export_technique(const CommonOptions& common, const ExportOptions& options, 
                       choice.settings.trace,
                       language_of(options.language),
                       command_line,
-                      chosen_values(catalogue, technique, choice)};
+                      chosen_values(catalogue, technique, choice),
+                      kept_numbers(technique, options.kept)};
     write_export(stage.gpu, what, proof_frames(scene, options), options.picture.output);
     std::puts(fmt::format("wrote {0}; ssrlab export --verify {0} runs it", options.picture.output).c_str());
     return 0;

@@ -339,6 +339,8 @@ int main(int argc, char** argv)
         ->capture_default_str();
     taken->add_option("--near", exported.near_m, "Near plane in metres; default: that of the view")
         ->check(CLI::PositiveNumber);
+    taken->add_option("--keep", exported.kept,
+                      "Parameters that stay specialization constants (WGSL: override), instead of their values");
     taken->add_option("--verify", exported.verified,
                       "Run the shaders of a folder that was exported, and compare every ray");
     taken->add_flag("--hard-cases", exported.hard_cases,

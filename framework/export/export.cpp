@@ -113,7 +113,7 @@ void write_export(Gpu& gpu, const Export& what, std::span<const ExportFrame> fra
     for (const ExportFrame& frame : frames) {
         const Traced              traced   = trace(gpu, what, frame);
         const ComposedLab         composed = compose_lab(gpu, *traced.lab, traced.rays.size());
-        std::vector<ExportedPass> of_frame = export_passes(gpu, *traced.lab, composed);
+        std::vector<ExportedPass> of_frame = export_passes(gpu, *traced.lab, composed, what.kept);
         if (passes.empty()) write_passes(gpu, what, frame.gbuffer.view, composed, of_frame, folder);
         for (size_t i = 0; i < of_frame.size() && !passes.empty(); ++i) {
             if (of_frame[i].glsl != passes[i].glsl)

@@ -9,6 +9,7 @@
 #include "trace/lab.h"
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -24,6 +25,7 @@ struct Export {
     ExportLanguage                                   language = ExportLanguage::glsl;
     std::string                                      command;     // that repeats it
     std::vector<std::pair<std::string, std::string>> chosen = {}; // settings and parameters with their values
+    std::set<std::string> kept = {}; // numbers of the technique that stay specialization constants
 };
 
 /// A frame of the proof. All frames of an export have the same projection, near and far plane: those of the shaders.

@@ -69,15 +69,17 @@ std::string replace_all(const std::string& text, const std::regex& pattern, cons
     return result.append(behind, text.end());
 }
 
-/// Specialization constants get their values. One without a value keeps its default.
-std::string with_values(const std::string& text, const Constants& constants)
+/// Specialization constants get their values. One without a value keeps its default; those in `kept` stay what they are.
+std::string with_values(const std::string& text, const Constants& constants, const std::set<std::string>& kept)
 {
     static const std::regex declaration(
         R"(layout\s*\(\s*constant_id\s*=\s*(\w+)\s*\)\s*const\s+(\w+)\s+(\w+)\s*=\s*([^;]*);)");
     return replace_all(text, declaration, [&](const std::smatch& match) {
         const uint32_t    id    = number_of(match.str(1), text);
         const std::string value = has_value(constants, id) ? literal(match.str(2), constants, id) : match.str(4);
-        return fmt::format("const {} {} = {};", match.str(2), match.str(3), value);
+        const bool        stays = kept.contains(match.str(3));
+        return fmt::format("{}const {} {} = {};", stays ? fmt::format("layout(constant_id = {}) ", id) : "",
+                           match.str(2), match.str(3), value);
     });
 }
 
@@ -125,12 +127,13 @@ std::string with_single_blank_lines(const std::string& text)
 
 } // namespace
 
-std::string export_glsl(const Gpu& gpu, const ShaderSource& source, const Constants& constants)
+std::string export_glsl(const Gpu& gpu, const ShaderSource& source, const Constants& constants,
+                        const std::set<std::string>& kept)
 {
     ShaderSource exported = source;
     exported.defines.emplace("ROWS_IN_ORDER", "1");
     std::string text = expand_macros(resolved_text(gpu, exported));
-    text             = with_plain_numbers(with_common_layouts(with_values(text, constants)));
+    text             = with_plain_numbers(with_common_layouts(with_values(text, constants, kept)));
     return "#version 460\n" + with_extensions_first(with_single_blank_lines(without_unused(without_empty_calls(text))));
 }
 

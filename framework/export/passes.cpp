@@ -30,7 +30,8 @@ std::string name_of(const ComposedPass& pass, size_t number)
 
 } // namespace
 
-std::vector<ExportedPass> export_passes(Gpu& gpu, const Lab& lab, const ComposedLab& composed)
+std::vector<ExportedPass> export_passes(Gpu& gpu, const Lab& lab, const ComposedLab& composed,
+                                        const std::set<std::string>& kept)
 {
     if (lab.settings.layers > 1)
         throw_spec_error("layers = {}: an export traces the first layer only; use layers = 1", lab.settings.layers);
@@ -45,7 +46,7 @@ std::vector<ExportedPass> export_passes(Gpu& gpu, const Lab& lab, const Composed
 
     std::vector<ExportedPass> exported;
     for (size_t i = 0; i < passes.size(); ++i)
-        exported.push_back({name_of(passes[i], i + 1), export_glsl(gpu, passes[i].source, passes[i].constants),
+        exported.push_back({name_of(passes[i], i + 1), export_glsl(gpu, passes[i].source, passes[i].constants, kept),
                             passes[i], i == set_up});
     return exported;
 }

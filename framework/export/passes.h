@@ -5,6 +5,7 @@
 #include "trace/composed.h"
 
 #include <map>
+#include <set>
 
 namespace ssrlab {
 
@@ -17,7 +18,8 @@ struct ExportedPass {
 };
 
 /// Throws SpecError for what an export cannot hold.
-std::vector<ExportedPass> export_passes(Gpu& gpu, const Lab& lab, const ComposedLab& composed);
+std::vector<ExportedPass> export_passes(Gpu& gpu, const Lab& lab, const ComposedLab& composed,
+                                        const std::set<std::string>& kept);
 
 /// The host's resource behind a name of a shader: several names may stand for one buffer. Throws SpecError for one that an
 /// export does not have.

@@ -146,6 +146,15 @@ class Test(Case):
         for told in ("max_steps = 77", "--to glsl", "host_depth", "## Licence"):
             self.assertIn(told, readme)
 
+    def test_a_number_stays_a_constant_of_the_pipeline(self):
+        folder = self.export("dda", "glsl", "--keep", "max_steps")
+        self.assertRegex(self.read(folder, "3_trace.comp"), r"layout\(constant_id = \d+\) const int max_steps = 60000;")
+        self.assert_equal_on_every_ray(folder)
+        folder = self.export("dda", "wgsl", "--keep", "max_steps")
+        self.assertRegex(self.read(folder, "3_trace.wgsl"), r"@id\(\d+\) override max_steps\w*: i32 = 60000i;")
+        self.refused("export", "dda", "--to", "glsl", "-o", self.path("out"), "--keep", "arithmetic", code=2,
+                     says=["--keep arithmetic: expected a number among the parameters of dda"])
+
     def test_a_wrong_shader_is_found(self):
         folder = self.export("dda", "glsl")
         path = os.path.join(folder, "3_trace.comp")
