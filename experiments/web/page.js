@@ -4,7 +4,8 @@
 const element = (id) => document.getElementById(id);
 const statuses = ["", "hit", "left the screen", "maximum distance", "out of steps", "met surfaces that face away",
                   "stopped behind the frame", "impossible: a bug"];
-const colours = [[40, 40, 40], [70, 170, 90], [70, 110, 200], [120, 90, 180], [220, 170, 40], [150, 150, 150], [200, 70, 60], [255, 0, 255]];
+const colours = [[40, 40, 40], [70, 170, 90], [70, 110, 200], [120, 90, 180], [220, 170, 40], [150, 150, 150],
+                 [200, 70, 60], [255, 0, 255]];
 const palette = ["#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#17becf", "#8c564b", "#e377c2", "#7f7f7f"];
 const recorded = parseCsv(DATA.recorded["results.csv"]);
 const page = { device: null, rays: {}, dda: {}, measured: [], stopping: false, drawn: 0 };
@@ -145,7 +146,8 @@ function showCurve() {
     const own = page.measured.filter(chosen);
     element("curve").innerHTML = curveOf(own.length ? own : recorded.rows.filter(chosen));
     const device = JSON.parse(DATA.recorded["environment.json"]).identity.device;
-    element("source").textContent = own.length ? `Measured here, on ${page.device.name}.` : `Recorded by ssrlab on ${device}, not on this GPU.`;
+    element("source").textContent = own.length ? `Measured here, on ${page.device.name}.`
+                                               : `Recorded by ssrlab on ${device}, not on this GPU.`;
 }
 
 // ---- The sweep
@@ -153,9 +155,9 @@ async function measureRow(row) {
     const rays = await raysOf(row.scene);
     const prepared = await prepare(page.device, frameOf(row.scene, row.technique, row.surface), rays, numbersOf(row));
     const hits = (await traceFrame(page.device, prepared)).subarray(0, rays.length / 4);
-    const times = { structures: await measure(page.device, prepared.structures), trace: await measure(page.device, prepared.trace) };
+    const structures = await measure(page.device, prepared.structures), trace = await measure(page.device, prepared.trace);
     release(prepared);
-    return measuredRow(row, times, countOf(hits, 1) / (rays.length / 8));
+    return measuredRow(row, { structures, trace }, countOf(hits, 1) / (rays.length / 8));
 }
 
 function offer(name, type, text) {
@@ -178,7 +180,8 @@ async function sweep() {
         page.measured.push(await measureRow(row));
         showCurve();
     }
-    element("progress").textContent = `${page.measured.length} of ${rows.length} settings measured. Put both files into one folder: ssrlab plot FOLDER`;
+    element("progress").textContent =
+        `${page.measured.length} of ${rows.length} settings measured. Put both files into one folder: ssrlab plot FOLDER`;
     element("sweep").disabled = false;
     element("stop").hidden = true;
     offer("results.csv", "text/csv", toCsv(recorded.header, page.measured));

@@ -153,10 +153,11 @@ function environmentOf(device) {
     const environment = JSON.parse(DATA.recorded["environment.json"]);
     delete environment.samples;
     return JSON.stringify({
-        ...environment, device: device.name, device_type: "WebGPU", driver: navigator.userAgent, started: new Date().toISOString(),
-        command_line: "experiments/web, measured by the page", title: "Measured by the page",
+        ...environment, device: device.name, device_type: "WebGPU", driver: navigator.userAgent,
+        started: new Date().toISOString(), command_line: "experiments/web, measured by the page", title: "Measured by the page",
         identity: { ...environment.identity, device: device.name, driver: navigator.userAgent, processor: "" },
-        times: "of this device, by " + (device.features.has("timestamp-query") ? "timestamps" : "the clock around repeated dispatches") +
+        times: "of this device, by " +
+            (device.features.has("timestamp-query") ? "timestamps" : "the clock around repeated dispatches") +
             "; all other columns were recorded by ssrlab on the same frames",
     }, null, 1);
 }
