@@ -107,6 +107,8 @@ const numberOf = (row) => Object.values(numbersOf(row))[0] ?? 0;
 const swatches = (entries) =>
     entries.map(([name, colour]) => `<span class="swatch" style="background:${colour}"></span>${name}`).join(" ");
 
+const markOf = (exponent) => Number((10 ** exponent).toPrecision(2));
+
 /// Where a row lies in the drawing, and the marks of both axes.
 function axesOf(rows) {
     const costs = rows.map((row) => Math.log10(costOf(row))), scores = rows.map((row) => Number(row.f1_1px));
@@ -115,7 +117,7 @@ function axesOf(rows) {
     const x = (row) => 60 + 520 * (Math.log10(costOf(row)) - left) / (right - left);
     const y = (row) => 30 + 290 * (high - Number(row.f1_1px)) / (high - low);
     const marks = [0, 0.25, 0.5, 0.75, 1].map((part) =>
-        `<text x="${60 + 520 * part}" y="345" text-anchor="middle">${(10 ** (left + part * (right - left))).toPrecision(2)}</text>` +
+        `<text x="${60 + 520 * part}" y="345" text-anchor="middle">${markOf(left + part * (right - left))}</text>` +
         `<text x="52" y="${36 + 290 * part}" text-anchor="end">${(high - part * (high - low)).toFixed(2)}</text>`);
     return { x, y, marks: marks.join("") };
 }
