@@ -1,5 +1,6 @@
 #include "app/commands.h"
 
+#include "app/cases.h"
 #include "app/python_script.h"
 #include "compare/image_io.h"
 #include "compare/validate_result.h"
@@ -23,23 +24,16 @@ std::string status_legend()
 
 } // namespace
 
-int trace_hits(const CommonOptions& common, const PictureOptions& options)
+Image hits_image(const TraceResult& result, const std::string& technique, const std::vector<std::string>& parameters)
 {
-    const Catalogue  catalogue = load_catalogue(common.technique_dirs);
-    const Technique& technique = find_technique(catalogue.techniques, options.technique);
-    const Choice     choice    = parse_choice(catalogue, technique, options.parameters);
-    require_ending(options.output, {".exr"});
-    Stage             stage  = open_stage(common, catalogue, options);
-    const LabPtr      lab    = make_lab(stage, technique, choice.values, choice.settings.trace);
-    const TraceResult result = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
-    Image             image{result.size_px,
+    Image image{result.size_px,
                 {"hit.x", "hit.y", "hit.t", "hit.z", "pixel.x", "pixel.y", "layer", "status", "steps", "depth_fetches",
-                             "structure_fetches"},
+                 "structure_fetches"},
                 {},
                 {}};
     image.metadata["ssrlab:status_names"] = status_legend();
-    image.metadata["ssrlab:technique"]    = options.technique;
-    image.metadata["ssrlab:parameters"]   = fmt::format("{}", fmt::join(options.parameters, " "));
+    image.metadata["ssrlab:technique"]    = technique;
+    image.metadata["ssrlab:parameters"]   = fmt::format("{}", fmt::join(parameters, " "));
     for (size_t i = 0; i < result.status.size(); ++i) {
         const bool hit = has_place(result.status[i]);
         // A miss has no hit point: zeros, and the status says so. A stopped ray has one.
@@ -52,7 +46,20 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
               static_cast<double>(structure_fetches_of(result, i))})
             image.values.push_back(static_cast<float>(value));
     }
-    write_image(options.output, image);
+    return image;
+}
+
+int trace_hits(const CommonOptions& common, const PictureOptions& options)
+{
+    if (std::filesystem::is_directory(options.scene)) return trace_cases(common, options);
+    const Catalogue  catalogue = load_catalogue(common.technique_dirs);
+    const Technique& technique = find_technique(catalogue.techniques, options.technique);
+    const Choice     choice    = parse_choice(catalogue, technique, options.parameters);
+    require_ending(options.output, {".exr"});
+    Stage             stage  = open_stage(common, catalogue, options);
+    const LabPtr      lab    = make_lab(stage, technique, choice.values, choice.settings.trace);
+    const TraceResult result = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
+    write_image(options.output, hits_image(result, options.technique, options.parameters));
     std::puts(options.output.c_str());
     require_possible(result, declared_steps(technique, choice.values));
     return report_messages(stage);

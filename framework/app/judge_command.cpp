@@ -1,19 +1,15 @@
 #include "app/judge_command.h"
 
-#include "check/judge_frame.h"
-#include "compare/causes.h"
+#include "app/cases.h"
+#include "app/judge_report.h"
 #include "compare/image_io.h"
 #include "core/error.h"
-#include "core/files.h"
 #include "core/plane_gradient.h"
 #include "core/printable.h"
 #include "harness/experiment.h"
 #include "harness/measured_run.h"
 #include "harness/quality.h"
 #include "truth/scene_truth.h"
-
-#include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -24,19 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json   = nlohmann::ordered_json;
-
-constexpr size_t most_lines = 10; // of findings, in the table; JSON has all
-
-/// One hits file, judged.
-struct Judged {
-    std::string              frame, hits;
-    glm::ivec2               size_px{0, 0};
-    std::vector<std::string> settings; // name=value
-    FrameJudgement           judgement;
-    Record                   measures; // the columns of results.csv that a run would have
-    bool                     has_scene = false;
-    std::optional<double>    f1; // of the scene truth, else of the screen truth; none: nothing is to be hit, nor is it
-};
 
 void set_pairs(const std::vector<Setting>& settings, const std::vector<std::string>& pairs, bool strict,
                FrameSettings& to)
@@ -136,104 +119,6 @@ Judged judge_file(const CommonOptions& common, const Catalogue& catalogue, const
     return judged;
 }
 
-Json json_of(const Judged& judged)
-{
-    Json json{{"frame", judged.frame},
-              {"hits", judged.hits},
-              {"size_px", {judged.size_px.x, judged.size_px.y}},
-              {"settings", judged.settings},
-              {"rays", judged.judgement.rays},
-              {"answers_of_other_pixels", judged.judgement.ignored},
-              {"wrong", judged.judgement.wrong()},
-              {"by_contract", Json::object()},
-              {"f1_truth", judged.has_scene ? "scene" : "screen"},
-              {"f1", nullptr},
-              {"measures", Json::object()},
-              {"findings", Json::array()}};
-    if (judged.f1) json["f1"] = *judged.f1;
-    for (size_t i = 0; i < fault_names.size(); ++i)
-        json["by_contract"][std::string(fault_names[i])] = judged.judgement.count[i];
-    for (const auto& [column, value] : judged.measures)
-        if (const auto number = number_of(judged.measures, column)) json["measures"][column] = *number;
-    for (const Finding& finding : judged.judgement.findings)
-        json["findings"].push_back({{"pixel", {finding.pixel.x, finding.pixel.y}},
-                                    {"fault", fault_names[static_cast<size_t>(finding.fault)]},
-                                    {"expected", finding.expected},
-                                    {"got", finding.got},
-                                    {"why", finding.why}});
-    return json;
-}
-
-std::string percent(const Record& measures, const std::string& column)
-{
-    const auto value = number_of(measures, column);
-    return value ? fmt::format("{:.2f} %", 100 * *value) : "none";
-}
-
-/// The shares of the columns PREFIX + name + SUFFIX that are above 0.
-std::string shares(const Record& measures, std::span<const std::string_view> names, std::string_view prefix,
-                   std::string_view suffix)
-{
-    std::string text;
-    for (const std::string_view name : names)
-        if (const double share = number_of(measures, fmt::format("{}{}{}", prefix, name, suffix)).value_or(0);
-            share > 0)
-            text += fmt::format("{}{} {:.2f} %", text.empty() ? "" : ", ", name, 100 * share);
-    return text.empty() ? "none" : text;
-}
-
-std::string fault_counts(const FrameJudgement& judgement)
-{
-    std::string text;
-    for (size_t i = static_cast<size_t>(Fault::impossible); i < fault_names.size(); ++i)
-        if (judgement.count[i] > 0)
-            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", fault_names[i], judgement.count[i]);
-    return text.empty() ? "" : fmt::format(" ({})", text);
-}
-
-void print_findings(const std::vector<Finding>& findings)
-{
-    for (size_t i = 0; i < std::min(findings.size(), most_lines); ++i) {
-        const Finding& found = findings[i];
-        std::puts(fmt::format("  ({}, {}) {}: got {}; expected {}", found.pixel.x, found.pixel.y,
-                              fault_names[static_cast<size_t>(found.fault)], found.got, found.expected)
-                      .c_str());
-        if (!found.why.empty()) std::puts(fmt::format("    {}", found.why).c_str());
-    }
-    if (findings.size() > most_lines)
-        std::puts(fmt::format("  and {} more; --json lists all", findings.size() - most_lines).c_str());
-}
-
-void print(const Judged& judged)
-{
-    const FrameJudgement& judgement = judged.judgement;
-    const Record&         m         = judged.measures;
-    std::puts(fmt::format("{} of {}, {}: {} rays{}{}", judged.hits, judged.frame, size_text(judged.size_px),
-                          judgement.rays, judged.settings.empty() ? "" : "; ", fmt::join(judged.settings, " "))
-                  .c_str());
-    if (judgement.ignored > 0)
-        std::puts(
-            fmt::format("ignored: {} answers of pixels that do not reflect under these settings", judgement.ignored)
-                .c_str());
-    std::puts(fmt::format("ends: {}", shares(m, trace_status_names, "", "_share")).c_str());
-    std::puts(fmt::format("hit contract: {} right, {} near ties, {} wrong{}", judgement.of(Fault::right),
-                          judgement.of(Fault::near_tie), judgement.wrong(), fault_counts(judgement))
-                  .c_str());
-    print_findings(judgement.findings);
-    const auto line = [&](const char* truth, const char* prefix) {
-        std::puts(
-            fmt::format("{}: recall {}, precision {}, F1 {}", truth, percent(m, fmt::format("{}recall_1px", prefix)),
-                        percent(m, fmt::format("{}precision_1px", prefix)), percent(m, fmt::format("{}f1_1px", prefix)))
-                .c_str());
-    };
-    line("screen truth", "screen_");
-    if (!judged.has_scene) return;
-    line("scene truth", "");
-    std::puts(fmt::format("wrong rays: {}; by cause: {}", percent(m, "wrong_rays"),
-                          shares(m, wrong_cause_names, "wrong_", ""))
-                  .c_str());
-}
-
 bool passes(const Judged& judged, const JudgeOptions& options, bool any_wrong_fails)
 {
     if (judged.judgement.of(Fault::impossible) > 0) return false;
@@ -241,50 +126,37 @@ bool passes(const Judged& judged, const JudgeOptions& options, bool any_wrong_fa
     return !any_wrong_fails || judged.judgement.wrong() == 0;
 }
 
-Json read_manifest(const fs::path& file)
+/// The options of each case that has hits, of a folder that export-cases wrote.
+std::vector<JudgeOptions> cases_of(const CommonOptions& common, const JudgeOptions& options)
 {
-    if (!fs::exists(file)) throw_spec_error("{}: no such file; ssrlab export-cases writes it", short_path(file));
-    try {
-        return Json::parse(read_file(file));
-    } catch (const Json::exception& error) {
-        throw_spec_error("{}: {}", short_path(file), error.what());
-    }
-}
-
-/// The options of each case of a folder that export-cases wrote.
-std::vector<JudgeOptions> cases_of(const JudgeOptions& options)
-{
-    const fs::path            file = fs::path(options.frame) / "manifest.json";
-    const Json                json = read_manifest(file);
-    std::vector<JudgeOptions> cases;
     if (!options.scene.empty() || !options.output.empty() || !options.parameters.empty())
         throw_spec_error("{}: the cases have their own settings and no scene: give no --scene, -p and -o",
                          options.frame);
-    try {
-        for (const Json& entry : json.at("frames")) {
-            JudgeOptions one = options;
-            one.frame        = (fs::path(options.frame) / entry.at("frame").get<std::string>()).string();
-            one.hits         = (fs::path(options.hits) / (entry.at("name").get<std::string>() + ".exr")).string();
-            for (const auto& [name, value] : entry.at("settings").items())
-                one.parameters.push_back(name + "=" + value.get<std::string>());
-            if (fs::exists(one.hits)) cases.push_back(one);
-        }
-    } catch (const Json::exception& error) {
-        throw_spec_error("{}: {}", short_path(file), error.what());
+    const std::vector<ExportedCase> all = read_cases(options.frame);
+    std::vector<JudgeOptions>       cases;
+    for (const ExportedCase& one : all) {
+        JudgeOptions own = options;
+        own.frame        = one.frame.string();
+        own.hits         = (fs::path(options.hits) / (one.name + ".exr")).string();
+        own.parameters   = one.settings;
+        if (fs::exists(own.hits)) cases.push_back(own);
     }
     if (cases.empty())
-        throw_spec_error("{}: no hits: expected NAME.exr for names of {}", options.hits, short_path(file));
-    if (const size_t missing = json.at("frames").size() - cases.size(); missing > 0)
-        std::fprintf(stderr, "warning: %zu of %zu cases have no hits\n", missing, json.at("frames").size());
+        throw_spec_error("{}: no hits: expected NAME.exr for the names in {}/manifest.json", options.hits,
+                         options.frame);
+    if (cases.size() < all.size() && !common.quiet)
+        std::fprintf(stderr, "warning: %zu of %zu cases have no hits\n", all.size() - cases.size(), all.size());
     return cases;
 }
 
 int judge_folder(const CommonOptions& common, const Catalogue& catalogue, const JudgeOptions& options)
 {
-    Json   all    = Json::array();
-    size_t failed = 0, count = 0;
-    for (const JudgeOptions& one : cases_of(options)) {
-        const Judged judged = judge_file(common, catalogue, one);
+    Json          all    = Json::array();
+    size_t        failed = 0, count = 0;
+    CommonOptions quiet = common;
+    quiet.quiet         = true; // the frames are ours
+    for (const JudgeOptions& one : cases_of(common, options)) {
+        const Judged judged = judge_file(quiet, catalogue, one);
         const bool   passed = passes(judged, one, true);
         failed += !passed;
         ++count;

@@ -1,4 +1,5 @@
 // The command line: names and help here, the work in commands.cpp and harness/.
+#include "app/cases.h"
 #include "app/check_command.h"
 #include "app/commands.h"
 #include "app/export_command.h"
@@ -212,7 +213,8 @@ int main(int argc, char** argv)
     add_picture_options(*render, rendered.picture, true);
     add_presentation_options(*render, rendered);
     render->callback([&] { command = [&] { return render_picture(common, rendered); }; });
-    auto* trace = app.add_subcommand("trace", "Write what each ray found and why it stopped (.exr)");
+    auto* trace = app.add_subcommand(
+        "trace", "Write what each ray found and why it stopped (.exr), of a frame or of each of a folder's cases");
     add_picture_options(*trace, picture, true);
     trace->callback([&] { command = [&] { return trace_hits(common, picture); }; });
     auto* gbuffer = app.add_subcommand("gbuffer", "Write what the camera sees (.exr)");
@@ -236,6 +238,11 @@ int main(int argc, char** argv)
                "judge", "Judge the hits of any renderer by the hit contract and the truths (docs/how-to/judge_a_renderer.md)");
     add_judge_options(*judge, judged);
     judge->callback([&] { command = [&] { return judge_hits(common, judged); }; });
+
+    auto* cases = app.add_subcommand("export-cases",
+                                     "Write the hard cases as frame files with their right answers, for any renderer");
+    cases->add_option("FOLDER", results, "Folder to write: new or empty")->required();
+    cases->callback([&] { command = [&] { return export_cases(common, results); }; });
 
     ViewOptions view;
     auto* viewed = app.add_subcommand("view", "Open a window in which camera, technique and settings change live");

@@ -35,6 +35,8 @@ struct HardCase {
     std::function<void(const Technique&, ParameterValues&)> adjust = {};
     /// Bound on the iterations per ray of an exact technique, if it is less than 2 (W + H - 1) + start level.
     std::function<int(const Setup&)> most_steps = {};
+    /// The setups are frames that follow each other.
+    bool in_order = false;
 };
 
 /// Returns the values of the technique as the case changes them.

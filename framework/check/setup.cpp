@@ -142,6 +142,14 @@ GBufferImage picture_of(const View& view, const DistanceOfPixel& distance_m)
     return image;
 }
 
+void reflect_to(GBufferImage& image, glm::ivec2 pixel, glm::dvec3 direction_vs)
+{
+    const size_t     i = pixel_index(pixel, image.view.size_px);
+    const glm::dvec3 seen =
+        glm::normalize(px_to_vs(image.view, glm::dvec2(pixel) + 0.5, static_cast<double>(image.depth[i])));
+    image.normal_vs[i] = glm::vec3(glm::normalize(glm::normalize(direction_vs) - seen));
+}
+
 RayInput ray_between(const View& view, glm::dvec3 from_px_distance, glm::dvec3 to_px_distance)
 {
     const glm::dvec3 from(from_px_distance.x, from_px_distance.y, distance_to_depth(view, from_px_distance.z));

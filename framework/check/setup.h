@@ -42,6 +42,9 @@ GBufferImage picture_of(const View& view, const std::vector<Shape>& shapes);
 using DistanceOfPixel = std::function<double(glm::ivec2)>;
 GBufferImage picture_of(const View& view, const DistanceOfPixel& distance_m);
 
+/// Turns the normal of a pixel so that its mirror ray goes in this direction.
+void reflect_to(GBufferImage& image, glm::ivec2 pixel, glm::dvec3 direction_vs);
+
 /// Makes a ray between two points on screen; z is the distance in metres.
 RayInput ray_between(const View& view, glm::dvec3 from_px_distance, glm::dvec3 to_px_distance);
 /// Makes a ray of constant depth.

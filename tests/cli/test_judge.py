@@ -1,8 +1,12 @@
 """The hits of a renderer, judged: what a run measures of them, and exit codes for a CI."""
 import json
 import os
+import re
+import shutil
 
-from support import Case, main
+from support import SOURCE, Case, main
+
+PAGE = "docs/how-to/judge_a_renderer.md"
 
 SPEC = """scenes = ["builtin:corridor"]
 sizes  = ["160x90"]
@@ -79,6 +83,40 @@ class Test(Case):
     def pixels(self, name):
         import OpenImageIO
         return OpenImageIO.ImageBuf(self.path(name)).get_pixels(OpenImageIO.UINT8).tobytes()
+
+    def test_the_page_and_every_case(self):
+        """The commands of the page: the exact walk is right in every exported case, and a rival's loop is not."""
+        with open(os.path.join(SOURCE, PAGE), encoding="utf-8") as file:
+            page = file.read()
+        commands = [line for block in re.findall(r"^```sh\n(.*?)^```", page, re.M | re.S) for line in block.splitlines()]
+        self.assertEqual(len(commands), 10)
+        said = ""
+        for command in commands:
+            words = command.replace("techniques/rivals", os.path.join(SOURCE, "techniques/rivals")).split()
+            self.assertEqual(words[0], "ssrlab")
+            said = self.ssrlab(*words[1:], code=1 if command == "ssrlab judge cases rival" else 0)
+            if command == "ssrlab judge cases hits":
+                self.assertRegex(said, r"\b(\d+) of \1 cases pass")
+        self.assertIn(re.search(r"^FAIL .*", page, re.M)[0], said)
+        with open(self.path("cases/manifest.json"), encoding="utf-8") as file:
+            manifest = json.load(file)
+        names = [frame["name"] for frame in manifest["frames"]]
+        self.assertGreater(len(names), 100)
+        self.assertGreater(len(manifest["left_out"]), 100)
+        for case in re.findall(r"`(\w+)`", page.split("| a bug often reported")[1].split("##")[0].replace("`size >> level`", "")):
+            self.assertTrue([name for name in names if re.fullmatch(case + r"(_\d+)?", name)], case)
+        # Who shows what the frame before held is found in each frame that has one.
+        stale = [(frame["name"], frame["after"]) for frame in manifest["frames"] if "after" in frame]
+        self.assertEqual(len(stale), 3)
+        os.mkdir(self.path("stale"))
+        for name, before in stale:
+            shutil.copy(self.path(f"hits/{before}.exr"), self.path(f"stale/{name}.exr"))
+        self.ssrlab("judge", "cases", "stale", code=1, says=["0 of 3 cases pass", "FAIL previous_frame_1: 64 rays, 64 wrong"])
+        verdict = json.loads(self.ssrlab("judge", "cases", "stale", "--json", "--min-f1", "0", "--quiet"))
+        self.assertEqual([one["passed"] for one in verdict], [True] * 3)
+        self.refused("export-cases", "cases", code=2, says=["cases: expected a new or empty folder"])
+        self.refused("judge", "cases", "cases/frames/..", code=2, says=["no hits: expected NAME.exr"])
+        self.refused("judge", "cases", "hits", "-p", "thickness_m=1", code=2, says=["the cases have their own settings"])
 
     def test_wrong_input_is_refused(self):
         self.trace("linear")

@@ -50,6 +50,22 @@ HardCase narrow_and_wide()
             .expected = wall_row};
 }
 
+HardCase odd_width()
+{
+    return {.name   = "odd_width",
+            .breaks = "the middle column's rays are parallel to the screen's y axis: 1 / 0, and 0 times infinity at "
+                      "the border where they begin",
+            .answer = wall_answer + " Also in the middle column, where no ray moves in x.",
+            .setups =
+                [] {
+                    std::vector<Setup> setups;
+                    for (const glm::ivec2& size : {glm::ivec2(65, 64), {1, 64}, {33, 47}})
+                        setups.push_back(wall_above_floor(bench_view(size), 10, fmt::format("{}x{}", size.x, size.y)));
+                    return setups;
+                },
+            .expected = wall_row};
+}
+
 HardCase off_centre()
 {
     return {.name   = "off_centre",
@@ -186,8 +202,8 @@ std::vector<RefusedCase> refused()
 CaseFamily camera_cases()
 {
     return {"camera",
-            {narrow_and_wide(), off_centre(), near_plane_near_and_far(), orthographic(), orthographic_along_the_axis(),
-             orthographic_scene()},
+            {narrow_and_wide(), odd_width(), off_centre(), near_plane_near_and_far(), orthographic(),
+             orthographic_along_the_axis(), orthographic_scene()},
             refused()};
 }
 

@@ -16,13 +16,9 @@ Setup floor_reflecting_to(glm::dvec3 direction, const TraceSettings& settings)
 {
     Setup setup{{}, picture_of(bench_view(), {plane({0, -1, 0}, {0, 1, 0})}), settings, {}};
     for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 64; ++x) {
-            const auto i = pixel_index({x, y}, setup.gbuffer.view.size_px);
-            if (setup.gbuffer.depth[i] <= 0) continue;
-            const glm::dvec3 seen = glm::normalize(
-                px_to_vs(setup.gbuffer.view, glm::dvec2(x, y) + 0.5, static_cast<double>(setup.gbuffer.depth[i])));
-            setup.gbuffer.normal_vs[i] = glm::vec3(glm::normalize(glm::normalize(direction) - seen));
-        }
+        for (int x = 0; x < 64; ++x)
+            if (setup.gbuffer.depth[pixel_index({x, y}, setup.gbuffer.view.size_px)] > 0)
+                reflect_to(setup.gbuffer, {x, y}, direction);
     return setup;
 }
 

@@ -3,6 +3,8 @@
 #include "core/pixel_index.h"
 #include "scene/sequence.h"
 
+#include <algorithm>
+
 namespace ssrlab {
 namespace {
 
@@ -31,6 +33,45 @@ HardCase sub_pixel_jitter()
                 }
                 return setups;
             }};
+}
+
+constexpr int bar_columns[] = {40, 41, 52, 20};
+
+/// Mirrors in the first column send level rays along their rows to a bar.
+Setup row_mirrors_and_bar(int column)
+{
+    Setup setup{fmt::format("bar in column {}", column),
+                picture_of(bench_view(), [=](glm::ivec2 p) { return p.x == 0        ? 4.5
+                                                                    : p.x == column ? 4.0
+                                                                                    : 0.0; }),
+                {.thickness_m = 1, .max_distance_m = 100},
+                {}};
+    for (int y = 0; y < 64; ++y) {
+        reflect_to(setup.gbuffer, {0, y}, {1, 0, 0});
+        setup.gbuffer.metallic[pixel_index({column, y}, setup.gbuffer.view.size_px)] = 0;
+    }
+    return setup;
+}
+
+HardCase previous_frame()
+{
+    return {.name   = "previous_frame",
+            .breaks = "depth, a pyramid or hits of the frame before are read: what moved is found where it was",
+            .answer = "A bar stands in another column in each frame. Every row's level ray hits it there, column - "
+                      "0.5 of 63.5 px away.",
+            .setups =
+                [] {
+                    std::vector<Setup> setups;
+                    for (const int column : bar_columns) setups.push_back(row_mirrors_and_bar(column));
+                    return setups;
+                },
+            .expected = [](const Setup& setup, const RayInput& ray) -> std::optional<Expected> {
+                const auto row    = setup.gbuffer.depth.begin() + ptrdiff_t{64} * ray.pixel.y;
+                const auto column = std::find_if(row + 1, row + 64, [](float depth) { return depth > 0; }) - row;
+                return Expected{.pixel = glm::ivec2(column, ray.pixel.y),
+                                .t     = (static_cast<double>(column) - 0.5) / 63.5};
+            },
+            .in_order = true};
 }
 
 /// Twice the resolution, each pixel repeated four times.
@@ -115,6 +156,9 @@ HardCase unrelated_pixels()
 
 } // namespace
 
-CaseFamily motion_cases() { return {"motion", {sub_pixel_jitter(), resolution_doubling(), unrelated_pixels()}}; }
+CaseFamily motion_cases()
+{
+    return {"motion", {sub_pixel_jitter(), previous_frame(), resolution_doubling(), unrelated_pixels()}};
+}
 
 } // namespace ssrlab

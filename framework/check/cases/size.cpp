@@ -1,5 +1,6 @@
 // Hard cases, family "size": images whose halves are not whole.
 #include "check/hard_case.h"
+#include "core/pixel_index.h"
 
 #include <algorithm>
 
@@ -80,8 +81,55 @@ HardCase crossings_of_odd_sizes()
             }};
 }
 
+/// Mirrors at the left and upper border send their rays along rows and columns, level at 4.5 m, to walls 4 m away at the right and lower one.
+Setup rows_and_columns(glm::ivec2 size)
+{
+    const glm::ivec2 last = size - 1;
+    const auto on_border  = [](int a, int border, int b, int b_last) { return a == border && b > 0 && b < b_last; };
+    Setup      setup{fmt::format("{}x{}", size.x, size.y),
+                picture_of(bench_view(size),
+                                [&](glm::ivec2 p) {
+                               if (on_border(p.x, 0, p.y, last.y) || on_border(p.y, 0, p.x, last.x)) return 4.5;
+                               return on_border(p.x, last.x, p.y, last.y) || on_border(p.y, last.y, p.x, last.x) ? 4.0
+                                                                                                                      : 0.0;
+                           }),
+                bench,
+                {}};
+    for (int y = 1; y < last.y; ++y) reflect_to(setup.gbuffer, {0, y}, {1, 0, 0});
+    for (int x = 1; x < last.x; ++x) reflect_to(setup.gbuffer, {x, 0}, {0, -1, 0});
+    for (size_t i = 0; i < setup.gbuffer.depth.size(); ++i) {
+        const glm::ivec2 pixel = pixel_at(i, size);
+        if (pixel.x > 0 && pixel.y > 0) setup.gbuffer.metallic[i] = 0;
+    }
+    return setup;
+}
+
+HardCase last_cells()
+{
+    return {.name   = "last_cells",
+            .breaks = "a pyramid of a size that is no power of two: size >> level loses the last cells, sizes rounded "
+                      "up read beyond them; rays parallel to an axis never cross the other one's borders",
+            .answer = "Mirrors at the left and upper border send level rays along each row and column: they hit the "
+                      "last pixel of it, size - 1.5 of size - 0.5 px away.",
+            .setups =
+                [] {
+                    std::vector<Setup> setups;
+                    for (const glm::ivec2& size :
+                         {glm::ivec2(17, 31), {31, 17}, {63, 65}, {65, 63}, {64, 64}, {97, 61}, {127, 33}, {33, 129}})
+                        setups.push_back(rows_and_columns(size));
+                    return setups;
+                },
+            .expected = [](const Setup& setup, const RayInput& ray) -> std::optional<Expected> {
+                const glm::ivec2 size = setup.gbuffer.view.size_px;
+                const int        axis = ray.pixel.x == 0 ? 0 : 1;
+                glm::ivec2       end  = ray.pixel;
+                end[axis]             = size[axis] - 1;
+                return Expected{.pixel = end, .t = (size[axis] - 1.5) / (size[axis] - 0.5)};
+            }};
+}
+
 } // namespace
 
-CaseFamily size_cases() { return {"size", {last_row_and_column(), crossings_of_odd_sizes()}}; }
+CaseFamily size_cases() { return {"size", {last_row_and_column(), crossings_of_odd_sizes(), last_cells()}}; }
 
 } // namespace ssrlab
