@@ -229,6 +229,9 @@ int main(int argc, char** argv)
     explained->add_option("-t,--technique", ray.techniques, "Technique; several may be compared")->required();
     explained->add_option("-p,--parameter", ray.picture.parameters,
                           "name=value, as for render; for every technique that has it");
+    explained->add_option(
+        "--sources", ray.sources,
+        "Also say which source of this list answers the ray, as frame,world (docs/explanation/beyond.md)");
     explained->add_option("-o,--output", ray.picture.output, "Also write a picture (.png) or all numbers (.json)");
     explained->add_flag("--json", ray.json, "Print all numbers as JSON instead of the table");
     explained->callback([&] { command = [&] { return explain_ray(common, ray); }; });

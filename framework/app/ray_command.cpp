@@ -1,5 +1,6 @@
 #include "app/ray_command.h"
 
+#include "app/pixel_sources.h"
 #include "app/python_script.h"
 #include "check/ray_report.h"
 #include "core/error.h"
@@ -149,24 +150,34 @@ int explain_ray(const CommonOptions& common, const RayOptions& options)
     const std::string           extension = output.extension().string();
     if (!output.empty() && extension != ".json" && extension != ".png")
         throw_spec_error("-o {}: expected .json or .png", options.picture.output);
-    const Catalogue                catalogue = load_catalogue(common.technique_dirs);
-    FrameSettings                  settings;
-    const std::vector<RayQuestion> questions = questions_of(options, catalogue, settings);
-    Stage                          stage     = open_stage(common, catalogue, options.picture);
+    const Catalogue                 catalogue = load_catalogue(common.technique_dirs);
+    FrameSettings                   settings;
+    const std::vector<RayQuestion>  questions = questions_of(options, catalogue, settings);
+    const std::vector<ListedSource> listed    = options.sources.empty()
+                                                    ? std::vector<ListedSource>{}
+                                                    : parse_sources(options.sources, "--sources " + options.sources);
+    Stage                           stage     = open_stage(common, catalogue, options.picture);
     if (stage.drawing) draw_layers(stage.gpu, *stage.drawing, settings.trace.layers);
     const Setup      setup{"", read_gbuffer(stage.gpu, *stage.gbuffer), settings.trace, {}};
     const glm::ivec2 pixel  = pixel_option(options.pixel, stage.view.size_px);
     const RayInput   ray    = ray_of_pixel(stage, setup, questions.front(), pixel);
     RayReport        report = report_ray(stage.gpu, catalogue, setup, ray, questions);
     report.true_end         = true_end_of(stage, setup, pixel);
+    std::optional<PixelSources> sources;
+    if (!listed.empty())
+        sources =
+            ask_about_pixel(stage, *questions.front().technique, questions.front().values, settings,
+                            options.picture.view, options.picture.at, listed, pixel_index(pixel, stage.view.size_px));
 
     nlohmann::json json = to_json(report, setup);
-    json["scene"]       = options.picture.scene;
-    json["view"]        = options.picture.view;
+    if (sources) json["sources"] = to_json(*sources);
+    json["scene"] = options.picture.scene;
+    json["view"]  = options.picture.view;
     if (options.json)
         std::puts(json.dump(1).c_str());
     else
         print_report(options, report);
+    if (sources && !options.json) print_pixel_sources(*sources);
     if (extension == ".json") write_file_atomically(output, json.dump(1) + "\n");
     if (extension == ".png") draw_ray(json, setup, report, output);
     if (!output.empty() && !options.json) std::puts(options.picture.output.c_str());

@@ -9,6 +9,7 @@ struct RayOptions {
     PictureOptions           picture; // output: a .json or .png, or empty
     std::vector<std::string> techniques;
     std::string              pixel;
+    std::string              sources;      // a list to ask about the ray; empty: none
     bool                     json = false; // print JSON instead of the table
 };
 

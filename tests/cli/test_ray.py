@@ -52,6 +52,18 @@ class Test(Case):
         self.assertGreater(os.path.getsize(self.path("ray.png")), 20000)
         self.assertEqual(sorted(os.listdir(self.folder)), ["mine", "ray.png"])
 
+    def test_tells_which_source_answers(self):
+        by = (*RAY, "-t", "hiz", "-p", "surface=plane_infinite", "-p", "behind=stop", "--sources")
+        ray = json.loads(self.ssrlab(*by, "frame,world", "--json"))
+        true_m, sources = ray["scene_truth"]["distance_m"], ray["sources"]
+        self.assertEqual(sources["answered_by"], "frame")
+        frame, world = sources["answers"]
+        self.assertEqual((frame["source"], frame["kind"], frame["certain"], frame["right"]), ("frame", "point", True, True))
+        self.assertAlmostEqual(frame["distance_m"], true_m, delta=sources["allowed_m"])
+        self.assertEqual(world, {"source": "world", "asked": False})
+        self.ssrlab(*by, "world", says=["answered by world", "certain, right"])
+        self.refused(*by, "wurld", code=2, says=["--sources wurld: unknown source 'wurld': did you mean 'world'?"])
+
     def test_check_shows_the_techniques_own_steps(self):
         self.ssrlab("check", "hiz", "--case", "one_object_in_the_sky", "--ray", "0:0", says=["level", "then", "hiz: "])
 
