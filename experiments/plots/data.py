@@ -5,7 +5,7 @@ import pandas as pd
 
 from .pairs import cost_samples
 from .styles import chart_styles, styles
-from .results import add_derived, inputs_of, is_number, read_environment, read_passes, read_rows, varying  # noqa: F401
+from .results import add_derived, inputs_of, is_number, read_environment, read_passes, read_rows, read_sources, varying  # noqa: F401
 
 # Where a specification names no [targets].
 TARGETS = {"recall_1px": [0.90, 0.95, 0.99, 0.995], "screen_recall_1px": [0.90, 0.95, 0.99, 0.995]}
@@ -24,6 +24,7 @@ class Results:
         self.accuracy = accuracy_of(self.environment)
         self.costs = cost_samples(folder)
         self.passes = read_passes(folder)
+        self.sources = read_sources(folder)
         add_derived(self.rows)
         self.techniques = sorted(self.rows.technique.unique())
         series = {name: sorted(self.rows[self.rows.technique == name].series.unique()) for name in self.techniques}

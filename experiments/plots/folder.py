@@ -4,7 +4,7 @@ import sys
 
 from matplotlib import pyplot as plt
 
-from . import accuracy, effects, figures, gpu, panels, report, sequences, surfaces
+from . import accuracy, effects, figures, gpu, panels, report, sequences, sources, surfaces
 from .data import Results
 
 INTERACTIVE = accuracy.ALL  # the report shows these as one chart to choose from
@@ -14,8 +14,9 @@ def draw(results, folder):
     """([{"name", "alt", "path", "curve"}], tables); an alt text says what a plot shows."""
     os.makedirs(folder, exist_ok=True)
     plots, tables = [], {}
-    # A specification that names its figures wants these.
+    # A specification that names its figures wants these. Runs that differ in their sources alone have the same tracer.
     usual = figures.ALL + accuracy.ALL + effects.ALL + surfaces.ALL + sequences.ALL + gpu.ALL
+    usual = usual if results.sources.empty else sources.ALL
     for make in panels.ALL if panels.figures_of(results) else usual:
         for name, figure in (make(results, tables) if len(results.rows) else ()):
             for extension in ("png", "svg"):

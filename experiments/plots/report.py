@@ -74,7 +74,7 @@ def as_option(value):
 
 def ray_command(results, row):
     """Explains a ray of the run; --pixel X,Y comes behind it. Passes around the trace do not change what it finds."""
-    passes = results.environment.get("pass_parameters", "").split()
+    passes = results.environment.get("pass_parameters", "").split() + ["sources", "hand_on"]
     words = ["ray", shlex.quote(row.scene), "--view", shlex.quote(row["view"]), "--size", f"{row.width}x{row.height}", "-t", row.technique]
     for name, column in (("--frame", "frame"), ("--jitter", "jitter_phases")):
         words += [name, f"{row[column]:g}"] if row.get(column, 0) > 0 else []
@@ -153,7 +153,7 @@ def context(results, plots, tables):
             "counts": f"{len(results.all_rows)} runs: " + ", ".join(f"{n} {outcome}" for outcome, n in counts.items()) + ".",
             "device": f"Device: {device}." if device else "", "on_cpu": environment.get("device_type", "").lower() == "cpu",
             "verdicts": verdicts(results, chosen), "ranking": ranking_table(ranked), "ranking_text": ranking_text(results, chosen),
-            "has_curve": any(results.has(name) for name in ERRORS), "frames": list(frame_sections(results, chosen)),
+            "has_curve": results.sources.empty and any(results.has(name) for name in ERRORS), "frames": list(frame_sections(results, chosen)),
             "failed": failed_table(results, again), "plots": plots, "tables": [(name, plain_table(rows)) for name, rows in tables.items()],
             "about": about(environment), "again": again(results, "RUN_ID"), "specification": environment.get("specification", ""),
             "agreement_legend": AGREEMENT, "causes_legend": CAUSES, "ramp": RAMP, "split_legend": [{"kind": kind, "said": said} for _, kind, said in SPLIT],

@@ -17,14 +17,14 @@ import tomllib
 import pandas as pd
 
 TEXT = ["run_id", "experiment", "scene", "view", "technique", "outcome", "message", "picture", "truth_picture", "no_scene_truth", "no_screen_truth",
-        "technique_ignores"]
+        "technique_ignores", "sources", "hand_on"]
 FRAME = ["scene", "view", "width", "height", "frame"]
 # What a clock decides, and differs from one run to the next.
 OF_TIME = re.compile(r"(^|[_.])ms(_|$)|^(fps|inverse_fps_s|trace_drift|frames_per_submit)$")
 # By the end of a column's name, longest first; "" is a count, a share of 1 or a setting's own value.
 UNITS = {"per_million": "rays per million", "_ms_median": "ms", "_ms_mad": "ms", "_ms_ci_low": "ms", "_ms_ci_high": "ms", "_ms": "ms",
          "_px": "px", "_m": "m", "_db": "dB", "_s": "s", "_share": "share", "recall_1px": "share",
-         "precision_1px": "share", "f1_1px": "share", "recall_4px": "share", "fetches_mean": "fetches", "steps_mean": "steps",
+         "precision_1px": "share", "f1_1px": "share", "recall_4px": "share", "all_recall": "share", "all_precision": "share", "all_f1": "share", "fetches_mean": "fetches", "steps_mean": "steps",
          "_iterations_mean": "steps"}
 
 
@@ -63,6 +63,14 @@ def read_passes(folder):
     if not os.path.exists(path):
         return pd.DataFrame(columns=["run_id", "pass", "ran", "ms_median", "ms_ci_low", "ms_ci_high", "reason"])
     return pd.read_csv(path, dtype={"run_id": str, "pass": str, "reason": str}, keep_default_na=False, na_values=[""])
+
+
+def read_sources(folder):
+    """Each source of every run's list: run_id, place, source, and the columns of `ssrlab measures`; empty if none was asked."""
+    path = os.path.join(folder, "sources.csv")
+    if not os.path.exists(path):
+        return pd.DataFrame(columns=["run_id", "place", "source"])
+    return pd.read_csv(path, dtype={"run_id": str, "source": str})
 
 
 def specification(folder):

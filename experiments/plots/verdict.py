@@ -52,10 +52,10 @@ def pick(rows, measure, target):
 
 
 def picks(results):
-    """The compared run of every series on every frame, the best first. Without truths: every setting."""
+    """The compared run of every series on every frame, the best first. Without truths: every setting. None if the runs compare sources."""
     measure, target = goal(results)
     parts = []
-    for title, _, rows in results.pictures():
+    for title, _, rows in results.pictures() if results.sources.empty else ():
         chosen = rows.assign(frame_title=title, reached=False, setting=[describe(results, row, rows) for _, row in rows.iterrows()])
         if measure is None:
             chosen = chosen.assign(label=chosen.setting).drop_duplicates("setting").sort_values("cost_ms_median")

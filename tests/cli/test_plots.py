@@ -15,6 +15,7 @@ import plots.growth  # noqa: E402
 import plots.effects  # noqa: E402
 import plots.figures  # noqa: E402
 import plots.sequences  # noqa: E402
+import plots.sources  # noqa: E402
 import plots.surfaces  # noqa: E402
 from made_results import made_results, write_table  # noqa: E402
 from matplotlib import pyplot as plt  # noqa: E402
@@ -41,6 +42,41 @@ class Test(Case):
         figures = dict(make(results, tables) or ())
         self.addCleanup(plt.close, "all")
         return figures, tables
+
+    def test_the_ladder_of_sources(self):
+        """Two frames of 100 rays, 20 and 40 of them lost; world behind the frame takes 30 + 20 ms, alone 100 ms."""
+        asked = ("frame,cube", "lost", 60), ("frame,world", "uncertain", 20), ("world", "uncertain", 100)
+        rows, lines = [], []
+        for scene, lost in (("a", 20), ("b", 40)):
+            for number, (sources, hand_on, ms) in enumerate(asked):
+                run = f"r{len(rows)}"
+                rows.append(dict(scene=scene, run_number=number, technique="hiz", sources=sources, hand_on=hand_on))
+                for place, source in enumerate(sources.split(",")):
+                    counts = {f"{kind}_{cls}": 0 for kind in ("handed", "right") for cls in ("visible", *plots.sources.LOST)}
+                    if place == 0:
+                        counts.update(handed_visible=100 - lost, handed_hidden=lost // 4, handed_facing_away=3 * lost // 4)
+                    if source == "cube":
+                        counts["right_hidden"] = lost // 4
+                    recall = {"frame": 1 - lost / 100, "cube": 1 - 0.75 * lost / 100, "world": 1}[source]
+                    lines.append(dict(counts, run_id=run, place=place, source=source, handed=100, meeting=100, points=10, right=8, certain_points=50,
+                                      certain_right=49, draw_ms=0, trace_ms=30 if source == "frame" else ms, shade_ms=0, megabytes=1, node_visits=10 * ms,
+                                      all_meeting=100, all_recall=recall, all_precision=1, all_f1=recall))
+        os.makedirs(self.path("out"))
+        write_table(self.path("out/sources.csv"), lines)
+        results = made_results(self, rows, ["sources", "hand_on"])
+        figures, tables = self.drawn(plots.sources.ladder, results)
+        figure, = figures.values()
+        self.assertEqual(figure.finding, "The frame answers 70 % of the rays rightly, “+ world” 100.0 %, in 0.5 times the time of the world alone")
+        (_, steps), = tables.items()
+        self.assertEqual([(step["sources"], step["ms"], step["recall, %"]) for step in steps],
+                         [("frame", "30", "70.0"), ("+ world", "50", "100.0"), ("+ cube (lost)", "90", "77.5"), ("world alone", "100", "100.0")])
+        self.near(figure.axes[0].get_lines()[0].get_xdata(), [30, 50])  # the front
+        figure, = self.drawn(plots.sources.lost_by_class, results)[0].values()
+        self.assertEqual(figure.finding, "The frame lacks 20 to 40 % of the points that rays meet; the largest part is facing away")
+        figures, tables = self.drawn(plots.sources.brought_back, results)
+        self.assertEqual([row["cube"] for row in next(iter(tables.values()))], ["25 (80)"] * 3)
+        _, tables = self.drawn(plots.sources.hybrids, results)
+        self.assertEqual([row["time / world alone"] for row in next(iter(tables.values()))], ["0.50", "0.50"])
 
     def test_the_law_of_steps(self):
         """2 ms and 0.01 ms a step from 50 steps on. 0.15 m is nearer to 0.1 m than 0.06 m by its ratio; of looks the most count."""

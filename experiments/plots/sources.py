@@ -1,0 +1,279 @@
+"""Answers beyond the frame: what share of the rays each list of sources answers rightly and at what cost, what the frame lacks, and what
+each source brings back. Figures are 85 mm wide. Each function returns its figures."""
+import textwrap
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from matplotlib.transforms import Bbox
+
+from .figures import log_axis
+
+WIDTH_INCHES = 85 / 25.4
+LOST = {"hidden": "hidden", "off_screen": "off screen", "behind_camera": "behind the camera", "facing_away": "facing away"}
+COLOURS = {"hidden": "#0072B2", "off_screen": "#E69F00", "behind_camera": "#009E73", "facing_away": "#CC79A7"}
+SAID = {"layers:count=4:sides=front": "4 layers, front", "layers:count=2:sides=both": "2 layers, both sides",
+        "layers:count=4:sides=both": "4 layers, both sides", "views:place=mirrored": "mirrored view", "views:count=1": "1 view",
+        "views:count=2": "2 views"}
+
+
+def said(source):
+    """A source of a list in words; one with other parameters as "cube size_px 256"."""
+    return SAID.get(source, source.replace(":", " ").replace("=", " "))
+
+
+def step_name(step):
+    """"frame", "+ cube + world": what is asked behind the frame begins with a plus."""
+    sources, hand_on = step
+    words = [said(one) for one in sources]
+    name = " + ".join(words) if len(words) == 1 or words[0] != "frame" else "".join(f"+ {word} " for word in words[1:]).strip()
+    return name + (" alone" if sources == ("world",) else "") + (" (lost)" if hand_on == "lost" else "")
+
+
+def asked_rows(results):
+    """sources.csv with the frame of each run, its tracer, and what was spent up to each source. Empty if no run asked any."""
+    if results.sources.empty:
+        return results.sources
+    inputs = [name for name in results.varying(results.rows) if name not in ("sources", "hand_on")]
+    runs = results.rows.set_index("run_id")
+    rows = results.sources[results.sources.run_id.isin(runs.index)].copy()
+    for name in ("scene", "view", "frame_name", "sources", "hand_on"):
+        rows[name] = rows.run_id.map(runs[name])
+    rows["tracer"] = [", ".join([runs.technique[run]] + [f"{name} {runs[name][run]}" for name in inputs]) for run in rows.run_id]
+    rows["number"] = rows.run_id.map({run: number for number, run in enumerate(results.rows.sort_values("run_number", kind="stable").run_id)})
+    rows = rows.sort_values(["number", "place"])
+    spent = rows.draw_ms + rows.trace_ms + rows.shade_ms
+    for name, values in (("spent_ms", spent), ("spent_megabytes", rows.megabytes), ("all_visits", rows.node_visits)):
+        rows[name] = values.groupby(rows.run_id).cumsum()
+    # A lone source is handed all rays, whatever the rule.
+    rows["step"] = [(tuple(row.sources.split(",")[:row.place + 1]), row.hand_on if row.place > 0 else "") for row in rows.itertuples()]
+    return rows
+
+
+def short_names(rows):
+    """{frame_name: the scene, with its view or frame where there are several}."""
+    frames = rows.drop_duplicates("frame_name")
+    several = frames.scene.duplicated(keep=False)
+    return {row.frame_name: row.frame_name.replace(", view default", "").rsplit(", ", 1)[0] if twice else row.scene.removeprefix("builtin:")
+            for row, twice in zip(frames.itertuples(), several)}
+
+
+def geometric(values):
+    return float(np.exp(np.log(values.clip(lower=1e-6)).mean()))
+
+
+def steps_of(rows):
+    """A row a step of the ladder that every frame has: means over the frames, geometric for times; the cheapest first."""
+    frames, steps = rows.frame_name.nunique(), []
+    for step, part in rows.groupby("step", sort=False):
+        once = part.groupby("frame_name").agg({"all_recall": "first", "all_precision": "first", "all_f1": "first", "all_visits": "first",
+                                               "spent_ms": "median", "spent_megabytes": "first"})
+        if len(once) == frames and once.all_recall.notna().all():
+            steps.append({"step": step, "name": step_name(step), "ms": geometric(once.spent_ms), "recall": once.all_recall.mean(),
+                          "precision": once.all_precision.mean(), "f1": once.all_f1.mean(), "megabytes": once.spent_megabytes.mean(),
+                          "visits": once.all_visits.mean()})
+    return pd.DataFrame(steps).sort_values("ms").reset_index(drop=True) if steps else pd.DataFrame()
+
+
+def front_of(steps):
+    """Steps that no cheaper one equals; steps are sorted by time."""
+    return steps[steps.recall > steps.recall.cummax().shift(fill_value=-1)]
+
+
+def ladder_finding(steps):
+    """The message: the frame, and the cheapest list within half a point of the best, against the triangles alone."""
+    alone = steps[steps.name == "world alone"]
+    frame = steps[steps.name == "frame"]
+    others = steps[steps.name != "world alone"]
+    best = others[others.recall >= others.recall.max() - 0.005].iloc[0]
+    text = f"The frame answers {100 * frame.recall.iloc[0]:.0f} % of the rays rightly" if len(frame) else "Rays answered rightly"
+    if best["name"] != "frame":
+        text += f", “{best['name']}” {100 * best.recall:.1f} %"
+        text += f", in {best.ms / alone.ms.iloc[0]:.2g} times the time of the world alone" if len(alone) else f", in {best.ms:.3g} ms"
+    return text
+
+
+def place_numbers(axis, x, y, labels):
+    """Writes each label beside its point, where it covers no other label or point."""
+    figure = axis.figure
+    figure.canvas.draw()
+    points = axis.transData.transform(np.column_stack([x, y]))
+    unit = figure.dpi / 72
+    taken = [Bbox.from_bounds(px - 3 * unit, py - 3 * unit, 6 * unit, 6 * unit) for px, py in points]
+    inside = axis.get_window_extent()
+    for (px, py), label in zip(points, labels):
+        wide, high = 3.9 * unit * len(label), 6 * unit
+        spots = [(px + r * unit * np.cos(a) - wide / 2, py + r * unit * np.sin(a) - high / 2)
+                 for r in (7, 10, 14, 18) for a in np.radians([90, 45, 135, 0, 180, 270, 315, 225])]
+        boxes = [Bbox.from_bounds(*spot, wide, high) for spot in spots]
+        free = [box for box in boxes if not any(box.overlaps(other) for other in taken) and inside.containsx(box.x0) and
+                inside.containsx(box.x1) and inside.containsy(box.y0) and inside.containsy(box.y1)]
+        box = (free or boxes)[0]
+        taken.append(box)
+        axis.text(*axis.transData.inverted().transform(((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2)), label, fontsize=6, ha="center",
+                  va="center")
+
+
+def titled(figure, text):
+    figure.suptitle("\n".join(textwrap.wrap(text, 54)), x=0.01, ha="left", fontsize=8)
+    figure.finding = text
+
+
+def draw_key(axis, names):
+    """Numbers and what they stand for, in two columns below the whole figure."""
+    axis.axis("off")
+    half = -(-len(names) // 2)
+    texts = [axis.text(-0.16 + 0.58 * (i // half), 1 - (i % half + 0.5) / half, f"{i + 1}  {name}", fontsize=6, va="center") for i, name in enumerate(names)]
+    if any("(lost)" in name for name in names):
+        texts.append(axis.text(-0.16, -0.02, "(lost): gets only rays that have no answer yet", fontsize=6, style="italic", va="top"))
+    for text in texts:
+        text.set_in_layout(False)
+
+
+def draw_ladder(steps):
+    lines = -(-len(steps) // 2)
+    figure, (axis, key) = plt.subplots(2, 1, figsize=(WIDTH_INCHES, 2.8 + 0.125 * lines), height_ratios=[2.1, 0.125 * lines])
+    front = front_of(steps)
+    on_front = steps.index.isin(front.index)
+    axis.step(front.ms, 100 * front.recall, where="post", color="#999999", lw=1.2, zorder=1)
+    axis.plot(steps.ms[~on_front], 100 * steps.recall[~on_front], "o", ms=3.5, mfc="white", mec="#555555", mew=0.8, ls="none")
+    axis.plot(front.ms, 100 * front.recall, "o", ms=3.5, color="#0072B2", ls="none")
+    axis.set_ylabel("rays that meet geometry,\nanswered rightly, %", fontsize=7)
+    axis.set_xlabel("drawing, tracing and lighting, ms; line: Pareto front", fontsize=7)
+    log_axis(axis.xaxis)
+    axis.tick_params(labelsize=6.5)
+    axis.margins(0.07, 0.12)
+    draw_key(key, list(steps.name))
+    titled(figure, ladder_finding(steps))
+    figure.get_layout_engine().set(rect=(0, 0.03, 1, 0.97))
+    figure.canvas.draw()
+    figure.set_layout_engine("none")
+    place_numbers(axis, steps.ms, 100 * steps.recall, [str(i + 1) for i in range(len(steps))])
+    return figure
+
+
+def ladder(results, tables):
+    """What each further source adds, and what it costs: a step a source."""
+    rows = asked_rows(results)
+    for place, (tracer, part) in enumerate(rows.groupby("tracer") if len(rows) else ()):
+        steps = steps_of(part)
+        if len(steps) < 2:
+            continue
+        yield "sources_ladder" + (f"_{place}" if place > 0 else ""), draw_ladder(steps)
+        heading = f"Ladder of {tracer}: means over {part.frame_name.nunique()} frames, geometric for times"
+        tables[heading] = [{"": i + 1, "sources": step.name, "ms": f"{step.ms:.3g}", "recall, %": f"{100 * step.recall:.1f}",
+                            "precision, %": f"{100 * step.precision:.1f}", "F1, %": f"{100 * step.f1:.1f}", "MB": f"{step.megabytes:.1f}",
+                            "node visits": f"{step.visits:.0f}"} for i, step in enumerate(steps.itertuples())]
+
+
+def lost_share(row, cls):
+    return 100 * row[f"handed_{cls}"] / row.all_meeting if row.all_meeting else 0
+
+
+def lost_by_class(results, tables):
+    """Of the rays that meet geometry, those whose point the frame does not show, by the reason."""
+    rows = asked_rows(results)
+    if rows.empty:
+        return
+    names = short_names(rows)
+    first = rows[rows.place == 0].drop_duplicates("frame_name").iloc[::-1]
+    figure, axis = plt.subplots(figsize=(WIDTH_INCHES, 1.25 + 0.19 * len(first)))
+    left = np.zeros(len(first))
+    for cls, word in LOST.items():
+        wide = np.array([lost_share(row, cls) for _, row in first.iterrows()])
+        axis.barh(range(len(first)), wide, left=left, color=COLOURS[cls], label=word, height=0.75)
+        left += wide
+    for y, total in enumerate(left):
+        axis.annotate(f"{total:.0f}", (total, y), textcoords="offset points", xytext=(3, 0), va="center", fontsize=6.5)
+    axis.set_yticks(range(len(first)), [names[name] for name in first.frame_name], fontsize=6.5)
+    axis.tick_params(axis="x", labelsize=6.5)
+    axis.grid(False, axis="y")
+    axis.margins(0.1, 0.02)
+    axis.set_xlim(left=0)
+    axis.set_xlabel("of the rays that meet geometry, %", fontsize=7)
+    axis.legend(loc="lower right", bbox_to_anchor=(1.04, 1), ncols=4, fontsize=6.5, handlelength=0.9, columnspacing=0.9, handletextpad=0.4,
+                borderaxespad=0.2)
+    largest = max(LOST, key=lambda cls: sum(lost_share(row, cls) for _, row in first.iterrows()))
+    span = f"{left.min():.0f} to {left.max():.0f}" if len(left) > 1 else f"{left[0]:.0f}"
+    titled(figure, f"The frame lacks {span} % of the points that rays meet; the largest part is {LOST[largest]}")
+    yield "sources_lost_by_class", figure
+
+
+def remedies_of(rows):
+    """Lists of the frame and one more source but the triangles: those that get lost rays alone, where there are such."""
+    pairs = rows[(rows.place == 1) & rows.sources.str.startswith("frame,") & (rows.sources.str.count(",") == 1) & (rows.source != "world")]
+    lost = pairs[pairs.hand_on == "lost"]
+    pairs = lost if len(lost) else pairs
+    right = sum(pairs[f"right_{cls}"] for cls in LOST)
+    frames = rows[rows.place == 0].set_index("run_id")
+    lost_rays = sum(pairs.run_id.map(frames[f"handed_{cls}"]) for cls in LOST)
+    return pairs.assign(back=100 * right / lost_rays.where(lost_rays > 0), rightly=100 * pairs.right / pairs.points.where(pairs.points > 0),
+                        remedy=[said(source) for source in pairs.source])
+
+
+def back_text(back, rightly):
+    """"28 (87)"; without brackets where the source gave no point."""
+    brackets = f" ({rightly:.0f})" if pd.notna(rightly) else ""
+    return f"{back:.0f}{brackets}" if pd.notna(back) else ""
+
+
+def brought_back(results, tables):
+    """Of the lost rays, the share that each source answers rightly; the table says how many of its answers are right, too."""
+    rows = asked_rows(results)
+    pairs = remedies_of(rows) if len(rows) else rows
+    if pairs.empty:
+        return
+    names = short_names(rows)
+    grid = pairs.pivot_table("back", "frame_name", "remedy", sort=False)
+    right = pairs.pivot_table("rightly", "frame_name", "remedy", sort=False).reindex_like(grid)
+    if len(grid) > 1:
+        grid.loc["mean"], right.loc["mean"] = grid.mean(), right.mean()
+    labels = [names.get(name, name) for name in grid.index]
+    figure, axis = plt.subplots(figsize=(WIDTH_INCHES, 1.35 + 0.2 * len(grid)))
+    axis.imshow(grid, cmap="Blues", vmin=0, vmax=100, aspect="auto")
+    for (y, x), value in np.ndenumerate(grid.to_numpy()):
+        if np.isfinite(value):
+            axis.text(x, y, f"{value:.0f}", ha="center", va="center", fontsize=6.5, color="white" if value > 60 else "black")
+    axis.set_xticks(range(len(grid.columns)), grid.columns, rotation=40, ha="right", rotation_mode="anchor", fontsize=6.5)
+    axis.set_yticks(range(len(grid)), labels, fontsize=6.5)
+    axis.grid(False)
+    axis.tick_params(length=0)
+    best, most = grid.iloc[-1].idxmax(), grid.iloc[-1].max()
+    mean = " in the mean" if len(grid) > 1 else ""
+    titled(figure, f"“{best}” answers most of the lost rays rightly: {most:.0f} %{mean}" if most >= 0.5 else "No source here answers a lost ray rightly")
+    yield "sources_brought_back", figure
+    tables["Lost rays that a source answers rightly, %; in brackets, how many of its answers are right, %"] = [
+        {"frame": label, **{name: back_text(grid.loc[row, name], right.loc[row, name])
+                            for name in grid.columns}} for row, label in zip(grid.index, labels)]
+
+
+def share(part, whole):
+    return f"{100 * part / whole:.1f}" if whole > 0 else ""
+
+
+def hybrid_line(name, frame, world, alone):
+    lost = sum(frame[f"handed_{cls}"] for cls in LOST)
+    return {"frame": name, "lost, %": share(lost, frame.all_meeting), "F1 of the frame, %": f"{100 * frame.all_f1:.1f}",
+            "F1 with world, %": f"{100 * world.all_f1:.2f}", "certain hits that are right, %": share(frame.certain_right, frame.certain_points),
+            "world gets, of rays that meet geometry, %": share(world.meeting, frame.meeting),
+            "of rays that meet nothing, %": share(world.handed - world.meeting, frame.handed - frame.meeting),
+            "time / world alone": f"{world.spent_ms / alone.spent_ms:.2f}", "node visits / world alone": f"{world.node_visits / alone.node_visits:.2f}"}
+
+
+def hybrids(results, tables):
+    """The frame with the triangles behind it, against the triangles alone: a table, no figure."""
+    rows = asked_rows(results)
+    if rows.empty:
+        return ()
+    names, lines = short_names(rows), []
+    for (frame_name, tracer), part in rows.groupby(["frame_name", "tracer"], sort=False):
+        both = part[(part.sources == "frame,world") & (part.hand_on == "uncertain")]
+        alone = part[part.sources == "world"]
+        if len(both) == 2 and len(alone):
+            lines.append(hybrid_line(names[frame_name], both.iloc[0], both.iloc[1], alone.iloc[0]))
+    if lines:
+        tables["The frame with the triangles behind it, against the triangles alone"] = lines
+    return ()
+
+
+ALL = [ladder, lost_by_class, brought_back, hybrids]
