@@ -2,6 +2,7 @@
 
 #include "app/cases.h"
 #include "app/python_script.h"
+#include "check/hit_files.h"
 #include "compare/image_io.h"
 #include "compare/validate_result.h"
 #include "core/error.h"
@@ -26,26 +27,10 @@ std::string status_legend()
 
 Image hits_image(const TraceResult& result, const std::string& technique, const std::vector<std::string>& parameters)
 {
-    Image image{result.size_px,
-                {"hit.x", "hit.y", "hit.t", "hit.z", "pixel.x", "pixel.y", "layer", "status", "steps", "depth_fetches",
-                 "structure_fetches"},
-                {},
-                {}};
+    Image image                           = hits_image(result);
     image.metadata["ssrlab:status_names"] = status_legend();
     image.metadata["ssrlab:technique"]    = technique;
     image.metadata["ssrlab:parameters"]   = fmt::format("{}", fmt::join(parameters, " "));
-    for (size_t i = 0; i < result.status.size(); ++i) {
-        const bool hit = has_place(result.status[i]);
-        // A miss has no hit point: zeros, and the status says so. A stopped ray has one.
-        const glm::dvec3 point = hit ? result.hit_px_depth[i] : glm::dvec3(0);
-        const glm::dvec2 pixel = hit ? glm::dvec2(result.hit_pixel[i]) : glm::dvec2(0);
-        for (const double value :
-             {point.x, point.y, hit ? result.hit_t[i] : 0.0, point.z, pixel.x, pixel.y,
-              hit ? static_cast<double>(result.hit_layer[i]) : 0.0, static_cast<double>(result.status[i]),
-              static_cast<double>(result.steps[i]), static_cast<double>(result.depth_fetches[i]),
-              static_cast<double>(structure_fetches_of(result, i))})
-            image.values.push_back(static_cast<float>(value));
-    }
     return image;
 }
 

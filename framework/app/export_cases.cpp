@@ -1,6 +1,6 @@
 #include "app/cases.h"
 #include "check/hard_case.h"
-#include "check/judge_frame.h"
+#include "check/hit_files.h"
 #include "check/run_check.h"
 #include "compare/image_io.h"
 #include "core/files.h"
@@ -94,7 +94,7 @@ void add_entry(CasesFolder& folder, const std::string& name, const std::string& 
     const size_t rays =
         truth.status.size() - static_cast<size_t>(std::ranges::count(truth.status, TraceStatus::not_traced));
     if (rays == 0) throw_spec_error("no pixel reflects");
-    write_image(folder.path / expected, right_answers(loaded.gbuffer, setup.settings));
+    write_image(folder.path / expected, hits_image(truth));
     folder.frames.push_back({{"name", name},
                              {"frame", frame.string()},
                              {"expected", expected.string()},

@@ -193,20 +193,4 @@ FrameJudgement judge_frame(const GBufferImage& gbuffer, const TraceSettings& set
     return FrameJudge(gbuffer, settings, hits).run();
 }
 
-Image right_answers(const GBufferImage& gbuffer, const TraceSettings& settings)
-{
-    require_known(settings);
-    const TraceResult truth = screen_truth(gbuffer, settings);
-    Image image{truth.size_px, {"hit.x", "hit.y", "hit.t", "hit.z", "pixel.x", "pixel.y", "layer", "status"}, {}, {}};
-    for (size_t i = 0; i < truth.status.size(); ++i) {
-        const bool       hit   = has_place(truth.status[i]);
-        const glm::dvec3 point = hit ? truth.hit_px_depth[i] : glm::dvec3(0);
-        const glm::ivec2 pixel = hit ? truth.hit_pixel[i] : glm::ivec2(0);
-        for (const double value : {point.x, point.y, hit ? truth.hit_t[i] : 0.0, point.z, double(pixel.x),
-                                   double(pixel.y), 0.0, double(truth.status[i])})
-            image.values.push_back(static_cast<float>(value));
-    }
-    return image;
-}
-
 } // namespace ssrlab

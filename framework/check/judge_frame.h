@@ -1,9 +1,8 @@
 // Judges every ray of a frame by the hit contract, whoever traced it.
 #pragma once
 
-#include "check/read_hits.h"
+#include "check/hit_files.h"
 #include "core/gbuffer_image.h"
-#include "core/image.h"
 
 #include <array>
 #include <string>
@@ -51,8 +50,5 @@ struct FrameJudgement {
 /// The G-buffer must have gradients if the surface needs them. Throws SpecError for a surface model without a screen
 /// truth, and for `layers` above 1, which a frame file does not hold.
 FrameJudgement judge_frame(const GBufferImage& gbuffer, const TraceSettings& settings, const HitsFile& hits);
-
-/// Returns the contract's answers as an image in the form of `ssrlab trace`, without work.
-Image right_answers(const GBufferImage& gbuffer, const TraceSettings& settings);
 
 } // namespace ssrlab

@@ -19,10 +19,6 @@ template <typename Belongs> Mask make_mask(glm::ivec2 size_px, const Belongs& be
     return mask;
 }
 
-struct ImageErrors {
-    std::optional<double> rmse, psnr_db, ssim, flip;
-};
-
 /// Outside the mask it stays linear.
 Image to_display(const Image& linear, const Mask& mask)
 {
@@ -88,12 +84,17 @@ Rmse rmse_inside(const Image& tested, const Reference& reference, const Mask& ma
     return {root(square), root(noise / count), root(square - spread), root(square + spread)};
 }
 
+struct ImageErrors {
+    Rmse                  rmse;
+    std::optional<double> psnr_db, ssim, flip;
+};
+
 ImageErrors compare_inside(const Image& tested, const Reference& reference, const Mask& mask)
 {
     ImageErrors errors;
-    errors.rmse = rmse_inside(tested, reference, mask).value;
-    if (!errors.rmse) return errors;
-    if (*errors.rmse > 0) errors.psnr_db = -20 * std::log10(*errors.rmse);
+    errors.rmse = rmse_inside(tested, reference, mask);
+    if (!errors.rmse.value) return errors;
+    if (*errors.rmse.value > 0) errors.psnr_db = -20 * std::log10(*errors.rmse.value);
     // The windows of SSIM and FLIP reach outside the mask, where nothing is to be judged: there both show the reference.
     const SsimView ssim = ssim_view(to_luma(tested, reference.ssim.luma, mask));
     const FlipView flip = flip_view_inside(tested, reference.flip, mask);
@@ -174,10 +175,14 @@ MeasureValues compare_images(const Image& tested, const Reference& reference, co
     const Image       display         = to_display(tested, reflective);
     const ImageErrors over_visible    = compare_inside(display, reference, visible_pixels(truth));
     const ImageErrors over_reflective = compare_inside(display, reference, reflective);
-    return {{"rmse_visible", over_visible.rmse},       {"psnr_visible_db", over_visible.psnr_db},
-            {"ssim_visible", over_visible.ssim},       {"flip_visible", over_visible.flip},
-            {"rmse_reflective", over_reflective.rmse}, {"psnr_reflective_db", over_reflective.psnr_db},
-            {"ssim_reflective", over_reflective.ssim}, {"flip_reflective", over_reflective.flip}};
+    return {{"rmse_visible", over_visible.rmse.value},
+            {"psnr_visible_db", over_visible.psnr_db},
+            {"ssim_visible", over_visible.ssim},
+            {"flip_visible", over_visible.flip},
+            {"rmse_reflective", over_reflective.rmse.value},
+            {"psnr_reflective_db", over_reflective.psnr_db},
+            {"ssim_reflective", over_reflective.ssim},
+            {"flip_reflective", over_reflective.flip}};
 }
 
 MeasureValues count_not_finite(const Image& picture, const GBufferImage* gbuffer)
@@ -214,12 +219,11 @@ MeasureValues compare_pictures(const Image& tested, const Reference& reference, 
     const Image display        = to_display(tested, reflective);
     const ImageErrors errors   = compare_inside(display, reference, reflective);
     const auto        rmse     = [&](const Mask& mask) { return rmse_inside(display, reference, mask).value; };
-    const Rmse        whole    = rmse_inside(display, reference, reflective);
-    const auto        known    = [&](double value) { return whole.value ? std::optional(value) : std::nullopt; };
-    return {{"picture_rmse", errors.rmse},
-            {"picture_rmse_low", known(whole.low)},
-            {"picture_rmse_high", known(whole.high)},
-            {"picture_noise_rmse", known(whole.noise)},
+    const auto        known    = [&](double value) { return errors.rmse.value ? std::optional(value) : std::nullopt; };
+    return {{"picture_rmse", errors.rmse.value},
+            {"picture_rmse_low", known(errors.rmse.low)},
+            {"picture_rmse_high", known(errors.rmse.high)},
+            {"picture_noise_rmse", known(errors.rmse.noise)},
             {"picture_psnr_db", errors.psnr_db},
             {"picture_ssim", errors.ssim},
             {"picture_flip", errors.flip},

@@ -149,18 +149,19 @@ std::optional<Image> Truths::given_picture() const
 const Image& Truths::true_picture()
 {
     const TraceSettings& settings = made_for();
-    if (true_picture_) return *true_picture_;
-    const GlossyTruth truth = cached_glossy_truth(cache_dir_, *scene_, gbuffer_, settings, {});
-    const auto picture = [&](float noises) { return ssrlab::true_picture(truth, gbuffer_, scene_->ambient, noises); };
-    true_halves_       = {picture(1), picture(-1)};
-    true_picture_      = picture(0);
+    if (!true_picture_) {
+        glossy_       = cached_glossy_truth(cache_dir_, *scene_, gbuffer_, settings, {});
+        true_picture_ = ssrlab::true_picture(*glossy_, gbuffer_, scene_->ambient);
+    }
     return *true_picture_;
 }
 
 Reference Truths::true_reference()
 {
-    const Image& mean = true_picture();
-    return Reference(mean, true_halves_);
+    const Image&     mean   = true_picture();
+    const std::array halves = {ssrlab::true_picture(*glossy_, gbuffer_, scene_->ambient, 1),
+                               ssrlab::true_picture(*glossy_, gbuffer_, scene_->ambient, -1)};
+    return Reference(mean, halves);
 }
 
 void Truths::make_reprojection(const SceneInTime& before, const SceneInTime& earlier)

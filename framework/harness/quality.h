@@ -4,6 +4,7 @@
 #include "compare/measures.h"
 #include "harness/measured_run.h"
 #include "scene/sequence.h"
+#include "truth/glossy_truth.h"
 
 #include <filesystem>
 #include <optional>
@@ -84,8 +85,8 @@ private:
     std::string                      without_scene_;
     MeasureValues                    depth_to_scene_;   // empty without triangles
     std::optional<Reference>         reference_;        // with image_errors: the scene truth's reflection
-    std::optional<Image>             true_picture_;     // once asked for
-    std::array<Image, 2>             true_halves_;      // likewise: by even rays and by odd ones
+    std::optional<GlossyTruth>       glossy_;           // once asked for
+    std::optional<Image>             true_picture_;     // likewise
     std::optional<ReprojectionTruth> before_, earlier_; // once asked for
 };
 

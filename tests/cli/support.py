@@ -38,6 +38,25 @@ def load_script(*path):
     return module
 
 
+def browser(folder, width, height, flags):
+    """Chromium without a window, with its console kept, of this viewport; raises SkipTest with the reason."""
+    try:
+        from selenium import webdriver
+        from selenium.webdriver.chrome.options import Options
+        from selenium.webdriver.chrome.service import Service
+    except ImportError:
+        raise unittest.SkipTest("python3-selenium is not installed")
+    if not shutil.which("chromium") or not shutil.which("chromedriver"):
+        raise unittest.SkipTest("chromium or chromium-driver is not installed")
+    options = Options()
+    for one in ("headless=new", "no-sandbox", "no-first-run", "hide-scrollbars", f"user-data-dir={folder}", *flags):
+        options.add_argument("--" + one)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    page = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
+    page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
+    return page
+
+
 class Case(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.mkdtemp(prefix="ssrlab_cli_")

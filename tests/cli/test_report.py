@@ -3,9 +3,8 @@ import os
 import re
 import shlex
 import shutil
-import unittest
 
-from support import Case, main
+from support import Case, browser, main
 
 SMALL = """
 title  = "Report"
@@ -26,23 +25,9 @@ budget_s    = 0
 """
 
 
-def browser(folder, width, dark=False):
-    """A page of this width, with its console kept; raises SkipTest with the reason."""
-    try:
-        from selenium import webdriver
-        from selenium.webdriver.chrome.options import Options
-        from selenium.webdriver.chrome.service import Service
-    except ImportError:
-        raise unittest.SkipTest("python3-selenium is not installed")
-    if not shutil.which("chromium") or not shutil.which("chromedriver"):
-        raise unittest.SkipTest("chromium or chromium-driver is not installed")
-    options = Options()
-    for one in ("headless=new", "no-sandbox", "disable-gpu", "disable-quic", "no-first-run", "disable-background-networking",
-                "disable-component-update", "disable-sync", "hide-scrollbars", f"user-data-dir={folder}", f"window-size={width},1000"):
-        options.add_argument("--" + one)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    page = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
-    page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": 1000, "deviceScaleFactor": 1, "mobile": False})
+def offline_browser(folder, width, dark=False):
+    page = browser(folder, width, 1000, ("disable-gpu", "disable-quic", "disable-background-networking", "disable-component-update",
+                                         "disable-sync", f"window-size={width},1000"))
     page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]})
     page.execute_cdp_cmd("Network.enable", {})
     page.execute_cdp_cmd("Network.emulateNetworkConditions", {"offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0})
@@ -79,7 +64,7 @@ class Test(Case):
         return shutil.move(self.path("out/report.html"), self.path("alone/report.html"))
 
     def open(self, path, width, dark=False):
-        page = browser(self.path(f"browser{width}"), width, dark)
+        page = offline_browser(self.path(f"browser{width}"), width, dark)
         self.addCleanup(page.quit)
         page.get("file://" + path)
         return page

@@ -1,13 +1,11 @@
 """experiments/web: the page that traces by WebGPU and measures a GPU, in Chromium on its software device."""
 import os
-import shutil
 import subprocess
-import unittest
 
 import numpy
 import OpenImageIO
 
-from support import PROGRAM, SOURCE, Case, main
+from support import PROGRAM, SOURCE, Case, browser, main
 
 WEBGPU = ("enable-unsafe-webgpu", "use-webgpu-adapter=swiftshader", "enable-unsafe-swiftshader", "use-angle=swiftshader",
           "enable-features=Vulkan", "use-vulkan=swiftshader")
@@ -16,25 +14,6 @@ trace("builtin:corridor", arguments[0], "plane_solid", arguments[1]).then(({ ray
     done([...hits].map((word, i) => [rays[8 * (i >> 1) + 7], word])), (error) => done(error.message));"""
 FILES = """const done = arguments[0];
 Promise.all([...document.querySelectorAll("#downloads a")].map(async (link) => [link.download, await (await fetch(link.href)).text()])).then(done);"""
-
-
-def browser(folder, width):
-    try:
-        from selenium import webdriver
-        from selenium.webdriver.chrome.options import Options
-        from selenium.webdriver.chrome.service import Service
-    except ImportError:
-        raise unittest.SkipTest("python3-selenium is not installed")
-    if not shutil.which("chromium") or not shutil.which("chromedriver"):
-        raise unittest.SkipTest("chromium or chromium-driver is not installed")
-    options = Options()
-    for one in ("headless=new", "no-sandbox", "disable-dev-shm-usage", "no-first-run", "hide-scrollbars", f"user-data-dir={folder}") + WEBGPU:
-        options.add_argument("--" + one)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    page = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
-    page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": False})
-    page.set_script_timeout(120)
-    return page
 
 
 class Test(Case):
@@ -70,7 +49,8 @@ class Test(Case):
         subprocess.run([os.path.join(SOURCE, "experiments", "web", "build"), "-o", self.path("web"), "--scenes", "builtin:corridor", "--size",
                         "64x36", "--techniques", "dda", "linear", "--surfaces", "plane_solid"], check=True,
                        env=dict(self.environment, SSRLAB=PROGRAM), stdout=subprocess.DEVNULL)
-        page = browser(self.path("profile"), 390)
+        page = browser(self.path("profile"), 390, 800, ("disable-dev-shm-usage",) + WEBGPU)
+        page.set_script_timeout(120)
         self.addCleanup(page.quit)
         page.get("file://" + self.path("web/index.html"))
         self.wait(page, "document.getElementById('picture').dataset.shown")

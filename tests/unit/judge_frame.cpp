@@ -7,6 +7,7 @@
 #include "core/pixel_index.h"
 #include "errors.h"
 #include "temp_folder.h"
+#include "truth/screen_truth.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -34,7 +35,7 @@ class Hits {
 public:
     const TempFolder folder;
     GBufferImage     gbuffer = floor_and_wall();
-    Image            image   = right_answers(gbuffer, settings);
+    Image            image   = hits_image(screen_truth(gbuffer, settings));
 
     float& at(glm::ivec2 pixel, const std::string& channel)
     {

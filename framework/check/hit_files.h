@@ -1,6 +1,7 @@
-// The hits of any renderer, from an EXR (docs/reference/hit_files.md).
+// Hit files: what each ray of a frame found, as an EXR (docs/reference/hit_files.md).
 #pragma once
 
+#include "core/image.h"
 #include "core/trace_result.h"
 
 #include <filesystem>
@@ -19,6 +20,9 @@ struct HitsFile {
     bool                               has_steps = true;
     std::map<std::string, std::string> attributes; // those that are text
 };
+
+/// Returns the file of a trace: its answers, and its work if that was counted.
+Image hits_image(const TraceResult& result);
 
 /// Reads a file of `size_px`. Throws SpecError for missing files and channels and for another size, Failure for damage.
 HitsFile read_hits(const std::filesystem::path& exr, glm::ivec2 size_px);

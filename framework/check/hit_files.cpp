@@ -1,4 +1,4 @@
-#include "check/read_hits.h"
+#include "check/hit_files.h"
 
 #include "core/error.h"
 #include "scene/exr_file.h"
@@ -91,6 +91,26 @@ void set_work(HitsFile& hits, const ExrFile& file)
 }
 
 } // namespace
+
+Image hits_image(const TraceResult& result)
+{
+    Image image{result.size_px, {"hit.x", "hit.y", "hit.t", "hit.z", "pixel.x", "pixel.y", "layer", "status"}, {}, {}};
+    const bool counted = !result.depth_fetches.empty();
+    if (counted) image.channels.insert(image.channels.end(), {"steps", "depth_fetches", "structure_fetches"});
+    for (size_t i = 0; i < result.status.size(); ++i) {
+        const bool hit = has_place(result.status[i]);
+        // A miss has no hit point: zeros, and the status says so. A stopped ray has one.
+        const glm::dvec3 point = hit ? result.hit_px_depth[i] : glm::dvec3(0);
+        const glm::dvec2 pixel = hit ? glm::dvec2(result.hit_pixel[i]) : glm::dvec2(0);
+        for (const double value : {point.x, point.y, hit ? result.hit_t[i] : 0.0, point.z, pixel.x, pixel.y,
+                                   hit ? double(result.hit_layer[i]) : 0.0, double(result.status[i])})
+            image.values.push_back(static_cast<float>(value));
+        if (!counted) continue;
+        for (const uint32_t work : {result.steps[i], result.depth_fetches[i], structure_fetches_of(result, i)})
+            image.values.push_back(static_cast<float>(work));
+    }
+    return image;
+}
 
 HitsFile read_hits(const std::filesystem::path& exr, glm::ivec2 size_px)
 {
