@@ -129,7 +129,7 @@ DrawingPtr make_drawing(Gpu& gpu, const GpuScenePtr& scene, const View& view, Sh
     drawing->background = make_compute_pass(gpu, compile_shader(gpu, background),
                                             {{"View", gbuffer.view_uniforms},
                                              {"depth_buffer", {drawing->depth_buffer, drawing->sampler}},
-                                             {"environment_map", {scene->environment_map, scene->environment_sampler}},
+                                             {"environment_map", scene->environment_map},
                                              {"depth_words", {gbuffer.depth.cells, gbuffer.depth.words}},
                                              {"StoredPlanes", gbuffer.depth.cells},
                                              {"gradient_image", gbuffer.gradient},

@@ -113,10 +113,9 @@ void upload_environment(Gpu& gpu, GpuScene& scene, const Scene& source)
     const bool             mapped = !source.environment.radiance.empty();
     std::vector<glm::vec4> texels(mapped ? 0 : 1, glm::vec4(source.background, 1));
     for (const glm::vec3& radiance : source.environment.radiance) texels.emplace_back(radiance, 1);
-    scene.environment_map     = make_image(gpu, {.format  = vk::Format::eR32G32B32A32Sfloat,
-                                                 .size_px = mapped ? source.environment.size_px : glm::ivec2(1),
-                                                 .usage   = vk::ImageUsageFlagBits::eSampled});
-    scene.environment_sampler = {gpu.impl->device, vk::SamplerCreateInfo{}};
+    scene.environment_map = make_image(gpu, {.format  = vk::Format::eR32G32B32A32Sfloat,
+                                             .size_px = mapped ? source.environment.size_px : glm::ivec2(1),
+                                             .usage   = vk::ImageUsageFlagBits::eStorage});
     upload(gpu, scene.environment_map, texels.data(), texels.size() * sizeof(glm::vec4));
     scene.environment = source.environment;
 }
@@ -191,9 +190,10 @@ GpuScenePtr upload_scene(Gpu& gpu, const Scene& source)
     scene->textures.push_back(upload_texture(gpu, white_texture()));
     scene->samplers.push_back(make_sampler(gpu, white_texture()));
 
-    using Type             = vk::DescriptorType;
-    scene->frame_layout    = make_layout(gpu, {Type::eUniformBuffer, Type::eStorageBuffer, Type::eStorageBuffer,
-                                               Type::eStorageBuffer, Type::eCombinedImageSampler, texel_descriptor(gpu)});
+    using Type          = vk::DescriptorType;
+    const Type texels   = texel_descriptor(gpu);
+    scene->frame_layout = make_layout(
+        gpu, {Type::eUniformBuffer, Type::eStorageBuffer, texels, texels, Type::eCombinedImageSampler, texels});
     scene->material_layout = make_layout(gpu, std::vector<Type>(textures_per_material, Type::eCombinedImageSampler));
     make_material_sets(gpu, *scene, source);
     for (size_t i = 0; i < source.draws.size(); ++i) {
@@ -214,13 +214,14 @@ const GpuImage& blurred_environment(Gpu& gpu, GpuScene& scene)
 {
     if (!scene.has_environment_map) return scene.environment_map;
     if (!scene.blurred_environment) {
-        const EnvironmentMap  levels = prefilter_environment(scene.environment);
-        std::vector<uint64_t> texels;
-        for (const glm::vec3& radiance : levels.radiance) texels.push_back(glm::packHalf4x16(glm::vec4(radiance, 1)));
-        scene.blurred_environment = make_image(gpu, {.format  = vk::Format::eR16G16B16A16Sfloat,
+        const EnvironmentMap   levels = prefilter_environment(scene.environment);
+        std::vector<glm::vec4> texels;
+        for (const glm::vec3& radiance : levels.radiance)
+            texels.push_back(glm::unpackHalf4x16(glm::packHalf4x16(glm::vec4(radiance, 1))));
+        scene.blurred_environment = make_image(gpu, {.format  = vk::Format::eR32G32B32A32Sfloat,
                                                      .size_px = levels.size_px,
-                                                     .usage   = vk::ImageUsageFlagBits::eSampled});
-        upload(gpu, *scene.blurred_environment, texels.data(), texels.size() * sizeof(uint64_t));
+                                                     .usage   = vk::ImageUsageFlagBits::eStorage});
+        upload(gpu, *scene.blurred_environment, texels.data(), texels.size() * sizeof(glm::vec4));
     }
     return *scene.blurred_environment;
 }
@@ -239,9 +240,9 @@ FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uni
 {
     using Type                           = vk::DescriptorType;
     const vk::DescriptorPoolSize sizes[] = {{Type::eUniformBuffer, 1},
-                                            {Type::eStorageBuffer, 3},
+                                            {Type::eStorageBuffer, 1},
                                             {Type::eCombinedImageSampler, 1},
-                                            {texel_descriptor(gpu), 1}};
+                                            {texel_descriptor(gpu), 3}};
     FrameSet                     result;
     result.pool = {gpu.impl->device,
                    vk::DescriptorPoolCreateInfo{.flags         = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
@@ -251,19 +252,21 @@ FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uni
     vk::raii::DescriptorSets sets(
         gpu.impl->device,
         {.descriptorPool = *result.pool, .descriptorSetCount = 1, .pSetLayouts = &*scene.frame_layout});
-    result.set                  = std::move(sets[0]);
-    const vk::Buffer buffers[4] = {*frame_uniforms.buffer, *scene.materials.buffer, *scene.lights.buffer,
-                                   *scene.shadow_matrices.buffer};
-    for (uint32_t i = 0; i < 4; ++i) {
-        const vk::DescriptorBufferInfo info{buffers[i], 0, VK_WHOLE_SIZE};
-        gpu.impl->device.updateDescriptorSets(
-            vk::WriteDescriptorSet{.dstSet          = *result.set,
-                                   .dstBinding      = i,
-                                   .descriptorCount = 1,
-                                   .descriptorType  = i == 0 ? Type::eUniformBuffer : Type::eStorageBuffer,
-                                   .pBufferInfo     = &info},
-            nullptr);
-    }
+    result.set             = std::move(sets[0]);
+    const auto bind_buffer = [&](uint32_t binding, Type type, const Buffer& buffer, const vk::BufferView* texels) {
+        const vk::DescriptorBufferInfo info{*buffer.buffer, 0, VK_WHOLE_SIZE};
+        gpu.impl->device.updateDescriptorSets(vk::WriteDescriptorSet{.dstSet           = *result.set,
+                                                                     .dstBinding       = binding,
+                                                                     .descriptorCount  = 1,
+                                                                     .descriptorType   = type,
+                                                                     .pBufferInfo      = &info,
+                                                                     .pTexelBufferView = texels},
+                                              nullptr);
+    };
+    bind_buffer(0, Type::eUniformBuffer, frame_uniforms, nullptr);
+    bind_buffer(1, Type::eStorageBuffer, scene.materials, nullptr);
+    bind_buffer(2, texel_descriptor(gpu), scene.lights, &*scene.lights.texels);
+    bind_buffer(3, texel_descriptor(gpu), scene.shadow_matrices, &*scene.shadow_matrices.texels);
     const vk::DescriptorImageInfo image{*scene.shadow_sampler, *scene.shadow_map.view, vk::ImageLayout::eGeneral};
     gpu.impl->device.updateDescriptorSets(vk::WriteDescriptorSet{.dstSet          = *result.set,
                                                                  .dstBinding      = 4,
@@ -271,15 +274,7 @@ FrameSet make_frame_set(Gpu& gpu, const GpuScene& scene, const Buffer& frame_uni
                                                                  .descriptorType  = Type::eCombinedImageSampler,
                                                                  .pImageInfo      = &image},
                                           nullptr);
-    if (first_depth == nullptr) return result;
-    const vk::DescriptorBufferInfo depth{*first_depth->cells.buffer, 0, VK_WHOLE_SIZE};
-    gpu.impl->device.updateDescriptorSets(vk::WriteDescriptorSet{.dstSet           = *result.set,
-                                                                 .dstBinding       = 5,
-                                                                 .descriptorCount  = 1,
-                                                                 .descriptorType   = texel_descriptor(gpu),
-                                                                 .pBufferInfo      = &depth,
-                                                                 .pTexelBufferView = &*first_depth->words},
-                                          nullptr);
+    if (first_depth != nullptr) bind_buffer(5, texel_descriptor(gpu), first_depth->cells, &*first_depth->words);
     return result;
 }
 

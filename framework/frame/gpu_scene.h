@@ -34,10 +34,9 @@ struct GpuScene {
     std::vector<vk::raii::Sampler>       samplers; // one per texture; the last is the default
     vk::raii::Sampler                    shadow_sampler = nullptr;
     GpuImage                             shadow_map; // one layer per directional or spot light, six per point light
-    GpuImage                             environment_map; // RGBA32F; without one, a texel of Scene::background
-    vk::raii::Sampler                    environment_sampler = nullptr;
-    EnvironmentMap                       environment;               // on the host; empty if there is none
-    std::optional<GpuImage>              blurred_environment;       // RGBA16F, when a frame first needs it
+    GpuImage                             environment_map;     // RGBA32F; without one, a texel of Scene::background
+    EnvironmentMap                       environment;         // on the host; empty if there is none
+    std::optional<GpuImage>              blurred_environment; // RGBA32F, of half floats; when a frame first needs it
     vk::raii::DescriptorSetLayout        frame_layout    = nullptr; // set 0
     vk::raii::DescriptorSetLayout        material_layout = nullptr; // set 1
     vk::raii::DescriptorPool             pool            = nullptr;

@@ -11,7 +11,7 @@
 namespace ssrlab {
 namespace {
 
-/// shaders/gbuffer/scene_types.glsl, struct Light, scalar layout.
+/// The four texels of a light (shaders/gbuffer/lighting.glsl).
 struct LightBlock {
     glm::vec3 position_ws;
     int32_t   type;
@@ -21,8 +21,9 @@ struct LightBlock {
     int32_t   shadow_layer;
     float     cos_inner;
     float     cos_outer;
+    glm::vec2 unused{0};
 };
-static_assert(sizeof(LightBlock) == 56);
+static_assert(sizeof(LightBlock) == 64);
 
 constexpr int shadow_map_px = 2048;
 
@@ -145,9 +146,15 @@ ShadowBlocks shadow_blocks(const Scene& source)
         const auto own =
             light.casts_shadow && !source.draws.empty() ? light_matrices(light, bounds) : std::vector<glm::dmat4>{};
         const int layer = own.empty() ? -1 : static_cast<int>(blocks.matrices.size());
-        blocks.lights.push_back({light.position_ws, static_cast<int32_t>(light.type), light.direction_ws, light.range_m,
-                                 light.intensity, layer, std::cos(light.inner_angle_rad),
-                                 std::cos(light.outer_angle_rad)});
+        blocks.lights.push_back({light.position_ws,
+                                 static_cast<int32_t>(light.type),
+                                 light.direction_ws,
+                                 light.range_m,
+                                 light.intensity,
+                                 layer,
+                                 std::cos(light.inner_angle_rad),
+                                 std::cos(light.outer_angle_rad),
+                                 {}});
         blocks.matrices.insert(blocks.matrices.end(), own.begin(), own.end());
     }
     // Vulkan clip space: y points down.
@@ -156,14 +163,21 @@ ShadowBlocks shadow_blocks(const Scene& source)
     return blocks;
 }
 
+template <typename T> Buffer make_texels_with(Gpu& gpu, std::span<const T> values)
+{
+    Buffer buffer = make_texel_buffer(gpu, std::max(values.size_bytes(), sizeof(T)), vk::Format::eR32G32B32A32Uint);
+    upload(gpu, buffer, values.data(), values.size_bytes());
+    return buffer;
+}
+
 } // namespace
 
 void make_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source)
 {
     const ShadowBlocks blocks = shadow_blocks(source);
     scene.light_count         = static_cast<uint32_t>(blocks.lights.size());
-    scene.lights              = make_buffer_with<LightBlock>(gpu, blocks.lights);
-    scene.shadow_matrices     = make_buffer_with<glm::mat4>(gpu, blocks.stored);
+    scene.lights              = make_texels_with<LightBlock>(gpu, blocks.lights);
+    scene.shadow_matrices     = make_texels_with<glm::mat4>(gpu, blocks.stored);
     scene.shadow_map          = make_shadow_map(gpu, blocks.matrices.size(), source.name);
     scene.shadow_sampler      = {gpu.impl->device,
                                  vk::SamplerCreateInfo{.magFilter     = vk::Filter::eLinear,

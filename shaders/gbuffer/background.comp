@@ -7,7 +7,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 1) uniform sampler2D depth_buffer;
-layout(set = 0, binding = 2) uniform sampler2D environment_map;
+layout(set = 0, binding = 2, rgba32f) uniform readonly image2D environment_map;
 layout(set = 0, binding = 5, r32ui) uniform readonly uimage2D gradient_image;
 layout(set = 0, binding = 4, rgba16f) uniform writeonly image2D radiance_image;
 layout(push_constant) uniform Push { mat4 view_to_world; };
@@ -22,5 +22,5 @@ void main()
     store_depth(pixel, usable ? depth : BACKGROUND_DEPTH, usable ? imageLoad(gradient_image, pixel).x : 0);
     if (usable) return;
     vec3 ray_vs = vec3(orthographic != 0 ? vec2(0) : px_to_slope(vec2(pixel) + 0.5), -1.0);
-    imageStore(radiance_image, pixel, vec4(environment_radiance(mat3(view_to_world) * ray_vs), 1));
+    imageStore(radiance_image, pixel, vec4(environment_radiance(direction_to_uv(mat3(view_to_world) * ray_vs)), 1));
 }

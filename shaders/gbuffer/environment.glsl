@@ -8,15 +8,21 @@ vec2 direction_to_uv(vec3 direction_ws)
     return 0.5 + vec2(azimuth / (2.0 * pi), -atan(direction_ws.y, level) / pi);
 }
 
-vec3 environment_texel(ivec2 texel)
+// The map's texel for one that lies at most one past its border. Without %, which CPU drivers compute lane by lane.
+ivec2 wrapped(ivec2 texel, ivec2 size)
 {
-    ivec2 size = textureSize(environment_map, 0);
-    return texelFetch(environment_map, ivec2((texel.x + size.x) % size.x, clamp(texel.y, 0, size.y - 1)), 0).rgb;
+    int x = texel.x < 0 ? texel.x + size.x : texel.x;
+    return ivec2(x >= size.x ? x - size.x : x, clamp(texel.y, 0, size.y - 1));
 }
 
-vec3 environment_radiance(vec3 direction_ws)
+vec3 environment_texel(ivec2 texel)
 {
-    vec2  at_px = direction_to_uv(direction_ws) * vec2(textureSize(environment_map, 0)) - 0.5;
+    return imageLoad(environment_map, wrapped(texel, imageSize(environment_map))).rgb;
+}
+
+vec3 environment_radiance(vec2 uv)
+{
+    vec2  at_px = uv * vec2(imageSize(environment_map)) - 0.5;
     vec2  low   = floor(at_px);
     vec2  part  = at_px - low;
     ivec2 texel = ivec2(low);

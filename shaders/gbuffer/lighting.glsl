@@ -1,5 +1,7 @@
 // Light that arrives at a point and leaves it toward an eye: Lambert diffuse; GGX specular with Smith visibility and Schlick
 // Fresnel (Walter et al. 2007; Schlick 1994). The including shader defines LIGHTS_BINDING, and two more after it.
+#include "layout/texels.glsl"
+
 struct Light
 {
     vec3  position_ws;
@@ -12,13 +14,29 @@ struct Light
     float cos_outer;
 };
 
-layout(set = 0, binding = LIGHTS_BINDING, scalar) readonly buffer Lights { Light lights[]; };
-layout(set = 0, binding = LIGHTS_BINDING + 1, scalar) readonly buffer ShadowMatrices { mat4 world_to_shadow[]; };
+LOADED_TEXELS_4(LIGHTS_BINDING, Lights)             // four texels a light
+LOADED_TEXELS_4(LIGHTS_BINDING + 1, ShadowMatrices) // four texels a layer of the shadow map: columns of world to clip
 layout(set = 0, binding = LIGHTS_BINDING + 2) uniform sampler2DArrayShadow shadow_map;
 
 const float pi              = 3.14159265358979;
 const float nearest_light_m = 1e-6; // a light has no size, and lights nothing in its own place
 const float largest_half    = 65504.0; // what pictures can hold
+
+Light load_light(int index)
+{
+    uvec4 texels[4];
+    for (int i = 0; i < 4; ++i) texels[i] = LOAD_TEXEL(Lights, 4 * index + i);
+    vec2 cosines = uintBitsToFloat(texels[3].xy);
+    return Light(uintBitsToFloat(texels[0].xyz), int(texels[0].w), uintBitsToFloat(texels[1].xyz),
+                 uintBitsToFloat(texels[1].w), uintBitsToFloat(texels[2].xyz), int(texels[2].w), cosines.x, cosines.y);
+}
+
+mat4 load_world_to_shadow(int layer)
+{
+    mat4 columns;
+    for (int i = 0; i < 4; ++i) columns[i] = uintBitsToFloat(LOAD_TEXEL(ShadowMatrices, 4 * layer + i));
+    return columns;
+}
 
 // Layer of a point light's cube: +x -x +y -y +z -z.
 int cube_face(vec3 direction)
@@ -33,7 +51,7 @@ float shadow(Light light, vec3 position_ws)
 {
     if (light.shadow_layer < 0) return 1.0;
     int  layer = light.shadow_layer + (light.type == 1 ? cube_face(position_ws - light.position_ws) : 0);
-    vec4 clip  = world_to_shadow[layer] * vec4(position_ws, 1.0);
+    vec4 clip  = load_world_to_shadow(layer) * vec4(position_ws, 1.0);
     if (clip.w <= 0.0) return 1.0;
     vec3 ndc = clip.xyz / clip.w;
     if (any(greaterThan(abs(ndc.xy), vec2(1.0))) || ndc.z > 1.0) return 1.0;
@@ -82,21 +100,47 @@ struct Surface
     float metallic, roughness, dielectric_f0;
 };
 
-// Both parts of the light that leaves a surface: irradiance for the diffuse one, radiance toward the eye for the specular one.
+// Returns which of 32 lights reach the surface, without shadows: bit i for the light first + i.
+uint reaching_lights(Surface surface, int first, int light_count)
+{
+    uint reaching = 0;
+    int  count = min(light_count - first, 32), i = 0;
+    do
+    {
+        vec3 to_light;
+        vec3 from_light = arriving(load_light(first + i), surface.position_ws, to_light);
+        bool reaches = i < count && !(dot(surface.normal_ws, to_light) <= 0.0) && any(notEqual(from_light, vec3(0)));
+        reaching |= uint(reaches) << (i & 31);
+    } while (++i < count);
+    return reaching;
+}
+
+// Both parts of the light that leaves a surface: irradiance for the diffuse one, radiance toward the eye for the
+// specular one. Only for lights that reach the surface are the shadow and the highlight computed. The loops test their
+// condition at the end, because lavapipe runs the body of a loop that tests it first once more than needed.
 void light_surface(Surface surface, int light_count, vec3 to_eye_ws, out vec3 irradiance, out vec3 highlights)
 {
     vec3 f0    = mix(vec3(surface.dielectric_f0), surface.base_colour, surface.metallic);
     irradiance = highlights = vec3(0);
-    for (int i = 0; i < light_count; ++i)
+    int first  = 0;
+    do
     {
-        vec3  to_light;
-        vec3  from_light = arriving(lights[i], surface.position_ws, to_light);
-        float cosine     = dot(surface.normal_ws, to_light);
-        if (cosine <= 0.0) continue;
-        from_light *= cosine * shadow(lights[i], surface.position_ws);
-        irradiance += from_light;
-        highlights += from_light * specular(surface.normal_ws, to_eye_ws, to_light, f0, surface.roughness);
-    }
+        uint reaching = reaching_lights(surface, first, light_count);
+        do
+        {
+            if (reaching != 0)
+            {
+                Light light = load_light(first + findLSB(reaching));
+                vec3  to_light;
+                vec3  from_light = arriving(light, surface.position_ws, to_light);
+                from_light *= dot(surface.normal_ws, to_light) * shadow(light, surface.position_ws);
+                irradiance += from_light;
+                highlights += from_light * specular(surface.normal_ws, to_eye_ws, to_light, f0, surface.roughness);
+                reaching &= reaching - 1;
+            }
+        } while (reaching != 0);
+        first += 32;
+    } while (first < light_count);
     irradiance = min(irradiance, largest_half);
     highlights = min(highlights, largest_half);
 }

@@ -56,7 +56,7 @@ void main()
     uint first = index * rays_per_pixel;
     if (first >= ray_count) return;
     ivec2 pixel = unpack_pixel(ray_pixel(first));
-    if (!reflects(pixel)) return;
+    if (!skip_unneeded_passes && !reflects(pixel)) return; // a planned frame has rays of reflecting pixels alone
 #if defined(LOBE_RAYS) && defined(ONE_RAY)
     lobe_ray_light(first, pixel, 0);
 #elif defined(LOBE_RAYS)

@@ -142,6 +142,27 @@ TEST(GBufferMaterial, PointLightFallsOffWithTheSquare)
         }
 }
 
+// Every third light comes from below, and does not reach the plane.
+TEST(GBufferMaterial, EveryLightOfManyCounts)
+{
+    for (const int lights : {0, 1, 31, 32, 33, 70}) {
+        Model  model      = plane(matt);
+        double irradiance = 0;
+        for (int i = 0; i < lights; ++i) {
+            const bool  below = i % 3 == 2;
+            const float own   = static_cast<float>(i + 1) / 256;
+            model.lights.push_back(sun({0, below ? 1 : -1, 0}, glm::vec3(own), false));
+            if (!below) irradiance += static_cast<double>(own);
+        }
+        Scene scene = model_to_scene(std::move(model), "lights");
+        scene.lights.resize(static_cast<size_t>(lights)); // a model without lights gets one
+        const Picture    picture = make_picture(scene, from_above(), {16, 12});
+        const glm::dvec3 light   = glm::dvec3(0.1, 0.2, 0.3) + irradiance * 0.75 / std::numbers::pi;
+        for (const glm::vec3& radiance : picture.image.radiance)
+            expect_colour(radiance, glm::dvec3(0.8, 0.5, 0.25) * light, fmt::format("{} lights", lights));
+    }
+}
+
 // What the planned frame skips is measured on these.
 TEST(GBufferMaterial, ATenthOfTheSmallMirrorSceneReflectsAndNothingOfTheMatteOne)
 {

@@ -121,7 +121,7 @@ Bindings surroundings_of(const FrameInputs& frame)
     const GpuScene* scene = scene_of(*frame.buffers);
     if (scene == nullptr) return {};
     return {{"Frame", frame.buffers->drawing->frame_uniforms},
-            {"environment_map", {scene->environment_map, scene->environment_sampler}},
+            {"environment_map", scene->environment_map},
             {"Lights", scene->lights},
             {"ShadowMatrices", scene->shadow_matrices},
             {"shadow_map", {scene->shadow_map, scene->shadow_sampler}}};
@@ -278,7 +278,7 @@ void add_environment(Gpu& gpu, const PassContext& context, Defines& defines, Bin
     const bool           smooth = counts.roughness_pixels[0] == counts.reflecting_pixels; // looks up the map alone
     const GpuImage&      levels = smooth ? scene->environment_map : blurred_environment(gpu, *scene);
     defines.emplace("ENVIRONMENT", "1");
-    bindings.insert({"environment_levels", {levels, scene->environment_sampler}});
+    bindings.insert({"environment_levels", levels});
 }
 
 void record_copy(const vk::raii::CommandBuffer& commands, const GpuImage& source, const GpuImage& target)
