@@ -203,6 +203,59 @@ std::vector<RayOutcome> trace_timed(Gpu& gpu, const Lab& lab, std::span<const Ra
     return outcomes;
 }
 
+/// The plane that a pixel shows, in depth; empty where it shows none.
+struct PixelPlane {
+    glm::dvec3 centre_px_depth{0};
+    glm::dvec2 slope{0};
+
+    double above(glm::dvec3 at) const
+    {
+        return at.z - centre_px_depth.z - glm::dot(slope, glm::dvec2(at - centre_px_depth));
+    }
+    /// Less is the surface itself: depth and slope are rounded.
+    double rounding() const { return (centre_px_depth.z + std::abs(slope.x) + std::abs(slope.y)) / 512; }
+};
+
+std::optional<PixelPlane> plane_of(const GBufferImage& image, glm::ivec2 pixel)
+{
+    const size_t     i     = pixel_index(pixel, image.view.size_px);
+    const double     depth = double(image.depth[i]);
+    const glm::dvec2 slope(image.gradient.empty() ? glm::vec2(0) : image.gradient[i]);
+    if (!(depth > 0) || !std::isfinite(slope.x) || !std::isfinite(slope.y)) return std::nullopt;
+    return PixelPlane{{glm::dvec2(pixel) + 0.5, depth}, slope};
+}
+
+/// Techniques leave the start pixel out, because a ray leaves its own surface there. In the picture of a camera
+/// elsewhere, or where a ray is handed on in mid-air, it may meet what that pixel shows. leaves: it begins at its origin.
+void meet_start_pixel(const GBufferImage& image, const RayInput& ray, bool leaves, RayOutcome& outcome)
+{
+    const glm::ivec2 pixel = glm::min(glm::ivec2(ray.origin_px_depth), image.view.size_px - 1);
+    const auto       plane = plane_of(image, pixel);
+    if (!plane) return;
+    double t_out = 1;
+    for (int axis : {0, 1}) {
+        const double delta = ray.delta_px_depth[axis];
+        if (delta != 0)
+            t_out = std::min(t_out, (pixel[axis] + (delta > 0 ? 1 : 0) - ray.origin_px_depth[axis]) / delta);
+    }
+    const double from = plane->above(ray.origin_px_depth),
+                 to   = plane->above(ray.origin_px_depth + t_out * ray.delta_px_depth);
+    if (from <= (leaves ? plane->rounding() : -plane->rounding()) || to > 0 || to >= from) return;
+    outcome   = {.status = TraceStatus::hit, .hit_pixel = pixel};
+    outcome.t = from > 0 ? t_out * from / (from - to) : 0;
+}
+
+/// Has a ray that leaves a surface met this very surface? A plane that holds its origin is not met again.
+bool meets_own_surface(const GBufferImage& image, const RayInput& ray, const RayOutcome& outcome)
+{
+    constexpr double near_px = 2;
+    if (!has_place(outcome.status) || outcome.hit_layer > 0 ||
+        outcome.t * glm::length(glm::dvec2(ray.delta_px_depth)) > near_px)
+        return false;
+    const auto plane = plane_of(image, outcome.hit_pixel);
+    return plane && std::abs(plane->above(ray.origin_px_depth)) <= plane->rounding();
+}
+
 } // namespace
 
 GBufferTrace trace_in_gbuffer(SourceContext& context, const GBufferPtr& gbuffer, const GBufferImage& image,
@@ -223,12 +276,18 @@ GBufferTrace trace_in_gbuffer(SourceContext& context, const GBufferPtr& gbuffer,
     trace.status.resize(rays.size());
     trace.left_at_m.resize(rays.size());
     if (inputs.empty()) return trace;
-    const LabPtr lab = make_lab(context.stage.gpu, context.stage.catalogue, gbuffer, context.lab->technique,
-                                context.lab->values, settings);
-    const std::vector<RayOutcome> outcomes = trace_timed(context.stage.gpu, *lab, inputs, trace.ms);
-    const bool                    in_sight = start == RayStart::in_sight && stays_in_sight(context, settings);
+    const LabPtr            lab = make_lab(context.stage.gpu, context.stage.catalogue, gbuffer, context.lab->technique,
+                                           context.lab->values, settings);
+    std::vector<RayOutcome> outcomes = trace_timed(context.stage.gpu, *lab, inputs, trace.ms);
+    if (context.watch) context.watch({gbuffer, image, settings, inputs, outcomes});
+    const bool stays = start == RayStart::in_sight && stays_in_sight(context, settings);
     for (size_t k = 0; k < inputs.size(); ++k) {
-        const size_t ray     = asked[k];
+        const size_t ray      = asked[k];
+        const double slack_m  = 1e-6 * (rays[ray].eye_m + parts[k].t_in_m);
+        const bool   leaves   = parts[k].t_in_m <= slack_m;
+        const bool   in_sight = stays && parts[k].t_in_m <= rays[ray].clear_m + slack_m; // from its beginning on
+        meet_start_pixel(image, inputs[k], leaves, outcomes[k]);
+        if (leaves && meets_own_surface(image, inputs[k], outcomes[k])) continue;
         trace.answers[ray]   = to_answer(context, image, rays[ray], parts[k], inputs[k], outcomes[k], in_sight);
         trace.status[ray]    = outcomes[k].status;
         trace.left_at_m[ray] = parts[k].t_out_m;
@@ -243,7 +302,7 @@ void ask_elsewhere(const SourceContext& context, std::span<const OpenRay> rays, 
     in_sight.surface   = "plane_infinite";
     in_sight.behind    = Behind::stop;
     in_passing.surface = "plane";
-    in_passing.behind  = Behind::pass;
+    in_passing.behind  = Behind::stop; // what comes out from behind a surface has met something there
     in_sight.layers = in_passing.layers = 1;
     const auto ask                      = [&](const TraceSettings& settings, RayStart start) {
         std::vector<OpenRay> open;

@@ -37,10 +37,10 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
     const Layered      drawn      = draw_layered(context, layers, both_sides, turn);
     const GBufferPtr&  gbuffer    = drawn.first->gbuffer;
     const GBufferImage image      = read_gbuffer(context.stage.gpu, *gbuffer);
-    // All surfaces are there, so each is a plane that a ray passes or meets, and there is nothing between them.
+    // Planes with nothing between them. Where back faces are left out, a ray that comes from behind a front has met one.
     TraceSettings settings = context.trace;
     settings.surface       = "plane";
-    settings.behind        = both_sides ? Behind::hit : Behind::pass;
+    settings.behind        = both_sides ? Behind::hit : Behind::stop;
     settings.layers        = layers;
     GBufferTrace trace     = trace_in_gbuffer(context, gbuffer, image, settings, RayStart::anywhere, rays);
     turn.answers           = std::move(trace.answers);

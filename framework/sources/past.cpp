@@ -2,9 +2,8 @@
 #include "core/error.h"
 #include "frame/drawing.h"
 #include "frame/passes/pass_helpers.h"
+#include "scene/sequence.h"
 #include "sources/gbuffer_rays.h"
-
-#include <algorithm>
 
 namespace ssrlab {
 namespace {
@@ -26,8 +25,7 @@ void ask_frame(SourceContext& context, const View& view, std::span<const OpenRay
 
 SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
 {
-    if (std::ranges::any_of(context.stage.scene.draws,
-                            [](const Draw& draw) { return !(draw.motion == RigidMotion{}); }))
+    if (anything_moves(context.stage.first))
         throw_failure("source 'past': objects of '{}' move; expected a scene in which only the camera does",
                       context.stage.scene.name);
     SourceTurn turn;

@@ -6,6 +6,7 @@
 #include "core/ray_answer.h"
 #include "frame/stage.h"
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -27,6 +28,15 @@ struct OpenRay {
     double     roughness = 0;   // of the reflecting surface: it blurs highlights
 };
 
+/// A list of rays that a source traced in a G-buffer.
+struct TracedList {
+    const GBufferPtr&           gbuffer;
+    const GBufferImage&         image; // the same on the host, with its layers
+    const TraceSettings&        settings;
+    std::span<const RayInput>   rays;
+    std::span<const RayOutcome> outcomes; // without counts
+};
+
 /// A traced frame and what sources need besides. Sources keep here what they build, so that a later list can
 /// use it.
 struct SourceContext {
@@ -41,6 +51,7 @@ struct SourceContext {
     std::vector<View>                earlier; // of the frames before this one, the latest first; empty: a single frame
     std::shared_ptr<const World>     world;   // these are empty until a source asks for them
     std::shared_ptr<const Occupancy> occupancy;
+    std::function<void(const TracedList&)> watch; // is told of every list that is traced; empty: nobody is
 };
 
 struct Source {
