@@ -87,7 +87,8 @@ std::shared_ptr<const DrawPipeline> layer_pipeline(Gpu& gpu, GpuScene& scene, co
 {
     // Layers of both sides share the pipeline of the first of them.
     std::shared_ptr<const DrawPipeline> of_sides;
-    if (shows == Shows::next_side && before->pipeline->culling == Culling::nothing) of_sides = before->pipeline;
+    if (shows == Shows::next_side && before->pipeline && before->pipeline->culling == Culling::nothing)
+        of_sides = before->pipeline;
     std::shared_ptr<const DrawPipeline>& pipeline = shows == Shows::next_side    ? of_sides
                                                     : shows == Shows::first      ? scene.first_layer_pipeline
                                                     : shows == Shows::far_behind ? scene.second_layer_pipeline
@@ -181,6 +182,18 @@ DrawingPtr make_next_layer(Gpu& gpu, const Drawing& before)
 DrawingPtr make_next_side(Gpu& gpu, const Drawing& before)
 {
     return make_drawing(gpu, before.scene, before.gbuffer->view, Shows::next_side, &before);
+}
+
+DrawnSides draw_sides_behind(Gpu& gpu, const GpuScenePtr& scene, const View& view, std::span<const float> depth,
+                             std::shared_ptr<const DrawPipeline>& pipeline)
+{
+    Drawing before;
+    before.gbuffer           = upload_depth(gpu, view, depth);
+    before.pipeline          = pipeline;
+    const DrawingPtr drawing = make_drawing(gpu, scene, view, Shows::next_side, &before);
+    pipeline                 = drawing->pipeline;
+    redraw_gbuffer(gpu, *drawing); // a driver may compile a pipeline when it first draws
+    return {drawing->gbuffer, redraw_gbuffer(gpu, *drawing)};
 }
 
 void record_second_layer(const vk::raii::CommandBuffer& commands, const Drawing& second, double separation_m)

@@ -1,23 +1,29 @@
 // Rays in a cube of frames around one point: a ray that leaves a face continues in the face that it enters.
 #pragma once
 
+#include "frame/both_sides.h"
 #include "sources/gbuffer_rays.h"
 
 #include <array>
+#include <optional>
 
 namespace ssrlab {
 
 struct CubeOfFrames {
     View centre; // its position and axes; faces look along +x, -x, +y, -y, +z, -z of its view space
     int  size_px = 512;
-    std::array<GBufferPtr, 6>   faces;  // empty until a ray enters one
-    std::array<GBufferImage, 6> images; // the same on the host
+    /// The faces show only what lies on the side of a plane to which its normal (x, y, z) points: x·n > w.
+    std::optional<glm::dvec4> before_ws = {};
+
+    std::array<GBufferPtr, 6>           faces    = {}; // empty until a ray enters one
+    std::array<GBufferImage, 6>         images   = {}; // the same on the host
+    std::shared_ptr<const DrawPipeline> pipeline = {}; // empty until a face is drawn
 };
 
 /// Returns the square view of a face, 90 degrees wide.
 View face_view(const View& centre, int face, int size_px);
 
-/// Draws the faces that rays enter and traces; returns one answer per ray. Adds the times of both to the turn.
+/// Draws both sides of all surfaces in the faces that rays enter, and traces; returns one answer per ray. Adds the times of both to the turn.
 std::vector<RayAnswer> trace_in_cube(SourceContext& context, CubeOfFrames& cube, const TraceSettings& settings,
                                      RayStart start, std::span<const OpenRay> rays, SourceTurn& turn);
 

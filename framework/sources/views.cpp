@@ -79,8 +79,15 @@ std::optional<glm::dvec3> best_place(const Occupancy& grid, std::span<const glm:
     return best;
 }
 
-/// The eye at its mirror image in the plane in which most of the rays begin. Empty when nothing is flat.
-std::optional<glm::dvec3> mirrored_eye(const SourceContext& context, std::span<const OpenRay> rays)
+/// Where a camera stands, and the plane behind which it sees nothing (CubeOfFrames::before_ws).
+struct Place {
+    glm::dvec3                eye_ws{0};
+    std::optional<glm::dvec4> before_ws = {};
+};
+
+/// The eye at its mirror image in the plane in which most of the rays begin: it sees what lies before that plane, as
+/// rays do that begin there. Empty when nothing is flat.
+std::optional<Place> mirrored_eye(const SourceContext& context, std::span<const OpenRay> rays)
 {
     const glm::dmat4 view_to_world = glm::inverse(context.image.view.world_to_view);
     const auto       eye_ws        = glm::dvec3(view_to_world[3]);
@@ -100,8 +107,11 @@ std::optional<glm::dvec3> mirrored_eye(const SourceContext& context, std::span<c
     }
     const auto largest = std::ranges::max_element(planes, {}, [](const auto& plane) { return plane.second.first; });
     if (largest == planes.end() || largest->second.first * 50 < rays.size()) return std::nullopt;
-    const glm::dvec4 mean = largest->second.second / double(largest->second.first);
-    return eye_ws + 2 * mean.w * glm::normalize(glm::dvec3(mean));
+    const glm::dvec4 mean   = largest->second.second / double(largest->second.first);
+    const glm::dvec3 normal = glm::normalize(glm::dvec3(mean));
+    // The mirror itself lies a little behind.
+    constexpr double lifted = 1 - 1e-3;
+    return Place{eye_ws + 2 * mean.w * normal, glm::dvec4(normal, glm::dot(normal, eye_ws) + lifted * mean.w)};
 }
 
 View view_from(const View& frame, glm::dvec3 eye_ws)
@@ -120,16 +130,16 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
     const Stopwatch               placing;
     const std::vector<glm::dvec3> places  = candidates(grid);
     std::vector<Target>           targets = targets_of(grid, rays);
-    std::vector<glm::dvec3>       eyes;
+    std::vector<Place>            chosen;
     if (context.parameters.at("place") == 1) {
-        if (const auto eye_ws = mirrored_eye(context, rays)) eyes.push_back(*eye_ws);
+        if (const auto mirrored = mirrored_eye(context, rays)) chosen.push_back(*mirrored);
     } else
         for (int view = 0; view < static_cast<int>(context.parameters.at("count")); ++view)
-            if (const auto place = best_place(grid, places, targets)) eyes.push_back(*place);
+            if (const auto place = best_place(grid, places, targets)) chosen.push_back({*place});
     turn.merge_ms = 1000 * placing.seconds();
-    for (const glm::dvec3& eye_ws : eyes) {
-        CubeOfFrames cube{
-            view_from(context.image.view, eye_ws), static_cast<int>(context.parameters.at("size_px")), {}, {}};
+    for (const Place& place : chosen) {
+        CubeOfFrames cube{view_from(context.image.view, place.eye_ws),
+                          static_cast<int>(context.parameters.at("size_px")), place.before_ws};
         ask_elsewhere(context, rays, turn.answers,
                       [&](const TraceSettings& settings, RayStart start, std::span<const OpenRay> open) {
                           return trace_in_cube(context, cube, settings, start, open, turn);

@@ -198,6 +198,54 @@ TEST(HardRays, ThatEnterThePictureOfACameraElsewhereHaveAnUncertainAnswer)
     EXPECT_FALSE(list[0].source->answer(asked.context, rays).answers[0].certain);
 }
 
+// The floor mirrors; the eye at its mirror image sees what the rays see, along each ray. Under the floor lies a slab that
+// would hide the room from there, and the eye is inside of it.
+TEST(HardRays, OfAFloorAreAnsweredByTheMirroredCameraUnderIt)
+{
+    Model model              = room();
+    model.materials[0]       = make_material("wall", {0.5F, 0.5F, 0.5F}, 0, 1);
+    model.meshes[0].material = 1;
+    model.materials.push_back(make_material("mirror", {1, 1, 1}, 1, 0));
+    model.meshes.push_back(make_box({-9, -9, -9}, {9, -3.2, 9}));
+    Stage stage = open_stage(device(), catalogue(), model_to_scene(std::move(model), "room"));
+    show(stage, looking({0.3, 0.2, 1}, {0.1, -1.5, -3}));
+    const Technique& hiz = technique("hiz");
+    FrameSettings    settings;
+    settings.trace          = in_sight;
+    SourceContext context   = make_source_context(stage, hiz, values_of(hiz), settings);
+    const auto    list      = parse_sources("views:place=mirrored:size_px=128", "test");
+    context.parameters      = list[0].values;
+    const SourceTurn turn   = list[0].source->answer(context, context.rays);
+    size_t           points = 0, wrong = 0, certain_wrong = 0;
+    for (size_t i = 0; i < context.rays.size(); ++i) {
+        const RayAnswer& answer = turn.answers[i];
+        if (answer.kind != AnswerKind::point) continue;
+        const Point truth    = leaves_room(context.rays[i].origin_ws, context.rays[i].direction_ws);
+        const bool  is_wrong = glm::length(answer.point_ws - truth) > 0.01 * glm::length(truth);
+        ++points;
+        wrong += is_wrong;
+        certain_wrong += is_wrong && answer.certain;
+    }
+    ASSERT_GT(context.rays.size(), 1000U);
+    EXPECT_GT(points, context.rays.size() * 99 / 100);
+    EXPECT_LE(wrong, points / 50); // where two walls meet, a pixel shows one of them
+    EXPECT_EQ(certain_wrong, 0U);
+}
+
+// A camera in a box sees its inside, and not through the sides that face away from it.
+TEST(HardRays, AroundABoxThatHoldsTheCamera)
+{
+    Model model = room();
+    model.meshes.push_back(make_box({2.5, -0.5, -0.5}, {3.5, 0.5, 0.5}));
+    Asked     asked  = open_room(std::move(model), looking({3, 0, 0}, {0, 0, 0}));
+    const Row rows[] = {
+        {"toward the camera", {-5, 0.1, 0.2}, {0, 0.1, 0.2}, Point(2.5, 0.1, 0.2), be_no_other_point},
+        {"through the box from behind", {7, 0.1, 0.2}, {5, 0.1, 0.2}, Point(3.5, 0.1, 0.2), be_no_other_point},
+        {"past it, behind its sides", {1, -3, 0.1}, {1, 0, 0.1}, {}, be_no_other_point},
+    };
+    expect_answers(asked, "cube:size_px=64", rows);
+}
+
 // In a frame before, something stood elsewhere: its picture says nothing of now.
 TEST(HardRays, PastFramesOfWhatMovesAreRefused)
 {
