@@ -23,9 +23,11 @@ struct ConePyramid {
 };
 
 /// Light and end of each ray of rough pixels; one image per ray, stacked vertically (shaders/passes/ray_reuse.comp).
+/// The last two are one image high and hold shaders/passes/reused_pixel.glsl.
 struct LobeRayImages {
-    GpuImage light; // RGBA16F: colour, weight; unused with one ray per pixel: `reflection` has it
-    GpuImage end;   // RGBA32F: the point in view space, and the density of the ray's direction
+    GpuImage light;            // RGBA16F: colour, weight; unused with one ray per pixel: `reflection` has it
+    GpuImage end;              // RGBA32F: the point in view space, and the density of the ray's direction
+    GpuImage gathered, reused; // RGBA32UI
 };
 
 struct FrameBuffers {

@@ -1,4 +1,4 @@
-// A pixel as a rough reflector, and whether another pixel lies on its surface. After rays/reflecting.glsl and pass/parameters.
+// A pixel as a rough reflector. After rays/reflecting.glsl and pass/parameters.
 #include "passes/camera.glsl"
 
 struct Reflector
@@ -17,13 +17,4 @@ Reflector reflector_at(ivec2 pixel)
     own.normal_vs   = dot(own.normal_vs, own.to_eye_vs) < 0.0 ? -own.normal_vs : own.normal_vs;
     own.alpha       = stored.w * stored.w;
     return own;
-}
-
-// Of another pixel's rays: 0 where it lies off the plane of this one.
-float same_surface(Reflector own, ivec2 other)
-{
-    float depth = load_depth(other);
-    if (depth <= 0.0) return 0.0;
-    float step_m = abs(dot(own.normal_vs, px_to_vs(vec3(vec2(other) + 0.5, depth)) - own.position_vs));
-    return exp(-step_m / (reuse_depth_tolerance * depth_to_distance(depth)));
 }

@@ -8,22 +8,35 @@ float smith_lambda(float cosine, float alpha)
     return 0.5 * (sqrt(1.0 + alpha * alpha * (1.0 / (cosine * cosine) - 1.0)) - 1.0);
 }
 
-// D / (4 n.v): what the density of a drawn direction and the BRDF times its cosine, without Fresnel's factor, share.
-float lobe_common(vec3 normal, vec3 to_eye, vec3 to_light, float alpha)
-{
-    float n_h = dot(normal, normalize(to_eye + to_light)), spread = n_h * n_h * (alpha * alpha - 1.0) + 1.0;
-    return alpha * alpha / (3.14159265 * spread * spread * 4.0 * max(dot(normal, to_eye), 1e-4));
-}
-
+// The density with which a direction is drawn.
 float lobe_density(vec3 normal, vec3 to_eye, vec3 to_light, float alpha)
 {
-    return lobe_common(normal, to_eye, to_light, alpha) / (1.0 + smith_lambda(max(dot(normal, to_eye), 1e-4), alpha));
+    float n_v = max(dot(normal, to_eye), 1e-4), n_h = dot(normal, normalize(to_eye + to_light));
+    float spread = n_h * n_h * (alpha * alpha - 1.0) + 1.0;
+    return alpha * alpha / (3.14159265 * spread * spread * 4.0 * n_v) / (1.0 + smith_lambda(n_v, alpha));
 }
 
-float lobe_value(vec3 normal, vec3 to_eye, vec3 to_light, float alpha)
+// What lobe_value() needs of a surface, whatever the light's direction.
+struct Lobe
 {
-    float masked = smith_lambda(max(dot(normal, to_eye), 1e-4), alpha) + smith_lambda(max(dot(normal, to_light), 1e-4), alpha);
-    return lobe_common(normal, to_eye, to_light, alpha) / (1.0 + masked);
+    vec3  normal, to_eye;
+    float alpha2, n_v, eye_side, scale;
+};
+
+Lobe lobe_of(vec3 normal, vec3 to_eye, float alpha)
+{
+    float alpha2 = alpha * alpha, n_v = max(dot(normal, to_eye), 1e-4);
+    return Lobe(normal, to_eye, alpha2, n_v, sqrt(n_v * n_v * (1.0 - alpha2) + alpha2), alpha2 / 6.2831853);
+}
+
+// The BRDF times its cosine, without Fresnel's factor. 0 or less where the light comes from below.
+float lobe_value(Lobe lobe, vec3 to_light)
+{
+    vec3  both = lobe.to_eye + to_light; // not of length 1: D's denominator is multiplied by its squared length
+    float n_l = dot(lobe.normal, to_light), n_h = dot(lobe.normal, both), length2 = dot(both, both);
+    float spread = n_h * n_h * (lobe.alpha2 - 1.0) + length2;
+    float sides  = lobe.eye_side * n_l + lobe.n_v * sqrt(n_l * n_l * (1.0 - lobe.alpha2) + lobe.alpha2);
+    return lobe.scale * n_l * length2 * length2 / (spread * spread * sides);
 }
 
 vec3 drawn_half_vector(vec3 normal, vec3 to_eye, float alpha, vec2 random)

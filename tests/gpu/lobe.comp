@@ -15,6 +15,7 @@ void main()
 {
     uint i = gl_GlobalInvocationID.x;
     if (i >= asked.length()) return;
-    Asked one = asked[i];
-    found[i]  = vec2(lobe_value(vec3(0, 0, 1), one.to_eye, one.to_light, one.alpha), lobe_density(vec3(0, 0, 1), one.to_eye, one.to_light, one.alpha));
+    Asked one  = asked[i];
+    Lobe  lobe = lobe_of(vec3(0, 0, 1), one.to_eye, one.alpha);
+    found[i] = vec2(lobe_value(lobe, one.to_light), lobe_density(vec3(0, 0, 1), one.to_eye, one.to_light, one.alpha));
 }

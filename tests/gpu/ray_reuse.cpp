@@ -181,27 +181,33 @@ std::optional<glm::dvec4> reused(const GBufferImage& image, const Rays& rays, gl
     return mean(sum, total);
 }
 
-/// Of 5 x 5 places so far apart, by a Gaussian of one step and one of the lobe's width, the likeness of roughness and that of the surface.
-/// All rays are alike, so every place has the pixel's own width.
+double as_half(double value) { return glm::unpackHalf1x16(glm::packHalf1x16(static_cast<float>(value))); }
+
+/// Of 13 places in steps so far apart, by a Gaussian over the steps and one of the narrower lobe's width, the likeness of roughness
+/// and that of the surface. Roughness and the inverse of the width are kept as half floats.
 std::optional<glm::dvec4> filtered(const GBufferImage& image, const Rays& rays, const Reflection& source,
                                    glm::ivec2 pixel, double spacing_px)
 {
     const glm::dvec4 value(source[pixel_index(pixel, size_px)]);
     const Reflector  own = reflector_at(image, pixel);
     if (value.a < 0 || own.roughness < mirror_roughness) return value;
-    const double spread = spread_px(image, own, pixel, rays, pixel);
-    glm::dvec4   sum(0);
-    double       total = 0;
+    const auto sharpness = [&](glm::ivec2 of) {
+        return as_half(1 / spread_px(image, reflector_at(image, of), of, rays, of));
+    };
+    glm::dvec4 sum(0);
+    double     total = 0;
     for (int i = 0; i < 25; ++i) {
         const glm::ivec2 step(i % 5 - 2, i / 5 - 2),
             place = pixel + glm::ivec2(glm::round(glm::dvec2(step) * spacing_px));
-        if (!inside(place)) continue;
+        if (!inside(place) || std::abs(step.x) + std::abs(step.y) > 2) continue;
         const glm::dvec4 other(source[pixel_index(place, size_px)]);
         if (other.a < 0) continue;
-        const double away = glm::distance(glm::dvec2(place), glm::dvec2(pixel)) / spread;
-        if (std::abs(away - 3) < 1e-3) return std::nullopt;
-        const double off    = std::abs(double(image.roughness[pixel_index(place, size_px)]) - own.roughness);
-        const double weight = std::exp(-0.5 * (step.x * step.x + step.y * step.y) - off / 0.05) * spread_weight(away) *
+        const double away =
+            glm::distance(glm::dvec2(place), glm::dvec2(pixel)) * std::max(sharpness(pixel), sharpness(place));
+        if (std::abs(away - 3) < 3e-3) return std::nullopt;
+        const double off =
+            std::abs(as_half(double(image.roughness[pixel_index(place, size_px)])) - as_half(own.roughness));
+        const double weight = std::exp(-0.25 * (step.x * step.x + step.y * step.y) - off / 0.05) * spread_weight(away) *
                               same_surface(image, own, place);
         sum += weight * glm::dvec4(glm::dvec3(other) * other.a, other.a);
         total += weight;
@@ -234,8 +240,9 @@ Passed run_reuse(GBufferImage image, const Rays& rays, const ParameterValues& ch
         passed.traced.push_back(picture.image.metallic[i] > 0 ? glm::vec4(i % 32, 0.25F, 0, 1) : nothing_reflects);
     set_reflection(picture, passed.traced);
     run_pass(*frame, ray_reuse_pass());
-    passed.dense = read_colours(picture.buffers->filtered);
-    passed.wide  = read_colours(picture.buffers->reflection);
+    for (const auto& texel : download_as<std::array<uint64_t, 2>>(device(), images.gathered))
+        passed.dense.push_back(glm::unpackHalf4x16(texel[0]));
+    passed.wide = read_colours(picture.buffers->reflection);
     if (changed.contains(chosen(TraceResolution::half).first))
         passed.blocks = download_as<uint32_t>(device(), picture.buffers->block_pixel);
     return passed;

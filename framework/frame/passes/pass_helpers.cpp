@@ -87,23 +87,14 @@ void require_declared(const PassContext& context, Resource resource)
 }
 
 /// What each ray found and where (passes/ray_reuse.comp).
-Bindings lobe_ray_bindings(Gpu& gpu, const FrameInputs& frame)
+Bindings lobe_ray_bindings(Gpu& gpu, const PassContext& context)
 {
-    FrameBuffers&    buffers = *frame.buffers;
-    const int        rays    = static_cast<int>(frame.plan.values.at("rays_per_pixel"));
-    const glm::ivec2 size_px = buffers.gbuffer->view.size_px * glm::ivec2(1, rays);
-    if (size_px.y > MAX_IMAGE_PX)
-        throw_spec_error("rays_per_pixel = {} with gloss = stochastic: at most {} at this image's height", rays,
-                         MAX_IMAGE_PX / buffers.gbuffer->view.size_px.y);
-    std::shared_ptr<LobeRayImages>& images = buffers.lobe_rays[rays];
-    if (!images) {
-        const auto image = [&](vk::Format format) {
-            return make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
-        };
-        images = std::make_shared<LobeRayImages>(LobeRayImages{
-            rays > 1 ? image(vk::Format::eR16G16B16A16Sfloat) : GpuImage{}, image(vk::Format::eR32G32B32A32Sfloat)});
-    }
-    return {{"ray_light_image", rays > 1 ? images->light : buffers.reflection}, {"ray_end_image", images->end}};
+    const LobeRayImages& images  = lobe_ray_images(gpu, context);
+    const bool           several = context.frame.plan.values.at("rays_per_pixel") > 1;
+    return {{"ray_light_image", several ? images.light : context.frame.buffers->reflection},
+            {"ray_end_image", images.end},
+            {"gathered_image", images.gathered},
+            {"reused_image", images.reused}};
 }
 
 Bindings history_bindings(const FrameInputs& frame)
@@ -137,6 +128,28 @@ Bindings layer_bindings(const FrameInputs& frame)
 }
 
 } // namespace
+
+const LobeRayImages& lobe_ray_images(Gpu& gpu, const PassContext& context)
+{
+    require_declared(context, Resource::lobe_rays);
+    FrameBuffers&    buffers = *context.frame.buffers;
+    const int        rays    = static_cast<int>(context.frame.plan.values.at("rays_per_pixel"));
+    const glm::ivec2 own_px = buffers.gbuffer->view.size_px, size_px = own_px * glm::ivec2(1, rays);
+    if (size_px.y > MAX_IMAGE_PX)
+        throw_spec_error("rays_per_pixel = {} with gloss = stochastic: at most {} at this image's height", rays,
+                         MAX_IMAGE_PX / own_px.y);
+    std::shared_ptr<LobeRayImages>& images = buffers.lobe_rays[rays];
+    if (!images) {
+        const auto image = [&](vk::Format format, glm::ivec2 of_px) {
+            return make_image(gpu, {.format = format, .size_px = of_px, .usage = vk::ImageUsageFlagBits::eStorage});
+        };
+        images = std::make_shared<LobeRayImages>(
+            LobeRayImages{rays > 1 ? image(vk::Format::eR16G16B16A16Sfloat, size_px) : GpuImage{},
+                          image(vk::Format::eR32G32B32A32Sfloat, size_px), image(vk::Format::eR32G32B32A32Uint, own_px),
+                          image(vk::Format::eR32G32B32A32Uint, own_px)});
+    }
+    return *images;
+}
 
 Bindings bindings_of(Gpu& gpu, const PassContext& context, Resource resource)
 {
@@ -177,7 +190,7 @@ Bindings bindings_of(Gpu& gpu, const PassContext& context, Resource resource)
     case Resource::reflection: return {{"reflection_image", buffers.reflection}};
     case Resource::filtered: return {{"filtered_image", buffers.filtered}};
     case Resource::block_pixel: return {{"block_pixel_image", buffers.block_pixel}};
-    case Resource::lobe_rays: return draws_lobe_rays(frame.plan.values) ? lobe_ray_bindings(gpu, frame) : Bindings{};
+    case Resource::lobe_rays: return draws_lobe_rays(frame.plan.values) ? lobe_ray_bindings(gpu, context) : Bindings{};
     case Resource::history: return history_bindings(frame);
     case Resource::kept:
         return frame.history ? Bindings{{"kept_reflection_image", frame.history->kept_reflection},

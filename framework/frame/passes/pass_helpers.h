@@ -45,6 +45,9 @@ const Buffer& tile_launch(const PassContext& context);
 /// Returns dispatch arguments for the frame's rays.
 const Buffer& ray_launch(const PassContext& context);
 
+/// Returns the images of the frame's lobe rays, made when first asked for. Throws SpecError if they would be too high.
+const LobeRayImages& lobe_ray_images(Gpu& gpu, const PassContext& context);
+
 // Pipelines.
 /// Compiles a shader with the parameters of all passes. `more` is bound before the resources that the pass
 /// declares.

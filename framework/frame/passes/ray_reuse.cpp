@@ -12,17 +12,21 @@ PassDecision decide(const FrameFacts& /*facts*/, const FrameStatistics& statisti
 
 RecordFunction prepare(Gpu& gpu, const PassContext& context)
 {
-    return [reuse = make_shared_pass(gpu, context, "passes/ray_reuse.comp"),
-            dense = make_shared_pass(gpu, context, "passes/reuse_filter.comp", {{"DENSE", "1"}}),
-            wide = make_shared_pass(gpu, context, "passes/reuse_filter.comp"), &tiles = tile_launch(context),
-            &filtered   = image_of(context, Resource::filtered),
-            &reflection = image_of(context, Resource::reflection)](const auto& commands) {
-        record_clear_reflection(commands, filtered); // of tiles that are not listed
+    const LobeRayImages& images = lobe_ray_images(gpu, context);
+    const auto           make   = [&](const char* shader, const Defines& defines, const Bindings& bound) {
+        return std::make_shared<ComputePass>(make_pass(gpu, context, shader, defines, bound));
+    };
+    // The dense filter's result takes the place of what ray_reuse.comp read of neighbours.
+    return [gather = make("passes/reuse_gather.comp", {}, {}), reuse = make("passes/ray_reuse.comp", {}, {}),
+            dense  = make("passes/reuse_filter.comp", {{"DENSE", "1"}},
+                          {{"source_image", images.reused}, {"target_image", images.gathered}}),
+            wide   = make("passes/reuse_filter.comp", {}, {{"source_image", images.gathered}}),
+            &tiles = tile_launch(context), groups = groups_of_8(images.reused.size_px)](const auto& commands) {
+        dispatch(commands, *gather, groups);
+        barrier(commands);
         dispatch_indirect(commands, *reuse, tiles);
         barrier(commands);
         dispatch_indirect(commands, *dense, tiles);
-        barrier(commands);
-        record_copy(commands, reflection, filtered);
         barrier(commands);
         dispatch_indirect(commands, *wide, tiles);
     };
@@ -38,7 +42,7 @@ Pass ray_reuse_pass()
                    "filters them",
         .cite    = {"T. Stachowiak 2015, Stochastic Screen-Space Reflections (SIGGRAPH)"},
         .reads = {Resource::gbuffer, Resource::tiles, Resource::block_pixel, Resource::lobe_rays, Resource::reflection},
-        .writes = {Resource::filtered, Resource::reflection},
+        .writes = {Resource::reflection},
         .parameters =
             {integer_parameter("reuse_neighbours", 32, 1, 256,
                                "pixels whose rays a rough pixel uses, itself among them"),
