@@ -36,13 +36,13 @@ RecordFunction prepare_blur(Gpu& gpu, const PassContext& context, Defines define
     auto y = make_shared_pass(gpu, context, "passes/blur.comp", defines);
     defines.emplace("ALONG_X", "1");
     auto x = make_shared_pass(gpu, context, "passes/blur.comp", defines);
-    return
-        [x, y, &filtered = image_of(context, Resource::filtered), &tiles = tile_launch(context)](const auto& commands) {
-            record_clear_reflection(commands, filtered); // of tiles that are not listed
-            dispatch_indirect(commands, *x, tiles);
-            barrier(commands);
-            dispatch_indirect(commands, *y, tiles);
-        };
+    return [x, y, no_reflection = make_reflection_fill(gpu, image_of(context, Resource::filtered)),
+            &tiles = tile_launch(context)](const auto& commands) {
+        no_reflection(commands); // of tiles that are not listed
+        dispatch_indirect(commands, *x, tiles);
+        barrier(commands);
+        dispatch_indirect(commands, *y, tiles);
+    };
 }
 
 RecordFunction prepare_after(Gpu& gpu, const PassContext& context) { return prepare_blur(gpu, context, {}); }

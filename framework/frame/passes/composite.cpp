@@ -14,12 +14,15 @@ PassDecision decide(const FrameFacts& /*facts*/, const FrameStatistics& /*statis
 
 RecordFunction prepare(Gpu& gpu, const PassContext& context)
 {
-    // Without rays, hit_colour does not run, which clears the reflection.
-    const bool no_rays = context.frame.plan.statistics.gbuffer.reflecting_pixels == 0;
-    return [no_rays, &reflection = image_of(context, Resource::reflection),
+    // Without rays, hit_colour does not run, which fills the reflection.
+    RecordFunction  no_reflection;
+    const GpuImage& reflection = image_of(context, Resource::reflection);
+    if (context.frame.plan.statistics.gbuffer.reflecting_pixels == 0)
+        no_reflection = make_reflection_fill(gpu, reflection);
+    return [no_reflection, groups = groups_of_8(reflection.size_px),
             pass = make_shared_pass(gpu, context, "passes/composite.comp")](const auto& commands) {
-        if (no_rays) record_clear_reflection(commands, reflection);
-        dispatch(commands, *pass, groups_of_8(reflection.size_px));
+        if (no_reflection) no_reflection(commands);
+        dispatch(commands, *pass, groups);
     };
 }
 

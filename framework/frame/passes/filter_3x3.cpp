@@ -17,9 +17,10 @@ PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, 
 RecordFunction prepare(Gpu& gpu, const PassContext& context)
 {
     return [pass = make_shared_pass(gpu, context, "passes/filter_3x3.comp"), &tiles = tile_launch(context),
-            &filtered   = image_of(context, Resource::filtered),
-            &reflection = image_of(context, Resource::reflection)](const auto& commands) {
-        record_clear_reflection(commands, filtered); // of tiles that are not listed
+            no_reflection = make_reflection_fill(gpu, image_of(context, Resource::filtered)),
+            &filtered     = image_of(context, Resource::filtered),
+            &reflection   = image_of(context, Resource::reflection)](const auto& commands) {
+        no_reflection(commands); // of tiles that are not listed
         dispatch_indirect(commands, *pass, tiles);
         record_copy(commands, filtered, reflection);
     };

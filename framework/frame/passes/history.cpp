@@ -20,18 +20,21 @@ RecordFunction prepare(Gpu& gpu, const PassContext& context)
 {
     Defines defines;
     if (trace_block_px(context.frame.plan.values) > 1) defines.emplace("BLOCKS", "1");
-    return [pass = make_shared_pass(gpu, context, "passes/history.comp", defines), &history = *context.frame.history,
-            &tiles = tile_launch(context), &filtered = image_of(context, Resource::filtered),
-            &reflection = image_of(context, Resource::reflection)](const auto& commands) {
-        record_clear_reflection(commands, filtered); // of tiles that are not listed
-        record_clear_reflection(commands, history.kept_reflection);
-        // Beside a reflector nothing is written, and the next frame may still ask there.
-        record_clear(commands, history.kept_facts, {std::array<float, 4>{1, 0, -1, 0}});
-        commands.fillBuffer(*history.counts.buffer, 0, VK_WHOLE_SIZE, 0);
-        barrier(commands);
-        dispatch_indirect(commands, *pass, tiles);
-        record_copy(commands, filtered, reflection);
-    };
+    const FrameHistory& history = *context.frame.history;
+    const GpuImage&     into    = image_of(context, Resource::filtered);
+    // Beside a reflector the pass writes nothing, and the next frame may still ask there.
+    const glm::uvec4 unknown = glm::floatBitsToUint(glm::vec4(1, 0, -1, 0));
+    return
+        [pass = make_shared_pass(gpu, context, "passes/history.comp", defines), &history, &filtered = into,
+         fills  = std::array{make_reflection_fill(gpu, into), make_reflection_fill(gpu, history.kept_reflection),
+                            make_fill(gpu, history.kept_facts, unknown)},
+         &tiles = tile_launch(context), &reflection = image_of(context, Resource::reflection)](const auto& commands) {
+            for (const RecordFunction& fill : fills) fill(commands);
+            commands.fillBuffer(*history.counts.buffer, 0, VK_WHOLE_SIZE, 0);
+            barrier(commands);
+            dispatch_indirect(commands, *pass, tiles);
+            record_copy(commands, filtered, reflection);
+        };
 }
 
 } // namespace

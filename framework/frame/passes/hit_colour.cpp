@@ -14,11 +14,13 @@ RecordFunction prepare(Gpu& gpu, const PassContext& context)
     }
     auto pass =
         std::make_shared<ComputePass>(make_colour_pass(gpu, context, "passes/hit_colour.comp", defines, bindings));
-    const bool blocks = trace_block_px(context.frame.plan.values) > 1;
-    return [pass, blocks, &rays = ray_launch(context), &reflection = image_of(context, Resource::reflection),
-            &block_pixel = image_of(context, Resource::block_pixel)](const auto& commands) {
-        record_clear_reflection(commands, reflection);
-        if (blocks) record_clear(commands, block_pixel, {std::array<uint32_t, 4>{NO_PIXEL, 0, 0, 0}});
+    RecordFunction no_pixel;
+    if (trace_block_px(context.frame.plan.values) > 1)
+        no_pixel = make_fill(gpu, image_of(context, Resource::block_pixel), {NO_PIXEL, 0, 0, 0});
+    return [pass, no_pixel, &rays = ray_launch(context),
+            no_reflection = make_reflection_fill(gpu, image_of(context, Resource::reflection))](const auto& commands) {
+        no_reflection(commands);
+        if (no_pixel) no_pixel(commands);
         dispatch_indirect(commands, *pass, rays);
     };
 }

@@ -294,29 +294,4 @@ void add_environment(Gpu& gpu, const PassContext& context, Defines& defines, Bin
     bindings.insert({"environment_levels", levels});
 }
 
-void record_copy(const vk::raii::CommandBuffer& commands, const GpuImage& source, const GpuImage& target)
-{
-    const vk::ImageSubresourceLayers colour{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
-    const vk::ImageCopy              whole{
-                     .srcSubresource = colour,
-                     .dstSubresource = colour,
-                     .extent = {static_cast<uint32_t>(source.size_px.x), static_cast<uint32_t>(source.size_px.y), 1}};
-    barrier(commands);
-    commands.copyImage(*source.image, vk::ImageLayout::eGeneral, *target.image, vk::ImageLayout::eGeneral, whole);
-    barrier(commands);
-}
-
-void record_clear(const vk::raii::CommandBuffer& commands, const GpuImage& image, vk::ClearColorValue value)
-{
-    const vk::ImageSubresourceRange all{vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1};
-    barrier(commands);
-    commands.clearColorImage(*image.image, vk::ImageLayout::eGeneral, value, all);
-    barrier(commands);
-}
-
-void record_clear_reflection(const vk::raii::CommandBuffer& commands, const GpuImage& reflection)
-{
-    record_clear(commands, reflection, {std::array<float, 4>{0, 0, 0, -1}});
-}
-
 } // namespace ssrlab

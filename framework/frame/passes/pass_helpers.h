@@ -34,7 +34,7 @@ bool one_ray_per_pixel(const ParameterValues& values);
 // Resources. Each function throws std::logic_error for what the pass does not declare.
 /// Returns the images and buffers of a resource, by their names in shaders.
 Bindings bindings_of(Gpu& gpu, const PassContext& context, Resource resource);
-/// Returns an image that the pass clears or copies: reflection, filtered or block_pixel.
+/// Returns an image that the pass fills or copies: reflection, filtered or block_pixel.
 const GpuImage& image_of(const PassContext& context, Resource resource);
 /// Returns whether hits may lie in the second layer that the pass hidden_layer draws.
 bool hits_hidden_layer(const FrameInputs& frame);
@@ -68,9 +68,11 @@ void add_environment(Gpu& gpu, const PassContext& context, Defines& defines, Bin
 
 // Commands.
 void record_copy(const vk::raii::CommandBuffer& commands, const GpuImage& source, const GpuImage& target);
-void record_clear(const vk::raii::CommandBuffer& commands, const GpuImage& image, vk::ClearColorValue value);
-/// Marks every pixel as one where no ray started.
-void record_clear_reflection(const vk::raii::CommandBuffer& commands, const GpuImage& reflection);
+/// Returns a function that writes one value, given as bits, to every pixel of an RGBA16F, RGBA32F or R32UI image, and
+/// waits. It is a compute pass, because clear commands may run on graphics units, of which compute devices have few.
+RecordFunction make_fill(Gpu& gpu, const GpuImage& image, glm::uvec4 bits);
+/// Returns one that marks every pixel as one where no ray started.
+RecordFunction make_reflection_fill(Gpu& gpu, const GpuImage& reflection);
 
 /// Returns one of the two lists (0 or 1) that all frames with the same number of rays share.
 std::shared_ptr<DerivedRays> derived_rays(Gpu& gpu, const PassContext& context, int which);

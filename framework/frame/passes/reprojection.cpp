@@ -25,9 +25,11 @@ RecordFunction prepare(Gpu& gpu, const PassContext& context)
     source.defines.emplace("LAYERS", std::to_string(layers_of_hits(context.frame)));
     if (draws_lobe_rays(context.frame.plan.values)) source.defines.emplace("LOBE_RAYS", "1");
     auto pass = std::make_shared<ComputePass>(make_composed_pass(gpu, context, source, {}, strategy.parameters));
-    return [pass, &rays = ray_launch(context), &found = context.frame.history->reprojected](const auto& commands) {
-        constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-        record_clear(commands, found, {std::array<float, 4>{nan, nan, 0, -1}});
+    constexpr float nan     = std::numeric_limits<float>::quiet_NaN();
+    const auto      nowhere = glm::floatBitsToUint(glm::vec4(nan, nan, 0, -1));
+    return [pass, &rays = ray_launch(context),
+            no_rays = make_fill(gpu, context.frame.history->reprojected, nowhere)](const auto& commands) {
+        no_rays(commands);
         dispatch_indirect(commands, *pass, rays);
     };
 }
