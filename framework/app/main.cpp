@@ -3,6 +3,7 @@
 #include "app/check_command.h"
 #include "app/commands.h"
 #include "app/export_command.h"
+#include "app/fit_command.h"
 #include "app/judge_command.h"
 #include "app/new_technique.h"
 #include "app/plan_command.h"
@@ -155,6 +156,40 @@ void add_judge_options(CLI::App& command, ssrlab::JudgeOptions& options)
     command.add_flag("--json", options.json, "As JSON, with every wrong ray");
 }
 
+void add_fit_options(CLI::App& command, ssrlab::FitOptions& options)
+{
+    command.add_option("SCENE", options.scenes, "Scenes as for render, and frames of other renderers (.exr)")
+        ->required();
+    command.add_option("--budget-ms", options.budget_ms,
+                       "Milliseconds of this device: structures and trace; with --objective flip all passes after the "
+                       "G-buffer");
+    command.add_option("--budget-fetches", options.budget_fetches,
+                       "Reads of depth and structures per ray: exact, and the same on every device");
+    command
+        .add_option("--objective", options.objective,
+                    "f1: of the rays, against the scene truth; flip: of the picture, against the true reflection")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"f1", "flip"}));
+    command.add_option("--view", options.views, "Views or camera paths; default: all views of each scene")
+        ->allow_extra_args(false);
+    command.add_option("--frame", options.frames, "Frames of the scenes' motion and of camera paths")
+        ->capture_default_str()
+        ->allow_extra_args(false)
+        ->check(CLI::Range(0, ssrlab::max_frames));
+    command.add_option("--size", options.size, "WIDTHxHEIGHT in pixels; default: that of the sweep");
+    command.add_option("-t,--technique", options.techniques, "Only these techniques of the sweep")
+        ->allow_extra_args(false);
+    command.add_option("-p,--parameter", options.parameters, "name=value: not swept, but as given")
+        ->allow_extra_args(false);
+    command.add_option("--sweep", options.sweep,
+                       "Experiment whose techniques and settings are tried; default: experiments/fit_f1.toml or "
+                       "fit_flip.toml");
+    command.add_flag("--leave-one-out", options.leave_one_out,
+                     "Instead: fit to all views of a scene but one, and say what that loses on the one");
+    command.add_option("-o,--output", options.output, "Folder to write: new or empty")->capture_default_str();
+    command.add_flag("--resume", options.resume, "Continue in a folder that was begun");
+}
+
 /// One line in a terminal, whatever a file holds.
 void say_error(const std::string& what) { std::fprintf(stderr, "ssrlab: %s\n", ssrlab::printable(what).c_str()); }
 
@@ -241,6 +276,17 @@ int main(int argc, char** argv)
                "judge", "Judge the hits of any renderer by the hit contract and the truths (docs/how-to/judge_a_renderer.md)");
     add_judge_options(*judge, judged);
     judge->callback([&] { command = [&] { return judge_hits(common, judged); }; });
+
+    FitOptions fit;
+    auto*      fitted = app.add_subcommand(
+             "fit", "Find the setting that is best within a budget on your scenes (docs/how-to/fit_to_a_budget.md)");
+    add_fit_options(*fitted, fit);
+    fitted->callback([&] {
+        command = [&] {
+            fit.command_line = fmt::format("ssrlab {}", fmt::join(argv + 1, argv + argc, " "));
+            return fit_to_budget(common, fit);
+        };
+    });
 
     auto* cases = app.add_subcommand("export-cases",
                                      "Write the hard cases as frame files with their right answers, for any renderer");
