@@ -13,7 +13,7 @@ WIDTH_INCHES = 85 / 25.4
 LOST = {"hidden": "hidden", "off_screen": "off screen", "behind_camera": "behind the camera", "facing_away": "facing away"}
 COLOURS = {"hidden": "#0072B2", "off_screen": "#E69F00", "behind_camera": "#009E73", "facing_away": "#CC79A7"}
 SAID = {"layers:count=4:sides=front": "4 layers, front", "layers:count=2:sides=both": "2 layers, both sides",
-        "layers:count=4:sides=both": "4 layers, both sides", "views:place=mirrored": "mirrored view", "views:count=1": "1 view",
+        "layers:count=4:sides=both": "4 layers, both sides", "planar": "planar reflection", "views:count=1": "1 view",
         "views:count=2": "2 views"}
 
 

@@ -44,10 +44,11 @@ PixelSources ask_about_pixel(Stage& stage, const Technique& technique, const Par
                              const FrameSettings& settings, const std::string& view, SequenceFrame at,
                              std::span<const ListedSource> list, size_t pixel)
 {
-    SourceContext      context  = context_of_frame(stage, technique, values, settings, view, at);
-    const AnsweredRays answered = answer_rays(context, list, HandOn::uncertain);
-    const SceneTruth   truth    = scene_truth(SceneBvh(stage.scene), stage.scene, context.image, settings.trace);
-    PixelSources       result;
+    SourceContext      context = context_of_frame(stage, technique, values, settings, view, at);
+    const AnsweredRays answered =
+        answer_rays(context, choose_sources(context, list, HandOn::uncertain).list, HandOn::uncertain);
+    const SceneTruth truth = scene_truth(SceneBvh(stage.scene), stage.scene, context.image, settings.trace);
+    PixelSources     result;
     for (const SourceTurn& turn : answered.turns) {
         const auto  asked = std::ranges::find(turn.pixels, pixel);
         PixelAnswer answer =

@@ -5,6 +5,7 @@
 #include "compare/validate_result.h"
 #include "core/error.h"
 #include "harness/choice.h"
+#include "harness/choose_sources.h"
 #include "harness/quality.h"
 #include "sources/answered_frame.h"
 #include "truth/glossy_truth.h"
@@ -155,9 +156,10 @@ Image false_colours(Stage& stage, const TraceResult& counted, const TraceSetting
 Image source_colours(Stage& stage, const Technique& technique, const Choice& choice,
                      std::span<const ListedSource> sources)
 {
-    SourceContext      context  = make_source_context(stage, technique, choice.values, choice.settings);
-    const AnsweredRays answered = answer_rays(context, sources, HandOn::uncertain);
-    const SceneTruth   truth    = scene_truth(SceneBvh(stage.scene), stage.scene, context.image, choice.settings.trace);
+    SourceContext      context = make_source_context(stage, technique, choice.values, choice.settings);
+    const AnsweredRays answered =
+        answer_rays(context, choose_sources(context, sources, HandOn::uncertain).list, HandOn::uncertain);
+    const SceneTruth truth = scene_truth(SceneBvh(stage.scene), stage.scene, context.image, choice.settings.trace);
     refuse_false(off_surface_share(truth));
     return sources_picture(answered.answers, truth, context.image);
 }
@@ -253,6 +255,12 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
     const auto     sources = list.empty() ? std::vector<ListedSource>{} : parse_sources(list, "--sources " + list);
     Stage          stage   = open_stage(common, catalogue, picture);
     PictureSources asked{sources, {}, {}};
+    if (sources.size() == 1 && sources[0].source->id == "auto" && options.show.empty()) {
+        SourceContext       context = make_source_context(stage, technique, choice.values, choice.settings);
+        const ChosenSources chosen  = choose_sources(context, sources, HandOn::uncertain);
+        if (!chosen.reason.empty() && !common.quiet) std::puts(("auto, " + chosen.reason).c_str());
+        asked = {chosen.list, context.world, context.occupancy};
+    }
     if (options.samples > 1 && stage.scene.frame)
         throw_spec_error("--samples: expected 1 for a frame of another renderer, which cannot be rendered anew; got {}",
                          options.samples);

@@ -89,7 +89,9 @@ int compare_sources(const CommonOptions& common, const SourcesOptions& options)
                           technique.id, choice.settings.trace.surface)
                   .c_str());
     for (size_t l = 0; l < lists.size(); ++l) {
-        const std::vector<Record> sources = ask_sources(context, lists[l], hand_on, truth);
+        const ChosenSources chosen = choose_sources(context, lists[l], hand_on);
+        if (!chosen.reason.empty()) std::puts(("  auto, " + chosen.reason).c_str());
+        const std::vector<Record> sources = ask_sources(context, chosen, hand_on, truth);
         for (const Record& source : sources) print_line(source);
         const Record asked = {{"scene", picture.scene},
                               {"view", picture.view},

@@ -245,7 +245,8 @@ void ask_listed_sources(SweepContext& sweep, Picture& picture, MeasuredRun& meas
     const UnderWay under_way(sweep.state, measured.run->id, sweep.experiment.measure.time_limit_s);
     clocked(sweep.counted_s, [&] {
         SourceContext& context = sources_of(sweep, picture, *measured.run);
-        measured.sources       = ask_sources(context, asked.list, asked.hand_on, picture.truths->scene_truth());
+        measured.sources       = ask_sources(context, choose_sources(context, asked.list, asked.hand_on), asked.hand_on,
+                                             picture.truths->scene_truth());
     });
 }
 

@@ -48,6 +48,7 @@ std::vector<Column> make_columns()
         {"trace_ms", "GPU time of its structures and trace"},
         {"shade_ms", "GPU time of lighting the triangles that were met"},
         {"merge_ms", "time of choosing rays and merging answers on the CPU; part of no total"},
+        {"choosing_ms", "time of choosing the list, in the row of its first source; 0 unless the list is `auto`"},
         {"megabytes", "device memory beyond what the frame needs"},
         {"node_visits", "nodes of the triangles' hierarchy that all rays visited", whole},
         {"all_rays", "rays of the frame", whole},
@@ -130,19 +131,20 @@ SourceContext context_of_frame(Stage& stage, const Technique& technique, const P
     return context;
 }
 
-std::vector<Record> ask_sources(SourceContext& context, std::span<const ListedSource> sources, HandOn hand_on,
+std::vector<Record> ask_sources(SourceContext& context, const ChosenSources& sources, HandOn hand_on,
                                 const SceneTruth& truth)
 {
-    AnsweredRays answered = answer_rays(context, sources, hand_on);
-    take_times(context, sources, hand_on, answered);
+    AnsweredRays answered = answer_rays(context, sources.list, hand_on);
+    take_times(context, sources.list, hand_on, answered);
     std::vector<RayAnswer> so_far(answered.answers.size());
     std::vector<Record>    records;
     for (const SourceTurn& turn : answered.turns) {
         for (size_t k = 0; k < turn.pixels.size(); ++k)
             so_far[turn.pixels[k]] = merged(so_far[turn.pixels[k]], turn.answers[k]);
-        Record record   = record_of_turn(turn, count_source(turn, truth, context.image),
-                                         compare_all_rays(so_far, truth, context.image));
-        record["place"] = static_cast<int64_t>(records.size());
+        Record record         = record_of_turn(turn, count_source(turn, truth, context.image),
+                                               compare_all_rays(so_far, truth, context.image));
+        record["place"]       = static_cast<int64_t>(records.size());
+        record["choosing_ms"] = records.empty() ? sources.choosing_ms : 0.0;
         records.push_back(std::move(record));
     }
     return records;

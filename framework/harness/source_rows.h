@@ -2,8 +2,8 @@
 // what price. docs/explanation/beyond.md defines the measures.
 #pragma once
 
+#include "harness/choose_sources.h"
 #include "harness/measured_run.h"
-#include "sources/answer_rays.h"
 #include "truth/scene_truth.h"
 
 #include <map>
@@ -24,7 +24,7 @@ SourceContext context_of_frame(Stage& stage, const Technique& technique, const P
 
 /// Asks the sources of a list and returns the values of source_columns(), a record per source. Its times are medians of
 /// three more turns: in the first one, a driver may compile pipelines.
-std::vector<Record> ask_sources(SourceContext& context, std::span<const ListedSource> sources, HandOn hand_on,
+std::vector<Record> ask_sources(SourceContext& context, const ChosenSources& sources, HandOn hand_on,
                                 const SceneTruth& truth);
 
 /// Adds the measures of a list to the row of its run, from the records of ask_sources().

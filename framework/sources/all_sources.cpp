@@ -1,18 +1,32 @@
 #include "core/error.h"
 #include "core/names.h"
+#include "frame/passes/pass_helpers.h"
 #include "sources/source.h"
 
 #include <algorithm>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace ssrlab {
 
+Source auto_source()
+{
+    return {.id         = "auto",
+            .summary    = "The list that answers most rays rightly within a budget, by a measurement of the frame",
+            .parameters = {real_parameter("budget_ms", 0, 0, 1e6, "drawing the frame and its sources; 0: by `share`"),
+                           real_parameter("share", 2, 1, 1000, "of the frame's own drawing and trace")},
+            .answer     = [](SourceContext&, std::span<const OpenRay>) -> SourceTurn {
+                throw std::logic_error("source 'auto' was asked before it was chosen");
+            }};
+}
+
 std::span<const Source> all_sources()
 {
-    static const std::vector<Source> sources = {frame_source(), layers_source(), wider_source(), cube_source(),
-                                                past_source(),  views_source(),  world_source()};
+    static const std::vector<Source> sources = {frame_source(), layers_source(), wider_source(),
+                                                cube_source(),  past_source(),   planar_source(),
+                                                views_source(), world_source(),  auto_source()};
     return sources;
 }
 
@@ -60,6 +74,8 @@ std::vector<ListedSource> parse_sources(const std::string& text, const std::stri
         for (size_t i = 1; i < words.size(); ++i) set_value(listed, words[i], place);
         list.push_back(std::move(listed));
     }
+    if (list.size() > 1 && std::ranges::any_of(list, [](const ListedSource& one) { return one.source->id == "auto"; }))
+        throw_spec_error("{}: expected 'auto' alone, for it chooses the list; got '{}'", place, text);
     if (list.empty()) throw_spec_error("{}: expected a list of sources such as frame,world; got '{}'", place, text);
     return list;
 }

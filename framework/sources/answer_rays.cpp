@@ -4,6 +4,7 @@
 #include "core/pixel_index.h"
 #include "core/quantile.h"
 #include "core/stopwatch.h"
+#include "frame/scene_pictures.h"
 #include "trace/lab_passes.h"
 
 namespace ssrlab {
@@ -48,7 +49,7 @@ SourceContext make_source_context(Stage& stage, const LabPtr& lab)
     if (stage.scene.frame)
         throw_failure("'{}' is a frame of another renderer: it has no triangles that further sources could answer from",
                       stage.scene.name);
-    return {stage, lab, lab->settings, read_gbuffer(stage.gpu, *stage.gbuffer), {}, {}, {}, 0, {}, {}, {}, {}};
+    return {stage, lab, lab->settings, read_gbuffer(stage.gpu, *stage.gbuffer), {}, {}, {}, 0, 0, {}, {}, {}, {}};
 }
 
 SourceContext make_source_context(Stage& stage, const Technique& technique, const ParameterValues& values,
@@ -61,12 +62,16 @@ SourceContext make_source_context(Stage& stage, const Technique& technique, cons
     context.traced                = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
     context.rays                  = mirror_rays(context);
     run_frame(stage.gpu, *frame);
-    std::vector<double> times_ms(3);
-    for (double& time_ms : times_ms)
+    std::vector<double> draw_ms, times_ms;
+    for (int turn = 0; turn < 3; ++turn) {
+        draw_ms.push_back(redraw_gbuffer(stage.gpu, *stage.drawing));
+        double& time_ms = times_ms.emplace_back(0);
         for (const auto& [pass, ms] : run_frame(stage.gpu, *frame).passes_ms) {
             time_ms += ms;
             if (pass == "trace") break; // what follows shades
         }
+    }
+    context.draw_ms  = quantile(draw_ms, 0.5);
     context.trace_ms = quantile(times_ms, 0.5);
     return context;
 }

@@ -8,7 +8,8 @@
 namespace ssrlab {
 namespace {
 
-constexpr int most_faces_a_ray = 4;
+constexpr int   most_faces_a_ray    = 4;
+constexpr float depth_of_near_plane = 1;
 
 /// The face that shows a point of a ray.
 int face_of(const View& centre, const OpenRay& ray)
@@ -21,31 +22,15 @@ int face_of(const View& centre, const OpenRay& ray)
     return 2 * axis + (at[axis] > 0 ? 0 : 1);
 }
 
-/// Of each pixel: the depth of the plane, 0 where it is not seen. Without a plane: the near plane's.
-std::vector<float> depth_of_plane(const View& view, const std::optional<glm::dvec4>& plane_ws)
-{
-    std::vector<float> depth(pixel_count(view.size_px), 1.0F);
-    if (!plane_ws) return depth;
-    // x·n = w in view space.
-    const glm::dmat4 view_to_world = glm::inverse(view.world_to_view);
-    const glm::dvec3 normal_vs     = glm::transpose(glm::dmat3(view_to_world)) * glm::dvec3(*plane_ws);
-    const double     offset        = plane_ws->w - glm::dot(glm::dvec3(*plane_ws), glm::dvec3(view_to_world[3]));
-    for (size_t i = 0; i < depth.size(); ++i) {
-        const glm::dvec2 slope = (glm::dvec2(pixel_at(i, view.size_px)) + 0.5 - view.centre_px) / view.focal_px;
-        const double     rate  = glm::dot(normal_vs, {slope.x, -slope.y, -1});
-        depth[i] = rate * offset > 0 ? float(std::min(1.0, distance_to_depth(view, offset / rate))) : 0.0F;
-    }
-    return depth;
-}
-
 void draw_face(SourceContext& context, CubeOfFrames& cube, int number, SourceTurn& turn)
 {
     GBufferPtr& face = cube.faces[static_cast<size_t>(number)];
     if (face) return;
-    const View       view  = face_view(cube.centre, number, cube.size_px);
-    const DrawnSides drawn = draw_sides_behind(context.stage.gpu, context.stage.uploaded, view,
-                                               depth_of_plane(view, cube.before_ws), cube.pipeline);
-    face                   = drawn.gbuffer;
+    const View       view = face_view(cube.centre, number, cube.size_px);
+    const DrawnSides drawn =
+        draw_sides_behind(context.stage.gpu, context.stage.uploaded, view,
+                          std::vector(pixel_count(view.size_px), depth_of_near_plane), cube.pipeline);
+    face = drawn.gbuffer;
     turn.draw_ms += drawn.ms;
     turn.megabytes += megabytes_of(*face);
     cube.images[static_cast<size_t>(number)] = read_gbuffer(context.stage.gpu, *face);

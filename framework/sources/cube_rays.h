@@ -5,16 +5,12 @@
 #include "sources/gbuffer_rays.h"
 
 #include <array>
-#include <optional>
 
 namespace ssrlab {
 
 struct CubeOfFrames {
     View centre; // its position and axes; faces look along +x, -x, +y, -y, +z, -z of its view space
-    int  size_px = 512;
-    /// The faces show only what lies on the side of a plane to which its normal (x, y, z) points: x·n > w.
-    std::optional<glm::dvec4> before_ws = {};
-
+    int  size_px                                 = 512;
     std::array<GBufferPtr, 6>           faces    = {}; // empty until a ray enters one
     std::array<GBufferImage, 6>         images   = {}; // the same on the host
     std::shared_ptr<const DrawPipeline> pipeline = {}; // empty until a face is drawn

@@ -130,6 +130,15 @@ bool stays_in_sight(const SourceContext& context, const TraceSettings& settings)
     return settings.behind == Behind::stop && settings.layers == 1 && (has("SOLID_ENDLESS") || has("SURFACE_ENDLESS"));
 }
 
+TraceSettings in_sight_settings(const TraceSettings& settings)
+{
+    TraceSettings in_sight = settings;
+    in_sight.surface       = "plane_infinite";
+    in_sight.behind        = Behind::stop;
+    in_sight.layers        = 1;
+    return in_sight;
+}
+
 double megabytes_of(const GBuffer& gbuffer)
 {
     // The depth attachment that draws it is not among its images.
@@ -298,13 +307,11 @@ GBufferTrace trace_in_gbuffer(SourceContext& context, const GBufferPtr& gbuffer,
 void ask_elsewhere(const SourceContext& context, std::span<const OpenRay> rays, std::vector<RayAnswer>& answers,
                    const TraceElsewhere& trace)
 {
-    TraceSettings in_sight = context.trace, in_passing = context.trace;
-    in_sight.surface   = "plane_infinite";
-    in_sight.behind    = Behind::stop;
-    in_passing.surface = "plane";
-    in_passing.behind  = Behind::stop; // what comes out from behind a surface has met something there
-    in_sight.layers = in_passing.layers = 1;
-    const auto ask                      = [&](const TraceSettings& settings, RayStart start) {
+    TraceSettings in_passing = context.trace;
+    in_passing.surface       = "plane";
+    in_passing.behind        = Behind::stop; // what comes out from behind a surface has met something there
+    in_passing.layers        = 1;
+    const auto ask           = [&](const TraceSettings& settings, RayStart start) {
         std::vector<OpenRay> open;
         std::vector<size_t>  places;
         for (size_t k = 0; k < rays.size(); ++k) {
@@ -316,7 +323,7 @@ void ask_elsewhere(const SourceContext& context, std::span<const OpenRay> rays, 
         for (size_t k = 0; k < open.size(); ++k)
             if (found[k].kind == AnswerKind::point) answers[places[k]] = merged(answers[places[k]], found[k]);
     };
-    ask(in_sight, RayStart::in_sight);
+    ask(in_sight_settings(context.trace), RayStart::in_sight);
     ask(in_passing, RayStart::anywhere);
 }
 

@@ -41,6 +41,9 @@ enum class RayStart : uint8_t {
 /// Returns whether no ray may pass behind what the camera shows: then it was in sight up to where it ended.
 bool stays_in_sight(const SourceContext& context, const TraceSettings& settings);
 
+/// Returns the settings under which it is so, in one layer.
+TraceSettings in_sight_settings(const TraceSettings& settings);
+
 /// The results of tracing rays in a G-buffer, one entry per ray.
 struct GBufferTrace {
     std::vector<RayAnswer>   answers;

@@ -13,16 +13,30 @@ struct Layered {
     std::vector<DrawingPtr> further;
 };
 
+/// Draws where the solids of a layer end; returns the GPU's time.
+double draw_solids_ms(Gpu& gpu, Drawing& layer)
+{
+    make_solid_backs(gpu, layer); // a driver may compile a pipeline when it first draws
+    const Timestamps timestamps = make_timestamps(gpu, 2);
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        write_timestamp(commands, timestamps, 0);
+        record_solid_backs(commands, layer);
+        write_timestamp(commands, timestamps, 1);
+    });
+    return read_intervals_ms(gpu, timestamps)[0];
+}
+
 Layered draw_layered(SourceContext& context, int layers, bool both_sides, SourceTurn& turn)
 {
     Gpu&    gpu = context.stage.gpu;
     Layered drawn{draw_gbuffer(gpu, context.stage.uploaded, context.image.view), {}};
+    turn.draw_ms = draw_solids_ms(gpu, *drawn.first);
     for (int layer = 1; layer < layers; ++layer) {
         const Drawing& before = drawn.further.empty() ? *drawn.first : *drawn.further.back();
         Drawing&       own =
             *drawn.further.emplace_back(both_sides ? make_next_side(gpu, before) : make_next_layer(gpu, before));
         redraw_gbuffer(gpu, own); // a driver may compile a pipeline when it first draws
-        turn.draw_ms += redraw_gbuffer(gpu, own);
+        turn.draw_ms += redraw_gbuffer(gpu, own) + draw_solids_ms(gpu, own);
         turn.megabytes += megabytes_of(*own.gbuffer);
         drawn.first->gbuffer->layers.push_back(own.gbuffer);
     }
@@ -37,9 +51,10 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
     const Layered      drawn      = draw_layered(context, layers, both_sides, turn);
     const GBufferPtr&  gbuffer    = drawn.first->gbuffer;
     const GBufferImage image      = read_gbuffer(context.stage.gpu, *gbuffer);
-    // Planes with nothing between them. Where back faces are left out, a ray that comes from behind a front has met one.
+    // What is seen edge-on fills no pixel, but it bounds a solid that the ray enters. Where back faces are left out, a ray
+    // that comes from behind a front has met one.
     TraceSettings settings = context.trace;
-    settings.surface       = "plane";
+    settings.surface       = "plane_solid";
     settings.behind        = both_sides ? Behind::hit : Behind::stop;
     settings.layers        = layers;
     GBufferTrace trace     = trace_in_gbuffer(context, gbuffer, image, settings, RayStart::anywhere, rays);

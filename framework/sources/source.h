@@ -47,6 +47,7 @@ struct SourceContext {
     ParameterValues                  parameters;   // of the source that is asked
     TraceResult                      traced;       // results of the frame's rays
     std::vector<OpenRay>             rays;         // these rays, at most one of each pixel
+    double                           draw_ms  = 0; // of the frame's G-buffer
     double                           trace_ms = 0; // of the frame: ray set-up, structures, trace
     std::vector<View>                earlier; // of the frames before this one, the latest first; empty: a single frame
     std::shared_ptr<const World>     world;   // these are empty until a source asks for them
@@ -68,7 +69,10 @@ Source wider_source();
 Source cube_source();
 Source views_source();
 Source past_source();
+Source planar_source();
 Source world_source();
+/// Stands for a list that choose_sources() finds, and cannot be asked itself.
+Source auto_source();
 
 /// Returns all sources, cheapest first, as lists usually name them.
 std::span<const Source> all_sources();
@@ -81,7 +85,7 @@ struct ListedSource {
 };
 
 /// Reads a list such as "frame,layers:count=4,world". Throws SpecError "PLACE: …" for an unknown source or parameter,
-/// a value out of range, and an empty list.
+/// a value out of range, an empty list, and `auto` beside others.
 std::vector<ListedSource> parse_sources(const std::string& text, const std::string& place);
 
 } // namespace ssrlab

@@ -6,9 +6,7 @@
 #include "world/occupancy.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <optional>
 
 namespace ssrlab {
@@ -79,41 +77,6 @@ std::optional<glm::dvec3> best_place(const Occupancy& grid, std::span<const glm:
     return best;
 }
 
-/// Where a camera stands, and the plane behind which it sees nothing (CubeOfFrames::before_ws).
-struct Place {
-    glm::dvec3                eye_ws{0};
-    std::optional<glm::dvec4> before_ws = {};
-};
-
-/// The eye at its mirror image in the plane in which most of the rays begin: it sees what lies before that plane, as
-/// rays do that begin there. Empty when nothing is flat.
-std::optional<Place> mirrored_eye(const SourceContext& context, std::span<const OpenRay> rays)
-{
-    const glm::dmat4 view_to_world = glm::inverse(context.image.view.world_to_view);
-    const auto       eye_ws        = glm::dvec3(view_to_world[3]);
-    // Planes by normal and distance from the eye, in steps that are wider than rounding and narrower than things.
-    constexpr double                                            normal_step = 0.02, distance_step = 0.01;
-    std::map<std::array<int, 4>, std::pair<size_t, glm::dvec4>> planes;
-    for (const OpenRay& ray : rays) {
-        const glm::dvec3 normal =
-            glm::normalize(glm::dmat3(view_to_world) * glm::dvec3(context.image.normal_vs[ray.pixel]));
-        const double away_m = glm::dot(normal, ray.origin_ws - eye_ws);
-        const auto   step   = [](double value, double width) { return static_cast<int>(std::lround(value / width)); };
-        auto& [count, sum] =
-            planes[{step(normal.x, normal_step), step(normal.y, normal_step), step(normal.z, normal_step),
-                    step(std::log(std::max(std::abs(away_m), 1e-9)), distance_step)}];
-        ++count;
-        sum += glm::dvec4(normal, away_m);
-    }
-    const auto largest = std::ranges::max_element(planes, {}, [](const auto& plane) { return plane.second.first; });
-    if (largest == planes.end() || largest->second.first * 50 < rays.size()) return std::nullopt;
-    const glm::dvec4 mean   = largest->second.second / double(largest->second.first);
-    const glm::dvec3 normal = glm::normalize(glm::dvec3(mean));
-    // The mirror itself lies a little behind.
-    constexpr double lifted = 1 - 1e-3;
-    return Place{eye_ws + 2 * mean.w * normal, glm::dvec4(normal, glm::dot(normal, eye_ws) + lifted * mean.w)};
-}
-
 View view_from(const View& frame, glm::dvec3 eye_ws)
 {
     View view             = frame;
@@ -130,16 +93,12 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
     const Stopwatch               placing;
     const std::vector<glm::dvec3> places  = candidates(grid);
     std::vector<Target>           targets = targets_of(grid, rays);
-    std::vector<Place>            chosen;
-    if (context.parameters.at("place") == 1) {
-        if (const auto mirrored = mirrored_eye(context, rays)) chosen.push_back(*mirrored);
-    } else
-        for (int view = 0; view < static_cast<int>(context.parameters.at("count")); ++view)
-            if (const auto place = best_place(grid, places, targets)) chosen.push_back({*place});
+    std::vector<glm::dvec3>       eyes;
+    for (int view = 0; view < static_cast<int>(context.parameters.at("count")); ++view)
+        if (const auto place = best_place(grid, places, targets)) eyes.push_back(*place);
     turn.merge_ms = 1000 * placing.seconds();
-    for (const Place& place : chosen) {
-        CubeOfFrames cube{view_from(context.image.view, place.eye_ws),
-                          static_cast<int>(context.parameters.at("size_px")), place.before_ws};
+    for (const glm::dvec3& eye_ws : eyes) {
+        CubeOfFrames cube{view_from(context.image.view, eye_ws), static_cast<int>(context.parameters.at("size_px"))};
         ask_elsewhere(context, rays, turn.answers,
                       [&](const TraceSettings& settings, RayStart start, std::span<const OpenRay> open) {
                           return trace_in_cube(context, cube, settings, start, open, turn);
@@ -154,10 +113,7 @@ Source views_source()
 {
     return {.id         = "views",
             .summary    = "Further cameras that look everywhere, placed by where the open rays went",
-            .parameters = {choice_parameter({"place", "lost, mirrored"}, 0,
-                                            "lost: by where the open rays went; mirrored: one, the camera's mirror "
-                                            "image in the largest flat mirror"),
-                           integer_parameter("count", 1, 1, 8, "cameras that are placed by lost rays"),
+            .parameters = {integer_parameter("count", 1, 1, 8, "cameras"),
                            integer_parameter("size_px", 512, 16, 4096, "width and height of each of a camera's faces")},
             .answer     = answer};
 }

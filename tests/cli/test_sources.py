@@ -1,6 +1,7 @@
 """Answers beyond the frame from the command line: the table, the file in long form, the picture, and what is refused."""
 import csv
 import os
+import re
 
 from support import Case, main
 
@@ -49,6 +50,26 @@ class Test(Case):
         # A second command appends.
         self.ssrlab(*SOURCES, "--sources", "frame", "-o", "sources.csv")
         self.assertEqual(len(self.read("sources.csv")), 5)
+
+    def measured_by_auto(self, *command):
+        """The lists that auto measured, the one that it took first: (text, ms, F1 in %)."""
+        told = self.ssrlab(*command, says=["auto, budget"])
+        line = next(line for line in told.splitlines() if "auto, budget" in line)
+        lists = [(text, float(ms), float(f1)) for text, ms, f1 in re.findall(r"([a-z,]+) \(([\d.]+) ms, F1 ([\d.]+) %\)", line)]
+        self.assertGreaterEqual(len(lists), 9)
+        return lists, "which no list keeps" in line
+
+    def test_auto_takes_the_best_list_within_the_budget(self):
+        lists, over = self.measured_by_auto(*SOURCES, "--sources", "auto:budget_ms=0.001", "-o", "auto.csv")
+        self.assertTrue(over)
+        self.assertEqual(lists[0][1], min(ms for _, ms, _ in lists))
+        rows = self.read("auto.csv")
+        self.assertEqual(",".join(row["source"] for row in rows), lists[0][0])
+        self.assertGreater(float(rows[0]["choosing_ms"]), 0)
+        lists, over = self.measured_by_auto("render", "builtin:corridor", "-t", "hiz", "--size", "96x54", "--sources", "auto:share=1000", "-o", "auto.png")
+        self.assertFalse(over)
+        self.assertGreaterEqual(lists[0][2] + 0.2, max(f1 for *_, f1 in lists)) # both are rounded
+        self.assertTrue(os.path.exists(self.path("auto.png")))
 
     def test_a_sweep_writes_what_the_command_writes(self):
         """Every number but times, with results.csv in accord; lost lines are measured again, and merging keeps them."""

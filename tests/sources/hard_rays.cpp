@@ -213,7 +213,7 @@ TEST(HardRays, OfAFloorAreAnsweredByTheMirroredCameraUnderIt)
     FrameSettings    settings;
     settings.trace          = in_sight;
     SourceContext context   = make_source_context(stage, hiz, values_of(hiz), settings);
-    const auto    list      = parse_sources("views:place=mirrored:size_px=128", "test");
+    const auto    list      = parse_sources("planar", "test");
     context.parameters      = list[0].values;
     const SourceTurn turn   = list[0].source->answer(context, context.rays);
     size_t           points = 0, wrong = 0, certain_wrong = 0;

@@ -68,7 +68,7 @@ TEST(Sources, ThePictureStaysAsItWas)
     const FramePtr   frame  = prepared_frame(make_frame_buffers(*traced.stage), hiz, values_of(hiz), FrameSettings{});
     run_frame(device(), *frame);
     const Image before = read_shaded(device(), *frame);
-    ask(traced, "frame,layers,wider,cube,views,world");
+    ask(traced, "frame,layers,wider,cube,planar,views,world");
     run_frame(device(), *frame);
     EXPECT_EQ(read_shaded(device(), *frame).values, before.values);
 }
@@ -110,7 +110,7 @@ TEST(Sources, FurtherFramesFindWhatTheFrameLacks)
     Traced             traced = trace_frame("builtin:hidden_shelf", {160, 90});
     const SourceCounts frame  = count_source(ask(traced, "frame").turns[0], traced.truth, traced.context.image);
     ASSERT_LT(frame.right, frame.meeting * 9 / 10);
-    for (const char* id : {"wider", "cube", "layers", "views"}) {
+    for (const char* id : {"wider", "cube", "layers", "planar", "views"}) {
         SCOPED_TRACE(id);
         const AnsweredRays answered = ask(traced, std::string("frame,") + id, HandOn::lost);
         const SourceCounts counts   = count_source(answered.turns[1], traced.truth, traced.context.image);
@@ -118,6 +118,25 @@ TEST(Sources, FurtherFramesFindWhatTheFrameLacks)
         EXPECT_GE(double(counts.right), 0.9 * double(counts.points));
         EXPECT_GT(answered.turns[1].draw_ms, 0);
         EXPECT_GT(answered.turns[1].megabytes, 0);
+    }
+}
+
+// What a flat mirror shows is what its mirrored camera sees, pixel by pixel. At another scale, rays meet places between
+// samples, which may belong to another surface.
+TEST(Sources, APlanarReflectionIsRightWhereverItAnswers)
+{
+    struct Row {
+        const char* list;
+        double      right, certain_right; // at least, as shares
+    };
+    for (const Row& row :
+         {Row{"planar", 1, 1}, Row{"planar:scale=0.5", 0.97, 0.99}, Row{"planar:scale=2", 0.97, 0.99}}) {
+        SCOPED_TRACE(row.list);
+        Traced             traced = trace_frame("builtin:corridor", {160, 90});
+        const SourceCounts counts = count_source(ask(traced, row.list).turns[0], traced.truth, traced.context.image);
+        EXPECT_GT(counts.points, counts.handed * 9 / 10); // its floor is the only mirror
+        EXPECT_GE(double(counts.right), row.right * double(counts.points));
+        EXPECT_GE(double(counts.certain_right), row.certain_right * double(counts.certain_points));
     }
 }
 
@@ -185,8 +204,8 @@ TEST(Sources, ListsAreChecked)
     ASSERT_EQ(list.size(), 3U);
     EXPECT_EQ(list[1].source->id, "layers");
     EXPECT_EQ(list[1].values, (ParameterValues{{"count", 3}, {"sides", 0}}));
-    for (const char* wrong :
-         {"", ",", "frame,wurld", "layers:count=9", "layers:count", "world:count=2", "layers:sides=left"})
+    for (const char* wrong : {"", ",", "frame,wurld", "layers:count=9", "layers:count", "world:count=2",
+                              "layers:sides=left", "frame,auto", "auto:share=0.5"})
         EXPECT_THROW(parse_sources(wrong, "here"), SpecError) << wrong;
 }
 
