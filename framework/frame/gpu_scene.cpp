@@ -113,9 +113,10 @@ void upload_environment(Gpu& gpu, GpuScene& scene, const Scene& source)
     const bool             mapped = !source.environment.radiance.empty();
     std::vector<glm::vec4> texels(mapped ? 0 : 1, glm::vec4(source.background, 1));
     for (const glm::vec3& radiance : source.environment.radiance) texels.emplace_back(radiance, 1);
-    scene.environment_map = make_image(gpu, {.format  = vk::Format::eR32G32B32A32Sfloat,
-                                             .size_px = mapped ? source.environment.size_px : glm::ivec2(1),
-                                             .usage   = vk::ImageUsageFlagBits::eStorage});
+    scene.environment_map =
+        make_image(gpu, {.format  = vk::Format::eR32G32B32A32Sfloat,
+                         .size_px = mapped ? source.environment.size_px : glm::ivec2(1),
+                         .usage   = vk::ImageUsageFlagBits::eStorage | vk::ImageUsageFlagBits::eSampled});
     upload(gpu, scene.environment_map, texels.data(), texels.size() * sizeof(glm::vec4));
     scene.environment = source.environment;
 }
@@ -218,9 +219,10 @@ const GpuImage& blurred_environment(Gpu& gpu, GpuScene& scene)
         std::vector<glm::vec4> texels;
         for (const glm::vec3& radiance : levels.radiance)
             texels.push_back(glm::unpackHalf4x16(glm::packHalf4x16(glm::vec4(radiance, 1))));
-        scene.blurred_environment = make_image(gpu, {.format  = vk::Format::eR32G32B32A32Sfloat,
-                                                     .size_px = levels.size_px,
-                                                     .usage   = vk::ImageUsageFlagBits::eStorage});
+        scene.blurred_environment =
+            make_image(gpu, {.format  = vk::Format::eR32G32B32A32Sfloat,
+                             .size_px = levels.size_px,
+                             .usage   = vk::ImageUsageFlagBits::eStorage | vk::ImageUsageFlagBits::eSampled});
         upload(gpu, *scene.blurred_environment, texels.data(), texels.size() * sizeof(glm::vec4));
     }
     return *scene.blurred_environment;

@@ -2,12 +2,13 @@
 // (framework/scene/prefiltered_environment.h), the first half of the split sum.
 #include "passes/scene_frame.glsl"
 layout(set = 0, binding = 63, rgba32f) uniform readonly image2D environment_map;
-layout(set = 0, binding = 64, rgba32f) uniform readonly image2D environment_levels;
+// Not an image, of which a device may allow only 16 a shader.
+layout(set = 0, binding = 64) uniform sampler2D environment_levels;
 #include "gbuffer/environment.glsl"
 
 vec3 level_texel(ivec2 texel, int level, ivec2 size)
 {
-    return imageLoad(environment_levels, wrapped(texel, size) + ivec2(0, level * size.y)).rgb;
+    return texelFetch(environment_levels, wrapped(texel, size) + ivec2(0, level * size.y), 0).rgb;
 }
 
 vec3 level_radiance(vec2 uv, int level, ivec2 size)
@@ -23,7 +24,7 @@ vec3 level_radiance(vec2 uv, int level, ivec2 size)
 // Rendering".
 vec3 environment_lobe(vec3 mirror_vs, vec3 normal_vs, float roughness)
 {
-    ivec2 levels_px = imageSize(environment_levels), size = ivec2(levels_px.x, levels_px.x / 2);
+    ivec2 levels_px = textureSize(environment_levels, 0), size = ivec2(levels_px.x, levels_px.x / 2);
     bool  sharp  = levels_px.x < 2 || roughness <= 0.0;
     float alpha = roughness * roughness, to_mirror = (1.0 - alpha) * (sqrt(1.0 - alpha) + alpha);
     vec3  along  = sharp ? mirror_vs : mix(normal_vs, mirror_vs, to_mirror);

@@ -291,7 +291,7 @@ void add_environment(Gpu& gpu, const PassContext& context, Defines& defines, Bin
     const bool           smooth = counts.roughness_pixels[0] == counts.reflecting_pixels; // looks up the map alone
     const GpuImage&      levels = smooth ? scene->environment_map : blurred_environment(gpu, *scene);
     defines.emplace("ENVIRONMENT", "1");
-    bindings.insert({"environment_levels", levels});
+    bindings.insert({"environment_levels", {levels, scene->shadow_sampler}}); // only fetched from
 }
 
 } // namespace ssrlab
