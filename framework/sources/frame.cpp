@@ -24,21 +24,14 @@ RayAnswer answer_of(const SourceContext& context, const OpenRay& ray, bool in_si
         set_point(answer, layer == 0 ? image : image.layers[static_cast<size_t>(layer) - 1], traced.hit_pixel[i],
                   traced.hit_px_depth[i], in_sight);
     }
-    if (status == TraceStatus::past_max_distance) {
-        answer.kind    = AnswerKind::nothing;
-        answer.certain = in_sight;
-        answer.light   = sky_radiance(context.stage.scene, ray.direction_ws);
-    }
+    if (status == TraceStatus::past_max_distance) set_nothing(answer, context, ray, in_sight);
     if (!in_sight) return answer;
     if (has_place(status)) answer.clear_m = metres_before(image.view, ray, *part, traced.hit_px_depth[i], back_px);
     if (status == TraceStatus::left_screen && part->leaves) {
         const RayInput input = to_input(image.view, ray, *part);
         answer.clear_m = metres_before(image.view, ray, *part, input.origin_px_depth + input.delta_px_depth, back_px);
-        if (!may_meet(*context.occupancy, ray.origin_ws, ray.direction_ws, answer.clear_m, ray.reach_m)) {
-            answer.kind    = AnswerKind::nothing;
-            answer.certain = true;
-            answer.light   = sky_radiance(context.stage.scene, ray.direction_ws);
-        }
+        if (!may_meet(*context.occupancy, ray.origin_ws, ray.direction_ws, answer.clear_m, ray.reach_m))
+            set_nothing(answer, context, ray, true);
     }
     return answer;
 }

@@ -121,6 +121,13 @@ void set_point(RayAnswer& answer, const GBufferImage& met, glm::ivec2 pixel, glm
     answer.light           = met.radiance[i] + met.highlight[i];
 }
 
+void set_nothing(RayAnswer& answer, const SourceContext& context, const OpenRay& ray, bool certain)
+{
+    answer.kind    = AnswerKind::nothing;
+    answer.certain = certain;
+    answer.light   = sky_radiance(context.stage.scene, ray.direction_ws);
+}
+
 bool stays_in_sight(const SourceContext& context, const TraceSettings& settings)
 {
     const Surface surface = find_surface(context.stage.catalogue.surfaces, std::string(settings.surface));
@@ -164,11 +171,7 @@ RayAnswer to_answer(const SourceContext& context, const GBufferImage& image, con
         const GBufferImage& met = outcome.hit_layer == 0 ? image : image.layers[outcome.hit_layer - 1U];
         set_point(answer, met, outcome.hit_pixel, at, in_sight);
     }
-    if (outcome.status == TraceStatus::past_max_distance) {
-        answer.kind    = AnswerKind::nothing;
-        answer.certain = in_sight;
-        answer.light   = sky_radiance(context.stage.scene, ray.direction_ws);
-    }
+    if (outcome.status == TraceStatus::past_max_distance) set_nothing(answer, context, ray, in_sight);
     if (!in_sight) return answer;
     if (has_place(outcome.status)) answer.clear_m = metres_before(image.view, ray, part, at, back_px);
     if (outcome.status == TraceStatus::left_screen)

@@ -32,6 +32,9 @@ double metres_before(const View& view, const OpenRay& ray, const SeenPart& part,
 /// not at silhouettes and on things thinner than two pixels. Leaves clear_m as it is.
 void set_point(RayAnswer& answer, const GBufferImage& met, glm::ivec2 pixel, glm::dvec3 at_px_depth, bool in_sight);
 
+/// Makes `answer` say that the ray meets nothing: its light is the environment's. Leaves clear_m as it is.
+void set_nothing(RayAnswer& answer, const SourceContext& context, const OpenRay& ray, bool certain);
+
 /// Whether a camera sees every ray where it begins.
 enum class RayStart : uint8_t {
     in_sight, // yes: the camera that followed them so far, or one in the same place

@@ -15,25 +15,23 @@
 namespace ssrlab {
 namespace {
 
-/// Points p with dot(normal, p - eye) = away_m.
+/// Points p with dot(normal, p) = offset_m.
 struct Plane {
     glm::dvec3 normal_ws{0}; // unit
-    double     away_m = 0;   // from the eye
+    double     offset_m = 0;
 };
-
-glm::dvec3 eye_ws(const View& view) { return glm::dvec3(glm::inverse(view.world_to_view)[3]); }
 
 /// The plane in which most of the rays begin; nullopt if fewer than 2 % begin in any.
 std::optional<Plane> largest_plane(const GBufferImage& image, std::span<const OpenRay> rays)
 {
-    const glm::dmat3 view_to_world = glm::inverse(glm::dmat3(image.view.world_to_view));
-    const glm::dvec3 eye           = eye_ws(image.view);
+    const glm::dmat4 view_to_world = glm::inverse(image.view.world_to_view);
+    const auto       eye_ws        = glm::dvec3(view_to_world[3]);
     // Planes by normal and distance from the eye, in steps that are wider than rounding and narrower than things.
     constexpr double                                            normal_step = 0.02, distance_step = 0.01;
     std::map<std::array<int, 4>, std::pair<size_t, glm::dvec4>> planes;
     for (const OpenRay& ray : rays) {
-        const glm::dvec3 normal = glm::normalize(view_to_world * glm::dvec3(image.normal_vs[ray.pixel]));
-        const double     away_m = glm::dot(normal, ray.origin_ws - eye);
+        const glm::dvec3 normal = glm::normalize(glm::dmat3(view_to_world) * glm::dvec3(image.normal_vs[ray.pixel]));
+        const double     away_m = glm::dot(normal, ray.origin_ws - eye_ws);
         const auto       step = [](double value, double width) { return static_cast<int>(std::lround(value / width)); };
         auto& [count, sum] =
             planes[{step(normal.x, normal_step), step(normal.y, normal_step), step(normal.z, normal_step),
@@ -43,14 +41,15 @@ std::optional<Plane> largest_plane(const GBufferImage& image, std::span<const Op
     }
     const auto largest = std::ranges::max_element(planes, {}, [](const auto& plane) { return plane.second.first; });
     if (largest == planes.end() || largest->second.first * 50 < rays.size()) return std::nullopt;
-    const glm::dvec4 mean = largest->second.second / double(largest->second.first);
-    return Plane{glm::normalize(glm::dvec3(mean)), mean.w};
+    const glm::dvec4 mean   = largest->second.second / double(largest->second.first);
+    const glm::dvec3 normal = glm::normalize(glm::dvec3(mean));
+    return Plane{normal, glm::dot(normal, eye_ws) + mean.w};
 }
 
-bool begins_in(const Plane& plane, const View& view, const OpenRay& ray)
+bool begins_in(const Plane& plane, const OpenRay& ray)
 {
     constexpr double rounding = 1e-4; // of depth and of the plane's mean, as a share of the distance
-    return std::abs(glm::dot(plane.normal_ws, ray.origin_ws - eye_ws(view)) - plane.away_m) <= rounding * ray.eye_m;
+    return std::abs(glm::dot(plane.normal_ws, ray.origin_ws) - plane.offset_m) <= rounding * ray.eye_m;
 }
 
 /// The camera's mirror image. A mirrored picture has its left and right exchanged; this one is turned back, so that
@@ -59,7 +58,7 @@ View mirrored(const View& view, const Plane& plane, double scale)
 {
     const glm::dvec3 n = plane.normal_ws;
     glm::dmat4       reflection(glm::dmat3(1) - 2.0 * glm::outerProduct(n, n));
-    reflection[3]           = glm::dvec4(2 * (plane.away_m + glm::dot(n, eye_ws(view))) * n, 1);
+    reflection[3]           = glm::dvec4(2 * plane.offset_m * n, 1);
     View own                = view;
     own.world_to_view       = glm::dmat4(glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, 1)) * view.world_to_view * reflection;
     own.centre_px.x         = view.size_px.x - view.centre_px.x;
@@ -71,10 +70,10 @@ View mirrored(const View& view, const Plane& plane, double scale)
 }
 
 /// Depth of the plane in a camera on its other side; 0 where it is not in view.
-std::vector<float> depth_of(const Plane& plane, const View& frame, const View& own)
+std::vector<float> depth_of(const Plane& plane, const View& own)
 {
     const glm::dvec3   normal = glm::dmat3(own.world_to_view) * plane.normal_ws;
-    const glm::dvec3   point  = eye_ws(frame) + plane.away_m * plane.normal_ws;
+    const glm::dvec3   point  = plane.offset_m * plane.normal_ws;
     const double       height = glm::dot(normal, glm::dvec3(own.world_to_view * glm::dvec4(point, 1)));
     std::vector<float> depth(pixel_count(own.size_px));
     for (size_t i = 0; i < depth.size(); ++i) {
@@ -113,9 +112,7 @@ std::optional<RayAnswer> looked_up(const SourceContext& context, const GBufferIm
         constexpr double at_centre_px = 0.1;
         answer.certain |= glm::length(from_centre_px) < at_centre_px;
     } else if (!part->leaves) {
-        answer.kind    = AnswerKind::nothing;
-        answer.certain = true;
-        answer.light   = sky_radiance(context.stage.scene, ray.direction_ws);
+        set_nothing(answer, context, ray, true);
     }
     return answer;
 }
@@ -124,11 +121,10 @@ std::optional<RayAnswer> looked_up(const SourceContext& context, const GBufferIm
 void ask_plane(SourceContext& context, const Plane& plane, std::span<const OpenRay> rays,
                std::shared_ptr<const DrawPipeline>& pipeline, SourceTurn& turn)
 {
-    Gpu&                     gpu   = context.stage.gpu;
-    const View&              frame = context.image.view;
+    Gpu&                     gpu = context.stage.gpu;
     const Stopwatch          preparing;
-    const View               view   = mirrored(frame, plane, context.parameters.at("scale"));
-    const std::vector<float> before = depth_of(plane, frame, view);
+    const View               view   = mirrored(context.image.view, plane, context.parameters.at("scale"));
+    const std::vector<float> before = depth_of(plane, view);
     turn.merge_ms += 1000 * preparing.seconds();
     const DrawnSides drawn = draw_sides_behind(gpu, context.stage.uploaded, view, before, pipeline);
     turn.draw_ms += drawn.ms;
@@ -138,7 +134,7 @@ void ask_plane(SourceContext& context, const Plane& plane, std::span<const OpenR
     std::vector<OpenRay> crossing;
     std::vector<size_t>  places;
     for (size_t k = 0; k < rays.size(); ++k) {
-        if (turn.answers[k].certain || !begins_in(plane, frame, rays[k])) continue;
+        if (turn.answers[k].certain || !begins_in(plane, rays[k])) continue;
         OpenRay own = rays[k];
         own.clear_m = 0; // it is in sight from its beginning on
         if (const auto answer = looked_up(context, image, own)) {
@@ -168,7 +164,7 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
         turn.merge_ms += 1000 * finding.seconds();
         if (!plane) break;
         ask_plane(context, *plane, rays, pipeline, turn);
-        std::erase_if(left, [&](const OpenRay& ray) { return begins_in(*plane, context.image.view, ray); });
+        std::erase_if(left, [&](const OpenRay& ray) { return begins_in(*plane, ray); });
     }
     return turn;
 }
