@@ -45,6 +45,17 @@ double wrong_per_million(const std::string& id, Field field, glm::ivec2 size_px,
     return rate;
 }
 
+/// A wall in the sky, 5 m away from column 40 on, and a level ray along the row, half a metre behind the wall's front.
+RayOutcome behind_a_wall(const Technique& t, double thickness_m, const ParameterValues& changed = {})
+{
+    const View                  view   = bench_view({64, 8});
+    const auto                  wall   = picture_of(view, [](glm::ivec2 pixel) { return pixel.x < 40 ? 0.0 : 5.0; });
+    const auto                  tracer = tracer_on(upload_gbuffer(device(), wall), t, values_of(t, changed),
+                                                   {.thickness_m = thickness_m, .max_distance_m = 1e9}, 1);
+    const std::vector<RayInput> rays{level_ray(view, {5.5, 3.5}, {55, 0}, 5.5)};
+    return trace_rays(device(), *tracer, rays).front();
+}
+
 TEST(Fragile, AnEpsilonOfTheImageLosesAxisAlignedRays)
 {
     const CaseRow row = check("epsilon_uv", "axis_aligned");
@@ -86,6 +97,32 @@ TEST(Fragile, StoppingBehindTheFirstObjectLosesWhatIsBehindIt)
     // It reports running out: 128 cells are not enough for a row of poles.
     EXPECT_GT(check("first_occluder", "crossings_of_odd_sizes").out_of_steps, 0U);
     EXPECT_GT(wrong_per_million("first_occluder", Field::poles, {641, 359}), 20'000);
+}
+
+TEST(Fragile, EnginesMeetAWallByTheirOwnRules)
+{
+    const glm::ivec2 first{40, 3};
+    EXPECT_EQ(behind_a_wall(technique("dda"), 1).hit_pixel, first);
+    EXPECT_EQ(behind_a_wall(technique("dda"), 0.1).status, TraceStatus::left_screen);
+    EXPECT_EQ(behind_a_wall(fragile("bevy_march"), 1).hit_pixel, first);
+    EXPECT_EQ(behind_a_wall(fragile("bevy_march"), 0.1).status, TraceStatus::left_screen);
+    EXPECT_EQ(behind_a_wall(fragile("godot_hiz"), 2).hit_pixel, first);
+    EXPECT_EQ(behind_a_wall(fragile("godot_hiz"), 1).status, TraceStatus::left_screen)
+        << "its thickness is along the line of sight, which is slanted here";
+    EXPECT_EQ(behind_a_wall(fragile("babylon_dda"), 1).status, TraceStatus::left_screen) << "ends at the sky";
+    EXPECT_EQ(behind_a_wall(fragile("babylon_dda"), 1, {{"ends_at_sky", 0}}).hit_pixel, first);
+    const int hit = behind_a_wall(fragile("filament_dda"), 1, {{"beyond", 0}}).hit_pixel.x;
+    EXPECT_TRUE(hit == 40 || hit == 41) << hit;
+    EXPECT_EQ(behind_a_wall(fragile("filament_dda"), 1).hit_pixel.x, hit + 2) << "one stride beyond";
+    EXPECT_EQ(behind_a_wall(fragile("unreal_steps"), 0.1).status, TraceStatus::hit) << "its thickness is its own";
+    EXPECT_EQ(behind_a_wall(fragile("three_march"), 1).status, TraceStatus::left_screen) << "seen edge-on";
+}
+
+TEST(Fragile, MarchesStepOverPoles)
+{
+    for (const char* id : {"bevy_march", "eevee_march", "three_march", "unreal_steps"})
+        EXPECT_GT(wrong_per_million(id, Field::poles, {641, 359}), 10'000) << id;
+    EXPECT_GT(check("godot_hiz", "crossings_of_odd_sizes").out_of_steps, 0U);
 }
 
 } // namespace

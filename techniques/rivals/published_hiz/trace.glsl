@@ -20,14 +20,12 @@ TraceResult trace(Ray ray)
     real  t_start = min(t_axis.x, t_axis.y), t = t_start;
     int   top = pyramid_top(), level = 0, visited = 0;
     real3 position = origin + t * direction;
-    ivec2 cell = ray.start_pixel, pixel = cell;
     while (level >= 0 && t < real(1) && visited < max_steps)
     {
         int   on_level  = level;
         ivec2 under     = clamp(ivec2(floor(position.xy * real2(size_px))), ivec2(0), size_px - 1);
         real  surface   = fetch_front(under, on_level);
-        cell            = under >> on_level;
-        real2 border    = (real2(cell) + floor_offset) * (real(1 << on_level) * pixel_uv) + uv_offset;
+        real2 border    = (real2(under >> on_level) + floor_offset) * (real(1 << on_level) * pixel_uv) + uv_offset;
         real2 t_border  = border * inverse.xy - origin.xy * inverse.xy;
         real  t_leave   = min(t_border.x, t_border.y);
         // Depth is larger where it is nearer: a ray that comes nearer never meets the plane from the front.
@@ -36,11 +34,11 @@ TraceResult trace(Ray ray)
         bool  skipped   = in_front && t_leave < t_surface;
         t        = in_front ? min(t_leave, t_surface) : t;
         position = origin + t * direction;
-        pixel    = on_level == 0 && !skipped ? cell : pixel;
         level    = skipped ? min(level + 1, top) : level - 1;
         ++visited;
     }
     if (level >= 0) return t < real(1) ? out_of_steps(visited) : miss(ray, visited);
+    ivec2 pixel = clamp(ivec2(floor(ray.origin.xy + t * ray.delta.xy)), ivec2(0), size_px - 1);
     uvec2 words = fetch_pixel(pixel);
     real  depth = real(depth_in(words, pixel));
     bool touched = interval_touches(depth, depth_interval(ray, position.z, min(position.z, depth)));
