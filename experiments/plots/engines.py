@@ -1,4 +1,4 @@
-"""The loops of engines beside settings of ours, from the rows of experiments/rivals.toml: what results/reference/engines.md says."""
+"""The loops of engines beside settings of ours, from the rows of experiments/engines.toml: what results/reference/engines.md says."""
 import sys
 from dataclasses import dataclass
 
@@ -57,7 +57,7 @@ def said(name, value, relative):
 def of_setting(table, values):
     """Its rows, one a scene. Ends the program where there are none: the default was not measured."""
     rows = table[np.logical_and.reduce([table[name] == value for name, value in values.items()])]
-    return rows if len(rows) else sys.exit(f"engines: expected rows of {values}, got none; experiments/rivals.toml lacks them")
+    return rows if len(rows) else sys.exit(f"engines: expected rows of {values}, got none; experiments/engines.toml lacks them")
 
 
 def best_of(table, names):
