@@ -7,7 +7,7 @@
 #include "compare/validate_result.h"
 #include "core/error.h"
 #include "core/files.h"
-#include "harness/choice.h"
+#include "harness/choose_technique.h"
 #include "harness/measured_run.h"
 
 #include <cstdio>
@@ -37,16 +37,16 @@ Image hits_image(const TraceResult& result, const std::string& technique, const 
 int trace_hits(const CommonOptions& common, const PictureOptions& options)
 {
     if (std::filesystem::is_directory(options.scene)) return trace_cases(common, options);
-    const Catalogue  catalogue = load_catalogue(common.technique_dirs);
-    const Technique& technique = find_technique(catalogue.techniques, options.technique);
-    const Choice     choice    = parse_choice(catalogue, technique, options.parameters);
+    const Catalogue catalogue = load_catalogue(common.technique_dirs);
+    const auto      asked     = asked_techniques(catalogue, options.technique, options.parameters);
     require_ending(options.output, {".exr"});
-    Stage             stage  = open_stage(common, catalogue, options);
-    const LabPtr      lab    = make_lab(stage, technique, choice.values, choice.settings.trace);
-    const TraceResult result = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
-    write_image(options.output, hits_image(result, options.technique, options.parameters));
+    Stage stage                    = open_stage(common, catalogue, options);
+    const auto [technique, choice] = choose_technique(stage, asked, common.quiet);
+    const LabPtr      lab          = make_lab(stage, *technique, choice.values, choice.settings.trace);
+    const TraceResult result       = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
+    write_image(options.output, hits_image(result, technique->id, options.parameters));
     std::puts(options.output.c_str());
-    require_possible(result, declared_steps(technique, choice.values));
+    require_possible(result, declared_steps(*technique, choice.values));
     return report_messages(stage);
 }
 

@@ -14,6 +14,7 @@ _ssrlab()
         names=$("$1" list 2> /dev/null | sed -n '/^\(Techniques\|Surface models\)/,/^$/ s/^  \([^ ]\+\) .*/\1/p')
     elif [[ $previous == -t || $previous == --technique || $command == check || $command == shaders || $command == export ]]; then
         names=$("$1" list 2> /dev/null | sed -n '/^Techniques/,/^$/ s/^  \([^ ]\+\) .*/\1/p')
+        [[ $previous == -* ]] && names+=" exact"
     elif [[ $previous == --scene || ( $command =~ ^(render|trace|gbuffer|ray|view|plan|sources|fit)$ && $previous == "$command" ) ]]; then
         names=$("$1" list 2> /dev/null | sed -n '/^Scenes/,/^$/ s/^  \([^ ]\+\) .*/\1/p')
     fi

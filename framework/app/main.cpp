@@ -85,23 +85,16 @@ void add_parameter_option(CLI::App& command, ssrlab::PictureOptions& options)
                        "name=value: a parameter of the technique (see ssrlab show), or a setting such as thickness_m");
 }
 
-void add_picture_options(CLI::App& command, ssrlab::PictureOptions& options, bool traces)
+CLI::Option* add_technique_option(CLI::App& command, ssrlab::PictureOptions& options)
 {
-    add_scene_options(command, options);
-    if (traces) {
-        command.add_option("-t,--technique", options.technique, "Technique (see ssrlab list)")->required();
-        add_parameter_option(command, options);
-    }
-    command.add_option("-o,--output", options.output, "File to write")->required();
+    add_parameter_option(command, options);
+    return command.add_option("-t,--technique", options.technique,
+                              "Technique (see ssrlab list), or exact: the fastest exact one on this device");
 }
 
-/// Of a command that begins with a technique of its own choice.
-void add_default_technique(CLI::App& command, ssrlab::PictureOptions& options)
+void add_output_option(CLI::App& command, ssrlab::PictureOptions& options)
 {
-    command.add_option("-t,--technique", options.technique, "Technique (see ssrlab list)")
-        ->default_val("hiz")
-        ->capture_default_str();
-    add_parameter_option(command, options);
+    command.add_option("-o,--output", options.output, "File to write")->required();
 }
 
 void add_presentation_options(CLI::App& command, ssrlab::RenderOptions& options)
@@ -245,15 +238,20 @@ int main(int argc, char** argv)
     show->callback([&] { command = [&] { return show_entry(common, technique, json); }; });
     RenderOptions rendered;
     auto*         render = app.add_subcommand("render", "Render a picture with reflections (.png or .exr)");
-    add_picture_options(*render, rendered.picture, true);
+    add_scene_options(*render, rendered.picture);
+    add_technique_option(*render, rendered.picture)->default_val(fastest_exact)->capture_default_str();
+    add_output_option(*render, rendered.picture);
     add_presentation_options(*render, rendered);
     render->callback([&] { command = [&] { return render_picture(common, rendered); }; });
     auto* trace = app.add_subcommand(
         "trace", "Write what each ray found and why it stopped (.exr), of a frame or of each of a folder's cases");
-    add_picture_options(*trace, picture, true);
+    add_scene_options(*trace, picture);
+    add_technique_option(*trace, picture)->required();
+    add_output_option(*trace, picture);
     trace->callback([&] { command = [&] { return trace_hits(common, picture); }; });
     auto* gbuffer = app.add_subcommand("gbuffer", "Write what the camera sees (.exr)");
-    add_picture_options(*gbuffer, picture, false);
+    add_scene_options(*gbuffer, picture);
+    add_output_option(*gbuffer, picture);
     gbuffer->callback([&] { command = [&] { return write_gbuffer(common, picture); }; });
 
     RayOptions ray;
@@ -261,7 +259,9 @@ int main(int argc, char** argv)
              "ray", "Explain one ray: what each technique read, where and why it stopped, and where it should have");
     add_scene_options(*explained, ray.picture);
     explained->add_option("--pixel", ray.pixel, "X,Y of the pixel that reflects, from the top left")->required();
-    explained->add_option("-t,--technique", ray.techniques, "Technique; several may be compared")->required();
+    explained
+        ->add_option("-t,--technique", ray.techniques, "Technique, or exact, as for render; several may be compared")
+        ->required();
     explained->add_option("-p,--parameter", ray.picture.parameters,
                           "name=value, as for render; for every technique that has it");
     explained->add_option(
@@ -296,7 +296,7 @@ int main(int argc, char** argv)
     ViewOptions view;
     auto* viewed = app.add_subcommand("view", "Open a window in which camera, technique and settings change live");
     add_scene_options(*viewed, view.picture);
-    add_default_technique(*viewed, view.picture);
+    add_technique_option(*viewed, view.picture)->default_val("hiz")->capture_default_str();
     viewed->add_option("--script", view.script,
                        "File of commands instead of mouse and keyboard (docs/how-to/viewer.md)");
     viewed->callback([&] { command = [&] { return view_scene(common, view); }; });
@@ -304,14 +304,14 @@ int main(int argc, char** argv)
     PlanOptions plan;
     auto* planned = app.add_subcommand("plan", "Show which passes a frame needs, why, and what they cost or save");
     add_scene_options(*planned, plan.picture);
-    add_default_technique(*planned, plan.picture);
+    add_technique_option(*planned, plan.picture)->default_val("hiz")->capture_default_str();
     planned->add_option("--repeats", plan.repeats, "Timed frames")->capture_default_str()->check(CLI::PositiveNumber);
     planned->callback([&] { command = [&] { return print_plan(common, plan); }; });
 
     SourcesOptions sources;
     auto* asked = app.add_subcommand("sources", "Measure which source answers each ray, how rightly and at what price");
     add_scene_options(*asked, sources.picture);
-    add_default_technique(*asked, sources.picture);
+    add_technique_option(*asked, sources.picture)->default_val("hiz")->capture_default_str();
     asked
         ->add_option("--sources", sources.lists,
                      "Sources in the order in which they are asked, as frame,layers:count=2,world; several lists may "

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/names.h"
+#include "trace/catalogue.h"
 
 #include <cstdio>
 
@@ -47,6 +48,8 @@ int write_new_technique(const std::filesystem::path& folder)
     const std::string id = folder.filename().string();
     if (!is_glsl_name(id))
         throw_spec_error("'{}' cannot be a technique's name: expected letters, digits and underscores", id);
+    if (id == fastest_exact)
+        throw_spec_error("'{}' cannot be a technique's name: it stands for the fastest exact technique", id);
     if (std::filesystem::exists(folder)) throw_spec_error("{}: already there", folder.string());
     std::error_code error;
     std::filesystem::create_directories(folder, error);

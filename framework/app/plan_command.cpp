@@ -1,7 +1,7 @@
 #include "app/plan_command.h"
 
 #include "core/error.h"
-#include "harness/choice.h"
+#include "harness/choose_technique.h"
 #include "harness/statistics.h"
 
 #include <cstdio>
@@ -66,9 +66,11 @@ FrameHistoryPtr history_before(Stage& stage, const PictureOptions& options, cons
 int print_plan(const CommonOptions& common, const PlanOptions& options)
 {
     const Catalogue  catalogue = load_catalogue(common.technique_dirs);
-    const Technique& technique = find_technique(catalogue.techniques, options.picture.technique);
-    Choice           choice    = parse_choice(catalogue, technique, options.picture.parameters);
+    const auto       asked     = asked_techniques(catalogue, options.picture.technique, options.picture.parameters);
     Stage            stage     = open_stage(common, catalogue, options.picture);
+    AskedTechnique   chosen    = choose_technique(stage, asked, common.quiet);
+    const Technique& technique = *chosen.technique;
+    Choice&          choice    = chosen.choice;
     const auto       history   = history_before(stage, options.picture, technique, choice);
 
     choice.settings.passes.at("skip_unneeded_passes") = 1;

@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/pixel_index.h"
-#include "harness/choice.h"
+#include "harness/choose_technique.h"
 #include "harness/experiment.h"
 #include "truth/reflected_rays.h"
 #include "truth/scene_bvh.h"
@@ -35,11 +35,26 @@ glm::ivec2 pixel_option(const std::string& text, glm::ivec2 size_px)
     return pixel;
 }
 
-/// A parameter counts for every technique that has it.
-std::vector<RayQuestion> questions_of(const RayOptions& options, const Catalogue& catalogue, FrameSettings& settings)
+/// What "exact" may stand for, by the parameters that an exact technique has; empty: it is not asked for.
+std::vector<AskedTechnique> exact_ones(const RayOptions& options, const Catalogue& catalogue)
+{
+    if (std::ranges::find(options.techniques, fastest_exact) == options.techniques.end()) return {};
+    std::vector<std::string> pairs;
+    std::ranges::copy_if(options.picture.parameters, std::back_inserter(pairs), [&](const std::string& pair) {
+        return std::ranges::any_of(catalogue.techniques, [&](const Technique& technique) {
+            return technique.exact && takes(catalogue, technique, pair);
+        });
+    });
+    return asked_techniques(catalogue, fastest_exact, pairs);
+}
+
+/// A parameter counts for every technique that has it. `exact`: the technique that "exact" stands for.
+std::vector<RayQuestion> questions_of(const RayOptions& options, const Catalogue& catalogue, const Technique* exact,
+                                      FrameSettings& settings)
 {
     std::vector<const Technique*> techniques;
-    for (const std::string& id : options.techniques) techniques.push_back(&find_technique(catalogue.techniques, id));
+    for (const std::string& id : options.techniques)
+        techniques.push_back(id == fastest_exact ? exact : &find_technique(catalogue.techniques, id));
     std::vector<RayQuestion> questions;
     for (const Choice& choice : parse_choices(catalogue, techniques, options.picture.parameters)) {
         settings = choice.settings;
@@ -150,13 +165,16 @@ int explain_ray(const CommonOptions& common, const RayOptions& options)
     const std::string           extension = output.extension().string();
     if (!output.empty() && extension != ".json" && extension != ".png")
         throw_spec_error("-o {}: expected .json or .png", options.picture.output);
-    const Catalogue                 catalogue = load_catalogue(common.technique_dirs);
-    FrameSettings                   settings;
-    const std::vector<RayQuestion>  questions = questions_of(options, catalogue, settings);
-    const std::vector<ListedSource> listed    = options.sources.empty()
-                                                    ? std::vector<ListedSource>{}
-                                                    : parse_sources(options.sources, "--sources " + options.sources);
-    Stage                           stage     = open_stage(common, catalogue, options.picture);
+    const Catalogue catalogue = load_catalogue(common.technique_dirs);
+    FrameSettings   settings;
+    const auto      exact = exact_ones(options, catalogue);
+    auto questions        = questions_of(options, catalogue, exact.empty() ? nullptr : exact[0].technique, settings);
+    const std::vector<ListedSource> listed = options.sources.empty()
+                                                 ? std::vector<ListedSource>{}
+                                                 : parse_sources(options.sources, "--sources " + options.sources);
+    Stage                           stage  = open_stage(common, catalogue, options.picture);
+    if (exact.size() > 1)
+        questions = questions_of(options, catalogue, choose_technique(stage, exact, common.quiet).technique, settings);
     if (stage.drawing) draw_layers(stage.gpu, *stage.drawing, settings.trace.layers);
     const Setup      setup{"", read_gbuffer(stage.gpu, *stage.gbuffer), settings.trace, {}};
     const glm::ivec2 pixel  = pixel_option(options.pixel, stage.view.size_px);

@@ -4,8 +4,8 @@
 #include "compare/pictures.h"
 #include "compare/validate_result.h"
 #include "core/error.h"
-#include "harness/choice.h"
 #include "harness/choose_sources.h"
+#include "harness/choose_technique.h"
 #include "harness/quality.h"
 #include "sources/answered_frame.h"
 #include "truth/glossy_truth.h"
@@ -38,7 +38,7 @@ std::string label_of(Shows shows, const std::string& technique)
 }
 
 /// Fails before the work starts rather than after it.
-Choice checked_choice(const Catalogue& catalogue, const Technique& technique, const RenderOptions& options)
+std::vector<AskedTechnique> checked_techniques(const Catalogue& catalogue, const RenderOptions& options)
 {
     const bool exr = options.picture.output.ends_with(".exr");
     require_ending(options.picture.output, {".png", ".exr"});
@@ -55,7 +55,7 @@ Choice checked_choice(const Catalogue& catalogue, const Technique& technique, co
     if (exr && (options.exposure_ev != 0 || options.display != "clip"))
         throw_spec_error("-o {}: an EXR holds linear radiance; --exposure and --display need a .png",
                          options.picture.output);
-    return parse_choice(catalogue, technique, options.picture.parameters);
+    return asked_techniques(catalogue, options.picture.technique, options.picture.parameters);
 }
 
 /// "pan.png" is "pan_0007.png" in frame 7.
@@ -67,14 +67,14 @@ std::string numbered(const std::string& output, int frame)
 }
 
 /// The command that makes the same picture, but for the output.
-std::string command_of(const RenderOptions& options, int at_frame)
+std::string command_of(const RenderOptions& options, const Technique& technique, int at_frame)
 {
     const PictureOptions& picture = options.picture;
     std::string           text    = "ssrlab render " + picture.scene + " --view " + picture.view;
     if (at_frame > 0) text += fmt::format(" --frame {}", at_frame);
     if (picture.at.jitter_phases > 0) text += fmt::format(" --jitter {}", picture.at.jitter_phases);
     if (!picture.size.empty()) text += " --size " + picture.size;
-    text += " -t " + picture.technique;
+    text += " -t " + technique.id;
     for (const std::string& pair : picture.parameters) text += " -p " + pair;
     if (options.samples > 1) text += fmt::format(" --samples {}", options.samples);
     if (options.exposure_ev != 0) text += fmt::format(" --exposure {}", options.exposure_ev);
@@ -248,13 +248,14 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
 {
     const PictureOptions& picture   = options.picture;
     const Catalogue       catalogue = load_catalogue(common.technique_dirs);
-    const Technique&      technique = find_technique(catalogue.techniques, picture.technique);
-    const Choice          choice    = checked_choice(catalogue, technique, options);
+    const auto            asked_for = checked_techniques(catalogue, options);
     const std::string     list =
         options.sources.empty() && options.show == "sources" ? std::string("frame,world") : options.sources;
-    const auto     sources = list.empty() ? std::vector<ListedSource>{} : parse_sources(list, "--sources " + list);
-    Stage          stage   = open_stage(common, catalogue, picture);
-    PictureSources asked{sources, {}, {}};
+    const auto sources         = list.empty() ? std::vector<ListedSource>{} : parse_sources(list, "--sources " + list);
+    Stage      stage           = open_stage(common, catalogue, picture);
+    const auto [named, choice] = choose_technique(stage, asked_for, common.quiet);
+    const Technique& technique = *named;
+    PictureSources   asked{sources, {}, {}};
     if (sources.size() == 1 && sources[0].source->id == "auto" && options.show.empty()) {
         SourceContext       context = make_source_context(stage, technique, choice.values, choice.settings);
         const ChosenSources chosen  = choose_sources(context, sources, HandOn::uncertain);
@@ -299,7 +300,7 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
         for (LabelledImage& one : rendered.pictures) one.image = mean_of(std::move(one.image), options.samples);
         Image image = options.side_by_side ? side_by_side(rendered.pictures) : rendered.pictures.front().image;
         image.metadata["ssrlab:version"] = SSRLAB_VERSION; // without the commit: the same picture gives the same file
-        image.metadata["ssrlab:command"] = command_of(options, picture.at.frame + i);
+        image.metadata["ssrlab:command"] = command_of(options, technique, picture.at.frame + i);
         const std::string file = options.frames > 0 ? numbered(picture.output, picture.at.frame + i) : picture.output;
         write_image(file, image);
         const std::string timed = options.show.empty() ? fmt::format(", trace {:.2f} ms", rendered.trace_ms) : "";

@@ -1,7 +1,7 @@
 #include "app/sources_command.h"
 
 #include "core/error.h"
-#include "harness/choice.h"
+#include "harness/choose_technique.h"
 #include "harness/experiment.h"
 #include "harness/source_rows.h"
 
@@ -74,19 +74,19 @@ int compare_sources(const CommonOptions& common, const SourcesOptions& options)
     if (!picture.output.empty()) require_ending(picture.output, {".csv"});
     std::vector<std::vector<ListedSource>> lists;
     for (const std::string& list : options.lists) lists.push_back(parse_sources(list, "--sources " + list));
-    const HandOn      hand_on   = parse_hand_on(options.hand_on);
-    const std::string settings  = fmt::format("{}", fmt::join(picture.parameters, ";"));
-    const Catalogue   catalogue = load_catalogue(common.technique_dirs);
-    const Technique&  technique = find_technique(catalogue.techniques, picture.technique);
-    const Choice      choice    = parse_choice(catalogue, technique, picture.parameters);
-    Stage             stage     = open_stage(common, catalogue, picture);
-    SourceContext     context =
-        context_of_frame(stage, technique, choice.values, choice.settings, picture.view, picture.at);
+    const HandOn      hand_on      = parse_hand_on(options.hand_on);
+    const std::string settings     = fmt::format("{}", fmt::join(picture.parameters, ";"));
+    const Catalogue   catalogue    = load_catalogue(common.technique_dirs);
+    const auto        asked_for    = asked_techniques(catalogue, picture.technique, picture.parameters);
+    Stage             stage        = open_stage(common, catalogue, picture);
+    const auto [technique, choice] = choose_technique(stage, asked_for, common.quiet);
+    SourceContext context =
+        context_of_frame(stage, *technique, choice.values, choice.settings, picture.view, picture.at);
     const SceneTruth truth = scene_truth(SceneBvh(stage.scene), stage.scene, context.image, choice.settings.trace);
     if (const std::string why = drawn_elsewhere(off_surface_share(truth)); !why.empty())
         throw_failure("no scene truth: {}", why);
     std::puts(fmt::format("{} {} {}, {}, surface {}", picture.scene, picture.view, size_text(stage.view.size_px),
-                          technique.id, choice.settings.trace.surface)
+                          technique->id, choice.settings.trace.surface)
                   .c_str());
     for (size_t l = 0; l < lists.size(); ++l) {
         const ChosenSources chosen = choose_sources(context, lists[l], hand_on);
@@ -96,7 +96,7 @@ int compare_sources(const CommonOptions& common, const SourcesOptions& options)
         const Record asked = {{"scene", picture.scene},
                               {"view", picture.view},
                               {"size", size_text(stage.view.size_px)},
-                              {"technique", technique.id},
+                              {"technique", technique->id},
                               {"surface", choice.settings.trace.surface},
                               {"settings", settings},
                               {"sources", options.lists[l]},

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 
 namespace ssrlab {
 namespace {
@@ -20,6 +19,14 @@ std::string hash_of(const std::string& name, std::string_view bytes)
     return content_hash(std::string(name).append("\n").append(bytes));
 }
 
+void warn_once(const char* why) noexcept
+{
+    static std::atomic_flag warned;
+    if (!warned.test_and_set()) std::fprintf(stderr, "warning: shaders are compiled anew, without a cache: %s\n", why);
+}
+
+} // namespace
+
 fs::path cache_folder()
 {
     const auto variable = [](const char* name) {
@@ -30,14 +37,6 @@ fs::path cache_folder()
     if (const fs::path home = variable("HOME"); home.is_absolute()) return home / ".cache/ssrlab";
     return {};
 }
-
-void warn_once(const char* why) noexcept
-{
-    static std::atomic_flag warned;
-    if (!warned.test_and_set()) std::fprintf(stderr, "warning: shaders are compiled anew, without a cache: %s\n", why);
-}
-
-} // namespace
 
 std::optional<std::string> read_cached(const std::string& name)
 {

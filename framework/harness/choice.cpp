@@ -60,28 +60,24 @@ Choice parse_choice(const Catalogue& catalogue, const Technique& technique, cons
     return choice;
 }
 
-namespace {
-
-bool belongs_to(std::span<const Setting> settings, const Technique& technique, const std::string& pair)
+bool takes(const Catalogue& catalogue, const Technique& technique, const std::string& pair)
 {
-    const std::string name = pair.substr(0, pair.find('='));
+    const std::string          name     = pair.substr(0, pair.find('='));
+    const std::vector<Setting> settings = all_settings(catalogue);
     return std::ranges::find(settings, name, &Setting::name) != settings.end() ||
            std::ranges::find(technique.parameters, name, &Parameter::name) != technique.parameters.end();
 }
 
-} // namespace
-
 std::vector<Choice> parse_choices(const Catalogue& catalogue, const std::vector<const Technique*>& techniques,
                                   const std::vector<std::string>& pairs)
 {
-    const std::vector<Setting> settings = all_settings(catalogue);
-    std::vector<Choice>        choices;
+    std::vector<Choice> choices;
     for (const Technique* technique : techniques) {
         std::vector<std::string> own;
         for (const std::string& pair : pairs) {
-            const bool of_any = std::ranges::any_of(
-                techniques, [&](const Technique* other) { return belongs_to(settings, *other, pair); });
-            if (!of_any || belongs_to(settings, *technique, pair)) own.push_back(pair);
+            const bool of_any =
+                std::ranges::any_of(techniques, [&](const Technique* other) { return takes(catalogue, *other, pair); });
+            if (!of_any || takes(catalogue, *technique, pair)) own.push_back(pair);
         }
         choices.push_back(parse_choice(catalogue, *technique, own));
     }

@@ -41,6 +41,8 @@ Choice parse_choice(const Catalogue& catalogue, const Technique& technique, cons
 /// The same for several techniques: each takes the parameters that it has. Throws SpecError for a name that none has.
 std::vector<Choice> parse_choices(const Catalogue& catalogue, const std::vector<const Technique*>& techniques,
                                   const std::vector<std::string>& pairs);
+/// Returns whether a pair names a setting, or a parameter of the technique.
+bool takes(const Catalogue& catalogue, const Technique& technique, const std::string& pair);
 /// Adds one pair. Throws SpecError.
 void set_choice(const Catalogue& catalogue, const Technique& technique, Choice& choice, const std::string& pair);
 

@@ -57,27 +57,35 @@ std::string threads_text()
 
 } // namespace
 
+std::map<std::string, std::string> describe_device(const GpuInfo& device)
+{
+    std::map<std::string, std::string> described = {{"device", device.name},
+                                                    {"driver", device.driver},
+                                                    {"storage", storage_text(device)},
+                                                    {"passes", passes_text(device)}};
+    if (device.processor.empty()) return described;
+    described["processor"] = device.processor;
+    described["threads"]   = threads_text();
+    return described;
+}
+
+std::map<std::string, std::string> describe_technique(const Technique& technique)
+{
+    std::map<std::string, std::string> described = {{"technique " + technique.id, folder_hash(technique.folder)}};
+    for (const Structure& structure : technique.structures)
+        described["structure " + structure.id] = folder_hash(structure.folder);
+    return described;
+}
+
 std::map<std::string, std::string> describe_identity(const Experiment&          experiment,
                                                      std::span<const Technique> techniques, const GpuInfo& device)
 {
-    std::map<std::string, std::string> identity;
-    identity["specification"] = content_hash(experiment.text);
-    identity["program"]       = program_hash();
-    identity["shaders"]       = folder_hash(data_root() / "shaders");
-    identity["device"]        = device.name;
-    identity["driver"]        = device.driver;
-    identity["storage"]       = storage_text(device);
-    identity["passes"]        = passes_text(device);
-    if (!device.processor.empty()) {
-        identity["processor"] = device.processor;
-        identity["threads"]   = threads_text();
-    }
-    for (const TechniqueSweep& sweep : experiment.techniques) {
-        const Technique& technique        = find_technique(techniques, sweep.id);
-        identity["technique " + sweep.id] = folder_hash(technique.folder);
-        for (const Structure& structure : technique.structures)
-            identity["structure " + structure.id] = folder_hash(structure.folder);
-    }
+    std::map<std::string, std::string> identity = describe_device(device);
+    identity["specification"]                   = content_hash(experiment.text);
+    identity["program"]                         = program_hash();
+    identity["shaders"]                         = folder_hash(data_root() / "shaders");
+    for (const TechniqueSweep& sweep : experiment.techniques)
+        identity.merge(describe_technique(find_technique(techniques, sweep.id)));
     const auto add_surfaces = [&](const ValueLists& settings) {
         const auto values = settings.find("surface");
         if (values == settings.end()) return;

@@ -5,6 +5,8 @@
 #include "core/names.h"
 #include "gpu/shader.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cstdlib>
 
@@ -81,6 +83,25 @@ template <typename Item> const Item& find(std::span<const Item> items, const std
     throw SpecError(unknown_name(kind, id, known));
 }
 
+[[noreturn]] void refuse_fastest_exact(std::span<const Technique> techniques)
+{
+    std::vector<std::string> names;
+    for (const Technique& technique : techniques)
+        if (technique.exact) names.push_back(technique.id);
+    throw_spec_error("'{}' is measured and chosen only by commands that take one frame (render, trace, ray, plan, "
+                     "sources, view); expected a technique's name here, as of the exact ones: {}",
+                     fastest_exact, fmt::join(names, ", "));
+}
+
+/// The word would mean two things on the command line.
+void refuse_reserved_name(const Technique& technique)
+{
+    if (technique.id == fastest_exact)
+        throw_spec_error("{}: a technique cannot be called '{}', which stands for the fastest exact technique on the "
+                         "command line; rename the folder",
+                         short_path(technique.folder), fastest_exact);
+}
+
 } // namespace
 
 Catalogue load_catalogue(std::span<const fs::path> extra_dirs)
@@ -101,14 +122,18 @@ Catalogue load_catalogue(std::span<const fs::path> extra_dirs)
         const std::vector<fs::path> folders = folders_in(dir, is_technique, 0);
         if (folders.empty() && folders_in(dir, is_addition, 1).empty())
             throw_spec_error("{}: holds no technique (a folder with technique.toml)", short_path(dir));
-        for (const fs::path& folder : folders)
-            append(catalogue.techniques, load_technique(folder, catalogue.structures), "techniques");
+        for (const fs::path& folder : folders) {
+            Technique technique = load_technique(folder, catalogue.structures);
+            refuse_reserved_name(technique);
+            append(catalogue.techniques, std::move(technique), "techniques");
+        }
     }
     return catalogue;
 }
 
 const Technique& find_technique(std::span<const Technique> techniques, const std::string& id)
 {
+    if (id == fastest_exact) refuse_fastest_exact(techniques);
     return find(techniques, id, "technique");
 }
 

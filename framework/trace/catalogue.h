@@ -18,6 +18,10 @@ struct Catalogue {
 /// or holds none, and for every manifest that load_technique(), load_structure() … refuse.
 Catalogue load_catalogue(std::span<const std::filesystem::path> extra_dirs = {});
 
+/// On the command line, the fastest technique that claims to be exact (harness/choose_technique.h). No folder may have
+/// this name, and find_technique() refuses it: it says that a name is needed.
+inline constexpr const char* fastest_exact = "exact";
+
 /// Return the entry with this id; throw SpecError with the known ids if there is none.
 const Technique&    find_technique(std::span<const Technique> techniques, const std::string& id);
 const Surface&      find_surface(std::span<const Surface> surfaces, const std::string& id);

@@ -13,8 +13,8 @@ namespace ssrlab {
 struct Tracer {
     LabPtr      lab;
     RayBuffers  rays;
-    Buffer      view; // in the precision of the rays
-    Buffer      work;
+    Buffer      view;   // in the precision of the rays
+    Buffer      work;   // of each ray; empty in a timed tracer
     Buffer      visits; // of the one ray that is recorded, or empty
     TracePasses passes;
 };
@@ -49,8 +49,9 @@ namespace {
 
 constexpr uint64_t most_visits = 1 << 16;
 
-/// records: what the only ray looks at.
-TracerPtr make_any_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity, Precision precision, bool records)
+enum class Counted : uint8_t { nothing, work, work_and_visits };
+
+TracerPtr make_any_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity, Precision precision, Counted counted)
 {
     if (precision == Precision::float64 && !gpu.info.float64)
         throw_failure("the device '{}' has no double precision", gpu.info.name);
@@ -60,14 +61,17 @@ TracerPtr make_any_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity, Precisio
     tracer->rays                 = make_ray_buffers(gpu, capacity, precision);
     tracer->view                 = upload_view(gpu, lab->gbuffer->view, precision);
     const uint64_t rays          = std::max<uint64_t>(capacity, 1);
-    tracer->work                 = make_buffer(gpu, rays * work_words(lab->technique) * sizeof(uint32_t));
+    const bool     works         = counted != Counted::nothing;
+    const bool     records       = counted == Counted::work_and_visits;
+    if (works) tracer->work = make_buffer(gpu, rays * work_words(lab->technique) * sizeof(uint32_t));
     if (records) {
         tracer->visits      = make_buffer(gpu, sizeof(uint32_t) + most_visits * sizeof(glm::uvec4));
         const uint32_t none = 0;
         upload(gpu, tracer->visits, &none, sizeof(none));
     }
-    tracer->passes = make_trace_passes(gpu, *lab, tracer->rays, tracer->view, {},
-                                       {.work = &tracer->work, .visits = records ? &tracer->visits : nullptr});
+    tracer->passes =
+        make_trace_passes(gpu, *lab, tracer->rays, tracer->view, {},
+                          {.work = works ? &tracer->work : nullptr, .visits = records ? &tracer->visits : nullptr});
     return tracer;
 }
 
@@ -120,12 +124,18 @@ bool in_double(const Tracer& tracer) { return tracer.rays.precision == Precision
 
 TracerPtr make_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity, Precision precision)
 {
-    return make_any_tracer(gpu, lab, capacity, precision, false);
+    return make_any_tracer(gpu, lab, capacity, precision, Counted::work);
 }
 
 TracerPtr make_tracer(Gpu& gpu, const LabPtr& lab, Precision precision)
 {
     return make_tracer(gpu, lab, count_gbuffer(gpu, *lab->gbuffer, lab->settings).reflecting_pixels, precision);
+}
+
+TracerPtr make_timed_tracer(Gpu& gpu, const LabPtr& lab)
+{
+    return make_any_tracer(gpu, lab, count_gbuffer(gpu, *lab->gbuffer, lab->settings).reflecting_pixels,
+                           Precision::float32, Counted::nothing);
 }
 
 TraceResult trace_gbuffer(Gpu& gpu, Tracer& tracer)
@@ -136,13 +146,30 @@ TraceResult trace_gbuffer(Gpu& gpu, Tracer& tracer)
         record_technique(commands, tracer.passes.technique, tracer.rays);
         barrier(commands);
     });
-    return in_double(tracer) ? read_result<double>(gpu, *tracer.lab, tracer.rays, &tracer.work)
-                             : read_result<float>(gpu, *tracer.lab, tracer.rays, &tracer.work);
+    const Buffer* work = *tracer.work.buffer ? &tracer.work : nullptr;
+    return in_double(tracer) ? read_result<double>(gpu, *tracer.lab, tracer.rays, work)
+                             : read_result<float>(gpu, *tracer.lab, tracer.rays, work);
+}
+
+double time_trace(Gpu& gpu, Tracer& tracer, int times)
+{
+    const Timestamps timestamps = make_timestamps(gpu, 2);
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        record_rays(commands, tracer.passes, *tracer.lab->gbuffer);
+        for (int time = 1; time <= times; ++time) {
+            if (time == times) write_timestamp(commands, timestamps, 0);
+            record_depth_structures(commands, *tracer.lab);
+            record_technique(commands, tracer.passes.technique, tracer.rays);
+            barrier(commands);
+        }
+        write_timestamp(commands, timestamps, 1);
+    });
+    return read_intervals_ms(gpu, timestamps)[0];
 }
 
 RecordedRay record_ray(Gpu& gpu, const LabPtr& lab, const RayInput& ray)
 {
-    const auto  tracer = make_any_tracer(gpu, lab, 1, Precision::float32, true);
+    const auto  tracer = make_any_tracer(gpu, lab, 1, Precision::float32, Counted::work_and_visits);
     RecordedRay recorded{trace_rays(gpu, *tracer, std::span(&ray, 1))[0], {}, 0};
     const auto  words    = download_as<uint32_t>(gpu, tracer->visits, 1 + 4 * most_visits);
     recorded.visit_count = words[0];

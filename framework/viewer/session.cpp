@@ -3,6 +3,7 @@
 #include "compare/pictures.h"
 #include "core/error.h"
 #include "core/names.h"
+#include "harness/choose_technique.h"
 #include "harness/experiment.h"
 #include "truth/glossy_truth.h"
 #include "truth/scene_truth.h"
@@ -145,15 +146,16 @@ bool step(Session& session)
 
 std::unique_ptr<Session> open_session(const CommonOptions& common, const PictureOptions& picture)
 {
-    auto     opened           = std::make_unique<Session>();
-    Session& session          = *opened;
-    session.picture           = picture;
-    const Catalogue catalogue = load_catalogue(common.technique_dirs);
-    session.choice =
-        parse_choice(catalogue, find_technique(catalogue.techniques, picture.technique), picture.parameters);
-    session.settings  = all_settings(catalogue);
-    session.stage     = open_stage(common, catalogue, picture);
-    session.technique = &find_technique(session.stage.catalogue.techniques, picture.technique);
+    auto     opened                = std::make_unique<Session>();
+    Session& session               = *opened;
+    session.picture                = picture;
+    const Catalogue catalogue      = load_catalogue(common.technique_dirs);
+    const auto      asked          = asked_techniques(catalogue, picture.technique, picture.parameters);
+    session.settings               = all_settings(catalogue);
+    session.stage                  = open_stage(common, catalogue, picture);
+    const auto [technique, choice] = choose_technique(session.stage, asked, common.quiet);
+    session.choice                 = choice;
+    session.technique              = &find_technique(session.stage.catalogue.techniques, technique->id);
     if (!camera_is_free(session)) return opened;
     session.bvh     = std::make_unique<SceneBvh>(session.stage.scene);
     session.camera  = camera_at(session.stage.scene, picture.view, picture.at);

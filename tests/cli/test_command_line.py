@@ -87,6 +87,8 @@ class Test(Case):
         self.assertEqual(completed("ren"), ["render"])
         self.assertEqual(completed("render", "thin"), ["thin_yard"])
         self.assertEqual(completed("render", "thin_yard", "-t", "quad"), ["quadtree"])
+        self.assertEqual(completed("render", "thin_yard", "-t", "exa"), ["exact"])
+        self.assertEqual(completed("export", "exa"), [])
         self.assertEqual(completed("render", "thin_yard", "--siz"), ["--size"])
 
 
