@@ -2,8 +2,13 @@
 import os
 import shutil
 import subprocess
+import sys
+import tomllib
 
 from support import SOURCE, Case, main
+
+sys.path.insert(0, os.path.join(SOURCE, "experiments"))
+import plots.engines  # noqa: E402
 
 REFERENCE = os.path.join("results", "reference")
 
@@ -40,6 +45,14 @@ class Test(Case):
         with open(rows, "w", encoding="utf-8", newline="") as file:
             file.write("\r\n".join([head, first, first, *rest]))
         self.assertIn("Law of steps: 2 rows are", self.tables(tree, "--check", code=1))
+
+    def test_an_engine_is_shown_by_the_defaults_of_its_manifest(self):
+        for engine in plots.engines.ENGINES:
+            with open(os.path.join(SOURCE, "techniques", "rivals", engine.technique, "technique.toml"), "rb") as file:
+                defaults = {name: one["default"] for name, one in tomllib.load(file)["parameters"].items()}
+            for name in set(engine.default) & set(defaults):
+                if "Lumen" not in engine.name:  # walks as FidelityFX does, with fewer steps
+                    self.assertEqual(engine.default[name], defaults[name], f"{name} of {engine.name}")
 
 
 if __name__ == "__main__":
