@@ -58,6 +58,11 @@ std::shared_ptr<RayBuffers> ray_buffers(Gpu& gpu, FrameBuffers& buffers, const G
     return rays;
 }
 
+Buffer make_answers(Gpu& gpu, const RayBuffers& rays)
+{
+    return make_buffer(gpu, std::max<uint64_t>(rays.capacity, 1) * sizeof(RayLight));
+}
+
 GpuScene* scene_of(const FrameBuffers& buffers) { return buffers.drawing ? buffers.drawing->scene.get() : nullptr; }
 
 FrameBuffersPtr make_frame_buffers(Gpu& gpu, const DrawingPtr& drawing)
@@ -102,9 +107,9 @@ FramePtr make_frame(Gpu& gpu, const LabPtr& lab, const FrameBuffersPtr& buffers,
         inputs.plan.values.insert_or_assign(chosen(RayList::rays).first, chosen(RayList::rays).second);
     const ParameterValues& values = inputs.plan.values;
     inputs.rays                   = ray_buffers(gpu, *buffers, plan.statistics.gbuffer, values);
-    inputs.trace = make_trace_passes(gpu, *lab, *inputs.rays, lab->gbuffer->view_uniforms, rays_of(values));
-    if (answers == Answers::given)
-        inputs.answers = make_buffer(gpu, std::max<uint64_t>(inputs.rays->capacity, 1) * sizeof(RayLight));
+    inputs.trace         = make_trace_passes(gpu, *lab, *inputs.rays, lab->gbuffer->view_uniforms, rays_of(values));
+    inputs.answers_given = answers == Answers::given;
+    if (inputs.answers_given || runs(plan, "missed_rays")) inputs.answers = make_answers(gpu, *inputs.rays);
     if (plan.facts.history.usable) inputs.motion = motion_since(gpu, inputs);
     for (const PlannedPass& planned : plan.passes)
         if (planned.runs)

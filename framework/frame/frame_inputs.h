@@ -6,6 +6,7 @@
 #include "frame/frame.h"
 #include "frame/history_images.h"
 #include "trace/lab_passes.h"
+#include "world/world.h"
 
 namespace ssrlab {
 
@@ -32,8 +33,9 @@ struct LobeRayImages {
 
 struct FrameBuffers {
     GBufferPtr gbuffer;
-    DrawingPtr drawing;                                                        // null: the G-buffer was made elsewhere
-    std::map<std::tuple<size_t, int, bool>, std::shared_ptr<RayBuffers>> rays; // by capacity and content; float
+    WorldPtr   world;   // null until a frame asks for it, and where the G-buffer was made elsewhere
+    DrawingPtr drawing; // null: the G-buffer was made elsewhere
+    std::map<std::tuple<size_t, int, bool>, std::shared_ptr<RayBuffers>> rays;   // by capacity and content; float
     DrawingPtr                                                     second_layer; // empty until a frame asks for it
     std::shared_ptr<ConePyramid>                                   cone;         // empty until a frame asks for it
     std::map<std::pair<size_t, int>, std::shared_ptr<DerivedRays>> derived_rays; // by capacity and number, 0 or 1
@@ -55,8 +57,9 @@ struct FrameInputs {
     FrameHistoryPtr             history; // of the frame before, or null
     MotionBuffers               motion;  // since that frame; empty without a history to use
     std::shared_ptr<RayBuffers> rays;
-    TracePasses                 trace;   // of these rays
-    Buffer                      answers; // Answers::given: a RayLight per ray; else empty
+    TracePasses                 trace;                 // of these rays
+    Buffer                      answers;               // a RayLight per ray; empty if the frame answers them all
+    bool                        answers_given = false; // Answers::given
 };
 
 struct ReadyFrame {
@@ -74,6 +77,8 @@ FrameTimes run_passes(Gpu& gpu, const ReadyFrame& frame, const Timestamps& times
 RayChoice                   rays_of(const ParameterValues& passes);
 std::shared_ptr<RayBuffers> ray_buffers(Gpu& gpu, FrameBuffers& buffers, const GBufferCounts& counts,
                                         const ParameterValues& passes);
+/// Returns room for a RayLight per ray.
+Buffer make_answers(Gpu& gpu, const RayBuffers& rays);
 /// Returns the plan of a frame whose pixels and hits are already counted.
 FramePlan plan_with(const Catalogue& catalogue, const Lab& lab, const FrameBuffers& buffers,
                     const FrameSettings& settings, const FrameHistory* history, const GBufferCounts& counts,

@@ -17,6 +17,7 @@ struct HistoryFacts {
 /// Facts of scene and technique, known before anything is drawn.
 struct FrameFacts {
     bool                     scene           = false; // the G-buffer was drawn from one
+    bool                     world           = false; // its triangles are on the device, to be traced
     bool                     environment_map = false; // if not, the environment has one colour
     bool                     alpha_mask      = false;
     std::string              motion          = {}; // what moved since the frame before, as describe_facts() says it
@@ -27,10 +28,16 @@ struct FrameFacts {
     std::vector<std::string> structures;              // that the technique reads, in the order of building
 };
 
+/// Of blocks of 4x4 pixels: how many have a ray that missed, and of these rays, one a block, how many meet a triangle.
+struct MissCounts {
+    uint32_t followed = 0, met = 0;
+};
+
 struct FrameStatistics {
     uint32_t      pixels = 0, tiles = 0;
     GBufferCounts gbuffer;
     TraceCounts   trace;
+    MissCounts    misses; // 0 unless facts.world
 };
 
 struct PlannedPass {

@@ -1,6 +1,7 @@
 // The facts that a plan rests on, and the plan of a frame on a device.
 #include "core/stopwatch.h"
 #include "frame/frame_inputs.h"
+#include "frame/passes/missed_rays.h"
 
 #include <fmt/format.h>
 
@@ -47,6 +48,7 @@ FrameFacts facts_of(const Lab& lab, const FrameBuffers& buffers, const FrameHist
     const GpuScene* scene = scene_of(buffers);
     if (scene == nullptr) return facts;
     facts.scene           = true;
+    facts.world           = buffers.world != nullptr;
     facts.environment_map = scene->has_environment_map;
     facts.alpha_mask      = scene->alpha_mask;
     facts.motion          = describe_motion(buffers.drawing.get(), is_jittered(buffers.drawing.get()));
@@ -74,7 +76,8 @@ FramePlan plan_inputs(const Catalogue& catalogue, const Lab& lab, const FrameBuf
     plan.statistics   = {.pixels  = static_cast<uint32_t>(size_px.x) * static_cast<uint32_t>(size_px.y),
                          .tiles   = tiles.x * tiles.y,
                          .gbuffer = counts,
-                         .trace   = {}};
+                         .trace   = {},
+                         .misses  = {}};
     plan.reprojection = find_reprojection(catalogue.reprojections, settings.reprojection);
     plan.values       = possible_values(settings, plan.reprojection, plan.facts.scene);
     return plan;
@@ -102,7 +105,15 @@ FramePlan plan_frame(Gpu& gpu, const Catalogue& catalogue, const LabPtr& lab, co
         const Stopwatch stopwatch;
         const auto      rays  = ray_buffers(gpu, *buffers, counts, plan.values);
         plan.statistics.trace = count_hits(gpu, *lab, *rays, rays_of(plan.values));
-        plan.counting_s       = stopwatch.seconds();
+        if (plan.facts.world && choice<MissLight>(plan.values) == MissLight::triangles) {
+            FrameInputs traced;
+            traced.lab             = lab;
+            traced.buffers         = buffers;
+            traced.plan            = plan;
+            traced.rays            = rays;
+            plan.statistics.misses = count_followed_rays(gpu, traced);
+        }
+        plan.counting_s = stopwatch.seconds();
     }
     plan.passes = plan_passes(plan.facts, plan.statistics, plan.values);
     return plan;

@@ -1,6 +1,31 @@
 #include "frame/stage.h"
 
+#include "core/error.h"
+#include "frame/frame_inputs.h"
+
 namespace ssrlab {
+namespace {
+
+/// Whether the pass `missed_rays` may run, which traces the scene's triangles.
+bool asks_for_world(Stage& stage, const Lab& lab, const ParameterValues& passes)
+{
+    return stage.uploaded && choice<PassSet>(passes) == PassSet::all &&
+           choice<MissLight>(passes) == MissLight::triangles && passes.at("environment_fallback") != 0 &&
+           count_gbuffer(stage.gpu, *lab.gbuffer, lab.settings).reflecting_pixels > 0;
+}
+
+/// Null where the scene is more than the device holds: its frames do without.
+WorldPtr world_of(Stage& stage)
+{
+    try {
+        if (!stage.world) stage.world = upload_world(stage.gpu, stage.scene);
+    } catch (const Failure&) {
+        return nullptr;
+    }
+    return stage.world;
+}
+
+} // namespace
 
 Stage open_stage(const Gpu& gpu, Catalogue catalogue, Scene scene)
 {
@@ -18,6 +43,7 @@ void move_stage(Stage& stage, int frame)
     if (frame != stage.frame && anything_moves(stage.first)) {
         stage.scene = scene_at(stage.first, frame);
         move_scene(stage.gpu, *stage.uploaded, stage.scene);
+        stage.world.reset();
     }
     stage.frame = frame;
 }
@@ -55,6 +81,7 @@ FrameBuffersPtr make_frame_buffers(Stage& stage) { return make_frame_buffers(sta
 FramePlan plan_frame(Stage& stage, const LabPtr& lab, const FrameBuffersPtr& buffers, const FrameSettings& settings,
                      const FrameHistoryPtr& history)
 {
+    if (asks_for_world(stage, *lab, settings.passes)) buffers->world = world_of(stage);
     return plan_frame(stage.gpu, stage.catalogue, lab, buffers, settings, history);
 }
 

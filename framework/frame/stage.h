@@ -5,17 +5,20 @@
 
 namespace ssrlab {
 
+struct World;
+
 struct Stage {
-    Gpu                        gpu;
-    Catalogue                  catalogue;
-    Scene                      first;    // in frame 0
-    Scene                      scene;    // in the frame that is shown
-    GpuScenePtr                uploaded; // null for a frame file, which has no triangles
-    View                       view;
-    std::optional<FrameMotion> motion;  // since the frame before
-    DrawingPtr                 drawing; // likewise
-    GBufferPtr                 gbuffer;
-    int                        frame = 0; // of the sequence
+    Gpu                          gpu;
+    Catalogue                    catalogue;
+    Scene                        first;    // in frame 0
+    Scene                        scene;    // in the frame that is shown
+    GpuScenePtr                  uploaded; // null for a frame file, which has no triangles
+    View                         view;
+    std::optional<FrameMotion>   motion;  // since the frame before
+    DrawingPtr                   drawing; // likewise
+    GBufferPtr                   gbuffer;
+    std::shared_ptr<const World> world;     // its triangles; null until a frame asks for them
+    int                          frame = 0; // of the sequence
 };
 
 /// Uploads the scene. No view is shown yet.

@@ -1,8 +1,8 @@
 // The scene's triangles: ray tracing, for the rays that everything cheaper left open.
 #include "world/world.h"
 #include "frame/passes/pass_helpers.h"
+#include "frame/world_light.h"
 #include "sources/source.h"
-#include "sources/world_light.h"
 
 #include <algorithm>
 #include <limits>

@@ -100,20 +100,39 @@ WorldPtr upload_world(Gpu& gpu, const Scene& scene)
     return world;
 }
 
+namespace {
+
+ComputePass make_walk(Gpu& gpu, const World& world, const Buffer& rays, const Buffer& hits, const Buffer* visits)
+{
+    std::map<std::string, std::string> defines;
+    Bindings                           bindings = material_bindings(world);
+    bindings.insert({{"Nodes", world.nodes}, {"WorldRays", rays}, {"WorldHits", hits}});
+    if (visits != nullptr) {
+        defines.emplace("COUNT_WORK", "1");
+        bindings.insert({"NodeVisits", *visits});
+    }
+    const Shader shader = compile_shader(gpu, {.file = "world/walk.comp", .defines = defines});
+    return make_compute_pass(gpu, shader, bindings, {}, sizeof(uint32_t));
+}
+
+} // namespace
+
+ComputePass make_walk_pass(Gpu& gpu, const World& world, const Buffer& rays, const Buffer& hits)
+{
+    return make_walk(gpu, world, rays, hits, nullptr);
+}
+
 WorldTrace trace_world(Gpu& gpu, const World& world, std::span<const WorldRay> rays)
 {
     WorldTrace trace;
     trace.hits.resize(rays.size());
     if (rays.empty() || world.tree.nodes.empty()) return trace;
-    const Buffer listed   = make_buffer_with<WorldRay>(gpu, rays);
-    const Buffer hits     = make_buffer(gpu, rays.size() * sizeof(WorldHit));
-    const Buffer visits   = make_buffer(gpu, rays.size() * sizeof(uint32_t));
-    Bindings     bindings = material_bindings(world);
-    bindings.insert({{"Nodes", world.nodes}, {"WorldRays", listed}, {"WorldHits", hits}, {"NodeVisits", visits}});
+    const Buffer     listed     = make_buffer_with<WorldRay>(gpu, rays);
+    const Buffer     hits       = make_buffer(gpu, rays.size() * sizeof(WorldHit));
+    const Buffer     visits     = make_buffer(gpu, rays.size() * sizeof(uint32_t));
     const Timestamps timestamps = make_timestamps(gpu, 2);
-    const auto       walk       = [&](const std::map<std::string, std::string>& defines) {
-        const Shader      shader = compile_shader(gpu, {.file = "world/walk.comp", .defines = defines});
-        const ComputePass pass   = make_compute_pass(gpu, shader, bindings, {}, sizeof(uint32_t));
+    const auto       walk       = [&](const Buffer* counted) {
+        const ComputePass pass = make_walk(gpu, world, listed, hits, counted);
         submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
             barrier(commands);
             push(commands, pass, static_cast<uint32_t>(rays.size()));
@@ -123,10 +142,10 @@ WorldTrace trace_world(Gpu& gpu, const World& world, std::span<const WorldRay> r
             write_timestamp(commands, timestamps, 1);
         });
     };
-    walk({{"COUNT_WORK", "1"}});
+    walk(&visits);
     for (const uint32_t of_ray : download_as<uint32_t>(gpu, visits, rays.size())) trace.node_visits += of_ray;
-    walk({}); // a driver may compile a pipeline when it first runs
-    walk({});
+    walk(nullptr); // a driver may compile a pipeline when it first runs
+    walk(nullptr);
     trace.ms   = read_intervals_ms(gpu, timestamps)[0];
     trace.hits = download_as<WorldHit>(gpu, hits, rays.size());
     return trace;

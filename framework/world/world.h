@@ -43,6 +43,9 @@ glm::uvec3 groups_for(size_t rays);
 /// What shaders/world/materials.glsl reads, and the triangles.
 Bindings material_bindings(const World& world);
 
+/// The pass that finds the first triangle of each ray of a list, whose length it is pushed as a uint32_t.
+ComputePass make_walk_pass(Gpu& gpu, const World& world, const Buffer& rays, const Buffer& hits);
+
 struct WorldTrace {
     std::vector<WorldHit> hits;            // of each ray
     double                ms          = 0; // of the timed pipeline

@@ -12,7 +12,7 @@ struct WorldRay
 };
 
 // Where what a ray met reflects: the ray that goes on, and the weight of what it finds (0: none does).
-struct NextRay // framework/sources/world_light.h
+struct NextRay // framework/frame/world_light.h
 {
     WorldRay ray;
     vec3     weight;

@@ -12,11 +12,12 @@ namespace {
 const glm::vec3 glow{2, 0.5F, 0.25F}; // numbers of half precision
 
 /// A mirror that faces the camera, and behind the camera a wall without end that glows. Nothing else gives light.
-Scene mirror_before_glowing_wall(float mirror_roughness, float wall_metallic)
+Scene mirror_before_glowing_wall(float mirror_roughness, float wall_metallic, glm::vec3 mirror_emissive = {0, 0, 0})
 {
     Material mirror = make_material("mirror", {1, 1, 1}, 1, mirror_roughness);
     Material wall   = make_material("wall", glm::vec3(wall_metallic), wall_metallic, wall_metallic > 0 ? 0 : 1);
     wall.emissive   = glow;
+    mirror.emissive = mirror_emissive;
     Model          model;
     constexpr auto half_m = 4000.0;
     model.materials       = {mirror, wall};
@@ -67,8 +68,87 @@ TEST(AnsweredFrame, AMirrorShowsWhatStandsBehindTheCamera)
     EXPECT_EQ(world.picture.values, world.expected.values);
     EXPECT_GT(world.picture.values[0], 0.95F * glow.r);
     // The frame does not show the wall, and there is no other light.
-    const Shown frame = shown_by(scene, "frame", glm::vec3(0), {});
+    FrameSettings settings;
+    settings.passes.insert_or_assign("miss_light", choice_value(MissLight::environment));
+    const Shown frame = shown_by(scene, "frame", glm::vec3(0), settings);
     EXPECT_EQ(frame.picture.values, frame.expected.values);
+}
+
+TEST(AnsweredFrame, AMissedRayShowsWhatStandsInItsWay)
+{
+    FrameSettings settings;
+    settings.passes.insert_or_assign("miss_light", choice_value(MissLight::triangles));
+    for (const float roughness : {0.0F, 0.3F}) {
+        const Shown shown = shown_by(mirror_before_glowing_wall(roughness, 0), "frame", glow, settings);
+        expect_near(shown.picture, shown.expected, roughness > 0 ? 4 * double(glow.r) / 1024 : 0);
+    }
+}
+
+// The mirror glows, too, and the wall is a mirror: with a further bounce, the light of both comes back.
+TEST(AnsweredFrame, AMissedRayShowsWhatTheMetWallReflects)
+{
+    const Scene   scene = mirror_before_glowing_wall(0, 1, glow);
+    FrameSettings settings;
+    settings.passes.insert_or_assign("miss_light", choice_value(MissLight::triangles));
+    for (const auto& [bounces, light] : {std::pair(BounceMode::off, glow), {BounceMode::direct, 2.0F * glow}}) {
+        settings.passes.insert_or_assign("bounce_mode", choice_value(bounces));
+        const Shown shown = shown_by(scene, "frame", light, settings);
+        expect_near(shown.picture, shown.expected, 8 * double(glow.r) / 1024);
+    }
+}
+
+/// A frame without sources, as it is planned and with every pass.
+struct PlannedPicture {
+    Image       planned, unculled;
+    PlannedPass missed_rays;
+};
+
+PlannedPicture planned_picture(const Scene& scene, MissLight miss_light, Gloss gloss)
+{
+    FrameSettings settings;
+    settings.passes.insert_or_assign("miss_light", choice_value(miss_light));
+    settings.passes.insert_or_assign("gloss", choice_value(gloss));
+    Stage stage = open_stage(device(), catalogue(), scene);
+    show(stage, "default", {161, 91});
+    const Technique&      hiz     = technique("hiz");
+    const LabPtr          lab     = make_lab(stage, hiz, values_of(hiz), settings.trace);
+    const FrameBuffersPtr buffers = make_frame_buffers(stage);
+    const FramePlan       plan    = plan_frame(stage, lab, buffers, settings);
+    PlannedPicture        result;
+    result.missed_rays = *std::ranges::find(plan.passes, "missed_rays", &PlannedPass::id);
+    for (const bool all : {false, true}) {
+        const FramePtr frame = make_frame(stage.gpu, lab, buffers, all ? unculled(plan) : plan);
+        run_frame(stage.gpu, *frame);
+        (all ? result.unculled : result.planned) = read_shaded(stage.gpu, *frame);
+    }
+    return result;
+}
+
+TEST(MissedRays, SkippingThePassChangesNoBit)
+{
+    const Scene scene = load_scene("builtin:everything");
+    for (const Gloss gloss : {Gloss::stochastic, Gloss::blur}) {
+        const PlannedPicture followed = planned_picture(scene, MissLight::triangles, gloss);
+        EXPECT_TRUE(followed.missed_rays.runs);
+        EXPECT_NE(followed.missed_rays.reason.find("followed rays meet a triangle"), std::string::npos);
+        EXPECT_EQ(followed.planned.values, followed.unculled.values);
+        EXPECT_NE(followed.planned.values, planned_picture(scene, MissLight::environment, gloss).planned.values);
+    }
+}
+
+// The mirror stands alone: the unculled frame follows its rays and finds nothing.
+TEST(MissedRays, ShowTheEnvironmentWhereTheSceneIsOpen)
+{
+    Scene scene = load_scene("builtin:everything");
+    std::erase_if(scene.draws, [](const Draw& draw) { return draw.name != "floor"; });
+    ASSERT_EQ(scene.draws.size(), 1U);
+    for (const Gloss gloss : {Gloss::stochastic, Gloss::blur}) {
+        const PlannedPicture open = planned_picture(scene, MissLight::triangles, gloss);
+        EXPECT_FALSE(open.missed_rays.runs);
+        EXPECT_EQ(open.missed_rays.reason.substr(0, 5), "0 of ");
+        EXPECT_EQ(open.planned.values, open.unculled.values);
+        EXPECT_EQ(open.planned.values, planned_picture(scene, MissLight::environment, gloss).planned.values);
+    }
 }
 
 TEST(AnsweredFrame, ARoughMirrorShowsItByTheRaysOfItsLobe)

@@ -27,7 +27,8 @@ const FrameFacts with_pyramid = facts_with_pyramid();
 /// 1000 pixels in 20 tiles, of which `reflecting` reflect, `rough` of these with roughness.
 FrameStatistics frame(uint32_t reflecting, uint32_t rough, uint32_t hits, uint32_t mirror_hits)
 {
-    FrameStatistics statistics{.pixels = 1000, .tiles = 20, .gbuffer = {}, .trace = {reflecting, hits, mirror_hits}};
+    FrameStatistics statistics{
+        .pixels = 1000, .tiles = 20, .gbuffer = {}, .trace = {reflecting, hits, mirror_hits}, .misses = {}};
     statistics.gbuffer.surface_pixels      = 900;
     statistics.gbuffer.reflecting_pixels   = reflecting;
     statistics.gbuffer.reflecting_tiles    = (reflecting + 49) / 50;
@@ -102,6 +103,24 @@ TEST(Plan, LobesAreDrawnAndReusedWhereAnythingIsRough)
     EXPECT_THAT(reason(plan, "ray_reuse"), HasSubstr("25 %"));
     EXPECT_FALSE(running(plan_passes(drawn, frame(400, 0, 350, 10), values_with({chosen(Gloss::stochastic)})))
                      .contains("ray_reuse"));
+}
+
+TEST(Plan, MissedRaysAreFollowedWhereTheyMeetATriangle)
+{
+    const ParameterValues values  = values_with({chosen(MissLight::triangles)});
+    FrameFacts            facts   = facts_with_pyramid(true);
+    FrameStatistics       closed  = frame(400, 100, 350, 10);
+    const auto            verdict = [&] { return plan_passes(facts, closed, values); };
+    EXPECT_THAT(reason(verdict(), "missed_rays"), HasSubstr("triangles are not on the device"));
+    facts.world = true;
+    EXPECT_THAT(reason(verdict(), "missed_rays"), HasSubstr("no ray missed"));
+    closed.misses = {.followed = 12, .met = 0};
+    EXPECT_FALSE(running(verdict()).contains("missed_rays"));
+    closed.misses.met = 7;
+    EXPECT_TRUE(running(verdict()).contains("missed_rays"));
+    EXPECT_THAT(reason(verdict(), "missed_rays"), HasSubstr("7 of 12"));
+    const ParameterValues environment = values_with({chosen(MissLight::environment)});
+    EXPECT_FALSE(running(plan_passes(facts, closed, environment)).contains("missed_rays"));
 }
 
 // S3's order: the blur works on what was traced, and up-sampling comes after it.

@@ -5,13 +5,17 @@ namespace ssrlab {
 std::span<const Pass> all_passes()
 {
     static const std::vector<Pass> passes = {
-        layers_pass(),       solid_backs_pass(),  classification_pass(),
-        rays_pass(),         structures_pass(),   trace_pass(),
-        hidden_layer_pass(), reprojection_pass(), colour_downsampling_pass(),
-        cone_pyramid_pass(), hit_colour_pass(),   bounces_pass(),
-        ray_blur_pass(),     upsampling_pass(),   ray_reuse_pass(),
-        filter_3x3_pass(),   blur_pass(),         environment_pass(),
-        history_pass(),      composite_pass(),
+        layers_pass(),         solid_backs_pass(),
+        classification_pass(), rays_pass(),
+        structures_pass(),     trace_pass(),
+        hidden_layer_pass(),   missed_rays_pass(),
+        reprojection_pass(),   colour_downsampling_pass(),
+        cone_pyramid_pass(),   hit_colour_pass(),
+        bounces_pass(),        ray_blur_pass(),
+        upsampling_pass(),     ray_reuse_pass(),
+        filter_3x3_pass(),     blur_pass(),
+        environment_pass(),    history_pass(),
+        composite_pass(),
     };
     return passes;
 }

@@ -6,14 +6,9 @@ namespace {
 
 RecordFunction prepare(Gpu& gpu, const PassContext& context)
 {
-    Defines  defines;
-    Bindings bindings;
-    if (context.frame.answers.bytes > 0) {
-        defines.emplace("ANSWERS_GIVEN", "1");
-        bindings.insert({"RayLights", context.frame.answers});
-    }
-    auto pass =
-        std::make_shared<ComputePass>(make_colour_pass(gpu, context, "passes/hit_colour.comp", defines, bindings));
+    Defines defines;
+    if (context.frame.answers.bytes > 0) defines.emplace("ANSWERS_GIVEN", "1");
+    auto pass = std::make_shared<ComputePass>(make_colour_pass(gpu, context, "passes/hit_colour.comp", defines));
     RecordFunction no_pixel;
     if (trace_block_px(context.frame.plan.values) > 1)
         no_pixel = make_fill(gpu, image_of(context, Resource::block_pixel), {NO_PIXEL, 0, 0, 0});
@@ -67,7 +62,7 @@ Pass hit_colour_pass()
             .cite    = {"J. Somerville Roberts, Screen Space Reflections", "Litheon 2012, Real-Time Local Reflections",
                         "A. Biro 2015, Report on Screen-Space Reflections"},
             .reads   = {Resource::gbuffer, Resource::light, Resource::layers, Resource::surroundings, Resource::rays,
-                        Resource::hits, Resource::small_colour, Resource::cones},
+                        Resource::hits, Resource::answers, Resource::small_colour, Resource::cones},
             .writes  = {Resource::reflection, Resource::block_pixel, Resource::lobe_rays},
             .parameters = parameters(),
             .decide     = needed_if_anything_reflects,

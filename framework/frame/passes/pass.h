@@ -43,6 +43,7 @@ enum class Resource : uint8_t {
     rays,
     structures,
     hits,
+    answers,     // what rays bring back that the frame does not answer
     reprojected, // where each reflection was in the frame before
     small_colour,
     cones,
@@ -84,6 +85,7 @@ Pass rays_pass();
 Pass structures_pass();
 Pass trace_pass();
 Pass hidden_layer_pass();
+Pass missed_rays_pass();
 Pass reprojection_pass();
 Pass colour_downsampling_pass();
 Pass cone_pyramid_pass();

@@ -69,9 +69,9 @@ bool one_ray_per_pixel(const ParameterValues& values)
 std::string_view name_of(Resource resource)
 {
     static constexpr auto names = std::to_array<std::string_view>(
-        {"gbuffer",  "light",       "objects",   "layers",      "solids",       "surroundings", "tiles",
-         "rays",     "structures",  "hits",      "reprojected", "small_colour", "cones",        "reflection",
-         "filtered", "block_pixel", "lobe_rays", "history",     "kept",         "shaded"});
+        {"gbuffer",    "light",      "objects",     "layers",    "solids",      "surroundings", "tiles",
+         "rays",       "structures", "hits",        "answers",   "reprojected", "small_colour", "cones",
+         "reflection", "filtered",   "block_pixel", "lobe_rays", "history",     "kept",         "shaded"});
     static_assert(names.size() == static_cast<size_t>(Resource::shaded) + 1);
     return names[static_cast<size_t>(resource)];
 }
@@ -180,6 +180,7 @@ Bindings bindings_of(Gpu& gpu, const PassContext& context, Resource resource)
                 {"PictureStatistics", gbuffer.tiles.statistics}};
     case Resource::rays: return {{"RayCount", frame.rays->count}, {"Rays", frame.rays->list}};
     case Resource::hits: return {{"Hits", frame.rays->hits}};
+    case Resource::answers: return frame.answers.bytes > 0 ? Bindings{{"RayLights", frame.answers}} : Bindings{};
     case Resource::structures: return {}; // the lab's own
     case Resource::reprojected:
         return frame.history ? Bindings{{"reprojected_image", frame.history->reprojected}} : Bindings{};

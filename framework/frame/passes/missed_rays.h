@@ -1,0 +1,12 @@
+// The pass `missed_rays`, for the plan that counts what it would find.
+#pragma once
+
+#include "frame/frame_inputs.h"
+
+namespace ssrlab {
+
+/// Follows the missed rays of a frame that was traced, as the pass does. Needs the scene's triangles on the device.
+/// Makes FrameInputs::answers.
+MissCounts count_followed_rays(Gpu& gpu, FrameInputs& frame);
+
+} // namespace ssrlab

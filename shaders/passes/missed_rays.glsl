@@ -1,0 +1,48 @@
+// Rays of reflecting pixels that found nothing. One in each block of pixels is followed through the scene's triangles,
+// on behalf of the others.
+#include "layout/workgroups.glsl"
+#include "api/view.glsl"
+#include "trace/ray_list.glsl"
+#include "trace/hit_list.glsl"
+#include "rays/reflecting.glsl"
+#include "pass/parameters"
+#include "api/hash.glsl"
+#include "rays/lobe.glsl"
+#include "passes/shown_hits.glsl"
+#include "passes/scene_frame.glsl"
+#include "passes/given_light.glsl"
+#include "world/rays.glsl"
+
+layout(local_size_x = RAYS_PER_GROUP) in;
+
+const uint no_rank = 0xFFFFFFFFu;
+
+ivec2 miss_blocks() { return (size_px - 1) / MISS_BLOCK_PX + 1; }
+int   miss_block(ivec2 pixel) { return pixel.y / MISS_BLOCK_PX * miss_blocks().x + pixel.x / MISS_BLOCK_PX; }
+
+// The least of a block is followed: in a random order, and the same in whichever order the rays are listed.
+uint miss_rank(ivec2 pixel, uint ray)
+{
+    uint random = pcg(uint(pixel.x) + pcg(uint(pixel.y) + pcg(ray + offset_seed())));
+    uvec2 place = uvec2(pixel) % MISS_BLOCK_PX;
+    return (random & 0x7FFFF000u) | (place.y * MISS_BLOCK_PX + place.x) << 8 | ray;
+}
+
+// Did this ray of the list find nothing? `missed`: the ray in world space. A ray that ends where it begins has no
+// direction, and does not count.
+bool is_missed(uint index, out WorldRay missed)
+{
+    missed = WorldRay(vec3(0), 0.0, vec3(0), 0.0, 0.0);
+    if (index >= ray_count || given_light(index).distance_m >= 0.0 || shows_surface(packed_hit(index))) return false;
+    ivec2 pixel = unpack_pixel(ray_pixel(index));
+    if (!reflects(pixel)) return false;
+    PackedRay ray     = packed_ray(index);
+    vec3 origin_vs    = px_to_vs(ray.origin);
+    vec3 direction_vs = normalize(px_to_direction_vs(ray.origin, ray.origin + ray.delta));
+    if (!(dot(direction_vs, direction_vs) > 0.5)) return false;
+    mat3  view_to_world = transpose(mat3(world_to_view));
+    float eye_m         = orthographic != 0 ? -origin_vs.z : length(origin_vs);
+    missed = WorldRay(view_to_world * (origin_vs - world_to_view[3].xyz), MISS_START_SHARE * eye_m,
+                      view_to_world * direction_vs, min(max_distance_m, 1e37), imageLoad(normal_image, pixel).w);
+    return true;
+}
