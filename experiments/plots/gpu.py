@@ -45,3 +45,12 @@ def table(results, tables):
 
 
 ALL = [table]
+
+
+def compiled_traces(path):
+    """What a compiler makes of each trace for a GPU that is not there: the commit, and a row a technique."""
+    found = json.loads(path.read_text(encoding="utf-8"))
+    counts = {"VGPRs": "VGPRs", "spilled": "Spilled VGPRs", "waves a SIMD": "Subgroups per SIMD", "bytes": "Code size"}
+    return found["commit"], [{"technique": technique, **{said: one["statistics"][name] for said, name in counts.items()},
+                              "instructions of the innermost loop": one["innermost_loop"]["instructions"], "loads there": one["innermost_loop"]["loads"]}
+                             for one in found["pipelines"] if one["shader"].startswith("trace/trace") for technique in one["techniques"]]

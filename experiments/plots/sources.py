@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.transforms import Bbox
 
+from .data import Results
 from .figures import log_axis
 
 WIDTH_INCHES = 85 / 25.4
@@ -59,7 +60,9 @@ def short_names(rows):
 
 
 def geometric(values):
-    return float(np.exp(np.log(values.clip(lower=1e-6)).mean()))
+    """The mean of those that took any time; 0 if none did."""
+    spent = values[values > 0]
+    return float(np.exp(np.log(spent).mean())) if len(spent) else 0.0
 
 
 def steps_of(rows):
@@ -155,7 +158,12 @@ def draw_ladder(steps):
 def ladder(results, tables):
     """What each further source adds, and what it costs: a step a source."""
     rows = asked_rows(results)
-    for place, (tracer, part) in enumerate(rows.groupby("tracer") if len(rows) else ()):
+    if rows.empty:
+        return
+    # What `auto` chose differs from frame to frame: it is one step.
+    whole = ~rows.sources.str.startswith("auto") | ~rows.duplicated("run_id", keep="last")
+    rows = rows.assign(step=[((row.sources,), "") if row.sources.startswith("auto") else row.step for row in rows.itertuples()])[whole]
+    for place, (tracer, part) in enumerate(rows.groupby("tracer")):
         steps = steps_of(part)
         if len(steps) < 2:
             continue
@@ -276,4 +284,58 @@ def hybrids(results, tables):
     return ()
 
 
-ALL = [ladder, lost_by_class, brought_back, hybrids]
+def chosen_lines(name, part):
+    """What `auto` chose in one frame, and the fixed list, or beginning of a list, that answers most for no more time."""
+    auto = part[part.sources.str.startswith("auto")].drop_duplicates("run_id", keep="last")
+    fixed = part[~part.sources.str.startswith("auto") & ((part.hand_on == "uncertain") | (part.place == 0))]
+    for one in auto.itertuples():
+        asked = part[part.run_id == one.run_id]
+        affordable = fixed[fixed.spent_ms <= 1.05 * one.spent_ms]
+        best = affordable.loc[affordable.all_f1.idxmax()] if len(affordable) else None
+        yield {"frame": name, "budget": one.sources.removeprefix("auto:").replace("=", " "), "chosen": ",".join(asked.source), "ms": f"{one.spent_ms:.0f}",
+               "F1, %": f"{100 * one.all_f1:.1f}", "best fixed list for no more time": "" if best is None else ",".join(best.step[0]),
+               "its F1, %": "" if best is None else f"{100 * best.all_f1:.1f}", "choosing, s": f"{asked.choosing_ms.iloc[0] / 1000:.0f}"}
+
+
+def chosen(results, tables):
+    """`auto` against the fixed lists: a table, no figure."""
+    rows = asked_rows(results)
+    if rows.empty or not rows.sources.str.startswith("auto").any():
+        return ()
+    names = short_names(rows)
+    tables["What auto chose, against the fixed lists"] = [
+        line for (frame_name, _), part in rows.groupby(["frame_name", "tracer"], sort=False) for line in chosen_lines(names[frame_name], part)]
+    return ()
+
+
+def mirrors(results, tables):
+    """What a planar reflection costs beside the trace of the frame, over the share of the picture that the mirror covers: a table, no figure."""
+    rows = asked_rows(results)
+    if rows.empty:
+        return ()
+    names, lines = short_names(rows), []
+    for (frame_name, _), part in rows.groupby(["frame_name", "tracer"], sort=False):
+        planar, frame = part[part.sources == "planar"], part[part.sources == "frame"]
+        if len(planar) != 1 or len(frame) != 1:
+            continue
+        planar, frame = planar.iloc[0], frame.iloc[0]
+        width, height = map(int, frame_name.rsplit(", ", 1)[1].split("×"))
+        lines.append({"frame": names[frame_name], "picture that reflects, %": share(frame.handed, width * height),
+                      "frame: ms": f"{frame.spent_ms:.0f}", "recall, %": f"{100 * frame.all_recall:.1f}", "precision, %": f"{100 * frame.all_precision:.1f}",
+                      "planar: ms": f"{planar.spent_ms:.0f}", "planar: recall, %": f"{100 * planar.all_recall:.1f}",
+                      "planar: precision, %": f"{100 * planar.all_precision:.1f}" if planar.points else "", "time, planar / frame": f"{planar.spent_ms / frame.spent_ms:.1f}"})
+    if lines:
+        tables["A planar reflection beside the frame"] = lines
+    return ()
+
+
+ALL = [ladder, lost_by_class, brought_back, hybrids, chosen, mirrors]
+
+
+def tables_of(folder):
+    """{title: rows} of the results in a folder, without its figures."""
+    results, tables = Results(folder), {}
+    for make in ALL:
+        for _, figure in make(results, tables):
+            plt.close(figure)
+    return tables

@@ -13,7 +13,7 @@
 namespace ssrlab {
 namespace {
 
-constexpr std::array kind_names = {"", "open", "point", "nothing"}; // by AnswerKind
+constexpr std::array kind_names = {"", "open", "point", "nothing", "light"}; // by AnswerKind
 
 glm::dvec3 place_ws(const GBufferImage& image, size_t pixel)
 {

@@ -15,6 +15,7 @@ enum class AnswerKind : uint8_t {
     open       = 1, // no answer
     point      = 2, // meets geometry at RayAnswer::point_ws
     nothing    = 3, // meets no geometry within the maximum distance
+    light      = 4, // what it brings back is guessed; where it ends is not known
 };
 
 struct RayAnswer {
@@ -22,7 +23,7 @@ struct RayAnswer {
     bool       certain = false; // the source vouches for it; an open answer is never certain
     uint8_t    source  = 0;     // place in the list of the source that said it
     double     clear_m = 0;     // from the reflecting point on, the ray is known to meet nothing before this distance
-    glm::dvec3 point_ws{0};     // undefined unless `point`
+    glm::dvec3 point_ws{0};     // undefined unless `point`; of `light`: the place whose distance blurs it
     glm::vec3  light{0};        // linear radiance that the ray brings back; undefined where the answer is open
 
     bool operator==(const RayAnswer&) const = default;
@@ -42,12 +43,12 @@ struct SourceTurn {
 };
 
 /// The answer of one pixel's ray after one more source was asked: what is certain stands, and so does an uncertain
-/// point until a certain answer or another point comes.
+/// point until a certain answer or another point comes. "Meets nothing" and light without a point fill open answers.
 inline RayAnswer merged(const RayAnswer& before, const RayAnswer& added)
 {
     if (before.certain || added.kind == AnswerKind::not_traced) return before;
     if (added.certain || added.kind == AnswerKind::point) return added;
-    RayAnswer result = before.kind == AnswerKind::open && added.kind == AnswerKind::nothing ? added : before;
+    RayAnswer result = before.kind == AnswerKind::open && added.kind != AnswerKind::open ? added : before;
     result.clear_m   = before.clear_m > added.clear_m ? before.clear_m : added.clear_m;
     return result;
 }

@@ -39,7 +39,8 @@ std::vector<OpenRay> mirror_rays(const SourceContext& context)
 
 bool is_handed_on(const RayAnswer& answer, HandOn hand_on)
 {
-    return answer.kind == AnswerKind::open || (hand_on == HandOn::uncertain && !answer.certain);
+    return answer.kind == AnswerKind::open || answer.kind == AnswerKind::light ||
+           (hand_on == HandOn::uncertain && !answer.certain);
 }
 
 } // namespace

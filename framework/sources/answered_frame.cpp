@@ -57,7 +57,8 @@ RayLight to_light(const OpenRay& ray, const RayAnswer& answer, std::span<const L
 {
     constexpr float nothing_m = std::numeric_limits<float>::infinity();
     if (answer.kind == AnswerKind::nothing && answer.certain) return {glm::vec3(0), nothing_m};
-    if (answer.kind != AnswerKind::point || sources[answer.source].source->id == "frame") return {};
+    const bool has_light = answer.kind == AnswerKind::point || answer.kind == AnswerKind::light;
+    if (!has_light || sources[answer.source].source->id == "frame") return {};
     return {answer.light, static_cast<float>(glm::distance(answer.point_ws, ray.origin_ws))};
 }
 

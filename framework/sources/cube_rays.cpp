@@ -17,9 +17,34 @@ int face_of(const View& centre, const OpenRay& ray)
     // A little farther on, so that a point on the border between two faces lies in the one that the ray enters.
     const double     on_m = ray.clear_m + 1e-6 * (ray.eye_m + ray.clear_m);
     const glm::dvec3 at   = glm::dvec3(centre.world_to_view * glm::dvec4(ray.origin_ws + on_m * ray.direction_ws, 1));
-    const glm::dvec3 size = glm::abs(at);
+    return face_toward(at);
+}
+
+struct Lists {
+    std::vector<OpenRay> rays;
+    std::vector<size_t>  places; // of each in the list that was asked about
+
+    void add(const OpenRay& ray, size_t place)
+    {
+        rays.push_back(ray);
+        places.push_back(place);
+    }
+};
+
+} // namespace
+
+View moved_to(const View& view, glm::dvec3 eye_ws)
+{
+    View moved             = view;
+    moved.world_to_view[3] = glm::dvec4(glm::dmat3(view.world_to_view) * -eye_ws, 1);
+    return moved;
+}
+
+int face_toward(glm::dvec3 point_vs)
+{
+    const glm::dvec3 size = glm::abs(point_vs);
     const int        axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    return 2 * axis + (at[axis] > 0 ? 0 : 1);
+    return 2 * axis + (point_vs[axis] > 0 ? 0 : 1);
 }
 
 void draw_face(SourceContext& context, CubeOfFrames& cube, int number, SourceTurn& turn)
@@ -35,19 +60,6 @@ void draw_face(SourceContext& context, CubeOfFrames& cube, int number, SourceTur
     turn.megabytes += megabytes_of(*face);
     cube.images[static_cast<size_t>(number)] = read_gbuffer(context.stage.gpu, *face);
 }
-
-struct Lists {
-    std::vector<OpenRay> rays;
-    std::vector<size_t>  places; // of each in the list that was asked about
-
-    void add(const OpenRay& ray, size_t place)
-    {
-        rays.push_back(ray);
-        places.push_back(place);
-    }
-};
-
-} // namespace
 
 View face_view(const View& centre, int face, int size_px)
 {

@@ -16,6 +16,15 @@ struct CubeOfFrames {
     std::shared_ptr<const DrawPipeline> pipeline = {}; // empty until a face is drawn
 };
 
+/// Returns the view from another place, with the same axes.
+View moved_to(const View& view, glm::dvec3 eye_ws);
+
+/// Returns the face that shows a point of the centre's view space.
+int face_toward(glm::dvec3 point_vs);
+
+/// Draws both sides of all surfaces in a face, unless that was done before. Adds time and memory to the turn.
+void draw_face(SourceContext& context, CubeOfFrames& cube, int face, SourceTurn& turn);
+
 /// Returns the square view of a face, 90 degrees wide.
 View face_view(const View& centre, int face, int size_px);
 

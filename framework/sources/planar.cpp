@@ -21,29 +21,90 @@ struct Plane {
     double     offset_m = 0;
 };
 
+/// Of the surface that a pixel shows, in view space, unit and toward the eye: of its triangle, whatever the normals are
+/// that shade it. Zero where the plane is unknown.
+glm::dvec3 flat_normal_vs(const GBufferImage& image, size_t pixel)
+{
+    constexpr double step_px = 0.125; // short, so that depth stays positive
+    const glm::dvec2 gradient(image.gradient[pixel]), at_px(glm::dvec2(pixel_at(pixel, image.view.size_px)) + 0.5);
+    const double     depth = double(image.depth[pixel]);
+    if (!std::isfinite(gradient.x + gradient.y)) return glm::dvec3(0);
+    const auto beside = [&](glm::dvec2 by_px) {
+        return px_to_vs(image.view, at_px + by_px, depth + glm::dot(gradient, by_px));
+    };
+    const glm::dvec3 at_vs  = beside({0, 0});
+    const glm::dvec3 normal = glm::cross(beside({0, step_px}) - at_vs, beside({step_px, 0}) - at_vs);
+    const double     length = glm::length(normal);
+    return length > 0 ? normal / length : glm::dvec3(0);
+}
+
+/// The plane with the least squared distances from points, along the axis of `normal` that is longest.
+Plane fitted_plane(std::span<const glm::dvec3> points_ws, glm::dvec3 normal)
+{
+    const glm::dvec3 size = glm::abs(normal);
+    const int        up   = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const int        u = (up + 1) % 3, v = (up + 2) % 3;
+    glm::dvec3       middle(0);
+    for (const glm::dvec3& point : points_ws) middle += point / double(points_ws.size());
+    double uu = 0, uv = 0, vv = 0, uw = 0, vw = 0;
+    for (const glm::dvec3& point : points_ws) {
+        const glm::dvec3 d = point - middle;
+        uu += d[u] * d[u], uv += d[u] * d[v], vv += d[v] * d[v], uw += d[u] * d[up], vw += d[v] * d[up];
+    }
+    const double determinant = uu * vv - uv * uv;
+    if (determinant > 1e-6 * uu * vv) { // else they lie on a line
+        normal[up] = 1;
+        normal[u]  = (uv * vw - vv * uw) / determinant;
+        normal[v]  = (uv * uw - uu * vw) / determinant;
+        normal     = glm::normalize(normal);
+    }
+    return {normal, glm::dot(normal, middle)};
+}
+
+/// The plane that most of the points lie in, where some lie in another one a little above: each round leaves out the
+/// half that lies farther off.
+Plane plane_of_most(std::vector<glm::dvec3> points_ws, glm::dvec3 normal)
+{
+    constexpr int    rounds = 4;
+    constexpr size_t least  = 64; // points from which a plane is known well
+    Plane            plane  = fitted_plane(points_ws, normal);
+    for (int round = 0; round < rounds && points_ws.size() > 2 * least; ++round) {
+        const auto middle = points_ws.begin() + static_cast<ptrdiff_t>(points_ws.size() / 2);
+        std::ranges::nth_element(points_ws, middle, {}, [&](const glm::dvec3& point) {
+            return std::abs(glm::dot(plane.normal_ws, point) - plane.offset_m);
+        });
+        points_ws.erase(middle, points_ws.end());
+        plane = fitted_plane(points_ws, plane.normal_ws);
+    }
+    return plane;
+}
+
 /// The plane in which most of the rays begin; nullopt if fewer than 2 % begin in any.
 std::optional<Plane> largest_plane(const GBufferImage& image, std::span<const OpenRay> rays)
 {
     const glm::dmat4 view_to_world = glm::inverse(image.view.world_to_view);
     const auto       eye_ws        = glm::dvec3(view_to_world[3]);
     // Planes by normal and distance from the eye, in steps that are wider than rounding and narrower than things.
-    constexpr double                                            normal_step = 0.02, distance_step = 0.01;
-    std::map<std::array<int, 4>, std::pair<size_t, glm::dvec4>> planes;
+    struct Part {
+        std::vector<glm::dvec3> points_ws;
+        glm::dvec3              normal_ws{0};
+    };
+    constexpr double                   normal_step = 0.02, distance_step = 0.01;
+    std::map<std::array<int, 4>, Part> parts;
     for (const OpenRay& ray : rays) {
-        const glm::dvec3 normal = glm::normalize(glm::dmat3(view_to_world) * glm::dvec3(image.normal_vs[ray.pixel]));
-        const double     away_m = glm::dot(normal, ray.origin_ws - eye_ws);
-        const auto       step = [](double value, double width) { return static_cast<int>(std::lround(value / width)); };
-        auto& [count, sum] =
-            planes[{step(normal.x, normal_step), step(normal.y, normal_step), step(normal.z, normal_step),
-                    step(std::log(std::max(std::abs(away_m), 1e-9)), distance_step)}];
-        ++count;
-        sum += glm::dvec4(normal, away_m);
+        const glm::dvec3 normal = glm::dmat3(view_to_world) * flat_normal_vs(image, ray.pixel);
+        if (normal == glm::dvec3(0)) continue;
+        const double away_m = glm::dot(normal, ray.origin_ws - eye_ws);
+        const auto   step   = [](double value, double width) { return static_cast<int>(std::lround(value / width)); };
+        Part& part = parts[{step(normal.x, normal_step), step(normal.y, normal_step), step(normal.z, normal_step),
+                            step(std::log(std::max(std::abs(away_m), 1e-9)), distance_step)}];
+        part.points_ws.push_back(ray.origin_ws);
+        part.normal_ws += normal;
     }
-    const auto largest = std::ranges::max_element(planes, {}, [](const auto& plane) { return plane.second.first; });
-    if (largest == planes.end() || largest->second.first * 50 < rays.size()) return std::nullopt;
-    const glm::dvec4 mean   = largest->second.second / double(largest->second.first);
-    const glm::dvec3 normal = glm::normalize(glm::dvec3(mean));
-    return Plane{normal, glm::dot(normal, eye_ws) + mean.w};
+    const auto count_of = [](const auto& part) { return part.second.points_ws.size(); };
+    const auto largest  = std::ranges::max_element(parts, {}, count_of);
+    if (largest == parts.end() || count_of(*largest) * 50 < rays.size()) return std::nullopt;
+    return plane_of_most(std::move(largest->second.points_ws), largest->second.normal_ws);
 }
 
 bool begins_in(const Plane& plane, const OpenRay& ray)

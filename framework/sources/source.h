@@ -70,6 +70,7 @@ Source cube_source();
 Source views_source();
 Source past_source();
 Source planar_source();
+Source probe_source();
 Source world_source();
 /// Stands for a list that choose_sources() finds, and cannot be asked itself.
 Source auto_source();

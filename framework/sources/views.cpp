@@ -1,5 +1,6 @@
 // Further cameras that look everywhere, placed by the rays that are still open: where those went, and from where that
 // can be seen.
+#include "core/error.h"
 #include "core/stopwatch.h"
 #include "frame/passes/pass_helpers.h"
 #include "sources/cube_rays.h"
@@ -45,20 +46,6 @@ bool probably_sees(const Occupancy& grid, glm::dvec3 eye_ws, const Target& targe
     return !may_meet(grid, target.at_ws, to_eye / away_m, 2 * cell_m, away_m);
 }
 
-/// Places that are not inside of something, evenly over the grid.
-std::vector<glm::dvec3> candidates(const Occupancy& grid)
-{
-    std::vector<glm::dvec3> places;
-    const glm::dvec3        size = grid.cell_m * glm::dvec3(grid.cells);
-    for (int z = 0; z < candidates_side; ++z)
-        for (int y = 0; y < candidates_side; ++y)
-            for (int x = 0; x < candidates_side; ++x) {
-                const glm::dvec3 at = grid.low_ws + size * (glm::dvec3(x, y, z) + 0.5) / double(candidates_side);
-                if (!may_meet(grid, at, {1, 0, 0}, 0, 0)) places.push_back(at);
-            }
-    return places;
-}
-
 /// The place that sees most of what no place before it sees; those are removed from the targets. Empty when none sees
 /// any.
 std::optional<glm::dvec3> best_place(const Occupancy& grid, std::span<const glm::dvec3> places,
@@ -77,28 +64,49 @@ std::optional<glm::dvec3> best_place(const Occupancy& grid, std::span<const glm:
     return best;
 }
 
-View view_from(const View& frame, glm::dvec3 eye_ws)
+std::vector<glm::dvec3> placed_by_rays(SourceContext& context, std::span<const OpenRay> rays, size_t count)
 {
-    View view             = frame;
-    view.world_to_view[3] = glm::dvec4(glm::dmat3(frame.world_to_view) * -eye_ws, 1);
-    return view;
+    if (!context.occupancy) context.occupancy = std::make_shared<const Occupancy>(make_occupancy(context.stage.scene));
+    const Occupancy&              grid    = *context.occupancy;
+    const std::vector<glm::dvec3> places  = free_places(grid, candidates_side);
+    std::vector<Target>           targets = targets_of(grid, rays);
+    std::vector<glm::dvec3>       eyes_ws;
+    for (size_t view = 0; view < count; ++view)
+        if (const auto place = best_place(grid, places, targets)) eyes_ws.push_back(*place);
+    return eyes_ws;
+}
+
+/// The first of the scene's cameras that stand elsewhere.
+std::vector<glm::dvec3> placed_by_scene(const SourceContext& context, size_t count)
+{
+    constexpr double        elsewhere_m = 1e-6;
+    std::vector<glm::dvec3> eyes_ws     = {glm::dvec3(glm::inverse(context.image.view.world_to_view)[3])};
+    for (const Camera& camera : context.stage.scene.cameras) {
+        const auto stands_there = [&](const glm::dvec3& eye_ws) {
+            return glm::distance(eye_ws, glm::dvec3(camera.position_ws)) < elsewhere_m;
+        };
+        if (eyes_ws.size() <= count && std::ranges::none_of(eyes_ws, stands_there))
+            eyes_ws.emplace_back(camera.position_ws);
+    }
+    eyes_ws.erase(eyes_ws.begin()); // the picture's own
+    if (eyes_ws.size() < count)
+        throw_failure("source 'views': place = scene needs {} cameras beside the picture's own; '{}' has {}", count,
+                      context.stage.scene.name, eyes_ws.size());
+    return eyes_ws;
 }
 
 SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
 {
-    if (!context.occupancy) context.occupancy = std::make_shared<const Occupancy>(make_occupancy(context.stage.scene));
-    const Occupancy& grid = *context.occupancy;
-    SourceTurn       turn;
+    SourceTurn turn;
     for (const OpenRay& ray : rays) turn.answers.push_back({.kind = AnswerKind::open, .clear_m = ray.clear_m});
     const Stopwatch               placing;
-    const std::vector<glm::dvec3> places  = candidates(grid);
-    std::vector<Target>           targets = targets_of(grid, rays);
-    std::vector<glm::dvec3>       eyes;
-    for (int view = 0; view < static_cast<int>(context.parameters.at("count")); ++view)
-        if (const auto place = best_place(grid, places, targets)) eyes.push_back(*place);
+    const auto                    count   = static_cast<size_t>(context.parameters.at("count"));
+    const bool                    by_rays = context.parameters.at("place") == 0;
+    const std::vector<glm::dvec3> eyes =
+        by_rays ? placed_by_rays(context, rays, count) : placed_by_scene(context, count);
     turn.merge_ms = 1000 * placing.seconds();
     for (const glm::dvec3& eye_ws : eyes) {
-        CubeOfFrames cube{view_from(context.image.view, eye_ws), static_cast<int>(context.parameters.at("size_px"))};
+        CubeOfFrames cube{moved_to(context.image.view, eye_ws), static_cast<int>(context.parameters.at("size_px"))};
         ask_elsewhere(context, rays, turn.answers,
                       [&](const TraceSettings& settings, RayStart start, std::span<const OpenRay> open) {
                           return trace_in_cube(context, cube, settings, start, open, turn);
@@ -112,8 +120,10 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
 Source views_source()
 {
     return {.id         = "views",
-            .summary    = "Further cameras that look everywhere, placed by where the open rays went",
+            .summary    = "Further cameras that look everywhere, placed by where the open rays went, or by hand",
             .parameters = {integer_parameter("count", 1, 1, 8, "cameras"),
+                           choice_parameter({"place", "rays, scene"}, 0,
+                                            "where they see most of what is open, or the scene's next cameras"),
                            integer_parameter("size_px", 512, 16, 4096, "width and height of each of a camera's faces")},
             .answer     = answer};
 }

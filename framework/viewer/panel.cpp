@@ -6,6 +6,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ssrlab {
@@ -64,6 +65,15 @@ bool drag_widget(const Parameter& parameter, double& value)
                              ImGuiSliderFlags_AlwaysClamp);
 }
 
+void set_or_say(Session& session, const std::string& name, const std::string& text)
+{
+    try {
+        set_value(session, name, text);
+    } catch (const SpecError& error) {
+        session.problem = error.what();
+    }
+}
+
 /// By the parameter's type and range; tells the session what was chosen.
 void widget(Session& session, const Parameter& parameter, double value)
 {
@@ -88,11 +98,7 @@ void widget(Session& session, const Parameter& parameter, double value)
     }
     tip(fmt::format("{}\nDefault: {}", parameter.doc, format_parameter(parameter, parameter.default_value)));
     if (!changed) return;
-    try {
-        set_value(session, parameter.name, format_parameter(parameter, value));
-    } catch (const SpecError& error) {
-        session.problem = error.what();
-    }
+    set_or_say(session, parameter.name, format_parameter(parameter, value));
 }
 
 void technique_widgets(Session& session)
@@ -117,6 +123,11 @@ void show_widgets(Session& session)
     if (const auto chosen = combo("show", session.show, shown_names.size(), [](size_t i) { return shown_names[i]; }))
         set_value(session, "show", std::string(shown_names[*chosen]));
     tip("The picture, its rays in false colours (docs/how-to/read_the_report.md), or the true reflection");
+    std::array<char, 256> sources{};
+    session.sources.copy(sources.data(), sources.size() - 1);
+    if (ImGui::InputText("sources", sources.data(), sources.size(), ImGuiInputTextFlags_EnterReturnsTrue))
+        set_or_say(session, "sources", sources.data());
+    tip("What may answer rays beside the frame, in order: frame,planar,world (docs/explanation/beyond.md)");
     auto split = static_cast<float>(session.split);
     if (ImGui::SliderFloat("split", &split, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp))
         set_value(session, "split", fmt::format("{}", split));

@@ -1,4 +1,5 @@
 // What the panel and a script's `print` say.
+#include "compare/all_rays.h"
 #include "core/error.h"
 #include "core/quantile.h"
 #include "harness/experiment.h"
@@ -63,9 +64,9 @@ std::vector<Reading> readings(const Session& session)
         const auto found = measures.find(name);
         return found == measures.end() ? 0 : found->second.value_or(0);
     };
-    const std::string prefix = session.scene_truth ? "" : "screen_";
-    const std::string of     = fmt::format(" ms (median of {})", session.times.size());
-    return {
+    const std::string    prefix = session.scene_truth ? "" : "screen_";
+    const std::string    of     = fmt::format(" ms (median of {})", session.times.size());
+    std::vector<Reading> result = {
         {"trace",
          fmt::format("{:.2f}", median_ms(session.times, [](const FrameTimes& t) { return t.of("trace"); })) + of},
         {"all passes",
@@ -77,6 +78,24 @@ std::vector<Reading> readings(const Session& session)
         {prefix + "precision_1px", share_text(measures, prefix + "precision_1px")},
         {prefix + "f1_1px", share_text(measures, prefix + "f1_1px")},
     };
+    if (!has_answers(session) || !session.scene_truth) return result;
+    std::string asked;
+    for (const SourceTurn& turn : session.answered.turns) asked += (asked.empty() ? "" : ",") + turn.source;
+    const AllRays all = compare_all_rays(session.answered.answers, *session.scene_truth, session.gbuffer);
+    result.push_back({"sources", asked});
+    result.push_back({"all_f1", all.f1 ? fmt::format("{:.2f} %", 100 * *all.f1) : "none"});
+    return result;
+}
+
+/// Which source answered the ray of a pixel.
+std::string answered_by(const Session& session, size_t i)
+{
+    if (!has_answers(session)) return "";
+    const RayAnswer& answer = session.answered.answers[i];
+    if (answer.kind <= AnswerKind::open) return "\nno source answers";
+    constexpr std::array said = {"", "", "a point", "nothing there", "a colour"}; // by AnswerKind
+    return fmt::format("\nanswered by {}: {}, {}", session.answered.turns[answer.source].source,
+                       said[static_cast<size_t>(answer.kind)], answer.certain ? "certain" : "uncertain");
 }
 
 PixelRay ray_at(const Session& session, glm::ivec2 pixel)
@@ -95,6 +114,7 @@ PixelRay ray_at(const Session& session, glm::ivec2 pixel)
     ray.text += fmt::format("\n{} steps, {} fetches", session.counted.steps[i],
                             session.counted.depth_fetches[i] + structure_fetches_of(session.counted, i));
     add_truth(session, i, ray);
+    ray.text += answered_by(session, i);
     if (!session.camera_moved) ray.command = ray_command(session, pixel);
     return ray;
 }

@@ -3,8 +3,10 @@
 #include "compare/pictures.h"
 #include "core/error.h"
 #include "core/names.h"
+#include "harness/choose_sources.h"
 #include "harness/choose_technique.h"
 #include "harness/experiment.h"
+#include "sources/answered_frame.h"
 #include "truth/glossy_truth.h"
 #include "truth/scene_truth.h"
 #include "truth/screen_truth.h"
@@ -36,20 +38,69 @@ void draw_view(Session& session)
     session.stale.view = false;
 }
 
+/// Does something with a context that has what the sources built of the scene before, and keeps what they build now.
+/// The scene is still, so both serve every camera.
+void with_sources(Session& session, SourceContext context, const auto& ask)
+{
+    context.world     = session.world;
+    context.occupancy = session.occupancy;
+    ask(context);
+    session.world     = context.world;
+    session.occupancy = context.occupancy;
+}
+
+/// In the place of `auto` comes what it chooses for this view. The camera may move on: choosing takes seconds.
+void choose_listed(Session& session)
+{
+    if (session.listed.empty() || session.listed.front().source->id != "auto") return;
+    const Choice& choice = session.choice;
+    with_sources(session, make_source_context(session.stage, *session.technique, choice.values, choice.settings),
+                 [&](SourceContext& context) {
+                     session.listed = choose_sources(context, session.listed, HandOn::uncertain).list;
+                 });
+}
+
 void trace(Session& session)
 {
     Stage& stage = session.stage;
     session.times.clear();
+    choose_listed(session);
     const Choice&         choice  = session.choice;
+    const bool            alone   = session.listed.empty();
     const LabPtr          lab     = make_lab(stage, *session.technique, choice.values, choice.settings.trace);
     const FrameBuffersPtr buffers = make_frame_buffers(stage);
-    session.frame = make_frame(stage.gpu, lab, buffers, plan_frame(stage, lab, buffers, choice.settings));
-    run_frame(stage.gpu, *session.frame); // the driver compiles
-    session.times.push_back(run_frame(stage.gpu, *session.frame));
+    session.frame = make_frame(stage.gpu, lab, buffers, plan_frame(stage, lab, buffers, choice.settings), {},
+                               alone ? Answers::own : Answers::given);
+    if (alone) {
+        run_frame(stage.gpu, *session.frame); // the driver compiles
+        session.times.push_back(run_frame(stage.gpu, *session.frame));
+    } else {
+        with_sources(session, make_source_context(stage, lab), [&](SourceContext& context) {
+            session.times.push_back(run_answered_frame(context, *session.frame, session.listed, HandOn::uncertain));
+        });
+    }
     session.shaded         = read_shaded(stage.gpu, *session.frame);
     session.counted        = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
     session.stale.trace    = false;
-    session.stale.measures = session.stale.shown = true;
+    session.stale.measures = session.stale.answers = session.stale.shown = true;
+}
+
+bool wants_answers(const Session& session)
+{
+    return session.bvh && (session.show == "sources" || !session.listed.empty());
+}
+
+void find_answers(Session& session)
+{
+    const Choice& choice = session.choice;
+    with_sources(session, make_source_context(session.stage, *session.technique, choice.values, choice.settings),
+                 [&](SourceContext& context) {
+                     const auto list =
+                         session.listed.empty() ? parse_sources("frame,world", "sources") : session.listed;
+                     session.answered = answer_rays(context, list, HandOn::uncertain);
+                 });
+    session.stale.answers = false;
+    session.stale.shown   = true;
 }
 
 void find_truth(Session& session)
@@ -82,7 +133,10 @@ Image false_colours(const Session& session)
         return session.scene_truth ? agreement_picture(session.counted, *session.scene_truth)
                                    : agreement_picture(session.counted, *session.screen_truth);
     if (!session.scene_truth)
-        throw_spec_error("causes: a frame of another renderer has no triangles, so the cause of an error is not known");
+        throw_spec_error("{}: a frame of another renderer has no triangles, so the cause of an error is not known",
+                         session.show);
+    if (session.show == "sources")
+        return sources_picture(session.answered.answers, *session.scene_truth, session.gbuffer);
     return causes_picture(session.counted, *session.scene_truth, session.gbuffer);
 }
 
@@ -131,11 +185,14 @@ bool step(Session& session)
         find_truth(session);
     else if (stale.measures)
         measure(session);
+    else if (stale.answers && wants_answers(session))
+        find_answers(session);
     else if (stale.true_picture && wants_true_picture(session))
         find_true_picture(session);
     else if (stale.shown)
         compose(session);
-    else if (session.times.size() < timed_frames && spent_ms(session.times) < timing_budget_ms)
+    else if (session.listed.empty() && session.times.size() < timed_frames &&
+             spent_ms(session.times) < timing_budget_ms)
         session.times.push_back(run_frame(session.stage.gpu, *session.frame));
     else
         return false;
@@ -180,6 +237,14 @@ void set_value(Session& session, const std::string& name, const std::string& tex
         session.stale.trace   = true;
         return;
     }
+    if (name == "sources") {
+        if (!text.empty() && !session.bvh)
+            throw_spec_error("{}: a frame of another renderer has no scene that sources could ask", place);
+        session.listed      = text.empty() ? std::vector<ListedSource>{} : parse_sources(text, place);
+        session.sources     = text;
+        session.stale.trace = true;
+        return;
+    }
     if (name == "show" || name == "split" || name == "exposure") {
         if (name == "split") session.split = share(0, 1);
         if (name == "exposure") session.exposure_ev = share(-32, 32);
@@ -213,6 +278,8 @@ void aim(Session& session)
     const float      depth  = session.gbuffer.depth[pixel_index(middle, session.stage.view.size_px)];
     if (depth > 0) set_target_distance(session.camera, depth_to_distance(session.stage.view, depth));
 }
+
+bool has_answers(const Session& session) { return wants_answers(session) && !session.stale.answers; }
 
 bool work(Session& session)
 {

@@ -5,6 +5,7 @@
 #include "compare/measures.h"
 #include "harness/choice.h"
 #include "harness/experiment.h"
+#include "sources/answer_rays.h"
 #include "truth/scene_bvh.h"
 
 #include <array>
@@ -15,11 +16,12 @@
 
 namespace ssrlab {
 
-inline constexpr std::array<std::string_view, 5> shown_names = {"picture", "agreement", "causes", "fetches", "truth"};
+inline constexpr std::array<std::string_view, 6> shown_names = {"picture", "agreement", "causes",
+                                                                "sources", "fetches",   "truth"};
 
 /// What has to be made again.
 struct Stale {
-    bool view = true, trace = true, truth = true, measures = true, true_picture = true, shown = true;
+    bool view = true, trace = true, truth = true, measures = true, answers = true, true_picture = true, shown = true;
 };
 
 struct Session {
@@ -34,33 +36,41 @@ struct Session {
     Camera           camera;
     bool             camera_moved = false;
     std::string      show         = "picture";
-    double           split        = 0; // the right part of the picture that shows the true reflection, as a share
-    double           exposure_ev  = 0;
+    std::string      sources;         // as `ssrlab render --sources` takes them; empty: the frame alone
+    double           split       = 0; // the right part of the picture that shows the true reflection, as a share
+    double           exposure_ev = 0;
     Stale            stale;
 
     // What work() made of them.
-    FramePtr                   frame;
-    std::vector<FrameTimes>    times; // of this frame, one after another
-    GBufferImage               gbuffer;
-    Image                      shaded, true_picture;
-    TraceResult                counted;
-    std::optional<SceneTruth>  scene_truth;
-    std::optional<TraceResult> screen_truth; // of a frame of another renderer
-    MeasureValues              measures;
-    Image                      shown;       // linear display light
-    int                        version = 0; // of `shown`
-    std::string                problem;     // why the settings cannot be shown; empty: they can
+    FramePtr                         frame;
+    std::vector<FrameTimes>          times; // of this frame, one after another
+    GBufferImage                     gbuffer;
+    Image                            shaded, true_picture;
+    TraceResult                      counted;
+    std::optional<SceneTruth>        scene_truth;
+    std::optional<TraceResult>       screen_truth; // of a frame of another renderer
+    MeasureValues                    measures;
+    std::vector<ListedSource>        listed; // of `sources`; in the place of `auto`, what it chose
+    AnsweredRays                     answered;
+    std::shared_ptr<const World>     world; // what the sources built of the scene
+    std::shared_ptr<const Occupancy> occupancy;
+    Image                            shown;       // linear display light
+    int                              version = 0; // of `shown`
+    std::string                      problem;     // why the settings cannot be shown; empty: they can
 };
 
 std::unique_ptr<Session> open_session(const CommonOptions& common, const PictureOptions& picture);
 
-/// By name: technique, show, split, exposure, a setting, or a parameter of the technique. Throws SpecError.
+/// By name: technique, show, sources, split, exposure, a setting, or a parameter of the technique. Throws SpecError.
 void set_value(Session& session, const std::string& name, const std::string& text);
 /// After a change of the camera.
 void camera_changed(Session& session);
 /// Orbits turn about the surface in the middle of the picture.
 void aim(Session& session);
 bool camera_is_free(const Session& session);
+
+/// Does the session ask sources, and are their answers those of this frame?
+bool has_answers(const Session& session);
 
 /// Does the next piece of what is stale, or times another frame; false: nothing was left to do.
 bool work(Session& session);

@@ -68,6 +68,18 @@ class Test(Case):
         self.assertEqual(self.shown("split.png", right).tobytes(), truth.crop(right).tobytes())
         self.assertNotEqual(plane.crop(right).tobytes(), truth.crop(right).tobytes())
 
+    def test_sources_answer_the_picture_and_the_ray(self):
+        vouching = ("-t", "hiz", "-p", "surface=plane_infinite", "-p", "behind=stop")
+        text = self.view("screenshot alone.png\nset sources=frame,world\nscreenshot a.png\nset show=sources\nscreenshot b.png\ncursor 160 140\n"
+                         "print\nset sources=\nset show=picture\nprint\n", *vouching, says=["answered by ", "sources: frame,world"])
+        self.assertEqual(text.count("all_f1"), 1, text)
+        asked = ("--sources", "frame,world")
+        for name, more in (("alone.png", ()), ("a.png", asked), ("b.png", (*asked, "--show", "sources"))):
+            self.assertEqual(self.shown(name).tobytes(), self.rendered(*vouching, *more).tobytes(), name)
+        self.assertNotEqual(self.shown("a.png").tobytes(), self.shown("alone.png").tobytes())
+        self.assertGreater(self.share(text, "all_f1")[0], 97)
+        self.view("set sources=frame,wrld\n", code=2, says=["script.txt:1: ", "did you mean 'world'?"])
+
     def test_the_ray_under_the_cursor(self):
         text = self.view("screenshot without.png\ncursor 160 140\nprint\nscreenshot with.png\n", "-t", "hiz")
         ray = json.loads(self.ssrlab("ray", *SCENE, "--pixel", "160,140", "-t", "hiz", "--json"))
