@@ -188,14 +188,11 @@ std::vector<RayOutcome> trace_timed(Gpu& gpu, const Lab& lab, std::span<const Ra
                           pack_pixel(ray.pixel, static_cast<int>(ray.end_status))});
     RayBuffers        buffers = make_ray_buffers(gpu, rays.size(), Precision::float32);
     const TracePasses passes  = make_trace_passes(gpu, lab, buffers, lab.gbuffer->view_uniforms);
-    const auto        count   = static_cast<uint32_t>(rays.size());
-    upload(gpu, buffers.count, &count, sizeof(count));
+    set_ray_count(gpu, buffers, rays.size());
     upload(gpu, buffers.list, listed.data(), listed.size() * sizeof(listed[0]));
     const Timestamps timestamps = make_timestamps(gpu, 2);
     for (int turn = 0; turn < 2; ++turn) // a driver may compile a pipeline when it first runs
         submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-            barrier(commands);
-            dispatch(commands, passes.ray_launch, {1, 1, 1});
             barrier(commands);
             write_timestamp(commands, timestamps, 0);
             record_depth_structures(commands, lab);

@@ -49,7 +49,7 @@ ComposedPass compose_pass(const Gpu& gpu, const Lab& lab, const Structure& struc
     return {structure.id,
             build_source(gpu, lab, structure, pass, rays, false),
             build_constants(lab, Precision::float32),
-            dispatch.per_ray ? RAYS_PER_GROUP * RAY_GROUP_INVOCATIONS / gpu.info.lanes : 0,
+            dispatch.per_ray ? rays_per_workgroup(gpu) : 0,
             dispatch.levels,
             dispatch.groups,
             dispatch_rule(lab, pass)};

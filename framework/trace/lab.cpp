@@ -81,8 +81,7 @@ template <typename Real> void upload_rays(Gpu& gpu, RayBuffers& buffers, std::sp
     for (const RayInput& ray : rays)
         listed.push_back({ray.origin_px_depth, static_cast<Real>(ray.length_m), ray.delta_px_depth,
                           pack_pixel(ray.pixel, static_cast<int>(ray.end_status))});
-    const uint32_t count = static_cast<uint32_t>(rays.size());
-    upload(gpu, buffers.count, &count, sizeof(count));
+    set_ray_count(gpu, buffers, rays.size());
     upload(gpu, buffers.list, listed.data(), listed.size() * sizeof(listed[0]));
 }
 
@@ -201,8 +200,6 @@ std::vector<RayOutcome> trace_rays(Gpu& gpu, Tracer& tracer, std::span<const Ray
     else
         upload_rays<float>(gpu, tracer.rays, rays);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-        barrier(commands);
-        dispatch(commands, tracer.passes.ray_launch, {1, 1, 1});
         barrier(commands);
         record_depth_structures(commands, *tracer.lab);
         record_technique(commands, tracer.passes.technique, tracer.rays);

@@ -78,21 +78,40 @@ Bindings ray_bindings(const GBuffer& gbuffer, const RayBuffers& rays)
 {
     Bindings bindings = surface_bindings(gbuffer);
     bindings.insert({{"RayCount", rays.count},
+                     {"RayLaunch", rays.launch},
+                     {"GroupLaunch", rays.group_launch},
                      {"Rays", rays.list},
                      {"Hits", rays.hits},
                      {"TileMasks", gbuffer.tiles.masks},
+                     {"TileLaunch", gbuffer.tiles.launch},
                      {"TileCount", gbuffer.tiles.count},
                      {"Tiles", gbuffer.tiles.tiles},
                      {"PictureStatistics", gbuffer.tiles.statistics}});
     return bindings;
 }
 
-ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch, int items_per_group)
+int rays_per_workgroup(const Gpu& gpu) { return RAYS_PER_GROUP * RAY_GROUP_INVOCATIONS / gpu.info.lanes; }
+
+ComputePass make_launch_pass(Gpu& gpu, const RayBuffers& rays)
 {
     Constants constants;
-    constants.add(CONSTANT_ITEMS_PER_GROUP, items_per_group);
+    constants.add(CONSTANT_RAYS_PER_WORKGROUP, rays_per_workgroup(gpu));
     return make_compute_pass(gpu, compile_shader(gpu, {.file = "trace/dispatch_args.comp"}),
-                             {{"ItemCount", items}, {"Launch", launch}}, constants);
+                             {{"RayCount", rays.count}, {"RayLaunch", rays.launch}, {"GroupLaunch", rays.group_launch}},
+                             constants);
+}
+
+void set_ray_count(Gpu& gpu, const RayBuffers& rays, size_t count)
+{
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        const auto launch_of = [&](int items_per_group) {
+            return groups_in_rows(count, static_cast<size_t>(items_per_group), LAUNCH_ROW_GROUPS);
+        };
+        commands.updateBuffer<uint32_t>(*rays.count.buffer, 0, static_cast<uint32_t>(count));
+        commands.updateBuffer<glm::uvec3>(*rays.launch.buffer, 0, launch_of(RAYS_PER_GROUP));
+        commands.updateBuffer<glm::uvec3>(*rays.group_launch.buffer, 0, launch_of(rays_per_workgroup(gpu)));
+        barrier(commands);
+    });
 }
 
 ShaderSource trace_source(const Gpu& gpu, const Lab& lab, const RayBuffers& rays, const Bindings& bindings)
@@ -155,12 +174,8 @@ TechniquePasses make_technique_passes(Gpu& gpu, const Lab& lab, const RayBuffers
 {
     const Constants constants = trace_constants(gpu, lab, rays);
     TechniquePasses passes;
-    passes.structures   = make_ray_structures(gpu, lab, rays, bindings);
-    const auto is_built = [](const StructurePasses& structure) { return !structure.dispatches.empty(); };
-    if (std::ranges::any_of(passes.structures, is_built))
-        passes.group_launch = make_launch_pass(gpu, rays.count, rays.group_launch,
-                                               RAYS_PER_GROUP * RAY_GROUP_INVOCATIONS / gpu.info.lanes);
-    Bindings all = bindings;
+    passes.structures = make_ray_structures(gpu, lab, rays, bindings);
+    Bindings all      = bindings;
     all.merge(structure_bindings(gpu, lab.technique, *lab.gbuffer, rays));
     passes.trace = make_compute_pass(gpu, compile_shader(gpu, trace_source(gpu, lab, rays, bindings)), all, constants);
     return passes;
@@ -173,17 +188,9 @@ void record_depth_structures(const vk::raii::CommandBuffer& commands, const Lab&
 
 void record_technique(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes, const RayBuffers& rays)
 {
-    for (const StructurePasses& structure : passes.structures) record_ray_structure(commands, passes, structure, rays);
+    for (const StructurePasses& structure : passes.structures)
+        record_structure(commands, structure, &rays.group_launch);
     dispatch_indirect(commands, passes.trace, rays.launch);
-}
-
-void record_ray_structure(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes,
-                          const StructurePasses& structure, const RayBuffers& rays)
-{
-    if (structure.dispatches.empty()) return;
-    dispatch(commands, passes.group_launch, {1, 1, 1});
-    barrier(commands);
-    record_structure(commands, structure, &rays.group_launch);
 }
 
 namespace {
@@ -211,25 +218,20 @@ TracePasses make_trace_passes(Gpu& gpu, const Lab& lab, const RayBuffers& rays, 
     constants.add(CONSTANT_RAYS_PER_PIXEL, choice.per_pixel);
     constants.add(CONSTANT_LOBE_RAYS, choice.from_lobe ? 1 : 0);
     constants.add(CONSTANT_TRACE_BLOCK_PX, choice.block_px);
+    constants.add(CONSTANT_RAYS_PER_WORKGROUP, rays_per_workgroup(gpu));
     TracePasses passes;
     passes.classification = make_classification(gpu, bindings, constants);
     passes.tile_list      = make_compute_pass(gpu, compile_tile_list(gpu), bindings, constants, sizeof(glm::ivec2));
-    passes.tile_launch    = make_launch_pass(gpu, gbuffer.tiles.count, gbuffer.tiles.launch, 1);
-    passes.rays       = make_compute_pass(gpu, compile_shader(gpu, ray_setup_source(gpu, rays)), bindings, constants);
-    passes.ray_launch = make_launch_pass(gpu, rays.count, rays.launch, RAYS_PER_GROUP);
-    passes.technique  = make_technique_passes(gpu, lab, rays, bindings);
+    passes.rays      = make_compute_pass(gpu, compile_shader(gpu, ray_setup_source(gpu, rays)), bindings, constants);
+    passes.technique = make_technique_passes(gpu, lab, rays, bindings);
     return passes;
 }
 
 namespace {
 
-/// Marks and counts alone, without a list.
 void record_marking(const vk::raii::CommandBuffer& commands, const Classification& classification,
                     const GBuffer& gbuffer)
 {
-    barrier(commands);
-    commands.fillBuffer(*gbuffer.tiles.statistics.buffer, 0, VK_WHOLE_SIZE, 0);
-    barrier(commands);
     const glm::uvec3 tiles = groups_of_8(gbuffer.view.size_px);
     const uint32_t   each  = classification.tiles_per_group;
     dispatch(commands, classification.pass, {(tiles.x + each - 1) / each, tiles.y, 1});
@@ -240,12 +242,10 @@ void record_marking(const vk::raii::CommandBuffer& commands, const Classificatio
 
 void record_classification(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const GBuffer& gbuffer)
 {
+    barrier(commands);
     record_marking(commands, passes.classification, gbuffer);
     push(commands, passes.tile_list, glm::ivec2(groups_of_8(gbuffer.view.size_px)));
     dispatch(commands, passes.tile_list, {1, 1, 1});
-    barrier(commands);
-    dispatch(commands, passes.tile_launch, {1, 1, 1});
-    dispatch(commands, passes.ray_launch, {1, 1, 1});
     barrier(commands);
 }
 
@@ -272,8 +272,13 @@ const GBufferCounts& count_gbuffer(Gpu& gpu, GBuffer& gbuffer, const TraceSettin
                      {"PictureStatistics", gbuffer.tiles.statistics}});
     Constants constants;
     add_reflecting(constants, settings);
+    constants.add(CONSTANT_COUNTS_PIXELS, 1);
     const Classification classification = make_classification(gpu, bindings, constants);
-    submit(gpu, [&](const auto& commands) { record_marking(commands, classification, gbuffer); });
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        commands.fillBuffer(*gbuffer.tiles.statistics.buffer, 0, VK_WHOLE_SIZE, 0);
+        barrier(commands);
+        record_marking(commands, classification, gbuffer);
+    });
     return gbuffer.counts.emplace(rule, download_as<GBufferCounts>(gpu, gbuffer.tiles.statistics, 1)[0]).first->second;
 }
 

@@ -37,13 +37,19 @@ static_assert(sizeof(PackedHit<float>) == 8 && sizeof(PackedHit<double>) == 16);
 struct RayBuffers {
     Precision                         precision = Precision::float32;
     size_t                            capacity  = 0;
-    Buffer                            count, launch, list, hits;
-    Buffer                            group_launch;    // dispatch arguments of passes per group of rays
-    std::shared_ptr<StructureBuffers> structures = {}; // those that depend on this list
+    Buffer                            count, list, hits;
+    Buffer                            launch, group_launch; // dispatch arguments: of the trace, of passes per ray group
+    std::shared_ptr<StructureBuffers> structures = {};      // those that depend on this list
     int  rays_of_pixels = 0;     // above 0: the list holds pixels, each this many times, and shaders make the rays
     bool from_lobe      = false; // such rays are drawn from the lobe of a rough surface
 };
 RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision, int rays_of_pixels = 0);
+/// Sets the number of rays in a list that is uploaded, and their launches.
+void set_ray_count(Gpu& gpu, const RayBuffers& rays, size_t count);
+/// Returns the pass that sets the launches of a list that other passes have filled and counted.
+ComputePass make_launch_pass(Gpu& gpu, const RayBuffers& rays);
+/// Returns the rays of a workgroup of a structure's pass per ray group.
+int rays_per_workgroup(const Gpu& gpu);
 
 /// Which pixels of a G-buffer have rays, and how many each. The default is the mirror ray of each pixel that reflects.
 struct RayChoice {
@@ -56,7 +62,7 @@ struct RayChoice {
 /// The passes of a technique on one list of rays.
 struct TechniquePasses {
     std::vector<StructurePasses> structures; // those that depend on the list
-    ComputePass                  group_launch, trace;
+    ComputePass                  trace;
 };
 
 /// The pass that marks tiles, with the number of adjacent tiles per workgroup.
@@ -67,7 +73,7 @@ struct Classification {
 
 struct TracePasses {
     Classification  classification;
-    ComputePass     tile_list, tile_launch, rays, ray_launch;
+    ComputePass     tile_list, rays;
     TechniquePasses technique;
 };
 
@@ -84,9 +90,6 @@ TracePasses make_trace_passes(Gpu& gpu, const Lab& lab, const RayBuffers& rays, 
 TechniquePasses make_technique_passes(Gpu& gpu, const Lab& lab, const RayBuffers& rays, const Bindings& bindings);
 /// Records building the structures that depend on depth alone.
 void record_depth_structures(const vk::raii::CommandBuffer& commands, const Lab& lab);
-/// Records building a structure, unless it depends on depth alone.
-void record_ray_structure(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes,
-                          const StructurePasses& structure, const RayBuffers& rays);
 /// Records building all structures that depend on the list, then the trace.
 void record_technique(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes, const RayBuffers& rays);
 
@@ -99,8 +102,6 @@ void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses
 const GBufferCounts& count_gbuffer(Gpu& gpu, GBuffer& gbuffer, const TraceSettings& settings);
 /// Traces once and returns how the rays ended.
 TraceCounts count_hits(Gpu& gpu, const Lab& lab, const RayBuffers& rays, const RayChoice& choice);
-
-ComputePass make_launch_pass(Gpu& gpu, const Buffer& items, const Buffer& launch, int items_per_group);
 
 // What shaders are composed with.
 /// Returns G-buffer, tiles, list and hits by their names in shaders, without the view.

@@ -14,8 +14,9 @@
 // Specialization constants. Technique parameters start at CONSTANT_PARAMETERS, in the order of technique.toml's names.
 #define CONSTANT_RAY_OFFSET_M 4
 #define CONSTANT_EVERY_SURFACE 7
-#define CONSTANT_ITEMS_PER_GROUP 8
+#define CONSTANT_RAYS_PER_WORKGROUP 8
 #define CONSTANT_TRACE_BLOCK_PX 9
+#define CONSTANT_COUNTS_PIXELS 10
 #define CONSTANT_RAYS_PER_PIXEL 11
 #define CONSTANT_FRONT_SLOPE 12
 #define CONSTANT_FRONT_SCALE 13

@@ -1,5 +1,5 @@
-// Marks in each tile of 8 x 8 pixels those to trace, and counts what the plan of the frame asks about. A tile per invocation: what its pixels
-// share needs neither shared memory nor an atomic per pixel, which CPU devices run lane by lane.
+// Marks in each tile of 8 x 8 pixels those to trace, or counts what the plan of the frame asks about, too. A tile per invocation: what its
+// pixels share needs neither shared memory nor an atomic per pixel, which CPU devices run lane by lane.
 #include "rays/classified.glsl"
 #if ROUGHNESS_BINS != 16
 #error four bins in each of four words
@@ -26,10 +26,13 @@ void main()
         bool  inside  = all(lessThan(pixel, size_px));
         bool  surface = inside && is_surface(load_depth(pixel), normal.xyz);
         bool  mirror  = surface && material_reflects(pixel);
-        surfaces += uint(surface);
-        mirrors += uint(mirror);
-        int bin = roughness_bin(normal.w);
-        roughness += uvec4(equal(ivec4(bin >> 2), ivec4(0, 1, 2, 3))) * (uint(mirror) << 8 * (bin & 3));
+        if (counts_pixels != 0)
+        {
+            surfaces += uint(surface);
+            mirrors += uint(mirror);
+            int bin = roughness_bin(normal.w);
+            roughness += uvec4(equal(ivec4(bin >> 2), ivec4(0, 1, 2, 3))) * (uint(mirror) << 8 * (bin & 3));
+        }
 
         uint  bit  = 1u << (in_tile.x + 8 * (in_tile.y & 3));
         uvec2 own  = in_tile.y < 4 ? uvec2(bit, 0) : uvec2(0, bit);

@@ -61,6 +61,7 @@ void main()
         bool mirror  = surface && material_reflects(pixel);
         surface_places |= uint(surface) << i;
         SET_BITS(mirrors, i, place, mirror)
+        if (counts_pixels == 0) continue;
         uint count = subgroupBallotBitCount(subgroupBallot(surface));
         if (count > 0 && subgroupElect()) atomicAdd(surfaces, count);
         int bin = mirror ? roughness_bin(normal.w) : ROUGHNESS_BINS;
@@ -87,7 +88,7 @@ void main()
     if (index < CLASSIFIED_TILES_BY_PIXEL && all(lessThan(tile, tiles)))
     {
         tile_masks[tile.y * tiles.x + tile.x] = uvec2(marks[2 * index], marks[2 * index + 1]);
-        uint reflecting = bitCount(mirrors[2 * index]) + bitCount(mirrors[2 * index + 1]);
+        uint reflecting = counts_pixels == 0 ? 0 : bitCount(mirrors[2 * index]) + bitCount(mirrors[2 * index + 1]);
         if (reflecting > 0)
         {
             atomicAdd(reflecting_tiles, 1);

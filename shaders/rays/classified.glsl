@@ -1,10 +1,12 @@
-// What the two forms of the classification share: what they read, what they write, and what they count.
+// What the two forms of the classification share: what they read, what they write, and what they count before a frame is planned.
 #include "api/view.glsl"
 #include "rays/reflecting.glsl"
 #include "layout/frame_shared.h"
 
 layout(constant_id = CONSTANT_EVERY_SURFACE) const int every_surface = 0; // trace what does not reflect, too
 layout(constant_id = CONSTANT_TRACE_BLOCK_PX) const int block_px = 1;     // one pixel of each block that reflects
+
+layout(constant_id = CONSTANT_COUNTS_PIXELS) const int counts_pixels = 0; // for the plan; a planned frame only marks
 
 layout(set = 0, binding = 11, scalar) writeonly buffer TileMasks { uvec2 tile_masks[]; }; // bit x + 8 y of a tile, in x and y
 layout(set = 0, binding = 6, scalar) buffer PictureStatistics // struct GBufferCounts of trace/counts.h

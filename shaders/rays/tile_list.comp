@@ -1,13 +1,13 @@
 // From the masks of all tiles: which tiles are listed, how many pixels are traced in those before each, and how many rays there will be.
 // Tiles traced as a whole come first, so that their rays fill groups of RAYS_PER_GROUP; both parts row by row. The same picture gives the
-// same list.
-#include "layout/numbers.h"
-#include "layout/frame_shared.h"
+// same list. The launches of what works on tiles and rays follow from both numbers.
+#include "trace/ray_launches.glsl"
 
 layout(local_size_x = TILE_LIST_INVOCATIONS) in;
 
 layout(constant_id = CONSTANT_RAYS_PER_PIXEL) const int rays_per_pixel = 1;
 
+layout(set = 0, binding = 3, scalar) writeonly buffer TileLaunch { uvec3 tile_launch; };
 layout(set = 0, binding = 4, scalar) writeonly buffer RayCount { uint ray_count; };
 layout(set = 0, binding = 9, scalar) writeonly buffer TileCount { uint tile_count; };
 layout(set = 0, binding = 10, scalar) writeonly buffer Tiles { uvec2 tiles[]; };
@@ -57,7 +57,10 @@ void main()
     }
     if (own == 0)
     {
-        tile_count = total.x + total.y;
-        ray_count  = (64 * total.x + total.z) * rays_per_pixel;
+        uint listed = total.x + total.y, rays = (64 * total.x + total.z) * rays_per_pixel;
+        tile_count  = listed;
+        ray_count   = rays;
+        tile_launch = launch_of(listed, 1);
+        store_ray_launches(rays);
     }
 }

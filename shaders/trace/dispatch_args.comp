@@ -1,14 +1,10 @@
-// Turns a number of items into the size of the launch that works on them.
-#include "layout/numbers.h"
-#include "layout/frame_shared.h"
+// The launches of a list of rays that other passes have filled and counted.
+#include "trace/ray_launches.glsl"
 
 layout(local_size_x = 1) in;
-layout(set = 0, binding = 0, scalar) readonly buffer ItemCount { uint item_count; };
-layout(set = 0, binding = 1, scalar) writeonly buffer Launch { uvec3 groups; };
-layout(constant_id = CONSTANT_ITEMS_PER_GROUP) const int items_per_group = 1;
+layout(set = 0, binding = 4, scalar) readonly buffer RayCount { uint ray_count; };
 
 void main()
 {
-    uint count = (item_count + items_per_group - 1) / items_per_group;
-    groups     = uvec3(min(count, LAUNCH_ROW_GROUPS), (count + LAUNCH_ROW_GROUPS - 1) / LAUNCH_ROW_GROUPS, 1);
+    store_ray_launches(ray_count);
 }

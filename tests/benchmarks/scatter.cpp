@@ -28,14 +28,8 @@ Bench::Scattered Bench::scatter(Picture& p)
     for (size_t i = 0; i < capacity; ++i) rays[i].origin = glm::vec3(glm::vec2(pixel_at(i, size)) + 0.5F, 1);
     for (const PackedRay<float>& ray : download_as<PackedRay<float>>(gpu_, s.frame->inputs.rays->list, count))
         rays[pixel_index(unpack_pixel(ray.pixel), size)] = ray;
-    const auto all = static_cast<uint32_t>(capacity);
-    upload(gpu_, s.every_pixel.count, &all, sizeof(all));
+    set_ray_count(gpu_, s.every_pixel, capacity);
     upload(gpu_, s.every_pixel.list, rays.data(), capacity * sizeof(rays[0]));
-    submit(gpu_, [&](const auto& commands) {
-        barrier(commands);
-        dispatch(commands, s.over_every_pixel.ray_launch, {1, 1, 1});
-        barrier(commands);
-    });
     return s;
 }
 

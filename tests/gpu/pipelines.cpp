@@ -13,16 +13,16 @@ namespace ssrlab::test {
 namespace {
 
 struct Launch {
-    Buffer items  = make_buffer_with<uint32_t>(device(), std::vector<uint32_t>{1000});
-    Buffer groups = make_buffer(device(), sizeof(glm::uvec3));
+    Buffer rays   = make_buffer_with<uint32_t>(device(), std::vector<uint32_t>{1000});
+    Buffer launch = make_buffer(device(), sizeof(glm::uvec3)), groups = make_buffer(device(), sizeof(glm::uvec3));
 
-    ComputePass pass(int items_per_group, std::optional<float> of_no_use = {})
+    ComputePass pass(int rays_per_workgroup, std::optional<float> of_no_use = {})
     {
         Constants constants;
         if (of_no_use) constants.add(CONSTANT_SLAB_SCALE, *of_no_use);
-        constants.add(CONSTANT_ITEMS_PER_GROUP, items_per_group);
+        constants.add(CONSTANT_RAYS_PER_WORKGROUP, rays_per_workgroup);
         return make_compute_pass(device(), compile_shader(device(), {.file = "trace/dispatch_args.comp"}),
-                                 {{"ItemCount", items}, {"Launch", groups}}, constants);
+                                 {{"RayCount", rays}, {"RayLaunch", launch}, {"GroupLaunch", groups}}, constants);
     }
 
     /// Workgroups that the pass computes.
@@ -60,7 +60,7 @@ TEST(Pipelines, AreSharedWhereNoConstantThatTheShaderUsesDiffers)
 TEST(Pipelines, KnowTheConstantsThatAShaderUses)
 {
     EXPECT_EQ(compile_shader(device(), {.file = "trace/dispatch_args.comp"}).constants,
-              std::set<uint32_t>{CONSTANT_ITEMS_PER_GROUP});
+              std::set<uint32_t>{CONSTANT_RAYS_PER_WORKGROUP});
     const auto of_rays = compile_shader(device(), {.file = "rays/rays.comp"}).constants;
     EXPECT_TRUE(of_rays.contains(CONSTANT_MAX_DISTANCE_M));
     EXPECT_FALSE(of_rays.contains(CONSTANT_SLAB_SLOPE));

@@ -118,15 +118,10 @@ void set_list(ReadyFrame& frame, const std::vector<glm::ivec2>& pixels, const st
         listed.push_back(
             {{glm::vec2(pixels[i]) + 0.5F, 0.02F}, 1, {10, 10, -0.01F}, pack_pixel(pixels[i], TRACE_LEFT_SCREEN)});
     }
-    const auto  count = static_cast<uint32_t>(pixels.size());
-    RayBuffers& rays  = *frame.inputs.rays;
-    upload(device(), rays.count, &count, sizeof(count));
+    RayBuffers& rays = *frame.inputs.rays;
+    set_ray_count(device(), rays, pixels.size());
     upload(device(), rays.list, listed.data(), listed.size() * sizeof(listed[0]));
     upload(device(), rays.hits, ends.data(), ends.size() * sizeof(ends[0]));
-    submit(device(), [&](const vk::raii::CommandBuffer& commands) {
-        barrier(commands);
-        dispatch(commands, frame.inputs.trace.ray_launch, {1, 1, 1});
-    });
 }
 
 TEST(SeveralRays, CountWhenMoreThanHalfOfThemHit)

@@ -34,7 +34,7 @@ Bounce make_bounce(Gpu& gpu, const PassContext& context, const DerivedRays* from
     Bindings traced = ray_bindings(*lab.gbuffer, bounce.rays->rays);
     traced.insert({"View", lab.gbuffer->view_uniforms});
     bounce.set_up    = make_colour_pass(gpu, context, "passes/bounce_rays.comp", defines, arriving);
-    bounce.launch    = make_launch_pass(gpu, bounce.rays->rays.count, bounce.rays->rays.launch, RAYS_PER_GROUP);
+    bounce.launch    = make_launch_pass(gpu, bounce.rays->rays);
     bounce.technique = make_technique_passes(gpu, lab, bounce.rays->rays, traced);
     Bindings listed  = list_bindings(*bounce.rays);
     Defines  colour_defines;

@@ -49,7 +49,7 @@ RecordFunction prepare(Gpu& gpu, const PassContext& context)
     Bindings       traced     = ray_bindings(*layer->gbuffer, list);
     traced.insert({"View", layer->gbuffer->view_uniforms});
     own->gather    = make_pass(gpu, context, "passes/gather_misses.comp", store_defines(gpu, list.list), derived);
-    own->launch    = make_launch_pass(gpu, list.count, list.launch, RAYS_PER_GROUP);
+    own->launch    = make_launch_pass(gpu, list);
     own->technique = make_technique_passes(gpu, *own->lab, list, traced);
     own->merge =
         make_pass(gpu, context, "passes/second_layer_hits.comp", store_defines(gpu, frame.rays->hits), derived);

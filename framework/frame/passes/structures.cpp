@@ -18,7 +18,7 @@ RecordFunction prepare(Gpu& /*gpu*/, const PassContext& context)
         const auto             own       = [&](const StructurePasses& passes) { return passes.id == id; };
         const TechniquePasses& technique = frame.trace.technique;
         record_structure(commands, *std::ranges::find_if(frame.lab->structures, own), nullptr);
-        record_ray_structure(commands, technique, *std::ranges::find_if(technique.structures, own), *frame.rays);
+        record_structure(commands, *std::ranges::find_if(technique.structures, own), &frame.rays->group_launch);
     };
 }
 
