@@ -169,33 +169,19 @@ struct Rendered {
     double                     trace_ms = 0;
 };
 
-/// What may answer rays beside the frame, and what the last picture's sources built of the scene.
-struct PictureSources {
-    std::vector<ListedSource>        list; // empty: the frame answers alone
-    std::shared_ptr<const World>     world;
-    std::shared_ptr<const Occupancy> occupancy;
-};
-
-/// Draws the traced picture, and returns the milliseconds of the trace.
+/// Draws the traced picture, and returns the milliseconds of the trace. `asked`: what may answer rays beside the frame.
 double run_traced(Stage& stage, ReadyFrame& frame, const LabPtr& lab, const RenderOptions& options,
-                  PictureSources& asked, int number)
+                  std::span<const ListedSource> asked, int number)
 {
-    if (asked.list.empty()) {
+    if (asked.empty()) {
         run_frame(stage.gpu, frame); // a driver may compile a pipeline when it first runs
         return run_frame(stage.gpu, frame).of("trace");
     }
     SourceContext context = make_source_context(stage, lab);
-    if (!anything_moves(stage.first)) {
-        context.world     = asked.world;
-        context.occupancy = asked.occupancy;
-    }
     for (int before = number - 1; before >= 0; --before)
         context.earlier.push_back(
             view_at(stage.scene, options.picture.view, stage.view.size_px, {before, options.picture.at.jitter_phases}));
-    const double trace_ms = run_answered_frame(context, frame, asked.list, HandOn::uncertain).of("trace");
-    asked.world           = context.world;
-    asked.occupancy       = context.occupancy;
-    return trace_ms;
+    return run_answered_frame(context, frame, asked, HandOn::uncertain).of("trace");
 }
 
 /// Says how far the traced picture is from the one with the true reflections.
@@ -216,8 +202,8 @@ void print_errors(Stage& stage, const ReadyFrame& frame, const RenderOptions& op
 
 /// Adds the pictures of one place of the camera.
 void add_sample(Stage& stage, ReadyFrame& frame, const LabPtr& lab, const TraceSettings& settings,
-                const RenderOptions& options, PictureSources& asked, TrueReflections& truth, int sample, int number,
-                Rendered& rendered)
+                const RenderOptions& options, std::span<const ListedSource> asked, TrueReflections& truth, int sample,
+                int number, Rendered& rendered)
 {
     const auto    kinds = shown_by(options);
     const Display display{options.exposure_ev,
@@ -251,16 +237,15 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
     const auto            asked_for = checked_techniques(catalogue, options);
     const std::string     list =
         options.sources.empty() && options.show == "sources" ? std::string("frame,world") : options.sources;
-    const auto sources         = list.empty() ? std::vector<ListedSource>{} : parse_sources(list, "--sources " + list);
-    Stage      stage           = open_stage(common, catalogue, picture);
+    auto  asked                = list.empty() ? std::vector<ListedSource>{} : parse_sources(list, "--sources " + list);
+    Stage stage                = open_stage(common, catalogue, picture);
     const auto [named, choice] = choose_technique(stage, asked_for, common.quiet);
     const Technique& technique = *named;
-    PictureSources   asked{sources, {}, {}};
-    if (sources.size() == 1 && sources[0].source->id == "auto" && options.show.empty()) {
+    if (asked.size() == 1 && asked[0].source->id == "auto" && options.show.empty()) {
         SourceContext       context = make_source_context(stage, technique, choice.values, choice.settings);
-        const ChosenSources chosen  = choose_sources(context, sources, HandOn::uncertain);
+        const ChosenSources chosen  = choose_sources(context, asked, HandOn::uncertain);
         if (!chosen.reason.empty() && !common.quiet) std::puts(("auto, " + chosen.reason).c_str());
-        asked = {chosen.list, context.world, context.occupancy};
+        asked = chosen.list;
     }
     if (options.samples > 1 && stage.scene.frame)
         throw_spec_error("--samples: expected 1 for a frame of another renderer, which cannot be rendered anew; got {}",
@@ -283,14 +268,14 @@ int render_picture(const CommonOptions& common, const RenderOptions& options)
             const FrameBuffersPtr  buffers = make_frame_buffers(stage);
             const FramePlan        plan    = plan_frame(stage, lab, buffers, choice.settings, history);
             const FramePtr         frame =
-                make_frame(stage.gpu, lab, buffers, plan, history, asked.list.empty() ? Answers::own : Answers::given);
+                make_frame(stage.gpu, lab, buffers, plan, history, asked.empty() ? Answers::own : Answers::given);
             if (sample == 0) warn_without_reflections(common, plan);
             const bool                 first = i == 0 && sample == 0 && !options.truth;
             std::optional<TraceResult> counted;
             if (first || !options.show.empty()) counted = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
             if (first) impossible = find_impossible(*counted, declared_steps(technique, choice.values));
             if (options.show == "sources")
-                rendered.pictures.front().image = source_colours(stage, technique, choice, asked.list);
+                rendered.pictures.front().image = source_colours(stage, technique, choice, asked);
             else if (!options.show.empty())
                 rendered.pictures.front().image = false_colours(stage, *counted, choice.settings.trace, options.show);
             else

@@ -105,7 +105,7 @@ FramePlan plan_frame(Gpu& gpu, const Catalogue& catalogue, const LabPtr& lab, co
         const Stopwatch stopwatch;
         const auto      rays  = ray_buffers(gpu, *buffers, counts, plan.values);
         plan.statistics.trace = count_hits(gpu, *lab, *rays, rays_of(plan.values));
-        if (plan.facts.world && choice<MissLight>(plan.values) == MissLight::triangles) {
+        if (plan.facts.world && asks_triangles(plan.values)) {
             FrameInputs traced;
             traced.lab             = lab;
             traced.buffers         = buffers;

@@ -2,6 +2,8 @@
 
 #include "core/error.h"
 #include "frame/frame_inputs.h"
+#include "frame/passes/missed_rays.h"
+#include "world/occupancy.h"
 
 namespace ssrlab {
 namespace {
@@ -9,23 +11,33 @@ namespace {
 /// Whether the pass `missed_rays` may run, which traces the scene's triangles.
 bool asks_for_world(Stage& stage, const Lab& lab, const ParameterValues& passes)
 {
-    return stage.uploaded && choice<PassSet>(passes) == PassSet::all &&
-           choice<MissLight>(passes) == MissLight::triangles && passes.at("environment_fallback") != 0 &&
+    return stage.uploaded && choice<PassSet>(passes) == PassSet::all && asks_triangles(passes) &&
            count_gbuffer(stage.gpu, *lab.gbuffer, lab.settings).reflecting_pixels > 0;
 }
 
 /// Null where the scene is more than the device holds: its frames do without.
-WorldPtr world_of(Stage& stage)
+WorldPtr world_if_held(Stage& stage)
 {
     try {
-        if (!stage.world) stage.world = upload_world(stage.gpu, stage.scene);
+        return world_of(stage);
     } catch (const Failure&) {
         return nullptr;
     }
-    return stage.world;
 }
 
 } // namespace
+
+const WorldPtr& world_of(Stage& stage)
+{
+    if (!stage.world) stage.world = upload_world(stage.gpu, stage.scene);
+    return stage.world;
+}
+
+const Occupancy& occupancy_of(Stage& stage)
+{
+    if (!stage.occupancy) stage.occupancy = std::make_shared<const Occupancy>(make_occupancy(stage.scene));
+    return *stage.occupancy;
+}
 
 Stage open_stage(const Gpu& gpu, Catalogue catalogue, Scene scene)
 {
@@ -44,6 +56,7 @@ void move_stage(Stage& stage, int frame)
         stage.scene = scene_at(stage.first, frame);
         move_scene(stage.gpu, *stage.uploaded, stage.scene);
         stage.world.reset();
+        stage.occupancy.reset();
     }
     stage.frame = frame;
 }
@@ -81,7 +94,7 @@ FrameBuffersPtr make_frame_buffers(Stage& stage) { return make_frame_buffers(sta
 FramePlan plan_frame(Stage& stage, const LabPtr& lab, const FrameBuffersPtr& buffers, const FrameSettings& settings,
                      const FrameHistoryPtr& history)
 {
-    if (asks_for_world(stage, *lab, settings.passes)) buffers->world = world_of(stage);
+    if (asks_for_world(stage, *lab, settings.passes)) buffers->world = world_if_held(stage);
     return plan_frame(stage.gpu, stage.catalogue, lab, buffers, settings, history);
 }
 

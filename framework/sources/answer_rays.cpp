@@ -50,7 +50,7 @@ SourceContext make_source_context(Stage& stage, const LabPtr& lab)
     if (stage.scene.frame)
         throw_failure("'{}' is a frame of another renderer: it has no triangles that further sources could answer from",
                       stage.scene.name);
-    return {stage, lab, lab->settings, read_gbuffer(stage.gpu, *stage.gbuffer), {}, {}, {}, 0, 0, {}, {}, {}, {}};
+    return {stage, lab, lab->settings, read_gbuffer(stage.gpu, *stage.gbuffer), {}, {}, {}, 0, 0, {}, {}};
 }
 
 SourceContext make_source_context(Stage& stage, const Technique& technique, const ParameterValues& values,

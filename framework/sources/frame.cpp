@@ -10,7 +10,7 @@ namespace {
 
 constexpr double back_px = 2; // a ray is followed again from so many pixels before where the frame lost it
 
-RayAnswer answer_of(const SourceContext& context, const OpenRay& ray, bool in_sight)
+RayAnswer answer_of(const SourceContext& context, const Occupancy& occupancy, const OpenRay& ray, bool in_sight)
 {
     const GBufferImage& image  = context.image;
     const TraceResult&  traced = context.traced;
@@ -30,7 +30,7 @@ RayAnswer answer_of(const SourceContext& context, const OpenRay& ray, bool in_si
     if (status == TraceStatus::left_screen && part->leaves) {
         const RayInput input = to_input(image.view, ray, *part);
         answer.clear_m = metres_before(image.view, ray, *part, input.origin_px_depth + input.delta_px_depth, back_px);
-        if (!may_meet(*context.occupancy, ray.origin_ws, ray.direction_ws, answer.clear_m, ray.reach_m))
+        if (!may_meet(occupancy, ray.origin_ws, ray.direction_ws, answer.clear_m, ray.reach_m))
             set_nothing(answer, context, ray, true);
     }
     return answer;
@@ -38,11 +38,11 @@ RayAnswer answer_of(const SourceContext& context, const OpenRay& ray, bool in_si
 
 SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
 {
-    SourceTurn turn;
-    if (!context.occupancy) context.occupancy = std::make_shared<const Occupancy>(make_occupancy(context.stage.scene));
-    const Stopwatch stopwatch;
-    const bool      in_sight = stays_in_sight(context, context.trace);
-    for (const OpenRay& ray : rays) turn.answers.push_back(answer_of(context, ray, in_sight));
+    SourceTurn       turn;
+    const Occupancy& occupancy = occupancy_of(context.stage);
+    const Stopwatch  stopwatch;
+    const bool       in_sight = stays_in_sight(context, context.trace);
+    for (const OpenRay& ray : rays) turn.answers.push_back(answer_of(context, occupancy, ray, in_sight));
     turn.merge_ms = 1000 * stopwatch.seconds();
     turn.trace_ms = context.trace_ms;
     return turn;

@@ -57,8 +57,7 @@ glm::vec3 look_up(SourceContext& context, CubeOfFrames& cube, glm::dvec3 at_ws, 
 
 SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
 {
-    if (!context.occupancy) context.occupancy = std::make_shared<const Occupancy>(make_occupancy(context.stage.scene));
-    const Occupancy& grid   = *context.occupancy;
+    const Occupancy& grid   = occupancy_of(context.stage);
     const glm::dvec3 eye_ws = glm::dvec3(glm::inverse(context.image.view.world_to_view)[3]);
     CubeOfFrames     cube{moved_to(context.image.view, place_of_probe(grid, eye_ws)),
                       static_cast<int>(context.parameters.at("size_px"))};

@@ -14,9 +14,6 @@
 
 namespace ssrlab {
 
-struct Occupancy;
-struct World;
-
 /// A ray that a source is asked about, in world space.
 struct OpenRay {
     size_t     pixel = 0; // index of the reflecting pixel
@@ -37,21 +34,18 @@ struct TracedList {
     std::span<const RayOutcome> outcomes; // without counts
 };
 
-/// A traced frame and what sources need besides. Sources keep here what they build, so that a later list can
-/// use it.
+/// A traced frame and what sources need besides.
 struct SourceContext {
-    Stage&                           stage;
-    LabPtr                           lab;          // of the frame
-    TraceSettings                    trace;        // likewise
-    GBufferImage                     image;        // what the stage shows, on the host
-    ParameterValues                  parameters;   // of the source that is asked
-    TraceResult                      traced;       // results of the frame's rays
-    std::vector<OpenRay>             rays;         // these rays, at most one of each pixel
-    double                           draw_ms  = 0; // of the frame's G-buffer
-    double                           trace_ms = 0; // of the frame: ray set-up, structures, trace
-    std::vector<View>                earlier; // of the frames before this one, the latest first; empty: a single frame
-    std::shared_ptr<const World>     world;   // these are empty until a source asks for them
-    std::shared_ptr<const Occupancy> occupancy;
+    Stage&               stage;
+    LabPtr               lab;          // of the frame
+    TraceSettings        trace;        // likewise
+    GBufferImage         image;        // what the stage shows, on the host
+    ParameterValues      parameters;   // of the source that is asked
+    TraceResult          traced;       // results of the frame's rays
+    std::vector<OpenRay> rays;         // these rays, at most one of each pixel
+    double               draw_ms  = 0; // of the frame's G-buffer
+    double               trace_ms = 0; // of the frame: ray set-up, structures, trace
+    std::vector<View>    earlier;      // of the frames before this one, the latest first; empty: a single frame
     std::function<void(const TracedList&)> watch; // is told of every list that is traced; empty: nobody is
 };
 

@@ -66,8 +66,7 @@ std::optional<glm::dvec3> best_place(const Occupancy& grid, std::span<const glm:
 
 std::vector<glm::dvec3> placed_by_rays(SourceContext& context, std::span<const OpenRay> rays, size_t count)
 {
-    if (!context.occupancy) context.occupancy = std::make_shared<const Occupancy>(make_occupancy(context.stage.scene));
-    const Occupancy&              grid    = *context.occupancy;
+    const Occupancy&              grid    = occupancy_of(context.stage);
     const std::vector<glm::dvec3> places  = free_places(grid, candidates_side);
     std::vector<Target>           targets = targets_of(grid, rays);
     std::vector<glm::dvec3>       eyes_ws;

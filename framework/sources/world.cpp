@@ -2,7 +2,7 @@
 #include "world/world.h"
 #include "frame/passes/pass_helpers.h"
 #include "frame/world_light.h"
-#include "sources/source.h"
+#include "sources/gbuffer_rays.h"
 
 #include <algorithm>
 #include <limits>
@@ -11,13 +11,9 @@
 namespace ssrlab {
 namespace {
 
-// Of the distance to the eye: what a ray meets nearer to its origin is the surface that it leaves, for its depth is a
-// rounded float.
-constexpr double start_share = 1e-4;
-
 WorldRay to_world_ray(const OpenRay& ray)
 {
-    const double start_m = std::max(ray.clear_m, start_share * ray.eye_m);
+    const double start_m = std::max(ray.clear_m, world_start_share * ray.eye_m);
     return {glm::vec3(ray.origin_ws), static_cast<float>(start_m), glm::vec3(ray.direction_ws),
             static_cast<float>(std::min(ray.reach_m, double(std::numeric_limits<float>::max()) / 4)),
             static_cast<float>(ray.roughness)};
@@ -29,8 +25,7 @@ RayAnswer to_answer(const SourceContext& context, const OpenRay& ray, const Worl
     if (hit.triangle == walk_unfinished) return answer;
     answer.certain = true;
     if (hit.triangle == no_triangle) {
-        answer.kind  = AnswerKind::nothing;
-        answer.light = sky_radiance(context.stage.scene, ray.direction_ws);
+        set_nothing(answer, context, ray, true);
         return answer;
     }
     answer.kind     = AnswerKind::point;
@@ -44,13 +39,14 @@ void follow_reflections(SourceContext& context, std::vector<WorldRay> rays, std:
 {
     Gpu&                   gpu     = context.stage.gpu;
     const int              bounces = static_cast<int>(context.parameters.at("bounces"));
+    const World&           world   = *world_of(context.stage);
     const SampledTable     table   = upload_dfg_table(gpu);
     std::vector<size_t>    owners(rays.size()); // of each ray: the answer
     std::vector<glm::vec3> weights(rays.size(), glm::vec3(1));
     std::iota(owners.begin(), owners.end(), 0);
     for (int bounce = 0; !rays.empty(); ++bounce) {
-        const WorldLight shaded = shade_world(gpu, *context.world, *context.stage.uploaded, table, context.trace,
-                                              bounce < bounces, rays, hits);
+        const WorldLight shaded =
+            shade_world(gpu, world, *context.stage.uploaded, table, context.trace, bounce < bounces, rays, hits);
         turn.shade_ms += shaded.ms;
         std::vector<WorldRay>  next_rays;
         std::vector<size_t>    next_owners;
@@ -70,7 +66,7 @@ void follow_reflections(SourceContext& context, std::vector<WorldRay> rays, std:
         owners  = std::move(next_owners);
         weights = std::move(next_weights);
         if (rays.empty()) break;
-        WorldTrace trace = trace_world(gpu, *context.world, rays);
+        WorldTrace trace = trace_world(gpu, world, rays);
         turn.shade_ms += trace.ms;
         hits = std::move(trace.hits);
     }
@@ -78,16 +74,16 @@ void follow_reflections(SourceContext& context, std::vector<WorldRay> rays, std:
 
 SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
 {
-    if (!context.world) context.world = upload_world(context.stage.gpu, context.stage.scene);
+    const World&          world = *world_of(context.stage);
     std::vector<WorldRay> listed;
     for (const OpenRay& ray : rays) listed.push_back(to_world_ray(ray));
-    const WorldTrace trace = trace_world(context.stage.gpu, *context.world, listed);
+    const WorldTrace trace = trace_world(context.stage.gpu, world, listed);
     SourceTurn       turn;
     for (size_t k = 0; k < rays.size(); ++k) turn.answers.push_back(to_answer(context, rays[k], trace.hits[k]));
     follow_reflections(context, std::move(listed), trace.hits, turn);
     turn.trace_ms    = trace.ms;
     turn.node_visits = trace.node_visits;
-    turn.megabytes   = double(context.world->bytes) / 1e6;
+    turn.megabytes   = double(world.bytes) / 1e6;
     return turn;
 }
 

@@ -38,26 +38,14 @@ void draw_view(Session& session)
     session.stale.view = false;
 }
 
-/// Does something with a context that has what the sources built of the scene before, and keeps what they build now.
-/// The scene is still, so both serve every camera.
-void with_sources(Session& session, SourceContext context, const auto& ask)
-{
-    context.world     = session.world;
-    context.occupancy = session.occupancy;
-    ask(context);
-    session.world     = context.world;
-    session.occupancy = context.occupancy;
-}
-
-/// In the place of `auto` comes what it chooses for this view. The camera may move on: choosing takes seconds.
+/// Replaces `auto` by the list that it chooses for this view. The list stays when the camera moves: choosing takes
+/// seconds.
 void choose_listed(Session& session)
 {
     if (session.listed.empty() || session.listed.front().source->id != "auto") return;
-    const Choice& choice = session.choice;
-    with_sources(session, make_source_context(session.stage, *session.technique, choice.values, choice.settings),
-                 [&](SourceContext& context) {
-                     session.listed = choose_sources(context, session.listed, HandOn::uncertain).list;
-                 });
+    const Choice& choice  = session.choice;
+    SourceContext context = make_source_context(session.stage, *session.technique, choice.values, choice.settings);
+    session.listed        = choose_sources(context, session.listed, HandOn::uncertain).list;
 }
 
 void trace(Session& session)
@@ -75,9 +63,8 @@ void trace(Session& session)
         run_frame(stage.gpu, *session.frame); // the driver compiles
         session.times.push_back(run_frame(stage.gpu, *session.frame));
     } else {
-        with_sources(session, make_source_context(stage, lab), [&](SourceContext& context) {
-            session.times.push_back(run_answered_frame(context, *session.frame, session.listed, HandOn::uncertain));
-        });
+        SourceContext context = make_source_context(stage, lab);
+        session.times.push_back(run_answered_frame(context, *session.frame, session.listed, HandOn::uncertain));
     }
     session.shaded         = read_shaded(stage.gpu, *session.frame);
     session.counted        = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
@@ -92,13 +79,10 @@ bool wants_answers(const Session& session)
 
 void find_answers(Session& session)
 {
-    const Choice& choice = session.choice;
-    with_sources(session, make_source_context(session.stage, *session.technique, choice.values, choice.settings),
-                 [&](SourceContext& context) {
-                     const auto list =
-                         session.listed.empty() ? parse_sources("frame,world", "sources") : session.listed;
-                     session.answered = answer_rays(context, list, HandOn::uncertain);
-                 });
+    const Choice& choice  = session.choice;
+    const auto    list    = session.listed.empty() ? parse_sources("frame,world", "sources") : session.listed;
+    SourceContext context = make_source_context(session.stage, *session.technique, choice.values, choice.settings);
+    session.answered      = answer_rays(context, list, HandOn::uncertain);
     session.stale.answers = false;
     session.stale.shown   = true;
 }

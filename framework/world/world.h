@@ -40,6 +40,10 @@ WorldPtr upload_world(Gpu& gpu, const Scene& scene);
 
 /// Workgroups of a shader with RAYS_PER_GROUP rays in each.
 glm::uvec3 groups_for(size_t rays);
+/// Of the distance from the eye to a ray's origin: what the ray meets nearer than this is the surface that it leaves, for
+/// the origin's depth is a rounded float.
+inline constexpr double world_start_share = 1e-4;
+
 /// What shaders/world/materials.glsl reads, and the triangles.
 Bindings material_bindings(const World& world);
 

@@ -11,9 +11,6 @@ namespace {
 
 constexpr int side_px = 4; // of the blocks that follow one ray each
 
-// Of the distance to the eye: what a ray meets nearer to its origin is the surface that it leaves.
-constexpr const char* start_share = "1e-4";
-
 struct FollowedRays {
     uint32_t    blocks = 0;
     Buffer      ranks, rays, hits; // of each block
@@ -22,7 +19,8 @@ struct FollowedRays {
 
 Defines followed_defines(const FrameInputs& frame)
 {
-    Defines defines = {{"MISS_BLOCK_PX", std::to_string(side_px)}, {"MISS_START_SHARE", start_share}};
+    Defines defines = {{"MISS_BLOCK_PX", std::to_string(side_px)},
+                       {"MISS_START_SHARE", fmt::format("{}", world_start_share)}};
     if (frame.answers_given) defines.emplace("ANSWERS_GIVEN", "1");
     return defines;
 }
@@ -156,6 +154,11 @@ RecordFunction prepare(Gpu& gpu, const PassContext& context)
 }
 
 } // namespace
+
+bool asks_triangles(const ParameterValues& values)
+{
+    return choice<MissLight>(values) == MissLight::triangles && values.at("environment_fallback") != 0;
+}
 
 MissCounts count_followed_rays(Gpu& gpu, FrameInputs& frame)
 {

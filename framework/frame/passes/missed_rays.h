@@ -5,6 +5,9 @@
 
 namespace ssrlab {
 
+/// Do the settings ask for the pass? Then the scene's triangles are needed on the device.
+bool asks_triangles(const ParameterValues& values);
+
 /// Follows the missed rays of a frame that was traced, as the pass does. Needs the scene's triangles on the device.
 /// Makes FrameInputs::answers.
 MissCounts count_followed_rays(Gpu& gpu, FrameInputs& frame);
