@@ -179,39 +179,6 @@ RayAnswer to_answer(const SourceContext& context, const GBufferImage& image, con
     return answer;
 }
 
-/// As trace_rays(), by the pipelines that do not count; ms: of the structures and the trace.
-std::vector<RayOutcome> trace_timed(Gpu& gpu, const Lab& lab, std::span<const RayInput> rays, double& ms)
-{
-    std::vector<PackedRay<float>> listed;
-    for (const RayInput& ray : rays)
-        listed.push_back({ray.origin_px_depth, static_cast<float>(ray.length_m), ray.delta_px_depth,
-                          pack_pixel(ray.pixel, static_cast<int>(ray.end_status))});
-    RayBuffers        buffers = make_ray_buffers(gpu, rays.size(), Precision::float32);
-    const TracePasses passes  = make_trace_passes(gpu, lab, buffers, lab.gbuffer->view_uniforms);
-    set_ray_count(gpu, buffers, rays.size());
-    upload(gpu, buffers.list, listed.data(), listed.size() * sizeof(listed[0]));
-    const Timestamps timestamps = make_timestamps(gpu, 2);
-    for (int turn = 0; turn < 2; ++turn) // a driver may compile a pipeline when it first runs
-        submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-            barrier(commands);
-            write_timestamp(commands, timestamps, 0);
-            record_depth_structures(commands, lab);
-            record_technique(commands, passes.technique, buffers);
-            barrier(commands);
-            write_timestamp(commands, timestamps, 1);
-        });
-    ms = read_intervals_ms(gpu, timestamps)[0];
-    std::vector<RayOutcome> outcomes;
-    for (const PackedHit<float>& hit : download_as<PackedHit<float>>(gpu, buffers.hits, rays.size())) {
-        RayOutcome& outcome = outcomes.emplace_back();
-        outcome.status      = unpack_status(hit.pixel);
-        outcome.hit_pixel   = unpack_pixel(hit.pixel);
-        outcome.hit_layer   = unpack_layer(hit.pixel);
-        outcome.t           = double(hit.t);
-    }
-    return outcomes;
-}
-
 /// The plane that a pixel shows, in depth; empty where it shows none.
 struct PixelPlane {
     glm::dvec3 centre_px_depth{0};
@@ -287,7 +254,9 @@ GBufferTrace trace_in_gbuffer(SourceContext& context, const GBufferPtr& gbuffer,
     if (inputs.empty()) return trace;
     const LabPtr            lab = make_lab(context.stage.gpu, context.stage.catalogue, gbuffer, context.lab->technique,
                                            context.lab->values, settings);
-    std::vector<RayOutcome> outcomes = trace_timed(context.stage.gpu, *lab, inputs, trace.ms);
+    const TracerPtr         tracer   = make_timed_tracer(context.stage.gpu, lab, inputs.size());
+    std::vector<RayOutcome> outcomes = trace_rays(context.stage.gpu, *tracer, inputs);
+    trace.ms                         = time_trace(context.stage.gpu, *tracer);
     if (context.watch) context.watch({gbuffer, image, settings, inputs, outcomes});
     const bool stays = start == RayStart::in_sight && stays_in_sight(context, settings);
     for (size_t k = 0; k < inputs.size(); ++k) {

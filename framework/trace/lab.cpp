@@ -94,15 +94,18 @@ template <typename Real> std::vector<RayInput> read_rays(Gpu& gpu, const RayBuff
     return rays;
 }
 
+bool counts_work(const Tracer& tracer) { return bool(*tracer.work.buffer); }
+
 template <typename Real> std::vector<RayOutcome> read_outcomes(Gpu& gpu, const Tracer& tracer, size_t count)
 {
-    const auto              hits       = download_as<PackedHit<Real>>(gpu, tracer.rays.hits, count);
-    const size_t            words      = work_words(tracer.lab->technique);
-    const auto              structures = static_cast<ptrdiff_t>(tracer.lab->technique.structures.size());
-    const auto              works      = download_as<uint32_t>(gpu, tracer.work, count * words);
+    const auto   hits       = download_as<PackedHit<Real>>(gpu, tracer.rays.hits, count);
+    const size_t words      = work_words(tracer.lab->technique);
+    const auto   structures = static_cast<ptrdiff_t>(tracer.lab->technique.structures.size());
+    const auto   works =
+        counts_work(tracer) ? download_as<uint32_t>(gpu, tracer.work, count * words) : std::vector<uint32_t>(words);
     std::vector<RayOutcome> outcomes(count);
     for (size_t i = 0; i < count; ++i) {
-        const std::span own(works.data() + i * words, words);
+        const std::span own(works.data() + (counts_work(tracer) ? i * words : 0), words);
         outcomes[i] = {unpack_status(hits[i].pixel),
                        unpack_pixel(hits[i].pixel),
                        static_cast<double>(hits[i].t),
@@ -131,10 +134,14 @@ TracerPtr make_tracer(Gpu& gpu, const LabPtr& lab, Precision precision)
     return make_tracer(gpu, lab, count_gbuffer(gpu, *lab->gbuffer, lab->settings).reflecting_pixels, precision);
 }
 
+TracerPtr make_timed_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity)
+{
+    return make_any_tracer(gpu, lab, capacity, Precision::float32, Counted::nothing);
+}
+
 TracerPtr make_timed_tracer(Gpu& gpu, const LabPtr& lab)
 {
-    return make_any_tracer(gpu, lab, count_gbuffer(gpu, *lab->gbuffer, lab->settings).reflecting_pixels,
-                           Precision::float32, Counted::nothing);
+    return make_timed_tracer(gpu, lab, count_gbuffer(gpu, *lab->gbuffer, lab->settings).reflecting_pixels);
 }
 
 TraceResult trace_gbuffer(Gpu& gpu, Tracer& tracer)
@@ -145,7 +152,7 @@ TraceResult trace_gbuffer(Gpu& gpu, Tracer& tracer)
         record_technique(commands, tracer.passes.technique, tracer.rays);
         barrier(commands);
     });
-    const Buffer* work = *tracer.work.buffer ? &tracer.work : nullptr;
+    const Buffer* work = counts_work(tracer) ? &tracer.work : nullptr;
     return in_double(tracer) ? read_result<double>(gpu, *tracer.lab, tracer.rays, work)
                              : read_result<float>(gpu, *tracer.lab, tracer.rays, work);
 }
@@ -154,7 +161,7 @@ double time_trace(Gpu& gpu, Tracer& tracer, int times)
 {
     const Timestamps timestamps = make_timestamps(gpu, 2);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-        record_rays(commands, tracer.passes, *tracer.lab->gbuffer);
+        barrier(commands);
         for (int time = 1; time <= times; ++time) {
             if (time == times) write_timestamp(commands, timestamps, 0);
             record_depth_structures(commands, *tracer.lab);

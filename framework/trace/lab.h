@@ -59,10 +59,11 @@ TracerPtr make_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity, Precision pr
 /// be right gets the status `impossible` (compare/validate_result.h says why).
 TraceResult trace_gbuffer(Gpu& gpu, Tracer& tracer);
 
-/// Returns a tracer like that of a frame, which counts no work: for trace_gbuffer() and time_trace() alone.
+/// Return a tracer that counts no work, as a frame's. `capacity`: the largest list; without it, the reflecting pixels.
+TracerPtr make_timed_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity);
 TracerPtr make_timed_tracer(Gpu& gpu, const LabPtr& lab);
-/// Builds the structures and traces as trace_gbuffer() does, `times` times in one submit. Returns the milliseconds that
-/// structures and trace took on the device the last time. Trace once before: a driver may compile at the first trace.
+/// Builds the structures and traces the rays of the last trace_gbuffer() or trace_rays() again, `times` times in one
+/// submit. Returns the milliseconds that structures and trace took on the device the last time.
 double time_trace(Gpu& gpu, Tracer& tracer, int times = 1);
 
 /// A ray as techniques get it (struct Ray of shaders/api/trace_api.glsl), and the pixel that it belongs to.
