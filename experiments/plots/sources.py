@@ -7,7 +7,6 @@ import numpy as np
 import pandas as pd
 from matplotlib.transforms import Bbox
 
-from .data import Results
 from .figures import log_axis
 
 WIDTH_INCHES = 85 / 25.4
@@ -155,23 +154,22 @@ def draw_ladder(steps):
     return figure
 
 
-def ladder(results, tables):
-    """What each further source adds, and what it costs: a step a source."""
-    rows = asked_rows(results)
+def ladders(rows):
+    """(tracer, its rows, its steps) of each ladder. What `auto` chose differs from frame to frame: it is one step."""
     if rows.empty:
         return
-    # What `auto` chose differs from frame to frame: it is one step.
     whole = ~rows.sources.str.startswith("auto") | ~rows.duplicated("run_id", keep="last")
     rows = rows.assign(step=[((row.sources,), "") if row.sources.startswith("auto") else row.step for row in rows.itertuples()])[whole]
-    for place, (tracer, part) in enumerate(rows.groupby("tracer")):
+    for tracer, part in rows.groupby("tracer"):
         steps = steps_of(part)
-        if len(steps) < 2:
-            continue
+        if len(steps) >= 2:
+            yield tracer, part, steps
+
+
+def ladder(results, tables):
+    """What each further source adds, and what it costs: a step a source."""
+    for place, (_, _, steps) in enumerate(ladders(asked_rows(results))):
         yield "sources_ladder" + (f"_{place}" if place > 0 else ""), draw_ladder(steps)
-        heading = f"Ladder of {tracer}: means over {part.frame_name.nunique()} frames, geometric for times"
-        tables[heading] = [{"": i + 1, "sources": step.name, "ms": f"{step.ms:.3g}", "recall, %": f"{100 * step.recall:.1f}",
-                            "precision, %": f"{100 * step.precision:.1f}", "F1, %": f"{100 * step.f1:.1f}", "MB": f"{step.megabytes:.1f}",
-                            "node visits": f"{step.visits:.0f}"} for i, step in enumerate(steps.itertuples())]
 
 
 def lost_share(row, cls):
@@ -225,63 +223,57 @@ def back_text(back, rightly):
     return f"{back:.0f}{brackets}" if pd.notna(back) else ""
 
 
-def brought_back(results, tables):
-    """Of the lost rays, the share that each source answers rightly; the table says how many of its answers are right, too."""
-    rows = asked_rows(results)
+def back_grids(rows):
+    """Frames by remedies: of the lost rays, the share answered rightly; of the answers, the share that is right. Empty without remedies."""
     pairs = remedies_of(rows) if len(rows) else rows
     if pairs.empty:
-        return
-    names = short_names(rows)
+        return pairs, pairs
     grid = pairs.pivot_table("back", "frame_name", "remedy", sort=False)
     right = pairs.pivot_table("rightly", "frame_name", "remedy", sort=False).reindex_like(grid)
-    if len(grid) > 1:
-        grid.loc["mean"], right.loc["mean"] = grid.mean(), right.mean()
-    labels = [names.get(name, name) for name in grid.index]
+    names = short_names(rows)
+    for one in (grid, right):
+        if len(one) > 1:
+            one.loc["mean"] = one.mean()
+        one.index = [names.get(name, name) for name in one.index]
+    return grid, right
+
+
+def brought_back(results, tables):
+    """Of the lost rays, the share that each source answers rightly."""
+    grid, _ = back_grids(asked_rows(results))
+    if grid.empty:
+        return
     figure, axis = plt.subplots(figsize=(WIDTH_INCHES, 1.35 + 0.2 * len(grid)))
     axis.imshow(grid, cmap="Blues", vmin=0, vmax=100, aspect="auto")
     for (y, x), value in np.ndenumerate(grid.to_numpy()):
         if np.isfinite(value):
             axis.text(x, y, f"{value:.0f}", ha="center", va="center", fontsize=6.5, color="white" if value > 60 else "black")
     axis.set_xticks(range(len(grid.columns)), grid.columns, rotation=40, ha="right", rotation_mode="anchor", fontsize=6.5)
-    axis.set_yticks(range(len(grid)), labels, fontsize=6.5)
+    axis.set_yticks(range(len(grid)), grid.index, fontsize=6.5)
     axis.grid(False)
     axis.tick_params(length=0)
     best, most = grid.iloc[-1].idxmax(), grid.iloc[-1].max()
     mean = " in the mean" if len(grid) > 1 else ""
     titled(figure, f"“{best}” answers most of the lost rays rightly: {most:.0f} %{mean}" if most >= 0.5 else "No source here answers a lost ray rightly")
     yield "sources_brought_back", figure
-    tables["Lost rays that a source answers rightly, %; in brackets, how many of its answers are right, %"] = [
-        {"frame": label, **{name: back_text(grid.loc[row, name], right.loc[row, name])
-                            for name in grid.columns}} for row, label in zip(grid.index, labels)]
 
 
 def share(part, whole):
     return f"{100 * part / whole:.1f}" if whole > 0 else ""
 
 
-def hybrid_line(name, frame, world, alone):
+def hybrid_lines(name, part):
+    """The frame with the triangles behind it, against the triangles alone."""
+    both, alone = part[(part.sources == "frame,world") & (part.hand_on == "uncertain")], part[part.sources == "world"]
+    if len(both) != 2 or alone.empty:
+        return
+    frame, world, alone = both.iloc[0], both.iloc[1], alone.iloc[0]
     lost = sum(frame[f"handed_{cls}"] for cls in LOST)
-    return {"frame": name, "lost, %": share(lost, frame.all_meeting), "F1 of the frame, %": f"{100 * frame.all_f1:.1f}",
-            "F1 with world, %": f"{100 * world.all_f1:.2f}", "certain hits that are right, %": share(frame.certain_right, frame.certain_points),
-            "world gets, of rays that meet geometry, %": share(world.meeting, frame.meeting),
-            "of rays that meet nothing, %": share(world.handed - world.meeting, frame.handed - frame.meeting),
-            "time / world alone": f"{world.spent_ms / alone.spent_ms:.2f}", "node visits / world alone": f"{world.node_visits / alone.node_visits:.2f}"}
-
-
-def hybrids(results, tables):
-    """The frame with the triangles behind it, against the triangles alone: a table, no figure."""
-    rows = asked_rows(results)
-    if rows.empty:
-        return ()
-    names, lines = short_names(rows), []
-    for (frame_name, tracer), part in rows.groupby(["frame_name", "tracer"], sort=False):
-        both = part[(part.sources == "frame,world") & (part.hand_on == "uncertain")]
-        alone = part[part.sources == "world"]
-        if len(both) == 2 and len(alone):
-            lines.append(hybrid_line(names[frame_name], both.iloc[0], both.iloc[1], alone.iloc[0]))
-    if lines:
-        tables["The frame with the triangles behind it, against the triangles alone"] = lines
-    return ()
+    yield {"frame": name, "lost, %": share(lost, frame.all_meeting), "F1 of the frame, %": f"{100 * frame.all_f1:.1f}",
+           "F1 with world, %": f"{100 * world.all_f1:.2f}", "certain hits that are right, %": share(frame.certain_right, frame.certain_points),
+           "world gets, of rays that meet geometry, %": share(world.meeting, frame.meeting),
+           "of rays that meet nothing, %": share(world.handed - world.meeting, frame.handed - frame.meeting),
+           "time / world alone": f"{world.spent_ms / alone.spent_ms:.2f}", "node visits / world alone": f"{world.node_visits / alone.node_visits:.2f}"}
 
 
 def chosen_lines(name, part):
@@ -297,45 +289,48 @@ def chosen_lines(name, part):
                "its F1, %": "" if best is None else f"{100 * best.all_f1:.1f}", "choosing, s": f"{asked.choosing_ms.iloc[0] / 1000:.0f}"}
 
 
-def chosen(results, tables):
-    """`auto` against the fixed lists: a table, no figure."""
-    rows = asked_rows(results)
-    if rows.empty or not rows.sources.str.startswith("auto").any():
-        return ()
-    names = short_names(rows)
-    tables["What auto chose, against the fixed lists"] = [
-        line for (frame_name, _), part in rows.groupby(["frame_name", "tracer"], sort=False) for line in chosen_lines(names[frame_name], part)]
-    return ()
+def mirror_lines(name, part):
+    """What a planar reflection costs beside the trace of the frame, over the share of the picture that reflects."""
+    planar, frame = part[part.sources == "planar"], part[part.sources == "frame"]
+    if len(planar) != 1 or len(frame) != 1:
+        return
+    planar, frame = planar.iloc[0], frame.iloc[0]
+    width, height = map(int, frame.frame_name.rsplit(", ", 1)[1].split("×"))
+    yield {"frame": name, "picture that reflects, %": share(frame.handed, width * height),
+           "frame: ms": f"{frame.spent_ms:.0f}", "recall, %": f"{100 * frame.all_recall:.1f}", "precision, %": f"{100 * frame.all_precision:.1f}",
+           "planar: ms": f"{planar.spent_ms:.0f}", "planar: recall, %": f"{100 * planar.all_recall:.1f}",
+           "planar: precision, %": f"{100 * planar.all_precision:.1f}" if planar.points else "", "time, planar / frame": f"{planar.spent_ms / frame.spent_ms:.1f}"}
 
 
-def mirrors(results, tables):
-    """What a planar reflection costs beside the trace of the frame, over the share of the picture that the mirror covers: a table, no figure."""
-    rows = asked_rows(results)
-    if rows.empty:
-        return ()
-    names, lines = short_names(rows), []
-    for (frame_name, _), part in rows.groupby(["frame_name", "tracer"], sort=False):
-        planar, frame = part[part.sources == "planar"], part[part.sources == "frame"]
-        if len(planar) != 1 or len(frame) != 1:
-            continue
-        planar, frame = planar.iloc[0], frame.iloc[0]
-        width, height = map(int, frame_name.rsplit(", ", 1)[1].split("×"))
-        lines.append({"frame": names[frame_name], "picture that reflects, %": share(frame.handed, width * height),
-                      "frame: ms": f"{frame.spent_ms:.0f}", "recall, %": f"{100 * frame.all_recall:.1f}", "precision, %": f"{100 * frame.all_precision:.1f}",
-                      "planar: ms": f"{planar.spent_ms:.0f}", "planar: recall, %": f"{100 * planar.all_recall:.1f}",
-                      "planar: precision, %": f"{100 * planar.all_precision:.1f}" if planar.points else "", "time, planar / frame": f"{planar.spent_ms / frame.spent_ms:.1f}"})
-    if lines:
-        tables["A planar reflection beside the frame"] = lines
-    return ()
+# By title: what makes the lines of one frame.
+LINES = {"The frame with the triangles behind it, against the triangles alone": hybrid_lines,
+         "What auto chose, against the fixed lists": chosen_lines, "A planar reflection beside the frame": mirror_lines}
 
 
-ALL = [ladder, lost_by_class, brought_back, hybrids, chosen, mirrors]
-
-
-def tables_of(folder):
-    """{title: rows} of the results in a folder, without its figures."""
-    results, tables = Results(folder), {}
-    for make in ALL:
-        for _, figure in make(results, tables):
-            plt.close(figure)
+def tables_of(results):
+    """{title: rows} of all that the sources answered."""
+    rows, tables = asked_rows(results), {}
+    for tracer, part, steps in ladders(rows):
+        tables[f"Ladder of {tracer}: means over {part.frame_name.nunique()} frames, geometric for times"] = [
+            {"": i + 1, "sources": step.name, "ms": f"{step.ms:.3g}", "recall, %": f"{100 * step.recall:.1f}",
+             "precision, %": f"{100 * step.precision:.1f}", "F1, %": f"{100 * step.f1:.1f}", "MB": f"{step.megabytes:.1f}",
+             "node visits": f"{step.visits:.0f}"} for i, step in enumerate(steps.itertuples())]
+    grid, right = back_grids(rows)
+    if len(grid):
+        tables["Lost rays that a source answers rightly, %; in brackets, how many of its answers are right, %"] = [
+            {"frame": frame, **{name: back_text(grid.loc[frame, name], right.loc[frame, name]) for name in grid.columns}} for frame in grid.index]
+    names = short_names(rows) if len(rows) else {}
+    for title, make in LINES.items():
+        lines = [line for (frame, _), part in rows.groupby(["frame_name", "tracer"], sort=False) for line in make(names[frame], part)] if names else []
+        if lines:
+            tables[title] = lines
     return tables
+
+
+def add_tables(results, tables):
+    """No figure: what the figures show, in numbers, and more."""
+    tables.update(tables_of(results))
+    return ()
+
+
+ALL = [ladder, lost_by_class, brought_back, add_tables]
