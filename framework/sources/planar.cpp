@@ -21,8 +21,8 @@ struct Plane {
     double     offset_m = 0;
 };
 
-/// Of the surface that a pixel shows, in view space, unit and toward the eye: of its triangle, whatever the normals are
-/// that shade it. Zero where the plane is unknown.
+/// Returns the normal of the triangle that a pixel shows, not the one that shades it: in view space, of unit length,
+/// toward the eye. Zero where the pixel's plane is unknown.
 glm::dvec3 flat_normal_vs(const GBufferImage& image, size_t pixel)
 {
     constexpr double step_px = 0.125; // short, so that depth stays positive
@@ -38,7 +38,7 @@ glm::dvec3 flat_normal_vs(const GBufferImage& image, size_t pixel)
     return length > 0 ? normal / length : glm::dvec3(0);
 }
 
-/// The plane with the least squared distances from points, along the axis of `normal` that is longest.
+/// Fits a plane to points by least squares. Distances count along the longest axis of `normal`.
 Plane fitted_plane(std::span<const glm::dvec3> points_ws, glm::dvec3 normal)
 {
     const glm::dvec3 size = glm::abs(normal);
@@ -61,8 +61,8 @@ Plane fitted_plane(std::span<const glm::dvec3> points_ws, glm::dvec3 normal)
     return {normal, glm::dot(normal, middle)};
 }
 
-/// The plane that most of the points lie in, where some lie in another one a little above: each round leaves out the
-/// half that lies farther off.
+/// Fits a plane to most of the points; the others may lie in a parallel plane close by. Each round leaves out the half
+/// that lies farther off.
 Plane plane_of_most(std::vector<glm::dvec3> points_ws, glm::dvec3 normal)
 {
     constexpr int    rounds = 4;

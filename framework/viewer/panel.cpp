@@ -127,7 +127,7 @@ void show_widgets(Session& session)
     session.sources.copy(sources.data(), sources.size() - 1);
     if (ImGui::InputText("sources", sources.data(), sources.size(), ImGuiInputTextFlags_EnterReturnsTrue))
         set_or_say(session, "sources", sources.data());
-    tip("What may answer rays beside the frame, in order: frame,planar,world (docs/explanation/beyond.md)");
+    tip("Sources of answers, in the order in which they are asked: frame,planar,world (docs/explanation/beyond.md)");
     auto split = static_cast<float>(session.split);
     if (ImGui::SliderFloat("split", &split, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp))
         set_value(session, "split", fmt::format("{}", split));
