@@ -14,6 +14,8 @@ import unittest
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 PROGRAM = os.environ.get("SSRLAB", os.path.join(SOURCE, "build", "bin", "ssrlab"))
 
+HANGS_S = 1500 # what takes longer hangs; a busy machine is only slow
+
 SWEEP = """
 scenes = ["builtin:stairs", "builtin:sphere_over_mirror", "builtin:corridor"]
 sizes  = ["64x36"]
@@ -84,7 +86,7 @@ class Case(unittest.TestCase):
     def ssrlab(self, *arguments, code=0, says=(), limits=None, **environment):
         """Runs to the end; checks the exit code and that stdout and stderr hold every text of `says`."""
         process = self.start(*arguments, limits=limits, **environment)
-        out, err = process.communicate(timeout=240)
+        out, err = process.communicate(timeout=HANGS_S)
         story = f"\nrepeat: {self.last_command}\nstdout: {out}\nstderr: {err}"
         self.assertEqual(process.returncode, code, "exit code" + story)
         for text in says:
@@ -120,12 +122,12 @@ class Case(unittest.TestCase):
 
     def stop_in_the_middle(self, process, which):
         """Sends the signal once the first row is written; returns the exit code."""
-        until = time.monotonic() + 120
+        until = time.monotonic() + HANGS_S
         while self.whole_rows() == 0 and process.poll() is None and time.monotonic() < until:
             time.sleep(0.01)
         self.assertIsNone(process.poll(), f"ended before it was stopped\nrepeat: {self.last_command}")
         process.send_signal(which)
-        process.communicate(timeout=120)
+        process.communicate(timeout=HANGS_S)
         return process.returncode
 
     def assert_complete(self, rows, count):

@@ -4,14 +4,14 @@ import re
 import subprocess
 import unittest
 
-from support import PROGRAM, SOURCE, Case
+from support import HANGS_S, PROGRAM, SOURCE, Case
 
 EXAMPLE = os.path.join(os.path.dirname(PROGRAM), "trace_depth")
 
 
 class Test(Case):
     def traced(self, technique, code=0):
-        done = subprocess.run([EXAMPLE, self.path("seen.exr"), technique], capture_output=True, text=True, timeout=240,
+        done = subprocess.run([EXAMPLE, self.path("seen.exr"), technique], capture_output=True, text=True, timeout=HANGS_S,
                               env=self.environment)
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done.stdout + done.stderr

@@ -4,7 +4,7 @@ import shutil
 import signal
 import time
 
-from support import Case, main
+from support import HANGS_S, Case, main
 
 MANIFEST = """name    = "Endless"
 summary = "Does not end."
@@ -88,11 +88,11 @@ class Test(Case):
     def changed_in_the_middle(self, change, says):
         spec = self.write("s.toml", LONG)
         process = self.start("run", spec, "-o", "out")
-        until = time.monotonic() + 120
+        until = time.monotonic() + HANGS_S
         while self.whole_rows() == 0 and process.poll() is None and time.monotonic() < until:
             time.sleep(0.01)
         change()
-        out, err = process.communicate(timeout=200)
+        out, err = process.communicate(timeout=HANGS_S)
         self.assertEqual(process.returncode, 1, out + err)
         self.assertIn(says, err)
         self.assertNotIn("written now", out)

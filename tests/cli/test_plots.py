@@ -64,19 +64,16 @@ class Test(Case):
         os.makedirs(self.path("out"))
         write_table(self.path("out/sources.csv"), lines)
         results = made_results(self, rows, ["sources", "hand_on"])
-        figures, tables = self.drawn(plots.sources.ladder, results)
-        figure, = figures.values()
+        figure, = self.drawn(plots.sources.ladder, results)[0].values()
         self.assertEqual(figure.finding, "The frame answers 70 % of the rays rightly, “+ world” 100.0 %, in 0.5 times the time of the world alone")
-        (_, steps), = tables.items()
+        steps, back, hybrids = plots.sources.tables_of(results).values()
         self.assertEqual([(step["sources"], step["ms"], step["recall, %"]) for step in steps],
                          [("frame", "30", "70.0"), ("+ world", "50", "100.0"), ("+ cube (lost)", "90", "77.5"), ("world alone", "100", "100.0")])
         self.near(figure.axes[0].get_lines()[0].get_xdata(), [30, 50])  # the front
         figure, = self.drawn(plots.sources.lost_by_class, results)[0].values()
         self.assertEqual(figure.finding, "The frame lacks 20 to 40 % of the points that rays meet; the largest part is facing away")
-        figures, tables = self.drawn(plots.sources.brought_back, results)
-        self.assertEqual([row["cube"] for row in next(iter(tables.values()))], ["25 (80)"] * 3)
-        _, tables = self.drawn(plots.sources.hybrids, results)
-        self.assertEqual([row["time / world alone"] for row in next(iter(tables.values()))], ["0.50", "0.50"])
+        self.assertEqual([row["cube"] for row in back], ["25 (80)"] * 3)
+        self.assertEqual([row["time / world alone"] for row in hybrids], ["0.50", "0.50"])
 
     def test_the_law_of_steps(self):
         """2 ms and 0.01 ms a step from 50 steps on. 0.15 m is nearer to 0.1 m than 0.06 m by its ratio; of looks the most count."""

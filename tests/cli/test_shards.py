@@ -3,7 +3,7 @@ import json
 import os
 import shutil
 
-from support import SWEEP, SWEEP_ROWS, Case, main
+from support import HANGS_S, SWEEP, SWEEP_ROWS, Case, main
 
 MOVING = """
 scenes = ["builtin:moving_boxes"]
@@ -25,7 +25,7 @@ class Test(Case):
         """All at once, as processes of one machine or jobs of several."""
         running = [self.start("run", spec, "--shard", f"{i}/{count}", "-o", f"part_{i}") for i in range(1, count + 1)]
         for process in running:
-            out, err = process.communicate(timeout=240)
+            out, err = process.communicate(timeout=HANGS_S)
             self.assertEqual(process.returncode, 0, out + err + "\nrepeat: " + self.last_command)
         return [f"part_{i}" for i in range(1, count + 1)]
 

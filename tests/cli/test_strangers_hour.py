@@ -3,7 +3,7 @@ import os
 import re
 import subprocess
 
-from support import PROGRAM, SOURCE, Case, main
+from support import HANGS_S, PROGRAM, SOURCE, Case, main
 
 
 class Test(Case):
@@ -18,7 +18,7 @@ class Test(Case):
             if language == "sh":
                 self.last_command = text
                 done = subprocess.run(["/bin/bash", "-euo", "pipefail", "-c", text], cwd=self.folder, env=environment, capture_output=True,
-                                      text=True, timeout=280)
+                                      text=True, timeout=HANGS_S)
                 self.assertEqual(done.returncode, 0, f"{page}: {text}{done.stdout}{done.stderr}")
                 for written in re.findall(r"-o (\S+\.\w+)", text):
                     self.assertTrue(os.path.exists(self.path(written)), f"{page}: {text}")

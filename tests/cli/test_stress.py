@@ -3,7 +3,7 @@ import os
 import subprocess
 import sys
 
-from support import PROGRAM, SOURCE, Case, main
+from support import HANGS_S, PROGRAM, SOURCE, Case, main
 
 sys.path[:0] = [os.path.join(SOURCE, *path) for path in (("tests", "stress"), ("tests", "fuzz"), ("experiments",))]
 import hostile  # noqa: E402
@@ -14,7 +14,7 @@ import sweeps  # noqa: E402
 class Test(Case):
     def stress(self, *arguments, program=PROGRAM, code=0):
         command = [os.path.join(SOURCE, "tests", "stress", "run"), *arguments, "--program", program]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=280)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=HANGS_S)
         self.assertEqual(done.returncode, code, f"repeat: {' '.join(command)}\n{done.stdout}{done.stderr}")
         return done.stdout + done.stderr
 

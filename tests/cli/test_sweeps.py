@@ -8,7 +8,7 @@ import signal
 import statistics
 import time
 
-from support import SOURCE, SWEEP, SWEEP_ROWS, Case, main
+from support import HANGS_S, SOURCE, SWEEP, SWEEP_ROWS, Case, main
 
 SEARCH = """
 scenes = ["builtin:stairs"]
@@ -265,13 +265,13 @@ class Test(Case):
         # Long enough that the first one still writes after the two seconds for which a second one waits.
         spec = self.write("s.toml", SWEEP.replace("min_repeats = 2\nmax_repeats = 4", "min_repeats = 60\nmax_repeats = 60"))
         first = self.start("run", spec, "-o", "out")
-        until = time.monotonic() + 240  # a busy machine
+        until = time.monotonic() + HANGS_S
         while self.whole_rows() == 0 and time.monotonic() < until:
             time.sleep(0.01)
         self.refused("run", spec, "-o", "out", "--resume", code=1, says=["another ssrlab is writing here"])
         self.assertIsNone(first.poll(), "the first one went on")
         first.send_signal(signal.SIGINT)
-        first.communicate(timeout=240)
+        first.communicate(timeout=HANGS_S)
         rows = self.rows()
         self.assertEqual((len(rows), {row["outcome"] for row in rows}), (self.whole_rows(), {"ok"}))
 

@@ -5,7 +5,7 @@ import shutil
 import subprocess
 import unittest
 
-from support import PROGRAM, Case, main
+from support import HANGS_S, PROGRAM, Case, main
 
 PANEL_PX = 400
 SIZE = (320, 180)
@@ -20,7 +20,7 @@ class Test(Case):
             raise unittest.SkipTest("xvfb is not installed")
         arguments = ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24", PROGRAM, "view", *scene, *more,
                      "--script", self.write("script.txt", script)]
-        done = subprocess.run(arguments, env=self.environment, cwd=self.folder, timeout=240, text=True, capture_output=True)
+        done = subprocess.run(arguments, env=self.environment, cwd=self.folder, timeout=HANGS_S, text=True, capture_output=True)
         text = done.stdout + done.stderr
         if "this build has no viewer" in text:
             raise unittest.SkipTest("built without libglfw3-dev or libimgui-dev")

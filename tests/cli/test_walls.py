@@ -5,7 +5,7 @@ import shlex
 import subprocess
 import unittest
 
-from support import PROGRAM
+from support import HANGS_S, PROGRAM
 
 BUILD = os.path.dirname(os.path.dirname(PROGRAM))
 
@@ -30,7 +30,7 @@ class Test(unittest.TestCase):
     def preprocess(self, command, header):
         """Whether a source of the library that includes this header gets past the preprocessor."""
         return subprocess.run([*command, "-E", "-x", "c++", "-", "-o", os.devnull], input=f'#include "{header}"\n', text=True,
-                              capture_output=True, cwd=BUILD, timeout=120)
+                              capture_output=True, cwd=BUILD, timeout=HANGS_S)
 
     def test_each_library_sees_what_it_links_and_nothing_else(self):
         with open(os.path.join(BUILD, "compile_commands.json"), encoding="utf-8") as file:
