@@ -1,18 +1,15 @@
 """What the next bit of accuracy costs: the curves, their Pareto fronts, and the rows of summary.csv."""
 import numpy as np
 import pandas as pd
-from matplotlib import pyplot as plt
-from matplotlib.ticker import LogLocator
 
+from .data import describe, errors, known
 from .pairs import Ratio, paired_ratio
-from .data import describe, errors, known, label_of
-from .figures import log_axis
+from .paper import log_axis, name_lines, sheet, short_names, titled
 
 NOT_REACHED = "not reached"
 SUBJECT = "hiz"  # whose speed-ups are the headline; techniques whose names begin with it are its variants, not rivals
 # (prefix of the columns, what they are measured against)
 TRUTHS = [("", "scene truth"), ("screen_", "screen truth")]
-MANY_LABELS = 8
 
 
 def pareto(rows, cost, error):
@@ -25,104 +22,68 @@ def pareto(rows, cost, error):
     return rows.loc[front]
 
 
-def drop_overlapping(labels):
-    """Of labels that would cover each other the first stays."""
-    kept = []
-    for label in labels:
-        box = label.get_window_extent()
-        if any(box.overlaps(other) for other in kept):
-            label.remove()
-        else:
-            kept.append(box)
-
-
 def draw_intervals(axis, line, cost, error, style):
     """The 95 % confidence interval of each time on its point; hollow where it is not known."""
     name = cost.removesuffix("_median")
     sure = known(line, name)
-    axis.errorbar(line[cost][sure], line[error][sure], xerr=errors(line[sure], name), fmt="none", ecolor=style["color"], elinewidth=0.9)
-    axis.plot(line[cost][~sure], line[error][~sure], ms=5, **{**style, "linestyle": "none", "markerfacecolor": "white"})
+    axis.errorbar(line[cost][sure], line[error][sure], xerr=errors(line[sure], name), fmt="none", ecolor=style["color"], elinewidth=0.7)
+    axis.plot(line[cost][~sure], line[error][~sure], **{**style, "linestyle": "none", "markerfacecolor": "white"})
 
 
-def draw_curves(axis, results, rows, cost, error, xlabel):
-    front, labels = pareto(rows, cost, error), []
-    for series, line in rows.groupby("series"):
-        varying = [name for name in results.swept(rows) if line[name].nunique() > 1]
-        line = line.sort_values(varying or cost)
-        style = dict(results.styles[series])
-        named = line
-        if len(varying) > 1:
-            # Several numbers vary: a cloud, of which the front is what counts.
-            style["linestyle"] = "none"
-            named = line[line.index.isin(front.index)]
-        elif len(line) > MANY_LABELS:
-            # A search adds points where a target is crossed: the front and the ends say enough.
-            named = line[line.index.isin(front.index) | (line.index == line.index[0]) | (line.index == line.index[-1])]
-        axis.plot(line[cost], line[error], label=series, ms=5, lw=1.3, **style)
+def draw_fronts(axis, results, rows, column, cost):
+    """A line a technique, or a series where there is one technique: its Pareto front. Its other settings are pale points, and a dotted
+    line is no error, or less than can be drawn."""
+    by = "technique" if rows.technique.nunique() > 1 else "series"
+    floor, ends = 0.5 / max(1.0, rows.rays.max()), []
+    rows = rows[rows[column].notna()]
+    rows, short = rows.assign(error=(1 - rows[column]).clip(lower=floor)), short_names(rows[by].unique())
+    for name, part in rows.groupby(by):
+        style, front = dict(results.styles[part.series.min()], linestyle="-", alpha=1), pareto(part, cost, "error")
+        axis.plot(part[cost], part.error, **{**style, "linestyle": "none", "alpha": 0.2, "markersize": 2})
+        axis.plot(front[cost], front.error, label=name, **style)
         if cost.endswith("_median"):
-            draw_intervals(axis, line, cost, error, style)
-        for _, row in named.iterrows():
-            labels.append(axis.annotate(label_of(results, row, rows), (row[cost], row[error]), textcoords="offset points", xytext=(4, 3),
-                                        fontsize=6.5, color=results.styles[series]["color"]))
-    axis.step(front[cost], front[error], where="post", color="#777777", lw=6, alpha=0.3, zorder=0, label="Pareto front",
-              solid_capstyle="round")
-    axis.set(xlabel=xlabel)
+            draw_intervals(axis, front, cost, "error", style)
+        ends.append((short[name], front[cost].iloc[-1], front.error.iloc[-1], style["color"]))
+    if (rows.error <= floor).any():
+        axis.axhline(floor, color="#999999", lw=0.6, ls=":")
     log_axis(axis.xaxis)
     log_axis(axis.yaxis)
-    drop_overlapping(labels)
+    name_lines(axis, ends)
 
 
-def draw_errors(results, rows, columns, axes):
-    """Each column's distance from 1 on its axis: (column, cost, label of cost). Returns whether one has no error to draw."""
-    clipped = False
-    for axis, (column, cost, xlabel) in zip(axes, columns):
-        part = rows[rows[column].notna()].copy()
-        exact = part[column] if "displacement" in column else 1 - part[column]
-        floor = 1e-3 if "displacement" in column else 0.5 / max(1.0, part.rays.max())
-        part["error"] = exact.clip(lower=floor)
-        draw_curves(axis, results, part, cost, "error", xlabel)
-        low, high = axis.get_ylim()
-        if high < 10 * low:  # 1, 2, 5 would label one or two places
-            axis.yaxis.set_major_locator(LogLocator(subs=range(1, 10)))
-        if (exact < floor).any():
-            axis.axhline(floor, color="#999999", lw=0.8, ls=":")
-            clipped = True
-    return clipped
-
-
-def finish(figure, axes, title, clipped):
-    if clipped:
-        title += "\n(dotted: no error, or less than can be drawn)"
-    axes[-1].legend(fontsize=8.5, loc="upper left", bbox_to_anchor=(1.01, 1))
-    figure.suptitle(title)
+def soonest(rows, column, what):
+    """The message: which technique is the first to reach 99 %, or the highest step of 5 % that any reaches, and how long the next takes."""
+    by = "technique" if rows.technique.nunique() > 1 else "series"
+    best = rows[column].max()
+    level = 0.99 if best >= 0.99 else np.floor(20 * best) / 20
+    reached = rows[rows[column] >= level].sort_values("cost_ms_median").drop_duplicates(by)
+    short = short_names(rows[by].unique())
+    text = f"{short[reached[by].iloc[0]]} is the first to reach {100 * level:.0f} % {what}, in {reached.cost_ms_median.iloc[0]:.3g} ms"
+    if len(reached) == 1:
+        return text + ("; no other does" if rows[by].nunique() > 1 else "")
+    return text + f"; {short[reached[by].iloc[1]]} takes {reached.cost_ms_median.iloc[1] / reached.cost_ms_median.iloc[0]:.3g} times as long"
 
 
 def accuracy_curves(results, _):
     """Error against time, with its intervals, and against fetches; precision and F1 against time: recall alone misleads. Log-log."""
-    cost, fetches = ("cost_ms_median", "trace + structures, ms (95 % CI; hollow: not known)"), ("fetches_mean", "fetches per ray")
+    cost, fetches = ("cost_ms_median", "trace + structures, ms"), ("fetches_mean", "fetches per ray")
+    note = "lines: Pareto fronts; bars: 95 % CI, hollow: not known; dotted: no error"
     for title, name, rows in results.pictures():
         if len(rows) < 5 or not results.swept(rows):
             continue
-        known = [column for column in rows if rows[column].notna().sum() >= 5]
-        kinds = [(f"{prefix}recall_1px", f"1 − recall within 1 px ({truth})") for prefix, truth in TRUTHS]
-        for column, ylabel in kinds + [("screen_displacement_p95_px", "hit displacement, 95th percentile, px")]:
-            if column not in known:
-                continue
-            figure, axes = plt.subplots(1, 2, figsize=(15, 5.4), sharey=True)
-            clipped = draw_errors(results, rows, [(column, *cost), (column, *fetches)], axes)
-            axes[0].set_ylabel(ylabel)
-            finish(figure, axes, title, clipped)
-            yield f"accuracy_{column}_{name}", figure
         for prefix, truth in TRUTHS:
-            columns = [f"{prefix}precision_1px", f"{prefix}f1_1px"]
-            if any(column not in known for column in columns):
-                continue
-            figure, axes = plt.subplots(1, 2, figsize=(15, 5.4))
-            clipped = draw_errors(results, rows, [(column, *cost) for column in columns], axes)
-            for axis, said in zip(axes, ("precision: hits that are right", "F1 of recall and precision")):
-                axis.set_ylabel(f"1 − {said} ({truth})")
-            finish(figure, axes, title, clipped)
-            yield f"accuracy_{prefix}precision_f1_{name}", figure
+            recall, precision, f1 = (f"{prefix}{one}_1px" for one in ("recall", "precision", "f1"))
+            for file, message, panels in (
+                    (recall, (recall, "recall"), ((recall, "recall", *cost), (recall, "recall", *fetches))),
+                    (f"{prefix}precision_f1", (f1, "F1"), ((precision, "precision", *cost), (f1, "F1", *cost)))):
+                if any(column not in rows or rows[column].notna().sum() < 5 for column, *_ in panels):
+                    continue
+                figure, axes = sheet(1.9, 1.9)
+                for (axis,), (column, said, along, xlabel) in zip(axes, panels):
+                    axis.set(xlabel=xlabel, ylabel=f"1 − {said}")
+                    draw_fronts(axis, results, rows, column, along)
+                titled(figure, soonest(rows, *message), f"{title}; against the {truth}; {note}")
+                yield f"accuracy_{file}_{name}", figure
 
 
 def reaches(rows, measure, target):

@@ -1,6 +1,7 @@
 """Results of a folder for plots: rows that succeeded, their styles, what an experiment aims at."""
 import tomllib
 
+import numpy as np
 import pandas as pd
 
 from .pairs import cost_samples
@@ -88,11 +89,10 @@ def describe(results, row, rows):
 
 def errors(rows, name):
     """Distances from median to both ends of the interval, for matplotlib; NaN, which draws no bar, where it is not known."""
-    low = (rows[f"{name}_median"] - rows[f"{name}_ci_low"]).clip(lower=0)
-    high = (rows[f"{name}_ci_high"] - rows[f"{name}_median"]).clip(lower=0)
-    return [low.to_numpy(), high.to_numpy()]
+    low, high = (rows.get(f"{name}_{end}", rows[f"{name}_median"] * np.nan) for end in ("ci_low", "ci_high"))
+    return [(rows[f"{name}_median"] - low).clip(lower=0).to_numpy(), (high - rows[f"{name}_median"]).clip(lower=0).to_numpy()]
 
 
 def known(rows, name):
     """Which rows have an interval: the others are drawn hollow."""
-    return rows[f"{name}_ci_low"].notna() & rows[f"{name}_ci_high"].notna()
+    return ~np.isnan(errors(rows, name)).any(axis=0)

@@ -1,23 +1,16 @@
 """Time and work: against steps, thickness, resolution, and between techniques. Each function returns its figures."""
-import matplotlib
+import numpy as np
+from matplotlib.ticker import NullLocator
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-from matplotlib.colors import to_rgba  # noqa: E402
-from matplotlib.ticker import FuncFormatter, LogLocator  # noqa: E402
-
-from .data import errors, is_number, known  # noqa: E402
+from .data import errors, known
+from .paper import key_below, log_axis, name_lines, plain_ticks, sheet, short_names, titled
+from .results import is_number
 
 BEST_THICKNESS = "Best thickness: fewest missed points and false hits"
 LAW_FROM_STEPS = 50  # the report's frame rate is capped below
 # Frames per second by linear steps on a GTX 1650: the table of the OpenGL report, and the scene here that stands for its scene.
 REPORTED_FPS = {25: 120, 50: 118, 100: 91, 250: 53, 500: 31, 1000: 18, 2500: 9}
 REPORTED_SCENE, REPORTED_AT = "animal_on_metal", 500
-
-plt.rcParams.update({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3, "axes.axisbelow": True,
-                     "figure.constrained_layout.use": True, "savefig.dpi": 140, "legend.frameon": False,
-                     "axes.spines.top": False, "axes.spines.right": False, "svg.fonttype": "none"})
 
 
 def fit_line(x, y):
@@ -26,26 +19,6 @@ def fit_line(x, y):
     rest = y - (slope * x + intercept)
     spread = ((y - y.mean()) ** 2).sum()
     return slope, intercept, 1 - (rest ** 2).sum() / spread if spread > 0 else float("nan")
-
-
-def plain_ticks(axis, values):
-    """Measured values of a logarithmic axis labelled as they are written, but for those with no room beside the one before."""
-    places = sorted(value for value in values if 0 < value < np.inf)
-    labelled = places[:1]
-    for value in places[1:]:
-        if value >= (places[-1] / places[0]) ** (1 / 20) * labelled[-1]:
-            labelled.append(value)
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_ticks(labelled)
-    axis.set_minor_locator(matplotlib.ticker.NullLocator())
-
-
-def log_axis(axis):
-    """Logarithmic, labelled 1, 2, 5, 10 … in plain numbers."""
-    axis.axes.set(**{f"{axis.axis_name}scale": "log"})
-    axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
 
 def steps_lines(results, rows):
@@ -62,25 +35,28 @@ def steps_lines(results, rows):
             yield series, line
 
 
-def without_steps(results, rows, axes):
-    """Flat lines of techniques that take no steps."""
-    for series, line in rows[rows.steps.isna()].groupby("series"):
-        style = dict(results.styles[series], marker="", linestyle=":")
-        axes[0].axhline(line.fps.iloc[0], label=series, **style)
-        axes[1].axhline(line.frame_ms_median.iloc[0], label=f"{series}: {line.frame_ms_median.iloc[0]:.3g} ms", **style)
-
-
-def reported(rows, lines, axes):
-    """The report's own table, scaled so that it meets the linear march here at 500 steps."""
+def reported(rows, lines):
+    """The report's own table, (steps, frames per second, factor), scaled so that it meets the linear march here at 500 steps; or None."""
     ours = [line[line.steps == REPORTED_AT].fps for series, line in lines if series == "linear"]
     if rows.scene.iloc[0] != REPORTED_SCENE or not ours or ours[0].empty:
-        return False
-    steps, fps = np.array(list(REPORTED_FPS)), np.array(list(REPORTED_FPS.values()), dtype=float)
-    fps *= ours[0].iloc[0] / REPORTED_FPS[REPORTED_AT]
-    style = dict(color="#777777", marker="x", linestyle="--", label=f"OpenGL report, GTX 1650, × {ours[0].iloc[0] / REPORTED_FPS[REPORTED_AT]:.2g}")
-    axes[0].plot(steps, fps, **style)
-    axes[1].plot(steps, 1000 / fps, **style)
-    return True
+        return None
+    factor = ours[0].iloc[0] / REPORTED_FPS[REPORTED_AT]
+    return np.array(list(REPORTED_FPS)), factor * np.array(list(REPORTED_FPS.values()), dtype=float), factor
+
+
+def law_line(axis, series, line, style):
+    """Measured times with their intervals, and the fitted line from 50 steps up: (slope, intercept, R²), or None for too few points."""
+    sure = known(line, "frame_ms")
+    for part, face in ((line[sure], style["color"]), (line[~sure], "none")):
+        axis.errorbar(part.steps, part.inverse_fps_s * 1000, yerr=errors(part, "frame_ms"), capsize=1.5,
+                      **{**style, "linestyle": "none", "markerfacecolor": face})
+    high = line[line.steps >= LAW_FROM_STEPS]
+    if len(high) < 3:
+        return None
+    slope, intercept, r2 = fit_line(high.steps.to_numpy(), high.frame_ms_median.to_numpy())
+    x = np.array([high.steps.min(), high.steps.max()])
+    axis.plot(x, slope * x + intercept, color=style["color"], linestyle=style["linestyle"], label=f"{series}: fit")
+    return slope, intercept, r2
 
 
 def law_of_steps(results, tables):
@@ -91,37 +67,46 @@ def law_of_steps(results, tables):
         lines = list(steps_lines(results, rows))
         if not lines:
             continue
-        figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.4))
+        figure, ((top,), (bottom,)) = sheet(1.7, 1.9)
+        message, ends = "More steps cost time", ([], [])
         for series, line in lines:
             style = results.styles[series]
-            left.plot(line.steps, line.fps, label=series, **style)
-            sure = known(line, "frame_ms")
-            for part, face in ((line[sure], style["color"]), (line[~sure], "none")):
-                right.errorbar(part.steps, part.inverse_fps_s * 1000, yerr=errors(part, "frame_ms"), capsize=2,
-                               **{**style, "linestyle": "none", "markerfacecolor": face})
-            high = line[line.steps >= LAW_FROM_STEPS]
-            if len(high) < 3:
+            top.plot(line.steps, line.fps, label=series, **style)
+            fit = law_line(bottom, series, line, style)
+            for axis_ends, y in zip(ends, (line.fps, line.inverse_fps_s * 1000)):
+                axis_ends.append((series, line.steps.iloc[-1], y.iloc[-1], style["color"]))
+            if fit is None:
                 continue
-            slope, intercept, r2 = fit_line(high.steps.to_numpy(), high.frame_ms_median.to_numpy())
-            x = np.array([high.steps.min(), high.steps.max()])
-            right.plot(x, slope * x + intercept, color=style["color"], linestyle=style["linestyle"],
-                       label=f"{series}: {slope:.3g} ms/step + {intercept:.3g} ms, R² {r2:.4f}")
+            if series == lines[0][0]:
+                message = f"From {LAW_FROM_STEPS} steps on, each step of {series} adds {fit[0]:.3g} ms (R² {fit[2]:.4f})"
             tables.setdefault("Law of steps: frame time = slope · steps + intercept, from 50 steps up", []).append(
-                {"frame": title, "series": series, "slope, ms per step": f"{slope:.4g}",
-                 "intercept, ms": f"{intercept:.4g}", "R²": f"{r2:.4f}"})
-        without_steps(results, rows, (left, right))
-        numbered = "s0_fig11_fig12_" if reported(rows, lines, (left, right)) else ""
-        left.set(xscale="log", xlabel="steps", ylabel="frames per second", title="FPS")
-        log_axis(left.yaxis)
-        plain_ticks(left.xaxis, {int(s) for _, line in lines for s in line.steps})
-        left.tick_params(axis="x", rotation=45)
-        right.set(xlabel="steps", ylabel="1 / FPS, ms", title="1/FPS", xlim=(0, None), ylim=(0, None))
-        left.legend()
-        right.legend(fontsize=8.5, loc="upper center", bbox_to_anchor=(0.5, -0.16))
-        figure.suptitle(title)
-        fits = [line.get_label() for line in right.get_lines() if " ms/step" in str(line.get_label())]
-        figure.finding = f"Frame time against steps, {title}. " + "; ".join(fits)
-        yield f"{numbered}fps_steps_{name}", figure
+                {"frame": title, "series": series, "slope, ms per step": f"{fit[0]:.4g}", "intercept, ms": f"{fit[1]:.4g}", "R²": f"{fit[2]:.4f}"})
+        flat = rows[rows.steps.isna()].drop_duplicates("series")
+        for _, row in flat.iterrows():
+            style = dict(results.styles[row.series], marker="", linestyle=":")
+            for axis, axis_ends, y in ((top, ends[0], row.fps), (bottom, ends[1], row.frame_ms_median)):
+                axis.axhline(y, label=row.series, **style)
+                axis_ends.append((row.series, max(line.steps.max() for _, line in lines), y, style["color"]))
+        table = reported(rows, lines)
+        if table is not None:
+            steps, fps, factor = table
+            for axis, axis_ends, y in ((top, ends[0], fps), (bottom, ends[1], 1000 / fps)):
+                axis.plot(steps, y, color="#777777", marker="x", linestyle="--", label="OpenGL report")
+                axis_ends.append((f"OpenGL report, GTX 1650, × {factor:.2g}", steps[-1], y[-1], "#777777"))
+        top.set(xscale="log", ylabel="frames per second")
+        log_axis(top.yaxis)
+        plain_ticks(top.xaxis, {int(s) for _, line in lines for s in line.steps})
+        bottom.set(xlabel="steps", ylabel="1 / FPS, ms", xlim=(0, None), ylim=(0, None))
+        for axis, axis_ends in zip((top, bottom), ends):
+            name_lines(axis, axis_ends)
+        if len(flat):
+            message += f", {flat.series.iloc[0]} takes no steps"
+        titled(figure, message, title)
+        yield ("s0_fig11_fig12_" if table is not None else "") + f"fps_steps_{name}", figure
+
+
+def several_surfaces(results):
+    return "surface" in results.rows and results.rows.surface.nunique() > 1
 
 
 def heat(axis, grid, title, colours, low, high, text):
@@ -129,46 +114,44 @@ def heat(axis, grid, title, colours, low, high, text):
     axis.grid(False)
     axis.set_xticks(range(len(grid.columns)), [f"{v:g}" for v in grid.columns])
     axis.set_yticks(range(len(grid.index)), [f"{v:g}" for v in grid.index])
-    axis.set(xlabel="steps", ylabel="thickness, m", title=title)
+    axis.set(ylabel="thickness, m", title=title)
     for (y, x), value in np.ndenumerate(grid.to_numpy()):
         if np.isfinite(value):
             r, g, b, _ = image.cmap(image.norm(value))
-            axis.text(x, y, text(value), ha="center", va="center", fontsize=8,
-                      color="black" if 0.3 * r + 0.6 * g + 0.1 * b > 0.5 else "white")
+            axis.text(x, y, text(value), ha="center", va="center", fontsize=6, color="black" if 0.3 * r + 0.6 * g + 0.1 * b > 0.5 else "white")
 
 
 def thickness_maps(results, _):
-    """Recall, false hits and time over thickness × steps, one row of maps per series."""
+    """Recall, false hits and time over thickness × steps, a figure per series."""
     if not results.has("steps", "recall_1px", "false_hits"):
         return
     for title, name, rows in results.pictures():
         maps = [(series, part) for series, part in rows[rows.steps.notna()].groupby("series")
                 if part.thickness_m.nunique() >= 3 and part.steps.nunique() >= 3]
-        if not maps:
-            continue
-        figure, axes = plt.subplots(len(maps), 3, figsize=(12.5, 3.6 * len(maps)), squeeze=False)
-        for line, (series, part) in zip(axes, maps):
+        for place, (series, part) in enumerate(maps):
+            figure, ((recall,), (false,), (time,)) = sheet(1.6, 1.6, 1.6, sharex=True)
             grid = {column: part.pivot_table(index="thickness_m", columns="steps", values=column)
                     for column in ("recall_1px", "false_hits", "trace_ms_median")}
-            heat(line[0], 100 * grid["recall_1px"], f"{series}: found within 1 px, % of visible", "viridis", 0, 100,
-                 lambda v: f"{v:.0f}")
+            heat(recall, 100 * grid["recall_1px"], "found within 1 px, % of visible", "viridis", 0, 100, lambda v: f"{v:.0f}")
             top = max(1e-9, 100 * float(rows.false_hits.max()))
-            heat(line[1], 100 * grid["false_hits"], f"{series}: false hits, % of rays", "magma", 0, top,
-                 lambda v: f"{v:.1f}")
-            heat(line[2], grid["trace_ms_median"], f"{series}: trace, ms", "cividis", 0,
-                 float(rows.trace_ms_median.max()), lambda v: f"{v:.3g}")
-        figure.suptitle(title)
-        yield f"thickness_steps_{name}", figure
+            heat(false, 100 * grid["false_hits"], "false hits, % of rays", "magma", 0, top, lambda v: f"{v:.0f}")
+            heat(time, grid["trace_ms_median"], "trace, ms", "cividis", 0, float(rows.trace_ms_median.max()), lambda v: f"{v:.3g}")
+            time.set_xlabel("steps")
+            most, fewest = part.loc[part.recall_1px.idxmax()], part.loc[part.false_hits.idxmin()]
+            titled(figure, f"{series} finds most with {most.steps:g} steps of {most.thickness_m:g} m, and has the fewest false hits "
+                   f"with {fewest.steps:g} steps of {fewest.thickness_m:g} m", title)
+            yield f"thickness_steps_{name}" + (f"_{place}" if place > 0 else ""), figure
 
 
 def thickness_curves(results, tables):
-    """Points found and false hits against thickness; the optimum has the fewest wrong rays."""
-    if not results.has("screen_missed", "recall_1px", "false_hits", "truth_visible"):
+    """Wrong rays against thickness: visible points that are missed, and false hits. Surface models have their own figure."""
+    if not results.has("screen_missed", "recall_1px", "false_hits", "truth_visible") or several_surfaces(results):
         return
     for title, name, rows in results.pictures():
         if rows.thickness_m.nunique() < 4:
             continue
-        figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.4))
+        figure, ((axis,),) = sheet(2.1)
+        lowest, ends = [], []
         for series, part in rows.groupby("series"):
             stepped = "steps" in part and part.steps.notna().any()
             if stepped:
@@ -182,104 +165,102 @@ def thickness_curves(results, tables):
             wrong = missed + false
             best = wrong.idxmin()
             style = results.styles[series]
-            left.plot(part.thickness_m, wrong, label=said, **style)
-            left.plot(part.thickness_m[best], wrong[best], "o", ms=13, mfc="none", mec=style["color"], mew=2)
-            right.plot(false, missed, label=said, **style)
-            for thickness, x, y in zip(part.thickness_m, false, missed):
-                right.annotate(f"{thickness:g}", (x, y), textcoords="offset points", xytext=(4, 4), fontsize=7.5,
-                               color=style["color"])
+            axis.plot(part.thickness_m, wrong, label=said, **style)
+            axis.plot(part.thickness_m[best], wrong[best], "o", ms=8, mfc="none", mec=style["color"], mew=1.2)
+            ends.append((said, part.thickness_m.iloc[-1], wrong.iloc[-1], style["color"]))
+            lowest.append((wrong[best], said, part.thickness_m[best]))
             tables.setdefault(BEST_THICKNESS, []).append(
                 {"frame": title, "series": said, "thickness, m": f"{part.thickness_m[best]:g}",
                  "missed, % of rays": f"{missed[best]:.2f}", "false, % of rays": f"{false[best]:.2f}"})
-        left.set(xscale="log", xlabel="thickness, m", ylabel="wrong, % of rays (missed + false)",
-                 title="Optimum (circled)", ylim=(0, None))
-        plain_ticks(left.xaxis, set(rows.thickness_m))
-        left.tick_params(axis="x", rotation=45)
-        right.set(xlabel="false hits, % of rays", ylabel="visible points missed, % of rays",
-                  title="Trade-off, labelled with thickness in m")
-        log_axis(right.xaxis)
-        log_axis(right.yaxis)
-        left.legend(fontsize=8.5)
-        figure.suptitle(title)
-        best = [row for row in tables.get(BEST_THICKNESS, []) if row["frame"] == title]
-        figure.finding = f"Wrong rays against thickness, {title}. Fewest at " + ", ".join(f"{row['thickness, m']} m ({row['series']})" for row in best)
+        if not lowest:
+            continue
+        axis.set(xscale="log", xlabel="thickness, m; circles: fewest wrong", ylabel="wrong, % of rays (missed + false)", ylim=(0, None))
+        plain_ticks(axis.xaxis, set(rows.thickness_m))
+        name_lines(axis, ends)
+        wrong, said, thickness = min(lowest)
+        titled(figure, f"Fewest rays are wrong at a thickness of {thickness:g} m: {wrong:.1f} % ({said})", title)
         yield f"thickness_trade_{name}", figure
 
 
-def bars(axis, rows, results, value, spread, ylabel):
-    """Groups of bars, one group per scene and one bar per series."""
-    scenes = list(dict.fromkeys(rows.scene))
-    series = sorted(rows.series.unique())
-    width = 0.8 / len(series)
-    for i, name in enumerate(series):
-        part = rows[rows.series == name].drop_duplicates("scene").set_index("scene").reindex(scenes)
-        at = np.arange(len(scenes)) + (i - (len(series) - 1) / 2) * width
-        style = results.styles[name]
-        unknown = ~known(part, spread) if spread else part[value].isna()
-        # In the colour: bar's own alpha would fill what has none.
-        colour = to_rgba(style["color"], style["alpha"])
-        axis.bar(at, part[value], width * 0.92, label=name, color=["none" if hollow else colour for hollow in unknown], edgecolor=colour,
-                 yerr=errors(part, spread) if spread and not unknown.all() else None, error_kw={"lw": 1, "capsize": 2, "ecolor": "#333333"})
-        tops = part[f"{spread}_ci_high"].fillna(part[value]) if spread else part[value]
-        for x, height, top in zip(at, part[value], tops):
-            if np.isfinite(height):
-                axis.annotate(f"{height:.0f}" if height >= 100 else f"{height:.3g}", (x, top), ha="center", va="bottom", fontsize=7, xytext=(0, 3),
-                              textcoords="offset points", rotation=90 if len(scenes) * len(series) > 12 else 0)
-    axis.set_xticks(range(len(scenes)), scenes)
-    axis.set(ylabel=ylabel)
-    log_axis(axis.yaxis)
-    axis.set_ylim(top=axis.get_ylim()[1] * 2)  # room for the numbers above the bars
-    axis.grid(axis="x", visible=False)
+def dots(axis, places, rows, results, value, spread, xlabel):
+    """A mark a run in its line, hollow where its interval is not known."""
+    for series, part in rows.groupby("series", sort=False):
+        style = dict(results.styles[series], linestyle="none", label=series)
+        sure = known(part, spread) if spread else part[value].notna()
+        y = np.array([places[key] for key in zip(part.scene, part.series)])
+        axis.errorbar(part[value], y, xerr=errors(part, spread) if spread and sure.any() else None, elinewidth=0.7, **style)
+        axis.plot(part[value][~sure], y[~sure], **{**style, "markerfacecolor": "white", "label": None})
+    axis.set_xlabel(xlabel)
+    log_axis(axis.xaxis)
 
 
-def comparison_bars(results, _):
-    """Time with its interval and fetches of every technique, where each has one setting per frame."""
+def fastest_of(rows):
+    """The message of a comparison: who is fastest, where, and how much faster than the next."""
+    best = rows.loc[rows.groupby("scene", sort=False).cost_ms_median.idxmin()]
+    winner, scenes = best.series.value_counts().index[0], rows.scene.nunique()
+    means = np.exp(np.log(rows.set_index("scene").cost_ms_median).groupby(rows.series.to_numpy()).mean()).sort_values()
+    others, short = means.drop(winner), short_names(means.index)
+    where = f" in {(best.series == winner).sum()} of {scenes} scenes" if scenes > 1 else ""
+    return f"{short[winner]} is the fastest{where}; {short[others.index[0]]} takes {others.iloc[0] / means[winner]:.3g} times as long"
+
+
+def comparison(results, _):
+    """Time with its interval and fetches of every technique, where each has one setting per frame. Growth shows several sizes."""
     for (view, width, height), rows in results.rows.groupby(["view", "width", "height"], sort=False):
         single = rows.groupby(["scene", "series"]).size().max() == 1
-        if not single or rows.series.nunique() < 2 or rows.series.nunique() > 8:
+        if not single or rows.series.nunique() < 2 or rows.series.nunique() > 8 or results.rows.width.nunique() >= 3:
             continue
-        figure, (top, bottom) = plt.subplots(2, 1, figsize=(max(7, 2.3 * rows.scene.nunique()), 7.4))
-        bars(top, rows, results, "cost_ms_median", "cost_ms", "trace + structures, ms")
-        bars(bottom, rows, results, "fetches_mean", None, "fetches per ray")
-        figure.suptitle(f"View {view}, {width}×{height}")
-        top.set_title("Time: median and 95 % CI (hollow: not known)")
-        bottom.set_title("Work: fetches of depth and structures per traced ray")
-        top.legend(ncol=4, loc="upper center", bbox_to_anchor=(0.5, -0.08))
-        fastest = rows.loc[rows.groupby("scene", sort=False).cost_ms_median.idxmin()]
-        figure.finding = (f"Time and fetches of every technique, {width}×{height}. Fastest: " +
-                          ", ".join(f"{row.series} on {row.scene} ({row.cost_ms_median:.3g} ms)" for _, row in fastest.iterrows()))
+        scenes, rows = list(dict.fromkeys(rows.scene)), rows.sort_values("cost_ms_median")
+        named = list(dict.fromkeys(rows.series)) if len(scenes) == 1 else scenes
+        places = {(row.scene, row.series): named.index(row.series if len(scenes) == 1 else row.scene) for row in rows.itertuples()}
+        key_lines = -(-rows.series.nunique() // 2) if len(scenes) > 1 else 0
+        figure, ((left, right), (key, unused)) = sheet(0.6 + 0.16 * len(named), 0.01 + 0.14 * key_lines, columns=2, sharey="row")
+        dots(left, places, rows, results, "cost_ms_median", "cost_ms", "trace + structures, ms")
+        dots(right, places, rows, results, "fetches_mean", None, "fetches per ray")
+        left.set_yticks(range(len(named)), named)
+        left.set_ylim(len(named) - 0.5, -0.5)
+        unused.axis("off")
+        key_below(key, *(right.get_legend_handles_labels() if len(scenes) > 1 else ([], [])), 2)
+        titled(figure, fastest_of(rows), f"view {view}, {width}×{height}" + (f", {scenes[0]}" if len(scenes) == 1 else "; hollow: interval not known"))
         yield f"compare_{view}_{width}x{height}", figure
 
 
+def draw_growth(results, rows, measured_on, tables):
+    """Time and fetches per ray against pixels, with the exponent of the fitted power law: 0 does not grow, 0.5 grows with the width."""
+    rows = rows.assign(pixels=rows.width * rows.height, ns_per_ray=rows.cost_ms_median * 1e6 / rows.rays)
+    sizes = rows.drop_duplicates("pixels").sort_values("pixels")
+    figure, ((top,), (bottom,)) = sheet(1.7, 1.7, sharex=True)
+    short = short_names(rows.series.unique())
+    for axis, column, label in ((top, "ns_per_ray", "time per ray, ns"), (bottom, "fetches_mean", "fetches per ray")):
+        ends, growth = [], {}
+        for series, line in rows.groupby("series"):
+            line = line.sort_values("pixels")
+            good = line[line[column] > 0]
+            slope = fit_line(np.log(good.pixels.to_numpy()), np.log(good[column].to_numpy()))[0] if len(good) > 1 else np.nan
+            axis.plot(line.pixels, line[column], label=series, **results.styles[series])
+            ends.append((f"{short[series]}, {slope + 0:+.2f}", line.pixels.iloc[-1], line[column].iloc[-1], results.styles[series]["color"]))
+            growth[short[series]] = line[column].iloc[-1] / line[column].iloc[0]
+            tables.setdefault("Growth with the number of pixels: fitted exponents", []).append(
+                {"frame": measured_on, "series": series, "of": label, "exponent": f"{slope:.3f}"})
+        axis.set(xscale="log", ylabel=label)
+        log_axis(axis.yaxis)
+        name_lines(axis, ends)
+    bottom.set_xticks(sizes.pixels, [f"{row.height}p" for row in sizes.itertuples()])
+    bottom.xaxis.set_minor_locator(NullLocator())
+    bottom.set_xlabel("picture; numbers: exponent of the pixels")
+    most, least = max(growth, key=growth.get), min(growth, key=growth.get)
+    message = f"From {sizes.height.iloc[0]}p to {sizes.height.iloc[-1]}p a ray of {most} fetches {growth[most]:.2g} times as much"
+    titled(figure, message + (f", one of {least} {growth[least]:.2g} times" if most != least else ""), measured_on)
+    return figure
+
+
 def growth(results, tables):
-    """Time and fetches against the number of pixels, with the exponent of the fitted power law."""
+    """Surface models have their own figure."""
     for (scene, view), rows in results.rows.groupby(["scene", "view"], sort=False):
-        rows = rows.assign(pixels=rows.width * rows.height / 1e6)
         numbers = [name for name in results.swept(rows) if is_number(rows[name])]
-        if rows.pixels.nunique() < 3 or any(rows[name].nunique() > 1 for name in numbers):
-            continue
-        figure, axes = plt.subplots(1, 2, figsize=(11, 4.4))
-        for axis, column, label in ((axes[0], "cost_ms_median", "trace + structures, ms"),
-                                    (axes[1], "fetches_mean", "fetches per ray")):
-            for series, line in rows.groupby("series"):
-                line = line.sort_values("pixels")
-                good = line[line[column] > 0]
-                exponent = fit_line(np.log(good.pixels.to_numpy()), np.log(good[column].to_numpy()))[0]
-                axis.plot(line.pixels, line[column], label=f"{series}: pixels^{exponent:.2f}", **results.styles[series])
-                tables.setdefault("Growth with the number of pixels: fitted exponents", []).append(
-                    {"scene": scene, "series": series, "of": label, "exponent": f"{exponent:.3f}"})
-            axis.set(xscale="log", ylabel=label)
-            log_axis(axis.yaxis)
-            sizes = rows.drop_duplicates("pixels")
-            axis.set_xticks(sizes.pixels, [f"{row.width}×{row.height}" for _, row in sizes.iterrows()], rotation=30,
-                            ha="right")
-            axis.xaxis.set_minor_locator(matplotlib.ticker.NullLocator())
-            axis.set_ylim(top=axis.get_ylim()[1] * 4)  # room for the legend
-            axis.legend(fontsize=9, loc="upper left")
-        figure.suptitle(f"{scene}, view {view}")
-        figure.finding = f"Growth of time with the number of pixels, {scene}. " + ", ".join(
-            str(line.get_label()) for line in axes[0].get_lines() if "pixels^" in str(line.get_label()))
-        yield f"growth_{''.join(c if c.isalnum() else '_' for c in scene)}_{view}", figure
+        if not several_surfaces(results) and (rows.width * rows.height).nunique() >= 3 and all(rows[name].nunique() < 2 for name in numbers):
+            figure = draw_growth(results, rows, f"{scene}, view {view}", tables)
+            yield f"growth_{''.join(c if c.isalnum() else '_' for c in scene)}_{view}", figure
 
 
-ALL = [law_of_steps, thickness_maps, thickness_curves, comparison_bars, growth]
+ALL = [law_of_steps, thickness_maps, thickness_curves, comparison, growth]

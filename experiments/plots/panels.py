@@ -5,6 +5,8 @@ import tomllib
 import matplotlib.pyplot as plt
 import pandas as pd
 
+from .paper import WIDTH_INCHES, sheet, titled
+
 MEASURES = {"recall_1px": "recall", "precision_1px": "precision", "hit_share": "hits", "picture_rmse": "picture RMSE",
             "picture_visible_border_rmse": "at borders"}
 SHOWN = {"off": "no reflections", "truth": "true reflection", "agreement": "green right, yellow displaced, orange missed, pink false",
@@ -61,21 +63,32 @@ def figures_of(results):
     return tomllib.loads(results.environment.get("specification", "")).get("figures", {})
 
 
+def cropped(picture, figure, name):
+    """The figure's `crop = [x, y, width, height]` of the picture, in pixels."""
+    if "crop" not in figure:
+        return picture
+    x, y, width, height = figure["crop"]
+    if x < 0 or y < 0 or width < 1 or height < 1 or x + width > picture.shape[1] or y + height > picture.shape[0]:
+        raise SystemExit(f"plot: [figures.{name}]: crop {figure['crop']} leaves the picture of {picture.shape[1]}×{picture.shape[0]}")
+    return picture[y:y + height, x:x + width]
+
+
 def panels_of(results, _):
     """One figure for each [figures.NAME] table."""
     for name, figure in figures_of(results).items():
         panels = figure["panels"]
         columns = min(len(panels), 2)
-        lines = -(-len(panels) // columns)
         rows = [row_of(results.rows, panel, name) for panel in panels]
-        shape = rows[0].height / rows[0].width
-        drawn, axes = plt.subplots(lines, columns, figsize=(5.4 * columns, lines * (5.4 * shape + 0.55) + 0.4), squeeze=False)
+        captions = [caption(panel, figure, row) for panel, row in zip(panels, rows)]
+        width, height = figure.get("crop", (0, 0, rows[0].width, rows[0].height))[2:]
+        line_inches = WIDTH_INCHES / columns * height / width + 0.12 * max(text.count("\n") + 1 for text in captions)
+        drawn, axes = sheet(*[line_inches] * -(-len(panels) // columns), columns=columns)
         for axis in axes.flat:
             axis.axis("off")
-        for axis, panel, row in zip(axes.flat, panels, rows):
-            axis.imshow(plt.imread(os.path.join(results.folder, picture_of(panel, row))))
-            axis.set_title(caption(panel, figure, row), fontsize=8.5, loc="left")
-        drawn.suptitle(figure["says"], fontsize=10.5)
+        for axis, panel, row, text in zip(axes.flat, panels, rows, captions):
+            axis.imshow(cropped(plt.imread(os.path.join(results.folder, picture_of(panel, row))), figure, name), interpolation="nearest")
+            axis.set_title(text, fontsize=6)
+        titled(drawn, figure["says"])
         yield name, drawn
 
 

@@ -1,15 +1,10 @@
 """Answers beyond the frame: what share of the rays each list of sources answers rightly and at what cost, what the frame lacks, and what
-each source brings back. Figures are 85 mm wide. Each function returns its figures."""
-import textwrap
-
-import matplotlib.pyplot as plt
+each source brings back. Each function returns its figures."""
 import numpy as np
 import pandas as pd
-from matplotlib.transforms import Bbox
 
-from .figures import log_axis
+from .paper import log_axis, name_lines, sheet, titled
 
-WIDTH_INCHES = 85 / 25.4
 LOST = {"hidden": "hidden", "off_screen": "off screen", "behind_camera": "behind the camera", "facing_away": "facing away"}
 COLOURS = {"hidden": "#0072B2", "off_screen": "#E69F00", "behind_camera": "#009E73", "facing_away": "#CC79A7"}
 SAID = {"layers:count=4:sides=front": "4 layers, front", "layers:count=2:sides=both": "2 layers, both sides",
@@ -95,62 +90,21 @@ def ladder_finding(steps):
     return text
 
 
-def place_numbers(axis, x, y, labels):
-    """Writes each label beside its point, where it covers no other label or point."""
-    figure = axis.figure
-    figure.canvas.draw()
-    points = axis.transData.transform(np.column_stack([x, y]))
-    unit = figure.dpi / 72
-    taken = [Bbox.from_bounds(px - 3 * unit, py - 3 * unit, 6 * unit, 6 * unit) for px, py in points]
-    inside = axis.get_window_extent()
-    for (px, py), label in zip(points, labels):
-        wide, high = 3.9 * unit * len(label), 6 * unit
-        spots = [(px + r * unit * np.cos(a) - wide / 2, py + r * unit * np.sin(a) - high / 2)
-                 for r in (7, 10, 14, 18) for a in np.radians([90, 45, 135, 0, 180, 270, 315, 225])]
-        boxes = [Bbox.from_bounds(*spot, wide, high) for spot in spots]
-        free = [box for box in boxes if not any(box.overlaps(other) for other in taken) and inside.containsx(box.x0) and
-                inside.containsx(box.x1) and inside.containsy(box.y0) and inside.containsy(box.y1)]
-        box = (free or boxes)[0]
-        taken.append(box)
-        axis.text(*axis.transData.inverted().transform(((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2)), label, fontsize=6, ha="center",
-                  va="center")
-
-
-def titled(figure, text):
-    figure.suptitle("\n".join(textwrap.wrap(text, 54)), x=0.01, ha="left", fontsize=8)
-    figure.finding = text
-
-
-def draw_key(axis, names):
-    """Numbers and what they stand for, in two columns below the whole figure."""
-    axis.axis("off")
-    half = -(-len(names) // 2)
-    texts = [axis.text(-0.16 + 0.58 * (i // half), 1 - (i % half + 0.5) / half, f"{i + 1}  {name}", fontsize=6, va="center") for i, name in enumerate(names)]
-    if any("(lost)" in name for name in names):
-        texts.append(axis.text(-0.16, -0.02, "(lost): gets only rays that have no answer yet", fontsize=6, style="italic", va="top"))
-    for text in texts:
-        text.set_in_layout(False)
-
-
 def draw_ladder(steps):
-    lines = -(-len(steps) // 2)
-    figure, (axis, key) = plt.subplots(2, 1, figsize=(WIDTH_INCHES, 2.8 + 0.125 * lines), height_ratios=[2.1, 0.125 * lines])
+    """Steps on the Pareto front and the triangles alone have names; the table has them all."""
+    figure, ((axis,),) = sheet(2.3)
     front = front_of(steps)
-    on_front = steps.index.isin(front.index)
-    axis.step(front.ms, 100 * front.recall, where="post", color="#999999", lw=1.2, zorder=1)
-    axis.plot(steps.ms[~on_front], 100 * steps.recall[~on_front], "o", ms=3.5, mfc="white", mec="#555555", mew=0.8, ls="none")
-    axis.plot(front.ms, 100 * front.recall, "o", ms=3.5, color="#0072B2", ls="none")
-    axis.set_ylabel("rays that meet geometry,\nanswered rightly, %", fontsize=7)
-    axis.set_xlabel("drawing, tracing and lighting, ms; line: Pareto front", fontsize=7)
+    named = steps[steps.index.isin(front.index) | (steps.name == "world alone")]
+    axis.step(front.ms, 100 * front.recall, where="post", color="#999999", zorder=1)
+    axis.plot(steps.ms, 100 * steps.recall, "o", mfc="white", mec="#777777", mew=0.8, ls="none")
+    axis.plot(front.ms, 100 * front.recall, "o", color="#0072B2", ls="none")
+    axis.set_ylabel("rays that meet geometry,\nanswered rightly, %")
+    axis.set_xlabel("drawing, tracing and lighting, ms")
     log_axis(axis.xaxis)
-    axis.tick_params(labelsize=6.5)
     axis.margins(0.07, 0.12)
-    draw_key(key, list(steps.name))
-    titled(figure, ladder_finding(steps))
-    figure.get_layout_engine().set(rect=(0, 0.03, 1, 0.97))
-    figure.canvas.draw()
-    figure.set_layout_engine("none")
-    place_numbers(axis, steps.ms, 100 * steps.recall, [str(i + 1) for i in range(len(steps))])
+    name_lines(axis, [(row.name, row.ms, 100 * row.recall, "#0072B2" if row.Index in front.index else "#555555") for row in named.itertuples()])
+    lost = "; (lost): gets only rays without an answer yet" if named.name.str.contains("(lost)", regex=False).any() else ""
+    titled(figure, ladder_finding(steps), f"line: Pareto front{lost}")
     return figure
 
 
@@ -183,21 +137,20 @@ def lost_by_class(results, tables):
         return
     names = short_names(rows)
     first = rows[rows.place == 0].drop_duplicates("frame_name").iloc[::-1]
-    figure, axis = plt.subplots(figsize=(WIDTH_INCHES, 1.25 + 0.19 * len(first)))
+    figure, ((axis,),) = sheet(0.75 + 0.17 * len(first))
     left = np.zeros(len(first))
     for cls, word in LOST.items():
         wide = np.array([lost_share(row, cls) for _, row in first.iterrows()])
         axis.barh(range(len(first)), wide, left=left, color=COLOURS[cls], label=word, height=0.75)
         left += wide
     for y, total in enumerate(left):
-        axis.annotate(f"{total:.0f}", (total, y), textcoords="offset points", xytext=(3, 0), va="center", fontsize=6.5)
-    axis.set_yticks(range(len(first)), [names[name] for name in first.frame_name], fontsize=6.5)
-    axis.tick_params(axis="x", labelsize=6.5)
+        axis.annotate(f"{total:.0f}", (total, y), textcoords="offset points", xytext=(3, 0), va="center")
+    axis.set_yticks(range(len(first)), [names[name] for name in first.frame_name])
     axis.grid(False, axis="y")
     axis.margins(0.1, 0.02)
     axis.set_xlim(left=0)
-    axis.set_xlabel("of the rays that meet geometry, %", fontsize=7)
-    axis.legend(loc="lower right", bbox_to_anchor=(1.04, 1), ncols=4, fontsize=6.5, handlelength=0.9, columnspacing=0.9, handletextpad=0.4,
+    axis.set_xlabel("of the rays that meet geometry, %")
+    axis.legend(loc="lower right", bbox_to_anchor=(1.04, 1), ncols=4, handlelength=0.9, columnspacing=0.9, handletextpad=0.4,
                 borderaxespad=0.2)
     largest = max(LOST, key=lambda cls: sum(lost_share(row, cls) for _, row in first.iterrows()))
     span = f"{left.min():.0f} to {left.max():.0f}" if len(left) > 1 else f"{left[0]:.0f}"
@@ -243,13 +196,13 @@ def brought_back(results, tables):
     grid, _ = back_grids(asked_rows(results))
     if grid.empty:
         return
-    figure, axis = plt.subplots(figsize=(WIDTH_INCHES, 1.35 + 0.2 * len(grid)))
+    figure, ((axis,),) = sheet(0.95 + 0.18 * len(grid))
     axis.imshow(grid, cmap="Blues", vmin=0, vmax=100, aspect="auto")
     for (y, x), value in np.ndenumerate(grid.to_numpy()):
         if np.isfinite(value):
-            axis.text(x, y, f"{value:.0f}", ha="center", va="center", fontsize=6.5, color="white" if value > 60 else "black")
-    axis.set_xticks(range(len(grid.columns)), grid.columns, rotation=40, ha="right", rotation_mode="anchor", fontsize=6.5)
-    axis.set_yticks(range(len(grid)), grid.index, fontsize=6.5)
+            axis.text(x, y, f"{value:.0f}", ha="center", va="center", color="white" if value > 60 else "black")
+    axis.set_xticks(range(len(grid.columns)), grid.columns, rotation=40, ha="right", rotation_mode="anchor")
+    axis.set_yticks(range(len(grid)), grid.index)
     axis.grid(False)
     axis.tick_params(length=0)
     best, most = grid.iloc[-1].idxmax(), grid.iloc[-1].max()

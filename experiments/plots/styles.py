@@ -34,23 +34,26 @@ def look(slot):
     return COLOURS[place] + MARKERS[(place + 2 * dozen - 2 * (place // len(MARKERS))) % len(MARKERS)]
 
 
+def lines_of(series):
+    """(name, slot, dash, alpha) of each line. Variants share their technique's look, but where there is one technique."""
+    slot_of = slots(list(series))
+    for technique, names in series.items():
+        for i, name in enumerate(names):
+            if len(series) == 1:
+                yield name, (slot_of[technique] + i) % SLOTS, "-", 1
+            else:
+                yield name, slot_of[technique], DASHES[i % len(DASHES)], 1 - 0.18 * (i % 4)
+
+
 def styles(series):
     """{series: matplotlib style}. series: {technique: its variants, in the order of their names}."""
-    slot_of, made = slots(list(series)), {}
-    for technique, names in series.items():
-        colour, _, marker, _, _ = look(slot_of[technique])
-        for i, name in enumerate(names):
-            made[name] = dict(color=colour, marker=marker, linestyle=DASHES[i % len(DASHES)], alpha=1 - 0.18 * (i % 4))
-    return made
+    looks = [(name, look(slot), dash, alpha) for name, slot, dash, alpha in lines_of(series)]
+    return {name: dict(color=colour, marker=marker, linestyle=dash, alpha=alpha) for name, (colour, _, marker, _, _), dash, alpha in looks}
 
 
 def chart_styles(series):
     """The same for Chart.js."""
-    slot_of, made = slots(list(series)), {}
     dashes = {"-": [], "--": [6, 4], ":": [2, 3], "-.": [6, 3, 2, 3]}
-    for technique, names in series.items():
-        light, dark, _, point, rotation = look(slot_of[technique])
-        for i, name in enumerate(names):
-            made[name] = {"light": light, "dark": dark, "point": point, "rotation": rotation, "dash": dashes[DASHES[i % len(DASHES)]],
-                          "alpha": 1 - 0.18 * (i % 4)}
-    return made
+    looks = [(name, look(slot), dash, alpha) for name, slot, dash, alpha in lines_of(series)]
+    return {name: {"light": light, "dark": dark, "point": point, "rotation": rotation, "dash": dashes[dash], "alpha": alpha}
+            for name, (light, dark, _, point, rotation), dash, alpha in looks}

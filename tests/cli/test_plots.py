@@ -11,9 +11,10 @@ matplotlib.use("Agg")
 import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 import plots.accuracy  # noqa: E402
-import plots.growth  # noqa: E402
 import plots.effects  # noqa: E402
 import plots.figures  # noqa: E402
+import plots.panels  # noqa: E402
+import plots.paper  # noqa: E402
 import plots.sequences  # noqa: E402
 import plots.sources  # noqa: E402
 import plots.surfaces  # noqa: E402
@@ -65,13 +66,15 @@ class Test(Case):
         write_table(self.path("out/sources.csv"), lines)
         results = made_results(self, rows, ["sources", "hand_on"])
         figure, = self.drawn(plots.sources.ladder, results)[0].values()
-        self.assertEqual(figure.finding, "The frame answers 70 % of the rays rightly, “+ world” 100.0 %, in 0.5 times the time of the world alone")
+        self.assertEqual(figure.finding, "The frame answers 70 % of the rays rightly, “+ world” 100.0 %, in 0.5 times the time of the world alone (line: Pareto front)")
         steps, back, hybrids = plots.sources.tables_of(results).values()
         self.assertEqual([(step["sources"], step["ms"], step["recall, %"]) for step in steps],
                          [("frame", "30", "70.0"), ("+ world", "50", "100.0"), ("+ cube (lost)", "90", "77.5"), ("world alone", "100", "100.0")])
         self.near(figure.axes[0].get_lines()[0].get_xdata(), [30, 50])  # the front
         figure, = self.drawn(plots.sources.lost_by_class, results)[0].values()
         self.assertEqual(figure.finding, "The frame lacks 20 to 40 % of the points that rays meet; the largest part is facing away")
+        self.assertEqual(self.drawn(plots.sources.brought_back, results)[0]["sources_brought_back"].finding,
+                         "“cube” answers most of the lost rays rightly: 25 % in the mean")
         self.assertEqual([row["cube"] for row in back], ["25 (80)"] * 3)
         self.assertEqual([row["time / world alone"] for row in hybrids], ["0.50", "0.50"])
 
@@ -94,15 +97,17 @@ class Test(Case):
         steps, ms = [25, 50, 100, 500, 1000], [9, 2.5, 3, 7, 12]
         self.near(line_of(left, "linear"), [steps, [1000 / one for one in ms]])
         self.near(line_of(left, "dda")[1], [20, 20])
-        self.near(line_of(right, "dda: 50 ms")[1], [50, 50])
-        self.near(line_of(right, "linear: 0.01 ms/step + 2 ms, R² 1.0000"), [[50, 1000], [2.5, 12]])
+        self.near(line_of(right, "dda")[1], [50, 50])
+        self.near(line_of(right, "linear: fit"), [[50, 1000], [2.5, 12]])
         self.near(segments_of(right), [[one - 0.5, one + 0.25] for one in ms])
         self.near(right.containers[0][0].get_ydata(), ms)
         # The report's own frame rates, scaled so that its 31 at 500 steps are the 1000 / 7 here.
         steps, fps = line_of(left, "OpenGL report")
         self.near([steps, fps], [[25, 50, 100, 250, 500, 1000, 2500], np.array([120, 118, 91, 53, 31, 18, 9]) * 1000 / 7 / 31])
         self.near(line_of(right, "OpenGL report")[1][0], 31 * 7 / 120)
-        self.assertIn("linear: 0.01 ms/step + 2 ms", figure.finding)
+        self.assertEqual(figure.finding, "From 50 steps on, each step of linear adds 0.01 ms (R² 1.0000), dda takes no steps "
+                         "(animal_on_metal, view default, 80×60)")
+        self.assertEqual({text.get_text().split(",")[0] for text in left.texts}, {"linear", "dda", "OpenGL report"})
 
     def test_a_fit_says_how_well_it_fits(self):
         """Through (0, 0), (1, 3), (2, 3): slope 1.5, intercept 0.5; of 6 squares around the mean 2, 1.5 are left."""
@@ -122,13 +127,11 @@ class Test(Case):
         (_, figure), = figures.items()
         self.assertEqual(tables, {plots.figures.BEST_THICKNESS: [
             {"frame": "s, view default, 80×60", "series": "linear, 40 steps", "thickness, m": "0.1", "missed, % of rays": "10.00", "false, % of rays": "2.00"}]})
-        left, right = figure.axes
-        self.near(line_of(left, "linear, 40 steps"), [[0.05, 0.1, 0.2, 0.4], [26, 12, 15, 22.5]])
-        self.near(line_of(right, "linear, 40 steps"), [[1, 2, 10, 20], [25, 10, 5, 2.5]])
-        circled = left.get_lines()[1]
+        axis, = figure.axes
+        self.near(line_of(axis, "linear, 40 steps"), [[0.05, 0.1, 0.2, 0.4], [26, 12, 15, 22.5]])
+        circled = axis.get_lines()[1]
         self.near([circled.get_xdata(), circled.get_ydata()], [[0.1], [12]])
-        self.assertEqual([one.get_text() for one in right.texts], ["0.05", "0.1", "0.2", "0.4"])
-        self.assertIn("Fewest at 0.1 m (linear, 40 steps)", figure.finding)
+        self.assertIn("Fewest rays are wrong at a thickness of 0.1 m: 12.0 % (linear, 40 steps)", figure.finding)
 
     def test_maps_of_thickness_and_steps(self):
         figures, _ = self.drawn(plots.figures.thickness_maps, self.thickness())
@@ -139,28 +142,26 @@ class Test(Case):
         self.near(false.get_array(), 100 * (np.array([[0.01], [0.02], [0.1], [0.2]]) + worse))
         self.near(time.get_array(), np.outer([0.05, 0.1, 0.2, 0.4], [10, 20, 40]))
         self.near([recall.get_clim(), false.get_clim(), time.get_clim()], [[0, 100], [0, 40], [0, 16]])
-        self.assertEqual([figure.axes[0].get_xticklabels()[0].get_text(), figure.axes[0].get_yticklabels()[0].get_text()], ["10", "0.05"])
-        self.assertEqual([axis.texts[1].get_text() for axis in figure.axes], ["40", "11.0", "1"])
+        self.assertEqual([figure.axes[2].get_xticklabels()[0].get_text(), figure.axes[0].get_yticklabels()[0].get_text()], ["10", "0.05"])
+        self.assertEqual([axis.texts[1].get_text() for axis in figure.axes], ["40", "11", "1"])
+        self.assertIn("linear finds most with 40 steps of 0.4 m, and has the fewest false hits with 40 steps of 0.05 m", figure.finding)
 
-    def test_bars_of_techniques(self):
+    def test_comparison_of_techniques(self):
         rows = [dict(scene=scene, technique=technique, trace_ms_median=ms, trace_ms_ci_low=ms - 0.5, trace_ms_ci_high=ms + 1, structures_ms_median=own,
                      fetches_mean=10 * ms)
                 for scene, technique, ms, own in (("a", "dda", 4, 0), ("a", "hiz", 1, 2), ("b", "dda", 2, 0), ("b", "hiz", 3, 0.5))]
         del rows[3]["trace_ms_ci_low"]
-        figures, _ = self.drawn(plots.figures.comparison_bars, made_results(self, rows))
+        figures, _ = self.drawn(plots.figures.comparison, made_results(self, rows))
         figure = figures["compare_default_80x60"]
-        top, bottom = figure.axes
-        (dda, hiz), (_, fetches) = ([one for one in axis.containers if one.get_label() in ("dda", "hiz")] for axis in (top, bottom))
-        self.near([bar.get_height() for bar in dda], [4, 2])
-        self.near([bar.get_height() for bar in hiz], [3, 3.5])
-        self.near([bar.get_x() + bar.get_width() / 2 for bar in dda] + [bar.get_x() + bar.get_width() / 2 for bar in hiz], [-0.2, 0.8, 0.2, 1.2])
-        self.near([bar.get_height() for bar in fetches], [10, 30])
-        self.assertEqual([[text.get_text() for text in axis.texts] for axis in (top, bottom)], [["4", "2", "3", "3.5"], ["40", "20", "10", "30"]])
-        self.near([text.xy[1] for text in top.texts], [5, 3, 4, 4.5])  # above the end of the interval
-        self.assertEqual([bar.get_facecolor()[3] > 0 for bar in hiz], [True, False], "hollow where the interval is not known")
-        self.near(dda.errorbar[2][0].get_segments()[0][:, 1], [3.5, 5])
-        self.near(hiz.errorbar[2][0].get_segments()[0][:, 1], [2.5, 4])
-        self.assertIn("Fastest: hiz on a (3 ms), dda on b (2 ms)", figure.finding)
+        time, fetches = figure.axes[:2]
+        self.assertEqual([label.get_text() for label in time.get_yticklabels()], ["a", "b"])
+        marks = [{one.get_label(): dict(zip(one[0].get_ydata(), one[0].get_xdata())) for one in axis.containers} for axis in (time, fetches)]
+        self.assertEqual(marks, [{"dda": {0: 4, 1: 2}, "hiz": {0: 3, 1: 3.5}}, {"dda": {0: 40, 1: 20}, "hiz": {0: 10, 1: 30}}])
+        ends = {one.get_label(): [bar[:, 0].tolist() for bar in one[2][0].get_segments() if len(bar) > 1] for one in time.containers}
+        self.assertEqual(ends, {"dda": [[1.5, 3], [3.5, 5]], "hiz": [[2.5, 4]]}, "none where the interval is not known")
+        hollow = next(line for line in time.get_lines() if line.get_markerfacecolor() == "white" and len(line.get_xdata()))
+        self.near(hollow.get_xydata(), [[3.5, 1]])
+        self.assertEqual(figure.finding.split(" (")[0], "dda is the fastest in 1 of 2 scenes; hiz takes 1.15 times as long")
 
     def growing(self):
         """Cost as the square root of the pixels, fetches as their fourth root; half of the pixels are rays."""
@@ -175,14 +176,12 @@ class Test(Case):
         figures, tables = self.drawn(plots.figures.growth, results)
         (_, figure), = figures.items()
         rows, = tables.values()
-        self.assertEqual([(row["of"], row["exponent"]) for row in rows], [("trace + structures, ms", "0.500"), ("fetches per ray", "0.250")])
-        self.near(line_of(figure.axes[0], "hiz: pixels^0.50"), [[0.01, 0.04, 0.16], [1, 2, 4]])
-        self.assertIn("hiz: pixels^0.50", figure.finding)
-        plots.growth.draw(results, results.rows, "growth", self.path("growth.png"))
-        left, right = plt.gcf().axes
-        self.near(line_of(left, "hiz")[0], [1e4, 4e4, 16e4])
-        self.near(line_of(left, "hiz")[1], [0.75e6 / 5e3, 1.75e6 / 20e3, 3.75e6 / 80e3])
-        self.near(line_of(right, "hiz  +0.25")[1], [40, 40 * 2 ** 0.5, 80])
+        self.assertEqual([(row["of"], row["exponent"]) for row in rows], [("time per ray, ns", "-0.500"), ("fetches per ray", "0.250")])
+        time, fetches = figure.axes
+        self.near(line_of(time, "hiz"), [[1e4, 4e4, 16e4], [1e6 / 5e3, 2e6 / 20e3, 4e6 / 80e3]])
+        self.near(line_of(fetches, "hiz")[1], [40, 40 * 2 ** 0.5, 80])
+        self.assertEqual([axis.texts[0].get_text() for axis in (time, fetches)], ["hiz, -0.50", "hiz, +0.25"])
+        self.assertIn("From 50p to 200p a ray of hiz fetches 2 times as much", figure.finding)
 
     def test_what_passes_cost_and_remove(self):
         common = dict(technique="dda", gloss="stochastic", filter_3x3=True, frame_ms_ci_low=8.5)
@@ -194,47 +193,51 @@ class Test(Case):
         (name, figure), = figures.items()
         lines, = tables.values()
         self.assertEqual([tuple(line.values())[1:] for line in lines], [("gloss cone", "2.50", "+0.0500", "+0.2000"), ("no filter_3x3", "-1.00", "-0.0500", "-0.1000")])
-        self.assertIn("gloss cone removes most picture_rmse: +0.0500 for 2.50 ms", figure.finding)
-        for axis, removed in zip(figure.axes, (0.05, 0.2)):
-            self.near(axis.containers[0][0].get_xydata(), [[2.5, removed]])
-            self.near(axis.containers[0][2][0].get_segments()[0][:, 0], [12.5 - 10 - 4, 3.5])
-        self.near(figure.axes[0].get_lines()[-2].get_xydata(), [[-1, -0.05]])
-        for axis, removed in zip(figure.axes, ((0.05, -0.05), (0.2, -0.1))):
-            low, high = np.array([axis.get_xlim(), axis.get_ylim()]).T
-            named = {text.get_text(): text.xy for text in axis.texts}
-            self.assertEqual(named, {"gloss cone": (2.5, named["gloss cone"][1]), "no filter_3x3": (-1, named["no filter_3x3"][1]), "first run": (0, 0)})
-            self.near([named["gloss cone"][1], named["no filter_3x3"][1]], removed)
-            for point in named.values():
-                self.assertTrue((low < point).all() and (point < high).all(), (low, point, high))
-        self.assertIn("0.2000 in the first run", figure.axes[0].get_title(loc="left"))
+        self.assertIn("gloss cone takes picture_rmse from 0.2000 to 0.1500 for 2.50 ms", figure.finding)
+        removed, added = figure.axes
+        self.assertEqual([label.get_text() for label in removed.get_yticklabels()], ["gloss cone", "no filter_3x3"])
+        self.near(line_of(removed, "all that reflects")[0], [0.05, -0.05])
+        self.near(line_of(removed, "at borders of materials")[0], [0.2, -0.1])
+        self.near(added.containers[0][0].get_xdata(), [2.5, -1])
+        self.near(added.containers[0][2][0].get_segments()[0][:, 0], [12.5 - 10 - 4, 3.5])
+        self.near(added.get_lines()[1].get_xdata(), [-1])  # hollow
 
     def test_names_beside_points_keep_their_order_and_their_room(self):
-        places = plots.effects.spread(np.array([0.0, 1, 2]), np.array([0.5, 0.5, 0.9]), 0.2, 0, 1)
+        places = plots.paper.spread(np.array([0.0, 1, 2]), np.array([0.5, 0.5, 0.9]), 0.2, 0, 1)
         self.near(places, [0.7, 0.5, 0.9])
-        self.near(plots.effects.spread(np.array([0.0, 1]), np.array([0.95, 1.0]), 0.2, 0, 1), [0.8, 1])
-        self.near(plots.effects.spread(np.zeros(5), np.array([1.0, 0.9, 0.8, 0.7, 0.1]), 0.1, 0, 1), [1, 0.9, 0.8, 0.7, 0.1])
-        self.near(plots.effects.spread(np.arange(5.0), np.ones(5), 0.1, 0, 1), [1, 0.9, 0.8, 0.7, 0.6])
-        self.near(plots.effects.spread(np.arange(3.0), np.zeros(3), 0.9, 0, 1), [1, 0.5, 0])  # no more room than there is
+        self.near(plots.paper.spread(np.array([0.0, 1]), np.array([0.95, 1.0]), 0.2, 0, 1), [0.8, 1])
+        self.near(plots.paper.spread(np.zeros(5), np.array([1.0, 0.9, 0.8, 0.7, 0.1]), 0.1, 0, 1), [1, 0.9, 0.8, 0.7, 0.1])
+        self.near(plots.paper.spread(np.arange(5.0), np.ones(5), 0.1, 0, 1), [1, 0.9, 0.8, 0.7, 0.6])
+        self.near(plots.paper.spread(np.arange(3.0), np.zeros(3), 0.9, 0, 1), [1, 0.5, 0])  # no more room than there is
 
     def test_curves_of_accuracy(self):
         """Of 100 rays half a one is the least error that can be drawn."""
         rows = [dict(technique="linear", steps=steps, trace_ms_median=ms, trace_ms_ci_low=ms - 0.5, trace_ms_ci_high=ms + 1, structures_ms_median=1, rays=100,
-                     fetches_mean=10 * ms, recall_1px=recall, precision_1px=0.9, f1_1px=0.8, screen_displacement_p95_px=4 - ms / 4)
+                     fetches_mean=10 * ms, recall_1px=recall, precision_1px=0.9, f1_1px=0.8)
                 for steps, ms, recall in ((10, 1, 0.5), (20, 2, 0.9), (40, 4, 0.8), (80, 8, 0.99), (160, 16, 1))]
         figures, _ = self.drawn(plots.accuracy.accuracy_curves, made_results(self, rows, ["steps"]))
-        self.assertEqual([name.removesuffix("_s_default_80x60") for name in figures],
-                         ["accuracy_recall_1px", "accuracy_screen_displacement_p95_px", "accuracy_precision_f1"])
-        time, fetches = figures["accuracy_recall_1px_s_default_80x60"].axes
-        self.near(line_of(time, "linear"), [[2, 3, 5, 9, 17], [0.5, 0.1, 0.2, 0.01, 0.005]])
-        self.near(line_of(time, "Pareto front"), [[2, 3, 9, 17], [0.5, 0.1, 0.01, 0.005]])
-        self.near([bar[:, 0] for bar in time.containers[0][2][0].get_segments()], [[1.5, 3], [2.5, 4], [4.5, 6], [8.5, 10], [16.5, 18]])
-        self.near(line_of(fetches, "linear"), [[10, 20, 40, 80, 160], [0.5, 0.1, 0.2, 0.01, 0.005]])
-        self.assertIn("dotted", figures["accuracy_recall_1px_s_default_80x60"]._suptitle.get_text())
-        far, _ = figures["accuracy_screen_displacement_p95_px_s_default_80x60"].axes
-        self.near(line_of(far, "linear")[1], [3.75, 3.5, 3, 2, 1e-3])
+        self.assertEqual([name.removesuffix("_s_default_80x60") for name in figures], ["accuracy_recall_1px", "accuracy_precision_f1"])
+        figure = figures["accuracy_recall_1px_s_default_80x60"]
+        time, fetches = figure.axes
+        self.near(line_of(time, "linear"), [[2, 3, 9, 17], [0.5, 0.1, 0.01, 0.005]])  # the front
+        self.near(time.get_lines()[0].get_xydata(), np.transpose([[2, 3, 5, 9, 17], [0.5, 0.1, 0.2, 0.01, 0.005]]))
+        self.near([bar[:, 0] for bar in time.containers[0][2][0].get_segments()], [[1.5, 3], [2.5, 4], [8.5, 10], [16.5, 18]])
+        self.near(line_of(fetches, "linear"), [[10, 20, 80, 160], [0.5, 0.1, 0.01, 0.005]])
+        self.assertEqual([line.get_ydata()[0] for line in time.get_lines() if line.get_linestyle() == ":"], [0.005])
+        self.assertIn("linear is the first to reach 99 % recall, in 9 ms (s, view", figure.finding)
+        self.assertEqual([text.get_text() for text in time.texts], ["linear"])
         precision, f1 = figures["accuracy_precision_f1_s_default_80x60"].axes
-        self.near(line_of(precision, "linear")[1] + line_of(f1, "linear")[1], [0.1] * 5 + [0.2] * 5)
-        self.assertNotIn("dotted", figures["accuracy_precision_f1_s_default_80x60"]._suptitle.get_text())
+        self.near(line_of(precision, "linear")[1] + line_of(f1, "linear")[1], [0.1, 0.2])
+        self.assertIn("80 % F1", figures["accuracy_precision_f1_s_default_80x60"].finding)
+
+    def test_one_line_a_technique(self):
+        rows = [dict(technique=technique, space=space, steps=steps, trace_ms_median=ms, recall_1px=recall, rays=100)
+                for technique, space, steps, ms, recall in (("linear", "view", 8, 1, 0.3), ("linear", "view", 16, 4, 0.5), ("linear", "pixels", 8, 2, 0.45),
+                                                           ("linear", "pixels", 16, 3, 0.7), ("dda", "", 8, 6, 0.92))]
+        figures, _ = self.drawn(plots.accuracy.accuracy_curves, made_results(self, rows, ["space", "steps"]))
+        figure, = figures.values()
+        self.near(line_of(figure.axes[0], "linear"), [[1, 2, 3], [0.7, 0.55, 0.3]])
+        self.assertIn("dda is the first to reach 90 % recall, in 6 ms; no other does", figure.finding)
 
     MODELS = (("plane", "stop", 0.8, 0.5), ("box", "stop", 0.6, 0), ("box", "hit", 0.5, 0))
 
@@ -260,25 +263,24 @@ class Test(Case):
         axis, = figure.axes
         self.near(line_of(axis, "box, stop"), [[61, 62, 64], [80, 70, 50]])
         self.near(line_of(axis, "plane, stop"), [[81], [80]])
-        self.assertEqual([text.get_text() for text in axis.get_legend().get_texts()], ["box, hit", "box, stop", "plane, stop"])
-        self.assertIn("Best F1: plane, stop, 80.0 %", figure.finding)
+        self.assertIn("plane, stop is the best: F1 80.0 %; a box reaches 60.0 %", figure.finding)
         best = plots.surfaces.ladder(results)
         self.assertEqual(list(zip(best.scene, best.surface, best.behind, best.thickness_m)), [
             (scene, *model, 0.2) for scene in ("a_hall", "b_hall") for model in (("plane", "stop"), ("box", "stop"), ("box", "hit"))])
         self.near(best.solid_backs_ms, [0.5, 0, 0] * 2)
         self.near(best.recall_1px, [0.81, 0.62, 0.52] * 2)
         self.near(best.precision_1px, [0.8, 0.7, 0.7] * 2)
-        self.assertEqual([text.get_text() for text in axis.texts], ["0.1 m", "0.2 m", "0.4 m"] * 2)
-        self.near([text.xy for text in axis.texts], [[61, 80], [62, 70], [64, 50], [51, 80], [52, 70], [54, 50]])
+        at = {text.get_text(): text.xy for text in axis.texts}
+        self.assertEqual(list(at), ["0.1 m", "0.4 m", "plane, stop", "box, stop", "box, hit"])
+        self.near(list(at.values()), [[61, 80], [64, 50], [81, 80], [62, 70], [52, 70]])  # names at the best F1
 
     def test_surface_models_from_elsewhere_stand_behind_the_ladder(self):
         results = self.surfaces(thicknesses=(0.1, 0.2), layers=(1, 2), models=(("felt", "stop", 0.7, 0), ("a_cloth", "hit", 0.7, 0), *self.MODELS))
         figures, _ = self.drawn(plots.surfaces.precision_against_recall, results)
         axis, = figures["surfaces_precision_recall_a_hall_default_80x60"].axes
-        self.assertEqual([text.get_text() for text in axis.get_legend().get_texts()], ["box, hit", "box, stop", "plane, stop", "a_cloth, hit", "felt, stop"])
         self.near(line_of(axis, "felt, stop"), [[71, 72], [80, 70]])
         figures, _ = self.drawn(plots.surfaces.ladder_of_layers, results)
-        self.assertEqual([label.get_text() for label in figures["surfaces_ladder"].axes[1].get_xticklabels()][-2:], ["felt, stop", "felt, stop,\n2 layers"])
+        self.assertEqual([label.get_text() for label in figures["surfaces_ladder"].axes[1].get_xticklabels()][-2:], ["felt, stop", "felt, stop, 2 layers"])
 
     def test_what_surface_models_cost(self):
         results = self.surfaces()
@@ -290,7 +292,7 @@ class Test(Case):
         figures, _ = self.drawn(plots.surfaces.ladder_of_layers, self.surfaces(thicknesses=(0.2,), layers=(2, 1)))
         found, cost = figures["surfaces_ladder"].axes
         self.assertEqual([label.get_text() for label in cost.get_xticklabels()],
-                         ["box, hit", "box, stop", "box, hit,\n2 layers", "box, stop,\n2 layers", "plane, stop", "plane, stop,\n2 layers"])
+                         ["box, hit", "box, stop", "box, hit, 2 layers", "box, stop, 2 layers", "plane, stop", "plane, stop, 2 layers"])
         self.near(line_of(found, "a_hall")[1], [40, 50, 45, 55, 70, 75])
         self.near(line_of(found, "b_hall")[1], [50, 60, 55, 65, 80, 85])
         parts = {part.get_label(): ([bar.get_height() for bar in part], [bar.get_y() for bar in part]) for part in cost.containers}
@@ -304,9 +306,10 @@ class Test(Case):
                      recall_1px=0.5, precision_1px=0.5, f1_1px=height / 1000 + more)
                 for scene in ("a", "b") for surface, more in (("box", 0), ("plane", 0.25)) for height in (400, 100, 200)]
         figures, _ = self.drawn(plots.surfaces.f1_against_size, made_results(self, rows, ["surface", "behind", "thickness_m"]))
-        for axis in figures["surfaces_f1_size"].axes:
-            self.near(line_of(axis, "box, stop"), [[100, 200, 400], [10, 20, 40]])
-            self.near(line_of(axis, "plane, stop"), [[100, 200, 400], [35, 45, 65]])
+        axis, = figures["surfaces_f1_size"].axes  # means of the scenes
+        self.near(line_of(axis, "box, stop"), [[100, 200, 400], [10, 20, 40]])
+        self.near(line_of(axis, "plane, stop"), [[100, 200, 400], [35, 45, 65]])
+        self.assertIn("At 100p plane, stop is the best: F1 35.0 %; a box reaches 10.0 %, at 400p 40.0 %", figures["surfaces_f1_size"].finding)
 
     def sequence(self, summary, rows=({"technique": "dda"},), inputs=()):
         results = made_results(self, rows, inputs)
@@ -330,20 +333,32 @@ class Test(Case):
         bars = {one.get_label(): [bar.get_height() for bar in one] for one in error.containers}
         self.near([bars["median"], bars["95th percentile"]], [[0.5, 1], [2, 4]])
         self.near([bar.get_height() for bar in unseen.containers[0]], [25, 10])
-        self.assertEqual([label.get_text() for label in error.get_xticklabels()], ["pan", "truck"])
+        self.assertEqual([label.get_text() for label in unseen.get_xticklabels()], ["pan", "truck"])
 
         weights = [dict(scene="s", view=view, reprojection=name, history_weight=0.9, reprojection_error_median_px=error, reprojection_error_p95_px=3 * error,
                         ghosting_rmse=error / 10) for view in ("default", "pan") for name, error in (("mine", 4), ("plane", 1), ("surface", 2), ("plane", 3))]
         results = self.sequence(weights + [dict(scene="s", view="pan", reprojection="plane", history_weight=0, ghosting_rmse=0.75)])
         figures, _ = self.drawn(plots.sequences.reprojection_errors, results)
-        median, p95, ghosts = figures["reprojection_errors"].axes
+        figure = figures["reprojection_errors"]
+        median, p95, ghosts = figure.axes[:3]
         for axis, factor in ((median, 1), (p95, 3), (ghosts, 0.1)):
-            self.assertEqual([one.get_label() for one in axis.containers], ["surface", "plane", "mine"])
-            self.near([[bar.get_height() for bar in one] for one in axis.containers], factor * np.array([[2, 2], [2, 2], [4, 4]]))
-        self.near([bar.get_x() + bar.get_width() / 2 for bar in median.containers[0]], [-0.4 + 0.4 / 3, 0.6 + 0.4 / 3])
-        floor, = ghosts.collections
-        self.near(floor.get_segments()[0], [[0.55, 0.75], [1.45, 0.75]])
-        self.assertEqual([label.get_text() for label in ghosts.get_xticklabels()], ["objects only", "pan"])
+            self.assertEqual([one.get_label() for one in axis.get_lines()[:3]], ["surface", "plane", "mine"])
+            self.near([one.get_xdata() for one in axis.get_lines()[:3]], factor * np.array([[2, 2], [2, 2], [4, 4]]))
+        self.near(line_of(ghosts, "no history")[0], [np.nan, 0.75])
+        self.assertEqual([label.get_text() for label in ghosts.get_yticklabels()], ["objects only", "pan"])
+        self.assertRegex(figure.finding, r"(plane|surface) knows best where a reflection was: 95 % within 6 px; mine within 12 px")
+
+    def test_a_panel_shows_its_part_of_the_picture(self):
+        picture = np.arange(6 * 8).reshape(6, 8, 1)
+        self.near(plots.panels.cropped(picture, {"crop": [5, 1, 3, 2]}, "one")[:, :, 0], [[13, 14, 15], [21, 22, 23]])
+        self.near(plots.panels.cropped(picture, {}, "one"), picture)
+        for crop in ([6, 1, 3, 2], [-1, 0, 3, 2], [0, 0, 0, 2]):
+            with self.assertRaisesRegex(SystemExit, "leaves the picture of 8×6"):
+                plots.panels.cropped(picture, {"crop": crop}, "one")
+
+    def test_names_say_what_differs(self):
+        self.assertEqual(plots.paper.short_names(["hiz, stop, box", "hiz, stop, plane"]), {"hiz, stop, box": "box", "hiz, stop, plane": "plane"})
+        self.assertEqual(plots.paper.short_names(["hiz", "hiz, box"]), {"hiz": "hiz", "hiz, box": "hiz, box"})
 
     def test_clamping_and_convergence(self):
         summary = [dict(scene="s", view=f"waves_{waves}_roughness_{roughness}", history_clamping=clamping, clamped_share=share)
@@ -356,12 +371,12 @@ class Test(Case):
         results = self.sequence(summary, rows, ["history_weight", "history_clamping"])
         figures, _ = self.drawn(plots.sequences.clamped_history, results)
         left, right = figures["clamped_history"].axes
-        self.assertEqual((left.get_title(), right.get_title()), ("minmax", "variance"))
+        self.assertEqual((left.get_title("left"), right.get_title("left")), ("minmax", "variance"))
         self.near(line_of(left, "roughness 0.1"), [[0, 4], [40, 80]])
         self.near(line_of(right, "roughness 0.3"), [[4], [10]])
         figures, _ = self.drawn(plots.sequences.convergence, results)
         axis, = figures["convergence"].axes
-        self.assertEqual(axis.get_title(), "2 waves per metre")
+        self.assertEqual(axis.get_title("left"), "2 waves per metre")
         self.near(line_of(axis, "no history"), [[1, 8], [0.6, 0.5]])
         self.near(line_of(axis, "minmax"), [[1, 8], [0.6, 0.2]])
 

@@ -169,12 +169,13 @@ class Test(Case):
         self.assertEqual((low[0], high[0]), (1, 2))
         self.assertTrue(np.isnan(low[1]) and np.isnan(high[1]))
         self.assertEqual(list(known(rows, "t")), [True, False])
-        figure, axis = plots.accuracy.plt.subplots()
+        from plots.paper import plt
+        figure, axis = plt.subplots()
         plots.accuracy.draw_intervals(axis, rows.assign(error=[0.1, 0.2]), "t_median", "error", {"color": "#000000", "marker": "o"})
         bars, hollow = axis.containers[0][2][0].get_segments(), axis.get_lines()[-1]
         self.assertEqual([segment[:, 0].tolist() for segment in bars], [[1, 4]])
         self.assertEqual((list(hollow.get_xdata()), hollow.get_markerfacecolor()), ([3], "white"))
-        plots.accuracy.plt.close(figure)
+        plt.close(figure)
 
 
 if __name__ == "__main__":
