@@ -17,10 +17,11 @@ namespace {
 glm::dvec3 place_of_probe(const Occupancy& grid, glm::dvec3 eye_ws)
 {
     constexpr int    places_side = 9;
-    const glm::dvec3 middle_ws   = grid.low_ws + 0.5 * grid.cell_m * glm::dvec3(grid.cells);
+    const glm::dvec3 high_ws     = grid.low_ws + grid.cell_m * glm::dvec3(grid.cells);
+    const glm::dvec3 middle_ws   = (grid.low_ws + high_ws) / 2.0;
     glm::dvec3       best_ws     = eye_ws;
     double           best_m      = std::numeric_limits<double>::infinity();
-    for (const glm::dvec3& place_ws : free_places(grid, places_side)) {
+    for (const glm::dvec3& place_ws : free_places(grid, grid.low_ws, high_ws, places_side)) {
         const double away_m = glm::distance(place_ws, middle_ws), to_eye_m = glm::distance(place_ws, eye_ws);
         if (away_m >= best_m || may_meet(grid, place_ws, (eye_ws - place_ws) / to_eye_m, 0, to_eye_m)) continue;
         best_ws = place_ws;

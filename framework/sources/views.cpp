@@ -13,8 +13,9 @@
 namespace ssrlab {
 namespace {
 
-constexpr size_t most_samples    = 2000; // rays that are asked about each candidate
-constexpr int    candidates_side = 7;    // candidates along each axis of the scene's bounds
+constexpr size_t most_samples    = 1000; // rays that are asked about each candidate
+constexpr int    candidates_side = 7;    // candidates along each axis of the bounds of these rays
+constexpr int    cells_side      = 256;  // fine enough for rays that end near where they begin
 
 /// Where a ray probably ends: in the first occupied cell behind what is clear of it.
 struct Target {
@@ -22,15 +23,21 @@ struct Target {
     size_t     ray;
 };
 
+/// Returns how far a point moves along a direction from one side of a cell to the opposite one.
+double across_cell_m(const Occupancy& grid, glm::dvec3 direction)
+{
+    const glm::dvec3 cells_per_m = glm::abs(direction) / grid.cell_m;
+    return 1 / std::max({cells_per_m.x, cells_per_m.y, cells_per_m.z});
+}
+
 std::vector<Target> targets_of(const Occupancy& grid, std::span<const OpenRay> rays)
 {
     std::vector<Target> targets;
-    const size_t        step   = std::max<size_t>(1, rays.size() / most_samples);
-    const double        cell_m = std::max({grid.cell_m.x, grid.cell_m.y, grid.cell_m.z});
+    const size_t        step = std::max<size_t>(1, rays.size() / most_samples);
     for (size_t k = 0; k < rays.size(); k += step) {
         const OpenRay& ray = rays[k];
         // The reflecting surface itself lies in the first cell.
-        const double from_m = std::max(ray.clear_m, 1.5 * cell_m);
+        const double from_m = std::max(ray.clear_m, 1.5 * across_cell_m(grid, ray.direction_ws));
         const double met_m  = first_occupied(grid, ray.origin_ws, ray.direction_ws, from_m, ray.reach_m);
         if (std::isfinite(met_m)) targets.push_back({ray.origin_ws + met_m * ray.direction_ws, -ray.direction_ws, k});
     }
@@ -41,8 +48,8 @@ std::vector<Target> targets_of(const Occupancy& grid, std::span<const OpenRay> r
 bool probably_sees(const Occupancy& grid, glm::dvec3 eye_ws, const Target& target)
 {
     const glm::dvec3 to_eye = eye_ws - target.at_ws;
-    const double     away_m = glm::length(to_eye), cell_m = std::max({grid.cell_m.x, grid.cell_m.y, grid.cell_m.z});
-    if (away_m < cell_m || glm::dot(to_eye, target.toward_ws) <= 0.2 * away_m) return false;
+    const double     away_m = glm::length(to_eye), cell_m = across_cell_m(grid, to_eye / away_m);
+    if (!(away_m >= cell_m) || glm::dot(to_eye, target.toward_ws) <= 0.2 * away_m) return false;
     return !may_meet(grid, target.at_ws, to_eye / away_m, 2 * cell_m, away_m);
 }
 
@@ -66,10 +73,17 @@ std::optional<glm::dvec3> best_place(const Occupancy& grid, std::span<const glm:
 
 std::vector<glm::dvec3> placed_by_rays(SourceContext& context, std::span<const OpenRay> rays, size_t count)
 {
-    const Occupancy&              grid    = occupancy_of(context.stage);
-    const std::vector<glm::dvec3> places  = free_places(grid, candidates_side);
-    std::vector<Target>           targets = targets_of(grid, rays);
-    std::vector<glm::dvec3>       eyes_ws;
+    const Occupancy         grid    = make_occupancy(context.stage.scene, cells_side);
+    std::vector<Target>     targets = targets_of(grid, rays);
+    std::vector<glm::dvec3> eyes_ws;
+    if (targets.empty()) return eyes_ws;
+    glm::dvec3 low_ws = targets[0].at_ws, high_ws = low_ws;
+    for (const Target& target : targets)
+        for (const glm::dvec3& end_ws : {target.at_ws, rays[target.ray].origin_ws}) {
+            low_ws  = glm::min(low_ws, end_ws);
+            high_ws = glm::max(high_ws, end_ws);
+        }
+    const std::vector<glm::dvec3> places = free_places(grid, low_ws, high_ws, candidates_side);
     for (size_t view = 0; view < count; ++view)
         if (const auto place = best_place(grid, places, targets)) eyes_ws.push_back(*place);
     return eyes_ws;

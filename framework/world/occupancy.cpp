@@ -105,14 +105,13 @@ double first_occupied(const Occupancy& grid, glm::dvec3 origin_ws, glm::dvec3 di
     }
 }
 
-std::vector<glm::dvec3> free_places(const Occupancy& grid, int side)
+std::vector<glm::dvec3> free_places(const Occupancy& grid, glm::dvec3 low_ws, glm::dvec3 high_ws, int side)
 {
     std::vector<glm::dvec3> places;
-    const glm::dvec3        size = grid.cell_m * glm::dvec3(grid.cells);
     for (int z = 0; z < side; ++z)
         for (int y = 0; y < side; ++y)
             for (int x = 0; x < side; ++x) {
-                const glm::dvec3 at = grid.low_ws + size * (glm::dvec3(x, y, z) + 0.5) / double(side);
+                const glm::dvec3 at = low_ws + (high_ws - low_ws) * (glm::dvec3(x, y, z) + 0.5) / double(side);
                 if (!may_meet(grid, at, {1, 0, 0}, 0, 0)) places.push_back(at);
             }
     return places;

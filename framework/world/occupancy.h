@@ -18,8 +18,8 @@ struct Occupancy {
 /// `side` cells along each axis. Conservative: a cell is empty only if no triangle touches it.
 Occupancy make_occupancy(const Scene& scene, int side = 64);
 
-/// Returns the middles of side³ equal parts of the grid that lie in empty cells.
-std::vector<glm::dvec3> free_places(const Occupancy& grid, int side);
+/// Returns the middles of side³ equal parts of a box that lie in empty cells of the grid.
+std::vector<glm::dvec3> free_places(const Occupancy& grid, glm::dvec3 low_ws, glm::dvec3 high_ws, int side);
 
 /// May a ray meet geometry between two distances along a direction? Never false where it does. to_m may be +inf.
 bool may_meet(const Occupancy& grid, glm::dvec3 origin_ws, glm::dvec3 direction_ws, double from_m, double to_m);

@@ -254,6 +254,21 @@ TEST(HardRays, AroundABoxThatHoldsTheCamera)
     expect_answers(asked, "cube:size_px=64", rows);
 }
 
+// From the floor to the underside of a low table, in a scene that is 700 m long: the cells of its grid are long, too.
+TEST(HardRays, ThatEndNearWhereTheyBeginPlaceAViewBesideThem)
+{
+    Model model = room();
+    model.meshes.push_back(make_box({0, -2.2, -6}, {4, -2.1, -2}));
+    model.meshes.push_back(make_box({699, 0, 0}, {700, 1, 1}));
+    Asked            asked = open_room(std::move(model), looking({0, 0, 0}, {0, 0, -1}));
+    std::vector<Row> rows;
+    for (int i = 0; i < 64; ++i) {
+        const Point from(0.5 + i % 8 * 0.4, -3, -5.5 + i / 8 * 0.4), under = from + Point(0.1, 0.8, -0.2);
+        rows.push_back({"to the table", from, under, under, be_a_point});
+    }
+    expect_answers(asked, "views:size_px=64", rows);
+}
+
 // In a frame before, something stood elsewhere: its picture says nothing of now.
 TEST(HardRays, PastFramesOfWhatMovesAreRefused)
 {
