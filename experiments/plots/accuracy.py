@@ -30,14 +30,21 @@ def draw_intervals(axis, line, cost, error, style):
     axis.plot(line[cost][~sure], line[error][~sure], **{**style, "linestyle": "none", "markerfacecolor": "white"})
 
 
+def lines_of(rows):
+    """The line of each row: its technique, with the surface model where it has several; its series where there is one technique."""
+    if rows.technique.nunique() == 1:
+        return rows.series
+    several = rows.groupby("technique").surface.transform("nunique") > 1 if "surface" in rows else False
+    return rows.technique.where(~several, rows.technique + ", " + rows.surface) if np.any(several) else rows.technique
+
+
 def draw_fronts(axis, results, rows, column, cost):
-    """A line a technique, or a series where there is one technique: its Pareto front. Its other settings are pale points, and a dotted
-    line is no error, or less than can be drawn."""
-    by = "technique" if rows.technique.nunique() > 1 else "series"
+    """A line a technique: its Pareto front. Its other settings are pale points, and a dotted line is no error, or less than can be drawn."""
     floor, ends = 0.5 / max(1.0, rows.rays.max()), []
     rows = rows[rows[column].notna()]
-    rows, short = rows.assign(error=(1 - rows[column]).clip(lower=floor)), short_names(rows[by].unique())
-    for name, part in rows.groupby(by):
+    rows = rows.assign(error=(1 - rows[column]).clip(lower=floor), line=lines_of(rows))
+    short = short_names(rows.line.unique())
+    for name, part in rows.groupby("line"):
         style, front = dict(results.styles[part.series.min()], linestyle="-", alpha=1), pareto(part, cost, "error")
         axis.plot(part[cost], part.error, **{**style, "linestyle": "none", "alpha": 0.2, "markersize": 2})
         axis.plot(front[cost], front.error, label=name, **style)
@@ -53,7 +60,7 @@ def draw_fronts(axis, results, rows, column, cost):
 
 def soonest(rows, column, what):
     """The message: which technique is the first to reach 99 %, or the highest step of 5 % that any reaches, and how long the next takes."""
-    by = "technique" if rows.technique.nunique() > 1 else "series"
+    rows, by = rows.assign(line=lines_of(rows)), "line"
     best = rows[column].max()
     level = 0.99 if best >= 0.99 else np.floor(20 * best) / 20
     reached = rows[rows[column] >= level].sort_values("cost_ms_median").drop_duplicates(by)

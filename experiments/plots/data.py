@@ -72,13 +72,6 @@ def accuracy_of(environment):
     return accuracy
 
 
-def label_of(results, row, rows):
-    """The numbers that tell this row from its neighbours: "steps 500"."""
-    same = rows[rows.series == row.series]
-    parts = [f"{row[name]:g}" for name in results.swept(rows) if same[name].nunique() > 1 and pd.notna(row[name])]
-    return " / ".join(parts)
-
-
 def describe(results, row, rows):
     """Technique, choices and numbers in words, for tables."""
     same = rows[rows.technique == row.technique]

@@ -21,6 +21,7 @@ def draw(results, folder):
         for name, figure in (make(results, tables) if len(results.rows) else ()):
             for extension in ("png", "svg"):
                 figure.savefig(os.path.join(folder, f"{name}.{extension}"))
+                figure.set_layout_engine("none")  # the second file has the places of the first
             plt.close(figure)
             plots.append({"name": name, "alt": (getattr(figure, "finding", "") or name.replace("_", " ")) + ".",
                           "path": os.path.join(folder, f"{name}.png"), "curve": make in INTERACTIVE})

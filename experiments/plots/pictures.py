@@ -5,6 +5,7 @@ import os
 
 from PIL import Image
 
+from .data import describe
 from .verdict import has_value, milliseconds, percent
 
 WIDEST = 640
@@ -66,22 +67,45 @@ def interesting(chosen):
     return [row for repeated in (False, True) for _, row in chosen[chosen.technique.duplicated() == repeated].iterrows()]
 
 
+def coarsest(results, rows):
+    """The run with the lowest F1, beside which the best shows what accuracy buys; None without a truth."""
+    measure = next((name for name in ("f1_1px", "screen_f1_1px") if name in rows and rows[name].notna().any()), None)
+    if measure is None:
+        return None
+    row = rows.loc[rows[measure].idxmin()].copy()
+    row["setting"] = describe(results, row, rows)
+    return row
+
+
+def shows_environment(row):
+    """Whether a ray that finds nothing shows the environment, as the truth's does."""
+    return str(row.get("environment_fallback", True)).lower() != "false" and row.get("pass_set", "all") != "shading"
+
+
 def shots(results, chosen, all_rows):
-    """([shots], how many runs have none here, aspect): without reflections and the truth, then a line a run."""
+    """([shots], how many runs have none here, aspect, pairs): without reflections and the truth, then a line a run. pairs: what the slider
+    compares, as (words, name on the left, name on the right), the first one first. The truth stands beside runs with its environment only."""
     if "picture" not in chosen:
-        return [], 0, ""
-    found = [row for row in interesting(chosen[chosen.picture.notna()]) if path_of(results, row.picture, "")][:MANY]
+        return [], 0, "", []
+    drawn = all_rows[[has_value(row, "picture") and path_of(results, row.picture, "") is not None for _, row in all_rows.iterrows()]]
+    found, coarse = interesting(chosen[chosen.run_id.isin(drawn.run_id)]), coarsest(results, drawn)
     if not found:
-        return [], 0, ""
-    made = []
+        return [], 0, "", []
+    if coarse is not None and coarse.run_id != found[0].run_id:
+        found = [found[0], coarse] + [row for row in found[1:] if row.run_id != coarse.run_id]
+    found = found[:MANY]
+    made, pairs, best = [], [], found[0].setting
     truth = found[0].truth_picture if has_value(found[0], "truth_picture") else None
     if truth and path_of(results, truth, "") and path_of(results, truth, "_off"):
-        title = found[0].frame_title
-        made.append(shot("Without reflections, and the truth",
+        title = found[0].frame_name
+        made.append(shot("Without reflections, and the truth" + ("" if shows_environment(found[0]) else ", which shows the environment where these runs do not"),
                          [image(path_of(results, truth, "_off"), "picture", "off", f"{title} without reflections"),
                           image(path_of(results, truth, ""), "picture", "truth", f"{title} with the reflections of the scene's triangles")]))
+        pairs = [("best and truth", best, "truth")] if shows_environment(found[0]) else [("off and best", "off", best)]
+    if coarse is not None and coarse.run_id != found[0].run_id:
+        pairs.insert(len(pairs) if shows_environment(found[0]) else 0, ("coarse and best", coarse.setting, best))
     for row in found:
         paths = {kind: path_of(results, row.picture, end) for kind, end in KINDS.items()}
         made.append(shot(row.setting, [image(path, kind, row.setting, f"{row.setting}, {kind}: {finding(row, kind)}")
                                        for kind, path in paths.items() if path], row.run_id, row.series))
-    return made, int(all_rows.picture.notna().sum()) - len(found), aspect(path_of(results, found[0].picture, ""))
+    return made, max(0, int(all_rows.picture.notna().sum()) - len(found)), aspect(path_of(results, found[0].picture, "")), pairs

@@ -21,7 +21,7 @@ AGREEMENT = [("#009e73", "found within 1 px"), ("#f0e442", "hit farther away"), 
 CAUSES = [("#e69f00", "own surface"), ("#56b4e9", "not shown"), ("#f0e442", "thin"), ("#cc79a7", "silhouette"), ("#009e73", "edge"),
           ("#d55e00", "stopped"), ("#ffffff", "other"), ("#6b6b74", "right")]
 RAMP = "#1d1147, #51127c, #b73779, #fc8961, #fcfdbf"
-ERRORS = {"recall_1px": "1 − recall (scene truth)", "precision_1px": "1 − precision (scene truth)", "f1_1px": "1 − F1 (scene truth)",
+ERRORS = {"f1_1px": "1 − F1 (scene truth)", "recall_1px": "1 − recall (scene truth)", "precision_1px": "1 − precision (scene truth)",
           "flip_visible": "FLIP over visible rays", "screen_recall_1px": "1 − recall (screen truth)",
           "screen_precision_1px": "1 − precision (screen truth)", "screen_f1_1px": "1 − F1 (screen truth)"}
 COSTS = {"cost_ms_median": "trace + structures, ms", "fetches_mean": "fetches per ray", "steps_mean": "steps per ray"}
@@ -117,12 +117,11 @@ def frame_sections(results, chosen):
     pictured, said = with_pictures(results, chosen), dict(verdicts(results, chosen))
     for title, name, rows in results.pictures():
         part = chosen[chosen.frame_title == title]
-        pictures, left, shape = shots(results, part, rows) if title in pictured else ([], 0, "")
+        pictures, left, shape, pairs = shots(results, part, rows) if title in pictured else ([], 0, "", [])
         images = [image for shot in pictures for image in shot["images"]]
-        names = [image["name"] for image in images]
-        first_run = next((i for i, image in enumerate(images) if image["kind"] == "picture" and image["name"] not in ("off", "truth")), 0)
-        right = names.index("truth") if "truth" in names else next((i for i, image in enumerate(images) if i != first_run), 0)
-        yield {"title": title, "anchor": name, "verdict": said.get(title, ""), "pictures": pictures, "left": first_run, "right": right,
+        numbers = {image["name"]: i for i, image in reversed(list(enumerate(images)))}  # of a run's five the picture is the first
+        pairs = [{"words": words, "left": numbers[one], "right": numbers[other]} for words, one, other in pairs]
+        yield {"title": title, "anchor": name, "verdict": said.get(title, ""), "pictures": pictures, "pairs": pairs,
                "aspect": shape, "more_pictures": f"{left} more runs have pictures in pictures/." if left > 0 else "",
                "split": split_of(part), "errors": error_table(part), "plan": plan_of(results, part), "rows": row_table(results, rows, part)}
 

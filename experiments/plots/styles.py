@@ -35,25 +35,22 @@ def look(slot):
 
 
 def lines_of(series):
-    """(name, slot, dash, alpha) of each line. Variants share their technique's look, but where there is one technique."""
+    """(name, look, dash) of each line. Variants have their technique's colour and markers of their own; where there is one technique,
+    they have colours of their own, too."""
     slot_of = slots(list(series))
     for technique, names in series.items():
         for i, name in enumerate(names):
-            if len(series) == 1:
-                yield name, (slot_of[technique] + i) % SLOTS, "-", 1
-            else:
-                yield name, slot_of[technique], DASHES[i % len(DASHES)], 1 - 0.18 * (i % 4)
+            own = look((slot_of[technique] + i) % SLOTS)
+            yield name, own if len(series) == 1 else look(slot_of[technique])[:2] + own[2:], DASHES[i % len(DASHES)] if len(series) > 1 else "-"
 
 
 def styles(series):
     """{series: matplotlib style}. series: {technique: its variants, in the order of their names}."""
-    looks = [(name, look(slot), dash, alpha) for name, slot, dash, alpha in lines_of(series)]
-    return {name: dict(color=colour, marker=marker, linestyle=dash, alpha=alpha) for name, (colour, _, marker, _, _), dash, alpha in looks}
+    return {name: dict(color=colour, marker=marker, linestyle=dash) for name, (colour, _, marker, _, _), dash in lines_of(series)}
 
 
 def chart_styles(series):
     """The same for Chart.js."""
     dashes = {"-": [], "--": [6, 4], ":": [2, 3], "-.": [6, 3, 2, 3]}
-    looks = [(name, look(slot), dash, alpha) for name, slot, dash, alpha in lines_of(series)]
-    return {name: {"light": light, "dark": dark, "point": point, "rotation": rotation, "dash": dashes[dash], "alpha": alpha}
-            for name, (light, dark, _, point, rotation), dash, alpha in looks}
+    return {name: {"light": light, "dark": dark, "point": point, "rotation": rotation, "dash": dashes[dash]}
+            for name, (light, dark, _, point, rotation), dash in lines_of(series)}

@@ -238,6 +238,9 @@ class Test(Case):
         figure, = figures.values()
         self.near(line_of(figure.axes[0], "linear"), [[1, 2, 3], [0.7, 0.55, 0.3]])
         self.assertIn("dda is the first to reach 90 % recall, in 6 ms; no other does", figure.finding)
+        rows = [dict(row, surface=surface) for row in rows for surface in (("box", "plane") if row["technique"] == "dda" else ("box",))]
+        figure, = self.drawn(plots.accuracy.accuracy_curves, made_results(self, rows, ["surface", "space", "steps"]))[0].values()
+        self.assertEqual({text.get_text() for text in figure.axes[0].texts}, {"linear", "dda, box", "dda, plane"})
 
     MODELS = (("plane", "stop", 0.8, 0.5), ("box", "stop", 0.6, 0), ("box", "hit", 0.5, 0))
 

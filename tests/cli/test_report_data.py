@@ -22,7 +22,7 @@ import plots.verdict  # noqa: E402
 import plots.results  # noqa: E402
 from made_results import made_results, write_table  # noqa: E402
 from matplotlib import pyplot as plt  # noqa: E402
-from plots.data import Results, describe, label_of  # noqa: E402
+from plots.data import Results, describe  # noqa: E402
 from PIL import Image  # noqa: E402
 
 
@@ -259,18 +259,23 @@ class Test(Case):
         results = made_results(self, rows, ["space"])
         self.assertEqual([(title, name) for title, name, _ in results.pictures()],
                          [("s, view default, 80×60", "s_default_80x60_0"), ("s, view default, 80×60, frame 3", "s_default_80x60_3")])
-        self.assertEqual((results.styles["linear, a"]["linestyle"], results.styles["linear, b"]["linestyle"]), ("-", "--"))
-        self.assertEqual((results.chart_styles["linear, a"]["dash"], results.chart_styles["linear, b"]["dash"]), ([], [6, 4]))
+        alone = [results.styles[f"linear, {space}"] for space in "ab"]
+        self.assertNotEqual(alone[0]["color"], alone[1]["color"], "a technique against itself")
+        several = made_results(self, [*rows, dict(technique="dda")], ["space"])
+        a, b = (several.styles[f"linear, {space}"] for space in "ab")
+        self.assertEqual((a["color"], a["linestyle"], b["color"], b["linestyle"]), (a["color"], "-", a["color"], "--"))
+        self.assertNotEqual(a["marker"], b["marker"])
+        self.assertEqual((several.chart_styles["linear, a"]["dash"], several.chart_styles["linear, b"]["dash"]), ([], [6, 4]))
         self.assertEqual(results.targets, {name: [0.9, 0.95, 0.99, 0.995] for name in ("recall_1px", "screen_recall_1px")}, "where none are stated")
         self.assertEqual([name for _, name, _ in made_results(self, rows[2:], ["space"]).pictures()], ["s_default_80x60"])
 
     def test_settings_are_named_where_they_vary(self):
-        """Of a technique only what varies within it; beside a point the numbers alone."""
+        """Of a technique only what varies within it."""
         rows = [dict(technique="linear", space="a", steps=16, looks=looks, trace_ms_median=1) for looks in (1, 2)]
         rows += [dict(technique="linear", space="b", steps=8, looks=1, trace_ms_median=1), dict(technique="march", steps=4, looks=7, trace_ms_median=1)]
         results = made_results(self, rows, ["space", "steps", "looks"])
-        named = [(describe(results, row, results.rows), label_of(results, row, results.rows)) for _, row in results.rows.iterrows()]
-        self.assertEqual(named, [("linear, a, steps 16, looks 1", "1"), ("linear, a, steps 16, looks 2", "2"), ("linear, b, steps 8, looks 1", ""), ("march", "")])
+        named = [describe(results, row, results.rows) for _, row in results.rows.iterrows()]
+        self.assertEqual(named, ["linear, a, steps 16, looks 1", "linear, a, steps 16, looks 2", "linear, b, steps 8, looks 1", "march"])
         self.assertEqual(results.swept(results.rows), ["steps", "looks"], "the one with most values first")
 
     def test_what_an_interval_shows(self):
@@ -301,15 +306,31 @@ class Test(Case):
         for name in ("a", "b", "dda", "t", "t_off", "b_flip"):
             Image.new("RGB", (1280, 720), (200, 10, 10)).save(self.path(f"out/pictures/{name}.png"))
         chosen = plots.verdict.picks(results)
-        shots, left, shape = plots.pictures.shots(results, chosen, results.rows)
+        shots, left, shape, pairs = plots.pictures.shots(results, chosen, results.rows)
         self.assertEqual([shot["name"] for shot in shots], ["Without reflections, and the truth", "linear, b", "dda", "linear, a"])
         self.assertEqual([[(image["name"], image["kind"]) for image in shot["images"]] for shot in shots[:2]],
                          [[("off", "picture"), ("truth", "picture")], [("linear, b", "picture"), ("linear, b", "FLIP")]])
-        self.assertEqual((left, shape), (1, "1280 / 720"))
+        self.assertEqual((left, shape, pairs), (1, "1280 / 720", [("best and truth", "linear, b", "truth")]))
         best = chosen.iloc[0]
         self.assertEqual([plots.pictures.finding(best, kind) for kind in plots.pictures.KINDS],
                          ["1 ms", "finds 50 % of what the frame shows, 12.5 % of the rays end in a false hit", "25 % of the rays are wrong",
                           "mean FLIP against the truth 0.0625", "3 fetches a ray"])
+
+    def test_the_slider_compares_like_with_like(self):
+        """The best run beside the truth where both show the environment; beside the coarsest one in any case, and first of all else."""
+        rows = [dict(technique="linear", steps=steps, trace_ms_median=steps, screen_recall_1px=f1, f1_1px=f1, picture=f"pictures/{steps}.png",
+                     truth_picture="pictures/t.png", pass_set="all", environment_fallback=True) for steps, f1 in ((8, 0.25), (16, 0.75), (32, 1))]
+        os.makedirs(self.path("out/pictures"))
+        for name in ("8", "16", "32", "t", "t_off"):
+            Image.new("RGB", (64, 36)).save(self.path(f"out/pictures/{name}.png"))
+        best, coarse = "linear, steps 32", "linear, steps 8"
+        for less, expected in (({}, [("best and truth", best, "truth"), ("coarse and best", coarse, best)]),
+                               ({"pass_set": "shading"}, [("coarse and best", coarse, best), ("off and best", "off", best)]),
+                               ({"environment_fallback": False}, [("coarse and best", coarse, best), ("off and best", "off", best)])):
+            results = made_results(self, [{**row, **less} for row in rows], ["steps", "pass_set", "environment_fallback"])
+            shots, _, _, pairs = plots.pictures.shots(results, plots.verdict.picks(results), results.rows)
+            self.assertEqual(pairs, expected)
+            self.assertEqual([shot["name"] for shot in shots[1:]], [best, coarse])
 
     def ray(self):
         """4 px to the right and 3 down; a wall at 3 m in the second of two pixels."""

@@ -5,7 +5,6 @@ const get = (selector, within = document) => within.querySelector(selector);
 const all = (selector, within = document) => [...within.querySelectorAll(selector)];
 const short = value => typeof value === "number" ? String(Number(value.toPrecision(4))) : String(value);
 const colour_of = series => data.styles[series][dark.matches ? "dark" : "light"];
-const faded = (colour, alpha) => colour + Math.round(255 * alpha).toString(16).padStart(2, "0");
 
 function add(parent, tag, text, attributes = {}) {
   const element = document.createElement(tag);
@@ -26,7 +25,7 @@ function draw_marks() {
     Object.assign(canvas, { width: 28, height: 28, className: "swatch" });
     Object.assign(canvas.style, { width: "14px", height: "14px" });
     const context = canvas.getContext("2d");
-    context.strokeStyle = context.fillStyle = faded(colour_of(cell.dataset.series), style.alpha);
+    context.strokeStyle = context.fillStyle = colour_of(cell.dataset.series);
     context.lineWidth = 4;
     Chart.helpers.drawPoint(context, { pointStyle: style.point, rotation: style.rotation, radius: 10, borderWidth: 4 }, 14, 14);
   }
@@ -106,7 +105,7 @@ function front_of(series) {
 
 function datasets_of(series) {
   const sets = [...series].map(([label, points]) => {
-    const style = data.styles[label], colour = faded(colour_of(label), style.alpha);
+    const style = data.styles[label], colour = colour_of(label);
     return { label, data: points, borderColor: colour, backgroundColor: colour, borderDash: style.dash, borderWidth: 1.3, showLine: !data.cloud[label],
       pointStyle: style.point, pointRotation: style.rotation, radius: 5, hoverRadius: 8, pointBorderWidth: 2 };
   });
@@ -124,15 +123,16 @@ function told(point) {
 function draw_curve() {
   const frame = get("#curve-frame").value, measure = get("#curve-measure").value, cost = get("#curve-cost").value;
   const style = getComputedStyle(document.documentElement), text = style.getPropertyValue("--text"), line = style.getPropertyValue("--line");
-  const axis = title => ({ type: "logarithmic", title: { display: true, text: title, color: text }, grid: { color: line },
+  const series = points_of(frame, measure, cost), drawn = [...series.values()].flat();
+  const axis = (title, values) => ({ type: "logarithmic", min: 0.8 * Math.min(...values), max: 1.25 * Math.max(...values), title: { display: true, text: title, color: text }, grid: { color: line },
     ticks: { color: text, maxTicksLimit: 9, callback: value => /^[125]/.test(String(value).replace(/^[0.]+/, "")) ? short(value) : null } });
   if (chart) chart.destroy();
   chart = new Chart(get("#curve-canvas"), {
     type: "scatter",
-    data: { datasets: datasets_of(points_of(frame, measure, cost)) },
+    data: { datasets: datasets_of(series) },
     options: {
       maintainAspectRatio: false, animation: false,
-      scales: { x: axis(data.costs[cost]), y: axis(data.errors[measure]) },
+      scales: { x: axis(data.costs[cost], drawn.map(one => one.x)), y: axis(data.errors[measure], drawn.map(one => one.y)) },
       plugins: {
         legend: { position: "bottom", labels: { usePointStyle: true, color: text, boxHeight: 8 } },
         tooltip: { filter: item => item.raw.id !== undefined, callbacks: { label: item => told(item.raw) } },
@@ -203,6 +203,8 @@ function prepare_compare(compare) {
     select.value = compare.dataset[side];
     select.addEventListener("change", () => choose(select, image));
     choose(select, image);
+    for (const pair of all(".pair", compare))
+      pair.addEventListener("click", () => { select.value = pair.dataset[side]; choose(select, image); });
   }
   const follow = event => {
     const box = stage.getBoundingClientRect();
