@@ -1,5 +1,6 @@
 """Figures that a specification names in [figures.NAME]: pictures of its runs side by side, with what differs and how right they are."""
 import os
+import textwrap
 import tomllib
 
 import matplotlib.pyplot as plt
@@ -9,8 +10,11 @@ from .paper import WIDTH_INCHES, sheet, titled
 
 MEASURES = {"recall_1px": "recall", "precision_1px": "precision", "hit_share": "hits", "picture_rmse": "picture RMSE",
             "picture_visible_border_rmse": "at borders"}
-SHOWN = {"off": "no reflections", "truth": "true reflection", "agreement": "green right, yellow displaced, orange missed, pink false",
+SHOWN = {"off": "no reflections", "truth": "true reflection", "agreement": "agreement with the truth",
          "causes": "why rays are wrong"}
+
+
+COLOURS_OF = {"agreement": "green: right, yellow: displaced, orange: missed, pink: false, grey: rightly nothing"}
 
 
 def is_value(cell, value):
@@ -79,7 +83,8 @@ def panels_of(results, _):
         panels = figure["panels"]
         columns = min(len(panels), 2)
         rows = [row_of(results.rows, panel, name) for panel in panels]
-        captions = [caption(panel, figure, row) for panel, row in zip(panels, rows)]
+        captions = ["\n".join(textwrap.fill(line, 72 // columns) for line in caption(panel, figure, row).split("\n"))
+                    for panel, row in zip(panels, rows)]
         width, height = figure.get("crop", (0, 0, rows[0].width, rows[0].height))[2:]
         line_inches = WIDTH_INCHES / columns * height / width + 0.12 * max(text.count("\n") + 1 for text in captions)
         drawn, axes = sheet(*[line_inches] * -(-len(panels) // columns), columns=columns)
@@ -88,7 +93,7 @@ def panels_of(results, _):
         for axis, panel, row, text in zip(axes.flat, panels, rows, captions):
             axis.imshow(cropped(plt.imread(os.path.join(results.folder, picture_of(panel, row))), figure, name), interpolation="nearest")
             axis.set_title(text, fontsize=6)
-        titled(drawn, figure["says"])
+        titled(drawn, figure["says"], "; ".join(text for show, text in COLOURS_OF.items() if any(panel.get("show") == show for panel in panels)))
         yield name, drawn
 
 

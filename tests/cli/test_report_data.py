@@ -289,7 +289,7 @@ class Test(Case):
                          ["p/a.png", "p/t_off.png", "p/t.png", "p/a_causes.png"])
         figure = {"panels": [{"steps": 16, "jitter": True}, {"steps": 64, "jitter": True}], "measures": ["recall_1px", "precision_1px"]}
         self.assertEqual(plots.panels.caption(figure["panels"][0], figure, row), "steps 16\nrecall 0.500")
-        self.assertEqual(plots.panels.caption({"steps": 16, "show": "agreement"}, figure, row), "green right, yellow displaced, orange missed, pink false, steps 16\nrecall 0.500")
+        self.assertEqual(plots.panels.caption({"steps": 16, "show": "agreement"}, figure, row), "agreement with the truth, steps 16\nrecall 0.500")
         self.assertEqual(plots.panels.caption({"steps": 16, "show": "off"}, figure, row), "no reflections")
         held = [(16, 16, True), (16.1, 16, False), (True, True, True), ("true", True, True), (False, True, False), ("16", 16, False), ("box", "box", True), (np.nan, 16, False)]
         for cell, value, expected in held:
