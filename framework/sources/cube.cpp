@@ -9,7 +9,7 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
 {
     SourceTurn   turn;
     CubeOfFrames cube{context.image.view, static_cast<int>(context.parameters.at("size_px"))};
-    turn.answers = trace_in_cube(context, cube, context.trace, RayStart::in_sight, rays, turn);
+    turn.answers = trace_in_cube(context, cube, context.trace, RayStart::from_frame, rays, turn);
     return turn;
 }
 

@@ -108,8 +108,9 @@ std::vector<RayAnswer> trace_in_cube(SourceContext& context, CubeOfFrames& cube,
         }
     }
     // What such a camera did not see of a ray is not known to be empty.
-    if (start == RayStart::anywhere)
-        for (size_t k = 0; k < rays.size(); ++k) answers[k].clear_m = rays[k].clear_m;
+    const bool stays = stays_in_sight(context, settings);
+    for (size_t k = 0; k < rays.size(); ++k)
+        if (!stays || !begins_in_sight(context, start, rays[k])) answers[k].clear_m = rays[k].clear_m;
     return answers;
 }
 

@@ -137,6 +137,14 @@ bool stays_in_sight(const SourceContext& context, const TraceSettings& settings)
     return settings.behind == Behind::stop && settings.layers == 1 && (has("SOLID_ENDLESS") || has("SURFACE_ENDLESS"));
 }
 
+bool begins_in_sight(const SourceContext& context, RayStart start, const OpenRay& ray)
+{
+    if (start != RayStart::from_frame) return start == RayStart::in_sight;
+    // What the frame met, or passed behind, may fall between the pixels of another picture from there.
+    const std::vector<TraceStatus>& frame = context.traced.status;
+    return frame.empty() || !has_place(frame[ray.pixel]);
+}
+
 TraceSettings in_sight_settings(const TraceSettings& settings)
 {
     TraceSettings in_sight = settings;
@@ -258,12 +266,13 @@ GBufferTrace trace_in_gbuffer(SourceContext& context, const GBufferPtr& gbuffer,
     std::vector<RayOutcome> outcomes = trace_rays(context.stage.gpu, *tracer, inputs);
     trace.ms                         = time_trace(context.stage.gpu, *tracer);
     if (context.watch) context.watch({gbuffer, image, settings, inputs, outcomes});
-    const bool stays = start == RayStart::in_sight && stays_in_sight(context, settings);
+    const bool stays = stays_in_sight(context, settings);
     for (size_t k = 0; k < inputs.size(); ++k) {
         const size_t ray      = asked[k];
         const double slack_m  = 1e-6 * (rays[ray].eye_m + parts[k].t_in_m);
         const bool   leaves   = parts[k].t_in_m <= slack_m;
-        const bool   in_sight = stays && parts[k].t_in_m <= rays[ray].clear_m + slack_m; // from its beginning on
+        const bool   in_sight = stays && begins_in_sight(context, start, rays[ray]) &&
+                              parts[k].t_in_m <= rays[ray].clear_m + slack_m; // from its beginning on
         meet_start_pixel(image, inputs[k], leaves, outcomes[k]);
         if (leaves && meets_own_surface(image, inputs[k], outcomes[k])) continue;
         trace.answers[ray]   = to_answer(context, image, rays[ray], parts[k], inputs[k], outcomes[k], in_sight);

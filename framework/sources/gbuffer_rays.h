@@ -37,9 +37,13 @@ void set_nothing(RayAnswer& answer, const SourceContext& context, const OpenRay&
 
 /// Whether a camera sees every ray where it begins.
 enum class RayStart : uint8_t {
-    in_sight, // yes: the camera that followed them so far, or one in the same place
+    in_sight,   // yes
+    from_frame, // yes, but for rays that the frame lost sight of: the camera stands where the frame's does
     anywhere,
 };
+
+/// Returns whether a camera sees a ray where it begins.
+bool begins_in_sight(const SourceContext& context, RayStart start, const OpenRay& ray);
 
 /// Returns whether no ray may pass behind what the camera shows: then it was in sight up to where it ended.
 bool stays_in_sight(const SourceContext& context, const TraceSettings& settings);

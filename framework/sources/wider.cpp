@@ -20,7 +20,7 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
     turn.draw_ms             = redraw_gbuffer(context.stage.gpu, *drawing);
     turn.megabytes           = megabytes_of(*gbuffer);
     GBufferTrace trace = trace_in_gbuffer(context, gbuffer, read_gbuffer(context.stage.gpu, *gbuffer), context.trace,
-                                          RayStart::in_sight, rays);
+                                          RayStart::from_frame, rays);
     turn.answers       = std::move(trace.answers);
     turn.trace_ms      = trace.ms;
     return turn;

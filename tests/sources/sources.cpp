@@ -104,6 +104,42 @@ TEST(Sources, TheWorldGetsWhatTheFrameIsNotSureOf)
     }
 }
 
+// A cube of frames around the camera has other pixels. A thin thing that the frame shows may fall between them: what
+// the frame lost sight of, the cube cannot vouch for.
+TEST(Sources, ACubeVouchesForNothingThatTheFrameLostSightOf)
+{
+    for (const char* source : {"cube", "wider"}) {
+        SCOPED_TRACE(source);
+        Traced             traced   = trace_frame("builtin:everything", {160, 90});
+        const AnsweredRays before   = ask(traced, "frame");
+        const AnsweredRays answered = ask(traced, std::string("frame,") + source);
+        const SourceTurn&  turn     = answered.turns[1];
+        size_t             certain = 0, behind = 0;
+        for (size_t k = 0; k < turn.pixels.size(); ++k) {
+            const size_t      i      = turn.pixels[k];
+            const TraceStatus status = traced.context.traced.status[i];
+            certain += turn.answers[k].certain;
+            if (!has_place(status)) continue;
+            ++behind;
+            EXPECT_FALSE(turn.answers[k].certain);
+            EXPECT_EQ(turn.answers[k].clear_m, before.answers[i].clear_m);
+        }
+        EXPECT_GT(certain, 0U); // it vouches for others
+        EXPECT_GT(behind, 50U);
+    }
+}
+
+// Whatever is asked before the triangles may leave them fewer rays, and may make no answer wrong.
+TEST(Sources, AskingACubeFirstKeepsTheTrianglesAnswersRight)
+{
+    Traced             traced = trace_frame("builtin:everything", {160, 90});
+    const AnsweredRays direct = ask(traced, "frame,world"), cubed = ask(traced, "frame,cube,world");
+    const SourceCounts cube = count_source(cubed.turns[1], traced.truth, traced.context.image);
+    EXPECT_GE(*judge(traced, cubed).f1, *judge(traced, direct).f1 - 0.002);
+    EXPECT_LT(cubed.turns[2].pixels.size(), direct.turns[1].pixels.size());
+    EXPECT_GE(double(cube.certain_right), 0.99 * double(cube.certain_points));
+}
+
 // Under the board lies what only another layer or place shows, and at its sides what a wider picture does.
 TEST(Sources, FurtherFramesFindWhatTheFrameLacks)
 {
