@@ -2,12 +2,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "targets.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <map>
-#include <vector>
+#include "test.h"
 
 namespace ssrlab::fuzz {
 namespace {

@@ -1,7 +1,6 @@
 // The list that `auto` takes.
 #include "harness/choose_sources.h"
-
-#include <gtest/gtest.h>
+#include "test.h"
 
 namespace ssrlab::test {
 namespace {

@@ -2,8 +2,7 @@
 #include "compare/all_rays.h"
 
 #include "core/error.h"
-
-#include <gtest/gtest.h>
+#include "test.h"
 
 namespace ssrlab {
 namespace {

@@ -3,12 +3,6 @@
 #include "compare/pictures.h"
 #include "truth_gbuffers.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <utility>
-
 namespace ssrlab {
 namespace {
 
@@ -25,11 +19,10 @@ struct CausesCase {
     CausesCase()
     {
         const size_t count = gbuffer.depth.size();
-        for (int y = 0; y < 9; ++y)
-            for (int x = 0; x < 24; ++x) {
-                set_pixel(gbuffer, x, y, x == post_x ? 2 : x == bend_x ? 4.05 : 4, {0, 0, 1}, 1);
-                gbuffer.object_id[at(gbuffer, x, y)] = x == post_x ? 2 : 1;
-            }
+        for (const auto [i, x, y] : pixels_of({24, 9})) {
+            set_pixel(gbuffer, x, y, x == post_x ? 2 : x == bend_x ? 4.05 : 4, {0, 0, 1}, 1);
+            gbuffer.object_id[at(gbuffer, x, y)] = x == post_x ? 2 : 1;
+        }
         gbuffer.gradient.assign(count, {0, 0});
         truth.size_px = {24, 9};
         truth.cls.assign(count, TruthClass::not_traced);
@@ -202,9 +195,8 @@ TEST(WrongCauses, AnOwnSurfaceIsMetNearlyInItsPlane)
 TEST(WrongCauses, APlaneLeansAsItsGradientSays)
 {
     CausesCase test;
-    for (int y = 0; y < 9; ++y)
-        for (int x = 0; x < 24; ++x)
-            test.gbuffer.depth[at(test.gbuffer, x, y)] = 0.025F + 0.0005F * float(x - 12) - 0.0003F * float(y - 4);
+    for (const auto [i, x, y] : pixels_of({24, 9}))
+        test.gbuffer.depth[at(test.gbuffer, x, y)] = 0.025F + 0.0005F * float(x - 12) - 0.0003F * float(y - 4);
     test.gbuffer.gradient.assign(test.gbuffer.depth.size(), {0.0005F, -0.0003F});
     test.gbuffer.object_id[5] = 9;
     test.set_truth(5, TruthClass::sky);

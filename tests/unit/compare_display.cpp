@@ -1,13 +1,7 @@
 // Pictures for people: exposure, AgX, pictures side by side.
 #include "compare/display.h"
 #include "core/error.h"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include "test.h"
 
 namespace ssrlab {
 namespace {

@@ -1,16 +1,12 @@
 // Images on disk: exact, atomic, reproducible, and clear when it fails.
 #include "compare/image_io.h"
 #include "core/error.h"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "test.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <csignal>
-#include <fstream>
 
 namespace ssrlab {
 namespace {

@@ -5,13 +5,6 @@
 #include "core/error.h"
 #include "truth_gbuffers.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <iterator>
-#include <set>
-
 namespace ssrlab {
 namespace {
 
@@ -37,6 +30,11 @@ void set_hit(TraceResult& result, size_t i, double x_px, double depth = 0.05)
     result.hit_px_depth[i] = {x_px, 0.5, depth};
 }
 
+template <typename... Expected> void expect_values(const MeasureValues& values, const Expected&... expected)
+{
+    expect_each([&](const char* name) { return values.at(name); }, expected...);
+}
+
 TEST(RayMeasures, AgainstScreenTruth)
 {
     TraceResult truth = row_of(10), tested = row_of(10);
@@ -48,17 +46,12 @@ TEST(RayMeasures, AgainstScreenTruth)
     tested.status[4] = TraceStatus::out_of_steps; // missed
     set_hit(tested, 6, 5.5);                      // false
     const MeasureValues values = compare_to_screen_truth(tested, truth);
-    EXPECT_EQ(values.at("traced_rays"), 9);
-    EXPECT_EQ(values.at("screen_same_pixel"), 4 / 9.0); // 1, and the common misses 7, 8, 9
-    EXPECT_EQ(values.at("screen_within_1px"), 5 / 9.0);
-    EXPECT_EQ(values.at("screen_displaced"), 1 / 9.0);
-    EXPECT_EQ(values.at("screen_missed"), 2 / 9.0); // 4 and 5
-    EXPECT_EQ(values.at("screen_false"), 1 / 9.0);
-    EXPECT_EQ(values.at("screen_out_of_steps"), 1 / 9.0);
-    EXPECT_EQ(values.at("screen_recall_1px"), 2 / 5.0);
-    EXPECT_EQ(values.at("screen_precision_1px"), 2 / 4.0);
-    EXPECT_EQ(values.at("screen_f1_1px"), 4 / 9.0);
-    EXPECT_EQ(values.at("screen_displacement_median_px"), 1);
+    // screen_same_pixel: 1, and the common misses 7, 8, 9
+    // screen_missed: 4 and 5
+    expect_values(values, "traced_rays", 9, "screen_same_pixel", 4 / 9.0, "screen_within_1px", 5 / 9.0,
+                  "screen_displaced", 1 / 9.0, "screen_missed", 2 / 9.0, "screen_false", 1 / 9.0, "screen_out_of_steps",
+                  1 / 9.0, "screen_recall_1px", 2 / 5.0, "screen_precision_1px", 2 / 4.0, "screen_f1_1px", 4 / 9.0,
+                  "screen_displacement_median_px", 1);
     EXPECT_DOUBLE_EQ(values.at("screen_displacement_p95_px").value(), 3.7); // nine tenths of the way from 1 to 4
     EXPECT_DOUBLE_EQ(values.at("screen_displacement_p99_px").value(), 3.94);
 }
@@ -100,11 +93,9 @@ TEST(RayMeasures, WhatTheSecondLayerAdds)
     set_hit(first, 7, 20.25);
     set_hit(second, 8, 20.25); // there is nothing to be seen
     const MeasureValues values = compare_hidden_layer(first, second, truth);
-    EXPECT_EQ(values.at("hidden_recovered_share"), 2 / 5.0);
-    EXPECT_EQ(values.at("ghost_share"), 5 / 9.0); // 1, 2, 3, 4 and 6
-    EXPECT_EQ(values.at("ghost_removed_share"), 4 / 5.0);
-    EXPECT_EQ(values.at("hidden_layer_hits"), 5 / 9.0);
-    EXPECT_EQ(values.at("hidden_layer_wrong"), 2 / 5.0);
+    // ghost_share: 1, 2, 3, 4 and 6
+    expect_values(values, "hidden_recovered_share", 2 / 5.0, "ghost_share", 5 / 9.0, "ghost_removed_share", 4 / 5.0,
+                  "hidden_layer_hits", 5 / 9.0, "hidden_layer_wrong", 2 / 5.0);
     TraceResult other = row_of(9);
     EXPECT_THROW(compare_hidden_layer(first, other, truth), Failure);
 }
@@ -168,26 +159,12 @@ TEST(RayMeasures, AgainstSceneTruth)
     set_hit(tested, 6, 9.5, 0.1 / 1.5); // ray at Z = 1.5 behind the surface at Z = 1: slab too thick
     set_hit(tested, 7, 3.5, 0.05);      // object 1, in its own plane: a self-hit
     const MeasureValues values = compare_to_scene_truth(tested, truth, &screen, gbuffer);
-    EXPECT_EQ(values.at("traced_rays"), 8);
-    EXPECT_EQ(values.at("recall_1px"), 1 / 6.0);
-    EXPECT_EQ(values.at("recall_4px"), 2 / 6.0);
-    EXPECT_EQ(values.at("visible_displaced"), 1 / 6.0);
-    EXPECT_EQ(values.at("missed_stepped_over"), 1 / 6.0);
-    EXPECT_EQ(values.at("missed_out_of_steps"), 1 / 6.0);
-    EXPECT_EQ(values.at("missed_facing_rule"), 1 / 6.0);
-    EXPECT_EQ(values.at("missed_not_in_depth"), 1 / 6.0);
-    EXPECT_EQ(values.at("missed_stopped"), 0);
-    EXPECT_EQ(values.at("stopped_right_share"), std::nullopt);
-    EXPECT_EQ(values.at("precision_1px"), 1 / 4.0);
-    EXPECT_EQ(values.at("f1_1px"), 2 / 10.0);
-    EXPECT_EQ(values.at("false_hits"), 3 / 8.0);
-    EXPECT_EQ(values.at("false_self"), 1 / 8.0);
-    EXPECT_EQ(values.at("false_too_thick"), 1 / 8.0);
-    EXPECT_EQ(values.at("false_wrong_surface"), 1 / 8.0);
-    EXPECT_EQ(values.at("truth_visible"), 6 / 8.0);
-    EXPECT_EQ(values.at("truth_hidden"), 1 / 8.0);
-    EXPECT_EQ(values.at("truth_sky"), 1 / 8.0);
-    EXPECT_EQ(values.at("truth_off_screen"), 0);
+    expect_values(values, "traced_rays", 8, "recall_1px", 1 / 6.0, "recall_4px", 2 / 6.0, "visible_displaced", 1 / 6.0,
+                  "missed_stepped_over", 1 / 6.0, "missed_out_of_steps", 1 / 6.0, "missed_facing_rule", 1 / 6.0,
+                  "missed_not_in_depth", 1 / 6.0, "missed_stopped", 0, "stopped_right_share", std::nullopt,
+                  "precision_1px", 1 / 4.0, "f1_1px", 2 / 10.0, "false_hits", 3 / 8.0, "false_self", 1 / 8.0,
+                  "false_too_thick", 1 / 8.0, "false_wrong_surface", 1 / 8.0, "truth_visible", 6 / 8.0, "truth_hidden",
+                  1 / 8.0, "truth_sky", 1 / 8.0, "truth_off_screen", 0);
     // Without a screen truth the two causes that it tells apart are not known, and nothing else changes.
     for (const auto& [name, value] : compare_to_scene_truth(tested, truth, nullptr, gbuffer)) {
         const bool unknown = name == "missed_stepped_over" || name == "missed_not_in_depth";
@@ -206,15 +183,10 @@ TEST(RayMeasures, StopsAndHiddenPoints)
     set_hit(tested, 0, 12.5);
     tested.status[1] = TraceStatus::stopped;
     for (const size_t i : {2, 3}) set_hit(tested, i, 12.5);
-    tested.hit_layer[3]        = 1;
-    const MeasureValues values = compare_to_scene_truth(tested, truth, &screen, gbuffer);
-    EXPECT_EQ(values.at("recall_1px"), 1 / 2.0);
-    EXPECT_EQ(values.at("missed_stopped"), 1 / 2.0);
-    EXPECT_EQ(values.at("missed_not_in_depth"), 0);
-    EXPECT_EQ(values.at("stopped_right_share"), 0);
-    EXPECT_EQ(values.at("hidden_too_recall_1px"), 2 / 4.0);
-    EXPECT_EQ(values.at("hidden_too_precision_1px"), 2 / 3.0);
-    EXPECT_EQ(values.at("hidden_too_f1_1px"), 4 / 7.0);
+    tested.hit_layer[3] = 1;
+    expect_values(compare_to_scene_truth(tested, truth, &screen, gbuffer), "recall_1px", 1 / 2.0, "missed_stopped",
+                  1 / 2.0, "missed_not_in_depth", 0, "stopped_right_share", 0, "hidden_too_recall_1px", 2 / 4.0,
+                  "hidden_too_precision_1px", 2 / 3.0, "hidden_too_f1_1px", 4 / 7.0);
 }
 
 TEST(RayMeasures, ASelfHitIsOfTheSameObject)
@@ -224,9 +196,8 @@ TEST(RayMeasures, ASelfHitIsOfTheSameObject)
     for (const size_t i : {0, 1, 2}) truth.cls[i] = TruthClass::sky;
     set_hit(tested, 0, 3.5);
     for (const size_t i : {1, 2}) set_hit(tested, i, 14.5); // in the same plane
-    const MeasureValues values = compare_to_scene_truth(tested, truth, &screen, gbuffer);
-    EXPECT_EQ(values.at("false_self"), 1 / 3.0);
-    EXPECT_EQ(values.at("false_wrong_surface"), 2 / 3.0);
+    expect_values(compare_to_scene_truth(tested, truth, &screen, gbuffer), "false_self", 1 / 3.0, "false_wrong_surface",
+                  2 / 3.0);
 }
 
 // Across 12 m the sine of the angle to the plane is 0.005 for a hit 6 cm before it, and 0.025 for one 30 cm before it.
@@ -240,9 +211,7 @@ TEST(RayMeasures, ASelfHitLiesNearlyInThePlane)
         truth.cls[i] = TruthClass::sky;
         set_hit(tested, i, 3.5 + double(i));
     }
-    const MeasureValues values = compare_to_scene_truth(tested, truth, &screen, gbuffer);
-    EXPECT_EQ(values.at("false_hits"), 1);
-    EXPECT_EQ(values.at("false_self"), 1 / 2.0);
+    expect_values(compare_to_scene_truth(tested, truth, &screen, gbuffer), "false_hits", 1, "false_self", 1 / 2.0);
 }
 
 // What is found is counted of what the better of the two finds.
@@ -253,8 +222,7 @@ TEST(RayMeasures, ErrorsAreSharesOfTheBetterResult)
     for (size_t i = 0; i < 2; ++i) set_hit(twin, i, 12.5);
     for (size_t i = 0; i < 8; ++i) set_hit(screen, i, 12.5);
     const MeasureValues values = split_error(found, &twin, &screen, nullptr);
-    EXPECT_EQ(values.at("error_double_to_float"), 1 / 2.0);
-    EXPECT_EQ(values.at("error_screen_to_double"), 6 / 8.0);
+    expect_values(values, "error_double_to_float", 1 / 2.0, "error_screen_to_double", 6 / 8.0);
     found.status[7] = TraceStatus::not_traced; // traced in one alone: it counts, and has flipped
     EXPECT_EQ(count_flips(found, twin), 2e6 / 8);
 }
@@ -270,11 +238,9 @@ TEST(RayMeasures, AFalseHitIsJudgedByItsOwnLayer)
         truth.cls[i] = TruthClass::sky;
         set_hit(tested, i, 12.5, 0.1 / 3);
     }
-    tested.hit_layer[1]        = 1;
-    const MeasureValues values = compare_to_scene_truth(tested, truth, &screen, gbuffer);
-    EXPECT_EQ(values.at("false_too_thick"), 1 / 2.0);
-    EXPECT_EQ(values.at("false_wrong_surface"), 1 / 2.0);
-    EXPECT_EQ(values.at("false_self"), 0);
+    tested.hit_layer[1] = 1;
+    expect_values(compare_to_scene_truth(tested, truth, &screen, gbuffer), "false_too_thick", 1 / 2.0,
+                  "false_wrong_surface", 1 / 2.0, "false_self", 0);
 }
 
 // Seen from its back, an object reflects on that side: pixel 9 at Z = 1 is before its plane, pixel 10 at Z = 4 behind it.
@@ -290,9 +256,8 @@ TEST(RayMeasures, TheSideOfAReflectorIsTheOneThatIsSeen)
     set_hit(tested, 8, 9.5, 0.1);
     set_hit(tested, 12, 9.5, 0.1);
     set_hit(tested, 11, 10.5, 0.1 / 4);
-    const MeasureValues values = compare_to_scene_truth(tested, truth, &screen, gbuffer);
-    EXPECT_EQ(values.at("false_self"), 1 / 3.0);
-    EXPECT_EQ(values.at("false_wrong_surface"), 2 / 3.0);
+    expect_values(compare_to_scene_truth(tested, truth, &screen, gbuffer), "false_self", 1 / 3.0, "false_wrong_surface",
+                  2 / 3.0);
 }
 
 TEST(RayMeasures, SplitAndFlips)
@@ -323,8 +288,7 @@ TEST(RayMeasures, WorkIsCountedPerTracedRay)
     result.status[0]     = TraceStatus::not_traced;
     result.steps         = {0, 1, 2, 6};
     MeasureValues values = count_work(result);
-    EXPECT_EQ(values.at("steps_mean"), 3);
-    EXPECT_EQ(values.at("steps_max"), 6);
+    expect_values(values, "steps_mean", 3, "steps_max", 6);
     EXPECT_FALSE(values.at("depth_fetches_mean"));
     result.depth_fetches = {0, 0, 3, 3};
     EXPECT_EQ(count_work(result).at("depth_fetches_mean"), 2);

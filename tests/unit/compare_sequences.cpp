@@ -1,10 +1,6 @@
 // Measures of what changes from frame to frame, against counts by hand.
 #include "compare/measures.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
+#include "test.h"
 
 namespace ssrlab {
 namespace {

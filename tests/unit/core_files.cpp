@@ -2,10 +2,10 @@
 #include "core/files.h"
 
 #include "temp_folder.h"
+#include "test.h"
 
 #include "core/error.h"
 
-#include <gmock/gmock.h>
 #include <sys/stat.h>
 
 namespace ssrlab {

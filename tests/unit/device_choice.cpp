@@ -2,8 +2,7 @@
 #include "core/error.h"
 #include "gpu/gpu.h"
 #include "gpu/resources.h"
-
-#include <gtest/gtest.h>
+#include "test.h"
 
 namespace ssrlab::test {
 namespace {

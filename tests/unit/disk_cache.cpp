@@ -4,11 +4,7 @@
 #include "core/files.h"
 #include "environment_variable.h"
 #include "temp_folder.h"
-
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <filesystem>
+#include "test.h"
 
 namespace ssrlab {
 namespace {

@@ -1,9 +1,7 @@
 // A variable of the process's environment, set or absent while this lives.
 #pragma once
 
-#include <cstdlib>
-#include <optional>
-#include <string>
+#include "test.h"
 
 namespace ssrlab::test {
 

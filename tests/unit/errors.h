@@ -1,7 +1,7 @@
 // What a call is refused with.
 #pragma once
 
-#include <string>
+#include "test.h"
 
 namespace ssrlab {
 

@@ -2,12 +2,7 @@
 #include "frame/frame_plan.h"
 #include "core/files.h"
 #include "gpu/shader.h"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <set>
+#include "test.h"
 
 namespace ssrlab::test {
 namespace {

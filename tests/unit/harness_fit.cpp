@@ -4,8 +4,7 @@
 #include "harness/fit.h"
 #include "harness/write_experiment.h"
 #include "temp_folder.h"
-
-#include <gmock/gmock.h>
+#include "test.h"
 
 namespace ssrlab {
 namespace {

@@ -13,11 +13,6 @@
 #include "temp_folder.h"
 #include "truth_gbuffers.h"
 
-#include <gmock/gmock.h>
-
-#include <cstdlib>
-#include <set>
-
 namespace ssrlab {
 namespace {
 
@@ -41,6 +36,11 @@ Experiment one_technique(const std::string& id)
     experiment.techniques     = {{id, "e.toml:1", {}, {}}};
     experiment.known_settings = all_settings(load_catalogue());
     return experiment;
+}
+
+template <typename... Expected> void expect_numbers(const Record& row, const Expected&... expected)
+{
+    test::expect_each([&](const char* name) { return number_of(row, name); }, expected...);
 }
 
 TEST(Rows, ColumnsAreUniqueAndIdentityComesFirst)
@@ -88,14 +88,8 @@ TEST(Rows, EveryEntryOfARowHasAColumn)
     measured.run = &run;
     measured.row = identity_row(one_technique("walk"), run, walk);
     EXPECT_EQ(words_of(measured.row, "space"), "screen");
-    EXPECT_EQ(number_of(measured.row, "steps"), 25);
-    EXPECT_EQ(number_of(measured.row, "width"), 160);
-    EXPECT_EQ(number_of(measured.row, "height"), 90);
-    EXPECT_EQ(number_of(measured.row, "frame"), 3);
-    EXPECT_EQ(number_of(measured.row, "jitter_phases"), 8);
-    EXPECT_EQ(number_of(measured.row, "run_number"), 5);
-    EXPECT_EQ(number_of(measured.row, "thickness_m"), 0.1);
-    EXPECT_EQ(number_of(measured.row, "max_distance_m"), 1000000000);
+    expect_numbers(measured.row, "steps", 25, "width", 160, "height", 90, "frame", 3, "jitter_phases", 8, "run_number",
+                   5, "thickness_m", 0.1, "max_distance_m", 1000000000);
     EXPECT_EQ(words_of(measured.row, "edge_fade"), "off");
     measured.pass_ms  = {{"trace", std::vector<double>(7, 4.0)}, {"composite", std::vector<double>(7, 1.5)}};
     measured.trace_ms = {1, 2, 3, 4, 5, 6, 7};
@@ -103,9 +97,7 @@ TEST(Rows, EveryEntryOfARowHasAColumn)
     add_times(measured, 7);
     add_measures(measured.row, no_measures());
     measured.row = failed_row(measured.row, Failure("no"));
-    EXPECT_EQ(number_of(measured.row, "trace_ms_median"), 4);
-    EXPECT_EQ(number_of(measured.row, "trace_ms_ci_low"), 1);
-    EXPECT_EQ(number_of(measured.row, "inverse_fps_s"), 0.014);
+    expect_numbers(measured.row, "trace_ms_median", 4, "trace_ms_ci_low", 1, "inverse_fps_s", 0.014);
     for (const auto& [name, value] : measured.row) EXPECT_THAT(names, testing::Contains(name));
 }
 
@@ -286,16 +278,9 @@ TEST(Rows, CountsOfAResultWithKnownFigures)
     Record row;
     add_counts(row, result);
     EXPECT_EQ(words_of(row, "outcome"), "ok");
-    EXPECT_EQ(number_of(row, "rays"), 4);
-    EXPECT_EQ(number_of(row, "hit_share"), 0.5);
-    EXPECT_EQ(number_of(row, "out_of_steps_share"), 0.25);
-    EXPECT_EQ(number_of(row, "facing_away_share"), 0);
-    EXPECT_EQ(number_of(row, "steps_mean"), 25);
-    EXPECT_EQ(number_of(row, "depth_fetches_mean"), 2.5);
-    EXPECT_EQ(number_of(row, "structure_fetches_mean"), 7.5);
-    EXPECT_EQ(number_of(row, "depth_pyramid.fetches_mean"), 7.5);
-    EXPECT_EQ(number_of(row, "fetches_mean"), 10);
-    EXPECT_EQ(number_of(row, "fetches_max"), 10);
+    expect_numbers(row, "rays", 4, "hit_share", 0.5, "out_of_steps_share", 0.25, "facing_away_share", 0, "steps_mean",
+                   25, "depth_fetches_mean", 2.5, "structure_fetches_mean", 7.5, "depth_pyramid.fetches_mean", 7.5,
+                   "fetches_mean", 10, "fetches_max", 10);
 }
 
 // Of 101 rays the sorted figure i is the quantile i / 100. As many pixels are not traced.
@@ -312,18 +297,9 @@ TEST(Rows, QuantilesAreOverTheRays)
     }
     Record row;
     add_counts(row, result);
-    EXPECT_EQ(number_of(row, "rays"), 101);
-    EXPECT_EQ(number_of(row, "left_screen_share"), 1);
-    EXPECT_EQ(number_of(row, "steps_mean"), 50);
-    EXPECT_EQ(number_of(row, "steps_p99"), 99);
-    EXPECT_EQ(number_of(row, "steps_max"), 100);
-    EXPECT_EQ(number_of(row, "depth_fetches_mean"), 1);
-    EXPECT_EQ(number_of(row, "structure_fetches_mean"), 50);
-    EXPECT_EQ(number_of(row, "depth_pyramid.fetches_mean"), 50);
-    EXPECT_EQ(number_of(row, "fetches_mean"), 51);
-    EXPECT_EQ(number_of(row, "fetches_p50"), 50);
-    EXPECT_EQ(number_of(row, "fetches_p99"), 99);
-    EXPECT_EQ(number_of(row, "fetches_max"), 201);
+    expect_numbers(row, "rays", 101, "left_screen_share", 1, "steps_mean", 50, "steps_p99", 99, "steps_max", 100,
+                   "depth_fetches_mean", 1, "structure_fetches_mean", 50, "depth_pyramid.fetches_mean", 50,
+                   "fetches_mean", 51, "fetches_p50", 50, "fetches_p99", 99, "fetches_max", 201);
 }
 
 TEST(Rows, NothingToTraceIsAnOutcome)
@@ -390,13 +366,11 @@ TEST(Rows, ASummaryIsOfTheFramesThatAreOk)
     const Record row = summary_row({{"run_id", "r"}, {"run_number", 1}, {"frame", 0}, {"scene", "s"}}, frames, state);
     EXPECT_EQ(words_of(row, "scene"), "s");
     EXPECT_FALSE(row.contains("run_id") || row.contains("run_number") || row.contains("frame"));
-    EXPECT_EQ(number_of(row, "frames"), 3);
-    EXPECT_EQ(number_of(row, "trace_ms_median"), 2);        // the median; the mean is 4
+    // trace_ms_median: the median; the mean is 4
+    expect_numbers(row, "frames", 3, "trace_ms_median", 2);
     EXPECT_DOUBLE_EQ(*number_of(row, "picture_rmse"), 0.4); // the mean; the median is 0.3
     EXPECT_FALSE(row.contains("history_share"));
-    EXPECT_EQ(number_of(row, "converged_rmse_last"), 0.125);
-    EXPECT_EQ(number_of(row, "flip_rate"), 0.25);
-    EXPECT_EQ(number_of(row, "temporal_rms"), 0.5);
+    expect_numbers(row, "converged_rmse_last", 0.125, "flip_rate", 0.25, "temporal_rms", 0.5);
 
     state.moved = true;
     EXPECT_FALSE(summary_row({}, frames, state).contains("temporal_rms"));

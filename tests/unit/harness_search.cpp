@@ -1,10 +1,6 @@
 // The search for a target: on curves that are known, it ends between the two values where the curve crosses.
 #include "harness/search.h"
-
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <functional>
+#include "test.h"
 
 namespace ssrlab {
 namespace {

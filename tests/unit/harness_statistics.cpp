@@ -1,11 +1,6 @@
 // Statistics with answers known from tables or by argument.
 #include "harness/statistics.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
+#include "test.h"
 
 namespace ssrlab {
 namespace {

@@ -7,19 +7,15 @@
 #include "core/pixel_index.h"
 #include "errors.h"
 #include "temp_folder.h"
+#include "test.h"
 #include "truth/screen_truth.h"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <limits>
 
 namespace ssrlab::test {
 namespace {
 
 using testing::HasSubstr;
 
-const TraceSettings settings{.thickness_m = 0.5, .max_distance_m = 100};
+const TraceSettings settings = boxes({.thickness_m = 0.5, .max_distance_m = 100});
 
 /// A mirror floor before a wall that does not reflect and ends below the image's upper border.
 GBufferImage floor_and_wall()

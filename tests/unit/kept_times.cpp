@@ -5,8 +5,7 @@
 #include "core/files.h"
 #include "environment_variable.h"
 #include "temp_folder.h"
-
-#include <gtest/gtest.h>
+#include "test.h"
 
 namespace ssrlab {
 namespace {

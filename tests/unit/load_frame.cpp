@@ -8,14 +8,9 @@
 #include "scene/scene.h"
 #include "scene/sequence.h"
 #include "temp_folder.h"
+#include "test.h"
 
 #include <OpenImageIO/imageio.h>
-
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <limits>
-#include <numbers>
 
 namespace ssrlab {
 namespace {

@@ -1,6 +1,5 @@
 #include "repeat_command.h"
-
-#include <gtest/gtest.h>
+#include "test.h"
 
 int main(int argc, char** argv)
 {

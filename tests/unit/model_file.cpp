@@ -6,7 +6,6 @@
 
 #include "core/error.h"
 
-#include <gmock/gmock.h>
 #include <sys/stat.h>
 
 namespace ssrlab {

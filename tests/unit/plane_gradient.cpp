@@ -3,11 +3,6 @@
 
 #include "truth_gbuffers.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 namespace ssrlab::test {
 namespace {
 

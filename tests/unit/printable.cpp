@@ -1,7 +1,6 @@
 // What files say must not move a terminal's cursor, nor turn its text.
 #include "core/printable.h"
-
-#include <gtest/gtest.h>
+#include "test.h"
 
 namespace ssrlab {
 namespace {

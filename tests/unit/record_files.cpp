@@ -8,16 +8,8 @@
 #include "harness/source_rows.h"
 #include "temp_folder.h"
 
-#include <gmock/gmock.h>
-
-#include <chrono>
-#include <cmath>
 #include <csignal>
-#include <cstdlib>
 #include <fcntl.h>
-#include <limits>
-#include <random>
-#include <set>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -2,9 +2,6 @@
 #include "scene/sequence.h"
 #include "scene_files.h"
 
-#include <cmath>
-#include <numbers>
-
 namespace ssrlab {
 namespace {
 
@@ -38,10 +35,9 @@ constexpr float eps = 1e-5F;
 
 TEST(SceneAnimation, TranslationIsLinearBetweenKeysAndStaysAtTheLast)
 {
-    TempFolder   folder;
     AnimatedFile file;
     file.add_channel(0, "translation", {0, 0.5F, 1}, {0, 0, 0, 3, 0, 0, 3, 6, 0});
-    const Scene scene = load_scene(file.write(folder));
+    const Scene scene = file.load();
     EXPECT_TRUE(scene.warnings.empty());
     EXPECT_VEC_NEAR(corner_in(scene, 5, 0), glm::vec3(1, 0, 0), eps); // 30 frames a second: 15 to the second key
     EXPECT_VEC_NEAR(corner_in(scene, 20, 0), glm::vec3(3, 2, 0), eps);
@@ -54,18 +50,16 @@ TEST(SceneAnimation, TranslationIsLinearBetweenKeysAndStaysAtTheLast)
 
 TEST(SceneAnimation, KeysReplaceWhatTheNodeSays)
 {
-    TempFolder   folder;
     AnimatedFile file;
     file.root["nodes"][0]["translation"] = {9, 9, 9};
     file.add_channel(0, "translation", {0.2F, 0.4F}, {1, 0, 0, 2, 0, 0});
-    const Scene scene = load_scene(file.write(folder));
+    const Scene scene = file.load();
     EXPECT_VEC_NEAR(corner(scene, 0), glm::vec3(1, 0, 0), eps) << "before the first key: the first key";
     EXPECT_VEC_NEAR(corner_in(scene, 9, 0), glm::vec3(1.5F, 0, 0), eps);
 }
 
 TEST(SceneAnimation, StepsJumpAndCubicsFollowTheirTangents)
 {
-    TempFolder   folder;
     AnimatedFile file;
     file.root["nodes"]              = {{{"mesh", 0}}, {{"mesh", 0}}};
     file.root["scenes"][0]["nodes"] = {0, 1};
@@ -73,7 +67,7 @@ TEST(SceneAnimation, StepsJumpAndCubicsFollowTheirTangents)
     // p0 = 0, m0 = 4, p1 = 1, m1 = 0 over 2 s: Hermite's h00 p0 + h10 2 m0 + h01 p1 + h11 2 m1 at t = 1/4 is
     // (1/64 - 2/16 + 1/4) 8 + (3/16 - 2/64) = 9/8 + 5/32.
     file.add_channel(1, "translation", {0, 2}, {0, 0, 0, 0, 0, 0, 4, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0}, "CUBICSPLINE");
-    const Scene scene = load_scene(file.write(folder));
+    const Scene scene = file.load();
     EXPECT_VEC_NEAR(corner_in(scene, 29, 0), glm::vec3(0, 0, 0), eps);
     EXPECT_VEC_NEAR(corner_in(scene, 30, 0), glm::vec3(5, 0, 0), eps);
     EXPECT_VEC_NEAR(corner_in(scene, 15, 3), glm::vec3(9.0F / 8 + 5.0F / 32, 0, 0), eps);
@@ -81,13 +75,12 @@ TEST(SceneAnimation, StepsJumpAndCubicsFollowTheirTangents)
 
 TEST(SceneAnimation, RotationsTakeTheShorterArcDownTheHierarchy)
 {
-    TempFolder   folder;
     AnimatedFile file;
     file.root["nodes"] = {{{"children", {1}}, {"scale", {2, 2, 2}}}, {{"mesh", 0}, {"translation", {1, 0, 0}}}};
     // From 0 to 90 degrees about y; -q is the same turn as q.
     const float half = std::numbers::sqrt2_v<float> / 2;
     file.add_channel(0, "rotation", {0, 1}, {0, 0, 0, 1, 0, -half, 0, -half});
-    const Scene scene = load_scene(file.write(folder));
+    const Scene scene = file.load();
     EXPECT_TRUE(scene.warnings.empty()) << "a scale that does not change leaves the motion rigid";
     const double turn = 30 * std::numbers::pi / 180; // a third of the way
     EXPECT_VEC_NEAR(corner_in(scene, 10, 0), glm::vec3(2 * std::cos(turn), 0, -2 * std::sin(turn)), eps);
@@ -135,10 +128,9 @@ TEST(SceneAnimation, APartOfARecipeKeepsItsFilesMotion)
 
 TEST(SceneAnimation, WhatIsNotRigidStandsStillWithAWarning)
 {
-    TempFolder   folder;
     AnimatedFile file;
     file.add_channel(0, "scale", {0, 1}, {1, 1, 1, 2, 2, 2});
-    const Scene scene = load_scene(file.write(folder));
+    const Scene scene = file.load();
     EXPECT_THAT(scene.warnings, Contains(HasSubstr("node 0: its animation scales")));
     EXPECT_FALSE(anything_moves(scene));
 }

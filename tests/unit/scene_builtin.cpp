@@ -3,8 +3,6 @@
 #include "core/pixel_index.h"
 #include "scene/model.h"
 
-#include <cmath>
-
 namespace ssrlab {
 namespace {
 

@@ -6,9 +6,6 @@
 
 #include <OpenImageIO/imageio.h>
 
-#include <cmath>
-#include <limits>
-
 namespace ssrlab {
 namespace {
 
@@ -19,8 +16,7 @@ EnvironmentMap numbered(glm::ivec2 size_px)
 {
     EnvironmentMap map;
     map.size_px = size_px;
-    for (int y = 0; y < size_px.y; ++y)
-        for (int x = 0; x < size_px.x; ++x) map.radiance.emplace_back(x, y, 0);
+    for (const auto [i, x, y] : test::pixels_of(size_px)) map.radiance.emplace_back(x, y, 0);
     return map;
 }
 
@@ -51,10 +47,9 @@ TEST(SceneEnvironment, DirectionsAreWhereTheHeaderSays)
 TEST(SceneEnvironment, TexelCentresGiveTheirTexelAndMiddlesTheMean)
 {
     const EnvironmentMap map = numbered({16, 8});
-    for (int y = 0; y < 8; ++y)
-        for (int x = 0; x < 16; ++x)
-            ASSERT_VEC_NEAR(environment_radiance(map, uv_to_direction({(x + 0.5) / 16, (y + 0.5) / 8})),
-                            glm::vec3(x, y, 0), 1e-5F);
+    for (const auto [i, x, y] : test::pixels_of({16, 8}))
+        ASSERT_VEC_NEAR(environment_radiance(map, uv_to_direction({(x + 0.5) / 16, (y + 0.5) / 8})), glm::vec3(x, y, 0),
+                        1e-5F);
     ASSERT_VEC_NEAR(environment_radiance(map, uv_to_direction({4.0 / 16, 3.0 / 8})), glm::vec3(3.5F, 2.5F, 0), 1e-5F);
 }
 

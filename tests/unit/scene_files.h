@@ -4,14 +4,7 @@
 #include "core/error.h"
 #include "scene/scene.h"
 #include "temp_folder.h"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
-#include <cstring>
-#include <string>
-#include <vector>
+#include "test.h"
 
 namespace ssrlab {
 
@@ -68,6 +61,12 @@ struct GltfFile {
             root["buffers"] = {{{"uri", "data.bin"}, {"byteLength", binary.size()}}};
         folder.write("data.bin", binary);
         return folder.write(name, root.dump());
+    }
+
+    Scene load()
+    {
+        const TempFolder folder;
+        return load_scene(write(folder));
     }
 };
 

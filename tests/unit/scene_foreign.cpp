@@ -2,9 +2,6 @@
 #include "scene/sequence.h"
 #include "scene_files.h"
 
-#include <cmath>
-#include <numbers>
-
 namespace ssrlab {
 namespace {
 
@@ -90,22 +87,20 @@ TEST(ForeignGltf, CompressedMeshesNameTheExtensionAndTheCure)
 
 TEST(ForeignGltf, ExtensionsThatAreAppliedGiveNoWarning)
 {
-    TempFolder folder;
-    GltfFile   file             = quad();
+    GltfFile file               = quad();
     file.root["extensionsUsed"] = {"KHR_materials_ior",          "KHR_materials_specular",
                                    "KHR_materials_clearcoat",    "KHR_node_visibility",
                                    "KHR_texture_transform",      "EXT_mesh_gpu_instancing",
                                    "KHR_materials_transmission", "KHR_materials_pbrSpecularGlossiness"};
-    EXPECT_THAT(load_scene(file.write(folder)).warnings, IsEmpty());
+    EXPECT_THAT(file.load().warnings, IsEmpty());
 }
 
 TEST(ForeignGltf, ACutoffAboveOneIsKept)
 {
-    TempFolder folder;
-    GltfFile   file              = quad();
+    GltfFile file                = quad();
     file.primitive()["material"] = 0;
     file.root["materials"]       = {{{"alphaMode", "MASK"}, {"alphaCutoff", 1.1}}};
-    const Scene scene            = load_scene(file.write(folder));
+    const Scene scene            = file.load();
     EXPECT_FLOAT_EQ(scene.materials.at(scene.draws.at(0).material).alpha_cutoff, 1.1F);
 }
 
@@ -113,8 +108,7 @@ TEST(ForeignGltf, ACutoffAboveOneIsKept)
 TEST(ForeignGltf, TangentsFollowTheTexturesTransform)
 {
     const auto tangent_of = [](const json& transform) {
-        TempFolder folder;
-        GltfFile   file                              = quad();
+        GltfFile file                                = quad();
         file.primitive()["material"]                 = 0;
         file.primitive()["attributes"]["TEXCOORD_0"] = file.add_accessor<float>({0, 1, 1, 1, 1, 0, 0, 0}, "VEC2", 2);
         file.root["images"]                          = {{{"uri", pixel_png}}};
@@ -122,7 +116,7 @@ TEST(ForeignGltf, TangentsFollowTheTexturesTransform)
         json texture                                 = {{"index", 0}};
         if (!transform.is_null()) texture["extensions"] = {{"KHR_texture_transform", transform}};
         file.root["materials"] = {{{"normalTexture", texture}}};
-        return load_scene(file.write(folder)).vertices.at(0).tangent_ws;
+        return file.load().vertices.at(0).tangent_ws;
     };
     EXPECT_VEC_NEAR(tangent_of(nullptr), glm::vec4(1, 0, 0, 1), eps);
     EXPECT_VEC_NEAR(tangent_of({{"scale", {-1, 1}}}), glm::vec4(-1, 0, 0, -1), eps);
@@ -135,16 +129,15 @@ TEST(ForeignGltf, NormalsWithoutDirectionBecomeTheTriangles)
 {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (const float bad : {0.0F, nan}) {
-        TempFolder folder;
-        GltfFile   file      = GltfFile();
-        const int  positions = file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, -1});
+        GltfFile  file      = GltfFile();
+        const int positions = file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, -1});
         // Both triangles share the first two corners; only the second corner has a normal.
         const int normals =
             file.add_accessor<float>({bad, bad, bad, 0, 0.6F, 0.8F, bad, bad, bad, bad, bad, bad}, "VEC3", 3);
         file.root["nodes"]  = {{{"mesh", 0}}};
         file.root["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}}}}}}};
         file.primitive()["indices"] = file.add_accessor<uint16_t>({0, 1, 2, 0, 3, 1}, "SCALAR", 1);
-        const Scene scene           = load_scene(file.write(folder));
+        const Scene scene           = file.load();
         ASSERT_EQ(scene.indices.size(), 6U);
         for (size_t i = 0; i < 6; ++i) {
             const glm::vec3 expected =
@@ -157,12 +150,11 @@ TEST(ForeignGltf, NormalsWithoutDirectionBecomeTheTriangles)
 
 TEST(ForeignGltf, FlattenedNodesFaceAlongTheirPlane)
 {
-    TempFolder folder;
-    GltfFile   file = quad();
+    GltfFile file = quad();
     file.primitive()["attributes"]["NORMAL"] =
         file.add_accessor<float>({0, 0, 1, 0.6F, 0, 0.8F, 0, 0, 1, 1, 0, 0}, "VEC3", 3);
     file.root["nodes"] = {{{"mesh", 0}, {"scale", {1, 1, 0}}}};
-    const Scene scene  = load_scene(file.write(folder));
+    const Scene scene  = file.load();
     ASSERT_EQ(scene.indices.size(), 6U);
     for (const Vertex& vertex : scene.vertices) EXPECT_VEC_NEAR(vertex.normal_ws, glm::vec3(0, 0, 1), eps);
     EXPECT_THAT(scene.warnings, Contains(HasSubstr("1 corners of triangles"))) << "the one that lay in the plane";
@@ -170,10 +162,9 @@ TEST(ForeignGltf, FlattenedNodesFaceAlongTheirPlane)
 
 Material material_from(GltfFile file, const json& values)
 {
-    TempFolder folder;
     file.primitive()["material"] = 0;
     file.root["materials"]       = {{{"extensions", {{"KHR_materials_pbrSpecularGlossiness", values}}}}};
-    const Scene scene            = load_scene(file.write(folder));
+    const Scene scene            = file.load();
     EXPECT_THAT(scene.warnings, IsEmpty());
     return scene.materials.at(scene.draws.at(0).material);
 }
@@ -209,10 +200,9 @@ TEST(ForeignGltf, TexturesOfSpecularAndGlossinessAreConverted)
                                                         {{"diffuseFactor", {0, 0, 0, 1}},
                                                          {"glossinessFactor", 0.75},
                                                          {"specularGlossinessTexture", {{"index", 0}}}}}}}}};
-    TempFolder      folder;
-    const Scene     scene    = load_scene(file.write(folder));
-    const Material& material = scene.materials.at(scene.draws.at(0).material);
-    const auto      texel    = [&](const TextureUse& use, size_t c) {
+    const Scene     scene                        = file.load();
+    const Material& material                     = scene.materials.at(scene.draws.at(0).material);
+    const auto      texel                        = [&](const TextureUse& use, size_t c) {
         return int(scene.textures.at(size_t(use.texture)).rgba.at(c));
     };
     const double f0 = std::pow((128 / 255.0 + 0.055) / 1.055, 2.4), metallic = (f0 - 0.04) / 0.96;
@@ -227,8 +217,7 @@ TEST(ForeignGltf, TexturesOfSpecularAndGlossinessAreConverted)
 
 TEST(ForeignGltf, HiddenNodesShowNothingBelowThemButCameras)
 {
-    TempFolder folder;
-    GltfFile   file      = quad();
+    GltfFile file        = quad();
     file.root["cameras"] = {{{"type", "perspective"}, {"name", "eye"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
     file.root["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "point"}, {"intensity", 7}}}}}}};
     const json hidden       = {{"KHR_node_visibility", {{"visible", false}}}},
@@ -237,12 +226,12 @@ TEST(ForeignGltf, HiddenNodesShowNothingBelowThemButCameras)
                                {{"mesh", 0}, {"extensions", shown}}, // its parent is not
                                {{"camera", 0}},
                                {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}};
-    const Scene scene       = load_scene(file.write(folder));
+    const Scene scene       = file.load();
     EXPECT_TRUE(scene.draws.empty());
     EXPECT_EQ(scene.cameras.at(0).name, "eye");
     EXPECT_EQ(scene.lights.at(0).type, LightType::directional) << "the default light";
     file.root["nodes"][0]["extensions"] = shown;
-    EXPECT_EQ(load_scene(file.write(folder)).draws.size(), 1U);
+    EXPECT_EQ(file.load().draws.size(), 1U);
 }
 
 TEST(ForeignGltf, InstancesAreDrawn)
@@ -310,14 +299,13 @@ TEST(ForeignGltf, SkinsAreInTheirJointsPose)
 
 TEST(ForeignGltf, AnimatedJointsBendTheirMeshInEveryFrame)
 {
-    TempFolder  folder;
     GltfFile    file        = skinned();
     const float half        = std::numbers::sqrt2_v<float> / 2;
     const int   times_s     = file.add_accessor<float>({0, 1}, "SCALAR", 1);
     const int   turns       = file.add_accessor<float>({0, 0, 0, 1, half, 0, 0, half}, "VEC4", 4); // a quarter about x
     file.root["animations"] = {{{"samplers", {{{"input", times_s}, {"output", turns}}}},
                                 {"channels", {{{"sampler", 0}, {"target", {{"node", 2}, {"path", "rotation"}}}}}}}};
-    const Scene scene       = load_scene(file.write(folder));
+    const Scene scene       = file.load();
     EXPECT_TRUE(anything_moves(scene));
     EXPECT_VEC_NEAR(corner(scene, 2), glm::vec3(1, 1, 0), eps);
     const Scene last = scene_at(scene, 30), after = scene_at(scene, 99);
@@ -336,9 +324,8 @@ TEST(ForeignGltf, AnimatedJointsBendTheirMeshInEveryFrame)
 TEST(ForeignGltf, FarOutOnALargeSceneTheOriginIsAtTheCamera)
 {
     for (const double x_m : {50.0, 5e4, 5e6}) {
-        TempFolder folder;
-        GltfFile   file  = GltfFile::triangle();
-        const int  floor = file.positions({-1e7F, 0, -1e7F, 0, 0, 1e7F, 1e7F, 0, -1e7F});
+        GltfFile  file  = GltfFile::triangle();
+        const int floor = file.positions({-1e7F, 0, -1e7F, 0, 0, 1e7F, 1e7F, 0, -1e7F});
         file.root["meshes"].push_back({{"primitives", {{{"attributes", {{"POSITION", floor}}}}}}});
         file.root["cameras"] = {
             {{"type", "perspective"}, {"name", "eye"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
@@ -346,7 +333,7 @@ TEST(ForeignGltf, FarOutOnALargeSceneTheOriginIsAtTheCamera)
         file.root["nodes"]  = {{{"mesh", 0}, {"translation", {x_m, 0.1, 0}}, {"scale", {0.01, 0.01, 0.01}}},
                                {{"mesh", 1}},
                                {{"camera", 0}, {"translation", {x_m, 1, 3}}}};
-        const Scene scene   = load_scene(file.write(folder));
+        const Scene scene   = file.load();
         EXPECT_NEAR(glm::length(scene.origin_ws), x_m < 1000 ? 0 : x_m, 10) << x_m;
         EXPECT_VEC_NEAR(glm::dvec3(corner(scene, 1) - corner(scene, 0)), glm::dvec3(0.01, 0, 0),
                         1e-7 + 1e-7 * std::min(x_m, 100.0));
@@ -356,16 +343,14 @@ TEST(ForeignGltf, FarOutOnALargeSceneTheOriginIsAtTheCamera)
 
 TEST(ForeignGltf, ViewsFarFromTheOriginAreNamed)
 {
-    TempFolder folder;
-    GltfFile   file      = GltfFile::triangle();
+    GltfFile file        = GltfFile::triangle();
     file.root["cameras"] = {
         {{"type", "perspective"}, {"name", "near"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}},
         {{"type", "perspective"}, {"name", "away"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
     file.root["scenes"] = {{{"nodes", {0, 1, 2}}}};
     file.root["nodes"]  = {
          {{"mesh", 0}}, {{"camera", 0}, {"translation", {0, 0, 3}}}, {{"camera", 1}, {"translation", {9e4, 0, 0}}}};
-    EXPECT_THAT(load_scene(file.write(folder)).warnings,
-                testing::ElementsAre(HasSubstr("view 'away' is 9e+04 m away")));
+    EXPECT_THAT(file.load().warnings, testing::ElementsAre(HasSubstr("view 'away' is 9e+04 m away")));
 }
 
 } // namespace

@@ -1,7 +1,5 @@
 #include "scene_files.h"
 
-#include <numbers>
-
 namespace ssrlab {
 namespace {
 
@@ -18,12 +16,11 @@ constexpr const char* pixel_png =
 
 TEST(SceneGltf, TransformsMultiplyDownTheHierarchy)
 {
-    TempFolder  folder;
     GltfFile    file   = GltfFile::triangle();
     const float half   = std::numbers::sqrt2_v<float> / 2;
     file.root["nodes"] = {{{"children", {1}}, {"translation", {10, 0, 0}}, {"rotation", {0, half, 0, half}}},
                           {{"mesh", 0}, {"translation", {0, 2, 3}}, {"scale", {2, 2, 2}}}};
-    const Scene scene  = load_scene(file.write(folder));
+    const Scene scene  = file.load();
     ASSERT_EQ(scene.indices.size(), 3U);
     // Turning about y by 90 degrees takes x to -z and z to x.
     EXPECT_VEC_NEAR(corner(scene, 0), glm::vec3(13, 2, 0), 1e-5F);
@@ -33,10 +30,9 @@ TEST(SceneGltf, TransformsMultiplyDownTheHierarchy)
 
 TEST(SceneGltf, MatricesAreColumnMajor)
 {
-    TempFolder folder;
-    GltfFile   file    = GltfFile::triangle();
+    GltfFile file      = GltfFile::triangle();
     file.root["nodes"] = {{{"mesh", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1}}}};
-    EXPECT_VEC_NEAR(corner(load_scene(file.write(folder)), 0), glm::vec3(5, 6, 7), eps);
+    EXPECT_VEC_NEAR(corner(file.load(), 0), glm::vec3(5, 6, 7), eps);
 }
 
 TEST(SceneGltf, IndexedAndUnindexedGiveTheSameTriangles)
@@ -57,17 +53,16 @@ TEST(SceneGltf, IndexedAndUnindexedGiveTheSameTriangles)
 
 TEST(SceneGltf, PrimitivesTakeOfASharedListWhatTheyUse)
 {
-    TempFolder folder;
-    GltfFile   file;
-    const int  positions = file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 2, 0, 0, 3, 0, 0, 2, 1, 0});
-    const int  red =
+    GltfFile  file;
+    const int positions = file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 2, 0, 0, 3, 0, 0, 2, 1, 0});
+    const int red =
         file.add_accessor<float>({0, 0, 0, .1F, 0, 0, .2F, 0, 0, .3F, 0, 0, .4F, 0, 0, .5F, 0, 0}, "VEC3", 3);
     const int      right      = file.add_accessor<uint16_t>({4, 5, 3}, "SCALAR", 1);
     nlohmann::json attributes = {{"POSITION", positions}, {"COLOR_0", red}};
     file.root["nodes"]        = {{{"mesh", 0}}};
     file.root["meshes"]       = {
               {{"primitives", {{{"attributes", attributes}, {"indices", right}}, {{"attributes", attributes}}}}}};
-    const Scene scene = load_scene(file.write(folder));
+    const Scene scene = file.load();
     ASSERT_EQ(scene.indices.size(), 9U);
     EXPECT_EQ(scene.vertices.size(), 9U);
     for (size_t i = 0; i < 9; ++i) {
@@ -81,13 +76,12 @@ TEST(SceneGltf, PrimitivesTakeOfASharedListWhatTheyUse)
 TEST(SceneGltf, StripsAndFansKeepTheirFronts)
 {
     for (int mode : {5, 6}) {
-        TempFolder folder;
-        GltfFile   file;
-        const int  positions = mode == 5 ? file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0})
-                                         : file.positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, -1, 1, 0});
-        file.root["nodes"]   = {{{"mesh", 0}}};
-        file.root["meshes"]  = {{{"primitives", {{{"attributes", {{"POSITION", positions}}}, {"mode", mode}}}}}};
-        const Scene scene    = load_scene(file.write(folder));
+        GltfFile  file;
+        const int positions = mode == 5 ? file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0})
+                                        : file.positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, -1, 1, 0});
+        file.root["nodes"]  = {{{"mesh", 0}}};
+        file.root["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", positions}}}, {"mode", mode}}}}}};
+        const Scene scene   = file.load();
         ASSERT_EQ(scene.indices.size(), 9U) << "mode " << mode;
         for (size_t i = 0; i < 3; ++i) EXPECT_VEC_NEAR(geometric_normal(scene, i), glm::vec3(0, 0, 1), eps);
     }
@@ -95,13 +89,12 @@ TEST(SceneGltf, StripsAndFansKeepTheirFronts)
 
 TEST(SceneGltf, MissingNormalsBecomeFlat)
 {
-    TempFolder folder;
-    GltfFile   file      = GltfFile();
-    const int  positions = file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
-    const int  indices   = file.add_accessor<uint16_t>({0, 1, 2, 0, 3, 1}, "SCALAR", 1);
-    file.root["nodes"]   = {{{"mesh", 0}}};
-    file.root["meshes"]  = {{{"primitives", {{{"attributes", {{"POSITION", positions}}}, {"indices", indices}}}}}};
-    const Scene scene    = load_scene(file.write(folder));
+    GltfFile  file      = GltfFile();
+    const int positions = file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
+    const int indices   = file.add_accessor<uint16_t>({0, 1, 2, 0, 3, 1}, "SCALAR", 1);
+    file.root["nodes"]  = {{{"mesh", 0}}};
+    file.root["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", positions}}}, {"indices", indices}}}}}};
+    const Scene scene   = file.load();
     ASSERT_EQ(scene.vertices.size(), 6U);
     for (size_t i = 0; i < 6; ++i)
         EXPECT_VEC_NEAR(scene.vertices[scene.indices[i]].normal_ws, geometric_normal(scene, i / 3), eps);
@@ -109,35 +102,32 @@ TEST(SceneGltf, MissingNormalsBecomeFlat)
 
 TEST(SceneGltf, MirroringNodesKeepFrontsOutside)
 {
-    TempFolder folder;
-    GltfFile   file                          = GltfFile::triangle();
+    GltfFile file                            = GltfFile::triangle();
     file.primitive()["attributes"]["NORMAL"] = file.add_accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
     file.root["nodes"]                       = {{{"mesh", 0}, {"scale", {-1, 1, 1}}}};
-    const Scene scene                        = load_scene(file.write(folder));
+    const Scene scene                        = file.load();
     EXPECT_VEC_NEAR(geometric_normal(scene, 0), glm::vec3(0, 0, 1), eps);
     EXPECT_VEC_NEAR(scene.vertices[0].normal_ws, glm::vec3(0, 0, 1), eps);
 }
 
 TEST(SceneGltf, NonUniformScaleTurnsNormalsByTheInverseTranspose)
 {
-    TempFolder folder;
-    GltfFile   file      = GltfFile();
-    const int  positions = file.positions({0, 0, 0, 1, -1, 0, 0, 0, -1});
-    const int  normals   = file.add_accessor<float>(
+    GltfFile  file      = GltfFile();
+    const int positions = file.positions({0, 0, 0, 1, -1, 0, 0, 0, -1});
+    const int normals   = file.add_accessor<float>(
         {0.70710678F, 0.70710678F, 0, 0.70710678F, 0.70710678F, 0, 0.70710678F, 0.70710678F, 0}, "VEC3", 3);
     file.root["nodes"]  = {{{"mesh", 0}, {"scale", {4, 1, 1}}}};
     file.root["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}}}}}}};
-    const Scene scene   = load_scene(file.write(folder));
+    const Scene scene   = file.load();
     EXPECT_NEAR(std::abs(glm::dot(scene.vertices[0].normal_ws, geometric_normal(scene, 0))), 1, 1e-5);
 }
 
 TEST(SceneGltf, MaterialsHaveTheSpecifiedDefaults)
 {
-    TempFolder folder;
-    GltfFile   file              = GltfFile::triangle();
+    GltfFile file                = GltfFile::triangle();
     file.root["materials"]       = {{{"name", "bare"}}};
     file.primitive()["material"] = 0;
-    const Scene     scene        = load_scene(file.write(folder));
+    const Scene     scene        = file.load();
     const Material& material     = scene.materials[scene.draws[0].material];
     EXPECT_EQ(material.name, "bare");
     EXPECT_EQ(material.metallic, 1);
@@ -149,8 +139,7 @@ TEST(SceneGltf, MaterialsHaveTheSpecifiedDefaults)
 
 TEST(SceneGltf, MaterialsTexturesAndExtensions)
 {
-    TempFolder folder;
-    GltfFile   file                              = GltfFile::triangle();
+    GltfFile file                                = GltfFile::triangle();
     file.primitive()["attributes"]["TEXCOORD_0"] = file.add_accessor<float>({0, 0, 1, 0, 0, 1}, "VEC2", 2);
     file.primitive()["material"]                 = 0;
     file.root["images"]                          = {{{"uri", pixel_png}}};
@@ -170,7 +159,7 @@ TEST(SceneGltf, MaterialsTexturesAndExtensions)
                                  {"alphaMode", "MASK"},
                                  {"alphaCutoff", 0.25},
                                  {"doubleSided", true}}};
-    const Scene     scene    = load_scene(file.write(folder));
+    const Scene     scene    = file.load();
     const Material& material = scene.materials[scene.draws[0].material];
     EXPECT_FLOAT_EQ(material.metallic, 0.5F);
     EXPECT_EQ(material.roughness, 0) << "negative roughness is clamped";
@@ -205,14 +194,13 @@ TEST(SceneGltf, MaterialsTexturesAndExtensions)
 
 TEST(SceneGltf, TransparencyFollowsTheStatedRule)
 {
-    TempFolder folder;
-    GltfFile   file              = GltfFile::triangle();
+    GltfFile file                = GltfFile::triangle();
     file.primitive()["material"] = 0;
     for (double alpha : {0.4, 0.6}) {
         file.root["materials"] = {{{"name", "glass"},
                                    {"alphaMode", "BLEND"},
                                    {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, alpha}}}}}};
-        const Scene scene      = load_scene(file.write(folder));
+        const Scene scene      = file.load();
         EXPECT_EQ(scene.draws.size(), alpha < 0.5 ? 0U : 1U);
         EXPECT_THAT(scene.warnings, Contains(HasSubstr(alpha < 0.5 ? "left out" : "drawn opaque")));
     }
@@ -220,33 +208,30 @@ TEST(SceneGltf, TransparencyFollowsTheStatedRule)
 
 TEST(SceneGltf, VertexColoursAndNormalizedIntegers)
 {
-    TempFolder folder;
-    GltfFile   file = GltfFile::triangle();
-    const int  colours =
+    GltfFile  file = GltfFile::triangle();
+    const int colours =
         file.add_accessor<uint16_t>({65535, 0, 0, 65535, 0, 65535, 0, 65535, 0, 0, 65535, 0}, "VEC4", 4);
     file.root["accessors"][colours]["normalized"] = true;
     file.primitive()["attributes"]["COLOR_0"]     = colours;
-    const Scene scene                             = load_scene(file.write(folder));
+    const Scene scene                             = file.load();
     EXPECT_EQ(scene.vertices[scene.indices[0]].colour, glm::vec4(1, 0, 0, 1));
     EXPECT_EQ(scene.vertices[scene.indices[2]].colour, glm::vec4(0, 0, 1, 0));
 }
 
 TEST(SceneGltf, SparseAccessorsReplaceElements)
 {
-    TempFolder folder;
-    GltfFile   file                     = GltfFile::triangle();
-    const int  indices                  = file.add_accessor<uint16_t>({1}, "SCALAR", 1);
-    const int  values                   = file.positions({3, 0, 0});
+    GltfFile  file                      = GltfFile::triangle();
+    const int indices                   = file.add_accessor<uint16_t>({1}, "SCALAR", 1);
+    const int values                    = file.positions({3, 0, 0});
     file.root["accessors"][0]["sparse"] = {{"count", 1},
                                            {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
                                            {"values", {{"bufferView", values}}}};
-    EXPECT_VEC_NEAR(corner(load_scene(file.write(folder)), 1), glm::vec3(3, 0, 0), eps);
+    EXPECT_VEC_NEAR(corner(file.load(), 1), glm::vec3(3, 0, 0), eps);
 }
 
 TEST(SceneGltf, LightsArePlacedByTheirNodes)
 {
-    TempFolder folder;
-    GltfFile   file             = GltfFile::triangle();
+    GltfFile file               = GltfFile::triangle();
     file.root["extensionsUsed"] = {"KHR_lights_punctual"};
     file.root["extensions"]     = {{"KHR_lights_punctual",
                                     {{"lights",
@@ -260,7 +245,7 @@ TEST(SceneGltf, LightsArePlacedByTheirNodes)
                  {{"mesh", 0}, {"children", {1, 2}}},
                  {{"rotation", {-half, 0, 0, half}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}},
                  {{"translation", {1, 2, 3}}, {"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}}};
-    const Scene scene = load_scene(file.write(folder));
+    const Scene scene = file.load();
     ASSERT_EQ(scene.lights.size(), 2U);
     EXPECT_EQ(scene.lights[0].type, LightType::directional);
     EXPECT_VEC_NEAR(scene.lights[0].direction_ws, glm::vec3(0, -1, 0), 1e-5F);
@@ -273,15 +258,14 @@ TEST(SceneGltf, LightsArePlacedByTheirNodes)
 
 TEST(SceneGltf, Cameras)
 {
-    TempFolder folder;
-    GltfFile   file      = GltfFile::triangle();
+    GltfFile file        = GltfFile::triangle();
     file.root["cameras"] = {
         {{"type", "perspective"}, {"name", "eye"}, {"perspective", {{"yfov", 1}, {"znear", 0.25}}}},
         {{"type", "orthographic"}, {"orthographic", {{"xmag", 2}, {"ymag", 3}, {"znear", 0.5}, {"zfar", 50}}}}};
     file.root["nodes"]  = {{{"mesh", 0}, {"children", {1, 2}}},
                            {{"camera", 0}, {"translation", {0, 1, 5}}},
                            {{"camera", 1}, {"name", "plan"}}};
-    const Scene   scene = load_scene(file.write(folder));
+    const Scene   scene = file.load();
     const Camera& eye   = find_camera(scene, "eye");
     EXPECT_VEC_NEAR(eye.position_ws, glm::dvec3(0, 1, 5), 1e-9);
     EXPECT_VEC_NEAR(eye.target_ws, glm::dvec3(0, 1, 4), 1e-9);
@@ -314,10 +298,9 @@ TEST(SceneGltf, ViewsBesideTheSceneComeFirst)
 
 TEST(SceneGltf, AFittedCameraSeesTheBounds)
 {
-    TempFolder folder;
-    GltfFile   file    = GltfFile::triangle();
+    GltfFile file      = GltfFile::triangle();
     file.root["nodes"] = {{{"mesh", 0}, {"scale", {30, 2, 1}}, {"translation", {-7, 3, 2}}}};
-    const Scene scene  = load_scene(file.write(folder));
+    const Scene scene  = file.load();
     for (const glm::ivec2& size_px : {glm::ivec2(1280, 720), glm::ivec2(512, 512)}) {
         const View view = camera_to_view(scene.cameras.at(0), size_px);
         for (const Vertex& vertex : scene.vertices) {
@@ -330,10 +313,9 @@ TEST(SceneGltf, AFittedCameraSeesTheBounds)
 
 TEST(SceneGltf, FarFromTheOriginPositionsStayAccurate)
 {
-    TempFolder folder;
-    GltfFile   file    = GltfFile::triangle();
+    GltfFile file      = GltfFile::triangle();
     file.root["nodes"] = {{{"mesh", 0}, {"translation", {5e6, 100, -3e6}}, {"scale", {0.01, 0.01, 0.01}}}};
-    const Scene scene  = load_scene(file.write(folder));
+    const Scene scene  = file.load();
     EXPECT_GT(glm::length(scene.origin_ws), 1e6);
     const glm::dvec3 expected = glm::dvec3(5e6 + 0.01, 100, -3e6) - scene.origin_ws;
     EXPECT_VEC_NEAR(glm::dvec3(corner(scene, 1)), expected, 1e-8);
@@ -344,17 +326,15 @@ TEST(SceneGltf, TheOriginMovesSixteenRadiiAway)
 {
     // The triangle's bounds have a radius of sqrt(1 / 2), their middle lies at (0.5 + x, 0.5, 0): 16 radii are 11.3.
     for (double x : {10.0, 11.5}) {
-        TempFolder folder;
-        GltfFile   file    = GltfFile::triangle();
+        GltfFile file      = GltfFile::triangle();
         file.root["nodes"] = {{{"mesh", 0}, {"translation", {x, 0, 0}}}};
-        EXPECT_VEC_NEAR(load_scene(file.write(folder)).origin_ws, x < 11 ? glm::dvec3(0) : glm::dvec3(x + 0.5, 0.5, 0),
-                        1e-6);
+        EXPECT_VEC_NEAR(file.load().origin_ws, x < 11 ? glm::dvec3(0) : glm::dvec3(x + 0.5, 0.5, 0), 1e-6);
     }
 }
 
 TEST(SceneGltf, GlbWithItsBinaryChunk)
 {
-    TempFolder folder;
+    TempFolder  folder;
     GltfFile    file = GltfFile::triangle();
     std::string glb  = file.glb();
     EXPECT_EQ(load_scene(folder.write("scene.glb", glb)).indices.size(), 3U);
@@ -365,8 +345,7 @@ TEST(SceneGltf, GlbWithItsBinaryChunk)
 
 TEST(SceneGltf, NodesTurnTheirCameras)
 {
-    TempFolder folder;
-    GltfFile   file      = GltfFile::triangle();
+    GltfFile file        = GltfFile::triangle();
     file.root["cameras"] = {
         {{"type", "perspective"}, {"name", "first"}, {"perspective", {{"yfov", 1}, {"znear", 0.25}}}},
         {{"type", "orthographic"},
@@ -377,7 +356,7 @@ TEST(SceneGltf, NodesTurnTheirCameras)
                            // By 90 degrees about z, and about y.
                            {{"camera", 0}, {"rotation", {0, 0, half, half}}},
                            {{"camera", 1}, {"rotation", {0, half, 0, half}}}};
-    const Scene   scene = load_scene(file.write(folder));
+    const Scene   scene = file.load();
     const Camera &first = find_camera(scene, "first"), &second = find_camera(scene, "second");
     EXPECT_VEC_NEAR(first.up_ws, glm::dvec3(-1, 0, 0), 1e-6);
     EXPECT_VEC_NEAR(first.target_ws, glm::dvec3(0, 0, -1), 1e-6);
@@ -389,8 +368,7 @@ TEST(SceneGltf, NodesTurnTheirCameras)
 
 TEST(SceneGltf, KindsOfLightsAndTheSceneThatIsShown)
 {
-    TempFolder folder;
-    GltfFile   file             = GltfFile::triangle();
+    GltfFile file               = GltfFile::triangle();
     file.root["scene"]          = 1;
     file.root["scenes"]         = {{{"nodes", {1}}}, {{"nodes", {0, 2}}}};
     file.root["extensionsUsed"] = {"KHR_lights_punctual"};
@@ -403,7 +381,7 @@ TEST(SceneGltf, KindsOfLightsAndTheSceneThatIsShown)
                           {{"mesh", 0}, {"translation", {9, 9, 9}}},
                           {{"translation", {1, 2, 3}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}},
                           {{"rotation", {0, 1, 0, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}}};
-    const Scene scene  = load_scene(file.write(folder));
+    const Scene scene  = file.load();
     ASSERT_EQ(scene.draws.size(), 1U);
     EXPECT_EQ(corner(scene, 0), glm::vec3(0)) << "scene 1 is shown, not scene 0";
     ASSERT_EQ(scene.lights.size(), 2U);
@@ -420,13 +398,12 @@ TEST(SceneGltf, KindsOfLightsAndTheSceneThatIsShown)
 /// Material 0 of a triangle.
 Material material_of(const json& description)
 {
-    TempFolder folder;
-    GltfFile   file              = GltfFile::triangle();
+    GltfFile file                = GltfFile::triangle();
     file.primitive()["material"] = 0;
     file.root["images"]          = {{{"uri", pixel_png}}};
     file.root["textures"]        = {{{"source", 0}}};
     file.root["materials"]       = {description};
-    const Scene scene            = load_scene(file.write(folder));
+    const Scene scene            = file.load();
     return scene.materials.at(scene.draws.at(0).material);
 }
 
@@ -470,8 +447,7 @@ TEST(SceneGltf, ExtensionsOfMaterials)
 
 TEST(SceneGltf, ColoursAreEncodedAndNormalsAreNot)
 {
-    TempFolder folder;
-    GltfFile   file                              = GltfFile::triangle();
+    GltfFile file                                = GltfFile::triangle();
     file.primitive()["material"]                 = 0;
     file.primitive()["attributes"]["TEXCOORD_0"] = file.add_accessor<float>({0, 0, 1, 0, 0, 1}, "VEC2", 2);
     file.root["images"]                          = {{{"uri", pixel_png}}};
@@ -480,7 +456,7 @@ TEST(SceneGltf, ColoursAreEncodedAndNormalsAreNot)
     const json texture                           = {{"index", 0}};
     file.root["materials"]                       = {
                               {{"emissiveTexture", texture}, {"emissiveFactor", {1, 1, 1}}, {"normalTexture", texture}}};
-    const Scene     scene    = load_scene(file.write(folder));
+    const Scene     scene    = file.load();
     const Material& material = scene.materials[scene.draws[0].material];
     const Texture & emissive = scene.textures.at(size_t(material.emissive_texture.texture)),
                   &normals   = scene.textures.at(size_t(material.normal_texture.texture));
@@ -494,14 +470,13 @@ TEST(SceneGltf, ColoursAreEncodedAndNormalsAreNot)
 
 TEST(SceneGltf, VerticesKeepWhatTheFileSays)
 {
-    TempFolder folder;
-    GltfFile   file          = GltfFile::triangle();
-    auto&      attributes    = file.primitive()["attributes"];
-    const int  normals       = file.add_accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
-    const int  tangents      = file.add_accessor<float>({0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1}, "VEC4", 4);
-    const int  first         = file.add_accessor<float>({1, 2, 3, 4, 5, 6}, "VEC2", 2);
-    const int  second        = file.add_accessor<float>({7, 8, 9, 10, 11, 12}, "VEC2", 2);
-    const int  colours       = file.add_accessor<float>({.1F, .2F, .3F, 0, 0, 0, 0, 0, 0}, "VEC3", 3);
+    GltfFile  file           = GltfFile::triangle();
+    auto&     attributes     = file.primitive()["attributes"];
+    const int normals        = file.add_accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
+    const int tangents       = file.add_accessor<float>({0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1}, "VEC4", 4);
+    const int first          = file.add_accessor<float>({1, 2, 3, 4, 5, 6}, "VEC2", 2);
+    const int second         = file.add_accessor<float>({7, 8, 9, 10, 11, 12}, "VEC2", 2);
+    const int colours        = file.add_accessor<float>({.1F, .2F, .3F, 0, 0, 0, 0, 0, 0}, "VEC3", 3);
     attributes["NORMAL"]     = normals;
     attributes["TANGENT"]    = tangents;
     attributes["TEXCOORD_0"] = first;
@@ -509,7 +484,7 @@ TEST(SceneGltf, VerticesKeepWhatTheFileSays)
     attributes["COLOR_0"]    = colours;
     const auto placed        = [&](const json& scale) {
         file.root["nodes"] = {{{"mesh", 0}, {"scale", scale}}};
-        return load_scene(file.write(folder)).vertices;
+        return file.load().vertices;
     };
     const std::vector<Vertex> vertices = placed({1, 1, 1});
     EXPECT_EQ(vertices[0].colour, glm::vec4(.1F, .2F, .3F, 1));
@@ -523,7 +498,6 @@ TEST(SceneGltf, VerticesKeepWhatTheFileSays)
 // Eight bytes a vertex: a colour of four unsigned bytes, coordinates of two signed ones, and two that nobody reads.
 TEST(SceneGltf, InterleavedBytesAreSharesOfTheirLargest)
 {
-    TempFolder    folder;
     GltfFile      file      = GltfFile::triangle();
     const uint8_t bytes[]   = {255, 0,    51, 204, 0x80, 127, 9, 9,   0, 255, 0, 255,
                                64,  0x81, 9,  9,   0,    102, 0, 255, 0, 1,   9, 9};
@@ -541,7 +515,7 @@ TEST(SceneGltf, InterleavedBytesAreSharesOfTheirLargest)
     file.binary.append(reinterpret_cast<const char*>(bytes), sizeof(bytes));
     attribute("COLOR_0", 5121, "VEC4", 0);
     attribute("TEXCOORD_0", 5120, "VEC2", 4);
-    const std::vector<Vertex> vertices = load_scene(file.write(folder)).vertices;
+    const std::vector<Vertex> vertices = file.load().vertices;
     EXPECT_VEC_NEAR(vertices[0].colour, glm::vec4(1, 0, 0.2F, 0.8F), eps);
     EXPECT_VEC_NEAR(vertices[2].colour, glm::vec4(0, 0.4F, 0, 1), eps);
     EXPECT_EQ(vertices[0].uv0, glm::vec2(-1, 1)) << "-128 is no less than -1";
@@ -553,8 +527,7 @@ TEST(SceneGltf, ATextureMakesAMaterialTransparentWithItsFactor)
 {
     // The grey pixel is opaque: half of it is drawn, less is left out.
     for (double alpha : {0.45, 0.55}) {
-        TempFolder folder;
-        GltfFile   file              = GltfFile::triangle();
+        GltfFile file                = GltfFile::triangle();
         file.primitive()["material"] = 0;
         file.root["images"]          = {{{"uri", pixel_png}}};
         file.root["textures"]        = {{{"source", 0}}};
@@ -562,7 +535,7 @@ TEST(SceneGltf, ATextureMakesAMaterialTransparentWithItsFactor)
                   {{"alphaMode", "BLEND"},
                    {"alphaCutoff", 0.1},
                    {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, alpha}}, {"baseColorTexture", {{"index", 0}}}}}}};
-        const Scene scene = load_scene(file.write(folder));
+        const Scene scene = file.load();
         ASSERT_EQ(scene.draws.size(), alpha < 0.5 ? 0U : 1U);
         if (alpha < 0.5) continue;
         const Material& material = scene.materials[scene.draws[0].material];

@@ -6,8 +6,6 @@
 #include "scene/load_scene.h"
 #include "scene/model.h"
 
-#include <gmock/gmock.h>
-
 namespace ssrlab {
 namespace {
 

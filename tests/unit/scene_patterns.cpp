@@ -1,10 +1,6 @@
 // Procedural surfaces: what they promise of roughness, and that they repeat without a seam.
 #include "scene/patterns.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
+#include "test.h"
 
 namespace ssrlab {
 namespace {

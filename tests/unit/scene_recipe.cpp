@@ -6,10 +6,6 @@
 #include "scene/recipe.h"
 #include "scene/shapes.h"
 
-#include <cmath>
-#include <cstdlib>
-#include <map>
-
 namespace ssrlab {
 namespace {
 

@@ -4,8 +4,6 @@
 #include "truth/scene_truth.h"
 #include "truth_scenes.h"
 
-#include <gtest/gtest.h>
-
 namespace ssrlab {
 namespace {
 
@@ -16,9 +14,8 @@ Texture numbered_texture()
 {
     Texture texture;
     texture.size_px = {4, 2};
-    for (int y = 0; y < 2; ++y)
-        for (int x = 0; x < 4; ++x)
-            texture.rgba.insert(texture.rgba.end(), {uint8_t(16 * x), uint8_t(64 * y), 51, 102});
+    for (const auto [i, x, y] : pixels_of({4, 2}))
+        texture.rgba.insert(texture.rgba.end(), {uint8_t(16 * x), uint8_t(64 * y), 51, 102});
     return texture;
 }
 

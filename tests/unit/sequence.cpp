@@ -4,11 +4,6 @@
 #include "core/error.h"
 #include "scene_files.h"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <set>
-
 namespace ssrlab {
 namespace {
 

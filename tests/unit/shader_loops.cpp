@@ -1,8 +1,7 @@
 // Loops in the assembly of AMD GPUs, counted by hand.
 #include "core/error.h"
 #include "gpu/compiled.h"
-
-#include <gtest/gtest.h>
+#include "test.h"
 
 namespace ssrlab::test {
 namespace {

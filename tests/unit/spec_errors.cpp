@@ -2,42 +2,33 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "harness/experiment.h"
-
-#include <gmock/gmock.h>
+#include "test.h"
 
 namespace ssrlab {
 namespace {
 
 using testing::HasSubstr;
 
+Technique made_technique(const char* id, std::vector<std::string> bounded_by, std::vector<Parameter> parameters)
+{
+    Technique technique;
+    technique.id = technique.name = id;
+    technique.bounded_by          = std::move(bounded_by);
+    technique.parameters          = std::move(parameters);
+    return technique;
+}
+
 const std::vector<Technique>& techniques()
 {
-    static const std::vector<Technique> both = {{"linear",
-                                                 "Linear",
-                                                 "s",
-                                                 {},
-                                                 {},
-                                                 false,
-                                                 {},
-                                                 {"steps", "binary_steps"},
-                                                 1,
-                                                 {{"steps", ParameterType::integer, 64, 1, 60000, {}, "d"},
-                                                  {"binary_steps", ParameterType::integer, 0, 0, 60000, {}, "d"},
-                                                  {"space", ParameterType::choice, 0, 0, 1, {"view", "screen"}, "d"},
-                                                  {"jitter", ParameterType::boolean, 0, 0, 1, {}, "d"},
-                                                  {"stride", ParameterType::real, 1, 0.5, 8, {}, "d"}},
-                                                 {}},
-                                                {"dda",
-                                                 "DDA",
-                                                 "s",
-                                                 {},
-                                                 {},
-                                                 true,
-                                                 {},
-                                                 {"max_steps"},
-                                                 1,
-                                                 {{"max_steps", ParameterType::integer, 60000, 1, 60000, {}, "d"}},
-                                                 {}}};
+    using enum ParameterType;
+    static const std::vector<Technique> both = {
+        made_technique("linear", {"steps", "binary_steps"},
+                       {{"steps", integer, 64, 1, 60000, {}, "d"},
+                        {"binary_steps", integer, 0, 0, 60000, {}, "d"},
+                        {"space", choice, 0, 0, 1, {"view", "screen"}, "d"},
+                        {"jitter", boolean, 0, 0, 1, {}, "d"},
+                        {"stride", real, 1, 0.5, 8, {}, "d"}}),
+        made_technique("dda", {"max_steps"}, {{"max_steps", integer, 60000, 1, 60000, {}, "d"}})};
     return both;
 }
 

@@ -3,10 +3,8 @@
 #include "core/files.h"
 #include "errors.h"
 #include "temp_folder.h"
+#include "test.h"
 #include "trace/catalogue.h"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace ssrlab {
 namespace {

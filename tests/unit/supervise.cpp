@@ -1,17 +1,12 @@
 // What becomes of a sweep whose process ends or hangs. The children are this program, with one of the tests that are disabled here.
 #include "harness/supervise.h"
 #include "harness/stop_signal.h"
+#include "test.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <chrono>
 #include <csignal>
-#include <cstring>
 #include <ctime>
 #include <sched.h>
 #include <sys/prctl.h>
-#include <thread>
 #include <unistd.h>
 
 namespace ssrlab {

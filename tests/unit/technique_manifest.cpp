@@ -3,13 +3,8 @@
 #include "core/files.h"
 #include "errors.h"
 #include "temp_folder.h"
+#include "test.h"
 #include "trace/catalogue.h"
-
-#include <gmock/gmock.h>
-
-#include <cstdlib>
-#include <fstream>
-#include <limits>
 
 namespace ssrlab {
 namespace {

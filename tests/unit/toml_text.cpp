@@ -1,8 +1,7 @@
 // What is refused of a TOML file's bytes before toml++ sees them.
 #include "core/toml_reading.h"
 #include "errors.h"
-
-#include <gmock/gmock.h>
+#include "test.h"
 
 namespace ssrlab {
 namespace {

@@ -2,12 +2,7 @@
 #include "truth/truth_cache.h"
 #include "truth_scenes.h"
 
-#include <gtest/gtest.h>
-
 #include <unistd.h>
-
-#include <algorithm>
-#include <fstream>
 
 namespace ssrlab {
 namespace {
@@ -39,18 +34,18 @@ void expect_equal(const TraceResult& a, const TraceResult& b)
 TEST_F(TruthCache, ScreenTruthReadsWhatItWrote)
 {
     const GBufferImage gbuffer  = random_gbuffer(bench_view({31, 23}), 1);
-    const TraceResult  computed = screen_truth(gbuffer, {});
-    expect_equal(cached_screen_truth(folder_, gbuffer, {}), computed);
+    const TraceResult  computed = screen_truth(gbuffer, boxes());
+    expect_equal(cached_screen_truth(folder_, gbuffer, boxes()), computed);
     ASSERT_EQ(files().size(), 1U);
     const auto written = fs::last_write_time(files()[0]);
-    expect_equal(cached_screen_truth(folder_, gbuffer, {}), computed);
+    expect_equal(cached_screen_truth(folder_, gbuffer, boxes()), computed);
     EXPECT_EQ(fs::last_write_time(files()[0]), written);
 }
 
 TEST_F(TruthCache, EveryInputChangesTheName)
 {
-    GBufferImage  gbuffer = random_gbuffer(bench_view({9, 7}), 2);
-    TraceSettings settings;
+    GBufferImage  gbuffer         = random_gbuffer(bench_view({9, 7}), 2);
+    TraceSettings settings        = boxes();
     size_t        expected        = 0;
     const auto    expect_new_file = [&](auto change) {
         change();
@@ -76,12 +71,12 @@ TEST_F(TruthCache, EveryInputChangesTheName)
 TEST_F(TruthCache, DamagedFilesAreComputedAnew)
 {
     const GBufferImage gbuffer  = random_gbuffer(bench_view({31, 23}), 3);
-    const TraceResult  computed = cached_screen_truth(folder_, gbuffer, {});
+    const TraceResult  computed = cached_screen_truth(folder_, gbuffer, boxes());
     const fs::path     file     = files()[0];
     const auto         size     = fs::file_size(file);
     for (const auto cut : {size - 1, size / 2, uintmax_t(20), uintmax_t(0)}) {
         fs::resize_file(file, cut);
-        expect_equal(cached_screen_truth(folder_, gbuffer, {}), computed);
+        expect_equal(cached_screen_truth(folder_, gbuffer, boxes()), computed);
         EXPECT_EQ(fs::file_size(file), size);
     }
     for (const int place : {0, 9, 20, 40, 500}) {
@@ -91,18 +86,17 @@ TEST_F(TruthCache, DamagedFilesAreComputedAnew)
         stream.seekp(place);
         stream.put(char(byte ^ 0x10));
         stream.close();
-        expect_equal(cached_screen_truth(folder_, gbuffer, {}), computed);
+        expect_equal(cached_screen_truth(folder_, gbuffer, boxes()), computed);
     }
     EXPECT_EQ(files().size(), 1U); // no temporary file is left
 }
 
 TEST_F(TruthCache, FilesUnderEachOthersNamesAreComputedAnew)
 {
-    const GBufferImage gbuffer = random_gbuffer(bench_view({31, 23}), 3);
-    TraceSettings      other;
-    other.behind            = Behind::stop;
-    const TraceResult hits  = cached_screen_truth(folder_, gbuffer, {});
-    const TraceResult stops = cached_screen_truth(folder_, gbuffer, other);
+    const GBufferImage  gbuffer = random_gbuffer(bench_view({31, 23}), 3);
+    const TraceSettings other   = boxes({}, Behind::stop);
+    const TraceResult   hits    = cached_screen_truth(folder_, gbuffer, boxes());
+    const TraceResult   stops   = cached_screen_truth(folder_, gbuffer, other);
     ASSERT_NE(hits.status, stops.status);
     ASSERT_EQ(files().size(), 2U);
     const fs::path first = files()[0], second = files()[1], aside = folder_ / "aside";
@@ -110,7 +104,7 @@ TEST_F(TruthCache, FilesUnderEachOthersNamesAreComputedAnew)
     fs::rename(second, first);
     fs::rename(aside, second);
     for (int i = 0; i < 2; ++i) { // anew, and then as they were written
-        expect_equal(cached_screen_truth(folder_, gbuffer, {}), hits);
+        expect_equal(cached_screen_truth(folder_, gbuffer, boxes()), hits);
         expect_equal(cached_screen_truth(folder_, gbuffer, other), stops);
     }
     EXPECT_GT(std::ranges::count(stops.status, TraceStatus::stopped), 0) << "their places are kept, too";
@@ -120,7 +114,7 @@ TEST_F(TruthCache, FilesUnderEachOthersNamesAreComputedAnew)
 TEST_F(TruthCache, UnwritableFolderIsNoError)
 {
     const GBufferImage gbuffer = random_gbuffer(bench_view({9, 7}), 4);
-    expect_equal(cached_screen_truth("/proc/none", gbuffer, {}), screen_truth(gbuffer, {}));
+    expect_equal(cached_screen_truth("/proc/none", gbuffer, boxes()), screen_truth(gbuffer, boxes()));
 }
 
 TEST_F(TruthCache, SceneTruthReadsWhatItWrote)

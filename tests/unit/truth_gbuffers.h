@@ -3,10 +3,7 @@
 
 #include "core/gbuffer_image.h"
 #include "core/pixel_index.h"
-
-#include <cmath>
-#include <limits>
-#include <random>
+#include "test.h"
 
 namespace ssrlab::test {
 
@@ -72,13 +69,11 @@ inline GBufferImage random_gbuffer(const View& view, unsigned seed)
     std::mt19937                           random(seed);
     std::uniform_real_distribution<double> unit(-1, 1);
     const double nearest_m = view.projection == Projection::perspective ? 2 : 0.2 * view.far_m;
-    for (int y = 0; y < view.size_px.y; ++y) {
-        for (int x = 0; x < view.size_px.x; ++x) {
-            if (unit(random) < -0.7) continue;
-            const double patch = 1.5 + std::sin(0.3 * x + seed) * std::cos(0.2 * y);
-            set_pixel(gbuffer, x, y, nearest_m * (patch + 0.05 * unit(random)),
-                      {unit(random), unit(random), unit(random) + 0.5}, 1);
-        }
+    for (const auto [i, x, y] : pixels_of(view.size_px)) {
+        if (unit(random) < -0.7) continue;
+        const double patch = 1.5 + std::sin(0.3 * x + seed) * std::cos(0.2 * y);
+        set_pixel(gbuffer, x, y, nearest_m * (patch + 0.05 * unit(random)),
+                  {unit(random), unit(random), unit(random) + 0.5}, 1);
     }
     return gbuffer;
 }

@@ -5,10 +5,6 @@
 #include "truth/glossy_truth.h"
 #include "truth_scenes.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 namespace ssrlab {
 namespace {
 
@@ -22,8 +18,8 @@ GBufferImage tilted_plane(double angle, float roughness, glm::ivec2 size_px = {6
     View view            = bench_view(size_px);
     view.projection      = Projection::orthographic;
     GBufferImage gbuffer = empty_gbuffer(view);
-    for (int y = 0; y < size_px.y; ++y)
-        for (int x = 0; x < size_px.x; ++x) set_pixel(gbuffer, x, y, 5, {0, std::sin(angle), std::cos(angle)}, 1);
+    for (const auto [i, x, y] : pixels_of(size_px))
+        set_pixel(gbuffer, x, y, 5, {0, std::sin(angle), std::cos(angle)}, 1);
     std::ranges::fill(gbuffer.roughness, roughness);
     std::ranges::fill(gbuffer.base_colour, glm::vec3(1)); // Fresnel's factor is 1
     return gbuffer;

@@ -3,10 +3,6 @@
 #include "truth_scenes.h"
 
 #include <glm/gtc/matrix_transform.hpp>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <functional>
 
 namespace ssrlab {
 namespace {
@@ -55,19 +51,17 @@ void expect_everywhere(const Frames& frames, const PreviousSlope& previous_slope
     const ReprojectionTruth truth = frames.truth();
     const View&             view  = frames.motion.view;
     int                     seen  = 0;
-    for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 64; ++x) {
-            const size_t i = at(frames.gbuffer, x, y);
-            if (truth.cls[i] == ReprojectionClass::not_reflecting) continue;
-            ASSERT_NE(truth.cls[i], ReprojectionClass::unknown) << x << ' ' << y;
-            if (truth.cls[i] != ReprojectionClass::seen) continue;
-            ++seen;
-            const glm::dvec2 slope = (glm::dvec2(x + 0.5, y + 0.5) - frames.gbuffer.view.centre_px) / view.focal_px;
-            const glm::dvec2 was   = previous_slope({slope.x, -slope.y});
-            const glm::dvec2 moved = (glm::dvec2(was.x, -was.y) - slope) * view.focal_px;
-            ASSERT_NEAR(truth.displacement_px[i].x, moved.x, exact_px) << x << ' ' << y;
-            ASSERT_NEAR(truth.displacement_px[i].y, moved.y, exact_px) << x << ' ' << y;
-        }
+    for (const auto [i, x, y] : pixels_of({64, 64})) {
+        if (truth.cls[i] == ReprojectionClass::not_reflecting) continue;
+        ASSERT_NE(truth.cls[i], ReprojectionClass::unknown) << x << ' ' << y;
+        if (truth.cls[i] != ReprojectionClass::seen) continue;
+        ++seen;
+        const glm::dvec2 slope = (glm::dvec2(x + 0.5, y + 0.5) - frames.gbuffer.view.centre_px) / view.focal_px;
+        const glm::dvec2 was   = previous_slope({slope.x, -slope.y});
+        const glm::dvec2 moved = (glm::dvec2(was.x, -was.y) - slope) * view.focal_px;
+        ASSERT_NEAR(truth.displacement_px[i].x, moved.x, exact_px) << x << ' ' << y;
+        ASSERT_NEAR(truth.displacement_px[i].y, moved.y, exact_px) << x << ' ' << y;
+    }
     EXPECT_GE(seen, at_least);
 }
 
@@ -202,15 +196,14 @@ struct SphereFrames : Frames {
         add_quad(now, dull, {40, -40, 6}, {-80, 0, 0}, {0, 80, 0});
         before  = now;
         gbuffer = empty_gbuffer(bench_view({64, 64}));
-        for (int y = 0; y < 64; ++y)
-            for (int x = 0; x < 64; ++x) {
-                const glm::dvec3 along = glm::normalize(glm::dvec3((x + 0.5) / 32 - 1, 1 - (y + 0.5) / 32, -1));
-                const double     half = glm::dot(along, centre), square = half * half - (16 - 1);
-                if (square < 0.1) continue; // near its edge a pixel shows much of the room
-                const glm::dvec3 point = (half - std::sqrt(square)) * along;
-                set_pixel(gbuffer, x, y, -point.z, point - centre, 1);
-                gbuffer.object_id[at(gbuffer, x, y)] = 1;
-            }
+        for (const auto [i, x, y] : pixels_of({64, 64})) {
+            const glm::dvec3 along = glm::normalize(glm::dvec3((x + 0.5) / 32 - 1, 1 - (y + 0.5) / 32, -1));
+            const double     half = glm::dot(along, centre), square = half * half - (16 - 1);
+            if (square < 0.1) continue; // near its edge a pixel shows much of the room
+            const glm::dvec3 point = (half - std::sqrt(square)) * along;
+            set_pixel(gbuffer, x, y, -point.z, point - centre, 1);
+            gbuffer.object_id[at(gbuffer, x, y)] = 1;
+        }
         motion.to_previous_ws.assign(2, glm::dmat4(1));
     }
 
@@ -242,24 +235,22 @@ TEST(ReprojectionTruth, ASphere)
     frames.move_back(1, glm::translate(glm::dmat4(1), glm::dvec3(0.5, 0, 0)));
     const ReprojectionTruth truth = frames.truth();
     int                     seen  = 0;
-    for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 64; ++x) {
-            const size_t i = at(frames.gbuffer, x, y);
-            if (frames.gbuffer.depth[i] == 0) continue;
-            const glm::dvec3 along = glm::normalize(glm::dvec3((x + 0.5) / 32 - 1, 1 - (y + 0.5) / 32, -1));
-            const double     half  = glm::dot(along, SphereFrames::centre);
-            const glm::dvec3 point = (half - std::sqrt(half * half - 15)) * along;
-            const glm::dvec3 out   = glm::reflect(along, point - SphereFrames::centre);
-            if (out.z < 0.2) continue; // rays that pass the wall
-            const glm::dvec3 target = point + out * ((6 - point.z) / out.z) + glm::dvec3(0.5, 0, 0);
-            if (std::abs(target.x) > 39 || std::abs(target.y) > 39) continue;
-            const glm::dvec3 from = SphereFrames::reflection_point(eye, target) - eye;
-            const glm::dvec2 expected(32 * (1 + from.x / -from.z), 32 * (1 - from.y / -from.z));
-            ASSERT_EQ(truth.cls[i], ReprojectionClass::seen) << x << ' ' << y;
-            EXPECT_NEAR(x + 0.5 + truth.displacement_px[i].x, expected.x, 0.01) << x << ' ' << y;
-            EXPECT_NEAR(y + 0.5 + truth.displacement_px[i].y, expected.y, 0.01) << x << ' ' << y;
-            ++seen;
-        }
+    for (const auto [i, x, y] : pixels_of({64, 64})) {
+        if (frames.gbuffer.depth[i] == 0) continue;
+        const glm::dvec3 along = glm::normalize(glm::dvec3((x + 0.5) / 32 - 1, 1 - (y + 0.5) / 32, -1));
+        const double     half  = glm::dot(along, SphereFrames::centre);
+        const glm::dvec3 point = (half - std::sqrt(half * half - 15)) * along;
+        const glm::dvec3 out   = glm::reflect(along, point - SphereFrames::centre);
+        if (out.z < 0.2) continue; // rays that pass the wall
+        const glm::dvec3 target = point + out * ((6 - point.z) / out.z) + glm::dvec3(0.5, 0, 0);
+        if (std::abs(target.x) > 39 || std::abs(target.y) > 39) continue;
+        const glm::dvec3 from = SphereFrames::reflection_point(eye, target) - eye;
+        const glm::dvec2 expected(32 * (1 + from.x / -from.z), 32 * (1 - from.y / -from.z));
+        ASSERT_EQ(truth.cls[i], ReprojectionClass::seen) << x << ' ' << y;
+        EXPECT_NEAR(x + 0.5 + truth.displacement_px[i].x, expected.x, 0.01) << x << ' ' << y;
+        EXPECT_NEAR(y + 0.5 + truth.displacement_px[i].y, expected.y, 0.01) << x << ' ' << y;
+        ++seen;
+    }
     EXPECT_GT(seen, 90); // of 190 that the disc of 8 px covers, those that reflect the wall
 }
 

@@ -4,10 +4,6 @@
 #include "truth/screen_ray.h"
 #include "truth_scenes.h"
 
-#include <gmock/gmock.h>
-
-#include <algorithm>
-
 namespace ssrlab {
 namespace {
 
@@ -224,17 +220,16 @@ TEST(SceneTruth, SilhouettesDoNotLeak)
     for (double x_m = -7.9; x_m < 8; x_m += 0.83) add_quad(test.scene, 2, {x_m, -1, -6}, {0.37, 0, 0}, {0, 1.4, 0});
     const glm::vec3 colours[] = {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
     const SceneBvh  bvh(test.scene);
-    for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 64; ++x) { // what the camera sees at the pixel's centre
-            const SceneRay ray{{0, 0, 0}, {(x + 0.5 - 32) / 32, -(y + 0.5 - 32) / 32, -1}, 0.1, 1e9};
-            SceneHit       hit;
-            bvh.intersect({&ray, 1}, {&hit, 1});
-            ASSERT_TRUE(hit.met);
-            const uint32_t material = test.scene.draws[hit.surface.draw].material;
-            set_pixel(test.gbuffer, x, y, hit.t, glm::normalize(hit.normal_ws), float(material == 0));
-            test.gbuffer.radiance[at(test.gbuffer, x, y)]  = colours[material];
-            test.gbuffer.object_id[at(test.gbuffer, x, y)] = hit.surface.draw + 1;
-        }
+    for (const auto [i, x, y] : pixels_of({64, 64})) { // what the camera sees at the pixel's centre
+        const SceneRay ray{{0, 0, 0}, {(x + 0.5 - 32) / 32, -(y + 0.5 - 32) / 32, -1}, 0.1, 1e9};
+        SceneHit       hit;
+        bvh.intersect({&ray, 1}, {&hit, 1});
+        ASSERT_TRUE(hit.met);
+        const uint32_t material = test.scene.draws[hit.surface.draw].material;
+        set_pixel(test.gbuffer, x, y, hit.t, glm::normalize(hit.normal_ws), float(material == 0));
+        test.gbuffer.radiance[at(test.gbuffer, x, y)]  = colours[material];
+        test.gbuffer.object_id[at(test.gbuffer, x, y)] = hit.surface.draw + 1;
+    }
     const SceneTruth truth   = test.truth();
     int              on_post = 0, leaks = 0, elsewhere = 0;
     for (size_t i = 0; i < truth.cls.size(); ++i) {

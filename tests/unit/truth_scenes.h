@@ -4,9 +4,6 @@
 #include "scene/scene.h"
 #include "truth_gbuffers.h"
 
-#include <cmath>
-#include <numbers>
-
 namespace ssrlab::test {
 
 inline uint32_t add_material(Scene& scene, glm::vec3 base_colour, float metallic)

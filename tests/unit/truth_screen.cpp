@@ -2,11 +2,6 @@
 #include "truth/screen_truth.h"
 #include "truth_gbuffers.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <numbers>
-
 namespace ssrlab {
 namespace {
 
@@ -25,22 +20,19 @@ int count(const TraceResult& result, TraceStatus status)
 TEST(ScreenTruth, MirrorFloorShowsWallInExactRow)
 {
     const GBufferImage gbuffer = floor_and_wall(bench_view({64, 64}), 10);
-    const TraceResult  result  = screen_truth(gbuffer, {});
-    for (int y = 0; y < 64; ++y) {
-        for (int x = 0; x < 64; ++x) {
-            const size_t i = at(gbuffer, x, y);
-            if (y + 0.5 < 35.2) {
-                EXPECT_EQ(result.status[i], TraceStatus::not_traced);
-                continue;
-            }
-            const double expected_py = 70.4 - (y + 0.5);
-            ASSERT_EQ(result.status[i], TraceStatus::hit) << x << ' ' << y;
-            EXPECT_EQ(result.hit_pixel[i], glm::ivec2(x, int(std::floor(expected_py))));
-            EXPECT_NEAR(result.hit_px_depth[i].y, expected_py, 2e-5);
-            EXPECT_NEAR(result.hit_px_depth[i].x, x + 0.5, 1e-12);
-            EXPECT_NEAR(result.hit_px_depth[i].z, 0.01, 1e-8);
-            EXPECT_EQ(result.steps[i], uint32_t(y - std::floor(expected_py)));
+    const TraceResult  result  = screen_truth(gbuffer, boxes());
+    for (const auto [i, x, y] : pixels_of({64, 64})) {
+        if (y + 0.5 < 35.2) {
+            EXPECT_EQ(result.status[i], TraceStatus::not_traced);
+            continue;
         }
+        const double expected_py = 70.4 - (y + 0.5);
+        ASSERT_EQ(result.status[i], TraceStatus::hit) << x << ' ' << y;
+        EXPECT_EQ(result.hit_pixel[i], glm::ivec2(x, int(std::floor(expected_py))));
+        EXPECT_NEAR(result.hit_px_depth[i].y, expected_py, 2e-5);
+        EXPECT_NEAR(result.hit_px_depth[i].x, x + 0.5, 1e-12);
+        EXPECT_NEAR(result.hit_px_depth[i].z, 0.01, 1e-8);
+        EXPECT_EQ(result.steps[i], uint32_t(y - std::floor(expected_py)));
     }
 }
 
@@ -49,7 +41,7 @@ TEST(ScreenTruth, FloorAloneIsNeverHit)
 {
     for (const glm::ivec2& size : {glm::ivec2(1, 1), {3, 2}, {1, 16}, {97, 1}, {161, 91}, {641, 363}}) {
         for (const double max_distance_m : {0.5, 100.0, 1e9, infinity}) {
-            TraceSettings settings;
+            TraceSettings settings     = boxes();
             settings.max_distance_m    = max_distance_m;
             settings.thickness_m       = infinity;
             const GBufferImage gbuffer = floor_and_wall(bench_view(size), infinity);
@@ -64,7 +56,7 @@ TEST(ScreenTruth, FloorAloneIsNeverHit)
 
 TEST(ScreenTruth, AllBackgroundIsNotTraced)
 {
-    const TraceResult result = screen_truth(empty_gbuffer(bench_view({5, 4})), {});
+    const TraceResult result = screen_truth(empty_gbuffer(bench_view({5, 4})), boxes());
     EXPECT_EQ(count(result, TraceStatus::not_traced), 20);
 }
 
@@ -78,7 +70,7 @@ TEST(ScreenTruth, UnusablePixelsAreNotTraced)
     gbuffer.depth[at(gbuffer, 4, 7)]     = float(quiet_nan);
     gbuffer.depth[at(gbuffer, 5, 7)]     = float(infinity);
     gbuffer.depth[at(gbuffer, 6, 7)]     = -1;
-    const TraceResult result             = screen_truth(gbuffer, {});
+    const TraceResult result             = screen_truth(gbuffer, boxes());
     for (int x = 0; x < 7; ++x) EXPECT_EQ(result.status[at(gbuffer, x, 7)], TraceStatus::not_traced) << x;
     EXPECT_NE(result.status[at(gbuffer, 7, 7)], TraceStatus::not_traced);
 }
@@ -98,18 +90,17 @@ ScreenRay sideways_ray()
 GBufferImage left_columns_nearer(int last_column, double distance_m)
 {
     GBufferImage gbuffer = empty_gbuffer(bench_view({64, 64}, 0.125));
-    for (int y = 0; y < 64; ++y) {
-        for (int x = 0; x < 64; ++x) set_pixel(gbuffer, x, y, x <= last_column ? distance_m : 10, {0, 0, 1}, 0);
-    }
+    for (const auto [i, x, y] : pixels_of({64, 64}))
+        set_pixel(gbuffer, x, y, x <= last_column ? distance_m : 10, {0, 0, 1}, 0);
     return gbuffer;
 }
 
 TEST(ScreenTruth, SidewaysRayEntersSlabFromTheSide)
 {
-    const GBufferImage gbuffer = left_columns_nearer(15, 2);
-    TraceSettings      settings;
-    settings.thickness_m = 3;
-    const WalkResult hit = ScreenWalk(gbuffer, settings).walk(sideways_ray());
+    const GBufferImage gbuffer  = left_columns_nearer(15, 2);
+    TraceSettings      settings = boxes();
+    settings.thickness_m        = 3;
+    const WalkResult hit        = ScreenWalk(gbuffer, settings).walk(sideways_ray());
     EXPECT_EQ(hit.status, TraceStatus::hit);
     EXPECT_EQ(hit.hit_pixel, glm::ivec2(15, 20));
     EXPECT_DOUBLE_EQ(hit.hit_t, (48.5 - 16) / 48);
@@ -126,7 +117,7 @@ TEST(ScreenTruth, PoleThicknessIsInclusive)
     for (int y = 0; y < 64; ++y) set_pixel(gbuffer, 20, y, 4, {0, 0, 1}, 0);
     for (const auto& [thickness_m, hits] :
          {std::pair(1.0, true), {1.5, true}, {infinity, true}, {0.999999, false}, {0.0, false}}) {
-        TraceSettings settings;
+        TraceSettings settings = boxes();
         settings.thickness_m   = thickness_m;
         const WalkResult found = ScreenWalk(gbuffer, settings).walk(sideways_ray());
         EXPECT_EQ(found.status == TraceStatus::hit, hits) << thickness_m;
@@ -141,9 +132,9 @@ TEST(ScreenTruth, PoleThicknessIsInclusive)
 
 TEST(ScreenTruth, ThicknessZeroHitsOnlyByExactContact)
 {
-    TraceSettings settings;
-    settings.thickness_m = 0;
-    GBufferImage gbuffer = left_columns_nearer(15, 4);
+    TraceSettings settings = boxes();
+    settings.thickness_m   = 0;
+    GBufferImage gbuffer   = left_columns_nearer(15, 4);
     EXPECT_EQ(ScreenWalk(gbuffer, settings).walk(sideways_ray()).status, TraceStatus::left_screen);
     ScreenRay ray         = sideways_ray();
     ray.origin_px_depth.z = 0.125 / 4;
@@ -163,12 +154,12 @@ TEST(ScreenTruth, ThicknessZeroHitsOnlyByExactContact)
 TEST(ScreenTruth, ComingFromBehindHitsTheBack)
 {
     // Columns up to 15 at Z = 2 with slab to Z = 4 (depth 1/32). The ray rises from Z = 5 and reaches 1/32 at px 8.25.
-    const GBufferImage gbuffer = left_columns_nearer(15, 2);
-    TraceSettings      settings;
-    settings.thickness_m   = 2;
-    ScreenRay ray          = sideways_ray();
-    ray.delta_px_depth.z   = (1.0 / 32 - 0.025) * 48 / 40.25;
-    const WalkResult found = ScreenWalk(gbuffer, settings).walk(ray);
+    const GBufferImage gbuffer  = left_columns_nearer(15, 2);
+    TraceSettings      settings = boxes();
+    settings.thickness_m        = 2;
+    ScreenRay ray               = sideways_ray();
+    ray.delta_px_depth.z        = (1.0 / 32 - 0.025) * 48 / 40.25;
+    const WalkResult found      = ScreenWalk(gbuffer, settings).walk(ray);
     EXPECT_EQ(found.status, TraceStatus::hit);
     EXPECT_EQ(found.hit_pixel, glm::ivec2(8, 20));
     EXPECT_NEAR(found.hit_px_depth.x, 8.25, 1e-9);
@@ -182,7 +173,7 @@ TEST(ScreenTruth, CornerCrossesBothBorders)
         ray.origin_px_depth = {30.5, 30.5, 0.02};
         ray.start_pixel     = {30, 30};
         ray.delta_px_depth  = glm::dvec3(20.0 * way, 0);
-        EXPECT_EQ(ScreenWalk(gbuffer, {}).walk(ray).pixels, 20U);
+        EXPECT_EQ(ScreenWalk(gbuffer, boxes()).walk(ray).pixels, 20U);
     }
 }
 
@@ -192,18 +183,18 @@ TEST(ScreenTruth, NegativeZeroAndTinyComponentsBehaveAsZero)
     for (const double tiny : {0.0, -0.0, 1e-310, -1e-310, 1e-30, -1e-30}) {
         ScreenRay ray        = sideways_ray();
         ray.delta_px_depth.y = tiny;
-        EXPECT_EQ(ScreenWalk(gbuffer, {}).walk(ray).pixels, 48U);
+        EXPECT_EQ(ScreenWalk(gbuffer, boxes()).walk(ray).pixels, 48U);
     }
     ScreenRay still      = sideways_ray();
     still.delta_px_depth = glm::dvec3(0);
-    EXPECT_EQ(ScreenWalk(gbuffer, {}).walk(still).pixels, 0U);
+    EXPECT_EQ(ScreenWalk(gbuffer, boxes()).walk(still).pixels, 0U);
 }
 
 TEST(ScreenTruth, FacingRule)
 {
-    GBufferImage  gbuffer = floor_and_wall(bench_view({64, 64}), 10);
-    TraceSettings settings;
-    settings.behind = Behind::pass;
+    GBufferImage  gbuffer  = floor_and_wall(bench_view({64, 64}), 10);
+    TraceSettings settings = boxes();
+    settings.behind        = Behind::pass;
     EXPECT_EQ(count(screen_truth(gbuffer, settings), TraceStatus::hit), 64 * 29);
     for (auto& normal_vs : gbuffer.normal_vs) {
         if (normal_vs.z > 0) normal_vs.z = -1;
@@ -230,9 +221,9 @@ TEST(ScreenTruth, OrthographicClosedForms)
     for (int x = 0; x < 64; ++x) {
         for (int y = 0; y < 10; ++y) set_pixel(gbuffer, x, y, x == 7 ? 26 : 19.5, {0, 0, 1}, 0);
     }
-    TraceSettings settings;
-    settings.thickness_m = 1;
-    TraceResult result   = screen_truth(gbuffer, settings);
+    TraceSettings settings = boxes();
+    settings.thickness_m   = 1;
+    TraceResult result     = screen_truth(gbuffer, settings);
     EXPECT_EQ(result.status[at(gbuffer, 5, 60)], TraceStatus::hit);
     EXPECT_EQ(result.hit_pixel[at(gbuffer, 5, 60)], glm::ivec2(5, 9));
     EXPECT_NEAR(result.hit_px_depth[at(gbuffer, 5, 60)].y, 10, 1e-9);

@@ -3,8 +3,6 @@
 #include "truth/screen_ray.h"
 #include "truth_gbuffers.h"
 
-#include <gtest/gtest.h>
-
 namespace ssrlab {
 namespace {
 
@@ -137,22 +135,19 @@ TEST(ScreenRay, EveryEndLiesInTheImage)
         }
         view.centre_px += glm::dvec2(0.37, -5.1) * double(seed);
         const GBufferImage gbuffer = random_gbuffer(view, seed);
-        for (int y = 0; y < 23; ++y) {
-            for (int x = 0; x < 31; ++x) {
-                const ScreenRay ray = ray_of(gbuffer, {x, y}, seed % 3 == 0 ? infinity : 2.5);
-                if (!ray.traced) continue;
-                const glm::dvec3 end = ray.origin_px_depth + ray.delta_px_depth;
-                ASSERT_TRUE(end.x >= 0 && end.x <= 31 && end.y >= 0 && end.y <= 23) << seed << ' ' << x << ' ' << y;
-                ASSERT_TRUE(std::isfinite(end.z) && end.z <= 1 + 1e-12);
-                const bool at_border = end.x == 0 || end.x == 31 || end.y == 0 || end.y == 23,
-                           at_near   = end.z > 1 - 1e-12;
-                const bool at_end    = at_border || at_near || ray.end_status != TraceStatus::left_screen;
-                ASSERT_TRUE(at_end) << seed << ' ' << x << ' ' << y;
-                const bool at_far = view.projection == Projection::orthographic && std::abs(end.z) < 1e-12;
-                ASSERT_TRUE(!at_far || ray.end_status == TraceStatus::past_max_distance);
-                far_ends += at_far;
-                border_ends += at_border;
-            }
+        for (const auto [i, x, y] : pixels_of({31, 23})) {
+            const ScreenRay ray = ray_of(gbuffer, {x, y}, seed % 3 == 0 ? infinity : 2.5);
+            if (!ray.traced) continue;
+            const glm::dvec3 end = ray.origin_px_depth + ray.delta_px_depth;
+            ASSERT_TRUE(end.x >= 0 && end.x <= 31 && end.y >= 0 && end.y <= 23) << seed << ' ' << x << ' ' << y;
+            ASSERT_TRUE(std::isfinite(end.z) && end.z <= 1 + 1e-12);
+            const bool at_border = end.x == 0 || end.x == 31 || end.y == 0 || end.y == 23, at_near = end.z > 1 - 1e-12;
+            const bool at_end = at_border || at_near || ray.end_status != TraceStatus::left_screen;
+            ASSERT_TRUE(at_end) << seed << ' ' << x << ' ' << y;
+            const bool at_far = view.projection == Projection::orthographic && std::abs(end.z) < 1e-12;
+            ASSERT_TRUE(!at_far || ray.end_status == TraceStatus::past_max_distance);
+            far_ends += at_far;
+            border_ends += at_border;
         }
     }
     EXPECT_GT(far_ends, 10U);

@@ -3,11 +3,6 @@
 #include "truth/screen_truth.h"
 #include "truth_gbuffers.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-
 namespace ssrlab {
 namespace {
 
@@ -89,15 +84,15 @@ TEST(SurfaceModels, TwoSidedBoxBeginsBeforeItsPixel)
     for (const double thickness_m : {4.0, 5.0, infinity})
         expect_at(answer(gbuffer, ray_through(0.9, 0.9), "box_two_sided", Behind::stop, thickness_m), TraceStatus::hit,
                   t_in);
-    TraceSettings relative;
+    TraceSettings relative      = boxes();
     relative.thickness_relative = true;
     relative.thickness_m        = 0.25;
     EXPECT_DOUBLE_EQ(slab_front(gbuffer.view, 1 / 32.0, relative), 1 / 24.0);
     relative.thickness_m = 1;
     EXPECT_EQ(slab_front(gbuffer.view, 1 / 32.0, relative), infinity);
     const View    orthographic = orthographic_view({9, 3});
-    TraceSettings settings;
-    settings.thickness_m = 1; // of 8 m
+    TraceSettings settings     = boxes();
+    settings.thickness_m       = 1; // of 8 m
     EXPECT_DOUBLE_EQ(slab_front(orthographic, 0.5, settings), 0.625);
     settings.thickness_m = 6; // the pixel is at 6 m
     EXPECT_EQ(slab_front(orthographic, 0.5, settings), infinity);
@@ -465,6 +460,8 @@ std::array<int, 8> compare_with_sets(const GBufferImage& gbuffer, const TraceSet
         if (expected.status != TraceStatus::hit && expected.status != TraceStatus::stopped) continue;
         EXPECT_EQ(result.hit_pixel[i], expected.hit_pixel) << i;
         EXPECT_NEAR(result.hit_t[i], expected.hit_t, 1e-9) << i;
+        const glm::dvec2 in_pixel = glm::dvec2(result.hit_px_depth[i]) - glm::dvec2(result.hit_pixel[i]);
+        EXPECT_TRUE(glm::all(glm::equal(in_pixel, glm::clamp(in_pixel, 0.0, 1.0)))) << i;
     }
     return seen;
 }
@@ -484,6 +481,8 @@ TEST(SurfaceModels, EqualTheirDefinitionAsSetsOfPoints)
                 EXPECT_EQ(seen[size_t(TraceStatus::facing_away)] > 0, behind == Behind::pass) << surface;
             }
         }
+        const auto seen = compare_with_sets(gbuffer, boxes({.thickness_relative = true, .ray_offset_m = 0.3}));
+        EXPECT_GT(seen[size_t(TraceStatus::hit)], 300);
     }
 }
 

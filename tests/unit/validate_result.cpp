@@ -5,8 +5,6 @@
 #include "harness/quality.h"
 #include "truth_gbuffers.h"
 
-#include <gmock/gmock.h>
-
 namespace ssrlab {
 namespace {
 

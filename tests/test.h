@@ -1,0 +1,71 @@
+// What every test has: the frameworks and the parts of the standard library that most use. Precompiled, because parsing these is most of
+// what a test's file costs.
+#pragma once
+
+#include "core/trace_result.h"
+
+#include <fmt/format.h>
+#include <glm/glm.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <ranges>
+#include <set>
+#include <span>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace ssrlab::test {
+
+/// Row after row: each pixel's place in the list, and its column and row.
+struct PixelPlace {
+    size_t i;
+    int    x, y;
+};
+inline auto pixels_of(glm::ivec2 size_px)
+{
+    return std::views::transform(std::views::iota(0, size_px.x * size_px.y), [width = size_px.x](int i) {
+        return PixelPlace{size_t(i), i % width, i / width};
+    });
+}
+
+/// Expects of each name that what is found of it is the value that follows it.
+template <typename Found, typename Value, typename... Rest>
+void expect_each(const Found& found, const char* name, const Value& value, const Rest&... rest)
+{
+    EXPECT_EQ(found(name), value) << name;
+    if constexpr (sizeof...(rest) > 0) expect_each(found, rest...);
+}
+
+} // namespace ssrlab::test
+
+namespace ssrlab {
+
+/// Returns `settings` with the simplest surface, whose answers have closed forms: a box in each pixel.
+inline TraceSettings boxes(TraceSettings settings = {}, Behind behind = Behind::hit)
+{
+    settings.surface = "box";
+    settings.behind  = behind;
+    return settings;
+}
+
+} // namespace ssrlab
