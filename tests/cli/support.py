@@ -32,6 +32,12 @@ budget_s    = 0.2
 SWEEP_ROWS = 15
 
 
+def read(*path):
+    """The text of a file of the tree."""
+    with open(os.path.join(SOURCE, *path), encoding="utf-8") as file:
+        return file.read()
+
+
 def load_script(*path):
     """A script of the tree without ending, such as experiments/bench, as a module."""
     loader = importlib.machinery.SourceFileLoader(path[-1], os.path.join(SOURCE, *path))
@@ -75,6 +81,19 @@ class Case(unittest.TestCase):
         with open(self.path(name), "w", encoding="utf-8") as file:
             file.write(text)
         return self.path(name)
+
+    def text(self, name):
+        """Of a file in the test's folder."""
+        return read(self.path(name))
+
+    def bytes(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+    def keep_lines(self, name, count):
+        """As if the program had been killed after so many lines of this table."""
+        with open(self.path(name), "r+b") as file:
+            file.truncate(sum(len(file.readline()) for _ in range(count)))
 
     def start(self, *arguments, limits=None, **environment):
         """A running ssrlab."""

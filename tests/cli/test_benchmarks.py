@@ -7,7 +7,7 @@ import subprocess
 from pathlib import Path
 
 import OpenImageIO as oiio
-from support import PROGRAM, SOURCE, Case, load_script, main
+from support import PROGRAM, SOURCE, Case, load_script, main, read
 
 SCENE = "builtin:stairs"
 PLOT = (os.path.join(SOURCE, "experiments", "plot"), "growth")
@@ -26,8 +26,7 @@ class Test(Case):
                          "--benchmark_filter=/360p/(copy_depth|pyramid/occupancy|trace|scattered/list|screen_truth|scene_truth|judge)/iterations",
                          "--benchmark_repetitions=2", f"--benchmark_out={file}", "--benchmark_out_format=json")
         rows = {}
-        with open(file, encoding="utf-8") as text:
-            report = json.load(text)
+        report = json.loads(read(file))
         self.assertRegex(report["context"]["commit"], r"^[0-9a-f]{40}( with changes)?$|^not known$")
         for row in report["benchmarks"]:
             if row["run_type"] == "iteration":

@@ -1,20 +1,14 @@
 """The defaults are what measures best: the committed rows of experiments/defaults.toml and the program's defaults agree."""
-import csv
 import glob
 import json
 import os
 import subprocess
 import tomllib
 
-from support import SOURCE, Case, main
+from support import SOURCE, Case, main, read
 
 SCRIPT = os.path.join(SOURCE, "experiments/default_settings")
 REFERENCE = os.path.join(SOURCE, "results/reference/lavapipe/defaults")
-
-
-def rows_of(folder):
-    with open(os.path.join(folder, "results.csv"), encoding="utf-8") as file:
-        return list(csv.DictReader(file))
 
 
 class Test(Case):
@@ -26,16 +20,15 @@ class Test(Case):
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_every_recipe_is_measured(self):
-        with open(os.path.join(SOURCE, "experiments/defaults.toml"), "rb") as file:
-            scenes = set(tomllib.load(file)["scenes"])
+        scenes = set(tomllib.loads(read("experiments/defaults.toml"))["scenes"])
         shipped = {os.path.basename(path)[:-5] for path in glob.glob(os.path.join(SOURCE, "experiments/scenes/*.toml"))}
         self.assertGreater(len(shipped), 8)
         self.assertEqual(shipped - scenes, set())
-        self.assertEqual(scenes, {row["scene"] for row in rows_of(REFERENCE)})
+        self.assertEqual(scenes, {row["scene"] for row in self.rows(REFERENCE)})
 
     def test_the_first_run_has_the_defaults_of_the_program(self):
         settings = json.loads(self.ssrlab("list", "--json"))["settings"]
-        first = [row for row in rows_of(REFERENCE) if row["run_number"] == "0"]
+        first = [row for row in self.rows(REFERENCE) if row["run_number"] == "0"]
         checked = 0
         for setting in settings:
             # A setting may be newer than the rows.

@@ -4,7 +4,7 @@ import os
 import re
 import unittest
 
-from support import SOURCE
+from support import SOURCE, read
 
 FOLDERS = ("docs", "experiments", "framework", "results", "shaders", "structures", "techniques", "tests")
 CODE_FOLDERS = ("experiments", "framework", "shaders", "structures", "techniques", "tests")
@@ -16,11 +16,6 @@ API = ("box", "covered_depths", "depth_interval", "directions", "grid", "grid.ex
        "test_pixel", "trace_api", "view")
 FRAMEWORK_ONLY = {"ends_at", "fetch_pixel", "surface_of", "test_interval", "meets", "slab_front_of", "reaches_slab_back", "nearest_steps",
                   "scaled_depth"}
-
-
-def read(path):
-    with open(os.path.join(SOURCE, path), encoding="utf-8") as file:
-        return file.read()
 
 
 def pages():

@@ -4,7 +4,7 @@ import os
 import re
 import shutil
 
-from support import Case, SOURCE, SWEEP, main
+from support import Case, SOURCE, SWEEP, main, read
 
 FRAME = ("builtin:stairs", "--size", "64x36")
 EXACT = {"dda", "hiz", "hiz_packets", "hiz_waves", "quadtree"}
@@ -21,8 +21,7 @@ class Test(Case):
         return self.path("cache/ssrlab/" + names[0])
 
     def kept(self):
-        with open(self.times_file(), encoding="utf-8") as file:
-            return json.load(file)["measurements"]
+        return json.loads(read(self.times_file()))["measurements"]
 
     def chosen(self, text):
         found = re.search(r"^exact: (\w+): [\d.]+ ms(?:, \w+ [\d.]+)+, (measured|kept from a measurement) on .+ at 64x36, plane_solid$", text, re.M)
@@ -31,10 +30,6 @@ class Test(Case):
 
     def copied(self, source, to):
         shutil.copytree(os.path.join(SOURCE, "techniques", source), self.path(to))
-
-    def read(self, name):
-        with open(self.path(name), "rb") as file:
-            return file.read()
 
     def test_the_fastest_one_is_measured_kept_and_named_in_what_is_written(self):
         name, how = self.chosen(self.ssrlab("trace", *FRAME, "-t", "exact", "-o", "a.exr"))
@@ -45,13 +40,13 @@ class Test(Case):
         self.assertGreater(kept["rays"], 100)
         self.assertEqual(self.chosen(self.ssrlab("trace", *FRAME, "-t", "exact", "-o", "b.exr")), (name, "kept from a measurement"))
         self.ssrlab("trace", *FRAME, "-t", name, "-o", "c.exr")
-        self.assertEqual(self.read("a.exr"), self.read("c.exr"))
-        self.assertEqual(self.read("b.exr"), self.read("c.exr"))
+        self.assertEqual(self.bytes("a.exr"), self.bytes("c.exr"))
+        self.assertEqual(self.bytes("b.exr"), self.bytes("c.exr"))
         self.assertEqual(self.ssrlab("--quiet", "trace", *FRAME, "-t", "exact", "-o", "b.exr"), "b.exr\n")
 
     def test_render_ray_plan_and_sources_take_it(self):
         name, _ = self.chosen(self.ssrlab("render", *FRAME, "-o", "a.exr"))
-        self.assertIn(f" -t {name}".encode(), self.read("a.exr"))
+        self.assertIn(f" -t {name}".encode(), self.bytes("a.exr"))
         ray = ("ray", *FRAME, "--pixel", "30,30", "-t", "exact", "-t", "linear", "-p", "steps=9")
         self.assertEqual(self.chosen(self.ssrlab(*ray))[0], name)
         self.ssrlab(*ray, says=[f"\n{name}: ", "\nlinear: "])
@@ -70,7 +65,7 @@ class Test(Case):
         self.copied("dda", "mine/walk")
         exact = ("--techniques", "mine", "trace", *FRAME, "-t", "exact", "-o", "a.exr")
         self.assertEqual(self.chosen(self.ssrlab(*exact))[1], "measured")
-        whole = self.read(self.times_file())
+        whole = self.bytes(self.times_file())
         for damaged in (whole[:40], b"{}", whole.replace(b'"ms"', b'"s"'), re.sub(rb'"walk": [\d.]+', b'"walk": -1', whole)):
             with open(self.times_file(), "wb") as file:
                 file.write(damaged)

@@ -7,7 +7,7 @@ import shutil
 import struct
 import subprocess
 
-from support import Case, main
+from support import Case, main, read
 
 SWIFTSHADER = "/usr/lib/chromium/vk_swiftshader_icd.json"
 
@@ -64,10 +64,6 @@ class Test(Case):
         self.assertGreaterEqual(len(differing), 4, said)
         self.assertIn("0 are set up otherwise", said)
 
-    def read(self, *path):
-        with open(os.path.join(*path), encoding="utf-8") as file:
-            return file.read()
-
     def check_language(self, language):
         for technique, surface in (("linear", "box"), ("dda", "plane"), ("hiz", "box"), ("hiz", "plane")):
             with self.subTest(technique=technique, surface=surface):
@@ -90,15 +86,14 @@ class Test(Case):
 
     def test_wgsl_answers_as_the_lab_does(self):
         folder = self.export("hiz", "wgsl")
-        trace = self.read(folder, "4_trace.wgsl")
+        trace = read(folder, "4_trace.wgsl")
         self.assertIn("fn strip_index(", trace)
         self.assertIn("var<storage, read> ", trace)
-        self.assertLessEqual(len(self.read(folder, "run.js").splitlines()), 150)
+        self.assertLessEqual(len(read(folder, "run.js").splitlines()), 150)
 
-        frame = json.loads(self.read(folder, "frames", "scene.json"))
+        frame = json.loads(read(folder, "frames", "scene.json"))
         path = os.path.join(folder, "expected", "scene.bin")
-        with open(path, "rb") as file:
-            words = list(struct.unpack(f"<{2 * frame['rays']}I", file.read()))
+        words = list(struct.unpack(f"<{2 * frame['rays']}I", self.bytes(path)))
         first = next(i for i in range(0, len(words), 2) if words[i] >> 28 == 1)
         words[first + 1] += 1 # the next larger t
         with open(path, "wb") as file:
@@ -112,12 +107,10 @@ class Test(Case):
         for other in set(glob.glob(f"{folder}/frames/*.json")) - {os.path.join(folder, "frames", "scene.json")}:
             os.remove(other)
         path = os.path.join(folder, "4_trace.wgsl")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(re.sub(r"@workgroup_size\(64, 1, 1\)", "@workgroup_size(32, 1, 1)", trace))
+        self.write(path, re.sub(r"@workgroup_size\(64, 1, 1\)", "@workgroup_size(32, 1, 1)", trace))
         differing, said = self.verified(folder, code=1)
         self.assertGreater(differing["scene"], 100, said)
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(trace + "no WGSL")
+        self.write(path, trace + "no WGSL")
         self.ssrlab("export", "--verify", folder, code=1, says=["4_trace.wgsl:"])
 
     def test_wgsl_without_its_translator(self):
@@ -133,35 +126,34 @@ class Test(Case):
         self.assertEqual([os.path.basename(path) for path in files],
                          ["1_depth.comp", "2_depth_pyramid_level.comp", "3_rays.comp", "4_trace.comp"])
         for path in files:
-            text = self.read(path)
+            text = read(path)
             for absent in ("#include", "#if", "##", "constant_id", "push_constant", "scalar"):
                 self.assertNotIn(absent, text, path)
             done = subprocess.run(["glslangValidator", "-V", path, "-o", self.path("out.spv")], capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, f"{path}: {done.stdout}")
-        trace = self.read(folder, "4_trace.comp")
+        trace = read(folder, "4_trace.comp")
         self.assertIn("const int max_steps = 77;", trace)
         self.assertIn("TraceResult trace(Ray ray)", trace)
         self.assertNotIn("stride_to_t", trace) # of the API, and not used here
-        readme = self.read(folder, "README.md")
+        readme = read(folder, "README.md")
         for told in ("max_steps = 77", "--to glsl", "host_depth", "## Licence"):
             self.assertIn(told, readme)
 
     def test_a_number_stays_a_constant_of_the_pipeline(self):
         folder = self.export("dda", "glsl", "--keep", "max_steps")
-        self.assertRegex(self.read(folder, "3_trace.comp"), r"layout\(constant_id = \d+\) const int max_steps = 60000;")
+        self.assertRegex(read(folder, "3_trace.comp"), r"layout\(constant_id = \d+\) const int max_steps = 60000;")
         self.assert_equal_on_every_ray(folder)
         folder = self.export("dda", "wgsl", "--keep", "max_steps")
-        self.assertRegex(self.read(folder, "3_trace.wgsl"), r"@id\(\d+\) override max_steps\w*: i32 = 60000i;")
+        self.assertRegex(read(folder, "3_trace.wgsl"), r"@id\(\d+\) override max_steps\w*: i32 = 60000i;")
         self.refused("export", "dda", "--to", "glsl", "-o", self.path("out"), "--keep", "arithmetic", code=2,
                      says=["--keep arithmetic: expected a number among the parameters of dda"])
 
     def test_a_wrong_shader_is_found(self):
         folder = self.export("dda", "glsl")
         path = os.path.join(folder, "3_trace.comp")
-        text = self.read(path)
+        text = read(path)
         self.assertEqual(text.count("t_border.x < t_border.y ?"), 1)
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(text.replace("t_border.x < t_border.y ?", "t_border.x > t_border.y ?"))
+        self.write(path, text.replace("t_border.x < t_border.y ?", "t_border.x > t_border.y ?"))
         differing, said = self.verified(folder, code=1)
         self.assertGreater(sum(differing.values()), 0)
         self.assertRegex(said, r"ray \d+ of pixel \(\d+, \d+\): .*, expected ")
@@ -173,7 +165,7 @@ class Test(Case):
         for language in ("glsl", "hlsl"):
             self.assert_equal_on_every_ray(self.export("own", language, *more))
         self.verified(self.export("own", "wgsl", *more)) # equal but for rounding
-        self.assertNotIn("STOP(", self.read(self.path("own_glsl"), "4_trace.comp"))
+        self.assertNotIn("STOP(", read(self.path("own_glsl"), "4_trace.comp"))
 
     def test_languages_that_are_not_run(self):
         for language, ending, holds in (("msl", "metal", "kernel void main0"), ("essl", "essl", "#version 310 es")):
@@ -181,7 +173,7 @@ class Test(Case):
             files = glob.glob(f"{folder}/*.{ending}")
             self.assertEqual(len(files), 4)
             for path in files:
-                self.assertIn(holds, self.read(path))
+                self.assertIn(holds, read(path))
             self.refused("export", "--verify", folder, code=2, says=["other languages are not run"])
 
     def test_wrong_usage(self):
@@ -196,7 +188,7 @@ class Test(Case):
         self.refused("export", "dda", "--to", "glsl", "-o", self.path("full"), code=2, says=["new or empty folder"])
         folder = self.export("dda", "glsl")
         shutil.copy(os.path.join(folder, "frames", "scene.json"), self.path("kept"))
-        frame = json.loads(self.read(self.path("kept")))
+        frame = json.loads(read(self.path("kept")))
         del frame["resources"]["rays"]
         self.write("dda_glsl/frames/scene.json", json.dumps(frame))
         self.refused("export", "--verify", folder, code=2, says=["scene.json"])

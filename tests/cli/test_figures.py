@@ -4,7 +4,7 @@ import subprocess
 import tomllib
 
 import OpenImageIO as oiio
-from support import SOURCE, Case, main
+from support import SOURCE, Case, main, read
 
 SPEC = """
 scenes = ["builtin:mirror_floor_wall"]
@@ -43,8 +43,7 @@ class Test(Case):
             many["picture"], many["truth_picture"], many["truth_picture"][:-len(".png")] + "_off.png"))
         self.assertGreater(abs(traced - off).mean(), 0.02)
         self.assertLess(abs(traced - truth).mean(), abs(off - truth).mean())
-        with open(self.path("out/plots/one.svg"), encoding="utf-8") as file:
-            self.assertGreaterEqual(file.read().count("<image"), 4)
+        self.assertGreaterEqual(self.text("out/plots/one.svg").count("<image"), 4)
 
     def test_a_panel_must_name_one_run(self):
         self.ssrlab("run", self.write("few.toml", SPEC.replace("{ steps = 16 }, ", '{ technique = "linear" }, ')), "-o", "out")
@@ -56,8 +55,7 @@ class Test(Case):
         names = sorted(name for name in os.listdir(folder) if name.endswith(".toml"))
         self.assertGreaterEqual(len(names), 5)
         for name in names:
-            with open(os.path.join(folder, name), "rb") as file:
-                figures = tomllib.load(file).get("figures", {})
+            figures = tomllib.loads(read(folder, name)).get("figures", {})
             self.assertTrue(all(figure.startswith(name.split("_")[0].split(".")[0] + "_") for figure in figures), name)
             self.ssrlab("run", os.path.join(folder, name), "--dry-run", says=["runs, about"])
 

@@ -2,7 +2,7 @@
 import os
 import re
 
-from support import SOURCE, Case, main
+from support import Case, main, read
 
 PAGE = "docs/how-to/fit_to_a_budget.md"
 SWEEP = """
@@ -79,18 +79,15 @@ class Test(Case):
             os.rename(self.path("fit"), self.path(objective))
 
     def test_the_page(self):
-        with open(os.path.join(SOURCE, PAGE), encoding="utf-8") as file:
-            page = file.read()
+        page = read(PAGE)
         blocks = re.findall(r"^```sh\n(.*?)^```", page, re.M | re.S)
         commands = [line for block in blocks for line in block.replace("\\\n", "").splitlines()]
         self.assertEqual(len(commands), 6)
         for command in commands:
             self.assertEqual(command.split()[0], "ssrlab")
             self.ssrlab(*command.split()[1:], "--quiet")
-        with open(self.path("own/choice.toml"), encoding="utf-8") as file:
-            self.assertIn('surface = "plane"', file.read())
-        with open(self.path("left_out/leave_one_out.md"), encoding="utf-8") as file:
-            rows = re.findall(r"^\| builtin:corridor \| (\w+) \| 12 \| hiz (?:\S+ )*\| (\S+) \| (\S+) \| (\S+) \| \S+ \|$", file.read(), re.M)
+        self.assertIn('surface = "plane"', self.text("own/choice.toml"))
+        rows = re.findall(r"^\| builtin:corridor \| (\w+) \| 12 \| hiz (?:\S+ )*\| (\S+) \| (\S+) \| (\S+) \| \S+ \|$", self.text("left_out/leave_one_out.md"), re.M)
         self.assertEqual([row[0] for row in rows], ["default", "down", "steep"])
         for _, fitted, best, lost in rows:
             self.assertAlmostEqual(float(best) - float(fitted), float(lost), delta=0.011)

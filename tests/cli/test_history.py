@@ -1,5 +1,4 @@
 """Frames of a sequence with their history."""
-import csv
 import os
 import subprocess
 
@@ -63,25 +62,19 @@ ORBIT = ["builtin:moving_boxes", "-t", "hiz", "--view", "orbit", "--size", "96x5
 
 
 class Test(Case):
-    def picture(self, name):
-        with open(self.path(name), "rb") as file:
-            return file.read()
-
     def test_frames_in_a_row_have_one_and_repeat_bit_by_bit(self):
         self.ssrlab("render", *ORBIT, "--frames", "4", "-o", "a.exr")
         self.ssrlab("render", *ORBIT, "--frames", "4", "-o", "b.exr")
         self.ssrlab("render", *ORBIT, "--frames", "4", "-p", "history_weight=0", "-o", "c.exr")
         self.ssrlab("render", *ORBIT, "--frame", "3", "-o", "alone.exr")
         for frame in range(4):
-            self.assertEqual(self.picture(f"a_{frame:04}.exr"), self.picture(f"b_{frame:04}.exr"), frame)
-        self.assertNotEqual(self.picture("a_0003.exr"), self.picture("c_0003.exr"))
-        self.assertNotEqual(self.picture("a_0003.exr"), self.picture("alone.exr"))
+            self.assertEqual(self.bytes(f"a_{frame:04}.exr"), self.bytes(f"b_{frame:04}.exr"), frame)
+        self.assertNotEqual(self.bytes("a_0003.exr"), self.bytes("c_0003.exr"))
+        self.assertNotEqual(self.bytes("a_0003.exr"), self.bytes("alone.exr"))
 
     def measured(self, folder):
         """By run: what must be the same in every repetition, pictures included."""
-        with open(self.path(f"{folder}/results.csv"), encoding="utf-8", newline="") as file:
-            return {row["run_id"]: [row[name] for name in MEASURED] + [self.picture(f"{folder}/{row['picture']}")]
-                    for row in csv.DictReader(file)}
+        return {row["run_id"]: [row[name] for name in MEASURED] + [self.bytes(f"{folder}/{row['picture']}")] for row in self.rows(folder)}
 
     def test_a_sweep_carries_it_from_frame_to_frame(self):
         spec = self.write("sweep.toml", SWEEP)
@@ -106,14 +99,10 @@ class Test(Case):
         last = by["plane", "0.9", "4"]["run_id"]
         self.ssrlab("run", spec, "-o", "alone", "--only", last)
         self.assertEqual(self.measured("alone"), {last: whole[last]})
-        with open(self.path("out/results.csv"), "rb") as file:
-            lines = file.read().split(b"\r\n")
-        with open(self.path("out/results.csv"), "wb") as file:
-            file.write(b"\r\n".join(lines[:10]) + b"\r\n")
+        self.keep_lines("out/results.csv", 10)
         self.ssrlab("run", spec, "-o", "out", "--resume")
         self.assertEqual(self.measured("out"), whole)
-        with open(self.path("out/sequence_summary.csv"), encoding="utf-8", newline="") as file:
-            summary = {(row["reprojection"], row["history_weight"]): row for row in csv.DictReader(file)}
+        summary = {(row["reprojection"], row["history_weight"]): row for row in self.rows(table="sequence_summary.csv")}
         self.assertEqual(len(summary), 4)
         self.assertLess(float(summary["plane", "0.9"]["reprojection_error_p95_px"]),
                         float(summary["surface", "0.9"]["reprojection_error_p95_px"]))
@@ -134,11 +123,11 @@ class Test(Case):
         self.ssrlab("render", *shot, "--frames", "6", "-o", "a.exr")
         for frame, same in ((0, True), (3, False), (4, True), (5, False)):
             self.ssrlab("render", *shot, "--frame", str(frame), "-o", "alone.exr")
-            self.assertEqual(self.picture(f"a_{frame:04}.exr") == self.picture("alone.exr"), same, frame)
+            self.assertEqual(self.bytes(f"a_{frame:04}.exr") == self.bytes("alone.exr"), same, frame)
         # A sweep's frames, too: without weight there is no history.
         spec = SWEEP.replace("builtin:moving_boxes", scene).replace("truck", "shot").replace("[0, 1, 2, 4]", "6")
         self.ssrlab("run", self.write("cut_sweep.toml", spec.replace('["surface", "plane"]', '"plane"')), "-o", "out")
-        pictures = {(row["history_weight"], row["frame"]): self.picture("out/" + row["picture"]) for row in self.rows()}
+        pictures = {(row["history_weight"], row["frame"]): self.bytes("out/" + row["picture"]) for row in self.rows()}
         for frame in range(6):
             same = pictures["0", str(frame)] == pictures["0.9", str(frame)]
             self.assertEqual(same, frame in (0, 4), frame)

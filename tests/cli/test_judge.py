@@ -4,7 +4,7 @@ import os
 import re
 import shutil
 
-from support import SOURCE, Case, main
+from support import SOURCE, Case, main, read
 
 PAGE = "docs/how-to/judge_a_renderer.md"
 
@@ -86,8 +86,7 @@ class Test(Case):
 
     def test_the_page_and_every_case(self):
         """The commands of the page: the exact walk is right in every exported case, and a rival's loop is not."""
-        with open(os.path.join(SOURCE, PAGE), encoding="utf-8") as file:
-            page = file.read()
+        page = read(PAGE)
         commands = [line for block in re.findall(r"^```sh\n(.*?)^```", page, re.M | re.S) for line in block.splitlines()]
         self.assertEqual(len(commands), 10)
         said = ""
@@ -98,8 +97,7 @@ class Test(Case):
             if command == "ssrlab judge cases hits":
                 self.assertRegex(said, r"\b(\d+) of \1 cases pass")
         self.assertIn(re.search(r"^FAIL .*", page, re.M)[0], said)
-        with open(self.path("cases/manifest.json"), encoding="utf-8") as file:
-            manifest = json.load(file)
+        manifest = json.loads(self.text("cases/manifest.json"))
         names = [frame["name"] for frame in manifest["frames"]]
         self.assertGreater(len(names), 100)
         self.assertGreater(len(manifest["left_out"]), 100)

@@ -78,37 +78,24 @@ class Test(Case):
             self.assertLess(self.whole_rows(), 72)
             self.assertEqual([row["outcome"] for row in self.rows()], ["ok"] * self.whole_rows())
 
-    def test_nothing_is_left_running_after_a_kill(self):
+    def test_results_are_changed_in_the_middle(self):
         spec = self.write("s.toml", LONG)
-        process = self.start("run", spec, "-o", "out")
-        self.stop_in_the_middle(process, signal.SIGKILL)
-        self.ssrlab("run", spec, "-o", "out", "--resume")
-        self.assert_complete(self.rows(), 24)
 
-    def changed_in_the_middle(self, change, says):
-        spec = self.write("s.toml", LONG)
-        process = self.start("run", spec, "-o", "out")
-        until = time.monotonic() + HANGS_S
-        while self.whole_rows() == 0 and process.poll() is None and time.monotonic() < until:
-            time.sleep(0.01)
-        change()
-        out, err = process.communicate(timeout=HANGS_S)
-        self.assertEqual(process.returncode, 1, out + err)
-        self.assertIn(says, err)
-        self.assertNotIn("written now", out)
-
-    def test_results_folder_is_removed(self):
-        self.changed_in_the_middle(lambda: os.rename(self.path("out"), self.path("gone")),
-                                   "results.csv: was removed or replaced while it was in use")
-
-    def test_results_are_replaced(self):
         def replace():
             shutil.copy(self.path("out/results.csv"), self.path("copy.csv"))
             os.replace(self.path("copy.csv"), self.path("out/results.csv"))
-        self.changed_in_the_middle(replace, "results.csv: was removed or replaced while it was in use")
-
-    def test_lock_is_removed(self):
-        self.changed_in_the_middle(lambda: os.remove(self.path("out/.lock")), ".lock: was removed or replaced while it was in use")
+        for name, change in (("results.csv", lambda: os.rename(self.path("out"), self.path("gone"))), ("results.csv", replace),
+                             (".lock", lambda: os.remove(self.path("out/.lock")))):
+            shutil.rmtree(self.path("out"), ignore_errors=True)
+            process = self.start("run", spec, "-o", "out")
+            until = time.monotonic() + HANGS_S
+            while self.whole_rows() == 0 and process.poll() is None and time.monotonic() < until:
+                time.sleep(0.01)
+            change()
+            out, err = process.communicate(timeout=HANGS_S)
+            self.assertEqual(process.returncode, 1, out + err)
+            self.assertIn(f"{name}: was removed or replaced while it was in use", err)
+            self.assertNotIn("written now", out)
 
     def test_closed_streams_print_into_no_file(self):
         spec = self.write("s.toml", LONG.replace("20\n", "1\n").replace("40\n", "1\n"))
@@ -118,8 +105,7 @@ class Test(Case):
                 os.close(fd)
         self.ssrlab("run", spec, "-o", "out", limits=close_streams)
         self.assert_complete(self.rows(), 24)
-        with open(self.path("out/.lock"), encoding="utf-8") as file:
-            self.assertTrue(file.read().isdigit())
+        self.assertTrue(self.text("out/.lock").isdigit())
 
     def test_unusable_caches_are_no_reason_to_stop(self):
         spec = self.write("s.toml", LONG.replace("20\n", "1\n").replace("40\n", "1\n"))

@@ -22,8 +22,7 @@ class Test(Case):
 
     def picture(self, *parameters):
         self.ssrlab("--techniques", "mine", *SEQUENCE, *[word for pair in parameters for word in ("-p", pair)], "-o", "out.exr")
-        with open(self.path("out_0001.exr"), "rb") as file:
-            return file.read()
+        return self.bytes("out_0001.exr")
 
     def test_is_selected_with_its_parameters(self):
         first, again = self.picture("reprojection=fixed_shift"), self.picture("reprojection=fixed_shift")

@@ -4,7 +4,7 @@ import os
 
 import numpy
 import OpenImageIO as oiio
-from support import SOURCE, Case, main
+from support import Case, main, read
 
 FILES = ("surface.toml", "meeting.glsl", "held.glsl")
 SWEEP = """scenes = ["builtin:sphere_over_mirror"]
@@ -29,8 +29,7 @@ class Test(Case):
         super().setUp()
         self.blocks = {}
         for name in FILES:
-            with open(os.path.join(SOURCE, "tests/techniques/sloped_slab", name), encoding="utf-8") as file:
-                self.blocks[name] = file.read()
+            self.blocks[name] = read("tests/techniques/sloped_slab", name)
             self.write(f"mine/sloped_slab/{name}", self.blocks[name])
 
     def hits(self, technique, *parameters, scene="interior"):
@@ -75,8 +74,7 @@ class Test(Case):
             self.assertTrue(box[column] or column.startswith("screen_displacement"), column)
         for column in ("recall_1px", "precision_1px", "false_hits", "flips_per_million", "rmse_reflective"):
             self.assertNotEqual(own[column], "", column)
-        with open(self.path("out/environment.json"), encoding="utf-8") as file:
-            self.assertIn("surface sloped_slab", json.load(file)["identity"])
+        self.assertIn("surface sloped_slab", json.loads(self.text("out/environment.json"))["identity"])
 
     def test_a_sweep_of_its_thickness_is_plotted(self):
         spec = self.write("s.toml", SWEEP.replace("[techniques.dda]\n", "").replace("[techniques.hiz_packets]\n", "").replace("[trace]\n", "[trace]\nthickness_m = [0.1, 0.3]\n"))

@@ -1,5 +1,4 @@
 """A technique outside the source tree, without rebuilding."""
-import csv
 import os
 
 from support import Case, main
@@ -72,11 +71,6 @@ class Test(Case):
         self.ssrlab("run", self.spec, "-o", "out", "--techniques", "mine", says=["warning: mine/coin/technique.toml: expected 'ignores'"])
         self.assertEqual({row["technique"]: row["technique_ignores"] for row in self.rows()}, {"coin": "unknown", "dda": ""})
 
-    def test_error_in_its_shader_names_file_and_line(self):
-        self.write("mine/coin/trace.glsl", TRACE.replace("ivec2 pixel = pixel_at", "ivec2 pixel = pixle_at"))
-        self.refused("render", "builtin:mirror_floor_wall", "-t", "coin", "--techniques", "mine", "--size", "64x36", "-o", "a.png",
-                     code=2, says=["mine/coin/trace.glsl:4", "pixle_at"])
-
     def shader_refused(self, text, says, never=()):
         self.write("mine/coin/trace.glsl", text)
         out = self.refused("render", "builtin:mirror_floor_wall", "-t", "coin", "--techniques", "mine", "--size", "64x36", "-o", "a.png",
@@ -85,20 +79,19 @@ class Test(Case):
             self.assertNotIn(secret, out)
         return out
 
-    def test_all_errors_in_its_shader_are_named(self):
-        self.shader_refused(TRACE.replace("ivec2 pixel = pixel_at", "ivec2 pixel = pixle_at").replace("return miss(ray, 1)", "return mis(ray, 1)"),
-                            ["mine/coin/trace.glsl:4: 'pixle_at'", "mine/coin/trace.glsl:7: 'mis'"])
-
-    def test_missing_trace_function_is_said_of_its_file(self):
-        out = self.shader_refused(TRACE.replace("trace(Ray", "trace_it(Ray"), ["mine/coin/trace.glsl:8: trace.glsl defines no TraceResult trace(Ray)"], never=["store_result"])
-        self.assertTrue(out.startswith("ssrlab: mine/coin/trace.glsl:8:"), out)
-
-    def test_a_structure_that_is_not_asked_for_is_named(self):
-        self.shader_refused(TRACE.replace("    return miss", "    fetch_cell(pixel, 3);\n    return miss", 1),
-                            ["'fetch_cell' : no matching overloaded function found", "(needs structures = [\"depth_pyramid\"] in technique.toml)"])
-
-    def test_a_file_of_the_api_that_is_not_included_is_named(self):
-        self.shader_refused(TRACE.split("\n", 1)[1], ["mine/coin/trace.glsl:3: 'pixel_at'", '(needs #include "api/sampling.glsl")'])
+    def test_mistakes_in_its_shader_are_said_of_its_file(self):
+        for text, says in (
+                (TRACE.replace("ivec2 pixel = pixel_at", "ivec2 pixel = pixle_at").replace("return miss(ray, 1)", "return mis(ray, 1)"),
+                 ["mine/coin/trace.glsl:4: 'pixle_at'", "mine/coin/trace.glsl:7: 'mis'"]),
+                (TRACE.replace("trace(Ray", "trace_it(Ray"), ["ssrlab: mine/coin/trace.glsl:8: trace.glsl defines no TraceResult trace(Ray)"]),
+                (TRACE.replace("    return miss", "    fetch_cell(pixel, 3);\n    return miss", 1),
+                 ["'fetch_cell' : no matching overloaded function found", "(needs structures = [\"depth_pyramid\"] in technique.toml)"]),
+                (TRACE.split("\n", 1)[1], ["mine/coin/trace.glsl:3: 'pixel_at'", '(needs #include "api/sampling.glsl")']),
+                ("// main()\nvoid main() {}\n" + TRACE, ["mine/coin/trace.glsl:2: 'main' is reserved"]),
+                (TRACE.rstrip().removesuffix("}"), ["mine/coin/trace.glsl:3: this '{' is never closed"]),
+                ("// { in a comment\n" + TRACE + "}\n", ["mine/coin/trace.glsl:10: "])):
+            with self.subTest(says=says):
+                self.shader_refused(text, says, never=["store_result"])
 
     def test_a_file_is_included_once(self):
         self.write("mine/coin/half.glsl", "const int taken = 1;\n")
@@ -117,17 +110,10 @@ class Test(Case):
         self.write("mine/coin/look.layered.glsl", "")
         self.refused(*render, "surface=plane", "-p", "layers=2", code=2, says=["mine/coin/look.layered.glsl or ", "look.pixel_planes.glsl"])
 
-    def test_own_main_is_said_to_be_reserved(self):
-        self.shader_refused("// main()\nvoid main() {}\n" + TRACE, ["mine/coin/trace.glsl:2: 'main' is reserved"])
-
     def test_check_ends_with_its_failure(self):
         self.write("mine/coin/trace.glsl", "TraceResult trace(Ray ray)\n{\n    return miss(ray, 1);\n}\n")
         out = self.ssrlab("--techniques", "mine", "check", "coin", "--quick", "--case", "one_object_in_the_sky", code=1)
         self.assertRegex(out.splitlines()[-1], r"^the check fails: \d+ findings, each above$")
-
-    def test_unbalanced_braces_are_said_of_its_file(self):
-        self.shader_refused(TRACE.rstrip().removesuffix("}"), ["mine/coin/trace.glsl:3: this '{' is never closed"])
-        self.shader_refused("// { in a comment\n" + TRACE + "}\n", ["mine/coin/trace.glsl:10: "])
 
     def test_includes_come_from_its_folder_and_the_project_alone(self):
         secret = self.write("mine/secret.glsl", "top secret text\n")
@@ -164,16 +150,12 @@ class Test(Case):
     def test_error_in_its_shader_is_a_failed_row(self):
         self.write("mine/coin/trace.glsl", TRACE.replace("ivec2 pixel = pixel_at", "ivec2 pixel = pixle_at"))
         self.ssrlab("run", self.spec, "-o", "out", "--techniques", "mine", code=1)
-        with open(self.path("out/results.csv"), encoding="utf-8", newline="") as file:
-            outcome = {(row["technique"], row["outcome"], "coin/trace.glsl:4" in row["message"]) for row in csv.DictReader(file)}
+        outcome = {(row["technique"], row["outcome"], "coin/trace.glsl:4" in row["message"]) for row in self.rows()}
         self.assertEqual(outcome, {("coin", "failed", True), ("dda", "ok", False)})
 
     def test_error_in_its_manifest_names_file_and_line(self):
         self.write("mine/coin/technique.toml", MANIFEST.replace("default = 0.5", "default = 2.0"))
         self.refused("list", "--techniques", "mine", code=2, says=["mine/coin/technique.toml:4", "place"])
-
-    def test_folder_that_does_not_exist(self):
-        self.refused("list", "--techniques", "nowhere", code=2, says=["nowhere"])
 
 
 if __name__ == "__main__":

@@ -1,10 +1,9 @@
 """list, show, render, trace, gbuffer, measures."""
-import os
 import re
 
 import numpy
 import OpenImageIO as oiio
-from support import SOURCE, Case, main
+from support import Case, main, read
 
 SCENE = "builtin:sphere_over_mirror"
 STATUS_NAMES = "0=not_traced 1=hit 2=left_screen 3=past_max_distance 4=out_of_steps 5=facing_away 6=stopped"
@@ -30,23 +29,11 @@ class Test(Case):
         for command in ("list", "show", "render", "trace", "gbuffer", "run", "plot", "check", "measures"):
             self.ssrlab(command, "--help", says=["Usage"])
 
-    def test_usage_errors_are_2(self):
-        self.ssrlab(code=2)
-        self.ssrlab("dance", code=2)
-        self.ssrlab("render", SCENE, code=2)
-        self.ssrlab("list", "--unknown", code=2)
-
     def test_render_png_shows_something(self):
         self.ssrlab("render", SCENE, "-t", "hiz", "--size", "161x91", "-o", self.path("a.png"))
         channels, spec = self.read("a.png")
         self.assertEqual((spec.width, spec.height), (161, 91))
         self.assertGreater(channels["R"].std(), 0.02, "the picture is flat")
-
-    def test_render_exr_is_linear_and_finite(self):
-        self.ssrlab("render", SCENE, "-t", "dda", "--size", "64x36", "-o", self.path("a.exr"))
-        channels, _ = self.read("a.exr")
-        for name in ("R", "G", "B"):
-            self.assertTrue(numpy.isfinite(channels[name]).all())
 
     def test_reflections_change_the_picture(self):
         for distance_m in ("0.001", "100"):
@@ -54,6 +41,7 @@ class Test(Case):
                         "--size", "161x91", "-o", self.path(f"{distance_m}.exr"))
         without, reflected = self.read("0.001.exr")[0], self.read("100.exr")[0]
         self.assertFalse(all(numpy.array_equal(without[name], reflected[name]) for name in "RGB"))
+        self.assertTrue(all(numpy.isfinite(reflected[name]).all() for name in "RGB"))
 
     def test_trace_has_every_channel_and_the_legend(self):
         self.ssrlab("trace", SCENE, "-t", "hiz", "-p", "max_distance_m=9", "--size", "161x91", "-o", self.path("h.exr"))
@@ -90,13 +78,9 @@ class Test(Case):
         length = sum(channels[f"normal_vs.{axis}"] ** 2 for axis in "xyz")
         self.assertTrue(numpy.allclose(length[seen], 1, atol=1e-4))
 
-    def test_the_validation_layer_is_silent(self):
-        self.ssrlab("--validation", "render", SCENE, "-t", "hiz", "--size", "64x36", "-o", self.path("a.png"))
-
     def names_every(self, page, heading, names):
         """The first cells of a page's tables name all of `names`, and nothing else. `…` and words in capitals stand for any ending or name."""
-        with open(os.path.join(SOURCE, "docs/reference", page), encoding="utf-8") as file:
-            cells = re.findall(r"^\| ([^|]*`[^|]*) \|", file.read().split(heading, 1)[1], re.M)
+        cells = re.findall(r"^\| ([^|]*`[^|]*) \|", read("docs/reference", page).split(heading, 1)[1], re.M)
         patterns = [re.sub(r"[A-Z]{4,}", r"\\w+", re.escape(name)).replace("…", r"[\w.]+") for cell in cells for name in re.findall(r"`([^`]+)`", cell)]
         self.assertGreater(len(names), 10)
         self.assertEqual([name for name in names if not any(re.fullmatch(pattern, name) for pattern in patterns)], [], "not in the page")
@@ -108,8 +92,7 @@ class Test(Case):
         self.names_every("settings.md", "# Settings", re.findall(name, self.ssrlab("list", "--markdown"), re.M))
 
     def test_the_reference_names_every_command(self):
-        with open(os.path.join(SOURCE, "docs/reference/command_line.md"), encoding="utf-8") as file:
-            table = re.search(r"\| commands \|.*?\n\n", file.read(), re.S)[0]
+        table = re.search(r"\| commands \|.*?\n\n", read("docs/reference/command_line.md"), re.S)[0]
         commands = re.findall(r"^  ([a-z-]+)", self.ssrlab("--help").split("Subcommands:")[1], re.M)
         self.assertGreater(len(commands), 10)
         self.assertEqual(sorted(re.findall(r"`([^`]+)`", table)), sorted(commands))

@@ -4,7 +4,7 @@ import re
 
 import OpenImageIO as oiio
 
-from support import SOURCE, Case, main
+from support import SOURCE, Case, main, read
 
 
 def pixels_of(path):
@@ -14,8 +14,7 @@ def pixels_of(path):
 class Test(Case):
     def test_the_picture_is_what_its_command_makes(self):
         """Within what another compiler or driver may change: 99 % of the values within 2 of 255."""
-        with open(os.path.join(SOURCE, "README.md"), encoding="utf-8") as file:
-            text = file.read()
+        text = read("README.md")
         output, = re.findall(r"\]\(docs/images/(\S+)\)", text)
         command, = re.findall(rf"^build/bin/ssrlab (render .* -o {output})$", text.replace("\\\n", ""), re.M)
         self.ssrlab(*command.split())
@@ -25,8 +24,7 @@ class Test(Case):
         self.assertGreater(near, 0.99, "make it again with README's command")
 
     def test_its_commands_exist(self):
-        with open(os.path.join(SOURCE, "README.md"), encoding="utf-8") as file:
-            named = set(re.findall(r"^build/bin/ssrlab ([a-z-]+)", file.read(), re.M))
+        named = set(re.findall(r"^build/bin/ssrlab ([a-z-]+)", read("README.md"), re.M))
         self.assertGreater(len(named), 5)
         for name in named:
             self.ssrlab(name, "--help")

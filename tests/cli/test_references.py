@@ -44,8 +44,7 @@ class Test(Case):
         return said
 
     def held(self, name):
-        with open(self.path(f"{REFERENCE}/{name}"), encoding="utf-8") as file:
-            return file.read()
+        return self.text(f"{REFERENCE}/{name}")
 
     def test_what_an_experiment_makes_is_replaced(self):
         said = self.references()

@@ -40,8 +40,7 @@ class Test(Case):
         spec = SMALL.replace("[measure]", "[techniques.hiz_packets]\n[measure]")
         self.ssrlab("run", self.write("small.toml", spec), "-o", self.path("out"))
         self.ssrlab("plot", self.path("out"))
-        with open(self.path("out/report.md"), encoding="utf-8") as file:
-            text = file.read()
+        text = self.text("out/report.md")
         part = text[text.index("## What this would cost on RDNA2, by its compiler"):]
         lines = [[cell.strip() for cell in line.split("|")[1:-1]] for line in part.splitlines() if line.startswith("|")]
         heads, rows = lines[0], [dict(zip(lines[0], line)) for line in lines[2:6]]
@@ -145,8 +144,7 @@ class Test(Case):
         far = SMALL.replace("max_distance_m = 9", "max_distance_m = inf").replace("= 6\n", "= 1\n")
         self.ssrlab("run", self.write("far.toml", far), "-o", self.path("far"))
         self.ssrlab("plot", self.path("far"))
-        with open(self.path("far/report.html"), encoding="utf-8") as file:
-            self.assertIn('"inf"', file.read())
+        self.assertIn('"inf"', self.text("far/report.html"))
 
     def test_commands_of_the_report_measure_the_run_again(self):
         self.report()

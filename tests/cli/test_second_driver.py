@@ -52,8 +52,7 @@ class Test(Case):
         self.second("run", os.path.join(SOURCE, "experiments", "smoke.toml"), "-o", "out")
         rows = self.rows()
         self.assertTrue(all(row["outcome"] == "ok" for row in rows), [row["message"] for row in rows])
-        with open(self.path("out/environment.json"), encoding="utf-8") as file:
-            self.assertIn("plain buffers", file.read())
+        self.assertIn("plain buffers", self.text("out/environment.json"))
 
     def test_without_scene_truth_where_it_draws_another_scene(self):
         spec = self.write("s.toml", SPEC)

@@ -1,5 +1,4 @@
 """Experiments of several frames: rows, the summary, and runs that begin in the middle of a sequence."""
-import csv
 import os
 
 from support import Case, main
@@ -41,14 +40,12 @@ pictures     = false
 
 
 class Test(Case):
-    def summary(self, folder="out"):
-        with open(self.path(f"{folder}/sequence_summary.csv"), encoding="utf-8", newline="") as file:
-            return list(csv.DictReader(file))
+    def summary(self):
+        return self.rows(table="sequence_summary.csv")
 
     def counts(self, folder="out"):
         """What does not depend on time, by run."""
-        with open(self.path(f"{folder}/results.csv"), encoding="utf-8", newline="") as file:
-            return {row["run_id"]: [row[name] for name in COUNTED] for row in csv.DictReader(file)}
+        return {row["run_id"]: [row[name] for name in COUNTED] for row in self.rows(folder)}
 
     def test_flips_under_jitter(self):
         self.ssrlab("run", self.write("jitter.toml", JITTER), "-o", "out")
@@ -72,10 +69,7 @@ class Test(Case):
         self.assertEqual(self.counts("alone"), {middle: whole[middle]})
         self.assertFalse(os.path.exists(self.path("alone/sequence_summary.csv")), "one frame is no sequence")
         # As if it had been killed after its seventh row.
-        with open(self.path("out/results.csv"), "rb") as file:
-            lines = file.read().split(b"\r\n")
-        with open(self.path("out/results.csv"), "wb") as file:
-            file.write(b"\r\n".join(lines[:8]) + b"\r\n")
+        self.keep_lines("out/results.csv", 8)
         os.remove(self.path("out/sequence_summary.csv"))
         self.ssrlab("run", spec, "-o", "out", "--resume")
         self.assertEqual(self.counts(), whole)

@@ -56,8 +56,7 @@ class Test(Case):
         written = sorted(os.listdir(self.path("code")))
         self.assertEqual(len(written), len(rows) - 2)
         trace = [name for name in written if name.endswith("linear_trace.comp.s")]
-        with open(os.path.join(self.path("code"), trace[0]), encoding="utf-8") as file:
-            self.assertIn("s_endpgm", file.read())
+        self.assertIn("s_endpgm", self.text(f"code/{trace[0]}"))
 
     def test_settings_and_other_chips(self):
         self.need_amd()

@@ -44,8 +44,7 @@ class Test(Case):
         self.assert_complete(list(merged.values()), SWEEP_ROWS)
         passes = [[{name: one[name] for name in ("run_id", "pass", "ran", "reason")} for one in self.rows(folder, "passes.csv")] for folder in ("whole", "out")]
         self.assertEqual(*(sorted(one, key=lambda line: (line["run_id"], line["pass"])) for one in passes))
-        with open(self.path("out/environment.json"), encoding="utf-8") as file:
-            self.assertEqual(json.load(file)["merged_from"], parts)
+        self.assertEqual(json.loads(self.text("out/environment.json"))["merged_from"], parts)
         # As if one program had written it.
         self.ssrlab("run", spec, "-o", "out", "--resume", says=[f"{SWEEP_ROWS} rows, 0 written now"])
         self.ssrlab("plot", "out")
@@ -63,8 +62,7 @@ class Test(Case):
         self.assertEqual([len(self.rows(part)) for part in parts], [3, 3, 0])
         self.assertEqual([{row["view"] for row in self.rows(part)} for part in parts], [{"truck"}, {"pan"}, set()])
         self.ssrlab("merge", *parts, "-o", "out", says=["6 rows of 3 folders"])
-        with open(self.path("out/sequence_summary.csv"), encoding="utf-8") as file:
-            self.assertEqual(len(file.read().splitlines()), 1 + 2)
+        self.assertEqual(len(self.text("out/sequence_summary.csv").splitlines()), 1 + 2)
 
     def test_what_does_not_belong_together_is_refused(self):
         spec  = self.write("s.toml", SWEEP)

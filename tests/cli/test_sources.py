@@ -1,5 +1,4 @@
 """Answers beyond the frame from the command line: the table, the file in long form, the picture, and what is refused."""
-import csv
 import os
 import re
 
@@ -27,13 +26,9 @@ SOURCES = ("sources", "builtin:corridor", "--size", "96x54", "-p", "surface=plan
 
 
 class Test(Case):
-    def read(self, name):
-        with open(self.path(name), newline="") as file:
-            return list(csv.DictReader(file))
-
     def test_writes_a_row_for_each_source_of_each_list(self):
         self.ssrlab(*SOURCES, "--sources", "frame,wider:margin=0.5,world", "--sources", "world", "-o", "sources.csv", says=["frame", "wider", "world"])
-        rows = self.read("sources.csv")
+        rows = self.rows("", "sources.csv")
         self.assertEqual([row["source"] for row in rows], ["frame", "wider:margin=0.5", "world", "world"])
         self.assertEqual([row["place"] for row in rows], ["0", "1", "2", "0"])
         frame, wider, world, alone = rows
@@ -49,7 +44,7 @@ class Test(Case):
             self.assertEqual(classes, int(row["meeting"]))
         # A second command appends.
         self.ssrlab(*SOURCES, "--sources", "frame", "-o", "sources.csv")
-        self.assertEqual(len(self.read("sources.csv")), 5)
+        self.assertEqual(len(self.rows("", "sources.csv")), 5)
 
     def measured_by_auto(self, *command):
         """The lists that auto measured, the one that it took first: (text, ms, F1 in %)."""
@@ -63,7 +58,7 @@ class Test(Case):
         lists, over = self.measured_by_auto(*SOURCES, "--sources", "auto:budget_ms=0.001", "-o", "auto.csv")
         self.assertTrue(over)
         self.assertEqual(lists[0][1], min(ms for _, ms, _ in lists))
-        rows = self.read("auto.csv")
+        rows = self.rows("", "auto.csv")
         self.assertEqual(",".join(row["source"] for row in rows), lists[0][0])
         self.assertGreater(float(rows[0]["choosing_ms"]), 0)
         lists, over = self.measured_by_auto("render", "builtin:corridor", "-t", "hiz", "--size", "96x54", "--sources", "auto:share=1000", "-o", "auto.png")
@@ -80,7 +75,7 @@ class Test(Case):
         lists = [row["sources"] for row in rows]
         self.assertEqual(sorted(lists), ["frame,wider:margin=0.5,world", "world"])
         self.ssrlab(*SOURCES, *(word for one in lists for word in ("--sources", one)), "-o", "sources.csv")
-        said = self.read("sources.csv")
+        said = self.rows("", "sources.csv")
         self.assertEqual([row["run_id"] for row in asked], [row["run_id"] for row in rows for _ in row["sources"].split(",")])
         same = [name for name in asked[0] if name != "run_id" and not name.endswith("_ms")]
         self.assertGreater(len(same), 25)

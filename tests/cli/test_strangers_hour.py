@@ -3,14 +3,13 @@ import os
 import re
 import subprocess
 
-from support import HANGS_S, PROGRAM, SOURCE, Case, main
+from support import HANGS_S, PROGRAM, SOURCE, Case, main, read
 
 
 class Test(Case):
     def follow(self, page):
         """Writes the page's files and runs its commands in one folder; returns what they printed."""
-        with open(os.path.join(SOURCE, "docs", page), encoding="utf-8") as file:
-            blocks = re.findall(r"^```(\w+)\n(.*?)^```", file.read(), re.S | re.M)
+        blocks = re.findall(r"^```(\w+)\n(.*?)^```", read("docs", page), re.S | re.M)
         self.assertGreater(len(blocks), 1)
         environment = dict(self.environment, PATH=os.path.dirname(PROGRAM) + ":/usr/bin:/bin", SSRLAB_SOURCE=SOURCE, MPLBACKEND="Agg")
         printed = ""
@@ -28,8 +27,7 @@ class Test(Case):
             name, appended = re.fullmatch(r"(?:#|//) (\S+\.\w+)(, appended)?", first).groups()
             before = ""
             if appended:
-                with open(self.path(name), encoding="utf-8") as file:
-                    before = file.read()
+                before = self.text(name)
             self.write(name, before + rest)
         return printed
 
@@ -66,16 +64,13 @@ class Test(Case):
         self.assertEqual({row["stride_px"] for row in rows if row["technique"] == "strides"}, {"2", "8"})
 
     def test_the_tutorial_s_technique_is_the_one_that_new_technique_writes(self):
-        with open(os.path.join(SOURCE, "docs/tutorials/own_technique.md"), encoding="utf-8") as file:
-            trace, = re.findall(r"// mine/strides/trace.glsl\n(.*?)```", file.read(), re.S)
+        trace, = re.findall(r"// mine/strides/trace.glsl\n(.*?)```", read("docs/tutorials/own_technique.md"), re.S)
         self.ssrlab("new-technique", "mine/strides")
-        with open(self.path("mine/strides/trace.glsl"), encoding="utf-8") as file:
-            self.assertEqual(file.read().split("\n", 1)[1], trace)
+        self.assertEqual(self.text("mine/strides/trace.glsl").split("\n", 1)[1], trace)
 
     def test_paper_figure(self):
         self.follow("tutorials/paper_figure.md")
-        with open(self.path("figure.pdf"), "rb") as file:
-            self.assertEqual(file.read(4), b"%PDF")
+        self.assertEqual(self.bytes("figure.pdf")[:4], b"%PDF")
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@ import os
 import subprocess
 import sys
 
-from support import HANGS_S, PROGRAM, SOURCE, Case, main
+from support import HANGS_S, PROGRAM, SOURCE, Case, main, read
 
 sys.path[:0] = [os.path.join(SOURCE, *path) for path in (("tests", "stress"), ("tests", "fuzz"), ("experiments",))]
 import hostile  # noqa: E402
@@ -27,8 +27,7 @@ class Test(Case):
     def test_kills(self):
         table = self.path("stress.md")
         self.assertIn("5 signals", self.stress("kills", "--times", "5", "-o", table))
-        with open(table, encoding="utf-8") as file:
-            self.assertRegex(file.read(), r"\| `tests/stress/run kills --times 5 .*0 promises broken \|")
+        self.assertRegex(read(table), r"\| `tests/stress/run kills --times 5 .*0 promises broken \|")
 
     def test_a_program_that_forgets_is_found(self):
         forgetful = self.program('for file in "$5"/results.csv; do [ -e "$file" ] && sed -i 2d "$file"; done')

@@ -4,6 +4,7 @@ import math
 import os
 import re
 import resource
+import shutil
 import signal
 import statistics
 import time
@@ -51,8 +52,7 @@ class Test(Case):
         self.assertTrue(any(name.endswith(".png") for name in plots) and any(name.endswith(".svg") for name in plots))
         for name in ("report.html", "report.md", "summary.csv", "environment.json"):
             self.assertGreater(os.path.getsize(self.path("out/" + name)), 0)
-        with open(self.path("out/environment.json"), encoding="utf-8") as file:
-            environment = json.load(file)
+        environment = json.loads(self.text("out/environment.json"))
         # Times of a software device are those of a processor.
         self.assertEqual("processor" in environment["identity"], environment["device_type"] == "Cpu")
 
@@ -90,10 +90,8 @@ class Test(Case):
             self.assertTrue(all(one["reason"] for one in shown), shown)
             for one in shown:
                 self.assertEqual(one["ms_median"] and float(one["ms_median"]), text(statistics.median(passes[one["pass"]])) if one["ran"] == "true" else "")
-        with open(self.path("out/samples.csv"), encoding="utf-8") as file:
-            self.assertEqual(file.readline().strip(), "run_id,round,pass,ms,cpu_ms")
-        with open(self.path("out/environment.json"), encoding="utf-8") as file:
-            self.assertEqual(json.load(file)["samples"], "samples.csv")
+        self.assertEqual(self.text("out/samples.csv").splitlines()[0], "run_id,round,pass,ms,cpu_ms")
+        self.assertEqual(json.loads(self.text("out/environment.json"))["samples"], "samples.csv")
 
     def test_runs_take_turns_in_rounds(self):
         """The runs of a frame share their rounds, from 0; each run is in a round at most once."""
@@ -104,14 +102,14 @@ class Test(Case):
             rounds = [number for number, _ in samples[row["run_id"]]["frame"]]
             self.assertEqual(rounds, list(range(int(row["repeats"]))))
 
-    def test_lost_samples_are_measured_again(self):
+    def test_what_a_torn_file_lost_is_measured_again(self):
         spec = self.write("s.toml", SWEEP)
         self.ssrlab("run", spec, "-o", "out")
-        os.truncate(self.path("out/samples.csv"), os.path.getsize(self.path("out/samples.csv")) - 40)
-        self.ssrlab("run", spec, "-o", "out", "--resume", says=["1 written now"])
-        self.assert_complete(self.rows(), SWEEP_ROWS)
-        with open(self.path("out/samples.csv"), "w", encoding="utf-8") as file:
-            file.write("run_id,ms\n")
+        for name in ("out/results.csv", "out/samples.csv"):
+            os.truncate(self.path(name), os.path.getsize(self.path(name)) - 40)
+            self.ssrlab("run", spec, "-o", "out", "--resume", says=["1 written now"])
+            self.assert_complete(self.rows(), SWEEP_ROWS)
+        self.write("out/samples.csv", "run_id,ms\n")
         self.refused("run", spec, "-o", "out", "--resume", code=1, says=["samples.csv: damaged"])
 
     def test_search_reaches_its_target(self):
@@ -166,26 +164,20 @@ class Test(Case):
     def test_results_are_not_overwritten(self):
         spec = self.write("s.toml", SWEEP)
         self.ssrlab("run", spec, "-o", "out")
-        with open(self.path("out/results.csv"), "rb") as file:
-            before = file.read()
+        before = self.bytes("out/results.csv")
         self.refused("run", spec, "-o", "out", code=2, says=["already there", "--resume"])
         self.ssrlab("run", spec, "-o", "out", "--resume", says=["0 written now"])
-        with open(self.path("out/results.csv"), "rb") as file:
-            self.assertEqual(file.read(), before)
+        self.assertEqual(self.bytes("out/results.csv"), before)
 
-    def test_killed_and_resumed(self):
+    def test_stopped_and_resumed(self):
+        """At once: nothing is left running that writes on."""
         spec = self.write("s.toml", SWEEP)
-        self.assertEqual(self.stop_in_the_middle(self.start("run", spec, "-o", "out"), signal.SIGKILL), -signal.SIGKILL)
-        self.assertLess(self.whole_rows(), SWEEP_ROWS)
-        self.ssrlab("run", spec, "-o", "out", "--resume")
-        self.assert_complete(self.rows(), SWEEP_ROWS)
-
-    def test_interrupted_and_resumed(self):
-        spec = self.write("s.toml", SWEEP)
-        self.assertEqual(self.stop_in_the_middle(self.start("run", spec, "-o", "out"), signal.SIGINT), 130)
-        self.assertLess(self.whole_rows(), SWEEP_ROWS)
-        self.ssrlab("run", spec, "-o", "out", "--resume")
-        self.assert_complete(self.rows(), SWEEP_ROWS)
+        for which, code in ((signal.SIGKILL, -signal.SIGKILL), (signal.SIGINT, 130)):
+            shutil.rmtree(self.path("out"), ignore_errors=True)
+            self.assertEqual(self.stop_in_the_middle(self.start("run", spec, "-o", "out"), which), code)
+            self.assertLess(self.whole_rows(), SWEEP_ROWS)
+            self.ssrlab("run", spec, "-o", "out", "--resume")
+            self.assert_complete(self.rows(), SWEEP_ROWS)
 
     def test_failed_runs_are_tried_again(self):
         spec = self.write("s.toml", 'views = ["default", "moon"]\n' + SWEEP)
@@ -237,29 +229,17 @@ class Test(Case):
             self.assertFalse({"nan", "-nan", "inf", "-inf"} & {value.lower() for value in row.values()})
         self.ssrlab("plot", "out")
 
-    def test_torn_last_row_is_repaired(self):
+    def test_resume_refuses_other_threads_another_program_and_another_specification(self):
         spec = self.write("s.toml", SWEEP)
         self.ssrlab("run", spec, "-o", "out")
-        os.truncate(self.path("out/results.csv"), os.path.getsize(self.path("out/results.csv")) - 40)
-        self.ssrlab("run", spec, "-o", "out", "--resume", says=["1 written now"])
-        self.assert_complete(self.rows(), SWEEP_ROWS)
-
-    def test_resume_refuses_another_specification(self):
-        spec = self.write("s.toml", SWEEP)
-        self.ssrlab("run", spec, "-o", "out")
-        self.write("s.toml", SWEEP.replace("64]", "128]"))
-        self.refused("run", spec, "-o", "out", "--resume", code=2, says=["cannot be resumed", "specification"])
-
-    def test_resume_refuses_other_threads_and_another_program(self):
-        spec = self.write("s.toml", SWEEP)
-        self.ssrlab("run", spec, "-o", "out")
-        with open(self.path("out/environment.json"), encoding="utf-8") as file:
-            environment = json.load(file)
+        environment = json.loads(self.text("out/environment.json"))
         if environment["device_type"] == "Cpu":
             self.refused("run", spec, "-o", "out", "--resume", code=2, says=["cannot be resumed", "threads"], LP_NUM_THREADS="1")
         environment["identity"]["program"] = "0123456789abcdef"
         self.write("out/environment.json", json.dumps(environment))
         self.refused("run", spec, "-o", "out", "--resume", code=2, says=["cannot be resumed", "program"])
+        self.write("s.toml", SWEEP.replace("64]", "128]"))
+        self.refused("run", spec, "-o", "out", "--resume", code=2, says=["cannot be resumed", "specification"])
 
     def test_second_writer_is_refused(self):
         # Long enough that the first one still writes after the two seconds for which a second one waits.

@@ -5,7 +5,7 @@ import subprocess
 import sys
 import tomllib
 
-from support import SOURCE, Case, main
+from support import SOURCE, Case, main, read
 
 sys.path.insert(0, os.path.join(SOURCE, "experiments"))
 import plots.engines  # noqa: E402
@@ -39,8 +39,7 @@ class Test(Case):
             file.write("\r\n".join([head, changed, *rest]))
         self.assertRegex(self.tables(tree, "--check", code=1), "these differ from the rows: .*/figures.md; write them")
         self.tables(tree)
-        with open(os.path.join(tree, REFERENCE, "figures.md"), encoding="utf-8") as file:
-            self.assertIn("| 4321.5 |", file.read())
+        self.assertIn("| 4321.5 |", read(tree, REFERENCE, "figures.md"))
         # Two rows for one cell.
         with open(rows, "w", encoding="utf-8", newline="") as file:
             file.write("\r\n".join([head, first, first, *rest]))
@@ -48,8 +47,7 @@ class Test(Case):
 
     def test_an_engine_is_shown_by_the_defaults_of_its_manifest(self):
         for engine in plots.engines.ENGINES:
-            with open(os.path.join(SOURCE, "techniques", "rivals", engine.technique, "technique.toml"), "rb") as file:
-                defaults = {name: one["default"] for name, one in tomllib.load(file)["parameters"].items()}
+            defaults = {name: one["default"] for name, one in tomllib.loads(read("techniques", "rivals", engine.technique, "technique.toml"))["parameters"].items()}
             for name in set(engine.default) & set(defaults):
                 if "Lumen" not in engine.name:  # walks as FidelityFX does, with fewer steps
                     self.assertEqual(engine.default[name], defaults[name], f"{name} of {engine.name}")

@@ -5,7 +5,7 @@ import shlex
 import subprocess
 import unittest
 
-from support import HANGS_S, PROGRAM
+from support import HANGS_S, PROGRAM, read
 
 BUILD = os.path.dirname(os.path.dirname(PROGRAM))
 
@@ -33,8 +33,7 @@ class Test(unittest.TestCase):
                               capture_output=True, cwd=BUILD, timeout=HANGS_S)
 
     def test_each_library_sees_what_it_links_and_nothing_else(self):
-        with open(os.path.join(BUILD, "compile_commands.json"), encoding="utf-8") as file:
-            entries = json.load(file)
+        entries = json.loads(read(BUILD, "compile_commands.json"))
         for library, (allowed, forbidden) in WALLS.items():
             words = next(shlex.split(entry["command"]) for entry in entries if f"/framework/{library}/" in entry["file"])
             words = words[1:] if words[0].endswith("ccache") else words

@@ -66,8 +66,7 @@ class Test(Case):
         self.assertEqual([row["outcome"] for row in rows], ["ok"] * 7, rows)
         self.assertTrue(all(float(row["trace_ms_median"]) > 0 for row in rows))
         self.ssrlab("plot", self.path("measured"), says=["7 of 7 rows ok"])
-        with open(self.path("measured/report.md"), encoding="utf-8") as file:
-            self.assertIn("swiftshader", file.read())
+        self.assertIn("swiftshader", self.text("measured/report.md"))
 
         page.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": "Object.defineProperty(navigator, 'gpu', { value: undefined });"})
         page.refresh()
