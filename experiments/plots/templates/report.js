@@ -125,7 +125,7 @@ function draw_curve() {
   const style = getComputedStyle(document.documentElement), text = style.getPropertyValue("--text"), line = style.getPropertyValue("--line");
   const series = points_of(frame, measure, cost), drawn = [...series.values()].flat();
   const axis = (title, values) => ({ type: "logarithmic", min: 0.8 * Math.min(...values), max: 1.25 * Math.max(...values), title: { display: true, text: title, color: text }, grid: { color: line },
-    ticks: { color: text, maxTicksLimit: 9, callback: value => /^[125]/.test(String(value).replace(/^[0.]+/, "")) ? short(value) : null } });
+    ticks: { color: text, maxTicksLimit: 9, callback: value => /^[125]0*$/.test(String(value).replace(/^[0.]+/, "")) ? short(value) : null } });
   if (chart) chart.destroy();
   chart = new Chart(get("#curve-canvas"), {
     type: "scatter",
