@@ -61,8 +61,11 @@ std::optional<glm::dvec3> best_place(const Occupancy& grid, std::span<const glm:
     std::optional<glm::dvec3> best;
     size_t                    most = 0;
     for (const glm::dvec3& place : places) {
-        const auto seen = static_cast<size_t>(
-            std::ranges::count_if(targets, [&](const Target& target) { return probably_sees(grid, place, target); }));
+        size_t seen = 0, left = targets.size();
+        for (const Target& target : targets) {
+            if (seen + left-- <= most) break; // it cannot become the best
+            seen += probably_sees(grid, place, target);
+        }
         if (seen <= most) continue;
         most = seen;
         best = place;
