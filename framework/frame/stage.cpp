@@ -8,10 +8,12 @@
 namespace ssrlab {
 namespace {
 
-/// Whether the pass `missed_rays` may run, which traces the scene's triangles.
+/// Whether the pass `missed_rays` may run, which traces the scene's triangles. Their hierarchy is built for every frame
+/// of a moving scene only if the settings insist.
 bool asks_for_world(Stage& stage, const Lab& lab, const ParameterValues& passes)
 {
-    return stage.uploaded && choice<PassSet>(passes) == PassSet::all && asks_triangles(passes) &&
+    const bool too_costly = choice<MissLight>(passes) == MissLight::rooms && anything_moves(stage.first);
+    return stage.uploaded && !too_costly && choice<PassSet>(passes) == PassSet::all && asks_triangles(passes) &&
            count_gbuffer(stage.gpu, *lab.gbuffer, lab.settings).reflecting_pixels > 0;
 }
 

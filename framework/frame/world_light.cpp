@@ -6,7 +6,6 @@ namespace {
 /// shaders/world/shade.comp, scalar layout.
 struct ShadePush {
     glm::vec3 ambient;
-    uint32_t  ray_count;
     int32_t   light_count;
     float     dielectric_min_f0;
     float     dielectric_max_roughness;
@@ -16,10 +15,11 @@ struct ShadePush {
 } // namespace
 
 ComputePass make_shade_pass(Gpu& gpu, const World& world, const GpuScene& scene, const SampledTable& dfg_table,
-                            const Buffer& rays, const Buffer& hits, const Buffer& light, const Buffer& next)
+                            const WorldRayList& list, const Buffer& hits, const Buffer& light, const Buffer& next)
 {
     Bindings bindings = material_bindings(world);
-    bindings.insert({{"WorldRays", rays},
+    bindings.insert({{"WorldRays", list.rays},
+                     {"WorldLaunch", list.launch},
                      {"WorldHits", hits},
                      {"WorldLight", light},
                      {"NextRays", next},
@@ -31,13 +31,12 @@ ComputePass make_shade_pass(Gpu& gpu, const World& world, const GpuScene& scene,
 }
 
 void record_shade(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const GpuScene& scene,
-                  const TraceSettings& trace, bool follows, uint32_t ray_count)
+                  const TraceSettings& trace, bool follows, const Buffer& launch)
 {
     push(commands, pass,
-         ShadePush{scene.ambient, ray_count, static_cast<int32_t>(scene.light_count),
-                   static_cast<float>(trace.dielectric_min_f0), static_cast<float>(trace.dielectric_max_roughness),
-                   follows ? 1U : 0U});
-    dispatch(commands, pass, groups_for(ray_count));
+         ShadePush{scene.ambient, static_cast<int32_t>(scene.light_count), static_cast<float>(trace.dielectric_min_f0),
+                   static_cast<float>(trace.dielectric_max_roughness), follows ? 1U : 0U});
+    dispatch_indirect(commands, pass, launch);
 }
 
 WorldLight shade_world(Gpu& gpu, const World& world, const GpuScene& scene, const SampledTable& dfg_table,
@@ -50,17 +49,18 @@ WorldLight shade_world(Gpu& gpu, const World& world, const GpuScene& scene, cons
         result.next.resize(rays.size());
         return result;
     }
-    const Buffer      listed = make_buffer_with<WorldRay>(gpu, rays), found = make_buffer_with<WorldHit>(gpu, hits);
-    const Buffer      light      = make_buffer(gpu, rays.size() * sizeof(glm::vec3));
-    const Buffer      next       = make_buffer(gpu, rays.size() * sizeof(NextRay));
-    const ComputePass pass       = make_shade_pass(gpu, world, scene, dfg_table, listed, found, light, next);
-    const Timestamps  timestamps = make_timestamps(gpu, 2);
+    const WorldRayList list       = make_ray_list(gpu, rays);
+    const Buffer       found      = make_buffer_with<WorldHit>(gpu, hits);
+    const Buffer       light      = make_buffer(gpu, rays.size() * sizeof(glm::vec3));
+    const Buffer       next       = make_buffer(gpu, rays.size() * sizeof(NextRay));
+    const ComputePass  pass       = make_shade_pass(gpu, world, scene, dfg_table, list, found, light, next);
+    const Timestamps   timestamps = make_timestamps(gpu, 2);
     for (int turn : {0, 1}) { // a driver may compile a pipeline when it first runs
         static_cast<void>(turn);
         submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
             barrier(commands);
             write_timestamp(commands, timestamps, 0);
-            record_shade(commands, pass, scene, trace, follows, static_cast<uint32_t>(rays.size()));
+            record_shade(commands, pass, scene, trace, follows, list.launch);
             barrier(commands);
             write_timestamp(commands, timestamps, 1);
         });

@@ -19,11 +19,12 @@ struct WorldLight {
     double                 ms = 0;
 };
 
-/// The pass that makes the light and the next ray of each ray and its hit; groups_for() says of how many groups.
+/// The pass that makes the light and the next ray of each ray of a list and its hit.
 ComputePass make_shade_pass(Gpu& gpu, const World& world, const GpuScene& scene, const SampledTable& dfg_table,
-                            const Buffer& rays, const Buffer& hits, const Buffer& light, const Buffer& next);
-void        record_shade(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const GpuScene& scene,
-                         const TraceSettings& trace, bool follows, uint32_t ray_count);
+                            const WorldRayList& list, const Buffer& hits, const Buffer& light, const Buffer& next);
+/// `launch`: of the list.
+void record_shade(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const GpuScene& scene,
+                  const TraceSettings& trace, bool follows, const Buffer& launch);
 
 /// `trace`: says which surfaces reflect. `follows`: false: none does, and metal's ambient light stands in for what it
 /// reflects.

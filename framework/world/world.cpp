@@ -2,6 +2,8 @@
 
 #include "shared.h"
 
+#include <algorithm>
+
 namespace ssrlab {
 namespace {
 
@@ -74,7 +76,26 @@ template <typename T> Buffer make_texels(Gpu& gpu, const std::vector<T>& values)
 
 } // namespace
 
-glm::uvec3 groups_for(size_t rays) { return groups_in_rows(rays, RAYS_PER_GROUP, LAUNCH_ROW_GROUPS); }
+ListLaunch launch_over(size_t items)
+{
+    return {groups_in_rows(items, RAYS_PER_GROUP, LAUNCH_ROW_GROUPS), static_cast<uint32_t>(items)};
+}
+
+WorldRayList make_ray_list(Gpu& gpu, std::span<const WorldRay> rays)
+{
+    const ListLaunch launch = launch_over(rays.size());
+    return {make_buffer_with<WorldRay>(gpu, rays), make_buffer_with<ListLaunch>(gpu, std::span(&launch, 1))};
+}
+
+WorldRayList make_ray_list(Gpu& gpu, size_t capacity)
+{
+    return {make_buffer(gpu, capacity * sizeof(WorldRay)), make_buffer(gpu, sizeof(ListLaunch))};
+}
+
+void record_empty(const vk::raii::CommandBuffer& commands, const Buffer& launch)
+{
+    commands.updateBuffer<ListLaunch>(*launch.buffer, 0, ListLaunch{});
+}
 
 Bindings material_bindings(const World& world)
 {
@@ -92,7 +113,8 @@ WorldPtr upload_world(Gpu& gpu, const Scene& scene)
     world->indices   = make_buffer_with<uint32_t>(gpu, scene.indices);
     std::vector<MaterialBlock> blocks;
     for (const Material& material : scene.materials) blocks.push_back(to_block(material));
-    world->materials = make_buffer_with<MaterialBlock>(gpu, blocks);
+    world->alpha_masks = std::ranges::any_of(scene.materials, &Material::alpha_mask);
+    world->materials   = make_buffer_with<MaterialBlock>(gpu, blocks);
     world->bytes = world->tree.nodes.size() * sizeof(TreeNode) + world->tree.triangles.size() * sizeof(TreeTriangle) +
                    scene.vertices.size() * sizeof(Vertex) + scene.indices.size() * sizeof(uint32_t) +
                    blocks.size() * sizeof(MaterialBlock);
@@ -102,24 +124,25 @@ WorldPtr upload_world(Gpu& gpu, const Scene& scene)
 
 namespace {
 
-ComputePass make_walk(Gpu& gpu, const World& world, const Buffer& rays, const Buffer& hits, const Buffer* visits)
+ComputePass make_walk(Gpu& gpu, const World& world, const WorldRayList& list, const Buffer& hits, const Buffer* visits)
 {
     std::map<std::string, std::string> defines;
     Bindings                           bindings = material_bindings(world);
-    bindings.insert({{"Nodes", world.nodes}, {"WorldRays", rays}, {"WorldHits", hits}});
+    bindings.insert(
+        {{"Nodes", world.nodes}, {"WorldRays", list.rays}, {"WorldLaunch", list.launch}, {"WorldHits", hits}});
+    if (world.alpha_masks) defines.emplace("ALPHA_MASKS", "1");
     if (visits != nullptr) {
         defines.emplace("COUNT_WORK", "1");
         bindings.insert({"NodeVisits", *visits});
     }
-    const Shader shader = compile_shader(gpu, {.file = "world/walk.comp", .defines = defines});
-    return make_compute_pass(gpu, shader, bindings, {}, sizeof(uint32_t));
+    return make_compute_pass(gpu, compile_shader(gpu, {.file = "world/walk.comp", .defines = defines}), bindings);
 }
 
 } // namespace
 
-ComputePass make_walk_pass(Gpu& gpu, const World& world, const Buffer& rays, const Buffer& hits)
+ComputePass make_walk_pass(Gpu& gpu, const World& world, const WorldRayList& list, const Buffer& hits)
 {
-    return make_walk(gpu, world, rays, hits, nullptr);
+    return make_walk(gpu, world, list, hits, nullptr);
 }
 
 WorldTrace trace_world(Gpu& gpu, const World& world, std::span<const WorldRay> rays)
@@ -127,17 +150,16 @@ WorldTrace trace_world(Gpu& gpu, const World& world, std::span<const WorldRay> r
     WorldTrace trace;
     trace.hits.resize(rays.size());
     if (rays.empty() || world.tree.nodes.empty()) return trace;
-    const Buffer     listed     = make_buffer_with<WorldRay>(gpu, rays);
-    const Buffer     hits       = make_buffer(gpu, rays.size() * sizeof(WorldHit));
-    const Buffer     visits     = make_buffer(gpu, rays.size() * sizeof(uint32_t));
-    const Timestamps timestamps = make_timestamps(gpu, 2);
-    const auto       walk       = [&](const Buffer* counted) {
-        const ComputePass pass = make_walk(gpu, world, listed, hits, counted);
+    const WorldRayList list       = make_ray_list(gpu, rays);
+    const Buffer       hits       = make_buffer(gpu, rays.size() * sizeof(WorldHit));
+    const Buffer       visits     = make_buffer(gpu, rays.size() * sizeof(uint32_t));
+    const Timestamps   timestamps = make_timestamps(gpu, 2);
+    const auto         walk       = [&](const Buffer* counted) {
+        const ComputePass pass = make_walk(gpu, world, list, hits, counted);
         submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
             barrier(commands);
-            push(commands, pass, static_cast<uint32_t>(rays.size()));
             write_timestamp(commands, timestamps, 0);
-            dispatch(commands, pass, groups_for(rays.size()));
+            dispatch_indirect(commands, pass, list.launch);
             barrier(commands);
             write_timestamp(commands, timestamps, 1);
         });

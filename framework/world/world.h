@@ -30,7 +30,8 @@ struct WorldHit {
 struct World {
     TriangleTree tree;
     Buffer       nodes, triangles, vertices, indices, materials, textures, texels;
-    uint64_t     bytes = 0; // of these buffers
+    uint64_t     bytes       = 0;     // of these buffers
+    bool         alpha_masks = false; // some material has one
 };
 using WorldPtr = std::shared_ptr<const World>;
 
@@ -38,8 +39,23 @@ using WorldPtr = std::shared_ptr<const World>;
 /// build_triangle_tree().
 WorldPtr upload_world(Gpu& gpu, const Scene& scene);
 
-/// Workgroups of a shader with RAYS_PER_GROUP rays in each.
-glm::uvec3 groups_for(size_t rays);
+/// The launch of a shader over a list, with RAYS_PER_GROUP of it to a workgroup, and the list's length. On the device,
+/// a buffer that shaders append by (shaders/world/append.glsl).
+struct ListLaunch {
+    glm::uvec3 groups{0, 0, 1};
+    uint32_t   count = 0;
+};
+ListLaunch launch_over(size_t items);
+
+/// Rays on the device, as many as `launch` says.
+struct WorldRayList {
+    Buffer rays, launch;
+};
+WorldRayList make_ray_list(Gpu& gpu, std::span<const WorldRay> rays);
+/// Makes an empty one with room for so many.
+WorldRayList make_ray_list(Gpu& gpu, size_t capacity);
+void         record_empty(const vk::raii::CommandBuffer& commands, const Buffer& launch);
+
 /// Of the distance from the eye to a ray's origin: what the ray meets nearer than this is the surface that it leaves, for
 /// the origin's depth is a rounded float.
 inline constexpr double world_start_share = 1e-4;
@@ -47,8 +63,8 @@ inline constexpr double world_start_share = 1e-4;
 /// What shaders/world/materials.glsl reads, and the triangles.
 Bindings material_bindings(const World& world);
 
-/// The pass that finds the first triangle of each ray of a list, whose length it is pushed as a uint32_t.
-ComputePass make_walk_pass(Gpu& gpu, const World& world, const Buffer& rays, const Buffer& hits);
+/// The pass that finds the first triangle of each ray of a list, to be dispatched by its launch.
+ComputePass make_walk_pass(Gpu& gpu, const World& world, const WorldRayList& list, const Buffer& hits);
 
 struct WorldTrace {
     std::vector<WorldHit> hits;            // of each ray

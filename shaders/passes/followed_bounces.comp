@@ -1,17 +1,20 @@
-// Lists the rays that go on from what followed rays met, where that reflects. Elsewhere a ray that meets nothing.
+// Lists the rays that go on from what followed rays met, where that reflects.
 #include "layout/workgroups.glsl"
 #include "world/rays.glsl"
+#include "world/append.glsl"
 
 layout(local_size_x = RAYS_PER_GROUP) in;
+layout(set = 0, binding = 50, scalar) readonly buffer MetLaunch { ListLaunch launch; };
 layout(set = 0, binding = 54, scalar) readonly buffer NextRays { NextRay next[]; };
 layout(set = 0, binding = 57, scalar) writeonly buffer WorldRays { WorldRay onward[]; };
-layout(push_constant) uniform Push { uint count; };
+layout(set = 0, binding = 58, scalar) writeonly buffer OnwardSources { uint sources[]; }; // places of the rays before
 
 void main()
 {
-    uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    if (index >= count) return;
-    WorldRay ray = next[index].ray;
-    if (next[index].weight == vec3(0)) ray.t_max = -1.0;
-    onward[index] = ray;
+    uint number  = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
+    bool goes_on = number < launch.count && next[number].weight != vec3(0);
+    uint place   = append_place(goes_on);
+    if (!goes_on) return;
+    onward[place]  = next[number].ray;
+    sources[place] = number;
 }

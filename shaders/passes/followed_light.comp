@@ -4,18 +4,20 @@
 #include "passes/environment_lobe.glsl"
 
 layout(local_size_x = RAYS_PER_GROUP) in;
+layout(set = 0, binding = 50, scalar) readonly buffer OnwardLaunch { ListLaunch launch; };
 layout(set = 0, binding = 54, scalar) readonly buffer NextRays { NextRay next[]; };
+layout(set = 0, binding = 57, scalar) readonly buffer OnwardSources { uint sources[]; };
 layout(set = 0, binding = 58, scalar) readonly buffer WorldHits { WorldHit met[]; };
 layout(set = 0, binding = 59, scalar) buffer WorldLight { vec3 light[]; };
 layout(set = 0, binding = 60, scalar) readonly buffer OnwardLight { vec3 onward_light[]; };
-layout(push_constant) uniform Push { uint count; };
 
 void main()
 {
-    uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    if (index >= count || next[index].weight == vec3(0)) return;
-    vec3 along_vs  = mat3(world_to_view) * next[index].ray.direction_ws;
-    bool meets     = met[index].triangle < WALK_UNFINISHED;
-    vec3 reflected = meets ? onward_light[index] : environment_lobe(along_vs, along_vs, next[index].ray.roughness);
-    light[index] += next[index].weight * reflected;
+    uint number = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
+    if (number >= launch.count) return;
+    NextRay ray    = next[sources[number]];
+    vec3 along_vs  = mat3(world_to_view) * ray.ray.direction_ws;
+    bool meets     = met[number].triangle < WALK_UNFINISHED;
+    vec3 reflected = meets ? onward_light[number] : environment_lobe(along_vs, along_vs, ray.ray.roughness);
+    light[sources[number]] += ray.weight * reflected;
 }

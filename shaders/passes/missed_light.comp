@@ -3,10 +3,14 @@
 // most of them met nothing, the environment stays.
 #include "passes/missed_rays.glsl"
 
+layout(set = 0, binding = 50, scalar) readonly buffer MissedLaunch { ListLaunch launch; };
+layout(set = 0, binding = 54, scalar) readonly buffer MissedRays { uint missed_rays[]; };
 layout(set = 0, binding = 55, scalar) writeonly buffer MissedLights { GivenLight lights[]; };
 layout(set = 0, binding = 56, scalar) readonly buffer MissRanks { uint ranks[]; };
 layout(set = 0, binding = 57, scalar) readonly buffer WorldRays { WorldRay followed[]; };
 layout(set = 0, binding = 58, scalar) readonly buffer WorldHits { WorldHit met[]; };
+layout(set = 0, binding = 51, scalar) readonly buffer FollowedPlaces { uint places[]; };
+layout(set = 0, binding = 52, scalar) readonly buffer MetPlaces { uint met_places[]; };
 layout(set = 0, binding = 59, scalar) readonly buffer WorldLight { vec3 met_light[]; };
 
 #define nothing_m uintBitsToFloat(0x7F800000u) // infinity
@@ -24,15 +28,17 @@ GivenLight light_about(ivec2 pixel, WorldRay own)
         ivec2 corner = ivec2(i & 1, i >> 1);
         ivec2 block  = ivec2(floor(place)) + corner;
         if (any(lessThan(block, ivec2(0))) || any(greaterThanEqual(block, miss_blocks()))) continue;
-        int k = block.y * miss_blocks().x + block.x;
-        if (ranks[k] == no_rank || met[k].triangle == WALK_UNFINISHED) continue;
+        int at = block.y * miss_blocks().x + block.x;
+        if (ranks[at] == no_rank) continue;
+        uint k = places[at];
+        if (met[k].triangle == WALK_UNFINISHED) continue;
         bool  meets   = met[k].triangle != NO_TRIANGLE;
         vec3  to_met  = followed[k].origin_ws + met[k].t * followed[k].direction_ws - own.origin_ws;
         vec3  off     = (meets ? normalize(to_met) : followed[k].direction_ws) - own.direction_ws;
         vec2  shares  = mix(1.0 - part, part, vec2(corner));
         float weight  = shares.x * shares.y / (alike + dot(off, off));
         if (!(weight > 0.0)) continue;
-        if (meets) sum += weight * vec4(met_light[k], length(to_met));
+        if (meets) sum += weight * vec4(met_light[met_places[k]], length(to_met));
         closed += meets ? weight : 0.0;
         open += meets ? 0.0 : weight;
     }
@@ -41,10 +47,8 @@ GivenLight light_about(ivec2 pixel, WorldRay own)
 
 void main()
 {
-    uint     index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    if (index >= ray_count) return;
-    WorldRay missed;
-    GivenLight light = given_light(index);
-    if (is_missed(index, missed)) light = light_about(unpack_pixel(ray_pixel(index)), missed);
-    lights[index] = light;
+    uint number = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
+    if (number >= launch.count) return;
+    uint index    = missed_rays[number];
+    lights[index] = light_about(unpack_pixel(ray_pixel(index)), missed_ray(index));
 }

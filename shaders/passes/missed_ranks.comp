@@ -1,13 +1,20 @@
-// Which of a block's missed rays is followed: the one of the least rank.
+// Lists the missed rays, and finds which ray of each block is followed: the one of the least rank. Other rays keep what
+// they have.
 #include "passes/missed_rays.glsl"
+#include "world/append.glsl"
 
+layout(set = 0, binding = 54, scalar) writeonly buffer MissedRays { uint missed_rays[]; };
+layout(set = 0, binding = 55, scalar) writeonly buffer MissedLights { GivenLight lights[]; };
 layout(set = 0, binding = 56, scalar) buffer MissRanks { uint ranks[]; };
 
 void main()
 {
-    uint     index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    WorldRay missed;
-    if (!is_missed(index, missed)) return;
-    ivec2 pixel = unpack_pixel(ray_pixel(index));
+    uint index  = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
+    bool listed = index < ray_count, missed = listed && is_missed(index);
+    uint place  = append_place(missed);
+    if (listed) lights[index] = given_light(index);
+    if (!missed) return;
+    missed_rays[place] = index;
+    ivec2 pixel        = unpack_pixel(ray_pixel(index));
     atomicMin(ranks[miss_block(pixel)], miss_rank(pixel, index % uint(rays_per_pixel)));
 }

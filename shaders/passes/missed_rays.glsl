@@ -28,21 +28,25 @@ uint miss_rank(ivec2 pixel, uint ray)
     return (random & 0x7FFFF000u) | (place.y * MISS_BLOCK_PX + place.x) << 8 | ray;
 }
 
-// Did this ray of the list find nothing? `missed`: the ray in world space. A ray that ends where it begins has no
-// direction, and does not count.
-bool is_missed(uint index, out WorldRay missed)
+vec3 direction_vs(PackedRay ray) { return normalize(px_to_direction_vs(ray.origin, ray.origin + ray.delta)); }
+
+// Did this ray of the list find nothing? One that ends where it begins has no direction, and does not count.
+bool is_missed(uint index)
 {
-    missed = WorldRay(vec3(0), 0.0, vec3(0), 0.0, 0.0);
-    if (index >= ray_count || given_light(index).distance_m >= 0.0 || shows_surface(packed_hit(index))) return false;
-    ivec2 pixel = unpack_pixel(ray_pixel(index));
-    if (!reflects(pixel)) return false;
-    PackedRay ray     = packed_ray(index);
-    vec3 origin_vs    = px_to_vs(ray.origin);
-    vec3 direction_vs = normalize(px_to_direction_vs(ray.origin, ray.origin + ray.delta));
-    if (!(dot(direction_vs, direction_vs) > 0.5)) return false;
-    mat3  view_to_world = transpose(mat3(world_to_view));
-    float eye_m         = orthographic != 0 ? -origin_vs.z : length(origin_vs);
-    missed = WorldRay(view_to_world * (origin_vs - world_to_view[3].xyz), MISS_START_SHARE * eye_m,
-                      view_to_world * direction_vs, min(max_distance_m, 1e37), imageLoad(normal_image, pixel).w);
-    return true;
+    PackedRay ray = packed_ray(index);
+    vec3 along_vs = direction_vs(ray);
+    return given_light(index).distance_m < 0.0 && !shows_surface(packed_hit(index)) && dot(along_vs, along_vs) > 0.5 &&
+           reflects(unpack_pixel(ray.pixel));
+}
+
+// In world space.
+WorldRay missed_ray(uint index)
+{
+    PackedRay ray      = packed_ray(index);
+    vec3 origin_vs     = px_to_vs(ray.origin);
+    mat3 view_to_world = transpose(mat3(world_to_view));
+    float eye_m        = orthographic != 0 ? -origin_vs.z : length(origin_vs);
+    return WorldRay(view_to_world * (origin_vs - world_to_view[3].xyz), MISS_START_SHARE * eye_m,
+                    view_to_world * direction_vs(ray), min(max_distance_m, 1e37),
+                    imageLoad(normal_image, unpack_pixel(ray.pixel)).w);
 }

@@ -1,17 +1,11 @@
 // The sizes of the launches that work on a list of rays.
-#include "layout/numbers.h"
+#include "layout/launch_of.glsl"
 #include "layout/frame_shared.h"
 
 layout(constant_id = CONSTANT_RAYS_PER_WORKGROUP) const int rays_per_workgroup = RAYS_PER_GROUP; // of a structure's pass per ray group
 
 layout(set = 0, binding = 1, scalar) writeonly buffer RayLaunch { uvec3 ray_launch; };     // the trace, and what follows it
 layout(set = 0, binding = 2, scalar) writeonly buffer GroupLaunch { uvec3 group_launch; }; // structures
-
-uvec3 launch_of(uint items, uint items_per_workgroup)
-{
-    uint groups = (items + items_per_workgroup - 1) / items_per_workgroup;
-    return uvec3(min(groups, LAUNCH_ROW_GROUPS), (groups + LAUNCH_ROW_GROUPS - 1) / LAUNCH_ROW_GROUPS, 1);
-}
 
 void store_ray_launches(uint rays)
 {

@@ -24,3 +24,10 @@ struct WorldHit
     uint  triangle; // NO_TRIANGLE: none; WALK_UNFINISHED: not known
     vec2  barycentric;
 };
+
+// Of a list: the launch that covers it, and its length (framework/world/world.h).
+struct ListLaunch
+{
+    uint groups_x, groups_y, groups_z;
+    uint count;
+};

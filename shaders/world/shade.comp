@@ -14,10 +14,10 @@ layout(set = 0, binding = 47, scalar) readonly buffer WorldRays { WorldRay rays[
 layout(set = 0, binding = 48, scalar) readonly buffer WorldHits { WorldHit hits[]; };
 layout(set = 0, binding = 49, scalar) writeonly buffer WorldLight { vec3 light[]; };
 layout(set = 0, binding = 54, scalar) writeonly buffer NextRays { NextRay next[]; };
+layout(set = 0, binding = 50, scalar) readonly buffer WorldLaunch { ListLaunch launch; };
 layout(push_constant, scalar) uniform Push
 {
     vec3  ambient;
-    uint  ray_count;
     int   light_count;
     float dielectric_min_f0, dielectric_max_roughness; // of what reflects
     uint  follows;
@@ -89,7 +89,7 @@ vec3 light_of(WorldRay ray, WorldHit hit, out NextRay onward)
 void main()
 {
     uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    if (index >= ray_count) return;
+    if (index >= launch.count) return;
     NextRay onward = NextRay(rays[index], vec3(0));
     light[index]   = hits[index].triangle < WALK_UNFINISHED ? light_of(rays[index], hits[index], onward) : vec3(0);
     next[index]    = onward;

@@ -5,7 +5,7 @@
 #include "layout/workgroups.glsl"
 #include "layout/texels.glsl"
 #include "world/rays.glsl"
-#include "world/materials.glsl"
+#include "world/passes_mask.glsl"
 
 layout(local_size_x = RAYS_PER_GROUP) in;
 LOADED_TEXELS_4(40, Nodes)     // four texels a node
@@ -13,11 +13,10 @@ LOADED_TEXELS_4(41, Triangles) // three texels a triangle
 layout(set = 0, binding = 47, scalar) readonly buffer WorldRays { WorldRay rays[]; };
 layout(set = 0, binding = 48, scalar) writeonly buffer WorldHits { WorldHit hits[]; };
 layout(set = 0, binding = 49, scalar) writeonly buffer NodeVisits { uint node_visits[]; };
-layout(push_constant) uniform Push { uint ray_count; };
+layout(set = 0, binding = 50, scalar) readonly buffer WorldLaunch { ListLaunch launch; };
 
 #define MOST_TREE_DEPTH 48
 #define MOST_VISITS 60000 // fewer than lavapipe's loops have iterations
-#define MASKED_BIT 0x80000000u
 #define infinity uintBitsToFloat(0x7F800000u)
 
 // A child of a node: a node, or a run of triangles.
@@ -42,15 +41,6 @@ float entry(Child child, WorldRay ray, vec3 inverse, float t_max)
     // By rounding, a box may seem this much smaller than it is.
     float t_out = min(min(high.x, high.y), min(high.z, t_max)) * 1.0000004;
     return t_in * 0.9999996 <= t_out ? t_in : infinity;
-}
-
-// Is the triangle there, at this point of it?
-bool passes_mask(uint first_index, uint material, vec2 barycentric)
-{
-    if ((material & MASKED_BIT) == 0) return true;
-    WorldMaterial masked = materials[material & ~MASKED_BIT];
-    vec3 weights = vec3(1.0 - barycentric.x - barycentric.y, barycentric);
-    return base_colour_at(masked, TrianglePoint(first_index, weights)).a >= masked.alpha_cutoff;
 }
 
 void meet_triangle(uint triangle, WorldRay ray, inout WorldHit nearest)
@@ -109,7 +99,7 @@ WorldHit walk(WorldRay ray, out uint visits)
 void main()
 {
     uint index = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
-    if (index >= ray_count) return;
+    if (index >= launch.count) return;
     uint visits;
     hits[index] = walk(rays[index], visits);
 #ifdef COUNT_WORK

@@ -32,13 +32,14 @@ struct Shown {
     Image picture, expected; // with the sources' answers; with the same light from everywhere
 };
 
-Shown shown_by(const Scene& scene, const std::string& list, glm::vec3 light, const FrameSettings& settings)
+Shown shown_by(const Scene& scene, const std::string& list, glm::vec3 light, const FrameSettings& settings,
+               glm::ivec2 size_px = {64, 36})
 {
     Stage  stage = open_stage(device(), catalogue(), scene);
     Camera camera;
     camera.position_ws = {0, 0, 0};
     camera.target_ws   = {0, 0, -1};
-    show(stage, camera_to_view(camera, {64, 36}));
+    show(stage, camera_to_view(camera, size_px));
     const Technique&      hiz     = technique("hiz");
     const LabPtr          lab     = make_lab(stage, hiz, values_of(hiz), settings.trace);
     const FrameBuffersPtr buffers = make_frame_buffers(stage);
@@ -77,11 +78,23 @@ TEST(AnsweredFrame, AMirrorShowsWhatStandsBehindTheCamera)
 TEST(AnsweredFrame, AMissedRayShowsWhatStandsInItsWay)
 {
     FrameSettings settings;
-    settings.passes.insert_or_assign("miss_light", choice_value(MissLight::triangles));
-    for (const float roughness : {0.0F, 0.3F}) {
+    for (const auto& [miss_light, roughness] :
+         {std::pair(MissLight::triangles, 0.0F), {MissLight::triangles, 0.3F}, {MissLight::rooms, 0.0F}}) {
+        settings.passes.insert_or_assign("miss_light", choice_value(miss_light));
         const Shown shown = shown_by(mirror_before_glowing_wall(roughness, 0), "frame", glow, settings);
         expect_near(shown.picture, shown.expected, roughness > 0 ? 4 * double(glow.r) / 1024 : 0);
     }
+}
+
+// More than a row of workgroups: their lists, which shaders append to, are launched to the end.
+TEST(AnsweredFrame, EveryMissedRayOfALargePictureShowsIt)
+{
+    constexpr glm::ivec2 size_px{161, 129};
+    static_assert(size_px.x * size_px.y > RAYS_PER_GROUP * LAUNCH_ROW_GROUPS);
+    FrameSettings settings;
+    settings.passes.insert_or_assign("miss_light", choice_value(MissLight::triangles));
+    const Shown shown = shown_by(mirror_before_glowing_wall(0, 0), "frame", glow, settings, size_px);
+    EXPECT_EQ(shown.picture.values, shown.expected.values);
 }
 
 // The mirror glows, too, and the wall is a mirror: with a further bounce, the light of both comes back.
@@ -134,6 +147,25 @@ TEST(MissedRays, SkippingThePassChangesNoBit)
         EXPECT_EQ(followed.planned.values, followed.unculled.values);
         EXPECT_NE(followed.planned.values, planned_picture(scene, MissLight::environment, gloss).planned.values);
     }
+}
+
+// Most missed rays of this scene meet nothing.
+TEST(MissedRays, RoomsLeaveOpenScenesAsTheyAre)
+{
+    const Scene          scene = load_scene("builtin:everything");
+    const PlannedPicture open  = planned_picture(scene, MissLight::rooms, Gloss::stochastic);
+    EXPECT_FALSE(open.missed_rays.runs);
+    EXPECT_NE(open.missed_rays.reason.find("below 15 %"), std::string::npos) << open.missed_rays.reason;
+    EXPECT_EQ(open.planned.values, open.unculled.values);
+    EXPECT_EQ(open.planned.values, planned_picture(scene, MissLight::environment, Gloss::stochastic).planned.values);
+}
+
+// Each frame would need a hierarchy of its own.
+TEST(MissedRays, RoomsLeaveMovingScenesAsTheyAre)
+{
+    const Scene scene = load_scene("builtin:moving_boxes");
+    EXPECT_FALSE(planned_picture(scene, MissLight::rooms, Gloss::blur).missed_rays.runs);
+    EXPECT_TRUE(planned_picture(scene, MissLight::triangles, Gloss::blur).missed_rays.runs);
 }
 
 // The mirror stands alone: the unculled frame follows its rays and finds nothing.

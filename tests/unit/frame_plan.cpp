@@ -118,6 +118,25 @@ TEST(Plan, MissedRaysAreFollowedWhereTheyMeetATriangle)
     EXPECT_FALSE(running(plan_passes(facts, closed, environment)).contains("missed_rays"));
 }
 
+TEST(Plan, RoomsAreFollowedWhereFifteenPercentOfTheirRaysMeetATriangle)
+{
+    ParameterValues values  = values_with({chosen(MissLight::rooms)});
+    FrameFacts      facts   = facts_with_pyramid(true);
+    FrameStatistics counts  = frame(400, 100, 350, 10);
+    const auto      verdict = [&] { return plan_passes(facts, counts, values); };
+    EXPECT_FALSE(running(verdict()).contains("missed_rays"));
+    facts.world = true;
+    // To follow rays of which few meet something changes the picture: the unculled frame leaves them alone, too.
+    for (const double skips : {1.0, 0.0}) {
+        values.at("skip_unneeded_passes") = skips;
+        counts.misses                     = {.followed = 40, .met = 5};
+        EXPECT_FALSE(running(verdict()).contains("missed_rays"));
+        EXPECT_THAT(reason(verdict(), "missed_rays"), HasSubstr("5 of 40 followed rays meet a triangle, below 15 %"));
+        counts.misses.met = 6;
+        EXPECT_TRUE(running(verdict()).contains("missed_rays"));
+    }
+}
+
 // S3's order: the blur works on what was traced, and up-sampling comes after it.
 TEST(Plan, TheBlurComesBeforeUpsamplingWhereItIsToldTo)
 {

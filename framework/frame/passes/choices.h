@@ -29,7 +29,7 @@ PASS_CHOICE(BounceMode, bounce_mode, off, history, direct)
 PASS_CHOICE(BlurOrder, blur_order, after_upsampling, before_upsampling)
 PASS_CHOICE(Filter3x3, filter_3x3, off, box3, median3)
 PASS_CHOICE(Gloss, gloss, off, blur, cone, stochastic)
-PASS_CHOICE(MissLight, miss_light, environment, triangles)
+PASS_CHOICE(MissLight, miss_light, environment, triangles, rooms)
 PASS_CHOICE(Reflectance, reflectance, metallic, ggx)
 PASS_CHOICE(HistoryClamping, history_clamping, off, minmax, variance)
 

@@ -9,12 +9,17 @@
 namespace ssrlab {
 namespace {
 
-constexpr int side_px = 4; // of the blocks that follow one ray each
+constexpr int    side_px = 4; // of the blocks that follow one ray each
+constexpr double room_share =
+    0.15; // of followed rays that meet a triangle, from which on miss_light = rooms follows them
 
+/// The missed rays, and the one of each block that is followed.
 struct FollowedRays {
-    uint32_t    blocks = 0;
-    Buffer      ranks, rays, hits; // of each block
-    ComputePass rank, list, walk;
+    Buffer       missed, missed_launch; // indices of rays of the frame's list
+    Buffer       ranks, places;         // of each block: the least rank; its place in `list`
+    WorldRayList list;
+    Buffer       hits;
+    ComputePass  rank, choose, walk;
 };
 
 Defines followed_defines(const FrameInputs& frame)
@@ -25,107 +30,153 @@ Defines followed_defines(const FrameInputs& frame)
     return defines;
 }
 
+size_t count_blocks(const FrameInputs& frame)
+{
+    const glm::ivec2 size = (frame.lab->gbuffer->view.size_px - 1) / side_px + 1;
+    return static_cast<size_t>(size.x) * static_cast<size_t>(size.y);
+}
+
 FollowedRays make_followed_rays(Gpu& gpu, const PassContext& context)
 {
     const FrameInputs& frame   = context.frame;
-    const glm::ivec2   size    = (frame.lab->gbuffer->view.size_px - 1) / side_px + 1;
+    const size_t       blocks  = count_blocks(frame);
     const Defines      defines = followed_defines(frame);
-    FollowedRays       followed;
-    followed.blocks         = static_cast<uint32_t>(size.x) * static_cast<uint32_t>(size.y);
-    followed.ranks          = make_buffer(gpu, followed.blocks * sizeof(uint32_t));
-    followed.rays           = make_buffer(gpu, followed.blocks * sizeof(WorldRay));
-    followed.hits           = make_buffer(gpu, followed.blocks * sizeof(WorldHit));
-    const Bindings bindings = {{"MissRanks", followed.ranks}, {"WorldRays", followed.rays}};
-    followed.rank           = make_pass(gpu, context, "passes/missed_ranks.comp", defines, bindings);
-    followed.list           = make_pass(gpu, context, "passes/followed_rays.comp", defines, bindings);
-    followed.walk           = make_walk_pass(gpu, *frame.buffers->world, followed.rays, followed.hits);
-    return followed;
+    FollowedRays       own;
+    own.missed        = make_buffer(gpu, std::max<uint64_t>(frame.rays->capacity, 1) * sizeof(uint32_t));
+    own.missed_launch = make_buffer(gpu, sizeof(ListLaunch));
+    own.ranks         = make_buffer(gpu, blocks * sizeof(uint32_t));
+    own.places        = make_buffer(gpu, blocks * sizeof(uint32_t));
+    own.list          = make_ray_list(gpu, blocks);
+    own.hits          = make_buffer(gpu, blocks * sizeof(WorldHit));
+    own.rank          = make_pass(gpu, context, "passes/missed_ranks.comp", defines,
+                                  {{"MissedRays", own.missed},
+                                   {"AppendedLaunch", own.missed_launch},
+                                   {"MissedLights", frame.answers},
+                                   {"MissRanks", own.ranks}});
+    own.choose        = make_pass(gpu, context, "passes/followed_rays.comp", defines,
+                                  {{"MissedLaunch", own.missed_launch},
+                                   {"MissedRays", own.missed},
+                                   {"MissRanks", own.ranks},
+                                   {"WorldRays", own.list.rays},
+                                   {"AppendedLaunch", own.list.launch},
+                                   {"FollowedPlaces", own.places}});
+    own.walk          = make_walk_pass(gpu, *frame.buffers->world, own.list, own.hits);
+    return own;
 }
 
-void record_followed_rays(const vk::raii::CommandBuffer& commands, const FrameInputs& frame,
-                          const FollowedRays& followed)
+void record_followed_rays(const vk::raii::CommandBuffer& commands, const FrameInputs& frame, const FollowedRays& own)
 {
-    constexpr uint32_t minus_one = 0xBF800000; // as a float
-    commands.fillBuffer(*followed.ranks.buffer, 0, VK_WHOLE_SIZE, ~0U);
-    commands.fillBuffer(*followed.rays.buffer, 0, VK_WHOLE_SIZE, minus_one); // a ray that ends at -1 m meets nothing
+    commands.fillBuffer(*own.ranks.buffer, 0, VK_WHOLE_SIZE, ~0U);
+    record_empty(commands, own.missed_launch);
+    record_empty(commands, own.list.launch);
     barrier(commands);
-    dispatch_indirect(commands, followed.rank, frame.rays->launch);
+    dispatch_indirect(commands, own.rank, frame.rays->launch);
     barrier(commands);
-    dispatch_indirect(commands, followed.list, frame.rays->launch);
+    dispatch_indirect(commands, own.choose, own.missed_launch);
     barrier(commands);
-    push(commands, followed.walk, followed.blocks);
-    dispatch(commands, followed.walk, groups_for(followed.blocks));
+    dispatch_indirect(commands, own.walk, own.list.launch);
     barrier(commands);
 }
 
 PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, const ParameterValues& values)
 {
-    if (choice<MissLight>(values) != MissLight::triangles) return {PassDecision::off, "miss_light = environment"};
+    const MissLight chosen = choice<MissLight>(values);
+    if (chosen == MissLight::environment) return {PassDecision::off, "miss_light = environment"};
     if (values.at("environment_fallback") == 0) return {PassDecision::off, "environment_fallback = false"};
     if (!facts.world) return {PassDecision::off, "the scene's triangles are not on the device"};
     if (statistics.gbuffer.reflecting_pixels == 0) return {PassDecision::not_needed, "no pixel reflects"};
     const MissCounts& misses = statistics.misses;
     if (misses.followed == 0) return {PassDecision::not_needed, "no ray missed"};
+    const std::string reason = fmt::format("{} of {} followed rays meet a triangle", misses.met, misses.followed);
+    if (chosen == MissLight::rooms && misses.met < room_share * misses.followed)
+        return {PassDecision::off, fmt::format("{}, below {:.0f} %", reason, 100 * room_share)};
     if (values.at("hidden_layer") != 0)
         return {PassDecision::needed, "hidden_layer = true: which rays it leaves is not counted"};
-    const std::string reason = fmt::format("{} of {} followed rays meet a triangle", misses.met, misses.followed);
     return {misses.met == 0 ? PassDecision::not_needed : PassDecision::needed, reason};
 }
 
-/// What the followed rays met, and what that reflects.
+/// Rays that met something, and the light that comes back along them.
+struct LitRays {
+    WorldRayList list;
+    Buffer       hits, light, next;
+    ComputePass  shade;
+};
+
+LitRays make_lit_rays(Gpu& gpu, const FrameBuffers& buffers, size_t capacity)
+{
+    LitRays own;
+    own.list  = make_ray_list(gpu, capacity);
+    own.hits  = make_buffer(gpu, capacity * sizeof(WorldHit));
+    own.light = make_buffer(gpu, capacity * sizeof(glm::vec3));
+    own.next  = make_buffer(gpu, capacity * sizeof(NextRay));
+    own.shade = make_shade_pass(gpu, *buffers.world, *scene_of(buffers), buffers.dfg_table, own.list, own.hits,
+                                own.light, own.next);
+    return own;
+}
+
+/// What followed rays met, and what that reflects.
 struct FollowedLight {
-    Buffer      light, next, onward, onward_hits, onward_light, no_next; // of each block
-    ComputePass shade, list_onward, walk_onward, shade_onward, sum;
+    Buffer      places; // of each followed ray, in `met`
+    LitRays     met, onward;
+    Buffer      sources; // of each onward ray: its place in `met`
+    ComputePass list_met, list_onward, walk_onward, sum;
 };
 
 FollowedLight make_followed_light(Gpu& gpu, const PassContext& context, const FollowedRays& rays)
 {
     const FrameBuffers& buffers = *context.frame.buffers;
-    const GpuScene&     scene   = *scene_of(buffers);
-    const auto          shade   = [&](const Buffer& of, const Buffer& hits, const Buffer& light, const Buffer& next) {
-        return make_shade_pass(gpu, *buffers.world, scene, buffers.dfg_table, of, hits, light, next);
-    };
-    FollowedLight own;
-    own.light        = make_buffer(gpu, rays.blocks * sizeof(glm::vec3));
-    own.next         = make_buffer(gpu, rays.blocks * sizeof(NextRay));
-    own.onward       = make_buffer(gpu, rays.blocks * sizeof(WorldRay));
-    own.onward_hits  = make_buffer(gpu, rays.blocks * sizeof(WorldHit));
-    own.onward_light = make_buffer(gpu, rays.blocks * sizeof(glm::vec3));
-    own.no_next      = make_buffer(gpu, rays.blocks * sizeof(NextRay));
-    own.shade        = shade(rays.rays, rays.hits, own.light, own.next);
-    own.list_onward  = make_pass(gpu, context, "passes/followed_bounces.comp", {},
-                                 {{"NextRays", own.next}, {"WorldRays", own.onward}}, sizeof(uint32_t));
-    own.walk_onward  = make_walk_pass(gpu, *buffers.world, own.onward, own.onward_hits);
-    own.shade_onward = shade(own.onward, own.onward_hits, own.onward_light, own.no_next);
+    const size_t        blocks  = count_blocks(context.frame);
+    FollowedLight       own;
+    own.places      = make_buffer(gpu, blocks * sizeof(uint32_t));
+    own.sources     = make_buffer(gpu, blocks * sizeof(uint32_t));
+    own.met         = make_lit_rays(gpu, buffers, blocks);
+    own.onward      = make_lit_rays(gpu, buffers, blocks);
+    own.list_met    = make_pass(gpu, context, "passes/followed_hits.comp", {},
+                                {{"FollowedLaunch", rays.list.launch},
+                                 {"WorldRays", rays.list.rays},
+                                 {"WorldHits", rays.hits},
+                                 {"AppendedLaunch", own.met.list.launch},
+                                 {"MetRays", own.met.list.rays},
+                                 {"MetHits", own.met.hits},
+                                 {"MetPlaces", own.places}});
+    own.list_onward = make_pass(gpu, context, "passes/followed_bounces.comp", {},
+                                {{"MetLaunch", own.met.list.launch},
+                                 {"NextRays", own.met.next},
+                                 {"AppendedLaunch", own.onward.list.launch},
+                                 {"WorldRays", own.onward.list.rays},
+                                 {"OnwardSources", own.sources}});
+    own.walk_onward = make_walk_pass(gpu, *buffers.world, own.onward.list, own.onward.hits);
     Defines  defines;
-    Bindings bindings = {{"WorldLight", own.light},
-                         {"NextRays", own.next},
-                         {"WorldHits", own.onward_hits},
-                         {"OnwardLight", own.onward_light}};
+    Bindings bindings = {
+        {"OnwardLaunch", own.onward.list.launch}, {"NextRays", own.met.next},    {"OnwardSources", own.sources},
+        {"WorldHits", own.onward.hits},           {"WorldLight", own.met.light}, {"OnwardLight", own.onward.light}};
     add_environment(gpu, context, defines, bindings);
-    own.sum = make_pass(gpu, context, "passes/followed_light.comp", defines, bindings, sizeof(uint32_t));
+    own.sum = make_pass(gpu, context, "passes/followed_light.comp", defines, bindings);
     return own;
 }
 
-void record_followed_light(const vk::raii::CommandBuffer& commands, const FrameInputs& frame, uint32_t blocks,
+void record_followed_light(const vk::raii::CommandBuffer& commands, const FrameInputs& frame, const FollowedRays& rays,
                            const FollowedLight& own)
 {
     const GpuScene&      scene   = *scene_of(*frame.buffers);
     const TraceSettings& trace   = frame.lab->settings;
     const bool           bounces = choice<BounceMode>(frame.plan.values) != BounceMode::off;
-    record_shade(commands, own.shade, scene, trace, bounces, blocks);
-    barrier(commands);
-    if (!bounces) return;
-    const auto over_blocks = [&](const ComputePass& pass) {
-        push(commands, pass, blocks);
-        dispatch(commands, pass, groups_for(blocks));
+    const auto           over    = [&](const ComputePass& pass, const Buffer& launch) {
+        dispatch_indirect(commands, pass, launch);
         barrier(commands);
     };
-    over_blocks(own.list_onward);
-    over_blocks(own.walk_onward);
-    record_shade(commands, own.shade_onward, scene, trace, false, blocks);
+    record_empty(commands, own.met.list.launch);
+    record_empty(commands, own.onward.list.launch);
     barrier(commands);
-    over_blocks(own.sum);
+    over(own.list_met, rays.list.launch);
+    record_shade(commands, own.met.shade, scene, trace, bounces, own.met.list.launch);
+    barrier(commands);
+    if (!bounces) return;
+    over(own.list_onward, own.met.list.launch);
+    over(own.walk_onward, own.onward.list.launch);
+    record_shade(commands, own.onward.shade, scene, trace, false, own.onward.list.launch);
+    barrier(commands);
+    over(own.sum, own.onward.list.launch);
 }
 
 RecordFunction prepare(Gpu& gpu, const PassContext& context)
@@ -141,15 +192,19 @@ RecordFunction prepare(Gpu& gpu, const PassContext& context)
     const FollowedRays& rays = own->followed;
     own->lit                 = make_followed_light(gpu, context, rays);
     own->look_up             = make_pass(gpu, context, "passes/missed_light.comp", followed_defines(frame),
-                                         {{"MissedLights", frame.answers},
+                                         {{"MissedLaunch", rays.missed_launch},
+                                          {"MissedRays", rays.missed},
+                                          {"MissedLights", frame.answers},
                                           {"MissRanks", rays.ranks},
-                                          {"WorldRays", rays.rays},
+                                          {"FollowedPlaces", rays.places},
+                                          {"WorldRays", rays.list.rays},
                                           {"WorldHits", rays.hits},
-                                          {"WorldLight", own->lit.light}});
-    return [own, &frame, &launch = ray_launch(context)](const auto& commands) {
+                                          {"MetPlaces", own->lit.places},
+                                          {"WorldLight", own->lit.met.light}});
+    return [own, &frame](const auto& commands) {
         record_followed_rays(commands, frame, own->followed);
-        record_followed_light(commands, frame, own->followed.blocks, own->lit);
-        dispatch_indirect(commands, own->look_up, launch);
+        record_followed_light(commands, frame, own->followed, own->lit);
+        dispatch_indirect(commands, own->look_up, own->followed.missed_launch);
     };
 }
 
@@ -157,7 +212,7 @@ RecordFunction prepare(Gpu& gpu, const PassContext& context)
 
 bool asks_triangles(const ParameterValues& values)
 {
-    return choice<MissLight>(values) == MissLight::triangles && values.at("environment_fallback") != 0;
+    return choice<MissLight>(values) != MissLight::environment && values.at("environment_fallback") != 0;
 }
 
 MissCounts count_followed_rays(Gpu& gpu, FrameInputs& frame)
@@ -170,9 +225,8 @@ MissCounts count_followed_rays(Gpu& gpu, FrameInputs& frame)
         record_followed_rays(commands, frame, followed);
     });
     MissCounts counts;
-    for (const uint32_t rank : download_as<uint32_t>(gpu, followed.ranks, followed.blocks))
-        counts.followed += rank != ~0U ? 1 : 0;
-    for (const WorldHit& hit : download_as<WorldHit>(gpu, followed.hits, followed.blocks))
+    counts.followed = download_as<ListLaunch>(gpu, followed.list.launch, 1)[0].count;
+    for (const WorldHit& hit : download_as<WorldHit>(gpu, followed.hits, counts.followed))
         counts.met += hit.triangle < walk_unfinished ? 1 : 0;
     return counts;
 }
@@ -185,10 +239,12 @@ Pass missed_rays_pass()
             .cite           = {"I. Wald et al. 2014, Embree: A Kernel Framework for Efficient CPU Ray Tracing"},
             .reads          = {Resource::gbuffer, Resource::surroundings, Resource::rays, Resource::hits},
             .writes         = {Resource::answers},
-            .parameters     = {choice_parameter(MissLight::environment,
-                                                "what a ray shows that missed. environment: what is infinitely far away; "
-                                                    "triangles: what one missed ray of each 4x4 pixels meets in the scene, and "
-                                                    "the environment where it meets nothing")},
+            .parameters     = {choice_parameter(
+                    MissLight::environment,
+                    "what a ray shows that missed. environment: what is infinitely far away; triangles: what "
+                        "one missed ray of each 4x4 pixels meets in the scene, and the environment where it meets "
+                        "nothing; rooms: as triangles where at least 15 % of these rays meet something and the "
+                        "scene does not move, else as environment")},
             .decide         = decide,
             .prepare        = prepare,
             .beyond_shading = true};
