@@ -58,6 +58,17 @@ std::vector<AskedTechnique> checked_techniques(const Catalogue& catalogue, const
     return asked_techniques(catalogue, options.picture.technique, options.picture.parameters);
 }
 
+/// A jittered sequence is for people: it accumulates its pictures unless told otherwise.
+RenderOptions presented(RenderOptions options)
+{
+    const bool told = std::ranges::any_of(options.picture.parameters, [](const std::string& pair) {
+        return pair.starts_with("picture_history_weight=");
+    });
+    if (options.frames > 0 && options.picture.at.jitter_phases > 0 && !told)
+        options.picture.parameters.emplace_back("picture_history_weight=0.9");
+    return options;
+}
+
 /// "pan.png" is "pan_0007.png" in frame 7.
 std::string numbered(const std::string& output, int frame)
 {
@@ -230,8 +241,9 @@ void add_sample(Stage& stage, ReadyFrame& frame, const LabPtr& lab, const TraceS
 
 } // namespace
 
-int render_picture(const CommonOptions& common, const RenderOptions& options)
+int render_picture(const CommonOptions& common, const RenderOptions& given)
 {
+    const RenderOptions   options   = presented(given);
     const PictureOptions& picture   = options.picture;
     const Catalogue       catalogue = load_catalogue(common.technique_dirs);
     const auto            asked_for = checked_techniques(catalogue, options);

@@ -16,6 +16,13 @@ vk::ImageCopy whole(const GpuImage& image)
             .extent         = {static_cast<uint32_t>(image.size_px.x), static_cast<uint32_t>(image.size_px.y), 1}};
 }
 
+constexpr auto four_floats = vk::Format::eR32G32B32A32Sfloat;
+
+GpuImage storage_image(Gpu& gpu, vk::Format format, glm::ivec2 size_px)
+{
+    return make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
+}
+
 void record_image_copy(const vk::raii::CommandBuffer& commands, const GpuImage& source, const GpuImage& target)
 {
     commands.copyImage(*source.image, vk::ImageLayout::eGeneral, *target.image, vk::ImageLayout::eGeneral,
@@ -26,21 +33,18 @@ void record_image_copy(const vk::raii::CommandBuffer& commands, const GpuImage& 
 
 FrameHistoryPtr make_history(Gpu& gpu, glm::ivec2 size_px)
 {
-    auto       history = std::make_shared<FrameHistory>();
-    const auto image   = [&](vk::Format format) {
-        return make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
-    };
-    constexpr auto four_floats = vk::Format::eR32G32B32A32Sfloat;
-    history->size_px           = size_px;
-    history->depth             = image(vk::Format::eR32Sfloat);
-    history->gradient          = image(vk::Format::eR32Uint);
-    history->normal            = image(four_floats);
-    history->reflection        = image(four_floats);
-    history->facts             = image(four_floats);
-    history->reprojected       = image(four_floats);
-    history->kept_reflection   = image(four_floats);
-    history->kept_facts        = image(four_floats);
-    history->counts            = make_buffer(gpu, sizeof(HistoryCounts));
+    auto       history       = std::make_shared<FrameHistory>();
+    const auto image         = [&](vk::Format format) { return storage_image(gpu, format, size_px); };
+    history->size_px         = size_px;
+    history->depth           = image(vk::Format::eR32Sfloat);
+    history->gradient        = image(vk::Format::eR32Uint);
+    history->normal          = image(four_floats);
+    history->reflection      = image(four_floats);
+    history->facts           = image(four_floats);
+    history->reprojected     = image(four_floats);
+    history->kept_reflection = image(four_floats);
+    history->kept_facts      = image(four_floats);
+    history->counts          = make_buffer(gpu, sizeof(HistoryCounts));
     return history;
 }
 
@@ -64,10 +68,15 @@ std::string history_mismatch(const FrameHistory& history, glm::ivec2 size_px, co
 void keep_history(Gpu& gpu, const ReadyFrame& frame, int number)
 {
     if (!frame.inputs.history) throw std::logic_error("keep_history: the frame was made without a history");
-    FrameHistory&  history = *frame.inputs.history;
-    const GBuffer& gbuffer = *frame.inputs.lab->gbuffer;
-    const bool     kept    = runs(frame.inputs.plan, "history");
-    Bindings       all     = surface_bindings(gbuffer);
+    FrameHistory&  history      = *frame.inputs.history;
+    const GBuffer& gbuffer      = *frame.inputs.lab->gbuffer;
+    const bool     kept         = runs(frame.inputs.plan, "history");
+    const bool     picture      = frame.inputs.plan.values.at("picture_history_weight") > 0;
+    const bool     kept_picture = runs(frame.inputs.plan, "picture_history");
+    if (picture && !*history.picture.image)
+        for (GpuImage* image : {&history.picture, &history.kept_picture})
+            *image = storage_image(gpu, four_floats, history.size_px);
+    Bindings all = surface_bindings(gbuffer);
     all.insert({{"View", gbuffer.view_uniforms},
                 {"gradient_image", gbuffer.gradient},
                 {"previous_depth_image", history.depth},
@@ -75,9 +84,12 @@ void keep_history(Gpu& gpu, const ReadyFrame& frame, int number)
                 {"previous_normal_image", history.normal},
                 {"reflection_image", frame.inputs.buffers->reflection},
                 {"previous_reflection_image", history.reflection},
-                {"previous_facts_image", history.facts}});
+                {"previous_facts_image", history.facts},
+                {"shaded_image", frame.inputs.buffers->shaded},
+                {"previous_picture_image", history.picture}});
     ShaderSource source{.file = "gbuffer/keep_history.comp"};
     if (!kept) source.defines.emplace("KEEP_REFLECTION", "1");
+    if (picture && !kept_picture) source.defines.emplace("KEEP_PICTURE", "1");
     const ComputePass keep = make_compute_pass(gpu, compile_shader(gpu, source), all);
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         barrier(commands);
@@ -86,6 +98,7 @@ void keep_history(Gpu& gpu, const ReadyFrame& frame, int number)
             record_image_copy(commands, history.kept_reflection, history.reflection);
             record_image_copy(commands, history.kept_facts, history.facts);
         }
+        if (kept_picture) record_image_copy(commands, history.kept_picture, history.picture);
         barrier(commands);
     });
     history.view  = gbuffer.view;

@@ -18,11 +18,13 @@ struct FrameHistory {
     GpuImage normal;     // RGBA32F: view space
     GpuImage reflection; // RGBA32F: colour times weight, weight; < 0: does not reflect
     GpuImage facts;      // RGBA32F: accumulated frames, ray length, hit object (-1: unknown, -2: missed)
+    GpuImage picture;    // RGBA32F: colour, accumulated frames; empty with picture_history_weight = 0
 
     // Of the frame that runs.
     GpuImage reprojected;     // RGBA32F: vector in px to where the reflection was, or NaN; ray length; hit object
     GpuImage kept_reflection; // becomes `reflection`
     GpuImage kept_facts;
+    GpuImage kept_picture;
     Buffer   counts; // HistoryCounts
 };
 

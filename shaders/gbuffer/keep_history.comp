@@ -1,5 +1,5 @@
 // What the next frame is to know of this one: depth, plane and normal of each pixel. KEEP_REFLECTION: and its reflection, where no history was
-// accumulated.
+// accumulated; KEEP_PICTURE: and its picture likewise.
 #include "api/view.glsl"
 #include "rays/reflecting.glsl"
 
@@ -13,6 +13,10 @@ layout(set = 0, binding = 46, rgba16f) uniform readonly image2D reflection_image
 layout(set = 0, binding = 47, rgba32f) uniform writeonly image2D previous_reflection_image;
 layout(set = 0, binding = 48, rgba32f) uniform writeonly image2D previous_facts_image;
 #endif
+#ifdef KEEP_PICTURE
+layout(set = 0, binding = 49, rgba16f) uniform readonly image2D shaded_image;
+layout(set = 0, binding = 50, rgba32f) uniform writeonly image2D previous_picture_image;
+#endif
 
 void main()
 {
@@ -25,5 +29,8 @@ void main()
     vec4 reflection = imageLoad(reflection_image, pixel);
     imageStore(previous_reflection_image, pixel, vec4(reflection.rgb * max(reflection.a, 0.0), reflection.a));
     imageStore(previous_facts_image, pixel, vec4(1, 0, -1, 0)); // of no known length and object
+#endif
+#ifdef KEEP_PICTURE
+    imageStore(previous_picture_image, pixel, vec4(imageLoad(shaded_image, pixel).rgb, 1));
 #endif
 }

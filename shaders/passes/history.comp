@@ -7,6 +7,7 @@
 #include "pass/parameters"
 #include "passes/previous_frame.glsl"
 #include "passes/history_lookup.glsl"
+#include "passes/history_clamping.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 4, rgba16f) uniform readonly image2D reflection_image;
@@ -21,23 +22,14 @@ vec4 weighted(vec4 reflection) { return vec4(reflection.rgb * reflection.a, refl
 
 vec4 clamped_to_neighbours(ivec2 pixel, vec4 value)
 {
-    vec4  low = vec4(1e30), high = vec4(-1e30), sum = vec4(0), squares = vec4(0);
-    float count = 0.0;
+    vec4 around[9];
+    int  count = 0;
     for (int i = 0; i < 9; ++i)
     {
-        ivec2 next   = clamp(pixel + ivec2(i % 3, i / 3) - 1, ivec2(0), size_px - 1);
-        vec4  stored = imageLoad(reflection_image, next);
-        if (stored.a < 0.0) continue;
-        vec4 own = weighted(stored);
-        low      = min(low, own);
-        high     = max(high, own);
-        sum += own;
-        squares += own * own;
-        count += 1.0;
+        vec4 stored = imageLoad(reflection_image, clamp(pixel + ivec2(i % 3, i / 3) - 1, ivec2(0), size_px - 1));
+        if (stored.a >= 0.0) around[count++] = weighted(stored);
     }
-    if (history_clamping == history_clamping_minmax) return clamp(value, low, high);
-    vec4 mean = sum / count, deviation = sqrt(max(squares / count - mean * mean, 0.0)) * clamping_deviations;
-    return clamp(value, mean - deviation, mean + deviation);
+    return clamped_to(around, count, value);
 }
 
 void main()

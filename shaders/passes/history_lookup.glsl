@@ -2,6 +2,7 @@
 #include "layout/frame_shared.h"
 #include "passes/blocks.glsl"
 #include "passes/mean_reflection.glsl"
+#include "passes/previous_surface.glsl"
 
 layout(set = 0, binding = 50, rgba32f) uniform readonly image2D reprojected_image;         // passes/reprojection.comp
 layout(set = 0, binding = 51, rgba32f) uniform readonly image2D previous_reflection_image; // colour times weight, weight; < 0: reflects nothing
@@ -41,30 +42,6 @@ vec4 reprojected(ivec2 pixel)
     return now;
 }
 
-// Normal of the plane that a pixel is a piece of. 1 / distance = a + b x + c y over the slopes x and y, so with P = distance (x, y, -1) the plane is
-// (b, c, -a) P = 1; orthographic: distance = a + b x + c y.
-vec3 plane_normal_vs(ivec2 pixel, float depth)
-{
-    vec2 gradient = unpacked_gradient(imageLoad(gradient_image, pixel).x) * focal_px * vec2(1, -1);
-    vec3 shading  = normalize(imageLoad(normal_image, pixel).xyz);
-    if (any(isnan(gradient))) return shading;
-    vec2 slope = px_to_slope(vec2(pixel) + 0.5);
-    if (orthographic != 0) return normalize(vec3(-gradient * (far_m - near_m), 1));
-    return normalize(vec3(gradient, dot(gradient, slope) - depth));
-}
-
-// Does the previous frame show the pixel's reflector at this position?
-bool shows_reflector(ivec2 pixel, uint object, vec2 px)
-{
-    float depth  = load_depth(pixel);
-    vec3  on_pvs = carried_pvs(px_to_vs(vec3(vec2(pixel) + 0.5, depth)), object), normal = turned_pvs(plane_normal_vs(pixel, depth), object);
-    vec2  slope  = previous_px_to_slope(px);
-    float offset = dot(normal, on_pvs);
-    float expected_m = orthographic == 0 ? offset / dot(normal, vec3(slope, -1)) : (dot(normal.xy, slope) - offset) / normal.z;
-    float stored     = previous_depth(px);
-    return stored > 0.0 && abs(previous_depth_to_distance(stored) - expected_m) <= reject_depth * expected_m;
-}
-
 // Bilinear over the pixels that reflected.
 vec4 previous_reflection(vec2 place_px)
 {
@@ -93,7 +70,7 @@ int find_history(ivec2 pixel, out History found)
     if (!in_image(place_px)) return HISTORY_OFF_IMAGE;
     uint object = imageLoad(object_image, pixel).x;
     vec2 px     = place_px - jitter_px;
-    if (reject_depth > 0.0 && !shows_reflector(pixel, object, px)) return HISTORY_OTHER_DEPTH;
+    if (reject_depth > 0.0 && !shows_surface(pixel, object, px)) return HISTORY_OTHER_DEPTH;
     vec3 normal = turned_pvs(normalize(imageLoad(normal_image, pixel).xyz), object), stored_normal = previous_normal_pvs(px);
     if (reject_normal > -1.0 && !(dot(normal, stored_normal) >= reject_normal * length(stored_normal))) return HISTORY_OTHER_NORMAL;
     vec4 facts = imageLoad(previous_facts_image, ivec2(place_px));

@@ -73,6 +73,75 @@ TEST(History, ConvergesToTheMeanOfTheFrames)
     EXPECT_GT(judged, 1000U);
 }
 
+/// Root mean square of the difference of two pictures.
+double rms_between(const std::vector<float>& one, const std::vector<double>& other)
+{
+    double sum = 0;
+    for (size_t i = 0; i < one.size(); ++i) sum += std::pow(static_cast<double>(one[i]) - other[i], 2);
+    return std::sqrt(sum / static_cast<double>(one.size()));
+}
+
+/// The mean of what one frame of a sequence shows in all phases of the jitter: its supersampled picture.
+std::vector<double> supersampled(const Scene& scene, const char* view, int frame, int phases)
+{
+    std::vector<double> mean;
+    const Scene         still = scene_at(scene, frame);
+    for (int phase = 0; phase < phases; ++phase) {
+        Camera camera = camera_at(still, view, {frame, 0});
+        camera.shift_px += jitter_px({phase, phases});
+        SequencePicture picture;
+        picture.drawing = draw_gbuffer(device(), upload_scene(device(), still), camera_to_view(camera, size_px));
+        picture.gbuffer = gbuffer_of(*picture.drawing);
+        picture.buffers = make_frame_buffers(device(), picture.drawing);
+        const auto own  = shaded(*run_picture(picture, {{"history_weight", 0}}, nullptr));
+        mean.resize(own.size());
+        for (size_t i = 0; i < own.size(); ++i) mean[i] += static_cast<double>(own[i]) / phases;
+    }
+    return mean;
+}
+
+// 16 jittered frames of a still scene: without clamping the picture is their mean, with it the picture approaches it.
+TEST(PictureHistory, ApproachesTheSupersampledPicture)
+{
+    constexpr int             frames = 16;
+    const Scene               scene  = still_scene();
+    const std::vector<double> mean   = supersampled(scene, "default", 0, frames);
+    for (const bool clamps : {false, true}) {
+        ParameterValues passes{{"history_weight", 0}, {"picture_history_weight", 0.999}};
+        if (!clamps) passes = with(plain, passes);
+        const FrameHistoryPtr history = make_history(device(), size_px);
+        double                first = 0, last = 0;
+        for (int frame = 0; frame < frames; ++frame) {
+            const auto run = run_picture(picture_at(scene, "default", {frame, frames}, size_px), passes, history);
+            EXPECT_EQ(row_of(*run, "picture_history").runs, frame > 0);
+            last = rms_between(shaded(*run), mean);
+            if (frame == 0) first = last;
+            keep_history(device(), *run, frame);
+        }
+        EXPECT_GT(first, 0.01);
+        EXPECT_LT(last, clamps ? first / 2 : 1e-3);
+    }
+}
+
+// A moving camera and moving boxes over a mirror: nearer to the supersampled picture of that frame than one frame is.
+TEST(PictureHistory, FollowsWhatMoves)
+{
+    constexpr int             last = 7, phases = 8;
+    const Scene               scene = load_scene("builtin:moving_boxes");
+    const std::vector<double> mean  = supersampled(scene, "truck", last, phases);
+    double                    rms[2];
+    for (const bool accumulates : {false, true}) {
+        const ParameterValues passes{{"history_weight", 0}, {"picture_history_weight", accumulates ? 0.9 : 0.0}};
+        const FrameHistoryPtr history = make_history(device(), size_px);
+        for (int frame = 0; frame <= last; ++frame) {
+            const auto run   = run_picture(picture_at(scene, "truck", {frame, phases}, size_px), passes, history);
+            rms[accumulates] = rms_between(shaded(*run), mean);
+            keep_history(device(), *run, frame);
+        }
+    }
+    EXPECT_LT(rms[1], 0.7 * rms[0]);
+}
+
 // After many frames the newest one weighs 1 - history_weight: a step from 0 to 1 is 1 - 0.75^n after n frames.
 TEST(History, WeighsFramesExponentially)
 {

@@ -15,7 +15,7 @@ std::span<const Pass> all_passes()
         upsampling_pass(),     ray_reuse_pass(),
         filter_3x3_pass(),     blur_pass(),
         environment_pass(),    history_pass(),
-        composite_pass(),
+        composite_pass(),      picture_history_pass(),
     };
     return passes;
 }

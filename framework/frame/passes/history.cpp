@@ -3,15 +3,22 @@
 
 namespace ssrlab {
 
+PassDecision needed_after_a_frame(const FrameFacts& facts)
+{
+    if (facts.history.state.empty()) return {PassDecision::off, "a single frame: no history"};
+    if (!facts.history.usable) return {PassDecision::off, facts.history.state};
+    if (!facts.history.changes) return {PassDecision::not_needed, facts.history.state + ": the frame before once more"};
+    return {PassDecision::needed, facts.history.state};
+}
+
 PassDecision needed_for_history(const FrameFacts& facts, const FrameStatistics& statistics,
                                 const ParameterValues& values)
 {
     if (values.at("history_weight") == 0) return {PassDecision::off, "history_weight = 0"};
-    if (facts.history.state.empty()) return {PassDecision::off, "a single frame: no history"};
-    if (!facts.history.usable) return {PassDecision::off, facts.history.state};
-    if (statistics.gbuffer.reflecting_pixels == 0) return {PassDecision::not_needed, "no pixel reflects"};
-    if (!facts.history.changes) return {PassDecision::not_needed, facts.history.state + ": the frame before once more"};
-    return {PassDecision::needed, facts.history.state};
+    const PassDecision after = needed_after_a_frame(facts);
+    if (after.verdict != PassDecision::off && statistics.gbuffer.reflecting_pixels == 0)
+        return {PassDecision::not_needed, "no pixel reflects"};
+    return after;
 }
 
 namespace {

@@ -35,7 +35,7 @@ using RecordFunction = std::function<void(const vk::raii::CommandBuffer&)>;
 enum class Resource : uint8_t {
     gbuffer,      // depth, normals and materials
     light,        // lit colours of the G-buffer
-    objects,      // which object each pixel shows, and the plane of its depth
+    objects,      // which object each pixel shows, how it moved, and the plane of its depth
     layers,       // the layers behind the G-buffer
     solids,       // where the solids end whose fronts it shows
     surroundings, // lights, shadow maps and environment of the scene
@@ -99,6 +99,7 @@ Pass blur_pass();
 Pass environment_pass();
 Pass history_pass();
 Pass composite_pass();
+Pass picture_history_pass();
 
 /// Returns all passes in the order of a frame.
 std::span<const Pass> all_passes();

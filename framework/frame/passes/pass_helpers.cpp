@@ -104,7 +104,7 @@ Bindings history_bindings(const FrameInputs& frame)
     return {{"PreviousView", frame.motion.previous_view}, {"Objects", frame.motion.objects},
             {"previous_depth_image", history.depth},      {"previous_gradient_image", history.gradient},
             {"previous_normal_image", history.normal},    {"previous_reflection_image", history.reflection},
-            {"previous_facts_image", history.facts}};
+            {"previous_facts_image", history.facts},      {"previous_picture_image", history.picture}};
 }
 
 Bindings surroundings_of(const FrameInputs& frame)
@@ -169,7 +169,11 @@ Bindings bindings_of(Gpu& gpu, const PassContext& context, Resource resource)
         return {{"radiance_image", gbuffer.radiance},
                 {"highlight_image", gbuffer.highlight},
                 {"emission_image", gbuffer.emission}};
-    case Resource::objects: return {{"object_image", gbuffer.object}, {"gradient_image", gbuffer.gradient}};
+    case Resource::objects: {
+        Bindings objects = {{"object_image", gbuffer.object}, {"gradient_image", gbuffer.gradient}};
+        if (gbuffer.motion_px) objects.insert({"motion_image", *gbuffer.motion_px});
+        return objects;
+    }
     case Resource::layers: return layer_bindings(frame);
     case Resource::solids: return {{"solid_image", gbuffer.solid}};
     case Resource::surroundings: return surroundings_of(frame);
@@ -196,6 +200,7 @@ Bindings bindings_of(Gpu& gpu, const PassContext& context, Resource resource)
     case Resource::kept:
         return frame.history ? Bindings{{"kept_reflection_image", frame.history->kept_reflection},
                                         {"kept_facts_image", frame.history->kept_facts},
+                                        {"kept_picture_image", frame.history->kept_picture},
                                         {"HistoryCounts", frame.history->counts}}
                              : Bindings{};
     case Resource::shaded: return {{"shaded_image", buffers.shaded}};
@@ -211,6 +216,7 @@ const GpuImage& image_of(const PassContext& context, Resource resource)
     case Resource::reflection: return buffers.reflection;
     case Resource::filtered: return buffers.filtered;
     case Resource::block_pixel: return buffers.block_pixel;
+    case Resource::shaded: return buffers.shaded;
     default: throw std::logic_error(fmt::format("'{}' is no single image", name_of(resource)));
     }
 }

@@ -24,6 +24,8 @@ PassDecision needed_if_anything_is_rough(const FrameStatistics& statistics);
 PassDecision needed_at_lower_resolution(const FrameFacts& facts, const FrameStatistics& statistics,
                                         const ParameterValues& values);
 /// Needed if the frame follows another one and something changed since.
+PassDecision needed_after_a_frame(const FrameFacts& facts);
+/// Needed if the history of the reflection is on, too, and something reflects.
 PassDecision needed_for_history(const FrameFacts& facts, const FrameStatistics& statistics,
                                 const ParameterValues& values);
 /// Returns whether bounce_mode = history finds the frame before in a history.
@@ -34,7 +36,7 @@ bool one_ray_per_pixel(const ParameterValues& values);
 // Resources. Each function throws std::logic_error for what the pass does not declare.
 /// Returns the images and buffers of a resource, by their names in shaders.
 Bindings bindings_of(Gpu& gpu, const PassContext& context, Resource resource);
-/// Returns an image that the pass fills or copies: reflection, filtered or block_pixel.
+/// Returns an image that the pass fills or copies: reflection, filtered, block_pixel or shaded.
 const GpuImage& image_of(const PassContext& context, Resource resource);
 /// Returns whether hits may lie in the second layer that the pass hidden_layer draws.
 bool hits_hidden_layer(const FrameInputs& frame);

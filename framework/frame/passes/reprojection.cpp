@@ -11,6 +11,8 @@ PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, 
     const PassDecision bounces = bounces_pass().decide(facts, statistics, values);
     if (takes_bounces_from_history(facts, values) && bounces.verdict == PassDecision::needed)
         return {PassDecision::needed, "bounces come from the frame before"};
+    const PassDecision picture = picture_history_pass().decide(facts, statistics, values);
+    if (picture.verdict == PassDecision::needed && statistics.gbuffer.reflecting_pixels > 0) return picture;
     return needed_for_history(facts, statistics, values);
 }
 
