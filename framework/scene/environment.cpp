@@ -99,6 +99,11 @@ EnvironmentMap load_environment(const std::filesystem::path& file, double scale,
     if (spec.width < 2 || spec.width != 2 * spec.height || spec.depth > 1)
         throw_failure("{}: expected an equirectangular picture, twice as wide as high, got {}x{}", name, spec.width,
                       spec.height);
+    if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
+        spec.height != spec.full_height)
+        throw_failure("{}: holds {}x{} pixels at ({}, {}) of a picture of {}x{}, expected all of them and no more",
+                      name, spec.width, spec.height, spec.x - spec.full_x, spec.y - spec.full_y, spec.full_width,
+                      spec.full_height);
     const size_t       channels = spec.nchannels >= 3 ? 3 : 1; // a file may have a thousand
     EnvironmentMap     map;
     std::vector<float> values(size_t(spec.width) * size_t(spec.height) * channels);

@@ -7,6 +7,8 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <cmath>
+
 namespace ssrlab {
 namespace {
 
@@ -28,7 +30,8 @@ void add_channels(ExrFile& file, const OIIO::ImageSpec& spec, int part, bool sev
     for (int i = 0; i < spec.nchannels; ++i) {
         const std::string& own  = spec.channelnames[static_cast<size_t>(i)];
         const std::string  name = layer.empty() || own.starts_with(layer) ? own : layer + "." + own;
-        file.channels.push_back({name, part, i, spec.channelformat(i) == OIIO::TypeDesc::HALF});
+        file.channels.push_back({name, part, i, spec.channelformat(i) == OIIO::TypeDesc::HALF,
+                                 spec.channelformat(i) == OIIO::TypeDesc::UINT32});
     }
 }
 
@@ -57,7 +60,9 @@ ExrFile open_exr(const std::filesystem::path& path)
         add_channels(file, spec, part, several);
         file.windows.push_back({{spec.x - spec.full_x, spec.y - spec.full_y}, {spec.width, spec.height}});
         if (part > 0) continue;
-        file.size_px = {spec.full_width, spec.full_height};
+        file.size_px       = {spec.full_width, spec.full_height};
+        const float aspect = spec.get_float_attribute("PixelAspectRatio", 1);
+        if (aspect > 0 && std::isfinite(aspect)) file.pixel_aspect = static_cast<double>(aspect);
         for (const auto& attribute : spec.extra_attribs)
             if (attribute.type() == OIIO::TypeString)
                 file.attributes[attribute.name().string()] = attribute.get_string();
@@ -70,8 +75,17 @@ std::vector<float> read_channel(const ExrFile& file, const ExrChannel& channel)
     const auto         input  = open_input(file.path, file.shown);
     const ExrWindow    window = file.windows[static_cast<size_t>(channel.part)];
     std::vector<float> stored(pixel_count(window.size_px));
-    if (!input->read_image(channel.part, 0, channel.index, channel.index + 1, OIIO::TypeDesc::FLOAT, stored.data()))
-        throw_failure("{}: channel '{}' cannot be read: {}", file.shown, channel.name, input->geterror());
+    const auto         read = [&](OIIO::TypeDesc type, void* to) {
+        if (!input->read_image(channel.part, 0, channel.index, channel.index + 1, type, to))
+            throw_failure("{}: channel '{}' cannot be read: {}", file.shown, channel.name, input->geterror());
+    };
+    if (channel.is_uint) { // as a float OpenImageIO would make it a share of 2^32
+        std::vector<uint32_t> whole(stored.size());
+        read(OIIO::TypeDesc::UINT32, whole.data());
+        std::ranges::copy(whole, stored.begin());
+    } else {
+        read(OIIO::TypeDesc::FLOAT, stored.data());
+    }
     if (window.from_px == glm::ivec2(0) && window.size_px == file.size_px) return stored;
     std::vector<float> values(pixel_count(file.size_px), 0.0F);
     for (size_t i = 0; i < values.size(); ++i) {

@@ -15,6 +15,7 @@ struct ExrChannel {
     int         part    = 0;
     int         index   = 0;
     bool        is_half = false;
+    bool        is_uint = false;
 };
 
 /// The pixels that a part holds, from the picture's upper left corner; they may reach beyond it (overscan) or leave some of it empty.
@@ -34,7 +35,8 @@ struct ExrFile {
     glm::ivec2                         size_px{0, 0}; // of the picture: the display window
     std::vector<ExrWindow>             windows;       // by part
     std::vector<ExrChannel>            channels;
-    std::map<std::string, std::string> attributes; // those that are text, of the first part
+    std::map<std::string, std::string> attributes;       // those that are text, of the first part
+    double                             pixel_aspect = 1; // a pixel's width by its height
 };
 
 /// Reads the header. Throws SpecError if missing, Failure if damaged, deep, of several sizes, or without a pixel inside its picture.

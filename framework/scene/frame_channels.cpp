@@ -38,7 +38,7 @@ struct Rule {
 const std::vector<Rule>& rules()
 {
     static const std::vector<Rule> all = {
-        {"depth", {"depth", "depthz", "viewdistance", "raydistance"}, {"", "z", "r", "x", "v", "y"}},
+        {"depth", {"depth", "depthz", "viewdistance", "raydistance"}, {"", "z", "r", "x", "v", "y", "t"}},
         {"normal", {"normal", "normals", "worldnormal", "normalvs", "normalws", "viewnormal"}, {}},
         {"roughness", {"roughness"}, {"", "r", "x", "v", "y"}},
         {"smoothness", {"smoothness"}, {"", "r", "x", "v", "y"}},
@@ -46,7 +46,7 @@ const std::vector<Rule>& rules()
         {"specular", {"specular", "specularcolor", "specularcolour"}, {}},
         {"base_colour", {"basecolour", "basecolor", "albedo", "diffusecolor"}, {}},
         {"emission", {"emission", "emissive", "emit"}, {}},
-        {"lit", {"", "combined", "finalimage", "beauty", "finalcolor", "scenecolor", "lit"}, {}},
+        {"lit", {"", "rgba", "combined", "finalimage", "beauty", "finalcolor", "scenecolor", "lit"}, {}},
     };
     return all;
 }

@@ -70,11 +70,12 @@ void read_axes(TomlTable& table, FrameConvention& convention)
     convention.has_axes = true;
 }
 
-void read_camera(TomlTable table, glm::ivec2 size_px, FrameConvention& convention)
+void read_camera(TomlTable table, const ExrFile& file, FrameConvention& convention)
 {
-    View& view          = convention.view;
-    view                = View{};
-    convention.has_axes = false;
+    const glm::ivec2 size_px = file.size_px;
+    View&            view    = convention.view;
+    view                     = View{};
+    convention.has_axes      = false;
     view.projection = static_cast<Projection>(table.choice("projection", {"perspective", "orthographic"}).value_or(0));
     const bool   flat  = view.projection == Projection::orthographic;
     const auto   fov_y = table.number("fov_y_deg", 0.01, 179), fov_x = table.number("fov_x_deg", 0.01, 179);
@@ -88,11 +89,12 @@ void read_camera(TomlTable table, glm::ivec2 size_px, FrameConvention& conventio
     const auto focal = [](double fov_deg, int px) {
         return 0.5 * px / std::tan(0.5 * fov_deg * std::numbers::pi / 180);
     };
-    view.focal_px  = glm::dvec2(flat    ? size_px.y / *height
-                                : fov_y ? focal(*fov_y, size_px.y)
-                                        : focal(*fov_x, size_px.x));
-    view.centre_px = 0.5 * glm::dvec2(size_px) + glm::dvec2(shift_x, shift_y);
-    view.near_m    = *near_m;
+    const double focal_y = flat    ? size_px.y / *height
+                           : fov_y ? focal(*fov_y, size_px.y)
+                                   : focal(*fov_x, size_px.x) * file.pixel_aspect;
+    view.focal_px        = {focal_y / file.pixel_aspect, focal_y};
+    view.centre_px       = 0.5 * glm::dvec2(size_px) + glm::dvec2(shift_x, shift_y);
+    view.near_m          = *near_m;
     if (flat) view.far_m = *far_m;
     if (far_m && *far_m <= *near_m) table.fail("far_m", "must be more than near_m");
     convention.device_far_m = far_m.value_or(infinity);
@@ -106,7 +108,7 @@ void read_depth_table(TomlTable table, FrameConvention& convention)
     if (!kind) table.fail("'kind' is needed: reversed, standard, distance or ray_distance");
     convention.depth        = static_cast<DepthKind>(*kind);
     convention.unit_m       = table.number("unit_m", 1e-9, 1e9).value_or(1);
-    convention.background   = table.number("background", -1e30, 1e30);
+    convention.background   = table.any_number("background");
     convention.background_m = table.number("background_m", 0, 1e30).value_or(convention.background_m);
     table.refuse_unknown_keys();
 }
@@ -152,7 +154,7 @@ FrameConvention read_convention(const ExrFile& file)
     if (std::filesystem::exists(path)) {
         const TomlFile parsed = read_toml(path);
         TomlTable      root(parsed, parsed.root, "frame");
-        if (auto table = root.table("camera")) read_camera(*table, file.size_px, convention);
+        if (auto table = root.table("camera")) read_camera(*table, file, convention);
         if (auto table = root.table("depth")) read_depth_table(*table, convention);
         if (auto table = root.table("normals")) read_normals_table(*table, convention);
         read_quantities(root, convention);
@@ -162,11 +164,13 @@ FrameConvention read_convention(const ExrFile& file)
     convention.view.name    = Camera{}.name;
     convention.view.size_px = file.size_px;
     if (!(convention.device_far_m > 0))
-        throw_spec_error("{}: nothing says how the camera looks: write {} with [camera] (docs/reference/frame_files.md)",
-                         file.shown, convention.place);
+        throw_spec_error(
+            "{}: nothing says how the camera looks: write {} with [camera] (docs/reference/frame_files.md)", file.shown,
+            convention.place);
     if (!convention.depth)
-        throw_spec_error("{}: nothing says what depth means: write {} with [depth] kind (docs/reference/frame_files.md)",
-                         file.shown, convention.place);
+        throw_spec_error(
+            "{}: nothing says what depth means: write {} with [depth] kind (docs/reference/frame_files.md)", file.shown,
+            convention.place);
     return convention;
 }
 

@@ -65,6 +65,17 @@ FramePlane need_plane(const FrameSource& source, const std::string& quantity, co
                      source.file.shown, quantity, source.convention.place, otherwise, channel_names(source.file));
 }
 
+void clear_outside(FrameSource& source, const FramePlane& plane)
+{
+    GBufferImage& gbuffer = source.frame.gbuffer;
+    for (size_t i = 0; i < gbuffer.depth.size(); ++i) {
+        if (plane.window.has(pixel_at(i, source.file.size_px))) continue;
+        gbuffer.depth[i] = 0;
+        if (!gbuffer.normal_vs.empty()) gbuffer.normal_vs[i] = glm::vec3(0);
+        if (!gbuffer.roughness.empty()) gbuffer.roughness[i] = 0;
+    }
+}
+
 [[noreturn]] void refuse(const FrameSource& source, const FramePlane& plane, size_t i, const char* expected)
 {
     const glm::ivec2 pixel = pixel_at(i, source.file.size_px);

@@ -29,6 +29,12 @@ std::optional<FramePlane> find_plane(const FrameSource& source, const std::strin
 /// The same; throws SpecError if there is none. `otherwise` says where else it could be stated.
 FramePlane need_plane(const FrameSource& source, const std::string& quantity, const char* otherwise = "");
 
+/// What lacks a part of a surface is none: makes pixels outside the plane's window background.
+void clear_outside(FrameSource& source, const FramePlane& plane);
+
+/// Fills the normals in view space, of length 1. Depth must be there. Throws SpecError where they cannot be right.
+void read_normals(FrameSource& source);
+
 /// Throws SpecError with file, channel, what was expected and what was found.
 [[noreturn]] void refuse(const FrameSource& source, const FramePlane& plane, size_t i, const char* expected);
 

@@ -16,12 +16,12 @@
 namespace ssrlab::gltf {
 
 /// Limits; a file beyond them is refused.
-inline constexpr uint64_t max_file_bytes    = 2ULL << 30;
-inline constexpr size_t   max_objects       = 1'000'000; // of each kind: nodes, accessors, ...
-inline constexpr int      max_json_depth    = 128;
-inline constexpr int      max_node_depth    = 256;
-inline constexpr size_t   max_node_visits   = 1'000'000;
-inline constexpr size_t   max_triangles     = 40'000'000; // with all truths 500 bytes each (tests/stress/run sizes): 20 GiB
+inline constexpr uint64_t max_file_bytes  = 2ULL << 30;
+inline constexpr size_t   max_objects     = 1'000'000; // of each kind: nodes, accessors, ...
+inline constexpr int      max_json_depth  = 128;
+inline constexpr int      max_node_depth  = 256;
+inline constexpr size_t   max_node_visits = 1'000'000;
+inline constexpr size_t   max_triangles = 40'000'000; // with all truths 500 bytes each (tests/stress/run sizes): 20 GiB
 inline constexpr size_t   max_accessor_rows = 300'000'000;
 inline constexpr size_t   max_poses         = 4'000'000; // baked for animations, 128 bytes each
 
@@ -42,14 +42,15 @@ struct NodeTracks {
 };
 
 struct Import {
-    std::string               file; // for messages
-    tinygltf::Model           json;
-    Model                     model;
-    size_t                    triangles = 0;
-    std::map<int, NodeTracks> tracks;     // by node, of those that are animated
-    int                       frames = 1; // until everything has come to rest
-    size_t                    poses  = 0; // that were baked
-    std::set<std::string>     said;       // warnings are said once
+    std::string                       file; // for messages
+    tinygltf::Model                   json;
+    Model                             model;
+    size_t                            triangles = 0;
+    std::map<int, NodeTracks>         tracks;        // by node, of those that are animated
+    std::map<int, std::vector<float>> first_weights; // by node, of those whose morph targets are animated: in frame 0
+    int                               frames = 1;    // until everything has come to rest
+    size_t                            poses  = 0;    // that were baked
+    std::set<std::string>             said;          // warnings are said once
 
     void                                          warn(const std::string& text);
     template <typename... Args> [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const;
@@ -108,6 +109,9 @@ std::vector<glm::dmat4> instances_of(const Import& import, int node);
 /// Mesh space to world space by a skin's joints, in every frame if anything moves them, else in one.
 JointPoses joint_poses(Import& import, int skin);
 
+/// Throws Failure where a vertex follows a joint that the skin does not have.
+void check_joints(const Import& import, const Mesh& mesh, size_t joint_count);
+
 /// Poses a mesh as in frame 0; later frames stay in its skin.
 void bend(Mesh& mesh, const JointPoses& joints);
 
@@ -122,8 +126,17 @@ std::vector<float> rows_of(const Import& import, const tinygltf::Primitive& prim
 std::vector<Influences> read_influences(Import& import, const tinygltf::Primitive& primitive, size_t vertex_count,
                                         const std::vector<uint32_t>& used, const std::string& where);
 
-/// A mesh's primitives as Meshes in the mesh's own space. Draws that cannot be shown are skipped with a warning.
-std::vector<Mesh> read_mesh(Import& import, int mesh, const std::vector<bool>& material_left_out);
+/// What each morph target of the node's mesh counts in frame 0: by an animation, the node, or the mesh; empty: nothing.
+std::vector<float> morph_weights(const Import& import, int node);
+
+/// Moves the rows of an attribute, of which the first three components count, by those of the primitive's targets (glTF 2.0, 3.7.2.2).
+void add_morph_targets(const Import& import, const tinygltf::Primitive& primitive, const char* name, int components,
+                       const std::vector<float>& weights, std::vector<float>& rows, const std::string& where);
+
+/// A mesh's primitives as Meshes in the mesh's own space, with these weights of their morph targets. Draws that cannot be shown are
+/// skipped with a warning.
+std::vector<Mesh> read_mesh(Import& import, int mesh, const std::vector<float>& morph_weights,
+                            const std::vector<bool>& material_left_out);
 
 template <typename... Args> void Import::fail(fmt::format_string<Args...> format, Args&&... args) const
 {

@@ -47,6 +47,9 @@ Layout layout_of(const Import& import, int index, const std::string& where)
     layout.normalized     = accessor.normalized;
     const int size        = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(accessor.componentType));
     if (size <= 0 || layout.components <= 0) import.fail("{}: accessor {} has an unknown type", where, index);
+    if (layout.component_type == TINYGLTF_COMPONENT_TYPE_INT || layout.component_type == TINYGLTF_COMPONENT_TYPE_DOUBLE)
+        import.fail("{}: accessor {}: expected componentType 5120 to 5123, 5125 or 5126, got {}", where, index,
+                    layout.component_type);
     if (layout.count == 0 || layout.count > max_accessor_rows)
         import.fail("{}: accessor {} has {} elements; 1 to {} can be loaded", where, index, layout.count,
                     max_accessor_rows);
@@ -91,9 +94,11 @@ void apply_sparse(const Import& import, int index, const Layout& layout, std::ve
                   const std::string& where)
 {
     const auto& sparse = import.json.accessors[static_cast<size_t>(index)].sparse;
-    if (!sparse.isSparse || sparse.count <= 0) return;
+    if (!sparse.isSparse) return;
     const int index_size = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(sparse.indices.componentType));
     const int size       = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(layout.component_type));
+    if (sparse.count <= 0)
+        import.fail("{}: accessor {}: expected a sparse count above 0, got {}", where, index, sparse.count);
     if (index_size <= 0 || sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0)
         import.fail("{}: accessor {} has a broken sparse part", where, index);
     const auto  count   = static_cast<uint64_t>(sparse.count);

@@ -30,12 +30,18 @@ std::vector<float> read_times(const Import& import, int accessor, const std::str
     return times_s;
 }
 
-Track read_track(const Import& import, const tinygltf::Animation& animation, int sampler_index, int components,
-                 const std::string& where)
+const tinygltf::AnimationSampler& sampler_of(const Import& import, const tinygltf::Animation& animation,
+                                             int sampler_index, const std::string& where)
 {
     if (sampler_index < 0 || static_cast<size_t>(sampler_index) >= animation.samplers.size())
         import.fail("{}: there is no sampler {}", where, sampler_index);
-    const tinygltf::AnimationSampler& sampler = animation.samplers[static_cast<size_t>(sampler_index)];
+    return animation.samplers[static_cast<size_t>(sampler_index)];
+}
+
+Track read_track(const Import& import, const tinygltf::Animation& animation, int sampler_index, int components,
+                 const std::string& where)
+{
+    const tinygltf::AnimationSampler& sampler = sampler_of(import, animation, sampler_index, where);
     const std::string                 place   = fmt::format("{}/samplers/{}", where, sampler_index);
     Track                             track;
     track.components = components;
@@ -62,6 +68,24 @@ std::optional<Track>* property_of(NodeTracks& tracks, const std::string& path)
     return nullptr;
 }
 
+/// No time is negative, so that frame 0 has the values of the first key. A key of cubic ones is three values long.
+void read_first_weights(Import& import, const tinygltf::Animation& animation, const tinygltf::AnimationChannel& channel,
+                        const std::string& where)
+{
+    const tinygltf::AnimationSampler& sampler = sampler_of(import, animation, channel.sampler, where);
+    const std::string                 place   = fmt::format("{}/samplers/{}", where, channel.sampler);
+    const size_t                      keys    = read_times(import, sampler.input, place).size();
+    const std::vector<float>          values  = read_floats(import, sampler.output, 1, place + "/output");
+    const size_t                      parts   = sampler.interpolation == "CUBICSPLINE" ? 3 : 1;
+    const size_t                      targets = values.size() / keys / parts;
+    if (targets * keys * parts != values.size())
+        import.fail("{}/output: {} values cannot be shared among {} keys", place, values.size(), keys);
+    if (!all_finite(values)) import.fail("{}/output: a value is not finite", place);
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(parts / 2 * targets);
+    import.first_weights.try_emplace(channel.target_node, first, first + static_cast<std::ptrdiff_t>(targets));
+    if (keys > 1) import.warn("animated morph targets are not supported: they stay as in frame 0");
+}
+
 void read_channel(Import& import, const tinygltf::Animation& animation, const tinygltf::AnimationChannel& channel,
                   const std::string& where)
 {
@@ -70,9 +94,8 @@ void read_channel(Import& import, const tinygltf::Animation& animation, const ti
     const int node = channel.target_node;
     if (node < 0 || static_cast<size_t>(node) >= import.json.nodes.size())
         import.fail("{}/target: there is no node {}", where, node);
+    if (channel.target_path == "weights") return read_first_weights(import, animation, channel, where);
     std::optional<Track>* property = property_of(import.tracks[node], channel.target_path);
-    if (property == nullptr && channel.target_path == "weights")
-        return import.warn("animated morph targets are not supported: drawn at rest");
     if (property == nullptr)
         import.fail("{}/target/path: expected translation, rotation, scale or weights, got '{}'", where,
                     channel.target_path);

@@ -57,7 +57,8 @@ const json* member(const json& object, const std::string& key)
 
 [[noreturn]] void refuse_compressed(const Import& import, const std::string& where, std::string_view extension)
 {
-    import.fail("{} is compressed by {}, and the file has no other copy: {}", where, extension, decompress);
+    throw_spec_error("{}: {} is compressed by {}, and the file has no other copy: {}", import.file, where, extension,
+                     decompress);
 }
 
 bool has_data(const Import& import, const json& root, const json& number)
@@ -88,9 +89,9 @@ void check_extensions(Import& import, const json& root)
 {
     for (const std::string& name : names_in(import, root, "extensionsRequired")) {
         if (const ExtensionRule* rule = fatal_rule(name))
-            import.fail("needs the extension {}, which is not supported: {}", name, rule->advice);
+            throw_spec_error("{}: needs the extension {}, which is not supported: {}", import.file, name, rule->advice);
         if (!name.starts_with("KHR_materials_") && !is_supported(name))
-            import.fail("needs the extension {}, which is not supported", name);
+            throw_spec_error("{}: needs the extension {}, which is not supported", import.file, name);
     }
     for (const std::string& name : names_in(import, root, "extensionsUsed"))
         if (!is_supported(name)) import.warn(fmt::format("extension {} is not supported and was ignored", name));

@@ -163,6 +163,9 @@ void add_clearcoat(Import& import, const tinygltf::Material& source, const std::
         import.warn(fmt::format("{}: clear coat over metal is not supported; coat left out", where));
         return;
     }
+    for (const char* texture : {"clearcoatTexture", "clearcoatRoughnessTexture", "clearcoatNormalTexture"})
+        if (coat->second.Has(texture))
+            import.warn(fmt::format("{}: textures of KHR_materials_clearcoat are not supported; factors count", where));
     const auto roughness = unit_range(number_in(coat->second, "clearcoatRoughnessFactor", 0), 0);
     material.roughness += (roughness - material.roughness) * factor;
     material.metallic_roughness_texture = {};

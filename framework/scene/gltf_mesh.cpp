@@ -56,11 +56,14 @@ std::vector<uint32_t> take_used(std::vector<uint32_t>& corners, size_t vertex_co
     return used;
 }
 
-void read_colours(const Import& import, const tinygltf::Primitive& primitive, size_t vertex_count,
+void read_colours(Import& import, const tinygltf::Primitive& primitive, size_t vertex_count,
                   const std::vector<uint32_t>& used, Mesh& mesh, const std::string& where)
 {
     const int accessor = attribute(primitive, "COLOR_0");
     if (accessor < 0) return;
+    if (primitive.material >= 0 &&
+        import.json.materials[size_t(primitive.material)].extensions.contains("KHR_materials_unlit"))
+        import.warn(fmt::format("{}: vertex colours of an unlit material are not supported; it has one colour", where));
     const int                components = component_count(import, accessor, where) == 4 ? 4 : 3;
     const std::vector<float> rows       = rows_of(import, primitive, "COLOR_0", components, vertex_count, where);
     for (size_t i = 0; i < used.size(); ++i)
@@ -86,20 +89,23 @@ std::vector<uint32_t> to_triangles(const std::vector<uint32_t>& corners, int mod
     return triangles;
 }
 
-void read_triangles(Import& import, const tinygltf::Primitive& primitive, int mode, Mesh& mesh,
-                    const std::string& where)
+void read_triangles(Import& import, const tinygltf::Primitive& primitive, int mode,
+                    const std::vector<float>& morph_weights, Mesh& mesh, const std::string& where)
 {
-    const std::vector<float> positions =
+    std::vector<float> positions =
         read_floats(import, attribute(primitive, "POSITION"), 3, where + "/attributes/POSITION");
     const size_t                count    = positions.size() / 3;
     std::vector<uint32_t>       corners  = read_corners(import, primitive, count, where);
     const std::vector<uint32_t> used     = take_used(corners, count);
-    const std::vector<float>    normals  = rows_of(import, primitive, "NORMAL", 3, count, where);
-    const std::vector<float>    tangents = rows_of(import, primitive, "TANGENT", 4, count, where);
+    std::vector<float>          normals  = rows_of(import, primitive, "NORMAL", 3, count, where);
+    std::vector<float>          tangents = rows_of(import, primitive, "TANGENT", 4, count, where);
     const std::vector<float>    uv0      = rows_of(import, primitive, "TEXCOORD_0", 2, count, where);
     const std::vector<float>    uv1      = rows_of(import, primitive, "TEXCOORD_1", 2, count, where);
-    mesh.has_normals                     = !normals.empty();
-    mesh.has_tangents                    = !tangents.empty() && mesh.has_normals;
+    add_morph_targets(import, primitive, "POSITION", 3, morph_weights, positions, where);
+    add_morph_targets(import, primitive, "NORMAL", 3, morph_weights, normals, where);
+    add_morph_targets(import, primitive, "TANGENT", 4, morph_weights, tangents, where);
+    mesh.has_normals  = !normals.empty();
+    mesh.has_tangents = !tangents.empty() && mesh.has_normals;
     mesh.positions_ws.reserve(used.size());
     mesh.vertices.reserve(used.size());
     for (const size_t i : used) {
@@ -121,7 +127,8 @@ void read_triangles(Import& import, const tinygltf::Primitive& primitive, int mo
 
 } // namespace
 
-std::vector<Mesh> read_mesh(Import& import, int mesh_index, const std::vector<bool>& material_left_out)
+std::vector<Mesh> read_mesh(Import& import, int mesh_index, const std::vector<float>& morph_weights,
+                            const std::vector<bool>& material_left_out)
 {
     const tinygltf::Mesh& source = import.json.meshes[static_cast<size_t>(mesh_index)];
     std::vector<Mesh>     meshes;
@@ -140,13 +147,12 @@ std::vector<Mesh> read_mesh(Import& import, int mesh_index, const std::vector<bo
         }
         if (primitive.material >= static_cast<int>(import.json.materials.size()))
             import.fail("{}/material: there is no material {}", where, primitive.material);
-        if (!primitive.targets.empty()) import.warn("morph targets are not supported: drawn at rest");
         Mesh mesh;
         mesh.name     = source.name.empty() ? fmt::format("mesh {}", mesh_index) : source.name;
         mesh.material = static_cast<uint32_t>(primitive.material >= 0 ? primitive.material
                                                                       : static_cast<int>(material_left_out.size()) - 1);
         if (material_left_out[mesh.material]) continue;
-        read_triangles(import, primitive, mode, mesh, where);
+        read_triangles(import, primitive, mode, morph_weights, mesh, where);
         meshes.push_back(std::move(mesh));
     }
     return meshes;

@@ -14,6 +14,25 @@ template <size_t count> bool all_finite(const std::vector<double>& values)
     return values.size() == count && std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
 
+/// How many there are. Attributes of other names count, too: they may be the only ones.
+size_t instance_count(const Import& import, const tinygltf::Value& attributes, const std::string& where)
+{
+    size_t count = 0;
+    for (const std::string& name : attributes.Keys()) {
+        const std::string place = where + "/" + name;
+        if (!attributes.Get(name).IsInt()) import.fail("{}: expected the number of an accessor", place);
+        const int accessor = attributes.Get(name).GetNumberAsInt();
+        component_count(import, accessor, place); // checks the accessor
+        const size_t found = import.json.accessors[size_t(accessor)].count;
+        if (count != 0 && found != count)
+            import.fail("{}: {} rows, expected {} as the others have", place, found, count);
+        count = found;
+    }
+    if (count > max_node_visits)
+        import.fail("{}: {} instances, at most {} can be loaded", where, count, max_node_visits);
+    return count;
+}
+
 } // namespace
 
 glm::dmat4 local_matrix(const Import& import, int node_index, int frame)
@@ -69,23 +88,20 @@ bool is_hidden(const tinygltf::Node& node)
 std::vector<glm::dmat4> instances_of(const Import& import, int node)
 {
     const tinygltf::Value* extension = extension_of(import.json.nodes[size_t(node)], "EXT_mesh_gpu_instancing");
-    if (extension == nullptr || !extension->Has("attributes")) return {glm::dmat4(1)};
-    const std::string  where = fmt::format("/nodes/{}/extensions/EXT_mesh_gpu_instancing/attributes", node);
-    std::vector<float> rows[3]; // translation, rotation, scale
-    size_t             count         = 0;
-    const char* const  names[]       = {"TRANSLATION", "ROTATION", "SCALE"};
-    constexpr size_t   components[3] = {3, 4, 3};
+    if (extension == nullptr || !extension->Has("attributes") || !extension->Get("attributes").IsObject())
+        return {glm::dmat4(1)};
+    const tinygltf::Value& attributes = extension->Get("attributes");
+    const std::string      where      = fmt::format("/nodes/{}/extensions/EXT_mesh_gpu_instancing/attributes", node);
+    const size_t           count      = instance_count(import, attributes, where);
+    std::vector<float>     rows[3]; // translation, rotation, scale
+    const char* const      names[]       = {"TRANSLATION", "ROTATION", "SCALE"};
+    constexpr size_t       components[3] = {3, 4, 3};
     for (size_t i = 0; i < 3; ++i) {
-        const tinygltf::Value& attributes = extension->Get("attributes");
-        if (!attributes.IsObject() || !attributes.Has(names[i])) continue;
+        if (!attributes.Has(names[i])) continue;
         const std::string place = where + "/" + names[i];
-        rows[i]            = read_floats(import, attributes.Get(names[i]).GetNumberAsInt(), int(components[i]), place);
-        const size_t found = rows[i].size() / components[i];
+        rows[i] = read_floats(import, attributes.Get(names[i]).GetNumberAsInt(), int(components[i]), place);
         if (!std::ranges::all_of(rows[i], [](float value) { return std::isfinite(value); }))
             import.fail("{}: a value is not finite", place);
-        if (count != 0 && found != count)
-            import.fail("{}: {} rows, expected {} as the others have", place, found, count);
-        count = found;
     }
     std::vector<glm::dmat4> instances(count, glm::dmat4(1));
     for (size_t k = 0; k < count; ++k) {

@@ -72,15 +72,6 @@ json parse_json(const Import& import, const std::vector<unsigned char>& bytes)
     }
 }
 
-uint64_t count_of(const Import& import, const json& object, const char* key, const std::string& where,
-                  uint64_t otherwise)
-{
-    const auto found = object.find(key);
-    if (found == object.end()) return otherwise;
-    if (!found->is_number_unsigned()) import.fail("{}/{} must be a whole number >= 0", where, key);
-    return found->get<uint64_t>();
-}
-
 void check_version(const Import& import, const json& root)
 {
     const auto asset = root.find("asset");
@@ -101,7 +92,11 @@ std::vector<fs::path> files_named_in(const Import& import, const json& root, con
             if (uri == items[i].end()) continue;
             if (!uri->is_string()) import.fail("/{}/{}/uri is no text", kind, i);
             const std::string text = *uri;
-            if (text.starts_with("data:")) continue;
+            if (text.starts_with("data:")) {
+                if (text.find(base64) == std::string::npos)
+                    import.fail("/{}/{}/uri: expected a data URI in base64, got '{}…'", kind, i, text.substr(0, 40));
+                continue;
+            }
             try {
                 files.push_back(resolve_uri(folder, text));
             } catch (const Failure& failure) {
@@ -158,28 +153,6 @@ void check_triangle_count(const Import& import, const json& root)
         }
 }
 
-/// Indices without a buffer view are zeros, of which a sparse part replaces some; the parser refuses them. Gives them any view for as long as
-/// it parses, and returns their accessors.
-std::vector<size_t> give_indices_a_view(const Import& import, json& root)
-{
-    const size_t        accessors = array_of(import, root, "accessors").size();
-    std::vector<size_t> given;
-    if (array_of(import, root, "bufferViews").empty()) return given;
-    for (const json& mesh : array_of(import, root, "meshes")) {
-        if (!mesh.contains("primitives") || !mesh["primitives"].is_array()) continue;
-        for (const json& primitive : mesh["primitives"]) {
-            if (!primitive.is_object() || !primitive.contains("indices")) continue;
-            const json& number = primitive["indices"];
-            if (!number.is_number_unsigned() || number >= accessors) continue;
-            json& accessor = root["accessors"][number.get<size_t>()];
-            if (accessor.contains("bufferView") || !accessor.contains("sparse")) continue;
-            accessor["bufferView"] = 0;
-            given.push_back(number.get<size_t>());
-        }
-    }
-    return given;
-}
-
 /// The same file with other JSON.
 std::vector<unsigned char> with_json(const Import& import, const std::vector<unsigned char>& bytes, std::string text)
 {
@@ -193,6 +166,18 @@ std::vector<unsigned char> with_json(const Import& import, const std::vector<uns
     std::memcpy(&result[8], &whole, sizeof whole);
     std::memcpy(&result[12], &length, sizeof length);
     return result;
+}
+
+/// The folder joined with a relative path; `shown` is its name in messages.
+fs::path path_inside(const fs::path& folder, const fs::path& path, const std::string& shown)
+{
+    if (path.empty() || path.string().find('\0') != std::string::npos || path.is_absolute())
+        throw_failure("'{}' is not a relative path", shown);
+    const fs::path root     = fs::weakly_canonical(folder);
+    fs::path       resolved = fs::weakly_canonical(root / path); // follows links
+    const fs::path inside   = resolved.lexically_relative(root);
+    if (inside.empty() || *inside.begin() == "..") throw_failure("'{}' leads out of the asset's folder", shown);
+    return resolved;
 }
 
 bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
@@ -214,8 +199,7 @@ tinygltf::FsCallbacks confined_file_access(fs::path* folder)
                                  void* data) {
         try {
             const fs::path& root = *static_cast<fs::path*>(data);
-            *out =
-                read_regular_file(resolve_uri(root, fs::path(name).lexically_relative(root).string()), max_file_bytes);
+            *out = read_regular_file(path_inside(root, fs::path(name).lexically_relative(root), name), max_file_bytes);
             return true;
         } catch (const std::exception& exception) {
             if (error != nullptr) *error += exception.what();
@@ -231,7 +215,9 @@ tinygltf::FsCallbacks confined_file_access(fs::path* folder)
 
 std::string one_line(std::string text)
 {
+    constexpr size_t longest = 300; // a data URI may be in it
     while (!text.empty() && text.back() == '\n') text.pop_back();
+    if (text.size() > longest) text = text.substr(0, longest) + "…";
     std::ranges::replace(text, '\n', ' ');
     return text;
 }
@@ -253,6 +239,15 @@ std::string percent_decoded(const std::string& text)
 
 } // namespace
 
+uint64_t count_of(const Import& import, const json& object, const char* key, const std::string& where,
+                  uint64_t otherwise)
+{
+    const auto found = object.find(key);
+    if (found == object.end()) return otherwise;
+    if (!found->is_number_unsigned()) import.fail("{}/{} must be a whole number >= 0", where, key);
+    return found->get<uint64_t>();
+}
+
 void Import::warn(const std::string& text)
 {
     if (said.insert(text).second)
@@ -268,15 +263,9 @@ void refuse_triangles(const Import& import, uint64_t triangles)
 fs::path resolve_uri(const fs::path& folder, const std::string& uri)
 {
     const std::string text = percent_decoded(uri);
-    const fs::path    path = text;
-    if (text.empty() || text.find('\0') != std::string::npos || path.is_absolute() ||
-        text.find("://") != std::string::npos || text.starts_with("file:"))
+    if (text.find("://") != std::string::npos || text.starts_with("file:"))
         throw_failure("'{}' is not a relative path", uri);
-    const fs::path root     = fs::weakly_canonical(folder);
-    fs::path       resolved = fs::weakly_canonical(root / path); // follows links
-    const fs::path inside   = resolved.lexically_relative(root);
-    if (inside.empty() || *inside.begin() == "..") throw_failure("'{}' leads out of the asset's folder", uri);
-    return resolved;
+    return path_inside(folder, text, uri);
 }
 
 std::vector<fs::path> files_named_by(const fs::path& file)
@@ -304,10 +293,12 @@ void parse_file(Import& import, const fs::path& file)
         files_named_in(import, root, folder);
         check_buffer_views(import, root);
         check_triangle_count(import, root);
-        zeros = give_indices_a_view(import, root);
-        if (!zeros.empty()) changed = with_json(import, bytes, root.dump());
+        zeros                  = give_indices_a_view(import, root);
+        const bool other_sizes = give_buffers_their_size(import, root, folder);
+        const bool other_types = give_data_one_type(import, root);
+        if (!zeros.empty() || other_sizes || other_types) changed = with_json(import, bytes, root.dump());
     }
-    const std::vector<unsigned char>& parsed = zeros.empty() ? bytes : changed;
+    const std::vector<unsigned char>& parsed = changed.empty() ? bytes : changed;
     tinygltf::TinyGLTF                parser;
     parser.SetImageLoader(keep_encoded, nullptr);
     parser.SetFsCallbacks(confined_file_access(&folder));

@@ -93,6 +93,15 @@ JointPoses joint_poses(Import& import, int skin_index)
     return poses;
 }
 
+void check_joints(const Import& import, const Mesh& mesh, size_t joint_count)
+{
+    for (const Influences& vertex : mesh.skin.vertices)
+        for (size_t i = 0; i < vertex.weights.size(); ++i)
+            if (vertex.weights[i] > 0 && vertex.joints[i] >= joint_count)
+                import.fail("mesh '{}': a vertex follows joint {}, but the skin has {} joints", mesh.name,
+                            vertex.joints[i], joint_count);
+}
+
 void bend(Mesh& mesh, const JointPoses& joints)
 {
     const bool mirrors = !mesh.skin.vertices.empty() &&

@@ -109,6 +109,23 @@ void remove_transparent(Import& import, const std::vector<FileMaterial>& materia
     std::erase_if(import.model.meshes, [](const Mesh& mesh) { return mesh.indices.empty(); });
 }
 
+/// assimp keeps positions as floats, whatever the file says.
+void warn_of_rounding(Import& import, const FileModel& source)
+{
+    constexpr double visible = 1e-5; // of the model's size
+    Bounds           bounds;
+    for (const Mesh& mesh : source.meshes)
+        for (const glm::dvec3& position : mesh.positions_ws)
+            if (usable(position)) bounds.add(position);
+    if (bounds.empty()) return;
+    const glm::dvec3 farthest = glm::max(glm::abs(bounds.min_ws), glm::abs(bounds.max_ws));
+    const double     far_m    = std::max({farthest.x, farthest.y, farthest.z});
+    if (far_m * 0x1p-24 > visible * glm::length(bounds.size_m()))
+        warn(import, fmt::format("it lies {:.3g} units from its origin, where positions are rounded to {:.2g}: move it "
+                                 "to its origin, or use a .glb with a node that places it",
+                                 far_m, far_m * 0x1p-24));
+}
+
 } // namespace
 
 Model import_model(const fs::path& file)
@@ -116,6 +133,7 @@ Model import_model(const fs::path& file)
     Import import;
     import.file      = file;
     FileModel source = read_model_file(file);
+    warn_of_rounding(import, source);
     for (const FileMaterial& material : source.materials)
         import.model.materials.push_back(convert_material(import, material));
     add_meshes(import, std::move(source.meshes));

@@ -3,7 +3,6 @@
 #include "core/error.h"
 #include "core/pixel_index.h"
 #include "scene/environment.h"
-#include "scene/frame_channels.h"
 #include "scene/frame_planes.h"
 
 #include <algorithm>
@@ -31,12 +30,14 @@ double device_distance_m(const FrameConvention& convention, double depth)
     return near_m * far_m / (near_m + reversed * (far_m - near_m));
 }
 
+bool same_value(float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
 float usable_depth_of(const FrameSource& source, const FramePlane& plane, size_t i)
 {
     const FrameConvention& convention = source.convention;
     const double           value      = static_cast<double>(plane.values[i]);
     if (!plane.window.has(pixel_at(i, source.file.size_px))) return 0;
-    if (convention.background && plane.values[i] == static_cast<float>(*convention.background)) return 0;
+    if (convention.background && same_value(plane.values[i], static_cast<float>(*convention.background))) return 0;
     if (std::isnan(value)) refuse(source, plane, i, "a number");
     if (convention.depth == DepthKind::reversed || convention.depth == DepthKind::standard) {
         if (value < 0 || value > 1) refuse(source, plane, i, "device depth in 0 … 1");
@@ -70,72 +71,6 @@ void read_depth_plane(FrameSource& source)
         source.frame.warnings.push_back(plane.shown + ": every pixel is background: is [depth] kind right?");
 }
 
-glm::dmat3 normals_to_view(const FrameSource& source, const std::string& channel)
-{
-    const FrameConvention& convention = source.convention;
-    const std::string      said       = normal_space_of(channel);
-    const std::string      space      = convention.normal_space.empty() ? said : convention.normal_space;
-    if (space.empty())
-        throw_spec_error(
-            "{}: channel '{}': nothing says whether it is in view or world space: write {} with [normals] space",
-            source.file.shown, channel, convention.place);
-    if (space == "view") return glm::dmat3(1);
-    if (!convention.has_axes)
-        throw_spec_error("{}: normals in world space need the camera's 'right', 'up' and 'forward' in [camera]",
-                         convention.place);
-    return glm::dmat3(convention.view.world_to_view);
-}
-
-/// Conventions that do not fit show here: normals of another length, or of surfaces that look away.
-void judge_normals(FrameSource& source, const FramePlane& plane)
-{
-    const GBufferImage& gbuffer = source.frame.gbuffer;
-    double              length  = 0;
-    size_t              covered = 0, count = 0, away = 0;
-    for (size_t i = 0; i < gbuffer.depth.size(); ++i) {
-        const glm::dvec3 normal = gbuffer.normal_vs[i];
-        covered += gbuffer.depth[i] > 0;
-        if (gbuffer.depth[i] == 0 || normal == glm::dvec3(0)) continue;
-        const glm::dvec3 point = px_to_vs(gbuffer.view, glm::dvec2(pixel_at(i, gbuffer.view.size_px)) + 0.5,
-                                          static_cast<double>(gbuffer.depth[i]));
-        const glm::dvec3 sight = gbuffer.view.projection == Projection::perspective ? point : glm::dvec3(0, 0, -1);
-        ++count;
-        length += glm::length(normal);
-        away += glm::dot(normal, sight) > 0;
-    }
-    if (covered == 0) return;
-    if (count == 0) throw_spec_error("{}: every normal is zero, expected directions of length 1", plane.shown);
-    length /= static_cast<double>(count);
-    if (length < 0.9 || length > 1.1)
-        throw_spec_error("{}: expected normals of length 1, got {:.2f} on average: is [normals] unsigned right?",
-                         plane.shown, length);
-    if (4 * away > count)
-        source.frame.warnings.push_back(
-            fmt::format("{}: {:.0f} % of the normals look away from the camera: are [normals] space and flip right?",
-                        plane.shown, 100.0 * static_cast<double>(away) / static_cast<double>(count)));
-}
-
-void read_normals(FrameSource& source)
-{
-    const FrameConvention& convention = source.convention;
-    GBufferImage&          gbuffer    = source.frame.gbuffer;
-    const FramePlane       planes[]   = {need_plane(source, "normal.x"), need_plane(source, "normal.y"),
-                                         need_plane(source, "normal.z")};
-    const glm::dmat3       to_view    = normals_to_view(source, planes[0].name);
-    const bool             same =
-        to_view == glm::dmat3(1) && !convention.unsigned_normals && convention.normal_sign == glm::dvec3(1);
-    for (size_t i = 0; i < gbuffer.depth.size(); ++i) {
-        for (const FramePlane& plane : planes)
-            if (gbuffer.depth[i] > 0 && !std::isfinite(plane.values[i])) refuse(source, plane, i, "a finite number");
-        const glm::vec3 stored(planes[0].values[i], planes[1].values[i], planes[2].values[i]);
-        glm::dvec3      normal = stored;
-        if (convention.unsigned_normals) normal = 2.0 * normal - 1.0;
-        normal = to_view * (convention.normal_sign * normal);
-        gbuffer.normal_vs.push_back(gbuffer.depth[i] == 0 ? glm::vec3(0) : same ? stored : glm::vec3(normal));
-    }
-    judge_normals(source, planes[0]);
-}
-
 float share_at(const FrameSource& source, const FramePlane& plane, size_t i)
 {
     constexpr float rounding = 1e-3F;
@@ -151,6 +86,7 @@ void read_roughness(FrameSource& source)
     const auto smooth =
         source.convention.channels.contains("roughness") ? std::nullopt : find_plane(source, "smoothness");
     const FramePlane plane = smooth ? *smooth : need_plane(source, "roughness", " or [values]");
+    clear_outside(source, plane);
     for (size_t i = 0; i < plane.values.size(); ++i)
         roughness.push_back(smooth ? 1 - share_at(source, plane, i) : share_at(source, plane, i));
 }
@@ -163,10 +99,15 @@ void read_metallic(FrameSource& source)
     const auto red      = given ? std::nullopt : find_plane(source, "specular.R");
     if (!red) {
         const FramePlane plane = given ? *given : need_plane(source, "metallic", " or [values]");
+        clear_outside(source, plane);
         for (size_t i = 0; i < plane.values.size(); ++i) metallic.push_back(share_at(source, plane, i));
         return;
     }
+    if (!source.convention.channels.contains("specular.R"))
+        source.frame.warnings.push_back(red->shown +
+                                        " is taken as reflectance at normal incidence (F0), not as reflected light");
     const FramePlane green = need_plane(source, "specular.G"), blue = need_plane(source, "specular.B");
+    for (const FramePlane* plane : {&*red, &green, &blue}) clear_outside(source, *plane);
     for (size_t i = 0; i < red->values.size(); ++i) {
         const float f0 = std::max({share_at(source, *red, i), share_at(source, green, i), share_at(source, blue, i)});
         metallic.push_back(std::max(0.0F, (f0 - common_dielectric_f0) / (1 - common_dielectric_f0)));
@@ -225,7 +166,8 @@ void name_windows(FrameSource& source)
                                          part, size.x, size.y, from.x, from.y, file.size_px.x, file.size_px.y, count, what));
         };
         say(pixel_count(size) - used, "of them are overscan and left out");
-        say(pixel_count(file.size_px) - used, "of the picture are not there and count as background");
+        say(pixel_count(file.size_px) - used,
+            "of the picture are not there and count as background, or as 0 in colours");
     }
 }
 

@@ -108,10 +108,11 @@ std::vector<int> root_nodes(const Import& import)
 }
 
 struct Walk {
-    std::vector<Visit>               pending;
-    std::map<int, std::vector<Mesh>> meshes; // read once, placed as often as nodes ask
-    std::vector<bool>                material_left_out;
-    size_t                           visits = 0;
+    using Shape = std::pair<int, std::vector<float>>; // a mesh with the weights of its morph targets
+    std::vector<Visit>                 pending;
+    std::map<Shape, std::vector<Mesh>> meshes; // read once, placed as often as nodes ask
+    std::vector<bool>                  material_left_out;
+    size_t                             visits = 0;
 };
 
 bool is_rigid(const glm::dmat4& matrix)
@@ -142,35 +143,61 @@ Poses rigid_poses(Import& import, const Visit& at)
     return still ? nullptr : poses;
 }
 
-/// A copy of each of its parts, counted.
-std::vector<Mesh> parts_of(Import& import, Walk& walk, int mesh_index)
+/// A copy of each of its parts with the morph targets of that node, counted.
+std::vector<Mesh> parts_of(Import& import, Walk& walk, int node)
 {
+    const int mesh_index = import.json.nodes[size_t(node)].mesh;
     if (static_cast<size_t>(mesh_index) >= import.json.meshes.size()) import.fail("there is no mesh {}", mesh_index);
-    if (!walk.meshes.contains(mesh_index))
-        walk.meshes.emplace(mesh_index, read_mesh(import, mesh_index, walk.material_left_out));
-    for (const Mesh& mesh : walk.meshes.at(mesh_index)) import.triangles += mesh.indices.size() / 3;
+    const Walk::Shape shape{mesh_index, morph_weights(import, node)};
+    if (!walk.meshes.contains(shape))
+        walk.meshes.emplace(shape, read_mesh(import, mesh_index, shape.second, walk.material_left_out));
+    for (const Mesh& mesh : walk.meshes.at(shape)) import.triangles += mesh.indices.size() / 3;
     if (import.triangles > max_triangles) refuse_triangles(import, import.triangles);
-    return walk.meshes.at(mesh_index);
+    return walk.meshes.at(shape);
 }
 
-void place_mesh(Import& import, Walk& walk, int mesh_index, const glm::dmat4& to_world, const Poses& poses)
+/// A mesh with a skin is where its joints take it, whatever the node's own matrix (glTF 2.0, 3.7.3.3).
+void place_mesh(Import& import, Walk& walk, const Visit& at, const glm::dmat4& to_world, const JointPoses& joints,
+                const Poses& poses)
 {
-    for (Mesh& mesh : parts_of(import, walk, mesh_index)) {
-        transform(mesh, to_world);
-        mesh.motion.poses = poses;
-        mesh.skin         = {};
+    for (Mesh& mesh : parts_of(import, walk, at.node)) {
+        if (joints && !mesh.skin.vertices.empty()) {
+            check_joints(import, mesh, joints->front().size());
+            bend(mesh, joints);
+        } else {
+            transform(mesh, to_world);
+            mesh.motion.poses = poses;
+            mesh.skin         = {};
+        }
         import.model.meshes.push_back(std::move(mesh));
     }
 }
 
-/// Where its joints take it, whatever the node's own matrix (glTF 2.0, 3.7.3.3).
-void place_skinned_mesh(Import& import, Walk& walk, int mesh_index, int skin)
+/// Whether each part of the node's mesh says which joints move it.
+bool follows_joints(const Import& import, int node)
 {
-    const JointPoses joints = joint_poses(import, skin);
-    for (Mesh& mesh : parts_of(import, walk, mesh_index)) {
-        bend(mesh, joints);
-        import.model.meshes.push_back(std::move(mesh));
+    const int mesh = import.json.nodes[size_t(node)].mesh;
+    return mesh < static_cast<int>(import.json.meshes.size()) &&
+           std::ranges::all_of(import.json.meshes[size_t(mesh)].primitives, [](const tinygltf::Primitive& primitive) {
+               return attribute(primitive, "JOINTS_0") >= 0 && attribute(primitive, "WEIGHTS_0") >= 0;
+           });
+}
+
+/// All instances of the node's mesh.
+void place_meshes(Import& import, Walk& walk, const Visit& inside)
+{
+    const int                     skin      = import.json.nodes[size_t(inside.node)].skin;
+    const std::vector<glm::dmat4> instances = instances_of(import, inside.node);
+    if (skin < 0) {
+        const Poses poses = rigid_poses(import, inside);
+        for (const glm::dmat4& instance : instances)
+            place_mesh(import, walk, inside, inside.to_world * instance, nullptr, poses);
+        return;
     }
+    if (instances.size() != 1) import.warn("instances of a mesh with a skin are not supported: it is drawn once");
+    const bool all_follow = follows_joints(import, inside.node);
+    place_mesh(import, walk, inside, inside.to_world, joint_poses(import, skin),
+               all_follow ? nullptr : rigid_poses(import, inside));
 }
 
 /// To be visited in this order, before all that is pending: each as `next`, which names none yet.
@@ -213,15 +240,7 @@ void visit(Import& import, Walk& walk, const Visit& at)
     Visit                 inside   = entered(import, at);
     const glm::dmat4&     to_world = inside.to_world;
     inside.visible                 = at.visible && !is_hidden(node);
-    if (node.mesh >= 0 && inside.visible) {
-        if (node.skin >= 0)
-            place_skinned_mesh(import, walk, node.mesh, node.skin);
-        else {
-            const Poses poses = rigid_poses(import, inside);
-            for (const glm::dmat4& instance : instances_of(import, at.node))
-                place_mesh(import, walk, node.mesh, to_world * instance, poses);
-        }
-    }
+    if (node.mesh >= 0 && inside.visible) place_meshes(import, walk, inside);
     if (node.camera >= 0) add_camera(import, node.camera, node.name, inside); // hidden or not
     const tinygltf::Value* light = extension_of(node, "KHR_lights_punctual");
     if (light != nullptr && light->Has("light") && inside.visible)

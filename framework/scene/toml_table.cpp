@@ -81,6 +81,14 @@ std::optional<double> TomlTable::number(const char* key, double min, double max)
     return value;
 }
 
+std::optional<double> TomlTable::any_number(const char* key)
+{
+    const toml::node* node = find(key);
+    if (node == nullptr) return std::nullopt;
+    if (!node->is_number()) refuse(key, "a number");
+    return node->value<double>();
+}
+
 std::optional<glm::dvec3> TomlTable::vector(const char* key)
 {
     const toml::node* node = find(key);

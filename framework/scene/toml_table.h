@@ -22,6 +22,7 @@ public:
     std::vector<std::string>   texts(const char* key); // a list of texts
     std::optional<bool>        flag(const char* key);
     std::optional<double>      number(const char* key, double min, double max);
+    std::optional<double>      any_number(const char* key); // inf and nan, too
     std::optional<glm::dvec3>  vector(const char* key);
     std::optional<glm::dvec3>  colour(const char* key);  // three numbers >= 0, or one for grey
     std::vector<glm::dvec3>    vectors(const char* key); // one vector or a list of them

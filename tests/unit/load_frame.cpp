@@ -166,6 +166,7 @@ TEST_F(LoadFrame, SpecularAndSmoothnessStandForMetallicAndRoughness)
     EXPECT_EQ(frame.gbuffer.roughness[0], 0.25F);
     EXPECT_NEAR(frame.gbuffer.metallic[0], 0, 1e-6);
     EXPECT_NEAR(frame.gbuffer.metallic[1], 0.5, 1e-6);
+    EXPECT_THAT(frame.warnings, testing::Contains(HasSubstr("channel 'Specular.R' is taken as reflectance")));
 }
 
 TEST_F(LoadFrame, ChannelsAreNamedValuedOrTakenFromOtherFiles)
@@ -200,12 +201,17 @@ TEST_F(LoadFrame, NamesOfEngines)
                                               {"FinalImageBaseColor.B", 0, 3, false},
                                               {"R", 0, 4, false},
                                               {"ViewLayer.Combined.G", 0, 5, false},
-                                              {"MetalRoughness.X", 0, 6, false}};
+                                              {"MetalRoughness.X", 0, 6, false},
+                                              {"nearest_depth.T", 1, 0, false}, // Mitsuba
+                                              {"rgba.B", 2, 0, false}};
     const auto                    name     = [&](const char* quantity) {
         const auto found = find_quantity(channels, quantity);
         return found.size() == 1 ? found[0].name : fmt::format("{} channels", found.size());
     };
-    EXPECT_EQ(name("depth"), "FinalImageMovieRenderQueue_WorldDepth.R");
+    EXPECT_EQ(find_quantity(std::span(channels).first(7), "depth").at(0).name,
+              "FinalImageMovieRenderQueue_WorldDepth.R");
+    EXPECT_EQ(find_quantity(std::span(channels).subspan(7), "depth").at(0).name, "nearest_depth.T");
+    EXPECT_EQ(name("lit.B"), "rgba.B");
     EXPECT_EQ(name("normal.y"), "FinalImageWorldNormal.G");
     EXPECT_EQ(name("normal.x"), "0 channels");
     EXPECT_EQ(name("base_colour.B"), "FinalImageBaseColor.B");
@@ -246,13 +252,74 @@ TEST_F(LoadFrame, WhatCannotBeRightIsSaid)
 
 TEST_F(LoadFrame, AValueMayMeanBackground)
 {
-    for (const double nothing : {0.0, -1.0}) {
+    const std::string distances = std::string(camera) + "[depth]\nkind = 'distance'\n";
+    const auto        wall_on   = [&](double nothing) {
         channels_.clear();
         whole_frame("depth", [=](size_t i) { return covered(i) ? distance_m(i) : nothing; });
-        const std::string distances = std::string(camera) + "[depth]\nkind = 'distance'\n";
-        expect_the_wall(load(distances + fmt::format("background = {}\n", nothing)));
-        EXPECT_THAT(refused(distances), HasSubstr("or [depth] background = the value where nothing is"));
+    };
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    for (const double nothing : {0.0, -1.0, double(std::numeric_limits<float>::max()), -infinity, std::nan("")}) {
+        wall_on(nothing);
+        expect_the_wall(load(distances + fmt::format("background = {:#}\n", nothing)));
+        if (nothing > 0) continue; // farther than anything
+        EXPECT_THAT(refused(distances), HasSubstr(std::isnan(nothing) ? "expected a number, got nan"
+                                                                      : "background = the value where nothing is"));
     }
+    wall_on(infinity);
+    expect_the_wall(load(distances)); // farther than anything
+    wall_on(1e10);
+    expect_the_wall(load(distances));
+}
+
+TEST_F(LoadFrame, PixelsThatAreNotSquareNarrowTheView)
+{
+    whole_frame("depth", [](size_t i) { return near_m / distance_m(i); });
+    const std::string  fov_y = write(std::string(camera) + "[depth]\nkind = 'reversed'\n");
+    const auto         in    = OIIO::ImageInput::open(fov_y);
+    OIIO::ImageSpec    spec  = in->spec();
+    std::vector<float> values(pixel_count(size_px) * size_t(spec.nchannels));
+    ASSERT_TRUE(in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data()));
+    spec.attribute("PixelAspectRatio", 2.0F); // twice as wide as high
+    const auto out = OIIO::ImageOutput::create(fov_y);
+    ASSERT_TRUE(out->open(fov_y, spec) && out->write_image(OIIO::TypeDesc::FLOAT, values.data()) && out->close());
+    const glm::dvec2 expected(1.5, 3); // 90 degrees over 6 rows: 3 pixels for a slope of 1
+    EXPECT_LT(glm::length(load_frame(fov_y).gbuffer.view.focal_px - expected), 1e-9);
+    // The same camera by its horizontal angle: 8 columns of 2 rows' heights each, of which half are 8, at a distance of 3.
+    folder_.write("f.exr.toml",
+                  fmt::format("[camera]\nfov_x_deg = {:.12f}\nnear_m = 0.25\n[depth]\nkind = 'reversed'\n",
+                              2 * std::atan(8 / 3.0) * 180 / std::numbers::pi));
+    EXPECT_LT(glm::length(load_frame(fov_y).gbuffer.view.focal_px - expected), 1e-9);
+}
+
+TEST_F(LoadFrame, IntegersAreNumbersAndNoShares)
+{
+    whole_frame("unused", distance_m);
+    const std::string     path = (folder_ / "z.exr").string();
+    OIIO::ImageSpec       spec(size_px.x, size_px.y, 1, OIIO::TypeDesc::UINT32);
+    std::vector<uint32_t> millimetres;
+    for (size_t i = 0; i < pixel_count(size_px); ++i)
+        millimetres.push_back(covered(i) ? static_cast<uint32_t>(std::lround(1000 * distance_m(i))) : 4'000'000'000U);
+    spec.channelnames = {"Z"};
+    const auto out    = OIIO::ImageOutput::create(path);
+    ASSERT_TRUE(out->open(path, spec) && out->write_image(OIIO::TypeDesc::UINT32, millimetres.data()) && out->close());
+    expect_the_wall(load(std::string(camera) + "[depth]\nkind = 'distance'\nunit_m = 0.001\n"
+                                               "[channels]\ndepth = 'z.exr:Z'\n"));
+}
+
+TEST_F(LoadFrame, NormalsThatAreZeroComeFromDepthAndShortOnesAreStretched)
+{
+    const glm::dvec3 wall = glm::normalize(glm::dvec3(-0.5, 0, 1)); // it turns to the left
+    const auto       z    = [](size_t i) {                          // the plane -0.5 x + z = -3, at x = -slope z
+        const double slope = (double(pixel_at(i, size_px).x) + 0.5 - 4) / 3;
+        return 3 / (1 + 0.5 * slope);
+    };
+    whole_frame("depth", z);
+    for (int c = 0; c < 3; ++c)
+        channels_[size_t(1 + c)].second = [=](size_t i) { return i == 10 ? 0 : (i == 20 ? 0.95 : 1) * wall[c]; };
+    const Frame frame = load(std::string(camera) + "[depth]\nkind = 'distance'\n");
+    for (const size_t i : {size_t(9), size_t(10), size_t(20)})
+        EXPECT_LT(glm::length(glm::dvec3(frame.gbuffer.normal_vs[i]) - wall), 1e-4) << i;
+    EXPECT_THAT(frame.warnings, testing::Contains(HasSubstr("channel 'normal_vs.x': 1 pixels have a normal of zero")));
 }
 
 TEST_F(LoadFrame, DenoisersHelpersAreNoDepth)

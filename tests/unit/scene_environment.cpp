@@ -20,10 +20,15 @@ EnvironmentMap numbered(glm::ivec2 size_px)
     return map;
 }
 
-void write_picture(const std::filesystem::path& file, glm::ivec2 size_px, const std::vector<float>& values)
+/// `margin_px`: by so much the picture is larger on each side than what the file holds.
+void write_picture(const std::filesystem::path& file, glm::ivec2 size_px, const std::vector<float>& values,
+                   int margin_px = 0)
 {
-    const auto            output = OIIO::ImageOutput::create(file.string());
-    const OIIO::ImageSpec spec(size_px.x, size_px.y, 3, OIIO::TypeDesc::FLOAT);
+    const auto      output = OIIO::ImageOutput::create(file.string());
+    OIIO::ImageSpec spec(size_px.x, size_px.y, 3, OIIO::TypeDesc::FLOAT);
+    spec.x = spec.y  = margin_px;
+    spec.full_width  = size_px.x + 2 * margin_px;
+    spec.full_height = size_px.y + 2 * margin_px;
     ASSERT_TRUE(output && output->open(file.string(), spec));
     ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, values.data()) && output->close());
 }
@@ -159,6 +164,9 @@ TEST_F(EnvironmentFiles, MistakesNamePlaceExpectedAndGot)
     write_picture(folder_ / "wide.exr", {16386, 1}, std::vector<float>(3 * 16386));
     EXPECT_THAT(error_of<SpecError>(recipe("environment = 'wide.exr'")),
                 testing::AllOf(HasSubstr("wide.exr"), HasSubstr("16386x1"), HasSubstr("at most 16384 a side")));
+    write_picture(folder_ / "part.exr", {4, 2}, std::vector<float>(24), 1);
+    EXPECT_THAT(error_of<Failure>(recipe("environment = 'part.exr'")),
+                testing::AllOf(HasSubstr("part.exr"), HasSubstr("4x2 pixels at (1, 1) of a picture of 6x4")));
     folder_.write("broken.exr", "not a picture");
     EXPECT_THAT(error_of<Failure>(recipe("environment = 'broken.exr'")), HasSubstr("broken.exr"));
     folder_.write("folder.exr/file", "");

@@ -72,7 +72,7 @@ TEST(ForeignGltf, CompressedMeshesNameTheExtensionAndTheCure)
         {"KHR_draco_mesh_compression", {{"bufferView", 0}, {"attributes", json::object()}}}};
     EXPECT_EQ(load_scene(draco.write(folder)).indices.size(), 6U) << "with a plain copy";
     for (auto& accessor : draco.root["accessors"]) accessor.erase("bufferView");
-    EXPECT_THAT(error_of<Failure>(draco.write(folder)),
+    EXPECT_THAT(error_of<SpecError>(draco.write(folder)),
                 AllOf(HasSubstr("/meshes/0/primitives/0 is compressed by KHR_draco_mesh_compression"),
                       HasSubstr("gltf-transform")));
     for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
@@ -80,8 +80,22 @@ TEST(ForeignGltf, CompressedMeshesNameTheExtensionAndTheCure)
         meshopt.root["extensionsUsed"] = {name};
         meshopt.root["buffers"]        = {{{"uri", "data.bin"}, {"byteLength", meshopt.binary.size()}},
                                           {{"byteLength", 100}, {"extensions", {{name, {{"fallback", true}}}}}}};
-        EXPECT_THAT(error_of<Failure>(meshopt.write(folder)),
+        EXPECT_THAT(error_of<SpecError>(meshopt.write(folder)),
                     AllOf(HasSubstr(std::string("/buffers/1 is compressed by ") + name), HasSubstr("gltf-transform")));
+    }
+}
+
+TEST(ForeignGltf, RequiredExtensionsThatAreMissingNameTheCure)
+{
+    TempFolder folder;
+    for (const auto& [name, cure] :
+         {std::pair("KHR_draco_mesh_compression", "decompress"), std::pair("EXT_meshopt_compression", "decompress"),
+          std::pair("EXT_texture_webp", "convert the textures to PNG"),
+          std::pair("KHR_texture_basisu", "convert the textures to PNG")}) {
+        GltfFile file                   = quad();
+        file.root["extensionsRequired"] = {name};
+        const std::string path          = file.write(folder);
+        EXPECT_THAT(error_of<SpecError>(path), AllOf(HasSubstr(path), HasSubstr(name), HasSubstr(cure)));
     }
 }
 
@@ -93,6 +107,23 @@ TEST(ForeignGltf, ExtensionsThatAreAppliedGiveNoWarning)
                                    "KHR_texture_transform",      "EXT_mesh_gpu_instancing",
                                    "KHR_materials_transmission", "KHR_materials_pbrSpecularGlossiness"};
     EXPECT_THAT(file.load().warnings, IsEmpty());
+}
+
+TEST(ForeignGltf, WhatIsLeftOutOfAMaterialIsNamed)
+{
+    TempFolder folder;
+    GltfFile   file              = quad();
+    file.primitive()["material"] = 0;
+    file.primitive()["attributes"]["COLOR_0"] =
+        file.add_accessor<float>({1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0}, "VEC3", 3);
+    file.root["materials"] = {
+        {{"extensions", {{"KHR_materials_unlit", json::object()}}}},
+        {{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+         {"extensions",
+          {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatTexture", {{"index", 0}}}}}}}}};
+    EXPECT_THAT(load_scene(file.write(folder)).warnings,
+                ::testing::UnorderedElementsAre(HasSubstr("vertex colours of an unlit material are not supported"),
+                                                HasSubstr("textures of KHR_materials_clearcoat are not supported")));
 }
 
 TEST(ForeignGltf, ACutoffAboveOneIsKept)
@@ -253,9 +284,14 @@ TEST(ForeignGltf, InstancesAreDrawn)
     EXPECT_VEC_NEAR(corner(scene, 0), glm::vec3(9, 0, 5), eps);
     // (1, 1, 0), scaled to (2, 3, 0), turned a quarter about z to (-3, 2, 0), moved.
     EXPECT_VEC_NEAR(second(2), glm::vec3(-3, 22, 5), eps);
+    auto& attributes = file.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
     file.root["accessors"][size_t(at)]["count"] = 1;
     EXPECT_THAT(error_of<Failure>(file.write(folder)),
-                HasSubstr("EXT_mesh_gpu_instancing/attributes/ROTATION: 2 rows, expected 1"));
+                HasSubstr("EXT_mesh_gpu_instancing/attributes/TRANSLATION: 1 rows, expected 2"));
+    attributes = {{"_ID", scaled}};
+    EXPECT_EQ(load_scene(file.write(folder)).draws.size(), 2U) << "their number is that of any attribute";
+    attributes = {{"_ID", "first"}};
+    EXPECT_THAT(error_of<Failure>(file.write(folder)), HasSubstr("/_ID: expected the number of an accessor"));
 }
 
 /// A quad of 2 m x 1 m that was bound in units of 1 cm, with two joints on top of each other.
@@ -295,6 +331,25 @@ TEST(ForeignGltf, SkinsAreInTheirJointsPose)
     EXPECT_VEC_NEAR(corner(bent, 2), glm::vec3(0, 2, 0), eps) << "(1, 0) from the head became (0, 1)";
     file.root["skins"][0]["joints"] = {2, 9};
     EXPECT_THAT(error_of<Failure>(file.write(folder)), HasSubstr("/skins/0: there is no node 9"));
+}
+
+TEST(ForeignGltf, WhatNoJointMovesStandsByItsNode)
+{
+    TempFolder folder;
+    GltfFile   file                      = skinned();
+    file.root["nodes"][1]["translation"] = {500, 0, 0}; // below a node with a scale of 0.01
+    file.primitive()["attributes"].erase("JOINTS_0");
+    const Scene scene = load_scene(file.write(folder));
+    EXPECT_VEC_NEAR(scene.origin_ws + glm::dvec3(corner(scene, 0)), glm::dvec3(4.99, 0, 0), 1e-6);
+}
+
+TEST(ForeignGltf, JointsThatTheSkinLacksAreRefused)
+{
+    TempFolder folder;
+    GltfFile   file                 = skinned();
+    file.root["skins"][0]["joints"] = {2};
+    EXPECT_THAT(error_of<Failure>(file.write(folder)),
+                HasSubstr("a vertex follows joint 1, but the skin has 1 joints"));
 }
 
 TEST(ForeignGltf, AnimatedJointsBendTheirMeshInEveryFrame)

@@ -124,17 +124,22 @@ const std::vector<BrokenFile> broken_files = {
          f.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 3;
      },
      "there is no texture 3"},
-    {"draco", put("/extensionsRequired", "[\"KHR_draco_mesh_compression\"]"), "KHR_draco_mesh_compression"},
-    {"meshopt", put("/extensionsRequired", "[\"EXT_meshopt_compression\"]"), "EXT_meshopt_compression"},
-    {"webp", put("/extensionsRequired", "[\"EXT_texture_webp\"]"), "EXT_texture_webp"},
-    {"ktx2", put("/extensionsRequired", "[\"KHR_texture_basisu\"]"), "KHR_texture_basisu"},
+    {"accessor_of_doubles", put("/accessors/0/componentType", "5130"),
+     "accessor 0: expected componentType 5120 to 5123, 5125 or 5126, got 5130"},
+    {"accessor_of_signed_integers", put("/accessors/0/componentType", "5124"), "got 5124"},
+    {"sparse_count",
+     put("/accessors/0/sparse", "{\"count\": -1, \"indices\": {\"bufferView\": 0, \"componentType\": 5123}, "
+                                "\"values\": {\"bufferView\": 0}}"),
+     "expected a sparse count above 0, got -1"},
     {"buffer_outside", put_buffer("../secret.bin"), "/buffers/0/uri: '../secret.bin' leads out"},
     {"buffer_outside_encoded", put_buffer("%2e%2e/secret.bin"), "leads out"},
     {"buffer_absolute", put_buffer("/etc/passwd"), "not a relative path"},
     {"buffer_scheme", put_buffer("http://localhost/a.bin"), "not a relative path"},
     {"buffer_shell", put_buffer("`touch made_by_shell`"), "touch"},
-    {"buffer_missing", put_buffer("none.bin"), "none.bin"},
-    {"buffer_short", put_buffer("data.bin", 1 << 20), "size"},
+    {"buffer_missing", put_buffer("none.bin"), "/buffers/0/uri: there is no file 'none.bin'"},
+    {"buffer_short", put_buffer("data.bin", 1 << 20), "/buffers/0: expected data of 1048576 bytes, got a size of 36"},
+    {"data_not_in_base64", put_buffer("data:,%00%00"),
+     "/buffers/0/uri: expected a data URI in base64, got 'data:,%00%00"},
     {"image_outside",
      [](GltfFile& f) {
          use_image(f, {{"uri", "a/../../secret.png"}});

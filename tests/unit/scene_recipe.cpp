@@ -59,6 +59,14 @@ const Material& material_named(const Scene& scene, const std::string& name)
     throw Failure("no material " + name);
 }
 
+TEST(SceneRecipe, ModelsFarFromTheirOriginAreNamed)
+{
+    TempFolder folder;
+    folder.write("far.obj", "v 450000 120 5400000\nv 450001 120 5400000\nv 450000 121 5400000\nf 1 2 3\n");
+    const Scene scene = load_scene(folder.write("far.toml", "[[part]]\nfile = 'far.obj'\n"));
+    EXPECT_THAT(scene.warnings, testing::Contains(HasSubstr("it lies 5.4e+06 units from its origin")));
+}
+
 TEST(SceneRecipe, TenLinesAreEnough)
 {
     const Scene scene = load_text("summary = 'A golden pyramid'\n"
