@@ -2,11 +2,8 @@
 
 #include "core/error.h"
 #include "core/pixel_index.h"
+#include "test.h"
 #include "truth/screen_truth.h"
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace ssrlab::test {
 namespace {

@@ -3,10 +3,8 @@
 
 #include "core/gbuffer_image.h"
 #include "core/trace_result.h"
+#include "test.h"
 #include "truth/screen_ray.h"
-
-#include <cmath>
-#include <string>
 
 namespace ssrlab::test {
 

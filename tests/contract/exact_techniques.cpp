@@ -9,10 +9,6 @@
 #include "truth/screen_truth.h"
 #include "unit/truth_gbuffers.h"
 
-#include <algorithm>
-#include <cmath>
-#include <map>
-
 namespace ssrlab::test {
 namespace {
 
@@ -223,8 +219,8 @@ class ExactTechniques : public testing::TestWithParam<Case> {};
 void expect_exact(const std::string& scene, const Frame& frame, Rounding& rounding)
 {
     const Picture       picture = make_picture(scene, frame.view, frame.size_px);
-    const TraceSettings settings{
-        .thickness_m = 0.1, .max_distance_m = 1e9, .dielectric_min_f0 = dielectric_min_f0_for(frame)};
+    const TraceSettings settings =
+        boxes({.thickness_m = 0.1, .max_distance_m = 1e9, .dielectric_min_f0 = dielectric_min_f0_for(frame)});
     const Technique&  dda   = technique("dda");
     const TraceResult walk  = trace(picture, dda, values_of(dda), settings);
     const TraceResult truth = screen_truth(picture.image, settings);
@@ -351,9 +347,10 @@ TEST(TwoSidedBoxes, AreMetOnBothSidesOfTheirDepth)
                 rays.push_back({.origin_px_depth = {5.5, 3.5, distance_to_depth(image.view, distance_m)},
                                 .delta_px_depth  = {50, 0, 0},
                                 .pixel           = {5, 3}});
-            const auto tracer = tracer_on(gbuffer, t, values_of(t),
-                                          {.thickness_m = thickness_m, .surface = "box_two_sided"}, rays.size());
-            const auto found  = trace_rays(device(), *tracer, rays);
+            const auto tracer =
+                tracer_on(gbuffer, t, values_of(t),
+                          {.thickness_m = thickness_m, .behind = Behind::hit, .surface = "box_two_sided"}, rays.size());
+            const auto found = trace_rays(device(), *tracer, rays);
             for (size_t i = 0; i < rays.size(); ++i) {
                 const bool meets = std::abs(distances_m[i] - pole_m) < thickness_m;
                 EXPECT_EQ(found[i].status, meets ? TraceStatus::hit : TraceStatus::left_screen)
@@ -384,8 +381,8 @@ TEST(FrontPackets, ChangeNoAnswerOfATraversalThatStopsAtTheFirstOccluder)
     walks.structures    = technique("hiz").structures;
     write_file_atomically(walks.folder / "trace.glsl", "real2 empty_interval(int number) { return real2(2); }\n" +
                                                            read_file(stops.folder / "trace.glsl"));
-    const TraceSettings   settings{.thickness_m = 0.1, .max_distance_m = 1e9};
-    const ParameterValues values = values_of(stops, {{"max_steps", 60000}});
+    const TraceSettings   settings = boxes({.thickness_m = 0.1, .max_distance_m = 1e9});
+    const ParameterValues values   = values_of(stops, {{"max_steps", 60000}});
     for (const auto& [scene, view] : {std::pair("interior", "default"), std::pair("interior", "piano"),
                                       std::pair("thin_yard", "default"), std::pair("thin_yard", "fence")}) {
         const Picture     picture = make_picture(scene, view, {641, 363});

@@ -6,10 +6,6 @@
 #include "truth/screen_ray.h"
 #include "unit/truth_gbuffers.h"
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
 namespace ssrlab::test {
 namespace {
 
@@ -188,9 +184,9 @@ void expect_march(const Picture& picture, const std::string& id, const Parameter
 }
 
 /// The limits differ with the rule, so that each is tried without trying all combinations.
-const TraceSettings each_rule[] = {{.thickness_m = 0.1, .max_distance_m = 20, .behind = Behind::hit},
-                                   {.thickness_m = 0.5, .max_distance_m = 12, .behind = Behind::pass},
-                                   {.thickness_m = 2, .max_distance_m = 30, .behind = Behind::stop}};
+const TraceSettings each_rule[] = {boxes({.thickness_m = 0.1, .max_distance_m = 20}),
+                                   boxes({.thickness_m = 0.5, .max_distance_m = 12}, Behind::pass),
+                                   boxes({.thickness_m = 2, .max_distance_m = 30}, Behind::stop)};
 constexpr int       steps_in[]  = {48, 48, 200}; // of the three spaces
 constexpr double    stride_px   = double(1.3F);  // what the shader gets; no sample falls on a border
 

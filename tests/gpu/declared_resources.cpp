@@ -2,11 +2,6 @@
 #include "frame/passes/pass_helpers.h"
 #include "gpu/device.h"
 
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <set>
-
 namespace ssrlab::test {
 namespace {
 

@@ -6,9 +6,6 @@
 #include "truth/screen_truth.h"
 #include "unit/truth_gbuffers.h"
 
-#include <algorithm>
-#include <bit>
-
 namespace ssrlab::test {
 namespace {
 
@@ -110,16 +107,14 @@ void expect_cells(const Pyramid& pyramid, const GBufferImage& image, const Trace
     ASSERT_EQ(pyramid_levels(pyramid.size_px), expected_levels(pyramid.size_px));
     size_t wrong = 0;
     for (int level = 1; level <= pyramid_levels(pyramid.size_px); ++level)
-        for (int y = 0; y < pyramid.size(level).y; ++y)
-            for (int x = 0; x < pyramid.size(level).x; ++x) {
-                const glm::uvec2 cell = pyramid.at(level, x, y);
-                if (!is_right(cell, image, settings, kind, level, x, y) && wrong++ < 3)
-                    ADD_FAILURE() << fmt::format(
-                        "{}x{}, kind {}: level {}, cell ({}, {}): nearest {} ({:08x}), bins of "
-                        "2^{}: {:08x}",
-                        pyramid.size_px.x, pyramid.size_px.y, kind, level, x, y, std::bit_cast<float>(cell.x), cell.x,
-                        cell.x & 31, cell.y);
-            }
+        for (const auto [i, x, y] : pixels_of(pyramid.size(level))) {
+            const glm::uvec2 cell = pyramid.at(level, x, y);
+            if (!is_right(cell, image, settings, kind, level, x, y) && wrong++ < 3)
+                ADD_FAILURE() << fmt::format("{}x{}, kind {}: level {}, cell ({}, {}): nearest {} ({:08x}), bins of "
+                                             "2^{}: {:08x}",
+                                             pyramid.size_px.x, pyramid.size_px.y, kind, level, x, y,
+                                             std::bit_cast<float>(cell.x), cell.x, cell.x & 31, cell.y);
+        }
     EXPECT_EQ(wrong, 0U);
 }
 
@@ -129,9 +124,9 @@ TEST_P(DepthPyramid, EqualsBruteForceOnRandomDepth)
 {
     const Picture picture = make_picture(random_gbuffer(bench_view(GetParam()), 7));
     for (const int kind : {occupancy, minmax, nearest_only})
-        for (const TraceSettings& settings : {TraceSettings{.thickness_m = 0.1}, TraceSettings{.thickness_m = 0},
-                                              TraceSettings{.thickness_m = std::numeric_limits<double>::infinity()},
-                                              TraceSettings{.thickness_m = 0.2, .thickness_relative = true}})
+        for (const TraceSettings& settings : {boxes({.thickness_m = 0.1}), boxes({.thickness_m = 0}),
+                                              boxes({.thickness_m = std::numeric_limits<double>::infinity()}),
+                                              boxes({.thickness_m = 0.2, .thickness_relative = true})})
             expect_cells(build(picture, settings, kind), picture.image, settings, kind);
 }
 
@@ -139,34 +134,12 @@ TEST_P(DepthPyramid, KeepsTheDepthOfEveryPixelAsLevel0)
 {
     const glm::ivec2 size    = GetParam();
     const Picture    picture = make_picture(random_gbuffer(bench_view(size), 9));
-    const Pyramid    pyramid = build(picture, {}, occupancy);
-    for (int y = 0; y < size.y; ++y)
-        for (int x = 0; x < size.x; ++x) {
-            const float depth = picture.image.depth[at(picture.image, x, y)];
-            ASSERT_EQ(pyramid.pixel(x, y),
-                      std::bit_cast<uint32_t>(depth > 0 ? depth : static_cast<float>(BACKGROUND_DEPTH)))
-                << size.x << "x" << size.y << ", pixel (" << x << ", " << y << ")";
-        }
-}
-
-// A last row or column that a level drops would hide the only texel that is near.
-TEST_P(DepthPyramid, SeesTheOnlyNearTexelInEveryCornerAndBorder)
-{
-    const glm::ivec2 size = GetParam(), last = size - 1;
-    for (const glm::ivec2& near : {glm::ivec2(0), glm::ivec2(last.x, 0), glm::ivec2(0, last.y), last,
-                                   glm::ivec2(last.x, last.y / 2), glm::ivec2(last.x / 2, last.y)}) {
-        GBufferImage image = empty_gbuffer(bench_view(size));
-        std::ranges::fill(image.depth, 0.01F);
-        image.depth[at(image, near.x, near.y)] = 0.75F;
-        const Pyramid pyramid                  = build(make_picture(image), {}, occupancy);
-        ASSERT_EQ(pyramid_levels(pyramid.size_px), expected_levels(size));
-        for (int level = 1; level <= pyramid_levels(pyramid.size_px); ++level)
-            for (int y = 0; y < pyramid.size(level).y; ++y)
-                for (int x = 0; x < pyramid.size(level).x; ++x)
-                    ASSERT_EQ(pyramid.at(level, x, y).x & ~31U,
-                              rounded_front((near >> level) == glm::ivec2(x, y) ? 0.75 : static_cast<double>(0.01F)))
-                        << size.x << "x" << size.y << ", near texel (" << near.x << ", " << near.y << "), level "
-                        << level << ", cell (" << x << ", " << y << ")";
+    const Pyramid    pyramid = build(picture, boxes(), occupancy);
+    for (const auto [i, x, y] : pixels_of(size)) {
+        const float depth = picture.image.depth[at(picture.image, x, y)];
+        ASSERT_EQ(pyramid.pixel(x, y),
+                  std::bit_cast<uint32_t>(depth > 0 ? depth : static_cast<float>(BACKGROUND_DEPTH)))
+            << size.x << "x" << size.y << ", pixel (" << x << ", " << y << ")";
     }
 }
 
@@ -184,8 +157,8 @@ TEST(DepthPyramidOrthographic, EqualsBruteForce)
     view.far_m            = 20;
     const Picture picture = make_picture(random_gbuffer(view, 3));
     for (const bool relative : {false, true})
-        expect_cells(build(picture, {.thickness_m = 0.1, .thickness_relative = relative}, occupancy), picture.image,
-                     {.thickness_m = 0.1, .thickness_relative = relative}, occupancy);
+        expect_cells(build(picture, boxes({.thickness_m = 0.1, .thickness_relative = relative}), occupancy),
+                     picture.image, boxes({.thickness_m = 0.1, .thickness_relative = relative}), occupancy);
 }
 
 // NaN, infinities, negative numbers and depths nearer than the near plane are background, and disturb no other pixel.
@@ -201,7 +174,7 @@ TEST(UnusableDepth, IsBackgroundAndChangesNothingElse)
         spoilt.depth[i] = unusable[i % std::size(unusable)];
     }
     const Picture       good = make_picture(clean), bad = make_picture(spoilt);
-    const TraceSettings settings{.thickness_m = 0.3};
+    const TraceSettings settings = boxes({.thickness_m = 0.3});
     EXPECT_EQ(good.image.depth, bad.image.depth);
     expect_cells(build(bad, settings, occupancy), clean, settings, occupancy);
     std::string first;

@@ -5,9 +5,6 @@
 #include "frame/frame_inputs.h"
 #include "gpu/vulkan.h"
 
-#include <cmath>
-#include <map>
-
 namespace ssrlab::test {
 
 Gpu& device()

@@ -3,10 +3,7 @@
 
 #include "core/error.h"
 #include "frame/stage.h"
-
-#include <gtest/gtest.h>
-
-#include <limits>
+#include "test.h"
 
 namespace ssrlab::test {
 

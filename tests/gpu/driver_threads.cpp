@@ -3,12 +3,9 @@
 #include "core/files.h"
 #include "gpu/device.h"
 
-#include <gmock/gmock.h>
 #include <sched.h>
 
 #include <condition_variable>
-#include <map>
-#include <thread>
 
 namespace ssrlab::test {
 namespace {

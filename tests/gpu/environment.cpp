@@ -5,9 +5,6 @@
 #include "gpu/compute.h"
 #include "gpu/device.h"
 
-#include <cmath>
-#include <random>
-
 namespace ssrlab::test {
 namespace {
 
@@ -88,16 +85,15 @@ TEST(Environment, BackgroundPixelsShowItAlongTheirViewRay)
     for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
         const Picture    picture       = make_picture(scene, tilted_camera(projection), {97, 61});
         const glm::dmat3 view_to_world = glm::inverse(glm::dmat3(picture.view.world_to_view));
-        for (int y = 0; y < 61; ++y)
-            for (int x = 0; x < 97; ++x) {
-                const glm::dvec2 offset = (glm::dvec2(x, y) + 0.5 - picture.view.centre_px) / picture.view.focal_px;
-                const glm::dvec3 ray_vs =
-                    projection == Projection::orthographic ? glm::dvec3(0, 0, -1) : glm::dvec3(offset.x, -offset.y, -1);
-                const glm::vec3 expected = sky_radiance(scene, view_to_world * ray_vs);
-                const glm::vec3 found    = picture.image.radiance[pixel_index({x, y}, picture.image.view.size_px)];
-                // Half precision keeps 11 bits.
-                ASSERT_LE(glm::length(found - expected), 5e-4F * glm::length(expected) + 2e-3F) << x << ", " << y;
-            }
+        for (const auto [i, x, y] : pixels_of({97, 61})) {
+            const glm::dvec2 offset = (glm::dvec2(x, y) + 0.5 - picture.view.centre_px) / picture.view.focal_px;
+            const glm::dvec3 ray_vs =
+                projection == Projection::orthographic ? glm::dvec3(0, 0, -1) : glm::dvec3(offset.x, -offset.y, -1);
+            const glm::vec3 expected = sky_radiance(scene, view_to_world * ray_vs);
+            const glm::vec3 found    = picture.image.radiance[pixel_index({x, y}, picture.image.view.size_px)];
+            // Half precision keeps 11 bits.
+            ASSERT_LE(glm::length(found - expected), 5e-4F * glm::length(expected) + 2e-3F) << x << ", " << y;
+        }
     }
 }
 

@@ -3,9 +3,6 @@
 #include "frame/directional_albedo.h"
 #include "gpu/passes.h"
 
-#include <algorithm>
-#include <array>
-
 namespace ssrlab::test {
 namespace {
 
@@ -13,121 +10,39 @@ using enum TraceResolution;
 
 constexpr glm::vec4 red{1, 0, 0, 1}, blue{0, 0, 1, 1};
 
-/// Distance, and whichever of the other weights are named.
-using Weights          = std::vector<const char*>;
-const Weights bilinear = {}, depth = {"upsampling_depth"}, normal = {"upsampling_normal"},
-              reflectivity = {"upsampling_reflectivity"}, depth_normal = {"upsampling_depth", "upsampling_normal"};
-
-/// Traces, so that the blocks name their pixels, then puts `traced` in their place and up-samples.
-template <typename Traced>
-Reflection upsample(const Picture& picture, TraceResolution resolution, const Weights& weights, const Traced& traced)
+/// At half resolution: traces, so that the blocks name their pixels, then gives those left of column 31 red, the others blue, and up-samples by distance
+/// and, if asked, by depth.
+Reflection upsample(const Picture& picture, bool by_depth)
 {
-    ParameterValues passes = {
-        chosen(resolution), {"upsampling_depth", 0}, {"upsampling_normal", 0}, {"upsampling_reflectivity", 0}};
-    for (const char* weight : weights) passes.at(weight) = 1;
-    const auto frame = frame_with(picture, passes);
+    const auto frame = frame_with(
+        picture,
+        {chosen(half), {"upsampling_depth", by_depth}, {"upsampling_normal", 0}, {"upsampling_reflectivity", 0}});
     run_frame(device(), *frame);
     Reflection reflection(picture.image.depth.size(), nothing_reflects);
     for (const uint32_t block : download_as<uint32_t>(device(), picture.buffers->block_pixel)) {
         if (block == NO_PIXEL) continue;
         const glm::ivec2 pixel                          = unpack_pixel(block);
-        reflection[at(picture.image, pixel.x, pixel.y)] = traced(pixel);
+        reflection[at(picture.image, pixel.x, pixel.y)] = pixel.x < 31 ? red : blue;
     }
     set_reflection(picture, reflection);
     run_pass(*frame, upsampling_pass());
     return read_colours(picture.buffers->reflection);
 }
 
-TEST(Upsampling, KeepsALinearRamp)
-{
-    const Picture picture = make_picture(metal_wall({64, 48}));
-    const auto    ramp    = [](glm::ivec2 p) {
-        return glm::vec4(static_cast<float>(p.x) / 64, static_cast<float>(p.y) / 48, 0.25F, 1);
-    };
-    for (const TraceResolution resolution : {half, quarter})
-        for (const Weights& weights : {bilinear, depth, depth_normal}) {
-            const Reflection found = upsample(picture, resolution, weights, ramp);
-            // Outside the first and last traced rows and columns there is nothing to interpolate with.
-            for (int y = 2; y < 44; ++y)
-                for (int x = 2; x < 60; ++x)
-                    for (int c = 0; c < 4; ++c)
-                        ASSERT_NEAR(found[at(picture.image, x, y)][c], ramp({x, y})[c], 1e-3) << x << ", " << y;
-        }
-}
-
-/// Columns left of 31 are one surface, the others another; at half resolution column 31 lies between traced columns 30 and 32.
-template <typename Change> Picture two_surfaces(const Change& change_right)
-{
-    GBufferImage image = metal_wall({64, 16});
-    for (int y = 0; y < 16; ++y)
-        for (int x = 31; x < 64; ++x) change_right(image, x, y);
-    return make_picture(image);
-}
-
-Reflection upsample_two(const Picture& picture, const Weights& weights)
-{
-    return upsample(picture, half, weights, [](glm::ivec2 p) { return p.x < 31 ? red : blue; });
-}
-
-/// Colours of 0 and 1, but for one step of a half float below 1: devices may round quotients and stores down (Vulkan 1.3, "Floating-Point Format
-/// Conversions").
-void expect_stored(const glm::vec4& found, const glm::vec4& expected)
-{
-    for (int c = 0; c < 4; ++c) {
-        EXPECT_LE(found[c], expected[c]);
-        EXPECT_GE(found[c], expected[c] * (1 - 1.0F / 2048));
-    }
-}
-
-TEST(Upsampling, StopsAtTheBorderOfWhatItsWeightsSee)
-{
-    const Picture rough = two_surfaces([](auto& image, int x, int y) { image.roughness[at(image, x, y)] = 0.9F; });
-    const Picture far   = two_surfaces([](auto& image, int x, int y) { set_pixel(image, x, y, 6, {0, 0, 1}, 1); });
-    const Picture bent  = two_surfaces([](auto& image, int x, int y) { set_pixel(image, x, y, 5, {0.8, 0, 0.6}, 1); });
-    const auto    share_of_red = [](const Picture& picture, const Weights& weights) {
-        const Reflection found = upsample_two(picture, weights);
-        for (int x = 0; x < 30; ++x) expect_stored(found[at(picture.image, x, 8)], red);
-        for (int x = 32; x < 64; ++x) expect_stored(found[at(picture.image, x, 8)], blue);
-        const glm::vec4& mixed = found[at(picture.image, 31, 8)];
-        EXPECT_NEAR(mixed.r + mixed.b, 1, 1e-3);
-        return mixed.r;
-    };
-    for (const Picture& picture : {rough, far, bent}) EXPECT_NEAR(share_of_red(picture, bilinear), 0.5, 1e-3);
-    EXPECT_NEAR(share_of_red(rough, depth_normal), 0.5, 1e-3);
-    EXPECT_LT(share_of_red(rough, reflectivity), 0.01);
-    EXPECT_LT(share_of_red(bent, normal), 0.01);
-    // Each on its own: what the others see is nothing to it.
-    EXPECT_NEAR(share_of_red(far, normal), 0.5, 1e-3);
-    EXPECT_NEAR(share_of_red(far, reflectivity), 0.5, 1e-3);
-    EXPECT_LT(share_of_red(far, depth), 0.01);
-}
-
 // Pixel (30, 9) belongs to the right surface; bilinear weights know only the traced pixels above and below it, which don't.
 TEST(Upsampling, TakesTheMostAlikeWhereAllWeightsVanish)
 {
-    GBufferImage image = metal_wall({64, 16});
+    GBufferImage image =
+        metal_wall({64, 16}); // from column 31 on another surface, between the traced columns 30 and 32
     for (int y = 0; y < 16; ++y)
         for (int x = 31; x < 64; ++x) set_pixel(image, x, y, 7, {0, 0, 1}, 1);
     set_pixel(image, 30, 9, 7, {0, 0, 1}, 1);
     set_pixel(image, 31, 5, 5.6, {0, 0, 1}, 1); // of neither surface, and nearer to the left one
-    const Picture picture = make_picture(image);
-    EXPECT_EQ(upsample_two(picture, bilinear)[at(image, 30, 9)], red);
-    EXPECT_EQ(upsample_two(picture, depth)[at(image, 30, 9)], blue);
-    EXPECT_EQ(upsample_two(picture, depth)[at(image, 31, 5)], red);
-}
-
-TEST(Upsampling, HolesAndPixelsThatReflectNothing)
-{
-    GBufferImage image = metal_wall({32, 32});
-    for (int y = 0; y < 32; ++y) image.metallic[at(image, 7, y)] = 0;
-    const Picture    picture = make_picture(image);
-    const Reflection found =
-        upsample(picture, half, bilinear, [](glm::ivec2 p) { return p.x < 16 ? glm::vec4(0) : glm::vec4(3, 2, 1, 1); });
-    EXPECT_EQ(found[at(image, 7, 9)], nothing_reflects);
-    EXPECT_EQ(found[at(image, 5, 9)], glm::vec4(0));
-    EXPECT_EQ(found[at(image, 15, 9)],
-              glm::vec4(3, 2, 1, 0.5F)); // between a hole and a hit: the hit's colour, at half the weight
-    EXPECT_EQ(found[at(image, 17, 9)], glm::vec4(3, 2, 1, 1));
+    const Picture    picture  = make_picture(image);
+    const Reflection by_depth = upsample(picture, true);
+    EXPECT_EQ(upsample(picture, false)[at(image, 30, 9)], red);
+    EXPECT_EQ(by_depth[at(image, 30, 9)], blue);
+    EXPECT_EQ(by_depth[at(image, 31, 5)], red);
 }
 
 /// The split-sum table, bilinear; its entries have tests of their own (Composite.GgxReflectsItsDirectionalAlbedo).
@@ -170,19 +85,17 @@ TEST(Upsampling, IsTheHostsMean)
     std::mt19937                           random(31);
     std::uniform_real_distribution<double> unit(0, 1);
     GBufferImage                           image = metal_wall(size_px);
-    for (int y = 0; y < size_px.y; ++y)
-        for (int x = 0; x < size_px.x; ++x) {
-            const size_t     i = at(image, x, y);
-            const glm::dvec3 leaning(0.3 * unit(random), 0.3 * unit(random), 1);
-            // A wall that recedes to the right: along it depths differ more than across it.
-            set_pixel(image, x, y, 5 + 0.05 * x + 0.02 * unit(random), glm::normalize(leaning),
-                      random() % 8 == 0   ? 0
-                      : random() % 2 == 0 ? 0.5F
-                                          : 1.0F);
-            image.base_colour[i]   = glm::vec3(unit(random), unit(random), unit(random));
-            image.dielectric_f0[i] = 0.01F;
-            image.roughness[i]     = float(unit(random));
-        }
+    for (const auto [i, x, y] : pixels_of(size_px)) {
+        const glm::dvec3 leaning(0.3 * unit(random), 0.3 * unit(random), 1);
+        // A wall that recedes to the right: along it depths differ more than across it.
+        set_pixel(image, x, y, 5 + 0.05 * x + 0.02 * unit(random), glm::normalize(leaning),
+                  random() % 8 == 0   ? 0
+                  : random() % 2 == 0 ? 0.5F
+                                      : 1.0F);
+        image.base_colour[i]   = glm::vec3(unit(random), unit(random), unit(random));
+        image.dielectric_f0[i] = 0.01F;
+        image.roughness[i]     = float(unit(random));
+    }
     Reflection values;
     for (size_t i = 0; i < image.depth.size(); ++i)
         values.emplace_back(unit(random), unit(random), unit(random), float(random() % 3) / 2);
@@ -301,14 +214,13 @@ TEST(ColourDownsampling, IsThatColourUpToTheBorder)
     view.far_m         = 20;
     view.focal_px      = glm::dvec2(12);
     GBufferImage image = empty_gbuffer(view);
-    for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 64; ++x) {
-            if (y < 32)
-                set_pixel(image, x, y, 5, {0, 0, 1}, 0);
-            else
-                set_pixel(image, x, y, 5.4 - 0.005 * (y - 32), glm::normalize(glm::dvec3(0, 1, 1)), x < 60 || x == 63);
-            image.radiance[at(image, x, y)] = {1, 2, 3};
-        }
+    for (const auto [i, x, y] : pixels_of({64, 64})) {
+        if (y < 32)
+            set_pixel(image, x, y, 5, {0, 0, 1}, 0);
+        else
+            set_pixel(image, x, y, 5.4 - 0.005 * (y - 32), glm::normalize(glm::dvec3(0, 1, 1)), x < 60 || x == 63);
+        image.radiance[at(image, x, y)] = {1, 2, 3};
+    }
     const Picture picture = make_picture(image);
     for (const TraceResolution resolution : {half, quarter}) {
         const auto frame = frame_with(
@@ -326,27 +238,24 @@ TEST(ColourDownsampling, IsThatColourUpToTheBorder)
 Reflection filtered(const Reflection& source, glm::ivec2 size_px, bool median)
 {
     Reflection result = source;
-    for (int y = 0; y < size_px.y; ++y)
-        for (int x = 0; x < size_px.x; ++x) {
-            const auto index = [&](int px, int py) { return pixel_index({px, py}, size_px); };
-            if (source[index(x, y)].a < 0) continue;
-            std::vector<glm::vec4> near;
-            for (int v = std::max(0, y - 1); v <= std::min(size_px.y - 1, y + 1); ++v)
-                for (int u = std::max(0, x - 1); u <= std::min(size_px.x - 1, x + 1); ++u)
-                    if (source[index(u, v)].a >= 0) near.push_back(source[index(u, v)]);
-            if (median) {
-                const auto luma = [](const glm::vec4& v) {
-                    return v.a * (0.2126F * v.r + 0.7152F * v.g + 0.0722F * v.b);
-                };
-                std::ranges::stable_sort(near, {}, luma);
-                result[index(x, y)] = near[(near.size() - 1) / 2];
-                continue;
-            }
-            glm::vec4 sum(0);
-            for (const glm::vec4& v : near) sum += glm::vec4(glm::vec3(v) * v.a, v.a);
-            result[index(x, y)] =
-                sum.a > 0 ? glm::vec4(glm::vec3(sum) / sum.a, sum.a / static_cast<float>(near.size())) : glm::vec4(0);
+    for (const auto [i, x, y] : pixels_of(size_px)) {
+        const auto index = [&](int px, int py) { return pixel_index({px, py}, size_px); };
+        if (source[index(x, y)].a < 0) continue;
+        std::vector<glm::vec4> near;
+        for (int v = std::max(0, y - 1); v <= std::min(size_px.y - 1, y + 1); ++v)
+            for (int u = std::max(0, x - 1); u <= std::min(size_px.x - 1, x + 1); ++u)
+                if (source[index(u, v)].a >= 0) near.push_back(source[index(u, v)]);
+        if (median) {
+            const auto luma = [](const glm::vec4& v) { return v.a * (0.2126F * v.r + 0.7152F * v.g + 0.0722F * v.b); };
+            std::ranges::stable_sort(near, {}, luma);
+            result[index(x, y)] = near[(near.size() - 1) / 2];
+            continue;
         }
+        glm::vec4 sum(0);
+        for (const glm::vec4& v : near) sum += glm::vec4(glm::vec3(v) * v.a, v.a);
+        result[index(x, y)] =
+            sum.a > 0 ? glm::vec4(glm::vec3(sum) / sum.a, sum.a / static_cast<float>(near.size())) : glm::vec4(0);
+    }
     return result;
 }
 
@@ -356,23 +265,6 @@ Reflection run_filter(const Picture& picture, const Reflection& source, Filter3x
     set_reflection(picture, source);
     run_pass(*frame, filter_3x3_pass());
     return read_colours(picture.buffers->reflection);
-}
-
-TEST(Filter3x3Pass, BoxIsTheMeanAndMedianThrowsOutliersAway)
-{
-    const glm::ivec2 size_px{24, 16};
-    const Picture    picture = make_picture(metal_wall(size_px));
-    Reflection       source(picture.image.depth.size(), glm::vec4(0.5F, 0.25F, 1, 1));
-    const size_t     outlier = at(picture.image, 9, 7), hole = at(picture.image, 15, 9);
-    const Reflection flat = source;
-    source[outlier]       = {5, 0.25F, 1, 1};
-    source[hole]          = glm::vec4(0);
-    EXPECT_EQ(run_filter(picture, source, Filter3x3::median3), flat);
-    const Reflection mean = run_filter(picture, source, Filter3x3::box3);
-    EXPECT_NEAR(mean[outlier].r, 1, 1e-3); // (8 * 0.5 + 5) / 9
-    EXPECT_NEAR(mean[hole].r, 0.5, 1e-3);
-    EXPECT_NEAR(mean[hole].a, 8.0 / 9, 1e-3);
-    EXPECT_EQ(mean[at(picture.image, 3, 3)], flat[0]);
 }
 
 TEST(Filter3x3Pass, IsTheHostsOnAnyReflection)

@@ -5,9 +5,6 @@
 #include "gpu/device.h"
 #include "trace/lab.h"
 
-#include <algorithm>
-#include <map>
-
 namespace ssrlab::test {
 namespace {
 
@@ -15,10 +12,10 @@ class FrameRuns : public testing::TestWithParam<const char*> {};
 
 TEST_P(FrameRuns, TimesAreThereAndResultsAreTheCountedOnes)
 {
-    const Picture       picture = make_picture("builtin:pole_field", "down", {161, 91});
-    const TraceSettings settings{.thickness_m = 0.1, .max_distance_m = 20};
-    const Technique&    t     = technique(GetParam());
-    const auto          frame = prepared_frame(picture.buffers, t, values_of(t), {settings});
+    const Picture       picture  = make_picture("builtin:pole_field", "down", {161, 91});
+    const TraceSettings settings = boxes({.thickness_m = 0.1, .max_distance_m = 20});
+    const Technique&    t        = technique(GetParam());
+    const auto          frame    = prepared_frame(picture.buffers, t, values_of(t), {settings});
     const TraceResult   first = counted(*frame), second = counted(*frame);
     std::string         text;
     EXPECT_EQ(count_differences(first, second, bit_equal_t, text), 0U) << text;
@@ -48,11 +45,11 @@ INSTANTIATE_TEST_SUITE_P(Techniques, FrameRuns, testing::Values("dda", "hiz", "l
 
 TEST(FrameRuns, TheOrderOfTheRaysIsThatOfTheList)
 {
-    const Picture       picture = make_picture("builtin:pole_field", "down", {161, 91});
-    const TraceSettings settings{.thickness_m = 0.1, .max_distance_m = 20};
-    const Technique&    hiz    = technique("hiz");
-    const TraceResult   result = trace(picture, hiz, values_of(hiz), settings);
-    const TracerPtr     tracer = make_tracer(device(), lab_on_picture(picture, hiz, values_of(hiz), settings));
+    const Picture       picture  = make_picture("builtin:pole_field", "down", {161, 91});
+    const TraceSettings settings = boxes({.thickness_m = 0.1, .max_distance_m = 20});
+    const Technique&    hiz      = technique("hiz");
+    const TraceResult   result   = trace(picture, hiz, values_of(hiz), settings);
+    const TracerPtr     tracer   = make_tracer(device(), lab_on_picture(picture, hiz, values_of(hiz), settings));
     std::vector<size_t> listed;
     for (const RayInput& ray : set_up_rays(device(), *tracer)) listed.push_back(pixel_index(ray.pixel, {161, 91}));
     EXPECT_GT(listed.size(), 1000U);
@@ -77,8 +74,8 @@ TEST(GBufferRuns, TheSamePictureEveryTime)
 // Two techniques share one set of buffers: what one leaves behind must not reach the other.
 TEST(SharedBuffers, KeepNoTraceOfTheRunBefore)
 {
-    const Picture                             picture = make_picture("builtin:pole_field", "default", {161, 91});
-    const TraceSettings                       settings{.thickness_m = 0.1};
+    const Picture                             picture  = make_picture("builtin:pole_field", "default", {161, 91});
+    const TraceSettings                       settings = boxes({.thickness_m = 0.1});
     std::map<std::string, FramePtr>           frames;
     std::map<std::string, std::vector<float>> shaded;
     for (const char* id : {"dda", "hiz", "linear"})

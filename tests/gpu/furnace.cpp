@@ -7,8 +7,6 @@
 #include "scene/model.h"
 #include "scene/shapes.h"
 
-#include <cmath>
-
 namespace ssrlab::test {
 namespace {
 

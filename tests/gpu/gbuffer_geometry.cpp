@@ -2,11 +2,6 @@
 #include "core/pixel_index.h"
 #include "gpu/device.h"
 
-#include <cmath>
-#include <functional>
-#include <numbers>
-#include <optional>
-
 namespace ssrlab::test {
 namespace {
 

@@ -4,9 +4,6 @@
 #include "scene/model.h"
 #include "scene/shapes.h"
 
-#include <cmath>
-#include <numbers>
-
 namespace ssrlab::test {
 namespace {
 
@@ -102,19 +99,17 @@ TEST(GBufferMaterial, ShadowLiesWhereTheSunPutsIt)
         const glm::dvec3 base(0.8, 0.5, 0.25), ambient(0.1, 0.2, 0.3);
         const glm::dvec3 dark = base * ambient, lit = base * (ambient + 4 * std::sqrt(0.5) * 0.75 / std::numbers::pi);
         size_t           dark_pixels = 0;
-        for (int y = 0; y < 64; ++y)
-            for (int x = 0; x < 64; ++x) {
-                const auto i = pixel_index({x, y}, {64, 64});
-                if (picture.image.object_id[i] != 1) continue;
-                const glm::dvec3 p =
-                    px_to_vs(picture.view, glm::dvec2(x, y) + 0.5,
-                             static_cast<double>(picture.image.depth[i]));             // p.x, p.y: the plane's x and -z
-                const double outside = std::max(std::abs(p.x - 1), std::abs(p.y)) - 1; // metres outside the shadow
-                if (std::abs(outside) < 0.05) continue;
-                const bool in_shadow = shadows && outside < 0;
-                dark_pixels += in_shadow;
-                expect_colour(picture.image.radiance[i], in_shadow ? dark : lit, fmt::format("pixel ({}, {})", x, y));
-            }
+        for (const auto [i, x, y] : pixels_of({64, 64})) {
+            if (picture.image.object_id[i] != 1) continue;
+            const glm::dvec3 p =
+                px_to_vs(picture.view, glm::dvec2(x, y) + 0.5,
+                         static_cast<double>(picture.image.depth[i]));             // p.x, p.y: the plane's x and -z
+            const double outside = std::max(std::abs(p.x - 1), std::abs(p.y)) - 1; // metres outside the shadow
+            if (std::abs(outside) < 0.05) continue;
+            const bool in_shadow = shadows && outside < 0;
+            dark_pixels += in_shadow;
+            expect_colour(picture.image.radiance[i], in_shadow ? dark : lit, fmt::format("pixel ({}, {})", x, y));
+        }
         EXPECT_EQ(dark_pixels > 100, shadows);
     }
 }
@@ -131,15 +126,13 @@ TEST(GBufferMaterial, PointLightFallsOffWithTheSquare)
     lamp.position_ws        = {0, 2, 0};
     model.lights.push_back(lamp);
     const Picture picture = make_picture(model_to_scene(std::move(model), "lamp"), from_above(), {40, 30});
-    for (int y = 0; y < 30; ++y)
-        for (int x = 0; x < 40; ++x) {
-            const auto       i = pixel_index({x, y}, {40, 30});
-            const glm::dvec3 p =
-                px_to_vs(picture.view, glm::dvec2(x, y) + 0.5, static_cast<double>(picture.image.depth[i]));
-            const double d2 = p.x * p.x + p.y * p.y + 4, light = 10 * 2 / std::sqrt(d2) / d2 * 0.75 / std::numbers::pi;
-            expect_colour(picture.image.radiance[i], glm::dvec3(0.8, 0.5, 0.25) * (glm::dvec3(0.1, 0.2, 0.3) + light),
-                          fmt::format("pixel ({}, {})", x, y));
-        }
+    for (const auto [i, x, y] : pixels_of({40, 30})) {
+        const glm::dvec3 p =
+            px_to_vs(picture.view, glm::dvec2(x, y) + 0.5, static_cast<double>(picture.image.depth[i]));
+        const double d2 = p.x * p.x + p.y * p.y + 4, light = 10 * 2 / std::sqrt(d2) / d2 * 0.75 / std::numbers::pi;
+        expect_colour(picture.image.radiance[i], glm::dvec3(0.8, 0.5, 0.25) * (glm::dvec3(0.1, 0.2, 0.3) + light),
+                      fmt::format("pixel ({}, {})", x, y));
+    }
 }
 
 // Every third light comes from below, and does not reach the plane.

@@ -4,11 +4,6 @@
 #include "scene/scene.h"
 #include "truth/screen_ray.h"
 
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <numbers>
-
 namespace ssrlab::test {
 namespace {
 
@@ -106,33 +101,31 @@ TEST(Blur, OfBlocksIsTheGaussianOfHalfAsManySteps)
             return glm::dvec3(x % 8 == 7, y % 8 == 1, (x + 2 * y) % 16) / glm::dvec3(1, 1, 16);
         };
         Reflection reflection(image.depth.size(), nothing_reflects);
-        for (int y = 0; y < blocks.y; ++y)
-            for (int x = 0; x < blocks.x; ++x) {
-                const glm::ivec2 pixel = unpack_pixel(traced[pixel_index({x, y}, blocks)]);
-                ASSERT_EQ(pixel / 2, glm::ivec2(x, y));
-                reflection[at(image, pixel.x, pixel.y)] = glm::vec4(source(x, y), 1);
-            }
+        for (const auto [i, x, y] : pixels_of(blocks)) {
+            const glm::ivec2 pixel = unpack_pixel(traced[i]);
+            ASSERT_EQ(pixel / 2, glm::ivec2(x, y));
+            reflection[at(image, pixel.x, pixel.y)] = glm::vec4(source(x, y), 1);
+        }
         set_reflection(picture, reflection);
         run_pass(*frame, ray_blur_pass());
         const Reflection found  = read_colours(picture.buffers->reflection);
         const double     radius = 0.375 * 0.5 * size_px.y / 2;
         const int        taps   = int(std::ceil(radius));
-        for (int y = 0; y < blocks.y; ++y)
-            for (int x = 0; x < blocks.x; ++x) {
-                glm::dvec3 sum(0);
-                double     total = 0;
-                for (int v = -taps; v <= taps; ++v)
-                    for (int u = -taps; u <= taps; ++u) {
-                        const auto   steps  = [&](int i) { return int(std::round(i * radius / taps)); };
-                        const double weight = std::exp(-2.0 * (u * u + v * v) / (taps * taps));
-                        sum += weight * source(std::clamp(x + steps(u), 0, blocks.x - 1),
-                                               std::clamp(y + steps(v), 0, blocks.y - 1));
-                        total += weight;
-                    }
-                const glm::ivec2 pixel = unpack_pixel(traced[pixel_index({x, y}, blocks)]);
-                for (int c = 0; c < 3; ++c)
-                    ASSERT_NEAR(found[at(image, pixel.x, pixel.y)][c], sum[c] / total, 3e-3) << x << ", " << y;
-            }
+        for (const auto [i, x, y] : pixels_of(blocks)) {
+            glm::dvec3 sum(0);
+            double     total = 0;
+            for (int v = -taps; v <= taps; ++v)
+                for (int u = -taps; u <= taps; ++u) {
+                    const auto   steps  = [&](int tap) { return int(std::round(tap * radius / taps)); };
+                    const double weight = std::exp(-2.0 * (u * u + v * v) / (taps * taps));
+                    sum += weight *
+                           source(std::clamp(x + steps(u), 0, blocks.x - 1), std::clamp(y + steps(v), 0, blocks.y - 1));
+                    total += weight;
+                }
+            const glm::ivec2 pixel = unpack_pixel(traced[i]);
+            for (int c = 0; c < 3; ++c)
+                ASSERT_NEAR(found[at(image, pixel.x, pixel.y)][c], sum[c] / total, 3e-3) << x << ", " << y;
+        }
     }
 }
 
@@ -176,8 +169,7 @@ TEST(Blur, NothingComesFromPixelsThatDoNotReflect)
 {
     const Picture picture = rough_wall(1);
     Reflection    halves(64 * 64, nothing_reflects);
-    for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 32; ++x) halves[at(picture.image, x, y)] = {0.5F, 0.5F, 0.5F, 1};
+    for (const auto [i, x, y] : pixels_of({32, 64})) halves[at(picture.image, x, y)] = {0.5F, 0.5F, 0.5F, 1};
     const Reflection found = blur(picture, halves, {});
     for (size_t i = 0; i < found.size(); ++i)
         for (int c = 0; c < 4; ++c) ASSERT_NEAR(found[i][c], halves[i][c], 1e-3) << i;
@@ -333,9 +325,8 @@ TEST(EnvironmentFallback, IsBlurredByTheLobeOfTheRoughness)
     Scene            scene    = load_scene("builtin:stairs");
     scene.environment.size_px = {256, 128};
     scene.environment.radiance.clear();
-    for (int y = 0; y < 128; ++y)
-        for (int x = 0; x < 256; ++x)
-            scene.environment.radiance.emplace_back(1 + std::sin(pi * (0.5 - (y + 0.5) / 128)));
+    for (const auto [i, x, y] : pixels_of({256, 128}))
+        scene.environment.radiance.emplace_back(1 + std::sin(pi * (0.5 - (y + 0.5) / 128)));
     const EnvironmentMap levels = prefilter_environment(scene.environment);
     for (int k = 0; k < environment_levels; ++k) {
         const double alpha2 = std::pow(environment_level_roughness(k), 4);

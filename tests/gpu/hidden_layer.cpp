@@ -3,8 +3,6 @@
 #include "gpu/device.h"
 #include "unit/truth_scenes.h"
 
-#include <algorithm>
-
 namespace ssrlab::test {
 namespace {
 
@@ -73,7 +71,7 @@ std::vector<float> shaded(ReadyFrame& frame)
     return read_shaded(device(), frame).values;
 }
 
-const TraceSettings thin{.thickness_m = 0.5, .max_distance_m = 100};
+const TraceSettings thin = boxes({.thickness_m = 0.5, .max_distance_m = 100});
 
 /// Does the view ray through this pixel's centre meet the panel?
 bool on_panel(const View& view, glm::ivec2 pixel)
@@ -94,18 +92,16 @@ TEST_P(Layers, TheSecondShowsWhatThePanelHides)
         run_frame(device(), *frame);
         const GBufferImage layer = read_second_layer(device(), *frame);
         size_t             shown = 0;
-        for (int y = 0; y < 64; ++y)
-            for (int x = 0; x < 96; ++x) {
-                const size_t i        = at(layer, x, y);
-                const bool   expected = on_panel(picture.view, {x, y}) && separation_m < wall_m - panel_m;
-                ASSERT_EQ(layer.depth[i] > 0, expected) << x << ' ' << y << ", separation " << separation_m;
-                if (!expected) continue;
-                ++shown;
-                EXPECT_NEAR(depth_to_distance(picture.view, static_cast<double>(layer.depth[i])), wall_m, 1e-4);
-                EXPECT_EQ(layer.object_id[i], 2U);
-                EXPECT_EQ(layer.radiance[i], glm::vec3(0, 1, 0));
-                EXPECT_EQ(layer.normal_vs[i], glm::vec3(0, 0, 1));
-            }
+        for (const auto [i, x, y] : pixels_of({96, 64})) {
+            const bool expected = on_panel(picture.view, {x, y}) && separation_m < wall_m - panel_m;
+            ASSERT_EQ(layer.depth[i] > 0, expected) << x << ' ' << y << ", separation " << separation_m;
+            if (!expected) continue;
+            ++shown;
+            EXPECT_NEAR(depth_to_distance(picture.view, static_cast<double>(layer.depth[i])), wall_m, 1e-4);
+            EXPECT_EQ(layer.object_id[i], 2U);
+            EXPECT_EQ(layer.radiance[i], glm::vec3(0, 1, 0));
+            EXPECT_EQ(layer.normal_vs[i], glm::vec3(0, 0, 1));
+        }
         EXPECT_EQ(shown > 100, separation_m < 4) << shown;
     }
 }
@@ -122,28 +118,25 @@ TEST_P(Layers, OfTheWalkShowTheNextSurfacesThatFaceTheCamera)
         draw.bounds_min_ws = glm::vec3(-500);
         draw.bounds_max_ws = glm::vec3(500);
     }
-    const Picture picture = make_picture(scene, level_camera(GetParam()), {96, 64});
-    TraceSettings settings{.thickness_m = 0.1, .max_distance_m = 100};
-    settings.layers = 4;
+    const Picture picture  = make_picture(scene, level_camera(GetParam()), {96, 64});
+    TraceSettings settings = boxes({.thickness_m = 0.1, .max_distance_m = 100});
+    settings.layers        = 4;
     trace(picture, technique("dda"), values_of(technique("dda")), settings);
     const GBufferImage with = read_gbuffer(device(), *picture.gbuffer);
     ASSERT_EQ(with.layers.size(), 3U);
     const double distances_m[] = {4.1, wall_m};
     size_t       shown         = 0;
-    for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 96; ++x) {
-            if (!on_panel(picture.view, {x, y})) continue;
-            const size_t i = at(with, x, y);
-            // A view ray through the panel's edge may pass the quad behind it.
-            if (GetParam() == Projection::perspective && with.layers[0].depth[i] > 0 &&
-                depth_to_distance(picture.view, double(with.layers[0].depth[i])) > 5)
-                continue;
-            ++shown;
-            for (size_t layer = 0; layer < 2; ++layer)
-                EXPECT_NEAR(depth_to_distance(picture.view, double(with.layers[layer].depth[i])), distances_m[layer],
-                            1e-3);
-            EXPECT_LE(with.layers[2].depth[i], 0);
-        }
+    for (const auto [i, x, y] : pixels_of({96, 64})) {
+        if (!on_panel(picture.view, {x, y})) continue;
+        // A view ray through the panel's edge may pass the quad behind it.
+        if (GetParam() == Projection::perspective && with.layers[0].depth[i] > 0 &&
+            depth_to_distance(picture.view, double(with.layers[0].depth[i])) > 5)
+            continue;
+        ++shown;
+        for (size_t layer = 0; layer < 2; ++layer)
+            EXPECT_NEAR(depth_to_distance(picture.view, double(with.layers[layer].depth[i])), distances_m[layer], 1e-3);
+        EXPECT_LE(with.layers[2].depth[i], 0);
+    }
     EXPECT_GT(shown, 50U);
 }
 

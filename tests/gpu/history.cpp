@@ -3,11 +3,6 @@
 #include "gpu/passes.h"
 #include "gpu/sequence_frames.h"
 
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <cmath>
-
 namespace ssrlab::test {
 namespace {
 
@@ -142,31 +137,6 @@ TEST(PictureHistory, FollowsWhatMoves)
     EXPECT_LT(rms[1], 0.7 * rms[0]);
 }
 
-// After many frames the newest one weighs 1 - history_weight: a step from 0 to 1 is 1 - 0.75^n after n frames.
-TEST(History, WeighsFramesExponentially)
-{
-    const Scene           scene   = still_scene();
-    const FrameHistoryPtr history = make_history(device(), size_px);
-    const ParameterValues passes  = with(plain, {strategy("surface"), {"history_weight", 0.75}});
-    keep_history(device(), *run_picture(picture_at(scene, "default", {0, 16}, size_px), passes, history), 0);
-    const std::vector<glm::vec4> nothing(pixel_count(size_px), glm::vec4(0, 0, 0, 1)),
-        many(nothing.size(), glm::vec4(100, 1, -1, 0));
-    upload(device(), history->reflection, nothing.data(), nothing.size() * sizeof(glm::vec4));
-    upload(device(), history->facts, many.data(), many.size() * sizeof(glm::vec4));
-    const SequencePicture picture = picture_at(scene, "default", {1, 16}, size_px);
-    const Reflection      own     = (run_picture(picture, passes, nullptr), read_colours(picture.buffers->reflection));
-    const auto            run     = run_picture(picture, passes, history);
-    const Reflection      result  = read_colours(picture.buffers->reflection);
-    const auto            vectors_px = read_reprojection(device(), *run);
-    size_t                judged     = 0;
-    for (size_t i = 0; i < own.size(); ++i) {
-        if (std::isnan(vectors_px[i].x)) continue;
-        ++judged;
-        ASSERT_NEAR(result[i].r * result[i].a, 0.25F * own[i].r * own[i].a, 1e-3) << "pixel " << i;
-    }
-    EXPECT_GT(judged, 1000U);
-}
-
 /// Two frames of a jittered sequence; between them the history is changed by hand.
 struct TwoFrames {
     HistoryCounts counts;
@@ -196,13 +166,6 @@ TwoFrames second_after(const std::function<void(FrameHistory&)>& change, const P
 template <typename Texel> void fill(GpuImage& image, Texel value)
 {
     const std::vector<Texel> texels(pixel_count(size_px), value);
-    upload(device(), image, texels.data(), texels.size() * sizeof(Texel));
-}
-
-template <typename Texel, typename Change> void change_texels(GpuImage& image, const Change& change)
-{
-    auto texels = download_as<Texel>(device(), image);
-    for (Texel& texel : texels) change(texel);
     upload(device(), image, texels.data(), texels.size() * sizeof(Texel));
 }
 
@@ -262,132 +225,6 @@ TEST(History, IsClampedToItsNeighbours)
         }
     EXPECT_GT(changed, 1000U);
     EXPECT_GT(bounded, 50U);
-}
-
-// Each rejection on its own sees what was changed for it, and the frame stays as it is without a history.
-TEST(History, IsRejectedWhereItIsOfSomethingElse)
-{
-    const ParameterValues passes = with(plain, {strategy("surface")});
-    const auto            nearer = [](FrameHistory& h) { change_texels<float>(h.depth, [](float& d) { d *= 1.5F; }); };
-    const auto turned  = [](FrameHistory& h) { change_texels<glm::vec4>(h.normal, [](glm::vec4& n) { n = -n; }); };
-    const auto others  = [](FrameHistory& h) { change_texels<glm::vec4>(h.facts, [](glm::vec4& f) { f.z = 1000; }); };
-    const auto farther = [](FrameHistory& h) {
-        change_texels<glm::vec4>(h.facts, [](glm::vec4& f) { f.y = 1e9F, f.z = 1; });
-    };
-    const TwoFrames depth = second_after(nearer, with(passes, {{"reject_depth", 0.05}}));
-    EXPECT_EQ(depth.counts.accumulated, 0U);
-    EXPECT_EQ(depth.result, depth.own);
-    const TwoFrames normal = second_after(turned, with(passes, {{"reject_normal", 0.9}}));
-    EXPECT_GT(normal.counts.other_normal, 1000U);
-    EXPECT_EQ(normal.result, normal.own);
-    const TwoFrames hit = second_after(others, with(passes, {{"reject_hit", 1}}));
-    EXPECT_GT(hit.counts.other_hit, 1000U);
-    EXPECT_EQ(hit.result, hit.own);
-    // 3 % farther is within 5 %, at any distance.
-    const auto      a_little = [](FrameHistory& h) { change_texels<float>(h.depth, [](float& d) { d /= 1.03F; }); };
-    const TwoFrames same     = second_after(a_little, with(passes, {{"reject_depth", 0.05}}));
-    EXPECT_GT(same.counts.accumulated, 20 * same.counts.other_depth);
-    // A ray that was infinitely longer leaves no weight.
-    const auto      both   = [&](FrameHistory& h) { bright(h), farther(h); };
-    const TwoFrames length = second_after(both, with(passes, {{"hit_distance_tolerance", 0.1}}));
-    EXPECT_EQ(length.result, length.own);
-    // Unchanged, all of them let it pass, but at edges.
-    const TwoFrames none =
-        second_after([](FrameHistory&) {}, with(passes, {{"reject_depth", 0.05}, {"reject_normal", 0.9}}));
-    EXPECT_GT(none.counts.accumulated, 20 * (none.counts.other_depth + none.counts.other_normal));
-}
-
-// A ray that was 10 % longer counts by exp(-0.1 / 0.2), and so do the frames that it stands for.
-TEST(History, CountsByTheLengthOfItsRay)
-{
-    const Scene           scene   = still_scene();
-    const FrameHistoryPtr history = make_history(device(), size_px);
-    const ParameterValues passes  = with(
-         plain, {strategy("surface"), {"history_weight", 0.999}, {"hit_distance_tolerance", 0.2}, {"reject_hit", 0}});
-    for (const int frame : {0, 1}) // of the first one no ray lengths are known
-        keep_history(device(), *run_picture(picture_at(scene, "default", {frame, 16}, size_px), passes, history),
-                     frame);
-    bright(*history);
-    change_texels<glm::vec4>(history->facts, [](glm::vec4& f) { f.x = 15, f.y *= 1.1F; });
-    const auto            before  = download_as<glm::vec4>(device(), history->facts);
-    const SequencePicture picture = picture_at(scene, "default", {2, 16}, size_px);
-    const Reflection      own     = (run_picture(picture, passes, nullptr), read_colours(picture.buffers->reflection));
-    const auto            run     = run_picture(picture, passes, history);
-    const Reflection      result  = read_colours(picture.buffers->reflection);
-    const auto            now     = download_as<glm::vec4>(device(), history->reprojected),
-               kept               = download_as<glm::vec4>(device(), history->kept_facts);
-    size_t judged                 = 0;
-    for (size_t i = 0; i < own.size(); ++i) {
-        if (std::isnan(now[i].x) || now[i].w < 0 || before[i].z < 0) continue;
-        ++judged;
-        const float share       = std::exp(-std::abs(before[i].y - now[i].z) / (0.2F * now[i].z));
-        const float before_part = 15.0F / 16 * share;
-        ASSERT_NEAR(kept[i].x, 15 * share + 1, 1e-2) << "pixel " << i;
-        ASSERT_NEAR(result[i].r * result[i].a, glm::mix(own[i].r * own[i].a, 100.0F, before_part), 0.1)
-            << "pixel " << i;
-    }
-    EXPECT_GT(judged, 1000U);
-}
-
-// A ray that missed beside rays that hit moves with the nearest of what these met.
-TEST(History, MissesMoveWithTheNearestHitBesideThem)
-{
-    const Scene           scene   = still_scene();
-    const FrameHistoryPtr history = make_history(device(), size_px);
-    const ParameterValues passes  = with(plain, {strategy("surface")});
-    keep_history(device(), *run_picture(picture_at(scene, "default", {0, 16}, size_px), passes, history), 0);
-    run_picture(picture_at(scene, "default", {1, 16}, size_px), passes, history);
-    const auto now  = download_as<glm::vec4>(device(), history->reprojected),
-               kept = download_as<glm::vec4>(device(), history->kept_facts);
-    size_t misses = 0, beside_hits = 0, choices = 0;
-    for (int y = 0; y < size_px.y; ++y)
-        for (int x = 0; x < size_px.x; ++x) {
-            const size_t i = pixel_index({x, y}, size_px);
-            if (now[i].w != -2) continue;
-            ++misses;
-            std::vector<glm::vec2> hits;
-            for (int k = 0; k < 9; ++k) {
-                const glm::ivec2 next =
-                    glm::clamp(glm::ivec2(x + k % 3 - 1, y + k / 3 - 1), glm::ivec2(0), size_px - 1);
-                const glm::vec4& at_next = now[pixel_index(next, size_px)];
-                if (at_next.w >= 0 && !std::isnan(at_next.x)) hits.emplace_back(at_next.z, at_next.w);
-            }
-            const auto nearer              = [](const glm::vec2& a, const glm::vec2& b) { return a.x < b.x; };
-            const auto [nearest, farthest] = std::ranges::minmax_element(hits, nearer);
-            beside_hits += !hits.empty();
-            choices += !hits.empty() && *nearest != *farthest;
-            const glm::vec2 expected = hits.empty() ? glm::vec2(0, -2) : *nearest;
-            ASSERT_EQ(glm::vec2(kept[i].y, kept[i].z), expected) << x << ' ' << y;
-        }
-    EXPECT_GT(misses, beside_hits);
-    EXPECT_GT(choices, 20U);
-}
-
-// Between pixels of the frame before only those count that reflected: a history of one colour stays that colour, also at edges.
-TEST(History, IsInterpolatedOverWhatReflected)
-{
-    const Scene           scene   = load_scene("builtin:moving_boxes");
-    const FrameHistoryPtr history = make_history(device(), size_px);
-    const ParameterValues passes  = with(plain, {strategy("surface"), {"history_weight", 0.5}, {"reject_hit", 0}});
-    keep_history(device(), *run_picture(picture_at(scene, "truck", {4, 8}, size_px), passes, history), 4);
-    change_texels<glm::vec4>(history->reflection, [](glm::vec4& r) {
-        r = r.a < 0 ? glm::vec4(-1000, -1000, -1000, -1) : glm::vec4(50, 50, 50, 1);
-    });
-    change_texels<glm::vec4>(history->facts, [](glm::vec4& f) { f.x = std::min(f.x, 1.0F); });
-    const SequencePicture picture = picture_at(scene, "truck", {5, 8}, size_px);
-    const Reflection      own     = (run_picture(picture, passes, nullptr), read_colours(picture.buffers->reflection));
-    const auto            run     = run_picture(picture, passes, history);
-    const Reflection      result  = read_colours(picture.buffers->reflection);
-    size_t                taken   = 0;
-    for (size_t i = 0; i < own.size(); ++i) {
-        if (result[i] == own[i]) continue;
-        ++taken;
-        ASSERT_NEAR(result[i].r * result[i].a, (own[i].r * own[i].a + 50) / 2, 0.05) << "pixel " << i;
-    }
-    const HistoryCounts counts = read_history_counts(device(), *run).value();
-    EXPECT_EQ(taken, counts.accumulated);
-    EXPECT_GT(counts.off_image, 0U);
-    EXPECT_GT(taken, 1000U);
 }
 
 TEST(History, NothingIsLeftOfItAfterACut)
@@ -520,18 +357,6 @@ TEST(History, FurtherBouncesComeFromIt)
     }
     EXPECT_GT(brighter, 100U);
     EXPECT_GT(others, 1000U);
-}
-
-// At a lower resolution pixels without rays take the vector of their block's pixel.
-TEST(History, OfALowerResolution)
-{
-    const Scene           scene   = still_scene();
-    const FrameHistoryPtr history = make_history(device(), size_px);
-    const ParameterValues passes  = with(plain, {strategy("surface"), chosen(TraceResolution::half)});
-    keep_history(device(), *run_picture(picture_at(scene, "default", {0, 16}, size_px), passes, history), 0);
-    const auto          run    = run_picture(picture_at(scene, "default", {1, 16}, size_px), passes, history);
-    const HistoryCounts counts = read_history_counts(device(), *run).value();
-    EXPECT_GT(counts.accumulated, plan_of(*run).statistics.gbuffer.reflecting_pixels / 2);
 }
 
 } // namespace

@@ -5,10 +5,6 @@
 #include "gpu/passes.h"
 #include "gpu/sequence_frames.h"
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
 namespace ssrlab::test {
 namespace {
 
@@ -149,6 +145,8 @@ struct Frame {
     std::vector<glm::vec4>        reprojected, kept_reflection, kept_facts;
     Reflection                    own, result;
     std::vector<uint32_t>         blocks;
+
+    std::array<uint32_t, HISTORY_COUNTS> counted{}; // by the device
 };
 
 Told told_by(const Frame& frame, size_t ray, double ray_offset_m)
@@ -216,6 +214,8 @@ Frame second_frame(Projection projection, const ParameterValues& passes, TraceSe
     frame.reprojected     = download_as<glm::vec4>(device(), history->reprojected);
     frame.kept_reflection = download_as<glm::vec4>(device(), history->kept_reflection);
     frame.kept_facts      = download_as<glm::vec4>(device(), history->kept_facts);
+    if (const auto counts = read_history_counts(device(), *run))
+        frame.counted = std::bit_cast<decltype(frame.counted)>(*counts);
     if (passes.contains(chosen(TraceResolution::half).first))
         frame.blocks = download_as<uint32_t>(device(), picture.buffers->block_pixel);
 
@@ -256,8 +256,8 @@ void expect_strategy(const std::string& id, Projection projection, int per_pixel
 {
     SCOPED_TRACE(id + (projection == Projection::orthographic ? ", orthographic, " : ", ") + std::to_string(per_pixel) +
                  " rays, " + std::to_string(layers) + " layers, offset " + std::to_string(ray_offset_m));
-    TraceSettings trace{.thickness_m = 0.1, .max_distance_m = 100, .ray_offset_m = ray_offset_m};
-    trace.layers       = layers;
+    TraceSettings trace = boxes({.thickness_m = 0.1, .max_distance_m = 100, .ray_offset_m = ray_offset_m});
+    trace.layers        = layers;
     const Frame frame  = second_frame(projection, passes_of(id, {{"rays_per_pixel", per_pixel}}), trace, {}, was_ahead);
     size_t      judged = 0, deeper = 0;
     for (size_t first = 0; first < frame.rays.size(); first += size_t(per_pixel)) {
@@ -484,13 +484,16 @@ void expect_history(Projection projection, const Rules& rules, bool half, std::a
                          {"history_weight", weight_limit},
                          {"environment_fallback", 0}};
     if (half) more.insert(chosen(TraceResolution::half));
-    const Frame frame =
-        second_frame(projection, passes_of("surface", more), {.thickness_m = 0.1, .max_distance_m = 100}, scramble);
+    const Frame                        frame = second_frame(projection, passes_of("surface", more),
+                                                            boxes({.thickness_m = 0.1, .max_distance_m = 100}), scramble);
+    std::array<size_t, HISTORY_COUNTS> found{};
+    size_t                             undecided = 0;
     for (size_t i = 0; i < frame.own.size(); ++i) {
         if (frame.own[i].a < 0) continue;
         const auto outcome = outcome_of(frame, pixel_at(i, size_px), rules);
+        undecided += !outcome;
         if (!outcome) continue;
-        ++outcomes.at(outcome->number);
+        ++found.at(outcome->number);
         const glm::dvec4 own(glm::vec3(frame.own[i]) * frame.own[i].a, frame.own[i].a);
         const glm::vec4 &kept = frame.kept_reflection[i], &facts = frame.kept_facts[i],
                         now = vector_of(frame, pixel_at(i, size_px));
@@ -505,6 +508,11 @@ void expect_history(Projection projection, const Rules& rules, bool half, std::a
         for (int c = 0; c < 4; ++c) ASSERT_NEAR(kept[c], expected[c], 1e-3) << i << ", outcome " << outcome->number;
         const glm::dvec4 shown(glm::vec3(frame.result[i]) * frame.result[i].a, frame.result[i].a);
         for (int c = 0; c < 4; ++c) ASSERT_NEAR(shown[c], expected[c], 4e-3) << i;
+    }
+    for (size_t number = 0; number < HISTORY_CLAMPED; ++number) {
+        EXPECT_GE(frame.counted[number], found[number]) << number;
+        EXPECT_LE(frame.counted[number], found[number] + undecided) << number;
+        outcomes[number] += found[number];
     }
 }
 

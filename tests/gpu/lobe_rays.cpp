@@ -3,10 +3,6 @@
 #include "gpu/compute.h"
 #include "gpu/passes.h"
 
-#include <algorithm>
-#include <numbers>
-#include <random>
-
 namespace ssrlab::test {
 namespace {
 
@@ -53,8 +49,7 @@ TEST(LobeRays, ReflectTheOnlyColourThatThereIs)
 TEST(LobeRays, OfMirrorsAreMirrorRaysToTheLastBit)
 {
     GBufferImage image = floor_before_glow(0.4F);
-    for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 32; ++x) image.roughness[at(image, x, y)] = 0;
+    for (const auto [i, x, y] : pixels_of({32, 64})) image.roughness[at(image, x, y)] = 0;
     const Picture    picture = make_picture(image);
     const Reflection plain   = reflection_with(picture, {chosen(Gloss::off)}),
                      drawn   = reflection_with(picture, {chosen(Gloss::stochastic)});

@@ -3,8 +3,6 @@
 #include "gpu/device.h"
 #include "repeat_command.h"
 
-#include <cstdlib>
-
 namespace {
 
 class FailOnValidationMessages : public testing::EmptyTestEventListener {

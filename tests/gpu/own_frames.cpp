@@ -4,9 +4,6 @@
 #include "scene/scene.h"
 #include "unit/temp_folder.h"
 
-#include <bit>
-#include <cmath>
-
 namespace ssrlab::test {
 namespace {
 
@@ -59,7 +56,8 @@ TEST(OwnFrames, ExportImportAndTraceGiveTheSameBitsOnEveryShippedScene)
         const Picture imported = make_picture(written_and_read(drawn.image));
         expect_same(drawn.image, imported.image);
         for (const std::string surface : {"box", "plane_solid"}) {
-            const TraceSettings   settings{.thickness_m = 0.2, .max_distance_m = 20, .surface = surface};
+            const TraceSettings settings{
+                .thickness_m = 0.2, .max_distance_m = 20, .behind = Behind::hit, .surface = surface};
             const ParameterValues values = values_of(technique("hiz"));
             std::string           first;
             EXPECT_EQ(count_differences(trace(drawn, technique("hiz"), values, settings),

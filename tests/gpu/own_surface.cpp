@@ -2,8 +2,6 @@
 #include "gpu/device.h"
 #include "truth/pixel_surface.h"
 
-#include <algorithm>
-
 namespace ssrlab::test {
 namespace {
 

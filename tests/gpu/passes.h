@@ -28,11 +28,10 @@ inline size_t changes_on_the_right_alone(const Reflection& found, const Reflecti
 }
 
 inline FramePtr frame_with(const Picture& picture, const ParameterValues& passes,
-                           const std::string& technique_id = "dda",
-                           const std::string& surface      = TraceSettings{}.surface)
+                           const std::string& technique_id = "dda", const std::string& surface = "box")
 {
     FrameSettings settings;
-    settings.trace = {.thickness_m = 0.5, .max_distance_m = 50, .surface = surface};
+    settings.trace = {.thickness_m = 0.5, .max_distance_m = 50, .behind = Behind::hit, .surface = surface};
     for (const auto& [name, value] : passes) settings.passes.at(name) = value;
     const Technique& chosen = technique(technique_id);
     return prepared_frame(picture.buffers, chosen, values_of(chosen), settings);
@@ -73,11 +72,10 @@ inline void run_pass(ReadyFrame& frame, const Pass& pass) { run_passes(frame, {c
 inline GBufferImage metal_wall(glm::ivec2 size_px, double distance_m = 5)
 {
     GBufferImage image = empty_gbuffer(bench_view(size_px));
-    for (int y = 0; y < size_px.y; ++y)
-        for (int x = 0; x < size_px.x; ++x) {
-            set_pixel(image, x, y, distance_m, {0, 0, 1}, 1);
-            image.base_colour[at(image, x, y)] = glm::vec3(1);
-        }
+    for (const auto [i, x, y] : pixels_of(size_px)) {
+        set_pixel(image, x, y, distance_m, {0, 0, 1}, 1);
+        image.base_colour[i] = glm::vec3(1);
+    }
     return image;
 }
 

@@ -6,16 +6,13 @@
 #include "shared.h"
 #include "unit/truth_gbuffers.h"
 
-#include <limits>
-#include <map>
-
 namespace ssrlab::test {
 namespace {
 
 constexpr int patch_px = 16; // techniques/structures/patch_planes/structure.toml
 
 /// Of each patch: the plane's slope rightward and downward, its depth at the first pixel; the farthest depth of its occluders, or 0.
-std::vector<glm::vec4> planes_of(const Picture& picture, const TraceSettings& settings = {},
+std::vector<glm::vec4> planes_of(const Picture& picture, const TraceSettings& settings = boxes(),
                                  const Technique& reads = technique("hiz_packets"))
 {
     const auto frame = prepared_frame(picture.buffers, reads, values_of(reads), {settings});
@@ -104,10 +101,9 @@ INSTANTIATE_TEST_SUITE_P(Sizes, PatchPlanes,
 
 TEST(PatchPlanesBehindBars, AreTheGround)
 {
-    const Picture picture = make_picture(ground_behind_bars({128, 64}));
-    TraceSettings settings;
-    settings.thickness_m = 0.1;
-    const auto planes    = planes_of(picture, settings);
+    const Picture       picture  = make_picture(ground_behind_bars({128, 64}));
+    const TraceSettings settings = boxes({.thickness_m = 0.1});
+    const auto          planes   = planes_of(picture, settings);
     for (const Front& front : fronts_of(picture, planes)) {
         if (front.depth > 0.1F)
             ASSERT_GE(front.depth, planes[front.patch].w);
@@ -119,19 +115,17 @@ TEST(PatchPlanesBehindBars, AreTheGround)
 
 TEST(PatchPlanesBehindBars, LieAboveThemWhereSlabsNeverEnd)
 {
-    const Picture picture = make_picture(ground_behind_bars({128, 64}));
-    TraceSettings settings;
-    settings.thickness_m = std::numeric_limits<double>::infinity();
-    const auto planes    = planes_of(picture, settings);
+    const Picture       picture  = make_picture(ground_behind_bars({128, 64}));
+    const TraceSettings settings = boxes({.thickness_m = std::numeric_limits<double>::infinity()});
+    const auto          planes   = planes_of(picture, settings);
     for (const Front& front : fronts_of(picture, planes)) ASSERT_GE(front.height, -1e-6F);
     for (const glm::vec4& plane : planes) ASSERT_EQ(plane.w, 0);
 }
 
 TEST(PatchPlanesBehindBars, LieAboveThemWherePacketsStayInFront)
 {
-    const Picture picture = make_picture(ground_behind_bars({128, 64}));
-    TraceSettings settings;
-    settings.thickness_m                  = 0.1;
+    const Picture               picture   = make_picture(ground_behind_bars({128, 64}));
+    const TraceSettings         settings  = boxes({.thickness_m = 0.1});
     const std::filesystem::path folders[] = {data_root() / "techniques/rivals"};
     const Catalogue             all       = load_catalogue(folders);
     const auto                  planes = planes_of(picture, settings, find_technique(all.techniques, "first_occluder"));

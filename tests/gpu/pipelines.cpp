@@ -5,10 +5,6 @@
 #include "gpu/device.h"
 #include "shared.h"
 
-#include <chrono>
-#include <optional>
-#include <set>
-
 namespace ssrlab::test {
 namespace {
 

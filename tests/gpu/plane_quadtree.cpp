@@ -6,10 +6,6 @@
 #include "truth/screen_truth.h"
 #include "unit/truth_gbuffers.h"
 
-#include <bit>
-#include <cmath>
-#include <limits>
-
 namespace ssrlab::test {
 namespace {
 
@@ -103,8 +99,9 @@ class PlaneQuadtree : public testing::TestWithParam<glm::ivec2> {};
 TEST_P(PlaneQuadtree, HoldsEverySlabOfNoise)
 {
     const Picture       picture = make_picture(random_gbuffer(bench_view(GetParam()), 5));
-    const TraceSettings thin{.thickness_m = 0.001}, thick{.thickness_m = 0.3, .thickness_relative = true},
-        endless{.thickness_m = std::numeric_limits<double>::infinity()};
+    const TraceSettings thin    = boxes({.thickness_m = 0.001}),
+                        thick   = boxes({.thickness_m = 0.3, .thickness_relative = true}),
+                        endless = boxes({.thickness_m = std::numeric_limits<double>::infinity()});
     for (const TraceSettings& settings : {thin, thick, endless})
         for (const double planes : {0, 1})
             for (const double bins : {0, 1})
@@ -116,7 +113,7 @@ TEST_P(PlaneQuadtree, HoldsEverySlabOfScenes)
 {
     for (const char* scene : {"thin_yard", "interior", "builtin:everything"})
         for (const double thickness_m : {0.1, 0.001})
-            expect_every_slab_held(make_picture(scene, "default", GetParam()), {.thickness_m = thickness_m});
+            expect_every_slab_held(make_picture(scene, "default", GetParam()), boxes({.thickness_m = thickness_m}));
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, PlaneQuadtree,
@@ -130,7 +127,7 @@ TEST(PlaneQuadtreeOfAnOrthographicView, HoldsEverySlab)
     view.projection       = Projection::orthographic;
     view.far_m            = 10;
     const Picture picture = make_picture(random_gbuffer(view, 3));
-    for (const double thickness_m : {0.01, 20.0}) expect_every_slab_held(picture, {.thickness_m = thickness_m});
+    for (const double thickness_m : {0.01, 20.0}) expect_every_slab_held(picture, boxes({.thickness_m = thickness_m}));
 }
 
 TEST(PlaneQuadtreeOfAFlatSurface, FollowsIt)
@@ -142,8 +139,8 @@ TEST(PlaneQuadtreeOfAFlatSurface, FollowsIt)
         image.depth[i]         = static_cast<float>(0.25 + glm::dot(gradient, glm::dvec2(pixel)));
         image.normal_vs[i]     = {0, 0, 1};
     }
-    const TraceSettings settings{.thickness_m = 0.0001};
-    const Quadtree      tree = build(make_picture(image), settings);
+    const TraceSettings settings = boxes({.thickness_m = 0.0001});
+    const Quadtree      tree     = build(make_picture(image), settings);
     for (const int level : {2, 4, 7}) {
         const Node node = tree.at(level, {0, 0});
         EXPECT_NEAR(node.gradient.x, gradient.x, 2e-6) << level;
@@ -163,7 +160,7 @@ TEST(PlaneQuadtreeOfTheLastPlaces, HoldsEverySlab)
             image.depth[i]     = static_cast<float>(0.75 + std::floor(glm::dot(slope, from_middle)) / (1 << 24));
             image.normal_vs[i] = {0, 0, 1};
         }
-        expect_every_slab_held(make_picture(image), {.thickness_m = 1e-9});
+        expect_every_slab_held(make_picture(image), boxes({.thickness_m = 1e-9}));
     }
 }
 
@@ -176,14 +173,14 @@ TEST(PlaneQuadtreeOfTheLastPlaces, HoldsSlabsThatRoundAway)
         image.depth[i]     = 0.5F + static_cast<float>(places[i % 8]) / (1 << 24);
         image.normal_vs[i] = {0, 0, 1};
     }
-    expect_every_slab_held(make_picture(image), {.thickness_m = 1e-9});
+    expect_every_slab_held(make_picture(image), boxes({.thickness_m = 1e-9}));
 }
 
 TEST(PlaneQuadtreeOfNothing, IsEmpty)
 {
     GBufferImage image  = empty_gbuffer(bench_view({64, 48}));
     image.depth[0]      = 0.5F;
-    const Quadtree tree = build(make_picture(image), {.thickness_m = 0.1});
+    const Quadtree tree = build(make_picture(image), boxes({.thickness_m = 0.1}));
     for (int level = 1; level <= 6; ++level) {
         EXPECT_NE(tree.at(level, {0, 0}).bins, 0U);
         EXPECT_EQ(tree.at(level, {40, 40}).bins != 0, level == 6);

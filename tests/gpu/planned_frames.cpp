@@ -1,8 +1,6 @@
 // Skipping passes leaves every bit of the image: the planned against the unculled frame, on every scene.
 #include "gpu/device.h"
 
-#include <gmock/gmock.h>
-
 namespace ssrlab::test {
 namespace {
 
@@ -20,7 +18,7 @@ struct Shown {
 
 Shown show(const Picture& picture, const char* id, const ParameterValues& passes)
 {
-    const TraceSettings settings{.thickness_m = 0.1, .max_distance_m = 20};
+    const TraceSettings settings = boxes({.thickness_m = 0.1, .max_distance_m = 20});
     const auto          frame =
         prepared_frame(picture.buffers, technique(id), values_of(technique(id)), {settings, "plane", passes});
     Shown shown;

@@ -2,9 +2,6 @@
 #include "gpu/passes.h"
 #include "truth/screen_ray.h"
 
-#include <algorithm>
-#include <set>
-
 namespace ssrlab::test {
 namespace {
 
@@ -37,8 +34,7 @@ View orthographic_view(glm::ivec2 size_px)
 size_t count_reflecting(const GBufferImage& image)
 {
     size_t count = 0;
-    for (int y = 0; y < image.view.size_px.y; ++y)
-        for (int x = 0; x < image.view.size_px.x; ++x) count += reflects(image, {x, y});
+    for (const auto [i, x, y] : pixels_of(image.view.size_px)) count += reflects(image, {x, y});
     return count;
 }
 

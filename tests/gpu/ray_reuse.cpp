@@ -4,11 +4,6 @@
 
 #include <glm/gtc/packing.hpp>
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <optional>
-
 namespace ssrlab::test {
 namespace {
 
@@ -26,14 +21,12 @@ GBufferImage uneven_walls(std::mt19937& random)
 {
     std::uniform_real_distribution<double> unit(-1, 1);
     GBufferImage                           image = metal_wall(size_px);
-    for (int y = 0; y < size_px.y; ++y)
-        for (int x = 0; x < size_px.x; ++x) {
-            const glm::dvec3 normal = glm::normalize(glm::dvec3(0.1 * unit(random), 0.1 * unit(random), 1));
-            set_pixel(image, x, y, (x + y < 64 ? 5 : 5.2) + 0.05 * unit(random), random() % 8 == 0 ? -normal : normal,
-                      random() % 10 == 0 ? 0 : 1);
-            image.roughness[at(image, x, y)] =
-                random() % 10 == 0 ? 0.0195F : static_cast<float>(0.5 + 0.3 * unit(random));
-        }
+    for (const auto [i, x, y] : pixels_of(size_px)) {
+        const glm::dvec3 normal = glm::normalize(glm::dvec3(0.1 * unit(random), 0.1 * unit(random), 1));
+        set_pixel(image, x, y, (x + y < 64 ? 5 : 5.2) + 0.05 * unit(random), random() % 8 == 0 ? -normal : normal,
+                  random() % 10 == 0 ? 0 : 1);
+        image.roughness[i] = random() % 10 == 0 ? 0.0195F : static_cast<float>(0.5 + 0.3 * unit(random));
+    }
     return image;
 }
 

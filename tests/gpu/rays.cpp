@@ -6,10 +6,6 @@
 #include "truth/screen_ray.h"
 #include "unit/truth_gbuffers.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 namespace ssrlab::test {
 namespace {
 
@@ -43,8 +39,8 @@ Worst compare(const Picture& picture, const TraceSettings& settings, const Rays&
     Worst worst;
     worst.rays        = rays.size();
     size_t reflecting = 0;
-    for (int y = 0; y < picture.view.size_px.y; ++y)
-        for (int x = 0; x < picture.view.size_px.x; ++x) reflecting += reflects(picture.image, {x, y}, settings);
+    for (const auto [i, x, y] : pixels_of(picture.view.size_px))
+        reflecting += reflects(picture.image, {x, y}, settings);
     EXPECT_EQ(rays.size(), reflecting);
     std::vector<bool> seen(picture.image.depth.size());
     for (const PackedRay<double>& listed : rays) {
@@ -104,7 +100,7 @@ GBufferImage materials(const View& view)
 struct Case {
     const char*   name;
     GBufferImage  image;
-    TraceSettings settings;
+    TraceSettings settings = boxes();
 };
 
 std::vector<Case> cases()
@@ -113,13 +109,15 @@ std::vector<Case> cases()
     std::vector<Case> list;
     for (const glm::ivec2& size : {glm::ivec2(1, 1), glm::ivec2(97, 1), glm::ivec2(1, 61), glm::ivec2(161, 91)})
         for (const View& view : {bench_view(size), off_centre_view(size), orthographic_view(size)}) {
-            list.push_back({"random", random_gbuffer(view, 5), {.max_distance_m = infinity}});
-            list.push_back({"random, 3 m", random_gbuffer(view, 6), {.max_distance_m = 3}});
-            list.push_back({"random, offset", random_gbuffer(view, 8), {.max_distance_m = 40, .ray_offset_m = 0.25}});
+            list.push_back({"random", random_gbuffer(view, 5), boxes({.max_distance_m = infinity})});
+            list.push_back({"random, 3 m", random_gbuffer(view, 6), boxes({.max_distance_m = 3})});
+            list.push_back(
+                {"random, offset", random_gbuffer(view, 8), boxes({.max_distance_m = 40, .ray_offset_m = 0.25})});
         }
-    list.push_back({"materials", materials(bench_view({161, 91})), {.max_distance_m = infinity}});
-    list.push_back({"floor and wall", floor_and_wall(bench_view({161, 91}), 10), {.max_distance_m = 1e9}});
-    list.push_back({"floor alone", floor_and_wall(off_centre_view({161, 91}), infinity), {.max_distance_m = infinity}});
+    list.push_back({"materials", materials(bench_view({161, 91})), boxes({.max_distance_m = infinity})});
+    list.push_back({"floor and wall", floor_and_wall(bench_view({161, 91}), 10), boxes({.max_distance_m = 1e9})});
+    list.push_back(
+        {"floor alone", floor_and_wall(off_centre_view({161, 91}), infinity), boxes({.max_distance_m = infinity})});
     return list;
 }
 

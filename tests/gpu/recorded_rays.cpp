@@ -2,8 +2,6 @@
 #include "gpu/device.h"
 #include "trace/lab.h"
 
-#include <algorithm>
-
 namespace ssrlab::test {
 namespace {
 
@@ -11,13 +9,13 @@ constexpr glm::ivec2 size_px{161, 91};
 
 struct Rays {
     Picture               picture;
-    TraceSettings         settings{.thickness_m = 0.2, .max_distance_m = 20};
+    TraceSettings         settings = boxes({.thickness_m = 0.2, .max_distance_m = 20});
     std::vector<RayInput> some; // of those that reflect
 };
 
 Rays rays_of(const std::string& scene)
 {
-    Rays       rays{make_picture(scene, "default", size_px), {.thickness_m = 0.2, .max_distance_m = 20}, {}};
+    Rays       rays{make_picture(scene, "default", size_px), boxes({.thickness_m = 0.2, .max_distance_m = 20}), {}};
     const auto tracer = tracer_on(rays.picture.gbuffer, technique("dda"), values_of(technique("dda")), rays.settings,
                                   rays.picture.image.depth.size());
     const auto all    = set_up_rays(device(), *tracer);
@@ -103,7 +101,7 @@ TEST(CountedWork, OfALayerIsAReadMoreAPixel)
 {
     const Picture picture = make_picture("builtin:stairs", "default", size_px);
     const auto    walk    = trace(picture, technique("dda"), values_of(technique("dda")),
-                                  {.thickness_m = 0.2, .max_distance_m = 20, .layers = 2});
+                                  boxes({.thickness_m = 0.2, .max_distance_m = 20, .layers = 2}));
     size_t        misses  = 0;
     for (size_t i = 0; i < walk.status.size(); ++i) {
         if (has_place(walk.status[i]) || walk.steps[i] == 0) continue;
@@ -116,9 +114,9 @@ TEST(CountedWork, OfALayerIsAReadMoreAPixel)
 // The two rays of a pair wait for each other, and pay for themselves alone.
 TEST(CountedWork, OfPairsIsThatOfSingleRays)
 {
-    const Picture       picture = make_picture("builtin:stairs", "default", size_px);
-    const TraceSettings settings{.thickness_m = 0.2, .max_distance_m = 20};
-    const auto          work_of = [&](const char* id) {
+    const Picture       picture  = make_picture("builtin:stairs", "default", size_px);
+    const TraceSettings settings = boxes({.thickness_m = 0.2, .max_distance_m = 20});
+    const auto          work_of  = [&](const char* id) {
         return trace(picture, technique(id), values_of(technique(id)), settings);
     };
     const TraceResult pairs = work_of("hiz_packets"), single = work_of("hiz_waves");

@@ -3,11 +3,6 @@
 #include "frame/passes/choices.h"
 #include "gpu/sequence_frames.h"
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <numbers>
-
 namespace ssrlab::test {
 namespace {
 
@@ -253,36 +248,6 @@ TEST(Reprojection, WhatRaysMissIsInfinitelyFar)
                               slope.y * std::cos(twice) - slope.x * std::sin(twice));
         });
     }
-}
-
-// With saturate(1 - length * factor): factor 0 leaves the vectors as they are, a large one makes all of them 0; `smallest` takes the
-// shortest of the four.
-TEST(Reprojection, ParallaxAndTheSmallest)
-{
-    Scene scene        = load_scene("builtin:mirror_floor_wall");
-    scene.paths        = {{"truck", {level_camera({-0.1, 0, 0}), level_camera({0, 0, 0})}, 1}};
-    const auto vectors = [&](const std::string& id, double factor) {
-        const bool has = id == "smallest" || id.ends_with("parallax");
-        return second_frame(scene, "truck", id, 0, has ? ParameterValues{{id + ".factor", factor}} : ParameterValues{})
-            .vectors_px;
-    };
-    const SecondFrame frame   = second_frame(scene, "truck", "surface");
-    const auto        surface = frame.vectors_px, hit = vectors("hit", 0);
-    const auto        unchanged = vectors("surface_parallax", 0);
-    const auto surface_parallax = vectors("surface_parallax", 0.05), hit_parallax = vectors("hit_parallax", 0.05),
-               smallest = vectors("smallest", 0.05), none = vectors("smallest", 1000);
-    size_t judged = 0;
-    for (size_t i = 0; i < surface.size(); ++i) {
-        if (frame.hits.status[i] != TraceStatus::hit || std::isnan(surface[i].x)) continue;
-        ++judged;
-        ASSERT_EQ(unchanged[i], surface[i]);
-        const float shortest = std::min({glm::length(surface[i]), glm::length(hit[i]), glm::length(surface_parallax[i]),
-                                         glm::length(hit_parallax[i])});
-        ASSERT_NEAR(glm::length(smallest[i]), shortest, 1e-3);
-        ASSERT_EQ(none[i], glm::vec2(0));
-        ASSERT_LT(glm::length(surface_parallax[i]), glm::length(surface[i]));
-    }
-    EXPECT_GT(judged, 10000U);
 }
 
 } // namespace

@@ -27,7 +27,7 @@ inline SequencePicture picture_at(const Scene& first, const std::string& view, S
 
 inline FrameSettings sequence_settings(const ParameterValues& changed)
 {
-    FrameSettings settings{.trace = {.thickness_m = 0.1, .max_distance_m = 100}};
+    FrameSettings settings{.trace = boxes({.thickness_m = 0.1, .max_distance_m = 100})};
     for (const auto& [name, value] : changed)
         if (name == "reprojection")
             settings.reprojection = catalogue().reprojections.at(static_cast<size_t>(value)).id;

@@ -3,22 +3,13 @@
 #include "gpu/device.h"
 #include "scene/sequence.h"
 
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <map>
-#include <numbers>
-
 namespace ssrlab::test {
 namespace {
 
 Image shaded(const GpuScenePtr& scene, const View& view)
 {
     const FrameBuffersPtr buffers = make_frame_buffers(device(), draw_gbuffer(device(), scene, view));
-    const FramePtr frame = prepared_frame(buffers, technique("hiz"), values_of(technique("hiz")), {});
+    const FramePtr        frame   = prepared_frame(buffers, technique("hiz"), values_of(technique("hiz")), {});
     run_frame(device(), *frame);
     return read_shaded(device(), *frame);
 }
@@ -55,19 +46,15 @@ double largest_difference_px(const Scene& scene, const GBufferImage& image, cons
 {
     const View& view  = image.view;
     double      worst = 0;
-    for (int y = 0; y < view.size_px.y; ++y)
-        for (int x = 0; x < view.size_px.x; ++x) {
-            const size_t     i = pixel_index({x, y}, view.size_px);
-            const glm::dvec2 slope =
-                (glm::dvec2(x + 0.5, y + 0.5) - view.centre_px) / view.focal_px * glm::dvec2(1, -1);
-            const Draw*  draw = image.object_id[i] == 0 ? nullptr : &scene.draws[image.object_id[i] - 1];
-            const double distance_m =
-                draw == nullptr ? std::numeric_limits<double>::infinity() : view.near_m / double(image.depth[i]);
-            // Without jitter slopes are differences in pixels but for the focal length.
-            const glm::dvec2 moved =
-                (previous_slope(slope, distance_m, draw) - slope) * view.focal_px * glm::dvec2(1, -1);
-            worst = std::max(worst, glm::length(glm::dvec2(image.motion_px[i]) - moved));
-        }
+    for (const auto [i, x, y] : pixels_of(view.size_px)) {
+        const glm::dvec2 slope = (glm::dvec2(x + 0.5, y + 0.5) - view.centre_px) / view.focal_px * glm::dvec2(1, -1);
+        const Draw*      draw  = image.object_id[i] == 0 ? nullptr : &scene.draws[image.object_id[i] - 1];
+        const double     distance_m =
+            draw == nullptr ? std::numeric_limits<double>::infinity() : view.near_m / double(image.depth[i]);
+        // Without jitter slopes are differences in pixels but for the focal length.
+        const glm::dvec2 moved = (previous_slope(slope, distance_m, draw) - slope) * view.focal_px * glm::dvec2(1, -1);
+        worst                  = std::max(worst, glm::length(glm::dvec2(image.motion_px[i]) - moved));
+    }
     return worst;
 }
 

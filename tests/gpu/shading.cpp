@@ -3,9 +3,6 @@
 #include "gpu/passes.h"
 #include "truth/screen_ray.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace ssrlab::test {
 namespace {
 
@@ -13,12 +10,11 @@ namespace {
 GBufferImage coloured()
 {
     GBufferImage image = floor_and_wall(bench_view({64, 64}), 10);
-    for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 64; ++x) {
-            image.radiance[at(image, x, y)]  = {static_cast<float>(x) / 64, static_cast<float>(y) / 64, 0.25F};
-            image.highlight[at(image, x, y)] = {0, 0.5F, static_cast<float>(x % 4) / 4};
-            if (image.metallic[at(image, x, y)] > 0) image.metallic[at(image, x, y)] = x % 2 == 0 ? 0.75F : 1.0F;
-        }
+    for (const auto [i, x, y] : pixels_of({64, 64})) {
+        image.radiance[at(image, x, y)]  = {static_cast<float>(x) / 64, static_cast<float>(y) / 64, 0.25F};
+        image.highlight[at(image, x, y)] = {0, 0.5F, static_cast<float>(x % 4) / 4};
+        if (image.metallic[at(image, x, y)] > 0) image.metallic[at(image, x, y)] = x % 2 == 0 ? 0.75F : 1.0F;
+    }
     return image;
 }
 
@@ -26,12 +22,11 @@ GBufferImage coloured()
 GBufferImage rugged()
 {
     GBufferImage image = coloured();
-    for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 64; ++x) {
-            if (image.metallic[at(image, x, y)] > 0) continue;
-            set_pixel(image, x, y, 10 + 0.1 * (x / 4 % 3), {0, 0, 1}, 0);
-            if (x % 16 == 7 && y % 8 == 4) image.depth[at(image, x, y)] = 0;
-        }
+    for (const auto [i, x, y] : pixels_of({64, 64})) {
+        if (image.metallic[at(image, x, y)] > 0) continue;
+        set_pixel(image, x, y, 10 + 0.1 * (x / 4 % 3), {0, 0, 1}, 0);
+        if (x % 16 == 7 && y % 8 == 4) image.depth[at(image, x, y)] = 0;
+    }
     return image;
 }
 
@@ -126,8 +121,8 @@ class Shading : public testing::TestWithParam<ParameterValues> {};
 
 TEST_P(Shading, IsTheFormulaAtEveryPixel)
 {
-    const Picture       picture = make_picture(rugged());
-    const TraceSettings settings{.thickness_m = 0.5, .max_distance_m = 50};
+    const Picture       picture  = make_picture(rugged());
+    const TraceSettings settings = boxes({.thickness_m = 0.5, .max_distance_m = 50});
     ParameterValues     passes   = report_passes();
     passes.at("edge_fade_width") = border_width;
     for (const auto& [name, value] : GetParam()) passes.at(name) = value;
@@ -196,14 +191,13 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ShadingTowardTheViewer, WeighsNothing)
 {
     GBufferImage image = empty_gbuffer(bench_view({64, 64}));
-    for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 64; ++x)
-            if (x < 32)
-                set_pixel(image, x, y, 10, glm::normalize(glm::dvec3(1, 0, 2)), 1);
-            else
-                set_pixel(image, x, y, 9, {0, 0, 1}, 0);
-    const Picture       picture = make_picture(image);
-    const TraceSettings settings{.thickness_m = 0.5, .max_distance_m = 50};
+    for (const auto [i, x, y] : pixels_of({64, 64}))
+        if (x < 32)
+            set_pixel(image, x, y, 10, glm::normalize(glm::dvec3(1, 0, 2)), 1);
+        else
+            set_pixel(image, x, y, 9, {0, 0, 1}, 0);
+    const Picture       picture  = make_picture(image);
+    const TraceSettings settings = boxes({.thickness_m = 0.5, .max_distance_m = 50});
     for (const ViewerFade fade : {ViewerFade::linear, ViewerFade::cut, ViewerFade::smooth}) {
         ParameterValues passes = report_passes();
         for (const auto& [name, value] : ParameterValues{chosen(fade), chosen(EdgeFade::off)}) passes.at(name) = value;
@@ -226,8 +220,8 @@ TEST(ShadingTowardTheViewer, WeighsNothing)
 // Nothing hit, nothing changed: the lit colour to the last bit, also of pixels that are no surface.
 TEST(ShadingOfMisses, LeavesTheLitColour)
 {
-    const Picture       picture = make_picture(coloured());
-    const TraceSettings settings{.thickness_m = 0, .max_distance_m = 0.001};
+    const Picture       picture  = make_picture(coloured());
+    const TraceSettings settings = boxes({.thickness_m = 0, .max_distance_m = 0.001});
     const auto frame = prepared_frame(picture.buffers, technique("dda"), values_of(technique("dda")), {settings});
     run_frame(device(), *frame);
     const Image shaded = read_shaded(device(), *frame);

@@ -70,7 +70,7 @@ TEST(StoredTexels, AreTheSameInEveryWayOfStoringThem)
 {
     for (const ParameterValues& passes :
          {ParameterValues{{"hidden_layer", 1}}, {chosen(BounceMode::direct), {"bounces", 2}}}) {
-        FrameSettings settings{.trace = {.thickness_m = 0.1, .max_distance_m = 100}}; // boxes
+        FrameSettings settings{.trace = boxes({.thickness_m = 0.1, .max_distance_m = 100})};
         for (const auto& [name, value] : passes) settings.passes.at(name) = value;
         expect_alike("hiz", settings);
     }
@@ -82,7 +82,7 @@ TEST(StoredTexels, AreTheSameOfBlocksAndOfSeveralRays)
                                           {{"skip_unneeded_passes", 0}},
                                           {chosen(TraceResolution::half)},
                                           {chosen(TraceResolution::quarter)}}) {
-        FrameSettings settings{.trace = {.thickness_m = 0.1, .max_distance_m = 100}};
+        FrameSettings settings{.trace = boxes({.thickness_m = 0.1, .max_distance_m = 100})};
         for (const auto& [name, value] : passes) settings.passes.at(name) = value;
         expect_alike("hiz_packets", settings);
     }

@@ -3,18 +3,15 @@
 #include "gpu/device.h"
 #include "unit/truth_gbuffers.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace ssrlab::test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 constexpr int              first_floor_row = 44, last_floor_row = 63;
-const TraceSettings        thin{.thickness_m = 0.5, .max_distance_m = 20};
-const TraceSettings        unlimited{.thickness_m = infinity, .max_distance_m = 1e4};
-constexpr std::string_view both[] = {"dda_strided", "strided_direction"};
+const TraceSettings        thin      = boxes({.thickness_m = 0.5, .max_distance_m = 20});
+const TraceSettings        unlimited = boxes({.thickness_m = infinity, .max_distance_m = 1e4});
+constexpr std::string_view both[]    = {"dda_strided", "strided_direction"};
 
 /// 64 x 64, floor before a wall at 3 m: floor row y shows the wall straight above. A ray is behind the wall for at least 18 px.
 double wall_px(int y) { return 64 + 64.0 / 3 - (y + 0.5); }
@@ -134,7 +131,7 @@ TEST(StridedDirection, FindsTheWall)
     EXPECT_LE(largest(errors_px(trace_with(wall_picture(), "strided_direction", strides_of_4, thin), 10)), 1);
     // Where a stride ends, the ray is already behind a thin wall: without the search, only the rays whose samples fall on the crossing find it.
     const TraceResult coarse = trace_with(wall_picture(), "strided_direction", {{"stride_px", 4}, {"binary_steps", 0}},
-                                          {.thickness_m = 0.01, .max_distance_m = 20});
+                                          boxes({.thickness_m = 0.01, .max_distance_m = 20}));
     EXPECT_LE(std::ranges::count(coarse.status, TraceStatus::hit), 64 * 10);
 }
 
@@ -183,40 +180,13 @@ TEST(Strides, ObeyTheFacingRule)
         if (turned.metallic[i] == 0) turned.normal_vs[i] = {0, 0, -1};
     for (const std::string_view id : both) {
         const size_t i = 52 * 64 + 20;
-        EXPECT_EQ(trace_with(turned, id, {{"stride_px", 4}},
-                             {.thickness_m = 0.5, .max_distance_m = 20, .behind = Behind::pass})
-                      .status[i],
-                  TraceStatus::facing_away)
+        EXPECT_EQ(
+            trace_with(turned, id, {{"stride_px", 4}}, boxes({.thickness_m = 0.5, .max_distance_m = 20}, Behind::pass))
+                .status[i],
+            TraceStatus::facing_away)
             << id;
         EXPECT_EQ(trace_with(turned, id, {{"stride_px", 4}}, thin).status[i], TraceStatus::hit) << id;
     }
-}
-
-// space = pixels: one sample a stride, and none beyond the image's edge. A mirror in row 40 turns its rays straight up.
-TEST(LinearInPixels, TakesTheSamplesToTheEdgeAndNoMore)
-{
-    GBufferImage image = empty_gbuffer(bench_view({64, 64}));
-    for (int x = 0; x < 64; ++x) set_pixel(image, x, 40, 5, {0, 1, 1}, 1);
-    for (const int stride : {1, 2, 5}) {
-        const TraceResult result =
-            trace_with(image, "linear", {{"space", 2}, {"stride_px", stride}}, {.max_distance_m = 1e4});
-        const size_t i = 40 * 64 + 32;
-        EXPECT_EQ(result.status[i], TraceStatus::left_screen);
-        EXPECT_EQ(result.depth_fetches[i], 40U / static_cast<uint32_t>(stride)) << "40.5 px from the edge";
-    }
-    const TraceResult cut = trace_with(image, "linear", {{"space", 2}, {"steps", 39}}, {.max_distance_m = 1e4});
-    EXPECT_EQ(cut.status[40 * 64 + 32], TraceStatus::out_of_steps);
-}
-
-// Depth is linear on screen: within the step that met the wall, the interpolated hit is where the ray meets it.
-TEST(LinearInPixels, InterpolatesWithinTheLastStep)
-{
-    const auto traced = [](bool interpolate) {
-        return errors_px(trace_with(wall_picture(), "linear",
-                                    {{"space", 2}, {"stride_px", 8}, {"interpolate", interpolate}}, unlimited));
-    };
-    EXPECT_GT(largest(traced(false)), 6);
-    EXPECT_LT(largest(traced(true)), 1e-3);
 }
 
 } // namespace

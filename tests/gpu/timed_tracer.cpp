@@ -1,8 +1,6 @@
 // A tracer that counts no work, as techniques are timed with.
 #include "gpu/device.h"
 
-#include <algorithm>
-
 namespace ssrlab::test {
 namespace {
 

@@ -5,8 +5,6 @@
 #include "hard_cases/integer_oracle.h"
 #include "hard_cases/random_rays.h"
 
-#include <fmt/core.h>
-
 namespace ssrlab::test {
 namespace {
 

@@ -4,10 +4,6 @@
 #include "check/run_check.h"
 #include "gpu/device.h"
 
-#include <gmock/gmock.h>
-
-#include <set>
-
 namespace ssrlab::test {
 namespace {
 

@@ -5,8 +5,6 @@
 #include "scene/scene.h"
 #include "trace/lab.h"
 
-#include <gmock/gmock.h>
-
 namespace ssrlab::test {
 namespace {
 
@@ -32,7 +30,7 @@ TEST(ExactArithmetic, HoldsOnEveryHardCase)
 TEST(ExactArithmetic, IsTheSameInFloatAndDouble)
 {
     if (const std::string missing = missing_for_exact(); !missing.empty()) GTEST_SKIP() << missing;
-    const TraceSettings settings{.thickness_m = 0.1, .max_distance_m = 1e9};
+    const TraceSettings settings = boxes({.thickness_m = 0.1, .max_distance_m = 1e9});
     for (const SceneListing& scene : list_scenes()) {
         const Picture picture = make_picture(scene.name, "default", {640, 360});
         const size_t  pixels  = picture.image.depth.size();
@@ -67,7 +65,8 @@ TEST(ExactArithmetic, RaysEndAtTheBorderOfTheImage)
     const RayInput ray{{3.5, y, 0.5}, {1, static_cast<float>(to_end), 0}, 1, TraceStatus::left_screen, {3, 100}};
     ASSERT_EQ(ray.delta_px_depth.y - to_end, 1.0 / 65536);
     for (const char* id : {"dda", "hiz", "quadtree"}) {
-        const auto tracer = tracer_on(gbuffer, technique(id), values_of(technique(id), {{"arithmetic", 1}}), {}, 1);
+        const auto tracer =
+            tracer_on(gbuffer, technique(id), values_of(technique(id), {{"arithmetic", 1}}), boxes(), 1);
         EXPECT_EQ(trace_rays(device(), *tracer, {&ray, 1})[0].status, TraceStatus::left_screen) << id;
     }
 }
@@ -78,11 +77,13 @@ TEST(ExactArithmetic, IsRefusedWhereTheDeviceHasNoIntegersForIt)
     const auto       gbuffer = upload_depth(device(), bench_view(), std::vector<float>(64 * 64, 0.0F));
     Gpu              without = device();
     without.info.int64       = false;
-    EXPECT_NO_THROW(make_tracer(without, make_lab(without, catalogue(), gbuffer, walk, default_values(walk), {}), 1));
+    EXPECT_NO_THROW(
+        make_tracer(without, make_lab(without, catalogue(), gbuffer, walk, default_values(walk), boxes()), 1));
     EXPECT_THAT(
         [&] {
             make_tracer(without,
-                        make_lab(without, catalogue(), gbuffer, walk, values_of(walk, {{"arithmetic", 1}}), {}), 1);
+                        make_lab(without, catalogue(), gbuffer, walk, values_of(walk, {{"arithmetic", 1}}), boxes()),
+                        1);
         },
         testing::ThrowsMessage<Failure>(
             testing::AllOf(testing::HasSubstr("arithmetic = exact"), testing::HasSubstr("shaderInt64"))));

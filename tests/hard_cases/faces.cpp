@@ -4,10 +4,6 @@
 #include "gpu/device.h"
 #include "truth/screen_truth.h"
 
-#include <cmath>
-#include <limits>
-#include <vector>
-
 namespace ssrlab::test {
 namespace {
 
@@ -130,7 +126,8 @@ TEST(Packets, PassBehindNothingThatTheyMeet)
         if (image.depth[i] > 0.1F) image.gradient[i] = glm::vec2(nan); // a slab in models with planes, too
     const GBufferPtr gbuffer = upload_gbuffer(device(), image);
     for (const std::string surface : {"box", "box_two_sided", "plane"}) {
-        const TraceSettings   settings{.thickness_m = 0.1, .max_distance_m = 1e9, .surface = surface};
+        const TraceSettings settings{
+            .thickness_m = 0.1, .max_distance_m = 1e9, .behind = Behind::hit, .surface = surface};
         size_t                hits = 0, misses = 0;
         std::vector<RayInput> rays;
         for (int y = 1; y < 63; ++y)

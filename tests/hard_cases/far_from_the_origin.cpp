@@ -2,11 +2,6 @@
 #include "core/files.h"
 #include "gpu/device.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdlib>
-
 namespace ssrlab::test {
 namespace {
 
@@ -43,7 +38,7 @@ TEST(FarFromTheOrigin, AMillionMetresMoveNoHitByMoreThanAPixel)
         write_file_atomically(folder / (name + ".toml"), recipe_at(x, z));
         const Picture picture = make_picture((folder / (name + ".toml")).string(), "default", {320, 180});
         return trace(picture, technique("dda"), values_of(technique("dda")),
-                       {.thickness_m = 0.1, .max_distance_m = 100});
+                       boxes({.thickness_m = 0.1, .max_distance_m = 100}));
     };
     const TraceResult near = result("near", 0, 0), far = result("far", 1e6, -1e6);
     std::filesystem::remove_all(folder);

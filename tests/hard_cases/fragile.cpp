@@ -5,8 +5,6 @@
 #include "hard_cases/integer_oracle.h"
 #include "hard_cases/random_rays.h"
 
-#include <fmt/core.h>
-
 namespace ssrlab::test {
 namespace {
 
@@ -51,7 +49,7 @@ RayOutcome behind_a_wall(const Technique& t, double thickness_m, const Parameter
     const View                  view   = bench_view({64, 8});
     const auto                  wall   = picture_of(view, [](glm::ivec2 pixel) { return pixel.x < 40 ? 0.0 : 5.0; });
     const auto                  tracer = tracer_on(upload_gbuffer(device(), wall), t, values_of(t, changed),
-                                                   {.thickness_m = thickness_m, .max_distance_m = 1e9}, 1);
+                                                   boxes({.thickness_m = thickness_m, .max_distance_m = 1e9}), 1);
     const std::vector<RayInput> rays{level_ray(view, {5.5, 3.5}, {55, 0}, 5.5)};
     return trace_rays(device(), *tracer, rays).front();
 }

@@ -1,10 +1,6 @@
 // The judge, on rays whose verdict is obvious.
 #include "check/judge.h"
-
-#include <gmock/gmock.h>
-
-#include <limits>
-#include <utility>
+#include "test.h"
 
 namespace ssrlab::test {
 namespace {
@@ -17,7 +13,7 @@ ssrlab::Setup two_poles(double thickness_m = 1)
 {
     ssrlab::Setup setup{{},
                         picture_of(bench_view(), [](glm::ivec2 p) { return p.x == 20 || p.x == 30 ? 4.0 : 0.0; }),
-                        {.thickness_m = thickness_m, .max_distance_m = 100},
+                        boxes({.thickness_m = thickness_m, .max_distance_m = 100}),
                         {}};
     setup.rays = {level_ray(setup.gbuffer.view, {5.5, 10.5}, {50, 0}, 4.5)};
     return setup;

@@ -4,11 +4,6 @@
 #include "gpu/device.h"
 #include "hard_cases/random_rays.h"
 
-#include <fmt/core.h>
-
-#include <cmath>
-#include <random>
-
 namespace ssrlab::test {
 namespace {
 
@@ -134,7 +129,8 @@ TEST(Leaks, AnEdgeHasFew)
          {std::pair(Shape::concave_edge, "concave edge"), {Shape::convex_edge, "convex edge"}}) {
         const Leaks leaks = count_leaks(shape, name);
         EXPECT_LT(leaks.passed + leaks.stopped, 250U) << name << ": docs/explanation/surfaces.md has the count";
-        EXPECT_GT(leaks.passed + leaks.stopped, 0U) << name << ": docs/explanation/surfaces.md says that there are some";
+        EXPECT_GT(leaks.passed + leaks.stopped, 0U)
+            << name << ": docs/explanation/surfaces.md says that there are some";
         EXPECT_EQ(leaks.differ, 0U) << name;
     }
 }

@@ -5,10 +5,6 @@
 #include "gpu/shader.h"
 #include "hard_cases/random_rays.h"
 
-#include <fmt/core.h>
-
-#include <cstdlib>
-
 namespace ssrlab::test {
 namespace {
 

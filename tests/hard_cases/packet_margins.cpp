@@ -4,13 +4,10 @@
 #include "core/pixel_index.h"
 #include "gpu/device.h"
 
-#include <cmath>
-#include <vector>
-
 namespace ssrlab::test {
 namespace {
 
-const TraceSettings settings{.thickness_m = 1, .max_distance_m = 1e9};
+const TraceSettings settings = boxes({.thickness_m = 1, .max_distance_m = 1e9});
 
 /// Each ray alone, through a picture of one object: the same answer to the last bit. How many rays meet it.
 int same_answers(glm::ivec2 object, float depth, std::span<const RayInput> rays)

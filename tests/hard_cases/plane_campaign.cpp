@@ -5,11 +5,6 @@
 #include "gpu/device.h"
 #include "hard_cases/random_rays.h"
 
-#include <fmt/core.h>
-
-#include <limits>
-#include <random>
-
 namespace ssrlab::test {
 namespace {
 

@@ -6,8 +6,6 @@
 #include "gpu/device.h"
 #include "unit/temp_folder.h"
 
-#include <gmock/gmock.h>
-
 namespace ssrlab::test {
 namespace {
 
@@ -21,7 +19,7 @@ ssrlab::Setup poles()
 {
     ssrlab::Setup setup{"level",
                         picture_of(bench_view(), [](glm::ivec2 p) { return p.x == 20 || p.x == 30 ? 4.0 : 0.0; }),
-                        {.thickness_m = 1, .max_distance_m = 100},
+                        boxes({.thickness_m = 1, .max_distance_m = 100}),
                         {}};
     const View&   view = setup.gbuffer.view;
     setup.rays         = {level_ray(view, {5.5, 10.5}, {50, 0}, 4.5), level_ray(view, {40.5, 10.5}, {20, 0}, 4.5),

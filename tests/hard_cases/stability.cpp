@@ -3,10 +3,6 @@
 #include "check/depth_format.h"
 #include "gpu/device.h"
 
-#include <gmock/gmock.h>
-
-#include <cmath>
-
 namespace ssrlab::test {
 namespace {
 

@@ -4,8 +4,6 @@
 #include "scene/model.h"
 #include "scene/shapes.h"
 
-#include <gtest/gtest.h>
-
 namespace ssrlab::test {
 namespace {
 

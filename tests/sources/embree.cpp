@@ -2,8 +2,6 @@
 
 #include "gpu/device.h"
 
-#include <random>
-
 namespace ssrlab::test {
 namespace {
 

@@ -1,11 +1,9 @@
 // The device's walk through a scene's triangles against Embree's, ray by ray; each difference is put down to its cause.
 #pragma once
 
+#include "test.h"
 #include "truth/scene_bvh.h"
 #include "world/world.h"
-
-#include <array>
-#include <string>
 
 namespace ssrlab::test {
 

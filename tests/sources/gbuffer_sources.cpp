@@ -5,10 +5,6 @@
 #include "sources/answer_rays.h"
 #include "truth/screen_truth.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 namespace ssrlab::test {
 namespace {
 
@@ -116,12 +112,12 @@ struct Case {
     std::vector<std::string> sources;
 };
 
-const TraceSettings in_sight{.behind = Behind::stop, .surface = "plane_infinite"}, boxes{};
+const TraceSettings in_sight{.behind = Behind::stop, .surface = "plane_infinite"};
 
 const Case cases[] = {
     {"builtin:everything", {97, 55}, in_sight, {"layers:count=3", "wider", "cube:size_px=65", "past:count=1:every=1"}},
     {"builtin:hidden_shelf", {97, 55}, in_sight, {"layers:sides=front:count=2", "views:size_px=65"}},
-    {"builtin:hidden_shelf", {64, 36}, boxes, {"wider:margin=0.01", "cube:size_px=33"}},
+    {"builtin:hidden_shelf", {64, 36}, boxes(), {"wider:margin=0.01", "cube:size_px=33"}},
 };
 
 /// As the camera would see it from half a metre aside.

@@ -6,8 +6,6 @@
 #include "scene/shapes.h"
 #include "sources/answer_rays.h"
 
-#include <gtest/gtest.h>
-
 namespace ssrlab::test {
 namespace {
 

@@ -3,11 +3,6 @@
 #include "truth/scene_bvh.h"
 #include "unit/truth_scenes.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <random>
-
 namespace ssrlab::test {
 namespace {
 

@@ -5,8 +5,6 @@
 #include "sources/cube_rays.h"
 #include "truth/scene_truth.h"
 
-#include <gtest/gtest.h>
-
 namespace ssrlab::test {
 namespace {
 

@@ -4,12 +4,6 @@
 
 #include "core/error.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <set>
-
 namespace ssrlab::test {
 namespace {
 

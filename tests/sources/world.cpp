@@ -6,10 +6,6 @@
 #include "sources/embree.h"
 #include "unit/truth_scenes.h"
 
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-
 namespace ssrlab::test {
 namespace {
 
