@@ -2,8 +2,6 @@
 // what a test's file costs.
 #pragma once
 
-#include "core/trace_result.h"
-
 #include <fmt/format.h>
 #include <glm/glm.hpp>
 #include <gmock/gmock.h>
@@ -57,15 +55,3 @@ void expect_each(const Found& found, const char* name, const Value& value, const
 }
 
 } // namespace ssrlab::test
-
-namespace ssrlab {
-
-/// Returns `settings` with the simplest surface, whose answers have closed forms: a box in each pixel.
-inline TraceSettings boxes(TraceSettings settings = {}, Behind behind = Behind::hit)
-{
-    settings.surface = "box";
-    settings.behind  = behind;
-    return settings;
-}
-
-} // namespace ssrlab

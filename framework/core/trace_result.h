@@ -88,15 +88,16 @@ inline uint32_t structure_fetches_of(const TraceResult& result, size_t pixel)
 enum class Behind : uint8_t { hit, pass, stop };
 inline constexpr std::array<std::string_view, 3> behind_names = {"hit", "pass", "stop"};
 
-/// The hit contract's settings: they belong to the experiment, never to a technique.
+/// The hit contract's settings: they belong to the experiment, never to a technique. The defaults are those that measure
+/// best (docs/explanation/effects.md).
 struct TraceSettings {
     double      thickness_m        = 0.1;   // the slab of a pixel reaches from its distance to distance + thickness
     bool        thickness_relative = false; // thickness is then a fraction of the distance
     double      max_distance_m     = 1e9;   // length of the ray in view space; may be +inf
     double      ray_offset_m       = 0;     // the ray starts so far along its direction
-    Behind      behind             = Behind::hit;
-    std::string surface            = "box"; // id of the surface model: what a pixel holds around its depth sample
-    int         layers             = 1;     // that a pixel holds, at most: the first, and those behind it
+    Behind      behind             = Behind::stop;
+    std::string surface = "plane_solid"; // id of the surface model: what a pixel holds around its depth sample
+    int         layers  = 1;             // that a pixel holds, at most: the first, and those behind it
     // Metals reflect. So does what is not metal and reflects at least so much at normal incidence, up to a roughness.
     double dielectric_min_f0        = 0.02;
     double dielectric_max_roughness = 0.4;
@@ -110,5 +111,13 @@ struct TraceSettings {
 
     bool operator==(const TraceSettings&) const = default;
 };
+
+/// Returns `settings` with the simplest surface, whose answers have closed forms: a box in each pixel.
+inline TraceSettings boxes(TraceSettings settings = {}, Behind behind = Behind::hit)
+{
+    settings.surface = "box";
+    settings.behind  = behind;
+    return settings;
+}
 
 } // namespace ssrlab

@@ -16,9 +16,9 @@
 
 namespace ssrlab {
 
-/// The defaults of frames are those that measure best (docs/explanation/effects.md).
+/// The defaults are those that measure best (docs/explanation/effects.md).
 struct FrameSettings {
-    TraceSettings   trace        = {.behind = Behind::stop, .surface = "plane_solid"};
+    TraceSettings   trace;
     std::string     reprojection = "plane";               // id of the strategy
     ParameterValues passes       = default_pass_values(); // of pass_parameters(), and those parameters of the strategy
                                                           // that are not at their default

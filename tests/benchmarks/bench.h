@@ -11,7 +11,7 @@ namespace ssrlab {
 
 /// Every ray sees the whole segment, so that all tracers answer the same question.
 inline const FrameSettings bench_settings{
-    .trace = {.thickness_m = 0.1, .max_distance_m = 1e9, .dielectric_min_f0 = 1}}; // only metals reflect
+    .trace = boxes({.thickness_m = 0.1, .max_distance_m = 1e9, .dielectric_min_f0 = 1})}; // only metals reflect
 inline constexpr int largest_judged_px = 1920; // the truth of a larger picture takes minutes
 
 /// A technique with some values changed.

@@ -19,12 +19,12 @@ try {
     const Catalogue       catalogue = load_catalogue();
     const Technique&      technique = find_technique(catalogue.techniques, argv[2]);
     const GBufferPtr      gbuffer   = upload_depth(gpu, camera_to_view(Camera{}, size_px), depth);
-    const TraceSettings   boxes{.thickness_m = 1, .behind = Behind::hit, .surface = "box"};
+    const TraceSettings   settings  = boxes({.thickness_m = 1});
     std::vector<RayInput> rays; // from the lower border to the upper one, where they are ten times as far away
     for (int x = 0; x < size_px.x; x += 8)
         if (const double from = depth[pixel_index({x, size_px.y - 1}, size_px)]; from > 0)
             rays.push_back({{x + 0.5, size_px.y - 0.5, from}, {0, 1 - size_px.y, -0.9 * from}});
-    const LabPtr    lab    = make_lab(gpu, catalogue, gbuffer, technique, default_values(technique), boxes);
+    const LabPtr    lab    = make_lab(gpu, catalogue, gbuffer, technique, default_values(technique), settings);
     const TracerPtr tracer = make_tracer(gpu, lab, rays.size());
     for (size_t i = 0; const RayOutcome& found : trace_rays(gpu, *tracer, rays))
         fmt::print("x {} {} at {},{}\n", rays[i++].origin_px_depth.x, status_name(found.status), found.hit_pixel.x,

@@ -11,7 +11,8 @@ inline constexpr int px_steps    = 256;     // positions are multiples of 1/256 
 inline constexpr int depth_steps = 1 << 20; // depths are multiples of 2^-20
 
 /// The slab's back lies at half the depth, exactly.
-inline const TraceSettings campaign_settings{.thickness_m = 1, .thickness_relative = true, .max_distance_m = 1e9};
+inline const TraceSettings campaign_settings =
+    boxes({.thickness_m = 1, .thickness_relative = true, .max_distance_m = 1e9});
 
 /// Rays of a campaign: what SSRLAB_LONG says, a hundred million where it says no number above 1, `short_run` where it is not set.
 size_t planned_rays(size_t short_run);

@@ -6,7 +6,7 @@
 namespace ssrlab {
 namespace {
 
-const TraceSettings bench{.thickness_m = 1, .max_distance_m = 100};
+const TraceSettings bench = boxes({.thickness_m = 1, .max_distance_m = 100});
 
 std::optional<Expected> never_hits(const Setup&, const RayInput& ray) { return Expected{.status = ray.end_status}; }
 

@@ -16,7 +16,7 @@ Setup wall_above_floor(View view, double wall_m, const std::string& label)
     const double height = 3.2 * wall_m / view.focal_px.y;
     return {label,
             picture_of(view, {plane({0, -height, 0}, {0, 1, 0}), plane({0, 0, -wall_m}, {0, 0, 1})}),
-            {.thickness_m = 0.1 * wall_m, .max_distance_m = 100 * wall_m},
+            boxes({.thickness_m = 0.1 * wall_m, .max_distance_m = 100 * wall_m}),
             {}};
 }
 
@@ -117,7 +117,7 @@ HardCase orthographic()
                                            [](glm::ivec2 p) {
                                                return p.y < 20 ? 4.0 : p.y < 40 ? 0.0 : 6.0 - p.y / 64.0;
                                            }),
-                                {.thickness_m = 3, .max_distance_m = 100},
+                                boxes({.thickness_m = 3, .max_distance_m = 100}),
                                 {}};
                     for (size_t i = 0; i < setup.gbuffer.normal_vs.size(); ++i) {
                         setup.gbuffer.normal_vs[i] = {0, 1, 1};
@@ -142,7 +142,7 @@ HardCase orthographic_along_the_axis()
                     return std::vector{
                         Setup{{},
                               picture_of(orthographic_view({32, 32}, 4, 0.5, 20), {plane({0, 0, -5}, {0, 0, 1})}),
-                              {.thickness_m = 1, .max_distance_m = 1e9},
+                              boxes({.thickness_m = 1, .max_distance_m = 1e9}),
                               {}}};
                 },
             .expected = [](const Setup&, const RayInput&) -> std::optional<Expected> {
@@ -159,13 +159,14 @@ HardCase orthographic_scene()
             .setups = [] {
                 std::vector<Setup> setups;
                 for (const bool relative : {false, true})
-                    setups.push_back(
-                        {relative ? "relative thickness" : "absolute thickness",
-                         picture_of(orthographic_view({79, 61}, 6, 0.5, 40),
-                                    {plane({0, -1, -10}, glm::normalize(glm::dvec3(0.1, 1.2, 1))),
-                                     sphere({0.5, 0.3, -6}, 1), box({-2, -1, -7}, {-1.8, 3, -6.8})}),
-                         {.thickness_m = relative ? 0.1 : 0.7, .thickness_relative = relative, .max_distance_m = 1e9},
-                         {}});
+                    setups.push_back({relative ? "relative thickness" : "absolute thickness",
+                                      picture_of(orthographic_view({79, 61}, 6, 0.5, 40),
+                                                 {plane({0, -1, -10}, glm::normalize(glm::dvec3(0.1, 1.2, 1))),
+                                                  sphere({0.5, 0.3, -6}, 1), box({-2, -1, -7}, {-1.8, 3, -6.8})}),
+                                      boxes({.thickness_m        = relative ? 0.1 : 0.7,
+                                             .thickness_relative = relative,
+                                             .max_distance_m     = 1e9}),
+                                      {}});
                 return setups;
             }};
 }

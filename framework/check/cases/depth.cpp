@@ -8,7 +8,7 @@
 namespace ssrlab {
 namespace {
 
-const TraceSettings bench{.thickness_m = 1, .max_distance_m = 100};
+const TraceSettings bench = boxes({.thickness_m = 1, .max_distance_m = 100});
 
 std::optional<Expected> never_hits(const Setup&, const RayInput& ray) { return Expected{.status = ray.end_status}; }
 
@@ -33,7 +33,7 @@ HardCase all_sky()
                     for (const double thickness : {1.0, static_cast<double>(INFINITY)}) {
                         setups.push_back({fmt::format("thickness {}", thickness),
                                           picture_of(bench_view({97, 64}), [](glm::ivec2) { return 0.0; }),
-                                          {.thickness_m = thickness, .max_distance_m = 100},
+                                          boxes({.thickness_m = thickness, .max_distance_m = 100}),
                                           {}});
                         add_rows(setups.back(), 5);
                         // Ends at depth 0 exactly, where the background's depth would be.
@@ -117,7 +117,7 @@ HardCase tiny_depths()
                 [] {
                     Setup setup{{},
                                 picture_of(bench_view({40, 16}), [](glm::ivec2) { return 0.0; }),
-                                {.thickness_m = INFINITY, .max_distance_m = INFINITY},
+                                boxes({.thickness_m = INFINITY, .max_distance_m = INFINITY}),
                                 {}};
                     for (int y = 0; y < 16; ++y) {
                         depth_at(setup, {30, y}) = std::ldexp(1.0F, -20 - 6 * y); // 2^-20 … 2^-110
@@ -147,7 +147,7 @@ HardCase far_and_infinitely_far()
                     for (const double z : {2.0, 10.0, 1e3, 1e5}) {
                         setups.push_back({fmt::format("wall at {} m", z),
                                           picture_of(bench_view({1024, 4}), [=](glm::ivec2) { return z; }),
-                                          {.thickness_m = 10 * z, .max_distance_m = INFINITY},
+                                          boxes({.thickness_m = 10 * z, .max_distance_m = INFINITY}),
                                           {}});
                         for (int y = 0; y < 4; ++y)
                             setups.back().rays.push_back(rounded_to_float({{0.5, y + 0.5, 0.1},
@@ -198,7 +198,7 @@ HardCase equality_counts()
                     // Relative thickness 1: the back is at depth / 2 exactly.
                     Setup setup{fmt::format("front {}", front),
                                 picture_of(bench_view({40, 8}, 0.125), [](glm::ivec2) { return 0.0; }),
-                                {.thickness_m = 1, .thickness_relative = true, .max_distance_m = 100},
+                                boxes({.thickness_m = 1, .thickness_relative = true, .max_distance_m = 100}),
                                 {}};
                     for (int y = 0; y < 8; ++y) depth_at(setup, {30, y}) = front;
                     const float at = 0.25F, beyond = front == at ? std::nextafter(at, 1.0F) : std::nextafter(at, 0.0F);
@@ -228,7 +228,7 @@ HardCase level_at_the_surface()
                     for (int k = 0; k < 16; ++k) {
                         Setup setup{{},
                                     picture_of(bench_view({131, 64}), [](glm::ivec2) { return 0.0; }),
-                                    {.thickness_m = 0, .max_distance_m = 100},
+                                    boxes({.thickness_m = 0, .max_distance_m = 100}),
                                     {}};
                         for (int y = 0; y < 64; ++y) {
                             const float depth =
@@ -260,7 +260,7 @@ HardCase one_depth_step_apart()
                 [] {
                     Setup setup{{},
                                 picture_of(bench_view({64, 16}), [](glm::ivec2) { return 0.0; }),
-                                {.thickness_m = 0, .max_distance_m = 100},
+                                boxes({.thickness_m = 0, .max_distance_m = 100}),
                                 {}};
                     for (int y = 0; y < 16; ++y) {
                         for (int x = 0; x < 64; ++x)

@@ -7,7 +7,7 @@
 namespace ssrlab {
 namespace {
 
-const TraceSettings bench{.thickness_m = 1, .max_distance_m = 100};
+const TraceSettings bench = boxes({.thickness_m = 1, .max_distance_m = 100});
 
 std::optional<Expected> never_hits(const Setup&, const RayInput& ray) { return Expected{.status = ray.end_status}; }
 
@@ -78,22 +78,22 @@ HardCase through_the_near_plane()
             .setups =
                 [] {
                     return std::vector{
-                        floor_reflecting_to({0, 0.1, 0.99498744}, {.thickness_m = 1, .max_distance_m = 1000})};
+                        floor_reflecting_to({0, 0.1, 0.99498744}, boxes({.thickness_m = 1, .max_distance_m = 1000}))};
                 },
             .relations = {farther(1e6), farther(3.4028234e38), farther(INFINITY)}};
 }
 
 HardCase behind_the_eye()
 {
-    return {
-        .name   = "behind_the_eye",
-        .breaks = "the end point lies behind the eye: its w is negative and both screen coordinates change sign",
-        .answer = "As above, for rays that also move sideways.",
-        .setups =
-            [] {
-                return std::vector{floor_reflecting_to({0.3, 0.05, 0.95}, {.thickness_m = 1, .max_distance_m = 1000})};
-            },
-        .relations = {farther(1e6), farther(INFINITY)}};
+    return {.name   = "behind_the_eye",
+            .breaks = "the end point lies behind the eye: its w is negative and both screen coordinates change sign",
+            .answer = "As above, for rays that also move sideways.",
+            .setups =
+                [] {
+                    return std::vector{
+                        floor_reflecting_to({0.3, 0.05, 0.95}, boxes({.thickness_m = 1, .max_distance_m = 1000}))};
+                },
+            .relations = {farther(1e6), farther(INFINITY)}};
 }
 
 HardCase to_infinity()
@@ -108,7 +108,7 @@ HardCase to_infinity()
                     std::vector<Setup> setups;
                     for (const double distance : {1e6, 1e9, 1e30, static_cast<double>(INFINITY)}) {
                         setups.push_back(floor_reflecting_to({0.3, 0.2, -0.93273791},
-                                                             {.thickness_m = 1, .max_distance_m = distance}));
+                                                             boxes({.thickness_m = 1, .max_distance_m = distance})));
                         setups.back().label = fmt::format("{} m", distance);
                         for (size_t post = 10 * 64 + 40; post < 30 * 64; post += 64) {
                             setups.back().gbuffer.depth[post]    = 0.01F;
@@ -136,7 +136,7 @@ HardCase parallel_to_the_image()
                     const View         view = bench_view();
                     std::vector<Setup> setups;
                     for (const double thickness : {3.5, 1.0}) {
-                        const TraceSettings settings{.thickness_m = thickness, .max_distance_m = 100};
+                        const TraceSettings settings = boxes({.thickness_m = thickness, .max_distance_m = 100});
                         setups.push_back({fmt::format("thickness {} m", thickness),
                                           picture_of(view, [](glm::ivec2 p) { return p.x < 16 ? 2.0 : 10.0; }),
                                           settings,
@@ -161,7 +161,7 @@ HardCase objects_before_a_mirror()
                     {},
                     picture_of(bench_view({97, 61}), {plane({0, 0, -10}, glm::normalize(glm::dvec3(0.2, 0.3, 1))),
                                                       sphere({0.5, 0.3, -5}, 1), box({-2, -3, -6}, {-1.8, 3, -5.8})}),
-                    {.thickness_m = 2, .max_distance_m = 100},
+                    boxes({.thickness_m = 2, .max_distance_m = 100}),
                     {}}};
             }};
 }
@@ -179,7 +179,7 @@ HardCase grazing()
                     for (const double height : {1.0, 1e-2, 1e-4})
                         setups.push_back({fmt::format("eye {} m above the floor", height),
                                           picture_of(bench_view({64, 256}, 1e-5), {plane({0, -height, 0}, {0, 1, 0})}),
-                                          {.thickness_m = 1, .max_distance_m = 1000},
+                                          boxes({.thickness_m = 1, .max_distance_m = 1000}),
                                           {}});
                     return setups;
                 },
@@ -197,7 +197,7 @@ HardCase steep_in_depth()
                     const View view = bench_view();
                     Setup      setup{{},
                                 picture_of(view, [](glm::ivec2) { return 0.2; }),
-                                {.thickness_m = 1e-4, .max_distance_m = 100},
+                                boxes({.thickness_m = 1e-4, .max_distance_m = 100}),
                                 {}};
                     setup.rays = {
                         rounded_to_float({{32.5, 32.5, 0.95}, {1.5, 0, -0.9}, 1, TraceStatus::left_screen, {32, 32}})};
@@ -220,7 +220,7 @@ HardCase rising_level_falling()
                     const View view = bench_view();
                     Setup      setup{{},
                                 picture_of(view, [](glm::ivec2 p) { return p.x >= 40 ? 2.0 : 0.0; }),
-                                {.thickness_m = 3, .max_distance_m = 100},
+                                boxes({.thickness_m = 3, .max_distance_m = 100}),
                                 {}};
                     for (const auto& [from, to] : {std::pair(2.5, 3.5), std::pair(3.0, 3.0), std::pair(3.5, 2.5)})
                         setup.rays.push_back(ray_between(view, {20.0 + 0.25, 20.5, from}, {50.25, 20.5, to}));

@@ -28,7 +28,7 @@ HardCase stored_depth()
                                     picture_of(bench_view({96, 64}),
                                                {plane({0, -1, 0}, {0, 1, 0}), plane({0, 0, -40}, {0, 0, 1}),
                                                 sphere({0.7, -0.2, -5}, 0.8), box({-2, -1, -16}, {-1.9, 1.5, -15.9})}),
-                                    {.thickness_m = 0.5, .max_distance_m = 100},
+                                    boxes({.thickness_m = 0.5, .max_distance_m = 100}),
                                     {}});
         }};
 }
@@ -42,7 +42,7 @@ HardCase stored_floor()
                 [] {
                     return in_every_format({{},
                                             picture_of(bench_view({64, 256}), {plane({0, -1, 0}, {0, 1, 0})}),
-                                            {.thickness_m = 1, .max_distance_m = 1000},
+                                            boxes({.thickness_m = 1, .max_distance_m = 1000}),
                                             {}});
                 },
             .expected = [](const Setup&, const RayInput& ray) -> std::optional<Expected> {

@@ -28,7 +28,7 @@ HardCase sub_pixel_jitter()
                     view.centre_px += jitter_px({phase - 1, 16});
                     setups.push_back({fmt::format("phase {}", phase),
                                       picture_of(view, yard()),
-                                      {.thickness_m = 0.5, .max_distance_m = 100},
+                                      boxes({.thickness_m = 0.5, .max_distance_m = 100}),
                                       {}});
                 }
                 return setups;
@@ -44,7 +44,7 @@ Setup row_mirrors_and_bar(int column)
                 picture_of(bench_view(), [=](glm::ivec2 p) { return p.x == 0        ? 4.5
                                                                     : p.x == column ? 4.0
                                                                                     : 0.0; }),
-                {.thickness_m = 1, .max_distance_m = 100},
+                boxes({.thickness_m = 1, .max_distance_m = 100}),
                 {}};
     for (int y = 0; y < 64; ++y) {
         reflect_to(setup.gbuffer, {0, y}, {1, 0, 0});
@@ -112,7 +112,7 @@ HardCase resolution_doubling()
                                        [](glm::ivec2 p) {
                                            return p.x < 4 || p.y < 4 ? 0.0 : (p.x * 7 + p.y * 13) % 61 == 0 ? 4.0 : 0.0;
                                        }),
-                            {.thickness_m = 1, .max_distance_m = 100},
+                            boxes({.thickness_m = 1, .max_distance_m = 100}),
                             {}};
                 for (int i = 0; i < 500; ++i) {
                     const bool       from_left = i % 2 == 0;
@@ -139,7 +139,7 @@ HardCase unrelated_pixels()
                 [] {
                     Setup setup{{},
                                 picture_of(bench_view({64, 64}), [](glm::ivec2 p) { return p.x == 50 ? 4.0 : 0.0; }),
-                                {.thickness_m = 1, .max_distance_m = 100},
+                                boxes({.thickness_m = 1, .max_distance_m = 100}),
                                 {}};
                     setup.rays = {level_ray(setup.gbuffer.view, {3.5, 20.5}, {60, 0}, 4.5)};
                     return std::vector{setup};

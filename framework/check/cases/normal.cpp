@@ -7,7 +7,7 @@
 namespace ssrlab {
 namespace {
 
-const TraceSettings bench{.thickness_m = 1, .max_distance_m = 100};
+const TraceSettings bench = boxes({.thickness_m = 1, .max_distance_m = 100});
 
 Setup room()
 {
@@ -81,7 +81,7 @@ HardCase facing_rule()
                 {},
                 picture_of(bench_view({97, 64}), {plane({0, 0, -10}, glm::normalize(glm::dvec3(0, 0.4, 1))),
                                                   sphere({0.5, 0.3, -5}, 1), box({-2, -3, -6}, {-1.8, 3, -5.8})}),
-                {.thickness_m = 2, .max_distance_m = 100, .behind = Behind::pass},
+                boxes({.thickness_m = 2, .max_distance_m = 100}, Behind::pass),
                 {}};
             return std::vector{setup};
         }};
@@ -104,7 +104,7 @@ HardCase sides_seen_edge_on()
                                 wall ? "before a front" : "before nothing",
                                 picture_of(bench_view({65, 65}),
                                            [=](glm::ivec2 p) { return p.y == 20 || (wall && p.y == 10) ? 4.0 : 0.0; }),
-                                {.thickness_m = 1, .max_distance_m = 100, .behind = Behind::pass},
+                                boxes({.thickness_m = 1, .max_distance_m = 100}, Behind::pass),
                                 {}};
                             for (int x = 0; x < 65; ++x) {
                                 setup.gbuffer.normal_vs[static_cast<size_t>(20 * 65 + x)] = {side, 0, 0};

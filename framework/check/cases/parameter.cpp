@@ -28,7 +28,7 @@ HardCase thickness()
             .setups = [] {
                 std::vector<Setup> setups;
                 for (const double m : {0.0, 1e-30, 1e-6, infinity})
-                    setups.push_back(yard({.thickness_m = m, .max_distance_m = 100}, fmt::format("{} m", m)));
+                    setups.push_back(yard(boxes({.thickness_m = m, .max_distance_m = 100}), fmt::format("{} m", m)));
                 return setups;
             }};
 }
@@ -41,7 +41,7 @@ HardCase maximum_distance()
             .setups = [] {
                 std::vector<Setup> setups;
                 for (const double m : {1e-6, 0.1, 3.0, infinity})
-                    setups.push_back(yard({.thickness_m = 0.5, .max_distance_m = m}, fmt::format("{} m", m)));
+                    setups.push_back(yard(boxes({.thickness_m = 0.5, .max_distance_m = m}), fmt::format("{} m", m)));
                 return setups;
             }};
 }
@@ -54,9 +54,10 @@ HardCase rays_of_no_length()
             .setups =
                 [] {
                     return std::vector{
-                        yard({.thickness_m = 0.5, .max_distance_m = 0}, "maximum distance 0"),
-                        yard({.thickness_m = 0.5, .max_distance_m = 5, .ray_offset_m = 5}, "offset = maximum distance"),
-                        yard({.thickness_m = 0.5, .max_distance_m = 5, .ray_offset_m = 1e6}, "offset 1e6 m")};
+                        yard(boxes({.thickness_m = 0.5, .max_distance_m = 0}), "maximum distance 0"),
+                        yard(boxes({.thickness_m = 0.5, .max_distance_m = 5, .ray_offset_m = 5}),
+                             "offset = maximum distance"),
+                        yard(boxes({.thickness_m = 0.5, .max_distance_m = 5, .ray_offset_m = 1e6}), "offset 1e6 m")};
                 },
             .expected = [](const Setup&, const RayInput& ray) -> std::optional<Expected> {
                 return Expected{.status = ray.end_status};
@@ -72,8 +73,8 @@ HardCase ray_offset()
             .setups = [] {
                 std::vector<Setup> setups;
                 for (const double m : {1e-6, 0.01, 2.0})
-                    setups.push_back(
-                        yard({.thickness_m = 0.5, .max_distance_m = 100, .ray_offset_m = m}, fmt::format("{} m", m)));
+                    setups.push_back(yard(boxes({.thickness_m = 0.5, .max_distance_m = 100, .ray_offset_m = m}),
+                                          fmt::format("{} m", m)));
                 return setups;
             }};
 }
@@ -84,7 +85,7 @@ HardCase budget(const std::string& name, double steps)
     return {.name   = name,
             .breaks = "running out of steps reported as a hit where the ray stopped, or as a plain miss",
             .answer = "Either the full answer or out_of_steps; never another hit.",
-            .setups = [] { return std::vector{yard({.thickness_m = 0.5, .max_distance_m = 100}, {})}; },
+            .setups = [] { return std::vector{yard(boxes({.thickness_m = 0.5, .max_distance_m = 100}), {})}; },
             .adjust =
                 [=](const Technique& technique, ParameterValues& values) {
                     for (const std::string& bound : technique.bounded_by) {
@@ -100,7 +101,7 @@ HardCase all_at(const std::string& name, bool maximum)
     return {.name   = name,
             .breaks = "levels above the pyramid's top, strides longer than the image, factors of 0",
             .answer = "What the technique claims holds at both ends of every parameter's range.",
-            .setups = [] { return std::vector{yard({.thickness_m = 0.5, .max_distance_m = 100}, {})}; },
+            .setups = [] { return std::vector{yard(boxes({.thickness_m = 0.5, .max_distance_m = 100}), {})}; },
             .adjust =
                 [=](const Technique& technique, ParameterValues& values) {
                     for (const Parameter& parameter : technique.parameters)

@@ -14,7 +14,7 @@ Setup room(double scale, const std::string& label = {})
                        {plane(glm::dvec3(0, -1, 0) * scale, {0, 1, 0}), plane(glm::dvec3(0, 0, -10) * scale, {0, 0, 1}),
                         sphere(glm::dvec3(0.7, -0.2, -5) * scale, 0.8 * scale),
                         box(glm::dvec3(-2, -1, -6) * scale, glm::dvec3(-1.7, 1.5, -5.7) * scale)}),
-            {.thickness_m = 0.5 * scale, .max_distance_m = 100 * scale},
+            boxes({.thickness_m = 0.5 * scale, .max_distance_m = 100 * scale}),
             {}};
 }
 

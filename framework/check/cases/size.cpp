@@ -7,7 +7,7 @@
 namespace ssrlab {
 namespace {
 
-const TraceSettings bench{.thickness_m = 1, .max_distance_m = 100};
+const TraceSettings bench = boxes({.thickness_m = 1, .max_distance_m = 100});
 
 constexpr glm::ivec2 sizes[] = {{1, 1},     {1, 2},    {2, 1},     {3, 3},     {1, 97},    {97, 1},    {17, 31},
                                 {127, 131}, {64, 64},  {63, 65},   {65, 63},   {255, 257}, {641, 359}, {1366, 3},

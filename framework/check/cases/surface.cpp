@@ -7,7 +7,7 @@
 namespace ssrlab {
 namespace {
 
-const TraceSettings bench{.thickness_m = 1, .max_distance_m = 100};
+const TraceSettings bench = boxes({.thickness_m = 1, .max_distance_m = 100});
 
 std::optional<Expected> always_hits(const Setup&, const RayInput&) { return Expected{.status = TraceStatus::hit}; }
 std::optional<Expected> never_hits(const Setup&, const RayInput& ray) { return Expected{.status = ray.end_status}; }
@@ -28,7 +28,7 @@ HardCase one_pixel_poles()
                                                    return p.x == 20 || p.y == 40 || (p.x == 70 && p.y % 3 == 0) ? 4.0
                                                                                                                 : 10.0;
                                                }),
-                                    {.thickness_m = thickness, .max_distance_m = 100},
+                                    boxes({.thickness_m = thickness, .max_distance_m = 100}),
                                     {}};
                         for (int y = 0; y < 61; ++y)
                             setup.rays.push_back(level_ray(setup.gbuffer.view, {90.5, y + 0.5}, {-90.5, 0}, 5));
@@ -137,7 +137,7 @@ HardCase convex_mirror()
                 [] {
                     return std::vector{Setup{{},
                                              picture_of(bench_view({128, 128}), {sphere({0, 0, -3}, 1.5)}),
-                                             {.thickness_m = 0.1, .max_distance_m = 100},
+                                             boxes({.thickness_m = 0.1, .max_distance_m = 100}),
                                              {}}};
                 },
             .expected = never_hits};
@@ -157,7 +157,7 @@ HardCase floating_beam()
                         {fmt::format("thickness {} m", thickness),
                          picture_of(bench_view({128, 96}), {plane({0, -1, 0}, {0, 1, 0}), plane({0, 0, -10}, {0, 0, 1}),
                                                             box({-3, -0.1, -4.1}, {3, 0.1, -4})}),
-                         {.thickness_m = thickness, .max_distance_m = 100},
+                         boxes({.thickness_m = thickness, .max_distance_m = 100}),
                          {}});
                 return setups;
             }};
@@ -193,7 +193,7 @@ HardCase plates_within_one_thickness()
                         picture_of(bench_view(), [](glm::ivec2 p) { return p.x >= 40   ? 4.2
                                                                            : p.x >= 30 ? 4.0
                                                                                        : 0.0; }),
-                        {.thickness_m = 0.5, .max_distance_m = 100},
+                        boxes({.thickness_m = 0.5, .max_distance_m = 100}),
                         {}};
                     setup.rays = {level_ray(setup.gbuffer.view, {5.5, 20.5}, {58, 0}, 4.3)};
                     return std::vector{setup};
