@@ -44,10 +44,10 @@ int trace_cases(const CommonOptions& common, const PictureOptions& options)
     for (const ExportedCase& one : cases) {
         std::vector<std::string> pairs = one.settings;
         pairs.insert(pairs.end(), options.parameters.begin(), options.parameters.end());
-        const Choice      choice  = parse_choice(catalogue, technique, pairs);
-        const GBufferPtr  gbuffer = upload_gbuffer(gpu, load_scene(one.frame.string()).frame->gbuffer);
-        const LabPtr      lab     = make_lab(gpu, catalogue, gbuffer, technique, choice.values, choice.settings.trace);
-        const TraceResult result  = trace_gbuffer(gpu, *make_tracer(gpu, lab));
+        const Choice     choice  = parse_choice(catalogue, technique, pairs);
+        const GBufferPtr gbuffer = upload_gbuffer(gpu, load_scene(one.frame.string()).frame->gbuffer);
+        const LabPtr     lab     = make_lab(gpu, catalogue, gbuffer, technique, choice.values, choice.settings.trace);
+        const TraceImage result  = trace_gbuffer(gpu, *make_tracer(gpu, lab));
         write_image(fs::path(options.output) / (one.name + ".exr"), hits_image(result, technique.id, pairs));
         require_possible(result, declared_steps(technique, choice.values));
     }

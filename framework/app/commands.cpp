@@ -25,7 +25,7 @@ std::string status_legend()
 
 } // namespace
 
-Image hits_image(const TraceResult& result, const std::string& technique, const std::vector<std::string>& parameters)
+Image hits_image(const TraceImage& result, const std::string& technique, const std::vector<std::string>& parameters)
 {
     Image image                           = hits_image(result);
     image.metadata["ssrlab:status_names"] = status_legend();
@@ -42,8 +42,8 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
     require_ending(options.output, {".exr"});
     Stage stage                    = open_stage(common, catalogue, options);
     const auto [technique, choice] = choose_technique(stage, asked, common.quiet);
-    const LabPtr      lab          = make_lab(stage, *technique, choice.values, choice.settings.trace);
-    const TraceResult result       = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
+    const LabPtr     lab           = make_lab(stage, *technique, choice.values, choice.settings.trace);
+    const TraceImage result        = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
     write_image(options.output, hits_image(result, technique->id, options.parameters));
     std::puts(options.output.c_str());
     require_possible(result, declared_steps(*technique, choice.values));

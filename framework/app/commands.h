@@ -14,7 +14,7 @@ int list_as_markdown(const CommonOptions& common);
 /// A technique, a surface model, or a setting of [trace] and [passes].
 int show_entry(const CommonOptions& common, const std::string& name, bool json);
 /// Returns a hit file (check/hit_files.h) that says how it was made. `parameters`: name=value.
-Image hits_image(const TraceResult& result, const std::string& technique, const std::vector<std::string>& parameters);
+Image hits_image(const TraceImage& result, const std::string& technique, const std::vector<std::string>& parameters);
 /// Writes one. With a folder that export_cases() wrote as the scene: one for each of its frames, into a folder.
 int trace_hits(const CommonOptions& common, const PictureOptions& options);
 int write_gbuffer(const CommonOptions& common, const PictureOptions& options);

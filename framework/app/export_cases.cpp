@@ -47,7 +47,7 @@ GBufferImage complete(GBufferImage gbuffer)
 }
 
 /// The closed form of a case against the answers that are written.
-void require_closed_form(const HardCase& hard_case, const Setup& setup, const TraceResult& truth)
+void require_closed_form(const HardCase& hard_case, const Setup& setup, const TraceImage& truth)
 {
     if (!hard_case.expected) return;
     for (size_t i = 0; i < truth.status.size(); ++i) {
@@ -89,7 +89,7 @@ void add_entry(CasesFolder& folder, const std::string& name, const std::string& 
     const Json     settings = settings_of(folder.catalogue, setup.settings);
     Setup          loaded   = setup;
     loaded.gbuffer          = complete(load_frame(folder.path / frame).gbuffer);
-    const TraceResult truth = screen_truth(loaded.gbuffer, setup.settings);
+    const TraceImage truth  = screen_truth(loaded.gbuffer, setup.settings);
     if (hard_case != nullptr) require_closed_form(*hard_case, loaded, truth);
     const size_t rays =
         truth.status.size() - static_cast<size_t>(std::ranges::count(truth.status, TraceStatus::not_traced));

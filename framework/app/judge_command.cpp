@@ -85,7 +85,7 @@ fs::path truth_cache()
     return folder != nullptr ? folder : "";
 }
 
-void write_picture(const JudgeOptions& options, const Truths& truths, const TraceResult& answers)
+void write_picture(const JudgeOptions& options, const Truths& truths, const TraceImage& answers)
 {
     const auto picture = options.show == "causes" ? truths.causes(answers) : truths.agreement(answers);
     if (!picture) throw_spec_error("--show causes: needs the scene's triangles; give --scene");
@@ -107,8 +107,8 @@ Judged judge_file(const CommonOptions& common, const Catalogue& catalogue, const
     if (!options.scene.empty()) require_same_scene(options, scene, gbuffer);
     Truths truths(scene, std::move(gbuffer), truth_cache());
     truths.make(settings.trace, false);
-    judged.has_scene           = truths.without_scene().empty();
-    const TraceResult& answers = judged.judgement.usable;
+    judged.has_scene          = truths.without_scene().empty();
+    const TraceImage& answers = judged.judgement.usable;
     add_counts(judged.measures, answers);
     judged.measures.erase("structures.fetches_mean"); // the file adds up the reads of all structures
     if (!hits.has_steps)

@@ -149,7 +149,7 @@ private:
 };
 
 /// How right the rays are, how wrong, or how hard.
-Image false_colours(Stage& stage, const TraceResult& counted, const TraceSettings& settings, const std::string& show)
+Image false_colours(Stage& stage, const TraceImage& counted, const TraceSettings& settings, const std::string& show)
 {
     if (show == "fetches") return fetch_heat_map(counted);
     const GBufferImage gbuffer = read_gbuffer(stage.gpu, *stage.gbuffer); // with the layers that were traced
@@ -282,8 +282,8 @@ int render_picture(const CommonOptions& common, const RenderOptions& given)
             const FramePtr         frame =
                 make_frame(stage.gpu, lab, buffers, plan, history, asked.empty() ? Answers::own : Answers::given);
             if (sample == 0) warn_without_reflections(common, plan);
-            const bool                 first = i == 0 && sample == 0 && !options.truth;
-            std::optional<TraceResult> counted;
+            const bool                first = i == 0 && sample == 0 && !options.truth;
+            std::optional<TraceImage> counted;
             if (first || !options.show.empty()) counted = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
             if (first) impossible = find_impossible(*counted, declared_steps(technique, choice.values));
             if (options.show == "sources")

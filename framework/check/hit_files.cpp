@@ -63,7 +63,7 @@ void set_places(HitsFile& hits, const ExrFile& file)
     const auto& x  = pixel.first ? *pixel.first : *point.first;
     const auto& y  = pixel.second ? *pixel.second : *point.second;
     for (size_t i = 0; i < x.size(); ++i) {
-        TraceResult& result    = hits.result;
+        TraceImage& result     = hits.result;
         result.hit_pixel[i]    = {whole(x[i]), whole(y[i])};
         result.hit_px_depth[i] = {hits.has_point ? (*point.first)[i] : 0.0F, hits.has_point ? (*point.second)[i] : 0.0F,
                                   z ? (*z)[i] : 0.0F};
@@ -92,7 +92,7 @@ void set_work(HitsFile& hits, const ExrFile& file)
 
 } // namespace
 
-Image hits_image(const TraceResult& result)
+Image hits_image(const TraceImage& result)
 {
     Image image{result.size_px, {"hit.x", "hit.y", "hit.t", "hit.z", "pixel.x", "pixel.y", "layer", "status"}, {}, {}};
     const bool counted = !result.depth_fetches.empty();
@@ -118,7 +118,7 @@ HitsFile read_hits(const std::filesystem::path& exr, glm::ivec2 size_px)
     if (file.size_px != size_px)
         throw_spec_error("{}: {}x{} pixels, expected {}x{} as the frame has", file.shown, file.size_px.x,
                          file.size_px.y, size_px.x, size_px.y);
-    HitsFile     hits{file.shown, make_trace_result(size_px, false), true, true, true, true, true, file.attributes};
+    HitsFile     hits{file.shown, make_trace_image(size_px, false), true, true, true, true, true, file.attributes};
     const Values status = find_values(file, "status"), mask = find_values(file, "mask");
     if (!status && !mask)
         throw_spec_error("{}: nothing says which rays hit: expected a channel 'status' or 'mask' "

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/image.h"
-#include "core/trace_result.h"
+#include "core/trace_image.h"
 
 #include <filesystem>
 #include <map>
@@ -14,7 +14,7 @@ namespace ssrlab {
 /// One entry per pixel. What the file lacks is zero, and the flags say so.
 struct HitsFile {
     std::string                        shown;  // the path as messages show it
-    TraceResult                        result; // `impossible` where a status is none; steps then holds its number
+    TraceImage                         result; // `impossible` where a status is none; steps then holds its number
     bool                               has_status = true; // else only hits and misses are told apart
     bool                               has_point = true, has_t = true, has_z = true; // of hits
     bool                               has_steps = true;
@@ -22,7 +22,7 @@ struct HitsFile {
 };
 
 /// Returns the file of a trace: its answers, and its work if that was counted.
-Image hits_image(const TraceResult& result);
+Image hits_image(const TraceImage& result);
 
 /// Reads a file of `size_px`. Throws SpecError for missing files and channels and for another size, Failure for damage.
 HitsFile read_hits(const std::filesystem::path& exr, glm::ivec2 size_px);

@@ -61,7 +61,7 @@ public:
 private:
     void judge_pixel(size_t i)
     {
-        TraceResult&     result = judgement_.usable;
+        TraceImage&      result = judgement_.usable;
         const glm::ivec2 pixel  = pixel_at(i, truth_.size_px);
         if (truth_.status[i] == TraceStatus::not_traced) {
             result.status[i] = TraceStatus::not_traced;
@@ -93,7 +93,7 @@ private:
     /// Fills in what the file leaves out.
     void complete(size_t i, const RayInput& ray)
     {
-        TraceResult& result = judgement_.usable;
+        TraceImage& result = judgement_.usable;
         if (!hits_.has_status && result.status[i] != TraceStatus::hit)
             result.status[i] = truth_.status[i] == TraceStatus::hit ? ray.end_status : truth_.status[i];
         if (!has_place(result.status[i])) return;
@@ -116,7 +116,7 @@ private:
 
     RayOutcome outcome_of(size_t i) const
     {
-        const TraceResult& result = judgement_.usable;
+        const TraceImage& result = judgement_.usable;
         return {result.status[i],
                 result.hit_pixel[i],
                 has_place(result.status[i]) ? result.hit_t[i] : 0,
@@ -128,9 +128,9 @@ private:
 
     std::string impossible_here(size_t i, const RayInput& ray) const
     {
-        const TraceResult& result = judgement_.usable;
-        const glm::dvec3   point  = result.hit_px_depth[i];
-        const glm::ivec2   pixel  = result.hit_pixel[i];
+        const TraceImage& result = judgement_.usable;
+        const glm::dvec3  point  = result.hit_px_depth[i];
+        const glm::ivec2  pixel  = result.hit_pixel[i];
         if (result.status[i] == TraceStatus::not_traced) return "";
         if (has_place(result.status[i]) && !(std::isfinite(point.x) && std::isfinite(point.y)))
             return fmt::format("hit at ({}, {}), which are no numbers", point.x, point.y);
@@ -149,9 +149,9 @@ private:
 
     void judge_answer(size_t i, const RayInput& ray, Finding& found) const
     {
-        const TraceResult& result = judgement_.usable;
-        const bool hit = result.status[i] == TraceStatus::hit, hits_truly = truth_.status[i] == TraceStatus::hit;
-        const bool same_end = result.status[i] == truth_.status[i];
+        const TraceImage& result = judgement_.usable;
+        const bool        hit = result.status[i] == TraceStatus::hit, hits_truly = truth_.status[i] == TraceStatus::hit;
+        const bool        same_end = result.status[i] == truth_.status[i];
         if (same_end && !has_place(truth_.status[i])) return;
         const bool same_place = same_end && result.hit_pixel[i] == truth_.hit_pixel[i];
         if (same_place && (!hits_.has_t || std::abs(result.hit_t[i] - truth_.hit_t[i]) < same_t)) return;
@@ -180,7 +180,7 @@ private:
     const Setup          setup_;
     const Judge          judge_;
     const HitsFile&      hits_;
-    const TraceResult    truth_;
+    const TraceImage     truth_;
     std::vector<Finding> faults_; // one per pixel
     FrameJudgement       judgement_;
 };

@@ -41,7 +41,7 @@ struct FrameJudgement {
     size_t                                 ignored = 0; // answers of other pixels
     std::array<size_t, fault_names.size()> count{};     // of rays
     std::vector<Finding>                   findings;    // row by row
-    TraceResult                            usable;      // the answers; an impossible one is a ray without a hit
+    TraceImage                             usable;      // the answers; an impossible one is a ray without a hit
     size_t                                 of(Fault fault) const { return count[static_cast<size_t>(fault)]; }
     /// Rays that are neither right nor a near tie.
     size_t wrong() const { return rays - of(Fault::right) - of(Fault::near_tie); }

@@ -21,7 +21,7 @@ struct Placed {
 };
 
 Placed put_on_device(Gpu& gpu, const Catalogue& catalogue, const Technique& technique, const ParameterValues& values,
-                     Setup setup, Precision precision = Precision::float32)
+                     Setup setup, NumberFormat number_format = NumberFormat::float32)
 {
     const size_t pixels   = setup.gbuffer.depth.size();
     const size_t capacity = setup.rays.empty() ? pixels : setup.rays.size();
@@ -29,7 +29,7 @@ Placed put_on_device(Gpu& gpu, const Catalogue& catalogue, const Technique& tech
     Placed       placed{std::move(setup), nullptr};
     const LabPtr lab =
         make_lab(gpu, catalogue, upload_gbuffer(gpu, placed.setup.gbuffer), technique, values, placed.setup.settings);
-    placed.tracer = make_tracer(gpu, lab, capacity, precision);
+    placed.tracer = make_tracer(gpu, lab, capacity, number_format);
     if (placed.setup.rays.empty()) placed.setup.rays = set_up_rays(gpu, *placed.tracer);
     return placed;
 }
@@ -213,7 +213,7 @@ private:
 
     void compare_precision(const Setup& setup, const Outcomes& outcomes)
     {
-        const Placed   placed  = put_on_device(gpu_, catalogue_, technique_, values_, setup, Precision::float64);
+        const Placed   placed  = put_on_device(gpu_, catalogue_, technique_, values_, setup, NumberFormat::float64);
         const Outcomes answers = trace_rays(gpu_, *placed.tracer, placed.setup.rays);
         for (size_t i = 0; i < answers.size(); ++i)
             row_.precision_changes += !same_answer(answers[i], outcomes[i], false);

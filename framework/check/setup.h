@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/gbuffer_image.h"
-#include "core/trace_result.h"
+#include "core/trace_image.h"
 #include "trace/lab.h"
 
 #include <functional>

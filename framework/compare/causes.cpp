@@ -15,7 +15,7 @@ constexpr double jump_share   = 1.0 / 32;  // of the distance: a bend becomes a 
 constexpr double passed_share = 1.0 / 64;  // of the way: how much farther than the true point counts as behind it
 
 /// The G-buffer of the layer in which a ray ended.
-const GBufferImage& met_image(const GBufferImage& gbuffer, const TraceResult& tested, size_t i)
+const GBufferImage& met_image(const GBufferImage& gbuffer, const TraceImage& tested, size_t i)
 {
     const size_t layer = tested.hit_layer[i];
     return layer == 0 ? gbuffer : gbuffer.layers[layer - 1];
@@ -75,7 +75,7 @@ glm::dvec3 plane_normal_vs(const GBufferImage& image, glm::ivec2 pixel, glm::dve
 
 class Causes {
 public:
-    Causes(const TraceResult& tested, const SceneTruth& truth, const GBufferImage& gbuffer)
+    Causes(const TraceImage& tested, const SceneTruth& truth, const GBufferImage& gbuffer)
         : tested_(tested), truth_(truth), gbuffer_(gbuffer)
     {
     }
@@ -152,14 +152,14 @@ private:
         return leaves_plane(gbuffer_, pixel, plane_share) ? WrongCause::edge : WrongCause::other;
     }
 
-    const TraceResult&  tested_;
+    const TraceImage&   tested_;
     const SceneTruth&   truth_;
     const GBufferImage& gbuffer_;
 };
 
 } // namespace
 
-std::vector<WrongCause> wrong_causes(const TraceResult& tested, const SceneTruth& truth, const GBufferImage& gbuffer)
+std::vector<WrongCause> wrong_causes(const TraceImage& tested, const SceneTruth& truth, const GBufferImage& gbuffer)
 {
     require_same_size(tested.size_px, truth.size_px);
     require_same_size(tested.size_px, gbuffer.view.size_px);
@@ -170,7 +170,7 @@ std::vector<WrongCause> wrong_causes(const TraceResult& tested, const SceneTruth
     return found;
 }
 
-MeasureValues count_causes(const TraceResult& tested, const SceneTruth& truth, const GBufferImage& gbuffer)
+MeasureValues count_causes(const TraceImage& tested, const SceneTruth& truth, const GBufferImage& gbuffer)
 {
     std::array<size_t, wrong_cause_names.size()> of_cause{};
     for (const WrongCause cause : wrong_causes(tested, truth, gbuffer)) ++of_cause[size_t(cause)];

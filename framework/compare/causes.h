@@ -26,9 +26,9 @@ inline constexpr std::array<std::string_view, 8> wrong_cause_names = {
     "right", "own_surface", "not_shown", "thin", "silhouette", "edge", "stopped", "other"};
 
 /// Returns the cause of each pixel. Throws Failure unless all sizes agree, InvalidResult for an impossible result.
-std::vector<WrongCause> wrong_causes(const TraceResult& tested, const SceneTruth& truth, const GBufferImage& gbuffer);
+std::vector<WrongCause> wrong_causes(const TraceImage& tested, const SceneTruth& truth, const GBufferImage& gbuffer);
 
 /// Returns wrong_rays and the measures that begin with "wrong_".
-MeasureValues count_causes(const TraceResult& tested, const SceneTruth& truth, const GBufferImage& gbuffer);
+MeasureValues count_causes(const TraceImage& tested, const SceneTruth& truth, const GBufferImage& gbuffer);
 
 } // namespace ssrlab

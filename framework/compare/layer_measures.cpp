@@ -3,7 +3,7 @@
 
 namespace ssrlab {
 
-MeasureValues compare_hidden_layer(const TraceResult& first, const TraceResult& second, const SceneTruth& truth)
+MeasureValues compare_hidden_layer(const TraceImage& first, const TraceImage& second, const SceneTruth& truth)
 {
     require_same_size(first.size_px, truth.size_px);
     require_same_size(second.size_px, truth.size_px);

@@ -5,7 +5,7 @@
 #include "compare/ssim.h"
 #include "core/gbuffer_image.h"
 #include "core/image.h"
-#include "core/trace_result.h"
+#include "core/trace_image.h"
 #include "core/truth_class.h"
 
 #include <map>
@@ -43,31 +43,31 @@ void merge(MeasureValues& values, const MeasureValues& more);
 std::string measures_markdown();
 
 /// Returns traced_rays and the measures that begin with "screen_".
-MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResult& screen_truth);
+MeasureValues compare_to_screen_truth(const TraceImage& tested, const TraceImage& screen_truth);
 
 /// Returns recall, precision, false hits, misses by cause, shares of classes. The screen truth may be null.
-MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth& scene_truth,
-                                     const TraceResult* screen_truth, const GBufferImage& gbuffer);
+MeasureValues compare_to_scene_truth(const TraceImage& tested, const SceneTruth& scene_truth,
+                                     const TraceImage* screen_truth, const GBufferImage& gbuffer);
 
 /// Returns the share of traced pixels whose drawn depth lies on no surface of the scene.
 MeasureValues compare_depth_to_scene(const SceneTruth& scene_truth);
 
 /// Returns what the pass hidden_layer adds. `first` and `second` are the results in each depth layer.
-MeasureValues compare_hidden_layer(const TraceResult& first, const TraceResult& second, const SceneTruth& scene_truth);
+MeasureValues compare_hidden_layer(const TraceImage& first, const TraceImage& second, const SceneTruth& scene_truth);
 
 /// Returns not_finite: pixels of the finished picture, or of its G-buffer (null: not looked at), with a value that is
 /// NaN or infinite. Gradients and motion vectors may be NaN where they are not known.
 MeasureValues count_not_finite(const Image& picture, const GBufferImage* gbuffer);
 
 /// Returns mean and largest work per ray, and the work of rays that run in groups.
-MeasureValues count_work(const TraceResult& result);
+MeasureValues count_work(const TraceImage& result);
 
 /// Returns the traced rays per million whose status differs, or whose pixel differs if both hit.
-std::optional<double> count_flips(const TraceResult& float_result, const TraceResult& double_result);
+std::optional<double> count_flips(const TraceImage& float_result, const TraceImage& double_result);
 
 /// Returns flips_per_million and the three errors of the split. For null pointers, what needs them stays empty.
-MeasureValues split_error(const TraceResult& float_result, const TraceResult* double_result,
-                          const TraceResult* screen_truth, const SceneTruth* scene_truth);
+MeasureValues split_error(const TraceImage& float_result, const TraceImage* double_result,
+                          const TraceImage* screen_truth, const SceneTruth* scene_truth);
 
 /// A reference picture, prepared to judge many pictures. Throws Failure unless it has three channels. `halves`: two
 /// pictures that err independently and whose mean it is; empty if it has no noise.
@@ -96,11 +96,11 @@ MeasureValues count_disocclusions(const ReprojectionTruth& truth);
 /// Returns the measures that begin with "surface_motion_error". Here and below, `found_px` holds for each pixel the
 /// displacement, without jitter, to where its reflection is said to have been; NaN if unknown.
 MeasureValues compare_surface_motion(std::span<const glm::vec2> found_px, const ReprojectionTruth& truth,
-                                     const TraceResult& traced, const SceneTruth& scene_truth);
+                                     const TraceImage& traced, const SceneTruth& scene_truth);
 
 /// Returns reprojection_found_share and the measures that begin with "reprojection_error".
 MeasureValues compare_reprojection(std::span<const glm::vec2> found_px, const ReprojectionTruth& truth,
-                                   const TraceResult& traced, const SceneTruth& scene_truth);
+                                   const TraceImage& traced, const SceneTruth& scene_truth);
 
 /// Frames over which a ghost is looked for behind a moving edge.
 inline constexpr int ghost_frames = 8;
@@ -116,7 +116,7 @@ MeasureValues compare_converged(const Image& tested, const Reference& converged,
 struct HitPlaces {
     std::vector<glm::vec2> px; // NaN: traced, without hit; infinite: not traced
 };
-HitPlaces hit_places(const TraceResult& traced, glm::dvec2 jitter_px);
+HitPlaces hit_places(const TraceImage& traced, glm::dvec2 jitter_px);
 
 struct Flips {
     size_t flips = 0, rays = 0; // rays traced in both frames
@@ -129,7 +129,7 @@ struct TemporalMoments {
     std::vector<int>   count;
 };
 /// Adds the reflecting pixels of a picture.
-void add_picture(TemporalMoments& moments, const Image& linear_radiance, const TraceResult& traced);
+void add_picture(TemporalMoments& moments, const Image& linear_radiance, const TraceImage& traced);
 /// Returns the root of the mean variance over time, over pixels that reflect in all `frames` pictures (at least two).
 std::optional<double> temporal_rms(const TemporalMoments& moments, int frames);
 

@@ -62,7 +62,7 @@ glm::vec3 heat_colour(uint32_t fetches) { return fetches == 0 ? black : ramp_col
 
 } // namespace
 
-Image agreement_picture(const TraceResult& tested, const TraceResult& truth)
+Image agreement_picture(const TraceImage& tested, const TraceImage& truth)
 {
     require_same_size(tested.size_px, truth.size_px);
     return paint(tested.size_px, [&](size_t i) {
@@ -72,7 +72,7 @@ Image agreement_picture(const TraceResult& tested, const TraceResult& truth)
     });
 }
 
-Image agreement_picture(const TraceResult& tested, const SceneTruth& truth)
+Image agreement_picture(const TraceImage& tested, const SceneTruth& truth)
 {
     require_same_size(tested.size_px, truth.size_px);
     return paint(tested.size_px, [&](size_t i) {
@@ -82,7 +82,7 @@ Image agreement_picture(const TraceResult& tested, const SceneTruth& truth)
     });
 }
 
-Image causes_picture(const TraceResult& tested, const SceneTruth& truth, const GBufferImage& gbuffer)
+Image causes_picture(const TraceImage& tested, const SceneTruth& truth, const GBufferImage& gbuffer)
 {
     // In the order of WrongCause.
     const std::array<glm::vec3, wrong_cause_names.size()> colours = {grey, orange, sky_blue,  yellow,
@@ -104,7 +104,7 @@ Image sources_picture(std::span<const RayAnswer> answers, const SceneTruth& trut
     });
 }
 
-Image fetch_heat_map(const TraceResult& tested)
+Image fetch_heat_map(const TraceImage& tested)
 {
     return paint(tested.size_px, [&](size_t i) {
         return heat_colour(tested.depth_fetches.empty() ? tested.steps[i]

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double behind_share = 0.001;
 
-bool traced(const TraceResult& result, size_t i) { return result.status[i] != TraceStatus::not_traced; }
-bool hits(const TraceResult& result, size_t i) { return result.status[i] == TraceStatus::hit; }
+bool traced(const TraceImage& result, size_t i) { return result.status[i] != TraceStatus::not_traced; }
+bool hits(const TraceImage& result, size_t i) { return result.status[i] == TraceStatus::hit; }
 
 std::optional<double> known_quantile(const std::vector<double>& values, double p)
 {
@@ -25,13 +25,13 @@ std::optional<double> known_quantile(const std::vector<double>& values, double p
 }
 
 /// Distance between the hit points of two results that both hit.
-double hit_distance_px(const TraceResult& a, const TraceResult& b, size_t i)
+double hit_distance_px(const TraceImage& a, const TraceImage& b, size_t i)
 {
     return screen_distance_px(glm::dvec2(a.hit_px_depth[i]), glm::dvec2(b.hit_px_depth[i]));
 }
 
 /// Found within 1 px, of the rays that the reference hits.
-std::optional<double> recall_against(const TraceResult& tested, const TraceResult& reference)
+std::optional<double> recall_against(const TraceImage& tested, const TraceImage& reference)
 {
     require_same_size(tested.size_px, reference.size_px);
     size_t found = 0, whole = 0;
@@ -43,17 +43,17 @@ std::optional<double> recall_against(const TraceResult& tested, const TraceResul
     return share(found, whole);
 }
 
-double distance_to_truth_px(const TraceResult& tested, const SceneTruth& truth, size_t i)
+double distance_to_truth_px(const TraceImage& tested, const SceneTruth& truth, size_t i)
 {
     return screen_distance_px(glm::dvec2(tested.hit_px_depth[i]), truth.point_px[i]);
 }
 
-bool finds(const TraceResult& tested, const SceneTruth& truth, size_t i, double limit_px)
+bool finds(const TraceImage& tested, const SceneTruth& truth, size_t i, double limit_px)
 {
     return truth.cls[i] == TruthClass::visible && hits(tested, i) && distance_to_truth_px(tested, truth, i) <= limit_px;
 }
 
-std::optional<double> recall_against(const TraceResult& tested, const SceneTruth& truth)
+std::optional<double> recall_against(const TraceImage& tested, const SceneTruth& truth)
 {
     require_same_size(tested.size_px, truth.size_px);
     size_t found = 0, whole = 0;
@@ -65,7 +65,7 @@ std::optional<double> recall_against(const TraceResult& tested, const SceneTruth
 }
 
 /// Mean over groups of `width` rays that were traced one after the other, the last of which may hold fewer, of the longest one's steps.
-std::optional<double> group_iterations_mean(const TraceResult& result, size_t width)
+std::optional<double> group_iterations_mean(const TraceImage& result, size_t width)
 {
     if (result.traced_order.empty()) return std::nullopt;
     double sum    = 0;
@@ -81,7 +81,7 @@ std::optional<double> group_iterations_mean(const TraceResult& result, size_t wi
 
 enum class FalseHit { self, too_thick, wrong_surface };
 
-FalseHit false_hit_cause(const TraceResult& tested, const GBufferImage& gbuffer, size_t i)
+FalseHit false_hit_cause(const TraceImage& tested, const GBufferImage& gbuffer, size_t i)
 {
     const View&         view      = gbuffer.view;
     const glm::ivec2    pixel     = pixel_at(i, view.size_px);
@@ -108,7 +108,7 @@ FalseHit false_hit_cause(const TraceResult& tested, const GBufferImage& gbuffer,
 
 double screen_distance_px(glm::dvec2 a, glm::dvec2 b) { return std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)); }
 
-MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResult& truth)
+MeasureValues compare_to_screen_truth(const TraceImage& tested, const TraceImage& truth)
 {
     require_same_size(tested.size_px, truth.size_px);
     require_possible(tested);
@@ -149,8 +149,8 @@ MeasureValues compare_to_screen_truth(const TraceResult& tested, const TraceResu
             {"screen_displacement_p99_px", known_quantile(distances, 0.99)}};
 }
 
-MeasureValues compare_to_scene_truth(const TraceResult& tested, const SceneTruth& truth,
-                                     const TraceResult* screen_truth, const GBufferImage& gbuffer)
+MeasureValues compare_to_scene_truth(const TraceImage& tested, const SceneTruth& truth, const TraceImage* screen_truth,
+                                     const GBufferImage& gbuffer)
 {
     require_same_size(tested.size_px, truth.size_px);
     if (screen_truth != nullptr) require_same_size(tested.size_px, screen_truth->size_px);
@@ -226,7 +226,7 @@ MeasureValues compare_depth_to_scene(const SceneTruth& truth)
     return {{"depth_off_scene", off_surface_share(truth)}};
 }
 
-MeasureValues count_work(const TraceResult& result)
+MeasureValues count_work(const TraceImage& result)
 {
     const size_t rays =
         result.status.size() - size_t(std::count(result.status.begin(), result.status.end(), TraceStatus::not_traced));
@@ -249,7 +249,7 @@ MeasureValues count_work(const TraceResult& result)
     return values;
 }
 
-std::optional<double> count_flips(const TraceResult& a, const TraceResult& b)
+std::optional<double> count_flips(const TraceImage& a, const TraceImage& b)
 {
     require_same_size(a.size_px, b.size_px);
     size_t rays = 0, flips = 0;
@@ -262,8 +262,8 @@ std::optional<double> count_flips(const TraceResult& a, const TraceResult& b)
     return 1e6 * double(flips) / double(rays);
 }
 
-MeasureValues split_error(const TraceResult& float_result, const TraceResult* double_result,
-                          const TraceResult* screen_truth, const SceneTruth* scene_truth)
+MeasureValues split_error(const TraceImage& float_result, const TraceImage* double_result,
+                          const TraceImage* screen_truth, const SceneTruth* scene_truth)
 {
     const auto error = [](std::optional<double> recall) { return recall ? std::optional(1 - *recall) : std::nullopt; };
     MeasureValues values;

@@ -20,7 +20,7 @@ bool disoccluded(ReprojectionClass cls)
 }
 
 /// Whether a ray found its true point.
-bool is_right(const TraceResult& traced, const SceneTruth& scene_truth, size_t i)
+bool is_right(const TraceImage& traced, const SceneTruth& scene_truth, size_t i)
 {
     return traced.status[i] == TraceStatus::hit && scene_truth.cls[i] == TruthClass::visible &&
            screen_distance_px(glm::dvec2(traced.hit_px_depth[i]), scene_truth.point_px[i]) <= within_one_px;
@@ -33,7 +33,7 @@ struct VectorErrors {
 };
 
 VectorErrors vector_errors(std::span<const glm::vec2> found_px, const ReprojectionTruth& truth,
-                           const TraceResult& traced, const SceneTruth& scene_truth)
+                           const TraceImage& traced, const SceneTruth& scene_truth)
 {
     require_same_size(traced.size_px, truth.size_px);
     require_same_size(scene_truth.size_px, truth.size_px);
@@ -62,7 +62,7 @@ MeasureValues count_disocclusions(const ReprojectionTruth& truth)
 }
 
 MeasureValues compare_surface_motion(std::span<const glm::vec2> found_px, const ReprojectionTruth& truth,
-                                     const TraceResult& traced, const SceneTruth& scene_truth)
+                                     const TraceImage& traced, const SceneTruth& scene_truth)
 {
     const VectorErrors errors = vector_errors(found_px, truth, traced, scene_truth);
     if (errors.px.empty()) return {};
@@ -71,7 +71,7 @@ MeasureValues compare_surface_motion(std::span<const glm::vec2> found_px, const 
 }
 
 MeasureValues compare_reprojection(std::span<const glm::vec2> found_px, const ReprojectionTruth& truth,
-                                   const TraceResult& traced, const SceneTruth& scene_truth)
+                                   const TraceImage& traced, const SceneTruth& scene_truth)
 {
     const VectorErrors errors = vector_errors(found_px, truth, traced, scene_truth);
     MeasureValues      values = {{"reprojection_found_share", share(errors.px.size(), errors.rays)}};
@@ -81,7 +81,7 @@ MeasureValues compare_reprojection(std::span<const glm::vec2> found_px, const Re
     return values;
 }
 
-HitPlaces hit_places(const TraceResult& traced, glm::dvec2 jitter_px)
+HitPlaces hit_places(const TraceImage& traced, glm::dvec2 jitter_px)
 {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
     HitPlaces       places;
@@ -108,7 +108,7 @@ Flips count_changes(const HitPlaces& before, const HitPlaces& now)
     return flips;
 }
 
-void add_picture(TemporalMoments& moments, const Image& linear_radiance, const TraceResult& traced)
+void add_picture(TemporalMoments& moments, const Image& linear_radiance, const TraceImage& traced)
 {
     const size_t pixels = traced.status.size();
     moments.sum.resize(pixels);

@@ -6,7 +6,7 @@
 namespace ssrlab {
 namespace {
 
-size_t ray_count(const TraceResult& result)
+size_t ray_count(const TraceImage& result)
 {
     return static_cast<size_t>(
         std::ranges::count_if(result.status, [](TraceStatus status) { return status != TraceStatus::not_traced; }));
@@ -17,7 +17,7 @@ std::string off_the_image(glm::ivec2 pixel, glm::ivec2 size_px)
     return fmt::format("hit pixel ({}, {}) is off the image of {}x{}", pixel.x, pixel.y, size_px.x, size_px.y);
 }
 
-Answer answer_at(const TraceResult& result, size_t i)
+Answer answer_at(const TraceImage& result, size_t i)
 {
     return {result.status[i], result.hit_pixel[i], result.hit_t[i], result.steps[i]};
 }
@@ -42,7 +42,7 @@ std::string impossible(const Answer& answer, glm::ivec2 size_px, double most_ste
     return "";
 }
 
-std::optional<std::string> find_impossible(const TraceResult& result, double most_steps)
+std::optional<std::string> find_impossible(const TraceImage& result, double most_steps)
 {
     size_t      count = 0;
     std::string first;
@@ -57,7 +57,7 @@ std::optional<std::string> find_impossible(const TraceResult& result, double mos
     return fmt::format("{} of {} rays have an answer that cannot be; {}", count, ray_count(result), first);
 }
 
-void require_possible(const TraceResult& result, double most_steps)
+void require_possible(const TraceImage& result, double most_steps)
 {
     if (const auto found = find_impossible(result, most_steps)) throw InvalidResult(*found);
 }

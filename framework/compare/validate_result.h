@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/error.h"
-#include "core/trace_result.h"
+#include "core/trace_image.h"
 
 #include <limits>
 #include <optional>
@@ -28,9 +28,9 @@ struct InvalidResult : Failure {
 };
 
 /// Returns how many rays have an impossible answer, and the first of them; nullopt if none has.
-std::optional<std::string> find_impossible(const TraceResult& result, double most_steps);
+std::optional<std::string> find_impossible(const TraceImage& result, double most_steps);
 
 /// Throws InvalidResult with what find_impossible() says. Without a bound: checks what indexing needs.
-void require_possible(const TraceResult& result, double most_steps = std::numeric_limits<double>::infinity());
+void require_possible(const TraceImage& result, double most_steps = std::numeric_limits<double>::infinity());
 
 } // namespace ssrlab

@@ -40,7 +40,7 @@ std::vector<ExportedPass> export_passes(Gpu& gpu, const Lab& lab, const Composed
     const auto                first      = std::ranges::find_if(composed.passes, reads_rays);
     passes.insert(passes.end(), composed.passes.begin(), first);
     passes.push_back(own_pass(lab, "export/rays.comp"));
-    passes.back().source.defines.merge(precision_defines(gpu, Precision::float32));
+    passes.back().source.defines.merge(number_format_defines(gpu, NumberFormat::float32));
     const size_t set_up = passes.size() - 1;
     passes.insert(passes.end(), first, composed.passes.end());
 

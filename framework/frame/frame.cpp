@@ -52,7 +52,7 @@ std::shared_ptr<RayBuffers> ray_buffers(Gpu& gpu, FrameBuffers& buffers, const G
     const bool                   from_lobe      = of_pixels && chosen.from_lobe;
     std::shared_ptr<RayBuffers>& rays           = buffers.rays[{capacity, rays_of_pixels, from_lobe}];
     if (!rays) {
-        rays = std::make_shared<RayBuffers>(make_ray_buffers(gpu, capacity, Precision::float32, rays_of_pixels));
+        rays = std::make_shared<RayBuffers>(make_ray_buffers(gpu, capacity, NumberFormat::float32, rays_of_pixels));
         rays->from_lobe = from_lobe;
     }
     return rays;

@@ -85,7 +85,7 @@ FrameTimes shade_frame(Gpu& gpu, ReadyFrame& frame, const FrameRays& rays, std::
 Image read_shaded(Gpu& gpu, const ReadyFrame& frame);
 /// Returns what the last run_frame() found in the second layer: `hit`, else not_traced. nullopt if the plan has no
 /// hidden layer.
-std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const ReadyFrame& frame);
+std::optional<TraceImage> read_hidden_hits(Gpu& gpu, const ReadyFrame& frame);
 /// Returns the second layer of a frame whose plan has one.
 GBufferImage read_second_layer(Gpu& gpu, const ReadyFrame& frame);
 /// Returns the picture with this reflection instead of the traced one: colour and weight per pixel, weight < 0 if

@@ -32,7 +32,7 @@ std::vector<const Technique*> exact_techniques(const Catalogue& catalogue, const
                      fmt::join(pairs, ", "));
 }
 
-size_t differing_rays(const TraceResult& a, const TraceResult& b)
+size_t differing_rays(const TraceImage& a, const TraceImage& b)
 {
     size_t count = 0;
     for (size_t i = 0; i < a.status.size(); ++i) {
@@ -55,13 +55,13 @@ struct Candidate {
 std::vector<Candidate> comparable(Stage& stage, const std::vector<AskedTechnique>& asked, KeptTimes& measured)
 {
     std::vector<Candidate> candidates;
-    TraceResult            first;
+    TraceImage             first;
     for (const AskedTechnique& one : asked) {
         const std::string& id = one.technique->id;
         try {
             const LabPtr    lab    = make_lab(stage, *one.technique, one.choice.values, one.choice.settings.trace);
             const TracerPtr tracer = make_timed_tracer(stage.gpu, lab);
-            TraceResult     hits   = trace_gbuffer(stage.gpu, *tracer);
+            TraceImage      hits   = trace_gbuffer(stage.gpu, *tracer);
             measured.rays          = hits.traced_order.size();
             if (candidates.empty())
                 first = std::move(hits);

@@ -3,7 +3,7 @@
 #include "compare/measures.h"
 #include "core/error.h"
 #include "core/files.h"
-#include "core/trace_result.h"
+#include "core/trace_image.h"
 
 #include <algorithm>
 

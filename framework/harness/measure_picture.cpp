@@ -94,7 +94,7 @@ Observed observe(SweepContext& sweep, const MeasuredRun& measured)
     return clocked(sweep.counted_s, [&] {
         const TracerPtr tracer  = make_tracer(sweep.gpu, measured.lab);
         const bool      doubled = measure.truth && measure.double_twin && sweep.gpu.info.float64;
-        const TracerPtr twin    = doubled ? make_tracer(sweep.gpu, measured.lab, Precision::float64) : nullptr;
+        const TracerPtr twin    = doubled ? make_tracer(sweep.gpu, measured.lab, NumberFormat::float64) : nullptr;
         run_frame(sweep.gpu, *measured.frame);
         Observed observed{read_shaded(sweep.gpu, *measured.frame), trace_gbuffer(sweep.gpu, *tracer),
                           read_hidden_hits(sweep.gpu, *measured.frame)};
@@ -198,7 +198,7 @@ void judge(const SweepContext& sweep, Picture& picture, MeasuredRun& measured, c
     add_counts(measured.row, observed.counted);
     warn_of_not_finite(sweep, picture, measured, observed);
     if (!picture.truths) return;
-    const auto pointer = [](const std::optional<TraceResult>& result) { return result ? &*result : nullptr; };
+    const auto pointer = [](const std::optional<TraceImage>& result) { return result ? &*result : nullptr; };
     measured.row["no_scene_truth"]  = picture.truths->without_scene();
     measured.row["no_screen_truth"] = Truths::without_screen(measured.run->settings.trace);
     add_measures(measured.row,
@@ -212,7 +212,7 @@ void refuse_impossible(const SweepContext& sweep, const Run& run, const Observed
 {
     const Technique& technique = find_technique(sweep.techniques, run.technique);
     const double     steps     = declared_steps(technique, run.values);
-    const auto       refuse    = [&](const TraceResult& result, const char* where) {
+    const auto       refuse    = [&](const TraceImage& result, const char* where) {
         if (const auto found = find_impossible(result, steps))
             throw InvalidResult(
                          fmt::format("{}{}; {}", where, *found, trace_command(sweep.experiment, run, technique)));

@@ -63,7 +63,7 @@ Record identity_row(const Experiment& experiment, const Run& run, const Techniqu
     return row;
 }
 
-void add_counts(Record& row, const TraceResult& counted)
+void add_counts(Record& row, const TraceImage& counted)
 {
     require_possible(counted);
     std::array<double, trace_status_names.size()> ended{};

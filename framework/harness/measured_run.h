@@ -28,7 +28,7 @@ struct MeasuredRun {
 /// Returns a row with run id, experiment, scene … and every setting and parameter.
 Record identity_row(const Experiment& experiment, const Run& run, const Technique& technique);
 /// Adds rays, fetches, steps and how the rays ended, from a counted trace; sets the outcome ok or no_rays.
-void add_counts(Record& row, const TraceResult& counted);
+void add_counts(Record& row, const TraceImage& counted);
 /// Adds the measures that have a column.
 void add_measures(Record& row, const MeasureValues& values);
 /// Pairs of a planned and an unculled frame.

@@ -31,8 +31,8 @@ Picture make_picture(SweepContext& sweep, const Run& run);
 /// The outputs of a run's frames, not yet judged.
 struct Observed {
     Image                        shaded;
-    TraceResult                  counted;
-    std::optional<TraceResult>   hidden, twin = {}; // the second layer's hits; the same trace in double
+    TraceImage                   counted;
+    std::optional<TraceImage>    hidden, twin = {}; // the second layer's hits; the same trace in double
     std::vector<glm::vec2>       reprojection = {}; // empty if the pass did not run
     std::optional<HistoryCounts> history      = {}; // likewise
 };

@@ -35,7 +35,7 @@ std::string cache_trouble(const std::filesystem::path& cache_dir)
     return fmt::format("{}: truths are computed anew, without a cache: {}", short_path(cache_dir), error.message());
 }
 
-Image reflected_image(const TraceResult& result, const GBufferImage& gbuffer, glm::vec3 background)
+Image reflected_image(const TraceImage& result, const GBufferImage& gbuffer, glm::vec3 background)
 {
     require_possible(result);
     Image image{result.size_px, {"R", "G", "B"}, std::vector<float>(result.status.size() * 3), {}};
@@ -105,14 +105,14 @@ const SceneTruth& Truths::scene_truth() const
     return scene_truth_;
 }
 
-std::optional<Image> Truths::agreement(const TraceResult& counted) const
+std::optional<Image> Truths::agreement(const TraceImage& counted) const
 {
     made_for();
     if (without_scene_.empty()) return agreement_picture(counted, scene_truth_);
     return screen_truth_ ? std::optional(agreement_picture(counted, *screen_truth_)) : std::nullopt;
 }
 
-std::optional<Image> Truths::causes(const TraceResult& counted) const
+std::optional<Image> Truths::causes(const TraceImage& counted) const
 {
     made_for();
     return !without_scene_.empty() ? std::nullopt : std::optional(causes_picture(counted, scene_truth_, gbuffer_));
@@ -175,7 +175,7 @@ void Truths::make_reprojection(const SceneInTime& before, const SceneInTime& ear
     earlier_ = truth_of(earlier);
 }
 
-MeasureValues Truths::compare_motion(const TraceResult& counted, std::span<const glm::vec2> found_px) const
+MeasureValues Truths::compare_motion(const TraceImage& counted, std::span<const glm::vec2> found_px) const
 {
     made_for();
     if (!before_ || gbuffer_.motion_px.empty()) return {};
@@ -209,11 +209,11 @@ Image Truths::flip_of(const Image& picture, const Reference& reference) const
     return flip_of_picture(picture, reference, scene_truth_);
 }
 
-MeasureValues Truths::compare(const TraceResult& counted, const TraceResult* twin, const TraceResult* hidden) const
+MeasureValues Truths::compare(const TraceImage& counted, const TraceImage* twin, const TraceImage* hidden) const
 {
     made_for();
-    const TraceResult* screen = screen_truth_ ? &*screen_truth_ : nullptr;
-    MeasureValues      values = split_error(counted, twin, screen, without_scene_.empty() ? &scene_truth_ : nullptr);
+    const TraceImage* screen = screen_truth_ ? &*screen_truth_ : nullptr;
+    MeasureValues     values = split_error(counted, twin, screen, without_scene_.empty() ? &scene_truth_ : nullptr);
     if (screen != nullptr) merge(values, compare_to_screen_truth(counted, *screen));
     merge(values, depth_to_scene_);
     if (!without_scene_.empty()) return values;

@@ -35,7 +35,7 @@ public:
     const GBufferImage& gbuffer() const { return gbuffer_; }
 
     /// Returns every measure of `counted`. `twin`: the trace in double; `hidden`: hits in the second layer; or null.
-    MeasureValues compare(const TraceResult& counted, const TraceResult* twin, const TraceResult* hidden) const;
+    MeasureValues compare(const TraceImage& counted, const TraceImage* twin, const TraceImage* hidden) const;
 
     /// Returns the truth of every reflecting pixel; without_scene() says whether it has true points.
     const SceneTruth& scene_truth() const;
@@ -62,14 +62,14 @@ public:
     /// Makes the truth of where reflections were in the frame before, and ghost_frames earlier.
     void make_reprojection(const SceneInTime& before, const SceneInTime& earlier);
     /// Returns the measures of motion, from motion vectors. `found_px`: as in compare_reprojection(), or empty.
-    MeasureValues compare_motion(const TraceResult& counted, std::span<const glm::vec2> found_px) const;
+    MeasureValues compare_motion(const TraceImage& counted, std::span<const glm::vec2> found_px) const;
     MeasureValues compare_ghosts(const Image& picture, const Reference& reference) const;
     MeasureValues compare_converged(const Image& picture, const Reference& converged) const;
 
     /// Returns the agreement with the scene truth, or else the screen truth, in false colours; nullopt without both.
-    std::optional<Image> agreement(const TraceResult& counted) const;
+    std::optional<Image> agreement(const TraceImage& counted) const;
     /// Returns why rays are wrong, in false colours; nullopt without a scene truth.
-    std::optional<Image> causes(const TraceResult& counted) const;
+    std::optional<Image> causes(const TraceImage& counted) const;
 
 private:
     const TraceSettings& made_for() const;
@@ -80,7 +80,7 @@ private:
     GBufferImage                     gbuffer_;
     std::filesystem::path            cache_dir_;
     std::optional<TraceSettings>     made_for_;
-    std::optional<TraceResult>       screen_truth_; // empty if the surface model has none
+    std::optional<TraceImage>        screen_truth_; // empty if the surface model has none
     SceneTruth                       scene_truth_;  // without triangles: only which pixels reflect
     std::string                      without_scene_;
     MeasureValues                    depth_to_scene_;   // empty without triangles
@@ -96,6 +96,6 @@ std::filesystem::path truth_cache_dir(const std::filesystem::path& results);
 std::string cache_trouble(const std::filesystem::path& cache_dir);
 
 /// Returns the reflected radiance of a result: the G-buffer's at the hit pixel, or the background for a miss.
-Image reflected_image(const TraceResult& result, const GBufferImage& gbuffer, glm::vec3 background);
+Image reflected_image(const TraceImage& result, const GBufferImage& gbuffer, glm::vec3 background);
 
 } // namespace ssrlab

@@ -69,7 +69,7 @@ std::string sequence_id(const Run& run)
     return "s" + run_id(any).substr(1);
 }
 
-MeasureValues watch(SequenceState& state, const Image& shaded, const TraceResult& traced, glm::dvec2 jitter_px,
+MeasureValues watch(SequenceState& state, const Image& shaded, const TraceImage& traced, glm::dvec2 jitter_px,
                     bool moved)
 {
     MeasureValues values;

@@ -28,7 +28,7 @@ bool is_sequence(const Experiment& experiment);
 std::string sequence_id(const Run& run);
 
 /// Adds a frame, in the order of time. Returns flip_share if the frame can be compared with the one before.
-MeasureValues watch(SequenceState& state, const Image& shaded, const TraceResult& traced, glm::dvec2 jitter_px,
+MeasureValues watch(SequenceState& state, const Image& shaded, const TraceImage& traced, glm::dvec2 jitter_px,
                     bool moved);
 
 /// Returns the columns of sequence_summary.csv.

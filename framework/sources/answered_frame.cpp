@@ -30,7 +30,7 @@ std::vector<size_t> take_rays(SourceContext& context, const FrameRays& frame, in
     const View&         view          = context.image.view;
     const glm::dmat4    view_to_world = glm::inverse(view.world_to_view);
     std::vector<size_t> places;
-    context.traced = make_trace_result(view.size_px, false);
+    context.traced = make_trace_image(view.size_px, false);
     context.rays.clear();
     for (size_t k = static_cast<size_t>(number); k < frame.rays.size(); k += static_cast<size_t>(frame.per_pixel)) {
         const RayInput&   ray       = frame.rays[k];

@@ -13,7 +13,7 @@ constexpr double back_px = 2; // a ray is followed again from so many pixels bef
 RayAnswer answer_of(const SourceContext& context, const Occupancy& occupancy, const OpenRay& ray, bool in_sight)
 {
     const GBufferImage& image  = context.image;
-    const TraceResult&  traced = context.traced;
+    const TraceImage&   traced = context.traced;
     const size_t        i      = ray.pixel;
     const TraceStatus   status = traced.status[i];
     RayAnswer           answer{.kind = AnswerKind::open};

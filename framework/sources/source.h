@@ -41,7 +41,7 @@ struct SourceContext {
     TraceSettings        trace;        // likewise
     GBufferImage         image;        // what the stage shows, on the host
     ParameterValues      parameters;   // of the source that is asked
-    TraceResult          traced;       // results of the frame's rays
+    TraceImage           traced;       // results of the frame's rays
     std::vector<OpenRay> rays;         // these rays, at most one of each pixel
     double               draw_ms  = 0; // of the frame's G-buffer
     double               trace_ms = 0; // of the frame: ray set-up, structures, trace

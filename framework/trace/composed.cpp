@@ -48,7 +48,7 @@ ComposedPass compose_pass(const Gpu& gpu, const Lab& lab, const Structure& struc
     const StructureDispatch dispatch = dispatches_of(lab, pass);
     return {structure.id,
             build_source(gpu, lab, structure, pass, rays, false),
-            build_constants(lab, Precision::float32),
+            build_constants(lab, NumberFormat::float32),
             dispatch.per_ray ? rays_per_workgroup(gpu) : 0,
             dispatch.levels,
             dispatch.groups,
@@ -66,7 +66,7 @@ template <typename T> std::vector<uint32_t> words_of(std::span<const T> values)
 
 ComposedLab compose_lab(Gpu& gpu, const Lab& lab, size_t rays)
 {
-    const RayBuffers buffers = make_ray_buffers(gpu, rays, Precision::float32);
+    const RayBuffers buffers = make_ray_buffers(gpu, rays, NumberFormat::float32);
     structure_bindings(gpu, lab.technique, *lab.gbuffer, buffers); // makes the structures' buffers
     ComposedLab composed;
     // First what depends on depth alone, as it is recorded.
@@ -96,7 +96,7 @@ ShaderSource compose_shader(const Lab& lab, const std::filesystem::path& file)
 
 Constants compose_constants(const Lab& lab)
 {
-    return settings_constants(lab.gbuffer->view, lab.settings, Precision::float32);
+    return settings_constants(lab.gbuffer->view, lab.settings, NumberFormat::float32);
 }
 
 FrameWords read_frame_words(Gpu& gpu, const Lab& lab)

@@ -73,7 +73,7 @@ GBufferPtr make_gbuffer(Gpu& gpu, const View& view, Filled filled)
         const auto usage = filled == Filled::drawn ? Usage::eColorAttachment | Usage::eStorage : Usage::eStorage;
         return make_image(gpu, {.format = format, .size_px = view.size_px, .usage = usage});
     };
-    gbuffer->view_uniforms = upload_view(gpu, view, Precision::float32);
+    gbuffer->view_uniforms = upload_view(gpu, view, NumberFormat::float32);
     gbuffer->tiles         = make_tile_buffers(gpu, view.size_px);
     gbuffer->depth         = make_depth_buffer(gpu, view.size_px);
     gbuffer->normal        = image(Format::eR32G32B32A32Sfloat);
@@ -186,7 +186,7 @@ GBufferPtr upload_depth(Gpu& gpu, const View& view, std::span<const float> depth
     const auto image = [&](vk::Format format, glm::ivec2 size_px) {
         return make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
     };
-    gbuffer->view_uniforms = upload_view(gpu, view, Precision::float32);
+    gbuffer->view_uniforms = upload_view(gpu, view, NumberFormat::float32);
     gbuffer->tiles         = make_tile_buffers(gpu, view.size_px);
     gbuffer->depth         = make_depth_buffer(gpu, view.size_px);
     gbuffer->normal        = image(vk::Format::eR32G32B32A32Sfloat, {1, 1});
@@ -229,18 +229,18 @@ void add_layers(Bindings& bindings, std::span<const GBufferPtr> layers)
     }
 }
 
-void write_view(Gpu& gpu, Buffer& target, const View& view, Precision precision)
+void write_view(Gpu& gpu, Buffer& target, const View& view, NumberFormat number_format)
 {
-    if (precision == Precision::float64)
+    if (number_format == NumberFormat::float64)
         write_view_as<double>(gpu, target, view);
     else
         write_view_as<float>(gpu, target, view);
 }
 
-Buffer upload_view(Gpu& gpu, const View& view, Precision precision)
+Buffer upload_view(Gpu& gpu, const View& view, NumberFormat number_format)
 {
     Buffer buffer = make_buffer(gpu, sizeof(ViewBlock<double>));
-    write_view(gpu, buffer, view, precision);
+    write_view(gpu, buffer, view, number_format);
     return buffer;
 }
 

@@ -55,7 +55,7 @@ Bindings surface_bindings(const GBuffer& gbuffer);
 void add_layers(Bindings& bindings, std::span<const GBufferPtr> layers);
 
 /// Returns the uniform block of shaders/api/view.glsl.
-Buffer upload_view(Gpu& gpu, const View& view, Precision precision);
-void   write_view(Gpu& gpu, Buffer& target, const View& view, Precision precision);
+Buffer upload_view(Gpu& gpu, const View& view, NumberFormat number_format);
+void   write_view(Gpu& gpu, Buffer& target, const View& view, NumberFormat number_format);
 
 } // namespace ssrlab

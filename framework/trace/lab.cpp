@@ -51,15 +51,15 @@ constexpr uint64_t most_visits = 1 << 16;
 
 enum class Counted : uint8_t { nothing, work, work_and_visits };
 
-TracerPtr make_any_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity, Precision precision, Counted counted)
+TracerPtr make_any_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity, NumberFormat number_format, Counted counted)
 {
-    if (precision == Precision::float64 && !gpu.info.float64)
+    if (number_format == NumberFormat::float64 && !gpu.info.float64)
         throw_failure("the device '{}' has no double precision", gpu.info.name);
     const ShaderFilesHeld held;
     auto                  tracer = std::make_shared<Tracer>();
     tracer->lab                  = lab;
-    tracer->rays                 = make_ray_buffers(gpu, capacity, precision);
-    tracer->view                 = upload_view(gpu, lab->gbuffer->view, precision);
+    tracer->rays                 = make_ray_buffers(gpu, capacity, number_format);
+    tracer->view                 = upload_view(gpu, lab->gbuffer->view, number_format);
     const uint64_t rays          = std::max<uint64_t>(capacity, 1);
     const bool     works         = counted != Counted::nothing;
     const bool     records       = counted == Counted::work_and_visits;
@@ -120,23 +120,23 @@ template <typename Real> std::vector<RayOutcome> read_outcomes(Gpu& gpu, const T
     return outcomes;
 }
 
-bool in_double(const Tracer& tracer) { return tracer.rays.precision == Precision::float64; }
+bool in_double(const Tracer& tracer) { return tracer.rays.number_format == NumberFormat::float64; }
 
 } // namespace
 
-TracerPtr make_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity, Precision precision)
+TracerPtr make_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity, NumberFormat number_format)
 {
-    return make_any_tracer(gpu, lab, capacity, precision, Counted::work);
+    return make_any_tracer(gpu, lab, capacity, number_format, Counted::work);
 }
 
-TracerPtr make_tracer(Gpu& gpu, const LabPtr& lab, Precision precision)
+TracerPtr make_tracer(Gpu& gpu, const LabPtr& lab, NumberFormat number_format)
 {
-    return make_tracer(gpu, lab, count_gbuffer(gpu, *lab->gbuffer, lab->settings).reflecting_pixels, precision);
+    return make_tracer(gpu, lab, count_gbuffer(gpu, *lab->gbuffer, lab->settings).reflecting_pixels, number_format);
 }
 
 TracerPtr make_timed_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity)
 {
-    return make_any_tracer(gpu, lab, capacity, Precision::float32, Counted::nothing);
+    return make_any_tracer(gpu, lab, capacity, NumberFormat::float32, Counted::nothing);
 }
 
 TracerPtr make_timed_tracer(Gpu& gpu, const LabPtr& lab)
@@ -144,7 +144,7 @@ TracerPtr make_timed_tracer(Gpu& gpu, const LabPtr& lab)
     return make_timed_tracer(gpu, lab, count_gbuffer(gpu, *lab->gbuffer, lab->settings).reflecting_pixels);
 }
 
-TraceResult trace_gbuffer(Gpu& gpu, Tracer& tracer)
+TraceImage trace_gbuffer(Gpu& gpu, Tracer& tracer)
 {
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         record_rays(commands, tracer.passes, *tracer.lab->gbuffer);
@@ -175,7 +175,7 @@ double time_trace(Gpu& gpu, Tracer& tracer, int times)
 
 RecordedRay record_ray(Gpu& gpu, const LabPtr& lab, const RayInput& ray)
 {
-    const auto  tracer = make_any_tracer(gpu, lab, 1, Precision::float32, Counted::work_and_visits);
+    const auto  tracer = make_any_tracer(gpu, lab, 1, NumberFormat::float32, Counted::work_and_visits);
     RecordedRay recorded{trace_rays(gpu, *tracer, std::span(&ray, 1))[0], {}, 0};
     const auto  words    = download_as<uint32_t>(gpu, tracer->visits, 1 + 4 * most_visits);
     recorded.visit_count = words[0];
@@ -224,8 +224,8 @@ void replace_picture(Gpu& gpu, Tracer& tracer, const GBufferImage& image)
     gbuffer.view = image.view;
     gbuffer.counts.clear();
     upload_surfaces(gpu, gbuffer, image);
-    write_view(gpu, gbuffer.view_uniforms, image.view, Precision::float32);
-    write_view(gpu, tracer.view, image.view, tracer.rays.precision);
+    write_view(gpu, gbuffer.view_uniforms, image.view, NumberFormat::float32);
+    write_view(gpu, tracer.view, image.view, tracer.rays.number_format);
 }
 
 } // namespace ssrlab

@@ -3,14 +3,14 @@
 //     GBufferPtr  gbuffer = upload_gbuffer(gpu, image); // or upload_depth(), or one that frame/ drew
 //     LabPtr      lab     = make_lab(gpu, catalogue, gbuffer, technique, values, settings);
 //     TracerPtr   tracer  = make_tracer(gpu, lab);
-//     TraceResult result  = trace_gbuffer(gpu, *tracer); // the mirror ray of every pixel that reflects
+//     TraceImage result  = trace_gbuffer(gpu, *tracer); // the mirror ray of every pixel that reflects
 //
 // trace_rays() traces any other list of rays. A lab belongs to one G-buffer and is cheap to make: labs on one G-buffer
 // share the buffers of structures, and labs on one device share equal pipelines.
 #pragma once
 
 #include "core/gbuffer_image.h"
-#include "core/trace_result.h"
+#include "core/trace_image.h"
 #include "trace/catalogue.h"
 
 #include <memory>
@@ -19,7 +19,8 @@
 
 namespace ssrlab {
 
-enum class Precision { float32, float64 };
+/// Of the numbers that a technique computes with; the double twin has float64.
+enum class NumberFormat { float32, float64 };
 
 struct GBuffer; // images of one view
 struct Lab;     // one technique with one set of values under one hit contract, on one G-buffer
@@ -51,13 +52,13 @@ std::string missing_feature(const Gpu& gpu, const Technique& technique, const Pa
 /// Returns a tracer with room for the mirror ray of every pixel that reflects; float64 is the double twin. Throws
 /// Failure if the device lacks double precision, and SpecError with file and line if the technique's shader does not
 /// compile. Pipelines compile in the background until the first trace.
-TracerPtr make_tracer(Gpu& gpu, const LabPtr& lab, Precision precision = Precision::float32);
+TracerPtr make_tracer(Gpu& gpu, const LabPtr& lab, NumberFormat number_format = NumberFormat::float32);
 /// Returns a tracer with room for `capacity` rays. Throws likewise.
-TracerPtr make_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity, Precision precision = Precision::float32);
+TracerPtr make_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity, NumberFormat number_format = NumberFormat::float32);
 
 /// Builds the structures, traces the mirror ray of each pixel that reflects, and counts the work. A result that cannot
 /// be right gets the status `impossible` (compare/validate_result.h says why).
-TraceResult trace_gbuffer(Gpu& gpu, Tracer& tracer);
+TraceImage trace_gbuffer(Gpu& gpu, Tracer& tracer);
 
 /// Return a tracer that counts no work, as a frame's. `capacity`: the largest list; without it, the reflecting pixels.
 TracerPtr make_timed_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity);

@@ -65,9 +65,9 @@ template <typename Real> void add_settings(Constants& constants, const View& vie
 
 } // namespace
 
-Defines precision_defines(const Gpu& gpu, Precision precision)
+Defines number_format_defines(const Gpu& gpu, NumberFormat number_format)
 {
-    if (precision == Precision::float64) return {{"REAL_IS_DOUBLE", "1"}};
+    if (number_format == NumberFormat::float64) return {{"REAL_IS_DOUBLE", "1"}};
     if (gpu.info.cheap_doubles) return {{"DF64_IS_DOUBLE", "1"}};
     return {};
 }
@@ -75,7 +75,7 @@ Defines precision_defines(const Gpu& gpu, Precision precision)
 Defines ray_list_defines(const Gpu& gpu, const RayBuffers& rays)
 {
     if (rays.rays_of_pixels == 0) return {};
-    Defines defines = precision_defines(gpu, rays.precision);
+    Defines defines = number_format_defines(gpu, rays.number_format);
     defines.emplace("RAYS_OF_PIXELS", std::to_string(rays.rays_of_pixels));
     defines.emplace("RAYS_FROM_LOBE", rays.from_lobe ? "1" : "0");
     return defines;
@@ -103,14 +103,14 @@ Defines store_defines(const Gpu& gpu, const Buffer& texels)
     return storable ? Defines{{"STORES_64_BITS", "1"}} : Defines{};
 }
 
-Constants settings_constants(const View& view, const TraceSettings& settings, Precision precision, bool exact)
+Constants settings_constants(const View& view, const TraceSettings& settings, NumberFormat number_format, bool exact)
 {
     Constants constants;
-    if (precision == Precision::float64)
+    if (number_format == NumberFormat::float64)
         add_settings<double>(constants, view, settings);
     else
         add_settings<float>(constants, view, settings);
-    if (precision == Precision::float64 || exact)
+    if (number_format == NumberFormat::float64 || exact)
         add_slabs<double>(constants, view, settings);
     else
         add_slabs<float>(constants, view, settings);

@@ -47,25 +47,25 @@ std::string missing_feature(const Gpu& gpu, const Technique& technique, const Pa
                        gpu.info.name, gpu.info.int64 ? "shaderFloat64" : "shaderInt64");
 }
 
-RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision, int rays_of_pixels)
+RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, NumberFormat number_format, int rays_of_pixels)
 {
-    const uint64_t listed_bytes = rays_of_pixels > 0                ? sizeof(uint32_t)
-                                  : precision == Precision::float64 ? sizeof(PackedRay<double>)
-                                                                    : sizeof(PackedRay<float>);
+    const uint64_t listed_bytes = rays_of_pixels > 0                       ? sizeof(uint32_t)
+                                  : number_format == NumberFormat::float64 ? sizeof(PackedRay<double>)
+                                                                           : sizeof(PackedRay<float>);
     const uint64_t rays         = std::max<uint64_t>(capacity, 1);
     const uint64_t largest      = rays * sizeof(glm::uvec3); // what was counted of each, a storage buffer
     if (largest > gpu.impl->limits.maxStorageBufferRange)
         throw_failure("{} rays need a buffer of {} MiB; the device allows {} MiB", rays, largest >> 20,
                       gpu.impl->limits.maxStorageBufferRange >> 20);
     RayBuffers buffers;
-    buffers.precision      = precision;
+    buffers.number_format  = number_format;
     buffers.capacity       = capacity;
     buffers.count          = make_buffer(gpu, 16);
     buffers.launch         = make_buffer(gpu, 16);
     buffers.list           = make_texel_buffer(gpu, rays * listed_bytes,
                                      rays_of_pixels > 0 ? vk::Format::eR32Uint : vk::Format::eR32G32B32A32Uint);
     buffers.rays_of_pixels = rays_of_pixels;
-    buffers.hits           = precision == Precision::float64
+    buffers.hits           = number_format == NumberFormat::float64
                                  ? make_texel_buffer(gpu, rays * sizeof(PackedHit<double>), vk::Format::eR32G32B32A32Uint)
                                  : make_texel_buffer(gpu, rays * sizeof(PackedHit<float>), vk::Format::eR32G32Uint);
 
@@ -117,10 +117,10 @@ void set_ray_count(Gpu& gpu, const RayBuffers& rays, size_t count)
 ShaderSource trace_source(const Gpu& gpu, const Lab& lab, const RayBuffers& rays, const Bindings& bindings)
 {
     const Technique& technique = lab.technique;
-    const bool       in_double = rays.precision == Precision::float64;
+    const bool       in_double = rays.number_format == NumberFormat::float64;
     ShaderSource     source{
             .file          = technique.rays_per_invocation == 2 ? "trace/trace_pairs.comp" : "trace/trace.comp",
-            .defines       = precision_defines(gpu, rays.precision),
+            .defines       = number_format_defines(gpu, rays.number_format),
             .include_files = structure_include_files(technique),
             .include_texts = {{"technique/parameters", parameter_declarations(technique.parameters, CONSTANT_PARAMETERS)},
                               {"technique/structures", structure_declarations(technique, nullptr, in_double)}},
@@ -142,7 +142,7 @@ ShaderSource trace_source(const Gpu& gpu, const Lab& lab, const RayBuffers& rays
 
 ShaderSource ray_setup_source(const Gpu& gpu, const RayBuffers& rays)
 {
-    Defines defines = precision_defines(gpu, rays.precision);
+    Defines defines = number_format_defines(gpu, rays.number_format);
     defines.merge(store_defines(gpu, rays.list));
     defines.merge(ray_list_defines(gpu, rays));
     return {.file = "rays/rays.comp", .defines = defines};
@@ -165,7 +165,7 @@ Constants trace_constants(const Gpu& gpu, const Lab& lab, const RayBuffers& rays
 {
     const std::string exact = exact_choice(lab.technique, lab.values);
     if (!exact.empty()) require_exact_arithmetic(gpu, lab, exact);
-    Constants constants = settings_constants(lab.gbuffer->view, lab.settings, rays.precision, !exact.empty());
+    Constants constants = settings_constants(lab.gbuffer->view, lab.settings, rays.number_format, !exact.empty());
     add_parameters(constants, lab.technique.parameters, lab.values, CONSTANT_PARAMETERS);
     return constants;
 }
@@ -213,7 +213,7 @@ TracePasses make_trace_passes(Gpu& gpu, const Lab& lab, const RayBuffers& rays, 
     bindings.insert({"View", view});
     if (counters.work != nullptr) bindings.insert({"Work", *counters.work});
     if (counters.visits != nullptr) bindings.insert({"Visits", *counters.visits});
-    Constants constants = settings_constants(gbuffer.view, lab.settings, rays.precision);
+    Constants constants = settings_constants(gbuffer.view, lab.settings, rays.number_format);
     constants.add(CONSTANT_EVERY_SURFACE, choice.every_surface ? 1 : 0);
     constants.add(CONSTANT_RAYS_PER_PIXEL, choice.per_pixel);
     constants.add(CONSTANT_LOBE_RAYS, choice.from_lobe ? 1 : 0);
@@ -291,7 +291,7 @@ TraceCounts count_hits(Gpu& gpu, const Lab& lab, const RayBuffers& rays, const R
     bindings.insert({{"View", gbuffer.view_uniforms}, {"TraceStatistics", counts}});
     const ComputePass count = make_compute_pass(
         gpu, compile_shader(gpu, {.file = "trace/trace_statistics.comp", .defines = ray_list_defines(gpu, rays)}),
-        bindings, settings_constants(gbuffer.view, lab.settings, Precision::float32));
+        bindings, settings_constants(gbuffer.view, lab.settings, NumberFormat::float32));
     submit(gpu, [&](const auto& commands) {
         commands.fillBuffer(*counts.buffer, 0, VK_WHOLE_SIZE, 0);
         record_rays(commands, passes, gbuffer);

@@ -35,15 +35,15 @@ static_assert(sizeof(PackedHit<float>) == 8 && sizeof(PackedHit<double>) == 16);
 
 /// The list of rays and their results (shaders/rays/rays.comp, shaders/trace/trace.comp).
 struct RayBuffers {
-    Precision                         precision = Precision::float32;
-    size_t                            capacity  = 0;
+    NumberFormat                      number_format = NumberFormat::float32;
+    size_t                            capacity      = 0;
     Buffer                            count, list, hits;
     Buffer                            launch, group_launch; // dispatch arguments: of the trace, of passes per ray group
     std::shared_ptr<StructureBuffers> structures = {};      // those that depend on this list
     int  rays_of_pixels = 0;     // above 0: the list holds pixels, each this many times, and shaders make the rays
     bool from_lobe      = false; // such rays are drawn from the lobe of a rough surface
 };
-RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, Precision precision, int rays_of_pixels = 0);
+RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, NumberFormat number_format, int rays_of_pixels = 0);
 /// Sets the number of rays in a list that is uploaded, and their launches.
 void set_ray_count(Gpu& gpu, const RayBuffers& rays, size_t count);
 /// Returns the pass that sets the launches of a list that other passes have filled and counted.
@@ -109,7 +109,7 @@ Bindings ray_bindings(const GBuffer& gbuffer, const RayBuffers& rays);
 /// Returns the macros for a shader that reads or writes this list.
 Defines ray_list_defines(const Gpu& gpu, const RayBuffers& rays);
 /// Returns the number types of shaders/api/real.glsl and rays/double_float.glsl.
-Defines precision_defines(const Gpu& gpu, Precision precision);
+Defines number_format_defines(const Gpu& gpu, NumberFormat number_format);
 /// Adds the surface model and the layers to a shader (shaders/surfaces/).
 void add_surface(ShaderSource& source, const Surface& surface, int layers);
 /// Returns the macros for a shader that stores texels of this buffer (shaders/layout/stored_texels.glsl).
@@ -117,7 +117,8 @@ Defines store_defines(const Gpu& gpu, const Buffer& texels);
 /// Adds the constants of shaders/rays/reflecting.glsl.
 void add_reflecting(Constants& constants, const TraceSettings& settings);
 /// Returns view and settings as constants. `exact`: for a shader compiled with EXACT_ARITHMETIC (slab in double).
-Constants settings_constants(const View& view, const TraceSettings& settings, Precision precision, bool exact = false);
+Constants settings_constants(const View& view, const TraceSettings& settings, NumberFormat number_format,
+                             bool exact = false);
 /// Returns GLSL that declares one constant per parameter, from constant `id` on, and PARAMETER_CHOICE for each choice.
 std::string parameter_declarations(std::span<const Parameter> parameters, uint32_t id);
 void        add_parameters(Constants& constants, std::span<const Parameter> parameters, const ParameterValues& values,
@@ -144,7 +145,7 @@ template <typename Real> std::vector<PackedRay<Real>> read_list(Gpu& gpu, const 
 /// impossible result, the status and pixel that the technique returned.
 size_t work_words(const Technique& technique);
 /// Downloads the result of each pixel. `work`: null for a result without counts.
-template <typename Real> TraceResult read_result(Gpu& gpu, const Lab& lab, const RayBuffers& rays, const Buffer* work);
+template <typename Real> TraceImage read_result(Gpu& gpu, const Lab& lab, const RayBuffers& rays, const Buffer* work);
 
 float half_to_float(uint16_t half);
 

@@ -33,17 +33,17 @@ uint8_t unpack_layer(uint32_t packed)
 
 size_t work_words(const Technique& technique) { return 2 + std::max<size_t>(technique.structures.size(), 1); }
 
-template <typename Real> TraceResult read_result(Gpu& gpu, const Lab& lab, const RayBuffers& rays, const Buffer* work)
+template <typename Real> TraceImage read_result(Gpu& gpu, const Lab& lab, const RayBuffers& rays, const Buffer* work)
 {
     const glm::ivec2 size_px    = lab.gbuffer->view.size_px;
     const auto&      structures = lab.technique.structures;
     const auto       listed     = read_list<Real>(gpu, rays);
     const size_t     count = listed.size(), words = work_words(lab.technique);
     const auto       hits = download_as<PackedHit<Real>>(gpu, rays.hits, count);
-    const auto  works = work != nullptr ? download_as<uint32_t>(gpu, *work, count * words) : std::vector<uint32_t>{};
-    const auto  group_fetches = work != nullptr ? read_group_fetches(gpu, lab.technique, rays)
-                                                : std::vector<std::vector<uint32_t>>(structures.size());
-    TraceResult result        = make_trace_result(size_px, work != nullptr);
+    const auto works = work != nullptr ? download_as<uint32_t>(gpu, *work, count * words) : std::vector<uint32_t>{};
+    const auto group_fetches = work != nullptr ? read_group_fetches(gpu, lab.technique, rays)
+                                               : std::vector<std::vector<uint32_t>>(structures.size());
+    TraceImage result        = make_trace_image(size_px, work != nullptr);
     for (const Structure& structure : structures)
         if (work != nullptr)
             result.structure_fetches.push_back({structure.id, std::vector<uint32_t>(pixel_count(size_px))});
@@ -73,8 +73,8 @@ template <typename Real> TraceResult read_result(Gpu& gpu, const Lab& lab, const
     }
     return result;
 }
-template TraceResult read_result<float>(Gpu&, const Lab&, const RayBuffers&, const Buffer*);
-template TraceResult read_result<double>(Gpu&, const Lab&, const RayBuffers&, const Buffer*);
+template TraceImage read_result<float>(Gpu&, const Lab&, const RayBuffers&, const Buffer*);
+template TraceImage read_result<double>(Gpu&, const Lab&, const RayBuffers&, const Buffer*);
 
 float half_to_float(uint16_t half) { return glm::unpackHalf1x16(half); }
 

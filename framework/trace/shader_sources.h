@@ -14,7 +14,7 @@ std::vector<StructurePass> passes_on(const Gpu& gpu, const Structure& structure)
 ShaderSource build_source(const Gpu& gpu, const Lab& lab, const Structure& structure, const StructurePass& pass,
                           const RayBuffers& rays, bool counts_work);
 /// Its constants, in the precision of the rays where it is built for them.
-Constants build_constants(const Lab& lab, Precision precision);
+Constants build_constants(const Lab& lab, NumberFormat number_format);
 /// Its dispatches, without the pass.
 StructureDispatch dispatches_of(const Lab& lab, const StructurePass& pass);
 /// Of a buffer that is not the depth's own.

@@ -55,7 +55,8 @@ Buffer make_structure_buffer(Gpu& gpu, const StructureBuffer& buffer, glm::ivec2
 {
     const size_t      elements = element_count(buffer, size_px, rays);
     const ElementType type     = element_type(buffer.type);
-    if (is_double(buffer, rays.precision == Precision::float64)) return make_buffer(gpu, elements * 2 * sizeof(double));
+    if (is_double(buffer, rays.number_format == NumberFormat::float64))
+        return make_buffer(gpu, elements * 2 * sizeof(double));
     return make_texel_buffer(gpu, elements * static_cast<size_t>(type.words) * sizeof(uint32_t), type.texels);
 }
 
@@ -149,9 +150,10 @@ StructureDispatch make_dispatch(Gpu& gpu, const Lab& lab, const Structure& struc
 {
     const ShaderSource source   = build_source(gpu, lab, structure, pass, rays, bindings.contains("Work"));
     StructureDispatch  dispatch = dispatches_of(lab, pass);
-    dispatch.pass               = make_compute_pass(gpu, compile_shader(gpu, source), bindings,
-                                                    build_constants(lab, is_per_ray(pass) ? rays.precision : Precision::float32),
-                                      pass.per == SizeRule::level ? sizeof(glm::ivec2) : 0);
+    dispatch.pass =
+        make_compute_pass(gpu, compile_shader(gpu, source), bindings,
+                          build_constants(lab, is_per_ray(pass) ? rays.number_format : NumberFormat::float32),
+                          pass.per == SizeRule::level ? sizeof(glm::ivec2) : 0);
     return dispatch;
 }
 
@@ -197,18 +199,18 @@ std::string buffer_declarations(const StructureBuffer& buffer, int binding, bool
 ShaderSource build_source(const Gpu& gpu, const Lab& lab, const Structure& structure, const StructurePass& pass,
                           const RayBuffers& rays, bool counts_work)
 {
-    ShaderSource source = shader_of(lab.technique, structure, pass, rays.precision == Precision::float64);
+    ShaderSource source = shader_of(lab.technique, structure, pass, rays.number_format == NumberFormat::float64);
     add_surface(source, lab.surface, lab.settings.layers);
-    source.defines.merge(precision_defines(gpu, is_per_ray(pass) ? rays.precision : Precision::float32));
+    source.defines.merge(number_format_defines(gpu, is_per_ray(pass) ? rays.number_format : NumberFormat::float32));
     source.defines.merge(store_defines_of(gpu, structure, *lab.gbuffer, rays));
     if (is_per_ray(pass)) source.defines.merge(ray_list_defines(gpu, rays));
     if (is_per_ray(pass) && counts_work) source.defines.emplace("COUNT_WORK", "1");
     return source;
 }
 
-Constants build_constants(const Lab& lab, Precision precision)
+Constants build_constants(const Lab& lab, NumberFormat number_format)
 {
-    Constants constants = settings_constants(lab.gbuffer->view, lab.settings, precision);
+    Constants constants = settings_constants(lab.gbuffer->view, lab.settings, number_format);
     add_parameters(constants, lab.technique.parameters, lab.values, CONSTANT_PARAMETERS);
     return constants;
 }
@@ -230,7 +232,8 @@ std::vector<StructurePass> passes_on(const Gpu& gpu, const Structure& structure)
 
 size_t structure_buffer_bytes(const StructureBuffer& buffer, glm::ivec2 size_px, const RayBuffers& rays)
 {
-    const size_t word = is_double(buffer, rays.precision == Precision::float64) ? sizeof(double) : sizeof(uint32_t);
+    const size_t word =
+        is_double(buffer, rays.number_format == NumberFormat::float64) ? sizeof(double) : sizeof(uint32_t);
     return element_count(buffer, size_px, rays) * static_cast<size_t>(element_type(buffer.type).words) * word;
 }
 

@@ -10,7 +10,7 @@ namespace ssrlab {
 
 TechniqueFiles technique_files(Gpu& gpu, const LabPtr& lab)
 {
-    const RayBuffers rays = make_ray_buffers(gpu, 1, Precision::float32);
+    const RayBuffers rays = make_ray_buffers(gpu, 1, NumberFormat::float32);
     TechniqueFiles   files;
     const auto       add = [&](std::vector<ShaderFile>& list, const ShaderSource& source) {
         const auto known = [&](const ShaderFile& file) {

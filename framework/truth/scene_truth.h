@@ -18,7 +18,7 @@
 #pragma once
 
 #include "core/gbuffer_image.h"
-#include "core/trace_result.h"
+#include "core/trace_image.h"
 #include "core/truth_class.h"
 #include "truth/reflected_rays.h"
 #include "truth/scene_bvh.h"

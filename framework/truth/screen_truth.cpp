@@ -34,7 +34,7 @@ struct Axis {
     }
 };
 
-void store(const WalkResult& found, size_t i, TraceResult& result)
+void store(const WalkResult& found, size_t i, TraceImage& result)
 {
     result.status[i]       = found.status;
     result.steps[i]        = found.pixels;
@@ -141,11 +141,11 @@ WalkResult ScreenWalk::walk(const ScreenRay& ray) const
     return found;
 }
 
-TraceResult screen_truth(const GBufferImage& gbuffer, const TraceSettings& settings, unsigned threads)
+TraceImage screen_truth(const GBufferImage& gbuffer, const TraceSettings& settings, unsigned threads)
 {
     const ScreenWalk walk(gbuffer, settings);
     const glm::ivec2 size   = gbuffer.view.size_px;
-    TraceResult      result = make_trace_result(size, false);
+    TraceImage       result = make_trace_image(size, false);
     parallel_rows(size.y, threads, [&](int y) {
         for (int x = 0; x < size.x; ++x) {
             store(walk.walk(make_screen_ray(gbuffer, {x, y}, settings)), pixel_index({x, y}, size), result);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/gbuffer_image.h"
-#include "core/trace_result.h"
+#include "core/trace_image.h"
 #include "truth/pixel_surface.h"
 #include "truth/screen_ray.h"
 
@@ -44,6 +44,6 @@ private:
 };
 
 /// Returns the truth of every pixel; `steps` is the number of visited pixels. threads = 0: all cores.
-TraceResult screen_truth(const GBufferImage& gbuffer, const TraceSettings& settings, unsigned threads = 0);
+TraceImage screen_truth(const GBufferImage& gbuffer, const TraceSettings& settings, unsigned threads = 0);
 
 } // namespace ssrlab

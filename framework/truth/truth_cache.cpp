@@ -155,7 +155,7 @@ void write_payload(const fs::path& path, XXH128_hash_t key, const std::vector<ch
 }
 
 // The order of a file's values, for writing and for reading. It holds only what is defined: a miss is its status and its steps.
-template <typename Pass> void pass_values(Pass& pass, TraceResult& result)
+template <typename Pass> void pass_values(Pass& pass, TraceImage& result)
 {
     for (size_t i = 0; i < result.status.size(); ++i) {
         pass(result.status[i]);
@@ -201,7 +201,7 @@ template <typename Truth> Truth empty_truth(glm::ivec2 size_px)
 {
     if constexpr (std::is_same_v<Truth, SceneTruth>) return empty_scene_truth(size_px);
     if constexpr (std::is_same_v<Truth, GlossyTruth>) return empty_glossy_truth(size_px);
-    if constexpr (std::is_same_v<Truth, TraceResult>) return make_trace_result(size_px, false);
+    if constexpr (std::is_same_v<Truth, TraceImage>) return make_trace_image(size_px, false);
 }
 
 /// kind: begins the file's name.
@@ -226,16 +226,16 @@ Truth cached(const fs::path& cache_dir, std::string_view kind, const ContentHash
 
 } // namespace
 
-TraceResult cached_screen_truth(const fs::path& cache_dir, const GBufferImage& gbuffer, const TraceSettings& settings,
-                                unsigned threads)
+TraceImage cached_screen_truth(const fs::path& cache_dir, const GBufferImage& gbuffer, const TraceSettings& settings,
+                               unsigned threads)
 {
     require_complete(gbuffer);
     ContentHash hash;
     add(hash.add(format_version), gbuffer);
     for (int layer = 1; layer < layer_count(gbuffer, settings); ++layer) add(hash, layer_of(gbuffer, layer));
     add(hash, settings);
-    return cached<TraceResult>(cache_dir, "screen", hash, gbuffer.view.size_px,
-                               [&] { return screen_truth(gbuffer, settings, threads); });
+    return cached<TraceImage>(cache_dir, "screen", hash, gbuffer.view.size_px,
+                              [&] { return screen_truth(gbuffer, settings, threads); });
 }
 
 SceneTruth cached_scene_truth(const fs::path& cache_dir, const Scene& scene, const GBufferImage& gbuffer,

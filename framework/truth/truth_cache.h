@@ -12,8 +12,8 @@ namespace ssrlab {
 /// Like screen_truth(), scene_truth() and glossy_truth(), but reads the result from cache_dir if it is there and
 /// intact. A damaged file is computed anew, and a file that cannot be written is not an error. Files appear whole or
 /// not at all, so processes may share the folder. An empty cache_dir stands for no cache.
-TraceResult cached_screen_truth(const std::filesystem::path& cache_dir, const GBufferImage& gbuffer,
-                                const TraceSettings& settings, unsigned threads = 0);
+TraceImage cached_screen_truth(const std::filesystem::path& cache_dir, const GBufferImage& gbuffer,
+                               const TraceSettings& settings, unsigned threads = 0);
 
 /// Builds the hierarchy only if the truth is not in the cache.
 SceneTruth  cached_scene_truth(const std::filesystem::path& cache_dir, const Scene& scene, const GBufferImage& gbuffer,

@@ -42,19 +42,19 @@ struct Session {
     Stale            stale;
 
     // What work() made of them.
-    FramePtr                   frame;
-    std::vector<FrameTimes>    times; // of this frame, one after another
-    GBufferImage               gbuffer;
-    Image                      shaded, true_picture;
-    TraceResult                counted;
-    std::optional<SceneTruth>  scene_truth;
-    std::optional<TraceResult> screen_truth; // of a frame of another renderer
-    MeasureValues              measures;
-    std::vector<ListedSource>  listed; // of `sources`; in the place of `auto`, what it chose
-    AnsweredRays               answered;
-    Image                      shown;       // linear display light
-    int                        version = 0; // of `shown`
-    std::string                problem;     // why the settings cannot be shown; empty: they can
+    FramePtr                  frame;
+    std::vector<FrameTimes>   times; // of this frame, one after another
+    GBufferImage              gbuffer;
+    Image                     shaded, true_picture;
+    TraceImage                counted;
+    std::optional<SceneTruth> scene_truth;
+    std::optional<TraceImage> screen_truth; // of a frame of another renderer
+    MeasureValues             measures;
+    std::vector<ListedSource> listed; // of `sources`; in the place of `auto`, what it chose
+    AnsweredRays              answered;
+    Image                     shown;       // linear display light
+    int                       version = 0; // of `shown`
+    std::string               problem;     // why the settings cannot be shown; empty: they can
 };
 
 std::unique_ptr<Session> open_session(const CommonOptions& common, const PictureOptions& picture);

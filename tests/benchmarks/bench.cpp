@@ -149,7 +149,7 @@ void Bench::screen_truth(benchmark::State& state, const std::string& scene, glm:
 {
     const GBufferImage gbuffer = read_gbuffer(gpu_, *picture(scene, size_px).gbuffer);
     measure_truth(state, "cells", [&] {
-        const TraceResult truth = ssrlab::screen_truth(gbuffer, bench_settings.trace);
+        const TraceImage truth = ssrlab::screen_truth(gbuffer, bench_settings.trace);
         return std::accumulate(truth.steps.begin(), truth.steps.end(), 0.0);
     });
 }

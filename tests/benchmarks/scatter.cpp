@@ -22,7 +22,7 @@ Bench::Scattered Bench::scatter(Picture& p)
     const glm::ivec2 size     = p.gbuffer->view.size_px;
     const auto       capacity = pixel_count(size);
     const size_t     count    = s.frame->inputs.rays->capacity;
-    s.every_pixel             = make_ray_buffers(gpu_, capacity, Precision::float32);
+    s.every_pixel             = make_ray_buffers(gpu_, capacity, NumberFormat::float32);
     s.over_every_pixel        = make_trace_passes(gpu_, *lab, s.every_pixel, s.gbuffer->view_uniforms);
     std::vector<PackedRay<float>> rays(capacity);
     for (size_t i = 0; i < capacity; ++i) rays[i].origin = glm::vec3(glm::vec2(pixel_at(i, size)) + 0.5F, 1);

@@ -35,7 +35,7 @@ struct Axis {
     }
 };
 
-uint64_t count_visits(const ScreenRay& ray, const TraceResult& truth, size_t index, int top_level)
+uint64_t count_visits(const ScreenRay& ray, const TraceImage& truth, size_t index, int top_level)
 {
     const glm::ivec2 size = truth.size_px, hit = truth.hit_pixel[index];
     const bool       hits = truth.status[index] == TraceStatus::hit;
@@ -68,7 +68,7 @@ uint64_t count_visits(const ScreenRay& ray, const TraceResult& truth, size_t ind
 
 } // namespace
 
-double visits_with_perfect_cells(const GBufferImage& gbuffer, const TraceSettings& settings, const TraceResult& truth,
+double visits_with_perfect_cells(const GBufferImage& gbuffer, const TraceSettings& settings, const TraceImage& truth,
                                  int top_level)
 {
     const glm::ivec2      size = gbuffer.view.size_px;

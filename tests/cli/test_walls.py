@@ -18,7 +18,7 @@ WALLS = {
     "export": ("trace/lab.h", ["scene/scene.h", "frame/frame.h", "check/judge.h", "harness/experiment.h"]),
     "frame": ("trace/lab.h", ["truth/scene_bvh.h", "compare/measures.h", "harness/experiment.h"]),
     "truth": ("scene/scene.h", ["gpu/gpu.h", "trace/lab.h", "compare/measures.h"]),
-    "compare": ("core/trace_result.h", ["truth/scene_truth.h", "scene/scene.h", "gpu/gpu.h"]),
+    "compare": ("core/trace_image.h", ["truth/scene_truth.h", "scene/scene.h", "gpu/gpu.h"]),
     "harness": ("frame/stage.h", ["check/judge.h", "viewer/viewer.h", "app/commands.h"]),
     "check": ("trace/lab.h", ["viewer/viewer.h", "app/commands.h"]),
     "viewer": ("harness/choice.h", ["app/commands.h", "check/judge.h"]),

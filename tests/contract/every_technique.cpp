@@ -51,7 +51,7 @@ std::vector<ParameterValues> values_for(const Technique& technique, glm::ivec2 s
 
 /// What is wrong with the result at one pixel; empty: nothing.
 std::string broken(const Picture& picture, const Technique& technique, const TraceSettings& settings,
-                   const TraceResult& result, size_t i, double most_steps)
+                   const TraceImage& result, size_t i, double most_steps)
 {
     const glm::ivec2 size  = result.size_px, start(static_cast<int>(i) % size.x, static_cast<int>(i) / size.x),
                      pixel = result.hit_pixel[i];
@@ -92,7 +92,7 @@ void expect_contract(const Case& c, const Picture& picture, const Technique& tec
                      const TraceSettings& settings)
 {
     const auto        frame  = prepared_frame(picture.buffers, technique, values, {settings});
-    const TraceResult result = counted(*frame), again = counted(*frame);
+    const TraceImage  result = counted(*frame), again = counted(*frame);
     const std::string repeat = repeat_command(c.scene, "default", c.size_px, technique, values, settings);
     size_t            wrong  = 0;
     for (size_t i = 0; i < result.status.size(); ++i) {
@@ -133,10 +133,10 @@ void expect_budget(const Case& c, std::span<const Technique> techniques)
     const TraceSettings settings = boxes({.thickness_m = 0.1, .max_distance_m = infinity});
     for (const Technique& t : techniques) {
         if (std::ranges::find(t.parameters, "max_steps", &Parameter::name) == t.parameters.end()) continue;
-        const TraceResult full = trace(picture, t, values_of(t), settings);
+        const TraceImage full = trace(picture, t, values_of(t), settings);
         for (const uint32_t most : {1U, 7U}) {
             const ParameterValues values = values_of(t, {{"max_steps", most}});
-            const TraceResult     cut    = trace(picture, t, values, settings);
+            const TraceImage      cut    = trace(picture, t, values, settings);
             size_t                wrong  = 0;
             for (size_t i = 0; i < cut.status.size(); ++i)
                 wrong += cut.status[i] != (full.steps[i] <= most ? full.status[i] : TraceStatus::out_of_steps) ||

@@ -118,7 +118,7 @@ std::vector<ParameterValues> variants(const Technique& technique, const std::str
     return list;
 }
 
-bool same(TraceStatus status, glm::ivec2 hit_pixel, const TraceResult& walk, size_t i)
+bool same(TraceStatus status, glm::ivec2 hit_pixel, const TraceImage& walk, size_t i)
 {
     return status == walk.status[i] && (status != TraceStatus::hit || hit_pixel == walk.hit_pixel[i]);
 }
@@ -167,8 +167,8 @@ struct Rounding {
 /// What rounding does, in two parts. The walk: the same rays, walked in double precision. The rays: made and walked in double precision, which is
 /// the screen truth. Only rays may differ that pass within rounding of a corner or a slab's face.
 /// Adds to `all` what it counts in default views.
-void expect_rounding_only(const Picture& picture, const TraceSettings& settings, const TraceResult& truth,
-                          const TraceResult& walk, Rounding& all)
+void expect_rounding_only(const Picture& picture, const TraceSettings& settings, const TraceImage& truth,
+                          const TraceImage& walk, Rounding& all)
 {
     const ScreenWalk             exact_walk(picture.image, settings);
     const std::vector<ScreenRay> shader_rays = rays_of_the_shader(picture, settings);
@@ -221,10 +221,10 @@ void expect_exact(const std::string& scene, const Frame& frame, Rounding& roundi
     const Picture       picture = make_picture(scene, frame.view, frame.size_px);
     const TraceSettings settings =
         boxes({.thickness_m = 0.1, .max_distance_m = 1e9, .dielectric_min_f0 = dielectric_min_f0_for(frame)});
-    const Technique&  dda   = technique("dda");
-    const TraceResult walk  = trace(picture, dda, values_of(dda), settings);
-    const TraceResult truth = screen_truth(picture.image, settings);
-    std::string       first;
+    const Technique& dda   = technique("dda");
+    const TraceImage walk  = trace(picture, dda, values_of(dda), settings);
+    const TraceImage truth = screen_truth(picture.image, settings);
+    std::string      first;
 
     for (const Technique& t : catalogue().techniques) {
         if (!t.exact || t.id == "dda") continue;
@@ -235,7 +235,7 @@ void expect_exact(const std::string& scene, const Frame& frame, Rounding& roundi
     }
     expect_rounding_only(picture, settings, truth, walk, rounding);
     if (is_large(frame) || !device().info.float64) return;
-    EXPECT_EQ(count_differences(trace(picture, dda, values_of(dda), settings, Precision::float64), truth,
+    EXPECT_EQ(count_differences(trace(picture, dda, values_of(dda), settings, NumberFormat::float64), truth,
                                 double_twins_t, first),
               0U)
         << "double twin: " << first;
@@ -282,7 +282,7 @@ void expect_exact(const std::string& scene, const Frame& frame, Picture& picture
                                  .layers            = held.layers,
                                  .dielectric_min_f0 = dielectric_min_f0_for(frame)};
     const Technique&    dda  = technique("dda");
-    const TraceResult   walk = trace(picture, dda, values_of(dda), settings);
+    const TraceImage    walk = trace(picture, dda, values_of(dda), settings);
     if (static_cast<int>(picture.image.layers.size()) + 1 < held.layers)
         picture.image = read_gbuffer(device(), *picture.gbuffer); // with the layers that the trace has drawn
     const auto repeat = [&](const Technique& t) {
@@ -296,8 +296,8 @@ void expect_exact(const std::string& scene, const Frame& frame, Picture& picture
             << repeat(t);
     }
     if (!has_screen_truth(held.surface)) return;
-    const TraceResult truth = screen_truth(picture.image, settings);
-    const auto        rays  = static_cast<size_t>(
+    const TraceImage truth = screen_truth(picture.image, settings);
+    const auto       rays  = static_cast<size_t>(
         std::ranges::count_if(truth.status, [](TraceStatus s) { return s != TraceStatus::not_traced; }));
     const size_t near_ties = count_differences(walk, truth, any_t, first);
     // Other views than the default one have ties at exact corners, see expect_rounding_only().
@@ -305,7 +305,7 @@ void expect_exact(const std::string& scene, const Frame& frame, Picture& picture
         EXPECT_LE(near_ties, most_by_chance(2e-4, rays)) << first << "\n" << repeat(dda);
     }
     if (is_large(frame) || !device().info.float64) return;
-    EXPECT_EQ(count_differences(trace(picture, dda, values_of(dda), settings, Precision::float64), truth,
+    EXPECT_EQ(count_differences(trace(picture, dda, values_of(dda), settings, NumberFormat::float64), truth,
                                 double_twins_t, first),
               0U)
         << "double twin: " << first << "\n"
@@ -385,10 +385,10 @@ TEST(FrontPackets, ChangeNoAnswerOfATraversalThatStopsAtTheFirstOccluder)
     const ParameterValues values   = values_of(stops, {{"max_steps", 60000}});
     for (const auto& [scene, view] : {std::pair("interior", "default"), std::pair("interior", "piano"),
                                       std::pair("thin_yard", "default"), std::pair("thin_yard", "fence")}) {
-        const Picture     picture = make_picture(scene, view, {641, 363});
-        const TraceResult walked  = trace(picture, walks, values, settings);
-        std::string       first;
-        const auto        differs = [&](const Technique& t, const ParameterValues& of_it) {
+        const Picture    picture = make_picture(scene, view, {641, 363});
+        const TraceImage walked  = trace(picture, walks, values, settings);
+        std::string      first;
+        const auto       differs = [&](const Technique& t, const ParameterValues& of_it) {
             return count_differences(trace(picture, t, of_it, settings), walked, bit_equal_t, first);
         };
         EXPECT_GT(differs(behind, values_of(behind)), 100U) << scene << " " << view;

@@ -156,7 +156,7 @@ void expect_march(const Picture& picture, const std::string& id, const Parameter
 {
     const Technique&      t      = technique(id);
     const ParameterValues values = values_of(t, changed);
-    const TraceResult     result = trace(picture, t, values, settings, Precision::float64);
+    const TraceImage      result = trace(picture, t, values, settings, NumberFormat::float64);
     const GBufferImage    image  = read_gbuffer(device(), *picture.gbuffer); // with the layers that the trace has drawn
     size_t                wrong = 0, hits = 0, behind = 0;
     for (size_t i = 0; i < result.status.size(); ++i) {

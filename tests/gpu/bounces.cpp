@@ -171,7 +171,7 @@ TEST(Bounces, DoNotComeFromWhatStandsBeforeAHit)
         const Technique& t = technique("dda");
         return prepared_frame(picture.buffers, t, values_of(t), {layered, "plane", passes});
     };
-    const TraceResult     traced = counted(*prepared(report_passes()));
+    const TraceImage      traced = counted(*prepared(report_passes()));
     const ParameterValues no_fades{chosen(ViewerFade::off), chosen(EdgeFade::off)};
     size_t                hidden = 0;
     for (size_t i = 0; i < traced.status.size(); ++i)

@@ -158,7 +158,7 @@ TEST(Cones, EqualTheirHostTwin)
             const auto        shading = chosen(lit ? HitShading::lit : HitShading::diffuse);
             const double      stored  = host.top() * 2 * std::exp2(-10);
             for (const int steps : {1, 4}) {
-                ParameterValues   passes{chosen(Gloss::cone),
+                ParameterValues  passes{chosen(Gloss::cone),
                                        shading,
                                        chosen(ViewerFade::off),
                                        chosen(EdgeFade::off),
@@ -168,8 +168,8 @@ TEST(Cones, EqualTheirHostTwin)
                                        {"cone_steps", steps},
                                        {"cone_scale", steps == 1 ? 1 : 2},
                                        {"environment_fallback", 0}};
-                const auto        frame  = frame_with(picture, passes);
-                const TraceResult traced = counted(*frame);
+                const auto       frame  = frame_with(picture, passes);
+                const TraceImage traced = counted(*frame);
                 run_frame(device(), *frame);
                 const Reflection found = read_colours(picture.buffers->reflection);
                 const Reflection cells = read_colours(picture.buffers->cone->cells);
@@ -237,8 +237,8 @@ TEST(Cones, SeeNothingOfDeeperLayers)
                                                      {"min_direction_cosine", 0.98},
                                                      {"depth_step_fade_m", 1}})
         settings.passes.at(name) = value;
-    const auto        frame  = prepared_frame(picture.buffers, technique("dda"), values_of(technique("dda")), settings);
-    const TraceResult traced = counted(*frame);
+    const auto       frame  = prepared_frame(picture.buffers, technique("dda"), values_of(technique("dda")), settings);
+    const TraceImage traced = counted(*frame);
     run_frame(device(), *frame);
     const Reflection found  = read_colours(picture.buffers->reflection);
     size_t           deeper = 0;

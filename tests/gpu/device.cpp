@@ -96,9 +96,9 @@ FramePtr prepared_frame(const FrameBuffersPtr& buffers, const Technique& techniq
 
 const FramePlan& plan_of(const ReadyFrame& frame) { return frame.inputs.plan; }
 
-TraceResult counted(const ReadyFrame& frame, Precision precision)
+TraceImage counted(const ReadyFrame& frame, NumberFormat number_format)
 {
-    return trace_gbuffer(device(), *make_tracer(device(), frame.inputs.lab, precision));
+    return trace_gbuffer(device(), *make_tracer(device(), frame.inputs.lab, number_format));
 }
 
 LabPtr lab_on_picture(const Picture& picture, const Technique& technique, const ParameterValues& values,
@@ -109,17 +109,17 @@ LabPtr lab_on_picture(const Picture& picture, const Technique& technique, const 
 }
 
 TracerPtr tracer_on(const GBufferPtr& gbuffer, const Technique& technique, const ParameterValues& values,
-                    const TraceSettings& settings, size_t capacity, Precision precision)
+                    const TraceSettings& settings, size_t capacity, NumberFormat number_format)
 {
     return make_tracer(device(), make_lab(device(), catalogue(), gbuffer, technique, values, settings), capacity,
-                       precision);
+                       number_format);
 }
 
-TraceResult trace(const Picture& picture, const Technique& technique, const ParameterValues& values,
-                  const TraceSettings& settings, Precision precision)
+TraceImage trace(const Picture& picture, const Technique& technique, const ParameterValues& values,
+                 const TraceSettings& settings, NumberFormat number_format)
 {
     const LabPtr lab = lab_on_picture(picture, technique, values, settings);
-    return trace_gbuffer(device(), *make_tracer(device(), lab, precision));
+    return trace_gbuffer(device(), *make_tracer(device(), lab, number_format));
 }
 
 std::string missing_for_exact()
@@ -142,7 +142,7 @@ std::string repeat_command(const std::string& scene, const std::string& view, gl
                        behind_names[static_cast<size_t>(settings.behind)], settings.layers);
 }
 
-size_t count_differences(const TraceResult& a, const TraceResult& b, double t_tolerance, std::string& first)
+size_t count_differences(const TraceImage& a, const TraceImage& b, double t_tolerance, std::string& first)
 {
     size_t differences = 0;
     for (size_t i = 0; i < a.status.size(); ++i) {

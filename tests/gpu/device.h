@@ -49,15 +49,15 @@ FramePtr prepared_frame(const FrameBuffersPtr& buffers, const Technique& techniq
                         const FrameSettings& settings, const FrameHistoryPtr& history = nullptr);
 const FramePlan& plan_of(const ReadyFrame& frame);
 /// Traces the mirror rays of the frame's G-buffer.
-TraceResult counted(const ReadyFrame& frame, Precision precision = Precision::float32);
+TraceImage counted(const ReadyFrame& frame, NumberFormat number_format = NumberFormat::float32);
 /// The lab on a picture, with its layers.
 LabPtr    lab_on_picture(const Picture& picture, const Technique& technique, const ParameterValues& values,
                          const TraceSettings& settings);
 TracerPtr tracer_on(const GBufferPtr& gbuffer, const Technique& technique, const ParameterValues& values,
-                    const TraceSettings& settings, size_t capacity, Precision precision = Precision::float32);
+                    const TraceSettings& settings, size_t capacity, NumberFormat number_format = NumberFormat::float32);
 
-TraceResult trace(const Picture& picture, const Technique& technique, const ParameterValues& values,
-                  const TraceSettings& settings, Precision precision = Precision::float32);
+TraceImage trace(const Picture& picture, const Technique& technique, const ParameterValues& values,
+                 const TraceSettings& settings, NumberFormat number_format = NumberFormat::float32);
 
 /// What the device lacks for arithmetic = exact; empty: nothing.
 std::string missing_for_exact();
@@ -69,6 +69,6 @@ std::string repeat_command(const std::string& scene, const std::string& view, gl
 /// How far apart two t may be to count as the same.
 constexpr double bit_equal_t = 0, double_twins_t = 1e-9, any_t = std::numeric_limits<double>::infinity();
 /// Rays whose status, hit pixel, layer or hit t differ; `first` describes the first of them.
-size_t count_differences(const TraceResult& a, const TraceResult& b, double t_tolerance, std::string& first);
+size_t count_differences(const TraceImage& a, const TraceImage& b, double t_tolerance, std::string& first);
 
 } // namespace ssrlab::test

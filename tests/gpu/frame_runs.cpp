@@ -16,7 +16,7 @@ TEST_P(FrameRuns, TimesAreThereAndResultsAreTheCountedOnes)
     const TraceSettings settings = boxes({.thickness_m = 0.1, .max_distance_m = 20});
     const Technique&    t        = technique(GetParam());
     const auto          frame    = prepared_frame(picture.buffers, t, values_of(t), {settings});
-    const TraceResult   first = counted(*frame), second = counted(*frame);
+    const TraceImage    first = counted(*frame), second = counted(*frame);
     std::string         text;
     EXPECT_EQ(count_differences(first, second, bit_equal_t, text), 0U) << text;
     EXPECT_EQ(first.steps, second.steps);
@@ -32,7 +32,7 @@ TEST_P(FrameRuns, TimesAreThereAndResultsAreTheCountedOnes)
             EXPECT_LT(ms, 60000);
         }
         for (const Structure& structure : t.structures) EXPECT_GE(times.of(structure.id), 1e-4) << structure.id;
-        const TraceResult timed = read_result<float>(device(), *frame->inputs.lab, *frame->inputs.rays, nullptr);
+        const TraceImage timed = read_result<float>(device(), *frame->inputs.lab, *frame->inputs.rays, nullptr);
         EXPECT_EQ(count_differences(timed, first, bit_equal_t, text), 0U) << "run " << run << ": " << text;
         const auto pixels = read_shaded(device(), *frame).values;
         if (run == 0) shaded = pixels;
@@ -48,7 +48,7 @@ TEST(FrameRuns, TheOrderOfTheRaysIsThatOfTheList)
     const Picture       picture  = make_picture("builtin:pole_field", "down", {161, 91});
     const TraceSettings settings = boxes({.thickness_m = 0.1, .max_distance_m = 20});
     const Technique&    hiz      = technique("hiz");
-    const TraceResult   result   = trace(picture, hiz, values_of(hiz), settings);
+    const TraceImage    result   = trace(picture, hiz, values_of(hiz), settings);
     const TracerPtr     tracer   = make_tracer(device(), lab_on_picture(picture, hiz, values_of(hiz), settings));
     std::vector<size_t> listed;
     for (const RayInput& ray : set_up_rays(device(), *tracer)) listed.push_back(pixel_index(ray.pixel, {161, 91}));

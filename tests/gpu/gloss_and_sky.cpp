@@ -424,10 +424,10 @@ TEST(HitColour, MirroredLightIsTheHighlightThatTheReflectorSees)
     // Reflectors rougher than what they show.
     for (Material& material : scene.materials)
         if (material.metallic > 0) material.roughness = 0.9F;
-    const Picture     picture = make_picture(scene, find_camera(scene, "default"), {161, 91});
-    const auto        frame   = frame_with(picture, {chosen(HitShading::mirrored), chosen(ViewerFade::off),
-                                                     chosen(EdgeFade::off), chosen(PassSet::shading)});
-    const TraceResult traced  = counted(*frame);
+    const Picture    picture = make_picture(scene, find_camera(scene, "default"), {161, 91});
+    const auto       frame   = frame_with(picture, {chosen(HitShading::mirrored), chosen(ViewerFade::off),
+                                                    chosen(EdgeFade::off), chosen(PassSet::shading)});
+    const TraceImage traced  = counted(*frame);
     run_frame(device(), *frame);
     const Reflection found         = read_colours(picture.buffers->reflection);
     const glm::dmat3 view_to_world = glm::transpose(glm::dmat3(picture.view.world_to_view));

@@ -151,20 +151,20 @@ class HiddenLayer : public testing::TestWithParam<const char*> {};
 // they would have found it in the first, had the panel not stood there.
 TEST_P(HiddenLayer, RaysThatMissedFindTheWallBehindThePanel)
 {
-    const glm::ivec2  size_px(192, 128);
-    const Picture     with      = make_picture(panel_before_wall(), level_camera(), size_px);
-    const Picture     bare      = make_picture(panel_before_wall(false), level_camera(), size_px);
-    const auto        frame     = prepare(with, GetParam(), thin);
-    const TraceResult first     = counted(*frame);
-    const TraceResult unblocked = trace(bare, technique(GetParam()), values_of(technique(GetParam())), thin);
+    const glm::ivec2 size_px(192, 128);
+    const Picture    with      = make_picture(panel_before_wall(), level_camera(), size_px);
+    const Picture    bare      = make_picture(panel_before_wall(false), level_camera(), size_px);
+    const auto       frame     = prepare(with, GetParam(), thin);
+    const TraceImage first     = counted(*frame);
+    const TraceImage unblocked = trace(bare, technique(GetParam()), values_of(technique(GetParam())), thin);
     EXPECT_TRUE(planned(*frame, "hidden_layer").runs);
     EXPECT_NE(planned(*frame, "hidden_layer").reason.find("rays missed"), std::string::npos);
     run_frame(device(), *frame);
-    const TraceResult second    = *read_hidden_hits(device(), *frame);
-    const Image       picture   = read_shaded(device(), *frame);
-    const auto        without   = prepare(with, GetParam(), thin, {{"hidden_layer", 0}});
-    const auto        holes     = shaded(*without);
-    size_t            recovered = 0;
+    const TraceImage second    = *read_hidden_hits(device(), *frame);
+    const Image      picture   = read_shaded(device(), *frame);
+    const auto       without   = prepare(with, GetParam(), thin, {{"hidden_layer", 0}});
+    const auto       holes     = shaded(*without);
+    size_t           recovered = 0;
     for (size_t i = 0; i < first.status.size(); ++i) {
         if (first.status[i] == TraceStatus::not_traced) continue;
         const bool hidden = unblocked.status[i] == TraceStatus::hit && on_panel(with.view, unblocked.hit_pixel[i]) &&
@@ -195,8 +195,8 @@ TEST(HiddenLayerWalk, HizFindsThereWhatThePixelWalkFinds)
         run_frame(device(), *frame);
         return *read_hidden_hits(device(), *frame);
     };
-    const TraceResult walk = found("dda");
-    std::string       first;
+    const TraceImage walk = found("dda");
+    std::string      first;
     EXPECT_EQ(count_differences(found("hiz"), walk, bit_equal_t, first), 0U) << first;
     EXPECT_EQ(count_differences(found("hiz", {{"skip_unneeded_passes", 0}}), walk, bit_equal_t, first), 0U)
         << "what does not reflect looks for nothing there: " << first;

@@ -326,7 +326,7 @@ TEST(History, FurtherBouncesComeFromIt)
                           picture = picture_at(scene, "default", {1, 16}, size_px);
     const GBufferImage     image  = read_gbuffer(device(), *picture.gbuffer);
     std::vector<glm::vec2> vectors_px;
-    TraceResult            hits;
+    TraceImage             hits;
     const auto             reflection_after = [&](float held) {
         const FrameHistoryPtr history = make_history(device(), size_px);
         keep_history(device(), *run_picture(first, passes, history, "dda"), 0);

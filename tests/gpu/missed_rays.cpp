@@ -9,7 +9,7 @@ namespace {
 
 constexpr glm::ivec2 size_px{160, 90};
 
-bool hits_beside(const TraceResult& hits, glm::ivec2 pixel)
+bool hits_beside(const TraceImage& hits, glm::ivec2 pixel)
 {
     for (int i = 0; i < 9; ++i) {
         const glm::ivec2 next = glm::clamp(pixel + glm::ivec2(i % 3 - 1, i / 3 - 1), glm::ivec2(0), size_px - 1);
@@ -34,7 +34,7 @@ TEST(MissedRays, KeepNothingOfWhatHasMovedOn)
         for (int frame = 0; frame < 6; ++frame) {
             const SequencePicture picture = picture_at(scene, view, {frame, 8}, size_px);
             const auto            run     = run_picture(picture, passes, history, "dda");
-            const TraceResult     hits    = counted(*run);
+            const TraceImage      hits    = counted(*run);
             run_frame(device(), *run);
             keep_history(device(), *run, frame);
             const auto result = download_as<glm::vec4>(device(), history->reflection);

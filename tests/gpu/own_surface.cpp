@@ -23,10 +23,10 @@ TEST(OwnSurface, ExactTechniquesEqualThePixelWalk)
         Picture picture = make_picture(scene, "default", {241, 137});
         for (const int layers : {1, 2, 4}) {
             if (layers > most_layers()) continue;
-            TraceSettings settings     = sloped_slab;
-            settings.layers            = layers;
-            const auto        found_by = [&](const Technique& t) { return trace(picture, t, values_of(t), settings); };
-            const TraceResult walk     = found_by(technique("dda"));
+            TraceSettings settings    = sloped_slab;
+            settings.layers           = layers;
+            const auto       found_by = [&](const Technique& t) { return trace(picture, t, values_of(t), settings); };
+            const TraceImage walk     = found_by(technique("dda"));
             EXPECT_GT(std::ranges::count(walk.status, TraceStatus::hit), 500);
             std::string first;
             for (const Technique& t : catalogue().techniques) {

@@ -11,12 +11,13 @@ namespace {
 
 using Rays = std::vector<PackedRay<double>>;
 
-template <typename Real> Rays make_rays(const Picture& picture, const TraceSettings& settings, Precision precision)
+template <typename Real>
+Rays make_rays(const Picture& picture, const TraceSettings& settings, NumberFormat number_format)
 {
     const Technique&  dda     = technique("dda");
     const LabPtr      lab     = lab_on_picture(picture, dda, values_of(dda), settings);
-    const RayBuffers  buffers = make_ray_buffers(device(), picture.image.depth.size(), precision);
-    const Buffer      view    = upload_view(device(), picture.view, precision);
+    const RayBuffers  buffers = make_ray_buffers(device(), picture.image.depth.size(), number_format);
+    const Buffer      view    = upload_view(device(), picture.view, number_format);
     const TracePasses passes  = make_trace_passes(device(), *lab, buffers, view);
     submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, passes, *picture.gbuffer); });
     Rays rays;
@@ -147,7 +148,7 @@ TEST_P(WideNumbers, AgreeWithDoublePrecision)
 {
     for (const Case& c : cases()) {
         const Picture picture = make_picture(c.image);
-        const Worst   worst   = compare(picture, c.settings, make_rays<float>(picture, c.settings, Precision::float32));
+        const Worst worst = compare(picture, c.settings, make_rays<float>(picture, c.settings, NumberFormat::float32));
         // Float: the nearest numbers there are, half of the last place; with a maximum distance, whose end is set up in float, or an offset some more.
         const bool   rounded = c.settings.ray_offset_m > 0 || c.settings.max_distance_m < 1e9;
         const double last    = 0x1p-24 * (rounded ? 12 : 1.01);
@@ -165,7 +166,7 @@ TEST(Rays, DoubleTwinIsTheHostsBitForBit)
     if (!device().info.float64) GTEST_SKIP() << "the device has no double precision";
     for (const Case& c : cases()) {
         const Picture picture = make_picture(c.image);
-        const Worst   worst = compare(picture, c.settings, make_rays<double>(picture, c.settings, Precision::float64));
+        const Worst worst = compare(picture, c.settings, make_rays<double>(picture, c.settings, NumberFormat::float64));
         EXPECT_EQ(worst.origin_px, 0) << describe(c);
         EXPECT_EQ(worst.delta_px, 0) << describe(c);
         EXPECT_EQ(worst.depth, 0) << describe(c);

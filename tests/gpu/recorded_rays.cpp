@@ -119,7 +119,7 @@ TEST(CountedWork, OfPairsIsThatOfSingleRays)
     const auto          work_of  = [&](const char* id) {
         return trace(picture, technique(id), values_of(technique(id)), settings);
     };
-    const TraceResult pairs = work_of("hiz_packets"), single = work_of("hiz_waves");
+    const TraceImage pairs = work_of("hiz_packets"), single = work_of("hiz_waves");
     EXPECT_EQ(pairs.steps, single.steps);
     EXPECT_EQ(pairs.depth_fetches, single.depth_fetches);
     ASSERT_EQ(pairs.structure_fetches.size(), single.structure_fetches.size());

@@ -12,7 +12,7 @@ constexpr glm::ivec2 size_px{320, 180};
 struct SecondFrame {
     GBufferImage           image;
     std::vector<glm::vec2> vectors_px;
-    TraceResult            hits;
+    TraceImage             hits;
 };
 
 SecondFrame second_frame(const Scene& scene, const std::string& view, const std::string& id, int jitter_phases = 0,

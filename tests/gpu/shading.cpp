@@ -81,14 +81,14 @@ glm::dvec3 start_vs(const GBufferImage& image, size_t i)
 }
 
 /// Between the ray and the direction to the middle of the pixel that it hit.
-double direction_cosine(const GBufferImage& image, const TraceResult& result, size_t i)
+double direction_cosine(const GBufferImage& image, const TraceImage& result, size_t i)
 {
     const glm::ivec2 pixel = pixel_at(i, image.view.size_px);
     return glm::dot(mirror_direction_vs(image, pixel),
                     glm::normalize(pixel_point_vs(image, result.hit_pixel[i]) - start_vs(image, i)));
 }
 
-double attenuation(Attenuation attenuation, const GBufferImage& image, const TraceResult& result, size_t i)
+double attenuation(Attenuation attenuation, const GBufferImage& image, const TraceImage& result, size_t i)
 {
     const glm::dvec3 end      = result.hit_px_depth[i];
     const double     length_m = glm::distance(px_to_vs(image.view, glm::dvec2(end), end.z), start_vs(image, i));
@@ -100,7 +100,7 @@ double attenuation(Attenuation attenuation, const GBufferImage& image, const Tra
     return std::min(1.0, 1 / (length_m * length_m));
 }
 
-double beta(const GBufferImage& image, const TraceResult& result, size_t i, const ParameterValues& passes)
+double beta(const GBufferImage& image, const TraceImage& result, size_t i, const ParameterValues& passes)
 {
     const glm::ivec2 pixel(static_cast<int>(i) % 64, static_cast<int>(i) / 64);
     const double     exponent = passes.at("metallic_exponent");
@@ -128,7 +128,7 @@ TEST_P(Shading, IsTheFormulaAtEveryPixel)
     for (const auto& [name, value] : GetParam()) passes.at(name) = value;
     const auto frame =
         prepared_frame(picture.buffers, technique("hiz"), values_of(technique("hiz")), {settings, "plane", passes});
-    const TraceResult result = counted(*frame);
+    const TraceImage result = counted(*frame);
     run_frame(device(), *frame);
     const Image shaded = read_shaded(device(), *frame);
     size_t      hits = 0, seen = 0;
@@ -203,7 +203,7 @@ TEST(ShadingTowardTheViewer, WeighsNothing)
         for (const auto& [name, value] : ParameterValues{chosen(fade), chosen(EdgeFade::off)}) passes.at(name) = value;
         const auto frame =
             prepared_frame(picture.buffers, technique("dda"), values_of(technique("dda")), {settings, "plane", passes});
-        const TraceResult result = counted(*frame);
+        const TraceImage result = counted(*frame);
         run_frame(device(), *frame);
         const Reflection found  = read_colours(picture.buffers->reflection);
         size_t           toward = 0;

@@ -6,14 +6,14 @@
 namespace ssrlab::test {
 namespace {
 
-TraceStatus status_at(const TraceResult& result, int x, int y)
+TraceStatus status_at(const TraceImage& result, int x, int y)
 {
     return result.status.at(pixel_index({x, y}, result.size_px));
 }
 
 class Statuses : public testing::TestWithParam<const char*> {
 protected:
-    static TraceResult trace_with(const GBufferImage& image, const TraceSettings& settings)
+    static TraceImage trace_with(const GBufferImage& image, const TraceSettings& settings)
     {
         const Technique& t = technique(GetParam());
         return trace(make_picture(image), t, values_of(t), settings);
@@ -30,15 +30,15 @@ TEST_P(Statuses, NotTraced)
     image.normal_vs[at(image, 4, 50)] = {inf, 0, 0};
     image.depth[at(image, 5, 50)]     = 0;
     image.metallic[at(image, 6, 50)]  = nan;
-    const TraceResult result          = trace_with(image, boxes({.thickness_m = 0.5, .max_distance_m = 20}));
+    const TraceImage result           = trace_with(image, boxes({.thickness_m = 0.5, .max_distance_m = 20}));
     for (int x = 1; x <= 6; ++x) EXPECT_EQ(status_at(result, x, 50), TraceStatus::not_traced) << x;
     EXPECT_NE(status_at(result, 7, 50), TraceStatus::not_traced);
     EXPECT_EQ(status_at(result, 7, 20), TraceStatus::not_traced) << "the wall does not reflect";
     // Normals of any length are as good as unit ones.
     GBufferImage scaled = floor_and_wall(bench_view({64, 64}), 10);
     for (auto& normal : scaled.normal_vs) normal *= 1e-20F;
-    const TraceResult a = trace_with(scaled, boxes({.thickness_m = 0.5})),
-                      b = trace_with(floor_and_wall(bench_view({64, 64}), 10), boxes({.thickness_m = 0.5}));
+    const TraceImage a = trace_with(scaled, boxes({.thickness_m = 0.5})),
+                     b = trace_with(floor_and_wall(bench_view({64, 64}), 10), boxes({.thickness_m = 0.5}));
     std::string first;
     EXPECT_EQ(count_differences(a, b, any_t, first), 0U) << first;
 }
@@ -73,8 +73,8 @@ TEST(ShiftedPicture, HitsMoveByExactlyTheShift)
         const Picture moved = placed(corner);
         for (const char* id : {"dda", "hiz"}) {
             const TraceSettings settings = boxes({.thickness_m = 0.2, .max_distance_m = 1.5});
-            const TraceResult   a        = trace(picture, technique(id), values_of(technique(id)), settings);
-            const TraceResult   b        = trace(moved, technique(id), values_of(technique(id)), settings);
+            const TraceImage    a        = trace(picture, technique(id), values_of(technique(id)), settings);
+            const TraceImage    b        = trace(moved, technique(id), values_of(technique(id)), settings);
             size_t              hits     = 0;
             for (const auto [place, x, y] : pixels_of(window)) {
                 const auto i = pixel_index(home + glm::ivec2(x, y), canvas),

@@ -7,7 +7,7 @@
 namespace ssrlab::test {
 namespace {
 
-Reflection reflection_where_rays(Behind behind, bool stopped_shows_front, Gloss gloss, TraceResult& rays)
+Reflection reflection_where_rays(Behind behind, bool stopped_shows_front, Gloss gloss, TraceImage& rays)
 {
     const Picture picture = make_picture("animal_on_metal", "default", {160, 90});
     FrameSettings settings{.trace = {.thickness_m = 0.1, .max_distance_m = 30, .behind = behind, .surface = "plane"}};
@@ -26,7 +26,7 @@ Reflection reflection_where_rays(Behind behind, bool stopped_shows_front, Gloss 
 TEST(StoppedRays, ShowTheFrontOfWhatTheyMet)
 {
     for (const Gloss gloss : {Gloss::off, Gloss::stochastic}) {
-        TraceResult      stopped, shown, met;
+        TraceImage       stopped, shown, met;
         const Reflection missing = reflection_where_rays(Behind::stop, false, gloss, stopped),
                          front   = reflection_where_rays(Behind::stop, true, gloss, shown),
                          hit     = reflection_where_rays(Behind::hit, false, gloss, met);

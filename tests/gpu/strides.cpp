@@ -18,15 +18,15 @@ double wall_px(int y) { return 64 + 64.0 / 3 - (y + 0.5); }
 
 GBufferImage wall_picture() { return floor_and_wall(bench_view({64, 64}), 3); }
 
-TraceResult trace_with(const GBufferImage& image, std::string_view id, const ParameterValues& changed,
-                       const TraceSettings& settings)
+TraceImage trace_with(const GBufferImage& image, std::string_view id, const ParameterValues& changed,
+                      const TraceSettings& settings)
 {
     const Technique& t = technique(std::string(id));
     return trace(make_picture(image), t, values_of(t, changed), settings);
 }
 
 /// How far on screen the hits of the floor's rays lie from where the wall is met, at least `nearest_px` away; every ray must hit.
-std::vector<double> errors_px(const TraceResult& result, double nearest_px = 0)
+std::vector<double> errors_px(const TraceImage& result, double nearest_px = 0)
 {
     std::vector<double> errors;
     for (int y = first_floor_row; y <= last_floor_row; ++y) {
@@ -54,7 +54,7 @@ TEST(DdaStrided, FindsTheWallWithinHalfAStride)
 {
     for (const double stride : {1.0, 2.0, 4.0, 8.0})
         for (const double jitter : {0.0, 1.0}) {
-            const TraceResult result =
+            const TraceImage result =
                 trace_with(wall_picture(), "dda_strided", {{"stride_px", stride}, {"jitter", jitter}}, thin);
             EXPECT_LE(largest(errors_px(result, 2.5 * stride)), 0.5 * stride + 1e-3) << stride << ", jitter " << jitter;
         }
@@ -62,8 +62,8 @@ TEST(DdaStrided, FindsTheWallWithinHalfAStride)
 
 TEST(DdaStrided, IsThePixelWalkAlongColumnsAtStrideOne)
 {
-    const TraceResult walk   = trace_with(wall_picture(), "dda", {}, thin),
-                      result = trace_with(wall_picture(), "dda_strided", {{"stride_px", 1}, {"jitter", 0}}, thin);
+    const TraceImage walk   = trace_with(wall_picture(), "dda", {}, thin),
+                     result = trace_with(wall_picture(), "dda_strided", {{"stride_px", 1}, {"jitter", 0}}, thin);
     std::string first;
     EXPECT_EQ(count_differences(result, walk, any_t, first), 0U) << first;
 }
@@ -74,8 +74,8 @@ TEST(DdaStrided, StepsOverABarAsOftenAsItsStrideSays)
     GBufferImage image = floor_and_wall(bench_view({64, 64}), infinity);
     for (int x = 0; x < 64; ++x) set_pixel(image, x, 20, 5, {0, 0, 1}, 0);
     for (const double jitter : {0.0, 1.0}) {
-        const TraceResult result = trace_with(image, "dda_strided", {{"stride_px", 8}, {"jitter", jitter}}, unlimited);
-        size_t            rays = 0, hits = 0;
+        const TraceImage result = trace_with(image, "dda_strided", {{"stride_px", 8}, {"jitter", jitter}}, unlimited);
+        size_t           rays = 0, hits = 0;
         // The rays of these rows are more than 5 m deep there.
         for (size_t i = 48 * 64; i < 56 * 64; ++i) {
             ++rays;
@@ -93,8 +93,8 @@ TEST(Strides, JitterIsTheSameAtEveryRunAndAnotherInEveryPixel)
         const auto traced = [&](double jitter) {
             return trace_with(wall_picture(), id, {{"stride_px", 8}, {"jitter", jitter}}, thin);
         };
-        const TraceResult still = traced(0), jittered = traced(1);
-        std::string       first;
+        const TraceImage still = traced(0), jittered = traced(1);
+        std::string      first;
         EXPECT_EQ(count_differences(jittered, traced(1), bit_equal_t, first), 0U) << id << " " << first;
         EXPECT_GT(count_differences(jittered, still, bit_equal_t, first), 64U * 5) << id;
         // All columns see the same; only jitter tells them apart.
@@ -113,7 +113,7 @@ TEST(StridedDirection, EachBinaryStepHalvesTheError)
 {
     double before = infinity;
     for (int steps = 0; steps <= 4; ++steps) {
-        const TraceResult result =
+        const TraceImage result =
             trace_with(wall_picture(), "strided_direction", {{"binary_steps", steps}, {"min_alignment", 0}}, unlimited);
         const std::vector<double> errors = errors_px(result);
         EXPECT_LE(largest(errors), 16 / std::exp2(steps) + 1) << steps;
@@ -130,8 +130,8 @@ TEST(StridedDirection, FindsTheWall)
     // Nearer, a stride that ends behind the wall no longer ends in the ray's direction.
     EXPECT_LE(largest(errors_px(trace_with(wall_picture(), "strided_direction", strides_of_4, thin), 10)), 1);
     // Where a stride ends, the ray is already behind a thin wall: without the search, only the rays whose samples fall on the crossing find it.
-    const TraceResult coarse = trace_with(wall_picture(), "strided_direction", {{"stride_px", 4}, {"binary_steps", 0}},
-                                          boxes({.thickness_m = 0.01, .max_distance_m = 20}));
+    const TraceImage coarse = trace_with(wall_picture(), "strided_direction", {{"stride_px", 4}, {"binary_steps", 0}},
+                                         boxes({.thickness_m = 0.01, .max_distance_m = 20}));
     EXPECT_LE(std::ranges::count(coarse.status, TraceStatus::hit), 64 * 10);
 }
 
@@ -142,7 +142,7 @@ TEST(StridedDirection, RejectsWhatDoesNotLieInTheRaysDirection)
     for (int y = 28; y < 36; ++y)
         for (int x = 0; x < 64; ++x) set_pixel(image, x, y, 2, {0, 0, 1}, 0);
     const auto rows_hit = [&](double min_alignment) {
-        const TraceResult result =
+        const TraceImage result =
             trace_with(image, "strided_direction",
                        {{"stride_px", 4}, {"binary_steps", 2}, {"min_alignment", min_alignment}}, unlimited);
         std::array<size_t, 2> hits{}; // bar, wall
@@ -162,7 +162,7 @@ TEST(StridedDirection, IsMoreTolerantOfSurfacesThatFaceDown)
     for (size_t i = 0; i < down.depth.size(); ++i)
         if (down.metallic[i] == 0) down.normal_vs[i] = {0, -1, 0};
     const auto hits = [](const GBufferImage& image, double alignment_down) {
-        const TraceResult result =
+        const TraceImage result =
             trace_with(image, "strided_direction",
                        {{"stride_px", 4}, {"min_alignment", 1}, {"min_alignment_down", alignment_down}}, unlimited);
         return std::ranges::count(result.status, TraceStatus::hit);

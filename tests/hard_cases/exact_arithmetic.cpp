@@ -38,7 +38,7 @@ TEST(ExactArithmetic, IsTheSameInFloatAndDouble)
             const Technique&      t      = technique(id);
             const ParameterValues values = values_of(t, {{"arithmetic", 1}});
             const auto            single = tracer_on(picture.gbuffer, t, values, settings, pixels);
-            const auto            twin   = tracer_on(picture.gbuffer, t, values, settings, pixels, Precision::float64);
+            const auto            twin = tracer_on(picture.gbuffer, t, values, settings, pixels, NumberFormat::float64);
             const std::vector<RayInput>   rays  = set_up_rays(device(), *single);
             const std::vector<RayOutcome> found = trace_rays(device(), *single, rays),
                                           exact = trace_rays(device(), *twin, rays);

@@ -40,7 +40,7 @@ TEST(FarFromTheOrigin, AMillionMetresMoveNoHitByMoreThanAPixel)
         return trace(picture, technique("dda"), values_of(technique("dda")),
                        boxes({.thickness_m = 0.1, .max_distance_m = 100}));
     };
-    const TraceResult near = result("near", 0, 0), far = result("far", 1e6, -1e6);
+    const TraceImage near = result("near", 0, 0), far = result("far", 1e6, -1e6);
     std::filesystem::remove_all(folder);
 
     size_t hits = 0, other_status = 0, moved = 0;

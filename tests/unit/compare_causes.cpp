@@ -14,7 +14,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 struct CausesCase {
     GBufferImage gbuffer = empty_gbuffer(bench_view({24, 9}));
     SceneTruth   truth;
-    TraceResult  tested = make_trace_result({24, 9}, false);
+    TraceImage   tested = make_trace_image({24, 9}, false);
 
     CausesCase()
     {

@@ -10,9 +10,9 @@ namespace {
 
 using namespace test;
 
-TraceResult row_of(int count)
+TraceImage row_of(int count)
 {
-    TraceResult result;
+    TraceImage result;
     result.size_px = {count, 1};
     result.status.assign(size_t(count), TraceStatus::left_screen);
     result.hit_pixel.resize(size_t(count));
@@ -23,7 +23,7 @@ TraceResult row_of(int count)
     return result;
 }
 
-void set_hit(TraceResult& result, size_t i, double x_px, double depth = 0.05)
+void set_hit(TraceImage& result, size_t i, double x_px, double depth = 0.05)
 {
     result.status[i]       = TraceStatus::hit;
     result.hit_pixel[i]    = {int(x_px), 0};
@@ -37,7 +37,7 @@ template <typename... Expected> void expect_values(const MeasureValues& values, 
 
 TEST(RayMeasures, AgainstScreenTruth)
 {
-    TraceResult truth = row_of(10), tested = row_of(10);
+    TraceImage truth = row_of(10), tested = row_of(10);
     truth.status[0] = tested.status[0] = TraceStatus::not_traced;
     for (const size_t i : {1, 2, 3, 4, 5}) set_hit(truth, i, 2.25);
     set_hit(tested, 1, 2.75);                     // same pixel, 0.5 px
@@ -60,7 +60,7 @@ TEST(RayMeasures, AgainstScreenTruth)
 TEST(RayMeasures, ATieWithinRoundingIsFound)
 {
     for (const double off_px : {-1e-4, 0.0, 1e-4, 1e-2}) {
-        TraceResult truth = row_of(2), tested = row_of(2);
+        TraceImage truth = row_of(2), tested = row_of(2);
         set_hit(truth, 1, 0.25);
         set_hit(tested, 1, 1.25 + off_px);
         EXPECT_EQ(compare_to_screen_truth(tested, truth).at("screen_recall_1px"), off_px < 1e-3 ? 1 : 0) << off_px;
@@ -76,7 +76,7 @@ TEST(RayMeasures, DistanceIsTheLargerOfTwo)
 
 TEST(RayMeasures, WhatTheSecondLayerAdds)
 {
-    TraceResult first = row_of(10), second = row_of(10);
+    TraceImage first = row_of(10), second = row_of(10);
     second.status.assign(10, TraceStatus::not_traced);
     SceneTruth truth;
     truth.size_px = {10, 1};
@@ -96,13 +96,13 @@ TEST(RayMeasures, WhatTheSecondLayerAdds)
     // ghost_share: 1, 2, 3, 4 and 6
     expect_values(values, "hidden_recovered_share", 2 / 5.0, "ghost_share", 5 / 9.0, "ghost_removed_share", 4 / 5.0,
                   "hidden_layer_hits", 5 / 9.0, "hidden_layer_wrong", 2 / 5.0);
-    TraceResult other = row_of(9);
+    TraceImage other = row_of(9);
     EXPECT_THROW(compare_hidden_layer(first, other, truth), Failure);
 }
 
 TEST(RayMeasures, NothingTracedHasNoValues)
 {
-    TraceResult none = row_of(4);
+    TraceImage none = row_of(4);
     none.status.assign(4, TraceStatus::not_traced);
     SceneTruth scene;
     scene.size_px = {4, 1};
@@ -130,7 +130,7 @@ TEST(RayMeasures, NothingTracedHasNoValues)
 struct SceneCase {
     GBufferImage gbuffer = empty_gbuffer(bench_view({16, 1}));
     SceneTruth   truth;
-    TraceResult  tested = row_of(16), screen = row_of(16);
+    TraceImage   tested = row_of(16), screen = row_of(16);
 
     SceneCase()
     {
@@ -217,7 +217,7 @@ TEST(RayMeasures, ASelfHitLiesNearlyInThePlane)
 // What is found is counted of what the better of the two finds.
 TEST(RayMeasures, ErrorsAreSharesOfTheBetterResult)
 {
-    TraceResult found = row_of(8), twin = found, screen = found;
+    TraceImage found = row_of(8), twin = found, screen = found;
     set_hit(found, 0, 12.5);
     for (size_t i = 0; i < 2; ++i) set_hit(twin, i, 12.5);
     for (size_t i = 0; i < 8; ++i) set_hit(screen, i, 12.5);
@@ -265,7 +265,7 @@ TEST(RayMeasures, SplitAndFlips)
     SceneCase test;
     auto& [gbuffer, truth, tested, screen] = test;
     for (size_t i = 0; i < 4; ++i) truth.cls[i] = TruthClass::visible;
-    TraceResult twin = row_of(16);
+    TraceImage twin = row_of(16);
     for (size_t i = 0; i < 3; ++i) set_hit(screen, i, 12.25); // 3 of 4 visible
     for (size_t i = 0; i < 2; ++i) set_hit(twin, i, 12.75);   // 2 of 3
     set_hit(tested, 0, 14.5);                                 // 0 of 2: displaced, missed
@@ -284,7 +284,7 @@ TEST(RayMeasures, SplitAndFlips)
 
 TEST(RayMeasures, WorkIsCountedPerTracedRay)
 {
-    TraceResult result   = row_of(4);
+    TraceImage result    = row_of(4);
     result.status[0]     = TraceStatus::not_traced;
     result.steps         = {0, 1, 2, 6};
     MeasureValues values = count_work(result);
@@ -297,7 +297,7 @@ TEST(RayMeasures, WorkIsCountedPerTracedRay)
 TEST(RayMeasures, AGroupWaitsForItsLongestRay)
 {
     // Pixels 0 to 99, traced backwards: pixel 99 - i is ray i.
-    TraceResult result = row_of(100);
+    TraceImage result = row_of(100);
     result.steps.assign(100, 1);
     for (size_t i = 0; i < 100; ++i) result.traced_order.push_back(99 - i);
     result.steps[99] = 10; // ray 0
@@ -370,7 +370,7 @@ TEST(Measures, TableIsCompleteAndUnique)
 
 TEST(Pictures, AgreementColours)
 {
-    TraceResult truth = row_of(6), tested = row_of(6);
+    TraceImage truth = row_of(6), tested = row_of(6);
     truth.status[0] = TraceStatus::not_traced;
     for (const size_t i : {1, 2, 3}) set_hit(truth, i, 20.25);
     set_hit(tested, 1, 20.5);
@@ -396,7 +396,7 @@ TEST(Pictures, AgreementColours)
 
 TEST(Pictures, HeatMapGrowsWithFetches)
 {
-    TraceResult result       = row_of(4);
+    TraceImage result        = row_of(4);
     result.depth_fetches     = {0, 1, 4096, 100000};
     result.structure_fetches = {{"depth_pyramid", {0, 0, 0, 0}}};
     const Image image        = fetch_heat_map(result);

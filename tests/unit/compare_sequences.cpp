@@ -8,9 +8,9 @@ namespace {
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// Four rays side by side that hit at these columns; NaN: no hit.
-TraceResult hits_at(const std::vector<double>& columns_px)
+TraceImage hits_at(const std::vector<double>& columns_px)
 {
-    TraceResult result = make_trace_result({static_cast<int>(columns_px.size()), 1}, false);
+    TraceImage result = make_trace_image({static_cast<int>(columns_px.size()), 1}, false);
     for (size_t i = 0; i < columns_px.size(); ++i) {
         const bool hit         = columns_px[i] == columns_px[i];
         result.status[i]       = hit ? TraceStatus::hit : TraceStatus::left_screen;
@@ -23,10 +23,10 @@ TraceResult hits_at(const std::vector<double>& columns_px)
 // hit, and the third jumps by 5 px.
 TEST(SequenceMeasures, FlipsAreCountedWithoutTheJitter)
 {
-    const TraceResult before = hits_at({10, 20, 30, 40});
-    TraceResult       now    = hits_at({12.4, nan, 35, 40});
-    now.status[3]            = TraceStatus::not_traced;
-    const Flips flips        = count_changes(hit_places(before, {0, 0}), hit_places(now, {0.5, 0}));
+    const TraceImage before = hits_at({10, 20, 30, 40});
+    TraceImage       now    = hits_at({12.4, nan, 35, 40});
+    now.status[3]           = TraceStatus::not_traced;
+    const Flips flips       = count_changes(hit_places(before, {0, 0}), hit_places(now, {0.5, 0}));
     EXPECT_EQ(flips.rays, 3U);
     EXPECT_EQ(flips.flips, 2U);
     EXPECT_EQ(count_changes(hit_places(before, {0, 0}), hit_places(now, {0, 0})).flips, 3U)
@@ -36,8 +36,8 @@ TEST(SequenceMeasures, FlipsAreCountedWithoutTheJitter)
 // Luma 0 and 1 in turn has a variance of 1/4 around 1/2; a pixel that stays has none: together the root of 1/8.
 TEST(SequenceMeasures, TemporalDeviation)
 {
-    TemporalMoments   moments;
-    const TraceResult traced = hits_at({1, 2});
+    TemporalMoments  moments;
+    const TraceImage traced = hits_at({1, 2});
     EXPECT_FALSE(temporal_rms(moments, 0));
     for (const float value : {0.0F, 1.0F, 0.0F, 1.0F})
         add_picture(moments, {{2, 1}, {"R", "G", "B"}, {value, value, value, 0.25F, 0.25F, 0.25F}, {}}, traced);
@@ -59,7 +59,7 @@ TEST(SequenceMeasures, DistancesFromWhereReflectionsWere)
     using enum ReprojectionClass;
     const ReprojectionTruth      truth{{6, 1}, {unknown, hidden, seen, seen, seen, seen}, std::vector<glm::dvec2>(6)};
     const std::vector<glm::vec2> found  = {{9, 9}, {9, 9}, {9, 9}, {nan, nan}, {1, 0.5F}, {-2, 3}};
-    const TraceResult            traced = hits_at({1, 2, 3, 4, 5, 6});
+    const TraceImage             traced = hits_at({1, 2, 3, 4, 5, 6});
     SceneTruth                   scene;
     scene.size_px = {6, 1};
     scene.cls.assign(6, TruthClass::visible);

@@ -263,15 +263,15 @@ TEST(Rows, SamplesReadBackAsTheyWere)
 TEST(Rows, CountsOfAResultWithKnownFigures)
 {
     using enum TraceStatus;
-    TraceResult result{{5, 1},
-                       {not_traced, hit, left_screen, out_of_steps, hit},
-                       {},
-                       {},
-                       {},
-                       {},
-                       {0, 10, 20, 30, 40},
-                       {0, 1, 2, 3, 4},
-                       {{"depth_pyramid", {0, 9, 8, 7, 6}}}};
+    TraceImage result{{5, 1},
+                      {not_traced, hit, left_screen, out_of_steps, hit},
+                      {},
+                      {},
+                      {},
+                      {},
+                      {0, 10, 20, 30, 40},
+                      {0, 1, 2, 3, 4},
+                      {{"depth_pyramid", {0, 9, 8, 7, 6}}}};
     result.hit_pixel.resize(5);
     result.hit_px_depth.resize(5);
     result.hit_t.resize(5);
@@ -286,7 +286,7 @@ TEST(Rows, CountsOfAResultWithKnownFigures)
 // Of 101 rays the sorted figure i is the quantile i / 100. As many pixels are not traced.
 TEST(Rows, QuantilesAreOverTheRays)
 {
-    TraceResult result       = make_trace_result({202, 1}, true);
+    TraceImage result        = make_trace_image({202, 1}, true);
     result.structure_fetches = {{"depth_pyramid", std::vector<uint32_t>(202)}};
     for (size_t ray = 0; ray <= 100; ++ray) {
         const size_t i                         = 2 * ray + 1;
@@ -380,7 +380,7 @@ TEST(Rows, ASummaryIsOfTheFramesThatAreOk)
 
 TEST(Rows, FlipsAreOfPairsOfFramesBetweenWhichNothingMoved)
 {
-    TraceResult hit = make_trace_result({1, 1}, false), miss = hit;
+    TraceImage hit = make_trace_image({1, 1}, false), miss = hit;
     hit.status[0]  = TraceStatus::hit;
     miss.status[0] = TraceStatus::left_screen;
     const Image   picture{{1, 1}, {"R", "G", "B"}, {1, 1, 1}, {}};
@@ -399,7 +399,7 @@ TEST(Rows, ReflectedImageTakesTheHitPixelsRadiance)
 {
     GBufferImage gbuffer;
     gbuffer.radiance    = {{1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
-    TraceResult result  = make_trace_result({3, 1}, false);
+    TraceImage result   = make_trace_image({3, 1}, false);
     result.status       = {TraceStatus::hit, TraceStatus::left_screen, TraceStatus::not_traced};
     result.hit_pixel[0] = {2, 0};
     EXPECT_THAT(reflected_image(result, gbuffer, {7, 8, 9}).values, testing::ElementsAre(0, 0, 3, 7, 8, 9, 0, 0, 0));
@@ -412,7 +412,7 @@ TEST(Rows, ReflectedImageTakesTheRadianceOfTheLayerThatIsHit)
     behind.radiance     = {{0, 3, 0}, {0, 4, 0}};
     last.radiance       = {{0, 0, 5}, {0, 0, 6}};
     gbuffer.layers      = {behind, last};
-    TraceResult result  = make_trace_result({2, 1}, false);
+    TraceImage result   = make_trace_image({2, 1}, false);
     result.status       = {TraceStatus::hit, TraceStatus::hit};
     result.hit_pixel[0] = {1, 0};
     result.hit_layer    = {1, 2};
@@ -440,7 +440,7 @@ TEST(Rows, AFrameWithoutTrianglesIsJudgedWhereItReflects)
     EXPECT_EQ(truths.compare_picture(there, reference).at("picture_rmse"), 1);
     EXPECT_EQ(truths.compare_picture(there, reference).at("picture_visible_rmse"), std::nullopt);
     EXPECT_EQ(truths.compare_converged(there, reference).at("converged_rmse"), 1);
-    TraceResult traced         = make_trace_result({3, 1}, false);
+    TraceImage traced          = make_trace_image({3, 1}, false);
     traced.status[0]           = TraceStatus::left_screen;
     const MeasureValues values = truths.compare(traced, nullptr, nullptr);
     EXPECT_FALSE(values.contains("recall_1px"));

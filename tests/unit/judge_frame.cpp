@@ -99,7 +99,7 @@ TEST(JudgeFrame, WhatAFileLeavesOutFollowsFromTheFrame)
 {
     const std::vector<std::vector<std::string>> kept = {
         {"status", "hit.x", "hit.y"}, {"status", "pixel.x", "pixel.y"}, {"status", "pixel.x", "pixel.y", "hit.t"}};
-    const TraceResult full = Hits().judged().usable;
+    const TraceImage full = Hits().judged().usable;
     for (const auto& channels : kept) {
         Hits hits;
         hits.keep(channels, channels);

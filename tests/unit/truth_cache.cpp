@@ -20,7 +20,7 @@ protected:
     fs::path folder_;
 };
 
-void expect_equal(const TraceResult& a, const TraceResult& b)
+void expect_equal(const TraceImage& a, const TraceImage& b)
 {
     EXPECT_EQ(a.size_px, b.size_px);
     EXPECT_EQ(a.status, b.status);
@@ -34,7 +34,7 @@ void expect_equal(const TraceResult& a, const TraceResult& b)
 TEST_F(TruthCache, ScreenTruthReadsWhatItWrote)
 {
     const GBufferImage gbuffer  = random_gbuffer(bench_view({31, 23}), 1);
-    const TraceResult  computed = screen_truth(gbuffer, boxes());
+    const TraceImage   computed = screen_truth(gbuffer, boxes());
     expect_equal(cached_screen_truth(folder_, gbuffer, boxes()), computed);
     ASSERT_EQ(files().size(), 1U);
     const auto written = fs::last_write_time(files()[0]);
@@ -71,7 +71,7 @@ TEST_F(TruthCache, EveryInputChangesTheName)
 TEST_F(TruthCache, DamagedFilesAreComputedAnew)
 {
     const GBufferImage gbuffer  = random_gbuffer(bench_view({31, 23}), 3);
-    const TraceResult  computed = cached_screen_truth(folder_, gbuffer, boxes());
+    const TraceImage   computed = cached_screen_truth(folder_, gbuffer, boxes());
     const fs::path     file     = files()[0];
     const auto         size     = fs::file_size(file);
     for (const auto cut : {size - 1, size / 2, uintmax_t(20), uintmax_t(0)}) {
@@ -95,8 +95,8 @@ TEST_F(TruthCache, FilesUnderEachOthersNamesAreComputedAnew)
 {
     const GBufferImage  gbuffer = random_gbuffer(bench_view({31, 23}), 3);
     const TraceSettings other   = boxes({}, Behind::stop);
-    const TraceResult   hits    = cached_screen_truth(folder_, gbuffer, boxes());
-    const TraceResult   stops   = cached_screen_truth(folder_, gbuffer, other);
+    const TraceImage    hits    = cached_screen_truth(folder_, gbuffer, boxes());
+    const TraceImage    stops   = cached_screen_truth(folder_, gbuffer, other);
     ASSERT_NE(hits.status, stops.status);
     ASSERT_EQ(files().size(), 2U);
     const fs::path first = files()[0], second = files()[1], aside = folder_ / "aside";

@@ -10,7 +10,7 @@ using namespace test;
 constexpr double infinity  = std::numeric_limits<double>::infinity();
 constexpr double quiet_nan = std::numeric_limits<double>::quiet_NaN();
 
-int count(const TraceResult& result, TraceStatus status)
+int count(const TraceImage& result, TraceStatus status)
 {
     return int(std::count(result.status.begin(), result.status.end(), status));
 }
@@ -20,7 +20,7 @@ int count(const TraceResult& result, TraceStatus status)
 TEST(ScreenTruth, MirrorFloorShowsWallInExactRow)
 {
     const GBufferImage gbuffer = floor_and_wall(bench_view({64, 64}), 10);
-    const TraceResult  result  = screen_truth(gbuffer, boxes());
+    const TraceImage   result  = screen_truth(gbuffer, boxes());
     for (const auto [i, x, y] : pixels_of({64, 64})) {
         if (y + 0.5 < 35.2) {
             EXPECT_EQ(result.status[i], TraceStatus::not_traced);
@@ -45,7 +45,7 @@ TEST(ScreenTruth, FloorAloneIsNeverHit)
             settings.max_distance_m    = max_distance_m;
             settings.thickness_m       = infinity;
             const GBufferImage gbuffer = floor_and_wall(bench_view(size), infinity);
-            const TraceResult  result  = screen_truth(gbuffer, settings);
+            const TraceImage   result  = screen_truth(gbuffer, settings);
             EXPECT_EQ(count(result, TraceStatus::hit), 0);
             EXPECT_EQ(count(result, TraceStatus::not_traced) + count(result, TraceStatus::past_max_distance) +
                           count(result, TraceStatus::left_screen),
@@ -56,7 +56,7 @@ TEST(ScreenTruth, FloorAloneIsNeverHit)
 
 TEST(ScreenTruth, AllBackgroundIsNotTraced)
 {
-    const TraceResult result = screen_truth(empty_gbuffer(bench_view({5, 4})), boxes());
+    const TraceImage result = screen_truth(empty_gbuffer(bench_view({5, 4})), boxes());
     EXPECT_EQ(count(result, TraceStatus::not_traced), 20);
 }
 
@@ -70,7 +70,7 @@ TEST(ScreenTruth, UnusablePixelsAreNotTraced)
     gbuffer.depth[at(gbuffer, 4, 7)]     = float(quiet_nan);
     gbuffer.depth[at(gbuffer, 5, 7)]     = float(infinity);
     gbuffer.depth[at(gbuffer, 6, 7)]     = -1;
-    const TraceResult result             = screen_truth(gbuffer, boxes());
+    const TraceImage result              = screen_truth(gbuffer, boxes());
     for (int x = 0; x < 7; ++x) EXPECT_EQ(result.status[at(gbuffer, x, 7)], TraceStatus::not_traced) << x;
     EXPECT_NE(result.status[at(gbuffer, 7, 7)], TraceStatus::not_traced);
 }
@@ -223,7 +223,7 @@ TEST(ScreenTruth, OrthographicClosedForms)
     }
     TraceSettings settings = boxes();
     settings.thickness_m   = 1;
-    TraceResult result     = screen_truth(gbuffer, settings);
+    TraceImage result      = screen_truth(gbuffer, settings);
     EXPECT_EQ(result.status[at(gbuffer, 5, 60)], TraceStatus::hit);
     EXPECT_EQ(result.hit_pixel[at(gbuffer, 5, 60)], glm::ivec2(5, 9));
     EXPECT_NEAR(result.hit_px_depth[at(gbuffer, 5, 60)].y, 10, 1e-9);

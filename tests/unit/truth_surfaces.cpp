@@ -260,13 +260,13 @@ TEST(SurfaceModels, CeilingReflectsWithoutAGap)
 {
     const GBufferImage gbuffer = floor_and_ceiling();
     TraceSettings      settings;
-    settings.behind          = Behind::stop;
-    settings.surface         = "plane";
-    const TraceResult planes = screen_truth(gbuffer, settings);
-    settings.surface         = "box";
-    settings.thickness_m     = 0.1;
-    const TraceResult boxes  = screen_truth(gbuffer, settings);
-    int               gaps   = 0;
+    settings.behind         = Behind::stop;
+    settings.surface        = "plane";
+    const TraceImage planes = screen_truth(gbuffer, settings);
+    settings.surface        = "box";
+    settings.thickness_m    = 0.1;
+    const TraceImage boxes  = screen_truth(gbuffer, settings);
+    int              gaps   = 0;
     for (int y = 32; y < 64; ++y) {
         for (int x = 0; x < 64; ++x) {
             const size_t i        = at(gbuffer, x, y);
@@ -289,9 +289,9 @@ TEST(SurfaceModels, MirrorFloorDoesNotMeetItself)
             gbuffer.gradient.push_back({0, gbuffer.depth[i] > 0 ? float(0.1 / gbuffer.view.focal_px.y) : quiet_nan});
         for (const Behind behind : {Behind::hit, Behind::stop}) {
             TraceSettings settings;
-            settings.surface         = "plane";
-            settings.behind          = behind;
-            const TraceResult result = screen_truth(gbuffer, settings);
+            settings.surface        = "plane";
+            settings.behind         = behind;
+            const TraceImage result = screen_truth(gbuffer, settings);
             for (const TraceStatus status : result.status)
                 EXPECT_TRUE(status != TraceStatus::hit && status != TraceStatus::stopped);
         }
@@ -449,7 +449,7 @@ GBufferImage random_planes(const View& view, unsigned seed)
 /// Which statuses occurred; every ray of the picture compared with the definition by sets.
 std::array<int, 8> compare_with_sets(const GBufferImage& gbuffer, const TraceSettings& settings)
 {
-    const TraceResult  result = screen_truth(gbuffer, settings);
+    const TraceImage   result = screen_truth(gbuffer, settings);
     std::array<int, 8> seen{};
     for (size_t i = 0; i < gbuffer.depth.size(); ++i) {
         const ScreenRay ray = make_screen_ray(gbuffer, pixel_at(i, gbuffer.view.size_px), settings);

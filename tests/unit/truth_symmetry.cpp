@@ -9,7 +9,7 @@ using namespace test;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-void expect_same_rays(const TraceResult& a, size_t i, const TraceResult& b, size_t j, glm::ivec2 expected_pixel)
+void expect_same_rays(const TraceImage& a, size_t i, const TraceImage& b, size_t j, glm::ivec2 expected_pixel)
 {
     ASSERT_EQ(a.status[i], b.status[j]);
     ASSERT_EQ(a.steps[i], b.steps[j]);
@@ -36,7 +36,7 @@ TEST(ScreenTruth, MirroredImageGivesMirroredResult)
         mirrored.metallic[at(mirrored, 52 - x, y)]  = gbuffer.metallic[at(gbuffer, x, y)];
         mirrored.normal_vs[at(mirrored, 52 - x, y)] = gbuffer.normal_vs[at(gbuffer, x, y)] * glm::vec3(-1, 1, 1);
     }
-    const TraceResult a = screen_truth(gbuffer, boxes()), b = screen_truth(mirrored, boxes());
+    const TraceImage a = screen_truth(gbuffer, boxes()), b = screen_truth(mirrored, boxes());
     for (const auto [i, x, y] : pixels_of({53, 39})) {
         const glm::ivec2 hit = a.hit_pixel[at(gbuffer, x, y)];
         expect_same_rays(a, at(gbuffer, x, y), b, at(mirrored, 52 - x, y), {52 - hit.x, hit.y});
@@ -56,7 +56,7 @@ TEST(ScreenTruth, TransposedImageGivesTransposedResult)
         transposed.metallic[at(transposed, y, x)]  = gbuffer.metallic[at(gbuffer, x, y)];
         transposed.normal_vs[at(transposed, y, x)] = {-n.y, -n.x, n.z}; // y points up in view space, down on screen
     }
-    const TraceResult a = screen_truth(gbuffer, boxes()), b = screen_truth(transposed, boxes());
+    const TraceImage a = screen_truth(gbuffer, boxes()), b = screen_truth(transposed, boxes());
     for (const auto [i, x, y] : pixels_of({53, 39})) {
         const glm::ivec2 hit = a.hit_pixel[at(gbuffer, x, y)];
         expect_same_rays(a, at(gbuffer, x, y), b, at(transposed, y, x), {hit.y, hit.x});
@@ -70,7 +70,7 @@ TEST(ScreenTruth, ScaledByPowerOfTwoIsBitIdentical)
     TraceSettings      settings = boxes();
     settings.max_distance_m     = 3;
     settings.ray_offset_m       = 0.01;
-    const TraceResult a         = screen_truth(gbuffer, settings);
+    const TraceImage a          = screen_truth(gbuffer, settings);
     for (const int power : {-13, 1, 20}) {
         GBufferImage  scaled          = gbuffer;
         TraceSettings scaled_settings = settings;
@@ -79,7 +79,7 @@ TEST(ScreenTruth, ScaledByPowerOfTwoIsBitIdentical)
              {&scaled_settings.max_distance_m, &scaled_settings.ray_offset_m, &scaled_settings.thickness_m}) {
             *length = std::ldexp(*length, power);
         }
-        const TraceResult b = screen_truth(scaled, scaled_settings);
+        const TraceImage b = screen_truth(scaled, scaled_settings);
         for (size_t i = 0; i < a.status.size(); ++i) {
             expect_same_rays(a, i, b, i, a.hit_pixel[i]);
             if (a.status[i] == TraceStatus::hit) {
@@ -92,7 +92,7 @@ TEST(ScreenTruth, ScaledByPowerOfTwoIsBitIdentical)
 TEST(ScreenTruth, ThreadsDoNotMatter)
 {
     const GBufferImage gbuffer = random_gbuffer(bench_view({67, 45}), 9);
-    const TraceResult  a = screen_truth(gbuffer, boxes(), 1), b = screen_truth(gbuffer, boxes(), 3);
+    const TraceImage   a = screen_truth(gbuffer, boxes(), 1), b = screen_truth(gbuffer, boxes(), 3);
     EXPECT_EQ(a.status, b.status);
     EXPECT_EQ(a.hit_t, b.hit_t);
     EXPECT_EQ(a.steps, b.steps);
@@ -104,10 +104,10 @@ TEST(ScreenTruth, ThicknessIsMonotone)
     const GBufferImage gbuffer  = random_gbuffer(bench_view({53, 39}), 11);
     double             last_sum = infinity;
     for (const double thickness_m : {0.0, 0.05, 0.5, 5.0, infinity}) {
-        TraceSettings settings   = boxes();
-        settings.thickness_m     = thickness_m;
-        const TraceResult result = screen_truth(gbuffer, settings);
-        double            sum    = 0;
+        TraceSettings settings  = boxes();
+        settings.thickness_m    = thickness_m;
+        const TraceImage result = screen_truth(gbuffer, settings);
+        double           sum    = 0;
         for (size_t i = 0; i < result.status.size(); ++i)
             sum += result.status[i] == TraceStatus::hit ? result.hit_t[i] : 1.0;
         EXPECT_LE(sum, last_sum);

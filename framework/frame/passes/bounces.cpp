@@ -28,7 +28,7 @@ Bounce make_bounce(Gpu& gpu, const PassContext& context, const DerivedRays* from
     bounce.rays       = derived_rays(gpu, context, which);
     Bindings arriving = derived_bindings(*bounce.rays);
     if (from != nullptr) arriving.merge(list_bindings(*from));
-    Defines defines = precision_defines(gpu, Precision::float32);
+    Defines defines = number_format_defines(gpu, NumberFormat::float32);
     defines.merge(store_defines(gpu, bounce.rays->rays.list));
     if (from != nullptr) defines.emplace("FURTHER", "1");
     Bindings traced = ray_bindings(*lab.gbuffer, bounce.rays->rays);

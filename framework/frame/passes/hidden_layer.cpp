@@ -94,12 +94,12 @@ Pass hidden_layer_pass()
         .beyond_shading = true};
 }
 
-std::optional<TraceResult> read_hidden_hits(Gpu& gpu, const ReadyFrame& frame)
+std::optional<TraceImage> read_hidden_hits(Gpu& gpu, const ReadyFrame& frame)
 {
     if (!hits_hidden_layer(frame.inputs)) return std::nullopt;
     const RayBuffers& rays    = *frame.inputs.rays;
     const glm::ivec2  size_px = frame.inputs.lab->gbuffer->view.size_px;
-    TraceResult       result  = read_result<float>(gpu, *frame.inputs.lab, rays, nullptr);
+    TraceImage        result  = read_result<float>(gpu, *frame.inputs.lab, rays, nullptr);
     const auto        listed  = read_list<float>(gpu, rays);
     const auto        hits    = download_as<PackedHit<float>>(gpu, rays.hits, listed.size());
     for (size_t i = 0; i < listed.size(); ++i) {

@@ -247,7 +247,7 @@ ComputePass make_composed_pass(Gpu& gpu, const PassContext& context, ShaderSourc
     const FrameInputs&  frame     = context.frame;
     const FrameBuffers& buffers   = *frame.buffers;
     const GBuffer&      gbuffer   = *frame.lab->gbuffer;
-    Constants           constants = settings_constants(gbuffer.view, frame.lab->settings, Precision::float32);
+    Constants           constants = settings_constants(gbuffer.view, frame.lab->settings, NumberFormat::float32);
     add_parameters(constants, pass_parameters(), frame.plan.values, CONSTANT_PASSES);
     add_parameters(constants, own, frame.plan.values, CONSTANT_REPROJECTION);
     Bindings bindings = more;

@@ -44,7 +44,7 @@ struct StructureFetches {
 };
 
 /// One entry per pixel of the image, row-major. The ray of pixel (x, y) is its mirror reflection.
-struct TraceResult {
+struct TraceImage {
     glm::ivec2               size_px{0, 0};
     std::vector<TraceStatus> status;
     std::vector<glm::ivec2>  hit_pixel;    // the pixel that was met; undefined unless hit or stopped
@@ -59,10 +59,10 @@ struct TraceResult {
 };
 
 /// Returns a result in which no pixel is traced, with fetch counts if `counted`.
-inline TraceResult make_trace_result(glm::ivec2 size_px, bool counted)
+inline TraceImage make_trace_image(glm::ivec2 size_px, bool counted)
 {
-    const auto  count = pixel_count(size_px);
-    TraceResult result;
+    const auto count = pixel_count(size_px);
+    TraceImage result;
     result.size_px = size_px;
     result.status.assign(count, TraceStatus::not_traced);
     result.hit_pixel.resize(count);
@@ -77,7 +77,7 @@ inline TraceResult make_trace_result(glm::ivec2 size_px, bool counted)
 }
 
 /// Returns the reads of all structures by one ray.
-inline uint32_t structure_fetches_of(const TraceResult& result, size_t pixel)
+inline uint32_t structure_fetches_of(const TraceImage& result, size_t pixel)
 {
     uint32_t sum = 0;
     for (const StructureFetches& of : result.structure_fetches) sum += of.fetches[pixel];
@@ -88,8 +88,8 @@ inline uint32_t structure_fetches_of(const TraceResult& result, size_t pixel)
 enum class Behind : uint8_t { hit, pass, stop };
 inline constexpr std::array<std::string_view, 3> behind_names = {"hit", "pass", "stop"};
 
-/// The hit contract's settings: they belong to the experiment, never to a technique. The defaults are those that measure
-/// best (docs/explanation/effects.md).
+/// The hit contract's settings: they belong to the experiment, never to a technique. The defaults are those that
+/// measure best (docs/explanation/effects.md).
 struct TraceSettings {
     double      thickness_m        = 0.1;   // the slab of a pixel reaches from its distance to distance + thickness
     bool        thickness_relative = false; // thickness is then a fraction of the distance
