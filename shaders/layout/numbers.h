@@ -1,6 +1,6 @@
 // Numbers that C++ (through shared.h) and GLSL must agree on.
 
-// Why a ray stopped (core/trace_result.h has the same list with its meaning).
+// Why a ray stopped (core/trace_image.h has the same list with its meaning).
 #define TRACE_NOT_TRACED 0
 #define TRACE_HIT 1
 #define TRACE_LEFT_SCREEN 2
@@ -22,7 +22,7 @@ SHARED_FUNCTION int status_to_number(int status, int layer) { return layer == 0 
 #define RAYS_PER_GROUP 64
 #define LAUNCH_ROW_GROUPS 256
 
-// What becomes of a ray that meets a pixel from behind (core/trace_result.h, Behind).
+// What becomes of a ray that meets a pixel from behind (core/trace_image.h, Behind).
 #define BEHIND_HIT 0
 #define BEHIND_PASS 1
 #define BEHIND_STOP 2

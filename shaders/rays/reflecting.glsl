@@ -18,7 +18,7 @@ bool has_surface(ivec2 pixel)
     return is_surface(load_depth(pixel), imageLoad(normal_image, pixel).xyz);
 }
 
-// core/trace_result.h compares the same floats.
+// core/trace_image.h compares the same floats.
 bool material_reflects(ivec2 pixel)
 {
     return imageLoad(material_image, pixel).a > 0.0 || (imageLoad(dielectric_image, pixel).x >= dielectric_min_f0 &&
