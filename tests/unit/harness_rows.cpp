@@ -429,7 +429,7 @@ TEST(Rows, AFrameWithoutTrianglesIsJudgedWhereItReflects)
     Scene scene;
     scene.frame.emplace();
     Truths truths(scene, gbuffer, folder.path());
-    truths.make({}, true);
+    truths.make(boxes(), true);
     EXPECT_THAT(truths.without_scene(), testing::HasSubstr("has no triangles"));
     const Image     black{{3, 1}, {"R", "G", "B"}, std::vector<float>(9, 0.0F), {}};
     const Reference reference(black);
