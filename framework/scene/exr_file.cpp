@@ -86,7 +86,7 @@ std::vector<float> read_channel(const ExrFile& file, const ExrChannel& channel)
     } else {
         read(OIIO::TypeDesc::FLOAT, stored.data());
     }
-    if (window.from_px == glm::ivec2(0) && window.size_px == file.size_px) return stored;
+    if (window.is_whole(file.size_px)) return stored;
     std::vector<float> values(pixel_count(file.size_px), 0.0F);
     for (size_t i = 0; i < values.size(); ++i) {
         const glm::ivec2 pixel = pixel_at(i, file.size_px);

@@ -27,6 +27,7 @@ struct ExrWindow {
         const glm::ivec2 at = pixel - from_px;
         return at.x >= 0 && at.y >= 0 && at.x < size_px.x && at.y < size_px.y;
     }
+    bool is_whole(glm::ivec2 picture_px) const { return from_px == glm::ivec2(0) && size_px == picture_px; }
 };
 
 struct ExrFile {

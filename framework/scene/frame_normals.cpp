@@ -26,6 +26,12 @@ glm::dmat3 normals_to_view(const FrameSource& source, const std::string& channel
     return glm::dmat3(convention.view.world_to_view);
 }
 
+glm::dvec3 point_at(const GBufferImage& gbuffer, glm::ivec2 pixel)
+{
+    const size_t i = pixel_index(pixel, gbuffer.view.size_px);
+    return px_to_vs(gbuffer.view, glm::dvec2(pixel) + 0.5, static_cast<double>(gbuffer.depth[i]));
+}
+
 /// Conventions that do not fit show here: normals of another length, or of surfaces that look away.
 void judge_normals(FrameSource& source, const FramePlane& plane)
 {
@@ -36,8 +42,7 @@ void judge_normals(FrameSource& source, const FramePlane& plane)
         const glm::dvec3 normal = gbuffer.normal_vs[i];
         covered += gbuffer.depth[i] > 0;
         if (gbuffer.depth[i] == 0 || normal == glm::dvec3(0)) continue;
-        const glm::dvec3 point = px_to_vs(gbuffer.view, glm::dvec2(pixel_at(i, gbuffer.view.size_px)) + 0.5,
-                                          static_cast<double>(gbuffer.depth[i]));
+        const glm::dvec3 point = point_at(gbuffer, pixel_at(i, gbuffer.view.size_px));
         const glm::dvec3 sight = gbuffer.view.projection == Projection::perspective ? point : glm::dvec3(0, 0, -1);
         ++count;
         length += glm::length(normal);
@@ -53,12 +58,6 @@ void judge_normals(FrameSource& source, const FramePlane& plane)
         source.frame.warnings.push_back(
             fmt::format("{}: {:.0f} % of the normals look away from the camera: are [normals] space and flip right?",
                         plane.shown, 100.0 * static_cast<double>(away) / static_cast<double>(count)));
-}
-
-glm::dvec3 point_at(const GBufferImage& gbuffer, glm::ivec2 pixel)
-{
-    const size_t i = pixel_index(pixel, gbuffer.view.size_px);
-    return px_to_vs(gbuffer.view, glm::dvec2(pixel) + 0.5, static_cast<double>(gbuffer.depth[i]));
 }
 
 /// To the surface of the pixel after this one along an axis, going by the neighbour that is more alike. Zero without a neighbour.

@@ -67,6 +67,7 @@ FramePlane need_plane(const FrameSource& source, const std::string& quantity, co
 
 void clear_outside(FrameSource& source, const FramePlane& plane)
 {
+    if (plane.window.is_whole(source.file.size_px)) return;
     GBufferImage& gbuffer = source.frame.gbuffer;
     for (size_t i = 0; i < gbuffer.depth.size(); ++i) {
         if (plane.window.has(pixel_at(i, source.file.size_px))) continue;
