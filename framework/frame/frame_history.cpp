@@ -1,4 +1,4 @@
-#include "frame/frame_inputs.h"
+#include "frame/passes/pass_helpers.h"
 #include "shared.h"
 
 #include <fmt/format.h>
@@ -8,25 +8,11 @@ namespace {
 
 static_assert(sizeof(HistoryCounts) == HISTORY_COUNTS * sizeof(uint32_t));
 
-vk::ImageCopy whole(const GpuImage& image)
-{
-    const vk::ImageSubresourceLayers colour{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
-    return {.srcSubresource = colour,
-            .dstSubresource = colour,
-            .extent         = {static_cast<uint32_t>(image.size_px.x), static_cast<uint32_t>(image.size_px.y), 1}};
-}
-
 constexpr auto four_floats = vk::Format::eR32G32B32A32Sfloat;
 
 GpuImage storage_image(Gpu& gpu, vk::Format format, glm::ivec2 size_px)
 {
     return make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
-}
-
-void record_image_copy(const vk::raii::CommandBuffer& commands, const GpuImage& source, const GpuImage& target)
-{
-    commands.copyImage(*source.image, vk::ImageLayout::eGeneral, *target.image, vk::ImageLayout::eGeneral,
-                       whole(source));
 }
 
 } // namespace
@@ -95,10 +81,10 @@ void keep_history(Gpu& gpu, const ReadyFrame& frame, int number)
         barrier(commands);
         dispatch(commands, keep, groups_of_8(history.size_px));
         if (kept) {
-            record_image_copy(commands, history.kept_reflection, history.reflection);
-            record_image_copy(commands, history.kept_facts, history.facts);
+            record_copy(commands, history.kept_reflection, history.reflection);
+            record_copy(commands, history.kept_facts, history.facts);
         }
-        if (kept_picture) record_image_copy(commands, history.kept_picture, history.picture);
+        if (kept_picture) record_copy(commands, history.kept_picture, history.picture);
         barrier(commands);
     });
     history.view  = gbuffer.view;

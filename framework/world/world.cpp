@@ -76,14 +76,10 @@ template <typename T> Buffer make_texels(Gpu& gpu, const std::vector<T>& values)
 
 } // namespace
 
-ListLaunch launch_over(size_t items)
-{
-    return {groups_in_rows(items, RAYS_PER_GROUP, LAUNCH_ROW_GROUPS), static_cast<uint32_t>(items)};
-}
-
 WorldRayList make_ray_list(Gpu& gpu, std::span<const WorldRay> rays)
 {
-    const ListLaunch launch = launch_over(rays.size());
+    const ListLaunch launch{groups_in_rows(rays.size(), RAYS_PER_GROUP, LAUNCH_ROW_GROUPS),
+                            static_cast<uint32_t>(rays.size())};
     return {make_buffer_with<WorldRay>(gpu, rays), make_buffer_with<ListLaunch>(gpu, std::span(&launch, 1))};
 }
 

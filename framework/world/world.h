@@ -45,7 +45,6 @@ struct ListLaunch {
     glm::uvec3 groups{0, 0, 1};
     uint32_t   count = 0;
 };
-ListLaunch launch_over(size_t items);
 
 /// Rays on the device, as many as `launch` says.
 struct WorldRayList {

@@ -13,11 +13,11 @@ layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D filtered_image;
 #ifdef MOVED
 layout(set = 0, binding = 6, rg32f) uniform readonly image2D motion_image;
 #endif
+layout(set = 0, binding = 7, rgba32f) uniform readonly image2D previous_picture_image; // colour, accumulated frames
+layout(set = 0, binding = 8, rgba32f) uniform writeonly image2D kept_picture_image;    // for the next frame
 #ifdef REPROJECTED
 layout(set = 0, binding = 9, rgba32f) uniform readonly image2D reprojected_image; // passes/reprojection.comp
 #endif
-layout(set = 0, binding = 7, rgba32f) uniform readonly image2D previous_picture_image; // colour, accumulated frames
-layout(set = 0, binding = 8, rgba32f) uniform writeonly image2D kept_picture_image;    // for the next frame
 
 ivec2 around(ivec2 pixel, int i) { return clamp(pixel + ivec2(i % 3, i / 3) - 1, ivec2(0), size_px - 1); }
 

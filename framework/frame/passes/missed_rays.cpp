@@ -9,9 +9,9 @@
 namespace ssrlab {
 namespace {
 
-constexpr int    side_px = 4; // of the blocks that follow one ray each
-constexpr double room_share =
-    0.15; // of followed rays that meet a triangle, from which on miss_light = rooms follows them
+constexpr int side_px = 4; // of the blocks that follow one ray each
+/// Of followed rays that meet a triangle: from here on, miss_light = rooms follows them.
+constexpr double room_share = 0.15;
 
 /// The missed rays, and the one of each block that is followed.
 struct FollowedRays {
