@@ -45,7 +45,7 @@ def asked_rows(results):
     return rows
 
 
-def short_names(rows):
+def frame_labels(rows):
     """{frame_name: the scene, with its view or frame where there are several}."""
     frames = rows.drop_duplicates("frame_name")
     several = frames.scene.duplicated(keep=False)
@@ -135,7 +135,7 @@ def lost_by_class(results, tables):
     rows = asked_rows(results)
     if rows.empty:
         return
-    names = short_names(rows)
+    names = frame_labels(rows)
     first = rows[rows.place == 0].drop_duplicates("frame_name").iloc[::-1]
     figure, ((axis,),) = sheet(0.75 + 0.17 * len(first))
     left = np.zeros(len(first))
@@ -183,7 +183,7 @@ def back_grids(rows):
         return pairs, pairs
     grid = pairs.pivot_table("back", "frame_name", "remedy", sort=False)
     right = pairs.pivot_table("rightly", "frame_name", "remedy", sort=False).reindex_like(grid)
-    names = short_names(rows)
+    names = frame_labels(rows)
     for one in (grid, right):
         if len(one) > 1:
             one.loc["mean"] = one.mean()
@@ -272,7 +272,7 @@ def tables_of(results):
     if len(grid):
         tables["Lost rays that a source answers rightly, %; in brackets, how many of its answers are right, %"] = [
             {"frame": frame, **{name: back_text(grid.loc[frame, name], right.loc[frame, name]) for name in grid.columns}} for frame in grid.index]
-    names = short_names(rows) if len(rows) else {}
+    names = frame_labels(rows) if len(rows) else {}
     for title, make in LINES.items():
         lines = [line for (frame, _), part in rows.groupby(["frame_name", "tracer"], sort=False) for line in make(names[frame], part)] if names else []
         if lines:
