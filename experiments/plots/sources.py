@@ -216,17 +216,20 @@ def share(part, whole):
 
 
 def hybrid_lines(name, part):
-    """The frame with the triangles behind it, against the triangles alone."""
-    both, alone = part[(part.sources == "frame,world") & (part.hand_on == "uncertain")], part[part.sources == "world"]
-    if len(both) != 2 or alone.empty:
-        return
-    frame, world, alone = both.iloc[0], both.iloc[1], alone.iloc[0]
-    lost = sum(frame[f"handed_{cls}"] for cls in LOST)
-    yield {"frame": name, "lost, %": share(lost, frame.all_meeting), "F1 of the frame, %": f"{100 * frame.all_f1:.1f}",
-           "F1 with world, %": f"{100 * world.all_f1:.2f}", "certain hits that are right, %": share(frame.certain_right, frame.certain_points),
-           "world gets, of rays that meet geometry, %": share(world.meeting, frame.meeting),
-           "of rays that meet nothing, %": share(world.handed - world.meeting, frame.handed - frame.meeting),
-           "time / world alone": f"{world.spent_ms / alone.spent_ms:.2f}", "node visits / world alone": f"{world.node_visits / alone.node_visits:.2f}"}
+    """The frame with the triangles behind it, directly or behind the resumed frame, against the triangles alone."""
+    alone = part[part.sources == "world"]
+    for sources in ("frame,world", "frame,resume,world"):
+        both = part[(part.sources == sources) & (part.hand_on == "uncertain")]
+        if both.empty or alone.empty:
+            continue
+        frame, world, only = both.iloc[0], both.iloc[-1], alone.iloc[0]
+        lost = sum(frame[f"handed_{cls}"] for cls in LOST)
+        yield {"frame": name, "list": sources, "lost, %": share(lost, frame.all_meeting), "F1 of the frame, %": f"{100 * frame.all_f1:.1f}",
+               "F1 with world, %": f"{100 * world.all_f1:.2f}", "certain hits that are right, %": share(frame.certain_right, frame.certain_points),
+               "world gets, of rays that meet geometry, %": share(world.meeting, frame.meeting),
+               "of rays that meet nothing, %": share(world.handed - world.meeting, frame.handed - frame.meeting),
+               "time / world alone": f"{world.spent_ms / only.spent_ms:.2f}",
+               "node visits / world alone": f"{world.node_visits / only.node_visits:.2f}"}
 
 
 def chosen_lines(name, part):

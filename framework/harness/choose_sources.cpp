@@ -12,8 +12,8 @@ namespace ssrlab {
 namespace {
 
 constexpr std::array candidates = {
-    "frame",       "frame,wider", "frame,planar",       "frame,cube",       "frame,layers",
-    "frame,views", "frame,world", "frame,planar,world", "frame,cube,world", "world"};
+    "frame",       "frame,resume", "frame,wider",        "frame,planar",       "frame,cube",       "frame,layers",
+    "frame,views", "frame,world",  "frame,resume,world", "frame,planar,world", "frame,cube,world", "world"};
 
 /// What the triangles answer, as a truth.
 SceneTruth truth_of(const SourceContext& context, std::span<const RayAnswer> answers)

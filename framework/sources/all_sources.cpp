@@ -24,9 +24,9 @@ Source auto_source()
 
 std::span<const Source> all_sources()
 {
-    static const std::vector<Source> sources = {frame_source(), layers_source(), wider_source(), cube_source(),
-                                                past_source(),  planar_source(), views_source(), world_source(),
-                                                probe_source(), auto_source()};
+    static const std::vector<Source> sources = {frame_source(), resume_source(), layers_source(), wider_source(),
+                                                cube_source(),  past_source(),   planar_source(), views_source(),
+                                                world_source(), probe_source(),  auto_source()};
     return sources;
 }
 

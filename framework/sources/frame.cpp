@@ -30,9 +30,8 @@ RayAnswer answer_of(const SourceContext& context, const Occupancy& occupancy, co
     if (status == TraceStatus::left_screen && part->leaves) {
         const RayInput input = to_input(image.view, ray, *part);
         answer.clear_m = metres_before(image.view, ray, *part, input.origin_px_depth + input.delta_px_depth, back_px);
-        if (!may_meet(occupancy, ray.origin_ws, ray.direction_ws, answer.clear_m, ray.reach_m))
-            set_nothing(answer, context, ray, true);
     }
+    if (answer.kind == AnswerKind::open && answer.clear_m > 0) cross_empty_cells(answer, context, occupancy, ray);
     return answer;
 }
 

@@ -128,6 +128,26 @@ void set_nothing(RayAnswer& answer, const SourceContext& context, const OpenRay&
     answer.light   = sky_radiance(context.stage.scene, ray.direction_ws);
 }
 
+void cross_empty_cells(RayAnswer& answer, const SourceContext& context, const Occupancy& grid, const OpenRay& ray)
+{
+    const double met_m = first_occupied(grid, ray.origin_ws, ray.direction_ws, answer.clear_m, ray.reach_m);
+    if (!std::isfinite(met_m)) {
+        set_nothing(answer, context, ray, true);
+        return;
+    }
+    constexpr double rounding = 1e-3; // of a cell: what is followed from here has rounded origins
+    answer.clear_m =
+        std::max(answer.clear_m, met_m - rounding * std::min({grid.cell_m.x, grid.cell_m.y, grid.cell_m.z}));
+}
+
+bool begins_in_sight(const SourceContext& context, RayStart start, const OpenRay& ray)
+{
+    if (start != RayStart::from_frame) return start != RayStart::anywhere;
+    // What the frame met, or passed behind, may fall between the pixels of another picture from there.
+    const std::vector<TraceStatus>& frame = context.traced.status;
+    return frame.empty() || !has_place(frame[ray.pixel]);
+}
+
 bool stays_in_sight(const SourceContext& context, const TraceSettings& settings)
 {
     const Surface surface = find_surface(context.stage.catalogue.surfaces, std::string(settings.surface));
@@ -135,14 +155,6 @@ bool stays_in_sight(const SourceContext& context, const TraceSettings& settings)
         return std::ranges::find(surface.defines, name) != surface.defines.end();
     };
     return settings.behind == Behind::stop && settings.layers == 1 && (has("SOLID_ENDLESS") || has("SURFACE_ENDLESS"));
-}
-
-bool begins_in_sight(const SourceContext& context, RayStart start, const OpenRay& ray)
-{
-    if (start != RayStart::from_frame) return start == RayStart::in_sight;
-    // What the frame met, or passed behind, may fall between the pixels of another picture from there.
-    const std::vector<TraceStatus>& frame = context.traced.status;
-    return frame.empty() || !has_place(frame[ray.pixel]);
 }
 
 TraceSettings in_sight_settings(const TraceSettings& settings)
@@ -240,6 +252,13 @@ bool meets_own_surface(const GBufferImage& image, const RayInput& ray, const Ray
     return plane && std::abs(plane->above(ray.origin_px_depth)) <= plane->rounding();
 }
 
+/// Does nothing that the picture shows lie before the place where a ray begins?
+bool is_shown(const GBufferImage& image, const RayInput& ray)
+{
+    const auto plane = plane_of(image, glm::min(glm::ivec2(ray.origin_px_depth), image.view.size_px - 1));
+    return !plane || plane->above(ray.origin_px_depth) >= 0;
+}
+
 } // namespace
 
 GBufferTrace trace_in_gbuffer(SourceContext& context, const GBufferPtr& gbuffer, const GBufferImage& image,
@@ -253,7 +272,9 @@ GBufferTrace trace_in_gbuffer(SourceContext& context, const GBufferPtr& gbuffer,
         trace.answers.push_back({.kind = AnswerKind::open, .clear_m = rays[k].clear_m});
         const std::optional<SeenPart> part = seen_part(gbuffer->view, rays[k]);
         if (!part) continue;
-        inputs.push_back(to_input(gbuffer->view, rays[k], *part));
+        const RayInput input = to_input(gbuffer->view, rays[k], *part);
+        if (start == RayStart::if_shown && !is_shown(image, input)) continue;
+        inputs.push_back(input);
         parts.push_back(*part);
         asked.push_back(k);
     }

@@ -4,6 +4,7 @@
 
 #include "sources/source.h"
 #include "trace/lab.h"
+#include "world/occupancy.h"
 
 #include <functional>
 #include <optional>
@@ -35,10 +36,15 @@ void set_point(RayAnswer& answer, const GBufferImage& met, glm::ivec2 pixel, glm
 /// Makes `answer` say that the ray meets nothing: its light is the environment's. Leaves clear_m as it is.
 void set_nothing(RayAnswer& answer, const SourceContext& context, const OpenRay& ray, bool certain);
 
+/// Moves an open answer's clear_m on through the empty cells of the scene's grid. If they reach to the end, the answer
+/// is that the ray meets nothing, for certain.
+void cross_empty_cells(RayAnswer& answer, const SourceContext& context, const Occupancy& grid, const OpenRay& ray);
+
 /// Whether a camera sees every ray where it begins.
 enum class RayStart : uint8_t {
     in_sight,   // yes
     from_frame, // yes, but for rays that the frame lost sight of: the camera stands where the frame's does
+    if_shown,   // yes: rays that begin behind what the picture shows are not traced
     anywhere,
 };
 

@@ -58,6 +58,7 @@ struct Source {
 };
 
 Source frame_source();
+Source resume_source();
 Source layers_source();
 Source wider_source();
 Source cube_source();

@@ -15,7 +15,6 @@ namespace {
 
 constexpr size_t most_samples    = 1000; // rays that are asked about each candidate
 constexpr int    candidates_side = 7;    // candidates along each axis of the bounds of these rays
-constexpr int    cells_side      = 256;  // fine enough for rays that end near where they begin
 
 /// Where a ray probably ends: in the first occupied cell behind what is clear of it.
 struct Target {
@@ -76,7 +75,7 @@ std::optional<glm::dvec3> best_place(const Occupancy& grid, std::span<const glm:
 
 std::vector<glm::dvec3> placed_by_rays(SourceContext& context, std::span<const OpenRay> rays, size_t count)
 {
-    const Occupancy         grid    = make_occupancy(context.stage.scene, cells_side);
+    const Occupancy&        grid    = occupancy_of(context.stage);
     std::vector<Target>     targets = targets_of(grid, rays);
     std::vector<glm::dvec3> eyes_ws;
     if (targets.empty()) return eyes_ws;

@@ -33,7 +33,7 @@ void mark(Occupancy& grid, const glm::dvec3 (&corners)[3])
             for (int x = first.x; x <= end.x; ++x) {
                 const glm::dvec3 centre = glm::dvec3(x, y, z) + 0.5;
                 if (std::abs(glm::dot(normal, centre - corners[0])) <= reach)
-                    grid.occupied[cell_index(grid, {x, y, z})] = 1;
+                    grid.occupied[cell_index(grid, {x, y, z})] = true;
             }
 }
 
@@ -57,7 +57,7 @@ Occupancy make_occupancy(const Scene& scene, int side)
     grid.cells              = glm::ivec3(side);
     grid.cell_m             = extent * (1 + 1e-3) / double(side);
     grid.low_ws             = (low + high) / 2.0 - grid.cell_m * (double(side) / 2);
-    grid.occupied.assign(size_t(side) * size_t(side) * size_t(side), 0);
+    grid.occupied.assign(size_t(side) * size_t(side) * size_t(side), false);
     for (const Draw& draw : scene.draws)
         for (uint32_t i = 0; i + 2 < draw.index_count; i += 3) {
             glm::dvec3 corners[3];
@@ -87,7 +87,7 @@ double first_occupied(const Occupancy& grid, glm::dvec3 origin_ws, glm::dvec3 di
     // the slack.
     glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(origin + t * rate)), glm::ivec3(0), grid.cells - 1);
     while (true) {
-        if (grid.occupied[cell_index(grid, cell)] != 0) return t;
+        if (grid.occupied[cell_index(grid, cell)]) return t;
         int    next_axis = 0;
         double next_t    = infinity;
         for (int axis : {0, 1, 2}) {

@@ -12,11 +12,11 @@ struct Occupancy {
     glm::dvec3           low_ws{0}; // of the grid, a little outside of the scene
     glm::dvec3           cell_m{1};
     glm::ivec3           cells{0}; // along each axis; 0: the scene has no triangles
-    std::vector<uint8_t> occupied; // x fastest, then y
+    std::vector<bool>    occupied; // x fastest, then y
 };
 
 /// `side` cells along each axis. Conservative: a cell is empty only if no triangle touches it.
-Occupancy make_occupancy(const Scene& scene, int side = 64);
+Occupancy make_occupancy(const Scene& scene, int side = 512);
 
 /// Returns the middles of side³ equal parts of a box that lie in empty cells of the grid.
 std::vector<glm::dvec3> free_places(const Occupancy& grid, glm::dvec3 low_ws, glm::dvec3 high_ws, int side);

@@ -102,6 +102,25 @@ TEST(Sources, TheWorldGetsWhatTheFrameIsNotSureOf)
     }
 }
 
+// Behind what it passed, a ray is followed again from where the grid lets it meet anything.
+TEST(Sources, TheFrameIsResumedWhereAStoppedRayComesOutAgain)
+{
+    Traced             traced = trace_frame("builtin:everything", {320, 180});
+    const AnsweredRays direct = ask(traced, "frame,world"), resumed = ask(traced, "frame,resume,world");
+    const SourceCounts counts = count_source(resumed.turns[1], traced.truth, traced.context.image);
+    EXPECT_GT(counts.certain_right, 100U);
+    // Most of these rays pass thin things, and the frame may have passed one unseen before it stopped.
+    EXPECT_GE(double(counts.certain_right), 0.97 * double(counts.certain_points));
+    EXPECT_EQ(resumed.turns[2].pixels.size(),
+              direct.turns[1].pixels.size() - counts.certain_points - counts.certain_nothing);
+    EXPECT_GE(*judge(traced, resumed).f1, *judge(traced, direct).f1 - 0.002);
+    for (size_t k = 0; k < resumed.turns[1].pixels.size(); ++k) {
+        const size_t pixel = resumed.turns[1].pixels[k];
+        if (traced.context.traced.status[pixel] == TraceStatus::stopped) continue;
+        EXPECT_EQ(resumed.turns[1].answers[k].kind, AnswerKind::open); // nothing else is asked again
+    }
+}
+
 // A cube of frames around the camera has other pixels. A thin thing that the frame shows may fall between them: what
 // the frame lost sight of, the cube cannot vouch for.
 TEST(Sources, ACubeVouchesForNothingThatTheFrameLostSightOf)

@@ -1,0 +1,42 @@
+// The frame again, for rays that it stopped behind something: from where they may meet anything at all, if the frame
+// shows that place.
+#include "frame/passes/pass_helpers.h"
+#include "sources/gbuffer_rays.h"
+
+namespace ssrlab {
+namespace {
+
+SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
+{
+    SourceTurn           turn;
+    std::vector<OpenRay> stopped;
+    std::vector<size_t>  places;
+    for (size_t k = 0; k < rays.size(); ++k) {
+        turn.answers.push_back({.kind = AnswerKind::open, .clear_m = rays[k].clear_m});
+        // Without a clear distance the frame did not follow the ray in sight.
+        if (context.traced.status[rays[k].pixel] != TraceStatus::stopped || rays[k].clear_m == 0) continue;
+        stopped.push_back(rays[k]);
+        places.push_back(k);
+    }
+    const Occupancy&   grid = occupancy_of(context.stage);
+    const GBufferTrace trace =
+        trace_in_gbuffer(context, context.stage.gbuffer, context.image, context.trace, RayStart::if_shown, stopped);
+    for (size_t k = 0; k < stopped.size(); ++k) {
+        RayAnswer& answer = turn.answers[places[k]] = trace.answers[k];
+        if (trace.status[k] == TraceStatus::stopped || trace.status[k] == TraceStatus::left_screen)
+            cross_empty_cells(answer, context, grid, stopped[k]);
+    }
+    turn.trace_ms = trace.ms;
+    return turn;
+}
+
+} // namespace
+
+Source resume_source()
+{
+    return {.id      = "resume",
+            .summary = "The frame again, for rays that it stopped, beyond the empty space behind what they passed",
+            .answer  = answer};
+}
+
+} // namespace ssrlab
