@@ -19,22 +19,62 @@ size_t cell_index(const Occupancy& grid, glm::ivec3 cell)
 
 bool all_finite(glm::dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-/// In units of cells.
+/// The three edges of a triangle seen along one axis, against unit squares.
+struct FlatEdges {
+    int        u = 0, v = 0;      // the other axes
+    glm::dvec2 inward[3]{};       // normals of the edges
+    double     farthest_out[3]{}; // of the centre of a square that touches, times the length of the normal
+    bool       known = false;     // false: seen from the side, the triangle has no inside
+
+    FlatEdges(const glm::dvec3 (&corners)[3], glm::dvec3 normal, int axis) : u((axis + 1) % 3), v((axis + 2) % 3)
+    {
+        known = normal[axis] != 0;
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec3 from = corners[k], along = corners[(k + 1) % 3] - from;
+            inward[k]       = (normal[axis] > 0 ? 1.0 : -1.0) * glm::dvec2(-along[v], along[u]);
+            farthest_out[k] = glm::dot(inward[k], glm::dvec2(from[u], from[v])) -
+                              (0.5 + slack) * (std::abs(inward[k].x) + std::abs(inward[k].y));
+        }
+    }
+    bool may_touch(glm::dvec3 centre) const
+    {
+        if (!known) return true;
+        for (int k = 0; k < 3; ++k)
+            if (glm::dot(inward[k], glm::dvec2(centre[u], centre[v])) < farthest_out[k]) return false;
+        return true;
+    }
+};
+
+/// Marks the cells that a triangle touches, its corners in units of cells: column by column along the axis that it faces
+/// most (M. Schwarz, H.-P. Seidel 2010, "Fast Parallel Surface and Solid Voxelization on GPUs").
 void mark(Occupancy& grid, const glm::dvec3 (&corners)[3])
 {
+    const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]), size = glm::abs(normal);
+    if (normal == glm::dvec3(0)) return; // no area: nothing meets it
     const glm::dvec3 low  = glm::min(glm::min(corners[0], corners[1]), corners[2]) - slack;
     const glm::dvec3 high = glm::max(glm::max(corners[0], corners[1]), corners[2]) + slack;
     const glm::ivec3 last = grid.cells - 1, first = glm::clamp(glm::ivec3(glm::floor(low)), glm::ivec3(0), last),
-                     end    = glm::clamp(glm::ivec3(glm::floor(high)), glm::ivec3(0), last);
-    const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-    const double     reach  = (0.5 + slack) * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
-    for (int z = first.z; z <= end.z; ++z)
-        for (int y = first.y; y <= end.y; ++y)
-            for (int x = first.x; x <= end.x; ++x) {
-                const glm::dvec3 centre = glm::dvec3(x, y, z) + 0.5;
-                if (std::abs(glm::dot(normal, centre - corners[0])) <= reach)
-                    grid.occupied[cell_index(grid, {x, y, z})] = true;
+                     end   = glm::clamp(glm::ivec3(glm::floor(high)), glm::ivec3(0), last);
+    const FlatEdges seen[] = {{corners, normal, 0}, {corners, normal, 1}, {corners, normal, 2}};
+    const int       axis   = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const int       u = seen[axis].u, v = seen[axis].v;
+    const double    reach = (0.5 + slack) * (size[u] + size[v]) / size[axis] + slack; // of the plane in a column
+    glm::ivec3      cell;
+    for (cell[v] = first[v]; cell[v] <= end[v]; ++cell[v])
+        for (cell[u] = first[u]; cell[u] <= end[u]; ++cell[u]) {
+            glm::dvec3 centre = glm::dvec3(cell) + 0.5;
+            if (!seen[axis].may_touch(centre)) continue;
+            const double at =
+                corners[0][axis] -
+                (normal[u] * (centre[u] - corners[0][u]) + normal[v] * (centre[v] - corners[0][v])) / normal[axis];
+            const int top = std::min(end[axis], static_cast<int>(std::floor(at + reach)));
+            for (cell[axis] = std::max(first[axis], static_cast<int>(std::floor(at - reach))); cell[axis] <= top;
+                 ++cell[axis]) {
+                centre[axis] = cell[axis] + 0.5;
+                if (seen[(axis + 1) % 3].may_touch(centre) && seen[(axis + 2) % 3].may_touch(centre))
+                    grid.occupied[cell_index(grid, cell)] = true;
             }
+        }
 }
 
 } // namespace

@@ -13,6 +13,8 @@ TEST(Occupancy, NeverDeniesWhatARayMeets)
     add_quad(scene, grey, {-9, 0, -9}, {18, 0, 0}, {0, 0, 18});
     add_quad(scene, grey, {-3, 0.5, -4}, {1, 2, 0.3}, {0.2, 0.1, 1});
     add_sphere(scene, grey, {2, 2, -3}, 1, 20);
+    for (int i = 0; i < 40; ++i) // rods in all directions
+        add_quad(scene, grey, {-8 + 0.4 * i, 3, -7 + 0.3 * i}, {0.02, 0.01, 0.03}, {4 - 0.2 * i, 4, 0.1 * i - 3});
     for (const int side : {1, 7, 64}) {
         const Occupancy                        grid = make_occupancy(scene, side);
         const SceneBvh                         embree(scene);
