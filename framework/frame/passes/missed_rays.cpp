@@ -240,7 +240,7 @@ Pass missed_rays_pass()
             .reads          = {Resource::gbuffer, Resource::surroundings, Resource::rays, Resource::hits},
             .writes         = {Resource::answers},
             .parameters     = {choice_parameter(
-                    MissLight::environment,
+                    MissLight::rooms,
                     "what a ray shows that missed. environment: what is infinitely far away; triangles: what "
                         "one missed ray of each 4x4 pixels meets in the scene, and the environment where it meets "
                         "nothing; rooms: as triangles where at least 15 % of these rays meet something and the "
