@@ -15,8 +15,8 @@ TARGETS = {"recall_1px": [0.90, 0.95, 0.99, 0.995], "screen_recall_1px": [0.90, 
 class Results:
     """Rows that succeeded, their settings and parameters (`inputs`), and the environment they came from."""
 
-    def __init__(self, folder):
-        self.folder = folder
+    def __init__(self, folder, bandwidth_gbps=None):
+        self.folder, self.bandwidth_gbps = folder, bandwidth_gbps  # of the device's memory; None: not given
         self.all_rows = read_rows(folder)
         self.rows = self.all_rows[self.all_rows.outcome == "ok"].copy()
         self.inputs = inputs_of(self.all_rows)

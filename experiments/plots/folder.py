@@ -28,10 +28,10 @@ def draw(results, folder):
     return plots, tables
 
 
-def main(folder):
+def main(folder, bandwidth_gbps=None):
     if not os.path.exists(os.path.join(folder, "results.csv")):
         sys.exit(f"plot: {folder}: holds no results.csv; make one with ssrlab run")
-    results = Results(folder)
+    results = Results(folder, bandwidth_gbps)
     plots, tables = draw(results, os.path.join(folder, "plots"))
     for name, table, digits in (("summary.csv", accuracy.summary(results), "%.6g"), ("surfaces.csv", surfaces.ladder(results), "%.5g")):
         if len(table):

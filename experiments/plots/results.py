@@ -58,7 +58,7 @@ def read_samples(folder):
 
 
 def read_passes(folder):
-    """The passes of every run's frame: run_id, pass, ran, ms_median, ms_ci_low, ms_ci_high, reason; empty without passes.csv."""
+    """The passes of every run's frame: run_id, pass, ran, ms_median, ms_ci_low, ms_ci_high, reason and, but for old ones, bytes; empty without passes.csv."""
     path = os.path.join(folder, "passes.csv")
     if not os.path.exists(path):
         return pd.DataFrame(columns=["run_id", "pass", "ran", "ms_median", "ms_ci_low", "ms_ci_high", "reason"])

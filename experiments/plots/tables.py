@@ -119,13 +119,16 @@ def error_table(chosen):
 
 
 def plan_of(results, chosen):
-    """Passes of the best tracer's frame, those that ran first."""
+    """Passes of the best tracer's frame, those that ran first; with a bandwidth, the least time in which a pass could move its bytes."""
     passes = results.passes[results.passes.run_id == (chosen.run_id.iloc[0] if len(chosen) else "")]
     if passes.empty:
         return None
-    lines = [{"name": row["pass"], "ms": f"{row.ms_median:.3g}" if row.ran else "–", "why": row.reason if has_value(row, "reason") else ""}
+    timed = results.bandwidth_gbps is not None and "bytes_read_mean" in passes
+    pixels = chosen.width.iloc[0] * chosen.height.iloc[0]
+    lines = [{"name": row["pass"], "ms": f"{row.ms_median:.3g}" if row.ran else "–", "why": row.reason if has_value(row, "reason") else "",
+              "least_ms": f"{(row.bytes_read_mean + row.bytes_written_mean) * pixels / (results.bandwidth_gbps * 1e6):.3g}" if timed and row.ran else "–"}
              for _, row in passes.sort_values("ran", ascending=False, kind="stable").iterrows()]
-    return {"of": chosen.setting.iloc[0], "passes": lines}
+    return {"of": chosen.setting.iloc[0], "passes": lines, "bandwidth_gbps": results.bandwidth_gbps if timed else None}
 
 
 def failed_table(results, again):

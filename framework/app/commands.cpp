@@ -60,11 +60,13 @@ int write_gbuffer(const CommonOptions& common, const PictureOptions& options)
     return report_messages(stage);
 }
 
-int plot_results(const std::string& folder)
+int plot_results(const std::string& folder, double bandwidth_gbps)
 {
     const std::filesystem::path table = std::filesystem::path(folder) / "results.csv";
     if (!std::filesystem::exists(table)) throw_spec_error("{}: no such file; ssrlab run writes it", table.string());
-    run_python("experiments/plot", {folder});
+    std::vector<std::string> arguments = {folder};
+    if (bandwidth_gbps > 0) arguments.push_back(fmt::format("--bandwidth-gbps={}", bandwidth_gbps));
+    run_python("experiments/plot", arguments);
     return 0;
 }
 

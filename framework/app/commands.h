@@ -18,8 +18,9 @@ Image hits_image(const TraceImage& result, const std::string& technique, const s
 /// Writes one. With a folder that export_cases() wrote as the scene: one for each of its frames, into a folder.
 int trace_hits(const CommonOptions& common, const PictureOptions& options);
 int write_gbuffer(const CommonOptions& common, const PictureOptions& options);
-/// Plots, derived rows and report of a results folder, by the plot script.
-int plot_results(const std::string& folder);
+/// Plots, derived rows and report of a results folder, by the plot script. `bandwidth_gbps`: of the device's memory; 0:
+/// not given.
+int plot_results(const std::string& folder, double bandwidth_gbps);
 /// Prints every column of a results folder with its unit and definition, as Markdown tables.
 int print_measures(const CommonOptions& common);
 

@@ -183,6 +183,14 @@ void add_fit_options(CLI::App& command, ssrlab::FitOptions& options)
     command.add_flag("--resume", options.resume, "Continue in a folder that was begun");
 }
 
+void add_bandwidth_option(CLI::App& command, double& bandwidth_gbps)
+{
+    command
+        .add_option("--bandwidth-gbps", bandwidth_gbps,
+                    "Memory bandwidth of a card: also print the time that the bytes of each pass need at the least")
+        ->check(CLI::PositiveNumber);
+}
+
 /// One line in a terminal, whatever a file holds.
 void say_error(const std::string& what) { std::fprintf(stderr, "ssrlab: %s\n", ssrlab::printable(what).c_str()); }
 
@@ -306,6 +314,7 @@ int main(int argc, char** argv)
     add_scene_options(*planned, plan.picture);
     add_technique_option(*planned, plan.picture)->default_val("hiz")->capture_default_str();
     planned->add_option("--repeats", plan.repeats, "Timed frames")->capture_default_str()->check(CLI::PositiveNumber);
+    add_bandwidth_option(*planned, plan.bandwidth_gbps);
     planned->callback([&] { command = [&] { return print_plan(common, plan); }; });
 
     SourcesOptions sources;
@@ -355,7 +364,9 @@ int main(int argc, char** argv)
     merge->callback([&] { command = [&] { return merge_results(merged, parts); }; });
     auto* plot = app.add_subcommand("plot", "Write plots, summary and report of a results folder");
     plot->add_option("DIR", results, "Results folder")->required();
-    plot->callback([&] { command = [&] { return plot_results(results); }; });
+    double bandwidth_gbps = 0;
+    add_bandwidth_option(*plot, bandwidth_gbps);
+    plot->callback([&] { command = [&] { return plot_results(results, bandwidth_gbps); }; });
     app.add_subcommand("measures", "Print what every column of results.csv means (docs/reference/columns.md)")
         ->callback([&] { command = [&] { return print_measures(common); }; });
 
@@ -372,6 +383,7 @@ int main(int argc, char** argv)
     compiled->add_option("--assembly", shaders.assembly, "Also write the assembly of each pass into this folder");
     compiled->add_flag("--files", shaders.files,
                        "Instead: the files that the compiler reads of each technique, and their lines of code");
+    add_bandwidth_option(*compiled, shaders.bandwidth_gbps);
     compiled->add_flag("--json", shaders.json, "As JSON, with all that the driver says");
     compiled->callback([&] { command = [&] { return describe_shaders(common, shaders); }; });
 

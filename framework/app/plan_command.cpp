@@ -4,6 +4,7 @@
 #include "harness/choose_technique.h"
 #include "harness/statistics.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <map>
 
@@ -30,17 +31,35 @@ std::string median_text(const Timed& timed, const std::string& pass)
     return found == timed.pass_ms.end() ? "-" : fmt::format("{:.2f}", quantile(found->second, 0.5));
 }
 
-void print_table(const FramePlan& plan, const Timed& planned, const Timed& unculled)
+/// "1.23 MB read", "0.45 MB written" and, with a bandwidth, the time that these need at the least; "-" for what did not run.
+std::string traffic_text(const PassTraffic* traffic, double bandwidth_gbps)
 {
-    std::puts(fmt::format("{:<20} {:<8} {:>11} {:>14}  {}", "pass", "", "planned ms", "unculled ms", "why").c_str());
+    const auto  megabytes = [](uint64_t bytes) { return fmt::format("{:.2f}", static_cast<double>(bytes) * 1e-6); };
+    std::string text      = fmt::format(" {:>8} {:>11}", traffic == nullptr ? "-" : megabytes(traffic->read_bytes),
+                                   traffic == nullptr ? "-" : megabytes(traffic->written_bytes));
+         if (bandwidth_gbps > 0)
+        text +=
+            fmt::format(" {:>9}", traffic == nullptr ? "-" : fmt::format("{:.4f}", least_ms(*traffic, bandwidth_gbps)));
+    return text;
+}
+
+void print_table(const FramePlan& plan, const Timed& planned, const Timed& unculled,
+                 const std::vector<PassTraffic>& traffic, double bandwidth_gbps)
+{
+    std::puts(fmt::format("{:<20} {:<8} {:>11} {:>14} {:>8} {:>11}{}  {}", "pass", "", "planned ms", "unculled ms",
+                          "MB read", "MB written", bandwidth_gbps > 0 ? fmt::format(" {:>9}", "least ms") : "", "why")
+                  .c_str());
     for (const PlannedPass& row : plan.passes) {
-        const std::string& id = row.id;
-        std::puts(fmt::format("{:<20} {:<8} {:>11} {:>14}  {}", id, row.runs ? "run" : "skipped",
-                              median_text(planned, id), median_text(unculled, id), row.reason)
+        const std::string& id    = row.id;
+        const auto         moved = std::ranges::find(traffic, id, &PassTraffic::pass);
+        std::puts(fmt::format("{:<20} {:<8} {:>11} {:>14}{}  {}", id, row.runs ? "run" : "skipped",
+                              median_text(planned, id), median_text(unculled, id),
+                              traffic_text(moved == traffic.end() ? nullptr : &*moved, bandwidth_gbps), row.reason)
                       .c_str());
     }
-    std::puts(fmt::format("{:<20} {:<8} {:>11.2f} {:>14.2f}", "frame", "", quantile(planned.total_ms, 0.5),
-                          quantile(unculled.total_ms, 0.5))
+    const PassTraffic frame = sum_of(traffic);
+    std::puts(fmt::format("{:<20} {:<8} {:>11.2f} {:>14.2f}{}", "frame", "", quantile(planned.total_ms, 0.5),
+                          quantile(unculled.total_ms, 0.5), traffic_text(&frame, bandwidth_gbps))
                   .c_str());
 }
 
@@ -84,6 +103,7 @@ int print_plan(const CommonOptions& common, const PlanOptions& options)
     };
     Timed      planned       = timed(plan);
     const auto planned_image = read_shaded(stage.gpu, *planned.frame);
+    const auto traffic       = count_traffic(stage.gpu, *planned.frame);
     Timed      all           = timed(unculled(plan));
     const bool same          = read_shaded(stage.gpu, *all.frame).values == planned_image.values;
     for (int i = 0; i < options.repeats; ++i) {
@@ -96,7 +116,7 @@ int print_plan(const CommonOptions& common, const PlanOptions& options)
                   .c_str());
     for (const std::string& fact : describe_facts(plan)) std::puts(fact.c_str());
     std::puts("");
-    print_table(plan, planned, all);
+    print_table(plan, planned, all, traffic, options.bandwidth_gbps);
     std::puts(same ? "\nThe unculled image is bit-identical." : "\nThe unculled image DIFFERS from the planned one.");
     const int messages = report_messages(stage);
     return same ? messages : 1;

@@ -7,7 +7,8 @@ namespace ssrlab {
 
 struct PlanOptions {
     PictureOptions picture;
-    int            repeats = 9; // timed frames, of the planned and the unculled frame in turn
+    int            repeats        = 9; // timed frames, of the planned and the unculled frame in turn
+    double         bandwidth_gbps = 0; // of a card's memory; 0: not given
 };
 
 /// Fails (1) when the planned image differs from the unculled one.

@@ -35,19 +35,38 @@ std::string short_name(const CompiledPipeline& pipeline)
     return (file.parent_path().filename() / file.filename()).string();
 }
 
-std::vector<Row> compile(Gpu& gpu, const Catalogue& catalogue, const std::vector<const Technique*>& techniques,
-                         const std::vector<Choice>& choices)
+/// The frame of a technique.
+struct TechniqueFrame {
+    std::string   technique;
+    CompiledFrame compiled;
+
+    double a_pixel(uint64_t count) const
+    {
+        return static_cast<double>(count) / compiled.size_px.x / compiled.size_px.y;
+    }
+};
+
+std::vector<TechniqueFrame> compile(Gpu& gpu, const Catalogue& catalogue,
+                                    const std::vector<const Technique*>& techniques, const std::vector<Choice>& choices)
+{
+    std::vector<TechniqueFrame> frames;
+    for (size_t i = 0; i < techniques.size(); ++i)
+        frames.push_back(
+            {techniques[i]->id, compile_frame(gpu, catalogue, *techniques[i], choices[i].values, choices[i].settings)});
+    return frames;
+}
+
+std::vector<Row> pipelines_of(const std::vector<TechniqueFrame>& frames)
 {
     std::vector<Row> rows;
-    for (size_t i = 0; i < techniques.size(); ++i)
-        for (const CompiledPtr& pipeline :
-             compile_frame(gpu, catalogue, *techniques[i], choices[i].values, choices[i].settings)) {
+    for (const TechniqueFrame& frame : frames)
+        for (const CompiledPtr& pipeline : frame.compiled.pipelines) {
             auto row = std::ranges::find_if(rows, [&](const Row& known) {
                 return known.pipeline == pipeline || same_code(*known.pipeline, *pipeline);
             });
             if (row == rows.end()) row = rows.insert(row, {pipeline, innermost_loop(pipeline->assembly), {}});
-            if (row->techniques.empty() || row->techniques.back() != techniques[i]->id)
-                row->techniques.push_back(techniques[i]->id);
+            if (row->techniques.empty() || row->techniques.back() != frame.technique)
+                row->techniques.push_back(frame.technique);
         }
     return rows;
 }
@@ -102,12 +121,47 @@ void print_table(const std::vector<Row>& rows, size_t techniques)
     }
 }
 
-void print_json(const std::vector<Row>& rows, const GpuInfo& device)
+/// Instructions and bytes of each pass, and of the frame.
+void print_frames(const std::vector<TechniqueFrame>& frames, double bandwidth_gbps)
+{
+    const bool        timed = bandwidth_gbps > 0;
+    const glm::ivec2  size  = frames.front().compiled.size_px;
+    const std::string least = timed ? fmt::format(" least µs at {} GB/s |", bandwidth_gbps) : "";
+    std::puts(fmt::format("\nA pixel of a {}x{} frame in which every pixel reflects and every ray hits\n\n"
+                          "| technique | pass | instructions | bytes read | bytes written |{}\n|---|---|--:|--:|--:|{}",
+                          size.x, size.y, least, timed ? "--:|" : "")
+                  .c_str());
+    for (const TechniqueFrame& frame : frames) {
+        std::vector<PassTraffic> passes = frame.compiled.passes;
+        passes.push_back(sum_of(passes));
+        for (const PassTraffic& pass : passes)
+            std::puts(fmt::format("| {} | {} | {} | {:.1f} | {:.1f} |{}", frame.technique, pass.pass,
+                                  pass.instructions > 0 ? fmt::format("{:.1f}", frame.a_pixel(pass.instructions)) : "-",
+                                  frame.a_pixel(pass.read_bytes), frame.a_pixel(pass.written_bytes),
+                                  timed ? fmt::format(" {:.1f} |", 1e3 * least_ms(pass, bandwidth_gbps)) : "")
+                          .c_str());
+    }
+}
+
+nlohmann::json json_of(const TechniqueFrame& frame)
+{
+    nlohmann::json passes = nlohmann::json::array();
+    for (const PassTraffic& pass : frame.compiled.passes)
+        passes.push_back({{"pass", pass.pass},
+                          {"instructions_a_pixel", frame.a_pixel(pass.instructions)},
+                          {"bytes_read_a_pixel", frame.a_pixel(pass.read_bytes)},
+                          {"bytes_written_a_pixel", frame.a_pixel(pass.written_bytes)}});
+    return {{"technique", frame.technique}, {"passes", passes}};
+}
+
+void print_json(const std::vector<Row>& rows, const std::vector<TechniqueFrame>& frames, const GpuInfo& device)
 {
     nlohmann::json json{{"commit", built_commit()},
                         {"device", device.name},
                         {"driver", device.driver},
-                        {"pipelines", nlohmann::json::array()}};
+                        {"pipelines", nlohmann::json::array()},
+                        {"frames", nlohmann::json::array()}};
+    for (const TechniqueFrame& frame : frames) json["frames"].push_back(json_of(frame));
     for (const Row& row : rows) {
         json["pipelines"].push_back({{"shader", short_name(*row.pipeline)},
                                      {"techniques", row.techniques},
@@ -182,12 +236,14 @@ int describe_shaders(const CommonOptions& common, const ShadersOptions& options)
         print_technique_files(gpu, catalogue, techniques, choices);
         return 0;
     }
-    const std::vector<Row> rows = compile(gpu, catalogue, techniques, choices);
+    const std::vector<TechniqueFrame> frames = compile(gpu, catalogue, techniques, choices);
+    const std::vector<Row>            rows   = pipelines_of(frames);
     if (options.json)
-        print_json(rows, gpu.info);
+        print_json(rows, frames, gpu.info);
     else {
         std::puts(fmt::format("Compiled for {} by {}\n", gpu.info.name, gpu.info.driver).c_str());
         print_table(rows, techniques.size());
+        print_frames(frames, options.bandwidth_gbps);
     }
     if (!options.assembly.empty()) write_assembly(rows, options.assembly);
     return 0;

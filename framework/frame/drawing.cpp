@@ -38,6 +38,7 @@ void fill_frame_uniforms(Gpu& gpu, Drawing& drawing)
 
 vk::RenderingAttachmentInfo cleared_attachment(const GpuImage& image, vk::ClearValue clear)
 {
+    note({.uses = {{storage_of(image), false, true}}});
     return {.imageView   = *image.view,
             .imageLayout = vk::ImageLayout::eGeneral,
             .loadOp      = vk::AttachmentLoadOp::eClear,
@@ -131,7 +132,7 @@ DrawingPtr make_drawing(Gpu& gpu, const GpuScenePtr& scene, const View& view, Sh
                                             {{"View", gbuffer.view_uniforms},
                                              {"depth_buffer", {drawing->depth_buffer, drawing->sampler}},
                                              {"environment_map", scene->environment_map},
-                                             {"depth_words", {gbuffer.depth.cells, gbuffer.depth.words}},
+                                             {"depth_words", depth_bindings(gbuffer.depth).at("depth_words")},
                                              {"StoredPlanes", gbuffer.depth.cells},
                                              {"gradient_image", gbuffer.gradient},
                                              {"radiance_image", gbuffer.radiance}},

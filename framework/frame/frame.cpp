@@ -60,7 +60,7 @@ std::shared_ptr<RayBuffers> ray_buffers(Gpu& gpu, FrameBuffers& buffers, const G
 
 Buffer make_answers(Gpu& gpu, const RayBuffers& rays)
 {
-    return make_buffer(gpu, std::max<uint64_t>(rays.capacity, 1) * sizeof(RayLight));
+    return make_buffer(gpu, std::max<uint64_t>(rays.capacity, 1) * sizeof(RayLight), sizeof(RayLight));
 }
 
 GpuScene* scene_of(const FrameBuffers& buffers) { return buffers.drawing ? buffers.drawing->scene.get() : nullptr; }
@@ -118,18 +118,22 @@ FramePtr make_frame(Gpu& gpu, const LabPtr& lab, const FrameBuffersPtr& buffers,
     return frame;
 }
 
-std::vector<CompiledPtr> compile_frame(Gpu& gpu, const Catalogue& catalogue, const Technique& technique,
-                                       const ParameterValues& values, const FrameSettings& settings)
+CompiledFrame compile_frame(Gpu& gpu, const Catalogue& catalogue, const Technique& technique,
+                            const ParameterValues& values, const FrameSettings& settings)
 {
-    const GBufferPtr gbuffer = make_gbuffer(gpu, camera_to_view(Camera{}, {1920, 1080}), Filled::drawn);
+    CompiledFrame    result;
+    const GBufferPtr gbuffer = make_gbuffer(gpu, camera_to_view(Camera{}, result.size_px), Filled::drawn);
     const auto       pixels  = static_cast<uint32_t>(pixel_count(gbuffer->view.size_px));
     const glm::uvec3 tiles   = groups_of_8(gbuffer->view.size_px);
     GBufferCounts    all{.surface_pixels = pixels, .reflecting_pixels = pixels, .reflecting_tiles = tiles.x * tiles.y};
     all.roughness_pixels[0] = all.roughness_pixels[ROUGHNESS_BINS / 4] = pixels / 2;
     const LabPtr          lab     = make_lab(gpu, catalogue, gbuffer, technique, values, settings.trace);
     const FrameBuffersPtr buffers = make_frame_buffers(gpu, gbuffer);
-    make_frame(gpu, lab, buffers, plan_with(catalogue, *lab, *buffers, settings, nullptr, all, {pixels, pixels, 0}));
-    return take_compiled(gpu);
+    const FramePtr        frame   = make_frame(
+                 gpu, lab, buffers, plan_with(catalogue, *lab, *buffers, settings, nullptr, all, {pixels, pixels, 0}));
+    result.pipelines = take_compiled(gpu);
+    result.passes    = count_traffic(gpu, *frame);
+    return result;
 }
 
 FrameTimes run_passes(Gpu& gpu, const ReadyFrame& frame, const Timestamps& timestamps, size_t first, size_t last,

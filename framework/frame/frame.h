@@ -50,6 +50,19 @@ struct FrameRays {
 /// Who answers a frame's rays: the frame alone, or others, too, between trace_frame() and shade_frame().
 enum class Answers : uint8_t { own, given };
 
+/// What a pass moves at the least in one frame, if caches are ideal: each of its pixels or rays reads one item of every
+/// buffer and image that its shaders read and writes one of those they write; once, whatever its dispatches share
+/// (docs/reference/columns.md).
+struct PassTraffic {
+    std::string pass;
+    uint64_t    read_bytes = 0, written_bytes = 0;
+    uint64_t    instructions = 0; // of all invocations, a loop's once; 0 on a device that does not only compile
+};
+/// Returns the sum, as a pass called "frame".
+PassTraffic sum_of(std::span<const PassTraffic> passes);
+/// Returns the time that memory of this bandwidth needs for that, in milliseconds.
+double least_ms(const PassTraffic& traffic, double bandwidth_gbps);
+
 struct FrameBuffers; // targets of passes: allocated once per G-buffer, shared by all frames on it
 struct ReadyFrame;   // the pipelines of one run
 
@@ -68,15 +81,22 @@ FramePlan plan_frame(Gpu& gpu, const Catalogue& catalogue, const LabPtr& lab, co
 FramePtr make_frame(Gpu& gpu, const LabPtr& lab, const FrameBuffersPtr& buffers, const FramePlan& plan,
                     const FrameHistoryPtr& history = nullptr, Answers answers = Answers::own);
 
-/// Returns every pipeline of a 1080p frame on a device that only compiles (gpu/compiled.h), as if every pixel
-/// reflected, half of them as mirrors and half with roughness 0.25, and every ray hit. Passes that draw the scene are
-/// left out, since there is none.
-std::vector<CompiledPtr> compile_frame(Gpu& gpu, const Catalogue& catalogue, const Technique& technique,
-                                       const ParameterValues& values, const FrameSettings& settings);
+/// A frame on a device that only compiles (gpu/compiled.h).
+struct CompiledFrame {
+    std::vector<CompiledPtr> pipelines;
+    std::vector<PassTraffic> passes; // that run
+    glm::ivec2               size_px{1920, 1080};
+};
+/// Compiles a frame in which every pixel reflects, half of them as mirrors and half with roughness 0.25, and every ray
+/// hits. Passes that draw the scene are left out, since there is none.
+CompiledFrame compile_frame(Gpu& gpu, const Catalogue& catalogue, const Technique& technique,
+                            const ParameterValues& values, const FrameSettings& settings);
 
 /// Runs the planned passes `frames` times in one submit, waits, and returns the times of the last. The first call
 /// includes driver compilation: warm up.
 FrameTimes run_frame(Gpu& gpu, ReadyFrame& frame, int frames = 1);
+/// Returns what the passes of the last run_frame() moved.
+std::vector<PassTraffic> count_traffic(Gpu& gpu, const ReadyFrame& frame);
 /// Run a frame with Answers::given in two parts: all passes up to the trace, then the others. `answers`: one per ray,
 /// or none, if the frame answers them all. `rays`: from trace_frame().
 FrameTimes trace_frame(Gpu& gpu, ReadyFrame& frame, FrameRays& rays);

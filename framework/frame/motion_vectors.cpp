@@ -48,7 +48,7 @@ MotionVectors make_motion_vectors(Gpu& gpu, GBuffer& gbuffer, const FrameMotion&
     constants.add(CONSTANT_ORTHOGRAPHIC, static_cast<int32_t>(gbuffer.view.projection == Projection::orthographic));
     vectors.pass = make_compute_pass(gpu, compile_shader(gpu, {.file = "gbuffer/motion_vectors.comp"}),
                                      {{"View", gbuffer.view_uniforms},
-                                      {"depth_words", {gbuffer.depth.cells, gbuffer.depth.words}},
+                                      {"depth_words", depth_bindings(gbuffer.depth).at("depth_words")},
                                       {"object_image", gbuffer.object},
                                       {"motion_image", *gbuffer.motion_px},
                                       {"PreviousView", vectors.motion.previous_view},

@@ -161,6 +161,16 @@ std::shared_ptr<const ComputePipeline> find_pipeline(Gpu& gpu, const Shader& sha
     return entry->second.pipeline;
 }
 
+/// What the code of a shader reads and writes of what is bound.
+std::vector<StorageUse> uses_of(const Shader& shader, const Bindings& bindings)
+{
+    std::vector<StorageUse> uses;
+    for (const auto& [name, binding] : shader.bindings)
+        if (const auto bound = bindings.find(name); bound != bindings.end() && (binding.reads || binding.writes))
+            uses.push_back({bound->second.storage, binding.reads, binding.writes, name});
+    return uses;
+}
+
 } // namespace
 
 Constants Constants::only(const std::set<uint32_t>& ids) const
@@ -182,6 +192,7 @@ ComputePass make_compute_pass(Gpu& gpu, const Shader& shader, const Bindings& bi
     ComputePass pass;
     try {
         pass.compute = find_pipeline(gpu, shader, constants.only(shader.constants), push_constant_bytes);
+        pass.uses    = uses_of(shader, bindings);
         if (gpu.info.compiles_only) {
             gpu.impl->asked_for.push_back(pass.compute);
             return pass;
@@ -208,12 +219,14 @@ void bind(const vk::raii::CommandBuffer& commands, const ComputePass& pass)
 
 void dispatch(const vk::raii::CommandBuffer& commands, const ComputePass& pass, glm::uvec3 groups)
 {
+    if (are_noted() && note({.uses = pass.uses, .pipeline = pass.compute.get(), .groups = groups})) return;
     bind(commands, pass);
     commands.dispatch(groups.x, groups.y, groups.z);
 }
 
 void dispatch_indirect(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const Buffer& arguments)
 {
+    if (are_noted() && note({.uses = pass.uses, .pipeline = pass.compute.get(), .launch = &arguments})) return;
     bind(commands, pass);
     commands.dispatchIndirect(*arguments.buffer, 0);
 }

@@ -35,9 +35,14 @@ struct Bound {
     vk::ImageView  view;
     vk::Sampler    sampler;
 
-    Bound(const Buffer& b) : buffer(*b.buffer), texels(*b.texels) {}
-    Bound(const Buffer& b, const vk::raii::BufferView& t) : buffer(*b.buffer), texels(*t) {}
-    Bound(const GpuImage& image) : view(*image.view) {}
+    Storage storage;
+
+    Bound(const Buffer& b) : buffer(*b.buffer), texels(*b.texels), storage(storage_of(b)) {}
+    /// A part of a buffer, or all of it, as texels.
+    Bound(const Buffer& b, const vk::raii::BufferView& t, const Storage& s) : buffer(*b.buffer), texels(*t), storage(s)
+    {
+    }
+    Bound(const GpuImage& image) : view(*image.view), storage(storage_of(image)) {}
     Bound(const GpuImage& image, const vk::raii::Sampler& s) : view(*image.view), sampler(*s) {}
 };
 using Bindings = std::map<std::string, Bound>;
@@ -46,6 +51,7 @@ struct ComputePass {
     std::shared_ptr<const ComputePipeline> compute; // shared by all passes of the same shader and constants
     vk::raii::DescriptorPool               pool = nullptr;
     vk::raii::DescriptorSet                set  = nullptr;
+    std::vector<StorageUse>                uses = {}; // of buffers and images; not what is sampled, and no uniforms
 };
 
 /// Makes a pass. Throws std::logic_error if `bindings` lacks a name that the shader uses; unused names and constants
@@ -71,6 +77,7 @@ void dispatch(const vk::raii::CommandBuffer& commands, const ComputePass& pass, 
 void dispatch_indirect(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const Buffer& arguments);
 template <typename T> void push(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const T& value)
 {
+    if (are_noted()) return;
     commands.pushConstants<T>(*pass.compute->layout, vk::ShaderStageFlagBits::eCompute, 0, value);
 }
 

@@ -322,6 +322,7 @@ void submit(Gpu& gpu, const std::function<void(const vk::raii::CommandBuffer&)>&
 
 void barrier(const vk::raii::CommandBuffer& commands)
 {
+    if (!static_cast<bool>(*commands)) return; // they are only noted
     const vk::MemoryBarrier2 everything{.srcStageMask  = vk::PipelineStageFlagBits2::eAllCommands,
                                         .srcAccessMask = vk::AccessFlagBits2::eMemoryWrite,
                                         .dstStageMask  = vk::PipelineStageFlagBits2::eAllCommands,

@@ -27,6 +27,7 @@ Buffer make(Gpu& gpu, uint64_t bytes, vk::BufferUsageFlags usage, vk::MemoryProp
 {
     Buffer result;
     result.bytes = bytes;
+    result.id    = new_storage_id();
     if (gpu.info.compiles_only) return result;
     result.buffer = {gpu.impl->device, vk::BufferCreateInfo{.size = bytes, .usage = usage}};
     result.memory = allocate(*gpu.impl, result.buffer.getMemoryRequirements(), wanted, preferred);
@@ -127,13 +128,19 @@ uint32_t choose_memory_type(const vk::PhysicalDeviceMemoryProperties& properties
     throw_failure("the device has no memory type with {}", vk::to_string(wanted));
 }
 
-Buffer make_buffer(Gpu& gpu, uint64_t bytes) { return make(gpu, bytes, any_use, Property::eDeviceLocal); }
+Buffer make_buffer(Gpu& gpu, uint64_t bytes, uint64_t item_bytes)
+{
+    Buffer buffer     = make(gpu, bytes, any_use, Property::eDeviceLocal);
+    buffer.item_bytes = item_bytes;
+    return buffer;
+}
 
 Buffer make_texel_buffer(Gpu& gpu, uint64_t bytes, vk::Format format)
 {
     refuse_too_many_texels(gpu, bytes, format); // before its memory is asked for
     Buffer buffer = make(gpu, bytes, any_use | vk::BufferUsageFlagBits::eStorageTexelBuffer, Property::eDeviceLocal);
     buffer.texels = make_texel_view(gpu, buffer, format);
+    buffer.item_bytes = vk::blockSize(format);
     return buffer;
 }
 
@@ -168,6 +175,23 @@ void download(Gpu& gpu, const Buffer& source, void* data, uint64_t bytes)
 
 bool is_depth(vk::Format format) { return format == vk::Format::eD32Sfloat || format == vk::Format::eD16Unorm; }
 
+Storage storage_of(const Buffer& buffer) { return {buffer.id, buffer.bytes, buffer.item_bytes}; }
+
+Storage storage_of(const GpuImage& image)
+{
+    const uint64_t texel = vk::blockSize(image.format);
+    uint64_t       count = 0;
+    for (uint32_t level = 0; level < image.levels; ++level)
+        count += pixel_count(glm::max(image.size_px >> static_cast<int>(level), 1));
+    return {image.id, count * image.layers * texel, texel};
+}
+
+void record_fill(const vk::raii::CommandBuffer& commands, const Buffer& buffer, uint32_t word)
+{
+    if (note({.uses = {{storage_of(buffer), false, true}}})) return;
+    commands.fillBuffer(*buffer.buffer, 0, VK_WHOLE_SIZE, word);
+}
+
 GpuImage make_image(Gpu& gpu, const ImageOptions& options)
 {
     using Usage      = vk::ImageUsageFlagBits;
@@ -181,6 +205,7 @@ GpuImage make_image(Gpu& gpu, const ImageOptions& options)
     result.size_px = options.size_px;
     result.levels  = options.levels;
     result.layers  = options.layers;
+    result.id      = new_storage_id();
     if (gpu.info.compiles_only) return result;
     const vk::ImageCreateInfo info{
         .imageType   = vk::ImageType::e2D,

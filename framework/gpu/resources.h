@@ -1,7 +1,7 @@
 // Buffers and images with their own memory, and the ways in and out of them.
 #pragma once
 
-#include "gpu/vulkan.h"
+#include "gpu/command_notes.h"
 
 #include <glm/glm.hpp>
 
@@ -16,7 +16,7 @@ uint32_t choose_memory_type(const vk::PhysicalDeviceMemoryProperties& properties
                             vk::MemoryPropertyFlags wanted, vk::MemoryPropertyFlags preferred);
 
 /// Makes device-local storage for any use. Throws Failure when out of memory or over limits.
-Buffer make_buffer(Gpu& gpu, uint64_t bytes);
+Buffer make_buffer(Gpu& gpu, uint64_t bytes, uint64_t item_bytes = sizeof(uint32_t));
 /// Makes such a buffer that shaders may also read as texels of this format, where the device does so. Throws likewise.
 Buffer make_texel_buffer(Gpu& gpu, uint64_t bytes, vk::Format format);
 /// Makes another texel view, which must not outlive the buffer; null with plain buffers. Throws over limits.
@@ -48,6 +48,7 @@ struct GpuImage {
     glm::ivec2             size_px{0, 0};
     uint32_t               levels = 1;
     uint32_t               layers = 1;
+    uint64_t               id     = 0; // new_storage_id()
 };
 
 struct ImageOptions {
@@ -61,6 +62,12 @@ struct ImageOptions {
 /// Makes an image in layout GENERAL, where it stays. Throws SpecError if the size exceeds the limit of the device.
 GpuImage make_image(Gpu& gpu, const ImageOptions& options);
 bool     is_depth(vk::Format format);
+
+Storage storage_of(const Buffer& buffer);
+Storage storage_of(const GpuImage& image);
+
+/// Records setting every word of a buffer.
+void record_fill(const vk::raii::CommandBuffer& commands, const Buffer& buffer, uint32_t word);
 
 /// Copies tightly packed texels of level 0, layer 0.
 void              upload(Gpu& gpu, GpuImage& target, const void* data, uint64_t bytes);

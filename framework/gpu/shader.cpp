@@ -146,6 +146,58 @@ std::set<uint32_t> constants_used(std::span<const uint32_t> spirv)
     return used;
 }
 
+/// Marks which bindings the code reads and writes: loads and stores through pointers and images, followed to their variables.
+void mark_uses(Shader& shader)
+{
+    // SPIR-V 1.6, section 3
+    enum : uint32_t { binding = 33 }; // a decoration
+    enum : uint32_t {
+        decorate         = 71,
+        texel_pointer    = 60,
+        load             = 61,
+        store            = 62,
+        access           = 65,
+        access_in_bounds = 66,
+        copy             = 83,
+        image_fetch      = 95,
+        image_read       = 98,
+        image_write      = 99,
+        atomic_load      = 227,
+        atomic_store     = 228,
+        last_atomic      = 242
+    };
+    std::map<uint32_t, ShaderBinding*> of; // result id -> what it points into
+    const auto                         find = [&](uint32_t id) {
+        const auto found = of.find(id);
+        return found == of.end() ? nullptr : found->second;
+    };
+    const auto reads = [&](uint32_t id) {
+        if (ShaderBinding* used = find(id)) used->reads = true;
+    };
+    const auto writes = [&](uint32_t id) {
+        if (ShaderBinding* used = find(id)) used->writes = true;
+    };
+    for_each_instruction(shader.spirv, [&](std::span<const uint32_t> words) {
+        const uint32_t opcode = opcode_of(words);
+        if (opcode == decorate && words[2] == binding) {
+            for (auto& [name, declared] : shader.bindings)
+                if (declared.binding == words[3]) of[words[1]] = &declared;
+        } else if (opcode == texel_pointer || opcode == load || opcode == access || opcode == access_in_bounds ||
+                   opcode == copy) {
+            if (ShaderBinding* used = find(words[3])) of[words[2]] = used;
+            if (opcode == load && find(words[3]) != nullptr && find(words[3])->type == BindingType::storage_buffer)
+                reads(words[3]);
+        } else if (opcode == store || opcode == image_write || opcode == atomic_store)
+            writes(words[1]);
+        else if (opcode == image_fetch || opcode == image_read || opcode == atomic_load)
+            reads(words[3]);
+        else if (opcode > atomic_store && opcode <= last_atomic) {
+            reads(words[3]);
+            writes(words[3]);
+        }
+    });
+}
+
 } // namespace
 
 fs::path shader_folder() { return data_root() / "shaders"; }
@@ -245,6 +297,7 @@ Shader compile_or_read(const ShaderSource& source, std::span<const std::filesyst
     Shader                 shader = kept ? from_bytes(*kept, source) : compile(source, includer);
     if (!kept) write_cached(name, to_bytes(shader));
     shader.constants = constants_used(shader.spirv);
+    mark_uses(shader);
     return shader;
 }
 

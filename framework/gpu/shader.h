@@ -18,6 +18,7 @@ enum class BindingType { storage_buffer, uniform_buffer, storage_image, sampled_
 struct ShaderBinding {
     uint32_t    binding = 0;
     BindingType type    = BindingType::storage_buffer;
+    bool        reads = false, writes = false; // anywhere in the code; of buffers and storage images
 };
 
 struct Shader {

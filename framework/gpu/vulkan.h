@@ -21,11 +21,13 @@ struct ComputePipeline {
 };
 
 struct Buffer {
-    vk::raii::DeviceMemory memory = nullptr; // freed after the buffer: members die in reverse order
-    vk::raii::Buffer       buffer = nullptr;
-    vk::raii::BufferView   texels = nullptr; // make_texel_buffer() only
-    uint64_t               bytes  = 0;
-    void*                  mapped = nullptr; // host-visible buffers only
+    vk::raii::DeviceMemory memory     = nullptr; // freed after the buffer: members die in reverse order
+    vk::raii::Buffer       buffer     = nullptr;
+    vk::raii::BufferView   texels     = nullptr; // make_texel_buffer() only
+    uint64_t               bytes      = 0;
+    void*                  mapped     = nullptr;          // host-visible buffers only
+    uint64_t               id         = 0;                // new_storage_id()
+    uint64_t               item_bytes = sizeof(uint32_t); // what an invocation reads or writes of it at least
 };
 
 struct GpuImpl {

@@ -88,7 +88,7 @@ void plan_run(SweepContext& sweep, const Picture& picture, MeasuredRun& measured
 }
 
 /// Everything on the device but the timed repeats: warm-up, picture, counts.
-Observed observe(SweepContext& sweep, const MeasuredRun& measured)
+Observed observe(SweepContext& sweep, MeasuredRun& measured)
 {
     const MeasureSettings& measure = sweep.experiment.measure;
     return clocked(sweep.counted_s, [&] {
@@ -96,6 +96,7 @@ Observed observe(SweepContext& sweep, const MeasuredRun& measured)
         const bool      doubled = measure.truth && measure.double_twin && sweep.gpu.info.float64;
         const TracerPtr twin    = doubled ? make_tracer(sweep.gpu, measured.lab, NumberFormat::float64) : nullptr;
         run_frame(sweep.gpu, *measured.frame);
+        measured.traffic = count_traffic(sweep.gpu, *measured.frame);
         Observed observed{read_shaded(sweep.gpu, *measured.frame), trace_gbuffer(sweep.gpu, *tracer),
                           read_hidden_hits(sweep.gpu, *measured.frame)};
         observed.reprojection = read_reprojection(sweep.gpu, *measured.frame);

@@ -109,9 +109,7 @@ std::string joined_lines(const std::vector<fs::path>& folders, const char* name,
     std::string all = csv_line(header);
     for (const fs::path& folder : folders) {
         const std::string text = read_file(folder / name);
-        std::string_view  rest = text;
-        take_csv_record(rest); // the header
-        all += lines_of(header, rest, ids).substr(csv_line(header).size());
+        all += lines_of(header, take_header(text, folder / name, header), ids).substr(csv_line(header).size());
     }
     return all;
 }

@@ -2,6 +2,8 @@
 
 #include "harness/statistics.h"
 
+#include <algorithm>
+
 namespace ssrlab {
 
 std::span<const Column> pass_columns()
@@ -14,6 +16,10 @@ std::span<const Column> pass_columns()
         {"ms_median", "GPU time, median over the repeats; empty if the pass did not run"},
         {"ms_ci_low", "lower end of the 95 % confidence interval of the median; empty below six repeats"},
         {"ms_ci_high", "upper end"},
+        {"bytes_read_mean",
+         "bytes read from memory, a pixel of the image, if caches are ideal: each pixel or ray of the "
+         "pass reads one item of every buffer and image that its shaders read"},
+        {"bytes_written_mean", "bytes written, likewise"},
         {"reason", "why the pass ran or did not", words}};
     return columns;
 }
@@ -31,6 +37,10 @@ std::string passes_text(const MeasuredRun& measured)
             put(record, "ms_median", ms.median);
             put(record, "ms_ci_low", ms.ci_low);
             put(record, "ms_ci_high", ms.ci_high);
+            const auto moved  = std::ranges::find(measured.traffic, planned.id, &PassTraffic::pass);
+            const auto pixels = static_cast<double>(measured.plan.statistics.pixels);
+            put(record, "bytes_read_mean", static_cast<double>(moved->read_bytes) / pixels);
+            put(record, "bytes_written_mean", static_cast<double>(moved->written_bytes) / pixels);
         }
         text += csv_line(fields_of(record, pass_columns()));
     }

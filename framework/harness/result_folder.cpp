@@ -53,25 +53,28 @@ std::map<std::string, std::string> recorded_identity(const fs::path& file)
     }
 }
 
-/// What stands behind the first line.
-std::string_view take_header(std::string_view text, const fs::path& file, const CsvRecord& header)
-{
-    if (take_csv_record(text) != header)
-        throw_failure("{}: damaged: its first line is not '{}'", short_path(file), fmt::join(header, ","));
-    return text;
-}
-
 } // namespace
 
-void refuse_old_form(const fs::path& results_csv, const CsvRecord& header)
+void refuse_old_form(const fs::path& csv, const CsvRecord& header)
 {
-    const bool packs_passes = std::ranges::count(header, "passes_why") + std::ranges::count(header, "passes") > 0;
-    const bool knows_passes = std::ranges::count(header, "passes_ran") > 0;
-    const bool old          = packs_passes || (knows_passes && std::ranges::count(header, "sources_asked") == 0);
-    if (!old) return;
-    throw_spec_error("{}: an older ssrlab wrote it, without {}.csv; measure it anew: ssrlab run SPECIFICATION.toml "
+    const auto  has   = [&](const char* column) { return std::ranges::count(header, column) > 0; };
+    const char* lacks = has("passes_why") || has("passes")                     ? "passes.csv"
+                        : has("passes_ran") && !has("sources_asked")           ? "sources.csv"
+                        : has("pass") && has("ran") && !has("bytes_read_mean") ? "bytes_read_mean"
+                                                                               : nullptr;
+    if (lacks == nullptr) return;
+    throw_spec_error("{}: an older ssrlab wrote it, without {}; measure it anew: ssrlab run SPECIFICATION.toml "
                      "-o ANOTHER_FOLDER",
-                     short_path(results_csv), packs_passes ? "passes" : "sources");
+                     short_path(csv), lacks);
+}
+
+std::string_view take_header(std::string_view text, const fs::path& file, const CsvRecord& header)
+{
+    const auto found = take_csv_record(text);
+    if (found) refuse_old_form(file, *found);
+    if (found != header)
+        throw_failure("{}: damaged: its first line is not '{}'", short_path(file), fmt::join(header, ","));
+    return text;
 }
 
 std::vector<std::string> differences(const std::map<std::string, std::string>& a,

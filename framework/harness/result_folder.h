@@ -24,9 +24,11 @@ struct Environment {
 std::vector<std::string> differences(const std::map<std::string, std::string>& a,
                                      const std::map<std::string, std::string>& b);
 
-/// Throws SpecError if an older version wrote this results.csv: it packed the times of passes into columns, or wrote no
-/// sources.csv.
-void refuse_old_form(const std::filesystem::path& results_csv, const CsvRecord& header);
+/// Throws SpecError if an older version wrote this results.csv or passes.csv: it packed the times of passes into
+/// columns, wrote no sources.csv, or counted no bytes.
+void refuse_old_form(const std::filesystem::path& csv, const CsvRecord& header);
+/// Returns what stands behind the first line. Throws likewise, and Failure if that line is not `header`.
+std::string_view take_header(std::string_view text, const std::filesystem::path& file, const CsvRecord& header);
 
 /// A run's lines of the files beside results.csv.
 struct RunLines {

@@ -40,6 +40,21 @@ size_t cell_index(glm::ivec2 size_px, glm::ivec2 pixel, int level)
 
 glm::ivec2 level_size(glm::ivec2 size_px, int level) { return ((size_px - 1) >> level) + 1; }
 
+Bindings depth_bindings(const DepthBuffer& depth)
+{
+    uint64_t cells = 0;
+    for (int level = 1; level <= pyramid_levels(depth.size_px); ++level)
+        cells += pixel_count(level_size(depth.size_px, level));
+    constexpr uint64_t word = sizeof(uint32_t), cell = 2 * word, pair = 2 * cell;
+    const uint64_t     pixels_bytes = word * pixel_count(depth.size_px), cells_bytes = cell * cells;
+    const Buffer&      all = depth.cells;
+    return {{"depth_words", {all, depth.words, {all.id, pixels_bytes, word}}},
+            {"depth_cells", {all, all.texels, {all.id, pixels_bytes, cell}}},
+            {"cell_pairs", {all, depth.pairs, {all.id, pixels_bytes, pair}}},
+            {"StoredCells", {all, depth.pairs, {depth.cells_id, cells_bytes, pair}}},
+            {"StoredCell", {all, all.texels, {depth.cells_id, cells_bytes, cell}}}};
+}
+
 DepthBuffer make_depth_buffer(Gpu& gpu, glm::ivec2 size_px)
 {
     const int  first = planes_first(size_px.x, pyramid_rows(pyramid_root(size_px), size_px.y));
@@ -47,10 +62,11 @@ DepthBuffer make_depth_buffer(Gpu& gpu, glm::ivec2 size_px)
     const auto texels =
         static_cast<size_t>(first + strip_index(((size_px.x - 1) >> STRIP_BITS) << STRIP_BITS, rows, rows));
     DepthBuffer depth;
-    depth.size_px = size_px;
-    depth.cells   = make_texel_buffer(gpu, texels * sizeof(glm::uvec2), vk::Format::eR32G32Uint);
-    depth.words   = make_texel_view(gpu, depth.cells, vk::Format::eR32Sfloat);
-    depth.pairs   = make_texel_view(gpu, depth.cells, vk::Format::eR32G32B32A32Uint);
+    depth.size_px  = size_px;
+    depth.cells    = make_texel_buffer(gpu, texels * sizeof(glm::uvec2), vk::Format::eR32G32Uint);
+    depth.words    = make_texel_view(gpu, depth.cells, vk::Format::eR32Sfloat);
+    depth.pairs    = make_texel_view(gpu, depth.cells, vk::Format::eR32G32B32A32Uint);
+    depth.cells_id = new_storage_id();
     submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
         commands.fillBuffer(*depth.cells.buffer, 0, VK_WHOLE_SIZE, std::bit_cast<uint32_t>(background));
     });

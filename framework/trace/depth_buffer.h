@@ -1,7 +1,7 @@
 // Depth in the layout that tracers read, with two words for each cell of the levels above it. Folder-internal.
 #pragma once
 
-#include "gpu/resources.h"
+#include "gpu/compute.h"
 
 #include <span>
 #include <vector>
@@ -23,10 +23,14 @@ glm::ivec2 level_size(glm::ivec2 size_px, int level);
 /// (shaders/layout/cell_places.glsl, plane_places.glsl).
 struct DepthBuffer {
     glm::ivec2           size_px{0, 0};
-    Buffer               cells;           // as texels: both words of a cell, or the depths of two pixels
-    vk::raii::BufferView words = nullptr; // as texels: each word
-    vk::raii::BufferView pairs = nullptr; // as texels: two cells, or four pixels
+    Buffer               cells;              // as texels: both words of a cell, or the depths of two pixels
+    vk::raii::BufferView words    = nullptr; // as texels: each word
+    vk::raii::BufferView pairs    = nullptr; // as texels: two cells, or four pixels
+    uint64_t             cells_id = 0;       // of the cells above the pixels, which structures store
 };
+
+/// Returns it by the names under which shaders read depths and cells and store cells.
+Bindings depth_bindings(const DepthBuffer& depth);
 
 /// Returns a buffer with undefined content.
 DepthBuffer make_depth_buffer(Gpu& gpu, glm::ivec2 size_px);

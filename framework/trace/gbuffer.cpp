@@ -199,15 +199,11 @@ GBufferPtr upload_depth(Gpu& gpu, const View& view, std::span<const float> depth
 
 Bindings surface_bindings(const GBuffer& gbuffer)
 {
-    Bindings bindings{{"depth_words", {gbuffer.depth.cells, gbuffer.depth.words}},
-                      {"depth_cells", gbuffer.depth.cells},
-                      {"cell_pairs", {gbuffer.depth.cells, gbuffer.depth.pairs}},
-                      {"StoredCells", {gbuffer.depth.cells, gbuffer.depth.pairs}},
-                      {"StoredCell", gbuffer.depth.cells},
-                      {"normal_image", gbuffer.normal},
-                      {"material_image", gbuffer.material},
-                      {"dielectric_image", gbuffer.dielectric},
-                      {"solid_image", gbuffer.solid}};
+    Bindings bindings = depth_bindings(gbuffer.depth);
+    bindings.insert({{"normal_image", gbuffer.normal},
+                     {"material_image", gbuffer.material},
+                     {"dielectric_image", gbuffer.dielectric},
+                     {"solid_image", gbuffer.solid}});
     add_layers(bindings, gbuffer.layers);
     return bindings;
 }
@@ -217,8 +213,9 @@ void add_layers(Bindings& bindings, std::span<const GBufferPtr> layers)
     for (size_t i = 0; i < layers.size(); ++i) {
         const GBuffer& layer = *layers[i];
         const auto     name  = [&](const char* what) { return fmt::format("layer_{}_{}", i + 1, what); };
-        bindings.insert({{name("cells"), layer.depth.cells},
-                         {name("depth_words"), {layer.depth.cells, layer.depth.words}},
+        const Bindings depth = depth_bindings(layer.depth);
+        bindings.insert({{name("cells"), depth.at("depth_cells")},
+                         {name("depth_words"), depth.at("depth_words")},
                          {name("normal_image"), layer.normal},
                          {name("material_image"), layer.material},
                          {name("radiance_image"), layer.radiance},

@@ -58,16 +58,17 @@ RayBuffers make_ray_buffers(Gpu& gpu, size_t capacity, NumberFormat number_forma
         throw_failure("{} rays need a buffer of {} MiB; the device allows {} MiB", rays, largest >> 20,
                       gpu.impl->limits.maxStorageBufferRange >> 20);
     RayBuffers buffers;
-    buffers.number_format  = number_format;
-    buffers.capacity       = capacity;
-    buffers.count          = make_buffer(gpu, 16);
-    buffers.launch         = make_buffer(gpu, 16);
-    buffers.list           = make_texel_buffer(gpu, rays * listed_bytes,
+    buffers.number_format   = number_format;
+    buffers.capacity        = capacity;
+    buffers.count           = make_buffer(gpu, 16);
+    buffers.launch          = make_buffer(gpu, 16);
+    buffers.list            = make_texel_buffer(gpu, rays * listed_bytes,
                                      rays_of_pixels > 0 ? vk::Format::eR32Uint : vk::Format::eR32G32B32A32Uint);
-    buffers.rays_of_pixels = rays_of_pixels;
-    buffers.hits           = number_format == NumberFormat::float64
-                                 ? make_texel_buffer(gpu, rays * sizeof(PackedHit<double>), vk::Format::eR32G32B32A32Uint)
-                                 : make_texel_buffer(gpu, rays * sizeof(PackedHit<float>), vk::Format::eR32G32Uint);
+    buffers.list.item_bytes = listed_bytes;
+    buffers.rays_of_pixels  = rays_of_pixels;
+    buffers.hits            = number_format == NumberFormat::float64
+                                  ? make_texel_buffer(gpu, rays * sizeof(PackedHit<double>), vk::Format::eR32G32B32A32Uint)
+                                  : make_texel_buffer(gpu, rays * sizeof(PackedHit<float>), vk::Format::eR32G32Uint);
 
     buffers.group_launch = make_buffer(gpu, 16);
     buffers.structures   = std::make_shared<StructureBuffers>();

@@ -166,6 +166,11 @@ class Test(Case):
         plan = plots.tables.plan_of(results, chosen)
         self.assertEqual([(one["name"], one["ms"], one["why"]) for one in plan["passes"]],
                          [("rays", "1.25", "9 pixels"), ("trace", "2", ""), ("blur", "0.5", "it is rough"), ("cone", "–", "gloss = stochastic")])
+        self.assertIsNone(plan["bandwidth_gbps"])  # an old folder counts no bytes, and none was given
+        results.passes = results.passes.assign(bytes_read_mean=40, bytes_written_mean=8)
+        results.bandwidth_gbps = 100
+        timed = plots.tables.plan_of(results, chosen)  # 80 x 60 pixels
+        self.assertEqual([one["least_ms"] for one in timed["passes"]], ["0.0023", "0.0023", "0.0023", "–"])
         self.assertEqual([cell["sort"] for cell in plots.tables.plain_table([{"a": "2.5", "b": "x"}])["rows"][0]["cells"]], ["2.5", None])
 
     def test_failed_runs_and_their_commands(self):

@@ -1,4 +1,4 @@
-"""ssrlab shaders: what Mesa's compiler for AMD GPUs makes of each pass, without a GPU, and what the compiler reads of a technique."""
+"""ssrlab shaders and the bytes of a plan: what Mesa's compiler for AMD GPUs makes of each pass, without a GPU, and what the compiler reads of a technique."""
 import glob
 import json
 import os
@@ -51,12 +51,39 @@ class Test(Case):
     def test_table_and_assembly(self):
         self.need_amd()
         text = self.ssrlab("shaders", "linear", "--chip", "navi21", "--assembly", "code", says=["NAVI21", "| linear |"])
-        rows = [line.split("|")[1:-1] for line in text.splitlines() if line.startswith("|")]
+        pipelines, frame = text.split("\nA pixel of a 1920x1080 frame")
+        rows = [line.split("|")[1:-1] for line in pipelines.splitlines() if line.startswith("|")]
         self.assertEqual({len(row) for row in rows}, {14}, text)
         written = sorted(os.listdir(self.path("code")))
         self.assertEqual(len(written), len(rows) - 2)
         trace = [name for name in written if name.endswith("linear_trace.comp.s")]
         self.assertIn("s_endpgm", self.text(f"code/{trace[0]}"))
+
+    def test_bytes_and_instructions_of_a_frame(self):
+        self.need_amd()
+        text = self.ssrlab("shaders", "linear", "--chip", "navi21", "--bandwidth-gbps", "1000", "-p", "gloss=off")
+        rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.split("A pixel of a")[1].splitlines() if line.startswith("|")]
+        self.assertEqual(rows[0], ["technique", "pass", "instructions", "bytes read", "bytes written", "least µs at 1000 GB/s"])
+        passes = {name: [float(number) for number in numbers] for _, name, *numbers in rows[2:]}
+        self.assertEqual(list(passes), ["classification", "rays", "trace", "hit_colour", "composite", "frame"])
+        # By the formats: four images of light and the material 8, the normal 16, depth and reflectance 4.
+        self.assertEqual(passes["composite"][1:], [64, 8, round(72 * 1920 * 1080 / 1e6, 1)])
+        self.assertEqual(passes["trace"][2], 8)
+        for column in range(4):
+            self.assertAlmostEqual(passes["frame"][column], sum(numbers[column] for name, numbers in passes.items() if name != "frame"), delta=0.5)
+        self.assertGreater(passes["trace"][0], 100)
+        frame, = json.loads(self.ssrlab("--quiet", "shaders", "linear", "--chip", "navi21", "-p", "gloss=off", "--json"))["frames"]
+        self.assertEqual(frame["passes"][-1]["bytes_read_a_pixel"], 64)
+
+    def test_bytes_of_a_planned_frame(self):
+        text = self.ssrlab("plan", "builtin:corridor", "--size", "64x36", "-t", "linear", "--repeats", "1", "-p", "pass_set=shading", "--bandwidth-gbps", "0.001")
+        head = next(line for line in text.splitlines() if line.startswith("pass "))
+        self.assertRegex(head, r"planned ms +unculled ms +MB read +MB written +least ms +why")
+        rays = int(re.search(r"(\d+) of 2304 pixels reflect", text)[1])
+        of = {line.split()[0]: line.split() for line in text.splitlines() if " run " in line}
+        read, written = 24 * 2304 + 40 * rays, 8 * 2304
+        self.assertEqual(of["composite"][4:7], [f"{read / 1e6:.2f}", f"{written / 1e6:.2f}", f"{(read + written) / 1e3:.4f}"])
+        self.ssrlab("plan", "builtin:corridor", "--bandwidth-gbps", "0", code=2, says=["--bandwidth-gbps"])
 
     def test_settings_and_other_chips(self):
         self.need_amd()

@@ -205,7 +205,8 @@ TEST_F(RecordFiles, RowsWithoutAllOfTheirOtherLinesAreMeasuredAnew)
     };
     const auto sources = [](const char* id) { return source_line(id) + source_line(id); };
     const auto passes  = [](const std::string& id) {
-        return id + ",rays,true,1,,,a\r\n" + id + ",blur,false,,,,\"b, c\"\r\n" + id + ",trace,true,2,1,3,d\r\n";
+        return id + ",rays,true,1,,,8,9,a\r\n" + id + ",blur,false,,,,,,\"b, c\"\r\n" + id +
+               ",trace,true,2,1,3,8,9,d\r\n";
     };
     const auto sample = [](const char* id, int round) {
         return csv_line({id, std::to_string(round), "trace", "1", ""}) +
@@ -216,7 +217,7 @@ TEST_F(RecordFiles, RowsWithoutAllOfTheirOtherLinesAreMeasuredAnew)
         results.append(row("r1", 2), {sample("r1", 0) + sample("r1", 4), passes("r1"), sources("r1")});
         results.append(row("r2", 2), {sample("r2", 3), passes("r2"), sources("r2")});
         results.append({{"run_id", "r3"}, {"outcome", "invalid"}});
-        results.append(row("r4", 1), {sample("r4", 3), "r4,trace,true,2,1,3,d\r\n", sources("r4")});
+        results.append(row("r4", 1), {sample("r4", 3), "r4,trace,true,2,1,3,8,9,d\r\n", sources("r4")});
         results.append(row("r5", 1), {sample("r5", 3), passes("r5"), source_line("r5")});
     }
     const ResultFolder resumed(folder, with_repeats, here, true);
@@ -232,6 +233,11 @@ TEST_F(RecordFiles, RowsWithoutAllOfTheirOtherLinesAreMeasuredAnew)
 TEST_F(RecordFiles, AFolderOfTheOldFormIsRefusedWithTheWayOut)
 {
     ResultFolder(folder, columns, here, false).append(row_of(1));
+    const std::string passes = read_file(folder / "passes.csv");
+    write_file_atomically(folder / "passes.csv", "run_id,pass,ran,ms_median,ms_ci_low,ms_ci_high,reason\r\n");
+    EXPECT_THAT(message_of<SpecError>([&] { ResultFolder(folder, columns, here, true); }),
+                HasSubstr("without bytes_read_mean; measure it anew: ssrlab run"));
+    write_file_atomically(folder / "passes.csv", passes);
     write_file_atomically(folder / "results.csv", "run_id,passes,passes_why\r\nr1,trace=1,trace: a\r\n");
     EXPECT_THAT(message_of<SpecError>([&] { ResultFolder(folder, columns, here, true); }),
                 HasSubstr("without passes.csv; measure it anew: ssrlab run"));
@@ -309,7 +315,7 @@ TEST_F(RecordFiles, KillsLoseDoubleOrTearNoRow)
                     const std::string id = "r" + std::to_string(i);
                     if (!results.finished().contains(id))
                         results.append(row_of(i), {.samples = id + ",0,frame,1,1\r\n",
-                                                   .passes  = id + ",trace,true,1,,,\r\n",
+                                                   .passes  = id + ",trace,true,1,,,,,\r\n",
                                                    .sources = source_line(id)});
                 }
             };

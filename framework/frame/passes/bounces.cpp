@@ -47,7 +47,7 @@ void record_bounce(const vk::raii::CommandBuffer& commands, const Bounce& bounce
 {
     const RayBuffers& rays = bounce.rays->rays;
     barrier(commands);
-    commands.fillBuffer(*rays.count.buffer, 0, VK_WHOLE_SIZE, 0);
+    record_fill(commands, rays.count, 0);
     barrier(commands);
     dispatch_indirect(commands, bounce.set_up, arriving_launch);
     barrier(commands);

@@ -27,7 +27,8 @@ Pass classification_pass()
             .reads   = {Resource::gbuffer},
             .writes  = {Resource::tiles},
             .decide  = decide,
-            .prepare = prepare};
+            .prepare = prepare,
+            .read_of_reflectors = {"material_image", "dielectric_image"}}; // of other surfaces, too: counted too low
 }
 
 } // namespace ssrlab

@@ -36,14 +36,15 @@ Pass composite_pass()
         .cite   = {"J. Somerville Roberts, Screen Space Reflections", "B. Karis 2013, Real Shading in Unreal Engine 4"},
         .reads  = {Resource::gbuffer, Resource::light, Resource::reflection},
         .writes = {Resource::reflection /* nothing, where no ray starts */, Resource::shaded},
-        .parameters = {choice_parameter(Reflectance::ggx,
-                                        "how much of a surface's light is its reflection. ggx: the directional albedo "
-                                        "of its GGX lobe, tinted, and energy is split with what comes from below the "
-                                        "surface; metallic: own + (reflected - own) * metallic ^ metallic_exponent"),
-                       real_parameter("metallic_exponent", 3, 0, 64,
-                                      "exponent of reflectance = metallic; 0: the factor is 1")},
-        .decide     = decide,
-        .prepare    = prepare};
+        .parameters         = {choice_parameter(Reflectance::ggx,
+                                                "how much of a surface's light is its reflection. ggx: the directional albedo "
+                                                        "of its GGX lobe, tinted, and energy is split with what comes from below the "
+                                                        "surface; metallic: own + (reflected - own) * metallic ^ metallic_exponent"),
+                               real_parameter("metallic_exponent", 3, 0, 64,
+                                              "exponent of reflectance = metallic; 0: the factor is 1")},
+        .decide             = decide,
+        .prepare            = prepare,
+        .read_of_reflectors = {"depth_words", "normal_image", "material_image", "dielectric_image", "emission_image"}};
 }
 
 Image composite_reflection(Gpu& gpu, const ReadyFrame& frame, std::span<const glm::vec4> reflection)

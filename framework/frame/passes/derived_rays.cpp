@@ -10,9 +10,9 @@ std::shared_ptr<DerivedRays> derived_rays(Gpu& gpu, const PassContext& context, 
     std::shared_ptr<DerivedRays>& derived  = context.frame.buffers->derived_rays[{capacity, which}];
     if (!derived) {
         const uint64_t rays = std::max<uint64_t>(capacity, 1);
-        derived = std::make_shared<DerivedRays>(DerivedRays{make_ray_buffers(gpu, capacity, NumberFormat::float32),
-                                                            make_buffer(gpu, rays * sizeof(uint32_t)),
-                                                            make_buffer(gpu, rays * sizeof(glm::vec3))});
+        derived             = std::make_shared<DerivedRays>(DerivedRays{
+            make_ray_buffers(gpu, capacity, NumberFormat::float32), make_buffer(gpu, rays * sizeof(uint32_t)),
+            make_buffer(gpu, rays * sizeof(glm::vec3), sizeof(glm::vec3))});
     }
     return derived;
 }

@@ -59,7 +59,7 @@ RecordFunction prepare(Gpu& gpu, const PassContext& context)
         record_second_layer(commands, *layer, separation_m);
         if (solids) record_solid_backs(commands, *layer);
         record_depth_structures(commands, *own->lab);
-        commands.fillBuffer(*missed.count.buffer, 0, VK_WHOLE_SIZE, 0);
+        record_fill(commands, missed.count, 0);
         barrier(commands);
         dispatch_indirect(commands, own->gather, rays);
         barrier(commands);

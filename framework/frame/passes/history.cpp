@@ -37,7 +37,7 @@ RecordFunction prepare(Gpu& gpu, const PassContext& context)
                             make_fill(gpu, history.kept_facts, unknown)},
          &tiles = tile_launch(context), &reflection = image_of(context, Resource::reflection)](const auto& commands) {
             for (const RecordFunction& fill : fills) fill(commands);
-            commands.fillBuffer(*history.counts.buffer, 0, VK_WHOLE_SIZE, 0);
+            record_fill(commands, history.counts, 0);
             barrier(commands);
             dispatch_indirect(commands, *pass, tiles);
             record_copy(commands, filtered, reflection);

@@ -66,7 +66,7 @@ FollowedRays make_followed_rays(Gpu& gpu, const PassContext& context)
 
 void record_followed_rays(const vk::raii::CommandBuffer& commands, const FrameInputs& frame, const FollowedRays& own)
 {
-    commands.fillBuffer(*own.ranks.buffer, 0, VK_WHOLE_SIZE, ~0U);
+    record_fill(commands, own.ranks, ~0U);
     record_empty(commands, own.missed_launch);
     record_empty(commands, own.list.launch);
     barrier(commands);

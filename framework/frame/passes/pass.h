@@ -76,6 +76,8 @@ struct Pass {
     RecordFunction (*prepare)(Gpu&, const PassContext&) = nullptr;
     bool beyond_shading                                 = false; // off with pass_set = shading
     bool per_structure = false; // runs once per structure of the technique, under its id
+    /// Of a pass over the whole image: what its shaders read, by name, of reflecting pixels alone.
+    std::vector<std::string> read_of_reflectors = {};
 };
 
 Pass layers_pass();

@@ -118,6 +118,14 @@ Bindings surroundings_of(const FrameInputs& frame)
             {"shadow_map", {scene->shadow_map, scene->shadow_sampler}}};
 }
 
+/// An image that frames at full resolution bind and leave alone.
+Bound low_resolution(const FrameInputs& frame, const GpuImage& image)
+{
+    Bound bound(image);
+    if (trace_block_px(frame.plan.values) == 1) bound.storage.bytes = 0;
+    return bound;
+}
+
 Bindings layer_bindings(const FrameInputs& frame)
 {
     Bindings         bindings;
@@ -158,13 +166,13 @@ Bindings bindings_of(Gpu& gpu, const PassContext& context, Resource resource)
     const FrameBuffers& buffers = *frame.buffers;
     const GBuffer&      gbuffer = *frame.lab->gbuffer;
     switch (resource) {
-    case Resource::gbuffer:
-        return {{"depth_words", {gbuffer.depth.cells, gbuffer.depth.words}},
-                {"depth_cells", gbuffer.depth.cells},
-                {"cell_pairs", {gbuffer.depth.cells, gbuffer.depth.pairs}},
-                {"normal_image", gbuffer.normal},
-                {"material_image", gbuffer.material},
-                {"dielectric_image", gbuffer.dielectric}};
+    case Resource::gbuffer: {
+        Bindings surfaces = depth_bindings(gbuffer.depth);
+        surfaces.insert({{"normal_image", gbuffer.normal},
+                         {"material_image", gbuffer.material},
+                         {"dielectric_image", gbuffer.dielectric}});
+        return surfaces;
+    }
     case Resource::light:
         return {{"radiance_image", gbuffer.radiance},
                 {"highlight_image", gbuffer.highlight},
@@ -188,13 +196,13 @@ Bindings bindings_of(Gpu& gpu, const PassContext& context, Resource resource)
     case Resource::structures: return {}; // the lab's own
     case Resource::reprojected:
         return frame.history ? Bindings{{"reprojected_image", frame.history->reprojected}} : Bindings{};
-    case Resource::small_colour: return {{"small_colour_image", buffers.small_colour}};
+    case Resource::small_colour: return {{"small_colour_image", low_resolution(frame, buffers.small_colour)}};
     case Resource::cones:
         return buffers.cone ? Bindings{{"cone_pyramid", buffers.cone->cells}, {"cone_ranges", buffers.cone->ranges}}
                             : Bindings{};
     case Resource::reflection: return {{"reflection_image", buffers.reflection}};
     case Resource::filtered: return {{"filtered_image", buffers.filtered}};
-    case Resource::block_pixel: return {{"block_pixel_image", buffers.block_pixel}};
+    case Resource::block_pixel: return {{"block_pixel_image", low_resolution(frame, buffers.block_pixel)}};
     case Resource::lobe_rays: return draws_lobe_rays(frame.plan.values) ? lobe_ray_bindings(gpu, context) : Bindings{};
     case Resource::history: return history_bindings(frame);
     case Resource::kept:
