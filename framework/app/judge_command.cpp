@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/plane_gradient.h"
 #include "core/printable.h"
+#include "harness/bake_scene.h"
 #include "harness/experiment.h"
 #include "harness/measured_run.h"
 #include "harness/quality.h"
@@ -61,10 +62,13 @@ Scene load_judged_frame(const CommonOptions& common, const std::string& name)
     return scene;
 }
 
-Scene load_triangles(const JudgeOptions& options)
+Scene load_triangles(const CommonOptions& common, const JudgeOptions& options)
 {
     Scene scene = load_scene(options.scene);
     if (scene.frame) throw_spec_error("--scene {}: a frame has no triangles; expected a scene", options.scene);
+    bake_scene(scene, [&](const std::string& text) {
+        if (!common.quiet) std::fprintf(stderr, "%s\n", printable(text).c_str());
+    });
     return options.at_frame > 0 ? scene_at(scene, options.at_frame) : scene;
 }
 
@@ -103,7 +107,7 @@ Judged judge_file(const CommonOptions& common, const Catalogue& catalogue, const
     judged.judgement             = judge_frame(gbuffer, settings.trace, hits);
     if (judged.judgement.rays == 0)
         throw_spec_error("{}: no pixel reflects under these settings, so there is nothing to judge", options.frame);
-    const Scene scene = options.scene.empty() ? std::move(frame) : load_triangles(options);
+    const Scene scene = options.scene.empty() ? std::move(frame) : load_triangles(common, options);
     if (!options.scene.empty()) require_same_scene(options, scene, gbuffer);
     Truths truths(scene, std::move(gbuffer), truth_cache());
     truths.make(settings.trace, false);

@@ -59,7 +59,8 @@ DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipel
         {2, 0, vk::Format::eR32G32B32A32Sfloat, offsetof(Vertex, tangent_ws)},
         {3, 0, vk::Format::eR32G32Sfloat, offsetof(Vertex, uv0)},
         {4, 0, vk::Format::eR32G32Sfloat, offsetof(Vertex, uv1)},
-        {5, 0, vk::Format::eR32G32B32A32Sfloat, offsetof(Vertex, colour)}};
+        {5, 0, vk::Format::eR32G32B32A32Sfloat, offsetof(Vertex, colour)},
+        {6, 0, vk::Format::eR32G32B32Sfloat, offsetof(Vertex, bounced)}};
     const vk::PipelineVertexInputStateCreateInfo   input{.vertexBindingDescriptionCount   = 1,
                                                          .pVertexBindingDescriptions      = &binding,
                                                          .vertexAttributeDescriptionCount = std::size(attributes),

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/printable.h"
 #include "core/size.h"
+#include "harness/bake_scene.h"
 #include "harness/experiment.h"
 
 #include <fmt/ranges.h>
@@ -35,7 +36,11 @@ Stage open_stage(const CommonOptions& common, const Catalogue& catalogue, const 
     if (!common.quiet)
         for (const std::string& warning : scene.warnings)
             std::fprintf(stderr, "warning: %s\n", printable(warning).c_str());
-    Stage stage = open_stage(open_gpu(common.gpu), catalogue, std::move(scene));
+    const Gpu gpu = open_gpu(common.gpu);
+    bake_scene(scene, [&](const std::string& text) {
+        if (!common.quiet) std::fprintf(stderr, "%s\n", printable(text).c_str());
+    });
+    Stage stage = open_stage(gpu, catalogue, std::move(scene));
     show(stage, options.view, size_px, options.at);
     return stage;
 }

@@ -1,6 +1,7 @@
 #include "harness/picture.h"
 
 #include "core/quantile.h"
+#include "harness/bake_scene.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +16,9 @@ Stage& stage_of(SweepContext& sweep, const std::string& scene)
 {
     if (sweep.scene == nullptr || sweep.scene->name != scene) {
         sweep.scene.reset(); // before the next one is loaded: one scene in memory at a time
-        sweep.scene = std::make_unique<LoadedScene>(scene, open_stage(sweep.gpu, sweep.catalogue, load_scene(scene)));
+        Scene loaded = load_scene(scene);
+        bake_scene(loaded, [&](const std::string& text) { sweep.progress.say(text); });
+        sweep.scene = std::make_unique<LoadedScene>(scene, open_stage(sweep.gpu, sweep.catalogue, std::move(loaded)));
         for (const std::string& warning : sweep.scene->stage.scene.warnings)
             sweep.progress.say(fmt::format("{}: {}", scene, warning));
     }

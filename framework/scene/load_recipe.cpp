@@ -198,6 +198,7 @@ Model load_recipe(const std::filesystem::path& file)
     scene.paths      = recipe.paths;
     scene.ambient    = recipe.ambient;
     scene.background = recipe.background;
+    scene.bake       = recipe.bake;
     if (!recipe.environment.empty())
         scene.environment = load_environment(find_data(recipe.environment, file.parent_path()),
                                              recipe.environment_scale, scene.warnings);

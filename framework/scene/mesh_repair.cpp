@@ -146,7 +146,7 @@ std::string dropped_triangles_text(size_t count)
 void weld_equal_vertices(Mesh& mesh)
 {
     // The bytes of a vertex: three doubles and a Vertex without padding.
-    static_assert(sizeof(Vertex) == 18 * sizeof(float));
+    static_assert(sizeof(Vertex) == 21 * sizeof(float));
     std::vector<uint32_t> kept;
     const auto            bytes_of = [&](uint32_t i) {
         std::array<char, sizeof(glm::dvec3) + sizeof(Vertex)> bytes{};

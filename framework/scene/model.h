@@ -38,6 +38,7 @@ struct Model {
     std::optional<glm::vec3> ambient;
     std::optional<glm::vec3> background;
     EnvironmentMap           environment;
+    std::optional<Bake>      bake;
     std::vector<std::string> warnings;
 };
 

@@ -1,5 +1,6 @@
 #include "core/error.h"
 #include "scene/mesh_repair.h"
+#include "scene/subdivision.h"
 #include "scene/model.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -142,15 +143,17 @@ Scene model_to_scene(Model model, const std::string& name)
     repair(model);
     merge_duplicates(model);
     const Bounds bounds = bounds_of(model);
+    if (model.bake) subdivide(model, *model.bake);
 
     Scene scene;
     scene.name      = name;
+    scene.bake      = model.bake;
     scene.origin_ws = choose_origin_ws(bounds, model.cameras);
     warn_of_far_cameras(model, scene.origin_ws);
     for (const Mesh& mesh : model.meshes) add_draw(scene, mesh);
     scene.materials = std::move(model.materials);
     scene.textures  = std::move(model.textures);
-    if (model.lights.empty()) model.lights.push_back(default_key_light());
+    if (model.lights.empty() && !model.bake) model.lights.push_back(default_key_light());
     for (ModelLight& light : model.lights) {
         light.light.position_ws = glm::vec3(light.position_ws - scene.origin_ws);
         scene.lights.push_back(light.light);

@@ -75,6 +75,43 @@ Texel marble(glm::dvec2 uv)
     return {glm::mix(stone, veins, (light ? 0.85 : 0.6) * vein), 0.05};
 }
 
+Texel oak(glm::dvec2 uv)
+{
+    constexpr int    rows = 12, lengths = 2;
+    const double     row = std::floor(uv.y * rows), along = uv.x * lengths + random_of(uint32_t(row), 1, 41);
+    const glm::dvec2 within(glm::fract(along), glm::fract(uv.y * rows));
+    const auto       seed  = static_cast<uint32_t>(53 + 17 * row + 5 * (int(along) % lengths));
+    const double     tone  = random_of(seed, 2, 43);
+    const double     rings = octaves({uv.x, uv.y * 8}, 6, 4, seed), pores = octaves({uv.x, uv.y * 16}, 32, 2, seed + 9);
+    const double     grain = 0.5 + 0.5 * std::sin(40 * rings + 6 * within.y);
+    const double     edge  = std::min({within.y, 1 - within.y, 6 * within.x, 6 * (1 - within.x)});
+    const glm::dvec3 wood  = glm::mix(glm::dvec3(0.2, 0.095, 0.038), glm::dvec3(0.42, 0.235, 0.105),
+                                      0.2 + 0.45 * tone + 0.22 * grain + 0.5 * (rings - 0.5));
+    if (edge < 0.012) return {0.35 * wood, 0.5};
+    return {wood * (0.72 + 0.5 * pores), 0.12 + 0.12 * pores};
+}
+
+Texel brick(glm::dvec2 uv)
+{
+    constexpr int    rows = 12, columns = 4;
+    const double     row = std::floor(uv.y * rows), along = uv.x * columns + 0.5 * (int(row) % 2);
+    const glm::dvec2 within(glm::fract(along), glm::fract(uv.y * rows));
+    const auto       column = static_cast<uint32_t>(int(along) % columns);
+    const double     tone = random_of(column, uint32_t(row), 61), burnt = random_of(column, uint32_t(row), 67);
+    const double     grain = octaves(uv, 48, 4, 71), worn = octaves(uv, 24, 3, 73);
+    const double     edge = std::min({within.y, 1 - within.y, 3 * within.x, 3 * (1 - within.x)}) + 0.1 * (worn - 0.5);
+    if (edge < 0.075) return {glm::dvec3(0.42, 0.4, 0.37) * (0.6 + 0.6 * grain), 0.95};
+    const glm::dvec3 clay = glm::mix(glm::dvec3(0.24, 0.072, 0.042), glm::dvec3(0.4, 0.16, 0.095), tone);
+    return {clay * (burnt < 0.15 ? 0.45 : 1.0) * (0.55 + 0.9 * grain), 0.9};
+}
+
+Texel concrete(glm::dvec2 uv)
+{
+    const double cloud = octaves(uv, 3, 6, 83), fleck = octaves(uv, 128, 2, 89), scuff = octaves(uv, 8, 5, 97);
+    const double tone = 0.16 + 0.22 * cloud + 0.05 * (fleck - 0.5);
+    return {tone * glm::dvec3(1, 0.985, 0.95), 0.08 + 0.22 * glm::smoothstep(0.42, 0.7, scuff)};
+}
+
 double to_srgb(double linear)
 {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
@@ -85,7 +122,7 @@ uint8_t to_byte(double value) { return static_cast<uint8_t>(std::lround(255 * st
 
 PatternTextures make_pattern(Pattern pattern)
 {
-    const std::array texels{wet_asphalt, marble};
+    const std::array texels{wet_asphalt, marble, oak, brick, concrete};
     const auto       texel = texels.at(static_cast<size_t>(pattern));
     PatternTextures  made;
     for (Texture* texture : {&made.base_colour, &made.gloss}) {

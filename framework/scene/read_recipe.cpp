@@ -51,7 +51,7 @@ void read_shape_keys(TomlTable& table, Part& part)
     part.ripple_slope = table.number("ripple_slope", 0, 10).value_or(part.ripple_slope);
     if (part.ripple_m && !part.tile_colours.empty())
         table.fail("ripple_m", "cannot stand beside tile_colours: both say how often textures repeat");
-    if (const auto pattern = table.choice("pattern", {"wet_asphalt", "marble"}))
+    if (const auto pattern = table.choice("pattern", {"wet_asphalt", "marble", "oak", "brick", "concrete"}))
         part.pattern = static_cast<Pattern>(*pattern);
     if (part.pattern && (part.ripple_m || !part.tile_colours.empty()))
         table.fail("pattern", "cannot stand beside tile_colours or ripple_m: all say how often textures repeat");
@@ -167,6 +167,19 @@ void read_sky(TomlTable& root, Recipe& recipe)
     recipe.sky = SkyColours{*zenith, *horizon, ground.value_or(*horizon)};
 }
 
+std::optional<Bake> read_bake(TomlTable& root)
+{
+    auto table = root.table("bake");
+    if (!table) return std::nullopt;
+    Bake bake;
+    bake.place   = table->place();
+    bake.edge_m  = table->number("edge_m", 1e-3, 1e6).value_or(bake.edge_m);
+    bake.paths   = static_cast<int>(table->number("paths", 16, 65536).value_or(bake.paths));
+    bake.bounces = static_cast<int>(table->number("bounces", 1, 16).value_or(bake.bounces));
+    table->refuse_unknown_keys();
+    return bake;
+}
+
 } // namespace
 
 bool matches(const std::string& pattern, const std::string& text)
@@ -205,6 +218,7 @@ Recipe read_recipe(const std::filesystem::path& file)
     if (const auto background = root.colour("background")) recipe.background = glm::vec3(*background);
     read_environment(root, recipe);
     read_sky(root, recipe);
+    recipe.bake = read_bake(root);
     for (TomlTable& table : root.tables("part")) recipe.parts.push_back(read_part(table));
     for (TomlTable& table : root.tables("material")) recipe.changes.push_back(read_change(table));
     for (TomlTable& table : root.tables("light")) recipe.lights.push_back(read_light(table));

@@ -55,6 +55,7 @@ struct Recipe {
     std::optional<glm::vec3>    ambient, background;
     std::string                 environment; // where its picture lies, as find_data() takes it; empty: none
     std::optional<SkyColours>   sky;         // or this
+    std::optional<Bake>         bake;
     double                      environment_scale = 1;
 };
 

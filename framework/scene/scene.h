@@ -23,7 +23,16 @@ struct Vertex {
     glm::vec4 tangent_ws;  // unit, w = handedness; 0 when no texture needs it
     glm::vec2 uv0;
     glm::vec2 uv1;
-    glm::vec4 colour; // linear, 1 when the mesh has none
+    glm::vec4 colour;     // linear, 1 when the mesh has none
+    glm::vec3 bounced{0}; // radiance that a white diffuse surface would send here by light that Scene::bake asks for
+};
+
+/// Light that the CPU computes once, in frame 0 (truth/bounced_light.h), and that vertices keep.
+struct Bake {
+    double      edge_m  = 0.25; // longer edges are divided
+    int         paths   = 256;  // per vertex and bounce
+    int         bounces = 4;
+    std::string place; // that asks for it, file:line
 };
 
 enum class Wrap : uint8_t { repeat, mirrored_repeat, clamp_to_edge };
@@ -136,6 +145,7 @@ struct Scene {
     glm::vec3                ambient{0.25F}; // radiance arriving equally from everywhere
     glm::vec3                background{0};  // radiance from infinitely far away, where there is no environment map
     EnvironmentMap           environment;    // what is there instead of `background`, if not empty
+    std::optional<Bake>      bake;           // bounced light that its vertices shall have
     std::optional<Frame>     frame;          // of another renderer, instead of triangles, lights and cameras
     std::vector<std::string> warnings;       // one line each: what was dropped or is not supported
 };

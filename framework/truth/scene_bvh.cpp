@@ -39,7 +39,7 @@ void pass_undrawn(const RTCFilterFunctionNArguments* arguments)
         const glm::dvec3   direction(RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i));
         const bool         culls = !material.double_sided && RTCRayN_id(rays, n, i) == unsigned(Sides::as_rasterised);
         if ((culls && glm::dot(front_normal_ws(*scene, point), direction) > 0) ||
-            (material.alpha_mask && surface_alpha(*scene, point) < material.alpha_cutoff - alpha_rounding)) {
+            (material.alpha_mask && surface_colour(*scene, point).a < material.alpha_cutoff - alpha_rounding)) {
             arguments->valid[i] = 0;
         }
     }

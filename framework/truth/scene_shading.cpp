@@ -53,19 +53,23 @@ bool in_shadow(const SceneBvh& bvh, glm::dvec3 point_ws, const Arriving& light, 
 
 /// What every light that reaches the point gives.
 template <typename Add>
-void for_each_light(const SceneBvh& bvh, const Scene& scene, const SceneHit& hit, glm::dvec3 point_ws,
-                    glm::dvec3 direction_ws, glm::dvec3 normal_ws, const Add& add)
+void for_each_light(const SceneBvh& bvh, const Scene& scene, const LitPoint& lit, const Add& add)
 {
-    const double     side      = glm::dot(hit.normal_ws, direction_ws) > 0 ? -1 : 1;
-    const double     offset_m  = self_hit_share * std::max(1.0, hit.t);
-    const glm::dvec3 lifted_ws = point_ws + offset_m * side * glm::normalize(hit.normal_ws);
     for (const Light& light : scene.lights) {
-        const Arriving arriving = arriving_light(light, point_ws);
-        const double   cosine   = glm::dot(normal_ws, arriving.to_light_ws);
+        const Arriving arriving = arriving_light(light, lit.point_ws);
+        const double   cosine   = glm::dot(lit.normal_ws, arriving.to_light_ws);
         if (!(cosine > 0) || arriving.irradiance == glm::vec3(0)) continue;
         add(arriving, float(cosine),
-            [&] { return light.casts_shadow && in_shadow(bvh, lifted_ws, arriving, offset_m); });
+            [&] { return light.casts_shadow && in_shadow(bvh, lit.lifted_ws, arriving, lit.offset_m); });
     }
+}
+
+/// Where a ray in this direction met a surface.
+LitPoint met_point(const SceneHit& hit, glm::dvec3 point_ws, glm::dvec3 direction_ws, glm::dvec3 normal_ws)
+{
+    const double side     = glm::dot(hit.normal_ws, direction_ws) > 0 ? -1 : 1;
+    const double offset_m = self_hit_share * std::max(1.0, hit.t);
+    return {point_ws, point_ws + offset_m * side * glm::normalize(hit.normal_ws), normal_ws, offset_m};
 }
 
 /// GGX, Walter et al. 2007, times the cosine to the light.
@@ -96,7 +100,7 @@ glm::vec3 shade_highlight(const SceneBvh& bvh, const Scene& scene, const SceneHi
     const glm::dvec3      normal_ws  = seen_normal_ws(material, hit, direction_ws);
     const glm::dvec3      f0 = f0_of(material.base_colour, double(material.metallic), double(material.dielectric_f0));
     glm::vec3             sum(0);
-    for_each_light(bvh, scene, hit, point_ws, direction_ws, normal_ws,
+    for_each_light(bvh, scene, met_point(hit, point_ws, direction_ws, normal_ws),
                    [&](const Arriving& arriving, float /*cosine*/, const auto& shadowed) {
                        const glm::dvec3 light =
                            glm::dvec3(arriving.irradiance) *
@@ -106,17 +110,24 @@ glm::vec3 shade_highlight(const SceneBvh& bvh, const Scene& scene, const SceneHi
     return glm::min(sum, largest_radiance);
 }
 
+glm::vec3 direct_irradiance(const SceneBvh& bvh, const Scene& scene, const LitPoint& lit)
+{
+    glm::vec3 irradiance(0);
+    for_each_light(bvh, scene, lit, [&](const Arriving& arriving, float cosine, const auto& shadowed) {
+        if (!shadowed()) irradiance += arriving.irradiance * cosine;
+    });
+    return irradiance;
+}
+
 glm::vec3 shade_point(const SceneBvh& bvh, const Scene& scene, const SceneHit& hit, glm::dvec3 point_ws,
                       glm::dvec3 direction_ws)
 {
-    const SurfaceMaterial material = surface_material(scene, hit.surface);
-    glm::vec3             irradiance(0);
-    for_each_light(bvh, scene, hit, point_ws, direction_ws, seen_normal_ws(material, hit, direction_ws),
-                   [&](const Arriving& arriving, float cosine, const auto& shadowed) {
-                       if (!shadowed()) irradiance += arriving.irradiance * cosine;
-                   });
-    const glm::vec3 diffuse = material.base_colour * (1 - material.metallic) * (1 / std::numbers::pi_v<float>);
-    return glm::min(diffuse * irradiance + scene.ambient * material.base_colour + material.emissive, largest_radiance);
+    const SurfaceMaterial material   = surface_material(scene, hit.surface);
+    const glm::dvec3      normal_ws  = seen_normal_ws(material, hit, direction_ws);
+    const glm::vec3       irradiance = direct_irradiance(bvh, scene, met_point(hit, point_ws, direction_ws, normal_ws));
+    const glm::vec3       albedo     = material.base_colour * (1 - material.metallic);
+    const glm::vec3       diffuse    = albedo * (1 / std::numbers::pi_v<float>)*irradiance + albedo * material.bounced;
+    return glm::min(diffuse + scene.ambient * material.base_colour + material.emissive, largest_radiance);
 }
 
 } // namespace ssrlab

@@ -62,13 +62,6 @@ glm::vec4 sample(const Scene& scene, const TextureUse& use, const SurfacePoint& 
                     glm::mix(texel(texture, x, y + 1), texel(texture, x + 1, y + 1), part.x), part.y);
 }
 
-glm::vec4 base_colour(const Scene& scene, const SurfacePoint& point)
-{
-    const Material& material = scene.materials[scene.draws[point.draw].material];
-    return material.base_colour * interpolate(scene, point, &Vertex::colour) *
-           sample(scene, material.base_colour_texture, point);
-}
-
 /// The interpolated normal, turned by the normal map.
 glm::dvec3 mapped_normal_ws(const Scene& scene, const SurfacePoint& point)
 {
@@ -92,7 +85,17 @@ glm::dvec3 corner_ws(const Scene& scene, const SurfacePoint& point, int i)
     return glm::dvec3(corner(scene, point, i).position_ws);
 }
 
-float surface_alpha(const Scene& scene, const SurfacePoint& point) { return base_colour(scene, point).a; }
+glm::vec4 surface_colour(const Scene& scene, const SurfacePoint& point)
+{
+    const Material& material = scene.materials[scene.draws[point.draw].material];
+    return material.base_colour * interpolate(scene, point, &Vertex::colour) *
+           sample(scene, material.base_colour_texture, point);
+}
+
+glm::vec3 bounced_at(const Scene& scene, const SurfacePoint& point)
+{
+    return interpolate(scene, point, &Vertex::bounced);
+}
 
 glm::dvec3 shading_normal_ws(const Scene& scene, const SurfacePoint& point)
 {
@@ -106,12 +109,13 @@ SurfaceMaterial surface_material(const Scene& scene, const SurfacePoint& point)
     const Material& material = scene.materials[scene.draws[point.draw].material];
     SurfaceMaterial result;
     const glm::vec4 gloss = sample(scene, material.metallic_roughness_texture, point);
-    result.base_colour    = glm::vec3(base_colour(scene, point));
+    result.base_colour    = glm::vec3(surface_colour(scene, point));
     result.metallic       = material.metallic * gloss.b;
     result.roughness      = std::clamp(material.roughness * gloss.g, 0.0F, 1.0F);
     result.dielectric_f0  = material.dielectric_f0;
     result.emissive       = material.emissive * glm::vec3(sample(scene, material.emissive_texture, point));
     result.emissive       = glm::min(result.emissive, largest_radiance);
+    result.bounced        = bounced_at(scene, point);
     result.normal_ws      = mapped_normal_ws(scene, point);
     return result;
 }

@@ -18,13 +18,17 @@ struct SurfaceMaterial {
     float      roughness     = 1;
     float      dielectric_f0 = 0; // reflectance at normal incidence of what is not metal
     glm::vec3  emissive{0};       // linear radiance
+    glm::vec3  bounced{0};        // Vertex::bounced
     glm::dvec3 normal_ws{0};      // shading_normal_ws(), turned by the normal map
 };
 
 glm::dvec3 corner_ws(const Scene& scene, const SurfacePoint& point, int corner);
 
-/// Returns the alpha of the base colour, which an alpha mask compares with its cutoff.
-float surface_alpha(const Scene& scene, const SurfacePoint& point);
+/// Returns the linear base colour with its alpha, which an alpha mask compares with its cutoff.
+glm::vec4 surface_colour(const Scene& scene, const SurfacePoint& point);
+
+/// Returns the light of Vertex::bounced, between the corners.
+glm::vec3 bounced_at(const Scene& scene, const SurfacePoint& point);
 
 /// Returns the interpolated normal without normal map: a unit vector, or 0 if the mesh has none.
 glm::dvec3 shading_normal_ws(const Scene& scene, const SurfacePoint& point);

@@ -48,8 +48,18 @@ std::optional<double> off_surface_share(const SceneBvh& bvh, const Scene& scene,
 /// coarsely draws other depths, so reflected rays begin inside objects.
 std::string drawn_elsewhere(std::optional<double> off_surface_share);
 
-/// Returns Lambertian radiance with shadow rays and without bounces:
-/// base (1 - metallic) / pi * sum(irradiance cos shadow) + ambient base + emissive.
+/// A surface point that lights shine on.
+struct LitPoint {
+    glm::dvec3 point_ws{0};
+    glm::dvec3 lifted_ws{0}; // where shadow rays begin
+    glm::dvec3 normal_ws{0}; // unit
+    double     offset_m = 0; // what lies nearer than this casts no shadow
+};
+/// Returns the irradiance of the scene's lights, with shadow rays.
+glm::vec3 direct_irradiance(const SceneBvh& bvh, const Scene& scene, const LitPoint& lit);
+
+/// Returns Lambertian radiance with shadow rays; its bounces are those that vertices have:
+/// base (1 - metallic) (sum(irradiance cos shadow) / pi + bounced) + ambient base + emissive.
 glm::vec3 shade_point(const SceneBvh& bvh, const Scene& scene, const SceneHit& hit, glm::dvec3 point_ws,
                       glm::dvec3 direction_ws);
 

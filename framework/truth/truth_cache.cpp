@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Raise when the code computes another truth from the same input, or writes it in another form.
-constexpr uint32_t format_version = 11;
+constexpr uint32_t format_version = 11, bounced_version = 1;
 
 struct Header {
     std::array<char, 8> magic{'S', 'S', 'R', 'T', 'R', 'U', 'T', 'H'};
@@ -59,7 +59,7 @@ void add(ContentHash& hash, const Scene& scene)
 {
     // The lengths too: otherwise values could move from one list into the next unnoticed.
     hash.add(scene.draws.size()).add(scene.materials.size()).add(scene.textures.size()).add(scene.lights.size());
-    static_assert(sizeof(Vertex) == 18 * sizeof(float), "padding would make the hash random");
+    static_assert(sizeof(Vertex) == 21 * sizeof(float), "padding would make the hash random");
     hash.add_bytes(scene.vertices.data(), scene.vertices.size() * sizeof(Vertex)).add(scene.indices);
     for (const Draw& draw : scene.draws) hash.add(draw.first_index).add(draw.index_count).add(draw.material);
     for (const Material& m : scene.materials) {
@@ -264,6 +264,13 @@ GlossyTruth cached_glossy_truth(const fs::path& cache_dir, const Scene& scene, c
     return cached<GlossyTruth>(cache_dir, "glossy", hash, gbuffer.view.size_px, [&] {
         return glossy_truth(SceneBvh(scene), scene, gbuffer, settings, glossy, threads);
     });
+}
+
+std::string bounced_light_key(const Scene& scene)
+{
+    ContentHash hash;
+    add(hash.add(bounced_version), scene);
+    return hash.add(scene.bake->edge_m).add(scene.bake->paths).add(scene.bake->bounces).hex();
 }
 
 } // namespace ssrlab

@@ -21,4 +21,7 @@ SceneTruth  cached_scene_truth(const std::filesystem::path& cache_dir, const Sce
 GlossyTruth cached_glossy_truth(const std::filesystem::path& cache_dir, const Scene& scene, const GBufferImage& gbuffer,
                                 const TraceSettings& settings, const GlossySettings& glossy, unsigned threads = 0);
 
+/// Returns 32 hexadecimal digits that depend on all that bounced_light() reads of a scene.
+std::string bounced_light_key(const Scene& scene);
+
 } // namespace ssrlab

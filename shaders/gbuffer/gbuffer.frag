@@ -25,6 +25,7 @@ layout(location = 1) in vec3 normal_ws;
 layout(location = 2) in vec4 tangent_ws;
 layout(location = 3) in vec4 uv;
 layout(location = 4) in vec4 vertex_colour;
+layout(location = 5) in vec3 bounced_light; // of a white diffuse surface
 
 layout(location = 0) out vec4 normal_and_roughness; // view space
 layout(location = 1) out vec4 base_and_metallic;
@@ -93,7 +94,7 @@ void main()
 
     normal_and_roughness = vec4(mat3(world_to_view) * normal, roughness);
     base_and_metallic    = vec4(base.rgb, metallic);
-    radiance             = vec4(min(base.rgb * ((1.0 - metallic) / pi * diffuse_light + ambient) + emissive, largest_half), 1.0);
+    radiance             = vec4(min(base.rgb * ((1.0 - metallic) / pi * diffuse_light + ambient + (1.0 - metallic) * bounced_light) + emissive, largest_half), 1.0);
     highlight            = vec4(highlights, 1.0);
     emission             = vec4(emissive, 1.0);
     object               = object_id;

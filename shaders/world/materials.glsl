@@ -7,6 +7,7 @@ struct Vertex
     vec4 tangent_ws;
     vec2 uv0, uv1;
     vec4 colour;
+    vec3 bounced; // radiance of a white diffuse surface
 };
 
 struct WorldMaterial

@@ -74,7 +74,9 @@ vec3 light_of(WorldRay ray, WorldHit hit, out NextRay onward)
     float blurred = max(roughness, ray.roughness);
     light_surface(Surface(met_ws, normal, base, metallic, blurred, material.dielectric_f0), light_count, -along, irradiance, highlights);
     vec3 emissive = material.emissive * sample_texture(material, 3, point).rgb;
-    vec3 below = base * (1.0 - metallic) * (irradiance / pi + ambient), stand_in = base * metallic * ambient;
+    vec3 bounced = vec3(0);
+    for (int i = 0; i < 3; ++i) bounced += weights[i] * corner_of(point, i).bounced;
+    vec3 below = base * (1.0 - metallic) * (irradiance / pi + ambient + bounced), stand_in = base * metallic * ambient;
 
     vec3 mirrored = reflect(along, normal);
     onward = NextRay(ray, vec3(0));

@@ -1,8 +1,10 @@
 // Materials and light in the G-buffer against closed forms.
 #include "core/pixel_index.h"
+#include "frame/world_light.h"
 #include "gpu/device.h"
 #include "scene/model.h"
 #include "scene/shapes.h"
+#include "truth/scene_truth.h"
 
 namespace ssrlab::test {
 namespace {
@@ -153,6 +155,37 @@ TEST(GBufferMaterial, EveryLightOfManyCounts)
         const glm::dvec3 light   = glm::dvec3(0.1, 0.2, 0.3) + irradiance * 0.75 / std::numbers::pi;
         for (const glm::vec3& radiance : picture.image.radiance)
             expect_colour(radiance, glm::dvec3(0.8, 0.5, 0.25) * light, fmt::format("{} lights", lights));
+    }
+}
+
+// Light of vertices grows along x and z. In the frame, at what rays of the world meet, and in the truth: base colour x
+// ((1 - metallic) x bounced + ambient).
+TEST(GBufferMaterial, LightOfVerticesIsTheSameInFrameWorldAndTruth)
+{
+    Scene scene = model_to_scene(plane(matt), "plane");
+    scene.lights.clear();
+    for (Vertex& vertex : scene.vertices) vertex.bounced = {vertex.position_ws.x + 5, vertex.position_ws.z + 5, 1};
+    const Picture         picture = make_picture(scene, from_above(), {40, 30});
+    const SceneBvh        bvh(scene);
+    std::vector<WorldRay> rays;
+    for (const auto [i, x, y] : pixels_of({40, 30})) {
+        const glm::dvec3 p =
+            px_to_vs(picture.view, glm::dvec2(x, y) + 0.5, static_cast<double>(picture.image.depth[i]));
+        rays.push_back({{p.x, 1, -p.y}, 0, {0, -1, 0}, 2, 0});
+    }
+    const WorldPtr   world = upload_world(device(), scene);
+    const WorldLight light = shade_world(device(), *world, *upload_scene(device(), scene), upload_dfg_table(device()),
+                                         {}, false, rays, trace_world(device(), *world, rays).hits);
+    for (const auto [i, x, y] : pixels_of({40, 30})) {
+        const glm::dvec3 from(rays[i].origin_ws), bounced(from.x + 5, from.z + 5, 1);
+        const glm::dvec3 expected = glm::dvec3(0.8, 0.5, 0.25) * (0.75 * bounced + glm::dvec3(0.1, 0.2, 0.3));
+        const SceneRay   ray{from, {0, -1, 0}, 0, 2};
+        SceneHit         hit;
+        bvh.intersect({&ray, 1}, {&hit, 1});
+        const std::string where = fmt::format("pixel ({}, {})", x, y);
+        expect_colour(picture.image.radiance[i], expected, where);
+        expect_colour(light.light[i], expected, where + ", world");
+        expect_colour(shade_point(bvh, scene, hit, {from.x, 0, from.z}, ray.direction_ws), expected, where + ", truth");
     }
 }
 

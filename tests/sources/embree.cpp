@@ -61,7 +61,7 @@ Cause cause_of(const Scene& scene, const WorldRay& ray, const std::optional<Surf
     if (std::abs(m.t - double(ray.t_min)) <= rounding(m) || std::abs(m.t - double(ray.t_max)) <= rounding(m))
         return Cause::limit;
     const Material& material = scene.materials[scene.draws[nearer.draw].material];
-    if (material.alpha_mask && std::abs(surface_alpha(scene, nearer) - material.alpha_cutoff) < 1.0F / 255)
+    if (material.alpha_mask && std::abs(surface_colour(scene, nearer).a - material.alpha_cutoff) < 1.0F / 255)
         return Cause::mask;
     return Cause::wrong;
 }

@@ -30,7 +30,8 @@ double share_of_roughness(const Texture& gloss, double low, double high)
 
 TEST(Patterns, NothingIsMetalAndColoursAreSrgb)
 {
-    for (const Pattern pattern : {Pattern::wet_asphalt, Pattern::marble}) {
+    for (const Pattern pattern :
+         {Pattern::wet_asphalt, Pattern::marble, Pattern::oak, Pattern::brick, Pattern::concrete}) {
         const PatternTextures made = make_pattern(pattern);
         EXPECT_TRUE(made.base_colour.srgb);
         EXPECT_FALSE(made.gloss.srgb);
@@ -52,13 +53,22 @@ TEST(Patterns, MarbleIsPolishedBesidesItsJoints)
     EXPECT_NEAR(share_of_roughness(gloss, 0.6, 0.6), 0.012, 0.01);
 }
 
-TEST(Patterns, AsphaltRepeatsWithoutASeam)
+TEST(Patterns, FloorsAndWallsAreAsRoughAsTheySay)
 {
-    const PatternTextures made = make_pattern(Pattern::wet_asphalt);
-    const int             last = made.gloss.size_px.x - 1;
-    for (const Texture* texture : {&made.base_colour, &made.gloss})
-        EXPECT_LT(step_between_columns(*texture, last, 0, 1),
-                  3 * step_between_columns(*texture, last / 2, last / 2 + 1, 1) + 2);
+    EXPECT_GT(share_of_roughness(make_pattern(Pattern::oak).gloss, 0.12, 0.24), 0.9);
+    EXPECT_GT(share_of_roughness(make_pattern(Pattern::brick).gloss, 0.9, 0.95), 0.99);
+    EXPECT_GT(share_of_roughness(make_pattern(Pattern::concrete).gloss, 0.08, 0.3), 0.99);
+}
+
+TEST(Patterns, RepeatWithoutASeam)
+{
+    for (const Pattern pattern : {Pattern::wet_asphalt, Pattern::oak, Pattern::brick, Pattern::concrete}) {
+        const PatternTextures made = make_pattern(pattern);
+        const int             last = made.gloss.size_px.x - 1;
+        for (const Texture* texture : {&made.base_colour, &made.gloss})
+            EXPECT_LT(step_between_columns(*texture, last, 0, 1),
+                      3 * step_between_columns(*texture, last / 2, last / 2 + 1, 1) + 2);
+    }
 }
 
 TEST(Patterns, TheSameEachTime)

@@ -104,7 +104,7 @@ TEST(SceneSurface, ChannelsMultiplyFactors)
         use->uv_transform = glm::mat3({1, 0, 0}, {0, 1, 0}, {0.125F, 0.75F, 1}); // the centre of texel (0, 1)
     const SurfaceMaterial found = quad.at({});
     EXPECT_NEAR(found.base_colour.b, 0.2F / 4, 1e-6);
-    EXPECT_NEAR(surface_alpha(quad.scene, {}), 0.4F / 4, 1e-6);
+    EXPECT_NEAR(surface_colour(quad.scene, {}).a, 0.4F / 4, 1e-6);
     EXPECT_NEAR(found.metallic, 0.2F / 2, 1e-6);         // blue
     EXPECT_NEAR(found.roughness, 64.0F / 255 / 2, 1e-6); // green
     EXPECT_NEAR(found.emissive.b, 0.2F * 2, 1e-6);
@@ -112,7 +112,7 @@ TEST(SceneSurface, ChannelsMultiplyFactors)
     // Of the encoding: 51 / 255 is 0.2, ((0.2 + 0.055) / 1.055)^2.4 = 0.0331; alpha stays.
     quad.scene.textures[0].srgb = true;
     EXPECT_NEAR(quad.at({}).emissive.b, 2 * std::pow(0.255 / 1.055, 2.4), 1e-6);
-    EXPECT_NEAR(surface_alpha(quad.scene, {}), 0.4F / 4, 1e-6);
+    EXPECT_NEAR(surface_colour(quad.scene, {}).a, 0.4F / 4, 1e-6);
     quad.scene.textures[0].rgba[4 * 4 + 2] = 5; // below 0.04045 it is a line
     EXPECT_NEAR(quad.at({}).emissive.b, 2 * 5 / 255.0 / 12.92, 1e-6);
 }

@@ -1,0 +1,249 @@
+#include "truth/bounced_light.h"
+
+#include "core/parallel_rows.h"
+#include "truth/scene_truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace ssrlab {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// A sequence of low discrepancy in the unit square (M. Roberts 2018: R2).
+glm::dvec2 even(int k) { return glm::fract(0.5 + double(k) * glm::dvec2(0.7548776662466927, 0.5698402909980532)); }
+
+/// T. Duff et al. 2017, "Building an Orthonormal Basis, Revisited", JCGT 6(1).
+glm::dmat3 frame_about(glm::dvec3 n)
+{
+    const double sign = std::copysign(1.0, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
+    return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
+}
+
+/// By the cosine about +z.
+std::vector<glm::dvec3> hemisphere(int count)
+{
+    std::vector<glm::dvec3> directions;
+    for (int k = 0; k < count; ++k) {
+        const glm::dvec2 u      = even(k);
+        const double     radius = std::sqrt(u.x), angle = 2 * pi * u.y;
+        directions.emplace_back(radius * std::cos(angle), radius * std::sin(angle), std::sqrt(1 - u.x));
+    }
+    return directions;
+}
+
+struct LightPoint {
+    glm::dvec3 point_ws{0}, normal_ws{0};
+    glm::vec3  radiance{0};
+    double     density = 0; // of points, 1/m2
+};
+
+/// Points on what glows, the denser the brighter it is.
+class Emitters {
+public:
+    explicit Emitters(const Scene& scene) : scene_(scene)
+    {
+        for (uint32_t d = 0; d < scene.draws.size(); ++d) {
+            const float brightness = brightness_of(d);
+            for (uint32_t t = 0; brightness > 0 && 3 * t < scene.draws[d].index_count; ++t) {
+                power_ += double(brightness) * glm::length(cross_of({d, t})) / 2;
+                triangles_.push_back({d, t});
+                sums_.push_back(power_);
+            }
+        }
+    }
+
+    bool none() const { return !(power_ > 0); }
+
+    double density(uint32_t draw) const { return power_ > 0 ? double(brightness_of(draw)) / power_ : 0; }
+
+    std::vector<LightPoint> points(int count) const
+    {
+        std::vector<LightPoint> points;
+        for (int k = 0; k < count && !none(); ++k) {
+            const auto   place = std::ranges::upper_bound(sums_, (k + 0.5) / count * power_) - sums_.begin();
+            SurfacePoint point = triangles_[std::min(size_t(place), triangles_.size() - 1)];
+            glm::dvec2   u     = even(k);
+            if (u.x + u.y > 1) u = 1.0 - u;
+            point.barycentric        = u;
+            const glm::dvec3 a       = corner_ws(scene_, point, 0);
+            const glm::dvec3 edges_u = corner_ws(scene_, point, 1) - a, edges_v = corner_ws(scene_, point, 2) - a;
+            points.push_back({a + u.x * edges_u + u.y * edges_v, glm::normalize(cross_of(point)),
+                              surface_material(scene_, point).emissive, density(point.draw)});
+        }
+        return points;
+    }
+
+private:
+    float brightness_of(uint32_t draw) const
+    {
+        const glm::vec3 emissive = scene_.materials[scene_.draws[draw].material].emissive;
+        return emissive.r + emissive.g + emissive.b;
+    }
+
+    glm::dvec3 cross_of(const SurfacePoint& point) const
+    {
+        const glm::dvec3 a = corner_ws(scene_, point, 0);
+        return glm::cross(corner_ws(scene_, point, 1) - a, corner_ws(scene_, point, 2) - a);
+    }
+
+    const Scene&              scene_;
+    std::vector<SurfacePoint> triangles_;
+    std::vector<double>       sums_; // of brightness and area, up to each triangle
+    double                    power_ = 0;
+};
+
+/// What all vertices ask in one bounce.
+struct Gathering {
+    std::vector<glm::dvec3> directions;
+    std::vector<LightPoint> points;
+};
+
+/// One side of the surface at a vertex, where rays begin.
+struct Receiver {
+    glm::dvec3 point_ws{0}, normal_ws{0};
+    double     lift_m = 0; // above the surface; what lies nearer than this is not met
+};
+
+float sum(glm::vec3 v) { return v.r + v.g + v.b; }
+
+class Gatherer {
+public:
+    Gatherer(const Scene& scene, unsigned threads)
+        : scene_(scene), threads_(threads), bvh_(scene), emitters_(scene), inner_ws_(scene.vertices.size()),
+          double_sided_(scene.vertices.size()), sent_(scene.vertices.size(), glm::vec3(0))
+    {
+        std::vector<int> triangles(scene.vertices.size());
+        for (const Draw& draw : scene.draws) {
+            const uint32_t* corners = scene.indices.data() + draw.first_index;
+            for (uint32_t i = 0; i < draw.index_count; ++i) {
+                for (uint32_t k = i - i % 3; k < i - i % 3 + 3; ++k)
+                    inner_ws_[corners[i]] += glm::dvec3(scene.vertices[corners[k]].position_ws) / 3.0;
+                ++triangles[corners[i]];
+                double_sided_[corners[i]] = scene.materials[draw.material].double_sided;
+            }
+        }
+        for (size_t v = 0; v < triangles.size(); ++v) inner_ws_[v] /= std::max(triangles[v], 1);
+    }
+
+    std::vector<glm::vec3> run()
+    {
+        const Bake&                  bake   = *scene_.bake;
+        const std::vector<glm::vec3> direct = for_each_vertex([&](const Receiver& at) {
+            const LitPoint lit{at.point_ws, at.point_ws + at.lift_m * at.normal_ws, at.normal_ws, at.lift_m};
+            return direct_irradiance(bvh_, scene_, lit) * float(1 / pi);
+        });
+        std::vector<glm::vec3>       bounced(direct.size(), glm::vec3(0));
+        for (int bounce = 0; bounce < bake.bounces; ++bounce) {
+            for (size_t v = 0; v < sent_.size(); ++v) sent_[v] = direct[v] + scene_.ambient + bounced[v];
+            // Noise of all but the last is averaged by the next.
+            const int       paths = bounce + 1 < bake.bounces ? std::max(bake.paths / 4, 16) : bake.paths;
+            const Gathering asked{hemisphere(paths), emitters_.points(paths)};
+            bounced = for_each_vertex([&](const Receiver& at) { return gather(asked, at); });
+        }
+        return bounced;
+    }
+
+private:
+    /// Of the brighter side.
+    template <typename LightAt> std::vector<glm::vec3> for_each_vertex(const LightAt& light_at) const
+    {
+        constexpr size_t       chunk = 64;
+        std::vector<glm::vec3> light(scene_.vertices.size());
+        parallel_rows(int((light.size() + chunk - 1) / chunk), threads_, [&](int row) {
+            for (size_t v = size_t(row) * chunk; v < std::min((size_t(row) + 1) * chunk, light.size()); ++v) {
+                Receiver at = receiver(v);
+                light[v]    = light_at(at);
+                if (!double_sided_[v]) continue;
+                at.normal_ws         = -at.normal_ws;
+                const glm::vec3 back = light_at(at);
+                if (sum(back) > sum(light[v])) light[v] = back;
+            }
+        });
+        return light;
+    }
+
+    /// A little inside its triangles: at their border, a wall that stands there would be met or not by rounding.
+    Receiver receiver(size_t v) const
+    {
+        constexpr double inward = 0.05;
+        const glm::dvec3 at     = glm::mix(glm::dvec3(scene_.vertices[v].position_ws), inner_ws_[v], inward);
+        const double     far_m  = std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)});
+        return {at, glm::normalize(glm::dvec3(scene_.vertices[v].normal_ws)),
+                std::max(1e-3 * scene_.bake->edge_m, 1e-6 * far_m)};
+    }
+
+    /// The mean of radiance by the cosine.
+    glm::vec3 gather(const Gathering& asked, const Receiver& at) const
+    {
+        constexpr double      infinite = std::numeric_limits<double>::infinity();
+        const glm::dmat3      frame    = frame_about(at.normal_ws);
+        const glm::dvec3      from_ws  = at.point_ws + at.lift_m * at.normal_ws;
+        std::vector<SceneRay> rays;
+        for (const glm::dvec3& direction : asked.directions)
+            rays.push_back({from_ws, frame * direction, at.lift_m, infinite});
+        std::vector<SceneHit> hits(rays.size());
+        bvh_.intersect(rays, hits);
+        glm::vec3 light(0);
+        for (size_t k = 0; k < rays.size(); ++k) light += arriving(rays[k], hits[k], asked.directions[k].z);
+        return (light + from_points(asked, at, from_ws)) / float(rays.size());
+    }
+
+    glm::vec3 arriving(const SceneRay& ray, const SceneHit& hit, double cosine) const
+    {
+        if (!hit.met) return sky_radiance(scene_, ray.direction_ws);
+        const SurfacePoint& met  = hit.surface;
+        const Draw&         draw = scene_.draws[met.draw];
+        glm::vec3           sent(0);
+        for (uint32_t i : {0U, 1U, 2U}) {
+            const double weight = i == 0   ? 1 - met.barycentric.x - met.barycentric.y
+                                  : i == 1 ? met.barycentric.x
+                                           : met.barycentric.y;
+            sent += float(weight) * sent_[scene_.indices[draw.first_index + 3 * met.triangle + i]];
+        }
+        sent *= glm::vec3(surface_colour(scene_, met));
+        if (scene_.materials[draw.material].emissive == glm::vec3(0)) return sent;
+        const double facing   = std::abs(glm::dot(glm::normalize(hit.normal_ws), ray.direction_ws));
+        const double by_ray   = cosine / pi * facing; // both densities times `facing`
+        const double by_point = emitters_.density(met.draw) * hit.t * hit.t;
+        return sent + surface_material(scene_, met).emissive * float(by_ray / (by_ray + by_point));
+    }
+
+    /// What the points on emitters send, as a sum of as many samples.
+    glm::vec3 from_points(const Gathering& asked, const Receiver& at, glm::dvec3 from_ws) const
+    {
+        std::vector<SceneRay>  rays;
+        std::vector<glm::vec3> light;
+        for (const LightPoint& point : asked.points) {
+            const glm::dvec3 way      = point.point_ws - from_ws;
+            const double     length_m = glm::length(way), cosine = glm::dot(way, at.normal_ws) / length_m,
+                         facing = std::abs(glm::dot(way, point.normal_ws)) / length_m;
+            if (!(cosine > 0) || !(facing > 0)) continue;
+            const double by_ray = cosine / pi * facing, by_point = point.density * length_m * length_m;
+            light.push_back(point.radiance * float(by_ray / (by_ray + by_point)));
+            rays.push_back({from_ws, way, at.lift_m / length_m, 1 - 1e-4});
+        }
+        std::vector<uint8_t> blocked(rays.size());
+        bvh_.occluded(rays, Sides::both, blocked);
+        glm::vec3 reached(0);
+        for (size_t k = 0; k < rays.size(); ++k)
+            if (blocked[k] == 0) reached += light[k];
+        return reached;
+    }
+
+    const Scene&            scene_;
+    unsigned                threads_;
+    SceneBvh                bvh_;
+    Emitters                emitters_;
+    std::vector<glm::dvec3> inner_ws_;     // of each vertex: the middle of its triangles' middles
+    std::vector<bool>       double_sided_; // likewise
+    std::vector<glm::vec3>  sent_;         // likewise, by a white diffuse surface
+};
+
+} // namespace
+
+std::vector<glm::vec3> bounced_light(const Scene& scene, unsigned threads) { return Gatherer(scene, threads).run(); }
+
+} // namespace ssrlab
