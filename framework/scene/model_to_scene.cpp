@@ -1,7 +1,7 @@
 #include "core/error.h"
 #include "scene/mesh_repair.h"
-#include "scene/subdivision.h"
 #include "scene/model.h"
+#include "scene/subdivision.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
