@@ -22,13 +22,16 @@ glm::dmat3 frame_about(glm::dvec3 n)
     return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
 }
 
-/// By the cosine about +z.
+/// By the cosine about +z. Neighbours in the list are neighbours on the hemisphere, which Embree traces together.
 std::vector<glm::dvec3> hemisphere(int count)
 {
+    std::vector<glm::dvec2> numbers;
+    for (int k = 0; k < count; ++k) numbers.push_back(even(k));
+    const double rings = std::sqrt(count / 4.0);
+    std::ranges::sort(numbers, {}, [&](glm::dvec2 u) { return std::pair(std::floor(u.x * rings), u.y); });
     std::vector<glm::dvec3> directions;
-    for (int k = 0; k < count; ++k) {
-        const glm::dvec2 u      = even(k);
-        const double     radius = std::sqrt(u.x), angle = 2 * pi * u.y;
+    for (const glm::dvec2& u : numbers) {
+        const double radius = std::sqrt(u.x), angle = 2 * pi * u.y;
         directions.emplace_back(radius * std::cos(angle), radius * std::sin(angle), std::sqrt(1 - u.x));
     }
     return directions;
@@ -107,60 +110,62 @@ struct Receiver {
     double     lift_m = 0; // above the surface; what lies nearer than this is not met
 };
 
-float sum(glm::vec3 v) { return v.r + v.g + v.b; }
+glm::dvec3 lifted(const Receiver& at) { return at.point_ws + at.lift_m * at.normal_ws; }
 
 class Gatherer {
 public:
     Gatherer(const Scene& scene, unsigned threads)
         : scene_(scene), threads_(threads), bvh_(scene), emitters_(scene), inner_ws_(scene.vertices.size()),
-          double_sided_(scene.vertices.size()), sent_(scene.vertices.size(), glm::vec3(0))
+          sides_(scene.vertices.size(), 1), sent_(scene.vertices.size(), glm::vec3(0))
     {
-        std::vector<int> triangles(scene.vertices.size());
+        std::vector<int>  triangles(scene.vertices.size());
+        std::vector<bool> double_sided(scene.vertices.size());
         for (const Draw& draw : scene.draws) {
             const uint32_t* corners = scene.indices.data() + draw.first_index;
             for (uint32_t i = 0; i < draw.index_count; ++i) {
                 for (uint32_t k = i - i % 3; k < i - i % 3 + 3; ++k)
                     inner_ws_[corners[i]] += glm::dvec3(scene.vertices[corners[k]].position_ws) / 3.0;
                 ++triangles[corners[i]];
-                double_sided_[corners[i]] = scene.materials[draw.material].double_sided;
+                double_sided[corners[i]] = scene.materials[draw.material].double_sided;
             }
         }
         for (size_t v = 0; v < triangles.size(); ++v) inner_ws_[v] /= std::max(triangles[v], 1);
+        const std::vector<glm::dvec3> probes = hemisphere(16);
+        const std::vector<glm::vec3>  backs  = for_each_vertex([&](size_t v) {
+            Receiver front = receiver(v), back = front;
+            back.normal_ws = -back.normal_ws;
+            return glm::vec3(double_sided[v] && openness(probes, back) > openness(probes, front));
+        });
+        for (size_t v = 0; v < sides_.size(); ++v) sides_[v] = backs[v].x > 0 ? -1 : 1;
     }
 
     std::vector<glm::vec3> run()
     {
         const Bake&                  bake   = *scene_.bake;
-        const std::vector<glm::vec3> direct = for_each_vertex([&](const Receiver& at) {
-            const LitPoint lit{at.point_ws, at.point_ws + at.lift_m * at.normal_ws, at.normal_ws, at.lift_m};
+        const std::vector<glm::vec3> direct = for_each_vertex([&](size_t v) {
+            const Receiver at = receiver(v);
+            const LitPoint lit{at.point_ws, lifted(at), at.normal_ws, at.lift_m};
             return direct_irradiance(bvh_, scene_, lit) * float(1 / pi);
         });
         std::vector<glm::vec3>       bounced(direct.size(), glm::vec3(0));
         for (int bounce = 0; bounce < bake.bounces; ++bounce) {
             for (size_t v = 0; v < sent_.size(); ++v) sent_[v] = direct[v] + scene_.ambient + bounced[v];
             // Noise of all but the last is averaged by the next.
-            const int       paths = bounce + 1 < bake.bounces ? std::max(bake.paths / 4, 16) : bake.paths;
+            const int       paths = bounce + 1 < bake.bounces ? std::max(bake.paths / 8, 16) : bake.paths;
             const Gathering asked{hemisphere(paths), emitters_.points(paths)};
-            bounced = for_each_vertex([&](const Receiver& at) { return gather(asked, at); });
+            bounced = for_each_vertex([&](size_t v) { return gather(asked, receiver(v)); });
         }
         return bounced;
     }
 
 private:
-    /// Of the brighter side.
     template <typename LightAt> std::vector<glm::vec3> for_each_vertex(const LightAt& light_at) const
     {
         constexpr size_t       chunk = 64;
         std::vector<glm::vec3> light(scene_.vertices.size());
         parallel_rows(int((light.size() + chunk - 1) / chunk), threads_, [&](int row) {
-            for (size_t v = size_t(row) * chunk; v < std::min((size_t(row) + 1) * chunk, light.size()); ++v) {
-                Receiver at = receiver(v);
-                light[v]    = light_at(at);
-                if (!double_sided_[v]) continue;
-                at.normal_ws         = -at.normal_ws;
-                const glm::vec3 back = light_at(at);
-                if (sum(back) > sum(light[v])) light[v] = back;
-            }
+            for (size_t v = size_t(row) * chunk; v < std::min((size_t(row) + 1) * chunk, light.size()); ++v)
+                light[v] = light_at(v);
         });
         return light;
     }
@@ -171,24 +176,43 @@ private:
         constexpr double inward = 0.05;
         const glm::dvec3 at     = glm::mix(glm::dvec3(scene_.vertices[v].position_ws), inner_ws_[v], inward);
         const double     far_m  = std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)});
-        return {at, glm::normalize(glm::dvec3(scene_.vertices[v].normal_ws)),
+        return {at, sides_[v] * glm::normalize(glm::dvec3(scene_.vertices[v].normal_ws)),
                 std::max(1e-3 * scene_.bake->edge_m, 1e-6 * far_m)};
+    }
+
+    /// 0 to 1: how far rays get. Inside a solid, or between its two skins, they end soon.
+    double openness(const std::vector<glm::dvec3>& directions, const Receiver& at) const
+    {
+        double far = 0;
+        for (const SceneHit& hit : hits_of(rays_from(directions, at)))
+            far += hit.met ? hit.t / (hit.t + 4 * scene_.bake->edge_m) : 1;
+        return far / double(directions.size());
+    }
+
+    static std::vector<SceneRay> rays_from(const std::vector<glm::dvec3>& directions, const Receiver& at)
+    {
+        const glm::dmat3      frame = frame_about(at.normal_ws);
+        std::vector<SceneRay> rays;
+        for (const glm::dvec3& direction : directions)
+            rays.push_back({lifted(at), frame * direction, at.lift_m, std::numeric_limits<double>::infinity()});
+        return rays;
+    }
+
+    std::vector<SceneHit> hits_of(const std::vector<SceneRay>& rays) const
+    {
+        std::vector<SceneHit> hits(rays.size());
+        bvh_.intersect(rays, hits);
+        return hits;
     }
 
     /// The mean of radiance by the cosine.
     glm::vec3 gather(const Gathering& asked, const Receiver& at) const
     {
-        constexpr double      infinite = std::numeric_limits<double>::infinity();
-        const glm::dmat3      frame    = frame_about(at.normal_ws);
-        const glm::dvec3      from_ws  = at.point_ws + at.lift_m * at.normal_ws;
-        std::vector<SceneRay> rays;
-        for (const glm::dvec3& direction : asked.directions)
-            rays.push_back({from_ws, frame * direction, at.lift_m, infinite});
-        std::vector<SceneHit> hits(rays.size());
-        bvh_.intersect(rays, hits);
-        glm::vec3 light(0);
+        const std::vector<SceneRay> rays = rays_from(asked.directions, at);
+        const std::vector<SceneHit> hits = hits_of(rays);
+        glm::vec3                   light(0);
         for (size_t k = 0; k < rays.size(); ++k) light += arriving(rays[k], hits[k], asked.directions[k].z);
-        return (light + from_points(asked, at, from_ws)) / float(rays.size());
+        return (light + from_points(asked, at)) / float(rays.size());
     }
 
     glm::vec3 arriving(const SceneRay& ray, const SceneHit& hit, double cosine) const
@@ -212,8 +236,9 @@ private:
     }
 
     /// What the points on emitters send, as a sum of as many samples.
-    glm::vec3 from_points(const Gathering& asked, const Receiver& at, glm::dvec3 from_ws) const
+    glm::vec3 from_points(const Gathering& asked, const Receiver& at) const
     {
+        const glm::dvec3       from_ws = lifted(at);
         std::vector<SceneRay>  rays;
         std::vector<glm::vec3> light;
         for (const LightPoint& point : asked.points) {
@@ -237,9 +262,9 @@ private:
     unsigned                threads_;
     SceneBvh                bvh_;
     Emitters                emitters_;
-    std::vector<glm::dvec3> inner_ws_;     // of each vertex: the middle of its triangles' middles
-    std::vector<bool>       double_sided_; // likewise
-    std::vector<glm::vec3>  sent_;         // likewise, by a white diffuse surface
+    std::vector<glm::dvec3> inner_ws_; // of each vertex: the middle of its triangles' middles
+    std::vector<double>     sides_;    // likewise: -1 where the back of a double-sided material receives
+    std::vector<glm::vec3>  sent_;     // likewise, by a white diffuse surface
 };
 
 } // namespace

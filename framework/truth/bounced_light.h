@@ -16,7 +16,7 @@
 namespace ssrlab {
 
 /// Returns Vertex::bounced for every vertex, by the numbers of Scene::bake, which must be there. On a double-sided
-/// material it is the light of the brighter side. threads = 0: all cores.
+/// material it is the light of the side that is more open. threads = 0: all cores.
 std::vector<glm::vec3> bounced_light(const Scene& scene, unsigned threads = 0);
 
 } // namespace ssrlab

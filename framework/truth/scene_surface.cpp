@@ -3,6 +3,7 @@
 #include "core/pixel_index.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ssrlab {
@@ -33,16 +34,21 @@ float srgb_to_linear(float value)
     return value <= 0.04045F ? value / 12.92F : std::pow((value + 0.055F) / 1.055F, 2.4F);
 }
 
+std::array<float, 256> linear_bytes()
+{
+    std::array<float, 256> values{};
+    for (size_t i = 0; i < values.size(); ++i) values[i] = srgb_to_linear(float(i) / 255.0F);
+    return values;
+}
+
 glm::vec4 texel(const Texture& texture, int x, int y)
 {
     const int      column = wrap(x, texture.size_px.x, texture.wrap_u);
     const int      row    = wrap(y, texture.size_px.y, texture.wrap_v);
     const uint8_t* bytes  = &texture.rgba[4 * pixel_index({column, row}, texture.size_px)];
-    glm::vec4      value  = glm::vec4(bytes[0], bytes[1], bytes[2], bytes[3]) / 255.0F;
-    if (texture.srgb) {
-        for (int c : {0, 1, 2}) value[c] = srgb_to_linear(value[c]);
-    }
-    return value;
+    if (!texture.srgb) return glm::vec4(bytes[0], bytes[1], bytes[2], bytes[3]) / 255.0F;
+    static const std::array<float, 256> linear = linear_bytes();
+    return {linear[bytes[0]], linear[bytes[1]], linear[bytes[2]], float(bytes[3]) / 255.0F};
 }
 
 glm::vec4 sample(const Scene& scene, const TextureUse& use, const SurfacePoint& point)
