@@ -180,13 +180,19 @@ private:
                 std::max(1e-3 * scene_.bake->edge_m, 1e-6 * far_m)};
     }
 
-    /// 0 to 1: how far rays get. Inside a solid, or between its two skins, they end soon.
+    /// 0 to 1: how far rays get, up to the sky if it shines. Inside a solid, or between its two skins, they end soon.
     double openness(const std::vector<glm::dvec3>& directions, const Receiver& at) const
     {
-        double far = 0;
-        for (const SceneHit& hit : hits_of(rays_from(directions, at)))
-            far += hit.met ? hit.t / (hit.t + 4 * scene_.bake->edge_m) : 1;
-        return far / double(directions.size());
+        const std::vector<SceneRay> rays = rays_from(directions, at);
+        const std::vector<SceneHit> hits = hits_of(rays);
+        double                      sum  = 0;
+        for (size_t k = 0; k < rays.size(); ++k) {
+            if (hits[k].met)
+                sum += hits[k].t / (hits[k].t + 4 * scene_.bake->edge_m);
+            else
+                sum += sky_radiance(scene_, rays[k].direction_ws) == glm::vec3(0) ? 0 : 1;
+        }
+        return sum / double(rays.size());
     }
 
     static std::vector<SceneRay> rays_from(const std::vector<glm::dvec3>& directions, const Receiver& at)
