@@ -41,8 +41,7 @@ Resources make_resources(Gpu& gpu, const json& frame, const fs::path& frames)
             if (!words.empty()) upload(gpu, buffer->second, words.data(), words.size() * sizeof(uint32_t));
         } else {
             const auto format = kind == "r32f" ? vk::Format::eR32Sfloat : vk::Format::eR32G32B32A32Sfloat;
-            GpuImage   image =
-                make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
+            GpuImage   image  = make_storage_image(gpu, format, size_px);
             upload(gpu, image, words.data(), words.size() * sizeof(uint32_t));
             made.images.emplace(name, std::move(image));
         }

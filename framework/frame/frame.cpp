@@ -72,19 +72,16 @@ FrameBuffersPtr make_frame_buffers(Gpu& gpu, const DrawingPtr& drawing)
 
 FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer, const DrawingPtr& drawing)
 {
-    auto       buffers = std::make_shared<FrameBuffers>();
-    const auto image   = [&](vk::Format format, glm::ivec2 size_px) {
-        return make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
-    };
+    auto             buffers = std::make_shared<FrameBuffers>();
     const glm::ivec2 size_px = gbuffer->view.size_px, half_size_px = (size_px - 1) / 2 + 1;
     constexpr auto   colour = vk::Format::eR16G16B16A16Sfloat;
     buffers->gbuffer        = gbuffer;
     buffers->drawing        = drawing;
-    buffers->reflection     = image(colour, size_px);
-    buffers->filtered       = image(colour, size_px);
-    buffers->small_colour   = image(colour, half_size_px);
-    buffers->block_pixel    = image(vk::Format::eR32Uint, half_size_px);
-    buffers->shaded         = image(colour, size_px);
+    buffers->reflection     = make_storage_image(gpu, colour, size_px);
+    buffers->filtered       = make_storage_image(gpu, colour, size_px);
+    buffers->small_colour   = make_storage_image(gpu, colour, half_size_px);
+    buffers->block_pixel    = make_storage_image(gpu, vk::Format::eR32Uint, half_size_px);
+    buffers->shaded         = make_storage_image(gpu, colour, size_px);
     buffers->dfg_table      = upload_dfg_table(gpu);
     const glm::vec3 ambient = drawing ? drawing->scene->ambient : glm::vec3(0);
     buffers->ambient        = make_buffer(gpu, 16);

@@ -10,17 +10,12 @@ static_assert(sizeof(HistoryCounts) == HISTORY_COUNTS * sizeof(uint32_t));
 
 constexpr auto four_floats = vk::Format::eR32G32B32A32Sfloat;
 
-GpuImage storage_image(Gpu& gpu, vk::Format format, glm::ivec2 size_px)
-{
-    return make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
-}
-
 } // namespace
 
 FrameHistoryPtr make_history(Gpu& gpu, glm::ivec2 size_px)
 {
     auto       history       = std::make_shared<FrameHistory>();
-    const auto image         = [&](vk::Format format) { return storage_image(gpu, format, size_px); };
+    const auto image         = [&](vk::Format format) { return make_storage_image(gpu, format, size_px); };
     history->size_px         = size_px;
     history->depth           = image(vk::Format::eR32Sfloat);
     history->gradient        = image(vk::Format::eR32Uint);
@@ -61,7 +56,7 @@ void keep_history(Gpu& gpu, const ReadyFrame& frame, int number)
     const bool     kept_picture = runs(frame.inputs.plan, "picture_history");
     if (picture && !*history.picture.image)
         for (GpuImage* image : {&history.picture, &history.kept_picture})
-            *image = storage_image(gpu, four_floats, history.size_px);
+            *image = make_storage_image(gpu, four_floats, history.size_px);
     Bindings all = surface_bindings(gbuffer);
     all.insert({{"View", gbuffer.view_uniforms},
                 {"gradient_image", gbuffer.gradient},

@@ -41,9 +41,7 @@ MotionVectors make_motion_vectors(Gpu& gpu, GBuffer& gbuffer, const FrameMotion&
 {
     MotionVectors vectors;
     vectors.motion    = make_motion_buffers(gpu, gbuffer.view, motion);
-    gbuffer.motion_px = make_image(gpu, {.format  = vk::Format::eR32G32Sfloat,
-                                         .size_px = gbuffer.view.size_px,
-                                         .usage   = vk::ImageUsageFlagBits::eStorage});
+    gbuffer.motion_px = make_storage_image(gpu, vk::Format::eR32G32Sfloat, gbuffer.view.size_px);
     Constants constants;
     constants.add(CONSTANT_ORTHOGRAPHIC, static_cast<int32_t>(gbuffer.view.projection == Projection::orthographic));
     vectors.pass = make_compute_pass(gpu, compile_shader(gpu, {.file = "gbuffer/motion_vectors.comp"}),

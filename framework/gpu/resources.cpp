@@ -240,6 +240,11 @@ GpuImage make_image(Gpu& gpu, const ImageOptions& options)
     return result;
 }
 
+GpuImage make_storage_image(Gpu& gpu, vk::Format format, glm::ivec2 size_px)
+{
+    return make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
+}
+
 void upload(Gpu& gpu, GpuImage& target, const void* data, uint64_t bytes)
 {
     if (gpu.info.compiles_only) return;

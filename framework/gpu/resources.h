@@ -61,6 +61,8 @@ struct ImageOptions {
 };
 /// Makes an image in layout GENERAL, where it stays. Throws SpecError if the size exceeds the limit of the device.
 GpuImage make_image(Gpu& gpu, const ImageOptions& options);
+/// Makes an image of one level and layer that shaders load and store. Throws likewise.
+GpuImage make_storage_image(Gpu& gpu, vk::Format format, glm::ivec2 size_px);
 bool     is_depth(vk::Format format);
 
 Storage storage_of(const Buffer& buffer);

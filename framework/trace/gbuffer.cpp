@@ -181,18 +181,15 @@ GBufferImage read_gbuffer(Gpu& gpu, const GBuffer& gbuffer)
 
 GBufferPtr upload_depth(Gpu& gpu, const View& view, std::span<const float> depth)
 {
-    auto gbuffer     = std::make_shared<GBuffer>();
-    gbuffer->view    = view;
-    const auto image = [&](vk::Format format, glm::ivec2 size_px) {
-        return make_image(gpu, {.format = format, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
-    };
+    auto gbuffer           = std::make_shared<GBuffer>();
+    gbuffer->view          = view;
     gbuffer->view_uniforms = upload_view(gpu, view, NumberFormat::float32);
     gbuffer->tiles         = make_tile_buffers(gpu, view.size_px);
     gbuffer->depth         = make_depth_buffer(gpu, view.size_px);
-    gbuffer->normal        = image(vk::Format::eR32G32B32A32Sfloat, {1, 1});
-    gbuffer->material      = image(vk::Format::eR16G16B16A16Sfloat, {1, 1});
-    gbuffer->dielectric    = image(vk::Format::eR32Sfloat, {1, 1});
-    gbuffer->solid         = image(vk::Format::eR32Sfloat, {1, 1});
+    gbuffer->normal        = make_storage_image(gpu, vk::Format::eR32G32B32A32Sfloat, {1, 1});
+    gbuffer->material      = make_storage_image(gpu, vk::Format::eR16G16B16A16Sfloat, {1, 1});
+    gbuffer->dielectric    = make_storage_image(gpu, vk::Format::eR32Sfloat, {1, 1});
+    gbuffer->solid         = make_storage_image(gpu, vk::Format::eR32Sfloat, {1, 1});
     write_depth(gpu, gbuffer->depth, usable_depth(depth), {});
     return gbuffer;
 }

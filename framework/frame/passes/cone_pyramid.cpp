@@ -8,9 +8,7 @@ namespace {
 GpuImage make_cone_image(Gpu& gpu, glm::ivec2 size_px, vk::Format format)
 {
     const glm::ivec2 finest = level_size(size_px, 1);
-    return make_image(gpu, {.format  = format,
-                            .size_px = {finest.x, pyramid_root(size_px) / 2 + finest.y},
-                            .usage   = vk::ImageUsageFlagBits::eStorage});
+    return make_storage_image(gpu, format, {finest.x, pyramid_root(size_px) / 2 + finest.y});
 }
 
 /// shaders/passes/cone_pyramid.comp

@@ -148,13 +148,11 @@ const LobeRayImages& lobe_ray_images(Gpu& gpu, const PassContext& context)
                          MAX_IMAGE_PX / own_px.y);
     std::shared_ptr<LobeRayImages>& images = buffers.lobe_rays[rays];
     if (!images) {
-        const auto image = [&](vk::Format format, glm::ivec2 of_px) {
-            return make_image(gpu, {.format = format, .size_px = of_px, .usage = vk::ImageUsageFlagBits::eStorage});
-        };
         images = std::make_shared<LobeRayImages>(
-            LobeRayImages{rays > 1 ? image(vk::Format::eR16G16B16A16Sfloat, size_px) : GpuImage{},
-                          image(vk::Format::eR32G32B32A32Sfloat, size_px), image(vk::Format::eR32G32B32A32Uint, own_px),
-                          image(vk::Format::eR32G32B32A32Uint, own_px)});
+            LobeRayImages{rays > 1 ? make_storage_image(gpu, vk::Format::eR16G16B16A16Sfloat, size_px) : GpuImage{},
+                          make_storage_image(gpu, vk::Format::eR32G32B32A32Sfloat, size_px),
+                          make_storage_image(gpu, vk::Format::eR32G32B32A32Uint, own_px),
+                          make_storage_image(gpu, vk::Format::eR32G32B32A32Uint, own_px)});
     }
     return *images;
 }
