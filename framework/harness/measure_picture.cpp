@@ -75,7 +75,7 @@ std::string picture_name(const Run& run)
 }
 
 /// The plan of the run's frame, and the frame.
-void plan_run(SweepContext& sweep, const Picture& picture, MeasuredRun& measured)
+void plan_run(SweepContext& sweep, const MeasuredPicture& picture, MeasuredRun& measured)
 {
     const Run&            run       = *measured.run;
     const Technique&      technique = find_technique(sweep.techniques, run.technique);
@@ -119,7 +119,7 @@ std::string truth_name(const Run& run)
 }
 
 /// The picture with true reflections, and beside it the one without any; those of the first run stay.
-void write_references(SweepContext& sweep, Picture& picture, const MeasuredRun& measured, const Image& truth)
+void write_references(SweepContext& sweep, MeasuredPicture& picture, const MeasuredRun& measured, const Image& truth)
 {
     if (!sweep.experiment.measure.pictures) return;
     const std::string           name  = truth_name(*measured.run);
@@ -133,7 +133,7 @@ void write_references(SweepContext& sweep, Picture& picture, const MeasuredRun& 
 }
 
 /// Makes what judging the run needs, unless the last run had the same settings.
-void make_references(SweepContext& sweep, Picture& picture, const MeasuredRun& measured)
+void make_references(SweepContext& sweep, MeasuredPicture& picture, const MeasuredRun& measured)
 {
     const FrameSettings& settings     = measured.run->settings;
     const bool           image_errors = sweep.experiment.measure.image_errors;
@@ -158,7 +158,7 @@ void make_references(SweepContext& sweep, Picture& picture, const MeasuredRun& m
 }
 
 /// What was seen, how right it is, and how hard it was; the path without the ending.
-void write_pictures(const std::filesystem::path& path, const Picture& picture, const Observed& observed)
+void write_pictures(const std::filesystem::path& path, const MeasuredPicture& picture, const Observed& observed)
 {
     std::filesystem::create_directories(path.parent_path());
     const auto write = [&](const char* ending, const Image& image) { write_image(path.string() + ending, image); };
@@ -175,7 +175,7 @@ void write_pictures(const std::filesystem::path& path, const Picture& picture, c
 }
 
 /// A value that is no number spreads into every mean.
-void warn_of_not_finite(const SweepContext& sweep, const Picture& picture, MeasuredRun& measured,
+void warn_of_not_finite(const SweepContext& sweep, const MeasuredPicture& picture, MeasuredRun& measured,
                         const Observed& observed)
 {
     const MeasureValues found =
@@ -187,7 +187,7 @@ void warn_of_not_finite(const SweepContext& sweep, const Picture& picture, Measu
 }
 
 /// Pictures, counts and comparisons with the truths.
-void judge(const SweepContext& sweep, Picture& picture, MeasuredRun& measured, const Observed& observed)
+void judge(const SweepContext& sweep, MeasuredPicture& picture, MeasuredRun& measured, const Observed& observed)
 {
     const MeasureSettings& measure = sweep.experiment.measure;
     if (measure.pictures) {
@@ -224,7 +224,7 @@ void refuse_impossible(const SweepContext& sweep, const Run& run, const Observed
 }
 
 /// What sources build is kept for the next run that traces alike.
-SourceContext& sources_of(SweepContext& sweep, Picture& picture, const Run& run)
+SourceContext& sources_of(SweepContext& sweep, MeasuredPicture& picture, const Run& run)
 {
     const Run& last  = picture.sources_for;
     const bool alike = last.technique == run.technique && last.values == run.values && last.settings == run.settings;
@@ -237,7 +237,7 @@ SourceContext& sources_of(SweepContext& sweep, Picture& picture, const Run& run)
     return *picture.sources;
 }
 
-void ask_listed_sources(SweepContext& sweep, Picture& picture, MeasuredRun& measured)
+void ask_listed_sources(SweepContext& sweep, MeasuredPicture& picture, MeasuredRun& measured)
 {
     const AskedSources& asked = measured.run->sources;
     if (asked.list.empty()) return;
@@ -252,7 +252,7 @@ void ask_listed_sources(SweepContext& sweep, Picture& picture, MeasuredRun& meas
 }
 
 /// Everything but the timed repeats.
-void prepare(SweepContext& sweep, Picture& picture, MeasuredRun& measured)
+void prepare(SweepContext& sweep, MeasuredPicture& picture, MeasuredRun& measured)
 {
     const Observed observed = [&] {
         const UnderWay under_way(sweep.state, measured.run->id, sweep.experiment.measure.time_limit_s);
@@ -280,7 +280,7 @@ void plan_repeats(SweepContext& sweep, MeasuredRun& measured)
 }
 
 /// The same frame, unculled, where that is more.
-void prepare_comparison(SweepContext& sweep, const Picture& picture, MeasuredRun& measured)
+void prepare_comparison(SweepContext& sweep, const MeasuredPicture& picture, MeasuredRun& measured)
 {
     if (!sweep.experiment.measure.saved_time || !skips_work(measured.plan)) return;
     const size_t   known = pipelines_made(sweep.gpu);
@@ -333,7 +333,7 @@ void warm_up(SweepContext& sweep, std::vector<MeasuredRun>& open)
     });
 }
 
-void finish_measured(SweepContext& sweep, const Picture& picture, MeasuredRun& measured)
+void finish_measured(SweepContext& sweep, const MeasuredPicture& picture, MeasuredRun& measured)
 {
     add_times(measured, picture.gbuffer_ms);
     add_sources(measured.row, measured.sources);
@@ -341,7 +341,7 @@ void finish_measured(SweepContext& sweep, const Picture& picture, MeasuredRun& m
 }
 
 /// Timed repeats, every round in another order, until each run has those planned for it or a stop was requested.
-void repeat_until_final(SweepContext& sweep, Picture& picture, std::vector<MeasuredRun>& open)
+void repeat_until_final(SweepContext& sweep, MeasuredPicture& picture, std::vector<MeasuredRun>& open)
 {
     const auto is_last = [](const MeasuredRun& measured) {
         return static_cast<int>(measured.rounds.size()) >= measured.repeats;
@@ -366,7 +366,7 @@ void repeat_until_final(SweepContext& sweep, Picture& picture, std::vector<Measu
 }
 
 /// On a stop, what was measured often enough is kept; the rest is left for --resume.
-void keep_measured(SweepContext& sweep, const Picture& picture, std::vector<MeasuredRun>& open)
+void keep_measured(SweepContext& sweep, const MeasuredPicture& picture, std::vector<MeasuredRun>& open)
 {
     for (MeasuredRun& measured : open) {
         if (static_cast<int>(measured.trace_ms.size()) < sweep.experiment.measure.min_repeats) continue;
@@ -386,7 +386,7 @@ std::vector<const Run*> by_settings(std::span<const Run> runs)
 }
 
 /// All of a run but its timed repeats; a run that fails is over.
-void open_run(SweepContext& sweep, Picture& picture, const Run& run, std::vector<MeasuredRun>& open)
+void open_run(SweepContext& sweep, MeasuredPicture& picture, const Run& run, std::vector<MeasuredRun>& open)
 {
     sweep.progress.tick();
     MeasuredRun measured;
@@ -404,7 +404,7 @@ void open_run(SweepContext& sweep, Picture& picture, const Run& run, std::vector
     open.push_back(std::move(measured));
 }
 
-void time_runs(SweepContext& sweep, Picture& picture, std::vector<MeasuredRun>& open)
+void time_runs(SweepContext& sweep, MeasuredPicture& picture, std::vector<MeasuredRun>& open)
 {
     refuse_changed_sources(sweep);
     finish_pipelines(sweep.gpu);
@@ -413,7 +413,7 @@ void time_runs(SweepContext& sweep, Picture& picture, std::vector<MeasuredRun>& 
     keep_measured(sweep, picture, open);
 }
 
-void measure_batch(SweepContext& sweep, Picture& picture, std::span<const Run> runs)
+void measure_batch(SweepContext& sweep, MeasuredPicture& picture, std::span<const Run> runs)
 {
     std::vector<MeasuredRun> open;
     for (const Run* run : by_settings(runs)) {
@@ -424,7 +424,8 @@ void measure_batch(SweepContext& sweep, Picture& picture, std::span<const Run> r
 }
 
 /// The picture, or rows that say why there is none.
-std::optional<Picture> try_picture(SweepContext& sweep, std::span<const Run> runs, std::span<const Run> replayed = {})
+std::optional<MeasuredPicture> try_picture(SweepContext& sweep, std::span<const Run> runs,
+                                           std::span<const Run> replayed = {})
 {
     try {
         const Run&     any = runs.empty() ? replayed.front() : runs.front();
@@ -453,11 +454,11 @@ std::vector<Run> without_row(const SweepContext& sweep, std::span<const Run> run
 /// search, are timed in the same rounds.
 void search_and_measure(SweepContext& sweep, std::span<const Run> listed)
 {
-    std::map<std::string, Record> rows = sweep.results.rows();
-    std::vector<Run>              all(listed.begin(), listed.end());
-    std::deque<Run>               opened; // keeps addresses
-    std::vector<MeasuredRun>      open;
-    std::optional<Picture>        picture;
+    std::map<std::string, Record>  rows = sweep.results.rows();
+    std::vector<Run>               all(listed.begin(), listed.end());
+    std::deque<Run>                opened; // keeps addresses
+    std::vector<MeasuredRun>       open;
+    std::optional<MeasuredPicture> picture;
     for (std::vector<Run> next = all; !next.empty();) {
         const std::vector<Run> pending = without_row(sweep, next);
         if (!picture && !pending.empty()) picture = try_picture(sweep, pending);
@@ -499,7 +500,7 @@ void measure_picture(SweepContext& sweep, std::span<const Run> listed, std::span
     if (!sweep.experiment.targets.empty()) return search_and_measure(sweep, listed);
     const std::vector<Run> pending = without_row(sweep, listed);
     if (pending.empty() && replayed.empty()) return;
-    std::optional<Picture> picture = try_picture(sweep, pending, replayed);
+    std::optional<MeasuredPicture> picture = try_picture(sweep, pending, replayed);
     for (std::span<const Run> rest(pending); picture && !rest.empty() && stop_requested() == 0;) {
         const auto batch = rest.first(std::min(batch_size, rest.size()));
         rest             = rest.subspan(batch.size());

@@ -25,10 +25,10 @@ Stage& stage_of(SweepContext& sweep, const std::string& scene)
     return sweep.scene->stage;
 }
 
-Picture make_picture(SweepContext& sweep, const Run& run)
+MeasuredPicture make_picture(SweepContext& sweep, const Run& run)
 {
-    Stage&  stage = stage_of(sweep, run.scene);
-    Picture picture;
+    Stage&          stage = stage_of(sweep, run.scene);
+    MeasuredPicture picture;
     clocked(sweep.counted_s, [&] { show(stage, run.view, run.size_px, run.at); }); // a warm-up
     if (stage.drawing) {
         std::vector<double> times_ms;

@@ -6,7 +6,7 @@
 
 namespace ssrlab {
 
-struct Picture {
+struct MeasuredPicture {
     FrameBuffersPtr       buffers;
     double                gbuffer_ms = 0;
     int                   round      = 0; // of samples.csv
@@ -26,7 +26,7 @@ struct Picture {
 /// Returns the stage of a scene; loads and uploads the scene unless it is the current one.
 Stage& stage_of(SweepContext& sweep, const std::string& scene);
 /// Shows the run's frame on that stage.
-Picture make_picture(SweepContext& sweep, const Run& run);
+MeasuredPicture make_picture(SweepContext& sweep, const Run& run);
 
 /// The outputs of a run's frames, not yet judged.
 struct Observed {

@@ -9,7 +9,8 @@ namespace {
 
 bool anything_moved(const FrameMotion& motion) { return motion.camera_moves || motion.moving_draws > 0; }
 
-MeasureValues watch_sequence(SweepContext& sweep, const Picture& picture, const Run& run, const Observed& observed)
+MeasureValues watch_sequence(SweepContext& sweep, const MeasuredPicture& picture, const Run& run,
+                             const Observed& observed)
 {
     // Behind a cut of the camera everything is elsewhere.
     const auto& motion = sweep.scene->stage.motion;
@@ -23,7 +24,7 @@ SceneInTime scene_before(const Stage& stage, const FrameMotion& motion, int fram
     return {scene_at(stage.first, motion.frame - frames_back), motion};
 }
 
-void make_reprojection(SweepContext& sweep, Picture& picture, const Run& run)
+void make_reprojection(SweepContext& sweep, MeasuredPicture& picture, const Run& run)
 {
     if (picture.truths->has_reprojection()) return;
     const Stage&               stage = sweep.scene->stage;
@@ -35,7 +36,7 @@ void make_reprojection(SweepContext& sweep, Picture& picture, const Run& run)
 }
 
 /// Where something but jitter moved.
-void judge_motion(SweepContext& sweep, Picture& picture, MeasuredRun& measured, const Observed& observed)
+void judge_motion(SweepContext& sweep, MeasuredPicture& picture, MeasuredRun& measured, const Observed& observed)
 {
     if (!picture.truths || !picture.truths->without_scene().empty()) return;
     if (!sweep.scene->stage.motion || !anything_moved(*sweep.scene->stage.motion)) return;
@@ -62,7 +63,7 @@ bool nothing_moves(const Scene& scene, const Run& run, int last_frame)
     return true;
 }
 
-void add_true_picture(Picture& picture, const TraceSettings& settings, Image& sum)
+void add_true_picture(MeasuredPicture& picture, const TraceSettings& settings, Image& sum)
 {
     picture.truths->make(settings, false);
     if (!picture.truths->without_scene().empty()) return;
@@ -91,7 +92,7 @@ void leave_history(SweepContext& sweep, const Run& run, ReadyFrame& frame)
     });
 }
 
-void judge_sequence(SweepContext& sweep, Picture& picture, MeasuredRun& measured, const Observed& observed)
+void judge_sequence(SweepContext& sweep, MeasuredPicture& picture, MeasuredRun& measured, const Observed& observed)
 {
     judge_motion(sweep, picture, measured, observed);
     if (observed.history) add_measures(measured.row, history_measures(*observed.history));
@@ -109,7 +110,7 @@ void lose_sequence(SweepContext& sweep, const Run& run)
     sweep.sequences[sequence_id(run)].failed = true;
 }
 
-void replay(SweepContext& sweep, const Picture& picture, const Run& run)
+void replay(SweepContext& sweep, const MeasuredPicture& picture, const Run& run)
 {
     try {
         const UnderWay        under_way(sweep.state, run.id, sweep.experiment.measure.time_limit_s);
@@ -143,9 +144,9 @@ void make_converged_pictures(SweepContext& sweep, std::span<const Run> runs, int
         if (std::ranges::none_of(sums, [&](const auto& sum) { return sum.first == run.settings.trace; }))
             sums.emplace_back(run.settings.trace, Image{});
     for (int phase = 0; phase < first.at.jitter_phases; ++phase) {
-        Run at_phase      = first;
-        at_phase.at.frame = phase;
-        Picture picture   = make_picture(sweep, at_phase);
+        Run at_phase            = first;
+        at_phase.at.frame       = phase;
+        MeasuredPicture picture = make_picture(sweep, at_phase);
         for (auto& [settings, sum] : sums) add_true_picture(picture, settings, sum);
         sweep.progress.tick();
     }

@@ -12,13 +12,13 @@ FrameHistoryPtr history_of(SweepContext& sweep, const Run& run);
 void leave_history(SweepContext& sweep, const Run& run, ReadyFrame& frame);
 
 /// Adds the measures that compare with earlier frames, and remembers this one.
-void judge_sequence(SweepContext& sweep, Picture& picture, MeasuredRun& measured, const Observed& observed);
+void judge_sequence(SweepContext& sweep, MeasuredPicture& picture, MeasuredRun& measured, const Observed& observed);
 
 /// Marks the run's sequence as failed, after a frame that failed.
 void lose_sequence(SweepContext& sweep, const Run& run);
 
 /// Runs a frame only for the history of the next one, without a row.
-void replay(SweepContext& sweep, const Picture& picture, const Run& run);
+void replay(SweepContext& sweep, const MeasuredPicture& picture, const Run& run);
 
 /// Makes SweepContext::converged for the settings of these runs, if only jitter moves up to `last_frame`.
 void make_converged_pictures(SweepContext& sweep, std::span<const Run> runs, int last_frame);

@@ -57,17 +57,17 @@ template <typename Make> void measure_truth(benchmark::State& state, const std::
 
 } // namespace
 
-template <typename Record> double Bench::measure(benchmark::State& state, Picture& p, const Record& record)
+template <typename Record> double Bench::measure(benchmark::State& state, Workload& w, const Record& record)
 {
     return measure_calls(state, [&] {
         submit(gpu_, [&](const vk::raii::CommandBuffer& commands) {
-            write_timestamp(commands, p.timestamps, 0);
+            write_timestamp(commands, w.timestamps, 0);
             barrier(commands);
             record(commands);
             barrier(commands);
-            write_timestamp(commands, p.timestamps, 1);
+            write_timestamp(commands, w.timestamps, 1);
         });
-        return read_intervals_ms(gpu_, p.timestamps)[0];
+        return read_intervals_ms(gpu_, w.timestamps)[0];
     });
 }
 
@@ -80,50 +80,50 @@ Bench::Bench(const std::string& device, const std::string& tracer)
 
 void Bench::gbuffer(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
 {
-    Picture& p = picture(scene, size_px);
-    measure_calls(state, [&] { return redraw_gbuffer(gpu_, *p.drawing); });
+    Workload& w = workload(scene, size_px);
+    measure_calls(state, [&] { return redraw_gbuffer(gpu_, *w.drawing); });
 }
 
 void Bench::copy(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
 {
-    Picture& p = picture(scene, size_px);
-    measure(state, p, [&](const auto& commands) { dispatch(commands, p.copy_pass, groups_of_8(size_px)); });
+    Workload& w = workload(scene, size_px);
+    measure(state, w, [&](const auto& commands) { dispatch(commands, w.copy_pass, groups_of_8(size_px)); });
 }
 
 void Bench::pyramid(benchmark::State& state, const std::string& scene, glm::ivec2 size_px, const std::string& kind)
 {
-    Picture&    p     = picture(scene, size_px);
-    ReadyFrame& frame = frame_of(p, {tracer_.technique, {{"depth_pyramid.kind", kind}}});
-    measure(state, p, [&](const auto& commands) { record_depth_structures(commands, *frame.inputs.lab); });
+    Workload&   w     = workload(scene, size_px);
+    ReadyFrame& frame = frame_of(w, {tracer_.technique, {{"depth_pyramid.kind", kind}}});
+    measure(state, w, [&](const auto& commands) { record_depth_structures(commands, *frame.inputs.lab); });
 }
 
 void Bench::rays(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
 {
-    Picture&    p     = picture(scene, size_px);
-    ReadyFrame& frame = frame_of(p, tracer_);
-    measure(state, p, [&](const auto& commands) { record_rays(commands, frame.inputs.trace, *p.gbuffer); });
+    Workload&   w     = workload(scene, size_px);
+    ReadyFrame& frame = frame_of(w, tracer_);
+    measure(state, w, [&](const auto& commands) { record_rays(commands, frame.inputs.trace, *w.gbuffer); });
 }
 
 void Bench::trace(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
 {
-    Picture&    p     = picture(scene, size_px);
-    ReadyFrame& frame = frame_of(p, tracer_);
+    Workload&   w     = workload(scene, size_px);
+    ReadyFrame& frame = frame_of(w, tracer_);
     prepare_trace(frame);
-    measure(state, p, [&](const auto& commands) {
+    measure(state, w, [&](const auto& commands) {
         record_technique(commands, frame.inputs.trace.technique, *frame.inputs.rays);
     });
 }
 
 void Bench::shade(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
 {
-    Picture&    p     = picture(scene, size_px);
-    ReadyFrame& frame = frame_of(p, tracer_);
+    Workload&   w     = workload(scene, size_px);
+    ReadyFrame& frame = frame_of(w, tracer_);
     prepare_trace(frame);
     submit(gpu_,
            [&](const auto& commands) { record_technique(commands, frame.inputs.trace.technique, *frame.inputs.rays); });
     const auto           prepared = [&](const Pass& pass) { return pass.prepare(gpu_, {frame.inputs, pass, pass.id}); };
     const RecordFunction hit_colour = prepared(hit_colour_pass()), composite = prepared(composite_pass());
-    measure(state, p, [&](const auto& commands) {
+    measure(state, w, [&](const auto& commands) {
         hit_colour(commands);
         barrier(commands);
         composite(commands);
@@ -132,11 +132,11 @@ void Bench::shade(benchmark::State& state, const std::string& scene, glm::ivec2 
 
 void Bench::scattered(benchmark::State& state, const std::string& scene, glm::ivec2 size_px, bool compacted)
 {
-    Picture& p = picture(scene, size_px);
-    if (!p.scattered) p.scattered = scatter(p);
-    Scattered& s = *p.scattered;
+    Workload& w = workload(scene, size_px);
+    if (!w.scattered) w.scattered = scatter(w);
+    Scattered& s = *w.scattered;
     prepare_trace(*s.frame);
-    measure(state, p, [&](const auto& commands) {
+    measure(state, w, [&](const auto& commands) {
         if (compacted)
             record_technique(commands, s.frame->inputs.trace.technique, *s.frame->inputs.rays);
         else
@@ -147,7 +147,7 @@ void Bench::scattered(benchmark::State& state, const std::string& scene, glm::iv
 
 void Bench::screen_truth(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
 {
-    const GBufferImage gbuffer = read_gbuffer(gpu_, *picture(scene, size_px).gbuffer);
+    const GBufferImage gbuffer = read_gbuffer(gpu_, *workload(scene, size_px).gbuffer);
     measure_truth(state, "cells", [&] {
         const TraceImage truth = ssrlab::screen_truth(gbuffer, bench_settings.trace);
         return std::accumulate(truth.steps.begin(), truth.steps.end(), 0.0);
@@ -156,7 +156,7 @@ void Bench::screen_truth(benchmark::State& state, const std::string& scene, glm:
 
 void Bench::scene_truth(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
 {
-    const GBufferImage gbuffer = read_gbuffer(gpu_, *picture(scene, size_px).gbuffer);
+    const GBufferImage gbuffer = read_gbuffer(gpu_, *workload(scene, size_px).gbuffer);
     const Scene&       loaded  = scenes_[scene].scene;
     const SceneBvh     bvh(loaded);
     measure_truth(state, "rays", [&] {
@@ -166,11 +166,11 @@ void Bench::scene_truth(benchmark::State& state, const std::string& scene, glm::
     });
 }
 
-Bench::Picture& Bench::picture(const std::string& scene, glm::ivec2 size_px)
+Bench::Workload& Bench::workload(const std::string& scene, glm::ivec2 size_px)
 {
-    const auto [place, is_new] = pictures_.try_emplace(fmt::format("{} {}x{}", scene, size_px.x, size_px.y));
-    Picture& p                 = place->second;
-    if (!is_new) return p;
+    const auto [place, is_new] = workloads_.try_emplace(fmt::format("{} {}x{}", scene, size_px.x, size_px.y));
+    Workload& w                = place->second;
+    if (!is_new) return w;
     if (!scenes_.contains(scene)) {
         const size_t colon  = scene.find_last_of(':');
         const bool   viewed = colon != std::string::npos && !scene.starts_with("builtin:");
@@ -179,32 +179,30 @@ Bench::Picture& Bench::picture(const std::string& scene, glm::ivec2 size_px)
         loaded.gpu          = upload_scene(gpu_, loaded.scene);
         loaded.camera       = find_camera(loaded.scene, viewed ? scene.substr(colon + 1) : "default");
     }
-    p.drawing = draw_gbuffer(gpu_, scenes_[scene].gpu, camera_to_view(scenes_[scene].camera, size_px));
-    p.gbuffer = p.drawing->gbuffer;
-    p.buffers = make_frame_buffers(gpu_, p.drawing);
-    for (GpuImage* image : {&p.depth, &p.copy})
-        *image = make_image(
-            gpu_, {.format = vk::Format::eR32Sfloat, .size_px = size_px, .usage = vk::ImageUsageFlagBits::eStorage});
-    const std::vector<float> depth = read_depth(gpu_, p.gbuffer->depth);
-    upload(gpu_, p.depth, depth.data(), depth.size() * sizeof(float));
-    p.copy_pass =
+    w.drawing = draw_gbuffer(gpu_, scenes_[scene].gpu, camera_to_view(scenes_[scene].camera, size_px));
+    w.gbuffer = w.drawing->gbuffer;
+    w.buffers = make_frame_buffers(gpu_, w.drawing);
+    for (GpuImage* image : {&w.depth, &w.copy}) *image = make_storage_image(gpu_, vk::Format::eR32Sfloat, size_px);
+    const std::vector<float> depth = read_depth(gpu_, w.gbuffer->depth);
+    upload(gpu_, w.depth, depth.data(), depth.size() * sizeof(float));
+    w.copy_pass =
         make_compute_pass(gpu_, compile_shader(gpu_, {.file = data_root() / "tests/benchmarks/copy_depth.comp"}),
-                          {{"depth_image", p.depth}, {"depth_copy", p.copy}});
-    p.timestamps = make_timestamps(gpu_, 2);
-    return p;
+                          {{"depth_image", w.depth}, {"depth_copy", w.copy}});
+    w.timestamps = make_timestamps(gpu_, 2);
+    return w;
 }
 
 /// Compiled, and run once so that the driver has compiled it, too.
-ReadyFrame& Bench::frame_of(Picture& p, const Contender& c)
+ReadyFrame& Bench::frame_of(Workload& w, const Contender& c)
 {
-    FramePtr& frame = p.frames[c];
+    FramePtr& frame = w.frames[c];
     if (!frame) {
         const Technique& technique = find_technique(catalogue_.techniques, c.technique);
         ParameterValues  values    = default_values(technique);
         for (const auto& [name, text] : c.values)
             values.at(name) = parse_parameter(find_parameter(technique, name, "benchmark"), text, "benchmark");
-        const LabPtr lab = make_lab(gpu_, catalogue_, p.gbuffer, technique, values, bench_settings.trace);
-        frame = make_frame(gpu_, lab, p.buffers, plan_frame(gpu_, catalogue_, lab, p.buffers, bench_settings));
+        const LabPtr lab = make_lab(gpu_, catalogue_, w.gbuffer, technique, values, bench_settings.trace);
+        frame = make_frame(gpu_, lab, w.buffers, plan_frame(gpu_, catalogue_, lab, w.buffers, bench_settings));
         run_frame(gpu_, *frame);
     }
     return *frame;

@@ -51,7 +51,7 @@ private:
         RayBuffers      every_pixel; // rays of length 0 where nothing reflects
         TracePasses     over_every_pixel;
     };
-    struct Picture {
+    struct Workload {
         DrawingPtr                    drawing;
         GBufferPtr                    gbuffer;
         FrameBuffersPtr               buffers;
@@ -67,17 +67,17 @@ private:
         Camera      camera;
     };
 
-    Picture&                          picture(const std::string& scene, glm::ivec2 size_px);
-    ReadyFrame&                       frame_of(Picture& picture, const Contender& contender);
-    Scattered                         scatter(Picture& picture);
+    Workload&                         workload(const std::string& scene, glm::ivec2 size_px);
+    ReadyFrame&                       frame_of(Workload& workload, const Contender& contender);
+    Scattered                         scatter(Workload& workload);
     void                              prepare_trace(const ReadyFrame& frame);
-    template <typename Record> double measure(benchmark::State& state, Picture& picture, const Record& record);
+    template <typename Record> double measure(benchmark::State& state, Workload& workload, const Record& record);
 
     Gpu                                gpu_;
     Catalogue                          catalogue_;
     Contender                          tracer_;
     std::map<std::string, LoadedScene> scenes_;
-    std::map<std::string, Picture>     pictures_;
+    std::map<std::string, Workload>    workloads_;
 };
 
 } // namespace ssrlab

@@ -33,15 +33,15 @@ size_t count_different(const TraceImage& a, const TraceImage& b, bool compare_t)
 
 void Bench::judge(benchmark::State& state, const std::string& scene, glm::ivec2 size_px)
 {
-    Picture&         p      = picture(scene, size_px);
-    const TraceImage result = trace_gbuffer(gpu_, *make_tracer(gpu_, frame_of(p, tracer_).inputs.lab));
-    const TraceImage walk   = trace_gbuffer(gpu_, *make_tracer(gpu_, frame_of(p, {"dda", {}}).inputs.lab));
+    Workload&        w      = workload(scene, size_px);
+    const TraceImage result = trace_gbuffer(gpu_, *make_tracer(gpu_, frame_of(w, tracer_).inputs.lab));
+    const TraceImage walk   = trace_gbuffer(gpu_, *make_tracer(gpu_, frame_of(w, {"dda", {}}).inputs.lab));
     const double     rays   = static_cast<double>(count_traced(result));
     for (auto _ : state) state.SetIterationTime(1e-9);
     state.counters["rays"]              = rays;
     state.counters["differs_from_walk"] = static_cast<double>(count_different(result, walk, true));
     if (size_px.x > largest_judged_px) return;
-    const GBufferImage gbuffer = read_gbuffer(gpu_, *p.gbuffer);
+    const GBufferImage gbuffer = read_gbuffer(gpu_, *w.gbuffer);
     const TraceImage   truth =
         cached_screen_truth(truth_cache_dir(data_root() / "results/bench"), gbuffer, bench_settings.trace);
     const MeasureValues measures = compare_to_screen_truth(result, truth);

@@ -5,9 +5,9 @@
 namespace ssrlab {
 
 /// One of 16 pixels keeps its metal, chosen by a hash of its place.
-Bench::Scattered Bench::scatter(Picture& p)
+Bench::Scattered Bench::scatter(Workload& w)
 {
-    GBufferImage image = read_gbuffer(gpu_, *p.gbuffer);
+    GBufferImage image = read_gbuffer(gpu_, *w.gbuffer);
     for (size_t i = 0; i < image.metallic.size(); ++i)
         if (static_cast<uint32_t>(i) * 2654435761U >> 28 != 0) image.metallic[i] = 0;
     Scattered s;
@@ -19,7 +19,7 @@ Bench::Scattered Bench::scatter(Picture& p)
     s.frame = make_frame(gpu_, lab, s.buffers, plan_frame(gpu_, catalogue_, lab, s.buffers, bench_settings));
     run_frame(gpu_, *s.frame);
 
-    const glm::ivec2 size     = p.gbuffer->view.size_px;
+    const glm::ivec2 size     = w.gbuffer->view.size_px;
     const auto       capacity = pixel_count(size);
     const size_t     count    = s.frame->inputs.rays->capacity;
     s.every_pixel             = make_ray_buffers(gpu_, capacity, NumberFormat::float32);
