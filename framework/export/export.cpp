@@ -3,7 +3,6 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "export/passes.h"
-#include "export/run_program.h"
 #include "export/translate.h"
 #include "export/wgsl.h"
 #include "trace/lab_passes.h"

@@ -2,8 +2,8 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/run_program.h"
 #include "core/temporary_folder.h"
-#include "export/run_program.h"
 #include "export/wgsl.h"
 #include "gpu/spirv.h"
 
@@ -75,13 +75,13 @@ void write_spirv(const std::vector<uint32_t>& spirv, const fs::path& file)
 std::string run_translator(const Shader& shader, const std::vector<std::string>& words, const fs::path& text,
                            const std::string& package)
 {
-    const ProgramOutput done = run_program(words);
-    const std::string&  name = words[0];
+    const ProgramEnd   done = run_program(words, ProgramOutput::kept);
+    const std::string& name = words[0];
     if (done.code == program_is_missing)
         throw_failure("{} is not installed: install Debian's package {}", name, package);
     if (done.code != 0)
         throw_failure("{}: {} cannot translate it: {}", short_path(shader.name), name,
-                      done.text.substr(0, done.text.find('\n')));
+                      done.output.substr(0, done.output.find('\n')));
     return read_file(text);
 }
 

@@ -1,9 +1,10 @@
 // Runs an export's WGSL in a browser without a window.
 #include "core/error.h"
 #include "core/files.h"
+#include "core/run_program.h"
 #include "core/temporary_folder.h"
 #include "export/answers.h"
-#include "export/run_program.h"
+#include "export/wgsl.h"
 
 #include <nlohmann/json.hpp>
 
@@ -25,10 +26,11 @@ WgslVerdicts verify_wgsl_export(const fs::path& folder)
     const TemporaryFolder answers("ssrlab_answers");
     WgslVerdicts          found;
     for_each_frame(folder, [](const fs::path& file) { json::parse(read_file(file)).at("resources").at("rays"); });
-    const ProgramOutput done = run_program(
-        {"node", (web_folder() / "verify.mjs").string(), fs::absolute(folder).string(), answers.path.string()});
+    const ProgramEnd done = run_program(
+        {"node", (web_folder() / "verify.mjs").string(), fs::absolute(folder).string(), answers.path.string()},
+        ProgramOutput::kept);
     if (done.code == program_is_missing) throw_failure("node is not installed: install Debian's package nodejs");
-    if (done.code != 0) throw_failure("{}: {}", folder.string(), done.text.substr(0, done.text.find('\n')));
+    if (done.code != 0) throw_failure("{}: {}", folder.string(), done.output.substr(0, done.output.find('\n')));
     found.device = read_file(answers.path / "device.txt");
     for_each_frame(folder, [&](const fs::path& file) {
         const json        frame = json::parse(read_file(file));

@@ -1,5 +1,6 @@
 #include "export/wgsl.h"
 
+#include "core/files.h"
 #include "export/glsl_text.h"
 
 #include <fmt/format.h>
@@ -163,5 +164,7 @@ std::string with_read_access(std::string wgsl, const std::string& glsl, const Sh
     }
     return wgsl;
 }
+
+std::filesystem::path web_folder() { return data_root() / "experiments/web"; }
 
 } // namespace ssrlab

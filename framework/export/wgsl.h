@@ -3,6 +3,7 @@
 
 #include "gpu/shader.h"
 
+#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -15,5 +16,8 @@ std::string glsl_for_wgsl(const std::string& glsl, const std::function<std::stri
 
 /// WGSL in which the buffers that the GLSL only reads are `read`: the translator declares all of them `read_write`.
 std::string with_read_access(std::string wgsl, const std::string& glsl, const Shader& shader);
+
+/// The scripts for WGSL, and where npm puts the packages that they need.
+std::filesystem::path web_folder();
 
 } // namespace ssrlab
