@@ -7,6 +7,7 @@ layout(set = 0, binding = 60, r32f) uniform readonly image2D dielectric_image;  
 
 layout(constant_id = CONSTANT_DIELECTRIC_MIN_F0) const float dielectric_min_f0 = 0.0;
 layout(constant_id = CONSTANT_DIELECTRIC_MAX_ROUGHNESS) const float dielectric_max_roughness = 0.0;
+#include "rays/material_reflects.glsl"
 
 bool is_surface(float depth, vec3 normal)
 {
@@ -18,11 +19,10 @@ bool has_surface(ivec2 pixel)
     return is_surface(load_depth(pixel), imageLoad(normal_image, pixel).xyz);
 }
 
-// core/trace_image.h compares the same floats.
 bool material_reflects(ivec2 pixel)
 {
-    return imageLoad(material_image, pixel).a > 0.0 || (imageLoad(dielectric_image, pixel).x >= dielectric_min_f0 &&
-                                                        imageLoad(normal_image, pixel).w <= dielectric_max_roughness);
+    return MATERIAL_REFLECTS(imageLoad(material_image, pixel).a, imageLoad(dielectric_image, pixel).x,
+                             imageLoad(normal_image, pixel).w);
 }
 
 bool reflects(ivec2 pixel)

@@ -22,6 +22,7 @@ layout(push_constant, scalar) uniform Push
     float dielectric_min_f0, dielectric_max_roughness; // of what reflects
     uint  follows;
 };
+#include "rays/material_reflects.glsl"
 
 const float start_share = 1e-4; // of a ray's length: what the next ray meets nearer is the surface that it leaves
 const float far_m       = 1e30;
@@ -54,11 +55,6 @@ vec3 normal_of(WorldMaterial material, TrianglePoint point, vec3 direction_ws, o
     return side * normal;
 }
 
-bool reflects(float metallic, float dielectric_f0, float roughness)
-{
-    return metallic > 0.0 || (dielectric_f0 >= dielectric_min_f0 && roughness <= dielectric_max_roughness);
-}
-
 vec3 light_of(WorldRay ray, WorldHit hit, out NextRay onward)
 {
     vec3          weights  = vec3(1.0 - hit.barycentric.x - hit.barycentric.y, hit.barycentric);
@@ -80,7 +76,7 @@ vec3 light_of(WorldRay ray, WorldHit hit, out NextRay onward)
 
     vec3 mirrored = reflect(along, normal);
     onward = NextRay(ray, vec3(0));
-    if (follows == 0 || !reflects(metallic, material.dielectric_f0, roughness) || !(dot(mirrored, front) > 0.0))
+    if (follows == 0 || !MATERIAL_REFLECTS(metallic, material.dielectric_f0, roughness) || !(dot(mirrored, front) > 0.0))
         return below + stand_in + emissive + highlights;
     vec3 largest  = abs(met_ws);
     onward.ray    = WorldRay(met_ws, max(start_share * hit.t, 4e-6 * max(largest.x, max(largest.y, largest.z))), mirrored, far_m, blurred);
