@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "scene/prefiltered_environment.h"
+#include "world/materials.h"
 
 #include <glm/gtc/packing.hpp>
 
@@ -10,49 +11,6 @@
 
 namespace ssrlab {
 namespace {
-
-/// shaders/gbuffer/scene_types.glsl, struct Material, scalar layout.
-struct MaterialBlock {
-    glm::vec4  base_colour;
-    glm::vec3  emissive;
-    float      metallic;
-    float      roughness;
-    float      dielectric_f0;
-    float      normal_scale;
-    float      alpha_cutoff;
-    int32_t    double_sided;
-    glm::ivec4 uv_set;
-    glm::mat3  uv_transform[4];
-};
-static_assert(sizeof(MaterialBlock) == 212);
-
-constexpr uint32_t textures_per_material = 4;
-
-std::array<const TextureUse*, textures_per_material> texture_uses(const Material& material)
-{
-    return {&material.base_colour_texture, &material.metallic_roughness_texture, &material.normal_texture,
-            &material.emissive_texture};
-}
-
-MaterialBlock to_block(const Material& material)
-{
-    MaterialBlock block{material.base_colour,
-                        material.emissive,
-                        material.metallic,
-                        material.roughness,
-                        material.dielectric_f0,
-                        material.normal_scale,
-                        material.alpha_mask ? material.alpha_cutoff : -1.0F,
-                        material.double_sided,
-                        {},
-                        {}};
-    const auto    uses = texture_uses(material);
-    for (int i = 0; i < static_cast<int>(uses.size()); ++i) {
-        block.uv_set[i]       = uses[static_cast<size_t>(i)]->uv_set;
-        block.uv_transform[i] = uses[static_cast<size_t>(i)]->uv_transform;
-    }
-    return block;
-}
 
 vk::SamplerAddressMode address_mode(Wrap wrap)
 {
@@ -178,12 +136,10 @@ void make_material_sets(Gpu& gpu, GpuScene& scene, const Scene& source)
 
 GpuScenePtr upload_scene(Gpu& gpu, const Scene& source)
 {
-    auto scene      = std::make_shared<GpuScene>();
-    scene->vertices = make_buffer_with<Vertex>(gpu, source.vertices);
-    scene->indices  = make_buffer_with<uint32_t>(gpu, source.indices);
-    std::vector<MaterialBlock> blocks;
-    for (const Material& material : source.materials) blocks.push_back(to_block(material));
-    scene->materials = make_buffer_with<MaterialBlock>(gpu, blocks);
+    auto scene       = std::make_shared<GpuScene>();
+    scene->vertices  = make_buffer_with<Vertex>(gpu, source.vertices);
+    scene->indices   = make_buffer_with<uint32_t>(gpu, source.indices);
+    scene->materials = upload_materials(gpu, source.materials);
     for (const Texture& texture : source.textures) {
         scene->textures.push_back(upload_texture(gpu, texture));
         scene->samplers.push_back(make_sampler(gpu, texture));

@@ -1,54 +1,18 @@
 #include "world/world.h"
 
 #include "shared.h"
+#include "world/materials.h"
 
 #include <algorithm>
 
 namespace ssrlab {
 namespace {
 
-/// shaders/world/materials.glsl, scalar layout.
-struct MaterialBlock {
-    glm::vec4  base_colour;
-    glm::vec3  emissive;
-    float      metallic;
-    float      roughness;
-    float      dielectric_f0;
-    float      alpha_cutoff;
-    float      normal_scale;
-    glm::ivec4 texture; // base colour, metallic-roughness, normal, emissive; -1: none
-    glm::ivec4 uv_set;
-    glm::mat3  uv_transform[4];
-};
-static_assert(sizeof(MaterialBlock) == 224);
-
 struct TextureBlock {
     glm::ivec2 size_px;
     uint32_t   first; // texel
     uint32_t   flags; // wrap u, wrap v: two bits each; nearest; sRGB
 };
-
-MaterialBlock to_block(const Material& material)
-{
-    MaterialBlock     block{material.base_colour,
-                        material.emissive,
-                        material.metallic,
-                        material.roughness,
-                        material.dielectric_f0,
-                        material.alpha_mask ? material.alpha_cutoff : -1.0F,
-                        material.normal_scale,
-                        glm::ivec4(-1),
-                        {},
-                        {}};
-    const TextureUse* uses[] = {&material.base_colour_texture, &material.metallic_roughness_texture,
-                                &material.normal_texture, &material.emissive_texture};
-    for (int i = 0; i < 4; ++i) {
-        block.texture[i]      = uses[i]->texture;
-        block.uv_set[i]       = uses[i]->uv_set;
-        block.uv_transform[i] = uses[i]->uv_transform;
-    }
-    return block;
-}
 
 void upload_textures(Gpu& gpu, const Scene& scene, World& world)
 {
@@ -101,19 +65,17 @@ Bindings material_bindings(const World& world)
 
 WorldPtr upload_world(Gpu& gpu, const Scene& scene)
 {
-    auto world       = std::make_shared<World>();
-    world->tree      = build_triangle_tree(scene);
-    world->nodes     = make_texels(gpu, world->tree.nodes);
-    world->triangles = make_texels(gpu, world->tree.triangles);
-    world->vertices  = make_buffer_with<Vertex>(gpu, scene.vertices);
-    world->indices   = make_buffer_with<uint32_t>(gpu, scene.indices);
-    std::vector<MaterialBlock> blocks;
-    for (const Material& material : scene.materials) blocks.push_back(to_block(material));
+    auto world         = std::make_shared<World>();
+    world->tree        = build_triangle_tree(scene);
+    world->nodes       = make_texels(gpu, world->tree.nodes);
+    world->triangles   = make_texels(gpu, world->tree.triangles);
+    world->vertices    = make_buffer_with<Vertex>(gpu, scene.vertices);
+    world->indices     = make_buffer_with<uint32_t>(gpu, scene.indices);
     world->alpha_masks = std::ranges::any_of(scene.materials, &Material::alpha_mask);
-    world->materials   = make_buffer_with<MaterialBlock>(gpu, blocks);
+    world->materials   = upload_materials(gpu, scene.materials);
     world->bytes = world->tree.nodes.size() * sizeof(TreeNode) + world->tree.triangles.size() * sizeof(TreeTriangle) +
                    scene.vertices.size() * sizeof(Vertex) + scene.indices.size() * sizeof(uint32_t) +
-                   blocks.size() * sizeof(MaterialBlock);
+                   world->materials.bytes;
     upload_textures(gpu, scene, *world);
     return world;
 }

@@ -1,5 +1,7 @@
 // What a triangle is made of at one point: vertices interpolated, textures at their finest level
 // (framework/world/world.cpp fills the buffers).
+#include "layout/material.glsl"
+
 struct Vertex
 {
     vec3 position_ws;
@@ -8,20 +10,6 @@ struct Vertex
     vec2 uv0, uv1;
     vec4 colour;
     vec3 bounced; // radiance of a white diffuse surface
-};
-
-struct WorldMaterial
-{
-    vec4  base_colour;
-    vec3  emissive;
-    float metallic;
-    float roughness;
-    float dielectric_f0;
-    float alpha_cutoff; // < 0: no alpha mask
-    float normal_scale;
-    ivec4 texture_index; // base colour, metallic-roughness, normal, emissive; -1: none
-    ivec4 uv_set;
-    mat3  uv_transform[4];
 };
 
 struct WorldTexture
@@ -33,7 +21,7 @@ struct WorldTexture
 
 layout(set = 0, binding = 42, scalar) readonly buffer Vertices { Vertex vertices[]; };
 layout(set = 0, binding = 43, scalar) readonly buffer Indices { uint indices[]; };
-layout(set = 0, binding = 44, scalar) readonly buffer Materials { WorldMaterial materials[]; };
+layout(set = 0, binding = 44, scalar) readonly buffer Materials { Material materials[]; };
 layout(set = 0, binding = 45, scalar) readonly buffer Textures { WorldTexture textures[]; };
 layout(set = 0, binding = 46, scalar) readonly buffer Texels { uint texels[]; };
 
@@ -79,7 +67,7 @@ vec4 texel_of(WorldTexture image, ivec2 at)
 }
 
 // use: 0 base colour, 1 metallic-roughness, 2 normal, 3 emissive. White where there is no texture.
-vec4 sample_texture(WorldMaterial material, int use, TrianglePoint point)
+vec4 sample_texture(Material material, int use, TrianglePoint point)
 {
     if (material.texture_index[use] < 0) return vec4(1);
     WorldTexture image = textures[material.texture_index[use]];
@@ -94,7 +82,7 @@ vec4 sample_texture(WorldMaterial material, int use, TrianglePoint point)
                mix(texel_of(image, at + ivec2(0, 1)), texel_of(image, at + ivec2(1, 1)), part.x), part.y);
 }
 
-vec4 base_colour_at(WorldMaterial material, TrianglePoint point)
+vec4 base_colour_at(Material material, TrianglePoint point)
 {
     vec4 colour = vec4(0);
     for (int i = 0; i < 3; ++i) colour += point.weights[i] * corner_of(point, i).colour;

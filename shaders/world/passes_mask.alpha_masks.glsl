@@ -6,7 +6,7 @@
 bool passes_mask(uint first_index, uint material, vec2 barycentric)
 {
     if ((material & MASKED_BIT) == 0) return true;
-    WorldMaterial masked = materials[material & ~MASKED_BIT];
+    Material masked = materials[material & ~MASKED_BIT];
     vec3 weights = vec3(1.0 - barycentric.x - barycentric.y, barycentric);
     return base_colour_at(masked, TrianglePoint(first_index, weights)).a >= masked.alpha_cutoff;
 }

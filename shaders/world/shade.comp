@@ -30,7 +30,7 @@ const float far_m       = 1e30;
 #define MASKED_BIT 0x80000000u
 
 // On the side that the ray sees, as `front`, which is the triangle's own.
-vec3 normal_of(WorldMaterial material, TrianglePoint point, vec3 direction_ws, out vec3 front)
+vec3 normal_of(Material material, TrianglePoint point, vec3 direction_ws, out vec3 front)
 {
     vec3 normal = vec3(0);
     vec4 tangent = vec4(0);
@@ -59,7 +59,7 @@ vec3 light_of(WorldRay ray, WorldHit hit, out NextRay onward)
 {
     vec3          weights  = vec3(1.0 - hit.barycentric.x - hit.barycentric.y, hit.barycentric);
     TrianglePoint point    = TrianglePoint(triangles[hit.triangle * 3 + 1].w, weights);
-    WorldMaterial material = materials[triangles[hit.triangle * 3 + 2].w & ~MASKED_BIT];
+    Material      material = materials[triangles[hit.triangle * 3 + 2].w & ~MASKED_BIT];
     vec3 base  = base_colour_at(material, point).rgb;
     vec4 gloss = sample_texture(material, 1, point);
     float metallic  = clamp(material.metallic * gloss.b, 0.0, 1.0);
