@@ -1,5 +1,6 @@
 #include "harness/choose_technique.h"
 
+#include "compare/differing_rays.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "core/printable.h"
@@ -32,18 +33,6 @@ std::vector<const Technique*> exact_techniques(const Catalogue& catalogue, const
                      fmt::join(pairs, ", "));
 }
 
-size_t differing_rays(const TraceImage& a, const TraceImage& b)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < a.status.size(); ++i) {
-        const bool same_place =
-            !has_place(a.status[i]) ||
-            (a.hit_pixel[i] == b.hit_pixel[i] && a.hit_t[i] == b.hit_t[i] && a.hit_layer[i] == b.hit_layer[i]);
-        count += a.status[i] != b.status[i] || !same_place;
-    }
-    return count;
-}
-
 struct Candidate {
     std::string         id;
     TracerPtr           tracer;
@@ -65,7 +54,7 @@ std::vector<Candidate> comparable(Stage& stage, const std::vector<AskedTechnique
             measured.rays          = hits.traced_order.size();
             if (candidates.empty())
                 first = std::move(hits);
-            else if (const size_t wrong = differing_rays(first, hits); wrong > 0) {
+            else if (const size_t wrong = count_differing_rays(first, hits); wrong > 0) {
                 measured.left_out[id] =
                     fmt::format("{} of {} rays differ from those of {}", wrong, measured.rays, candidates[0].id);
                 continue;

@@ -1,5 +1,6 @@
 #include "benchmarks/bench.h"
 #include "benchmarks/visits_bound.h"
+#include "compare/differing_rays.h"
 #include "compare/measures.h"
 #include "core/files.h"
 #include "harness/quality.h"
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <numeric>
 
 namespace ssrlab {
@@ -16,17 +18,6 @@ size_t count_traced(const TraceImage& result)
 {
     return static_cast<size_t>(
         std::ranges::count_if(result.status, [](TraceStatus s) { return s != TraceStatus::not_traced; }));
-}
-
-size_t count_different(const TraceImage& a, const TraceImage& b, bool compare_t)
-{
-    size_t different = 0;
-    for (size_t i = 0; i < a.status.size(); ++i) {
-        const bool hit = a.status[i] == TraceStatus::hit;
-        different += a.status[i] != b.status[i] ||
-                     (hit && (a.hit_pixel[i] != b.hit_pixel[i] || (compare_t && a.hit_t[i] != b.hit_t[i])));
-    }
-    return different;
 }
 
 } // namespace
@@ -39,14 +30,15 @@ void Bench::judge(benchmark::State& state, const std::string& scene, glm::ivec2 
     const double     rays   = static_cast<double>(count_traced(result));
     for (auto _ : state) state.SetIterationTime(1e-9);
     state.counters["rays"]              = rays;
-    state.counters["differs_from_walk"] = static_cast<double>(count_different(result, walk, true));
+    state.counters["differs_from_walk"] = static_cast<double>(count_differing_rays(result, walk));
     if (size_px.x > largest_judged_px) return;
+    constexpr double   any_t   = std::numeric_limits<double>::infinity();
     const GBufferImage gbuffer = read_gbuffer(gpu_, *w.gbuffer);
     const TraceImage   truth =
         cached_screen_truth(truth_cache_dir(data_root() / "results/bench"), gbuffer, bench_settings.trace);
     const MeasureValues measures = compare_to_screen_truth(result, truth);
     state.counters["differs_from_truth"] =
-        static_cast<double>(count_different(result, truth, false)) / std::max(rays, 1.0);
+        static_cast<double>(count_differing_rays(result, truth, any_t)) / std::max(rays, 1.0);
     state.counters["missed"] = measures.at("screen_missed").value_or(0) * rays;
     state.counters["visits_per_ray"] =
         std::accumulate(result.steps.begin(), result.steps.end(), 0.0) / std::max(rays, 1.0);

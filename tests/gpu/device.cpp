@@ -1,5 +1,6 @@
 #include "gpu/device.h"
 
+#include "compare/differing_rays.h"
 #include "core/error.h"
 #include "core/pixel_index.h"
 #include "frame/frame_inputs.h"
@@ -146,12 +147,7 @@ size_t count_differences(const TraceImage& a, const TraceImage& b, double t_tole
 {
     size_t differences = 0;
     for (size_t i = 0; i < a.status.size(); ++i) {
-        const bool both_end = has_place(a.status[i]) && has_place(b.status[i]);
-        if (a.status[i] == b.status[i] &&
-            (!both_end || (a.hit_pixel[i] == b.hit_pixel[i] && a.hit_layer[i] == b.hit_layer[i] &&
-                           std::abs(a.hit_t[i] - b.hit_t[i]) <= t_tolerance)))
-            continue;
-        if (differences++ > 0) continue;
+        if (!differs_at(a, b, i, t_tolerance) || differences++ > 0) continue;
         first = fmt::format(
             "ray of pixel ({}, {}): status {} against {}, pixel ({}, {}) against ({}, {}), t {} against {}",
             pixel_at(i, a.size_px).x, pixel_at(i, a.size_px).y, trace_status_names[static_cast<size_t>(a.status[i])],
