@@ -73,9 +73,8 @@ std::optional<glm::dvec3> best_place(const Occupancy& grid, std::span<const glm:
     return best;
 }
 
-std::vector<glm::dvec3> placed_by_rays(SourceContext& context, std::span<const OpenRay> rays, size_t count)
+std::vector<glm::dvec3> placed_by_rays(const Occupancy& grid, std::span<const OpenRay> rays, size_t count)
 {
-    const Occupancy&        grid    = occupancy_of(context.stage);
     std::vector<Target>     targets = targets_of(grid, rays);
     std::vector<glm::dvec3> eyes_ws;
     if (targets.empty()) return eyes_ws;
@@ -114,12 +113,11 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
 {
     SourceTurn turn;
     for (const OpenRay& ray : rays) turn.answers.push_back({.kind = AnswerKind::open, .clear_m = ray.clear_m});
+    const auto                    count = static_cast<size_t>(context.parameters.at("count"));
+    const Occupancy*              grid  = context.parameters.at("place") == 0 ? &occupancy_of(context.stage) : nullptr;
     const Stopwatch               placing;
-    const auto                    count   = static_cast<size_t>(context.parameters.at("count"));
-    const bool                    by_rays = context.parameters.at("place") == 0;
-    const std::vector<glm::dvec3> eyes =
-        by_rays ? placed_by_rays(context, rays, count) : placed_by_scene(context, count);
-    turn.merge_ms = 1000 * placing.seconds();
+    const std::vector<glm::dvec3> eyes = grid ? placed_by_rays(*grid, rays, count) : placed_by_scene(context, count);
+    turn.merge_ms                      = 1000 * placing.seconds();
     for (const glm::dvec3& eye_ws : eyes) {
         CubeOfFrames cube{moved_to(context.image.view, eye_ws), static_cast<int>(context.parameters.at("size_px"))};
         ask_elsewhere(context, rays, turn.answers,
