@@ -15,14 +15,14 @@ namespace ssrlab {
 enum class Fault : uint8_t {
     right        = 0,
     near_tie     = 1, // another answer, and rounding could decide every comparison that tells the two apart
-    impossible   = 2, // no answer at all: an unknown status, a hit off the image, in the start pixel or off its pixel
+    impossible   = 2, // not a valid answer: an unknown status, a hit off the image, in the start pixel or off its pixel
     unanswered   = 3, // the pixel reflects, and the file says that it was not traced
     out_of_steps = 4,
     missed       = 5, // no hit where the ray hits
     false_hit    = 6, // a hit where the ray hits nothing
     too_early    = 7, // a hit before the right one
     too_late     = 8, // a hit behind the right one
-    other_end    = 9, // no hit, as is right, with another status
+    other_end    = 9, // rightly no hit, but with another status
 };
 inline constexpr std::array<std::string_view, 10> fault_names = {"right",        "near_tie", "impossible", "unanswered",
                                                                  "out_of_steps", "missed",   "false_hit",  "too_early",
@@ -47,8 +47,8 @@ struct FrameJudgement {
     size_t wrong() const { return rays - of(Fault::right) - of(Fault::near_tie); }
 };
 
-/// The G-buffer must have gradients if the surface needs them. Throws SpecError for a surface model without a screen
-/// truth, and for `layers` above 1, which a frame file does not hold.
+/// Judges every ray. The G-buffer must have gradients if the surface needs them. Throws SpecError for a surface model
+/// without a screen truth, and for `layers` above 1, which a frame file does not hold.
 FrameJudgement judge_frame(const GBufferImage& gbuffer, const TraceSettings& settings, const HitsFile& hits);
 
 } // namespace ssrlab

@@ -5,7 +5,7 @@
 
 namespace ssrlab {
 
-/// A ray that ends on its own object at a smaller angle above its tangent plane hits itself.
+/// Sine of an angle: a ray that ends on its own object at less above its tangent plane hits itself.
 inline constexpr double self_hit_sine = 0.01;
 
 /// A ray is wrong if it misses a visible true point by more than 1 px, or hits where no visible point is (a hidden one

@@ -9,6 +9,7 @@ namespace ssrlab {
 /// or t by more than `t_tolerance`.
 bool differs_at(const TraceImage& a, const TraceImage& b, size_t ray, double t_tolerance = 0);
 
+/// Returns the number of such rays.
 size_t count_differing_rays(const TraceImage& a, const TraceImage& b, double t_tolerance = 0);
 
 } // namespace ssrlab

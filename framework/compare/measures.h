@@ -70,7 +70,7 @@ MeasureValues split_error(const TraceImage& float_result, const TraceImage* doub
                           const TraceImage* screen_truth, const SceneTruth* scene_truth);
 
 /// A reference picture, prepared to judge many pictures. Throws Failure unless it has three channels. `halves`: two
-/// pictures that err independently and whose mean it is; empty if it has no noise.
+/// pictures with independent noise, whose mean it is; empty if it has no noise.
 struct Reference {
     explicit Reference(const Image& linear_radiance, std::span<const Image> halves = {});
 
@@ -80,7 +80,8 @@ struct Reference {
     std::vector<float> noise; // of each pixel: expected square of the error of `display`, sum over channels; or empty
 };
 
-/// Compares linear reflections: "reflective" over traced pixels, "visible" over those with a visible point.
+/// Returns the measures of linear reflections: "reflective" over traced pixels, "visible" over those with a visible
+/// point.
 MeasureValues compare_images(const Image& tested, const Reference& reference, const SceneTruth& scene_truth);
 
 /// Returns the measures that begin with "picture_": a finished picture against the one with the true reflection.
@@ -93,8 +94,8 @@ Image flip_of_picture(const Image& tested, const Reference& reference, const Sce
 /// Returns disocclusion_share and reprojection_unknown_share.
 MeasureValues count_disocclusions(const ReprojectionTruth& truth);
 
-/// Returns the measures that begin with "surface_motion_error". Here and below, `found_px` holds for each pixel the
-/// displacement, without jitter, to where its reflection is said to have been; NaN if unknown.
+/// Returns the measures that begin with "surface_motion_error". `found_px`, here and below: for each pixel,
+/// the displacement without jitter to where its reflection was, as a reprojection found it; NaN if unknown.
 MeasureValues compare_surface_motion(std::span<const glm::vec2> found_px, const ReprojectionTruth& truth,
                                      const TraceImage& traced, const SceneTruth& scene_truth);
 
@@ -112,7 +113,7 @@ MeasureValues compare_ghosts(const Image& tested, const Reference& reference, co
 /// Returns converged_rmse of a finished picture.
 MeasureValues compare_converged(const Image& tested, const Reference& converged, const SceneTruth& scene_truth);
 
-/// Where each ray hit, without jitter: kept of a frame to compare the next one with it.
+/// Where each ray of a frame hit, without jitter: kept to compare the next frame with it.
 struct HitPlaces {
     std::vector<glm::vec2> px; // NaN: traced, without hit; infinite: not traced
 };

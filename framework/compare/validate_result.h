@@ -30,7 +30,7 @@ struct InvalidResult : Failure {
 /// Returns how many rays have an impossible answer, and the first of them; nullopt if none has.
 std::optional<std::string> find_impossible(const TraceImage& result, double most_steps);
 
-/// Throws InvalidResult with what find_impossible() says. Without a bound: checks what indexing needs.
+/// Throws InvalidResult with the text of find_impossible(), if any. Without a bound, checks only what indexing needs.
 void require_possible(const TraceImage& result, double most_steps = std::numeric_limits<double>::infinity());
 
 } // namespace ssrlab

@@ -21,8 +21,8 @@ enum class TraceStatus : uint8_t {
     past_max_distance = 3, // reached the maximum distance (or infinity) inside the image
     out_of_steps      = 4, // gave up; never a hit
     facing_away       = 5, // would be a miss, and met something from behind (behind = pass)
-    stopped    = 6, // met something from behind, which this frame does not show from there (behind = stop); no hit
-    impossible = 7, // not an answer: an unknown status, or a hit off the image (compare/validate_result.h)
+    stopped           = 6, // no hit: met something from a side that this frame does not show (behind = stop)
+    impossible        = 7, // not an answer: an unknown status, or a hit off the image (compare/validate_result.h)
 };
 /// Whether a ray with this status has a pixel and a point.
 inline bool has_place(TraceStatus status) { return status == TraceStatus::hit || status == TraceStatus::stopped; }
@@ -48,7 +48,7 @@ struct TraceImage {
     glm::ivec2               size_px{0, 0};
     std::vector<TraceStatus> status;
     std::vector<glm::ivec2>  hit_pixel;    // the pixel that was met; undefined unless hit or stopped
-    std::vector<uint8_t>     hit_layer;    // of it, in which layer; 0: the first
+    std::vector<uint8_t>     hit_layer;    // the layer of that pixel; 0: the first
     std::vector<glm::dvec3>  hit_px_depth; // x, y in pixels, depth; on the ray, inside hit_pixel; undefined likewise
     std::vector<double>
         hit_t; // 0 at the reflecting pixel, 1 at the end of the clipped screen segment; undefined likewise
@@ -94,11 +94,11 @@ struct TraceSettings {
     double      thickness_m        = 0.1;   // the slab of a pixel reaches from its distance to distance + thickness
     bool        thickness_relative = false; // thickness is then a fraction of the distance
     double      max_distance_m     = 1e9;   // length of the ray in view space; may be +inf
-    double      ray_offset_m       = 0;     // the ray starts so far along its direction
+    double      ray_offset_m       = 0;     // the ray starts this many metres along its direction
     Behind      behind             = Behind::stop;
     std::string surface = "plane_solid"; // id of the surface model: what a pixel holds around its depth sample
-    int         layers  = 1;             // that a pixel holds, at most: the first, and those behind it
-    // Metals reflect. So does what is not metal and reflects at least so much at normal incidence, up to a roughness.
+    int         layers  = 1;             // that a pixel holds at most, the first included
+    // Metals reflect, and other materials of at least this reflectance at normal incidence and at most this roughness.
     double dielectric_min_f0        = 0.02;
     double dielectric_max_roughness = 0.4;
 

@@ -34,10 +34,10 @@ struct FrameTimes {
     double total_ms() const;
 };
 
-/// The light that a ray brings back, where something else than the frame answered it (sources/).
+/// The light that comes back along a ray that something other than the frame answered (sources/).
 struct RayLight {
     glm::vec3 light{0};        // linear radiance; undefined without a distance
-    float     distance_m = -1; // from the reflecting point on; +inf: it meets nothing; below 0: the frame answers
+    float     distance_m = -1; // from the reflecting point; +inf: it meets nothing; below 0: the frame answers
 };
 
 /// What a frame's own rays found, one entry per ray, pixel after pixel.
@@ -47,7 +47,7 @@ struct FrameRays {
     int                     per_pixel = 1; // rays of a pixel follow each other
 };
 
-/// Who answers a frame's rays: the frame alone, or others, too, between trace_frame() and shade_frame().
+/// Who answers a frame's rays: the frame alone, or also others, between trace_frame() and shade_frame().
 enum class Answers : uint8_t { own, given };
 
 /// What a pass moves at the least in one frame, if caches are ideal: each of its pixels or rays reads one item of every

@@ -28,6 +28,7 @@ struct FrameHistory {
     Buffer   counts; // HistoryCounts
 };
 
-/// Returns why the history is not of the frame before; empty if it is. `motion`: since that frame, if there was one.
+/// Returns why the history is not that of the frame before; empty if it is. `motion`: since the frame before; empty if
+/// there was none.
 std::string history_mismatch(const FrameHistory& history, glm::ivec2 size_px, const std::optional<FrameMotion>& motion);
 } // namespace ssrlab

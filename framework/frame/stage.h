@@ -16,7 +16,7 @@ struct Stage {
     GpuScenePtr                      uploaded; // null for a frame file, which has no triangles
     View                             view;
     std::optional<FrameMotion>       motion;  // since the frame before
-    DrawingPtr                       drawing; // likewise
+    DrawingPtr                       drawing; // null for a frame file
     GBufferPtr                       gbuffer;
     std::shared_ptr<const World>     world;     // of `scene`; null until world_of() is asked
     std::shared_ptr<const Occupancy> occupancy; // likewise, occupancy_of()

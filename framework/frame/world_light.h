@@ -7,7 +7,7 @@
 
 namespace ssrlab {
 
-/// Where a surface reflects, its light is made of what it reflects, too: the next ray finds that.
+/// The mirror ray that goes on where a surface reflects, to find the light that the surface reflects.
 struct NextRay {
     WorldRay  ray;
     glm::vec3 weight{0}; // of the light that it finds; 0: there is no next ray
@@ -19,15 +19,15 @@ struct WorldLight {
     double                 ms = 0;
 };
 
-/// The pass that makes the light and the next ray of each ray of a list and its hit.
+/// Returns the pass that computes, from each ray of a list and its hit, the light that comes back and the next ray.
 ComputePass make_shade_pass(Gpu& gpu, const World& world, const GpuScene& scene, const SampledTable& dfg_table,
                             const WorldRayList& list, const Buffer& hits, const Buffer& light, const Buffer& next);
-/// `launch`: of the list.
+/// Records that pass. `launch`: that of the list. `trace` and `follows`: see shade_world().
 void record_shade(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const GpuScene& scene,
                   const TraceSettings& trace, bool follows, const Buffer& launch);
 
-/// `trace`: says which surfaces reflect. `follows`: false: none does, and metal's ambient light stands in for what it
-/// reflects.
+/// Runs the pass twice and returns its output with the milliseconds of the second run. `trace` says which surfaces
+/// reflect; with `follows` = false none does, and ambient light stands in for what metals reflect.
 WorldLight shade_world(Gpu& gpu, const World& world, const GpuScene& scene, const SampledTable& dfg_table,
                        const TraceSettings& trace, bool follows, std::span<const WorldRay> rays,
                        std::span<const WorldHit> hits);

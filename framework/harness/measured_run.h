@@ -14,7 +14,7 @@ struct MeasuredRun {
     const Run*                                 run = nullptr;
     LabPtr                                     lab;
     FramePlan                                  plan;
-    FramePtr                                   frame, unculled; // `unculled`: without skipping, or null
+    FramePtr                                   frame, unculled; // `unculled`: with no pass skipped, or null
     Record                                     row;
     std::vector<int>                           rounds; // one entry per timed frame, as in the lists below
     std::vector<double>                        trace_ms, frame_ms, cpu_ms, saved_ms;

@@ -11,14 +11,15 @@
 namespace ssrlab {
 
 struct ExrChannel {
-    std::string name; // in a file of several parts PART.CHANNEL, unless the channel's own name begins so
+    std::string name; // PART.CHANNEL in a file of several parts, unless the channel's own name begins with PART.
     int         part    = 0;
     int         index   = 0;
     bool        is_half = false;
     bool        is_uint = false;
 };
 
-/// The pixels that a part holds, from the picture's upper left corner; they may reach beyond it (overscan) or leave some of it empty.
+/// The pixels that a part holds, from the picture's upper left corner. They may extend beyond the picture (overscan),
+/// or cover only some of it.
 struct ExrWindow {
     glm::ivec2 from_px{0, 0}, size_px{0, 0};
 
@@ -40,10 +41,12 @@ struct ExrFile {
     double                             pixel_aspect = 1; // a pixel's width by its height
 };
 
-/// Reads the header. Throws SpecError if missing, Failure if damaged, deep, of several sizes, or without a pixel inside its picture.
+/// Reads the header. Throws SpecError if missing, Failure if damaged, deep, of several sizes, or without a pixel inside
+/// its picture.
 ExrFile open_exr(const std::filesystem::path& path);
 
-/// Reads the values of a channel for the whole picture, row by row from the top; 0 where the file has none. Throws Failure.
+/// Reads the values of a channel for the whole picture, row by row from the top; 0 where the file has none. Throws
+/// Failure.
 std::vector<float> read_channel(const ExrFile& file, const ExrChannel& channel);
 
 } // namespace ssrlab

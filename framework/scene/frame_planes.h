@@ -29,10 +29,10 @@ std::optional<FramePlane> find_plane(const FrameSource& source, const std::strin
 /// The same; throws SpecError if there is none. `otherwise` says where else it could be stated.
 FramePlane need_plane(const FrameSource& source, const std::string& quantity, const char* otherwise = "");
 
-/// What lacks a part of a surface is none: makes pixels outside the plane's window background.
+/// Makes the pixels outside the plane's window background, since a part of their surface is unknown.
 void clear_outside(FrameSource& source, const FramePlane& plane);
 
-/// Fills the normals in view space, of length 1. Depth must be there. Throws SpecError where they cannot be right.
+/// Fills the unit normals in view space. Needs depth. Throws SpecError for values that cannot be normals.
 void read_normals(FrameSource& source);
 
 /// Throws SpecError with file, channel, what was expected and what was found.

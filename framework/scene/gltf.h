@@ -48,7 +48,7 @@ struct Import {
     size_t                            triangles = 0;
     std::map<int, NodeTracks>         tracks;        // by node, of those that are animated
     std::map<int, std::vector<float>> first_weights; // by node, of those whose morph targets are animated: in frame 0
-    int                               frames = 1;    // until everything has come to rest
+    int                               frames = 1;    // until nothing moves any more
     size_t                            poses  = 0;    // that were baked
     std::set<std::string>             said;          // warnings are said once
 
@@ -64,10 +64,11 @@ void parse_file(Import& import, const std::filesystem::path& file);
 /// Returns the files of its buffers and images. Throws Failure if the JSON is broken or a URI leads elsewhere.
 std::vector<std::filesystem::path> files_named_by(const std::filesystem::path& file);
 
-/// The file's folder joined with a relative URI; throws Failure for absolute paths, schemes, and ways out of the folder.
+/// The file's folder joined with a relative URI; throws Failure for absolute paths, schemes, and ways out of the
+/// folder.
 std::filesystem::path resolve_uri(const std::filesystem::path& folder, const std::string& uri);
 
-/// An accessor as rows of `components` floats (normalised integers become -1..1 or 0..1). Bounds are checked.
+/// Returns an accessor as rows of `components` floats (normalised integers become -1..1 or 0..1). Checks bounds.
 std::vector<float>    read_floats(const Import& import, int accessor, int components, const std::string& where);
 std::vector<uint32_t> read_indices(const Import& import, int accessor, const std::string& where);
 int                   component_count(const Import& import, int accessor, const std::string& where);
@@ -82,31 +83,32 @@ struct SpecularGlossiness {
     float     glossiness = 1;
 };
 
-/// Base colour, metal, roughness and reflectance of the factors.
+/// Sets base colour, metallic, roughness and reflectance by the factors.
 void set_factors(Material& material, const SpecularGlossiness& factors);
 
-/// Textures of base colour, and of metal and roughness, with the factors; both as large as `gloss`. An empty `diffuse` is white.
+/// Returns the textures of base colour and of metallic-roughness, with the factors in them; both as large as `gloss`.
+/// An empty `diffuse` is white.
 std::pair<Texture, Texture> bake(const Texture& diffuse, const Texture& gloss, const SpecularGlossiness& factors);
 
 /// Fills Import::tracks and Import::frames; refuses keys that are not numbers in order.
 void read_animations(Import& import);
 
-/// Not unit length for a quaternion between cubic keys.
+/// Returns the value at a time. A quaternion between cubic keys is not of unit length.
 glm::dvec4 value_at(const Track& track, double time_s);
 
-/// A node's space to that of the node above it. Tracks stand for the properties that they animate.
+/// Returns the transform from a node's space to its parent's. Tracks replace the properties that they animate.
 glm::dmat4 local_matrix(const Import& import, int node, int frame);
 
-/// Null where the node does not have it.
+/// Returns the extension of that name; null if the node has none.
 const tinygltf::Value* extension_of(const tinygltf::Node& node, const char* name);
 
-/// By KHR_node_visibility; the nodes below it are hidden with it.
+/// Returns whether KHR_node_visibility hides the node; that hides the nodes below it, too.
 bool is_hidden(const tinygltf::Node& node);
 
-/// EXT_mesh_gpu_instancing: where each copy lies in the node's own space. One at its origin without the extension.
+/// Returns where each copy of EXT_mesh_gpu_instancing lies in the node's own space; one at its origin without it.
 std::vector<glm::dmat4> instances_of(const Import& import, int node);
 
-/// Mesh space to world space by a skin's joints, in every frame if anything moves them, else in one.
+/// Returns the transforms from mesh space to world space by a skin's joints: in every frame if they move, else in one.
 JointPoses joint_poses(Import& import, int skin);
 
 /// Throws Failure where a vertex follows a joint that the skin does not have.
@@ -115,26 +117,28 @@ void check_joints(const Import& import, const Mesh& mesh, size_t joint_count);
 /// Poses a mesh as in frame 0; later frames stay in its skin.
 void bend(Mesh& mesh, const JointPoses& joints);
 
-/// The accessor of a primitive's attribute, -1 if it has none.
+/// Returns the accessor of a primitive's attribute; -1 if it has none.
 int attribute(const tinygltf::Primitive& primitive, const char* name);
 
-/// Rows of an attribute, or nothing when it is absent; its count must be that of the positions.
+/// Returns the rows of an attribute, none if it is absent. Throws Failure unless there is one for each position.
 std::vector<float> rows_of(const Import& import, const tinygltf::Primitive& primitive, const char* name, int components,
                            size_t vertex_count, const std::string& where);
 
-/// Which joints vertices follow; nothing where the primitive does not say it. As many rows as `used`, which are vertices.
+/// Returns the joints that the vertices `used` follow, a row for each; none if the primitive does not name them.
 std::vector<Influences> read_influences(Import& import, const tinygltf::Primitive& primitive, size_t vertex_count,
                                         const std::vector<uint32_t>& used, const std::string& where);
 
-/// What each morph target of the node's mesh counts in frame 0: by an animation, the node, or the mesh; empty: nothing.
+/// Returns the weights of the morph targets of the node's mesh in frame 0: those of an animation, else of the node,
+/// else of the mesh; empty: none counts.
 std::vector<float> morph_weights(const Import& import, int node);
 
-/// Moves the rows of an attribute, of which the first three components count, by those of the primitive's targets (glTF 2.0, 3.7.2.2).
+/// Adds the primitive's morph targets, by their weights, to the first three components of an attribute's rows (glTF
+/// 2.0, 3.7.2.2).
 void add_morph_targets(const Import& import, const tinygltf::Primitive& primitive, const char* name, int components,
                        const std::vector<float>& weights, std::vector<float>& rows, const std::string& where);
 
-/// A mesh's primitives as Meshes in the mesh's own space, with these weights of their morph targets. Draws that cannot be shown are
-/// skipped with a warning.
+/// Returns a mesh's primitives in the mesh's own space, with their morph targets by these weights. Skips draws that
+/// cannot be shown, with a warning.
 std::vector<Mesh> read_mesh(Import& import, int mesh, const std::vector<float>& morph_weights,
                             const std::vector<bool>& material_left_out);
 

@@ -9,26 +9,26 @@
 
 namespace ssrlab::gltf {
 
-/// The array of that name; empty when there is none. Throws Failure where it is no array of objects, or too long.
+/// Returns the array of that name; empty if there is none. Throws Failure unless it holds objects, and not too many.
 const nlohmann::json& array_of(const Import& import, const nlohmann::json& object, const char* name);
 
-/// A whole number of an object; throws Failure where it is none.
+/// Returns a whole number of an object, `otherwise` without the key. Throws Failure for any other value.
 uint64_t count_of(const Import& import, const nlohmann::json& object, const char* key, const std::string& where,
                   uint64_t otherwise);
 
 /// Stands before the data of every data URI that can be read.
 inline constexpr std::string_view base64 = ";base64,";
 
-/// Indices without a buffer view are zeros, of which a sparse part replaces some. Gives them any view for as long as the parser works,
-/// and returns their accessors.
+/// Gives accessors of indices without a buffer view some view while the parser runs, and returns these accessors. Their
+/// indices are zeros, some replaced by sparse ones.
 std::vector<size_t> give_indices_a_view(const Import& import, nlohmann::json& root);
 
-/// Replaces the media types of data URIs by one that the parser knows; what the bytes are is told by themselves. Returns whether any
-/// changed.
+/// Replaces the media types of data URIs by one that the parser knows; the format is told by the bytes. Returns whether
+/// any changed.
 bool give_data_one_type(const Import& import, nlohmann::json& root);
 
-/// Gives buffers the size of their data or file where that is more than they say. Returns whether any changed; throws Failure where
-/// it is less, or where there is no such file.
+/// Gives buffers the size of their data or file where it is larger than stated. Returns whether any changed. Throws
+/// Failure where it is smaller, or the file is missing.
 bool give_buffers_their_size(const Import& import, nlohmann::json& root, const std::filesystem::path& folder);
 
 /// Throws SpecError for required extensions that are not supported; warns of others that are used.

@@ -28,9 +28,9 @@ RayInput to_input(const View& view, const OpenRay& ray, const SeenPart& part);
 double metres_before(const View& view, const OpenRay& ray, const SeenPart& part, glm::dvec3 at_px_depth,
                      double back_px);
 
-/// Makes `answer` the point where a ray met `pixel` of `met`: its place in the world, its light toward the camera, and whether
-/// it is certain. It is if the ray stayed in sight and the four pixels around the place show the same surface, which they do
-/// not at silhouettes and on things thinner than two pixels. Leaves clear_m as it is.
+/// Makes `answer` the point where a ray met `pixel` of `met`: its place in the world, its light toward the camera, and
+/// whether it is certain. It is if the ray stayed in sight and the four pixels around the place show the same surface,
+/// which they do not at silhouettes and on things thinner than two pixels. Leaves clear_m as it is.
 void set_point(RayAnswer& answer, const GBufferImage& met, glm::ivec2 pixel, glm::dvec3 at_px_depth, bool in_sight);
 
 /// Makes `answer` say that the ray meets nothing: its light is the environment's. Leaves clear_m as it is.
@@ -54,7 +54,7 @@ bool begins_in_sight(const SourceContext& context, RayStart start, const OpenRay
 /// Returns whether no ray may pass behind what the camera shows: then it was in sight up to where it ended.
 bool stays_in_sight(const SourceContext& context, const TraceSettings& settings);
 
-/// Returns the settings under which it is so, in one layer.
+/// Returns these settings changed so that stays_in_sight() is true, with one layer.
 TraceSettings in_sight_settings(const TraceSettings& settings);
 
 /// The results of tracing rays in a G-buffer, one entry per ray.

@@ -19,7 +19,7 @@
 
 namespace ssrlab {
 
-/// Of the numbers that a technique computes with; the double twin has float64.
+/// The numbers that a technique computes with; its double twin has float64.
 enum class NumberFormat { float32, float64 };
 
 struct GBuffer; // images of one view
@@ -60,7 +60,7 @@ TracerPtr make_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity, NumberFormat
 /// be right gets the status `impossible` (compare/validate_result.h says why).
 TraceImage trace_gbuffer(Gpu& gpu, Tracer& tracer);
 
-/// Return a tracer that counts no work, as a frame's. `capacity`: the largest list; without it, the reflecting pixels.
+/// Return a tracer that counts no work, as in a frame. `capacity`: the largest list; without it, the reflecting pixels.
 TracerPtr make_timed_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity);
 TracerPtr make_timed_tracer(Gpu& gpu, const LabPtr& lab);
 /// Builds the structures and traces the rays of the last trace_gbuffer() or trace_rays() again, `times` times in one

@@ -59,18 +59,19 @@ struct Session {
 
 std::unique_ptr<Session> open_session(const CommonOptions& common, const PictureOptions& picture);
 
-/// By name: technique, show, sources, split, exposure, a setting, or a parameter of the technique. Throws SpecError.
+/// Sets a value by its name: technique, show, sources, split, exposure, a setting, or a parameter of the technique.
+/// Throws SpecError.
 void set_value(Session& session, const std::string& name, const std::string& text);
-/// After a change of the camera.
+/// Makes everything stale after a change of the camera.
 void camera_changed(Session& session);
-/// Orbits turn about the surface in the middle of the picture.
+/// Lets orbits turn about the surface in the middle of the picture.
 void aim(Session& session);
 bool camera_is_free(const Session& session);
 
-/// Does the session ask sources, and are their answers those of this frame?
+/// Returns whether the session asks sources and has their answers for this frame.
 bool has_answers(const Session& session);
 
-/// Does the next piece of what is stale, or times another frame; false: nothing was left to do.
+/// Makes the next stale part anew, or times another frame. Returns false if nothing was left to do.
 bool work(Session& session);
 
 /// A measured number and what it is, for people and scripts.

@@ -9,22 +9,24 @@
 namespace ssrlab {
 
 struct Occupancy {
-    glm::dvec3           low_ws{0}; // of the grid, a little outside of the scene
-    glm::dvec3           cell_m{1};
-    glm::ivec3           cells{0}; // along each axis; 0: the scene has no triangles
-    std::vector<bool>    occupied; // x fastest, then y
+    glm::dvec3        low_ws{0}; // of the grid, a little outside of the scene
+    glm::dvec3        cell_m{1};
+    glm::ivec3        cells{0}; // along each axis; 0: the scene has no triangles
+    std::vector<bool> occupied; // x fastest, then y
 };
 
-/// `side` cells along each axis. Conservative: a cell is empty only if no triangle touches it.
+/// Returns the grid, with `side` cells along each axis. Conservative: a cell is empty only if no triangle touches it.
 Occupancy make_occupancy(const Scene& scene, int side = 512);
 
 /// Returns the middles of side³ equal parts of a box that lie in empty cells of the grid.
 std::vector<glm::dvec3> free_places(const Occupancy& grid, glm::dvec3 low_ws, glm::dvec3 high_ws, int side);
 
-/// May a ray meet geometry between two distances along a direction? Never false where it does. to_m may be +inf.
+/// Returns whether a ray may meet geometry between two distances along a direction: never false where it does. to_m may
+/// be +inf.
 bool may_meet(const Occupancy& grid, glm::dvec3 origin_ws, glm::dvec3 direction_ws, double from_m, double to_m);
 
-/// Where a ray first enters a cell that holds geometry, at or behind from_m; +inf: nowhere before to_m.
+/// Returns how far along the direction a ray first is in a cell that holds geometry, at least from_m; +inf: nowhere up
+/// to to_m.
 double first_occupied(const Occupancy& grid, glm::dvec3 origin_ws, glm::dvec3 direction_ws, double from_m, double to_m);
 
 } // namespace ssrlab

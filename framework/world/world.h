@@ -10,7 +10,7 @@
 
 namespace ssrlab {
 
-/// From t_min to t_max along the direction, which need not be of unit length. shaders/world/rays.glsl
+/// A ray from t_min to t_max along the direction, which need not be of unit length (shaders/world/rays.glsl).
 struct WorldRay {
     glm::vec3 origin_ws{0};
     float     t_min = 0;
@@ -39,8 +39,8 @@ using WorldPtr = std::shared_ptr<const World>;
 /// build_triangle_tree().
 WorldPtr upload_world(Gpu& gpu, const Scene& scene);
 
-/// The launch of a shader over a list, with RAYS_PER_GROUP of it to a workgroup, and the list's length. On the device,
-/// a buffer that shaders append by (shaders/world/append.glsl).
+/// The dispatch over a list, RAYS_PER_GROUP entries to a workgroup, and the list's length. Shaders that append to a
+/// list keep it up to date on the device (shaders/world/append.glsl).
 struct ListLaunch {
     glm::uvec3 groups{0, 0, 1};
     uint32_t   count = 0;
@@ -51,18 +51,19 @@ struct WorldRayList {
     Buffer rays, launch;
 };
 WorldRayList make_ray_list(Gpu& gpu, std::span<const WorldRay> rays);
-/// Makes an empty one with room for so many.
+/// Makes an empty list with room for `capacity` rays.
 WorldRayList make_ray_list(Gpu& gpu, size_t capacity);
-void         record_empty(const vk::raii::CommandBuffer& commands, const Buffer& launch);
+/// Records that a list becomes empty.
+void record_empty(const vk::raii::CommandBuffer& commands, const Buffer& launch);
 
-/// Of the distance from the eye to a ray's origin: what the ray meets nearer than this is the surface that it leaves, for
-/// the origin's depth is a rounded float.
+/// Share of the distance from the eye to a ray's origin. What a ray meets nearer than this is the surface that it
+/// leaves, because the origin's depth is a rounded float.
 inline constexpr double world_start_share = 1e-4;
 
-/// What shaders/world/materials.glsl reads, and the triangles.
+/// Returns the buffers that shaders/world/materials.glsl reads, and the triangles.
 Bindings material_bindings(const World& world);
 
-/// The pass that finds the first triangle of each ray of a list, to be dispatched by its launch.
+/// Returns the pass that finds the first triangle that each ray of a list meets. Dispatch it by the list's launch.
 ComputePass make_walk_pass(Gpu& gpu, const World& world, const WorldRayList& list, const Buffer& hits);
 
 struct WorldTrace {
@@ -71,7 +72,7 @@ struct WorldTrace {
     uint64_t              node_visits = 0; // of all rays
 };
 
-/// Walks the tree twice: once timed, once to count.
+/// Traces the rays; they are timed in one run and counted in another.
 WorldTrace trace_world(Gpu& gpu, const World& world, std::span<const WorldRay> rays);
 
 } // namespace ssrlab

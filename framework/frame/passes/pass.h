@@ -37,13 +37,13 @@ enum class Resource : uint8_t {
     light,        // lit colours of the G-buffer
     objects,      // which object each pixel shows, how it moved, and the plane of its depth
     layers,       // the layers behind the G-buffer
-    solids,       // where the solids end whose fronts it shows
+    solids,       // where the solids end that the G-buffer shows
     surroundings, // lights, shadow maps and environment of the scene
     tiles,        // that reflect
     rays,
     structures,
     hits,
-    answers,     // what rays bring back that the frame does not answer
+    answers,     // light of rays that the frame does not answer itself
     reprojected, // where each reflection was in the frame before
     small_colour,
     cones,
@@ -107,7 +107,7 @@ Pass picture_history_pass();
 std::span<const Pass> all_passes();
 /// Returns the parameters of the plan itself: what may run at all.
 std::vector<Parameter> plan_parameters();
-/// Returns these, then the parameters of all passes. Names are unique.
+/// Returns plan_parameters(), then the parameters of all passes. Names are unique.
 std::span<const Parameter> pass_parameters();
 ParameterValues            default_pass_values();
 

@@ -73,7 +73,7 @@ void record_copy(const vk::raii::CommandBuffer& commands, const GpuImage& source
 /// Returns a function that writes one value, given as bits, to every pixel of an RGBA16F, RGBA32F or R32UI image, and
 /// waits. It is a compute pass, because clear commands may run on graphics units, of which compute devices have few.
 RecordFunction make_fill(Gpu& gpu, const GpuImage& image, glm::uvec4 bits);
-/// Returns one that marks every pixel as one where no ray started.
+/// Returns a function that marks every pixel as one without a ray.
 RecordFunction make_reflection_fill(Gpu& gpu, const GpuImage& reflection);
 
 /// Returns one of the two lists (0 or 1) that all frames with the same number of rays share.
