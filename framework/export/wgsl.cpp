@@ -62,7 +62,8 @@ std::string functions_of(const std::string& array, int words, int held)
     for (int i = 0; i < words / held; ++i) {
         const std::string place = fmt::format("{}[{} * at + {}]", array, words / held, i);
         load += fmt::format("{}{}", i == 0 ? "" : ", ", place);
-        store += fmt::format(" {} = words.{};", place, std::string("xyzw").substr(static_cast<size_t>(i * held), held));
+        store += fmt::format(" {} = words.{};", place,
+                             std::string("xyzw").substr(static_cast<size_t>(i) * static_cast<size_t>(held), held));
     }
     return fmt::format("{0} {1}_load_{2}(int at) {{ return {0}({3}); }}\n"
                        "void {1}_store_{2}(int at, {0} words) {{{4} }}\n",
@@ -74,7 +75,7 @@ void redirect(std::string& text, const Block& block, const std::string& array, i
 {
     const bool        is_float = block.type == "float" || block.type.starts_with("vec");
     const bool        is_int   = block.type == "int" || block.type.starts_with("ivec");
-    const std::string suffix   = block.words > 1 ? std::to_string(block.words) : "";
+    const std::string to_words = block.words > 1 ? fmt::format("uvec{}", block.words) : "uint";
     for (size_t at = text.find(block.array + "["); at != std::string::npos; at = text.find(block.array + "[", at)) {
         if (at > 0 && is_in_name(text[at - 1])) {
             ++at;
@@ -87,7 +88,7 @@ void redirect(std::string& text, const Block& block, const std::string& array, i
         const size_t      end    = stores ? text.find(';', equals) : close + 1;
         std::string       value  = stores ? text.substr(equals + 2, end - equals - 2) : "";
         if (stores && is_float) value = fmt::format("floatBitsToUint({})", value);
-        if (stores && is_int) value = fmt::format("uint{}({})", suffix.empty() ? "" : "vec" + suffix, value);
+        if (stores && is_int) value = fmt::format("{}({})", to_words, value);
         std::string now;
         if (block.words == held)
             now = fmt::format("{}[{}]{}", array, index, stores ? " = " + value : "");

@@ -194,8 +194,9 @@ void record_fill(const vk::raii::CommandBuffer& commands, const Buffer& buffer, 
 
 GpuImage make_image(Gpu& gpu, const ImageOptions& options)
 {
-    using Usage      = vk::ImageUsageFlagBits;
-    const bool drawn = static_cast<bool>(options.usage & (Usage::eColorAttachment | Usage::eDepthStencilAttachment));
+    using ImageUsage = vk::ImageUsageFlagBits;
+    const bool drawn =
+        static_cast<bool>(options.usage & (ImageUsage::eColorAttachment | ImageUsage::eDepthStencilAttachment));
     const auto limit = static_cast<int>(drawn ? gpu.info.max_drawn_px : gpu.impl->limits.maxImageDimension2D);
     if (options.size_px.x < 1 || options.size_px.y < 1 || options.size_px.x > limit || options.size_px.y > limit)
         throw_spec_error("image size {}x{} is outside what the device '{}' {}: 1x1 to {}x{}", options.size_px.x,

@@ -18,7 +18,8 @@ Stage& stage_of(SweepContext& sweep, const std::string& scene)
         sweep.scene.reset(); // before the next one is loaded: one scene in memory at a time
         Scene loaded = load_scene(scene);
         bake_scene(loaded, [&](const std::string& text) { sweep.progress.say(text); });
-        sweep.scene = std::make_unique<LoadedScene>(scene, open_stage(sweep.gpu, sweep.catalogue, std::move(loaded)));
+        sweep.scene = std::make_unique<LoadedScene>(
+            LoadedScene{scene, open_stage(sweep.gpu, sweep.catalogue, std::move(loaded))});
         for (const std::string& warning : sweep.scene->stage.scene.warnings)
             sweep.progress.say(fmt::format("{}: {}", scene, warning));
     }

@@ -6,6 +6,7 @@
 #include <benchmark/benchmark.h>
 
 #include <optional>
+#include <tuple>
 
 namespace ssrlab {
 
@@ -19,7 +20,7 @@ struct Contender {
     std::string                        technique;
     std::map<std::string, std::string> values;
 
-    auto operator<=>(const Contender&) const = default;
+    bool operator<(const Contender& b) const { return std::tie(technique, values) < std::tie(b.technique, b.values); }
 };
 
 class Bench {
