@@ -96,7 +96,7 @@ Observed observe(SweepContext& sweep, MeasuredRun& measured)
         const bool      doubled = measure.truth && measure.double_twin && sweep.gpu.info.float64;
         const TracerPtr twin    = doubled ? make_tracer(sweep.gpu, measured.lab, NumberFormat::float64) : nullptr;
         run_frame(sweep.gpu, *measured.frame);
-        measured.traffic = count_traffic(sweep.gpu, *measured.frame);
+        for (const PassTraffic& pass : count_traffic(sweep.gpu, *measured.frame)) measured.traffic[pass.pass] = pass;
         Observed observed{read_shaded(sweep.gpu, *measured.frame), trace_gbuffer(sweep.gpu, *tracer),
                           read_hidden_hits(sweep.gpu, *measured.frame)};
         observed.reprojection = read_reprojection(sweep.gpu, *measured.frame);

@@ -19,7 +19,7 @@ struct MeasuredRun {
     std::vector<int>                           rounds; // one entry per timed frame, as in the lists below
     std::vector<double>                        trace_ms, frame_ms, cpu_ms, saved_ms;
     std::map<std::string, std::vector<double>> pass_ms;               // by pass, of those that ran
-    std::vector<PassTraffic>                   traffic;               // of the same
+    std::map<std::string, PassTraffic>         traffic;               // likewise
     std::vector<std::string>                   structures;            // of the technique
     std::vector<Record>                        sources;               // of its list: ask_sources(), source_rows.h
     int                                        repeats           = 0; // in total, known before the first one

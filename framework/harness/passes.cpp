@@ -2,8 +2,6 @@
 
 #include "harness/statistics.h"
 
-#include <algorithm>
-
 namespace ssrlab {
 
 std::span<const Column> pass_columns()
@@ -37,10 +35,10 @@ std::string passes_text(const MeasuredRun& measured)
             put(record, "ms_median", ms.median);
             put(record, "ms_ci_low", ms.ci_low);
             put(record, "ms_ci_high", ms.ci_high);
-            const auto moved  = std::ranges::find(measured.traffic, planned.id, &PassTraffic::pass);
-            const auto pixels = static_cast<double>(measured.plan.statistics.pixels);
-            put(record, "bytes_read_mean", static_cast<double>(moved->read_bytes) / pixels);
-            put(record, "bytes_written_mean", static_cast<double>(moved->written_bytes) / pixels);
+            const PassTraffic& moved  = measured.traffic.at(planned.id);
+            const auto         pixels = static_cast<double>(measured.plan.statistics.pixels);
+            put(record, "bytes_read_mean", static_cast<double>(moved.read_bytes) / pixels);
+            put(record, "bytes_written_mean", static_cast<double>(moved.written_bytes) / pixels);
         }
         text += csv_line(fields_of(record, pass_columns()));
     }

@@ -152,12 +152,14 @@ TEST(Rows, EveryPassHasALineWithItsTimeAndReason)
     ssrlab::Run run;
     run.id = "ra";
     MeasuredRun measured;
-    measured.run           = &run;
-    measured.plan.passes   = {{.id = "rays", .runs = true, .reason = "a, b"},
-                              {.id = "blur", .runs = false, .reason = "c"}};
-    measured.pass_ms       = {{"rays", {1, 2, 3, 4, 5, 1.0 / 3, 9}}};
-    const std::string text = passes_text(measured);
-    EXPECT_EQ(text, "ra,rays,true,3,0.333333,9,\"a, b\"\r\nra,blur,false,,,,c\r\n");
+    measured.run                    = &run;
+    measured.plan.passes            = {{.id = "rays", .runs = true, .reason = "a, b"},
+                                       {.id = "blur", .runs = false, .reason = "c"}};
+    measured.pass_ms                = {{"rays", {1, 2, 3, 4, 5, 1.0 / 3, 9}}};
+    measured.traffic                = {{"rays", {.pass = "rays", .read_bytes = 30, .written_bytes = 4}}};
+    measured.plan.statistics.pixels = 8;
+    const std::string text          = passes_text(measured);
+    EXPECT_EQ(text, "ra,rays,true,3,0.333333,9,3.75,0.5,\"a, b\"\r\nra,blur,false,,,,,,c\r\n");
     EXPECT_THAT(count_passes(text + "rb,rays,true,1"), testing::ElementsAre(testing::Pair("ra", 1)));
     measured.pass_ms = {{"rays", {2, 2.5}}};
     EXPECT_THAT(passes_text(measured), testing::StartsWith("ra,rays,true,2.25,,,")) << "of two repeats";
