@@ -80,10 +80,9 @@ TEST(Traffic, EveryPassMovesBytes)
                 const FramePtr        frame   = make_frame(device(), lab, buffers, plan, history);
                 run_frame(device(), *frame);
                 keep_history(device(), *frame, number);
-                for (const PassTraffic& pass : count_traffic(device(), *frame)) {
-                    EXPECT_GT(pass.written_bytes, 0U) << pass.pass;
-                    moving.insert(pass.pass);
-                }
+                // Passes of a lower resolution run without need in the others, and move nothing there.
+                for (const PassTraffic& pass : count_traffic(device(), *frame))
+                    if (pass.written_bytes > 0) moving.insert(pass.pass);
             }
         }
     for (const Pass& pass : all_passes())
