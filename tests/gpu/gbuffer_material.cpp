@@ -183,7 +183,7 @@ TEST(GBufferMaterial, LightOfVerticesIsTheSameInFrameWorldAndTruth)
         SceneHit         hit;
         bvh.intersect({&ray, 1}, {&hit, 1});
         const std::string where = fmt::format("pixel ({}, {})", x, y);
-        expect_colour(picture.image.radiance[i], expected, where);
+        if (draws_exactly()) expect_colour(picture.image.radiance[i], expected, where);
         expect_colour(light.light[i], expected, where + ", world");
         expect_colour(shade_point(bvh, scene, hit, {from.x, 0, from.z}, ray.direction_ws), expected, where + ", truth");
     }
