@@ -79,9 +79,7 @@ void give_value(Experiment& sweep, const Catalogue& catalogue, const std::string
 std::vector<std::string> views_for(const CommonOptions& common, const FitOptions& options, const std::string& name)
 {
     const Scene scene = load_scene(name);
-    if (!common.quiet)
-        for (const std::string& warning : scene.warnings)
-            std::fprintf(stderr, "warning: %s\n", printable(warning).c_str());
+    say_warnings(common, scene);
     if (scene.frame && options.objective == "flip" && scene.frame->reference.empty())
         throw_spec_error("{}: --objective flip: expected a frame with a 'reference', a picture of the true "
                          "reflections (docs/reference/frame_files.md)",

@@ -56,9 +56,7 @@ Scene load_judged_frame(const CommonOptions& common, const std::string& name)
 {
     if (!name.ends_with(".exr")) throw_spec_error("{}: expected a frame file (.exr), or a folder of cases", name);
     Scene scene = load_scene(name);
-    if (!common.quiet)
-        for (const std::string& warning : scene.warnings)
-            std::fprintf(stderr, "warning: %s\n", printable(warning).c_str());
+    say_warnings(common, scene);
     return scene;
 }
 
@@ -66,9 +64,7 @@ Scene load_triangles(const CommonOptions& common, const JudgeOptions& options)
 {
     Scene scene = load_scene(options.scene);
     if (scene.frame) throw_spec_error("--scene {}: a frame has no triangles; expected a scene", options.scene);
-    bake_scene(scene, [&](const std::string& text) {
-        if (!common.quiet) std::fprintf(stderr, "%s\n", printable(text).c_str());
-    });
+    bake_scene(scene, [&](const std::string& text) { say(common, text); });
     return options.at_frame > 0 ? scene_at(scene, options.at_frame) : scene;
 }
 

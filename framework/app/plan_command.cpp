@@ -31,16 +31,18 @@ std::string median_text(const Timed& timed, const std::string& pass)
     return found == timed.pass_ms.end() ? "-" : fmt::format("{:.2f}", quantile(found->second, 0.5));
 }
 
-/// "1.23 MB read", "0.45 MB written" and, with a bandwidth, the time that these need at the least; "-" for what did not run.
+/// Columns: megabytes read and written and, with a bandwidth, the milliseconds that these need at the least; "-" for a
+/// pass that did not run.
 std::string traffic_text(const PassTraffic* traffic, double bandwidth_gbps)
 {
-    const auto  megabytes = [](uint64_t bytes) { return fmt::format("{:.2f}", static_cast<double>(bytes) * 1e-6); };
-    std::string text      = fmt::format(" {:>8} {:>11}", traffic == nullptr ? "-" : megabytes(traffic->read_bytes),
-                                   traffic == nullptr ? "-" : megabytes(traffic->written_bytes));
-         if (bandwidth_gbps > 0)
-        text +=
-            fmt::format(" {:>9}", traffic == nullptr ? "-" : fmt::format("{:.4f}", least_ms(*traffic, bandwidth_gbps)));
-    return text;
+    const auto column = [&](int width, int digits, double value) {
+        return traffic == nullptr ? fmt::format(" {:>{}}", "-", width)
+                                  : fmt::format(" {:>{}.{}f}", value, width, digits);
+    };
+    const PassTraffic moved = traffic == nullptr ? PassTraffic{} : *traffic;
+    const std::string bytes = column(8, 2, 1e-6 * static_cast<double>(moved.read_bytes)) +
+                              column(11, 2, 1e-6 * static_cast<double>(moved.written_bytes));
+    return bandwidth_gbps > 0 ? bytes + column(9, 4, least_ms(moved, bandwidth_gbps)) : bytes;
 }
 
 void print_table(const FramePlan& plan, const Timed& planned, const Timed& unculled,

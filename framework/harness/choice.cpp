@@ -28,18 +28,24 @@ glm::ivec2 size_option(const std::string& text)
     return *size_px;
 }
 
+void say(const CommonOptions& common, const std::string& text)
+{
+    if (!common.quiet) std::fprintf(stderr, "%s\n", printable(text).c_str());
+}
+
+void say_warnings(const CommonOptions& common, const Scene& scene)
+{
+    for (const std::string& warning : scene.warnings) say(common, "warning: " + warning);
+}
+
 Stage open_stage(const CommonOptions& common, const Catalogue& catalogue, const PictureOptions& options)
 {
     Scene            scene   = load_scene(options.scene);
     const glm::ivec2 size_px = options.size.empty() ? glm::ivec2(0) : size_option(options.size);
     view_at(scene, options.view, size_px, options.at); // wrong options are refused before the device is opened
-    if (!common.quiet)
-        for (const std::string& warning : scene.warnings)
-            std::fprintf(stderr, "warning: %s\n", printable(warning).c_str());
+    say_warnings(common, scene);
     const Gpu gpu = open_gpu(common.gpu);
-    bake_scene(scene, [&](const std::string& text) {
-        if (!common.quiet) std::fprintf(stderr, "%s\n", printable(text).c_str());
-    });
+    bake_scene(scene, [&](const std::string& text) { say(common, text); });
     Stage stage = open_stage(gpu, catalogue, std::move(scene));
     show(stage, options.view, size_px, options.at);
     return stage;

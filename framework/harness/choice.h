@@ -21,6 +21,11 @@ struct PictureOptions {
     SequenceFrame            at;
 };
 
+/// Prints a line on stderr, unless --quiet.
+void say(const CommonOptions& common, const std::string& text);
+/// Prints the warnings of loading a scene likewise.
+void say_warnings(const CommonOptions& common, const Scene& scene);
+
 /// Opens the stage for the frame and device that the options name. Throws SpecError for wrong options.
 Stage open_stage(const CommonOptions& common, const Catalogue& catalogue, const PictureOptions& options);
 /// Prints the validation layer's messages; returns 1 if there are any, else 0.

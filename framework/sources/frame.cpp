@@ -8,30 +8,16 @@
 namespace ssrlab {
 namespace {
 
-constexpr double back_px = 2; // a ray is followed again from so many pixels before where the frame lost it
-
 RayAnswer answer_of(const SourceContext& context, const Occupancy& occupancy, const OpenRay& ray, bool in_sight)
 {
-    const GBufferImage& image  = context.image;
-    const TraceImage&   traced = context.traced;
-    const size_t        i      = ray.pixel;
-    const TraceStatus   status = traced.status[i];
-    RayAnswer           answer{.kind = AnswerKind::open};
-    const auto          part = seen_part(image.view, ray);
-    if (!part) return answer;
-    if (status == TraceStatus::hit) {
-        const int layer = traced.hit_layer[i];
-        set_point(answer, layer == 0 ? image : image.layers[static_cast<size_t>(layer) - 1], traced.hit_pixel[i],
-                  traced.hit_px_depth[i], in_sight);
-    }
-    if (status == TraceStatus::past_max_distance) set_nothing(answer, context, ray, in_sight);
-    if (!in_sight) return answer;
-    if (has_place(status)) answer.clear_m = metres_before(image.view, ray, *part, traced.hit_px_depth[i], back_px);
-    if (status == TraceStatus::left_screen && part->leaves) {
-        const RayInput input = to_input(image.view, ray, *part);
-        answer.clear_m = metres_before(image.view, ray, *part, input.origin_px_depth + input.delta_px_depth, back_px);
-    }
-    if (answer.kind == AnswerKind::open && answer.clear_m > 0) cross_empty_cells(answer, context, occupancy, ray);
+    const TraceImage& traced = context.traced;
+    const size_t      i      = ray.pixel;
+    const auto        part   = seen_part(context.image.view, ray);
+    if (!part) return {.kind = AnswerKind::open};
+    const RayOutcome outcome{
+        .status = traced.status[i], .hit_pixel = traced.hit_pixel[i], .hit_layer = traced.hit_layer[i]};
+    RayAnswer answer = to_answer(context, context.image, ray, *part, outcome, traced.hit_px_depth[i], in_sight);
+    cross_empty_cells(answer, context, occupancy, ray);
     return answer;
 }
 

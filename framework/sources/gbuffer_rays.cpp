@@ -72,8 +72,12 @@ RayInput to_input(const View& view, const OpenRay& ray, const SeenPart& part)
             part.leaves ? TraceStatus::left_screen : TraceStatus::past_max_distance, glm::ivec2(0)};
 }
 
-double metres_before(const View& view, const OpenRay& ray, const SeenPart& part, glm::dvec3 at_px_depth, double back_px)
+namespace {
+
+/// The distance in metres along the ray at which it is 2 pixels before a point on screen, or at its beginning.
+double metres_before(const View& view, const OpenRay& ray, const SeenPart& part, glm::dvec3 at_px_depth)
 {
+    constexpr double back_px   = 2;
     const glm::dvec3 from      = screen_point(view, ray, part.t_in_m);
     const double     length_px = glm::length(glm::dvec2(at_px_depth - from));
     if (!(length_px > back_px)) return part.t_in_m;
@@ -81,8 +85,6 @@ double metres_before(const View& view, const OpenRay& ray, const SeenPart& part,
     const glm::dvec3 from_vs = point_vs(view, ray, 0), before_vs = px_to_vs(view, glm::dvec2(before), before.z);
     return std::max(part.t_in_m, glm::dot(before_vs - from_vs, to_view(view, ray.direction_ws)));
 }
-
-namespace {
 
 /// Whether the four pixels around a place of `pixel` show the same surface.
 bool neighbours_agree(const GBufferImage& image, glm::ivec2 pixel, glm::dvec2 at_px)
@@ -130,6 +132,7 @@ void set_nothing(RayAnswer& answer, const SourceContext& context, const OpenRay&
 
 void cross_empty_cells(RayAnswer& answer, const SourceContext& context, const Occupancy& grid, const OpenRay& ray)
 {
+    if (answer.kind != AnswerKind::open || answer.clear_m == 0) return;
     const double met_m = first_occupied(grid, ray.origin_ws, ray.direction_ws, answer.clear_m, ray.reach_m);
     if (!std::isfinite(met_m)) {
         set_nothing(answer, context, ray, true);
@@ -140,14 +143,6 @@ void cross_empty_cells(RayAnswer& answer, const SourceContext& context, const Oc
         std::max(answer.clear_m, met_m - rounding * std::min({grid.cell_m.x, grid.cell_m.y, grid.cell_m.z}));
 }
 
-bool begins_in_sight(const SourceContext& context, RayStart start, const OpenRay& ray)
-{
-    if (start != RayStart::from_frame) return start != RayStart::anywhere;
-    // What the frame met, or passed behind, may fall between the pixels of another picture from there.
-    const std::vector<TraceStatus>& frame = context.traced.status;
-    return frame.empty() || !has_place(frame[ray.pixel]);
-}
-
 bool stays_in_sight(const SourceContext& context, const TraceSettings& settings)
 {
     const Surface surface = find_surface(context.stage.catalogue.surfaces, std::string(settings.surface));
@@ -155,6 +150,14 @@ bool stays_in_sight(const SourceContext& context, const TraceSettings& settings)
         return std::ranges::find(surface.defines, name) != surface.defines.end();
     };
     return settings.behind == Behind::stop && settings.layers == 1 && (has("SOLID_ENDLESS") || has("SURFACE_ENDLESS"));
+}
+
+bool begins_in_sight(const SourceContext& context, RayStart start, const OpenRay& ray)
+{
+    if (start != RayStart::from_frame) return start != RayStart::anywhere;
+    // What the frame met, or passed behind, may fall between the pixels of another picture from there.
+    const std::vector<TraceStatus>& frame = context.traced.status;
+    return frame.empty() || !has_place(frame[ray.pixel]);
 }
 
 TraceSettings in_sight_settings(const TraceSettings& settings)
@@ -178,26 +181,25 @@ double megabytes_of(const GBuffer& gbuffer)
     return bytes / 1e6;
 }
 
-namespace {
-
-constexpr double back_px = 2; // a ray is followed again from so many pixels before where it was lost
-
 RayAnswer to_answer(const SourceContext& context, const GBufferImage& image, const OpenRay& ray, const SeenPart& part,
-                    const RayInput& input, const RayOutcome& outcome, bool in_sight)
+                    const RayOutcome& outcome, glm::dvec3 at_px_depth, bool in_sight)
 {
-    RayAnswer        answer{.kind = AnswerKind::open, .clear_m = ray.clear_m};
-    const glm::dvec3 at = input.origin_px_depth + outcome.t * input.delta_px_depth;
+    RayAnswer answer{.kind = AnswerKind::open, .clear_m = ray.clear_m};
     if (outcome.status == TraceStatus::hit) {
         const GBufferImage& met = outcome.hit_layer == 0 ? image : image.layers[outcome.hit_layer - 1U];
-        set_point(answer, met, outcome.hit_pixel, at, in_sight);
+        set_point(answer, met, outcome.hit_pixel, at_px_depth, in_sight);
     }
     if (outcome.status == TraceStatus::past_max_distance) set_nothing(answer, context, ray, in_sight);
     if (!in_sight) return answer;
-    if (has_place(outcome.status)) answer.clear_m = metres_before(image.view, ray, part, at, back_px);
-    if (outcome.status == TraceStatus::left_screen)
-        answer.clear_m = metres_before(image.view, ray, part, input.origin_px_depth + input.delta_px_depth, back_px);
+    if (has_place(outcome.status)) answer.clear_m = metres_before(image.view, ray, part, at_px_depth);
+    if (outcome.status == TraceStatus::left_screen && part.leaves) {
+        const RayInput seen = to_input(image.view, ray, part);
+        answer.clear_m      = metres_before(image.view, ray, part, seen.origin_px_depth + seen.delta_px_depth);
+    }
     return answer;
 }
+
+namespace {
 
 /// The plane that a pixel shows, in depth; empty where it shows none.
 struct PixelPlane {
@@ -296,7 +298,8 @@ GBufferTrace trace_in_gbuffer(SourceContext& context, const GBufferPtr& gbuffer,
                               parts[k].t_in_m <= rays[ray].clear_m + slack_m; // from its beginning on
         meet_start_pixel(image, inputs[k], leaves, outcomes[k]);
         if (leaves && meets_own_surface(image, inputs[k], outcomes[k])) continue;
-        trace.answers[ray]   = to_answer(context, image, rays[ray], parts[k], inputs[k], outcomes[k], in_sight);
+        const glm::dvec3 at  = inputs[k].origin_px_depth + outcomes[k].t * inputs[k].delta_px_depth;
+        trace.answers[ray]   = to_answer(context, image, rays[ray], parts[k], outcomes[k], at, in_sight);
         trace.status[ray]    = outcomes[k].status;
         trace.left_at_m[ray] = parts[k].t_out_m;
     }

@@ -23,11 +23,6 @@ std::optional<SeenPart> seen_part(const View& view, const OpenRay& ray);
 /// Returns that part as techniques get it.
 RayInput to_input(const View& view, const OpenRay& ray, const SeenPart& part);
 
-/// Returns the distance in metres along the ray at which it is `back_px` pixels before a point on screen, or at its
-/// beginning.
-double metres_before(const View& view, const OpenRay& ray, const SeenPart& part, glm::dvec3 at_px_depth,
-                     double back_px);
-
 /// Makes `answer` the point where a ray met `pixel` of `met`: its place in the world, its light toward the camera, and
 /// whether it is certain. It is if the ray stayed in sight and the four pixels around the place show the same surface,
 /// which they do not at silhouettes and on things thinner than two pixels. Leaves clear_m as it is.
@@ -36,8 +31,13 @@ void set_point(RayAnswer& answer, const GBufferImage& met, glm::ivec2 pixel, glm
 /// Makes `answer` say that the ray meets nothing: its light is the environment's. Leaves clear_m as it is.
 void set_nothing(RayAnswer& answer, const SourceContext& context, const OpenRay& ray, bool certain);
 
+/// Returns what a ray says that was traced in `image` (with its layers): `outcome` is how it ended, at_px_depth where.
+/// If it stayed in sight, it is clear up to 2 pixels before the place where it was lost.
+RayAnswer to_answer(const SourceContext& context, const GBufferImage& image, const OpenRay& ray, const SeenPart& part,
+                    const RayOutcome& outcome, glm::dvec3 at_px_depth, bool in_sight);
+
 /// Moves an open answer's clear_m on through the empty cells of the scene's grid. If they reach to the end, the answer
-/// is that the ray meets nothing, for certain.
+/// is that the ray meets nothing, for certain. Does nothing to an answer without a clear distance.
 void cross_empty_cells(RayAnswer& answer, const SourceContext& context, const Occupancy& grid, const OpenRay& ray);
 
 /// Whether a camera sees every ray where it begins.

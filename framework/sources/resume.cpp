@@ -22,9 +22,8 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
     const GBufferTrace trace =
         trace_in_gbuffer(context, context.stage.gbuffer, context.image, context.trace, RayStart::if_shown, stopped);
     for (size_t k = 0; k < stopped.size(); ++k) {
-        RayAnswer& answer = turn.answers[places[k]] = trace.answers[k];
-        if (trace.status[k] == TraceStatus::stopped || trace.status[k] == TraceStatus::left_screen)
-            cross_empty_cells(answer, context, grid, stopped[k]);
+        turn.answers[places[k]] = trace.answers[k];
+        cross_empty_cells(turn.answers[places[k]], context, grid, stopped[k]);
     }
     turn.trace_ms = trace.ms;
     return turn;

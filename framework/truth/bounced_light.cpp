@@ -1,6 +1,7 @@
 #include "truth/bounced_light.h"
 
 #include "core/parallel_rows.h"
+#include "truth/r2_sequence.h"
 #include "truth/scene_truth.h"
 
 #include <algorithm>
@@ -12,8 +13,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// A sequence of low discrepancy in the unit square (M. Roberts 2018: R2).
-glm::dvec2 even(int k) { return glm::fract(0.5 + double(k) * glm::dvec2(0.7548776662466927, 0.5698402909980532)); }
+glm::dvec2 even(int k) { return r2_point(k, glm::dvec2(0.5)); }
 
 /// T. Duff et al. 2017, "Building an Orthonormal Basis, Revisited", JCGT 6(1).
 glm::dmat3 frame_about(glm::dvec3 n)

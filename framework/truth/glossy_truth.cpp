@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/parallel_rows.h"
 #include "core/pixel_index.h"
+#include "truth/r2_sequence.h"
 #include "truth/screen_ray.h"
 
 #include <algorithm>
@@ -36,12 +37,10 @@ glm::dvec2 random(glm::ivec2 pixel, int ray, int bounce, uint32_t seed)
 /// Even and odd rays are two halves that know nothing of each other: what they differ by tells their noise.
 int half_of(int ray) { return ray % 2; }
 
-/// The same for rays of which each half fills one lobe evenly: a sequence of low discrepancy (M. Roberts 2018, "The Unreasonable
-/// Effectiveness of Quasirandom Sequences": R2), moved by a random offset for each pixel.
+/// The same for rays of which each half fills one lobe evenly, by a random offset for each pixel.
 glm::dvec2 even(glm::ivec2 pixel, int ray, int bounce, uint32_t seed)
 {
-    return glm::fract(random(pixel, half_of(ray), bounce, seed) +
-                      double(ray / 2) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
+    return r2_point(ray / 2, random(pixel, half_of(ray), bounce, seed));
 }
 
 /// Light of the two halves; their mean is the light.

@@ -98,11 +98,6 @@ glm::vec4 surface_colour(const Scene& scene, const SurfacePoint& point)
            sample(scene, material.base_colour_texture, point);
 }
 
-glm::vec3 bounced_at(const Scene& scene, const SurfacePoint& point)
-{
-    return interpolate(scene, point, &Vertex::bounced);
-}
-
 glm::dvec3 shading_normal_ws(const Scene& scene, const SurfacePoint& point)
 {
     const glm::dvec3 sum    = glm::dvec3(interpolate(scene, point, &Vertex::normal_ws));
@@ -121,7 +116,7 @@ SurfaceMaterial surface_material(const Scene& scene, const SurfacePoint& point)
     result.dielectric_f0  = material.dielectric_f0;
     result.emissive       = material.emissive * glm::vec3(sample(scene, material.emissive_texture, point));
     result.emissive       = glm::min(result.emissive, largest_radiance);
-    result.bounced        = bounced_at(scene, point);
+    result.bounced        = interpolate(scene, point, &Vertex::bounced);
     result.normal_ws      = mapped_normal_ws(scene, point);
     return result;
 }

@@ -27,9 +27,6 @@ glm::dvec3 corner_ws(const Scene& scene, const SurfacePoint& point, int corner);
 /// Returns the linear base colour with its alpha, which an alpha mask compares with its cutoff.
 glm::vec4 surface_colour(const Scene& scene, const SurfacePoint& point);
 
-/// Returns the light of Vertex::bounced, between the corners.
-glm::vec3 bounced_at(const Scene& scene, const SurfacePoint& point);
-
 /// Returns the interpolated normal without normal map: a unit vector, or 0 if the mesh has none.
 glm::dvec3 shading_normal_ws(const Scene& scene, const SurfacePoint& point);
 
