@@ -30,24 +30,20 @@ vk::raii::ShaderModule make_module(Gpu& gpu, const Shader& shader)
             vk::ShaderModuleCreateInfo{.codeSize = shader.spirv.size() * 4, .pCode = shader.spirv.data()}};
 }
 
-} // namespace
+/// What the vertex shader reads: the place alone where nothing else is asked of a surface.
+enum class VertexInput : uint8_t { all, position };
 
-DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipelineOptions& options)
+vk::raii::Pipeline make_pipeline(Gpu& gpu, const vk::raii::PipelineLayout& layout, const DrawPipelineOptions& options,
+                                 VertexInput input_read)
 {
-    const Shader vertex   = compile_shader(gpu, {.file = "gbuffer/gbuffer.vert", .stage = ShaderStage::vertex});
-    const Shader fragment = compile_shader(
-        gpu, {.file = options.fragment_shader, .stage = ShaderStage::fragment, .defines = options.fragment_defines});
+    const bool position_only = input_read == VertexInput::position;
+    auto       defines       = options.fragment_defines;
+    if (options.depth_alone && !position_only) defines.emplace("ALPHA_MASKS", "1");
+    const Shader vertex = compile_shader(
+        gpu, {.file = position_only ? "gbuffer/position.vert" : "gbuffer/gbuffer.vert", .stage = ShaderStage::vertex});
+    const Shader fragment =
+        compile_shader(gpu, {.file = options.fragment_shader, .stage = ShaderStage::fragment, .defines = defines});
     const auto vertex_module = make_module(gpu, vertex), fragment_module = make_module(gpu, fragment);
-
-    DrawPipeline result;
-    result.culling                          = options.culling;
-    const vk::DescriptorSetLayout layouts[] = {*scene.frame_layout, *scene.material_layout};
-    const vk::PushConstantRange   range{vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0,
-                                      sizeof(DrawPush)};
-    result.layout = {gpu.impl->device, vk::PipelineLayoutCreateInfo{.setLayoutCount         = 2,
-                                                                    .pSetLayouts            = layouts,
-                                                                    .pushConstantRangeCount = 1,
-                                                                    .pPushConstantRanges    = &range}};
 
     const vk::PipelineShaderStageCreateInfo stages[] = {
         {.stage = vk::ShaderStageFlagBits::eVertex, .module = *vertex_module, .pName = "main"},
@@ -61,10 +57,11 @@ DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipel
         {4, 0, vk::Format::eR32G32Sfloat, offsetof(Vertex, uv1)},
         {5, 0, vk::Format::eR32G32B32A32Sfloat, offsetof(Vertex, colour)},
         {6, 0, vk::Format::eR32G32B32Sfloat, offsetof(Vertex, bounced)}};
-    const vk::PipelineVertexInputStateCreateInfo   input{.vertexBindingDescriptionCount   = 1,
-                                                         .pVertexBindingDescriptions      = &binding,
-                                                         .vertexAttributeDescriptionCount = std::size(attributes),
-                                                         .pVertexAttributeDescriptions    = attributes};
+    const vk::PipelineVertexInputStateCreateInfo   input{.vertexBindingDescriptionCount = 1,
+                                                         .pVertexBindingDescriptions    = &binding,
+                                                         .vertexAttributeDescriptionCount =
+                                                           position_only ? 1U : uint32_t{std::size(attributes)},
+                                                         .pVertexAttributeDescriptions = attributes};
     const vk::PipelineInputAssemblyStateCreateInfo assembly{.topology = vk::PrimitiveTopology::eTriangleList};
     const vk::PipelineViewportStateCreateInfo      viewport{.viewportCount = 1, .scissorCount = 1};
     const bool                                     biased = !options.reversed_depth;
@@ -103,20 +100,41 @@ DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipel
                                                      .pDepthStencilState  = &depth,
                                                      .pColorBlendState    = &blending,
                                                      .pDynamicState       = &dynamics,
-                                                     .layout              = *result.layout};
-    result.pipeline = {gpu.impl->device, gpu.impl->pipeline_cache, info};
+                                                     .layout              = *layout};
+    return {gpu.impl->device, gpu.impl->pipeline_cache, info};
+}
+
+} // namespace
+
+DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipelineOptions& options)
+{
+    DrawPipeline result;
+    result.culling                          = options.culling;
+    const vk::DescriptorSetLayout layouts[] = {*scene.frame_layout, *scene.material_layout};
+    const vk::PushConstantRange   range{vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0,
+                                      sizeof(DrawPush)};
+    result.layout   = {gpu.impl->device, vk::PipelineLayoutCreateInfo{.setLayoutCount         = 2,
+                                                                      .pSetLayouts            = layouts,
+                                                                      .pushConstantRangeCount = 1,
+                                                                      .pPushConstantRanges    = &range}};
+    if (options.depth_alone) result.opaque = make_pipeline(gpu, result.layout, options, VertexInput::position);
+    if (!options.depth_alone || scene.alpha_mask)
+        result.pipeline = make_pipeline(gpu, result.layout, options, VertexInput::all);
     return result;
 }
 
 void draw_scene(const vk::raii::CommandBuffer& commands, const GpuScene& scene, const DrawPipeline& pipeline,
                 vk::DescriptorSet frame_set, const glm::dmat4& world_to_clip)
 {
-    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipeline.pipeline);
+    const vk::Pipeline of_opaque = *pipeline.opaque ? *pipeline.opaque : *pipeline.pipeline;
+    vk::Pipeline       bound;
     commands.bindVertexBuffers(0, *scene.vertices.buffer, vk::DeviceSize{0});
     commands.bindIndexBuffer(*scene.indices.buffer, 0, vk::IndexType::eUint32);
     commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *pipeline.layout, 0, frame_set, nullptr);
     for (const GpuScene::DrawCall& draw : scene.draws) {
         if (draw.index_count == 0 || outside(draw, world_to_clip)) continue;
+        if (const vk::Pipeline own = draw.alpha_mask ? *pipeline.pipeline : of_opaque; own != bound)
+            commands.bindPipeline(vk::PipelineBindPoint::eGraphics, bound = own);
         const DrawPush push{glm::mat4(world_to_clip), draw.material, draw.object_id};
         const bool     culls =
             pipeline.culling == Culling::back_faces || (pipeline.culling == Culling::by_material && !draw.double_sided);

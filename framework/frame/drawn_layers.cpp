@@ -29,7 +29,8 @@ void make_solid_backs(Gpu& gpu, Drawing& drawing)
     if (!scene.solid_back_pipeline) {
         const DrawPipelineOptions options{.fragment_shader = "gbuffer/solid_back.frag",
                                           .colour_formats  = {gbuffer.solid.format},
-                                          .culling         = Culling::nothing};
+                                          .culling         = Culling::nothing,
+                                          .depth_alone     = true};
         scene.solid_back_pipeline = std::make_shared<const DrawPipeline>(make_draw_pipeline(gpu, scene, options));
     }
     drawing.solid_depth = make_image(gpu, {.format  = vk::Format::eD32Sfloat,

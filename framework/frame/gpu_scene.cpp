@@ -156,7 +156,8 @@ GpuScenePtr upload_scene(Gpu& gpu, const Scene& source)
     for (size_t i = 0; i < source.draws.size(); ++i) {
         const Draw& draw = source.draws[i];
         scene->draws.push_back({draw.first_index, draw.index_count, draw.material, static_cast<uint32_t>(i + 1),
-                                source.materials[draw.material].double_sided, draw.bounds_min_ws, draw.bounds_max_ws});
+                                source.materials[draw.material].double_sided,
+                                source.materials[draw.material].alpha_mask, draw.bounds_min_ws, draw.bounds_max_ws});
     }
     scene->ambient             = source.ambient;
     scene->alpha_mask          = std::ranges::any_of(source.materials, &Material::alpha_mask);

@@ -20,13 +20,14 @@ enum class Culling : uint8_t { by_material /* back faces, but of double-sided ma
 struct DrawPipeline {
     vk::raii::PipelineLayout layout   = nullptr;
     vk::raii::Pipeline       pipeline = nullptr;
+    vk::raii::Pipeline       opaque   = nullptr; // for materials without an alpha mask; null: `pipeline`
     Culling                  culling  = Culling::by_material;
 };
 
 struct GpuScene {
     struct DrawCall {
         uint32_t  first_index = 0, index_count = 0, material = 0, object_id = 0;
-        bool      double_sided = false;
+        bool      double_sided = false, alpha_mask = false;
         glm::vec3 bounds_min_ws{0}, bounds_max_ws{0};
     };
     Buffer                               vertices, indices, materials, lights, shadow_matrices;
@@ -51,12 +52,14 @@ struct GpuScene {
     bool      has_environment_map = false;
 };
 
+/// With depth_alone, the fragment shader reads nothing of a surface but what shaders/gbuffer/cut_out.glsl does.
 struct DrawPipelineOptions {
     const char*             fragment_shader = nullptr;
     std::vector<vk::Format> colour_formats;
     bool reversed_depth = true; // the G-buffer's convention; shadow maps use standard depth with a bias
     std::map<std::string, std::string> fragment_defines = {};
     Culling                            culling          = Culling::by_material;
+    bool                               depth_alone      = false;
 };
 DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipelineOptions& options);
 

@@ -195,8 +195,12 @@ void render_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source)
     upload(gpu, scene.lights, blocks.lights.data(), blocks.lights.size() * sizeof(LightBlock));
     upload(gpu, scene.shadow_matrices, blocks.stored.data(), blocks.stored.size() * sizeof(glm::mat4));
     if (!scene.shadow_pipeline)
-        scene.shadow_pipeline = std::make_shared<const DrawPipeline>(make_draw_pipeline(
-            gpu, scene, {.fragment_shader = "gbuffer/shadow.frag", .colour_formats = {}, .reversed_depth = false}));
+        scene.shadow_pipeline =
+            std::make_shared<const DrawPipeline>(make_draw_pipeline(gpu, scene,
+                                                                    {.fragment_shader = "gbuffer/shadow.frag",
+                                                                     .colour_formats  = {},
+                                                                     .reversed_depth  = false,
+                                                                     .depth_alone     = true}));
     // The shadow shaders read nothing of the frame's uniforms; any buffer satisfies the layout.
     const FrameSet set = make_frame_set(gpu, scene, scene.lights);
     for (uint32_t layer = 0; layer < blocks.matrices.size(); ++layer)

@@ -1,13 +1,4 @@
 // Depth only; masked texels cast no shadow.
-#include "gbuffer/scene_types.glsl"
-#include "gbuffer/material.glsl"
+#include "gbuffer/cut_out.glsl"
 
-layout(location = 3) in vec4 uv;
-layout(location = 4) in vec4 vertex_colour;
-
-void main()
-{
-    Coordinates at       = coordinates_of(uv);
-    Material    material = materials[material_index];
-    if (is_cut_out(material, base_colour_of(material, at, vertex_colour).a)) discard;
-}
+void main() { discard_cut_out(); }

@@ -1,0 +1,2 @@
+// The material has no alpha mask.
+void discard_cut_out() {}
