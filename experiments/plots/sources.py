@@ -17,9 +17,18 @@ def said(source):
     return SAID.get(source, source.replace(":", " ").replace("=", " "))
 
 
-def step_name(step):
-    """"frame", "+ cube + world": what is asked behind the frame begins with a plus."""
+FRAME = (("frame",), "")  # the first step of most lists
+
+
+def said_value(value):
+    return f"{value:g}" if isinstance(value, float) else value
+
+
+def step_name(step, tracer):
+    """"frame", "+ cube + world": what is asked behind the frame begins with a plus. `tracer`: the name of the frame's own step."""
     sources, hand_on = step
+    if step == FRAME:
+        return tracer
     words = [said(one) for one in sources]
     name = " + ".join(words) if len(words) == 1 or words[0] != "frame" else "".join(f"+ {word} " for word in words[1:]).strip()
     return name + (" alone" if sources == ("world",) else "") + (" (lost)" if hand_on == "lost" else "")
@@ -34,7 +43,8 @@ def asked_rows(results):
     rows = results.sources[results.sources.run_id.isin(runs.index)].copy()
     for name in ("scene", "view", "frame_name", "sources", "hand_on"):
         rows[name] = rows.run_id.map(runs[name])
-    rows["tracer"] = [", ".join([runs.technique[run]] + [f"{name} {runs[name][run]}" for name in inputs]) for run in rows.run_id]
+    rows["tracer"] = [", ".join([runs.technique[run]] + [f"{name} {said_value(runs[name][run])}" for name in inputs if pd.notna(runs[name][run])])
+                      for run in rows.run_id]
     rows["number"] = rows.run_id.map({run: number for number, run in enumerate(results.rows.sort_values("run_number", kind="stable").run_id)})
     rows = rows.sort_values(["number", "place"])
     spent = rows.draw_ms + rows.trace_ms + rows.shade_ms
@@ -59,14 +69,14 @@ def geometric(values):
     return float(np.exp(np.log(spent).mean())) if len(spent) else 0.0
 
 
-def steps_of(rows):
+def steps_of(rows, tracer="frame"):
     """A row a step of the ladder that every frame has: means over the frames, geometric for times; the cheapest first."""
     frames, steps = rows.frame_name.nunique(), []
     for step, part in rows.groupby("step", sort=False):
         once = part.groupby("frame_name").agg({"all_recall": "first", "all_precision": "first", "all_f1": "first", "all_visits": "first",
                                                "spent_ms": "median", "spent_megabytes": "first"})
         if len(once) == frames and once.all_recall.notna().all():
-            steps.append({"step": step, "name": step_name(step), "ms": geometric(once.spent_ms), "recall": once.all_recall.mean(),
+            steps.append({"step": step, "name": step_name(step, tracer), "ms": geometric(once.spent_ms), "recall": once.all_recall.mean(),
                           "precision": once.all_precision.mean(), "f1": once.all_f1.mean(), "megabytes": once.spent_megabytes.mean(),
                           "visits": once.all_visits.mean()})
     return pd.DataFrame(steps).sort_values("ms").reset_index(drop=True) if steps else pd.DataFrame()
@@ -74,38 +84,51 @@ def steps_of(rows):
 
 def front_of(steps):
     """Steps that no cheaper one equals; steps are sorted by time."""
-    return steps[steps.recall > steps.recall.cummax().shift(fill_value=-1)]
+    return steps[steps.f1 > steps.f1.cummax().shift(fill_value=-1)]
 
 
 def ladder_finding(steps):
-    """The message: the frame, and the cheapest list within half a point of the best, against the triangles alone."""
+    """The message: the worst and the best that the frame alone can do, and the cheapest list within half a point of the best, against the
+    triangles alone."""
     alone = steps[steps.name == "world alone"]
-    frame = steps[steps.name == "frame"]
     others = steps[steps.name != "world alone"]
-    best = others[others.recall >= others.recall.max() - 0.005].iloc[0]
-    text = f"The frame answers {100 * frame.recall.iloc[0]:.0f} % of the rays rightly" if len(frame) else "Rays answered rightly"
-    if best["name"] != "frame":
-        text += f", “{best['name']}” {100 * best.recall:.1f} %"
+    best = others[others.f1 >= others.f1.max() - 0.005].iloc[0]
+    frame = steps[[step in (FRAME, ((name,), "")) for step, name in zip(steps.step, steps.name)] & (steps.name != "world alone")].sort_values("f1")
+    said = [f"{100 * one['f1']:.0f} % by {one['name'].replace('frame', 'the frame')}" for _, one in frame.iloc[[0, -1] if len(frame) > 1 else [0][:len(frame)]].iterrows()]
+    said += [f"{100 * best.f1:.1f} % by “{best['name']}”"] if best.step != FRAME else []
+    text = "F1 over all rays: " + ", ".join(said)
+    if best.step != FRAME:
         text += f", in {best.ms / alone.ms.iloc[0]:.2g} times the time of the world alone" if len(alone) else f", in {best.ms:.3g} ms"
     return text
 
 
 def draw_ladder(steps):
-    """Steps on the Pareto front and the triangles alone have names; the table has them all."""
+    """All steps have names, or, where they are many, those on the Pareto front, the frame and the triangles alone."""
     figure, ((axis,),) = sheet(2.3)
     front = front_of(steps)
-    named = steps[steps.index.isin(front.index) | (steps.name == "world alone")]
-    axis.step(front.ms, 100 * front.recall, where="post", color="#999999", zorder=1)
-    axis.plot(steps.ms, 100 * steps.recall, "o", mfc="white", mec="#777777", mew=0.8, ls="none")
-    axis.plot(front.ms, 100 * front.recall, "o", color="#0072B2", ls="none")
-    axis.set_ylabel("rays that meet geometry,\nanswered rightly, %")
+    few = len(steps) <= 10
+    named = steps[few | steps.index.isin(front.index) | (steps.name == "world alone") | [step == FRAME for step in steps.step]]
+    axis.step(front.ms, 100 * front.f1, where="post", color="#999999", zorder=1)
+    axis.plot(steps.ms, 100 * steps.f1, "o", mfc="white", mec="#777777", mew=0.8, ls="none")
+    axis.plot(front.ms, 100 * front.f1, "o", color="#0072B2", ls="none")
+    axis.set_ylabel("F1 over all rays, %")
     axis.set_xlabel("drawing, tracing and lighting, ms")
     log_axis(axis.xaxis)
     axis.margins(0.07, 0.12)
-    name_lines(axis, [(row.name, row.ms, 100 * row.recall, "#0072B2" if row.Index in front.index else "#555555") for row in named.itertuples()])
+    name_lines(axis, [(row.name, row.ms, 100 * row.f1, "#0072B2" if row.Index in front.index else "#555555") for row in named.itertuples()])
     lost = "; (lost): gets only rays without an answer yet" if named.name.str.contains("(lost)", regex=False).any() else ""
     titled(figure, ladder_finding(steps), f"line: Pareto front{lost}")
     return figure
+
+
+def names_of(tracers):
+    """{tracer: its technique and surface}, and what else it takes to tell them apart."""
+    words = {tracer: tracer.split(", ") for tracer in tracers}
+    brief = {tracer: ", ".join(word.removeprefix("surface ").replace("_", " ") for i, word in enumerate(all_words) if i == 0 or word.startswith("surface "))
+             for tracer, all_words in words.items()}
+    alike = {tracer: [words[other] for other in tracers if brief[other] == brief[tracer]] for tracer in tracers}
+    return {tracer: ", ".join([brief[tracer]] + [word.replace("_m ", " ") for word in words[tracer] if any(word not in other for other in alike[tracer])])
+            for tracer in tracers}
 
 
 def ladders(rows):
@@ -114,8 +137,12 @@ def ladders(rows):
         return
     whole = ~rows.sources.str.startswith("auto") | ~rows.duplicated("run_id", keep="last")
     rows = rows.assign(step=[((row.sources,), "") if row.sources.startswith("auto") else row.step for row in rows.itertuples()])[whole]
-    for tracer, part in rows.groupby("tracer"):
-        steps = steps_of(part)
+    # Tracers that ask nothing but the frame are steps of the ladder of those that ask further sources.
+    asks_more = rows.tracer.isin(rows.tracer[rows.place > 0]) | (rows.place == 0).all()
+    names = names_of(rows.tracer.unique())
+    frames = rows[~asks_more].assign(step=[((names[tracer],), "") for tracer in rows.tracer[~asks_more]])
+    for tracer, part in rows[asks_more].groupby("tracer"):
+        steps = steps_of(pd.concat([frames, part]), "frame" if frames.empty else names[tracer])
         if len(steps) >= 2:
             yield tracer, part, steps
 

@@ -41,7 +41,7 @@ int print_measures(const CommonOptions& common)
     const std::vector<Technique>& techniques = catalogue.techniques;
     Experiment                    everything;
     everything.known_settings = all_settings(catalogue);
-    for (const Technique& technique : techniques) everything.techniques.push_back({technique.id, {}, {}, {}});
+    for (const Technique& technique : techniques) everything.techniques.push_back({technique.id, {}, {}, {}, {}});
 
     // Settings and parameters are listed by `ssrlab list --markdown`.
     std::vector<std::string> elsewhere;

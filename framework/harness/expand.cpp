@@ -41,6 +41,11 @@ ValueLists settings_of(const Experiment& experiment, const TechniqueSweep& sweep
     return lists;
 }
 
+const std::vector<AskedSources>& sources_of(const Experiment& experiment, const TechniqueSweep& sweep)
+{
+    return sweep.sources.empty() ? experiment.sources : sweep.sources;
+}
+
 /// The part of a run that its settings decide.
 Run run_with(std::span<const Setting> known, const ParameterValues& values)
 {
@@ -77,7 +82,7 @@ std::vector<Run> expand_picture(const Experiment& experiment, std::span<const Te
             Run run       = run_with(experiment.known_settings, settings);
             run.technique = sweep.id;
             for (const ParameterValues& one : values)
-                for (const AskedSources& asked : experiment.sources) {
+                for (const AskedSources& asked : sources_of(experiment, sweep)) {
                     run.values  = one;
                     run.sources = asked;
                     run.number  = number++;
@@ -138,13 +143,12 @@ double count_runs(const Experiment& experiment)
 {
     double sweeps = 0;
     for (const TechniqueSweep& sweep : experiment.techniques) {
-        sweeps += combinations(settings_of(experiment, sweep)) * combinations(sweep.values);
+        sweeps += combinations(settings_of(experiment, sweep)) * combinations(sweep.values) *
+                  static_cast<double>(sources_of(experiment, sweep).size());
     }
     size_t views = 0;
     for (const std::string& scene : experiment.scenes) views += views_of(experiment, scene).size();
-    return static_cast<double>(views * experiment.sizes_px.size() * experiment.frames.size() *
-                               experiment.sources.size()) *
-           sweeps;
+    return static_cast<double>(views * experiment.sizes_px.size() * experiment.frames.size()) * sweeps;
 }
 
 std::vector<Run> expand(const Experiment& experiment, std::span<const Technique> techniques, bool many)

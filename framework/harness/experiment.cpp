@@ -6,6 +6,7 @@
 #include "harness/search.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -180,11 +181,14 @@ bool is_structure(const Technique& technique, const std::string& name)
     return std::ranges::find(technique.structures, name, &Structure::id) != technique.structures.end();
 }
 
+constexpr const char* sources_key = "sources"; // of a technique's table, beside its parameters and settings
+
 void read_values(const TomlFile& file, const toml::table& table, const std::string& prefix, const Technique& technique,
                  std::span<const Setting> known, TechniqueSweep& sweep)
 {
     for (const auto& [key, node] : table) {
         const std::string name = prefix + std::string(key.str());
+        if (name == sources_key) continue;
         if (node.is_table() && is_structure(technique, name)) {
             read_values(file, *node.as_table(), name + ".", technique, known, sweep);
             continue;
@@ -205,16 +209,18 @@ void read_values(const TomlFile& file, const toml::table& table, const std::stri
 }
 
 TechniqueSweep read_sweep(const TomlFile& file, const toml::table& table, const Technique& technique,
-                          std::span<const Setting> known)
+                          std::span<const Setting> known, const MeasureSettings& measure)
 {
-    TechniqueSweep sweep{technique.id, toml_place(file, table), {}, {}};
+    TechniqueSweep sweep{technique.id, toml_place(file, table), {}, {}, {}};
+    if (const toml::node* lists = table.get(sources_key))
+        sweep.sources = read_source_lists(file, *lists, sources_key, std::array{HandOn::uncertain}, measure);
     read_values(file, table, "", technique, known, sweep);
     for (const auto& [name, value] : default_values(technique)) sweep.values.try_emplace(name, std::vector{value});
     return sweep;
 }
 
 std::vector<TechniqueSweep> read_sweeps(const TomlFile& file, std::span<const Technique> techniques,
-                                        std::span<const Setting> known)
+                                        std::span<const Setting> known, const MeasureSettings& measure)
 {
     const toml::table* table = optional_table(file, "techniques");
     if (table == nullptr || table->empty()) {
@@ -230,7 +236,7 @@ std::vector<TechniqueSweep> read_sweeps(const TomlFile& file, std::span<const Te
         }
         for (const toml::node* value : toml_values(file, node, "techniques." + technique->id)) {
             const toml::table& one = toml_table(file, *value, "techniques." + technique->id);
-            found.emplace_back(one.source().begin, read_sweep(file, one, *technique, known));
+            found.emplace_back(one.source().begin, read_sweep(file, one, *technique, known, measure));
         }
     }
     std::ranges::sort(found, [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -333,8 +339,8 @@ Experiment load_experiment(const std::filesystem::path& path, const Catalogue& c
     experiment.known_settings = all_settings(catalogue);
     experiment.known_surfaces = catalogue.surfaces;
     experiment.settings       = read_settings(file, experiment.known_settings);
-    experiment.techniques     = read_sweeps(file, catalogue.techniques, experiment.known_settings);
     experiment.measure        = read_measure(file);
+    experiment.techniques     = read_sweeps(file, catalogue.techniques, experiment.known_settings, experiment.measure);
     experiment.targets        = read_targets(file, experiment.measure);
     experiment.sources        = read_sources(file, experiment.measure);
     return experiment;

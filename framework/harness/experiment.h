@@ -39,12 +39,20 @@ struct Target {
 
 using ValueLists = std::map<std::string, std::vector<double>>;
 
+/// A list of [sources] that a run asks for answers beyond its frame.
+struct AskedSources {
+    std::string               text; // as in the specification: "frame,world"
+    std::vector<ListedSource> list; // empty: none is asked
+    HandOn                    hand_on = HandOn::uncertain;
+};
+
 /// A table [techniques.ID]: the values of every parameter, with defaults.
 struct TechniqueSweep {
-    std::string id;
-    std::string place; // file:line
-    ValueLists  values;
-    ValueLists  settings; // those that the table itself sets, instead of the experiment's
+    std::string               id;
+    std::string               place; // file:line
+    ValueLists                values;
+    ValueLists                settings; // those that the table itself sets, instead of the experiment's
+    std::vector<AskedSources> sources;  // likewise; empty: the experiment's
 };
 
 /// A setting of [trace] or [passes], which is also a column of the record.
@@ -55,13 +63,6 @@ struct Setting : Parameter {
 };
 /// Returns all settings; the catalogue's surface models and reprojection strategies are choices among them.
 std::vector<Setting> all_settings(const Catalogue& catalogue);
-
-/// A list of [sources] that a run asks for answers beyond its frame.
-struct AskedSources {
-    std::string               text; // as in the specification: "frame,world"
-    std::vector<ListedSource> list; // empty: none is asked
-    HandOn                    hand_on = HandOn::uncertain;
-};
 
 struct Experiment {
     std::filesystem::path                           file;

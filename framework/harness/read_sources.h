@@ -1,4 +1,4 @@
-// The table [sources] of a specification. Folder-internal: those who include it link toml++.
+// The table [sources] of a specification, and the key `sources` of its techniques. Folder-internal: those who include it link toml++.
 #pragma once
 
 #include "core/toml_reading.h"
@@ -9,5 +9,9 @@ namespace ssrlab {
 /// Returns every list with every value of hand_on, or one entry without a list if there is no table. Throws SpecError
 /// for what is unknown, and if there will be no truths to judge by.
 std::vector<AskedSources> read_sources(const TomlFile& file, const MeasureSettings& measure);
+
+/// Returns the lists of `node`, one text or several, each with every value of `hand_on`. Throws likewise.
+std::vector<AskedSources> read_source_lists(const TomlFile& file, const toml::node& node, const std::string& key,
+                                            std::span<const HandOn> hand_on, const MeasureSettings& measure);
 
 } // namespace ssrlab

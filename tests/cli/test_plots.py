@@ -44,29 +44,32 @@ class Test(Case):
         self.addCleanup(plt.close, "all")
         return figures, tables
 
-    def test_the_ladder_of_sources(self):
-        """Two frames of 100 rays, 20 and 40 of them lost; world behind the frame takes 30 + 20 ms, alone 100 ms."""
-        asked = ("frame,cube", "lost", 60), ("frame,world", "uncertain", 20), ("world", "uncertain", 100)
+    def asked_of_two_frames(self, *asked):
+        """Two frames of 100 rays, 20 and 40 of them lost. Of each run: technique, sources, hand_on, and what its last source takes, in ms."""
         rows, lines = [], []
         for scene, lost in (("a", 20), ("b", 40)):
-            for number, (sources, hand_on, ms) in enumerate(asked):
+            for number, (technique, sources, hand_on, ms) in enumerate(asked):
                 run = f"r{len(rows)}"
-                rows.append(dict(scene=scene, run_number=number, technique="hiz", sources=sources, hand_on=hand_on))
+                rows.append(dict(scene=scene, run_number=number, technique=technique, sources=sources, hand_on=hand_on))
                 for place, source in enumerate(sources.split(",")):
                     counts = {f"{kind}_{cls}": 0 for kind in ("handed", "right") for cls in ("visible", *plots.sources.LOST)}
                     if place == 0:
                         counts.update(handed_visible=100 - lost, handed_hidden=lost // 4, handed_facing_away=3 * lost // 4)
                     if source == "cube":
                         counts["right_hidden"] = lost // 4
-                    recall = {"frame": 1 - lost / 100, "cube": 1 - 0.75 * lost / 100, "world": 1}[source]
+                    recall = {"frame": 0.3 if technique == "linear" else 1 - lost / 100, "cube": 1 - 0.75 * lost / 100, "world": 1}[source]
                     lines.append(dict(counts, run_id=run, place=place, source=source, handed=100, meeting=100, points=10, right=8, certain_points=50,
-                                      certain_right=49, draw_ms=0, trace_ms=30 if source == "frame" else ms, shade_ms=0, megabytes=1, node_visits=10 * ms,
+                                      certain_right=49, draw_ms=0, trace_ms=30 if source == "frame" and technique == "hiz" else ms, shade_ms=0, megabytes=1, node_visits=10 * ms,
                                       all_meeting=100, all_recall=recall, all_precision=1, all_f1=recall))
         os.makedirs(self.path("out"))
         write_table(self.path("out/sources.csv"), lines)
-        results = made_results(self, rows, ["sources", "hand_on"])
+        return made_results(self, rows, ["sources", "hand_on"])
+
+    def test_the_ladder_of_sources(self):
+        """World behind the frame takes 30 + 20 ms, alone 100 ms."""
+        results = self.asked_of_two_frames(("hiz", "frame,cube", "lost", 60), ("hiz", "frame,world", "uncertain", 20), ("hiz", "world", "uncertain", 100))
         figure, = self.drawn(plots.sources.ladder, results)[0].values()
-        self.assertEqual(figure.finding, "The frame answers 70 % of the rays rightly, “+ world” 100.0 %, in 0.5 times the time of the world alone (line: Pareto front)")
+        self.assertEqual(figure.finding, "F1 over all rays: 70 % by the frame, 100.0 % by “+ world”, in 0.5 times the time of the world alone (line: Pareto front)")
         steps, back, hybrids = plots.sources.tables_of(results).values()
         self.assertEqual([(step["sources"], step["ms"], step["recall, %"]) for step in steps],
                          [("frame", "30", "70.0"), ("+ world", "50", "100.0"), ("+ cube (lost)", "90", "77.5"), ("world alone", "100", "100.0")])
@@ -77,6 +80,15 @@ class Test(Case):
                          "“cube” answers most of the lost rays rightly: 25 % in the mean")
         self.assertEqual([row["cube"] for row in back], ["25 (80)"] * 3)
         self.assertEqual([row["time / world alone"] for row in hybrids], ["0.50", "0.50"])
+
+    def test_a_tracer_without_further_sources_is_a_step_of_the_ladder(self):
+        results = self.asked_of_two_frames(("linear", "frame", "uncertain", 5), ("hiz", "frame,world", "uncertain", 20), ("hiz", "world", "uncertain", 100))
+        figure, = self.drawn(plots.sources.ladder, results)[0].values()
+        self.assertEqual(figure.finding, "F1 over all rays: 30 % by linear, 70 % by hiz, 100.0 % by “+ world”, "
+                         "in 0.5 times the time of the world alone (line: Pareto front)")
+        steps, _ = plots.sources.tables_of(results).values()
+        self.assertEqual([(step["sources"], step["ms"], step["recall, %"]) for step in steps],
+                         [("linear", "5", "30.0"), ("hiz", "30", "70.0"), ("+ world", "50", "100.0"), ("world alone", "100", "100.0")])
 
     def test_the_law_of_steps(self):
         """2 ms and 0.01 ms a step from 50 steps on. 0.15 m is nearer to 0.1 m than 0.06 m by its ratio; of looks the most count."""

@@ -263,6 +263,21 @@ TEST(Spec, EveryListOfSourcesIsARun)
     EXPECT_TRUE(load_text(head).sources.front().list.empty()) << "none without the table";
 }
 
+TEST(Spec, ATechniquesOwnSourcesStandInPlaceOfTheExperiments)
+{
+    const Experiment experiment =
+        load_text("scenes = \"a\"\n[techniques.linear]\nsources = [\"frame\", \"frame,cube\"]\n"
+                  "[techniques.dda]\n[sources]\nlists = \"world\"\n");
+    std::vector<std::string> asked;
+    for (const Run& run : expand(experiment, techniques())) asked.push_back(run.technique + " " + run.sources.text);
+    EXPECT_THAT(asked, testing::UnorderedElementsAre("linear frame", "linear frame,cube", "dda world"));
+    EXPECT_EQ(count_runs(experiment), 3);
+    EXPECT_THAT(error_of("scenes = \"a\"\n[techniques.dda]\nsources = \"wurld\"\n"),
+                HasSubstr(".toml:3: 'wurld': unknown source 'wurld': did you mean 'world'?"));
+    EXPECT_THAT(error_of("scenes = \"a\"\n[techniques.dda]\nsources = \"frame\"\n[measure]\ntruth = false\n"),
+                HasSubstr(".toml:3: sources are judged by the truths"));
+}
+
 TEST(Spec, MistakesInSources)
 {
     const auto mistake = [](const std::string& lines) { return error_of(with_line("[sources]\n" + lines)); };
@@ -278,7 +293,7 @@ TEST(Spec, MistakesInSources)
     EXPECT_THAT(mistake("list = \"frame\""),
                 HasSubstr(".toml:4: unknown key of [sources] 'list': did you mean 'lists'?"));
     EXPECT_THAT(mistake("lists = \"frame\"\n[measure]\ntruth = false"),
-                HasSubstr(".toml:3: [sources] are judged by the truths: needs truth = true in [measure], got false"));
+                HasSubstr(".toml:4: sources are judged by the truths: needs truth = true in [measure], got false"));
     EXPECT_THAT(error_of(with_line("sources = \"frame\"")), HasSubstr(".toml:3: 'sources' must be a table"));
 }
 
