@@ -10,6 +10,8 @@ REFERENCE = "results/reference/lavapipe/tiny"
 EXPERIMENT = """
 scenes = ["builtin:stairs"]
 sizes  = ["64x36"]
+[passes]
+gloss = ["off", "blur"]
 [techniques.linear]
 steps = STEPS
 [measure]
@@ -48,10 +50,14 @@ class Test(Case):
 
     def test_what_an_experiment_makes_is_replaced(self):
         said = self.references()
-        self.assertEqual(len(self.rows(REFERENCE)), 2)
+        self.assertEqual({(row["steps"], row["gloss"]) for row in self.rows(REFERENCE)}, {("8", "off"), ("16", "off"), ("8", "blur"), ("16", "blur")})
+        self.assertEqual(set(self.rows("results/tiny")[0]) - set(self.rows(REFERENCE)[0]) & {"picture", "surface", "trace_resolution", "frame_ms_median"},
+                         {"picture", "trace_resolution"})
         self.assertIn("linear", self.held("summary.csv"))
         environment = json.loads(self.held("environment.json"))
         self.assertEqual(environment["commit"], "abc")
+        self.assertEqual(environment["constants"]["trace_resolution"], "full")
+        self.assertNotIn("gloss", environment["constants"])
         self.assertNotIn("samples", environment)
         self.assertNotIn("/elsewhere", environment["command_line"])
         self.assertEqual(self.held("by_hand.png"), "old")
