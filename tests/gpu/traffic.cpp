@@ -55,36 +55,39 @@ TEST(Traffic, OfTheDepthPyramidIsEachDepthOnceAndEachCellOnce)
 // Over two frames of a sequence with every pass that is not off.
 TEST(Traffic, EveryPassMovesBytes)
 {
-    const glm::ivec2                   size_px{64, 36};
-    const std::vector<ParameterValues> choices = {
-        {chosen(Gloss::stochastic), chosen(MissLight::triangles), {"hidden_layer", 1}, {"picture_history_weight", 0.5}},
-        {chosen(Gloss::blur), chosen(Filter3x3::median3)},
-        {chosen(Gloss::cone)},
-        {chosen(Gloss::blur), chosen(TraceResolution::half), chosen(BlurOrder::before_upsampling)}};
+    const glm::ivec2                                   size_px{64, 36};
+    const std::vector<std::pair<int, ParameterValues>> choices = {
+        {1,
+         {chosen(Gloss::stochastic),
+          chosen(MissLight::triangles),
+          {"hidden_layer", 1},
+          {"picture_history_weight", 0.5}}},
+        {2, {chosen(Gloss::blur), chosen(Filter3x3::median3)}},
+        {1, {chosen(Gloss::cone)}},
+        {1, {chosen(Gloss::blur), chosen(TraceResolution::half), chosen(BlurOrder::before_upsampling)}}};
     std::set<std::string> moving;
-    for (const int layers : {1, 2})
-        for (const ParameterValues& changed : choices) {
-            Stage         stage = open_stage(device(), catalogue(), load_scene("builtin:moving_boxes"));
-            FrameSettings settings;
-            settings.trace.surface = "plane_solid";
-            settings.trace.layers  = layers;
-            for (const auto& [name, value] : changed) settings.passes.at(name) = value;
-            settings.passes.at("skip_unneeded_passes") = 0;
-            const FrameHistoryPtr history              = make_history(device(), size_px);
-            for (int number = 0; number < 2; ++number) {
-                show(stage, "default", size_px, {number});
-                const Technique&      hiz     = technique("hiz");
-                const LabPtr          lab     = make_lab(stage, hiz, values_of(hiz), settings.trace);
-                const FrameBuffersPtr buffers = make_frame_buffers(stage);
-                const FramePlan       plan    = plan_frame(stage, lab, buffers, settings, history);
-                const FramePtr        frame   = make_frame(device(), lab, buffers, plan, history);
-                run_frame(device(), *frame);
-                keep_history(device(), *frame, number);
-                // Passes of a lower resolution run without need in the others, and move nothing there.
-                for (const PassTraffic& pass : count_traffic(device(), *frame))
-                    if (pass.written_bytes > 0) moving.insert(pass.pass);
-            }
+    for (const auto& [layers, changed] : choices) {
+        Stage         stage = open_stage(device(), catalogue(), load_scene("builtin:moving_boxes"));
+        FrameSettings settings;
+        settings.trace.surface = "plane_solid";
+        settings.trace.layers  = layers;
+        for (const auto& [name, value] : changed) settings.passes.at(name) = value;
+        settings.passes.at("skip_unneeded_passes") = 0;
+        const FrameHistoryPtr history              = make_history(device(), size_px);
+        for (int number = 0; number < 2; ++number) {
+            show(stage, "default", size_px, {number});
+            const Technique&      hiz     = technique("hiz");
+            const LabPtr          lab     = make_lab(stage, hiz, values_of(hiz), settings.trace);
+            const FrameBuffersPtr buffers = make_frame_buffers(stage);
+            const FramePlan       plan    = plan_frame(stage, lab, buffers, settings, history);
+            const FramePtr        frame   = make_frame(device(), lab, buffers, plan, history);
+            run_frame(device(), *frame);
+            keep_history(device(), *frame, number);
+            // Passes of a lower resolution run without need in the others, and move nothing there.
+            for (const PassTraffic& pass : count_traffic(device(), *frame))
+                if (pass.written_bytes > 0) moving.insert(pass.pass);
         }
+    }
     for (const Pass& pass : all_passes())
         EXPECT_TRUE(moving.contains(pass.per_structure ? "depth_pyramid" : pass.id)) << pass.id;
 }
