@@ -73,6 +73,13 @@ Picture make_picture(const DrawingPtr& drawing) { return make_picture(drawing->g
 
 } // namespace
 
+std::vector<std::string> made_scenes_and(std::vector<std::string> names)
+{
+    for (const SceneListing& listing : list_scenes())
+        if (listing.name.starts_with("builtin:")) names.push_back(listing.name);
+    return names;
+}
+
 Picture make_picture(const std::string& scene, const std::string& view, glm::ivec2 size_px)
 {
     const LoadedScene& loaded = load(scene);

@@ -44,6 +44,9 @@ inline ParameterValues report_passes()
     return passes;
 }
 
+/// Every builtin scene, and these of models and textures.
+std::vector<std::string> made_scenes_and(std::vector<std::string> names);
+
 /// A frame as it is planned and made.
 FramePtr prepared_frame(const FrameBuffersPtr& buffers, const Technique& technique, const ParameterValues& values,
                         const FrameSettings& settings, const FrameHistoryPtr& history = nullptr);

@@ -48,11 +48,11 @@ GBufferImage written_and_read(const GBufferImage& image)
     return load_scene((folder / "frame.exr").string()).frame->gbuffer;
 }
 
-TEST(OwnFrames, ExportImportAndTraceGiveTheSameBitsOnEveryShippedScene)
+TEST(OwnFrames, ExportImportAndTraceGiveTheSameBits)
 {
-    for (const SceneListing& listing : list_scenes()) {
-        SCOPED_TRACE(listing.name);
-        const Picture drawn    = make_picture(listing.name, "default", size_px);
+    for (const std::string& scene : made_scenes_and({"interior", "thin_yard"})) {
+        SCOPED_TRACE(scene);
+        const Picture drawn    = make_picture(scene, "default", size_px);
         const Picture imported = make_picture(written_and_read(drawn.image));
         expect_same(drawn.image, imported.image);
         for (const std::string surface : {"box", "plane_solid"}) {
