@@ -37,7 +37,7 @@ struct Frame {
     glm::ivec2  size_px;
 };
 
-constexpr glm::ivec2 odd{641, 363}, even{640, 360}, row{97, 1}, large{1919, 1079}, for_models{321, 181};
+constexpr glm::ivec2 odd{641, 363}, even{640, 360}, row{97, 1}, large{1919, 1079}, smaller{321, 181};
 
 /// Real scenes with their views besides the default one; a level one is among them.
 const std::map<std::string, std::vector<std::string>> real_scenes = {{"animal_on_metal", {"level", "steep"}},
@@ -47,7 +47,7 @@ const std::map<std::string, std::vector<std::string>> real_scenes = {{"animal_on
                                                                      {"engine", {"level", "close"}},
                                                                      {"forest_clearing", {"level", "close"}}};
 
-/// Here every level of the pyramid is tried; in other scenes the default levels.
+/// Here every level of the pyramid is tried in the default view; elsewhere the default levels.
 bool is_thorough(const std::string& scene)
 {
     return scene == "builtin:stairs" || scene == "builtin:pole_field" || real_scenes.contains(scene);
@@ -73,11 +73,11 @@ std::vector<std::string> other_views(const std::string& scene)
     return views;
 }
 
-/// Each view of the scene in this size.
-std::vector<Frame> in_every_view(const std::string& scene, glm::ivec2 size_px)
+/// Each view of the scene, the default one in this size.
+std::vector<Frame> in_every_view(const std::string& scene, glm::ivec2 default_px)
 {
-    std::vector<Frame> frames{{"default", size_px}};
-    for (const std::string& view : other_views(scene)) frames.push_back({view, size_px});
+    std::vector<Frame> frames{{"default", default_px}};
+    for (const std::string& view : other_views(scene)) frames.push_back({view, smaller});
     return frames;
 }
 
@@ -266,7 +266,7 @@ const Held every_model[] = {{"box", Behind::pass},           {"box", Behind::sto
 std::vector<Frame> frames_for_models(const Case& c)
 {
     if (c.frames == Frames::large) return {{"default", large}};
-    std::vector<Frame> frames = in_every_view(c.scene, for_models);
+    std::vector<Frame> frames = in_every_view(c.scene, smaller);
     frames.push_back({"default", row});
     return frames;
 }
