@@ -122,17 +122,16 @@ function countDiffering(hits, expected) {
     return differing;
 }
 
-/// Runs every frame of this folder; say(line) is told of each, answered(name, answers) gets them.
-async function verifyFolder(names, say, answered = () => {}) {
+/// Runs these frames of an exported folder; say(line) is told of each, answered(name, answers) gets them.
+async function verifyFolder(device, folder, names, say, answered = () => {}) {
     const fetched = async (path) => {
-        const answer = await fetch(path);
+        const answer = await fetch(folder + path);
         if (!answer.ok) throw new Error(`${path}: ${answer.statusText}`);
         return answer;
     };
     const read = async (path) => (await fetched(path)).arrayBuffer();
     const text = async (path) => (await fetched(path)).text();
-    const device = await openDevice();
-    device.addEventListener("uncapturederror", (event) => say(`error: ${event.error.message}`));
+    device.onuncapturederror = (event) => say(`error: ${event.error.message}`);
     for (const name of names) {
         const frame = JSON.parse(await text(`frames/${name}.json`));
         const answers = await runFrame(device, frame, read, text);
@@ -140,5 +139,4 @@ async function verifyFolder(names, say, answered = () => {}) {
         say(`${name}: ${countDiffering(answers.hits, expected)} of ${frame.rays} rays differ`);
         await answered(name, answers);
     }
-    return device.name;
 }

@@ -19,6 +19,9 @@ namespace fs = std::filesystem;
 constexpr std::array proof_cases = {"axis_aligned", "exact_diagonal", "crossings_of_odd_sizes", "sphere_on_floor",
                                     "orthographic"};
 
+/// The largest image that WebGPU promises, and all that SwiftShader has.
+constexpr int webgpu_size_px = 8192;
+
 ExportLanguage language_of(const std::string& name)
 {
     static const std::map<std::string, ExportLanguage> languages = {{"glsl", ExportLanguage::glsl},
@@ -107,36 +110,61 @@ int print_verdicts(std::span<const FrameVerdict> verdicts, const std::string& de
     return differing == (are_ties_right ? near_ties : 0) && rays > 0 ? 0 : 1;
 }
 
-/// Exports each hard case by itself, since each has its own settings, and runs it.
-int verify_hard_cases(Gpu& gpu, const Catalogue& catalogue, const Technique& technique, const Choice& choice,
-                      const ExportOptions& options)
+/// A setup of a hard case, exported by itself, since each has its own settings.
+struct ExportedSetup {
+    std::string hard_case, label;
+    fs::path    folder;
+};
+
+std::vector<ExportedSetup> export_hard_cases(Gpu& gpu, const Catalogue& catalogue, const Technique& technique,
+                                             const Choice& choice, const ExportOptions& options, const fs::path& root)
 {
-    const TemporaryFolder     temporary("ssrlab_hard_cases");
-    const fs::path            folder = temporary.path / "export";
-    std::vector<FrameVerdict> verdicts;
+    std::vector<ExportedSetup> exported;
     for (const CaseFamily& family : hard_cases())
         for (const HardCase& hard_case : family.cases) {
-            FrameVerdict          sum{.frame = hard_case.name};
+            if (!options.only_case.empty() && options.only_case != hard_case.name) continue;
             const ParameterValues values = adjusted(hard_case, technique, choice.values);
             for (Setup& setup : hard_case.setups()) {
                 if (std::ranges::count(technique.ignores, "behind") > 0) setup.settings.behind = Behind::hit;
                 if (setup.settings.layers > 1) continue; // no export holds them
+                const glm::ivec2 size_px = setup.gbuffer.view.size_px;
+                if (options.language == "wgsl" && std::max(size_px.x, size_px.y) > webgpu_size_px) continue;
                 const Export      what{catalogue, technique, values, setup.settings, language_of(options.language), ""};
                 const ExportFrame frame{"case", "", setup.gbuffer, setup.rays};
-                write_export(gpu, what, std::span(&frame, 1), folder);
-                const FrameVerdict one = verify_export(gpu, folder).front();
-                fs::remove_all(folder);
-                sum.rays += one.rays;
-                sum.differing += one.differing;
-                sum.set_up += one.set_up;
-                sum.set_up_differing += one.set_up_differing;
-                sum.near_ties += one.near_ties;
-                if (sum.listed.empty() && !one.listed.empty())
-                    sum.listed.push_back(setup.label + " " + one.listed.front());
+                exported.push_back({hard_case.name, setup.label, root / std::to_string(exported.size())});
+                write_export(gpu, what, std::span(&frame, 1), exported.back().folder);
             }
-            verdicts.push_back(std::move(sum));
         }
-    return print_verdicts(verdicts, gpu.info.name);
+    return exported;
+}
+
+int verify_hard_cases(Gpu& gpu, const Catalogue& catalogue, const Technique& technique, const Choice& choice,
+                      const ExportOptions& options)
+{
+    const TemporaryFolder temporary("ssrlab_hard_cases");
+    const auto            exported = export_hard_cases(gpu, catalogue, technique, choice, options, temporary.path);
+    std::vector<fs::path> folders;
+    for (const ExportedSetup& one : exported) folders.push_back(one.folder);
+    const bool   is_wgsl = options.language == "wgsl";
+    WgslVerdicts found{.frames = {}, .device = gpu.info.name};
+    if (is_wgsl)
+        found = verify_wgsl_exports(folders);
+    else
+        for (const fs::path& folder : folders) found.frames.push_back(verify_export(gpu, folder).front());
+    std::vector<FrameVerdict> sums;
+    for (size_t i = 0; i < exported.size(); ++i) {
+        if (sums.empty() || sums.back().frame != exported[i].hard_case)
+            sums.push_back({.frame = exported[i].hard_case});
+        FrameVerdict&       sum = sums.back();
+        const FrameVerdict& one = found.frames[i];
+        sum.rays += one.rays;
+        sum.differing += one.differing;
+        sum.set_up += one.set_up;
+        sum.set_up_differing += one.set_up_differing;
+        sum.near_ties += one.near_ties;
+        for (const std::string& line : one.listed) sum.listed.push_back(exported[i].label + " " + line);
+    }
+    return print_verdicts(sums, found.device, is_wgsl);
 }
 
 } // namespace
@@ -147,7 +175,8 @@ int export_technique(const CommonOptions& common, const ExportOptions& options, 
         if (!options.picture.technique.empty() || !options.picture.output.empty())
             throw_spec_error("--verify runs a folder that was exported: give no technique and no -o");
         if (is_wgsl_export(options.verified)) {
-            const WgslVerdicts found = verify_wgsl_export(options.verified);
+            const fs::path     folder = options.verified;
+            const WgslVerdicts found  = verify_wgsl_exports(std::span(&folder, 1));
             return print_verdicts(found.frames, found.device, true);
         }
         Gpu gpu = open_gpu(common.gpu);
@@ -164,8 +193,9 @@ int export_technique(const CommonOptions& common, const ExportOptions& options, 
     CommonOptions    device    = common;
     device.gpu                 = portable(common.gpu);
     if (options.hard_cases) {
-        if (options.language != "glsl" && options.language != "hlsl")
-            throw_spec_error("--hard-cases: expected --to glsl or hlsl, which are run here");
+        if (options.language == "msl" || options.language == "essl")
+            throw_spec_error("--hard-cases: expected --to glsl, hlsl or wgsl, which are run here");
+        if (!options.only_case.empty()) find_case(options.only_case);
         Gpu gpu                = open_gpu(device.gpu);
         gpu.info.cheap_doubles = false; // rays are set up by floats, as on every device
         return verify_hard_cases(gpu, catalogue, technique, choice, options);

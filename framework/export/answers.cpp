@@ -23,11 +23,10 @@ constexpr size_t ray_words = 8, hit_words = 2; // README.md of an export says wh
 constexpr size_t most_listed = 10;             // differing rays of a frame
 constexpr double near_tie_px = 0.05;           // what rounding may move a hit
 
+glm::ivec2 pixel_of(uint32_t word) { return {word & (MAX_IMAGE_PX - 1), (word >> PIXEL_BITS) & (MAX_IMAGE_PX - 1)}; }
+
 /// "(x, y)" of a ray's or hit's word.
-std::string pixel_text(uint32_t word)
-{
-    return fmt::format("({}, {})", word & (MAX_IMAGE_PX - 1), (word >> PIXEL_BITS) & (MAX_IMAGE_PX - 1));
-}
+std::string pixel_text(uint32_t word) { return fmt::format("({}, {})", pixel_of(word).x, pixel_of(word).y); }
 
 TraceStatus status_of(uint32_t word)
 {
@@ -49,11 +48,14 @@ bool same_hit(const uint32_t* a, const uint32_t* b)
     return a[0] == b[0] && (!has_place(status_of(a[0])) || a[1] == b[1]);
 }
 
-/// Between the points where two answers end a ray; infinite where they are not of one status with a place.
+/// Between the points where two answers end a ray; infinite where they are not of one status with a place, or their pixels
+/// do not touch.
 double distance_px(const uint32_t* ray, const uint32_t* a, const uint32_t* b)
 {
     const TraceStatus status = status_of(a[0]);
-    if (status != status_of(b[0]) || !has_place(status)) return std::numeric_limits<double>::infinity();
+    const glm::ivec2  apart  = glm::abs(pixel_of(a[0]) - pixel_of(b[0]));
+    if (status != status_of(b[0]) || !has_place(status) || std::max(apart.x, apart.y) > 1)
+        return std::numeric_limits<double>::infinity();
     const double difference = static_cast<double>(real_of(a[1])) - static_cast<double>(real_of(b[1]));
     return std::abs(difference) * std::hypot(real_of(ray[4]), real_of(ray[5]));
 }
@@ -70,7 +72,8 @@ void compare_hits(FrameVerdict& verdict, const Words& rays, const Words& expecte
         if (verdict.differing++ >= most_listed) continue;
         verdict.listed.push_back(fmt::format(
             "ray {} of pixel {}: {}, expected {}{}", i, pixel_text(rays[i * ray_words + 7]), hit_text(given),
-            hit_text(right), apart_px < near_tie_px ? fmt::format(" ({:.2g} px apart: rounding)", apart_px) : ""));
+            hit_text(right),
+            apart_px < near_tie_px ? fmt::format(" ({:.2g} px apart: rounding)", apart_px) : " (unexplained)"));
     }
 }
 

@@ -62,8 +62,8 @@ struct WgslVerdicts {
     std::string               device; // as the browser names it
 };
 bool is_wgsl_export(const std::filesystem::path& folder);
-/// The same for an export to WGSL, by WebGPU in Chromium without a window, on its software device. Throws Failure if the
-/// browser or node is missing, or does not run the shaders.
-WgslVerdicts verify_wgsl_export(const std::filesystem::path& folder);
+/// The same for exports to WGSL, by WebGPU in Chromium without a window, on its software device. Returns the frames of all
+/// folders, in their order. Throws Failure if the browser or node is missing, or does not run the shaders.
+WgslVerdicts verify_wgsl_exports(std::span<const std::filesystem::path> folders);
 
 } // namespace ssrlab

@@ -38,6 +38,9 @@ template <typename Real> std::string real_literal(Real value)
     return text;
 }
 
+/// What begins the literal of an infinite number. It is no constant expression.
+constexpr const char* bits_of_infinity = "uintBitsToFloat(";
+
 std::string literal(const std::string& type, const Constants& constants, uint32_t id)
 {
     if (type == "int") return std::to_string(value_of<int32_t>(constants, id));
@@ -45,7 +48,7 @@ std::string literal(const std::string& type, const Constants& constants, uint32_
     if (type == "double") return real_literal(value_of<double>(constants, id)) + "LF";
     const float value = value_of<float>(constants, id);
     return std::isfinite(value) ? real_literal(value)
-                                : fmt::format("uintBitsToFloat({:#X}u)", std::bit_cast<uint32_t>(value));
+                                : fmt::format("{}{:#X}u)", bits_of_infinity, std::bit_cast<uint32_t>(value));
 }
 
 /// The number that a macro of the text, or a literal, stands for.
@@ -78,8 +81,10 @@ std::string with_values(const std::string& text, const Constants& constants, con
         const uint32_t    id    = number_of(match.str(1), text);
         const std::string value = has_value(constants, id) ? literal(match.str(2), constants, id) : match.str(4);
         const bool        stays = kept.contains(match.str(3));
-        return fmt::format("{}const {} {} = {};", stays ? fmt::format("layout(constant_id = {}) ", id) : "",
-                           match.str(2), match.str(3), value);
+        const std::string kind  = stays ? fmt::format("layout(constant_id = {}) const ", id)
+                                  : value.starts_with(bits_of_infinity) ? ""
+                                                                        : "const ";
+        return fmt::format("{}{} {} = {};", kind, match.str(2), match.str(3), value);
     });
 }
 

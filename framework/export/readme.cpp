@@ -158,7 +158,8 @@ std::string readme(const Export& what, const View& view, std::span<const Exporte
         text +=
             "## Host\n`run.js` is a host for WebGPU without dependencies: it makes the resources and pipelines of a "
             "frame, runs its passes and reads hits back. In a page that a server gives out of this folder, "
-            "`verifyFolder([\"scene\"], console.log)` runs the proof on the visitor's GPU. WGSL has no `precise`, so "
+            "`verifyFolder(await openDevice(), \"\", [\"scene\"], console.log)` runs the proof on the visitor's GPU. "
+            "WGSL has no `precise`, so "
             "a GPU may round otherwise than `expected/`.\n\n";
     text +=
         "## Proof\n`frames/` has inputs and `expected/` has the answer of every ray. `ssrlab export --verify FOLDER` "

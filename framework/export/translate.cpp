@@ -104,17 +104,25 @@ std::string translated_to_wgsl(const Shader& shader, const fs::path& folder)
     return with_read_access(wgsl, read_file(shader.name), shader);
 }
 
-} // namespace
-
-std::string translated(const Shader& shader, ExportLanguage language, const std::string& comment)
+std::string translated_without_comment(const Shader& shader, ExportLanguage language)
 {
     const TemporaryFolder folder("ssrlab_export");
-    if (language == ExportLanguage::wgsl) return comment + translated_to_wgsl(shader, folder.path);
+    if (language == ExportLanguage::wgsl) return translated_to_wgsl(shader, folder.path);
     const fs::path spirv = folder.path / "shader.spv", text = folder.path / "text";
     write_spirv(shader.spirv, spirv);
     std::vector<std::string> words{"spirv-cross", spirv.string(), "--output", text.string()};
     for (const std::string& option : options_of(language)) words.push_back(option);
-    const std::string result = run_translator(shader, words, text, "spirv-cross");
+    return run_translator(shader, words, text, "spirv-cross");
+}
+
+} // namespace
+
+std::string translated(const Shader& shader, ExportLanguage language, const std::string& comment)
+{
+    // Hard cases share most of their shaders, and a translator takes longer to start than to translate one.
+    static std::map<std::pair<ExportLanguage, std::vector<uint32_t>>, std::string> known;
+    std::string& result = known[{language, shader.spirv}];
+    if (result.empty()) result = translated_without_comment(shader, language);
     // GLSL's #version stays the first line.
     const size_t first = result.starts_with("#version") ? result.find('\n') + 1 : 0;
     return result.substr(0, first) + comment + result.substr(first);

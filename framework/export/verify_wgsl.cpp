@@ -21,27 +21,32 @@ bool is_wgsl_export(const fs::path& folder)
     return false;
 }
 
-WgslVerdicts verify_wgsl_export(const fs::path& folder)
+WgslVerdicts verify_wgsl_exports(std::span<const fs::path> folders)
 {
-    const TemporaryFolder answers("ssrlab_answers");
-    WgslVerdicts          found;
-    for_each_frame(folder, [](const fs::path& file) { json::parse(read_file(file)).at("resources").at("rays"); });
-    const ProgramEnd done = run_program(
-        {"node", (web_folder() / "verify.mjs").string(), fs::absolute(folder).string(), answers.path.string()},
-        ProgramOutput::kept);
+    const TemporaryFolder    answers("ssrlab_answers");
+    std::vector<std::string> words{"node", (web_folder() / "verify.mjs").string(), answers.path.string()};
+    for (const fs::path& folder : folders) {
+        for_each_frame(folder, [](const fs::path& file) { json::parse(read_file(file)).at("resources").at("rays"); });
+        words.push_back(fs::absolute(folder).string());
+    }
+    const ProgramEnd done = run_program(words, ProgramOutput::kept);
     if (done.code == program_is_missing) throw_failure("node is not installed: install Debian's package nodejs");
-    if (done.code != 0) throw_failure("{}: {}", folder.string(), done.output.substr(0, done.output.find('\n')));
+    if (done.code != 0) throw Failure(done.output.substr(0, done.output.find('\n')));
+    WgslVerdicts found;
     found.device = read_file(answers.path / "device.txt");
-    for_each_frame(folder, [&](const fs::path& file) {
-        const json        frame = json::parse(read_file(file));
-        const std::string name  = file.stem().string();
-        Answers           given{.hits = read_words(answers.path / (name + ".hits.bin"))};
-        if (frame.at("expected").contains("made_rays")) {
-            given.made_rays  = read_words(answers.path / (name + ".made_rays.bin"));
-            given.made_count = read_words(answers.path / (name + ".made_count.bin")).at(0);
-        }
-        found.frames.push_back(compare_answers(frame, file, given));
-    });
+    for (size_t i = 0; i < folders.size(); ++i)
+        for_each_frame(folders[i], [&](const fs::path& file) {
+            const json frame = json::parse(read_file(file));
+            const auto read  = [&](const char* what) {
+                return read_words(answers.path / fmt::format("{}.{}.{}.bin", i, file.stem().string(), what));
+            };
+            Answers given{.hits = read("hits")};
+            if (frame.at("expected").contains("made_rays")) {
+                given.made_rays  = read("made_rays");
+                given.made_count = read("made_count").at(0);
+            }
+            found.frames.push_back(compare_answers(frame, file, given));
+        });
     return found;
 }
 

@@ -144,9 +144,7 @@ std::string glsl_for_wgsl(const std::string& glsl, const std::function<std::stri
     for (const auto& [resource, blocks] : blocks_of(glsl, resource_of))
         if (blocks.size() > 1) merge(text, resource, blocks);
     static const std::regex infinity(R"(uintBitsToFloat\(0[xX]7F800000[uU]\))");
-    static const std::regex constant(R"(\bconst (\w+ \w+ = -?uintBitsToFloat\(infinity_bits\)))");
     text                   = std::regex_replace(text, infinity, "uintBitsToFloat(infinity_bits)");
-    text                   = std::regex_replace(text, constant, "$1");
     const size_t extension = text.rfind("#extension");
     const size_t first     = text.find('\n', extension == std::string::npos ? 0 : extension) + 1;
     return text.insert(first, replacements);
