@@ -1,10 +1,13 @@
 #include "app/fit_command.h"
 
 #include "app/fit_report.h"
+#include "core/environment_variable.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "core/names.h"
 #include "core/printable.h"
+#include "gpu/compiled.h"
+#include "harness/chip_cost.h"
 #include "harness/columns.h"
 #include "harness/supervise.h"
 #include "harness/write_experiment.h"
@@ -21,12 +24,23 @@ namespace fs = std::filesystem;
 // The sweep, and then halvings of the ratio between its neighbours: of 8 to less than 1.1 (search_ratio) in six.
 constexpr int most_rounds = 7;
 
-double budget_of(const FitOptions& options)
+struct Budget {
+    FitUnit unit;
+    double  most;
+};
+
+Budget budget_of(const FitOptions& options)
 {
-    if (options.budget_ms.has_value() == options.budget_fetches.has_value())
-        throw_spec_error("fit: expected a budget: --budget-ms or --budget-fetches, one of them");
-    const double budget = options.budget_ms ? *options.budget_ms : *options.budget_fetches;
-    if (!(budget > 0)) throw_spec_error("fit: expected a budget above 0, got {}", budget);
+    std::vector<Budget> given;
+    if (options.budget_ms) given.push_back({FitUnit::ms, *options.budget_ms});
+    if (options.budget_fetches) given.push_back({FitUnit::fetches, *options.budget_fetches});
+    if (options.budget_instructions) given.push_back({FitUnit::instructions, *options.budget_instructions});
+    if (given.size() != 1)
+        throw_spec_error("fit: expected a budget: --budget-ms, --budget-fetches or --budget-instructions, one of them");
+    const Budget budget = given.front();
+    if ((budget.unit == FitUnit::instructions) == options.chip.empty())
+        throw_spec_error("fit: expected --budget-instructions and --chip together");
+    if (!(budget.most > 0)) throw_spec_error("fit: expected a budget above 0, got {}", budget.most);
     return budget;
 }
 
@@ -136,8 +150,9 @@ std::string measure_text(const FitGoal& goal)
 {
     std::string text = "double_twin  = false\npictures     = false\nsaved_time   = false\n";
     if (!goal.picture) text += "image_errors = false\n";
-    return text + (goal.in_ms ? "min_repeats  = 6\nmax_repeats  = 30\nbudget_s     = 0.5\n"
-                              : "warmup_s     = 0\nmin_repeats  = 1\nmax_repeats  = 1\nbudget_s     = 0\n");
+    return text + (goal.unit == FitUnit::ms
+                       ? "min_repeats  = 6\nmax_repeats  = 30\nbudget_s     = 0.5\n"
+                       : "warmup_s     = 0\nmin_repeats  = 1\nmax_repeats  = 1\nbudget_s     = 0\n");
 }
 
 std::vector<std::string> run_command(const CommonOptions& common, const fs::path& specification, const fs::path& folder)
@@ -168,6 +183,28 @@ void add_rows(const fs::path& folder, const fs::path& specification, const Catal
     while (const auto fields = take_csv_record(rest)) rows[fields->front()] = record_of(*fields, columns);
 }
 
+/// A device that compiles for the chip. The sweep's processes inherit the environment, and run where they would without it.
+Gpu open_chip(const std::string& chip)
+{
+    const EnvironmentVariable family("RADV_FORCE_FAMILY"), driver("VK_ICD_FILENAMES"), drivers("VK_DRIVER_FILES");
+    pretend_chip(chip);
+    GpuOptions options;
+    options.compiles_only = true;
+    return open_gpu(options);
+}
+
+/// Adds the column "instructions" to the rows of a setting.
+void add_instructions(const ChipCode& code, const Run& setting, std::span<const Run> pictures,
+                      std::map<std::string, Record>& rows)
+{
+    for (const Run& picture : pictures) {
+        const auto row = rows.find(on_picture(setting, picture).id);
+        if (row == rows.end()) continue;
+        if (const auto instructions = instructions_of(code, row->second, picture.size_px))
+            row->second["instructions"] = *instructions;
+    }
+}
+
 struct Measured {
     std::vector<Run>   pictures;
     std::vector<Tried> tried;
@@ -194,11 +231,11 @@ void say_dropped(std::span<const Run> all, std::span<const Run> judged)
                          picture.scene.c_str(), picture.view.c_str());
 }
 
-/// The sweep, and then what next_tries() asks for, each into a folder of its own.
+/// The sweep, and then what next_tries() asks for, each into a folder of its own. chip: whose instructions are paid.
 Measured measure(const CommonOptions& common, const FitOptions& options, const Catalogue& catalogue,
-                 const Experiment& sweep, const FitGoal& goal)
+                 const Experiment& sweep, const FitGoal& goal, std::optional<Gpu>& chip)
 {
-    const double budget  = budget_of(options);
+    const double budget  = budget_of(options).most;
     auto [all, pictures] = take_apart(expand(sweep, catalogue.techniques));
     std::map<std::string, Record> rows;
     Measured                      measured;
@@ -211,10 +248,14 @@ Measured measure(const CommonOptions& common, const FitOptions& options, const C
         write_file_atomically(specification,
                               experiment_text(folder.filename().string(), pictures, next, sweep.known_settings,
                                               catalogue.techniques, measure_text(goal)));
+        std::vector<ChipCode> codes; // of `next`; none without a chip
+        if (chip)
+            for (const Run& run : next) codes.push_back(compile_for_chip(*chip, catalogue, run));
         const int code = supervise(run_command(common, specification, folder));
         measured.code  = std::max(measured.code, code);
         if (measured.is_over = code > 1 || !fs::exists(folder / "results.csv"); measured.is_over) return measured;
         add_rows(folder, specification, catalogue, rows);
+        for (size_t i = 0; i < codes.size(); ++i) add_instructions(codes[i], next[i], pictures, rows);
         measured.pictures = judged_pictures(pictures, all, rows, goal);
         if (measured.pictures.size() < pictures.size()) say_dropped(pictures, measured.pictures);
         pictures       = measured.pictures;
@@ -232,18 +273,21 @@ Measured measure(const CommonOptions& common, const FitOptions& options, const C
 
 int fit_to_budget(const CommonOptions& common, const FitOptions& options)
 {
-    const double     budget    = budget_of(options);
-    const FitGoal    goal      = {options.objective == "flip", options.budget_ms.has_value()};
+    const Budget     budget    = budget_of(options);
+    const FitGoal    goal      = {options.objective == "flip", budget.unit};
     const Catalogue  catalogue = load_catalogue(common.technique_dirs);
     const Experiment sweep     = load_sweep(common, options, catalogue);
     if (options.leave_one_out && std::ranges::all_of(sweep.scenes, [&](const std::string& scene) {
             return views_of(sweep, scene).size() * sweep.frames.size() < 2 || is_frame(scene);
         }))
         throw_spec_error("--leave-one-out: expected a scene with two or more views");
+    std::optional<Gpu> chip;
+    if (goal.unit == FitUnit::instructions) chip = open_chip(options.chip);
     require_folder(options);
-    const Measured measured = measure(common, options, catalogue, sweep, goal);
+    const Measured measured = measure(common, options, catalogue, sweep, goal, chip);
     if (measured.is_over) return measured.code;
-    const FitReport report{measured.pictures, measured.tried, sweep.known_settings, catalogue.techniques, goal, budget};
+    const FitReport report{measured.pictures,    measured.tried, sweep.known_settings,
+                           catalogue.techniques, goal,           budget.most};
     if (options.leave_one_out) {
         const std::string text = "`" + options.command_line + "`\n\n" + leave_one_out_text(report);
         const fs::path    file = fs::path(options.output) / "leave_one_out.md";
@@ -252,7 +296,7 @@ int fit_to_budget(const CommonOptions& common, const FitOptions& options)
         std::puts(file.string().c_str());
         return measured.code;
     }
-    const Fit fit = require_fit(measured.tried, every_picture(report), budget, goal);
+    const Fit fit = require_fit(measured.tried, every_picture(report), budget.most, goal);
     print_fit(report, fit);
     const fs::path choice = fs::path(options.output) / "choice.toml";
     write_file_atomically(choice, "# " + printable(options.command_line) + "\n" +

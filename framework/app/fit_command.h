@@ -16,7 +16,8 @@ struct FitOptions {
     std::string              objective = "f1";       // or flip
     std::string              output    = "results/fit";
     std::string              command_line;
-    std::optional<double>    budget_ms, budget_fetches; // one of them
+    std::optional<double>    budget_ms, budget_fetches, budget_instructions; // one of them
+    std::string              chip; // whose instructions; empty: the budget is in another unit
     bool                     resume = false, leave_one_out = false;
 };
 

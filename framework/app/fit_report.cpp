@@ -11,8 +11,6 @@
 namespace ssrlab {
 namespace {
 
-const char* unit(const FitGoal& goal) { return goal.in_ms ? "ms" : "fetches a ray"; }
-
 /// The values of what differs between the settings that were tried; of parameters, between those of its technique.
 std::string setting_text(const FitReport& report, const Run& run)
 {
@@ -43,7 +41,7 @@ std::string row_text(const FitReport& report, const std::string& label, const Tr
 
 std::string share_label(const FitReport& report, double share)
 {
-    return fmt::format("{:.4g} {}", share * report.budget, unit(report.goal));
+    return fmt::format("{:.4g} {}", share * report.budget, unit_text(report.goal.unit));
 }
 
 /// In points: of F1, or of FLIP times 100.
@@ -83,8 +81,8 @@ void print_fit(const FitReport& report, const Fit& fit)
     std::puts(fmt::format("{} settings on {} picture{}; the cost is that of the dearest picture", report.tried.size(),
                           pictures.size(), pictures.size() == 1 ? "" : "s")
                   .c_str());
-    std::puts(fmt::format("{:<22} {:<8} {:<14} {}", "budget", report.goal.picture ? "FLIP" : "F1", unit(report.goal),
-                          "setting")
+    std::puts(fmt::format("{:<22} {:<8} {:<14} {}", "budget", report.goal.picture ? "FLIP" : "F1",
+                          unit_text(report.goal.unit), "setting")
                   .c_str());
     std::puts(row_text(report, share_label(report, 1), fit.best).c_str());
     if (fit.runner_up != nullptr) std::puts(row_text(report, "runner-up", fit.runner_up).c_str());
@@ -121,7 +119,7 @@ std::string leave_one_out_text(const FitReport& report)
                        "loss within it | largest |\n| --: | --: | --: | --: | --: | --: | --: |\n{}\n"
                        "| scene | view left out | budget | fitted to the others | its {} | best {} of the view | "
                        "points lost | its {} |\n| --- | --- | --: | --- | --: | --: | --: | --: |\n{}",
-                       unit(report.goal), summary, quality, quality, unit(report.goal), rows);
+                       unit_text(report.goal.unit), summary, quality, quality, unit_text(report.goal.unit), rows);
 }
 
 } // namespace ssrlab

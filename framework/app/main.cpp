@@ -149,6 +149,11 @@ void add_judge_options(CLI::App& command, ssrlab::JudgeOptions& options)
     command.add_flag("--json", options.json, "As JSON, with every wrong ray");
 }
 
+void add_chip_option(CLI::App& command, std::string& chip, const char* meaning)
+{
+    command.add_option("--chip", chip, fmt::format("{}: {}", meaning, fmt::join(ssrlab::known_chips(), ", ")));
+}
+
 void add_fit_options(CLI::App& command, ssrlab::FitOptions& options)
 {
     command.add_option("SCENE", options.scenes, "Scenes as for render, and frames of other renderers (.exr)")
@@ -158,6 +163,9 @@ void add_fit_options(CLI::App& command, ssrlab::FitOptions& options)
                        "G-buffer");
     command.add_option("--budget-fetches", options.budget_fetches,
                        "Reads of depth and structures per ray: exact, and the same on every device");
+    command.add_option("--budget-instructions", options.budget_instructions,
+                       "Instructions of a chip per ray: structures and trace, as its compiler makes them");
+    add_chip_option(command, options.chip, "The AMD GPU of --budget-instructions, which need not be there");
     command
         .add_option("--objective", options.objective,
                     "f1: of the rays, against the scene truth; flip: of the picture, against the true reflection")
@@ -375,9 +383,8 @@ int main(int argc, char** argv)
                  "shaders",
                  "Show what a GPU's compiler makes of each pass: registers, code, the innermost loop (docs/how-to/devices.md)");
     compiled->add_option("TECHNIQUE", shaders.techniques, "Techniques; default: all");
-    compiled->add_option("--chip", shaders.chip,
-                         fmt::format("Compile for this AMD GPU without having it: {}; default: for the present device",
-                                     fmt::join(known_chips(), ", ")));
+    add_chip_option(*compiled, shaders.chip,
+                    "Compile for this AMD GPU without having it; default: for the present device");
     compiled->add_option("-p,--parameter", shaders.parameters,
                          "name=value, as for render; for every technique that has it");
     compiled->add_option("--assembly", shaders.assembly, "Also write the assembly of each pass into this folder");

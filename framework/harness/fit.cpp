@@ -40,10 +40,11 @@ std::optional<double> sum_of(const Record& row, std::span<const char* const> col
 std::optional<double> cost_of(const Record& row, double most_rays, const FitGoal& goal)
 {
     constexpr const char* times[] = {"structures_ms_median", "trace_ms_median", "rays_ms_median", "shade_ms_median"};
-    if (goal.in_ms) return sum_of(row, std::span(times, goal.picture ? 4 : 2));
-    const auto fetches = number_of(row, "fetches_mean"), rays = number_of(row, "rays");
-    if (!fetches || !rays || most_rays == 0) return std::nullopt;
-    return *fetches * *rays / most_rays;
+    if (goal.unit == FitUnit::ms) return sum_of(row, std::span(times, goal.picture ? 4 : 2));
+    const auto paid = number_of(row, goal.unit == FitUnit::fetches ? "fetches_mean" : "instructions");
+    const auto rays = number_of(row, "rays");
+    if (!paid || !rays || most_rays == 0) return std::nullopt;
+    return *paid * *rays / most_rays;
 }
 
 double most_rays_on(const Run& picture, std::span<const Run> settings, const std::map<std::string, Record>& rows)
@@ -63,6 +64,11 @@ std::vector<size_t> all_of(std::span<const Tried> tried)
 }
 
 } // namespace
+
+const char* unit_text(FitUnit unit)
+{
+    return unit == FitUnit::ms ? "ms" : unit == FitUnit::fetches ? "fetches a ray" : "instructions a ray";
+}
 
 Run on_picture(Run run, const Run& picture)
 {
@@ -152,7 +158,7 @@ Fit require_fit(std::span<const Tried> tried, std::span<const size_t> pictures, 
     const Tried& cheapest =
         *std::ranges::min_element(tried, {}, [&](const Tried& one) { return cost_on(one, pictures); });
     throw_spec_error("no setting stays within {:.6g} {} on every picture; the cheapest, of {}, takes {:.6g}", budget,
-                     goal.in_ms ? "ms" : "fetches a ray", cheapest.run.technique, cost_on(cheapest, pictures));
+                     unit_text(goal.unit), cheapest.run.technique, cost_on(cheapest, pictures));
 }
 
 std::vector<Run> next_tries(std::span<const Technique> techniques, std::span<const Tried> tried, double budget,

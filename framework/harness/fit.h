@@ -11,11 +11,16 @@
 
 namespace ssrlab {
 
+/// The unit of a budget. Fetches and instructions are those per ray of the setting with the most rays.
+enum class FitUnit : uint8_t { ms, fetches, instructions };
+/// "fetches a ray"
+const char* unit_text(FitUnit unit);
+
 /// What is judged and what is paid, as columns of results.csv.
 struct FitGoal {
     bool picture = false; // FLIP of the picture, and the time of all passes after the G-buffer; else F1, and the time
                           // of structures and trace
-    bool in_ms = false;   // the budget is milliseconds; else fetches per ray of the setting with the most rays
+    FitUnit unit = FitUnit::fetches; // instructions: the column "instructions" (chip_cost.h)
 };
 
 /// A setting and what was measured, by picture. A picture is named by any run on it.

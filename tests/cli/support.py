@@ -1,5 +1,6 @@
 """Runs the built program; a test that fails says how to repeat its last command."""
 import csv
+import glob
 import importlib.machinery
 import importlib.util
 import os
@@ -118,6 +119,10 @@ class Case(unittest.TestCase):
         errors = [line for line in text.splitlines() if line.startswith("ssrlab: ")]
         self.assertEqual(len(errors), 1, f"one line of error\nrepeat: {self.last_command}\n{text}")
         return text
+
+    def need_amd(self):
+        if not glob.glob("/usr/share/vulkan/icd.d/radeon_icd.*"):
+            self.skipTest("no driver for AMD GPUs: install Debian's package mesa-vulkan-drivers")
 
     def rows(self, folder="out", table="results.csv"):
         with open(os.path.join(self.path(folder), table), encoding="utf-8", newline="") as file:

@@ -1,4 +1,5 @@
 """ssrlab fit: the choice is the best of the rows that it measured, its file repeats it, and each budget and objective pays its own columns."""
+import json
 import os
 import re
 
@@ -78,6 +79,34 @@ class Test(Case):
             self.assertAlmostEqual(float(line[2]) / cost[0], 1, delta=1e-3)
             os.rename(self.path("fit"), self.path(objective))
 
+    def test_instructions_are_those_that_the_compiler_shows(self):
+        self.need_amd()
+        surface = ("-p", "surface=plane", "-p", "max_steps=12")
+        said = self.fit("builtin:corridor", "--view", "steep", "--budget-instructions", "1e6", "--chip", "navi21", "-t", "hiz", *surface)
+        row, = self.rows("fit/round_1")
+        compiled = json.loads(self.ssrlab("--quiet", "shaders", "hiz", "--chip", "navi21", "--json", "-p", "pass_set=shading", *surface))
+        trace, = [one for one in compiled["pipelines"] if one["shader"].startswith("trace/trace")]
+        pyramid, = [one["instructions_a_pixel"] for one in compiled["frames"][0]["passes"] if one["pass"] == "depth_pyramid"]
+        self.assertGreater(pyramid, 0)
+        iterations = float(row["wave64_iterations_mean" if trace["lanes"] == 64 else "warp32_iterations_mean"])
+        self.assertGreater(iterations, 1)
+        expected = (pyramid * 48 * 27 / float(row["rays"]) + trace["statistics"]["Instructions"]
+                    + trace["innermost_loop"]["instructions"] * (iterations - 1))
+        line = re.search(r"^1e\+06 instructions a ray +(\S+) +(\S+) +hiz$", said, re.M)
+        self.assertEqual(line[1], f"{float(row['f1_1px']):.4f}", said)
+        self.assertAlmostEqual(float(line[2]) / expected, 1, delta=1e-3)
+        # The sweep ran on the device of this environment, not on the chip.
+        self.assertNotIn("NAVI21", self.text("fit/round_1/environment.json"))
+        self.ssrlab("run", "fit/choice.toml", "-o", "again", "--quiet")
+
+    def test_a_chip_that_cannot_be_asked(self):
+        budget = ("builtin:stairs", "--sweep", "sweep.toml", "-o", "none", "--quiet", "--budget-instructions", "100")
+        self.refused("fit", *budget, code=2, says=["--budget-instructions and --chip together"])
+        self.refused("fit", *budget, "--budget-ms", "1", "--chip", "navi21", code=2, says=["one of them"])
+        self.refused("fit", *budget[:-2], "--budget-ms", "1", "--chip", "navi21", code=2, says=["--budget-instructions and --chip together"])
+        self.refused("fit", *budget, "--chip", "navi22", code=2, says=["did you mean 'navi21'?"])
+        self.assertFalse(os.path.exists(self.path("none")))
+
     def test_the_page(self):
         page = read(PAGE)
         blocks = re.findall(r"^```sh\n(.*?)^```", page, re.M | re.S)
@@ -94,7 +123,7 @@ class Test(Case):
 
     def test_wrong_input_is_refused(self):
         self.ssrlab("gbuffer", "builtin:stairs", "--size", "32x18", "-o", "frame.exr")
-        for arguments, says in ((("builtin:stairs",), "--budget-ms or --budget-fetches, one of them"),
+        for arguments, says in ((("builtin:stairs",), "--budget-ms, --budget-fetches or --budget-instructions, one of them"),
                                 (("builtin:stairs", "--budget-ms", "1", "--budget-fetches", "1"), "one of them"),
                                 (("builtin:stairs", "--budget-ms", "0"), "a budget above 0, got 0"),
                                 (("builtin:stares", "--budget-ms", "1"), "builtin:stares"),

@@ -1,8 +1,8 @@
 // What is kept in the user's cache folder comes back whole or not at all.
 #include "gpu/disk_cache.h"
 
+#include "core/environment_variable.h"
 #include "core/files.h"
-#include "environment_variable.h"
 #include "temp_folder.h"
 #include "test.h"
 
@@ -13,8 +13,8 @@ namespace fs = std::filesystem;
 
 class DiskCache : public testing::Test {
 protected:
-    TempFolder                folder_;
-    test::EnvironmentVariable cache_{"XDG_CACHE_HOME", folder_.path().string()};
+    TempFolder          folder_;
+    EnvironmentVariable cache_{"XDG_CACHE_HOME", folder_.path().string()};
 };
 
 TEST_F(DiskCache, ReturnsWhatWasKept)
@@ -51,11 +51,11 @@ TEST_F(DiskCache, IgnoresFilesUnderAnothersName)
 
 TEST_F(DiskCache, DoesWithoutAFolder)
 {
-    const test::EnvironmentVariable unwritable("XDG_CACHE_HOME", "/proc");
+    const EnvironmentVariable unwritable("XDG_CACHE_HOME", "/proc");
     write_cached("thing", "bytes");
     EXPECT_EQ(read_cached("thing"), std::nullopt);
-    const test::EnvironmentVariable relative("XDG_CACHE_HOME", "relative");
-    const test::EnvironmentVariable home("HOME", std::nullopt);
+    const EnvironmentVariable relative("XDG_CACHE_HOME", "relative");
+    const EnvironmentVariable home("HOME", std::nullopt);
     write_cached("thing", "bytes");
     EXPECT_EQ(read_cached("thing"), std::nullopt);
 }

@@ -1,6 +1,7 @@
 // The choice within a budget, over rows whose best is known by argument.
 #include "core/error.h"
 #include "errors.h"
+#include "harness/chip_cost.h"
 #include "harness/fit.h"
 #include "harness/write_experiment.h"
 #include "temp_folder.h"
@@ -14,7 +15,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-constexpr FitGoal f1_by_fetches = {false, false}, flip_by_fetches = {true, false};
+constexpr FitGoal f1_by_fetches = {false, FitUnit::fetches}, flip_by_fetches = {true, FitUnit::fetches};
 constexpr size_t  both[] = {0, 1}, first[] = {0};
 
 Tried tried(const std::string& technique, std::vector<double> quality, std::vector<double> cost)
@@ -60,7 +61,10 @@ TEST(Fit, NothingWithinTheBudgetNamesTheCheapest)
     EXPECT_EQ(fit_within(all, both, 4.5, f1_by_fetches).best, nullptr);
     EXPECT_THAT(message_of<SpecError>([&] { require_fit(all, both, 4.5, f1_by_fetches); }),
                 HasSubstr("within 4.5 fetches a ray on every picture; the cheapest, of cheap, takes 5"));
-    EXPECT_THAT(message_of<SpecError>([&] { require_fit(all, both, 1, {false, true}); }), HasSubstr("within 1 ms"));
+    EXPECT_THAT(message_of<SpecError>([&] {
+                    require_fit(all, both, 1, {false, FitUnit::ms});
+                }),
+                HasSubstr("within 1 ms"));
     EXPECT_THAT(message_of<Failure>([&] { require_fit({}, both, 1, f1_by_fetches); }), HasSubstr("no setting"));
 }
 
@@ -92,6 +96,37 @@ TEST(Fit, FetchesArePaidPerRayOfTheSettingWithTheMostRays)
     EXPECT_THAT(all[1].quality, ElementsAre(0.8));
 }
 
+TEST(Fit, InstructionsGrowWithTheIterationsOfAWave)
+{
+    const Record row = {{"rays", 50.0},
+                        {"warp32_iterations_mean", 3.0},
+                        {"wave64_iterations_mean", 5.0},
+                        {"wave128_iterations_mean", 0.5}};
+    // 3 of each of 100 pixels, 40 of each of 50 rays, and the loop's 10 again for each iteration but the first.
+    EXPECT_EQ(instructions_of({3, 40, 10, 32}, row, {10, 10}), 6 + 40 + 20);
+    EXPECT_EQ(instructions_of({3, 40, 10, 64}, row, {10, 10}), 6 + 40 + 40);
+    EXPECT_EQ(instructions_of({3, 40, 10, 128}, row, {10, 10}), 6 + 40);
+    EXPECT_EQ(instructions_of({3, 40, 10, 64}, {{"rays", 0.0}, {"wave64_iterations_mean", 0.0}}, {10, 10}),
+              std::nullopt);
+    EXPECT_EQ(instructions_of({3, 40, 10, 64}, {{"rays", 50.0}}, {10, 10}), std::nullopt);
+}
+
+TEST(Fit, InstructionsArePaidPerRayOfTheSettingWithTheMostRays)
+{
+    const ssrlab::Run             settings[] = {run_on("a", "full"), run_on("a", "half"), run_on("a", "not compiled")};
+    std::map<std::string, Record> rows       = {
+              {settings[0].id, row(0.9, 1, 100)}, {settings[1].id, row(0.8, 1, 25)}, {settings[2].id, row(0.9, 1, 100)}};
+    rows[settings[0].id]["instructions"] = 300.0;
+    rows[settings[1].id]["instructions"] = 360.0;
+    const FitGoal goal                   = {false, FitUnit::instructions};
+    const auto    all                    = tried_on(std::span(settings, 1), settings, rows, goal);
+    ASSERT_THAT(all, SizeIs(2));
+    EXPECT_THAT(all[0].cost, ElementsAre(300));
+    EXPECT_THAT(all[1].cost, ElementsAre(90));
+    EXPECT_THAT(message_of<SpecError>([&] { require_fit(all, first, 80, goal); }),
+                HasSubstr("within 80 instructions a ray on every picture; the cheapest, of half, takes 90"));
+}
+
 TEST(Fit, MillisecondsAreThoseOfTheTraceOrOfTheWholeEffect)
 {
     const ssrlab::Run setting = run_on("a", "t");
@@ -99,8 +134,8 @@ TEST(Fit, MillisecondsAreThoseOfTheTraceOrOfTheWholeEffect)
                                  {"trace_ms_median", 1.0}, {"structures_ms_median", 2.0},
                                  {"rays_ms_median", 4.0},  {"shade_ms_median", 8.0}};
     const std::span   one_run(&setting, 1);
-    const auto        rays = tried_on(one_run, one_run, {{setting.id, one}}, {false, true});
-    const auto        flip = tried_on(one_run, one_run, {{setting.id, one}}, {true, true});
+    const auto        rays = tried_on(one_run, one_run, {{setting.id, one}}, {false, FitUnit::ms});
+    const auto        flip = tried_on(one_run, one_run, {{setting.id, one}}, {true, FitUnit::ms});
     EXPECT_THAT(rays.at(0).cost, ElementsAre(3));
     EXPECT_THAT(rays.at(0).quality, ElementsAre(0.5));
     EXPECT_THAT(flip.at(0).cost, ElementsAre(15));

@@ -1,7 +1,7 @@
 // What a row says about a run, from results whose figures are known.
 #include "compare/validate_result.h"
+#include "core/environment_variable.h"
 #include "core/error.h"
-#include "environment_variable.h"
 #include "harness/columns.h"
 #include "harness/measured_run.h"
 #include "harness/passes.h"
@@ -455,9 +455,9 @@ TEST(Rows, AFrameWithoutTrianglesIsJudgedWhereItReflects)
 
 TEST(Rows, TheTruthCacheLiesBesideTheResults)
 {
-    const test::EnvironmentVariable none("SSRLAB_CACHE", std::nullopt);
+    const EnvironmentVariable none("SSRLAB_CACHE", std::nullopt);
     EXPECT_EQ(truth_cache_dir("/a/results/steps"), "/a/results/.truth_cache");
-    const test::EnvironmentVariable elsewhere("SSRLAB_CACHE", "/elsewhere");
+    const EnvironmentVariable elsewhere("SSRLAB_CACHE", "/elsewhere");
     EXPECT_EQ(truth_cache_dir("/a/results/steps"), "/elsewhere");
 }
 

@@ -1,9 +1,9 @@
 // Times of techniques come back from their file as they were kept; a damaged file is refused.
 #include "harness/kept_times.h"
 
+#include "core/environment_variable.h"
 #include "core/error.h"
 #include "core/files.h"
-#include "environment_variable.h"
 #include "temp_folder.h"
 #include "test.h"
 
@@ -31,9 +31,9 @@ TEST(KeptTimes, ComeBackAsTheyWereKept)
 
 TEST(KeptTimes, EachDeviceHasAFileOfItsOwn)
 {
-    const TempFolder                folder;
-    const test::EnvironmentVariable cache("XDG_CACHE_HOME", folder.path().string());
-    const auto                      file = kept_times_file("A/B (1, 256 bits)");
+    const TempFolder          folder;
+    const EnvironmentVariable cache("XDG_CACHE_HOME", folder.path().string());
+    const auto                file = kept_times_file("A/B (1, 256 bits)");
     EXPECT_EQ(file, folder / "ssrlab/exact_A_B__1__256_bits_.json");
     EXPECT_NE(file, kept_times_file("A/B (2, 256 bits)"));
 }

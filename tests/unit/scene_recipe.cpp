@@ -1,4 +1,4 @@
-#include "environment_variable.h"
+#include "core/environment_variable.h"
 #include "scene_files.h"
 
 #include "core/files.h"
@@ -255,9 +255,9 @@ TEST(SceneRecipe, DataAndRecipesAreFoundThroughTheEnvironment)
     folder.write("mine/my_scene.toml",
                  "summary = 'Mine'\n[[part]]\nfile = 'package:pkg/usr/share/ssrlab-test/pyramid.obj'\n"
                  "[[part]]\nfile = 'sweethome3d:stool'\nposition = [5, 0, 0]\n");
-    const test::EnvironmentVariable data("SSRLAB_DATA", (folder / "data").string());
-    const test::EnvironmentVariable scenes("SSRLAB_SCENES", "/nowhere:" + (folder / "mine").string());
-    const Scene                     scene = load_scene("my_scene");
+    const EnvironmentVariable data("SSRLAB_DATA", (folder / "data").string());
+    const EnvironmentVariable scenes("SSRLAB_SCENES", "/nowhere:" + (folder / "mine").string());
+    const Scene               scene = load_scene("my_scene");
     EXPECT_EQ(scene.name, "my_scene");
     EXPECT_NEAR(scene.draws.back().bounds_max_ws.y, 0.4, 1e-6) << "furniture is in centimetres";
     bool listed = false;

@@ -1,15 +1,20 @@
-// A variable of the process's environment, set or absent while this lives.
+// A variable of the process's environment: what it was comes back at the end.
 #pragma once
 
-#include "test.h"
+#include <cstdlib>
+#include <optional>
+#include <string>
 
-namespace ssrlab::test {
+namespace ssrlab {
 
 class EnvironmentVariable {
 public:
-    EnvironmentVariable(const char* name, const std::optional<std::string>& value) : name_(name)
+    explicit EnvironmentVariable(const char* name) : name_(name)
     {
         if (const char* before = std::getenv(name)) before_ = before;
+    }
+    EnvironmentVariable(const char* name, const std::optional<std::string>& value) : EnvironmentVariable(name)
+    {
         set(value);
     }
     ~EnvironmentVariable() { set(before_); }
@@ -29,4 +34,4 @@ private:
     std::optional<std::string> before_;
 };
 
-} // namespace ssrlab::test
+} // namespace ssrlab
