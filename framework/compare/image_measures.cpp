@@ -195,7 +195,8 @@ MeasureValues count_not_finite(const Image& picture, const GBufferImage* gbuffer
         bool found = false;
         for (size_t c = 0; c < channels; ++c) found = found || bad(picture.values[i * channels + c]);
         if (gbuffer != nullptr) {
-            for (const std::vector<float>* plane : {&gbuffer->depth, &gbuffer->roughness, &gbuffer->metallic})
+            for (const std::vector<float>* plane :
+                 {&gbuffer->depth, &gbuffer->roughness, &gbuffer->metallic, &gbuffer->diffuse_share})
                 found = found || (i < plane->size() && bad((*plane)[i]));
             for (const std::vector<glm::vec3>* plane : {&gbuffer->normal_vs, &gbuffer->base_colour, &gbuffer->radiance,
                                                         &gbuffer->highlight, &gbuffer->emission})

@@ -30,6 +30,9 @@ struct GBufferImage {
             // behind the camera. Empty: nothing moved, or no frame came before
     std::vector<glm::vec3> emission =
         {}; // linear; the part of `radiance` that the surface emits. Reflections do not take its place. Empty: 0
+    std::vector<float> diffuse_share =
+        {}; // of `radiance` without `emission` and metal's share of ambient light: the rest is baked light that stands
+            // in for what a metal reflects. Empty: 1
     std::vector<float> dielectric_f0 =
         {}; // reflectance at normal incidence of what is not metal. Empty: common_dielectric_f0
     std::vector<GBufferImage> layers =
@@ -45,6 +48,11 @@ inline float dielectric_f0_at(const GBufferImage& gbuffer, size_t i)
 inline glm::vec3 emission_at(const GBufferImage& gbuffer, size_t i)
 {
     return gbuffer.emission.empty() ? glm::vec3(0) : gbuffer.emission[i];
+}
+
+inline float diffuse_share_at(const GBufferImage& gbuffer, size_t i)
+{
+    return gbuffer.diffuse_share.empty() ? 1 : gbuffer.diffuse_share[i];
 }
 
 } // namespace ssrlab

@@ -140,7 +140,7 @@ GBufferPtr upload_gbuffer(Gpu& gpu, const GBufferImage& image)
     for (size_t i = 0; i < count; ++i) {
         radiance[i]  = to_half({image.radiance[i], 1});
         highlight[i] = to_half({image.highlight[i], 1});
-        emission[i]  = to_half({emission_at(image, i), 1});
+        emission[i]  = to_half({emission_at(image, i), diffuse_share_at(image, i)});
     }
     upload(gpu, gbuffer->radiance, radiance.data(), count * sizeof(HalfTexel));
     upload(gpu, gbuffer->highlight, highlight.data(), count * sizeof(HalfTexel));
@@ -167,8 +167,10 @@ GBufferImage read_gbuffer(Gpu& gpu, const GBuffer& gbuffer)
         image.radiance.emplace_back(from_half(texel));
     for (const HalfTexel& texel : download_as<HalfTexel>(gpu, gbuffer.highlight))
         image.highlight.emplace_back(from_half(texel));
-    for (const HalfTexel& texel : download_as<HalfTexel>(gpu, gbuffer.emission))
+    for (const HalfTexel& texel : download_as<HalfTexel>(gpu, gbuffer.emission)) {
         image.emission.emplace_back(from_half(texel));
+        image.diffuse_share.push_back(from_half(texel).w);
+    }
     image.object_id = download_as<uint32_t>(gpu, gbuffer.object);
     for (const uint32_t packed : download_as<uint32_t>(gpu, gbuffer.gradient))
         image.gradient.push_back(unpack_gradient(packed));

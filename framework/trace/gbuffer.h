@@ -27,7 +27,7 @@ struct GBuffer {
     GpuImage                          dielectric;    // R32F: reflectance at normal incidence of what is not metal
     GpuImage                          radiance;      // RGBA16F: the part that is the same from every direction
     GpuImage                          highlight;     // RGBA16F: the part that depends on the view
-    GpuImage                          emission;      // RGBA16F: the part of radiance that the surface emits
+    GpuImage                          emission;      // RGBA16F: emitted part of radiance, diffuse_share
     GpuImage                          object;        // R32UI
     GpuImage                          gradient;      // R32UI: of depth, core/plane_gradient.h
     GpuImage                          solid;         // R32F: where the solid behind the pixel ends, 0: thin

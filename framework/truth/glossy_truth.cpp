@@ -153,7 +153,8 @@ private:
         const glm::ivec2 pixel = row.pixels[row.owners[path.sample]];
         const Lobe       lobe(seen_normal_ws(material, end.hit, ray.direction_ws), to_eye_ws, roughness);
         const glm::dvec3 f0 = f0_of(material.base_colour, double(material.metallic), double(material.dielectric_f0));
-        const glm::dvec3 stand_in = glm::dvec3(scene_.ambient * material.base_colour) * double(material.metallic);
+        const glm::dvec3 stand_in =
+            glm::dvec3((scene_.ambient + material.bounced) * material.base_colour) * double(material.metallic);
         const glm::dvec3 emission = glm::dvec3(material.emissive);
         const glm::dvec3 below    = glm::max(glm::dvec3(end.radiance) - emission - stand_in, 0.0);
         const double     side     = glm::dot(end.hit.normal_ws, ray.direction_ws) > 0 ? -1 : 1;
@@ -249,7 +250,7 @@ Image true_picture(const GlossyTruth& truth, const GBufferImage& gbuffer, glm::v
         if (truth.rays[i] > 0) {
             const glm::vec3 stand_in = gbuffer.metallic[i] * ambient * gbuffer.base_colour[i];
             const glm::vec3 emission = emission_at(gbuffer, i);
-            const glm::vec3 below    = glm::max(colour - emission - stand_in, 0.0F);
+            const glm::vec3 below    = glm::max(colour - emission - stand_in, 0.0F) * diffuse_share_at(gbuffer, i);
             colour = emission + (1.0F - truth.albedo[i]) * below + truth.radiance[i] + noises * truth.noise[i];
         }
         colour += gbuffer.highlight[i];

@@ -6,8 +6,8 @@
 // surface sends
 //   emission + (1 - albedo) * (diffuse light from below its surface) + highlights of the lights + its own reflection,
 // since the rendering equation adds emission to all that is scattered (J. Kajiya 1986). Diffuse light is the radiance
-// of scene_truth.h without emission and metal's share of the ambient light, which replaces the reflection after the
-// last bounce. Lights are points, so a path takes all surfaces to be at least as rough as the roughest before (A.
+// of scene_truth.h without emission and metal's share of ambient and baked light, which replaces the reflection after
+// the last bounce. Lights are points, so a path takes all surfaces to be at least as rough as the roughest before (A.
 // Kaplanyan, C. Dachsbacher 2013, "Path Space Regularization for Holistic and Robust Light Transport") and at least
 // 0.05, as the shaders do.
 // Rays follow the rules of scene_truth.h. Random numbers are a hash of pixel, ray and seed, so results repeat.

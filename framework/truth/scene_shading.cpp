@@ -126,8 +126,9 @@ glm::vec3 shade_point(const SceneBvh& bvh, const Scene& scene, const SceneHit& h
     const glm::dvec3      normal_ws  = seen_normal_ws(material, hit, direction_ws);
     const glm::vec3       irradiance = direct_irradiance(bvh, scene, met_point(hit, point_ws, direction_ws, normal_ws));
     const glm::vec3       albedo     = material.base_colour * (1 - material.metallic);
-    const glm::vec3       diffuse    = albedo * (1 / std::numbers::pi_v<float>)*irradiance + albedo * material.bounced;
-    return glm::min(diffuse + scene.ambient * material.base_colour + material.emissive, largest_radiance);
+    const glm::vec3       direct     = albedo * (1 / std::numbers::pi_v<float>)*irradiance;
+    const glm::vec3       around     = (scene.ambient + material.bounced) * material.base_colour;
+    return glm::min(direct + around + material.emissive, largest_radiance);
 }
 
 } // namespace ssrlab

@@ -59,7 +59,8 @@ struct LitPoint {
 glm::vec3 direct_irradiance(const SceneBvh& bvh, const Scene& scene, const LitPoint& lit);
 
 /// Returns Lambertian radiance with shadow rays; its bounces are those that vertices have:
-/// base (1 - metallic) (sum(irradiance cos shadow) / pi + bounced) + ambient base + emissive.
+/// base ((1 - metallic) sum(irradiance cos shadow) / pi + ambient + bounced) + emissive.
+/// On a metal, ambient and bounced light stand in for what it reflects.
 glm::vec3 shade_point(const SceneBvh& bvh, const Scene& scene, const SceneHit& hit, glm::dvec3 point_ws,
                       glm::dvec3 direction_ws);
 

@@ -34,7 +34,7 @@ layout(location = 3) out vec4 highlight;            // depends on the view
 layout(location = 4) out uint object;
 layout(location = 5) out uint gradient; // of depth, as framework/core/plane_gradient.h packs it
 layout(location = 6) out float dielectric_f0;
-layout(location = 7) out vec4 emission;             // part of radiance
+layout(location = 7) out vec4 emission;             // part of radiance; a: diffuse_share()
 
 vec3 shading_normal(Material material, Coordinates at)
 {
@@ -73,6 +73,15 @@ uint packed_gradient(float depth, vec2 slope)
     return finite ? (bits.x & 0xFFFF0000u) | bits.y >> 16 : 0xFFFFFFFFu;
 }
 
+// Of the radiance without emission and metal's share of ambient light, what is diffuse. The rest is baked light that, like ambient light,
+// stands in for what a metal reflects.
+float diffuse_share(vec3 base, float metallic, vec3 diffuse_light)
+{
+    float stand_in = metallic * dot(base, bounced_light);
+    float diffuse  = (1.0 - metallic) * dot(base, diffuse_light / pi + ambient + bounced_light);
+    return stand_in > 0.0 ? diffuse / (diffuse + stand_in) : 1.0;
+}
+
 void main()
 {
     vec2        depth_slope = vec2(dFdx(gl_FragCoord.z), dFdy(gl_FragCoord.z));
@@ -94,9 +103,9 @@ void main()
 
     normal_and_roughness = vec4(mat3(world_to_view) * normal, roughness);
     base_and_metallic    = vec4(base.rgb, metallic);
-    radiance             = vec4(min(base.rgb * ((1.0 - metallic) / pi * diffuse_light + ambient + (1.0 - metallic) * bounced_light) + emissive, largest_half), 1.0);
+    radiance             = vec4(min(base.rgb * ((1.0 - metallic) / pi * diffuse_light + ambient + bounced_light) + emissive, largest_half), 1.0);
     highlight            = vec4(highlights, 1.0);
-    emission             = vec4(emissive, 1.0);
+    emission             = vec4(emissive, diffuse_share(base.rgb, metallic, diffuse_light));
     object               = object_id;
     dielectric_f0        = material.dielectric_f0;
     gradient             = packed_gradient(gl_FragCoord.z, depth_slope);

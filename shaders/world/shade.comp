@@ -72,7 +72,7 @@ vec3 light_of(WorldRay ray, WorldHit hit, out NextRay onward)
     vec3 emissive = material.emissive * sample_texture(material, 3, point).rgb;
     vec3 bounced = vec3(0);
     for (int i = 0; i < 3; ++i) bounced += weights[i] * corner_of(point, i).bounced;
-    vec3 below = base * (1.0 - metallic) * (irradiance / pi + ambient + bounced), stand_in = base * metallic * ambient;
+    vec3 below = base * (1.0 - metallic) * (irradiance / pi + ambient + bounced), stand_in = base * metallic * (ambient + bounced);
 
     vec3 mirrored = reflect(along, normal);
     onward = NextRay(ray, vec3(0));

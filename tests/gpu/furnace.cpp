@@ -18,13 +18,15 @@ struct Furnace {
 class Furnaces : public testing::TestWithParam<Furnace> {};
 
 /// A wall in the furnace: what it scatters diffusely is in its own light, what it reflects is 1. Colours of the picture's middle pixel.
-glm::vec3 shown(const Furnace& furnace, float base, glm::vec3 emission)
+/// baked: its own light also has what stands in for the reflection of a metal.
+glm::vec3 shown(const Furnace& furnace, float base, glm::vec3 emission, bool baked = false)
 {
     GBufferImage image = metal_wall({16, 16});
     std::ranges::fill(image.metallic, furnace.metallic);
     std::ranges::fill(image.roughness, furnace.roughness);
     std::ranges::fill(image.base_colour, glm::vec3(base));
-    std::ranges::fill(image.radiance, glm::vec3(base * (1 - furnace.metallic)) + emission);
+    std::ranges::fill(image.radiance, glm::vec3(base * (baked ? 1 : 1 - furnace.metallic)) + emission);
+    if (baked) image.diffuse_share.assign(image.depth.size(), 1 - furnace.metallic);
     image.emission.assign(image.depth.size(), emission);
     const Picture picture = make_picture(image);
     const auto    frame   = frame_with(picture, {{"reflectance", furnace.reflectance}, {"metallic_exponent", 1}});
@@ -49,6 +51,16 @@ TEST_P(Furnaces, ScatterAtMostWhatArrivesAndEmitAllThatGlows)
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(glowing[c], dark[c] + emission[c], (1 + 2 * emission[c]) * half_ulp) << "base colour " << base;
     }
+}
+
+TEST_P(Furnaces, ShowBakedLightOnMetalOnlyWhereTheReflectionIsNotKnown)
+{
+    if (GetParam().reflectance != float(Reflectance::ggx)) return; // the others blend with all of the own light
+    for (const float base : {0.0F, 0.5F, 1.0F})
+        for (const glm::vec3& emission : {glm::vec3(0), glm::vec3(4, 0.5F, 0.25F)}) {
+            const glm::vec3 plain = shown(GetParam(), base, emission), baked = shown(GetParam(), base, emission, true);
+            for (int c = 0; c < 3; ++c) EXPECT_NEAR(baked[c], plain[c], (1 + 2 * emission[c]) * 0x1p-10F) << base;
+        }
 }
 
 INSTANTIATE_TEST_SUITE_P(

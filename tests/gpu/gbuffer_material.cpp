@@ -159,7 +159,7 @@ TEST(GBufferMaterial, EveryLightOfManyCounts)
 }
 
 // Light of vertices grows along x and z. In the frame, at what rays of the world meet, and in the truth: base colour x
-// ((1 - metallic) x bounced + ambient).
+// (bounced + ambient). Of both, 1 - metallic is the diffuse part.
 TEST(GBufferMaterial, LightOfVerticesIsTheSameInFrameWorldAndTruth)
 {
     Scene scene = model_to_scene(plane(matt), "plane");
@@ -178,12 +178,18 @@ TEST(GBufferMaterial, LightOfVerticesIsTheSameInFrameWorldAndTruth)
                                          {}, false, rays, trace_world(device(), *world, rays).hits);
     for (const auto [i, x, y] : pixels_of({40, 30})) {
         const glm::dvec3 from(rays[i].origin_ws), bounced(from.x + 5, from.z + 5, 1);
-        const glm::dvec3 expected = glm::dvec3(0.8, 0.5, 0.25) * (0.75 * bounced + glm::dvec3(0.1, 0.2, 0.3));
+        const glm::dvec3 base(0.8, 0.5, 0.25), ambient(0.1, 0.2, 0.3), expected = base * (bounced + ambient);
         const SceneRay   ray{from, {0, -1, 0}, 0, 2};
         SceneHit         hit;
         bvh.intersect({&ray, 1}, {&hit, 1});
         const std::string where = fmt::format("pixel ({}, {})", x, y);
-        if (draws_exactly()) expect_colour(picture.image.radiance[i], expected, where);
+        if (draws_exactly()) {
+            expect_colour(picture.image.radiance[i], expected, where);
+            const glm::dvec3 without = glm::dvec3(picture.image.radiance[i]) - 0.25 * base * ambient;
+            EXPECT_NEAR((without.r + without.g + without.b) * static_cast<double>(picture.image.diffuse_share[i]),
+                        0.75 * glm::dot(base, bounced + ambient), 0.01)
+                << where;
+        }
         expect_colour(light.light[i], expected, where + ", world");
         expect_colour(shade_point(bvh, scene, hit, {from.x, 0, from.z}, ray.direction_ws), expected, where + ", truth");
     }

@@ -110,6 +110,33 @@ TEST_P(GlowingBall, EverythingInsideGlows)
     EXPECT_GT(sum / values, 0.95 * with_bounces(least));
 }
 
+// Baked light stands in for what the metal of the third bounce reflects, and for nothing that is traced: a^3 times it.
+TEST(BakedBall, StandsInAfterTheLastBounceAlone)
+{
+    const float roughness = 0.7F, baked = 8;
+    const auto  mean = [&](float bounced) {
+        Scene scene;
+        scene.ambient                   = glm::vec3(0);
+        const uint32_t ball             = add_material(scene, {1, 1, 1}, 1);
+        scene.materials[ball].roughness = roughness;
+        add_sphere(scene, ball, {0, 0, -5}, 20, 32);
+        for (Vertex& vertex : scene.vertices) vertex.bounced = glm::vec3(bounced);
+        const GlossyTruth truth =
+            glossy_truth(SceneBvh(scene), scene, tilted_plane(0.3, 0.6F, {16, 16}), {}, {.rays = 64});
+        return mean_of(truth.radiance) / mean_of(truth.albedo);
+    };
+    double least = 1, most = 0;
+    for (const double angle : {0.0, 0.4, 0.8, 1.2, 1.5}) {
+        const double share = albedo_by_quadrature(angle, double(roughness) * double(roughness));
+        least              = std::min(least, share);
+        most               = std::max(most, share);
+    }
+    EXPECT_EQ(mean(0), 0);
+    EXPECT_GT(mean(baked), double(baked) * std::pow(least, 3));
+    // A twentieth for paths whose interpolated normals lead them into the ball's flat triangles: they end there.
+    EXPECT_LT(mean(baked), 1.05 * double(baked) * std::pow(most, 3));
+}
+
 INSTANTIATE_TEST_SUITE_P(Roughness, GlowingBall, testing::Values(0.0F, 0.3F, 0.7F, 1.0F));
 
 double mean_of(const Image& picture)
@@ -119,11 +146,13 @@ double mean_of(const Image& picture)
     return sum / double(picture.values.size());
 }
 
-/// A plane of that material in surroundings of radiance 1, which its own light knows as the ambient one.
-Image plane_in_white(GBufferImage gbuffer, float base, float metallic, float dielectric_f0)
+/// A plane of that material in surroundings of radiance 1, which its own light knows as the ambient one, or as baked.
+Image plane_in_white(GBufferImage gbuffer, float base, float metallic, float dielectric_f0, bool baked = false)
 {
     Scene scene;
-    scene.background = scene.ambient = glm::vec3(1);
+    scene.background = glm::vec3(1);
+    scene.ambient    = glm::vec3(baked ? 0 : 1);
+    if (baked) gbuffer.diffuse_share.assign(gbuffer.depth.size(), 1 - metallic);
     std::ranges::fill(gbuffer.base_colour, glm::vec3(base));
     std::ranges::fill(gbuffer.metallic, metallic);
     std::ranges::fill(gbuffer.dielectric_f0, dielectric_f0);
@@ -143,6 +172,10 @@ TEST(TruePicture, SplitsEnergyInAWhiteFurnace)
             const double albedo =
                 roughness > 0 ? albedo_by_quadrature(angle, double(roughness) * double(roughness)) : 1;
             EXPECT_NEAR(mean_of(plane_in_white(gbuffer, 1, 1, 0.04F)), albedo, 4e-3) << roughness << ' ' << angle;
+            for (const float metallic : {0.0F, 0.5F, 1.0F})
+                EXPECT_NEAR(mean_of(plane_in_white(gbuffer, 0.5F, metallic, 0.04F, true)),
+                            mean_of(plane_in_white(gbuffer, 0.5F, metallic, 0.04F)), 1e-6)
+                    << roughness << ' ' << angle << ' ' << metallic;
         }
 }
 
