@@ -60,6 +60,11 @@ double distance_px(const uint32_t* ray, const uint32_t* a, const uint32_t* b)
     return std::abs(difference) * std::hypot(real_of(ray[4]), real_of(ray[5]));
 }
 
+std::string cause_text(double apart_px)
+{
+    return apart_px < near_tie_px ? fmt::format(" ({:.2g} px apart: rounding)", apart_px) : " (unexplained)";
+}
+
 void compare_hits(FrameVerdict& verdict, const Words& rays, const Words& expected, const Words& answered)
 {
     verdict.rays = expected.size() / hit_words;
@@ -70,14 +75,26 @@ void compare_hits(FrameVerdict& verdict, const Words& rays, const Words& expecte
         const double apart_px = distance_px(&rays[i * ray_words], right, given);
         if (apart_px < near_tie_px) ++verdict.near_ties;
         if (verdict.differing++ >= most_listed) continue;
-        verdict.listed.push_back(fmt::format(
-            "ray {} of pixel {}: {}, expected {}{}", i, pixel_text(rays[i * ray_words + 7]), hit_text(given),
-            hit_text(right),
-            apart_px < near_tie_px ? fmt::format(" ({:.2g} px apart: rounding)", apart_px) : " (unexplained)"));
+        verdict.listed.push_back(fmt::format("ray {} of pixel {}: {}, expected {}{}", i,
+                                             pixel_text(rays[i * ray_words + 7]), hit_text(given), hit_text(right),
+                                             cause_text(apart_px)));
     }
 }
 
 uint32_t pixel_word(const std::array<uint32_t, ray_words>& ray) { return ray[7] & ((1U << (2 * PIXEL_BITS)) - 1); }
+
+/// Between the begins or the ends of two rays, whichever is more; infinite where one is not finite.
+double distance_px(const std::array<uint32_t, ray_words>& a, const std::array<uint32_t, ray_words>& b)
+{
+    double most = 0;
+    for (const size_t axis : {0U, 1U}) {
+        const double begin = static_cast<double>(real_of(a[axis])) - static_cast<double>(real_of(b[axis]));
+        const double along = static_cast<double>(real_of(a[axis + 4])) - static_cast<double>(real_of(b[axis + 4]));
+        for (const double apart : {begin, begin + along})
+            most = std::max(most, std::isfinite(apart) ? std::abs(apart) : std::numeric_limits<double>::infinity());
+    }
+    return most;
+}
 
 /// The ray set-up lists pixels in any order.
 std::vector<std::array<uint32_t, ray_words>> by_pixel(const Words& words, size_t count)
@@ -97,8 +114,12 @@ void compare_set_up(FrameVerdict& verdict, const Words& rays, const Words& made,
     for (const auto& ray : by_pixel(rays, verdict.set_up)) {
         while (next != given.end() && pixel_word(*next) < pixel_word(ray)) ++next;
         if (next != given.end() && *next == ray) continue;
-        if (verdict.set_up_differing++ == 0)
-            verdict.listed.push_back(fmt::format("the ray of pixel {} is set up otherwise", pixel_text(ray[7])));
+        const bool   is_made  = next != given.end() && (*next)[7] == ray[7];
+        const double apart_px = is_made ? distance_px(ray, *next) : std::numeric_limits<double>::infinity();
+        if (apart_px < near_tie_px) ++verdict.near_ties;
+        if (verdict.set_up_differing++ >= most_listed) continue;
+        verdict.listed.push_back(
+            fmt::format("the ray of pixel {} is set up otherwise{}", pixel_text(ray[7]), cause_text(apart_px)));
     }
 }
 
