@@ -33,7 +33,7 @@ Experiment one_technique(const std::string& id)
 {
     Experiment experiment;
     experiment.name           = "e";
-    experiment.techniques     = {{id, "e.toml:1", {}, {}}};
+    experiment.techniques     = {{id, "e.toml:1", {}, {}, {}}};
     experiment.known_settings = all_settings(load_catalogue());
     return experiment;
 }

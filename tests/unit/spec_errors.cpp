@@ -269,7 +269,7 @@ TEST(Spec, ATechniquesOwnSourcesStandInPlaceOfTheExperiments)
         load_text("scenes = \"a\"\n[techniques.linear]\nsources = [\"frame\", \"frame,cube\"]\n"
                   "[techniques.dda]\n[sources]\nlists = \"world\"\n");
     std::vector<std::string> asked;
-    for (const Run& run : expand(experiment, techniques())) asked.push_back(run.technique + " " + run.sources.text);
+    for (const auto& run : expand(experiment, techniques())) asked.push_back(run.technique + " " + run.sources.text);
     EXPECT_THAT(asked, testing::UnorderedElementsAre("linear frame", "linear frame,cube", "dda world"));
     EXPECT_EQ(count_runs(experiment), 3);
     EXPECT_THAT(error_of("scenes = \"a\"\n[techniques.dda]\nsources = \"wurld\"\n"),
