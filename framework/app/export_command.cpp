@@ -116,6 +116,13 @@ struct ExportedSetup {
     fs::path    folder;
 };
 
+/// WGSL has no numbers of 64 bits.
+bool wgsl_can_hold(Gpu gpu, const Technique& technique, const ParameterValues& values)
+{
+    gpu.info.int64 = false;
+    return missing_feature(gpu, technique, values).empty();
+}
+
 std::vector<ExportedSetup> export_hard_cases(Gpu& gpu, const Catalogue& catalogue, const Technique& technique,
                                              const Choice& choice, const ExportOptions& options, const fs::path& root)
 {
@@ -124,6 +131,7 @@ std::vector<ExportedSetup> export_hard_cases(Gpu& gpu, const Catalogue& catalogu
         for (const HardCase& hard_case : family.cases) {
             if (!options.only_case.empty() && options.only_case != hard_case.name) continue;
             const ParameterValues values = adjusted(hard_case, technique, choice.values);
+            if (options.language == "wgsl" && !wgsl_can_hold(gpu, technique, values)) continue;
             for (Setup& setup : hard_case.setups()) {
                 if (std::ranges::count(technique.ignores, "behind") > 0) setup.settings.behind = Behind::hit;
                 if (setup.settings.layers > 1) continue; // no export holds them
@@ -200,7 +208,11 @@ int export_technique(const CommonOptions& common, const ExportOptions& options, 
         gpu.info.cheap_doubles = false; // rays are set up by floats, as on every device
         return verify_hard_cases(gpu, catalogue, technique, choice, options);
     }
-    Stage stage                  = open_stage(device, catalogue, options.picture);
+    Stage stage = open_stage(device, catalogue, options.picture);
+    if (options.language == "wgsl" && !wgsl_can_hold(stage.gpu, technique, choice.values))
+        throw_spec_error(
+            "--to wgsl: expected values of {} without 64-bit integers and doubles, which WGSL does not have",
+            technique.id);
     stage.gpu.info.cheap_doubles = false;
     GBufferImage scene           = read_gbuffer(stage.gpu, *stage.gbuffer);
     if (options.near_m > 0) scene.view.near_m = options.near_m;

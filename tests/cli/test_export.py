@@ -204,6 +204,7 @@ class Test(Case):
         self.refused("export", "--verify", self.path("none"), code=2, says=["no export"])
         self.refused("export", "dda", "--to", "msl", "--hard-cases", code=2, says=["glsl, hlsl or wgsl"])
         self.refused("export", "dda", "--to", "wgsl", "--hard-cases", "--case", "axis_alined", code=2, says=["axis_aligned"])
+        self.refused("export", "dda", "--to", "wgsl", "-o", self.path("out"), "-p", "arithmetic=exact", code=2, says=["64-bit"])
         self.ssrlab("export", "dda", "--to", "spirv", "-o", self.path("out"), code=2, says=["spirv"])
         self.write("full/file", "")
         self.refused("export", "dda", "--to", "glsl", "-o", self.path("full"), code=2, says=["new or empty folder"])

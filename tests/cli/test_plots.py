@@ -69,7 +69,8 @@ class Test(Case):
         """World behind the frame takes 30 + 20 ms, alone 100 ms."""
         results = self.asked_of_two_frames(("hiz", "frame,cube", "lost", 60), ("hiz", "frame,world", "uncertain", 20), ("hiz", "world", "uncertain", 100))
         figure, = self.drawn(plots.sources.ladder, results)[0].values()
-        self.assertEqual(figure.finding, "F1 over all rays: 70 % by the frame, 100.0 % by “+ world”, in 0.5 times the time of the world alone (line: Pareto front)")
+        self.assertEqual(figure.finding, "F1 over all rays: 70 % by the frame, 100.0 % by “+ world”, in 0.5 times the time of the world alone "
+                         "(line: Pareto front; (lost): gets only rays without an answer yet)")
         steps, back, hybrids = plots.sources.tables_of(results).values()
         self.assertEqual([(step["sources"], step["ms"], step["recall, %"]) for step in steps],
                          [("frame", "30", "70.0"), ("+ world", "50", "100.0"), ("+ cube (lost)", "90", "77.5"), ("world alone", "100", "100.0")])
