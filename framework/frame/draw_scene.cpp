@@ -34,9 +34,9 @@ vk::raii::ShaderModule make_module(Gpu& gpu, const Shader& shader)
 enum class VertexInput : uint8_t { all, position };
 
 vk::raii::Pipeline make_pipeline(Gpu& gpu, const vk::raii::PipelineLayout& layout, const DrawPipelineOptions& options,
-                                 VertexInput input_read)
+                                 VertexInput reads)
 {
-    const bool position_only = input_read == VertexInput::position;
+    const bool position_only = reads == VertexInput::position;
     auto       defines       = options.fragment_defines;
     if (options.depth_alone && !position_only) defines.emplace("ALPHA_MASKS", "1");
     const Shader vertex = compile_shader(
@@ -113,10 +113,10 @@ DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipel
     const vk::DescriptorSetLayout layouts[] = {*scene.frame_layout, *scene.material_layout};
     const vk::PushConstantRange   range{vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0,
                                       sizeof(DrawPush)};
-    result.layout   = {gpu.impl->device, vk::PipelineLayoutCreateInfo{.setLayoutCount         = 2,
-                                                                      .pSetLayouts            = layouts,
-                                                                      .pushConstantRangeCount = 1,
-                                                                      .pPushConstantRanges    = &range}};
+    result.layout = {gpu.impl->device, vk::PipelineLayoutCreateInfo{.setLayoutCount         = 2,
+                                                                    .pSetLayouts            = layouts,
+                                                                    .pushConstantRangeCount = 1,
+                                                                    .pPushConstantRanges    = &range}};
     if (options.depth_alone) result.opaque = make_pipeline(gpu, result.layout, options, VertexInput::position);
     if (!options.depth_alone || scene.alpha_mask)
         result.pipeline = make_pipeline(gpu, result.layout, options, VertexInput::all);
