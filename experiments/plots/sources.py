@@ -17,18 +17,19 @@ def said(source):
     return SAID.get(source, source.replace(":", " ").replace("=", " "))
 
 
-FRAME = (("frame",), "")  # the first step of most lists
-
-
 def said_value(value):
     return f"{value:g}" if isinstance(value, float) else value
+
+
+def asks_frame_alone(step):
+    return step[0] == ("frame",)
 
 
 def step_name(step, tracer):
     """"frame", "+ cube + world": what is asked behind the frame begins with a plus. `tracer`: the name of the frame's own step."""
     sources, hand_on = step
-    if step == FRAME:
-        return tracer
+    if asks_frame_alone(step):
+        return hand_on or tracer  # of another tracer, its name stands there
     words = [said(one) for one in sources]
     name = " + ".join(words) if len(words) == 1 or words[0] != "frame" else "".join(f"+ {word} " for word in words[1:]).strip()
     return name + (" alone" if sources == ("world",) else "") + (" (lost)" if hand_on == "lost" else "")
@@ -93,13 +94,13 @@ def ladder_finding(steps):
     alone = steps[steps.name == "world alone"]
     others = steps[steps.name != "world alone"]
     best = others[others.f1 >= others.f1.max() - 0.005].iloc[0]
-    frame = steps[[step in (FRAME, ((name,), "")) for step, name in zip(steps.step, steps.name)] & (steps.name != "world alone")].sort_values("f1")
-    said = [f"{100 * one['f1']:.0f} % by {one['name'].replace('frame', 'the frame')}" for _, one in frame.iloc[[0, -1] if len(frame) > 1 else [0][:len(frame)]].iterrows()]
-    said += [f"{100 * best.f1:.1f} % by “{best['name']}”"] if best.step != FRAME else []
-    text = "F1 over all rays: " + ", ".join(said)
-    if best.step != FRAME:
-        text += f", in {best.ms / alone.ms.iloc[0]:.2g} times the time of the world alone" if len(alone) else f", in {best.ms:.3g} ms"
-    return text
+    of_frame = steps[[asks_frame_alone(step) for step in steps.step]].sort_values("f1")
+    worst_and_best = of_frame.iloc[sorted({0, len(of_frame) - 1})] if len(of_frame) else of_frame
+    found = [f"{100 * f1:.0f} % by {'the frame' if name == 'frame' else name}" for f1, name in zip(worst_and_best.f1, worst_and_best.name)]
+    if not asks_frame_alone(best.step):
+        time = f"{best.ms / alone.ms.iloc[0]:.2g} times the time of the world alone" if len(alone) else f"{best.ms:.3g} ms"
+        found.append(f"{100 * best.f1:.1f} % by “{best['name']}”, in {time}")
+    return "F1 over all rays: " + ", ".join(found)
 
 
 def draw_ladder(steps):
@@ -107,7 +108,7 @@ def draw_ladder(steps):
     figure, ((axis,),) = sheet(2.3)
     front = front_of(steps)
     few = len(steps) <= 10
-    named = steps[few | steps.index.isin(front.index) | (steps.name == "world alone") | [step == FRAME for step in steps.step]]
+    named = steps[few | steps.index.isin(front.index) | (steps.name == "world alone") | [asks_frame_alone(step) for step in steps.step]]
     axis.step(front.ms, 100 * front.f1, where="post", color="#999999", zorder=1)
     axis.plot(steps.ms, 100 * steps.f1, "o", mfc="white", mec="#777777", mew=0.8, ls="none")
     axis.plot(front.ms, 100 * front.f1, "o", color="#0072B2", ls="none")
@@ -140,7 +141,7 @@ def ladders(rows):
     # Tracers that ask nothing but the frame are steps of the ladder of those that ask further sources.
     asks_more = rows.tracer.isin(rows.tracer[rows.place > 0]) | (rows.place == 0).all()
     names = names_of(rows.tracer.unique())
-    frames = rows[~asks_more].assign(step=[((names[tracer],), "") for tracer in rows.tracer[~asks_more]])
+    frames = rows[~asks_more].assign(step=[(("frame",), names[tracer]) for tracer in rows.tracer[~asks_more]])
     for tracer, part in rows[asks_more].groupby("tracer"):
         steps = steps_of(pd.concat([frames, part]), "frame" if frames.empty else names[tracer])
         if len(steps) >= 2:

@@ -83,13 +83,15 @@ class Test(Case):
         self.assertEqual([row["time / world alone"] for row in hybrids], ["0.50", "0.50"])
 
     def test_a_tracer_without_further_sources_is_a_step_of_the_ladder(self):
-        results = self.asked_of_two_frames(("linear", "frame", "uncertain", 5), ("hiz", "frame,world", "uncertain", 20), ("hiz", "world", "uncertain", 100))
+        results = self.asked_of_two_frames(("linear", "frame", "uncertain", 5), ("hiz", "frame,world", "uncertain", 20), ("hiz", "cube", "uncertain", 60),
+                                           ("hiz", "world", "uncertain", 100))
         figure, = self.drawn(plots.sources.ladder, results)[0].values()
         self.assertEqual(figure.finding, "F1 over all rays: 30 % by linear, 70 % by hiz, 100.0 % by “+ world”, "
                          "in 0.5 times the time of the world alone (line: Pareto front)")
         steps, _ = plots.sources.tables_of(results).values()
         self.assertEqual([(step["sources"], step["ms"], step["recall, %"]) for step in steps],
-                         [("linear", "5", "30.0"), ("hiz", "30", "70.0"), ("+ world", "50", "100.0"), ("world alone", "100", "100.0")])
+                         [("linear", "5", "30.0"), ("hiz", "30", "70.0"), ("+ world", "50", "100.0"), ("cube", "60", "77.5"),
+                          ("world alone", "100", "100.0")])
 
     def test_the_law_of_steps(self):
         """2 ms and 0.01 ms a step from 50 steps on. 0.15 m is nearer to 0.1 m than 0.06 m by its ratio; of looks the most count."""
