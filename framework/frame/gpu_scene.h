@@ -19,7 +19,7 @@ enum class Culling : uint8_t { by_material /* back faces, but of double-sided ma
 
 struct DrawPipeline {
     vk::raii::PipelineLayout layout   = nullptr;
-    vk::raii::Pipeline       pipeline = nullptr;
+    vk::raii::Pipeline       pipeline = nullptr; // for any material; null if none needs it
     vk::raii::Pipeline       opaque   = nullptr; // for materials without an alpha mask; null: `pipeline`
     Culling                  culling  = Culling::by_material;
 };
