@@ -28,7 +28,7 @@ struct FrameFacts {
     std::vector<std::string> structures;              // that the technique reads, in the order of building
 };
 
-/// Of blocks of 4x4 pixels: how many have a ray that missed, and of these rays, one a block, how many meet a triangle.
+/// Of rays that found no surface that the frame shows: how many are followed, and how many of these meet a triangle.
 struct MissCounts {
     uint32_t followed = 0, met = 0;
 };

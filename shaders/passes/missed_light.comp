@@ -1,8 +1,11 @@
 // What missed rays show: the light that the followed rays of the nearest four blocks met. A followed ray weighs more
 // the nearer its block is, and the smaller the angle is between the ray and the direction toward what was met. Where
-// most of them met nothing, the environment stays.
+// most of them met nothing, the environment stays. To the passes after this, all these rays found nothing in the frame.
 #include "passes/missed_rays.glsl"
+#include "passes/given_light.glsl"
+#include "layout/store_hit.glsl"
 
+STORED_HITS(9, Hits)
 layout(set = 0, binding = 50, scalar) readonly buffer MissedLaunch { ListLaunch launch; };
 layout(set = 0, binding = 54, scalar) readonly buffer MissedRays { uint missed_rays[]; };
 layout(set = 0, binding = 55, scalar) writeonly buffer MissedLights { GivenLight lights[]; };
@@ -49,6 +52,8 @@ void main()
 {
     uint number = work_group() * RAYS_PER_GROUP + gl_LocalInvocationID.x;
     if (number >= launch.count) return;
-    uint index    = missed_rays[number];
-    lights[index] = light_about(unpack_pixel(ray_pixel(index)), missed_ray(index));
+    uint  index   = missed_rays[number];
+    ivec2 pixel   = unpack_pixel(ray_pixel(index));
+    lights[index] = light_about(pixel, missed_ray(index));
+    STORE_TEXEL(Hits, index, hit_to_texel(pack_pixel(pixel, TRACE_LEFT_SCREEN), 0.0));
 }

@@ -2,10 +2,21 @@
 // they have.
 #include "passes/missed_rays.glsl"
 #include "world/append.glsl"
+#include "trace/hit_list.glsl"
+#include "passes/given_light.glsl"
 
 layout(set = 0, binding = 54, scalar) writeonly buffer MissedRays { uint missed_rays[]; };
 layout(set = 0, binding = 55, scalar) writeonly buffer MissedLights { GivenLight lights[]; };
 layout(set = 0, binding = 56, scalar) buffer MissRanks { uint ranks[]; };
+
+// Did this ray of the list find no surface that is seen? One that ends where it begins has no direction, and does not count.
+bool is_missed(uint index)
+{
+    PackedRay ray = packed_ray(index);
+    vec3 along_vs = direction_vs(ray);
+    return given_light(index).distance_m < 0.0 && unpack_status(packed_hit(index).pixel) != TRACE_HIT && dot(along_vs, along_vs) > 0.5 &&
+           reflects(unpack_pixel(ray.pixel));
+}
 
 void main()
 {

@@ -1,16 +1,13 @@
-// Rays of reflecting pixels that found nothing. One in each block of pixels is followed through the scene's triangles,
-// on behalf of the others.
+// Rays of reflecting pixels that found no surface that the frame shows: they missed, or stopped at the unseen side of something. One in each
+// block of pixels is followed through the scene's triangles, on behalf of the others.
 #include "layout/workgroups.glsl"
 #include "api/view.glsl"
 #include "trace/ray_list.glsl"
-#include "trace/hit_list.glsl"
 #include "rays/reflecting.glsl"
 #include "pass/parameters"
 #include "api/hash.glsl"
 #include "rays/lobe.glsl"
-#include "passes/shown_hits.glsl"
 #include "passes/scene_frame.glsl"
-#include "passes/given_light.glsl"
 #include "world/rays.glsl"
 
 layout(local_size_x = RAYS_PER_GROUP) in;
@@ -29,15 +26,6 @@ uint miss_rank(ivec2 pixel, uint ray)
 }
 
 vec3 direction_vs(PackedRay ray) { return normalize(px_to_direction_vs(ray.origin, ray.origin + ray.delta)); }
-
-// Did this ray of the list find nothing? One that ends where it begins has no direction, and does not count.
-bool is_missed(uint index)
-{
-    PackedRay ray = packed_ray(index);
-    vec3 along_vs = direction_vs(ray);
-    return given_light(index).distance_m < 0.0 && !shows_surface(packed_hit(index)) && dot(along_vs, along_vs) > 0.5 &&
-           reflects(unpack_pixel(ray.pixel));
-}
 
 // In world space.
 WorldRay missed_ray(uint index)

@@ -48,9 +48,11 @@ std::vector<Parameter> parameters()
         real_parameter("min_direction_cosine", -1, -1, 1,
                        "smallest cosine between the ray and the direction to the hit surface; below it the hit counts "
                        "as a miss; -1: every hit counts"),
-        boolean_parameter("stopped_shows_front", true,
-                          "a ray that stopped (behind = stop) brings back the light of the pixel where it stopped, "
-                          "whose other side it met; false: it counts as a miss")};
+        boolean_parameter(
+            "stopped_shows_front", true,
+            "a ray that stopped (behind = stop) brings back the light of the pixel where it stopped, "
+            "whose other side it met, unless miss_light lets the scene's triangles answer; false: it counts as "
+            "a miss")};
 }
 
 } // namespace

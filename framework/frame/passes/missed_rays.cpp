@@ -1,4 +1,4 @@
-// Light of rays that found nothing in the frame: the environment, but only where no triangle of the scene is in the way.
+// Light of rays that found no surface that the frame shows: the environment, but only where no triangle of the scene is in the way.
 #include "frame/passes/missed_rays.h"
 
 #include "frame/passes/pass_helpers.h"
@@ -9,9 +9,8 @@
 namespace ssrlab {
 namespace {
 
-constexpr int side_px = 4; // of the blocks that follow one ray each
-/// Of followed rays that meet a triangle: from here on, miss_light = rooms follows them.
-constexpr double room_share = 0.15;
+/// Of followed rays, how many meet a triangle: from here on, miss_light = rooms follows them.
+constexpr double room_share = 0.01;
 
 /// The missed rays, and the one of each block that is followed.
 struct FollowedRays {
@@ -22,9 +21,12 @@ struct FollowedRays {
     ComputePass  rank, choose, walk;
 };
 
+/// The side of the blocks that follow one ray each.
+int block_px(const FrameInputs& frame) { return static_cast<int>(frame.plan.values.at("missed_block_px")); }
+
 Defines followed_defines(const FrameInputs& frame)
 {
-    Defines defines = {{"MISS_BLOCK_PX", std::to_string(side_px)},
+    Defines defines = {{"MISS_BLOCK_PX", std::to_string(block_px(frame))},
                        {"MISS_START_SHARE", fmt::format("{}", world_start_share)}};
     if (frame.answers_given) defines.emplace("ANSWERS_GIVEN", "1");
     return defines;
@@ -32,7 +34,7 @@ Defines followed_defines(const FrameInputs& frame)
 
 size_t count_blocks(const FrameInputs& frame)
 {
-    const glm::ivec2 size = (frame.lab->gbuffer->view.size_px - 1) / side_px + 1;
+    const glm::ivec2 size = (frame.lab->gbuffer->view.size_px - 1) / block_px(frame) + 1;
     return static_cast<size_t>(size.x) * static_cast<size_t>(size.y);
 }
 
@@ -92,7 +94,7 @@ PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, 
         return {PassDecision::off, fmt::format("{}, below {:.0f} %", reason, 100 * room_share)};
     if (values.at("hidden_layer") != 0)
         return {PassDecision::needed, "hidden_layer = true: which rays it leaves is not counted"};
-    return {misses.met == 0 ? PassDecision::not_needed : PassDecision::needed, reason};
+    return {misses.met == 0 ? PassDecision::off : PassDecision::needed, reason};
 }
 
 /// Rays that met something, and the light that comes back along them.
@@ -191,16 +193,18 @@ RecordFunction prepare(Gpu& gpu, const PassContext& context)
     own->followed            = make_followed_rays(gpu, context);
     const FollowedRays& rays = own->followed;
     own->lit                 = make_followed_light(gpu, context, rays);
-    own->look_up             = make_pass(gpu, context, "passes/missed_light.comp", followed_defines(frame),
-                                         {{"MissedLaunch", rays.missed_launch},
-                                          {"MissedRays", rays.missed},
-                                          {"MissedLights", frame.answers},
-                                          {"MissRanks", rays.ranks},
-                                          {"FollowedPlaces", rays.places},
-                                          {"WorldRays", rays.list.rays},
-                                          {"WorldHits", rays.hits},
-                                          {"MetPlaces", own->lit.places},
-                                          {"WorldLight", own->lit.met.light}});
+    Defines look_up_defines  = followed_defines(frame);
+    look_up_defines.merge(store_defines(gpu, frame.rays->hits));
+    own->look_up = make_pass(gpu, context, "passes/missed_light.comp", look_up_defines,
+                             {{"MissedLaunch", rays.missed_launch},
+                              {"MissedRays", rays.missed},
+                              {"MissedLights", frame.answers},
+                              {"MissRanks", rays.ranks},
+                              {"FollowedPlaces", rays.places},
+                              {"WorldRays", rays.list.rays},
+                              {"WorldHits", rays.hits},
+                              {"MetPlaces", own->lit.places},
+                              {"WorldLight", own->lit.met.light}});
     return [own, &frame](const auto& commands) {
         record_followed_rays(commands, frame, own->followed);
         record_followed_light(commands, frame, own->followed, own->lit);
@@ -233,21 +237,26 @@ MissCounts count_followed_rays(Gpu& gpu, FrameInputs& frame)
 
 Pass missed_rays_pass()
 {
-    return {.id = "missed_rays",
-            .summary =
-                "Follows one missed ray of each 4x4 pixels through the scene's triangles, on behalf of the others",
-            .cite           = {"I. Wald et al. 2014, Embree: A Kernel Framework for Efficient CPU Ray Tracing"},
-            .reads          = {Resource::gbuffer, Resource::surroundings, Resource::rays, Resource::hits},
-            .writes         = {Resource::answers},
-            .parameters     = {choice_parameter(
-                    MissLight::rooms,
-                    "what a ray shows that missed. environment: what is infinitely far away; triangles: what "
-                        "one missed ray of each 4x4 pixels meets in the scene, and the environment where it meets "
-                        "nothing; rooms: as triangles where at least 15 % of these rays meet something and the "
-                        "scene does not move, else as environment")},
-            .decide         = decide,
-            .prepare        = prepare,
-            .beyond_shading = true};
+    return {
+        .id = "missed_rays",
+        .summary =
+            "Follows rays that missed or stopped through the scene's triangles: each, or one of each block of pixels",
+        .cite   = {"I. Wald et al. 2014, Embree: A Kernel Framework for Efficient CPU Ray Tracing"},
+        .reads  = {Resource::gbuffer, Resource::surroundings, Resource::rays, Resource::hits},
+        .writes = {Resource::hits, Resource::answers},
+        .parameters =
+            {choice_parameter(
+                 MissLight::rooms,
+                 "what a ray shows that missed. environment: what is infinitely far away; triangles: what it "
+                 "meets in the scene, and the environment where it meets nothing, as does a ray that stopped "
+                 "(behind = stop); rooms: as triangles where at least 1 % of these rays meet something and the "
+                 "scene does not move, else as environment"),
+             integer_parameter("missed_block_px", 1, 1, 4,
+                               "side of blocks of pixels: one ray of each is followed, and the "
+                               "others show what the nearest of these met")},
+        .decide         = decide,
+        .prepare        = prepare,
+        .beyond_shading = true};
 }
 
 } // namespace ssrlab
