@@ -96,7 +96,7 @@ FrameBuffersPtr make_frame_buffers(Stage& stage) { return make_frame_buffers(sta
 FramePlan plan_frame(Stage& stage, const LabPtr& lab, const FrameBuffersPtr& buffers, const FrameSettings& settings,
                      const FrameHistoryPtr& history)
 {
-    if (asks_for_world(stage, *lab, settings.passes)) buffers->world = world_if_held(stage);
+    buffers->world = asks_for_world(stage, *lab, settings.passes) ? world_if_held(stage) : nullptr;
     return plan_frame(stage.gpu, stage.catalogue, lab, buffers, settings, history);
 }
 
