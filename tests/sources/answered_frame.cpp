@@ -200,6 +200,20 @@ TEST(MissedRays, RoomsLeaveMovingScenesAsTheyAre)
     EXPECT_TRUE(planned_picture(scene, MissLight::triangles, Gloss::blur).missed_rays.runs);
 }
 
+TEST(MissedRays, FollowNoRayBecauseAnEarlierFrameDid)
+{
+    Stage stage = open_stage(device(), catalogue(), load_scene("builtin:moving_boxes"));
+    show(stage, "default", {161, 91});
+    const Technique&      hiz     = technique("hiz");
+    const FrameBuffersPtr buffers = make_frame_buffers(stage);
+    for (const MissLight miss_light : {MissLight::triangles, MissLight::rooms}) {
+        FrameSettings settings;
+        settings.passes.insert_or_assign("miss_light", choice_value(miss_light));
+        const LabPtr lab = make_lab(stage, hiz, values_of(hiz), settings.trace);
+        EXPECT_EQ(runs(plan_frame(stage, lab, buffers, settings), "missed_rays"), miss_light == MissLight::triangles);
+    }
+}
+
 // The mirror stands alone: the unculled frame follows its rays and finds nothing.
 TEST(MissedRays, ShowTheEnvironmentWhereTheSceneIsOpen)
 {
