@@ -85,7 +85,10 @@ PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, 
     const MissLight chosen = choice<MissLight>(values);
     if (chosen == MissLight::environment) return {PassDecision::off, "miss_light = environment"};
     if (values.at("environment_fallback") == 0) return {PassDecision::off, "environment_fallback = false"};
-    if (!facts.world) return {PassDecision::off, "the scene's triangles are not on the device"};
+    if (!facts.world)
+        return {PassDecision::off, chosen == MissLight::rooms
+                                       ? "the scene moves, or its triangles are not on the device"
+                                       : "the scene's triangles are not on the device"};
     if (statistics.gbuffer.reflecting_pixels == 0) return {PassDecision::not_needed, "no pixel reflects"};
     const MissCounts& misses = statistics.misses;
     if (misses.followed == 0) return {PassDecision::not_needed, "no ray missed"};

@@ -51,7 +51,7 @@ Pass ray_reuse_pass()
              real_parameter("reuse_spread", 0.8, 0, 1e6,
                             "standard deviation of the kernel that shares and filters rays, as a share of the "
                             "lobe's half width at the pixel's nearest hit"),
-             real_parameter("reuse_depth_tolerance", 0.001, 1e-6, 1e6,
+             real_parameter("reuse_depth_tolerance", 0.0003, 1e-6, 1e6,
                             "distance from the pixel's plane, as a share of the view distance, at which another "
                             "pixel's rays weigh 1/e")},
         .decide         = decide,
