@@ -74,9 +74,11 @@ void require_same_scene(const JudgeOptions& options, const Scene& scene, GBuffer
     std::ranges::fill(gbuffer.metallic, 1.0F);
     const std::optional<double> off = off_surface_share(SceneBvh(scene), scene, gbuffer, {});
     if (!drawn_elsewhere(off).empty())
-        throw_failure("--scene {}: at {:.0f} % of the frame's pixels this scene has no surface; is it the same scene, "
-                      "in the same place?",
-                      options.scene, 100 * *off);
+        throw_failure(
+            "--scene {}: at {:.0f} % of the frame's pixels this scene has no surface. Expected the same scene "
+            "in the same place, and in the frame's [camera] position, right, up and forward in metres of that "
+            "scene (docs/reference/frame_files.md)",
+            options.scene, 100 * *off);
 }
 
 fs::path truth_cache()
@@ -97,7 +99,8 @@ Judged judge_file(const CommonOptions& common, const Catalogue& catalogue, const
     Scene        frame   = load_judged_frame(common, options.frame);
     GBufferImage gbuffer = frame.frame->gbuffer;
     complete_gradients(gbuffer);
-    const HitsFile      hits = read_hits(options.hits, gbuffer.view.size_px);
+    const HitsFile hits = read_hits(options.hits, gbuffer.view.size_px);
+    for (const std::string& warning : hits.warnings) say(common, "warning: " + warning);
     Judged              judged{options.frame, options.hits, gbuffer.view.size_px, {}, {}, {}, false, {}};
     const FrameSettings settings = settings_of(catalogue, hits, options.parameters, judged.settings);
     judged.judgement             = judge_frame(gbuffer, settings.trace, hits);

@@ -45,6 +45,7 @@ nlohmann::ordered_json json_of(const Judged& judged)
                                 {"by_contract", nlohmann::ordered_json::object()},
                                 {"f1_truth", judged.has_scene ? "scene" : "screen"},
                                 {"f1", nullptr},
+                                {"hints", judged.judgement.advice},
                                 {"measures", nlohmann::ordered_json::object()},
                                 {"findings", nlohmann::ordered_json::array()}};
     if (judged.f1) json["f1"] = *judged.f1;
@@ -99,6 +100,7 @@ void print(const Judged& judged)
                           judgement.of(Fault::near_tie), judgement.wrong(), fault_counts(judgement))
                   .c_str());
     print_findings(judgement.findings);
+    for (const std::string& advice : judgement.advice) std::puts(("hint: " + advice).c_str());
     const auto line = [&](const char* truth, const char* prefix) {
         std::puts(
             fmt::format("{}: recall {}, precision {}, F1 {}", truth, percent(m, fmt::format("{}recall_1px", prefix)),

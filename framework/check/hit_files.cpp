@@ -13,18 +13,22 @@ namespace {
 using Values = std::optional<std::vector<float>>;
 
 /// The channel of that name, also at the end of a layer's name.
-Values find_values(const ExrFile& file, const std::string& name)
+Values find_values(const ExrFile& file, const std::string& name, std::vector<std::string>* warnings = nullptr)
 {
     const ExrChannel* found = nullptr;
     for (const ExrChannel& channel : file.channels)
         if (channel.name == name || (found == nullptr && channel.name.ends_with("." + name))) found = &channel;
+    if (found != nullptr && found->is_half && warnings != nullptr)
+        warnings->push_back(fmt::format("{}: {} is half, which rounds places by up to a pixel; export it as float",
+                                        file.shown, found->name));
     return found != nullptr ? Values(read_channel(file, *found)) : std::nullopt;
 }
 
 /// Both channels or none.
-std::pair<Values, Values> find_pair(const ExrFile& file, const std::string& layer)
+std::pair<Values, Values> find_pair(const ExrFile& file, const std::string& layer, std::vector<std::string>& warnings)
 {
-    std::pair<Values, Values> pair{find_values(file, layer + ".x"), find_values(file, layer + ".y")};
+    std::pair<Values, Values> pair{find_values(file, layer + ".x", &warnings),
+                                   find_values(file, layer + ".y", &warnings)};
     if (pair.first.has_value() != pair.second.has_value())
         throw_spec_error("{}: expected both channels '{}.x' and '{}.y', got one of them", file.shown, layer, layer);
     return pair;
@@ -51,13 +55,15 @@ void set_statuses(HitsFile& hits, const Values& status, const Values& mask)
 
 void set_places(HitsFile& hits, const ExrFile& file)
 {
-    const auto   point = find_pair(file, "hit"), pixel = find_pair(file, "pixel");
-    const Values t = find_values(file, "hit.t"), z = find_values(file, "hit.z"), layer = find_values(file, "layer");
+    const auto   point = find_pair(file, "hit", hits.warnings), pixel = find_pair(file, "pixel", hits.warnings);
+    const Values t = find_values(file, "hit.t", &hits.warnings), z = find_values(file, "hit.z"),
+                 layer = find_values(file, "layer");
     if (!point.first && !pixel.first)
         throw_spec_error("{}: no hits: expected channels 'hit.x' and 'hit.y' or 'pixel.x' and 'pixel.y' "
                          "(docs/reference/hit_files.md)",
                          file.shown);
     hits.has_point = point.first.has_value();
+    hits.has_pixel = pixel.first.has_value();
     hits.has_t     = t.has_value();
     hits.has_z     = z.has_value();
     const auto& x  = pixel.first ? *pixel.first : *point.first;
@@ -118,7 +124,8 @@ HitsFile read_hits(const std::filesystem::path& exr, glm::ivec2 size_px)
     if (file.size_px != size_px)
         throw_spec_error("{}: {}x{} pixels, expected {}x{} as the frame has", file.shown, file.size_px.x,
                          file.size_px.y, size_px.x, size_px.y);
-    HitsFile     hits{file.shown, make_trace_image(size_px, false), true, true, true, true, true, file.attributes};
+    HitsFile     hits{file.shown, make_trace_image(size_px, false), true, true, true, true, true, true, file.attributes,
+                  {}};
     const Values status = find_values(file, "status"), mask = find_values(file, "mask");
     if (!status && !mask)
         throw_spec_error("{}: nothing says which rays hit: expected a channel 'status' or 'mask' "

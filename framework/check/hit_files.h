@@ -16,9 +16,10 @@ struct HitsFile {
     std::string                        shown;  // the path as messages show it
     TraceImage                         result; // an unknown status is `impossible`, and steps holds its number
     bool                               has_status = true; // false: it tells only hits from misses
-    bool                               has_point = true, has_t = true, has_z = true; // of hits
+    bool                               has_point = true, has_pixel = true, has_t = true, has_z = true; // of hits
     bool                               has_steps = true;
     std::map<std::string, std::string> attributes; // those that are text
+    std::vector<std::string>           warnings;
 };
 
 /// Returns the file of a trace: its answers, and its work if that was counted.

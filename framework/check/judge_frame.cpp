@@ -14,8 +14,33 @@ namespace {
 
 /// How far a hit point may lie outside its pixel, by the rounding of its file.
 constexpr double point_rounding_px = 0.01;
+/// Of a coordinate that is stored as a float, relative.
+constexpr double rounding_of_float = std::numeric_limits<float>::epsilon();
 /// Answers whose t differs by less are the same; the file's t is a float.
 constexpr double same_t = 1e-4;
+
+/// A way of writing hits that a hit file does not have.
+struct OtherConvention {
+    const char* advice;
+    bool        rows_from_bottom;
+    glm::dvec2 (*to_px)(glm::dvec2 written, glm::dvec2 size_px);
+    double tolerance_px = 1;
+};
+
+constexpr OtherConvention as_defined{"", false, [](glm::dvec2 at, glm::dvec2) { return at; }};
+constexpr OtherConvention other_conventions[] = {
+    {"hit.y seems to count from the bottom: expected 0 at the top of the image", false,
+     [](glm::dvec2 at, glm::dvec2 size) { return glm::dvec2(at.x, size.y - at.y); }},
+    {"the rows of the file seem to begin at the bottom: expected the top row first", true,
+     [](glm::dvec2 at, glm::dvec2) { return at; }},
+    {"the rows of the file and hit.y seem to count from the bottom: expected the top row first, and 0 at the top", true,
+     [](glm::dvec2 at, glm::dvec2 size) { return glm::dvec2(at.x, size.y - at.y); }},
+    {"hits seem to be shares of the image: expected pixels, 0 to its width and height", false,
+     [](glm::dvec2 at, glm::dvec2 size) { return at * size; }},
+    {"hits seem to be shares of the image from the bottom: expected pixels, with 0 at the top", false,
+     [](glm::dvec2 at, glm::dvec2 size) { return glm::dvec2(at.x, 1 - at.y) * size; }},
+    {"hits seem to have whole numbers at pixels' centres: expected (0.5, 0.5) at the centre of the first pixel", false,
+     [](glm::dvec2 at, glm::dvec2) { return at + 0.5; }, 0.1}};
 
 std::string text_of(TraceStatus status, glm::ivec2 pixel, double t)
 {
@@ -55,10 +80,44 @@ public:
             ++judgement_.count[static_cast<size_t>(faults_[i].fault)];
             if (faults_[i].fault > Fault::near_tie) judgement_.findings.push_back(std::move(faults_[i]));
         }
+        advise();
         return std::move(judgement_);
     }
 
 private:
+    struct Agreement {
+        size_t hits = 0, near = 0; // rays that hit in the file and truly; of them those near the right point
+    };
+
+    Agreement agreement(const OtherConvention& convention, double tolerance_px) const
+    {
+        const glm::ivec2 size = truth_.size_px;
+        Agreement        found;
+        for (size_t i = 0; i < truth_.status.size(); ++i) {
+            glm::ivec2 pixel = pixel_at(i, size);
+            if (convention.rows_from_bottom) pixel.y = size.y - 1 - pixel.y;
+            const size_t in_frame = pixel_index(pixel, size);
+            if (hits_.result.status[i] != TraceStatus::hit || truth_.status[in_frame] != TraceStatus::hit) continue;
+            const glm::dvec2 written = hits_.has_point ? glm::dvec2(hits_.result.hit_px_depth[i])
+                                                       : glm::dvec2(hits_.result.hit_pixel[i]) + 0.5;
+            const glm::dvec2 off     = convention.to_px(written, size) - glm::dvec2(truth_.hit_px_depth[in_frame]);
+            ++found.hits;
+            found.near += glm::length(off) <= tolerance_px;
+        }
+        return found;
+    }
+
+    /// Names a convention under which most hits are near the right ones, and twice as many as without it.
+    void advise()
+    {
+        if (judgement_.wrong() == 0) return;
+        for (const OtherConvention& other : other_conventions) {
+            const Agreement so = agreement(other, other.tolerance_px);
+            if (2 * so.near > so.hits && so.near > 2 * agreement(as_defined, other.tolerance_px).near)
+                judgement_.advice.emplace_back(other.advice);
+        }
+    }
+
     void judge_pixel(size_t i)
     {
         TraceImage&      result = judgement_.usable;
@@ -98,6 +157,7 @@ private:
             result.status[i] = truth_.status[i] == TraceStatus::hit ? ray.end_status : truth_.status[i];
         if (!has_place(result.status[i])) return;
         const glm::dvec3 from = ray.origin_px_depth, along = ray.delta_px_depth;
+        if (!hits_.has_pixel) result.hit_pixel[i] = entered_pixel(result.hit_px_depth[i], along, result.hit_pixel[i]);
         if (!hits_.has_t) {
             const glm::dvec2 at =
                 hits_.has_point ? glm::dvec2(result.hit_px_depth[i]) : glm::dvec2(result.hit_pixel[i]) + 0.5;
@@ -112,6 +172,17 @@ private:
         const glm::dvec3 on_ray = from + result.hit_t[i] * along;
         if (!hits_.has_point) result.hit_px_depth[i] = glm::dvec3(on_ray.x, on_ray.y, result.hit_px_depth[i].z);
         if (!hits_.has_z) result.hit_px_depth[i].z = on_ray.z;
+    }
+
+    /// The pixel of a point; on a border the one that the ray enters there.
+    static glm::ivec2 entered_pixel(glm::dvec2 point, glm::dvec2 along, glm::ivec2 pixel)
+    {
+        for (int axis = 0; axis < 2; ++axis) {
+            const double border = std::round(point[axis]);
+            if (std::abs(point[axis] - border) <= border * rounding_of_float && along[axis] != 0)
+                pixel[axis] = static_cast<int>(border) - (along[axis] < 0 ? 1 : 0);
+        }
+        return pixel;
     }
 
     RayOutcome outcome_of(size_t i) const

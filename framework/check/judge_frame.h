@@ -41,6 +41,7 @@ struct FrameJudgement {
     size_t                                 ignored = 0; // answers of other pixels
     std::array<size_t, fault_names.size()> count{};     // of rays
     std::vector<Finding>                   findings;    // row by row
+    std::vector<std::string>               advice;      // conventions of the file that would make most hits right
     TraceImage                             usable;      // the answers; an impossible one is a ray without a hit
     size_t                                 of(Fault fault) const { return count[static_cast<size_t>(fault)]; }
     /// Rays that are neither right nor a near tie.

@@ -13,15 +13,15 @@
 namespace ssrlab::test {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 const TraceSettings settings = boxes({.thickness_m = 0.5, .max_distance_m = 100});
 
 /// A mirror floor before a wall that does not reflect and ends below the image's upper border.
-GBufferImage floor_and_wall()
+GBufferImage floor_and_wall(glm::ivec2 size_px = {32, 24})
 {
-    GBufferImage image =
-        picture_of(bench_view({32, 24}), {plane({0, -1, 0}, {0, 1, 0}), box({-9, -1, -9}, {9, 2, -8})});
+    GBufferImage image = picture_of(bench_view(size_px), {plane({0, -1, 0}, {0, 1, 0}), box({-9, -1, -9}, {9, 2, -8})});
     for (size_t i = 0; i < image.depth.size(); ++i)
         if (image.normal_vs[i].z != 0) image.metallic[i] = 0;
     return image;
@@ -125,6 +125,54 @@ TEST(JudgeFrame, AMaskStandsForStatuses)
     EXPECT_EQ(hits.judged().wrong(), 0U);
     hits.at(missed, "ssr.mask") = 0;
     expect_one(hits.judged(), missed, Fault::missed, "past_max_distance | hit in");
+}
+
+TEST(JudgeFrame, APointOnABorderIsInThePixelThatTheRayEnters)
+{
+    Hits hits;
+    for (size_t i = 0; i < pixel_count(hits.image.size_px); ++i) {
+        const glm::ivec2 pixel = pixel_at(i, hits.image.size_px);
+        if (hits.at(pixel, "status") != 1) continue;
+        hits.at(pixel, "hit.y") = hits.at(pixel, "pixel.y") + 1; // rays run up the image
+        hits.at(pixel, "hit.t") = 0;
+    }
+    const TraceImage full = Hits().judged().usable;
+    hits.keep({"status", "hit.x", "hit.y"}, {"status", "hit.x", "hit.y"});
+    const TraceImage read   = hits.judged().usable;
+    size_t           tested = 0;
+    for (size_t i = 0; i < full.status.size(); ++i) {
+        if (full.status[i] != TraceStatus::hit) continue;
+        ++tested;
+        EXPECT_EQ(read.hit_pixel[i].y, full.hit_pixel[i].y);
+    }
+    EXPECT_GT(tested, 20U);
+}
+
+TEST(JudgeFrame, AnotherConventionIsNamed)
+{
+    const glm::vec2 size(160, 120);
+    const auto      advice = [&](bool rows_up, glm::vec2 scale, glm::vec2 shift) {
+        Hits hits;
+        hits.gbuffer         = floor_and_wall(size);
+        const Image original = hits_image(screen_truth(hits.gbuffer, settings));
+        hits.image           = original;
+        for (size_t i = 0; i < pixel_count(original.size_px); ++i) {
+            const glm::ivec2 to = pixel_at(i, original.size_px);
+            const glm::ivec2 from(to.x, rows_up ? original.size_px.y - 1 - to.y : to.y);
+            for (size_t c = 0; c < original.channels.size(); ++c)
+                hits.at(to, original.channels[c]) =
+                    original.values[pixel_index(from, original.size_px) * original.channels.size() + c];
+            hits.at(to, "hit.x") = hits.at(to, "hit.x") * scale.x + shift.x;
+            hits.at(to, "hit.y") = hits.at(to, "hit.y") * scale.y + shift.y;
+        }
+        hits.keep({"status", "hit.x", "hit.y"}, {"status", "hit.x", "hit.y"});
+        return hits.judged().advice;
+    };
+    EXPECT_THAT(advice(false, {1, 1}, {0, 0}), testing::IsEmpty());
+    EXPECT_THAT(advice(false, {1, -1}, {0, size.y}), ElementsAre(HasSubstr("hit.y seems to count from the bottom")));
+    EXPECT_THAT(advice(true, {1, 1}, {0, 0}), testing::Contains(HasSubstr("rows of the file seem to begin")));
+    EXPECT_THAT(advice(false, 1.0F / size, {0, 0}), ElementsAre(HasSubstr("shares of the image: expected pixels")));
+    EXPECT_THAT(advice(false, {1, 1}, {-0.5F, -0.5F}), ElementsAre(HasSubstr("whole numbers at pixels' centres")));
 }
 
 TEST(JudgeFrame, EveryFaultIsNamed)
