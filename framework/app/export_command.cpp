@@ -19,6 +19,9 @@ namespace fs = std::filesystem;
 constexpr std::array proof_cases = {"axis_aligned", "exact_diagonal", "crossings_of_odd_sizes", "sphere_on_floor",
                                     "orthographic"};
 
+/// Of a drawn scene; a frame file has its own size.
+constexpr const char* proof_size = "160x90";
+
 /// The largest image that WebGPU promises, and all that SwiftShader has.
 constexpr int webgpu_size_px = 8192;
 
@@ -32,13 +35,14 @@ ExportLanguage language_of(const std::string& name)
     return languages.at(name);
 }
 
-/// Every setting of [trace] and every parameter with its value, as -p takes them.
+/// Every setting of [trace] and every parameter with its value, as -p takes them. Which materials reflect is left to
+/// the host.
 std::vector<std::pair<std::string, std::string>> chosen_values(const Catalogue& catalogue, const Technique& technique,
                                                                const Choice& choice)
 {
     std::vector<std::pair<std::string, std::string>> chosen;
     for (const Setting& setting : all_settings(catalogue))
-        if (setting.table == "trace")
+        if (setting.table == "trace" && !setting.name.starts_with("dielectric_"))
             chosen.emplace_back(setting.name, format_parameter(setting, setting.get(choice.settings)));
     for (const Parameter& parameter : technique.parameters)
         chosen.emplace_back(parameter.name, format_parameter(parameter, choice.values.at(parameter.name)));
@@ -208,7 +212,9 @@ int export_technique(const CommonOptions& common, const ExportOptions& options, 
         gpu.info.cheap_doubles = false; // rays are set up by floats, as on every device
         return verify_hard_cases(gpu, catalogue, technique, choice, options);
     }
-    Stage stage = open_stage(device, catalogue, options.picture);
+    PictureOptions picture = options.picture;
+    if (picture.size.empty() && !picture.scene.ends_with(".exr")) picture.size = proof_size;
+    Stage stage = open_stage(device, catalogue, picture);
     if (options.language == "wgsl" && !wgsl_can_hold(stage.gpu, technique, choice.values))
         throw_spec_error(
             "--to wgsl: expected values of {} without 64-bit integers and doubles, which WGSL does not have",

@@ -409,9 +409,7 @@ int main(int argc, char** argv)
         ->default_val("builtin:corridor")
         ->capture_default_str();
     taken->add_option("--view", exported.picture.view, "View of that scene")->capture_default_str();
-    taken->add_option("--size", exported.picture.size, "Size of its image")
-        ->default_val("160x90")
-        ->capture_default_str();
+    taken->add_option("--size", exported.picture.size, "Size of its image; default: 160x90, or that of a frame file");
     taken->add_option("--near", exported.near_m, "Near plane in metres; default: that of the view")
         ->check(CLI::PositiveNumber);
     taken->add_option("--keep", exported.kept,

@@ -27,6 +27,21 @@ std::string projection_text(const View& view)
         view.near_m, view.far_m);
 }
 
+/// What host_depth() returns for the depths of engines.
+std::string depth_text(const View& view)
+{
+    if (view.projection != Projection::perspective) return "";
+    return "## Your depth\nThe shaders read `near_m / distance`: reversed depth with an infinite far plane. With "
+           "device "
+           "depth `d`, `n = near_m` and a far plane at `f`, `host_depth()` returns:\n\n"
+           "| depth buffer | sky | returns |\n|---|---|---|\n"
+           "| reversed | `d = 0` | `d == 0 ? 0 : d * (1 - n / f) + n / f` |\n"
+           "| standard | `d = 1` | `d == 1 ? 0 : (1 - d) * (1 - n / f) + n / f` |\n"
+           "| distance along the view axis | yours | `n / distance`, and 0 for the sky |\n\n"
+           "With an infinite far plane `n / f` is 0. Pixels count from the top left: turn images whose first row is "
+           "the lowest one.\n\n";
+}
+
 std::string settings_text(const Export& what, const char* line)
 {
     std::string text;
@@ -37,7 +52,10 @@ std::string settings_text(const Export& what, const char* line)
 std::string dispatch_text(const ExportedPass& pass)
 {
     if (pass.pass.rays_per_workgroup == 0) return pass.pass.rule;
-    return fmt::format("{} rays a workgroup, {} workgroups a row", pass.pass.rays_per_workgroup, LAUNCH_ROW_GROUPS);
+    return fmt::format("{0} rays a workgroup: {1} x ceil(rays / {2}) workgroups. `rays` may be the number of "
+                       "pixels: workgroups beyond `ray_count` do nothing",
+                       pass.pass.rays_per_workgroup, LAUNCH_ROW_GROUPS,
+                       pass.pass.rays_per_workgroup * LAUNCH_ROW_GROUPS);
 }
 
 std::string passes_table(std::span<const ExportedPass> passes, ExportLanguage language)
@@ -59,7 +77,8 @@ constexpr const char* view_text =
     "rounding to float took from the two; 0 will do), `float near_m`, `float far_m`";
 
 constexpr const char* gradient_text =
-    "a word for each pixel, row by row: how depth changes from one pixel to the next along x (upper 16 bits) and y "
+    "a word for each pixel, in rows from the top: how depth changes from one pixel to the next along x (upper 16 bits) "
+    "and y "
     "(lower 16 "
     "bits), each the upper half of a float, rounded to nearest; all bits set where there is no plane. From a "
     "geometric "
@@ -74,17 +93,18 @@ std::string resources_table(std::span<const ExportedPass> passes, const Composed
         if (uses(passes, name)) text += fmt::format("| `{}` | {} |\n", name, what);
     };
     row("view", view_text);
-    row("host_depth", "your depth: a float for each pixel, row by row. To read a texture or another convention, change "
-                      "`host_depth()` in the first file");
+    row("host_depth",
+        "your depth: a float for each pixel, in rows from the top. To read a texture or another convention, change "
+        "`host_depth()` in the first file");
     row("host_gradients", gradient_text);
     row("normals", "image of format rgba32f: the normal in view space (x right, y up, looking along -z), any length");
     row("solids", "image of format r32f: the depth where the solid behind the pixel ends; 0: it is thin");
     row("cells",
         "depth, and what structures know above it: 8 bytes times `(((w - 1) >> 4) + 1) * odd(2^ceil(log2(h)) + h + "
         "1) * 8 + (((w - 1) >> 3) + 1) * odd(h + 1) * 8` for an image of w x h pixels, where odd(n) is n, or n + 1 "
-        "if n is even. Fill it with the float -1 once, before the first frame");
-    row("ray_count",
-        "one word: the number of rays. Set it to 0 before the ray set-up, or to the length of your own list");
+        "if n is even. Fill it with the float -1 before the first frame, and when the size of the image changes");
+    row("ray_count", "one word: the number of rays, at most one for each pixel. Set it to 0 before the ray set-up, or "
+                     "to the length of your own list");
     row("rays",
         "32 bytes a ray: x_px, y_px and depth where it starts, its length in metres, the same three from there to "
         "its end, and a word: pixel x in bits 0-13, y in 14-27, and above them the status of a ray that hits "
@@ -123,10 +143,9 @@ std::string head_comment(const Export& what, const View& view, const ExportedPas
         "// Status: 1 hit, 2 left the screen, 3 maximum distance, 4 out of steps (no hit), 5 met surfaces that face "
         "away only,\n"
         "// 6 stopped behind what the frame shows (no hit). The point of a hit is origin + t * delta.\n"
-        "// normal_image is read only with behind = pass or stop. README.md has all formats, the dispatches and the "
-        "cost.\n",
+        "// README.md has all formats, the dispatches and the cost.\n",
         trace.name, what.technique.name, what.technique.summary, version_text(), what.command, projection_text(view),
-        settings_text(what, " {} = {},"), trace.pass.rays_per_workgroup, LAUNCH_ROW_GROUPS);
+        settings_text(what, "\n//   {} = {}"), trace.pass.rays_per_workgroup, LAUNCH_ROW_GROUPS);
 }
 
 std::string readme(const Export& what, const View& view, std::span<const ExportedPass> passes,
@@ -138,14 +157,16 @@ std::string readme(const Export& what, const View& view, std::span<const Exporte
         fmt::format("\nMade for {}. Another near plane, thickness or setting needs another export: the shaders hold "
                     "their values as constants. Written by\n\n    {}\n\n",
                     projection_text(view), what.command);
-    text +=
-        fmt::format("## Passes, in their order\n{}\nA barrier belongs between each two dispatches. A list of rays of "
-                    "your own replaces the ray set-up.\n\n",
-                    passes_table(passes, what.language));
+    text += fmt::format(
+        "## Passes, in their order\n{}\nA barrier belongs between each two dispatches. `has_ray()` in "
+        "the ray set-up says which pixels reflect: as it is, all with a surface and a normal. Let it ask for "
+        "your materials, or fill the list of rays yourself instead.\n\n",
+        passes_table(passes, what.language));
+    text += depth_text(view);
     text +=
         fmt::format("## Resources\n{}\nBindings are those of set 0 (HLSL: register numbers; WGSL: group 0). Names that "
                     "a shader gives "
-                    "to one resource may differ. `normals` is read by the trace only with behind = pass or stop.\n\n",
+                    "to one resource may differ.\n\n",
                     resources_table(passes, composed));
     text +=
         fmt::format("## What comes back\n{} The hit point is `origin + t * delta`, in pixels and depth.\n\n", statuses);

@@ -1,6 +1,6 @@
 // Numbers that C++ (through shared.h) and GLSL must agree on.
 
-// Why a ray stopped (core/trace_image.h has the same list with its meaning).
+// Why a ray stopped.
 #define TRACE_NOT_TRACED 0
 #define TRACE_HIT 1
 #define TRACE_LEFT_SCREEN 2

@@ -1,4 +1,4 @@
-// Two pixels side by side, x even: of each its depth, and no gradient. After layout/cell_pairs.glsl.
+// Two pixels side by side, x even: of each its depth, and no gradient.
 uvec4 load_pixel_pair(ivec2 pixel)
 {
     uvec4 four = load_pair(pair_index(ivec2(pixel.x >> 1, pixel.y), pyramid_root));

@@ -7,7 +7,7 @@
 STORED_FLOATS(DEPTH_BINDING, depth_words)
 STORED_TEXELS_2(PLANES_BINDING, StoredPlanes)
 
-// gradient: as framework/core/plane_gradient.h packs it.
+// gradient: two packed halves, see unpack_gradient() (framework/core/plane_gradient.h).
 void store_depth(ivec2 pixel, float depth, uint gradient)
 {
     STORE_FLOAT(depth_words, depth_word(pixel), depth);

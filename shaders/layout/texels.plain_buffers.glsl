@@ -1,4 +1,4 @@
-// texels.glsl for devices that read texels as storage buffers.
+// A texel of a storage buffer, widened as a texel buffer would.
 uvec4 to_loaded(uint word) { return uvec4(word, 0, 0, 1); }
 uvec4 to_loaded(uvec2 words) { return uvec4(words, 0, 1); }
 uvec4 to_loaded(uvec4 words) { return words; }

@@ -30,7 +30,7 @@ bool is_answer(TraceResult result)
     return known && (on_image || !has_place(result));
 }
 
-// own_lane: that of the ray (trace/lanes.glsl).
+// own_lane: the lane that traced the ray; only the counters use it.
 void store_result(uint index, TraceResult result, int own_lane)
 {
     bool  answers = is_answer(result);

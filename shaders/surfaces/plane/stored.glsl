@@ -1,6 +1,6 @@
 // Planes as the G-buffer stores them. After api/camera.glsl.
 
-// Of depth, from one pixel to the next; NaN where the pixel has no usable plane. framework/core/plane_gradient.h packs it.
+// Change of depth from one pixel to the next along x and y; NaN where the pixel has no usable plane.
 vec2 unpack_gradient(uint words) { return uintBitsToFloat(uvec2(words & 0xFFFF0000u, words << 16)); }
 
 bool has_plane(vec2 gradient) { return (floatBitsToUint(gradient.x) & 0x7FFFFFFFu) <= 0x7F800000u; }

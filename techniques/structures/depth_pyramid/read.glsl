@@ -5,7 +5,7 @@
 // The coarsest level that is there.
 int pyramid_top() { return min(depth_pyramid_top_level, pyramid_levels()); }
 
-// The words of the cell of a level that holds a pixel, as cell.glsl says; at level 0 as fetch_pixel() does. Counted.
+// The two words of the cell that holds a pixel at a level; at level 0 those of the pixel, as fetch_pixel() returns them.
 uvec2 fetch_cell(ivec2 pixel, int level)
 {
     bool leaf = level == 0;
