@@ -34,8 +34,9 @@ def models_of(rows):
 
 
 def one_tracer(rows):
-    """Rows of the tracer that has the most models."""
-    return rows[rows.technique == rows.groupby("technique", sort=False).surface.nunique().idxmax()]
+    """Rows of the tracer that has the most models; of several, the one with the best F1."""
+    by_tracer = rows.groupby("technique", sort=False).agg(models=("surface", "nunique"), f1=("f1_1px", "mean"))
+    return rows[rows.technique == by_tracer.sort_values(["models", "f1"], kind="stable").index[-1]]
 
 
 def has_models(results):
@@ -108,7 +109,7 @@ def f1_against_time(results, tables):
     log_axis(axis.xaxis)
     name_lines(axis, [(model_name(row), row.ms, 100 * row.f1_1px, look_of(row.surface)[0]) for row in means.itertuples()])
     titled(figure, gain(means, "f1_1px") + (", in the mean" if rows.scene.nunique() > 1 else ""),
-           f"{rows.width.iloc[0]}×{rows.height.iloc[0]}; large: means over {rows.scene.nunique()} scenes")
+           f"{rows.technique.iloc[0]}, {rows.width.iloc[0]}×{rows.height.iloc[0]}; large: means over {rows.scene.nunique()} scenes")
     yield "surfaces_f1_time", figure
 
 

@@ -274,6 +274,13 @@ class Test(Case):
                                          passes={"layers": (layer - 1, "") if layer > 1 else (None, ""), "solid_backs": (solid_ms, ""), "trace": (2, "")}))
         return made_results(self, rows, ["surface", "behind", "thickness_m", "layers"])
 
+    def test_surfaces_are_compared_by_the_best_tracer(self):
+        rows = [dict(scene="a_hall", technique=technique, surface=surface, behind="stop", thickness_m=0.1, recall_1px=f1, precision_1px=f1,
+                     f1_1px=f1, trace_ms_median=2, structures_ms_median=1, passes={"trace": (2, "")})
+                for technique, f1 in (("linear", 0.2), ("hiz", 0.9), ("dda", 0.8)) for surface in ("box", "plane")]
+        results = made_results(self, rows, ["surface", "behind", "thickness_m"])
+        self.assertEqual(set(plots.surfaces.one_tracer(results.rows).technique), {"hiz"})
+
     def test_precision_against_recall(self):
         results = self.surfaces(thicknesses=(0.4, 0.1, 0.2))
         figures, _ = self.drawn(plots.surfaces.precision_against_recall, results)
