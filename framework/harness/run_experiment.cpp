@@ -117,6 +117,7 @@ double total_cost(std::span<const Run> runs, std::span<const Technique> techniqu
 
 int list_runs(const Experiment& experiment, std::span<const Run> runs, std::span<const Technique> techniques)
 {
+    const FrameSettings defaults;
     for (const Run& run : runs) {
         const Technique& technique = find_technique(techniques, run.technique);
         std::string      values;
@@ -126,8 +127,11 @@ int list_runs(const Experiment& experiment, std::span<const Run> runs, std::span
         if (!run.sources.list.empty())
             values += fmt::format("  sources={} hand_on={}", run.sources.text,
                                   hand_on_names[static_cast<size_t>(run.sources.hand_on)]);
-        fmt::print("{}  {} {} {}  thickness_m={} max_distance_m={}  {}{}\n", run.id, run.scene, run.view,
-                   size_text(run.size_px), run.settings.trace.thickness_m, run.settings.trace.max_distance_m,
+        std::string settings;
+        for (const Setting& setting : experiment.known_settings)
+            if (setting.get(run.settings) != setting.get(defaults))
+                settings += fmt::format(" {}={}", setting.name, format_parameter(setting, setting.get(run.settings)));
+        fmt::print("{}  {} {} {} {}  {}{}\n", run.id, run.scene, run.view, size_text(run.size_px), settings,
                    run.technique, values);
     }
     fmt::print("{} runs, about {} on two CPU cores without a GPU{}\n", runs.size(),

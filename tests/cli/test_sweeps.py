@@ -142,6 +142,12 @@ class Test(Case):
         self.ssrlab("run", SMOKE, "--dry-run", "-o", "out", says=["14 runs"])
         self.assertFalse(os.path.exists(self.path("out")))
 
+    def test_dry_run_tells_runs_apart_by_their_settings(self):
+        spec = self.write("s.toml", 'scenes = ["builtin:stairs"]\n[trace]\nbehind = ["hit", "pass"]\nsurface = ["box", "plane"]\n[techniques.dda]\n')
+        listing = [line.split()[1:] for line in self.ssrlab("run", spec, "--dry-run").splitlines()[:4]]
+        self.assertEqual({tuple(word for word in line if word.startswith(("behind=", "surface="))) for line in listing},
+                         {(f"behind={behind}", f"surface={surface}") for behind in ("hit", "pass") for surface in ("box", "plane")})
+
     def test_only_repeats_one_run(self):
         spec = self.write("s.toml", SWEEP)
         listing = self.ssrlab("run", spec, "--dry-run").splitlines()
