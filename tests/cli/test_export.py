@@ -50,6 +50,15 @@ class Test(Case):
         self.ssrlab("--quiet", "export", technique, "--to", language, "-o", folder, "--size", "64x36", *more)
         return folder
 
+    def test_a_frame_file_has_its_own_size(self):
+        self.ssrlab("gbuffer", "builtin:stairs", "--size", "48x27", "-o", "frame.exr")
+        self.ssrlab("--quiet", "export", "dda", "--to", "glsl", "--scene", "frame.exr", "-o", "out")
+        with open(self.path("out/README.md"), encoding="utf-8") as file:
+            said = file.read()
+        self.assertIn("d == 0 ? 0 : d * (1 - n / f) + n / f", said)
+        self.assertNotIn("dielectric_", said)
+        self.assertRegex(self.ssrlab("export", "--verify", "out"), r"scene: 0 of [1-9]\d* rays differ")
+
     def verified(self, folder, code=0, **environment):
         """The rays of each frame that differ, and all that was said."""
         said = self.ssrlab("export", "--verify", folder, code=code, **environment)
