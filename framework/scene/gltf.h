@@ -132,10 +132,11 @@ std::vector<Influences> read_influences(Import& import, const tinygltf::Primitiv
 /// else of the mesh; empty: none counts.
 std::vector<float> morph_weights(const Import& import, int node);
 
-/// Adds the primitive's morph targets, by their weights, to the first three components of an attribute's rows (glTF
+/// Adds the primitive's morph targets, by their weights, to the first `delta_components` of an attribute's rows (glTF
 /// 2.0, 3.7.2.2).
 void add_morph_targets(const Import& import, const tinygltf::Primitive& primitive, const char* name, int components,
-                       const std::vector<float>& weights, std::vector<float>& rows, const std::string& where);
+                       int delta_components, const std::vector<float>& weights, std::vector<float>& rows,
+                       const std::string& where);
 
 /// Returns a mesh's primitives in the mesh's own space, with their morph targets by these weights. Skips draws that
 /// cannot be shown, with a warning.

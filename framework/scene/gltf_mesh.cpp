@@ -56,16 +56,32 @@ std::vector<uint32_t> take_used(std::vector<uint32_t>& corners, size_t vertex_co
     return used;
 }
 
+/// What an accessor of whole numbers can hold at most; 1 where their shares of that are meant.
+float largest_unless_normalized(const tinygltf::Accessor& accessor)
+{
+    if (accessor.normalized) return 1;
+    if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) return 255;
+    return accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ? 65535 : 1;
+}
+
 void read_colours(Import& import, const tinygltf::Primitive& primitive, size_t vertex_count,
-                  const std::vector<uint32_t>& used, Mesh& mesh, const std::string& where)
+                  const std::vector<float>& morph_weights, const std::vector<uint32_t>& used, Mesh& mesh,
+                  const std::string& where)
 {
     const int accessor = attribute(primitive, "COLOR_0");
     if (accessor < 0) return;
     if (primitive.material >= 0 &&
         import.json.materials[size_t(primitive.material)].extensions.contains("KHR_materials_unlit"))
         import.warn(fmt::format("{}: vertex colours of an unlit material are not supported; it has one colour", where));
-    const int                components = component_count(import, accessor, where) == 4 ? 4 : 3;
-    const std::vector<float> rows       = rows_of(import, primitive, "COLOR_0", components, vertex_count, where);
+    const int          components = component_count(import, accessor, where) == 4 ? 4 : 3;
+    std::vector<float> rows       = rows_of(import, primitive, "COLOR_0", components, vertex_count, where);
+    if (const float largest = largest_unless_normalized(import.json.accessors[size_t(accessor)]); largest > 1) {
+        import.warn(fmt::format("{}/attributes/COLOR_0: whole numbers that are not 'normalized': they count as shares "
+                                "of {}",
+                                where, largest));
+        for (float& value : rows) value /= largest;
+    }
+    add_morph_targets(import, primitive, "COLOR_0", components, components, morph_weights, rows, where);
     for (size_t i = 0; i < used.size(); ++i)
         for (int c = 0; c < components; ++c)
             mesh.vertices[i].colour[c] = rows[used[i] * static_cast<size_t>(components) + static_cast<size_t>(c)];
@@ -99,11 +115,13 @@ void read_triangles(Import& import, const tinygltf::Primitive& primitive, int mo
     const std::vector<uint32_t> used     = take_used(corners, count);
     std::vector<float>          normals  = rows_of(import, primitive, "NORMAL", 3, count, where);
     std::vector<float>          tangents = rows_of(import, primitive, "TANGENT", 4, count, where);
-    const std::vector<float>    uv0      = rows_of(import, primitive, "TEXCOORD_0", 2, count, where);
-    const std::vector<float>    uv1      = rows_of(import, primitive, "TEXCOORD_1", 2, count, where);
-    add_morph_targets(import, primitive, "POSITION", 3, morph_weights, positions, where);
-    add_morph_targets(import, primitive, "NORMAL", 3, morph_weights, normals, where);
-    add_morph_targets(import, primitive, "TANGENT", 4, morph_weights, tangents, where);
+    std::vector<float>          uv0      = rows_of(import, primitive, "TEXCOORD_0", 2, count, where);
+    std::vector<float>          uv1      = rows_of(import, primitive, "TEXCOORD_1", 2, count, where);
+    add_morph_targets(import, primitive, "POSITION", 3, 3, morph_weights, positions, where);
+    add_morph_targets(import, primitive, "NORMAL", 3, 3, morph_weights, normals, where);
+    add_morph_targets(import, primitive, "TANGENT", 4, 3, morph_weights, tangents, where);
+    add_morph_targets(import, primitive, "TEXCOORD_0", 2, 2, morph_weights, uv0, where);
+    add_morph_targets(import, primitive, "TEXCOORD_1", 2, 2, morph_weights, uv1, where);
     mesh.has_normals  = !normals.empty();
     mesh.has_tangents = !tangents.empty() && mesh.has_normals;
     mesh.positions_ws.reserve(used.size());
@@ -120,7 +138,7 @@ void read_triangles(Import& import, const tinygltf::Primitive& primitive, int mo
         mesh.positions_ws.emplace_back(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
         mesh.vertices.push_back(vertex);
     }
-    read_colours(import, primitive, count, used, mesh, where);
+    read_colours(import, primitive, count, morph_weights, used, mesh, where);
     mesh.skin.vertices = read_influences(import, primitive, count, used, where);
     mesh.indices       = to_triangles(corners, mode);
 }

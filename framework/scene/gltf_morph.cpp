@@ -1,4 +1,4 @@
-// Morph targets: what is added to positions, normals and tangents, by weight (glTF 2.0, 3.7.2.2).
+// Morph targets: what is added to the attributes of vertices, by weight (glTF 2.0, 3.7.2.2).
 #include "scene/gltf.h"
 
 #include <algorithm>
@@ -17,7 +17,8 @@ std::vector<float> morph_weights(const Import& import, int node_index)
 }
 
 void add_morph_targets(const Import& import, const tinygltf::Primitive& primitive, const char* name, int components,
-                       const std::vector<float>& weights, std::vector<float>& rows, const std::string& where)
+                       int delta_components, const std::vector<float>& weights, std::vector<float>& rows,
+                       const std::string& where)
 {
     const auto& targets = primitive.targets;
     if (rows.empty() || targets.empty() || weights.empty()) return;
@@ -30,11 +31,12 @@ void add_morph_targets(const Import& import, const tinygltf::Primitive& primitiv
         const std::string place = fmt::format("{}/targets/{}/{}", where, t, name);
         if (!std::isfinite(weights[t])) import.fail("{}: its weight is not finite", place);
         if (found == targets[t].end() || weights[t] == 0) continue;
-        const std::vector<float> deltas = read_floats(import, found->second, 3, place);
-        if (deltas.size() != 3 * count)
-            import.fail("{}: {} elements for {} positions", place, deltas.size() / 3, count);
+        const std::vector<float> deltas = read_floats(import, found->second, delta_components, place);
+        const auto               width  = static_cast<size_t>(delta_components);
+        if (deltas.size() != width * count)
+            import.fail("{}: {} elements for {} positions", place, deltas.size() / width, count);
         for (size_t i = 0; i < count; ++i)
-            for (size_t c = 0; c < 3; ++c) rows[i * stride + c] += weights[t] * deltas[3 * i + c];
+            for (size_t c = 0; c < width; ++c) rows[i * stride + c] += weights[t] * deltas[width * i + c];
     }
 }
 

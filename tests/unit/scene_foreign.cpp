@@ -156,6 +156,23 @@ TEST(ForeignGltf, TangentsFollowTheTexturesTransform)
     EXPECT_VEC_NEAR(tangent_of({{"rotation", std::numbers::pi / 2}}), glm::vec4(0, -1, 0, 1), eps);
 }
 
+TEST(ForeignGltf, ColoursOfWholeNumbersAreShares)
+{
+    for (const bool normalized : {true, false}) {
+        GltfFile  file     = quad();
+        const int accessor = file.add_accessor<uint16_t>(
+            {65535, 0, 13107, 65535, 0, 13107, 65535, 0, 13107, 65535, 0, 13107}, "VEC3", 3);
+        file.root["accessors"][size_t(accessor)]["normalized"] = normalized;
+        file.primitive()["attributes"]["COLOR_0"]              = accessor;
+        const Scene scene                                      = file.load();
+        for (const Vertex& vertex : scene.vertices) EXPECT_VEC_NEAR(vertex.colour, glm::vec4(1, 0, 0.2F, 1), eps);
+        if (normalized)
+            EXPECT_THAT(scene.warnings, IsEmpty());
+        else
+            EXPECT_THAT(scene.warnings, Contains(AllOf(HasSubstr("COLOR_0"), HasSubstr("shares of 65535"))));
+    }
+}
+
 TEST(ForeignGltf, NormalsWithoutDirectionBecomeTheTriangles)
 {
     const float nan = std::numeric_limits<float>::quiet_NaN();

@@ -58,6 +58,26 @@ TEST(SceneMorph, NormalsTurnWithTheirTargets)
     EXPECT_VEC_NEAR(scene.vertices[0].normal_ws, glm::vec3(0.6F, 0, 0.8F), eps); // (3, 0, 4), of length 1
 }
 
+TEST(SceneMorph, ColoursAndTextureCoordinatesAreAddedToo)
+{
+    MorphingFile file;
+    json&        attributes           = file.primitive()["attributes"];
+    json&        target               = file.primitive()["targets"][0];
+    attributes["COLOR_0"]             = file.add_accessor<float>({1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}, "VEC4", 4);
+    target["COLOR_0"]                 = file.add_accessor<float>({-1, 1, 2, 0, -1, 1, 0, 0, -1, 1, 0, -1}, "VEC4", 4);
+    attributes["TEXCOORD_0"]          = file.add_accessor<float>({0, 0, 1, 0, 0, 1}, "VEC2", 2);
+    target["TEXCOORD_0"]              = file.add_accessor<float>({0, 0, 2, 4, 0, 0}, "VEC2", 2);
+    attributes["TEXCOORD_1"]          = file.add_accessor<float>({0, 0, 0, 0, 0, 0}, "VEC2", 2);
+    target["TEXCOORD_1"]              = file.add_accessor<float>({8, 0, 0, 0, 0, 0}, "VEC2", 2);
+    file.root["meshes"][0]["weights"] = {0.5, 0};
+    const Scene scene                 = file.load();
+    EXPECT_VEC_NEAR(scene.vertices[0].colour, glm::vec4(0.5F, 0.5F, 1, 1), eps);
+    EXPECT_VEC_NEAR(scene.vertices[2].colour, glm::vec4(0.5F, 0.5F, 0, 0.5F), eps);
+    EXPECT_EQ(scene.vertices[1].uv0, glm::vec2(2, 2));
+    EXPECT_EQ(scene.vertices[0].uv1, glm::vec2(4, 0));
+    EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
 TEST(SceneMorph, AnimatedOnesHaveTheWeightsOfTheirFirstKey)
 {
     TempFolder   folder;
