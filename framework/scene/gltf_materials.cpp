@@ -141,9 +141,13 @@ float dielectric_f0_of(Import& import, const tinygltf::Material& source, const s
     double                 colour = 1;
     if (values.Has("specularColorFactor") && values.Get("specularColorFactor").IsArray()) {
         const tinygltf::Value& factors = values.Get("specularColorFactor");
-        colour                         = 0;
+        std::vector<double>    numbers;
         for (size_t c = 0; c < factors.ArrayLen(); ++c)
-            if (factors.Get(int(c)).IsNumber()) colour = std::max(colour, factors.Get(int(c)).GetNumberAsDouble());
+            if (factors.Get(int(c)).IsNumber()) numbers.push_back(factors.Get(int(c)).GetNumberAsDouble());
+        colour = numbers.empty() ? 1 : std::ranges::max(numbers);
+        if (!numbers.empty() && std::ranges::min(numbers) != colour)
+            import.warn(fmt::format(
+                "{}: the colour of KHR_materials_specular is not supported; its largest part counts", where));
     }
     if (values.Has("specularTexture") || values.Has("specularColorTexture"))
         import.warn(fmt::format("{}: textures of KHR_materials_specular are not supported; factors count", where));
@@ -262,18 +266,20 @@ Material convert(Import& import, Textures& textures, const tinygltf::Material& s
     material.metallic_roughness_texture = texture_use(import, textures, pbr.metallicRoughnessTexture, false, where);
     material.normal_texture             = texture_use(import, textures, source.normalTexture, false, where);
     material.emissive_texture           = texture_use(import, textures, source.emissiveTexture, true, where);
-    material.dielectric_f0              = dielectric_f0_of(import, source, where);
-    add_clearcoat(import, source, where, material);
-    add_specular_glossiness(import, textures, source, where, material);
     if (source.extensions.contains("KHR_materials_unlit")) {
         // Unlit shows its base colour whatever the light: that is emission and nothing else.
-        material.emissive         = glm::vec3(material.base_colour);
-        material.emissive_texture = material.base_colour_texture;
-        material.base_colour      = {0, 0, 0, material.base_colour.a};
-        material.metallic         = 0;
-        material.roughness        = 1;
-        material.dielectric_f0    = 0;
+        material.emissive                   = glm::vec3(material.base_colour);
+        material.emissive_texture           = material.base_colour_texture;
+        material.base_colour                = {0, 0, 0, material.base_colour.a};
+        material.metallic                   = 0;
+        material.roughness                  = 1;
+        material.dielectric_f0              = 0;
+        material.metallic_roughness_texture = {};
+        return material;
     }
+    material.dielectric_f0 = dielectric_f0_of(import, source, where);
+    add_clearcoat(import, source, where, material);
+    add_specular_glossiness(import, textures, source, where, material);
     return material;
 }
 

@@ -173,6 +173,30 @@ TEST(ForeignGltf, ColoursOfWholeNumbersAreShares)
     }
 }
 
+TEST(ForeignGltf, UnlitIsUnlitWhateverElseAMaterialSays)
+{
+    GltfFile file                                = quad();
+    file.primitive()["material"]                 = 0;
+    file.primitive()["attributes"]["TEXCOORD_0"] = file.add_accessor<float>({0, 1, 1, 1, 1, 0, 0, 0}, "VEC2", 2);
+    file.root["images"]                          = {{{"uri", pixel_png}}};
+    file.root["textures"]                        = {{{"source", 0}}};
+    file.root["materials"]                       = {
+                              {{"pbrMetallicRoughness",
+                                {{"baseColorFactor", {0.5, 0.25, 0.125, 1}}, {"metallicRoughnessTexture", {{"index", 0}}}}},
+                               {"emissiveFactor", {1, 1, 1}},
+                               {"extensions",
+                                {{"KHR_materials_unlit", json::object()},
+                                 {"KHR_materials_clearcoat", {{"clearcoatFactor", 1}}},
+                                 {"KHR_materials_ior", {{"ior", 2}}}}}}};
+    const Scene    scene    = file.load();
+    const Material material = scene.materials.at(scene.draws.at(0).material);
+    EXPECT_VEC_NEAR(material.emissive, glm::vec3(0.5F, 0.25F, 0.125F), eps);
+    EXPECT_EQ(material.roughness, 1);
+    EXPECT_EQ(material.metallic_roughness_texture.texture, -1);
+    EXPECT_EQ(material.dielectric_f0, 0);
+    EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
 TEST(ForeignGltf, NormalsWithoutDirectionBecomeTheTriangles)
 {
     const float nan = std::numeric_limits<float>::quiet_NaN();
