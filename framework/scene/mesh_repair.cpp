@@ -119,6 +119,45 @@ void weld_split_vertices(Mesh& mesh, const std::vector<uint32_t>& source)
     keep_vertices(mesh, kept);
 }
 
+/// A triangle in the texture: from its first corner to the second and third.
+struct UvEdges {
+    glm::dvec2 du{0}, dv{0};
+    int        side = 0; // -1: it lies there mirrored; 0: it has no area there
+};
+
+UvEdges uv_edges(const Mesh& mesh, size_t first, int uv_set, const glm::mat3& uv_transform)
+{
+    const glm::dmat2 turn = glm::dmat2(glm::mat2(uv_transform));
+    const auto       uv   = [&](size_t corner) {
+        const Vertex& vertex = mesh.vertices[mesh.indices[corner]];
+        return glm::dvec2(uv_set == 0 ? vertex.uv0 : vertex.uv1);
+    };
+    const glm::dvec2 du = turn * (uv(first + 1) - uv(first)), dv = turn * (uv(first + 2) - uv(first));
+    const double     determinant = du.x * dv.y - dv.x * du.y;
+    if (determinant == 0 || !std::isfinite(determinant)) return {};
+    return {du, dv, determinant > 0 ? 1 : -1};
+}
+
+/// Gives a vertex without a tangent a copy where triangles of both sides share it: their tangents differ there.
+void split_mirrored(Mesh& mesh, const std::vector<UvEdges>& edges)
+{
+    std::vector<int>                       side_of(mesh.vertices.size(), 0);
+    std::vector<uint32_t>                  kept(mesh.vertices.size());
+    std::unordered_map<uint32_t, uint32_t> copies;
+    std::iota(kept.begin(), kept.end(), 0U);
+    for (size_t corner = 0; corner < mesh.indices.size(); ++corner) {
+        uint32_t& index = mesh.indices[corner];
+        const int side  = edges[corner / 3].side;
+        if (side == 0 || mesh.vertices[index].tangent_ws.w != 0) continue;
+        if (side_of[index] == 0) side_of[index] = side;
+        if (side_of[index] == side) continue;
+        const auto [copy, added] = copies.try_emplace(index, static_cast<uint32_t>(kept.size()));
+        if (added) kept.push_back(index);
+        index = copy->second;
+    }
+    if (!copies.empty()) keep_vertices(mesh, kept);
+}
+
 } // namespace
 
 size_t drop_bad_triangles(Mesh& mesh)
@@ -219,30 +258,30 @@ void make_smooth_normals(Mesh& mesh, double crease_deg)
     mesh.has_normals = true;
 }
 
-void make_tangents(Mesh& mesh, int uv_set, const glm::mat3& uv_transform)
+size_t make_tangents(Mesh& mesh, int uv_set, const glm::mat3& uv_transform)
 {
-    const glm::dmat2        turn = glm::dmat2(glm::mat2(uv_transform));
+    std::vector<UvEdges> edges;
+    edges.reserve(mesh.indices.size() / 3);
+    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) edges.push_back(uv_edges(mesh, i, uv_set, uv_transform));
+    split_mirrored(mesh, edges);
     std::vector<glm::dvec3> along_u(mesh.vertices.size(), glm::dvec3(0));
     std::vector<glm::dvec3> along_v(mesh.vertices.size(), glm::dvec3(0));
     for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-        const Corners corners = corners_of(mesh, i);
-        const auto    uv      = [&](size_t corner) {
-            const Vertex& vertex = mesh.vertices[mesh.indices[corner]];
-            return glm::dvec2(uv_set == 0 ? vertex.uv0 : vertex.uv1);
-        };
-        const glm::dvec2 du          = turn * (uv(i + 1) - uv(i));
-        const glm::dvec2 dv          = turn * (uv(i + 2) - uv(i));
-        const double     determinant = du.x * dv.y - dv.x * du.y;
-        if (determinant == 0 || !std::isfinite(determinant)) continue;
-        const double     sign = determinant > 0 ? 1 : -1; // weighted by area in space, not in the texture
-        const glm::dvec3 u    = sign * (dv.y * (corners.b - corners.a) - du.y * (corners.c - corners.a));
-        const glm::dvec3 v    = sign * (du.x * (corners.c - corners.a) - dv.x * (corners.b - corners.a));
+        const Corners corners      = corners_of(mesh, i);
+        const auto& [du, dv, side] = edges[i / 3];
+        if (side == 0) continue;
+        // Weighted by area in space, not in the texture.
+        const glm::dvec3 u = double(side) * (dv.y * (corners.b - corners.a) - du.y * (corners.c - corners.a));
+        const glm::dvec3 v = double(side) * (du.x * (corners.c - corners.a) - dv.x * (corners.b - corners.a));
         for (size_t corner = i; corner < i + 3; ++corner) {
             along_u[mesh.indices[corner]] += u;
             along_v[mesh.indices[corner]] += v;
         }
     }
+    size_t made = 0;
     for (size_t i = 0; i < mesh.vertices.size(); ++i) {
+        if (mesh.vertices[i].tangent_ws.w != 0) continue;
+        ++made;
         const glm::dvec3 normal  = mesh.vertices[i].normal_ws;
         glm::dvec3       tangent = along_u[i] - normal * glm::dot(normal, along_u[i]);
         if (!(glm::length(tangent) > 1e-12 * glm::length(along_u[i])))
@@ -251,7 +290,7 @@ void make_tangents(Mesh& mesh, int uv_set, const glm::mat3& uv_transform)
         const float handedness      = glm::dot(glm::cross(normal, tangent), along_v[i]) > 0 ? -1.0F : 1.0F;
         mesh.vertices[i].tangent_ws = {glm::vec3(glm::normalize(tangent)), handedness};
     }
-    mesh.has_tangents = true;
+    return made;
 }
 
 size_t replace_bad_normals(Mesh& mesh)
@@ -292,11 +331,14 @@ void clean_attributes(Mesh& mesh)
         if (!finite(vertex.uv1)) vertex.uv1 = {0, 0};
         vertex.colour              = finite(vertex.colour) ? glm::clamp(vertex.colour, 0.0F, 1.0F) : glm::vec4(1);
         vertex.normal_ws           = vertex.normal_ws / glm::length(vertex.normal_ws);
-        const float tangent_length = glm::length(glm::vec3(vertex.tangent_ws));
-        if (!std::isfinite(tangent_length) || tangent_length < 1e-6F || vertex.tangent_ws.w == 0)
-            vertex.tangent_ws = glm::vec4(0);
+        const glm::vec3 tangent    = glm::vec3(vertex.tangent_ws);
+        const float     length     = glm::length(tangent);
+        const float     off_normal = glm::length(glm::cross(vertex.normal_ws, tangent)); // what a shader can use of it
+        if (std::isfinite(length) && off_normal > 1e-3F * length && length > 1e-6F && finite(vertex.tangent_ws) &&
+            vertex.tangent_ws.w != 0)
+            vertex.tangent_ws = {tangent / length, vertex.tangent_ws.w < 0 ? -1.0F : 1.0F};
         else
-            vertex.tangent_ws = {glm::vec3(vertex.tangent_ws) / tangent_length, vertex.tangent_ws.w < 0 ? -1.0F : 1.0F};
+            vertex.tangent_ws = glm::vec4(0);
     }
 }
 

@@ -71,20 +71,29 @@ void warn_of_far_cameras(Model& model, glm::dvec3 origin_ws)
 
 void repair(Model& model)
 {
-    size_t dropped = 0, turned = 0;
+    size_t dropped = 0, turned = 0, no_tangent = 0;
     for (Mesh& mesh : model.meshes) {
         dropped += drop_bad_triangles(mesh);
         if (!mesh.has_normals) make_flat_normals(mesh);
         turned += replace_bad_normals(mesh);
         clean_attributes(mesh);
         const TextureUse& normals = model.materials.at(mesh.material).normal_texture;
-        if (normals.texture >= 0 && !mesh.has_tangents) make_tangents(mesh, normals.uv_set, normals.uv_transform);
+        if (normals.texture >= 0) {
+            const size_t made = make_tangents(mesh, normals.uv_set, normals.uv_transform);
+            if (mesh.has_tangents) no_tangent += made;
+        } else {
+            for (Vertex& vertex : mesh.vertices)
+                vertex.tangent_ws = glm::vec4(0); // there is nothing to turn normals by
+        }
     }
     std::erase_if(model.meshes, [](const Mesh& mesh) { return mesh.indices.empty(); });
     if (dropped > 0) model.warnings.push_back(dropped_triangles_text(dropped));
     if (turned > 0)
         model.warnings.push_back(fmt::format(
             "{} corners of triangles have normals without direction: their triangles' own are used", turned));
+    if (no_tangent > 0)
+        model.warnings.push_back(fmt::format(
+            "{} vertices have tangents without direction: those of their texture coordinates are used", no_tangent));
 }
 
 void add_draw(Scene& scene, const Mesh& mesh)

@@ -156,6 +156,58 @@ TEST(ForeignGltf, TangentsFollowTheTexturesTransform)
     EXPECT_VEC_NEAR(tangent_of({{"rotation", std::numbers::pi / 2}}), glm::vec4(0, -1, 0, 1), eps);
 }
 
+/// The quad, normal mapped, with these texture coordinates, and these tangents if there are any.
+GltfFile mapped_quad(const std::vector<float>& uv, const std::vector<float>& tangents)
+{
+    GltfFile file                                = quad();
+    file.primitive()["material"]                 = 0;
+    file.primitive()["attributes"]["NORMAL"]     = file.positions({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
+    file.primitive()["attributes"]["TEXCOORD_0"] = file.add_accessor<float>(uv, "VEC2", 2);
+    if (!tangents.empty()) file.primitive()["attributes"]["TANGENT"] = file.add_accessor<float>(tangents, "VEC4", 4);
+    file.root["images"]    = {{{"uri", pixel_png}}};
+    file.root["textures"]  = {{{"source", 0}}};
+    file.root["materials"] = {{{"normalTexture", {{"index", 0}}}}};
+    return file;
+}
+
+TEST(ForeignGltf, TangentsAreForNormalMapsAlone)
+{
+    GltfFile file = mapped_quad({0, 1, 1, 1, 1, 0, 0, 0}, {0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1});
+    for (const Vertex& vertex : file.load().vertices) EXPECT_VEC_NEAR(vertex.tangent_ws, glm::vec4(0, 1, 0, 1), eps);
+    file.root["materials"] = {json::object()};
+    for (const Vertex& vertex : file.load().vertices) EXPECT_EQ(vertex.tangent_ws, glm::vec4(0));
+}
+
+TEST(ForeignGltf, TangentsWithoutDirectionBecomeThoseOfTheTexture)
+{
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (const glm::vec4& bad : {glm::vec4(0), glm::vec4(nan), glm::vec4(0, 1, 0, 0), glm::vec4(0, 0, 1, 1)}) {
+        const Scene scene = mapped_quad({0, 1, 1, 1, 1, 0, 0, 0}, {bad.x, bad.y, bad.z, bad.w, 0, 1, 0, -1, 0, 1, 0, -1,
+                                                                   bad.x, bad.y, bad.z, bad.w})
+                                .load();
+        ASSERT_EQ(scene.vertices.size(), 4U);
+        for (const Vertex& vertex : scene.vertices)
+            EXPECT_VEC_NEAR(vertex.tangent_ws,
+                            vertex.position_ws.x < 0 ? glm::vec4(1, 0, 0, 1) : glm::vec4(0, 1, 0, -1), eps);
+        EXPECT_THAT(scene.warnings, Contains(HasSubstr("2 vertices have tangents without direction")));
+    }
+}
+
+TEST(ForeignGltf, MirroredTexturesHaveTangentsOfBothSides)
+{
+    // The second triangle shows the texture mirrored; both share two corners.
+    const Scene scene = mapped_quad({0, 0, 1, 0, 0, 1, 1, 0}, {}).load();
+    ASSERT_EQ(scene.indices.size(), 6U);
+    EXPECT_EQ(scene.vertices.size(), 6U);
+    for (size_t i = 0; i < 6; ++i) {
+        const Vertex& vertex = scene.vertices[scene.indices[i]];
+        // u grows along +x in the first and along +y in the second, v towards (2, 1) in both.
+        const glm::vec3 expected = i < 3 ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+        EXPECT_VEC_NEAR(glm::vec3(vertex.tangent_ws), expected, eps) << i;
+        EXPECT_EQ(vertex.tangent_ws.w, i < 3 ? -1.0F : 1.0F) << i;
+    }
+}
+
 TEST(ForeignGltf, ColoursOfWholeNumbersAreShares)
 {
     for (const bool normalized : {true, false}) {

@@ -470,19 +470,23 @@ TEST(SceneGltf, ColoursAreEncodedAndNormalsAreNot)
 
 TEST(SceneGltf, VerticesKeepWhatTheFileSays)
 {
-    GltfFile  file           = GltfFile::triangle();
-    auto&     attributes     = file.primitive()["attributes"];
-    const int normals        = file.add_accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
-    const int tangents       = file.add_accessor<float>({0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1}, "VEC4", 4);
-    const int first          = file.add_accessor<float>({1, 2, 3, 4, 5, 6}, "VEC2", 2);
-    const int second         = file.add_accessor<float>({7, 8, 9, 10, 11, 12}, "VEC2", 2);
-    const int colours        = file.add_accessor<float>({.1F, .2F, .3F, 0, 0, 0, 0, 0, 0}, "VEC3", 3);
-    attributes["NORMAL"]     = normals;
-    attributes["TANGENT"]    = tangents;
-    attributes["TEXCOORD_0"] = first;
-    attributes["TEXCOORD_1"] = second;
-    attributes["COLOR_0"]    = colours;
-    const auto placed        = [&](const json& scale) {
+    GltfFile  file               = GltfFile::triangle();
+    auto&     attributes         = file.primitive()["attributes"];
+    const int normals            = file.add_accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
+    const int tangents           = file.add_accessor<float>({0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1}, "VEC4", 4);
+    const int first              = file.add_accessor<float>({1, 2, 3, 4, 5, 6}, "VEC2", 2);
+    const int second             = file.add_accessor<float>({7, 8, 9, 10, 11, 12}, "VEC2", 2);
+    const int colours            = file.add_accessor<float>({.1F, .2F, .3F, 0, 0, 0, 0, 0, 0}, "VEC3", 3);
+    attributes["NORMAL"]         = normals;
+    attributes["TANGENT"]        = tangents;
+    attributes["TEXCOORD_0"]     = first;
+    attributes["TEXCOORD_1"]     = second;
+    attributes["COLOR_0"]        = colours;
+    file.root["images"]          = {{{"uri", pixel_png}}};
+    file.root["textures"]        = {{{"source", 0}}};
+    file.root["materials"]       = {{{"normalTexture", {{"index", 0}}}}}; // else nothing needs tangents
+    file.primitive()["material"] = 0;
+    const auto placed            = [&](const json& scale) {
         file.root["nodes"] = {{{"mesh", 0}, {"scale", scale}}};
         return file.load().vertices;
     };
