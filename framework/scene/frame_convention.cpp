@@ -27,6 +27,20 @@ std::vector<double> numbers(const ExrFile& file, const std::string& name, size_t
     return values;
 }
 
+/// Other programs keep attributes when they resize or crop a picture. What a pixel spans then differs.
+void check_size(const ExrFile& file, const FrameConvention& convention)
+{
+    if (!file.attributes.contains("ssrlab:view_to_clip")) return;
+    const auto       matrix = numbers(file, "ssrlab:view_to_clip", 16);
+    const glm::dvec2 scale(matrix[0], -matrix[5]); // as view_to_clip() has it
+    const glm::dvec2 size_px = glm::round(2.0 * convention.view.focal_px / scale);
+    if (size_px == glm::dvec2(file.size_px)) return;
+    throw_spec_error(
+        "{}: {}x{} pixels, expected {}x{} as its ssrlab attributes say: resized or cropped since; say what "
+        "the camera sees in {}, [camera]",
+        file.shown, file.size_px.x, file.size_px.y, size_px.x, size_px.y, convention.place);
+}
+
 void read_attributes(const ExrFile& file, FrameConvention& convention)
 {
     for (const char* name : {"world_to_view", "focal_px", "centre_px", "near_m", "far_m"})
@@ -151,9 +165,11 @@ FrameConvention read_convention(const ExrFile& file)
     const auto      path = convention_file(file.path);
     convention.place     = short_path(path);
     read_attributes(file, convention);
+    bool has_camera = false;
     if (std::filesystem::exists(path)) {
         const TomlFile parsed = read_toml(path);
         TomlTable      root(parsed, parsed.root, "frame");
+        has_camera = root.has("camera");
         if (auto table = root.table("camera")) read_camera(*table, file, convention);
         if (auto table = root.table("depth")) read_depth_table(*table, convention);
         if (auto table = root.table("normals")) read_normals_table(*table, convention);
@@ -161,6 +177,7 @@ FrameConvention read_convention(const ExrFile& file)
         if (const auto picture = root.text("reference")) convention.reference = path.parent_path() / *picture;
         root.refuse_unknown_keys();
     }
+    if (!has_camera && convention.depth) check_size(file, convention);
     convention.view.name    = Camera{}.name;
     convention.view.size_px = file.size_px;
     if (!(convention.device_far_m > 0))

@@ -92,13 +92,14 @@ glm::vec3 normal_of_depth(const GBufferImage& gbuffer, glm::ivec2 pixel)
 /// Filtered normals are short, and pixels may have none. Those of length 1 keep their bits.
 void complete_normals(FrameSource& source, const FramePlane& plane)
 {
-    constexpr float rounding = 1e-3F; // of half floats
-    GBufferImage&   gbuffer  = source.frame.gbuffer;
-    size_t          missing  = 0;
+    constexpr float rounding = 1e-3F, longest = 1.1F; // of half floats; of 8 bits and filters
+    GBufferImage&   gbuffer = source.frame.gbuffer;
+    size_t          missing = 0, too_long = 0;
     for (size_t i = 0; i < gbuffer.depth.size(); ++i) {
         glm::vec3&  normal = gbuffer.normal_vs[i];
         const float length = glm::length(normal);
         if (gbuffer.depth[i] == 0) continue;
+        too_long += length > longest;
         if (length > 0 && std::abs(length - 1) > rounding) normal /= length;
         if (length > 0) continue;
         normal = normal_of_depth(gbuffer, pixel_at(i, gbuffer.view.size_px));
@@ -107,6 +108,10 @@ void complete_normals(FrameSource& source, const FramePlane& plane)
     if (missing > 0)
         source.frame.warnings.push_back(fmt::format(
             "{}: {} pixels have a normal of zero: that of the depth around them is used", plane.shown, missing));
+    if (too_long > 0)
+        source.frame.warnings.push_back(
+            fmt::format("{}: {} pixels have normals longer than {}: scaled to 1, if they are normals", plane.shown,
+                        too_long, longest));
 }
 
 } // namespace
@@ -126,7 +131,8 @@ void read_normals(FrameSource& source)
             if (gbuffer.depth[i] > 0 && !std::isfinite(plane.values[i])) refuse(source, plane, i, "a finite number");
         const glm::vec3 stored(planes[0].values[i], planes[1].values[i], planes[2].values[i]);
         glm::dvec3      normal = stored;
-        if (convention.unsigned_normals) normal = 2.0 * normal - 1.0;
+        if (convention.unsigned_normals && stored != glm::vec3(0))
+            normal = 2.0 * normal - 1.0; // (0, 0, 0): never drawn
         normal = to_view * (convention.normal_sign * normal);
         gbuffer.normal_vs.push_back(gbuffer.depth[i] == 0 ? glm::vec3(0) : same ? stored : glm::vec3(normal));
     }

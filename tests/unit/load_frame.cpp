@@ -322,6 +322,44 @@ TEST_F(LoadFrame, NormalsThatAreZeroComeFromDepthAndShortOnesAreStretched)
     EXPECT_THAT(frame.warnings, testing::Contains(HasSubstr("channel 'normal_vs.x': 1 pixels have a normal of zero")));
 }
 
+TEST_F(LoadFrame, UnsignedNormalsOfZeroWereNeverWrittenAndLongOnesAreNamed)
+{
+    whole_frame("depth", [](size_t) { return 0.5; });
+    for (int c = 0; c < 3; ++c) // (0.5, 0.5, 1) stands for +z
+        channels_[size_t(1 + c)].second = [=](size_t i) { return i == 10 ? 0 : c < 2 ? 0.5 : i == 20 ? 2 : 1; };
+    const Frame frame = load(std::string(camera) + "[depth]\nkind = 'reversed'\n[normals]\nunsigned = true\nspace = "
+                                                   "'view'\n");
+    EXPECT_LT(glm::length(frame.gbuffer.normal_vs[10] - glm::vec3(0, 0, 1)), 1e-4) << "the depth is that of a wall";
+    EXPECT_LT(glm::length(frame.gbuffer.normal_vs[20] - glm::vec3(0, 0, 1)), 1e-4);
+    EXPECT_THAT(frame.warnings,
+                testing::IsSupersetOf({HasSubstr("1 pixels have a normal of zero"),
+                                       HasSubstr("1 pixels have normals longer than 1.1: scaled to 1")}));
+}
+
+TEST_F(LoadFrame, OwnFramesThatWereResizedAreRefused)
+{
+    GBufferImage gbuffer;
+    gbuffer.view       = camera_to_view(Camera{}, size_px);
+    const size_t count = pixel_count(size_px);
+    gbuffer.depth      = std::vector<float>(count, 0.5F);
+    gbuffer.normal_vs  = std::vector<glm::vec3>(count, {0, 0, 1});
+    gbuffer.roughness = gbuffer.metallic = gbuffer.solid_back = std::vector<float>(count, 0.5F);
+    gbuffer.base_colour = gbuffer.radiance = gbuffer.highlight = std::vector<glm::vec3>(count, glm::vec3(0.5F));
+    gbuffer.object_id                                          = std::vector<uint32_t>(count, 1);
+    gbuffer.gradient                                           = std::vector<glm::vec2>(count, glm::vec2(0));
+    Image image                                                = frame_image(gbuffer);
+    write_image(folder_ / "f.exr", image);
+    EXPECT_EQ(load_frame(folder_ / "f.exr").gbuffer.view.focal_px, gbuffer.view.focal_px);
+    // As another program does it: every other pixel, and all attributes.
+    image.size_px = size_px / 2;
+    image.values.resize(image.values.size() / 4);
+    write_image(folder_ / "f.exr", image);
+    EXPECT_THAT(message_of<SpecError>([&] { load_frame(folder_ / "f.exr"); }),
+                AllOf(HasSubstr("4x3 pixels, expected 8x6"), HasSubstr("[camera]")));
+    folder_.write("f.exr.toml", camera);
+    EXPECT_NEAR(load_frame(folder_ / "f.exr").gbuffer.view.focal_px.y, 1.5, 1e-9) << "half of 3 rows, at 90 degrees";
+}
+
 TEST_F(LoadFrame, DenoisersHelpersAreNoDepth)
 {
     whole_frame("ViewLayer.Depth.Z", distance_m);
