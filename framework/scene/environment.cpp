@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "core/pixel_index.h"
-#include "scene/exr_header.h"
+#include "scene/exr_file.h"
 #include "scene/load_scene.h"
 #include "scene/scene.h"
 
@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <memory>
 #include <numbers>
 
@@ -51,6 +53,110 @@ glm::dvec3 sun_colour(glm::dvec3 direction_ws, glm::dvec3 to_sun_ws)
     return glm::dvec3(7, 6, 4.6) * (1 - smooth_step(sun_radius_deg - sun_edge_deg, sun_radius_deg, off));
 }
 
+/// As a file has it, linear.
+struct Picture {
+    glm::ivec2             size_px{0, 0};
+    std::vector<glm::vec3> rgb;
+    double                 scale = 1; // to radiance
+};
+
+void check_shape(const std::string& name, glm::ivec2 size_px)
+{
+    if (size_px.x > max_width_px)
+        throw_spec_error("{}: {}x{} pixels, at most {} a side can be used", name, size_px.x, size_px.y, max_width_px);
+    if (size_px.x < 2 || size_px.x != 2 * size_px.y)
+        throw_failure("{}: expected an equirectangular picture, twice as wide as high, got {}x{}", name, size_px.x,
+                      size_px.y);
+}
+
+/// Channels named R, G and B, of a layer if only one has them; or Y alone.
+std::vector<ExrChannel> colour_channels(const ExrFile& file)
+{
+    std::vector<std::vector<ExrChannel>> layers;
+    std::string                          names;
+    for (const ExrChannel& channel : file.channels) {
+        names += (names.empty() ? "" : ", ") + channel.name;
+        if (channel.name != "R" && !channel.name.ends_with(".R")) continue;
+        std::vector<ExrChannel> layer;
+        for (const char letter : {'R', 'G', 'B'}) {
+            const std::string wanted = channel.name.substr(0, channel.name.size() - 1) + letter;
+            const auto        found  = std::ranges::find(file.channels, wanted, &ExrChannel::name);
+            if (found != file.channels.end()) layer.push_back(*found);
+        }
+        if (layer.size() == 3 && channel.name == "R") return layer;
+        if (layer.size() == 3) layers.push_back(layer);
+    }
+    if (layers.size() == 1) return layers[0];
+    const auto grey = std::ranges::find(file.channels, "Y", &ExrChannel::name);
+    if (layers.empty() && grey != file.channels.end()) return {*grey, *grey, *grey};
+    throw_spec_error("{}: expected channels R, G and B, or Y, of one layer, got {}", file.shown, names);
+}
+
+Picture read_exr_picture(const std::filesystem::path& path)
+{
+    const ExrFile                 file     = open_exr(path);
+    const std::vector<ExrChannel> channels = colour_channels(file);
+    for (const ExrChannel& channel : channels) {
+        const ExrWindow window = file.windows[size_t(channel.part)];
+        if (!window.is_whole(file.size_px))
+            throw_failure("{}: holds {}x{} pixels at ({}, {}) of a picture of {}x{}, expected all of them and no more",
+                          file.shown, window.size_px.x, window.size_px.y, window.from_px.x, window.from_px.y,
+                          file.size_px.x, file.size_px.y);
+    }
+    check_shape(file.shown, file.size_px);
+    Picture picture{file.size_px, std::vector<glm::vec3>(pixel_count(file.size_px)), 1};
+    for (int c = 0; c < 3; ++c) {
+        const std::vector<float> values = read_channel(file, channels[size_t(c)]);
+        for (size_t i = 0; i < values.size(); ++i) picture.rgb[i][c] = values[i];
+    }
+    return picture;
+}
+
+/// What OpenImageIO does not hand on: all EXPOSURE lines together, by which stored values are to be divided
+/// (G. Ward, Radiance's file formats), and the way that the rows run.
+struct HdrHeader {
+    double      exposure = 1;
+    bool        gamma    = false;
+    std::string resolution;
+};
+
+HdrHeader read_hdr_header(const std::filesystem::path& file)
+{
+    constexpr int most_lines = 1000;
+    HdrHeader     header;
+    std::ifstream stream(file, std::ios::binary);
+    std::string   line;
+    for (int i = 0; i < most_lines && std::getline(stream, line) && !line.empty(); ++i) {
+        if (line.starts_with("EXPOSURE=")) header.exposure *= std::strtod(line.c_str() + 9, nullptr);
+        if (line.starts_with("GAMMA=")) header.gamma = std::strtod(line.c_str() + 6, nullptr) != 1;
+    }
+    std::getline(stream, header.resolution);
+    return header;
+}
+
+Picture read_hdr_picture(const std::filesystem::path& file)
+{
+    const std::string name = file.string();
+    // By that reader alone: ImageInput::open(name) hands what its own reader refuses to those of all other formats.
+    const auto      input = OIIO::ImageInput::create("hdr");
+    OIIO::ImageSpec spec;
+    if (!input || !input->open(name, spec))
+        throw_failure("{}: expected an .hdr or .exr picture: {}", name, input ? input->geterror() : OIIO::geterror());
+    check_shape(name, {spec.width, spec.height});
+    const HdrHeader header = read_hdr_header(file);
+    if (!header.resolution.starts_with("-Y") || header.resolution.find("+X") == std::string::npos)
+        throw_spec_error("{}: expected rows from the top and from the left, '-Y … +X …', got '{}'", name,
+                         header.resolution);
+    if (header.gamma || !(header.exposure > 0 && std::isfinite(header.exposure)))
+        throw_spec_error("{}: expected linear radiance, got a GAMMA, or an EXPOSURE that is no number above 0", name);
+    std::vector<float> values(pixel_count({spec.width, spec.height}) * 3);
+    if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, values.data()))
+        throw_failure("{}: cannot be decoded: {}", name, input->geterror());
+    Picture picture{{spec.width, spec.height}, {}, 1 / header.exposure};
+    for (size_t i = 0; i < values.size(); i += 3) picture.rgb.emplace_back(values[i], values[i + 1], values[i + 2]);
+    return picture;
+}
+
 } // namespace
 
 glm::dvec2 direction_to_uv(glm::dvec3 direction_ws)
@@ -86,36 +192,15 @@ EnvironmentMap load_environment(const std::filesystem::path& file, double scale,
 {
     const std::string name = file.string();
     if (!std::filesystem::is_regular_file(file)) throw_failure("{}: not a regular file", name);
-    const bool exr = lower_extension(file) == ".exr";
-    if (exr) check_exr_header(file, name);
-    // By that reader alone: ImageInput::open(name) hands what its own reader refuses to those of all other formats.
-    const auto      input = OIIO::ImageInput::create(exr ? "openexr" : "hdr");
-    OIIO::ImageSpec spec;
-    if (!input || !input->open(name, spec))
-        throw_failure("{}: expected an .hdr or .exr picture: {}", name, input ? input->geterror() : OIIO::geterror());
-    if (spec.width > max_width_px)
-        throw_spec_error("{}: {}x{} pixels, at most {} a side can be used", name, spec.width, spec.height,
-                         max_width_px);
-    if (spec.width < 2 || spec.width != 2 * spec.height || spec.depth > 1)
-        throw_failure("{}: expected an equirectangular picture, twice as wide as high, got {}x{}", name, spec.width,
-                      spec.height);
-    if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
-        spec.height != spec.full_height)
-        throw_failure("{}: holds {}x{} pixels at ({}, {}) of a picture of {}x{}, expected all of them and no more",
-                      name, spec.width, spec.height, spec.x - spec.full_x, spec.y - spec.full_y, spec.full_width,
-                      spec.full_height);
-    const size_t       channels = spec.nchannels >= 3 ? 3 : 1; // a file may have a thousand
-    EnvironmentMap     map;
-    std::vector<float> values(size_t(spec.width) * size_t(spec.height) * channels);
-    map.size_px = {spec.width, spec.height};
-    if (!input->read_image(0, 0, 0, int(channels), OIIO::TypeDesc::FLOAT, values.data()))
-        throw_failure("{}: cannot be decoded: {}", name, input->geterror());
+    const Picture  picture = lower_extension(file) == ".exr" ? read_exr_picture(file) : read_hdr_picture(file);
+    EnvironmentMap map;
+    map.size_px    = picture.size_px;
     size_t clamped = 0;
-    map.radiance.reserve(values.size() / channels);
-    for (size_t i = 0; i < values.size(); i += channels) {
+    map.radiance.reserve(picture.rgb.size());
+    for (const glm::vec3& stored : picture.rgb) {
         glm::vec3 radiance(0);
         for (int c = 0; c < 3; ++c) {
-            const float value = values[i + (channels == 3 ? size_t(c) : 0)] * float(scale);
+            const float value = stored[c] * float(scale * picture.scale);
             // In this order NaN becomes 0.
             radiance[c] = std::min(std::max(0.0F, value), largest_radiance);
             clamped += !(value <= largest_radiance); // negative values are a camera's noise around black

@@ -78,7 +78,7 @@ Model shape_to_model(const Part& part)
 Model file_to_model(const std::string& name, const std::filesystem::path& folder)
 {
     const std::filesystem::path file      = find_data(name, folder);
-    const std::string           extension = file.extension().string();
+    const std::string           extension = lower_extension(file);
     Model model = extension == ".glb" || extension == ".gltf" ? load_gltf(file) : import_model(file);
     model.lights.clear(); // a recipe names its own
     model.cameras.clear();

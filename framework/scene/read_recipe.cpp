@@ -146,7 +146,8 @@ void read_environment(TomlTable& root, Recipe& recipe)
     recipe.environment_scale = scale.value_or(1);
     if (!reference && scale) root.fail("environment_scale", "needs 'environment', the picture that it scales");
     if (!reference) return;
-    if (!reference->ends_with(".hdr") && !reference->ends_with(".exr"))
+    const std::string extension = lower_extension(*reference);
+    if (extension != ".hdr" && extension != ".exr")
         root.fail("environment", fmt::format("must be an equirectangular .hdr or .exr picture, not '{}'", *reference));
     const std::filesystem::path folder = std::filesystem::path(recipe.file).parent_path();
     if (!reference->starts_with("package:") && !std::filesystem::exists(folder / *reference))

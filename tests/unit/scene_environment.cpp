@@ -1,6 +1,7 @@
 // The environment map: its convention, its lookup, its files and its way through recipes.
 #include "scene_files.h"
 
+#include "compare/image_io.h"
 #include "scene/environment.h"
 #include "scene/scene.h"
 
@@ -148,6 +149,46 @@ TEST_F(EnvironmentFiles, ClampWhatNoPictureCanHold)
     EXPECT_EQ(scene.environment.radiance[1], glm::vec3(1, 2, 3));
     ASSERT_EQ(scene.warnings.size(), 1U);
     EXPECT_THAT(scene.warnings[0], HasSubstr("2 values"));
+}
+
+TEST_F(EnvironmentFiles, ColoursAreFoundByTheirNames)
+{
+    const auto radiance = [&](const std::vector<std::string>& channels, const std::vector<float>& values) {
+        Image image{{2, 1}, channels, values, {}};
+        image.values.insert(image.values.end(), values.begin(), values.end());
+        write_image(folder_ / "sky.exr", image);
+        return load_scene(recipe("environment = 'sky.exr'")).environment.radiance.at(1);
+    };
+    EXPECT_EQ(radiance({"env.R", "env.G", "env.B", "Z"}, {1, 2, 3, 9}), glm::vec3(1, 2, 3));
+    EXPECT_EQ(radiance({"albedo.R", "albedo.G", "albedo.B", "R", "G", "B"}, {9, 9, 9, 1, 2, 3}), glm::vec3(1, 2, 3));
+    EXPECT_EQ(radiance({"Y", "Z"}, {2, 9}), glm::vec3(2));
+    const std::string normals = recipe("environment = 'sky.exr'");
+    for (const std::vector<std::string>& names :
+         {std::vector<std::string>{"N.X", "N.Y", "N.Z"}, {"a.R", "a.G", "a.B", "b.R", "b.G", "b.B"}}) {
+        write_image(folder_ / "sky.exr", {{2, 1}, names, std::vector<float>(2 * names.size(), 1), {}});
+        EXPECT_THAT(error_of<SpecError>(normals),
+                    testing::AllOf(HasSubstr("sky.exr: expected channels R, G and B"), HasSubstr(names.back())));
+    }
+}
+
+TEST_F(EnvironmentFiles, HeadersOfHdrAreObeyedOrRefused)
+{
+    const auto write_hdr = [&](const std::string& lines, const std::string& resolution) {
+        // 128 with the exponent 129 is 1 (G. Ward).
+        const std::string pixel("\x80\x40\x20\x81");
+        folder_.write("sky.HDR",
+                      "#?RADIANCE\n" + lines + "FORMAT=32-bit_rle_rgbe\n\n" + resolution + "\n" + pixel + pixel);
+        return recipe("environment = 'sky.HDR'");
+    };
+    EXPECT_VEC_NEAR(load_scene(write_hdr("", "-Y 1 +X 2")).environment.radiance.at(0), glm::vec3(1, 0.5F, 0.25F),
+                    0.01F);
+    EXPECT_VEC_NEAR(load_scene(write_hdr("EXPOSURE=4\nEXPOSURE= 0.5\n", "-Y 1 +X 2")).environment.radiance.at(0),
+                    glm::vec3(0.5F, 0.25F, 0.125F), 0.01F);
+    for (const char* other : {"+Y 1 +X 2", "-Y 1 -X 2"})
+        EXPECT_THAT(error_of<SpecError>(write_hdr("", other)),
+                    testing::AllOf(HasSubstr("sky.HDR: expected rows from the top"), HasSubstr(other)));
+    EXPECT_THAT(error_of<SpecError>(write_hdr("EXPOSURE=0\n", "-Y 1 +X 2")), HasSubstr("EXPOSURE"));
+    EXPECT_THAT(error_of<SpecError>(write_hdr("GAMMA=2.2\n", "-Y 1 +X 2")), HasSubstr("GAMMA"));
 }
 
 TEST_F(EnvironmentFiles, MistakesNamePlaceExpectedAndGot)

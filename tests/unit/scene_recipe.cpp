@@ -290,6 +290,18 @@ TEST(SceneRecipe, TransparentMaterialsFollowTheStatedRule)
     EXPECT_THAT(scene.warnings, Contains(HasSubstr("'thick' is 70 % opaque: drawn opaque")));
 }
 
+TEST(SceneRecipe, EndingsOfFilesMayBeInCapitals)
+{
+    TempFolder folder;
+    GltfFile   file              = GltfFile::triangle();
+    file.primitive()["material"] = 0;
+    file.root["materials"]       = {{{"pbrMetallicRoughness", {{"roughnessFactor", 0.25}}}}};
+    folder.write("PART.GLB", file.glb());
+    const Scene scene = load_scene(folder.write("scene.toml", "[[part]]\nfile = 'PART.GLB'\n"));
+    EXPECT_EQ(scene.materials.at(scene.draws.at(0).material).metallic, 1) << "as the loader of glTF has it";
+    EXPECT_EQ(scene.materials.at(scene.draws.at(0).material).roughness, 0.25F);
+}
+
 TEST(SceneRecipe, BrokenModelsFailWithTheirName)
 {
     TempFolder folder;
