@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <numeric>
 
@@ -62,6 +63,9 @@ Material convert_material(Import& import, const FileMaterial& source)
     // Many files carry an exponent although the material has no highlight at all.
     const bool shiny = std::max({source.specular.r, source.specular.g, source.specular.b}) > 0.01F;
     if (shiny) material.roughness = exponent_to_roughness(source.exponent);
+    // Pr and Pm of OBJ.
+    if (source.roughness >= 0) material.roughness = std::min(source.roughness, 1.0F);
+    if (source.metallic >= 0) material.metallic = std::min(source.metallic, 1.0F);
     if (source.texture.empty()) return material;
     material.base_colour_texture.texture = texture_number(import, source.texture);
     // Kd beside a texture is often black or grey by accident of the exporter; the picture is the colour.
@@ -84,7 +88,7 @@ bool left_out(Import& import, const FileMaterial& source)
 }
 
 /// One mesh per material, with its number: exporters cut models into hundreds of pieces.
-void add_meshes(Import& import, std::vector<Mesh> meshes)
+void add_meshes(Import& import, std::vector<FileMesh> meshes)
 {
     for (uint32_t i = 0; i < import.model.materials.size(); ++i) {
         Mesh& mesh    = import.model.meshes.emplace_back();
@@ -126,6 +130,55 @@ void warn_of_rounding(Import& import, const FileModel& source)
                                  far_m, far_m * 0x1p-24));
 }
 
+/// The grey that assimp gives to what has no material is no factor of colours at vertices.
+void colour_by_vertices(Import& import, FileModel& source)
+{
+    for (size_t i = 0; i < source.materials.size(); ++i) {
+        const auto uses    = [&](const FileMesh& mesh) { return mesh.material == i; };
+        const auto colours = [&](const FileMesh& mesh) { return uses(mesh) && mesh.has_colours; };
+        if (!source.materials[i].is_default || !std::ranges::any_of(source.meshes, colours)) continue;
+        const glm::vec4 grey                  = import.model.materials[i].base_colour;
+        import.model.materials[i].base_colour = glm::vec4(1);
+        for (FileMesh& mesh : source.meshes)
+            for (Vertex& vertex : mesh.vertices)
+                if (uses(mesh) && !mesh.has_colours) vertex.colour = grey;
+    }
+}
+
+void warn_of_other_maps(Import& import, const FileModel& source)
+{
+    for (size_t i = 0; i < source.materials.size(); ++i)
+        if (const FileMaterial& material = source.materials[i];
+            !material.other_maps.empty() &&
+            std::ranges::any_of(source.meshes, [&](const Mesh& mesh) { return mesh.material == i; }))
+            warn(import,
+                 fmt::format("material '{}': textures of {} are not supported for this format and left out: use "
+                             "glTF for them",
+                             material.name, material.other_maps));
+}
+
+/// assimp skips where a texture of a material file of OBJ lies.
+void warn_of_placed_textures(Import& import)
+{
+    if (lower_extension(import.file) != ".obj") return;
+    std::ifstream obj(import.file);
+    for (std::string line; std::getline(obj, line);) {
+        if (!line.starts_with("mtllib ")) continue;
+        const std::string name = line.substr(7, line.find_last_not_of(" \t\r") - 6);
+        if (std::error_code error; !fs::is_regular_file(import.file.parent_path() / name, error)) continue;
+        std::ifstream mtl(import.file.parent_path() / name);
+        int           number = 0;
+        for (std::string text; std::getline(mtl, text);) {
+            ++number;
+            const auto has = [&](const char* option) { return text.find(option) != std::string::npos; };
+            if (has("map_Kd ") && (has(" -s ") || has(" -o ") || has(" -t ")))
+                warn(import, fmt::format("{}:{}: a texture's scale, offset and turbulence (-s, -o, -t) are not "
+                                         "supported and left out",
+                                         name, number));
+        }
+    }
+}
+
 } // namespace
 
 Model import_model(const fs::path& file)
@@ -136,6 +189,9 @@ Model import_model(const fs::path& file)
     warn_of_rounding(import, source);
     for (const FileMaterial& material : source.materials)
         import.model.materials.push_back(convert_material(import, material));
+    colour_by_vertices(import, source);
+    warn_of_other_maps(import, source);
+    warn_of_placed_textures(import);
     add_meshes(import, std::move(source.meshes));
     remove_transparent(import, source.materials);
     if (import.model.meshes.empty()) throw_failure("{}: no triangle that can be drawn", file.string());

@@ -10,6 +10,7 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fcntl.h>
+#include <glm/gtc/color_space.hpp>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -70,11 +71,15 @@ template <typename Stream, typename Item> void pass_material(Stream& stream, Ite
 {
     stream.list(material.name);
     stream.list(material.texture);
+    stream.list(material.other_maps);
     stream.value(material.diffuse);
     stream.value(material.specular);
     stream.value(material.emissive);
     stream.value(material.exponent);
     stream.value(material.opacity);
+    stream.value(material.metallic);
+    stream.value(material.roughness);
+    stream.value(material.is_default);
 }
 
 template <typename Stream, typename Item> void pass_mesh(Stream& stream, Item& mesh)
@@ -82,6 +87,7 @@ template <typename Stream, typename Item> void pass_mesh(Stream& stream, Item& m
     stream.list(mesh.name);
     stream.value(mesh.material);
     stream.value(mesh.has_normals);
+    stream.value(mesh.has_colours);
     stream.list(mesh.positions_ws);
     stream.list(mesh.vertices);
     stream.list(mesh.indices);
@@ -101,6 +107,25 @@ struct RegularFiles : Assimp::DefaultIOSystem {
     }
 };
 
+/// Of what the material has pictures besides its diffuse colour, as far as a picture would differ without them.
+std::string other_maps_of(const aiMaterial& source, const std::string& diffuse)
+{
+    constexpr std::pair<aiTextureType, const char*> kinds[] = {
+        {aiTextureType_OPACITY, "opacity"},    {aiTextureType_NORMALS, "normals"},
+        {aiTextureType_HEIGHT, "bump"},        {aiTextureType_DISPLACEMENT, "displacement"},
+        {aiTextureType_EMISSIVE, "emission"},  {aiTextureType_SPECULAR, "specular colour"},
+        {aiTextureType_SHININESS, "exponent"}, {aiTextureType_DIFFUSE_ROUGHNESS, "roughness"},
+        {aiTextureType_METALNESS, "metallic"}, {aiTextureType_REFLECTION, "reflection"}};
+    std::string names;
+    for (const auto& [kind, name] : kinds) {
+        aiString file;
+        if (source.GetTexture(kind, 0, &file) != aiReturn_SUCCESS) continue;
+        if (kind == aiTextureType_OPACITY && file.C_Str() == diffuse) continue; // its alpha is used
+        names += (names.empty() ? "" : ", ") + std::string(name);
+    }
+    return names;
+}
+
 FileMaterial convert_material(const aiMaterial& source)
 {
     FileMaterial material;
@@ -116,15 +141,20 @@ FileMaterial convert_material(const aiMaterial& source)
     colour(AI_MATKEY_COLOR_EMISSIVE, material.emissive);
     source.Get(AI_MATKEY_SHININESS, material.exponent);
     source.Get(AI_MATKEY_OPACITY, material.opacity);
+    source.Get(AI_MATKEY_METALLIC_FACTOR, material.metallic);
+    source.Get(AI_MATKEY_ROUGHNESS_FACTOR, material.roughness);
+    material.is_default = material.name == AI_DEFAULT_MATERIAL_NAME;
+    material.other_maps = other_maps_of(source, material.texture);
     return material;
 }
 
-Mesh convert_mesh(const aiMesh& source)
+FileMesh convert_mesh(const aiMesh& source)
 {
-    Mesh mesh;
+    FileMesh mesh;
     mesh.name        = source.mName.C_Str();
     mesh.material    = source.mMaterialIndex;
     mesh.has_normals = source.HasNormals();
+    mesh.has_colours = source.HasVertexColors(0);
     for (unsigned i = 0; i < source.mNumVertices; ++i) {
         Vertex vertex{};
         vertex.normal_ws = {0, 1, 0};
@@ -133,6 +163,10 @@ Mesh convert_mesh(const aiMesh& source)
         if (source.HasTextureCoords(0))
             // OBJ counts v from the bottom of the image.
             vertex.uv0 = vertex.uv1 = {source.mTextureCoords[0][i].x, 1 - source.mTextureCoords[0][i].y};
+        if (mesh.has_colours) { // stored as scanners and paint programs show them: in sRGB
+            const aiColor4D& c = source.mColors[0][i];
+            vertex.colour      = glm::vec4(glm::convertSRGBToLinear(glm::vec3(c.r, c.g, c.b)), c.a);
+        }
         mesh.positions_ws.emplace_back(source.mVertices[i].x, source.mVertices[i].y, source.mVertices[i].z);
         mesh.vertices.push_back(vertex);
     }
@@ -149,9 +183,9 @@ glm::dmat4 convert_matrix(const aiMatrix4x4& m)
     return {{m.a1, m.b1, m.c1, m.d1}, {m.a2, m.b2, m.c2, m.d2}, {m.a3, m.b3, m.c3, m.d3}, {m.a4, m.b4, m.c4, m.d4}};
 }
 
-std::vector<Mesh> placed_meshes(const aiScene& scene)
+std::vector<FileMesh> placed_meshes(const aiScene& scene)
 {
-    std::vector<Mesh>                                 meshes;
+    std::vector<FileMesh>                             meshes;
     std::vector<std::pair<const aiNode*, glm::dmat4>> pending{{scene.mRootNode, glm::dmat4(1)}};
     while (!pending.empty()) {
         const auto [node, parent] = pending.back();
@@ -186,9 +220,9 @@ std::string read_here(const fs::path& file)
         const FileMaterial material = convert_material(*scene->mMaterials[i]);
         pass_material(writer, material);
     }
-    const std::vector<Mesh> meshes = placed_meshes(*scene);
+    const std::vector<FileMesh> meshes = placed_meshes(*scene);
     writer.value(uint64_t(meshes.size()));
-    for (const Mesh& mesh : meshes) pass_mesh(writer, mesh);
+    for (const FileMesh& mesh : meshes) pass_mesh(writer, mesh);
     return writer.bytes;
 }
 
@@ -245,7 +279,7 @@ FileModel to_model(Reader reader)
     for (uint64_t i = 0; i < count; ++i) pass_material(reader, model.materials.emplace_back());
     reader.value(count);
     for (uint64_t i = 0; i < count; ++i) {
-        Mesh& mesh = model.meshes.emplace_back();
+        FileMesh& mesh = model.meshes.emplace_back();
         pass_mesh(reader, mesh);
         if (mesh.material >= model.materials.size()) throw_failure("there is no material {}", mesh.material);
         if (mesh.vertices.size() != mesh.positions_ws.size() ||

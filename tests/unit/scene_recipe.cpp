@@ -290,6 +290,45 @@ TEST(SceneRecipe, TransparentMaterialsFollowTheStatedRule)
     EXPECT_THAT(scene.warnings, Contains(HasSubstr("'thick' is 70 % opaque: drawn opaque")));
 }
 
+/// The materials and warnings of a triangle in OBJ with these lines in its material file.
+Scene obj_scene(const TempFolder& folder, const std::string& material, const std::string& after_corner = "")
+{
+    folder.write("m.mtl", "newmtl m\nKd 0.5 0.5 0.5\n" + material);
+    std::string corners;
+    for (const char* corner : {"0 0 0", "1 0 0", "0 1 0"}) corners += std::string("v ") + corner + after_corner + "\n";
+    folder.write("t.obj", corners + (material.empty() ? "f 1 2 3\n" : "mtllib m.mtl\nusemtl m\nf 1 2 3\n"));
+    return load_scene(folder.write("scene.toml", "[[part]]\nfile = 't.obj'\n"));
+}
+
+TEST(SceneRecipe, ObjMayBeMetallicAndRough)
+{
+    const TempFolder folder;
+    const Scene      scene = obj_scene(folder, "Pr 0.25\nPm 0.75\nNs 500\nKs 1 1 1\n");
+    EXPECT_EQ(scene.materials.at(0).metallic, 0.75F);
+    EXPECT_EQ(scene.materials.at(0).roughness, 0.25F);
+    EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_EQ(obj_scene(folder, "Ns 0\n").materials.at(0).metallic, 0) << "where the file does not say";
+}
+
+TEST(SceneRecipe, WhatIsLeftOutOfObjIsNamed)
+{
+    const TempFolder folder;
+    const Scene      maps = obj_scene(folder, "map_d a.png\nmap_Bump -bm 1 b.png\nmap_Ke c.png\nmap_Pr d.png\n");
+    EXPECT_THAT(maps.warnings, testing::Contains(testing::HasSubstr(
+                                   "material 'm': textures of opacity, bump, emission, roughness are not supported")));
+    const Scene placed = obj_scene(folder, "map_Kd -s 2 2 1 a.png\n");
+    EXPECT_THAT(placed.warnings, testing::Contains(testing::HasSubstr("m.mtl:3: a texture's scale")));
+}
+
+TEST(SceneRecipe, VerticesHaveTheirColours)
+{
+    const TempFolder folder;
+    const Scene      scene = obj_scene(folder, "", " 1 0 0.5"); // 0.5 in sRGB is 0.214 in linear light
+    EXPECT_VEC_NEAR(scene.vertices.at(0).colour, glm::vec4(1, 0, 0.21404F, 1), 1e-4F);
+    EXPECT_EQ(scene.materials.at(0).base_colour, glm::vec4(1)) << "no material: the colours are those of the vertices";
+    EXPECT_EQ(obj_scene(folder, "Ns 0\n", " 1 0 0.5").materials.at(0).base_colour, glm::vec4(0.5F, 0.5F, 0.5F, 1));
+}
+
 TEST(SceneRecipe, EndingsOfFilesMayBeInCapitals)
 {
     TempFolder folder;
