@@ -92,7 +92,7 @@ std::vector<ExrChannel> colour_channels(const ExrFile& file)
     throw_spec_error("{}: expected channels R, G and B, or Y, of one layer, got {}", file.shown, names);
 }
 
-Picture read_exr_picture(const std::filesystem::path& path)
+Picture read_exr_picture(const std::filesystem::path& path, std::vector<std::string>& warnings)
 {
     const ExrFile                 file     = open_exr(path);
     const std::vector<ExrChannel> channels = colour_channels(file);
@@ -104,6 +104,7 @@ Picture read_exr_picture(const std::filesystem::path& path)
                           file.size_px.x, file.size_px.y);
     }
     check_shape(file.shown, file.size_px);
+    if (file.other_primaries) warnings.push_back(other_primaries_text(file));
     Picture picture{file.size_px, std::vector<glm::vec3>(pixel_count(file.size_px)), 1};
     for (int c = 0; c < 3; ++c) {
         const std::vector<float> values = read_channel(file, channels[size_t(c)]);
@@ -192,7 +193,7 @@ EnvironmentMap load_environment(const std::filesystem::path& file, double scale,
 {
     const std::string name = file.string();
     if (!std::filesystem::is_regular_file(file)) throw_failure("{}: not a regular file", name);
-    const Picture  picture = lower_extension(file) == ".exr" ? read_exr_picture(file) : read_hdr_picture(file);
+    const Picture picture = lower_extension(file) == ".exr" ? read_exr_picture(file, warnings) : read_hdr_picture(file);
     EnvironmentMap map;
     map.size_px    = picture.size_px;
     size_t clamped = 0;

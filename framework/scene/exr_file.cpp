@@ -35,6 +35,16 @@ void add_channels(ExrFile& file, const OIIO::ImageSpec& spec, int part, bool sev
     }
 }
 
+/// Chromaticities of red, green, blue and white as ITU-R BT.709 has them, which is what OpenEXR assumes without any.
+bool has_other_primaries(const OIIO::ImageSpec& spec)
+{
+    constexpr float rec709[8] = {0.64F, 0.33F, 0.3F, 0.6F, 0.15F, 0.06F, 0.3127F, 0.329F}, rounding = 0.005F;
+    const auto*     found = spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
+    for (int i = 0; found != nullptr && i < 8; ++i)
+        if (!(std::abs(found->get_float_indexed(i) - rec709[i]) < rounding)) return true;
+    return false;
+}
+
 std::unique_ptr<OIIO::ImageInput> open_input(const std::filesystem::path& path, const std::string& shown)
 {
     check_exr_header(path, shown);
@@ -63,11 +73,19 @@ ExrFile open_exr(const std::filesystem::path& path)
         file.size_px       = {spec.full_width, spec.full_height};
         const float aspect = spec.get_float_attribute("PixelAspectRatio", 1);
         if (aspect > 0 && std::isfinite(aspect)) file.pixel_aspect = static_cast<double>(aspect);
+        file.other_primaries = has_other_primaries(spec);
         for (const auto& attribute : spec.extra_attribs)
             if (attribute.type() == OIIO::TypeString)
                 file.attributes[attribute.name().string()] = attribute.get_string();
     }
     return file;
+}
+
+std::string other_primaries_text(const ExrFile& file)
+{
+    return file.shown +
+           ": its chromaticities are not those of Rec. 709: colours are taken as if they were; convert them "
+           "to linear Rec. 709 (sRGB) first";
 }
 
 std::vector<float> read_channel(const ExrFile& file, const ExrChannel& channel)

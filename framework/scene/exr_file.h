@@ -37,13 +37,17 @@ struct ExrFile {
     glm::ivec2                         size_px{0, 0}; // of the picture: the display window
     std::vector<ExrWindow>             windows;       // by part
     std::vector<ExrChannel>            channels;
-    std::map<std::string, std::string> attributes;       // those that are text, of the first part
-    double                             pixel_aspect = 1; // a pixel's width by its height
+    std::map<std::string, std::string> attributes;           // those that are text, of the first part
+    double                             pixel_aspect = 1;     // a pixel's width by its height
+    bool other_primaries                            = false; // its colours are said to be others than those of Rec. 709
 };
 
 /// Reads the header. Throws SpecError if missing, Failure if damaged, deep, of several sizes, or without a pixel inside
 /// its picture.
 ExrFile open_exr(const std::filesystem::path& path);
+
+/// Returns the warning about a file of other primaries.
+std::string other_primaries_text(const ExrFile& file);
 
 /// Reads the values of a channel for the whole picture, row by row from the top; 0 where the file has none. Throws
 /// Failure.

@@ -70,6 +70,7 @@ bool named_by(const Rule& rule, const std::string& component, const ChannelName&
     if (rule.quantity == "depth" && name.layer.empty() && name.component == "z") return true;
     if (!layer || name.layer.find("denoising") != std::string::npos)
         return false; // Cycles' helpers: filtered, not at the centres
+    if (name.layer.empty() && !component.empty()) return name.component == component; // Z is depth, and no blue
     return component.empty() ? std::ranges::find(rule.components, name.component) != rule.components.end()
                              : same_component(component, name.component);
 }

@@ -194,6 +194,7 @@ Frame load_frame(const fs::path& exr)
 {
     FrameSource source{open_exr(exr), {}, {}};
     name_windows(source);
+    if (source.file.other_primaries) source.frame.warnings.push_back(other_primaries_text(source.file));
     source.convention         = read_convention(source.file);
     source.frame.gbuffer.view = source.convention.view;
     source.frame.reference    = source.convention.reference;

@@ -3,6 +3,8 @@
 #include "core/error.h"
 #include "core/pixel_index.h"
 #include "errors.h"
+#include "scene/environment.h"
+#include "scene/exr_file.h"
 #include "scene/frame_channels.h"
 #include "scene/load_scene.h"
 #include "scene/scene.h"
@@ -358,6 +360,37 @@ TEST_F(LoadFrame, OwnFramesThatWereResizedAreRefused)
                 AllOf(HasSubstr("4x3 pixels, expected 8x6"), HasSubstr("[camera]")));
     folder_.write("f.exr.toml", camera);
     EXPECT_NEAR(load_frame(folder_ / "f.exr").gbuffer.view.focal_px.y, 1.5, 1e-9) << "half of 3 rows, at 90 degrees";
+}
+
+TEST_F(LoadFrame, DepthBesideALayerOfColourIsNoBlue)
+{
+    whole_frame("Z", [](size_t) { return 0.5; });
+    for (const char* name : {"Combined.R", "Combined.G", "Combined.B"}) channel(name, [](size_t) { return 0.25; });
+    const Frame frame = load(std::string(camera) + "[depth]\nkind = 'reversed'\n");
+    EXPECT_EQ(frame.gbuffer.radiance[0], glm::vec3(0.25F));
+    EXPECT_EQ(frame.gbuffer.depth[0], 0.5F);
+}
+
+TEST_F(LoadFrame, OtherPrimariesAreNamed)
+{
+    constexpr float rec709[8] = {0.64F, 0.33F, 0.3F, 0.6F, 0.15F, 0.06F, 0.3127F, 0.329F};
+    constexpr float acescg[8] = {0.713F, 0.293F, 0.165F, 0.83F, 0.128F, 0.044F, 0.32168F, 0.33767F};
+    for (const auto& [primaries, other] : {std::pair(rec709, false), std::pair(acescg, true)}) {
+        OIIO::ImageSpec spec(2, 1, 3, OIIO::TypeDesc::FLOAT);
+        spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), primaries);
+        const std::string        file   = (folder_ / "sky.exr").string();
+        const auto               output = OIIO::ImageOutput::create(file);
+        const std::vector<float> values(6, 0.5F);
+        ASSERT_TRUE(output && output->open(file, spec));
+        ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, values.data()) && output->close());
+        EXPECT_EQ(open_exr(file).other_primaries, other);
+        std::vector<std::string> warnings;
+        load_environment(file, 1, warnings);
+        const bool said = std::ranges::any_of(warnings, [](const std::string& text) {
+            return text.find("sky.exr: its chromaticities are not those of Rec. 709") != std::string::npos;
+        });
+        EXPECT_EQ(said, other);
+    }
 }
 
 TEST_F(LoadFrame, DenoisersHelpersAreNoDepth)
