@@ -25,6 +25,14 @@ std::optional<uint64_t> bytes_of_uri(const Import& import, const json& buffer, c
     return size > 0 && !error ? std::optional(size) : std::nullopt; // what is no file is refused when it is read
 }
 
+/// The parser takes a plus for a space, as in forms of web pages; in the path of a URI it is a plus (RFC 3986).
+std::string with_escaped_plus(const std::string& uri)
+{
+    std::string escaped;
+    for (const char c : uri) escaped += c == '+' ? std::string("%2B") : std::string(1, c);
+    return escaped;
+}
+
 } // namespace
 
 std::vector<size_t> give_indices_a_view(const Import& import, json& root)
@@ -47,7 +55,7 @@ std::vector<size_t> give_indices_a_view(const Import& import, json& root)
     return given;
 }
 
-bool give_data_one_type(const Import& import, json& root)
+bool give_uris_one_form(const Import& import, json& root)
 {
     constexpr std::string_view known   = "data:application/octet-stream";
     bool                       changed = false;
@@ -57,10 +65,11 @@ bool give_data_one_type(const Import& import, json& root)
             const auto uri = root[kind][i].find("uri");
             if (uri == root[kind][i].end()) continue;
             const std::string text = *uri;
-            const size_t      type = text.find(base64);
-            if (!text.starts_with("data:") || text.starts_with(std::string(known) + ";base64,")) continue;
-            *uri    = std::string(known) + text.substr(type);
-            changed = true;
+            if (text.starts_with("data:"))
+                *uri = std::string(known) + text.substr(text.find(base64));
+            else
+                *uri = with_escaped_plus(text);
+            changed = changed || *uri != text;
         }
     }
     return changed;

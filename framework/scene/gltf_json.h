@@ -23,9 +23,9 @@ inline constexpr std::string_view base64 = ";base64,";
 /// indices are zeros, some replaced by sparse ones.
 std::vector<size_t> give_indices_a_view(const Import& import, nlohmann::json& root);
 
-/// Replaces the media types of data URIs by one that the parser knows; the format is told by the bytes. Returns whether
-/// any changed.
-bool give_data_one_type(const Import& import, nlohmann::json& root);
+/// Replaces the media types of data URIs by one that the parser knows (the format is told by the bytes), and escapes what
+/// it would read wrongly in others. Returns whether any changed.
+bool give_uris_one_form(const Import& import, nlohmann::json& root);
 
 /// Gives buffers the size of their data or file where it is larger than stated. Returns whether any changed. Throws
 /// Failure where it is smaller, or the file is missing.

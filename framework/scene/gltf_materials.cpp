@@ -68,8 +68,12 @@ int texture_number(Import& import, Textures& textures, int texture_index, bool s
         import.fail("{}: there is no texture {}", where, texture_index);
     const auto [found, added] = textures.numbers.try_emplace({texture_index, srgb}, -1);
     if (!added) return found->second;
-    const tinygltf::Texture& source  = import.json.textures[static_cast<size_t>(texture_index)];
-    Texture                  texture = decoded_image(import, textures, source.source);
+    const tinygltf::Texture& source = import.json.textures[static_cast<size_t>(texture_index)];
+    if (source.source < 0) {
+        import.warn(fmt::format("/textures/{} names no PNG or JPEG image; texture left out", texture_index));
+        return -1;
+    }
+    Texture texture = decoded_image(import, textures, source.source);
     if (texture.rgba.empty()) return -1;
     texture.srgb = srgb;
     apply_sampler(import, source.sampler, texture);
@@ -277,6 +281,8 @@ Material convert(Import& import, Textures& textures, const tinygltf::Material& s
         material.metallic_roughness_texture = {};
         return material;
     }
+    if (source.occlusionTexture.index >= 0)
+        import.warn("occlusion textures are not supported: ambient light reaches all of a surface");
     material.dielectric_f0 = dielectric_f0_of(import, source, where);
     add_clearcoat(import, source, where, material);
     add_specular_glossiness(import, textures, source, where, material);

@@ -143,6 +143,19 @@ void read_triangles(Import& import, const tinygltf::Primitive& primitive, int mo
     mesh.indices       = to_triangles(corners, mode);
 }
 
+/// Of a mesh without texture coordinates all have the value of the texture's corner.
+void warn_of_missing_coordinates(Import& import, const tinygltf::Primitive& primitive, const Material& material,
+                                 const std::string& where)
+{
+    for (const TextureUse* use : {&material.base_colour_texture, &material.metallic_roughness_texture,
+                                  &material.normal_texture, &material.emissive_texture}) {
+        const std::string name = fmt::format("TEXCOORD_{}", use->uv_set);
+        if (use->texture >= 0 && attribute(primitive, name.c_str()) < 0)
+            import.warn(fmt::format("{}/attributes has no {}, which its material's textures need: they show one texel",
+                                    where, name));
+    }
+}
+
 } // namespace
 
 std::vector<Mesh> read_mesh(Import& import, int mesh_index, const std::vector<float>& morph_weights,
@@ -171,6 +184,7 @@ std::vector<Mesh> read_mesh(Import& import, int mesh_index, const std::vector<fl
                                                                       : static_cast<int>(material_left_out.size()) - 1);
         if (material_left_out[mesh.material]) continue;
         read_triangles(import, primitive, mode, morph_weights, mesh, where);
+        warn_of_missing_coordinates(import, primitive, import.model.materials[mesh.material], where);
         meshes.push_back(std::move(mesh));
     }
     return meshes;

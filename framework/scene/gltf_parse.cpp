@@ -295,8 +295,8 @@ void parse_file(Import& import, const fs::path& file)
         check_triangle_count(import, root);
         zeros                  = give_indices_a_view(import, root);
         const bool other_sizes = give_buffers_their_size(import, root, folder);
-        const bool other_types = give_data_one_type(import, root);
-        if (!zeros.empty() || other_sizes || other_types) changed = with_json(import, bytes, root.dump());
+        const bool other_uris  = give_uris_one_form(import, root);
+        if (!zeros.empty() || other_sizes || other_uris) changed = with_json(import, bytes, root.dump());
     }
     const std::vector<unsigned char>& parsed = changed.empty() ? bytes : changed;
     tinygltf::TinyGLTF                parser;

@@ -170,6 +170,21 @@ GltfFile mapped_quad(const std::vector<float>& uv, const std::vector<float>& tan
     return file;
 }
 
+TEST(ForeignGltf, WhatTexturesLackIsNamed)
+{
+    GltfFile file = mapped_quad({0, 1, 1, 1, 1, 0, 0, 0}, {});
+    EXPECT_THAT(file.load().warnings, IsEmpty());
+    GltfFile no_coordinates = file;
+    no_coordinates.primitive()["attributes"].erase("TEXCOORD_0");
+    EXPECT_THAT(no_coordinates.load().warnings,
+                Contains(HasSubstr("/meshes/0/primitives/0/attributes has no TEXCOORD_0")));
+    GltfFile no_image         = file;
+    no_image.root["textures"] = {{{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
+    EXPECT_THAT(no_image.load().warnings, Contains(HasSubstr("/textures/0 names no PNG or JPEG image")));
+    file.root["materials"][0]["occlusionTexture"] = {{"index", 0}};
+    EXPECT_THAT(file.load().warnings, Contains(HasSubstr("occlusion textures are not supported")));
+}
+
 TEST(ForeignGltf, TangentsAreForNormalMapsAlone)
 {
     GltfFile file = mapped_quad({0, 1, 1, 1, 1, 0, 0, 0}, {0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1});

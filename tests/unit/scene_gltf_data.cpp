@@ -40,7 +40,8 @@ TEST(GltfData, MayBeLongerThanTheBufferSays)
 TEST(GltfData, NamesAreDecodedOnce)
 {
     TempFolder folder;
-    for (const auto& [uri, name] : {std::pair("a%20b.bin", "a b.bin"), std::pair("a%2520b.bin", "a%20b.bin")}) {
+    for (const auto& [uri, name] : {std::pair("a%20b.bin", "a b.bin"), std::pair("a%2520b.bin", "a%20b.bin"),
+                                    std::pair("a+b.bin", "a+b.bin"), std::pair("a%2Bc.bin", "a+c.bin")}) {
         GltfFile file        = GltfFile::triangle();
         file.root["buffers"] = {{{"uri", uri}, {"byteLength", 36}}};
         folder.write(name, file.binary);
