@@ -2,11 +2,13 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "scene/load_scene.h"
 
 #include <assimp/config.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/material.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fcntl.h>
@@ -94,6 +96,28 @@ template <typename Stream, typename Item> void pass_mesh(Stream& stream, Item& m
 }
 
 // ---- The process that reads
+/// assimp 5.2.5 skips lines of OBJ that are indented, and vertices that have a coordinate such as '.5'; faces then name
+/// others. Without indents, and with '0.5'.
+std::vector<unsigned char> as_assimp_reads_it(const std::vector<unsigned char>& obj)
+{
+    std::vector<unsigned char> text;
+    text.reserve(obj.size() + obj.size() / 8);
+    const auto at       = [&](size_t i) { return i < obj.size() ? static_cast<char>(obj[i]) : '\n'; };
+    const auto is_space = [](char c) { return c == ' ' || c == '\t'; };
+    bool       start = true, vertex = false; // of a line; in a line of numbers: v, vn or vt
+    for (size_t i = 0; i < obj.size(); ++i) {
+        if (start && is_space(at(i))) continue;
+        if (start) vertex = at(i) == 'v';
+        const size_t before = i - (i > 0 && at(i - 1) == '\r' ? 1 : 0);
+        start               = at(i) == '\n' && !(before > 0 && at(before - 1) == '\\'); // a backslash: the line goes on
+        const bool begins =
+            i > 0 && (is_space(at(i - 1)) || (i > 1 && (at(i - 1) == '-' || at(i - 1) == '+') && is_space(at(i - 2))));
+        if (vertex && begins && at(i) == '.' && at(i + 1) >= '0' && at(i + 1) <= '9') text.push_back('0');
+        text.push_back(obj[i]);
+    }
+    return text;
+}
+
 /// A pipe beside the model would be waited for.
 struct RegularFiles : Assimp::DefaultIOSystem {
     bool Exists(const char* file) const override // assimp's own opens it
@@ -103,7 +127,12 @@ struct RegularFiles : Assimp::DefaultIOSystem {
     }
     Assimp::IOStream* Open(const char* file, const char* mode) override
     {
-        return Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+        if (!Exists(file)) return nullptr;
+        if (lower_extension(file) != ".obj") return DefaultIOSystem::Open(file, mode);
+        const std::vector<unsigned char> text   = as_assimp_reads_it(read_regular_file(file, max_file_bytes));
+        auto*                            buffer = new uint8_t[text.size()]; // which the stream deletes
+        std::ranges::copy(text, buffer);
+        return new Assimp::MemoryIOStream(buffer, text.size(), true);
     }
 };
 

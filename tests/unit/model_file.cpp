@@ -42,6 +42,21 @@ TEST(ModelFile, HoldsWhatTheFileSays)
     EXPECT_EQ(material.opacity, 0.25F);
 }
 
+TEST(ModelFile, LinesOfObjMayBeIndentedAndNumbersBeginWithTheirPoint)
+{
+    TempFolder      folder;
+    const FileModel model = read_model_file(folder.write(
+        "model.obj",
+        "v 9 9 9\n  v .5 0 0\nv\t-.25\t+.5 1.\r\nv 0 \\\n 1 .125\nv 7 7 7\nvn .6 0 .8\nf 2//1 3//1 4//1\n"));
+    ASSERT_EQ(model.meshes.size(), 1U);
+    const Mesh& mesh = model.meshes[0];
+    ASSERT_EQ(mesh.positions_ws.size(), 3U);
+    EXPECT_EQ(mesh.positions_ws[mesh.indices[0]], glm::dvec3(0.5, 0, 0));
+    EXPECT_EQ(mesh.positions_ws[mesh.indices[1]], glm::dvec3(-0.25, 0.5, 1));
+    EXPECT_EQ(mesh.positions_ws[mesh.indices[2]], glm::dvec3(0, 1, 0.125));
+    EXPECT_NEAR(mesh.vertices[0].normal_ws.x, 0.6, 1e-6);
+}
+
 TEST(ModelFile, ACrashOfAssimpIsAnError)
 {
     TempFolder folder;
