@@ -42,13 +42,24 @@ def milliseconds(row, name="cost_ms"):
     return text
 
 
+def f1_of(rows, measure):
+    """The F1 of each run: of the scene, of the screen, or the measure itself, whichever the rows have."""
+    return rows[next((name for name in ("f1_1px", "screen_f1_1px") if name in rows and rows[name].notna().any()), measure)]
+
+
 def pick(rows, measure, target):
     """The cheapest run that reaches the target with an F1 within one point of the best of those that do; else the nearest to it."""
     reached = rows[rows[measure] >= target]
     if reached.empty:
         reached = rows[rows[measure] >= rows[measure].max() - 1e-3]
-    f1 = next((name for name in ("f1_1px", "screen_f1_1px") if name in reached and reached[name].notna().any()), measure)
-    return reached[reached[f1] >= reached[f1].max() - F1_SLACK].nsmallest(1, "cost_ms_median").index
+    f1 = f1_of(reached, measure)
+    return reached[f1 >= f1.max() - F1_SLACK].nsmallest(1, "cost_ms_median").index
+
+
+def is_far_from_best(rows, reached):
+    """Which rows that reach the target have an F1 more than a point below what their technique has over another surface model."""
+    best = rows.f1.where(reached).groupby(rows.technique).transform("max")
+    return reached & (rows.f1 < best - F1_SLACK)
 
 
 def picks(results):
@@ -63,7 +74,9 @@ def picks(results):
             places = [place for _, part in rows[rows[measure].notna()].groupby("series") for place in pick(part, measure, target)]
             chosen = chosen.loc[places]
             chosen = chosen.assign(label=chosen.series, reached=chosen[measure] >= target, missing=(target - chosen[measure]).clip(lower=0))
-            chosen = chosen.sort_values(["missing", "cost_ms_median"])
+            chosen = chosen.assign(f1=f1_of(chosen, measure))
+            chosen = chosen.assign(far_from_best=is_far_from_best(chosen, chosen.reached))
+            chosen = chosen.sort_values(["missing", "far_from_best", "cost_ms_median"])
         parts.append(chosen)
     return pd.concat(parts) if parts else results.rows.iloc[:0].assign(label="", frame_title="", reached=False, setting="")
 
@@ -77,7 +90,8 @@ def geometric(part, name):
 
 
 def ranking(results, chosen):
-    """A row a series: means over the frames, geometric for times. Those that reach the target everywhere come first, by time."""
+    """A row a series: means over the frames, geometric for times. Those that reach the target everywhere come first: by time, but behind the others
+    where their technique has a better F1 over another surface model."""
     measure, _ = goal(results)
     frames = chosen.frame_title.nunique()
     rows = []
@@ -94,7 +108,8 @@ def ranking(results, chosen):
     table["unreached"] = table.of - table.reached if measure else 0
     nearness = {"screen_recall_1px": "screen_recall", "recall_1px": "recall", None: "label"}[measure]
     table["nearness"] = -table[nearness].where(table.unreached > 0, 1) if measure else 0
-    return table.sort_values(["unreached", "nearness", "cost_ms_median"]).drop(columns=["nearness"]).reset_index(drop=True)
+    table["far_from_best"] = is_far_from_best(table, table.unreached == 0)
+    return table.sort_values(["unreached", "nearness", "far_from_best", "cost_ms_median"]).drop(columns=["nearness", "far_from_best"]).reset_index(drop=True)
 
 
 def named(row):
@@ -131,7 +146,7 @@ def verdict(results, chosen):
         return (f"No tracer finds {goal_text(measure, target)}. The nearest is {named(best)}: {percent(best[measure])} in "
                 f"{milliseconds(best)}. " + left_wrong(best))
     text = f"{named(best)} is the cheapest tracer that finds {goal_text(measure, target)}: {milliseconds(best)}"
-    rivals = chosen[chosen.reached & (chosen.technique != best.technique)].drop_duplicates("technique").head(2)
+    rivals = chosen[chosen.reached & ~chosen.far_from_best & (chosen.technique != best.technique)].drop_duplicates("technique").head(2)
     faster = []
     for _, rival in rivals.iterrows():
         ratio = ratio_of_rows(results, rival, best)
@@ -141,6 +156,8 @@ def verdict(results, chosen):
                       else f"{ratio.median:.3g}{interval} times as fast as {named(rival)}")
     if faster:
         text += ", " + " and ".join(faster)
+    for _, row in chosen[chosen.far_from_best & (chosen.cost_ms_median < best.cost_ms_median)].head(1).iterrows():
+        text += f". {named(row)} takes {milliseconds(row)}, but has an F1 of {percent(row.f1)} instead of {percent(best.f1)}"
     return f"{text}. {left_wrong(best)}"
 
 

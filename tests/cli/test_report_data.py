@@ -98,6 +98,18 @@ class Test(Case):
         results.targets = {"screen_recall_1px": [0.9, 0.95, 0.999]}
         self.assertEqual(plots.verdict.goal(results), ("screen_recall_1px", 0.95))
 
+    def test_a_worse_surface_model_is_not_the_verdict(self):
+        """Over boxes hiz finds all that the depth buffer holds, too, and sooner, but with a worse F1 than over planes. linear, without another model, stays."""
+        rows = [dict(technique=technique, surface=surface, trace_ms_median=ms, screen_recall_1px=1, f1_1px=f1)
+                for technique, surface, ms, f1 in (("hiz", "box", 1, 0.8), ("hiz", "plane", 2, 0.9), ("linear", "box", 3, 0.8))]
+        results = made_results(self, rows, ["surface"])
+        chosen = plots.verdict.picks(results)
+        self.assertEqual(list(chosen.run_id), ["r1", "r2", "r0"])
+        (_, text), = plots.verdict.verdicts(results, chosen)
+        self.assertTrue(text.startswith("hiz (plane) is the cheapest tracer that finds 99 % of what the depth buffer holds: 2 ms"), text)
+        self.assertIn("hiz (box) takes 1 ms, but has an F1 of 80 % instead of 90 %. ", text)
+        self.assertEqual([row.technique for _, row in plots.verdict.ranking(results, chosen).iterrows()], ["hiz", "linear", "hiz"])
+
     def test_the_ranking(self):
         """Over two frames: times by the geometric mean, shares by the mean. Who misses the target comes later, the nearer one first."""
         rows = [dict(technique=technique, view=view, trace_ms_median=ms, trace_ms_ci_low=ms / 2, trace_ms_ci_high=2 * ms, screen_recall_1px=found, recall_1px=found / 2,
