@@ -120,7 +120,10 @@ void refuse_false(std::optional<double> off_surface)
 /// What the truth is made with: the scene's hierarchy is built once.
 class TrueReflections {
 public:
-    TrueReflections(const Stage& stage, int samples) : stage_(stage), samples_(samples) {}
+    TrueReflections(const Stage& stage, int samples, std::optional<float> metallic_exponent)
+        : stage_(stage), samples_(samples), metallic_exponent_(metallic_exponent)
+    {
+    }
 
     Image picture(Gpu& gpu, const TraceSettings& settings, int sample)
     {
@@ -138,13 +141,15 @@ public:
         // As many rays a pixel in all as one picture has; an even number.
         const int rays = 2 * std::max(1, (GlossySettings{}.rays / 2 + samples_ - 1) / samples_);
         return true_picture(
-            glossy_truth(*bvh_, stage_.scene, gbuffer, settings, {.rays = rays, .first = sample * rays}), gbuffer,
-            stage_.scene.ambient);
+            glossy_truth(*bvh_, stage_.scene, gbuffer, settings,
+                         {.rays = rays, .first = sample * rays, .metallic_exponent = metallic_exponent_}),
+            gbuffer, stage_.scene.ambient);
     }
 
 private:
     const Stage&              stage_;
     int                       samples_;
+    std::optional<float>      metallic_exponent_;
     std::unique_ptr<SceneBvh> bvh_;
 };
 
@@ -196,7 +201,8 @@ double run_traced(Stage& stage, ReadyFrame& frame, const LabPtr& lab, const Rend
 }
 
 /// Says how far the traced picture is from the one with the true reflections.
-void print_errors(Stage& stage, const ReadyFrame& frame, const RenderOptions& options, const TraceSettings& settings)
+void print_errors(Stage& stage, const ReadyFrame& frame, const RenderOptions& options, const TraceSettings& settings,
+                  std::optional<float> metallic_exponent)
 {
     if (stage.scene.frame)
         throw_spec_error("--errors: needs the scene's triangles, which a frame of another renderer does not have");
@@ -204,15 +210,16 @@ void print_errors(Stage& stage, const ReadyFrame& frame, const RenderOptions& op
     const auto         cache   = truth_cache_dir(options.picture.output);
     const SceneTruth   truth   = cached_scene_truth(cache, stage.scene, gbuffer, settings);
     refuse_false(off_surface_share(truth));
-    const Image real =
-        true_picture(cached_glossy_truth(cache, stage.scene, gbuffer, settings, {}), gbuffer, stage.scene.ambient);
+    const Image real = true_picture(
+        cached_glossy_truth(cache, stage.scene, gbuffer, settings, {.metallic_exponent = metallic_exponent}), gbuffer,
+        stage.scene.ambient);
     const MeasureValues errors = compare_pictures(read_shaded(stage.gpu, frame), Reference(real), truth, gbuffer);
     for (const char* name : {"picture_flip", "picture_rmse", "picture_visible_rmse"})
         std::puts(fmt::format("{} {:.4f}", name, errors.at(name).value_or(0)).c_str());
 }
 
 /// Adds the pictures of one place of the camera.
-void add_sample(Stage& stage, ReadyFrame& frame, const LabPtr& lab, const TraceSettings& settings,
+void add_sample(Stage& stage, ReadyFrame& frame, const LabPtr& lab, const FrameSettings& settings,
                 const RenderOptions& options, std::span<const ListedSource> asked, TrueReflections& truth, int sample,
                 int number, Rendered& rendered)
 {
@@ -220,7 +227,7 @@ void add_sample(Stage& stage, ReadyFrame& frame, const LabPtr& lab, const TraceS
     const Display display{options.exposure_ev,
                           options.display == "agx" ? Display::Transform::agx : Display::Transform::clip};
     rendered.trace_ms += run_traced(stage, frame, lab, options, asked, number) / options.samples;
-    if (options.errors) print_errors(stage, frame, options, settings);
+    if (options.errors) print_errors(stage, frame, options, settings.trace, metallic_exponent_of(settings.passes));
     if (options.frames > 0)
         keep_history(stage.gpu, frame, number); // before other reflections take the place of the traced one
     // The traced picture first: the others leave theirs in its buffers.
@@ -229,7 +236,7 @@ void add_sample(Stage& stage, ReadyFrame& frame, const LabPtr& lab, const TraceS
         if (at == kinds.end()) continue;
         Image image;
         if (shows == Shows::traced) image = read_shaded(stage.gpu, frame);
-        if (shows == Shows::truth) image = truth.picture(stage.gpu, settings, sample);
+        if (shows == Shows::truth) image = truth.picture(stage.gpu, settings.trace, sample);
         if (shows == Shows::nothing)
             image = composite_reflection(stage.gpu, frame,
                                          std::vector(pixel_count(stage.view.size_px), glm::vec4(0, 0, 0, -1)));
@@ -262,7 +269,7 @@ int render_picture(const CommonOptions& common, const RenderOptions& given)
     if (options.samples > 1 && stage.scene.frame)
         throw_spec_error("--samples: expected 1 for a frame of another renderer, which cannot be rendered anew; got {}",
                          options.samples);
-    TrueReflections            truth(stage, options.samples);
+    TrueReflections            truth(stage, options.samples, metallic_exponent_of(choice.settings.passes));
     std::optional<std::string> impossible;
     // Each sample has frames of its own before it.
     std::vector<FrameHistoryPtr> histories(static_cast<size_t>(options.samples));
@@ -291,8 +298,8 @@ int render_picture(const CommonOptions& common, const RenderOptions& given)
             else if (!options.show.empty())
                 rendered.pictures.front().image = false_colours(stage, *counted, choice.settings.trace, options.show);
             else
-                add_sample(stage, *frame, lab, choice.settings.trace, options, asked, truth, sample,
-                           picture.at.frame + i, rendered);
+                add_sample(stage, *frame, lab, choice.settings, options, asked, truth, sample, picture.at.frame + i,
+                           rendered);
         }
         for (LabelledImage& one : rendered.pictures) one.image = mean_of(std::move(one.image), options.samples);
         Image image = options.side_by_side ? side_by_side(rendered.pictures) : rendered.pictures.front().image;

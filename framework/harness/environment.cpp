@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/version.h"
+#include "harness/picture.h"
 #include "scene/load_scene.h"
 
 #include <sys/utsname.h>
@@ -53,6 +54,13 @@ std::string threads_text()
     const char* told = std::getenv("LP_NUM_THREADS");
     return fmt::format("{}{}", std::thread::hardware_concurrency(),
                        told != nullptr ? fmt::format(" (LP_NUM_THREADS={})", told) : "");
+}
+
+/// How the true picture shows reflections.
+std::string true_picture_text(const Experiment& experiment)
+{
+    const auto exponent = true_exponent(experiment);
+    return exponent ? fmt::format("reflectance = metallic, metallic_exponent = {}", *exponent) : "reflectance = ggx";
 }
 
 } // namespace
@@ -113,6 +121,7 @@ Environment describe_environment(const Experiment& experiment, std::span<const T
     notes["samples"]       = "samples.csv";
     notes["specification"] = experiment.text;
     notes["command_line"]  = command_line;
+    notes["true_picture"]  = true_picture_text(experiment);
     notes["seed"]          = std::to_string(experiment.measure.seed);
     notes["started"]       = now_utc();
     notes["commit"]        = built_commit();

@@ -26,6 +26,15 @@ Stage& stage_of(SweepContext& sweep, const std::string& scene)
     return sweep.scene->stage;
 }
 
+std::optional<float> true_exponent(const Experiment& experiment)
+{
+    ParameterValues passes = default_pass_values();
+    for (auto& [name, value] : passes)
+        if (const auto set = experiment.settings.find(name); set != experiment.settings.end())
+            value = set->second.front();
+    return metallic_exponent_of(passes);
+}
+
 MeasuredPicture make_picture(SweepContext& sweep, const Run& run)
 {
     Stage&          stage = stage_of(sweep, run.scene);
@@ -44,7 +53,7 @@ MeasuredPicture make_picture(SweepContext& sweep, const Run& run)
     if (sweep.experiment.measure.truth) {
         clocked(sweep.truths_s, [&] {
             picture.truths.emplace(stage.scene, read_gbuffer(sweep.gpu, *stage.gbuffer),
-                                   truth_cache_dir(sweep.results.path()));
+                                   truth_cache_dir(sweep.results.path()), true_exponent(sweep.experiment));
         });
     }
     return picture;

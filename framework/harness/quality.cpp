@@ -8,6 +8,7 @@
 #include "core/files.h"
 #include "core/parallel_rows.h"
 #include "core/pixel_index.h"
+#include "frame/passes/choices.h"
 #include "truth/pixel_surface.h"
 #include "truth/reprojection_truth.h"
 #include "truth/screen_ray.h"
@@ -52,8 +53,16 @@ Image reflected_image(const TraceImage& result, const GBufferImage& gbuffer, glm
     return image;
 }
 
-Truths::Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path cache_dir)
+std::optional<float> metallic_exponent_of(const ParameterValues& passes)
+{
+    if (choice<Reflectance>(passes) != Reflectance::metallic) return std::nullopt;
+    return float(passes.at("metallic_exponent"));
+}
+
+Truths::Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path cache_dir,
+               std::optional<float> metallic_exponent)
     : scene_(&scene), gbuffer_(std::move(gbuffer)), cache_dir_(std::move(cache_dir)),
+      metallic_exponent_(metallic_exponent),
       without_scene_(scene.frame ? "a frame of another renderer has no triangles" : "")
 {
 }
@@ -150,7 +159,8 @@ const Image& Truths::true_picture()
 {
     const TraceSettings& settings = made_for();
     if (!true_picture_) {
-        glossy_       = cached_glossy_truth(cache_dir_, *scene_, gbuffer_, settings, {});
+        glossy_ =
+            cached_glossy_truth(cache_dir_, *scene_, gbuffer_, settings, {.metallic_exponent = metallic_exponent_});
         true_picture_ = ssrlab::true_picture(*glossy_, gbuffer_, scene_->ambient);
     }
     return *true_picture_;

@@ -20,8 +20,10 @@ struct SceneInTime {
 /// The truths of one frame, for one TraceSettings at a time. Before make(), all other functions throw Failure.
 class Truths {
 public:
-    /// Keeps a reference to `scene`. An empty cache_dir stands for no cache.
-    Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path cache_dir);
+    /// Keeps a reference to `scene`. An empty cache_dir stands for no cache. metallic_exponent: of the true picture, as
+    /// GlossySettings has it.
+    Truths(const Scene& scene, GBufferImage gbuffer, std::filesystem::path cache_dir,
+           std::optional<float> metallic_exponent = {});
 
     /// Adds the layers behind the first, as many as the settings of make() will ask for.
     void   know_layers(std::vector<GBufferImage> layers) { gbuffer_.layers = std::move(layers); }
@@ -79,6 +81,7 @@ private:
     const Scene*                     scene_;
     GBufferImage                     gbuffer_;
     std::filesystem::path            cache_dir_;
+    std::optional<float>             metallic_exponent_;
     std::optional<TraceSettings>     made_for_;
     std::optional<TraceImage>        screen_truth_; // empty if the surface model has none
     SceneTruth                       scene_truth_;  // without triangles: only which pixels reflect
@@ -89,6 +92,9 @@ private:
     std::optional<Image>             true_picture_;     // likewise
     std::optional<ReprojectionTruth> before_, earlier_; // once asked for
 };
+
+/// Returns GlossySettings::metallic_exponent for these values of [passes].
+std::optional<float> metallic_exponent_of(const ParameterValues& passes);
 
 /// Returns $SSRLAB_CACHE, or .truth_cache beside the results folder.
 std::filesystem::path truth_cache_dir(const std::filesystem::path& results);

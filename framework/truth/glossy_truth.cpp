@@ -107,9 +107,10 @@ private:
         const glm::dvec3 mirror_vs = mirror_direction_vs(gbuffer_, pixel), sum = to_eye_vs + mirror_vs;
         const glm::dvec3 stored    = glm::normalize(glm::dvec3(gbuffer_.normal_vs[i]));
         const glm::dvec3 normal_vs = glm::length(sum) > 1e-6 ? glm::normalize(sum) : stored;
-        const glm::dvec3 f0 =
-            f0_of(gbuffer_.base_colour[i], double(gbuffer_.metallic[i]), double(dielectric_f0_at(gbuffer_, i)));
-        const Lobe lobe(normal_vs, to_eye_vs, std::isfinite(roughness) ? roughness : 0);
+        const glm::dvec3 f0        = glossy_.metallic_exponent ? glm::dvec3(1)
+                                                               : f0_of(gbuffer_.base_colour[i], double(gbuffer_.metallic[i]),
+                                                                       double(dielectric_f0_at(gbuffer_, i)));
+        const Lobe       lobe(normal_vs, to_eye_vs, std::isfinite(roughness) ? roughness : 0);
         truth.rays[i] = lobe.is_mirror() ? 1 : uint32_t(glossy_.rays);
         for (int k = 0; k < int(truth.rays[i]); ++k) {
             LobeSample sample = lobe.sample(even(pixel, glossy_.first + k, 0, glossy_.seed));
@@ -187,18 +188,25 @@ private:
     }
 
     /// Mean and noise of one pixel's samples.
-    static void reduce(const RowPaths& row, size_t first, size_t last, size_t i, GlossyTruth& truth)
+    void reduce(const RowPaths& row, size_t first, size_t last, size_t i, GlossyTruth& truth) const
     {
-        const auto count = double(last - first);
-        Halves     sums{glm::dvec3(0), glm::dvec3(0)};
-        glm::dvec3 weight(0);
+        Halves sums{glm::dvec3(0), glm::dvec3(0)}, weights = sums;
         for (size_t k = first; k < last; ++k) {
             for (size_t half : {0, 1}) sums[half] += row.weights[k] * row.light[k][half];
-            weight += row.weights[k];
+            weights[(k - first) % 2] += 2.0 * row.weights[k];
         }
-        truth.radiance[i] = glm::vec3(0.5 * (sums[0] + sums[1]) / count);
-        truth.noise[i]    = glm::vec3(0.5 * (sums[0] - sums[1]) / count);
-        truth.albedo[i]   = glm::vec3(weight / count);
+        if (truth.rays[i] == 1) weights = {row.weights[first], row.weights[first]}; // it stands for both halves
+        const auto       count  = double(last - first);
+        const glm::dvec3 weight = 0.5 * (weights[0] + weights[1]);
+        truth.albedo[i]         = glm::vec3(weight / count);
+        if (!glossy_.metallic_exponent) {
+            truth.radiance[i] = glm::vec3(0.5 * (sums[0] + sums[1]) / count);
+            truth.noise[i]    = glm::vec3(0.5 * (sums[0] - sums[1]) / count);
+        } else if (weight.r > 0) {
+            truth.radiance[i] = glm::vec3(0.5 * (sums[0] + sums[1]) / weight);
+            if (weights[0].r > 0 && weights[1].r > 0)
+                truth.noise[i] = glm::vec3(0.5 * (sums[0] / weights[0] - sums[1] / weights[1]));
+        }
     }
 
     const SceneBvh&       bvh_;
@@ -208,6 +216,25 @@ private:
     const GlossySettings& glossy_;
     ReflectedRays         reflected_;
 };
+
+/// What a reflecting pixel shows by the directional albedo of its lobe.
+glm::vec3 shown_by_albedo(const GlossyTruth& truth, const GBufferImage& gbuffer, glm::vec3 ambient, size_t i,
+                          glm::vec3 reflected)
+{
+    const glm::vec3 stand_in = gbuffer.metallic[i] * ambient * gbuffer.base_colour[i];
+    const glm::vec3 emission = emission_at(gbuffer, i);
+    const glm::vec3 below    = glm::max(gbuffer.radiance[i] - emission - stand_in, 0.0F) * diffuse_share_at(gbuffer, i);
+    return emission + (1.0F - truth.albedo[i]) * below + reflected + gbuffer.highlight[i];
+}
+
+/// What a reflecting pixel shows by metallic ^ exponent.
+glm::vec3 shown_by_metallic(const GlossyTruth& truth, const GBufferImage& gbuffer, size_t i, glm::vec3 reflected)
+{
+    const glm::vec3 own       = gbuffer.radiance[i] + gbuffer.highlight[i];
+    const glm::vec3 scattered = glm::max(gbuffer.radiance[i] - emission_at(gbuffer, i), 0.0F);
+    return own +
+           (reflected - scattered - gbuffer.highlight[i]) * std::pow(gbuffer.metallic[i], *truth.metallic_exponent);
+}
 
 } // namespace
 
@@ -235,7 +262,8 @@ GlossyTruth glossy_truth(const SceneBvh& bvh, const Scene& scene, const GBufferI
     if (glossy.rays < 2 || glossy.rays % 2 != 0 || glossy.first % 2 != 0)
         throw_failure("glossy truth: expected an even number of rays a pixel, got {} from {} on", glossy.rays,
                       glossy.first);
-    GlossyTruth      truth = empty_glossy_truth(gbuffer.view.size_px);
+    GlossyTruth truth       = empty_glossy_truth(gbuffer.view.size_px);
+    truth.metallic_exponent = glossy.metallic_exponent;
     const PathTracer tracer(bvh, scene, gbuffer, settings, glossy);
     parallel_rows(truth.size_px.y, threads, [&](int y) { tracer.fill_row(y, truth); });
     return truth;
@@ -246,14 +274,10 @@ Image true_picture(const GlossyTruth& truth, const GBufferImage& gbuffer, glm::v
     Image image{truth.size_px, {"R", "G", "B"}, {}, {}};
     image.values.reserve(3 * truth.rays.size());
     for (size_t i = 0; i < truth.rays.size(); ++i) {
-        glm::vec3 colour = gbuffer.radiance[i];
-        if (truth.rays[i] > 0) {
-            const glm::vec3 stand_in = gbuffer.metallic[i] * ambient * gbuffer.base_colour[i];
-            const glm::vec3 emission = emission_at(gbuffer, i);
-            const glm::vec3 below    = glm::max(colour - emission - stand_in, 0.0F) * diffuse_share_at(gbuffer, i);
-            colour = emission + (1.0F - truth.albedo[i]) * below + truth.radiance[i] + noises * truth.noise[i];
-        }
-        colour += gbuffer.highlight[i];
+        const glm::vec3 reflected = truth.radiance[i] + noises * truth.noise[i];
+        const glm::vec3 colour    = truth.rays[i] == 0        ? gbuffer.radiance[i] + gbuffer.highlight[i]
+                                    : truth.metallic_exponent ? shown_by_metallic(truth, gbuffer, i, reflected)
+                                                              : shown_by_albedo(truth, gbuffer, ambient, i, reflected);
         image.values.insert(image.values.end(), {colour.r, colour.g, colour.b});
     }
     return image;

@@ -17,6 +17,8 @@
 #include "truth/ggx_lobe.h"
 #include "truth/scene_truth.h"
 
+#include <optional>
+
 namespace ssrlab {
 
 struct GlossySettings {
@@ -24,17 +26,21 @@ struct GlossySettings {
     int first   = 0; // number of the first ray, even: truths with rays 0 … n - 1, n … 2 n - 1 … of a seed combine
     int bounces = 3; // further ones
     uint32_t seed = 0;
+    /// The pass composite's with reflectance = metallic: the pixel's own rays have no Fresnel factor, and the picture
+    /// shows metallic ^ exponent of what they meet. Empty: reflectance = ggx.
+    std::optional<float> metallic_exponent = {};
 };
 
 /// One entry per pixel, row-major; 0 if not traced.
 struct GlossyTruth {
     glm::ivec2             size_px{0, 0};
     std::vector<uint32_t>  rays;     // traced rays: 0, 1 (mirror) or GlossySettings::rays
-    std::vector<glm::vec3> radiance; // linear, mean of weight * radiance
+    std::vector<glm::vec3> radiance; // linear, mean of weight * radiance; with a metallic exponent over the mean weight
     /// Half of what the means of even and odd rays differ by. Both fill the lobe evenly, each by a sequence of its own,
     /// so its square is, on average, the square of the radiance's error.
     std::vector<glm::vec3> noise;
-    std::vector<glm::vec3> albedo; // mean weight: the share of light that is reflected
+    std::vector<glm::vec3> albedo;            // mean weight: the share of light that is reflected
+    std::optional<float>   metallic_exponent; // of the settings
 };
 
 GlossyTruth empty_glossy_truth(glm::ivec2 size_px);
@@ -43,8 +49,11 @@ GlossyTruth empty_glossy_truth(glm::ivec2 size_px);
 GlossyTruth glossy_truth(const SceneBvh& bvh, const Scene& scene, const GBufferImage& gbuffer,
                          const TraceSettings& settings, const GlossySettings& glossy, unsigned threads = 0);
 
-/// Returns the G-buffer's own light with the true reflections; linear, channels R, G, B. `noises`: 1 for the picture by
-/// the even rays alone, -1 by the odd ones.
+/// Returns the G-buffer's own light with the true reflections; linear, channels R, G, B. With a metallic exponent it is
+///   own + highlight + (reflected - (own - emission) - highlight) * metallic ^ exponent,
+/// after C = C_frag + (C_reflect - C_frag) * metallicness ^ exponent of J. Somerville Roberts, "Screen Space
+/// Reflections", II.C; what rays meet stays as it is. `noises`: 1 for the picture by the even rays alone, -1 by the odd
+/// ones.
 Image true_picture(const GlossyTruth& truth, const GBufferImage& gbuffer, glm::vec3 ambient, float noises = 0);
 
 } // namespace ssrlab

@@ -259,11 +259,14 @@ GlossyTruth cached_glossy_truth(const fs::path& cache_dir, const Scene& scene, c
     add(hash.add(format_version), gbuffer);
     hash.add(gbuffer.radiance).add(gbuffer.base_colour).add(settings.max_distance_m);
     hash.add(glossy.rays).add(glossy.first).add(glossy.bounces).add(glossy.seed);
+    if (glossy.metallic_exponent) hash.add(true); // rays are the same for all exponents
     add_reflecting(hash, settings);
     add(hash, scene);
-    return cached<GlossyTruth>(cache_dir, "glossy", hash, gbuffer.view.size_px, [&] {
+    GlossyTruth truth = cached<GlossyTruth>(cache_dir, "glossy", hash, gbuffer.view.size_px, [&] {
         return glossy_truth(SceneBvh(scene), scene, gbuffer, settings, glossy, threads);
     });
+    truth.metallic_exponent = glossy.metallic_exponent;
+    return truth;
 }
 
 std::string bounced_light_key(const Scene& scene)

@@ -6,6 +6,7 @@
 #include "harness/choose_sources.h"
 #include "harness/choose_technique.h"
 #include "harness/experiment.h"
+#include "harness/quality.h"
 #include "sources/answered_frame.h"
 #include "truth/glossy_truth.h"
 #include "truth/scene_truth.h"
@@ -103,8 +104,10 @@ void find_true_picture(Session& session)
 {
     if (!session.bvh)
         throw_spec_error("a frame of another renderer has no triangles, so no true reflection can be computed");
-    const GlossyTruth truth    = glossy_truth(*session.bvh, session.stage.scene, session.gbuffer,
-                                              session.choice.settings.trace, {.rays = true_rays_per_pixel});
+    const FrameSettings& settings = session.choice.settings;
+    const GlossyTruth    truth =
+        glossy_truth(*session.bvh, session.stage.scene, session.gbuffer, settings.trace,
+                     {.rays = true_rays_per_pixel, .metallic_exponent = metallic_exponent_of(settings.passes)});
     session.true_picture       = true_picture(truth, session.gbuffer, session.stage.scene.ambient);
     session.stale.true_picture = false;
     session.stale.shown        = true;
@@ -241,12 +244,14 @@ void set_value(Session& session, const std::string& name, const std::string& tex
         session.stale.shown = true;
         return;
     }
-    const TraceSettings before = session.choice.settings.trace;
+    const FrameSettings before = session.choice.settings;
     set_choice(session.stage.catalogue, *session.technique, session.choice, place);
     session.stale.trace      = true;
-    const TraceSettings& now = session.choice.settings.trace;
-    if (before != now) session.stale.truth = true;
-    if (!same_scene_truth(before, now)) session.stale.true_picture = true;
+    const FrameSettings& now = session.choice.settings;
+    if (before.trace != now.trace) session.stale.truth = true;
+    if (!same_scene_truth(before.trace, now.trace) ||
+        metallic_exponent_of(before.passes) != metallic_exponent_of(now.passes))
+        session.stale.true_picture = true;
 }
 
 void camera_changed(Session& session)

@@ -1,7 +1,9 @@
 // C = C_frag + (C_reflect - C_frag) * beta against the formula, for every switch.
 #include "core/pixel_index.h"
 #include "gpu/passes.h"
+#include "truth/glossy_truth.h"
 #include "truth/screen_ray.h"
+#include "unit/truth_scenes.h"
 
 namespace ssrlab::test {
 namespace {
@@ -186,6 +188,65 @@ INSTANTIATE_TEST_SUITE_P(
                     ParameterValues{chosen(Attenuation::inverse_square), chosen(EdgeFade::off)},
                     ParameterValues{{"min_direction_cosine", 0.9998}, chosen(EdgeFade::off)},
                     ParameterValues{{"skip_unneeded_passes", 0}, {"metallic_exponent", 2}}));
+
+/// A floor of that metal and a wall of stripes of other colours behind it, whose light is their colour.
+Scene floor_before_stripes(float metallic)
+{
+    Scene scene;
+    scene.ambient                    = glm::vec3(1);
+    const uint32_t floor             = add_material(scene, {0.5F, 0.25F, 0}, metallic);
+    scene.materials[floor].roughness = 0;
+    add_quad(scene, floor, {-20, -1, 2}, {40, 0, 0}, {0, 0, -10});
+    for (int stripe = 0; stripe < 40; ++stripe) {
+        const glm::vec3 colour = glm::vec3(stripe % 2, stripe % 3, stripe % 5) * glm::vec3(1, 0.5F, 0.25F);
+        add_quad(scene, add_material(scene, colour, 0), {stripe - 20, -1, -8}, {1, 0, 0}, {0, 20, 0});
+    }
+    for (Draw& draw : scene.draws) {
+        draw.bounds_min_ws = glm::vec3(-50);
+        draw.bounds_max_ws = glm::vec3(50);
+    }
+    return scene;
+}
+
+// Of an exact tracer without fades nothing is left between picture and truth where it meets the point that is truly reflected.
+TEST(ShadingByMetallic, IsTheTruePictureOfAMirror)
+{
+    for (const float metallic : {1.0F, 0.5F})
+        for (const float exponent : {1.0F, 2.0F}) {
+            const Scene scene = floor_before_stripes(metallic);
+            Camera      camera;
+            camera.target_ws        = {0, -0.5, -8};
+            const Picture   picture = make_picture(scene, camera, {64, 64});
+            ParameterValues passes  = report_passes();
+            for (const auto& [name, value] :
+                 ParameterValues{chosen(ViewerFade::off), chosen(EdgeFade::off), {"metallic_exponent", exponent}})
+                passes.at(name) = value;
+            const TraceSettings settings{.max_distance_m = 50, .surface = "plane", .dielectric_min_f0 = 1};
+            const auto          frame = prepared_frame(picture.buffers, technique("dda"), values_of(technique("dda")),
+                                                       {settings, "plane", passes});
+            const TraceImage    found = counted(*frame);
+            run_frame(device(), *frame);
+            const Image       shaded = read_shaded(device(), *frame);
+            const SceneBvh    bvh(scene);
+            const SceneTruth  rays = scene_truth(bvh, scene, picture.image, settings);
+            const GlossyTruth truth =
+                glossy_truth(bvh, scene, picture.image, settings, {.metallic_exponent = exponent});
+            const Image real   = true_picture(truth, picture.image, scene.ambient);
+            size_t      judged = 0;
+            for (size_t i = 0; i < found.status.size(); ++i) {
+                const bool hit = found.status[i] == TraceStatus::hit;
+                if (found.status[i] != TraceStatus::not_traced && !hit) continue;
+                // Beyond an edge, the pixel that is met shows another stripe than the point.
+                if (hit && rays.radiance[i] != picture.image.radiance[pixel_index(found.hit_pixel[i], found.size_px)])
+                    continue;
+                judged += hit;
+                for (size_t c = 3 * i; c < 3 * i + 3; ++c)
+                    ASSERT_NEAR(shaded.values[c], real.values[c], 4 * 0x1p-11F)
+                        << i << ' ' << metallic << ' ' << exponent;
+            }
+            EXPECT_GT(judged, 500U) << metallic << ' ' << exponent;
+        }
+}
 
 // A mirror on the left turned to the right, a nearer wall there: rays meet the wall on their way back to the viewer.
 TEST(ShadingTowardTheViewer, WeighsNothing)

@@ -173,6 +173,11 @@ TEST_F(TruthCache, GlossyTruthReadsWhatItWrote)
     gbuffer.roughness[0] = 0.7F;
     cached_glossy_truth(folder_, scene, gbuffer, {}, glossy);
     EXPECT_EQ(files().size(), 4U);
+    for (const float exponent : {3.0F, 3.0F, 0.0F}) // one file: the rays are the same
+        EXPECT_EQ(cached_glossy_truth(folder_, scene, gbuffer, {}, {.rays = 8, .metallic_exponent = exponent})
+                      .metallic_exponent,
+                  exponent);
+    EXPECT_EQ(files().size(), 5U);
 }
 
 } // namespace

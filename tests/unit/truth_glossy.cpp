@@ -204,6 +204,39 @@ TEST(TruePicture, AddsEmissionWholeToAnySurface)
             }
 }
 
+// J. Somerville Roberts' formula, whose C_frag is all of the own light but what is emitted: colour and angle of the mirror do not matter,
+// and what the ray meets is shaded as ever.
+TEST(TruePicture, WithAMetallicExponentBlendsWithWhatTheRayMeets)
+{
+    const glm::vec3 own(0.25F, 0.5F, 0.125F), emission(0.125F, 0.25F, 0), highlight(0.5F, 0, 1), lit(0.75F, 0.5F, 2);
+    for (const float roughness : {0.0F, 0.6F})
+        for (const float metallic : {1.0F, 0.5F})
+            for (const float exponent : {0.0F, 1.0F, 2.0F}) {
+                Scene scene;
+                scene.ambient = glm::vec3(1);
+                if (roughness > 0)
+                    scene.background = lit; // all around, which a lobe shows as it is
+                else
+                    add_quad(scene, add_material(scene, lit, 0), {-500, 100, -500}, {1000, 0, 0}, {0, 0, 1000});
+                GBufferImage gbuffer = tilted_plane(1, roughness, {8, 8});
+                std::ranges::fill(gbuffer.base_colour, glm::vec3(1, 0.5F, 0));
+                std::ranges::fill(gbuffer.metallic, metallic);
+                std::ranges::fill(gbuffer.radiance, own);
+                std::ranges::fill(gbuffer.highlight, highlight);
+                gbuffer.emission.assign(gbuffer.depth.size(), emission);
+                const GlossyTruth truth =
+                    glossy_truth(SceneBvh(scene), scene, gbuffer, {}, {.rays = 64, .metallic_exponent = exponent});
+                const float     share    = exponent == 0 ? 1 : exponent == 1 ? metallic : metallic * metallic;
+                const glm::vec3 expected = emission + share * lit + (1 - share) * (own - emission + highlight);
+                for (const float noises : {-1.0F, 0.0F, 1.0F}) { // light that is equal everywhere has no noise
+                    const Image picture = true_picture(truth, gbuffer, scene.ambient, noises);
+                    for (size_t i = 0; i < picture.values.size(); ++i)
+                        ASSERT_NEAR(picture.values[i], expected[int(i % 3)], 1e-5F)
+                            << roughness << ' ' << metallic << ' ' << exponent;
+                }
+            }
+}
+
 TEST(TruePicture, ABlackSmoothDielectricReflectsItsF0AtNormalIncidence)
 {
     for (const float f0 : {0.02F, 0.04F, 0.17F}) // water, glass, diamond
