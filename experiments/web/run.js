@@ -51,6 +51,13 @@ async function makePipeline(device, code, label, constants = {}) {
     return device.createComputePipelineAsync({ layout: "auto", label, compute: { module, constants } });
 }
 
+/// The pipeline of a pass, made once for all frames and folders with the same text: compiling takes longer than running.
+async function pipelineOf(device, code, label) {
+    device.pipelines ??= new Map();
+    if (!device.pipelines.has(code)) device.pipelines.set(code, await makePipeline(device, code, label));
+    return device.pipelines.get(code);
+}
+
 /// What to encode, in order: a pipeline, its bind group and its workgroups. pipeline(file) gives that of a pass.
 async function makeSteps(device, frame, resources, pipeline) {
     const steps = [];
@@ -100,8 +107,7 @@ async function readBuffer(device, buffer) {
 /// Hits of the frame's rays, and the rays that the ray set-up made where the frame has it.
 async function runFrame(device, frame, read, text) {
     const resources = await makeResources(device, frame, read);
-    const steps = await makeSteps(device, frame, resources,
-                                  async (file) => makePipeline(device, await text(file), file));
+    const steps = await makeSteps(device, frame, resources, async (file) => pipelineOf(device, await text(file), file));
     const encoder = device.createCommandEncoder();
     encodeSteps(encoder, steps);
     device.queue.submit([encoder.finish()]);
