@@ -2,8 +2,10 @@
 
 #include "check/run_check.h"
 #include "core/error.h"
+#include "core/files.h"
 #include "core/temporary_folder.h"
 #include "export/export.h"
+#include "harness/csv.h"
 #include "harness/experiment.h"
 
 #include <algorithm>
@@ -94,19 +96,51 @@ std::vector<ExportFrame> proof_frames(const GBufferImage& scene, const ExportOpt
     return frames;
 }
 
+constexpr size_t most_listed = 10; // differing rays of a frame
+
+struct DifferenceCounts {
+    size_t rays = 0, set_ups = 0, near_ties = 0;
+};
+
+DifferenceCounts counts_of(const FrameVerdict& verdict)
+{
+    DifferenceCounts counts;
+    for (const AnswerDifference& difference : verdict.differences) {
+        ++(difference.is_set_up ? counts.set_ups : counts.rays);
+        if (difference.is_near_tie) ++counts.near_ties;
+    }
+    return counts;
+}
+
+std::string cause_of(const AnswerDifference& difference) { return difference.is_near_tie ? "rounding" : "unexplained"; }
+
+std::string line_of(const AnswerDifference& difference)
+{
+    const std::string pixel = fmt::format("({}, {})", difference.pixel.x, difference.pixel.y);
+    const std::string apart =
+        difference.is_near_tie ? fmt::format("{:.2g} px apart: rounding", difference.apart_px) : cause_of(difference);
+    if (!difference.is_set_up)
+        return fmt::format("ray {} of pixel {}: {}, expected {} ({})", difference.ray, pixel, difference.answered,
+                           difference.expected, apart);
+    return fmt::format("the ray of pixel {} is set up otherwise: {} {}, expected {} ({})", pixel, difference.values,
+                       difference.answered, difference.expected, apart);
+}
+
 /// are_ties_right: WGSL has no `precise`, so that its compilers may round otherwise.
 int print_verdicts(std::span<const FrameVerdict> verdicts, const std::string& device, bool are_ties_right = false)
 {
     size_t rays = 0, differing = 0, near_ties = 0;
     for (const FrameVerdict& verdict : verdicts) {
+        const DifferenceCounts counts = counts_of(verdict);
         rays += verdict.rays + verdict.set_up;
-        differing += verdict.differing + verdict.set_up_differing;
-        near_ties += verdict.near_ties;
-        std::puts(
-            fmt::format("{}: {} of {} rays differ{}", verdict.frame, verdict.differing, verdict.rays,
-                        verdict.set_up == 0 ? "" : fmt::format("; {} are set up otherwise", verdict.set_up_differing))
-                .c_str());
-        for (const std::string& line : verdict.listed) std::puts(("  " + line).c_str());
+        differing += verdict.differences.size();
+        near_ties += counts.near_ties;
+        std::puts(fmt::format("{}: {} of {} rays differ{}", verdict.frame, counts.rays, verdict.rays,
+                              verdict.set_up == 0 ? "" : fmt::format("; {} are set up otherwise", counts.set_ups))
+                      .c_str());
+        size_t listed = 0;
+        for (const AnswerDifference& difference : verdict.differences)
+            if (listed++ < most_listed) std::puts(("  " + line_of(difference)).c_str());
     }
     std::puts(fmt::format("{} of {} answers differ on {}{}", differing, rays, device,
                           differing == 0 ? "" : fmt::format(", {} of them by rounding alone", near_ties))
@@ -116,7 +150,7 @@ int print_verdicts(std::span<const FrameVerdict> verdicts, const std::string& de
 
 /// A setup of a hard case, exported by itself, since each has its own settings.
 struct ExportedSetup {
-    std::string hard_case, label;
+    std::string hard_case, label, surface;
     fs::path    folder;
 };
 
@@ -143,11 +177,48 @@ std::vector<ExportedSetup> export_hard_cases(Gpu& gpu, const Catalogue& catalogu
                 if (options.language == "wgsl" && std::max(size_px.x, size_px.y) > webgpu_size_px) continue;
                 const Export      what{catalogue, technique, values, setup.settings, language_of(options.language), ""};
                 const ExportFrame frame{"case", "", setup.gbuffer, setup.rays};
-                exported.push_back({hard_case.name, setup.label, root / std::to_string(exported.size())});
+                exported.push_back(
+                    {hard_case.name, setup.label, setup.settings.surface, root / std::to_string(exported.size())});
                 write_export(gpu, what, std::span(&frame, 1), exported.back().folder);
             }
         }
     return exported;
+}
+
+/// Writes setups.csv, a row for each setup, and differing.csv, a row for each answer that differs.
+void write_tables(const fs::path& folder, const Technique& technique, const std::string& language,
+                  std::span<const ExportedSetup> exported, const WgslVerdicts& found)
+{
+    std::string setups  = csv_line({"technique", "language", "device", "case", "setup", "surface", "rays",
+                                    "rays_differing", "set_ups", "set_ups_differing", "largest_px", "unexplained"});
+    std::string answers = csv_line({"technique", "language", "device", "case", "setup", "surface", "x_px", "y_px",
+                                    "ray", "values", "expected", "answered", "apart_px", "cause"});
+    for (size_t i = 0; i < exported.size(); ++i) {
+        const FrameVerdict&    verdict = found.frames[i];
+        const DifferenceCounts counts  = counts_of(verdict);
+        const CsvRecord        key{technique.id,          language,          found.device,
+                            exported[i].hard_case, exported[i].label, exported[i].surface};
+        double                 largest_px = 0;
+        for (const AnswerDifference& one : verdict.differences) {
+            largest_px    = std::max(largest_px, one.apart_px);
+            CsvRecord row = key;
+            for (const std::string& text :
+                 {fmt::format("{}", one.pixel.x), fmt::format("{}", one.pixel.y),
+                  one.is_set_up ? "set-up" : fmt::format("{}", one.ray), one.values, one.expected, one.answered,
+                  fmt::format("{:.3g}", one.apart_px), cause_of(one)})
+                row.push_back(text);
+            answers += csv_line(row);
+        }
+        CsvRecord row = key;
+        for (const size_t count : {verdict.rays, counts.rays, verdict.set_up, counts.set_ups})
+            row.push_back(std::to_string(count));
+        row.push_back(fmt::format("{:.3g}", largest_px));
+        row.push_back(std::to_string(verdict.differences.size() - counts.near_ties));
+        setups += csv_line(row);
+    }
+    fs::create_directories(folder);
+    write_file_atomically(folder / "setups.csv", setups);
+    write_file_atomically(folder / "differing.csv", answers);
 }
 
 int verify_hard_cases(Gpu& gpu, const Catalogue& catalogue, const Technique& technique, const Choice& choice,
@@ -163,20 +234,12 @@ int verify_hard_cases(Gpu& gpu, const Catalogue& catalogue, const Technique& tec
         found = verify_wgsl_exports(folders);
     else
         for (const fs::path& folder : folders) found.frames.push_back(verify_export(gpu, folder).front());
-    std::vector<FrameVerdict> sums;
-    for (size_t i = 0; i < exported.size(); ++i) {
-        if (sums.empty() || sums.back().frame != exported[i].hard_case)
-            sums.push_back({.frame = exported[i].hard_case});
-        FrameVerdict&       sum = sums.back();
-        const FrameVerdict& one = found.frames[i];
-        sum.rays += one.rays;
-        sum.differing += one.differing;
-        sum.set_up += one.set_up;
-        sum.set_up_differing += one.set_up_differing;
-        sum.near_ties += one.near_ties;
-        for (const std::string& line : one.listed) sum.listed.push_back(exported[i].label + " " + line);
-    }
-    return print_verdicts(sums, found.device, is_wgsl);
+    for (size_t i = 0; i < exported.size(); ++i)
+        found.frames[i].frame =
+            exported[i].hard_case + (exported[i].label.empty() ? "" : fmt::format(" ({})", exported[i].label));
+    if (!options.picture.output.empty())
+        write_tables(options.picture.output, technique, options.language, exported, found);
+    return print_verdicts(found.frames, found.device, is_wgsl);
 }
 
 } // namespace
@@ -197,8 +260,8 @@ int export_technique(const CommonOptions& common, const ExportOptions& options, 
     if (options.picture.technique.empty())
         throw_spec_error("export: expected a technique (see ssrlab list) or --verify");
     if (options.language.empty()) throw_spec_error("--to: expected glsl, hlsl, msl, essl or wgsl");
-    if (options.picture.output.empty() != options.hard_cases)
-        throw_spec_error("-o: expected a folder to write, or --hard-cases instead of it");
+    if (options.picture.output.empty() && !options.hard_cases)
+        throw_spec_error("-o: expected a folder to write, or --hard-cases");
     const Catalogue  catalogue = load_catalogue(common.technique_dirs);
     const Technique& technique = find_technique(catalogue.techniques, options.picture.technique);
     const Choice     choice    = parse_choice(catalogue, technique, options.picture.parameters);

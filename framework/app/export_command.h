@@ -11,7 +11,7 @@ struct ExportOptions {
     std::vector<std::string> kept;               // parameters that stay specialization constants
     double                   near_m = 0;         // above 0: in the place of the view's
     std::string              verified;           // a folder whose shaders are run, instead of an export
-    bool                     hard_cases = false; // export, run and compare every hard case, and keep nothing
+    bool                     hard_cases = false; // export, run and compare every hard case; output: tables
     std::string              only_case;          // of them
 };
 int export_technique(const CommonOptions& common, const ExportOptions& options, const std::string& command_line);

@@ -416,8 +416,9 @@ int main(int argc, char** argv)
                       "Parameters that stay specialization constants (WGSL: override), instead of their values");
     taken->add_option("--verify", exported.verified,
                       "Run the shaders of a folder that was exported, and compare every ray");
-    auto* hard = taken->add_flag("--hard-cases", exported.hard_cases,
-                                 "Export every hard case, run it and compare, instead of writing a folder");
+    auto* hard =
+        taken->add_flag("--hard-cases", exported.hard_cases,
+                        "Export every hard case, run it and compare; -o is the folder for tables of what differs");
     taken->add_option("--case", exported.only_case, "Only this case")->needs(hard);
     taken->callback([&] {
         command = [&] {

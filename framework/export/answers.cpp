@@ -20,13 +20,10 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr size_t ray_words = 8, hit_words = 2; // README.md of an export says what they hold
-constexpr size_t most_listed = 10;             // differing rays of a frame
 constexpr double near_tie_px = 0.05;           // what rounding may move a hit
+constexpr double near_tie    = 1e-5;           // and, of its size, the depth or length of a ray that is set up
 
 glm::ivec2 pixel_of(uint32_t word) { return {word & (MAX_IMAGE_PX - 1), (word >> PIXEL_BITS) & (MAX_IMAGE_PX - 1)}; }
-
-/// "(x, y)" of a ray's or hit's word.
-std::string pixel_text(uint32_t word) { return fmt::format("({}, {})", pixel_of(word).x, pixel_of(word).y); }
 
 TraceStatus status_of(uint32_t word)
 {
@@ -39,7 +36,8 @@ std::string hit_text(const uint32_t* hit)
 {
     const TraceStatus status = status_of(hit[0]);
     if (!has_place(status)) return std::string(status_name(status));
-    return fmt::format("{} {} t {:.9g}", status_name(status), pixel_text(hit[0]), real_of(hit[1]));
+    const glm::ivec2 pixel = pixel_of(hit[0]);
+    return fmt::format("{} ({}, {}) t {:.9g}", status_name(status), pixel.x, pixel.y, real_of(hit[1]));
 }
 
 /// Pixel and status in one word; t counts where there is a pixel.
@@ -60,9 +58,16 @@ double distance_px(const uint32_t* ray, const uint32_t* a, const uint32_t* b)
     return std::abs(difference) * std::hypot(real_of(ray[4]), real_of(ray[5]));
 }
 
-std::string cause_text(double apart_px)
+void add_word(std::string& text, const std::string& word) { text += (text.empty() ? "" : " ") + word; }
+
+/// What differs between two hits.
+std::string values_of(const uint32_t* a, const uint32_t* b)
 {
-    return apart_px < near_tie_px ? fmt::format(" ({:.2g} px apart: rounding)", apart_px) : " (unexplained)";
+    if (status_of(a[0]) != status_of(b[0])) return "status";
+    std::string values;
+    if (a[0] != b[0]) add_word(values, "pixel");
+    if (a[1] != b[1]) add_word(values, "t");
+    return values;
 }
 
 void compare_hits(FrameVerdict& verdict, const Words& rays, const Words& expected, const Words& answered)
@@ -73,18 +78,17 @@ void compare_hits(FrameVerdict& verdict, const Words& rays, const Words& expecte
         const uint32_t *right = &expected[i * hit_words], *given = &answered[i * hit_words];
         if (same_hit(right, given)) continue;
         const double apart_px = distance_px(&rays[i * ray_words], right, given);
-        if (apart_px < near_tie_px) ++verdict.near_ties;
-        if (verdict.differing++ >= most_listed) continue;
-        verdict.listed.push_back(fmt::format("ray {} of pixel {}: {}, expected {}{}", i,
-                                             pixel_text(rays[i * ray_words + 7]), hit_text(given), hit_text(right),
-                                             cause_text(apart_px)));
+        verdict.differences.push_back({false, i, pixel_of(rays[i * ray_words + 7]), values_of(right, given),
+                                       hit_text(right), hit_text(given), apart_px, apart_px < near_tie_px});
     }
 }
 
-uint32_t pixel_word(const std::array<uint32_t, ray_words>& ray) { return ray[7] & ((1U << (2 * PIXEL_BITS)) - 1); }
+using RayWords = std::array<uint32_t, ray_words>;
+
+uint32_t pixel_word(const RayWords& ray) { return ray[7] & ((1U << (2 * PIXEL_BITS)) - 1); }
 
 /// Between the begins or the ends of two rays, whichever is more; infinite where one is not finite.
-double distance_px(const std::array<uint32_t, ray_words>& a, const std::array<uint32_t, ray_words>& b)
+double distance_px(const RayWords& a, const RayWords& b)
 {
     double most = 0;
     for (const size_t axis : {0U, 1U}) {
@@ -96,10 +100,46 @@ double distance_px(const std::array<uint32_t, ray_words>& a, const std::array<ui
     return most;
 }
 
-/// The ray set-up lists pixels in any order.
-std::vector<std::array<uint32_t, ray_words>> by_pixel(const Words& words, size_t count)
+/// Depths are of the size of the larger of a ray's ends.
+bool is_near(const RayWords& a, const RayWords& b)
 {
-    std::vector<std::array<uint32_t, ray_words>> rays(count);
+    const auto apart  = [&](size_t i) { return std::abs(real_of(a[i]) - real_of(b[i])); };
+    const auto bound  = [](float size) { return static_cast<float>(near_tie) * std::abs(size); };
+    const auto depths = std::max(std::abs(real_of(a[2])), std::abs(real_of(a[2]) + real_of(a[6])));
+    return a[7] == b[7] && distance_px(a, b) < near_tie_px && apart(3) <= bound(real_of(a[3])) &&
+           apart(2) <= bound(depths) && apart(6) <= bound(depths);
+}
+
+AnswerDifference set_up_difference(const RayWords& right, const RayWords* made)
+{
+    static constexpr std::array<const char*, ray_words> names{"x_px",       "y_px",       "depth",       "length_m",
+                                                              "delta_x_px", "delta_y_px", "delta_depth", "end"};
+    AnswerDifference                                    found{.is_set_up = true, .pixel = pixel_of(right[7])};
+    found.apart_px = std::numeric_limits<double>::infinity();
+    if (made == nullptr) {
+        found.values   = "ray";
+        found.expected = "made";
+        found.answered = "none";
+        return found;
+    }
+    const auto text = [](size_t i, uint32_t word) {
+        return i == 7 ? std::string(status_name(status_of(word))) : fmt::format("{:.9g}", real_of(word));
+    };
+    for (size_t i = 0; i < ray_words; ++i) {
+        if (right[i] == (*made)[i]) continue;
+        add_word(found.values, names[i]);
+        add_word(found.expected, text(i, right[i]));
+        add_word(found.answered, text(i, (*made)[i]));
+    }
+    found.apart_px    = distance_px(right, *made);
+    found.is_near_tie = is_near(right, *made);
+    return found;
+}
+
+/// The ray set-up lists pixels in any order.
+std::vector<RayWords> by_pixel(const Words& words, size_t count)
+{
+    std::vector<RayWords> rays(count);
     std::memcpy(rays.data(), words.data(), count * sizeof(rays[0]));
     std::ranges::sort(rays, {}, pixel_word);
     return rays;
@@ -111,15 +151,10 @@ void compare_set_up(FrameVerdict& verdict, const Words& rays, const Words& made,
     verdict.set_up   = rays.size() / ray_words;
     const auto given = by_pixel(made, std::min(count, made.size() / ray_words));
     auto       next  = given.begin();
-    for (const auto& ray : by_pixel(rays, verdict.set_up)) {
+    for (const RayWords& ray : by_pixel(rays, verdict.set_up)) {
         while (next != given.end() && pixel_word(*next) < pixel_word(ray)) ++next;
-        if (next != given.end() && *next == ray) continue;
-        const bool   is_made  = next != given.end() && (*next)[7] == ray[7];
-        const double apart_px = is_made ? distance_px(ray, *next) : std::numeric_limits<double>::infinity();
-        if (apart_px < near_tie_px) ++verdict.near_ties;
-        if (verdict.set_up_differing++ >= most_listed) continue;
-        verdict.listed.push_back(
-            fmt::format("the ray of pixel {} is set up otherwise{}", pixel_text(ray[7]), cause_text(apart_px)));
+        const bool is_made = next != given.end() && pixel_word(*next) == pixel_word(ray);
+        if (!is_made || *next != ray) verdict.differences.push_back(set_up_difference(ray, is_made ? &*next : nullptr));
     }
 }
 

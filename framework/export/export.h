@@ -44,13 +44,21 @@ const char* file_ending(ExportLanguage language);
 void write_export(Gpu& gpu, const Export& what, std::span<const ExportFrame> frames,
                   const std::filesystem::path& folder);
 
+/// A ray that is set up, or that ended, otherwise than in the lab.
+struct AnswerDifference {
+    bool        is_set_up = false;
+    size_t      ray       = 0; // of those traced, by its place in the frame's list
+    glm::ivec2  pixel{0};
+    std::string values = {}, expected = {}, answered = {}; // the names of those that differ, and what they are
+    double      apart_px = 0;     // between the ends of both; infinite where they are not comparable
+    bool is_near_tie     = false; // as rounding moves it: by less than 0.05 px, within a pixel or to one that touches
+};
+
 /// How the exported shaders answered one frame.
 struct FrameVerdict {
-    std::string              frame;
-    size_t                   rays = 0, differing = 0;          // by status, by pixel, or by any bit of t
-    size_t                   set_up = 0, set_up_differing = 0; // rays of the ray set-up, where the frame has it
-    size_t                   near_ties = 0;  // of those that differ: hits that rounding moved by less than 0.05 px
-    std::vector<std::string> listed    = {}; // the first that differ, in words
+    std::string frame;
+    size_t      rays = 0, set_up = 0;               // rays traced, and rays of the ray set-up where the frame has it
+    std::vector<AnswerDifference> differences = {}; // by status, by pixel, or by any bit of t or of the ray
 };
 
 /// Runs the folder's shaders on its frames, and nothing of the lab. Throws SpecError for a folder that is no export, or

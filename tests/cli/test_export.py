@@ -1,4 +1,5 @@
 """ssrlab export: techniques as shaders for an engine, and the proof in their folder."""
+import csv
 import glob
 import json
 import os
@@ -140,6 +141,32 @@ class Test(Case):
         said = self.ssrlab(*case, code=1, PATH=self.path("bin") + ":" + os.environ["PATH"])
         self.assertIn(f"axis_aligned: 1 of {rays} rays differ", said)
         self.assertRegex(said, r"ray \d+ of pixel \(\d+, \d+\): hit .*, expected hit .* \(unexplained\)")
+
+    def test_hard_cases_list_every_answer_that_differs(self):
+        # The host's answers changed: twelve hits, by their pixel, and the depth of a ray, which moves nothing in the image.
+        node = self.write("bin/node", f"#!/bin/sh\n{shlex.quote(shutil.which('node'))} \"$@\" && {shlex.quote(sys.executable)} {self.path('falsify.py')} \"$2\"\n")
+        os.chmod(node, 0o755)
+        self.write("falsify.py", "import os, struct, sys\n"
+                   "def change(what, changed):\n    path = f'{sys.argv[1]}/0.case.{what}.bin'\n    if not os.path.exists(path): return\n"
+                   "    words = list(struct.unpack(f'<{os.path.getsize(path) // 4}I', open(path, 'rb').read()))\n    changed(words)\n"
+                   "    open(path, 'wb').write(struct.pack(f'<{len(words)}I', *words))\n"
+                   "def hits(words):\n    for i in [i for i in range(0, len(words), 2) if words[i] >> 28 == 1][:12]: words[i] ^= 2\n"
+                   "def depth(words):\n    words[2] += 1 << 20\n"
+                   "change('hits', hits)\nchange('made_rays', depth)\n")
+        folder = self.path("tables")
+        said = self.ssrlab("--quiet", "export", "dda", "--to", "wgsl", "--hard-cases", "--case", "contact_points", "-o", folder, code=1,
+                           PATH=self.path("bin") + ":" + os.environ["PATH"])
+        self.assertEqual(len(re.findall(r"expected", said)), 10, said)
+        with open(os.path.join(folder, "differing.csv"), encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        traced = [row for row in rows if row["ray"] != "set-up"]
+        self.assertEqual([(row["values"], row["cause"]) for row in traced], [("pixel", "unexplained")] * 12)
+        wrong, = (row for row in rows if row["ray"] == "set-up" and row["cause"] == "unexplained")
+        self.assertEqual((wrong["values"].split()[0], float(wrong["apart_px"]) < 0.05), ("depth", True))
+        with open(os.path.join(folder, "setups.csv"), encoding="utf-8", newline="") as file:
+            first = next(csv.DictReader(file))
+        self.assertEqual((first["case"], first["rays_differing"], first["unexplained"]), ("contact_points", "12", "13"))
+        self.assertEqual(int(first["set_ups_differing"]), sum(row["ray"] == "set-up" and row["setup"] == first["setup"] for row in rows))
 
     def test_wgsl_without_its_translator(self):
         os.makedirs(self.path("bin"))
