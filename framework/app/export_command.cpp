@@ -154,10 +154,10 @@ struct ExportedSetup {
     fs::path    folder;
 };
 
-/// WGSL has no numbers of 64 bits.
-bool wgsl_can_hold(Gpu gpu, const Technique& technique, const ParameterValues& values)
+/// WGSL and ESSL have no numbers of 64 bits, MSL no doubles, and spirv-cross writes no vectors of 64-bit integers for HLSL.
+bool can_hold(const std::string& language, Gpu gpu, const Technique& technique, const ParameterValues& values)
 {
-    gpu.info.int64 = false;
+    if (language != "glsl") gpu.info.int64 = false;
     return missing_feature(gpu, technique, values).empty();
 }
 
@@ -169,7 +169,7 @@ std::vector<ExportedSetup> export_hard_cases(Gpu& gpu, const Catalogue& catalogu
         for (const HardCase& hard_case : family.cases) {
             if (!options.only_case.empty() && options.only_case != hard_case.name) continue;
             const ParameterValues values = adjusted(hard_case, technique, choice.values);
-            if (options.language == "wgsl" && !wgsl_can_hold(gpu, technique, values)) continue;
+            if (!can_hold(options.language, gpu, technique, values)) continue;
             for (Setup& setup : hard_case.setups()) {
                 if (std::ranges::count(technique.ignores, "behind") > 0) setup.settings.behind = Behind::hit;
                 if (setup.settings.layers > 1) continue; // no export holds them
@@ -278,10 +278,10 @@ int export_technique(const CommonOptions& common, const ExportOptions& options, 
     PictureOptions picture = options.picture;
     if (picture.size.empty() && !picture.scene.ends_with(".exr")) picture.size = proof_size;
     Stage stage = open_stage(device, catalogue, picture);
-    if (options.language == "wgsl" && !wgsl_can_hold(stage.gpu, technique, choice.values))
+    if (!can_hold(options.language, stage.gpu, technique, choice.values))
         throw_spec_error(
-            "--to wgsl: expected values of {} without 64-bit integers and doubles, which WGSL does not have",
-            technique.id);
+            "--to {}: expected values of {} without 64-bit integers and doubles, which only GLSL can be given",
+            options.language, technique.id);
     stage.gpu.info.cheap_doubles = false;
     GBufferImage scene           = read_gbuffer(stage.gpu, *stage.gbuffer);
     if (options.near_m > 0) scene.view.near_m = options.near_m;
