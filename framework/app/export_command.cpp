@@ -7,10 +7,12 @@
 #include "export/export.h"
 #include "harness/csv.h"
 #include "harness/experiment.h"
+#include "scene/load_scene.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <ranges>
 
 namespace ssrlab {
 namespace {
@@ -138,9 +140,8 @@ int print_verdicts(std::span<const FrameVerdict> verdicts, const std::string& de
         std::puts(fmt::format("{}: {} of {} rays differ{}", verdict.frame, counts.rays, verdict.rays,
                               verdict.set_up == 0 ? "" : fmt::format("; {} are set up otherwise", counts.set_ups))
                       .c_str());
-        size_t listed = 0;
-        for (const AnswerDifference& difference : verdict.differences)
-            if (listed++ < most_listed) std::puts(("  " + line_of(difference)).c_str());
+        for (const AnswerDifference& difference : verdict.differences | std::views::take(most_listed))
+            std::puts(("  " + line_of(difference)).c_str());
     }
     std::puts(fmt::format("{} of {} answers differ on {}{}", differing, rays, device,
                           differing == 0 ? "" : fmt::format(", {} of them by rounding alone", near_ties))
@@ -203,8 +204,8 @@ void write_tables(const fs::path& folder, const Technique& technique, const std:
             largest_px    = std::max(largest_px, one.apart_px);
             CsvRecord row = key;
             for (const std::string& text :
-                 {fmt::format("{}", one.pixel.x), fmt::format("{}", one.pixel.y),
-                  one.is_set_up ? "set-up" : fmt::format("{}", one.ray), one.values, one.expected, one.answered,
+                 {std::to_string(one.pixel.x), std::to_string(one.pixel.y),
+                  one.is_set_up ? "set-up" : std::to_string(one.ray), one.values, one.expected, one.answered,
                   fmt::format("{:.3g}", one.apart_px), cause_of(one)})
                 row.push_back(text);
             answers += csv_line(row);
@@ -276,7 +277,7 @@ int export_technique(const CommonOptions& common, const ExportOptions& options, 
         return verify_hard_cases(gpu, catalogue, technique, choice, options);
     }
     PictureOptions picture = options.picture;
-    if (picture.size.empty() && !picture.scene.ends_with(".exr")) picture.size = proof_size;
+    if (picture.size.empty() && !is_frame(picture.scene)) picture.size = proof_size;
     Stage stage = open_stage(device, catalogue, picture);
     if (!can_hold(options.language, stage.gpu, technique, choice.values))
         throw_spec_error(

@@ -7,7 +7,7 @@ layout(constant_id = CONSTANT_MAX_DISTANCE_M) const real max_distance_m = 1; // 
 
 layout(set = 0, binding = 0, scalar) uniform View
 {
-    ivec2 size_px;
+    ivec2 size_px;   // first: it lies in the same place whether the rest is float or double
     real2 focal_px;  // perspective: pixels per unit of slope; orthographic: pixels per metre
     real2 centre_px; // where the view axis meets the image
     real2 focal_low_px, centre_low_px; // what rounding took from the two

@@ -250,9 +250,9 @@ Pass missed_rays_pass()
         .parameters =
             {choice_parameter(
                  MissLight::rooms,
-                 "what a ray shows that missed. environment: what is infinitely far away; triangles: what it "
-                 "meets in the scene, and the environment where it meets nothing, as does a ray that stopped "
-                 "(behind = stop); rooms: as triangles where at least 1 % of these rays meet something and the "
+                 "what a ray shows that missed. environment: what is infinitely far away. triangles: what the ray "
+                 "meets in the scene, or the environment where it meets nothing; rays that stopped (behind = stop) "
+                 "are followed, too. rooms: as triangles where at least 1 % of these rays meet something and the "
                  "scene does not move, else as environment"),
              integer_parameter("missed_block_px", 1, 1, 4,
                                "side of blocks of pixels: one ray of each is followed, and the "
