@@ -67,7 +67,7 @@ void main()
     ReusedPixel stored    = unpack_reused(texel);
     float       roughness = imageLoad(normal_image, pixel).w;
     vec4        light     = stored.reflection;
-    if (light.a >= 0.0 && roughness >= mirror_roughness) light = filtered(pixel, stored, roughness);
+    if (light.a >= 0.0 && roughness >= mirror_roughness) light = nearest_half(filtered(pixel, stored, roughness));
 #ifdef DENSE
     imageStore(target_image, pixel, uvec4(packHalf2x16(light.rg), packHalf2x16(light.ba), texel.zw));
 #else

@@ -8,9 +8,17 @@ struct ReusedPixel
     float sharpness;  // the inverse of spread_px()
 };
 
+// Rounded to the nearest half: drivers may round toward zero, and each pass that stores one would then darken the picture.
+vec4 nearest_half(vec4 value)
+{
+    uvec4 bits = floatBitsToUint(value);
+    return uintBitsToFloat((bits + 0xFFFu + (bits >> 13 & 1u)) & ~0x1FFFu);
+}
+
 uvec4 pack_reused(ReusedPixel pixel)
 {
-    return uvec4(packHalf2x16(pixel.reflection.rg), packHalf2x16(pixel.reflection.ba), floatBitsToUint(pixel.depth),
+    vec4 light = nearest_half(pixel.reflection);
+    return uvec4(packHalf2x16(light.rg), packHalf2x16(light.ba), floatBitsToUint(pixel.depth),
                  packHalf2x16(vec2(pixel.roughness, pixel.sharpness)));
 }
 

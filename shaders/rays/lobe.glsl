@@ -8,7 +8,8 @@ float smith_lambda(float cosine, float alpha)
     return 0.5 * (sqrt(1.0 + alpha * alpha * (1.0 / (cosine * cosine) - 1.0)) - 1.0);
 }
 
-// The density with which a direction is drawn.
+// The density with which a direction is drawn from the whole lobe. It stands for narrower lobes, too: their higher density would take weight
+// from the rays that fit a pixel best.
 float lobe_density(vec3 normal, vec3 to_eye, vec3 to_light, float alpha)
 {
     float n_v = max(dot(normal, to_eye), 1e-4), n_h = dot(normal, normalize(to_eye + to_light));

@@ -191,6 +191,38 @@ TEST(SeveralRays, CountByTheirWeights)
     }
 }
 
+// A half vector lies on a cap of the sphere that is as high as the first random number; inverse of J. Dupuy, A. Benyoub 2023, "Sampling Visible
+// GGX Normals with Spherical Caps". A narrow lobe's cap is cut at the share of its half width, in pixels, of 11.
+TEST(RoughPixels, DrawRaysFromTheInnerPartOfNarrowLobes)
+{
+    size_t cut = 0;
+    for (const float roughness : {0.1F, 0.2F, 0.3F, 0.6F}) {
+        GBufferImage image = metal_wall({64, 64});
+        image.roughness.assign(image.roughness.size(), roughness);
+        const Picture picture = make_picture(image);
+        const auto    frame   = frame_with(picture, {chosen(Gloss::stochastic)});
+        const double  alpha   = double(roughness) * double(roughness);
+        const double  share   = std::min(1.3 * alpha * image.view.focal_px.y / 11, 1.0);
+        cut += share < 1;
+        double widest = 0;
+        for (const Ray& ray : rays_of(*frame)) {
+            const glm::dvec3 end       = ray.origin + ray.delta;
+            const glm::dvec3 start_vs  = px_to_vs(image.view, glm::dvec2(ray.origin), ray.origin.z);
+            const glm::dvec3 to_eye    = -glm::normalize(start_vs);
+            const glm::dvec3 to_light  = glm::normalize(px_to_vs(image.view, glm::dvec2(end), end.z) - start_vs);
+            const glm::dvec3 half      = to_eye + to_light; // the wall's normal is z
+            const glm::dvec3 facet     = glm::normalize(glm::dvec3(glm::dvec2(half) / alpha, half.z));
+            const glm::dvec3 stretched = glm::normalize(glm::dvec3(alpha * glm::dvec2(to_eye), to_eye.z));
+            const glm::dvec3 on_cap    = 2 * glm::dot(facet, stretched) * facet - stretched;
+            const double     height    = (1 - on_cap.z) / (1 + stretched.z);
+            ASSERT_LE(height, share + 1e-3) << roughness << ", pixel " << ray.pixel.x << ", " << ray.pixel.y;
+            widest = std::max(widest, height);
+        }
+        EXPECT_GT(widest, 0.9 * share) << roughness;
+    }
+    EXPECT_EQ(cut, 3U);
+}
+
 /// A third of the pixels reflect, at random.
 GBufferImage speckled(glm::ivec2 size_px)
 {
