@@ -14,6 +14,7 @@ packages=(
     "glslang-dev              header:glslang/Public/ShaderLang.h"
     "glslang-tools            command:glslangValidator"
     "spirv-cross              command:spirv-cross"
+    "spirv-tools              command:spirv-opt"
     "libopenimageio-dev       header:OpenImageIO/imagebufalgo.h"
     "libembree-dev            header:embree3/rtcore.h"
     "libtinygltf-dev          header:tiny_gltf.h"

@@ -64,16 +64,8 @@ std::vector<std::string> options_of(ExportLanguage language)
     return {};
 }
 
-/// The shader as a file of SPIR-V, with names for the translators.
-void write_spirv(const std::vector<uint32_t>& spirv, const fs::path& file)
-{
-    const std::vector<uint32_t> named = with_plain_names(spirv);
-    write_file_atomically(file, {reinterpret_cast<const char*>(named.data()), named.size() * sizeof(uint32_t)});
-}
-
-/// Runs a translator, which leaves its text in `text`.
-std::string run_translator(const Shader& shader, const std::vector<std::string>& words, const fs::path& text,
-                           const std::string& package)
+/// Throws Failure where the program is missing or fails.
+void run_translator(const Shader& shader, const std::vector<std::string>& words, const std::string& package)
 {
     const ProgramEnd   done = run_program(words, ProgramOutput::kept);
     const std::string& name = words[0];
@@ -82,7 +74,17 @@ std::string run_translator(const Shader& shader, const std::vector<std::string>&
     if (done.code != 0)
         throw_failure("{}: {} cannot translate it: {}", short_path(shader.name), name,
                       done.output.substr(0, done.output.find('\n')));
-    return read_file(text);
+}
+
+/// The shader as a file of SPIR-V, with names for the translators and without what its constants leave unused.
+void write_spirv(const Shader& shader, const std::vector<uint32_t>& spirv, const fs::path& file)
+{
+    const std::vector<uint32_t> named = with_plain_names(spirv);
+    write_file_atomically(file, {reinterpret_cast<const char*>(named.data()), named.size() * sizeof(uint32_t)});
+    run_translator(
+        shader,
+        {"spirv-opt", "--eliminate-dead-branches", "--eliminate-dead-functions", file.string(), "-o", file.string()},
+        "spirv-tools");
 }
 
 /// naga takes SPIR-V up to version 1.3, so the file is compiled again. It is written in GLSL by glsl_for_wgsl().
@@ -94,14 +96,13 @@ std::string translated_to_wgsl(const Shader& shader, const fs::path& folder)
         throw_failure("naga-wasm, which writes WGSL, is not installed: npm ci --prefix {}", web.string());
     run_translator(
         shader, {"glslangValidator", "-V", "--target-env", "vulkan1.1", "--quiet", shader.name, "-o", spirv.string()},
-        spirv, "glslang-tools");
+        "glslang-tools");
     const std::string     bytes = read_file(spirv);
     std::vector<uint32_t> words(bytes.size() / sizeof(uint32_t));
     std::memcpy(words.data(), bytes.data(), words.size() * sizeof(uint32_t));
-    write_spirv(words, spirv);
-    const std::string wgsl =
-        run_translator(shader, {"node", (web / "to_wgsl.mjs").string(), spirv.string(), text.string()}, text, "nodejs");
-    return with_read_access(wgsl, read_file(shader.name), shader);
+    write_spirv(shader, words, spirv);
+    run_translator(shader, {"node", (web / "to_wgsl.mjs").string(), spirv.string(), text.string()}, "nodejs");
+    return with_read_access(read_file(text), read_file(shader.name), shader);
 }
 
 std::string translated_without_comment(const Shader& shader, ExportLanguage language)
@@ -109,10 +110,11 @@ std::string translated_without_comment(const Shader& shader, ExportLanguage lang
     const TemporaryFolder folder("ssrlab_export");
     if (language == ExportLanguage::wgsl) return translated_to_wgsl(shader, folder.path);
     const fs::path spirv = folder.path / "shader.spv", text = folder.path / "text";
-    write_spirv(shader.spirv, spirv);
+    write_spirv(shader, shader.spirv, spirv);
     std::vector<std::string> words{"spirv-cross", spirv.string(), "--output", text.string()};
     for (const std::string& option : options_of(language)) words.push_back(option);
-    return run_translator(shader, words, text, "spirv-cross");
+    run_translator(shader, words, "spirv-cross");
+    return read_file(text);
 }
 
 } // namespace

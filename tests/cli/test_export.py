@@ -100,6 +100,7 @@ class Test(Case):
         folder = self.export("hiz", "wgsl")
         trace = read(folder, "4_trace.wgsl")
         self.assertIn("fn strip_index(", trace)
+        self.assertNotRegex(trace, r"if (true|false) ")
         self.assertIn("var<storage, read> ", trace)
         self.assertLessEqual(len(read(folder, "run.js").splitlines()), 150)
 
@@ -170,7 +171,8 @@ class Test(Case):
 
     def test_wgsl_without_its_translator(self):
         os.makedirs(self.path("bin"))
-        os.symlink(shutil.which("glslangValidator"), self.path("bin/glslangValidator"))
+        for program in ("glslangValidator", "spirv-opt"):
+            os.symlink(shutil.which(program), self.path(f"bin/{program}"))
         said = self.ssrlab("export", "dda", "--to", "wgsl", "-o", self.path("out"), "--size", "64x36", code=1,
                            PATH=self.path("bin"))
         self.assertIn("node is not installed: install Debian's package nodejs", said)
@@ -229,6 +231,7 @@ class Test(Case):
             self.assertEqual(len(files), 4)
             for path in files:
                 self.assertIn(holds, read(path))
+                self.assertNotRegex(read(path), r"if \((true|false)\)")
             self.refused("export", "--verify", folder, code=2, says=["other languages are not run"])
 
     def test_wrong_usage(self):
