@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <ranges>
+#include <span>
 
 namespace ssrlab {
 namespace {
@@ -140,7 +140,8 @@ int print_verdicts(std::span<const FrameVerdict> verdicts, const std::string& de
         std::puts(fmt::format("{}: {} of {} rays differ{}", verdict.frame, counts.rays, verdict.rays,
                               verdict.set_up == 0 ? "" : fmt::format("; {} are set up otherwise", counts.set_ups))
                       .c_str());
-        for (const AnswerDifference& difference : verdict.differences | std::views::take(most_listed))
+        const size_t listed = std::min(most_listed, verdict.differences.size());
+        for (const AnswerDifference& difference : std::span(verdict.differences).first(listed))
             std::puts(("  " + line_of(difference)).c_str());
     }
     std::puts(fmt::format("{} of {} answers differ on {}{}", differing, rays, device,

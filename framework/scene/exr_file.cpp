@@ -6,6 +6,7 @@
 #include "scene/exr_header.h"
 
 #include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
 
 #include <cmath>
 
@@ -29,7 +30,7 @@ void add_channels(ExrFile& file, const OIIO::ImageSpec& spec, int part, bool sev
     const std::string layer = several ? std::string(spec.get_string_attribute("oiio:subimagename")) : "";
     for (int i = 0; i < spec.nchannels; ++i) {
         const std::string& own  = spec.channelnames[static_cast<size_t>(i)];
-        const std::string  name = layer.empty() || own.starts_with(layer) ? own : layer + "." + own;
+        const std::string  name = layer.empty() || own.starts_with(layer) ? own : fmt::format("{}.{}", layer, own);
         file.channels.push_back({name, part, i, spec.channelformat(i) == OIIO::TypeDesc::HALF,
                                  spec.channelformat(i) == OIIO::TypeDesc::UINT32});
     }
