@@ -80,12 +80,18 @@ def describe(results, row, rows):
     return ", ".join([row.series] + parts)
 
 
-def errors(rows, name):
-    """Distances from median to both ends of the interval, for matplotlib; NaN, which draws no bar, where it is not known."""
+def to_ends(rows, name):
+    """Distances from median to both ends of the interval; NaN where it is not known."""
     low, high = (rows.get(f"{name}_{end}", rows[f"{name}_median"] * np.nan) for end in ("ci_low", "ci_high"))
     return [(rows[f"{name}_median"] - low).clip(lower=0).to_numpy(), (high - rows[f"{name}_median"]).clip(lower=0).to_numpy()]
 
 
+def errors(rows, name):
+    """The same for matplotlib, which warns of bars that are NaN alone: None where no interval is known."""
+    ends = to_ends(rows, name)
+    return None if np.isnan(ends).all() else ends
+
+
 def known(rows, name):
     """Which rows have an interval: the others are drawn hollow."""
-    return ~np.isnan(errors(rows, name)).any(axis=0)
+    return ~np.isnan(to_ends(rows, name)).any(axis=0)

@@ -188,7 +188,7 @@ def dots(axis, places, rows, results, value, spread, xlabel):
         style = dict(results.styles[series], linestyle="none", label=series)
         sure = known(part, spread) if spread else part[value].notna()
         y = np.array([places[key] for key in zip(part.scene, part.series)])
-        axis.errorbar(part[value], y, xerr=errors(part, spread) if spread and sure.any() else None, elinewidth=0.7, **style)
+        axis.errorbar(part[value], y, xerr=errors(part, spread) if spread else None, elinewidth=0.7, **style)
         axis.plot(part[value][~sure], y[~sure], **{**style, "markerfacecolor": "white", "label": None})
     axis.set_xlabel(xlabel)
     log_axis(axis.xaxis)
