@@ -35,8 +35,8 @@ vec4 reflection_of(uint index, PackedHit hit)
 vec4 mean_of_rays(uint first)
 {
     vec4 sum  = vec4(0);
-    int  hits = 0;
-    for (int ray = 0; ray < rays_per_pixel; ++ray)
+    int  hits = 0, ray = 0;
+    do
     {
         PackedHit hit = packed_hit(first + ray);
         if (shows_surface(hit) || meets_given(given_light(first + ray)))
@@ -45,7 +45,7 @@ vec4 mean_of_rays(uint first)
             sum += vec4(reflection.rgb * reflection.a, reflection.a);
             ++hits;
         }
-    }
+    } while (++ray < rays_per_pixel);
     return 2 * hits > rays_per_pixel ? mean_reflection(sum, float(rays_per_pixel)) : vec4(0);
 }
 #endif
@@ -61,11 +61,12 @@ void main()
     lobe_ray_light(first, pixel, 0);
 #elif defined(LOBE_RAYS)
     vec4 mean = vec4(0);
-    for (int ray = 0; ray < rays_per_pixel; ++ray)
+    int  ray  = 0;
+    do
     {
         vec4 light = lobe_ray_light(first + ray, pixel, ray);
         mean += vec4(light.rgb * light.a, light.a);
-    }
+    } while (++ray < rays_per_pixel);
     if (rays_per_pixel > 1) imageStore(reflection_image, pixel, mean_reflection(mean, float(rays_per_pixel)));
 #elif defined(ONE_RAY)
     imageStore(reflection_image, pixel, reflection_of(first, packed_hit(first)));

@@ -87,7 +87,7 @@ vec4 reused(ivec2 pixel, Reflector own, float roughness, float spread, vec4 own_
         ReusedPixel other = unpack_reused(imageLoad(gathered_image, traced));
         vec2  step_px = vec2(traced - pixel), away = step_px * sharpness;
         float away2   = dot(away, away);
-        bool  counts  = place == inside && found_px.x >= 0 && other.reflection.a >= 0.0;
+        bool  counts  = place == inside && found_px.x >= 0 && is_reflection(other.reflection);
         counts        = counts && away2 <= spread_reach * spread_reach;
         float alike   = counts ? exp(-0.5 * away2 - off_surface(plane, step_px, other.depth)) : 0.0;
         for (int ray = 0; ray < rays_per_pixel; ++ray)
@@ -95,7 +95,7 @@ vec4 reused(ivec2 pixel, Reflector own, float roughness, float spread, vec4 own_
             vec4 end = ray_end(traced, ray), light = other.reflection;
             if (rays_per_pixel > 1) light = imageLoad(ray_light_image, traced + ivec2(0, ray * size_px.y));
             float ratio  = lobe_ratio(lobe, end.xyz - own.position_vs, end.w);
-            bool  found  = counts && light.a >= 0.0 && ratio > 0.0;
+            bool  found  = counts && is_reflection(light) && ratio > 0.0;
             vec4  own_share = found ? vec4(light.rgb * light.a, light.a) : vec4(0);
             float bright    = dot(own_share.rgb, vec3(0.2126, 0.7152, 0.0722));
             ratio           = found ? ratio * alike : 0.0;
@@ -123,7 +123,7 @@ void main()
     float       spread    = spread_px(own, pixel);
     stored.roughness      = roughness;
     stored.sharpness      = 1.0 / spread;
-    if (stored.reflection.a >= 0.0 && roughness >= mirror_roughness)
+    if (is_reflection(stored.reflection) && roughness >= mirror_roughness)
         stored.reflection = reused(pixel, own, roughness, spread, stored.reflection);
     imageStore(reused_image, pixel, pack_reused(stored));
 }

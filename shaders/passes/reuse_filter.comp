@@ -47,10 +47,10 @@ vec4 filtered(ivec2 pixel, ReusedPixel stored, float roughness)
         ivec2 place   = pixel + ivec2(step_px);
         bool  inside  = all(greaterThanEqual(place, ivec2(0))) && all(lessThan(place, size_px));
         ReusedPixel other = unpack_reused(imageLoad(source_image, clamp(place, ivec2(0), size_px - 1)));
-        vec2  away    = step_px * max(stored.sharpness, other.sharpness);
+        vec2  away    = step_px * larger(stored.sharpness, other.sharpness);
         float away2   = dot(away, away), rougher = abs(other.roughness - stored.roughness) / roughness_tolerance;
         float off     = 0.25 * dot(tap, tap) + 0.5 * away2 + rougher + off_surface(plane, step_px, other.depth);
-        bool  counts  = inside && other.reflection.a >= 0.0 && away2 <= spread_reach * spread_reach;
+        bool  counts  = inside && is_reflection(other.reflection) && away2 <= spread_reach * spread_reach;
         float weight = counts ? exp(-off) : 0.0;
         vec4  light  = counts ? other.reflection : vec4(0);
         sum += weight * vec4(light.rgb * light.a, light.a);
@@ -67,7 +67,7 @@ void main()
     ReusedPixel stored    = unpack_reused(texel);
     float       roughness = imageLoad(normal_image, pixel).w;
     vec4        light     = stored.reflection;
-    if (light.a >= 0.0 && roughness >= mirror_roughness) light = nearest_half(filtered(pixel, stored, roughness));
+    if (is_reflection(light) && roughness >= mirror_roughness) light = nearest_half(filtered(pixel, stored, roughness));
 #ifdef DENSE
     imageStore(target_image, pixel, uvec4(packHalf2x16(light.rg), packHalf2x16(light.ba), texel.zw));
 #else

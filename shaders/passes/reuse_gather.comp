@@ -18,5 +18,5 @@ void main()
     vec4  light = imageLoad(reflection_image, pixel);
     uvec4 texel = pack_reused(ReusedPixel(light, load_depth(pixel), 0.0, 0.0));
     imageStore(gathered_image, pixel, texel);
-    if (light.a < 0.0) imageStore(reused_image, pixel, texel); // its tile may not be listed
+    if (!is_reflection(light)) imageStore(reused_image, pixel, texel); // its tile may not be listed
 }

@@ -29,6 +29,10 @@ ReusedPixel unpack_reused(uvec4 texel)
     return ReusedPixel(light, uintBitsToFloat(texel.z), surface.x, surface.y);
 }
 
+// By their bits: whether what was a half is below 0, or no number, lavapipe asks lane by lane, in ten instructions each.
+bool  is_reflection(vec4 colour_and_weight) { return floatBitsToInt(colour_and_weight.a) >= 0; }
+float larger(float a, float b) { return intBitsToFloat(max(floatBitsToInt(a), floatBitsToInt(b))); } // of what is not below 0
+
 const float spread_reach = 3.0; // standard deviations beyond which no pixel counts
 
 // The distance of other pixels' surfaces from the plane of one pixel, over their view distance and
