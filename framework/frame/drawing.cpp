@@ -13,7 +13,6 @@ struct FrameBlock {
     glm::vec3  eye_ws;
     int32_t    orthographic;
     glm::vec3  view_axis_ws;
-    int32_t    light_count;
     glm::vec3  ambient;
     float      layer_separation = 0;
     glm::ivec2 size_px{0, 0};
@@ -26,7 +25,6 @@ void fill_frame_uniforms(Gpu& gpu, Drawing& drawing)
                            glm::vec3(view_to_world[3]),
                            drawing.gbuffer->view.projection == Projection::orthographic,
                            glm::vec3(-view_to_world[2]),
-                           static_cast<int32_t>(drawing.scene->light_count),
                            drawing.scene->ambient,
                            0,
                            drawing.gbuffer->view.size_px};

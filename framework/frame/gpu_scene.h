@@ -46,7 +46,6 @@ struct GpuScene {
     // Made when first drawn: lavapipe never frees the memory of a graphics pipeline.
     std::shared_ptr<const DrawPipeline> first_layer_pipeline, second_layer_pipeline, layer_pipeline,
         solid_back_pipeline, shadow_pipeline;
-    uint32_t  light_count = 0;
     glm::vec3 ambient{0};
     bool      alpha_mask          = false; // some material has one
     bool      has_environment_map = false;

@@ -157,6 +157,7 @@ ShadowBlocks shadow_blocks(const Scene& source)
                                  {}});
         blocks.matrices.insert(blocks.matrices.end(), own.begin(), own.end());
     }
+    if (blocks.lights.empty()) blocks.lights.push_back(LightBlock{}); // dark: no buffer is empty
     // Vulkan clip space: y points down.
     const glm::dmat4 flip = glm::scale(glm::dmat4(1.0), glm::dvec3(1, -1, 1));
     for (glm::dmat4& matrix : blocks.matrices) blocks.stored.emplace_back(matrix = flip * matrix);
@@ -175,7 +176,6 @@ template <typename T> Buffer make_texels_with(Gpu& gpu, std::span<const T> value
 void make_shadow_maps(Gpu& gpu, GpuScene& scene, const Scene& source)
 {
     const ShadowBlocks blocks = shadow_blocks(source);
-    scene.light_count         = static_cast<uint32_t>(blocks.lights.size());
     scene.lights              = make_texels_with<LightBlock>(gpu, blocks.lights);
     scene.shadow_matrices     = make_texels_with<glm::mat4>(gpu, blocks.stored);
     scene.shadow_map          = make_shadow_map(gpu, blocks.matrices.size(), source.name);

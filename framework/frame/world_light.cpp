@@ -6,7 +6,6 @@ namespace {
 /// shaders/world/shade.comp, scalar layout.
 struct ShadePush {
     glm::vec3 ambient;
-    int32_t   light_count;
     float     dielectric_min_f0;
     float     dielectric_max_roughness;
     uint32_t  follows;
@@ -34,7 +33,7 @@ void record_shade(const vk::raii::CommandBuffer& commands, const ComputePass& pa
                   const TraceSettings& trace, bool follows, const Buffer& launch)
 {
     push(commands, pass,
-         ShadePush{scene.ambient, static_cast<int32_t>(scene.light_count), static_cast<float>(trace.dielectric_min_f0),
+         ShadePush{scene.ambient, static_cast<float>(trace.dielectric_min_f0),
                    static_cast<float>(trace.dielectric_max_roughness), follows ? 1U : 0U});
     dispatch_indirect(commands, pass, launch);
 }

@@ -8,7 +8,6 @@ layout(set = 0, binding = 0, scalar) uniform Frame
     vec3  eye_ws;          // perspective: position
     int   orthographic;
     vec3  view_axis_ws;    // orthographic: direction of view
-    int   light_count;
     vec3  ambient;
     float layer_separation; // peeled: at least so far behind the layer before; in units of the near distance, or of the depth range
     ivec2 size_px;
@@ -98,7 +97,7 @@ void main()
     vec3  normal    = shading_normal(material, at);
     vec3  to_eye    = orthographic != 0 ? -view_axis_ws : normalize(eye_ws - position_ws);
     vec3  diffuse_light, highlights;
-    light_surface(Surface(position_ws, normal, base.rgb, metallic, roughness, material.dielectric_f0), light_count, to_eye, diffuse_light, highlights);
+    light_surface(Surface(position_ws, normal, base.rgb, metallic, roughness, material.dielectric_f0), to_eye, diffuse_light, highlights);
     vec3 emissive = min(material.emissive * sample_texture(emissive_texture, material, 3, at).rgb, largest_half);
 
     normal_and_roughness = vec4(mat3(world_to_view) * normal, roughness);

@@ -100,11 +100,14 @@ struct Surface
     float metallic, roughness, dielectric_f0;
 };
 
+// Not a uniform: lavapipe compiles a shader that loops up to one anew for each launch.
+int light_count() { return TEXEL_COUNT(Lights) / 4; }
+
 // Returns which of 32 lights reach the surface, without shadows: bit i for the light first + i.
-uint reaching_lights(Surface surface, int first, int light_count)
+uint reaching_lights(Surface surface, int first)
 {
     uint reaching = 0;
-    int  count = min(light_count - first, 32), i = 0;
+    int  count = min(light_count() - first, 32), i = 0;
     do
     {
         vec3 to_light;
@@ -118,14 +121,14 @@ uint reaching_lights(Surface surface, int first, int light_count)
 // Both parts of the light that leaves a surface: irradiance for the diffuse one, radiance toward the eye for the
 // specular one. Only for lights that reach the surface are the shadow and the highlight computed. The loops test their
 // condition at the end, because lavapipe runs the body of a loop that tests it first once more than needed.
-void light_surface(Surface surface, int light_count, vec3 to_eye_ws, out vec3 irradiance, out vec3 highlights)
+void light_surface(Surface surface, vec3 to_eye_ws, out vec3 irradiance, out vec3 highlights)
 {
     vec3 f0    = mix(vec3(surface.dielectric_f0), surface.base_colour, surface.metallic);
     irradiance = highlights = vec3(0);
     int first  = 0;
     do
     {
-        uint reaching = reaching_lights(surface, first, light_count);
+        uint reaching = reaching_lights(surface, first);
         do
         {
             if (reaching != 0)
@@ -140,7 +143,7 @@ void light_surface(Surface surface, int light_count, vec3 to_eye_ws, out vec3 ir
             }
         } while (reaching != 0);
         first += 32;
-    } while (first < light_count);
+    } while (first < light_count());
     irradiance = min(irradiance, largest_half);
     highlights = min(highlights, largest_half);
 }

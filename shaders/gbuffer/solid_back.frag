@@ -7,7 +7,6 @@ layout(set = 0, binding = 0, scalar) uniform Frame // as gbuffer.frag declares i
     vec3  eye_ws;
     int   orthographic;
     vec3  view_axis_ws;
-    int   light_count;
     vec3  ambient;
     float layer_separation;
     ivec2 size_px;

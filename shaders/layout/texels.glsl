@@ -5,3 +5,4 @@
 #define LOADED_TEXELS_2(place, name) layout(set = 0, binding = place, rg32ui) uniform readonly uimageBuffer name;
 #define LOADED_TEXELS_4(place, name) layout(set = 0, binding = place, rgba32ui) uniform readonly uimageBuffer name;
 #define LOAD_TEXEL(name, index) imageLoad(name, int(index))
+#define TEXEL_COUNT(name) imageSize(name)

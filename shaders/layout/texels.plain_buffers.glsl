@@ -8,3 +8,4 @@ vec4 to_loaded(float value) { return vec4(value, 0, 0, 1); }
 #define LOADED_TEXELS_2(place, name) BUFFER_OF(place, name, readonly, uvec2)
 #define LOADED_TEXELS_4(place, name) BUFFER_OF(place, name, readonly, uvec4)
 #define LOAD_TEXEL(name, index) to_loaded(name##_texels[index])
+#define TEXEL_COUNT(name) name##_texels.length()

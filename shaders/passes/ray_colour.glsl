@@ -61,7 +61,7 @@ vec3 highlight_along(ivec2 pixel, int layer, vec3 position_vs, vec3 direction_vs
     vec4 normal        = LOAD_LAYER(normal_image, pixel, layer), material = LOAD_LAYER(material_image, pixel, layer);
     float dielectric   = LOAD_LAYER(dielectric_image, pixel, layer).x;
     vec3 position_ws   = view_to_world * (position_vs - world_to_view[3].xyz), irradiance, highlights;
-    light_surface(Surface(position_ws, view_to_world * normal.xyz, material.rgb, material.a, max(normal.w, roughness), dielectric), light_count,
+    light_surface(Surface(position_ws, view_to_world * normal.xyz, material.rgb, material.a, max(normal.w, roughness), dielectric),
                   view_to_world * -direction_vs, irradiance, highlights);
     return highlights;
 }

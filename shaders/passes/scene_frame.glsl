@@ -5,5 +5,4 @@ layout(set = 0, binding = 34, scalar) uniform Frame
     vec3 eye_ws;
     int  frame_orthographic;
     vec3 view_axis_ws;
-    int  light_count;
 };

@@ -18,7 +18,6 @@ layout(set = 0, binding = 50, scalar) readonly buffer WorldLaunch { ListLaunch l
 layout(push_constant, scalar) uniform Push
 {
     vec3  ambient;
-    int   light_count;
     float dielectric_min_f0, dielectric_max_roughness; // of what reflects
     uint  follows;
 };
@@ -68,7 +67,7 @@ vec3 light_of(WorldRay ray, WorldHit hit, out NextRay onward)
     vec3 irradiance, highlights;
     vec3 met_ws = ray.origin_ws + hit.t * ray.direction_ws, along = normalize(ray.direction_ws);
     float blurred = max(roughness, ray.roughness);
-    light_surface(Surface(met_ws, normal, base, metallic, blurred, material.dielectric_f0), light_count, -along, irradiance, highlights);
+    light_surface(Surface(met_ws, normal, base, metallic, blurred, material.dielectric_f0), -along, irradiance, highlights);
     vec3 emissive = material.emissive * sample_texture(material, 3, point).rgb;
     vec3 bounced = vec3(0);
     for (int i = 0; i < 3; ++i) bounced += weights[i] * corner_of(point, i).bounced;
