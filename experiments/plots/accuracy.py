@@ -4,12 +4,14 @@ import pandas as pd
 
 from .data import describe, errors, known
 from .pairs import Ratio, paired_ratio
-from .paper import log_axis, name_lines, sheet, short_names, titled
+from .paper import height_beside, log_axis, name_lines, sheet, short_names, titled
+from .surfaces import place_of
 
 NOT_REACHED = "not reached"
 SUBJECT = "hiz"  # whose speed-ups are the headline; techniques whose names begin with it are its variants, not rivals
 # (prefix of the columns, what they are measured against)
 TRUTHS = [("", "scene truth"), ("screen_", "screen truth")]
+DASHES = ["-", "--", "-.", (0, (6, 1, 1, 1, 1, 1))]  # of surface models; dotted is no error
 
 
 def pareto(rows, cost, error):
@@ -38,14 +40,21 @@ def lines_of(rows):
     return rows.technique.where(~several, rows.technique + ", " + rows.surface) if np.any(several) else rows.technique
 
 
+def dashes_of(rows):
+    """{surface: dash}, the same for all techniques."""
+    surfaces = sorted(rows.surface.unique(), key=place_of) if "surface" in rows else []
+    return {surface: DASHES[i % len(DASHES)] for i, surface in enumerate(surfaces)}
+
+
 def draw_fronts(axis, results, rows, column, cost):
-    """A line a technique: its Pareto front. Its other settings are pale points, and a dotted line is no error, or less than can be drawn."""
+    """A line a technique and surface model: its Pareto front. Its other settings are pale points, and a dotted line is no error, or less than can be drawn."""
     floor, ends = 0.5 / max(1.0, rows.rays.max()), []
     rows = rows[rows[column].notna()]
     rows = rows.assign(error=(1 - rows[column]).clip(lower=floor), line=lines_of(rows))
-    short = short_names(rows.line.unique())
+    short, dashes = short_names(rows.line.unique()), dashes_of(rows)
     for name, part in rows.groupby("line"):
-        style, front = dict(results.styles[part.series.min()], linestyle="-", alpha=1), pareto(part, cost, "error")
+        dash = dashes[part.surface.iloc[0]] if "surface" in part and part.surface.nunique() == 1 else "-"
+        style, front = dict(results.styles[part.series.min()], linestyle=dash, alpha=1), pareto(part, cost, "error")
         axis.plot(part[cost], part.error, **{**style, "linestyle": "none", "alpha": 0.2, "markersize": 2})
         axis.plot(front[cost], front.error, label=name, **style)
         if cost.endswith("_median"):
@@ -85,7 +94,8 @@ def accuracy_curves(results, _):
                     (f"{prefix}precision_f1", (f1, "F1"), ((precision, "precision", *cost), (f1, "F1", *cost)))):
                 if any(column not in rows or rows[column].notna().sum() < 5 for column, *_ in panels):
                     continue
-                figure, axes = sheet(1.9, 1.9)
+                height = height_beside(short_names(lines_of(rows).unique()).values(), 1.9)
+                figure, axes = sheet(height, height)
                 for (axis,), (column, said, along, xlabel) in zip(axes, panels):
                     axis.set(xlabel=xlabel, ylabel=f"1 − {said}")
                     draw_fronts(axis, results, rows, column, along)

@@ -10,8 +10,14 @@ from .data import Results
 INTERACTIVE = accuracy.ALL  # the report shows these as one chart to choose from
 
 
+def axes_of(figure):
+    """What is drawn against what, for those who do not see it."""
+    along, up = ([label for label in dict.fromkeys(getattr(axis, f"get_{name}label")().replace("\n", " ") for axis in figure.axes) if label] for name in "xy")
+    return " against ".join(" and ".join(labels) for labels in (up, along) if labels)
+
+
 def draw(results, folder):
-    """([{"name", "alt", "path", "curve"}], tables); an alt text says what a plot shows."""
+    """([{"name", "shows", "finding", "path", "curve"}], tables)."""
     os.makedirs(folder, exist_ok=True)
     plots, tables = [], {}
     # A specification that names its figures wants these. Runs that differ in their sources alone have the same tracer.
@@ -23,7 +29,7 @@ def draw(results, folder):
                 figure.savefig(os.path.join(folder, f"{name}.{extension}"))
                 figure.set_layout_engine("none")  # the second file has the places of the first
             plt.close(figure)
-            plots.append({"name": name, "alt": (getattr(figure, "finding", "") or name.replace("_", " ")) + ".",
+            plots.append({"name": name, "shows": axes_of(figure) or name.replace("_", " "), "finding": figure.finding,
                           "path": os.path.join(folder, f"{name}.png"), "curve": make in INTERACTIVE})
     return plots, tables
 

@@ -10,6 +10,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLoca
 from matplotlib.transforms import blended_transform_factory  # noqa: E402
 
 WIDTH_INCHES = 85 / 25.4
+BELOW_INCHES = 0.35  # ticks of a panel and their label
 COLOURS = ["#D55E00", "#E69F00", "#CC79A7", "#8A6D00", "#0072B2", "#009E73", "#56B4E9", "#1A1A1A"]
 
 plt.rcParams.update({"font.size": 7, "axes.titlesize": 7, "axes.titlelocation": "left", "xtick.labelsize": 6.5, "ytick.labelsize": 6.5,
@@ -49,16 +50,30 @@ def spread(x, y, room, low, high):
     return result
 
 
+def wrapped(name):
+    return textwrap.fill(name, 19, break_long_words=False)
+
+
+def room_of(names):
+    """Inches between names that stand one below the other."""
+    return 7.5 / 72 * (1.7 if any("\n" in wrapped(name) for name in names) else 1)
+
+
+def height_beside(names, least):
+    """Inches of a panel beside which these names have room."""
+    return max(least, BELOW_INCHES + room_of(names) * len(names))
+
+
 def name_lines(axis, ends):
     """Names right of the axes, each joined to its line's end. ends: [(name, x, y, colour)] in data. Limits and scales must be final."""
-    ends = [(textwrap.fill(name, 19, break_long_words=False), x, y, colour) for name, x, y, colour in ends if np.isfinite(y)]
+    ends = [(wrapped(name), x, y, colour) for name, x, y, colour in ends if np.isfinite(y)]
     if not ends:
         return
     axis.set(xlim=axis.get_xlim(), ylim=axis.get_ylim())
     at = axis.transAxes.inverted().transform(axis.transData.transform([(x, y) for _, x, y, _ in ends]))
     place = axis.get_subplotspec()
-    inches = place.get_gridspec().get_height_ratios()[place.rowspan.start] - 0.35  # below are ticks and their label
-    room = 7.5 / 72 / inches * (1.7 if any("\n" in name for name, *_ in ends) else 1)
+    inches = place.get_gridspec().get_height_ratios()[place.rowspan.start] - BELOW_INCHES
+    room = room_of([name for name, *_ in ends]) / inches
     for (name, x, y, colour), place in zip(ends, spread(at[:, 0], at[:, 1], room, 0.02, 0.98)):
         axis.annotate(name, (x, y), xytext=(1.05, place), textcoords="axes fraction", fontsize=6, va="center", color=colour, linespacing=0.9,
                       annotation_clip=False, arrowprops=dict(arrowstyle="-", color=colour, lw=0.5, alpha=0.6, shrinkA=0, shrinkB=2, relpos=(0, 0.5)))

@@ -166,13 +166,10 @@ def read(path):
 
 
 def write(results, plots, tables):
-    """plots: [{"name", "alt", "path", "curve"}]. Returns the verdicts."""
+    """plots: those of folder.draw(). Returns the verdicts."""
     if not os.path.exists(LIBRARY):
         raise SystemExit(f"plot: {LIBRARY}: no such file; install libjs-chart.js")
     whole = context(results, plots, tables)
-    said = [(name, text) for (title, name, _) in results.pictures() for frame, text in whole["verdicts"] if frame == title]
-    for plot in plots:
-        plot["alt"] += "".join(f" {text}" for name, text in said if plot["curve"] and plot["name"].endswith(name))
     # What the interactive curve shows is not shown twice.
     shown = [{**plot, "src": data_uri(plot["path"], flat=True, width=1600)} for plot in plots if not plot["curve"]]
     engine = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=jinja2.select_autoescape(["html.jinja"]),

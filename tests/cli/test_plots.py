@@ -256,6 +256,12 @@ class Test(Case):
         rows = [dict(row, surface=surface) for row in rows for surface in (("box", "plane") if row["technique"] == "dda" else ("box",))]
         figure, = self.drawn(plots.accuracy.accuracy_curves, made_results(self, rows, ["surface", "space", "steps"]))[0].values()
         self.assertEqual({text.get_text() for text in figure.axes[0].texts}, {"linear", "dda, box", "dda, plane"})
+        self.assertEqual({line.get_label(): line.get_linestyle() for line in figure.axes[0].get_lines() if not line.get_label().startswith("_")},
+                         {"linear": "-", "dda, box": "-", "dda, plane": "--"})
+
+    def test_many_names_make_a_panel_higher(self):
+        self.assertEqual(plots.paper.height_beside(["hiz"], 1.9), 1.9)
+        self.assertGreater(plots.paper.height_beside(["strided_direction, plane_infinite"] * 18, 1.9), 18 * 2 * 6 / 72)  # two lines of 6 pt each
 
     MODELS = (("plane", "stop", 0.8, 0.5), ("box", "stop", 0.6, 0), ("box", "hit", 0.5, 0))
 

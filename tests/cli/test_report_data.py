@@ -13,6 +13,7 @@ import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 import plots.pairs  # noqa: E402
 import plots.accuracy  # noqa: E402
+import plots.folder  # noqa: E402
 import plots.panels  # noqa: E402
 import plots.pictures  # noqa: E402
 import plots.ray  # noqa: E402
@@ -109,6 +110,17 @@ class Test(Case):
         self.assertTrue(text.startswith("hiz (plane) is the cheapest tracer that finds 99 % of what the depth buffer holds: 2 ms"), text)
         self.assertIn("hiz (box) takes 1 ms, but has an F1 of 80 % instead of 90 %. ", text)
         self.assertEqual([row.technique for _, row in plots.verdict.ranking(results, chosen).iterrows()], ["hiz", "linear", "hiz"])
+
+    def test_alternative_text_says_what_a_plot_shows(self):
+        rows = [dict(technique="linear", steps=steps, trace_ms_median=ms, recall_1px=found, screen_recall_1px=found, precision_1px=found, f1_1px=found)
+                for steps, ms, found in ((8, 1, 0.5), (16, 2, 0.6), (32, 3, 0.8), (64, 4, 0.9), (128, 5, 0.995))]
+        results = made_results(self, rows, ["steps"])
+        drawn, tables = plots.folder.draw(results, self.path("out/plots"))
+        (_, verdict), = plots.report.write(results, drawn, tables)
+        text = self.text("out/report.md")
+        self.assertEqual(text.count(verdict), 1)
+        self.assertIn("![1 − recall against trace + structures, ms and fetches per ray: linear is the first to reach 99 % recall, in 5 ms (s, view", text)
+        self.assertIn("![1 − precision and 1 − F1 against trace + structures, ms: ", text)
 
     def test_the_ranking(self):
         """Over two frames: times by the geometric mean, shares by the mean. Who misses the target comes later, the nearer one first."""
