@@ -56,10 +56,14 @@ def pick(rows, measure, target):
     return reached[f1 >= f1.max() - F1_SLACK].nsmallest(1, "cost_ms_median").index
 
 
-def is_far_from_best(rows, reached):
-    """Which rows that reach the target have an F1 more than a point below what their technique has over another surface model."""
-    best = rows.f1.where(reached).groupby(rows.technique).transform("max")
-    return reached & (rows.f1 < best - F1_SLACK)
+def over_worse_surface(rows, f1, reached):
+    """Which rows reach the target over a surface model over which a technique has an F1 more than a point below its own over another:
+    a time there buys less, whoever traces. f1: against the scene, since each surface model has a screen truth of its own."""
+    if "surface" not in rows or f1 is None:
+        return reached & False
+    best = f1.where(reached).groupby([rows.technique, rows.surface]).max()
+    worse = best[best < best.groupby("technique").transform("max") - F1_SLACK]
+    return reached & rows.surface.isin(worse.index.get_level_values("surface"))
 
 
 def picks(results):
@@ -75,8 +79,8 @@ def picks(results):
             chosen = chosen.loc[places]
             chosen = chosen.assign(label=chosen.series, reached=chosen[measure] >= target, missing=(target - chosen[measure]).clip(lower=0))
             chosen = chosen.assign(f1=f1_of(chosen, measure))
-            chosen = chosen.assign(far_from_best=is_far_from_best(chosen, chosen.reached))
-            chosen = chosen.sort_values(["missing", "far_from_best", "cost_ms_median"])
+            chosen = chosen.assign(worse_surface=over_worse_surface(chosen, chosen.get("f1_1px"), chosen.reached))
+            chosen = chosen.sort_values(["missing", "worse_surface", "cost_ms_median"])
         parts.append(chosen)
     return pd.concat(parts) if parts else results.rows.iloc[:0].assign(label="", frame_title="", reached=False, setting="")
 
@@ -90,8 +94,8 @@ def geometric(part, name):
 
 
 def ranking(results, chosen):
-    """A row a series: means over the frames, geometric for times. Those that reach the target everywhere come first: by time, but behind the others
-    where their technique has a better F1 over another surface model."""
+    """A row a series: means over the frames, geometric for times. Those that reach the target everywhere come first, by time, and of them
+    those over worse surface models last."""
     measure, _ = goal(results)
     frames = chosen.frame_title.nunique()
     rows = []
@@ -101,6 +105,7 @@ def ranking(results, chosen):
                      "recall": mean_of(part, "recall_1px"), "precision": mean_of(part, "precision_1px"), "f1": mean_of(part, "f1_1px"),
                      "false_hits": mean_of(part, "false_hits"), "flip": mean_of(part, "flip_visible"),
                      "fetches": mean_of(part, "fetches_mean"),
+                     **({"surface": part.surface.iloc[0]} if "surface" in part else {}),
                      **{name: geometric(part, name) for name in ("cost_ms_median", "cost_ms_ci_low", "cost_ms_ci_high")}})
     table = pd.DataFrame(rows)
     if table.empty:
@@ -108,8 +113,8 @@ def ranking(results, chosen):
     table["unreached"] = table.of - table.reached if measure else 0
     nearness = {"screen_recall_1px": "screen_recall", "recall_1px": "recall", None: "label"}[measure]
     table["nearness"] = -table[nearness].where(table.unreached > 0, 1) if measure else 0
-    table["far_from_best"] = is_far_from_best(table, table.unreached == 0)
-    return table.sort_values(["unreached", "nearness", "far_from_best", "cost_ms_median"]).drop(columns=["nearness", "far_from_best"]).reset_index(drop=True)
+    table["worse_surface"] = over_worse_surface(table, table.f1, table.unreached == 0)
+    return table.sort_values(["unreached", "nearness", "worse_surface", "cost_ms_median"]).drop(columns=["nearness", "worse_surface"]).reset_index(drop=True)
 
 
 def named(row):
@@ -146,7 +151,8 @@ def verdict(results, chosen):
         return (f"No tracer finds {goal_text(measure, target)}. The nearest is {named(best)}: {percent(best[measure])} in "
                 f"{milliseconds(best)}. " + left_wrong(best))
     text = f"{named(best)} is the cheapest tracer that finds {goal_text(measure, target)}: {milliseconds(best)}"
-    rivals = chosen[chosen.reached & ~chosen.far_from_best & (chosen.technique != best.technique)].drop_duplicates("technique").head(2)
+    quicker = chosen.worse_surface & (chosen.cost_ms_median < best.cost_ms_median)
+    rivals = chosen[chosen.reached & ~quicker & (chosen.technique != best.technique)].drop_duplicates("technique").head(2)
     faster = []
     for _, rival in rivals.iterrows():
         ratio = ratio_of_rows(results, rival, best)
@@ -156,7 +162,7 @@ def verdict(results, chosen):
                       else f"{ratio.median:.3g}{interval} times as fast as {named(rival)}")
     if faster:
         text += ", " + " and ".join(faster)
-    for _, row in chosen[chosen.far_from_best & (chosen.cost_ms_median < best.cost_ms_median)].head(1).iterrows():
+    for _, row in chosen[quicker & (chosen.f1 < best.f1 - F1_SLACK)].head(1).iterrows():
         text += f". {named(row)} takes {milliseconds(row)}, but has an F1 of {percent(row.f1)} instead of {percent(best.f1)}"
     return f"{text}. {left_wrong(best)}"
 

@@ -146,7 +146,6 @@ function draw_curve() {
   });
   const finding = data.findings[frame] || "";
   get("#curve-canvas").setAttribute("aria-label", `${data.errors[measure]} against ${data.costs[cost]}, ${frame}. ${finding}`);
-  get("#curve-finding").textContent = finding;
 }
 
 function prepare_curve() {
