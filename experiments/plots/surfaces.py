@@ -78,6 +78,10 @@ def precision_against_recall(results, tables):
         yield f"surfaces_precision_recall_{name}", figure
 
 
+def over_scenes(rows):
+    return f"means over {rows.scene.nunique()} scenes" if rows.scene.nunique() > 1 else rows.scene.iloc[0]
+
+
 def means_of(rows, by):
     """Means over the scenes, geometric for times, of the models."""
     rows = rows.assign(log_ms=np.log(rows.cost_ms_median + rows.solid_ms))
@@ -109,7 +113,7 @@ def f1_against_time(results, tables):
     log_axis(axis.xaxis)
     name_lines(axis, [(model_name(row), row.ms, 100 * row.f1_1px, look_of(row.surface)[0]) for row in means.itertuples()])
     titled(figure, gain(means, "f1_1px") + (", in the mean" if rows.scene.nunique() > 1 else ""),
-           f"{rows.technique.iloc[0]}, {rows.width.iloc[0]}×{rows.height.iloc[0]}; large: means over {rows.scene.nunique()} scenes")
+           f"{rows.technique.iloc[0]}, {rows.width.iloc[0]}×{rows.height.iloc[0]}; {'large: ' if rows.scene.nunique() > 1 else ''}{over_scenes(rows)}")
     yield "surfaces_f1_time", figure
 
 
@@ -129,7 +133,7 @@ def f1_against_size(results, tables):
     name_lines(axis, ends)
     low, high = means[means.height == means.height.min()], means[means.height == means.height.max()]
     titled(figure, f"At {low.height.iloc[0]}p {gain(low, 'f1_1px')}, at {high.height.iloc[0]}p {100 * high[high.surface == 'box'].f1_1px.max():.1f} %"
-           if "box" in set(low.surface) & set(high.surface) else gain(high, "f1_1px"), f"means over {rows.scene.nunique()} scenes")
+           if "box" in set(low.surface) & set(high.surface) else gain(high, "f1_1px"), over_scenes(rows))
     yield "surfaces_f1_size", figure
 
 
@@ -169,7 +173,7 @@ def ladder_of_layers(results, tables):
     means = [100 * rows.hidden_too_f1_1px.mean() for _, rows in rungs]
     best = int(np.argmax(means))
     titled(figure, f"From {rungs[0][0]} to {rungs[best][0]} F1 rises from {means[0]:.0f} to {means[best]:.0f} %, "
-           f"and the time from {below[0]:.3g} to {below[best]:.3g} ms", f"means over {results.rows.scene.nunique()} scenes")
+           f"and the time from {below[0]:.3g} to {below[best]:.3g} ms", over_scenes(results.rows))
     yield "surfaces_ladder", figure
 
 

@@ -149,7 +149,7 @@ def verdict(results, chosen):
     best = chosen.iloc[0]
     if not best.reached:
         return (f"No tracer finds {goal_text(measure, target)}. The nearest is {named(best)}: {percent(best[measure])} in "
-                f"{milliseconds(best)}. " + left_wrong(best))
+                f"{milliseconds(best)}. " + left_wrong(best)).rstrip()
     text = f"{named(best)} is the cheapest tracer that finds {goal_text(measure, target)}: {milliseconds(best)}"
     quicker = chosen.worse_surface & (chosen.cost_ms_median < best.cost_ms_median)
     rivals = chosen[chosen.reached & ~quicker & (chosen.technique != best.technique)].drop_duplicates("technique").head(2)
@@ -164,7 +164,7 @@ def verdict(results, chosen):
         text += ", " + " and ".join(faster)
     for _, row in chosen[quicker & (chosen.f1 < best.f1 - F1_SLACK)].head(1).iterrows():
         text += f". {named(row)} takes {milliseconds(row)}, but has an F1 of {percent(row.f1)} instead of {percent(best.f1)}"
-    return f"{text}. {left_wrong(best)}"
+    return f"{text}. {left_wrong(best)}".rstrip()
 
 
 def verdicts(results, chosen):

@@ -93,7 +93,7 @@ class Test(Case):
                                "It misses 10 % of what the frame shows: 7 % are not in the depth buffer, 2 % hit another point. "
                                "5 % of its rays end in a false hit: 3 % behind a surface that is taken too thick, 1.5 % on the reflector itself.")
         (_, text), = plots.verdict.verdicts(results, chosen[~chosen.reached])
-        self.assertEqual(text, "No tracer finds 99 % of what the depth buffer holds. The nearest is march (steps 40): 80 % in 3 ms. ")
+        self.assertEqual(text, "No tracer finds 99 % of what the depth buffer holds. The nearest is march (steps 40): 80 % in 3 ms.")
         results.targets = {"recall_1px": [0.5, 0.995]}
         self.assertEqual(plots.verdict.goal(results), ("screen_recall_1px", 0.99))
         results.targets = {"screen_recall_1px": [0.9, 0.95, 0.999]}
@@ -109,7 +109,7 @@ class Test(Case):
         self.assertEqual(list(chosen.run_id), ["r1", "r0", "r3", "r2"])
         (_, text), = plots.verdict.verdicts(results, chosen)
         self.assertTrue(text.startswith("hiz (plane) is the cheapest tracer that finds 99 % of what the depth buffer holds: 2 ms"), text)
-        self.assertIn("2 ms, 1.5 times as fast as linear. hiz (box) takes 1 ms, but has an F1 of 80 % instead of 90 %. ", text)
+        self.assertIn("2 ms, 1.5 times as fast as linear. hiz (box) takes 1 ms, but has an F1 of 80 % instead of 90 %.", text)
         self.assertEqual([row.technique for _, row in plots.verdict.ranking(results, chosen).iterrows()], ["hiz", "hiz", "mine", "linear"])
 
     def test_alternative_text_says_what_a_plot_shows(self):
