@@ -28,8 +28,16 @@ UNITS = {"per_million": "rays per million", "_ms_median": "ms", "_ms_mad": "ms",
          "_iterations_mean": "steps"}
 
 
-class OldForm(Exception):
-    """Results whose passes are packed into columns."""
+class Unreadable(Exception):
+    """Results that are damaged, or in the form of an older version."""
+
+
+def read_csv(path, words, **how):
+    """words: columns that are never numbers."""
+    try:
+        return pd.read_csv(path, dtype={name: str for name in words}, **how)
+    except (pd.errors.EmptyDataError, pd.errors.ParserError, UnicodeDecodeError) as error:
+        raise Unreadable(f"{path}: damaged: {error}") from error
 
 
 def read_rows(folder):
@@ -37,9 +45,12 @@ def read_rows(folder):
     path = os.path.join(folder, "results.csv")
     if not os.path.exists(path):
         raise FileNotFoundError(f"{folder}: holds no results.csv; make one with ssrlab run")
-    rows = pd.read_csv(path, dtype={name: str for name in TEXT}, keep_default_na=False, na_values=[""])
+    rows = read_csv(path, TEXT, keep_default_na=False, na_values=[""])
+    lacking = [name for name in (*FRAME[:-1], "run_id", "technique", "trace_ms_median", "outcome") if name not in rows]
+    if lacking:
+        raise Unreadable(f"{path}: damaged: its first line has no column '{lacking[0]}'")
     if "passes" in rows or "passes_why" in rows:
-        raise OldForm(f"{path}: an older ssrlab wrote it, without passes.csv; measure it anew: ssrlab run SPECIFICATION.toml -o ANOTHER_FOLDER")
+        raise Unreadable(f"{path}: an older ssrlab wrote it, without passes.csv; measure it anew: ssrlab run SPECIFICATION.toml -o ANOTHER_FOLDER")
     return rows
 
 
@@ -48,13 +59,16 @@ def read_environment(folder):
     path = os.path.join(folder, "environment.json")
     if not os.path.exists(path):
         return {}
-    with open(path, encoding="utf-8") as file:
-        return json.load(file)
+    try:
+        with open(path, encoding="utf-8") as file:
+            return json.load(file)
+    except (json.JSONDecodeError, UnicodeDecodeError) as error:
+        raise Unreadable(f"{path}: damaged: {error}") from error
 
 
 def read_samples(folder):
     """Every timed frame: run_id, round, pass, ms, cpu_ms."""
-    return pd.read_csv(os.path.join(folder, "samples.csv"), dtype={"run_id": str, "pass": str})
+    return read_csv(os.path.join(folder, "samples.csv"), ["run_id", "pass"])
 
 
 def read_passes(folder):
@@ -62,7 +76,7 @@ def read_passes(folder):
     path = os.path.join(folder, "passes.csv")
     if not os.path.exists(path):
         return pd.DataFrame(columns=["run_id", "pass", "ran", "ms_median", "ms_ci_low", "ms_ci_high", "reason"])
-    return pd.read_csv(path, dtype={"run_id": str, "pass": str, "reason": str}, keep_default_na=False, na_values=[""])
+    return read_csv(path, ["run_id", "pass", "reason"], keep_default_na=False, na_values=[""])
 
 
 def read_sources(folder):
@@ -70,7 +84,7 @@ def read_sources(folder):
     path = os.path.join(folder, "sources.csv")
     if not os.path.exists(path):
         return pd.DataFrame(columns=["run_id", "place", "source"])
-    return pd.read_csv(path, dtype={"run_id": str, "source": str})
+    return read_csv(path, ["run_id", "source"])
 
 
 def specification(folder):

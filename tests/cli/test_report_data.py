@@ -67,6 +67,16 @@ class Test(Case):
                  "fetches_mean": "fetches", "rays": ""}
         self.assertEqual({name: whole.attrs["units"][name] for name in units}, units)
 
+    def test_damaged_results_are_named(self):
+        made_results(self, [dict(technique="hiz")])
+        whole = self.text("out/results.csv")
+        for name, text in (("results.csv", whole[:30]), ("results.csv", ""), ("results.csv", whole + '"'), ("environment.json", "{"), ("environment.json", "")):
+            with self.subTest(name=name, text=text):
+                made_results(self, [dict(technique="hiz")])
+                self.write(f"out/{name}", text)
+                with self.assertRaisesRegex(plots.results.Unreadable, f"out/{name}: damaged: "):
+                    plots.results.load(self.path("out"))
+
     def verdict_rows(self):
         """linear reaches 0.99 with 20, 40 and 80 steps, at 80 with the best F1, at 40 within a point of it. march never does."""
         rows = [dict(technique="linear", steps=steps, trace_ms_median=ms, screen_recall_1px=found, f1_1px=f1)
