@@ -90,6 +90,8 @@ class Test(Case):
         walk = self.hits("dda", "thickness_m=0.5")
         self.write("mine/sloped_slab/held.glsl", tight)
         self.assertFalse(numpy.array_equal(self.hits("hiz", "thickness_m=0.5"), walk))
+        self.ssrlab("--techniques", "mine", "trace", "interior", "-t", "exact", "--size", "161x91", "-o", "h.exr", "-p", "surface=sloped_slab",
+                    "-p", "thickness_m=0.5", says=["warning: exact leaves hiz out"], XDG_CACHE_HOME=self.path("cache"))
 
     def test_is_found_by_the_environment(self):
         self.environment["SSRLAB_TECHNIQUES"] = self.path("mine/sloped_slab")
