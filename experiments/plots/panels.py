@@ -22,7 +22,7 @@ def is_value(cell, value):
     if isinstance(value, bool):
         return str(cell).lower() == str(value).lower()
     if isinstance(value, (int, float)):
-        return pd.notna(cell) and not isinstance(cell, str) and abs(cell - value) <= 1e-6 * max(1, abs(value))
+        return pd.notna(cell) and not isinstance(cell, str) and (cell == value or abs(cell - value) <= 1e-6 * max(1, abs(value)))
     return str(cell) == value
 
 
@@ -57,8 +57,7 @@ def caption(panel, figure, row):
         if name != "show" and any(other.get(name, value) != value for other in figure["panels"])]
     lines = [", ".join(([SHOWN[shown]] if shown in SHOWN else []) + words)]
     if shown not in ("off", "truth"):
-        lines.append(", ".join(f"{said} {row[name]:.3f}" for name, said in MEASURES.items()
-                               if name in figure["measures"] and pd.notna(row[name])))
+        lines.append(", ".join(f"{MEASURES.get(name, name)} {row[name]:.3f}" for name in figure.get("measures", []) if pd.notna(row[name])))
     return "\n".join(line for line in lines if line)
 
 

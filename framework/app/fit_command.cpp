@@ -79,14 +79,21 @@ void give_value(Experiment& sweep, const Catalogue& catalogue, const std::string
         for (TechniqueSweep& one : sweep.techniques) one.settings.erase(name);
         return;
     }
-    bool known = false;
+    bool                     known = false;
+    std::vector<std::string> parameters;
     for (TechniqueSweep& one : sweep.techniques) {
+        for (const auto& [parameter, values] : one.values) parameters.push_back(parameter);
         if (!one.values.contains(name)) continue;
         const Technique& technique = find_technique(catalogue.techniques, one.id);
         one.values[name]           = {parse_parameter(find_parameter(technique, name, place), text, place)};
         known                      = true;
     }
-    if (!known) throw_spec_error("{}: no setting, and no parameter of a technique of the sweep", place);
+    std::ranges::sort(parameters);
+    parameters.erase(std::ranges::unique(parameters).begin(), parameters.end());
+    if (!known)
+        throw_spec_error(
+            "{}: {}", place,
+            unknown_name("parameter of the sweep's techniques", name, parameters, names_of(sweep.known_settings)));
 }
 
 /// The views of a scene that are asked for. Throws SpecError for what the scene lacks.

@@ -4,6 +4,7 @@
 #include "app/judge_report.h"
 #include "compare/image_io.h"
 #include "core/error.h"
+#include "core/names.h"
 #include "core/plane_gradient.h"
 #include "core/printable.h"
 #include "harness/bake_scene.h"
@@ -25,6 +26,9 @@ using Json   = nlohmann::ordered_json;
 void set_pairs(const std::vector<Setting>& settings, const std::vector<std::string>& pairs, bool strict,
                FrameSettings& to)
 {
+    std::vector<std::string> known;
+    for (const Setting& setting : settings)
+        if (setting.table == "trace") known.push_back(setting.name);
     for (const std::string& pair : pairs) {
         const auto        equals = pair.find('=');
         const std::string name   = pair.substr(0, equals);
@@ -32,8 +36,10 @@ void set_pairs(const std::vector<Setting>& settings, const std::vector<std::stri
                     settings, [&](const Setting& setting) { return setting.table == "trace" && setting.name == name; });
         if (found != settings.end() && equals != std::string::npos)
             found->set(to, parse_parameter(*found, pair.substr(equals + 1), "-p " + pair));
-        else if (strict)
+        else if (strict && equals == std::string::npos)
             throw_spec_error("-p {}: expected name=value of a setting of [trace] (docs/reference/settings.md)", pair);
+        else if (strict)
+            throw_spec_error("-p {}: {}", pair, unknown_name("setting of [trace]", name, known));
     }
 }
 
@@ -185,7 +191,7 @@ int judge_folder(const CommonOptions& common, const Catalogue& catalogue, const 
 
 int judge_hits(const CommonOptions& common, const JudgeOptions& options)
 {
-    if (!options.output.empty()) require_ending(options.output, {".png"});
+    if (!options.output.empty()) require_output(options.output, {".png"});
     if (options.show == "causes" && options.scene.empty())
         throw_spec_error("--show causes: needs the scene's triangles; give --scene");
     const Catalogue catalogue = load_catalogue(common.technique_dirs);

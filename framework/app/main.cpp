@@ -40,16 +40,32 @@ void open_closed_streams()
     }
 }
 
-/// What is wrong with the first word that is no option, if it is no command.
-std::string unknown_command(const CLI::App& app, int argc, char** argv)
+void append_options(std::vector<std::string>& names, const CLI::App& app)
 {
-    std::vector<std::string> known;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+}
+
+/// What is wrong with the first word that is no option, if it is no command; or else with the first option that the command lacks.
+std::string unknown_word(const CLI::App& app, int argc, char** argv)
+{
+    std::vector<std::string> known, options;
     for (const CLI::App* command : app.get_subcommands(nullptr)) known.push_back(command->get_name());
-    for (int i = 1; i < argc; ++i) {
+    const CLI::App* command = nullptr;
+    for (int i = 1; command == nullptr && i < argc; ++i) {
         const std::string word = argv[i];
         if (word == "--device" || word == "--techniques" || word == "--storage") ++i;
         if (word.starts_with("-")) continue;
-        return std::ranges::find(known, word) != known.end() ? "" : ssrlab::unknown_name("command", word, known);
+        if (std::ranges::find(known, word) == known.end()) return ssrlab::unknown_name("command", word, known);
+        command = app.get_subcommand(word);
+    }
+    append_options(options, app);
+    if (command != nullptr) append_options(options, *command);
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i], name = word.substr(0, word.find('='));
+        if (name.starts_with("--") && name != "--" && std::ranges::find(options, name) == options.end())
+            return ssrlab::unknown_name(command == nullptr ? "option" : "option of " + command->get_name(), name,
+                                        options);
     }
     return "";
 }
@@ -452,7 +468,7 @@ int main(int argc, char** argv)
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (const std::string wrong = unknown_command(app, argc, argv); !wrong.empty()) {
+        if (const std::string wrong = unknown_word(app, argc, argv); !wrong.empty() && error.get_exit_code() != 0) {
             say_error(wrong);
             return 2;
         }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <numeric>
 #include <regex>
 #include <string_view>
 #include <utility>
@@ -13,21 +14,25 @@
 namespace ssrlab {
 namespace {
 
-/// Levenshtein distance; one row of the table at a time.
+/// Letters to add, drop, replace, or swap with their neighbour; three rows of the table at a time.
 size_t edit_distance(std::string_view a, std::string_view b)
 {
-    std::vector<size_t> row(b.size() + 1);
-    for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
+    std::vector<size_t> before, last, row(b.size() + 1);
+    std::iota(row.begin(), row.end(), size_t(0));
     for (size_t i = 1; i <= a.size(); ++i) {
-        size_t diagonal = std::exchange(row[0], i);
+        before = std::exchange(last, row);
+        row[0] = i;
         for (size_t j = 1; j <= b.size(); ++j) {
-            const size_t replaced = diagonal + (a[i - 1] != b[j - 1] ? 1 : 0);
-            diagonal              = row[j];
-            row[j]                = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+            row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1] ? 1 : 0)});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                row[j] = std::min(row[j], before[j - 2] + 1);
         }
     }
     return row[b.size()];
 }
+
+// A longer list beside a suggestion hides it.
+constexpr size_t most_names_beside_suggestion = 24;
 
 // GLSL 4.60, section 3.6: keywords and what is reserved; and the project's own entry points and their argument.
 constexpr std::string_view glsl_keywords =
@@ -44,16 +49,25 @@ constexpr const char* glsl_types = "[biudhf]?vec[234]|real[234]?|d?mat[234](x[23
 
 } // namespace
 
-std::string unknown_name(const std::string& kind, const std::string& name, std::span<const std::string> known)
+std::string suggestion(const std::string& name, std::span<const std::string> known)
 {
-    std::string message = fmt::format("unknown {} '{}'", kind, name);
-    if (known.empty()) return message + " (there is none)";
+    if (known.empty()) return "";
     const auto distance = [&](const std::string& candidate) { return edit_distance(name, candidate); };
     const auto nearest  = std::ranges::min_element(known, {}, distance);
     // Farther than a third of the word, the guess confuses more than it helps.
-    if (distance(*nearest) <= std::max<size_t>(1, nearest->size() / 3)) {
-        message += fmt::format(": did you mean '{}'?", *nearest);
-    }
+    const bool near = distance(*nearest) <= std::max<size_t>(1, nearest->size() / 3);
+    return near ? fmt::format(": did you mean '{}'?", *nearest) : "";
+}
+
+std::string unknown_name(const std::string& kind, const std::string& name, std::span<const std::string> known,
+                         std::span<const std::string> also)
+{
+    std::vector<std::string> all(known.begin(), known.end());
+    all.insert(all.end(), also.begin(), also.end());
+    const std::string near    = suggestion(name, all);
+    const std::string message = fmt::format("unknown {} '{}'{}", kind, name, near);
+    if (known.empty()) return message + " (there is none)";
+    if (!near.empty() && known.size() > most_names_beside_suggestion) return message;
     return message + fmt::format(" (known: {})", fmt::join(known, ", "));
 }
 

@@ -67,6 +67,7 @@ void read_views(const TomlFile& file, Experiment& experiment)
     const toml::node*  node  = file.root.get("views");
     const toml::table* table = node == nullptr ? nullptr : node->as_table();
     experiment.views = table == nullptr ? read_texts(file, "views", {"default"}) : std::vector<std::string>{"default"};
+    experiment.views_place = node == nullptr ? "" : toml_place(file, *node);
     if (table == nullptr) return;
     toml_known_keys(file, *table, "scene of 'views'", experiment.scenes);
     for (const auto& [scene, views] : *table)
@@ -201,7 +202,7 @@ void read_values(const TomlFile& file, const toml::table& table, const std::stri
             continue;
         }
         const std::string place     = fmt::format("{}:{}", file.path, key.source().begin.line);
-        const Parameter&  parameter = find_parameter(technique, name, place);
+        const Parameter&  parameter = find_parameter(technique, name, place, names_of(known));
         for (const toml::node* value : toml_values(file, node, name)) {
             sweep.values[name].push_back(parameter_value(file, *value, parameter));
         }

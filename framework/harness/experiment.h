@@ -61,6 +61,8 @@ struct Setting : Parameter {
     std::function<double(const FrameSettings&)> get;
     std::function<void(FrameSettings&, double)> set;
 };
+/// The settings' names.
+std::vector<std::string> names_of(std::span<const Setting> settings);
 /// Returns all settings; the catalogue's surface models and reprojection strategies are choices among them.
 std::vector<Setting> all_settings(const Catalogue& catalogue);
 
@@ -70,8 +72,8 @@ struct Experiment {
     std::string                                     name, title;
     std::vector<std::string>                        scenes, views;
     std::map<std::string, std::vector<std::string>> scene_views =
-        {};                                  // of scenes that have views of their own, instead of `views`
-    std::string                scenes_place; // file:line
+        {};                                               // of scenes that have views of their own, instead of `views`
+    std::string                scenes_place, views_place; // file:line
     std::vector<glm::ivec2>    sizes_px;
     std::vector<SequenceFrame> frames = {{}};
     /// The values of every setting by Setting::name, with defaults.

@@ -2,8 +2,8 @@
 
 #include "core/error.h"
 #include "core/files.h"
-#include "core/names.h"
 #include "core/stopwatch.h"
+#include "harness/check_figures.h"
 #include "harness/columns.h"
 #include "harness/environment.h"
 #include "harness/measure_sequence.h"
@@ -25,14 +25,27 @@ namespace fs = std::filesystem;
 
 void refuse_unknown_scenes(const Experiment& experiment)
 {
-    std::vector<std::string> known;
-    for (const SceneListing& listing : list_scenes()) known.push_back(listing.name);
+    const std::vector<SceneListing> listed = list_scenes();
     for (const std::string& scene : experiment.scenes) {
         const std::string extension = lower_extension(scene);
         const bool is_path = extension == ".glb" || extension == ".gltf" || extension == ".toml" || is_frame(scene);
-        if (is_path ? fs::exists(scene) : std::ranges::find(known, scene) != known.end()) continue;
+        if (is_path ? fs::exists(scene) : std::ranges::find(listed, scene, &SceneListing::name) != listed.end())
+            continue;
         throw_spec_error("{}: {}", experiment.scenes_place,
-                         is_path ? "scene '" + scene + "': no such file" : unknown_name("scene", scene, known));
+                         is_path ? "scene '" + scene + "': no such file" : unknown_scene(scene));
+    }
+}
+
+void refuse_unknown_views(const Experiment& experiment)
+{
+    for (const std::string& scene : experiment.scenes) {
+        const std::vector<std::string>& views = views_of(experiment, scene);
+        // Every scene has the default view, and other names may need the whole file.
+        if (std::ranges::count(views, Camera{}.name) == std::ssize(views)) continue;
+        const std::vector<std::string> names = view_names(scene);
+        for (const std::string& view : views)
+            if (view != Camera{}.name && std::ranges::find(names, view) == names.end())
+                throw_spec_error("{}: {}", experiment.views_place, unknown_view(scene, view, names));
     }
 }
 
@@ -96,8 +109,11 @@ std::vector<Run> planned_runs(const RunOptions& options, const Experiment& exper
                               std::span<const Technique> techniques)
 {
     refuse_unknown_scenes(experiment);
-    const Shard shard = parse_shard(options.shard);
-    return runs_of_shard(choose(expand(experiment, techniques, options.yes), techniques, options.only), shard);
+    refuse_unknown_views(experiment);
+    const Shard      shard = parse_shard(options.shard);
+    std::vector<Run> runs  = expand(experiment, techniques, options.yes);
+    check_figures(experiment, techniques, runs);
+    return runs_of_shard(choose(std::move(runs), techniques, options.only), shard);
 }
 
 fs::path folder_of(const RunOptions& options, const Experiment& experiment)

@@ -129,4 +129,11 @@ std::vector<Setting> all_settings(const Catalogue& catalogue)
     return table;
 }
 
+std::vector<std::string> names_of(std::span<const Setting> settings)
+{
+    std::vector<std::string> names;
+    std::ranges::transform(settings, std::back_inserter(names), &Setting::name);
+    return names;
+}
+
 } // namespace ssrlab

@@ -2,7 +2,11 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/names.h"
 #include "scene/builtin_scenes.h"
+#include "scene/recipe.h"
+
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -15,17 +19,14 @@ namespace {
 
 constexpr std::string_view builtin_prefix = "builtin:";
 
-std::string known_names()
+/// A path of the same name as a camera is its motion.
+std::vector<std::string> names_of(const std::vector<Camera>& cameras, const std::vector<CameraPath>& paths)
 {
-    std::string names;
-    for (const SceneListing& listing : list_scenes()) names += (names.empty() ? "" : ", ") + listing.name;
+    std::vector<std::string> names;
+    std::ranges::transform(cameras, std::back_inserter(names), &Camera::name);
+    for (const CameraPath& path : paths)
+        if (std::ranges::find(names, path.name) == names.end()) names.push_back(path.name);
     return names;
-}
-
-[[noreturn]] void throw_unknown(const std::string& name)
-{
-    throw_spec_error("unknown scene '{}': give a .glb or .gltf file, a recipe (.toml), a frame (.exr), or one of {}",
-                     name, known_names());
 }
 
 Model load_gltf_with_views(const fs::path& file)
@@ -49,10 +50,10 @@ Model load_model(const std::string& name)
     if (name.starts_with(builtin_prefix)) {
         for (const BuiltinScene& scene : builtin_scenes())
             if (name.substr(builtin_prefix.size()) == scene.name) return scene.make();
-        throw_unknown(name);
+        throw SpecError(unknown_scene(name));
     }
     const fs::path file = find_scene_file(name);
-    if (file.empty()) throw_unknown(name);
+    if (file.empty()) throw SpecError(unknown_scene(name));
     if (!fs::exists(file)) throw_spec_error("scene '{}': no such file", name);
     return lower_extension(file) == ".toml" ? load_recipe(file) : load_gltf_with_views(file);
 }
@@ -137,18 +138,40 @@ Scene load_scene(const std::string& name)
     }
 }
 
+std::string unknown_scene(const std::string& name)
+{
+    std::vector<std::string> known;
+    std::ranges::transform(list_scenes(), std::back_inserter(known), &SceneListing::name);
+    return unknown_name("scene", name, known) +
+           " A scene may also be the path of a .glb, .gltf, recipe (.toml) or frame (.exr)";
+}
+
+std::vector<std::string> view_names(const std::string& scene)
+{
+    if (const fs::path file = find_scene_file(scene); lower_extension(file) == ".toml" && fs::exists(file)) {
+        Recipe recipe = read_recipe(file);
+        if (recipe.views.empty()) recipe.views.emplace_back(); // the fitted one
+        std::vector<std::string> names = names_of(recipe.views, recipe.paths);
+        // Loading numbers views of one name.
+        if (std::set(names.begin(), names.end()).size() == names.size()) return names;
+    }
+    const Scene loaded = load_scene(scene);
+    return names_of(loaded.cameras, loaded.paths);
+}
+
+std::string unknown_view(const std::string& scene, const std::string& view, const std::vector<std::string>& names)
+{
+    const std::string near = suggestion(view, names);
+    return fmt::format("scene '{}' has no view '{}'{} its views are {}", scene, view, near.empty() ? ":" : near,
+                       fmt::join(names, ", "));
+}
+
 const Camera& find_camera(const Scene& scene, const std::string& name)
 {
-    std::string names;
-    for (const Camera& camera : scene.cameras) {
-        if (camera.name == name) return camera;
-        names += (names.empty() ? "" : ", ") + camera.name;
-    }
-    for (const CameraPath& path : scene.paths)
-        if (std::ranges::find(scene.cameras, path.name, &Camera::name) == scene.cameras.end())
-            names += ", " + path.name;
+    if (const auto found = std::ranges::find(scene.cameras, name, &Camera::name); found != scene.cameras.end())
+        return *found;
     if (name == Camera{}.name && !scene.cameras.empty()) return scene.cameras.front();
-    throw_spec_error("scene '{}' has no view '{}': its views are {}", scene.name, name, names);
+    throw SpecError(unknown_view(scene.name, name, names_of(scene.cameras, scene.paths)));
 }
 
 } // namespace ssrlab

@@ -162,6 +162,14 @@ struct SceneListing {
 };
 std::vector<SceneListing> list_scenes();
 
+/// What to say of a scene's name that load_scene() does not accept.
+std::string unknown_scene(const std::string& name);
+
+/// The views and camera paths that a scene has; loads triangles only where its file has no list of them.
+std::vector<std::string> view_names(const std::string& scene);
+/// What to say of a name that is none of them.
+std::string unknown_view(const std::string& scene, const std::string& view, const std::vector<std::string>& names);
+
 /// Returns the radiance from infinitely far away: the environment map, or the background.
 glm::vec3 sky_radiance(const Scene& scene, glm::dvec3 direction_ws);
 

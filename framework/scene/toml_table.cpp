@@ -143,7 +143,9 @@ std::optional<size_t> TomlTable::choice(const char* key, const std::vector<std::
     const std::optional<std::string> value = text(key);
     if (!value) return std::nullopt;
     const auto name = std::ranges::find(names, *value);
-    if (name == names.end()) refuse(key, fmt::format("one of {}", fmt::join(names, ", ")));
+    if (name == names.end())
+        fail(key,
+             fmt::format("must be one of {}, got '{}'{}", fmt::join(names, ", "), *value, suggestion(*value, names)));
     return static_cast<size_t>(name - names.begin());
 }
 

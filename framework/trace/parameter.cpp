@@ -164,7 +164,8 @@ double parse_parameter(const Parameter& parameter, const std::string& text, cons
     double value = 0;
     if (parameter.type == ParameterType::choice) {
         const auto choice = std::ranges::find(parameter.choices, text);
-        if (choice == parameter.choices.end()) refuse_value(parameter, "'" + text + "'", place);
+        if (choice == parameter.choices.end())
+            refuse_value(parameter, "'" + text + "'" + suggestion(text, parameter.choices), place);
         return static_cast<double>(choice - parameter.choices.begin());
     }
     if (parameter.type == ParameterType::boolean) {

@@ -46,8 +46,10 @@ std::span<const Limit> known_limits();
 /// Reads folder/technique.toml; throws SpecError with file and line. `known`: structures that it may name.
 Technique load_technique(const std::filesystem::path& folder, std::span<const Structure> known = {});
 
-ParameterValues  default_values(const Technique& technique);
-const Parameter& find_parameter(const Technique& technique, const std::string& name, const std::string& place);
+ParameterValues default_values(const Technique& technique);
+/// `also`: what else may be named at this place, as settings.
+const Parameter& find_parameter(const Technique& technique, const std::string& name, const std::string& place,
+                                std::span<const std::string> also = {});
 
 /// Returns the bound on the loop iterations of one ray with these values; a driver may cut loops at 65,535.
 double                  iteration_bound(const Technique& technique, const ParameterValues& values);

@@ -14,13 +14,14 @@ ParameterValues default_values(const Technique& technique)
     return values;
 }
 
-const Parameter& find_parameter(const Technique& technique, const std::string& name, const std::string& place)
+const Parameter& find_parameter(const Technique& technique, const std::string& name, const std::string& place,
+                                std::span<const std::string> also)
 {
     const auto found = std::ranges::find(technique.parameters, name, &Parameter::name);
     if (found != technique.parameters.end()) return *found;
     std::vector<std::string> known;
     std::ranges::transform(technique.parameters, std::back_inserter(known), &Parameter::name);
-    throw_spec_error("{}: {}", place, unknown_name("parameter of technique " + technique.id, name, known));
+    throw_spec_error("{}: {}", place, unknown_name("parameter of technique " + technique.id, name, known, also));
 }
 
 double iteration_bound(const Technique& technique, const ParameterValues& values)

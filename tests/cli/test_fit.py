@@ -131,7 +131,7 @@ class Test(Case):
                                 (("builtin:stairs", "--budget-ms", "1", "--size", "big"), "--size: expected WIDTHxHEIGHT"),
                                 (("builtin:stairs", "--budget-ms", "1", "-t", "hizz"), "did you mean 'hiz'?"),
                                 (("builtin:stairs", "--budget-ms", "1", "-p", "surface=cube"), "-p surface=cube"),
-                                (("builtin:stairs", "--budget-ms", "1", "-p", "steps=4"), "-p steps=4: no setting"),
+                                (("builtin:stairs", "--budget-ms", "1", "-p", "steps=4"), "-p steps=4: unknown parameter of the sweep's techniques 'steps'"),
                                 (("builtin:stairs", "--budget-ms", "1", "-p", "steps"), "expected name=value"),
                                 (("frame.exr", "--budget-ms", "1", "--leave-one-out"), "--leave-one-out: expected a scene with two or more views"),
                                 (("frame.exr", "--budget-ms", "1", "--objective", "flip"), "expected a frame with a 'reference'")):

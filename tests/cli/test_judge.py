@@ -124,7 +124,7 @@ class Test(Case):
                                 (("frame.exr", "frame.exr"), "frame.exr: nothing says which rays hit"),
                                 (("hits.exr", "hits.exr"), "hits.exr: nothing says how the camera looks"),
                                 (("builtin:corridor", "hits.exr"), "builtin:corridor: expected a frame file"),
-                                (("frame.exr", "hits.exr", "-p", "steps=8"), "-p steps=8: expected name=value of a setting of [trace]"),
+                                (("frame.exr", "hits.exr", "-p", "steps=8"), "-p steps=8: unknown setting of [trace] 'steps'"),
                                 (("frame.exr", "hits.exr", "-p", "layers=2"), "layers = 2"),
                                 (("frame.exr", "hits.exr", "--scene", "frame.exr"), "--scene frame.exr: a frame has no triangles"),
                                 (("frame.exr", "hits.exr", "--show", "causes"), "give --scene"),
