@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace ssrlab {
@@ -43,6 +44,11 @@ int trace_cases(const CommonOptions& common, const PictureOptions& options)
     Gpu gpu = open_gpu(common.gpu);
     for (const ExportedCase& one : cases) {
         std::vector<std::string> pairs = one.settings;
+        std::erase_if(pairs, [&](const std::string& pair) {
+            const std::string start = pair.substr(0, pair.find('=') + 1);
+            return std::ranges::any_of(options.parameters,
+                                       [&](const std::string& given) { return given.starts_with(start); });
+        });
         pairs.insert(pairs.end(), options.parameters.begin(), options.parameters.end());
         const Choice     choice  = parse_choice(catalogue, technique, pairs);
         const GBufferPtr gbuffer = upload_gbuffer(gpu, load_scene(one.frame.string()).frame->gbuffer);

@@ -39,7 +39,7 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
     if (std::filesystem::is_directory(options.scene)) return trace_cases(common, options);
     const Catalogue catalogue = load_catalogue(common.technique_dirs);
     const auto      asked     = asked_techniques(catalogue, options.technique, options.parameters);
-    require_ending(options.output, {".exr"});
+    require_output(options.output, {".exr"});
     Stage stage                    = open_stage(common, catalogue, options);
     const auto [technique, choice] = choose_technique(stage, asked, common.quiet);
     const LabPtr     lab           = make_lab(stage, *technique, choice.values, choice.settings.trace);
@@ -53,7 +53,7 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
 int write_gbuffer(const CommonOptions& common, const PictureOptions& options)
 {
     if (!options.size.empty()) size_option(options.size);
-    require_ending(options.output, {".exr"});
+    require_output(options.output, {".exr"});
     Stage stage = open_stage(common, load_catalogue(common.technique_dirs), options);
     write_image(options.output, frame_image(read_gbuffer(stage.gpu, *stage.gbuffer)));
     std::puts(options.output.c_str());

@@ -12,7 +12,7 @@ void run_python(const std::string& script, const std::vector<std::string>& argum
     std::vector<std::string> words{"/usr/bin/python3", (data_root() / script).string()};
     words.insert(words.end(), arguments.begin(), arguments.end());
     if (run_program(words, ProgramOutput::shown).code != 0)
-        throw_failure("{} failed; it needs /usr/bin/python3 with matplotlib and pandas", words[1]);
+        throw_failure("{} failed; /usr/bin/python3 says why above", words[1]);
 }
 
 } // namespace ssrlab

@@ -163,8 +163,7 @@ int explain_ray(const CommonOptions& common, const RayOptions& options)
 {
     const std::filesystem::path output    = options.picture.output;
     const std::string           extension = output.extension().string();
-    if (!output.empty() && extension != ".json" && extension != ".png")
-        throw_spec_error("-o {}: expected .json or .png", options.picture.output);
+    if (!output.empty()) require_output(options.picture.output, {".json", ".png"});
     const Catalogue catalogue = load_catalogue(common.technique_dirs);
     FrameSettings   settings;
     const auto      exact = exact_ones(options, catalogue);

@@ -41,7 +41,7 @@ std::string label_of(Shows shows, const std::string& technique)
 std::vector<AskedTechnique> checked_techniques(const Catalogue& catalogue, const RenderOptions& options)
 {
     const bool exr = options.picture.output.ends_with(".exr");
-    require_ending(options.picture.output, {".png", ".exr"});
+    require_output(options.picture.output, {".png", ".exr"});
     if (!options.picture.size.empty()) size_option(options.picture.size);
     if (!options.show.empty() && (options.truth || options.side_by_side || options.samples > 1 || options.frames > 0 ||
                                   options.exposure_ev != 0 || options.display != "clip"))

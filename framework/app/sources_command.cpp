@@ -71,7 +71,7 @@ HandOn parse_hand_on(const std::string& text)
 int compare_sources(const CommonOptions& common, const SourcesOptions& options)
 {
     const PictureOptions& picture = options.picture;
-    if (!picture.output.empty()) require_ending(picture.output, {".csv"});
+    if (!picture.output.empty()) require_output(picture.output, {".csv"});
     std::vector<std::vector<ListedSource>> lists;
     for (const std::string& list : options.lists) lists.push_back(parse_sources(list, "--sources " + list));
     const HandOn      hand_on      = parse_hand_on(options.hand_on);

@@ -7,17 +7,24 @@
 #include "harness/experiment.h"
 
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <set>
 
 namespace ssrlab {
 
-void require_ending(const std::string& output, const std::vector<std::string>& endings)
+void require_output(const std::string& output, const std::vector<std::string>& endings)
 {
     const std::string ending = std::filesystem::path(output).extension().string();
     if (std::ranges::find(endings, ending) == endings.end())
         throw_spec_error("-o {}: expected a file that ends in {}", output, fmt::join(endings, " or "));
+    const std::filesystem::path folder = std::filesystem::path(output).parent_path();
+    if (::access((folder / ".").c_str(), W_OK) != 0)
+        throw_failure("-o {}: its folder cannot be written: {}", output, std::strerror(errno));
 }
 
 glm::ivec2 size_option(const std::string& text)
@@ -59,15 +66,20 @@ void set_choice(const Catalogue& catalogue, const Technique& technique, Choice& 
     const std::vector<Setting> settings = all_settings(catalogue);
     const auto                 setting  = std::ranges::find(settings, name, &Setting::name);
     if (setting == settings.end())
-        choice.values[name] = parse_parameter(find_parameter(technique, name, place), text, place);
+        choice.values[name] = parse_parameter(find_parameter(technique, name, place, names_of(settings)), text, place);
     else
         setting->set(choice.settings, parse_parameter(*setting, text, place));
 }
 
 Choice parse_choice(const Catalogue& catalogue, const Technique& technique, const std::vector<std::string>& pairs)
 {
-    Choice choice{default_values(technique), {}};
-    for (const std::string& pair : pairs) set_choice(catalogue, technique, choice, pair);
+    Choice                choice{default_values(technique), {}};
+    std::set<std::string> given;
+    for (const std::string& pair : pairs) {
+        set_choice(catalogue, technique, choice, pair);
+        if (const std::string name = pair.substr(0, pair.find('=')); !given.insert(name).second)
+            throw_spec_error("-p {}: '{}' is given twice", pair, name);
+    }
     return choice;
 }
 

@@ -31,8 +31,8 @@ Stage open_stage(const CommonOptions& common, const Catalogue& catalogue, const 
 /// Prints the validation layer's messages; returns 1 if there are any, else 0.
 int report_messages(const Stage& stage);
 
-/// Throws SpecError if the output has another ending. Call it before the work, not after.
-void require_ending(const std::string& output, const std::vector<std::string>& endings);
+/// Throws SpecError if the output has another ending, Failure if its folder cannot be written. Call it before the work.
+void require_output(const std::string& output, const std::vector<std::string>& endings);
 
 /// Returns the value of --size in pixels; throws SpecError.
 glm::ivec2 size_option(const std::string& text);

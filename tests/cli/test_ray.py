@@ -71,7 +71,7 @@ class Test(Case):
         self.refused(*RAY[:-4], "--pixel", "80", "-t", "dda", code=2, says=["--pixel: expected X,Y, got '80'"])
         self.refused(*RAY[:-4], "--pixel", "200,3", "-t", "dda", code=2, says=["outside the image of 160x90"])
         self.refused(*RAY[:-4], "--pixel", "80,2", "-t", "dda", code=2, says=["does not reflect: depth"])
-        self.refused(*RAY, "-t", "dda", "-o", "ray.svg", code=2, says=["expected .json or .png"])
+        self.refused(*RAY, "-t", "dda", "-o", "ray.svg", code=2, says=["expected a file that ends in .json or .png"])
         self.refused(*RAY, "-t", "dda", "-t", "linear", "-p", "stepps=3", code=2, says=["stepps"])
 
 
