@@ -144,8 +144,8 @@ std::optional<size_t> TomlTable::choice(const char* key, const std::vector<std::
     if (!value) return std::nullopt;
     const auto name = std::ranges::find(names, *value);
     if (name == names.end())
-        fail(key,
-             fmt::format("must be one of {}, got '{}'{}", fmt::join(names, ", "), *value, suggestion(*value, names)));
+        fail(key, fmt::format("must be one of {}, got {}{}", fmt::join(names, ", "), toml_found(*table_->get(key)),
+                              suggestion(*value, names)));
     return static_cast<size_t>(name - names.begin());
 }
 

@@ -87,7 +87,7 @@ TEST(StructureManifest, MistakesAreNamedWithFileAndLine)
         {head + buffer, "the structure has no 'passes'"},
         {head + "reeds = []\n" + buffer + pass, ":3: unknown key 'reeds': did you mean 'reads'?"},
         {head + "[buffers]\nfronts = { per = \"tiel\", type = \"float\" }\n" + pass,
-         ":4: unknown size rule 'tiel' (known: "},
+         ":4: unknown size rule 'tiel': did you mean 'tile'? (known: "},
         {head + "[buffers]\nfronts = { per = \"tile\", type = \"float\" }\n" + pass,
          ":4: buffer 'fronts' has no 'tile_px'"},
         {head + "[buffers]\nfronts = { per = \"pixel\", tile_px = 8, type = \"float\" }\n" + pass,
