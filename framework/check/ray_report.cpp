@@ -71,7 +71,7 @@ VisitReport describe(const Setup& setup, const RayInput& ray, const RayVisit& vi
         report.front_m        = held.x;
         report.back_m         = held.y;
     } else if (const auto surface =
-                   pixel_surface(setup.gbuffer, pixel_index(visit.pixel, view.size_px), setup.settings)) {
+                   pixel_surface(setup.gbuffer, 0, pixel_index(visit.pixel, view.size_px), setup.settings)) {
         const glm::dvec2 middle = ray.origin_px_depth + 0.5 * (report.t_in + report.t_out) * ray.delta_px_depth;
         report.front_m          = metres(view, surface->front_at(middle));
         report.back_m           = metres(view, surface->back_at(middle));

@@ -68,7 +68,7 @@ Visit Judge::visit(const RayInput& ray, glm::ivec2 pixel, int layer, double t_in
     Visit               visit{pixel, t_in, t_out, in.z, out.z, {}};
     visit.contact    = -infinity;
     visit.layer      = layer;
-    const auto found = pixel_surface(image, index, setup_.settings);
+    const auto found = pixel_surface(setup_.gbuffer, layer, index, setup_.settings);
     if (!found || image.depth[index] > 1) return visit;
     const PixelSurface& surface = visit.surface = *found;
 
@@ -80,7 +80,8 @@ Visit Judge::visit(const RayInput& ray, glm::ivec2 pixel, int layer, double t_in
     const double slab       = slab_back(image.view, static_cast<double>(image.depth[index]), setup_.settings);
     if (sampled) visit.sampled_more = std::max(surface.back - slab, 0.0);
     const double over_back = std::max(visit.over_back_in, visit.over_back_out) + visit.sampled_more;
-    visit.contact          = std::min(-over_front, std::max(over_back, in_solid));
+    visit.contact =
+        surface.from_outside ? outside_in(surface, part) : std::min(-over_front, std::max(over_back, in_solid));
     if (setup_.settings.behind != Behind::hit)
         visit.facing = cosine(glm::dvec3(image.normal_vs[index]), direction_vs(image.view, ray));
     return visit;

@@ -74,6 +74,13 @@ RayInput to_input(const View& view, const OpenRay& ray, const SeenPart& part)
 
 namespace {
 
+/// The distance along the ray of a point on it, given on screen.
+double metres_at(const View& view, const OpenRay& ray, glm::dvec3 at_px_depth)
+{
+    const glm::dvec3 at_vs = px_to_vs(view, glm::dvec2(at_px_depth), at_px_depth.z);
+    return glm::dot(at_vs - point_vs(view, ray, 0), to_view(view, ray.direction_ws));
+}
+
 /// The distance in metres along the ray at which it is 2 pixels before a point on screen, or at its beginning.
 double metres_before(const View& view, const OpenRay& ray, const SeenPart& part, glm::dvec3 at_px_depth)
 {
@@ -81,9 +88,7 @@ double metres_before(const View& view, const OpenRay& ray, const SeenPart& part,
     const glm::dvec3 from      = screen_point(view, ray, part.t_in_m);
     const double     length_px = glm::length(glm::dvec2(at_px_depth - from));
     if (!(length_px > back_px)) return part.t_in_m;
-    const glm::dvec3 before  = glm::mix(at_px_depth, from, back_px / length_px);
-    const glm::dvec3 from_vs = point_vs(view, ray, 0), before_vs = px_to_vs(view, glm::dvec2(before), before.z);
-    return std::max(part.t_in_m, glm::dot(before_vs - from_vs, to_view(view, ray.direction_ws)));
+    return std::max(part.t_in_m, metres_at(view, ray, glm::mix(at_px_depth, from, back_px / length_px)));
 }
 
 /// Whether the four pixels around a place of `pixel` show the same surface.
@@ -112,6 +117,15 @@ bool neighbours_agree(const GBufferImage& image, glm::ivec2 pixel, glm::dvec2 at
 }
 
 } // namespace
+
+double before_clear_end_m(const View& view, const OpenRay& ray)
+{
+    OpenRay whole                      = ray;
+    whole.clear_m                      = 0;
+    const std::optional<SeenPart> part = seen_part(view, whole);
+    if (!part || ray.clear_m <= part->t_in_m || ray.clear_m >= part->t_out_m) return ray.clear_m;
+    return metres_before(view, whole, *part, screen_point(view, ray, ray.clear_m));
+}
 
 void set_point(RayAnswer& answer, const GBufferImage& met, glm::ivec2 pixel, glm::dvec3 at_px_depth, bool in_sight)
 {
@@ -262,6 +276,36 @@ bool is_shown(const GBufferImage& image, const RayInput& ray)
 }
 
 } // namespace
+
+bool may_meet_behind(const GBufferImage& layer, const Occupancy& grid, const OpenRay& ray, double to_m)
+{
+    const View&                   view = layer.view;
+    const std::optional<SeenPart> part = seen_part(view, ray);
+    if (!part) return false;
+    const RayInput   seen = to_input(view, ray, *part);
+    const glm::dvec3 from = seen.origin_px_depth, delta = seen.delta_px_depth;
+    glm::ivec2       pixel = glm::min(glm::ivec2(from), view.size_px - 1);
+    glm::dvec3       at    = from;
+    while (glm::all(glm::greaterThanEqual(pixel, glm::ivec2(0))) && glm::all(glm::lessThan(pixel, view.size_px))) {
+        const double in_m = metres_at(view, ray, at);
+        if (in_m >= to_m) return false;
+        double     t_out = 1;
+        glm::dvec2 border_t(infinity);
+        for (int axis : {0, 1}) {
+            if (delta[axis] != 0) border_t[axis] = (pixel[axis] + (delta[axis] > 0 ? 1 : 0) - from[axis]) / delta[axis];
+            t_out = std::min(t_out, border_t[axis]);
+        }
+        const glm::dvec3 out   = from + t_out * delta;
+        const auto       plane = plane_of(layer, pixel);
+        if (plane && plane->above(at) < 0 &&
+            may_meet(grid, ray.origin_ws, ray.direction_ws, in_m, std::min(to_m, metres_at(view, ray, out))))
+            return true;
+        if (t_out == 1) return false;
+        for (int axis : {0, 1}) pixel[axis] += border_t[axis] > t_out ? 0 : delta[axis] > 0 ? 1 : -1;
+        at = out;
+    }
+    return false;
+}
 
 GBufferTrace trace_in_gbuffer(SourceContext& context, const GBufferPtr& gbuffer, const GBufferImage& image,
                               const TraceSettings& settings, RayStart start, std::span<const OpenRay> rays)

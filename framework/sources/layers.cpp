@@ -1,8 +1,10 @@
 // Further layers of the frame by depth peeling, of the sides that face the camera or of both: a back face is a surface
 // that a ray may meet from its outer side.
+#include "core/stopwatch.h"
 #include "frame/both_sides.h"
 #include "frame/passes/pass_helpers.h"
 #include "sources/gbuffer_rays.h"
+#include "world/occupancy.h"
 
 namespace ssrlab {
 namespace {
@@ -43,6 +45,16 @@ Layered draw_layered(SourceContext& context, int layers, bool both_sides, Source
     return drawn;
 }
 
+/// Is an answer's point in doubt? It is if it lies where the ray is known to be clear, or if the ray may have met
+/// something before it that no layer shows. What the grid says of the cells around the point may be the point itself.
+bool is_doubtful(const GBufferImage& last_layer, const Occupancy& grid, const OpenRay& ray, glm::dvec3 point_ws)
+{
+    constexpr double own_cells = 2;
+    const double     met_m     = glm::distance(point_ws, ray.origin_ws);
+    return met_m < ray.clear_m ||
+           may_meet_behind(last_layer, grid, ray, met_m - own_cells * across_cell_m(grid, ray.direction_ws));
+}
+
 SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
 {
     SourceTurn         turn;
@@ -54,12 +66,25 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
     // What is seen edge-on fills no pixel, but it bounds a solid that the ray enters. Where back faces are left out, a ray
     // that comes from behind a front has met one.
     TraceSettings settings = context.trace;
-    settings.surface       = "plane_solid";
+    settings.surface       = both_sides ? "plane_sides" : "plane_solid";
     settings.behind        = both_sides ? Behind::hit : Behind::stop;
     settings.layers        = layers;
-    GBufferTrace trace     = trace_in_gbuffer(context, gbuffer, image, settings, RayStart::anywhere, rays);
-    turn.answers           = std::move(trace.answers);
-    turn.trace_ms          = trace.ms;
+    // Techniques leave the start pixel out, where a ray that begins in mid-air may meet any layer.
+    std::vector<OpenRay> begun(rays.begin(), rays.end());
+    for (OpenRay& ray : begun) ray.clear_m = before_clear_end_m(image.view, ray);
+    GBufferTrace trace = trace_in_gbuffer(context, gbuffer, image, settings, RayStart::anywhere, begun);
+    turn.answers       = std::move(trace.answers);
+    turn.trace_ms      = trace.ms;
+
+    const Occupancy& grid = occupancy_of(context.stage);
+    const Stopwatch  merging;
+    for (size_t k = 0; k < rays.size(); ++k) {
+        RayAnswer& answer = turn.answers[k];
+        if (answer.kind == AnswerKind::point && is_doubtful(image.layers.back(), grid, rays[k], answer.point_ws))
+            answer = {.kind = AnswerKind::open};
+        answer.clear_m = rays[k].clear_m;
+    }
+    turn.merge_ms = 1000 * merging.seconds();
     return turn;
 }
 

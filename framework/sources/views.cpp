@@ -22,13 +22,6 @@ struct Target {
     size_t     ray;
 };
 
-/// Returns how far a point moves along a direction from one side of a cell to the opposite one.
-double across_cell_m(const Occupancy& grid, glm::dvec3 direction)
-{
-    const glm::dvec3 cells_per_m = glm::abs(direction) / grid.cell_m;
-    return 1 / std::max({cells_per_m.x, cells_per_m.y, cells_per_m.z});
-}
-
 std::vector<Target> targets_of(const Occupancy& grid, std::span<const OpenRay> rays)
 {
     std::vector<Target> targets;

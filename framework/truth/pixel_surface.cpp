@@ -47,13 +47,18 @@ PixelSurface plane(const View& view, double depth, glm::dvec2 gradient)
         .front = depth, .back = depth - plane_tolerance(view, depth), .gradient = gradient, .sides_by_height = true};
 }
 
+std::optional<glm::dvec2> usable_gradient(const GBufferImage& gbuffer, size_t index)
+{
+    const glm::dvec2 gradient(gbuffer.gradient[index]);
+    return std::isfinite(gradient.x) && std::isfinite(gradient.y) ? std::optional(gradient) : std::nullopt;
+}
+
 /// The plane of a pixel, or its box where it has no usable plane.
 PixelSurface plane_or_box(const GBufferImage& gbuffer, size_t index, double depth, const TraceSettings& settings)
 {
-    const glm::dvec2 gradient(gbuffer.gradient[index]);
-    const bool       usable  = std::isfinite(gradient.x) && std::isfinite(gradient.y);
-    PixelSurface     surface = usable ? plane(gbuffer.view, depth, gradient) : box(gbuffer, index, depth, settings);
-    surface.sides_by_height  = true;
+    const auto   gradient   = usable_gradient(gbuffer, index);
+    PixelSurface surface    = gradient ? plane(gbuffer.view, depth, *gradient) : box(gbuffer, index, depth, settings);
+    surface.sides_by_height = true;
     return surface;
 }
 
@@ -71,17 +76,49 @@ PixelSurface plane_infinite(const GBufferImage& gbuffer, size_t index, double de
     return surface;
 }
 
+/// The next layer, where the solid behind this one ends there.
+std::optional<Face> far_side(const GBufferImage& gbuffer, int layer, size_t index, const TraceSettings& settings)
+{
+    if (layer < 0 || layer + 1 >= layer_count(gbuffer, settings)) return std::nullopt;
+    const GBufferImage& held   = layer_of(gbuffer, layer);
+    const GBufferImage& behind = layer_of(gbuffer, layer + 1);
+    const float         depth  = behind.depth[index];
+    if (held.solid_back.empty() || !(depth > 0) || depth != held.solid_back[index]) return std::nullopt;
+    return Face{double(depth), usable_gradient(behind, index).value_or(glm::dvec2(0))};
+}
+
+PixelSurface plane_of_sides(const GBufferImage& gbuffer, int layer, size_t index, double depth,
+                            const TraceSettings& settings)
+{
+    return {.front        = depth,
+            .back         = depth,
+            .gradient     = usable_gradient(layer_of(gbuffer, layer), index).value_or(glm::dvec2(0)),
+            .from_outside = true,
+            .is_far_side  = far_side(gbuffer, layer - 1, index, settings).has_value(),
+            .far_side     = far_side(gbuffer, layer, index, settings)};
+}
+
 struct Model {
     std::string_view id;
-    PixelSurface (*held_by)(const GBufferImage&, size_t index, double depth, const TraceSettings&);
+    PixelSurface (*held_by)(const GBufferImage&, int layer, size_t index, double depth, const TraceSettings&);
     bool needs_gradients = false;
 };
-constexpr std::array models = {Model{"box", box},
-                               Model{"box_two_sided", box_two_sided},
-                               Model{"box_infinite", box_infinite},
-                               Model{"plane", plane_or_box, true},
-                               Model{"plane_solid", plane_and_solid, true},
-                               Model{"plane_infinite", plane_infinite, true}};
+
+/// A model whose layers do not know of each other.
+template <PixelSurface (*held_by)(const GBufferImage&, size_t index, double depth, const TraceSettings&)>
+PixelSurface layer_alone(const GBufferImage& gbuffer, int layer, size_t index, double depth,
+                         const TraceSettings& settings)
+{
+    return held_by(layer_of(gbuffer, layer), index, depth, settings);
+}
+
+constexpr std::array models = {Model{"box", layer_alone<box>},
+                               Model{"box_two_sided", layer_alone<box_two_sided>},
+                               Model{"box_infinite", layer_alone<box_infinite>},
+                               Model{"plane", layer_alone<plane_or_box>, true},
+                               Model{"plane_solid", layer_alone<plane_and_solid>, true},
+                               Model{"plane_infinite", layer_alone<plane_infinite>, true},
+                               Model{"plane_sides", plane_of_sides, true}};
 
 const Model& model_of(const TraceSettings& settings)
 {
@@ -150,17 +187,56 @@ const GBufferImage& layer_of(const GBufferImage& gbuffer, int layer)
     return layer == 0 ? gbuffer : gbuffer.layers[static_cast<size_t>(layer) - 1];
 }
 
-std::optional<PixelSurface> pixel_surface(const GBufferImage& gbuffer, size_t index, const TraceSettings& settings)
+std::optional<PixelSurface> pixel_surface(const GBufferImage& gbuffer, int layer, size_t index,
+                                          const TraceSettings& settings)
 {
-    const double depth(gbuffer.depth[index]);
+    const double depth(layer_of(gbuffer, layer).depth[index]);
     if (!(depth > 0) || !std::isfinite(depth)) return std::nullopt;
-    PixelSurface surface = model_of(settings).held_by(gbuffer, index, depth, settings);
+    PixelSurface surface = model_of(settings).held_by(gbuffer, layer, index, depth, settings);
     surface.centre_px    = glm::dvec2(pixel_at(index, gbuffer.view.size_px)) + 0.5;
     return surface;
 }
 
+namespace {
+
+/// The ray's height over a front, and over the far side of the solid behind it.
+struct Height {
+    double front = 0, far_side = -infinity;
+};
+
+Height height_at(const PixelSurface& surface, glm::dvec3 at)
+{
+    const glm::dvec2 px(at);
+    return {at.z - surface.front_at(px), surface.far_side ? at.z - surface.far_side_at(px) : -infinity};
+}
+
+Meeting meet_from_outside(const PixelSurface& surface, const RayPart& ray)
+{
+    const Height in = height_at(surface, ray.at(ray.t_in)), out = height_at(surface, ray.at(ray.t_out));
+    const double t      = root(ray, in.front, out.front);
+    const bool   solid  = surface.far_side.has_value();
+    const bool   before = !solid || out.far_side * in.front >= in.far_side * out.front; // where it meets the front
+    if (in.front > 0) return {out.front <= 0 && !surface.is_far_side && before, false, t};
+    if (out.front > 0) return {!solid, true, t};
+    return {solid && in.far_side >= 0 && out.far_side >= 0, true, ray.t_in};
+}
+
+} // namespace
+
+double outside_in(const PixelSurface& surface, const RayPart& ray)
+{
+    const Height in = height_at(surface, ray.at(ray.t_in)), out = height_at(surface, ray.at(ray.t_out));
+    const double down = surface.is_far_side ? -infinity : std::min(in.front, -out.front),
+                 up   = std::min(-in.front, out.front);
+    if (!surface.far_side) return std::max(down, up);
+    const Height met    = height_at(surface, ray.at(root(ray, in.front, out.front)));
+    const double inside = std::min({-in.front, -out.front, in.far_side, out.far_side});
+    return std::max(std::min(down, met.far_side), inside);
+}
+
 Meeting meet(const PixelSurface& surface, const RayPart& ray, double facing)
 {
+    if (surface.from_outside) return meet_from_outside(surface, ray);
     const glm::dvec3 in = ray.at(ray.t_in), out = ray.at(ray.t_out);
     const double     over_front_in = in.z - surface.front_at(glm::dvec2(in)),
                  over_front_out    = out.z - surface.front_at(glm::dvec2(out));

@@ -49,8 +49,12 @@ std::pair<double, double> depth_range(const PixelSurface& surface)
 {
     // A ray's position may leave the pixel by its rounding.
     const double reach = (0.5 + 1e-9) * (std::abs(surface.gradient.x) + std::abs(surface.gradient.y));
-    const double back  = surface.back - reach;
-    return {surface.front + reach, std::min(back, surface.solid_back)};
+    double       back  = std::min(surface.back - reach, surface.solid_back);
+    if (surface.far_side) {
+        const glm::dvec2 gradient = glm::abs(surface.far_side->gradient);
+        back                      = std::min(back, surface.far_side->depth - (0.5 + 1e-9) * (gradient.x + gradient.y));
+    }
+    return {surface.front + reach, back};
 }
 
 } // namespace
@@ -64,7 +68,7 @@ ScreenWalk::ScreenWalk(const GBufferImage& gbuffer, const TraceSettings& setting
     for (size_t i = 0; i < cells_.size(); ++i) {
         cells_[i] = {-infinite, infinite};
         for (int layer = 0; layer < layer_count(gbuffer, settings); ++layer) {
-            const auto surface = pixel_surface(layer_of(gbuffer, layer), i, settings);
+            const auto surface = pixel_surface(gbuffer, layer, i, settings);
             if (!surface) continue;
             const auto [nearest, farthest] = depth_range(*surface);
             cells_[i].front                = std::max(cells_[i].front, std::nextafter(float(nearest), infinite));
@@ -79,7 +83,7 @@ bool ScreenWalk::ends_at(size_t index, const RayPart& part, glm::dvec3 direction
     Meeting first{.t = infinity};
     for (int layer = 0; layer < layer_count(gbuffer_, settings_); ++layer) {
         const GBufferImage& image   = layer_of(gbuffer_, layer);
-        const auto          surface = pixel_surface(image, index, settings_);
+        const auto          surface = pixel_surface(gbuffer_, layer, index, settings_);
         if (!surface) continue;
         const Meeting meeting = meet(*surface, part, glm::dot(glm::dvec3(image.normal_vs[index]), direction_vs));
         const bool    passes  = meeting.from_behind && settings_.behind == Behind::pass;

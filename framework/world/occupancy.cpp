@@ -107,6 +107,12 @@ Occupancy make_occupancy(const Scene& scene, int side)
     return grid;
 }
 
+double across_cell_m(const Occupancy& grid, glm::dvec3 direction)
+{
+    const glm::dvec3 cells_per_m = glm::abs(direction) / grid.cell_m;
+    return 1 / std::max({cells_per_m.x, cells_per_m.y, cells_per_m.z});
+}
+
 double first_occupied(const Occupancy& grid, glm::dvec3 origin_ws, glm::dvec3 direction_ws, double from_m, double to_m)
 {
     if (grid.cells.x == 0) return infinity;

@@ -18,6 +18,9 @@ struct Occupancy {
 /// Returns the grid, with `side` cells along each axis. Conservative: a cell is empty only if no triangle touches it.
 Occupancy make_occupancy(const Scene& scene, int side = 512);
 
+/// Returns how far a point moves along a unit direction from one side of a cell to the opposite one.
+double across_cell_m(const Occupancy& grid, glm::dvec3 direction);
+
 /// Returns the middles of side³ equal parts of a box that lie in empty cells of the grid.
 std::vector<glm::dvec3> free_places(const Occupancy& grid, glm::dvec3 low_ws, glm::dvec3 high_ws, int side);
 

@@ -49,8 +49,8 @@ class Test(Case):
         self.ssrlab("--techniques", "mine", "show", "surface", says=["box | ", "sloped_slab", "default plane_solid"])
         listed = json.loads(self.ssrlab("--techniques", "mine", "list", "--json"))
         truths = {one["name"]: one["screen_truth"] for one in listed["surfaces"]}
-        self.assertEqual(truths, {"box": True, "box_infinite": True, "box_two_sided": True, "plane": True, "plane_infinite": True, "plane_solid": True,
-                                  "sloped_slab": False})
+        self.assertEqual(truths, {"box": True, "box_infinite": True, "box_two_sided": True, "plane": True, "plane_infinite": True, "plane_sides": True,
+                                  "plane_solid": True, "sloped_slab": False})
         self.ssrlab("show", "plane_solid", says=["gradient, solid", "screen truth: yes", "Gustafsson"])
 
     def test_is_swept_and_its_missing_truth_is_said(self):

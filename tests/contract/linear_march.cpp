@@ -59,7 +59,7 @@ struct Marcher {
     {
         const GBufferImage& held    = layer_of(image, layer);
         const size_t        i       = pixel_index(pixel, image.view.size_px);
-        const auto          surface = pixel_surface(held, i, settings);
+        const auto          surface = pixel_surface(image, layer, i, settings);
         if (!surface) return {};
         return meet(*surface, {ray.origin_px_depth, ray.delta_px_depth, t_in, t_out},
                     glm::dot(glm::dvec3(held.normal_vs[i]), ray.direction_vs));

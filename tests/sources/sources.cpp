@@ -4,6 +4,8 @@
 #include "sources/answer_rays.h"
 #include "sources/cube_rays.h"
 #include "truth/scene_truth.h"
+#include "unit/truth_scenes.h"
+#include "world/occupancy.h"
 
 namespace ssrlab::test {
 namespace {
@@ -249,6 +251,29 @@ TEST(Sources, ARayIsSeenWhereItIsInsideThePicture)
     // Away behind the camera, and what is clear already.
     EXPECT_FALSE(seen_part(view, {0, {0, 0, 4}, {0, 0, 1}, 4, 0, infinity}).has_value());
     EXPECT_FALSE(seen_part(view, {0, {0, 0, -2}, {1, 0, 0}, 2, 2.5, infinity}).has_value());
+}
+
+// A wall at 4 m is all that the layer shows. A board stands behind it, at 6 m.
+TEST(Sources, WhatNoLayerShowsIsInDoubtWhereTheGridIsNotEmpty)
+{
+    const View   view = camera_to_view(camera_at({0, 0, 0}, {0, 0, -1}), {64, 64});
+    GBufferImage layer;
+    layer.view = view;
+    layer.depth.assign(pixel_count(view.size_px), float(distance_to_depth(view, 4)));
+    layer.gradient.assign(layer.depth.size(), glm::vec2(0));
+    Scene scene;
+    add_quad(scene, add_material(scene, {1, 1, 1}, 0), {-1, -1, -6}, {2, 0, 0}, {0, 2, 0});
+    add_quad(scene, add_material(scene, {1, 1, 1}, 0), {-3, -1, -9}, {1, 0, 0}, {0, 2, 0});
+    const Occupancy grid = make_occupancy(scene);
+    const OpenRay   into{0, {0.5, 0, -3}, glm::normalize(glm::dvec3(-0.1, 0.01, -1)), 3, 0, 1e9};
+    EXPECT_TRUE(may_meet_behind(layer, grid, into, 5));
+    EXPECT_FALSE(may_meet_behind(layer, grid, into, 2.5)); // it ends before the board
+    const OpenRay past{0, {-2, 0, -3}, glm::normalize(glm::dvec3(0.01, 0.01, -1)), 3, 0, 1e9};
+    EXPECT_FALSE(may_meet_behind(layer, grid, past, 5)); // behind the wall, through empty cells
+    layer.depth.assign(layer.depth.size(), float(distance_to_depth(view, 8)));
+    EXPECT_FALSE(may_meet_behind(layer, grid, into, 4)); // before the wall: the layers show the board
+    layer.depth.assign(layer.depth.size(), 0);
+    EXPECT_FALSE(may_meet_behind(layer, grid, into, 5)); // nothing follows the layer before
 }
 
 TEST(Sources, ListsAreChecked)

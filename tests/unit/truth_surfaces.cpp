@@ -192,6 +192,55 @@ TEST(SurfaceModels, SolidReachesFromTheBackToItsFarSide)
     EXPECT_EQ(answer(unknown, ray_through(0.02, 0.02), "plane_solid").status, TraceStatus::left_screen);
 }
 
+/// A solid from depth d to b at the pixel's centre, as two layers of both sides.
+GBufferImage front_and_far_side(double d, glm::vec2 gradient, double b, glm::vec2 far_gradient)
+{
+    GBufferImage gbuffer = single_pixel(d, gradient, float(b));
+    gbuffer.layers       = {single_pixel(b, far_gradient)};
+    return gbuffer;
+}
+
+WalkResult answer_of_sides(const GBufferImage& gbuffer, const ScreenRay& ray)
+{
+    return ScreenWalk(gbuffer, {.behind = Behind::hit, .surface = "plane_sides", .layers = 2}).walk(ray);
+}
+
+TEST(SurfaceModels, SidesOfPlanesAreMetFromOutside)
+{
+    constexpr double   d = 1 / 32.0, b = 1 / 64.0;
+    const GBufferImage solid = front_and_far_side(d, {0, 0}, b, {0, 0});
+    const auto meets = [&](double z_in, double z_out) { return answer_of_sides(solid, ray_through(z_in, z_out)); };
+    expect_at(meets(d + 0.001, d - 0.001), TraceStatus::hit, t_middle);
+    EXPECT_EQ(meets(d + 0.001, d - 0.001).hit_layer, 0);
+    expect_at(meets(b - 0.001, b + 0.001), TraceStatus::hit, t_middle);
+    EXPECT_EQ(meets(b - 0.001, b + 0.001).hit_layer, 1);
+    expect_at(meets(0.02, 0.02), TraceStatus::hit, t_in); // it came in through a side that fills no pixel
+    EXPECT_EQ(meets(0.02, 0.02).hit_layer, 0);
+    for (const auto& [z_in, z_out] :
+         {std::pair(0.02, b - 0.001), {0.02, d + 0.001}, {d + 0.002, d + 0.001}, {0.01, 0.012}})
+        EXPECT_EQ(meets(z_in, z_out).status, TraceStatus::left_screen) << z_in << " to " << z_out;
+    // Without a far side it is a sheet that both sides stop at, and holds nothing behind it.
+    GBufferImage sheet = solid;
+    sheet.solid_back.assign(sheet.solid_back.size(), 0);
+    expect_at(answer_of_sides(sheet, ray_through(d - 0.001, d + 0.001)), TraceStatus::hit, t_middle);
+    EXPECT_EQ(answer_of_sides(sheet, ray_through(0.02, 0.02)).status, TraceStatus::left_screen);
+}
+
+// At an outline the planes of both sides bend toward each other, and cross where the solid ends.
+TEST(SurfaceModels, SidesOfPlanesEndWhereTheyCross)
+{
+    constexpr double   d = 1 / 32.0, g = 1 / 512.0, e = 1 / 4096.0, b = d - 2 * e;
+    const GBufferImage outline = front_and_far_side(d, {-g, 0}, b, {g, 0});
+    const GBufferImage level   = front_and_far_side(d, {0, 0}, b, {0, 0});
+    // They cross 1/8 px behind the centre. Until there, a ray of depth d - e is between them.
+    expect_at(answer_of_sides(level, ray_through(d - e, d - e)), TraceStatus::hit, t_in);
+    EXPECT_EQ(answer_of_sides(outline, ray_through(d - e, d - e)).status, TraceStatus::left_screen);
+    // Down through the front before that place, and behind it.
+    expect_at(answer_of_sides(outline, ray_through(d + g / 2 + e, d - g / 2 - 5 * e)), TraceStatus::hit,
+              t_in + (t_out - t_in) / 6);
+    EXPECT_EQ(answer_of_sides(outline, ray_through(d + g / 2 + 5 * e, d - g / 2 - e)).status, TraceStatus::left_screen);
+}
+
 TEST(SurfaceModels, PlaneWithoutAnEndHoldsEverythingBehindIt)
 {
     constexpr double   d       = 1 / 32.0;
@@ -393,7 +442,7 @@ WalkResult first_by_sets(const GBufferImage& gbuffer, const ScreenRay& ray, cons
     best.status = ray.end_status;
     Real first = 2, passed = 0;
     for (size_t i = 0; i < gbuffer.depth.size(); ++i) {
-        const auto       surface = pixel_surface(gbuffer, i, settings);
+        const auto       surface = pixel_surface(gbuffer, 0, i, settings);
         const glm::ivec2 pixel   = pixel_at(i, gbuffer.view.size_px);
         if (!surface || pixel == ray.start_pixel) continue;
         Range inside{0, 1};

@@ -1,0 +1,2 @@
+// Order and bounds of planes.
+#include "surfaces/plane/sloped.glsl"
