@@ -51,10 +51,10 @@ class Test(Case):
 
     def rows_folder(self, *rows):
         """Of scene, run number, gloss, RMSE and FLIP."""
-        names = ["run_id", "scene", "run_number", "technique", "gloss", "trace_ms_median", "outcome", "picture_rmse", "picture_flip"]
+        names = ["run_id", "scene", "view", "width", "height", "run_number", "technique", "gloss", "trace_ms_median", "outcome", "picture_rmse", "picture_flip"]
         lines = [",".join(names)]
         for i, (scene, number, gloss, rmse, flip) in enumerate(rows):
-            lines.append(f"r{i},{scene},{number},hiz,{gloss},1,ok,{rmse},{flip}")
+            lines.append(f"r{i},{scene},default,320,180,{number},hiz,{gloss},1,ok,{rmse},{flip}")
         self.write("rows/environment.json", json.dumps({"pass_parameters": "gloss"}))
         return os.path.dirname(self.write("rows/results.csv", "\n".join(lines) + "\n"))
 
