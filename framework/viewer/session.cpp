@@ -135,7 +135,7 @@ void replace_right(Image& left, const Image& right, double share)
     for (size_t y = 0; y < static_cast<size_t>(left.size_px.y); ++y) {
         const auto row = static_cast<ptrdiff_t>(3 * y * static_cast<size_t>(width));
         std::copy(right.values.begin() + row + static_cast<ptrdiff_t>(3 * from),
-                  right.values.begin() + row + static_cast<ptrdiff_t>(3 * width),
+                  right.values.begin() + row + static_cast<ptrdiff_t>(3) * width,
                   left.values.begin() + row + static_cast<ptrdiff_t>(3 * from));
     }
 }
