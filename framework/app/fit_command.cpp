@@ -165,9 +165,9 @@ std::string measure_text(const FitGoal& goal)
 std::vector<std::string> run_command(const CommonOptions& common, const fs::path& specification, const fs::path& folder)
 {
     std::vector<std::string> command = {"ssrlab", "run", specification.string(), "-o", folder.string()};
-    if (fs::exists(folder / "results.csv")) command.push_back("--resume");
-    if (common.quiet) command.push_back("--quiet");
-    if (common.gpu.validation) command.push_back("--validation");
+    if (fs::exists(folder / "results.csv")) command.emplace_back("--resume");
+    if (common.quiet) command.emplace_back("--quiet");
+    if (common.gpu.validation) command.emplace_back("--validation");
     if (!common.gpu.device.empty()) command.insert(command.end(), {"--device", common.gpu.device});
     if (common.gpu.storage != TexelStorage::by_device)
         command.insert(

@@ -65,7 +65,7 @@ std::string unknown_name(const std::string& kind, const std::string& name, std::
     std::vector<std::string> all(known.begin(), known.end());
     all.insert(all.end(), also.begin(), also.end());
     const std::string near    = suggestion(name, all);
-    const std::string message = fmt::format("unknown {} '{}'{}", kind, name, near);
+    std::string       message = fmt::format("unknown {} '{}'{}", kind, name, near);
     if (known.empty()) return message + " (there is none)";
     if (!near.empty() && known.size() > most_names_beside_suggestion) return message;
     return message + fmt::format(" (known: {})", fmt::join(known, ", "));

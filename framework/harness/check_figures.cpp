@@ -81,7 +81,7 @@ const Record* run_of(const Figures& figures, const toml::table& panel)
                              unknown_name("column of results.csv", column, known));
         if (!node.is_value()) toml_refuse(figures.file, node, column, "one value");
         if (!figures.experiment.targets.empty()) continue;
-        std::erase_if(left, [&](const Record* run) { return !holds(*run, column, node); });
+        std::erase_if(left, [&, &wanted = node](const Record* run) { return !holds(*run, column, wanted); });
         if (left.empty())
             throw_spec_error("{}: a panel must name one run, and none has '{}' as {}, with the panel's other values",
                              toml_place(figures.file, node), column, toml_found(node));

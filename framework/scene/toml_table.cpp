@@ -133,7 +133,7 @@ std::optional<glm::ivec2> TomlTable::size_px(const char* key)
 {
     const std::optional<std::string> value = text(key);
     if (!value) return std::nullopt;
-    const std::optional<glm::ivec2> size = parse_size(*value);
+    std::optional<glm::ivec2> size = parse_size(*value);
     if (!size || size->x < 1 || size->y < 1) refuse(key, "a size in pixels such as \"1280x720\"");
     return size;
 }
