@@ -46,8 +46,8 @@ class Test(Case):
         self.assertGreaterEqual(self.text("out/plots/one.svg").count("<image"), 4)
 
     def test_a_panel_must_name_one_run(self):
-        self.ssrlab("run", self.write("few.toml", SPEC.replace("{ steps = 16 }, ", '{ technique = "linear" }, ')), "-o", "out")
-        self.ssrlab("plot", "out", code=1, says=["[figures.one]: a panel must name one run", "names 2"])
+        spec = self.write("few.toml", SPEC.replace("{ steps = 16 }, ", '{ technique = "linear" }, '))
+        self.refused("run", spec, "-o", "out", code=2, says=["a panel must name one run, this names 2"])
 
     def test_runs_of_the_documents_are_all_there(self):
         """Each panel of experiments/figures names values that its experiment sweeps; --dry-run expands it. One may have rows alone."""

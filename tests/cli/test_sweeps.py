@@ -186,14 +186,16 @@ class Test(Case):
             self.assert_complete(self.rows(), SWEEP_ROWS)
 
     def test_failed_runs_are_tried_again(self):
-        spec = self.write("s.toml", 'views = ["default", "moon"]\n' + SWEEP)
-        for written in (2 * SWEEP_ROWS, SWEEP_ROWS):
-            resume = ["--resume"] if written == SWEEP_ROWS else []
-            self.ssrlab("run", spec, "-o", "out", *resume, code=1, says=[f"{written} written now", f"{SWEEP_ROWS} of them failed"])
+        self.write("broken.glb", "no JSON")
+        spec = self.write("s.toml", SWEEP.replace("scenes = [", 'scenes = ["broken.glb", '))
+        failing = SWEEP_ROWS // 3  # a fourth scene
+        for written in (SWEEP_ROWS + failing, failing):
+            resume = ["--resume"] if written == failing else []
+            self.ssrlab("run", spec, "-o", "out", *resume, code=1, says=[f"{written} written now", f"{failing} of them failed"])
             rows = self.rows()
             self.assertEqual(len({row["run_id"] for row in rows}), len(rows))
-            self.assertEqual([len([row for row in rows if row["outcome"] == o]) for o in ("ok", "failed")], [SWEEP_ROWS] * 2)
-            self.assertTrue(all("moon" in row["message"] for row in rows if row["outcome"] == "failed"))
+            self.assertEqual([len([row for row in rows if row["outcome"] == o]) for o in ("ok", "failed")], [SWEEP_ROWS, failing])
+            self.assertTrue(all("broken.glb" in row["message"] for row in rows if row["outcome"] == "failed"))
 
     def test_resume_refuses_another_model(self):
         """Not the recipe changes but a texture that the material file of a model names."""
