@@ -89,7 +89,7 @@ void give_value(Experiment& sweep, const Catalogue& catalogue, const std::string
         known                      = true;
     }
     std::ranges::sort(parameters);
-    parameters.erase(std::ranges::unique(parameters).begin(), parameters.end());
+    parameters.erase(std::unique(parameters.begin(), parameters.end()), parameters.end());
     if (!known)
         throw_spec_error(
             "{}: {}", place,
