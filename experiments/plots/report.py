@@ -139,7 +139,7 @@ def ranking_text(results, chosen):
     if measure is None:
         return "No truth was computed, so the table compares only times and work: every setting, the fastest first."
     return (f"Each tracer at its cheapest setting that finds {goal_text(measure, target)}, with an F1 within one point of its best such "
-            f"setting. Those over a surface model over which a technique has a worse F1 than over another come behind the others that find so many. "
+            f"setting. Those with a surface model that gives some technique a worse F1 than another model does come last among those that find so many. "
             f"A tracer that never does is shown at its nearest setting. Shares are means over {chosen.frame_title.nunique()} "
             "frames. Times and the ends of their confidence intervals are geometric means.")
 

@@ -44,6 +44,7 @@ int trace_cases(const CommonOptions& common, const PictureOptions& options)
     Gpu gpu = open_gpu(common.gpu);
     for (const ExportedCase& one : cases) {
         std::vector<std::string> pairs = one.settings;
+        // What the user gives replaces the case's own: a setting may stand once.
         std::erase_if(pairs, [&](const std::string& pair) {
             const std::string start = pair.substr(0, pair.find('=') + 1);
             return std::ranges::any_of(options.parameters,

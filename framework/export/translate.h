@@ -1,4 +1,4 @@
-// From SPIR-V to other shading languages, by the program spirv-cross and, for WGSL, by naga. Folder-internal.
+// From SPIR-V to other shading languages, by the programs spirv-opt and spirv-cross and, for WGSL, naga. Folder-internal.
 #pragma once
 
 #include "export/export.h"

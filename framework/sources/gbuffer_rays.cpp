@@ -237,6 +237,17 @@ std::optional<PixelPlane> plane_of(const GBufferImage& image, glm::ivec2 pixel)
     return PixelPlane{{glm::dvec2(pixel) + 0.5, depth}, slope};
 }
 
+/// Where the line of a ray crosses the borders of a pixel toward which it runs, along x and along y: its t.
+glm::dvec2 border_t(const RayInput& ray, glm::ivec2 pixel)
+{
+    glm::dvec2 t(infinity);
+    for (int axis : {0, 1}) {
+        const double delta = ray.delta_px_depth[axis];
+        if (delta != 0) t[axis] = (pixel[axis] + (delta > 0 ? 1 : 0) - ray.origin_px_depth[axis]) / delta;
+    }
+    return t;
+}
+
 /// Techniques leave the start pixel out, because a ray leaves its own surface there. In the picture of a camera
 /// elsewhere, or where a ray is handed on in mid-air, it may meet what that pixel shows. leaves: it begins at its origin.
 void meet_start_pixel(const GBufferImage& image, const RayInput& ray, bool leaves, RayOutcome& outcome)
@@ -244,14 +255,10 @@ void meet_start_pixel(const GBufferImage& image, const RayInput& ray, bool leave
     const glm::ivec2 pixel = glm::min(glm::ivec2(ray.origin_px_depth), image.view.size_px - 1);
     const auto       plane = plane_of(image, pixel);
     if (!plane) return;
-    double t_out = 1;
-    for (int axis : {0, 1}) {
-        const double delta = ray.delta_px_depth[axis];
-        if (delta != 0)
-            t_out = std::min(t_out, (pixel[axis] + (delta > 0 ? 1 : 0) - ray.origin_px_depth[axis]) / delta);
-    }
-    const double from = plane->above(ray.origin_px_depth),
-                 to   = plane->above(ray.origin_px_depth + t_out * ray.delta_px_depth);
+    const glm::dvec2 next  = border_t(ray, pixel);
+    const double     t_out = std::min({1.0, next.x, next.y});
+    const double     from  = plane->above(ray.origin_px_depth),
+                 to        = plane->above(ray.origin_px_depth + t_out * ray.delta_px_depth);
     if (from <= (leaves ? plane->rounding() : -plane->rounding()) || to > 0 || to >= from) return;
     outcome   = {.status = TraceStatus::hit, .hit_pixel = pixel};
     outcome.t = from > 0 ? t_out * from / (from - to) : 0;
@@ -282,26 +289,21 @@ bool may_meet_behind(const GBufferImage& layer, const Occupancy& grid, const Ope
     const View&                   view = layer.view;
     const std::optional<SeenPart> part = seen_part(view, ray);
     if (!part) return false;
-    const RayInput   seen = to_input(view, ray, *part);
-    const glm::dvec3 from = seen.origin_px_depth, delta = seen.delta_px_depth;
-    glm::ivec2       pixel = glm::min(glm::ivec2(from), view.size_px - 1);
-    glm::dvec3       at    = from;
+    const RayInput seen  = to_input(view, ray, *part);
+    glm::dvec3     at    = seen.origin_px_depth;
+    glm::ivec2     pixel = glm::min(glm::ivec2(at), view.size_px - 1);
     while (glm::all(glm::greaterThanEqual(pixel, glm::ivec2(0))) && glm::all(glm::lessThan(pixel, view.size_px))) {
         const double in_m = metres_at(view, ray, at);
         if (in_m >= to_m) return false;
-        double     t_out = 1;
-        glm::dvec2 border_t(infinity);
-        for (int axis : {0, 1}) {
-            if (delta[axis] != 0) border_t[axis] = (pixel[axis] + (delta[axis] > 0 ? 1 : 0) - from[axis]) / delta[axis];
-            t_out = std::min(t_out, border_t[axis]);
-        }
-        const glm::dvec3 out   = from + t_out * delta;
+        const glm::dvec2 next  = border_t(seen, pixel);
+        const double     t_out = std::min({1.0, next.x, next.y});
+        const glm::dvec3 out   = seen.origin_px_depth + t_out * seen.delta_px_depth;
         const auto       plane = plane_of(layer, pixel);
         if (plane && plane->above(at) < 0 &&
             may_meet(grid, ray.origin_ws, ray.direction_ws, in_m, std::min(to_m, metres_at(view, ray, out))))
             return true;
         if (t_out == 1) return false;
-        for (int axis : {0, 1}) pixel[axis] += border_t[axis] > t_out ? 0 : delta[axis] > 0 ? 1 : -1;
+        for (int axis : {0, 1}) pixel[axis] += next[axis] > t_out ? 0 : seen.delta_px_depth[axis] > 0 ? 1 : -1;
         at = out;
     }
     return false;

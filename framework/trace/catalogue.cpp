@@ -80,7 +80,7 @@ template <typename Item> const Item& find(std::span<const Item> items, const std
     if (found != items.end()) return *found;
     std::vector<std::string> known;
     std::ranges::transform(items, std::back_inserter(known), &Item::id);
-    throw SpecError(unknown_name(kind, id, known) + " With --techniques DIR there are more");
+    throw SpecError(unknown_name(kind, id, known) + "; --techniques DIR adds others");
 }
 
 [[noreturn]] void refuse_fastest_exact(std::span<const Technique> techniques)

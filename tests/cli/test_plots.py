@@ -387,6 +387,13 @@ class Test(Case):
             with self.assertRaisesRegex(SystemExit, "leaves the picture of 8×6"):
                 plots.panels.cropped(picture, {"crop": crop}, "one")
 
+    def test_a_panel_must_name_one_run(self):
+        rows = pd.DataFrame([dict(technique="linear", steps=8), dict(technique="linear", steps=16), dict(technique="dda", steps=None)])
+        self.assertEqual(plots.panels.row_of(rows, {"technique": "linear", "steps": 16, "show": "causes"}, "one").name, 1)
+        for panel, message in (({"technique": "linear"}, r"\[figures.one\]: a panel must name one run, .* names 2"), ({"stride": 1}, "no column")):
+            with self.assertRaisesRegex(SystemExit, message):
+                plots.panels.row_of(rows, panel, "one")
+
     def test_names_say_what_differs(self):
         self.assertEqual(plots.paper.short_names(["hiz, stop, box", "hiz, stop, plane"]), {"hiz, stop, box": "box", "hiz, stop, plane": "plane"})
         self.assertEqual(plots.paper.short_names(["hiz", "hiz, box"]), {"hiz": "hiz", "hiz, box": "hiz, box"})
