@@ -37,6 +37,7 @@ struct SourceTurn {
     double                 draw_ms     = 0; // drawing what the source traces in
     double                 trace_ms    = 0; // deriving structures and tracing
     double                 shade_ms    = 0; // light of what was met, where no G-buffer holds it
+    double                 bounces_ms  = 0; // following what reflects there
     double                 merge_ms    = 0; // choosing the rays and merging the answers
     double                 megabytes   = 0; // of device memory that the frame alone does not need
     uint64_t               node_visits = 0; // of a hierarchy of triangles; 0: it has none

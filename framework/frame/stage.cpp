@@ -3,7 +3,7 @@
 #include "core/error.h"
 #include "frame/frame_inputs.h"
 #include "frame/passes/missed_rays.h"
-#include "world/occupancy.h"
+#include "world/grid_walk.h"
 
 namespace ssrlab {
 namespace {
@@ -35,10 +35,11 @@ const WorldPtr& world_of(Stage& stage)
     return stage.world;
 }
 
-const Occupancy& occupancy_of(Stage& stage)
+const DeviceGrid& grid_of(Stage& stage)
 {
-    if (!stage.occupancy) stage.occupancy = std::make_shared<const Occupancy>(make_occupancy(stage.scene));
-    return *stage.occupancy;
+    if (!stage.grid)
+        stage.grid = std::make_shared<const DeviceGrid>(upload_grid(stage.gpu, make_occupancy(stage.scene)));
+    return *stage.grid;
 }
 
 Stage open_stage(const Gpu& gpu, Catalogue catalogue, Scene scene)
@@ -58,7 +59,7 @@ void move_stage(Stage& stage, int frame)
         stage.scene = scene_at(stage.first, frame);
         move_scene(stage.gpu, *stage.uploaded, stage.scene);
         stage.world.reset();
-        stage.occupancy.reset();
+        stage.grid.reset();
     }
     stage.frame = frame;
 }

@@ -5,22 +5,22 @@
 
 namespace ssrlab {
 
-struct Occupancy;
+struct DeviceGrid;
 struct World;
 
 struct Stage {
-    Gpu                              gpu;
-    Catalogue                        catalogue;
-    Scene                            first;    // in frame 0
-    Scene                            scene;    // in the frame that is shown
-    GpuScenePtr                      uploaded; // null for a frame file, which has no triangles
-    View                             view;
-    std::optional<FrameMotion>       motion;  // since the frame before
-    DrawingPtr                       drawing; // null for a frame file
-    GBufferPtr                       gbuffer;
-    std::shared_ptr<const World>     world;     // of `scene`; null until world_of() is asked
-    std::shared_ptr<const Occupancy> occupancy; // likewise, occupancy_of()
-    int                              frame = 0; // of the sequence
+    Gpu                               gpu;
+    Catalogue                         catalogue;
+    Scene                             first;    // in frame 0
+    Scene                             scene;    // in the frame that is shown
+    GpuScenePtr                       uploaded; // null for a frame file, which has no triangles
+    View                              view;
+    std::optional<FrameMotion>        motion;  // since the frame before
+    DrawingPtr                        drawing; // null for a frame file
+    GBufferPtr                        gbuffer;
+    std::shared_ptr<const World>      world;     // of `scene`; null until world_of() is asked
+    std::shared_ptr<const DeviceGrid> grid;      // likewise, grid_of()
+    int                               frame = 0; // of the sequence
 };
 
 /// Uploads the scene. No view is shown yet.
@@ -38,7 +38,7 @@ void show(Stage& stage, const View& view);
 /// Returns the scene's triangles on the device. Throws Failure where they are more than it holds.
 const std::shared_ptr<const World>& world_of(Stage& stage);
 /// Returns which cells of the scene's bounds hold geometry.
-const Occupancy& occupancy_of(Stage& stage);
+const DeviceGrid& grid_of(Stage& stage);
 
 /// Returns the technique on the shown G-buffer, with as many layers as the settings ask for. Throws as make_lab() does.
 LabPtr make_lab(Stage& stage, const Technique& technique, const ParameterValues& values, const TraceSettings& settings);

@@ -1,5 +1,7 @@
 #include "frame/world_light.h"
 
+#include "gpu/timed_run.h"
+
 namespace ssrlab {
 namespace {
 
@@ -48,25 +50,16 @@ WorldLight shade_world(Gpu& gpu, const World& world, const GpuScene& scene, cons
         result.next.resize(rays.size());
         return result;
     }
-    const WorldRayList list       = make_ray_list(gpu, rays);
-    const Buffer       found      = make_buffer_with<WorldHit>(gpu, hits);
-    const Buffer       light      = make_buffer(gpu, rays.size() * sizeof(glm::vec3));
-    const Buffer       next       = make_buffer(gpu, rays.size() * sizeof(NextRay));
-    const ComputePass  pass       = make_shade_pass(gpu, world, scene, dfg_table, list, found, light, next);
-    const Timestamps   timestamps = make_timestamps(gpu, 2);
-    for (int turn : {0, 1}) { // a driver may compile a pipeline when it first runs
-        static_cast<void>(turn);
-        submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-            barrier(commands);
-            write_timestamp(commands, timestamps, 0);
-            record_shade(commands, pass, scene, trace, follows, list.launch);
-            barrier(commands);
-            write_timestamp(commands, timestamps, 1);
-        });
-    }
-    result.ms    = read_intervals_ms(gpu, timestamps)[0];
-    result.light = download_as<glm::vec3>(gpu, light, rays.size());
-    result.next  = download_as<NextRay>(gpu, next, rays.size());
+    const WorldRayList list  = make_ray_list(gpu, rays);
+    const Buffer       found = make_buffer_with<WorldHit>(gpu, hits);
+    const Buffer       light = make_buffer(gpu, rays.size() * sizeof(glm::vec3));
+    const Buffer       next  = make_buffer(gpu, rays.size() * sizeof(NextRay));
+    const ComputePass  pass  = make_shade_pass(gpu, world, scene, dfg_table, list, found, light, next);
+    result.ms                = time_second_run_ms(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        record_shade(commands, pass, scene, trace, follows, list.launch);
+    });
+    result.light             = download_as<glm::vec3>(gpu, light, rays.size());
+    result.next              = download_as<NextRay>(gpu, next, rays.size());
     return result;
 }
 

@@ -16,7 +16,7 @@ constexpr std::array meeting_classes = {TruthClass::visible, TruthClass::hidden,
                                         TruthClass::behind_camera, TruthClass::facing_away};
 
 constexpr std::array times = {&SourceTurn::draw_ms, &SourceTurn::trace_ms, &SourceTurn::shade_ms,
-                              &SourceTurn::merge_ms};
+                              &SourceTurn::bounces_ms, &SourceTurn::merge_ms};
 
 std::string with_class(const char* name, TruthClass cls)
 {
@@ -45,8 +45,10 @@ std::vector<Column> make_columns()
     }
     const std::vector<Column> rest = {
         {"draw_ms", "GPU time of drawing the source"},
-        {"trace_ms", "GPU time of its structures and trace"},
+        {"trace_ms", "GPU time of its structures and trace, and of the grid of occupied cells"},
         {"shade_ms", "GPU time of lighting the triangles that were met"},
+        {"bounces_ms",
+         "GPU time of following what reflects there; part of no total, as little as the frame's own bounces"},
         {"merge_ms", "time of choosing rays and merging answers on the CPU; part of no total"},
         {"choosing_ms", "time of choosing the list, in the row of its first source; 0 unless the list is `auto`"},
         {"megabytes", "device memory beyond what the frame needs"},
@@ -77,11 +79,12 @@ Record record_of_turn(const SourceTurn& turn, const SourceCounts& counts, const 
         count(with_class("handed", cls), counts.handed_of_class[static_cast<size_t>(cls)]);
         count(with_class("right", cls), counts.right_of_class[static_cast<size_t>(cls)]);
     }
-    record["draw_ms"]   = turn.draw_ms;
-    record["trace_ms"]  = turn.trace_ms;
-    record["shade_ms"]  = turn.shade_ms;
-    record["merge_ms"]  = turn.merge_ms;
-    record["megabytes"] = turn.megabytes;
+    record["draw_ms"]    = turn.draw_ms;
+    record["trace_ms"]   = turn.trace_ms;
+    record["shade_ms"]   = turn.shade_ms;
+    record["bounces_ms"] = turn.bounces_ms;
+    record["merge_ms"]   = turn.merge_ms;
+    record["megabytes"]  = turn.megabytes;
     count("node_visits", turn.node_visits);
     count("all_rays", so_far.rays);
     count("all_meeting", so_far.meeting);

@@ -3,12 +3,12 @@
 #include "core/stopwatch.h"
 #include "frame/passes/pass_helpers.h"
 #include "sources/gbuffer_rays.h"
-#include "world/occupancy.h"
+#include "world/grid_walk.h"
 
 namespace ssrlab {
 namespace {
 
-RayAnswer answer_of(const SourceContext& context, const Occupancy& occupancy, const OpenRay& ray, bool in_sight)
+RayAnswer answer_of(const SourceContext& context, const OpenRay& ray, bool in_sight)
 {
     const TraceImage& traced = context.traced;
     const size_t      i      = ray.pixel;
@@ -16,20 +16,18 @@ RayAnswer answer_of(const SourceContext& context, const Occupancy& occupancy, co
     if (!part) return {.kind = AnswerKind::open};
     const RayOutcome outcome{
         .status = traced.status[i], .hit_pixel = traced.hit_pixel[i], .hit_layer = traced.hit_layer[i]};
-    RayAnswer answer = to_answer(context, context.image, ray, *part, outcome, traced.hit_px_depth[i], in_sight);
-    cross_empty_cells(answer, context, occupancy, ray);
-    return answer;
+    return to_answer(context, context.image, ray, *part, outcome, traced.hit_px_depth[i], in_sight);
 }
 
 SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
 {
-    SourceTurn       turn;
-    const Occupancy& occupancy = occupancy_of(context.stage);
-    const Stopwatch  stopwatch;
-    const bool       in_sight = stays_in_sight(context, context.trace);
-    for (const OpenRay& ray : rays) turn.answers.push_back(answer_of(context, occupancy, ray, in_sight));
+    SourceTurn      turn;
+    const Stopwatch stopwatch;
+    const bool      in_sight = stays_in_sight(context, context.trace);
+    for (const OpenRay& ray : rays) turn.answers.push_back(answer_of(context, ray, in_sight));
     turn.merge_ms = 1000 * stopwatch.seconds();
-    turn.trace_ms = context.trace_ms;
+    turn.trace_ms = context.trace_ms + cross_empty_cells(turn.answers, context, rays);
+    if (in_sight) turn.megabytes = double(grid_of(context.stage).occupied.bytes) / 1e6;
     return turn;
 }
 

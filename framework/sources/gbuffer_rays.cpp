@@ -2,6 +2,7 @@
 
 #include "core/pixel_index.h"
 #include "trace/lab_passes.h"
+#include "world/grid_walk.h"
 
 #include <vulkan/vulkan_format_traits.hpp>
 
@@ -41,6 +42,13 @@ void clip(SeenPart& part, double height, double rate)
 }
 
 } // namespace
+
+WorldRay to_world_ray(const OpenRay& ray, double t_min_m)
+{
+    const double t_max_m = std::min(ray.reach_m, double(std::numeric_limits<float>::max()) / 4);
+    return {glm::vec3(ray.origin_ws), static_cast<float>(t_min_m), glm::vec3(ray.direction_ws),
+            static_cast<float>(t_max_m), static_cast<float>(ray.roughness)};
+}
 
 std::optional<SeenPart> seen_part(const View& view, const OpenRay& ray)
 {
@@ -144,17 +152,29 @@ void set_nothing(RayAnswer& answer, const SourceContext& context, const OpenRay&
     answer.light   = sky_radiance(context.stage.scene, ray.direction_ws);
 }
 
-void cross_empty_cells(RayAnswer& answer, const SourceContext& context, const Occupancy& grid, const OpenRay& ray)
+double cross_empty_cells(std::span<RayAnswer> answers, SourceContext& context, std::span<const OpenRay> rays)
 {
-    if (answer.kind != AnswerKind::open || answer.clear_m == 0) return;
-    const double met_m = first_occupied(grid, ray.origin_ws, ray.direction_ws, answer.clear_m, ray.reach_m);
-    if (!std::isfinite(met_m)) {
-        set_nothing(answer, context, ray, true);
-        return;
+    std::vector<WorldRay> listed;
+    std::vector<size_t>   places;
+    for (size_t k = 0; k < rays.size(); ++k) {
+        if (answers[k].kind != AnswerKind::open || answers[k].clear_m == 0) continue;
+        listed.push_back(to_world_ray(rays[k], answers[k].clear_m));
+        places.push_back(k);
     }
-    constexpr double rounding = 1e-3; // of a cell: what is followed from here has rounded origins
-    answer.clear_m =
-        std::max(answer.clear_m, met_m - rounding * std::min({grid.cell_m.x, grid.cell_m.y, grid.cell_m.z}));
+    if (listed.empty()) return 0;
+    const DeviceGrid& grid     = grid_of(context.stage);
+    const GridWalk    walk     = walk_grid(context.stage.gpu, grid, listed);
+    constexpr double  rounding = 1e-3; // of a cell: what is followed from here has rounded origins
+    const glm::dvec3  cell_m   = grid.grid.cell_m;
+    const double      back_m   = rounding * std::min({cell_m.x, cell_m.y, cell_m.z});
+    for (size_t i = 0; i < places.size(); ++i) {
+        RayAnswer& answer = answers[places[i]];
+        if (std::isfinite(walk.met_m[i]))
+            answer.clear_m = std::max(answer.clear_m, double(walk.met_m[i]) - back_m);
+        else
+            set_nothing(answer, context, rays[places[i]], true);
+    }
+    return walk.ms;
 }
 
 bool stays_in_sight(const SourceContext& context, const TraceSettings& settings)

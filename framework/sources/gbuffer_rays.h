@@ -5,6 +5,7 @@
 #include "sources/source.h"
 #include "trace/lab.h"
 #include "world/occupancy.h"
+#include "world/world.h"
 
 #include <functional>
 #include <optional>
@@ -16,6 +17,9 @@ struct SeenPart {
     double t_in_m = 0, t_out_m = 0; // t_out_m may be +inf
     bool   leaves = false;          // it ends at the image border or the near plane, not at the reach
 };
+
+/// Returns the ray from t_min_m on as shaders get it, rounded to floats.
+WorldRay to_world_ray(const OpenRay& ray, double t_min_m);
 
 /// Returns the part beyond clear_m that the camera sees; nullopt if it sees none.
 std::optional<SeenPart> seen_part(const View& view, const OpenRay& ray);
@@ -43,9 +47,10 @@ void set_nothing(RayAnswer& answer, const SourceContext& context, const OpenRay&
 RayAnswer to_answer(const SourceContext& context, const GBufferImage& image, const OpenRay& ray, const SeenPart& part,
                     const RayOutcome& outcome, glm::dvec3 at_px_depth, bool in_sight);
 
-/// Moves an open answer's clear_m on through the empty cells of the scene's grid. If they reach to the end, the answer
-/// is that the ray meets nothing, for certain. Does nothing to an answer without a clear distance.
-void cross_empty_cells(RayAnswer& answer, const SourceContext& context, const Occupancy& grid, const OpenRay& ray);
+/// Moves the clear_m of open answers on through the empty cells of the scene's grid. Where they reach to the end, the
+/// answer is that the ray meets nothing, for certain. Does nothing to answers without a clear distance. `answers`: of
+/// each ray. Returns the time on the device in milliseconds.
+double cross_empty_cells(std::span<RayAnswer> answers, SourceContext& context, std::span<const OpenRay> rays);
 
 /// Whether a camera sees every ray where it begins.
 enum class RayStart : uint8_t {

@@ -4,7 +4,7 @@
 #include "frame/both_sides.h"
 #include "frame/passes/pass_helpers.h"
 #include "sources/gbuffer_rays.h"
-#include "world/occupancy.h"
+#include "world/grid_walk.h"
 
 namespace ssrlab {
 namespace {
@@ -76,7 +76,7 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
     turn.answers       = std::move(trace.answers);
     turn.trace_ms      = trace.ms;
 
-    const Occupancy& grid = occupancy_of(context.stage);
+    const Occupancy& grid = grid_of(context.stage).grid;
     const Stopwatch  merging;
     for (size_t k = 0; k < rays.size(); ++k) {
         RayAnswer& answer = turn.answers[k];

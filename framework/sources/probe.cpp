@@ -4,7 +4,7 @@
 #include "frame/passes/pass_helpers.h"
 #include "frame/scene_pictures.h"
 #include "sources/cube_rays.h"
-#include "world/occupancy.h"
+#include "world/grid_walk.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +58,7 @@ glm::vec3 look_up(SourceContext& context, CubeOfFrames& cube, glm::dvec3 at_ws, 
 
 SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
 {
-    const Occupancy& grid   = occupancy_of(context.stage);
+    const Occupancy& grid   = grid_of(context.stage).grid;
     const glm::dvec3 eye_ws = glm::dvec3(glm::inverse(context.image.view.world_to_view)[3]);
     CubeOfFrames     cube{moved_to(context.image.view, place_of_probe(grid, eye_ws)),
                       static_cast<int>(context.parameters.at("size_px"))};

@@ -18,14 +18,10 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
         stopped.push_back(rays[k]);
         places.push_back(k);
     }
-    const Occupancy&   grid = occupancy_of(context.stage);
-    const GBufferTrace trace =
+    GBufferTrace trace =
         trace_in_gbuffer(context, context.stage.gbuffer, context.image, context.trace, RayStart::if_shown, stopped);
-    for (size_t k = 0; k < stopped.size(); ++k) {
-        turn.answers[places[k]] = trace.answers[k];
-        cross_empty_cells(turn.answers[places[k]], context, grid, stopped[k]);
-    }
-    turn.trace_ms = trace.ms;
+    turn.trace_ms = trace.ms + cross_empty_cells(trace.answers, context, stopped);
+    for (size_t k = 0; k < stopped.size(); ++k) turn.answers[places[k]] = trace.answers[k];
     return turn;
 }
 

@@ -4,7 +4,7 @@
 #include "core/stopwatch.h"
 #include "frame/passes/pass_helpers.h"
 #include "sources/cube_rays.h"
-#include "world/occupancy.h"
+#include "world/grid_walk.h"
 
 #include <algorithm>
 #include <cmath>
@@ -107,7 +107,7 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
     SourceTurn turn;
     for (const OpenRay& ray : rays) turn.answers.push_back({.kind = AnswerKind::open, .clear_m = ray.clear_m});
     const auto                    count = static_cast<size_t>(context.parameters.at("count"));
-    const Occupancy*              grid  = context.parameters.at("place") == 0 ? &occupancy_of(context.stage) : nullptr;
+    const Occupancy*              grid  = context.parameters.at("place") == 0 ? &grid_of(context.stage).grid : nullptr;
     const Stopwatch               placing;
     const std::vector<glm::dvec3> eyes = grid ? placed_by_rays(*grid, rays, count) : placed_by_scene(context, count);
     turn.merge_ms                      = 1000 * placing.seconds();

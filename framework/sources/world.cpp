@@ -11,14 +11,6 @@
 namespace ssrlab {
 namespace {
 
-WorldRay to_world_ray(const OpenRay& ray)
-{
-    const double start_m = std::max(ray.clear_m, world_start_share * ray.eye_m);
-    return {glm::vec3(ray.origin_ws), static_cast<float>(start_m), glm::vec3(ray.direction_ws),
-            static_cast<float>(std::min(ray.reach_m, double(std::numeric_limits<float>::max()) / 4)),
-            static_cast<float>(ray.roughness)};
-}
-
 RayAnswer to_answer(const SourceContext& context, const OpenRay& ray, const WorldHit& hit)
 {
     RayAnswer answer{.kind = AnswerKind::open, .clear_m = ray.clear_m};
@@ -47,7 +39,7 @@ void follow_reflections(SourceContext& context, std::vector<WorldRay> rays, std:
     for (int bounce = 0; !rays.empty(); ++bounce) {
         const WorldLight shaded =
             shade_world(gpu, world, *context.stage.uploaded, table, context.trace, bounce < bounces, rays, hits);
-        turn.shade_ms += shaded.ms;
+        (bounce == 0 ? turn.shade_ms : turn.bounces_ms) += shaded.ms;
         std::vector<WorldRay>  next_rays;
         std::vector<size_t>    next_owners;
         std::vector<glm::vec3> next_weights;
@@ -67,7 +59,7 @@ void follow_reflections(SourceContext& context, std::vector<WorldRay> rays, std:
         weights = std::move(next_weights);
         if (rays.empty()) break;
         WorldTrace trace = trace_world(gpu, world, rays);
-        turn.shade_ms += trace.ms;
+        turn.bounces_ms += trace.ms;
         hits = std::move(trace.hits);
     }
 }
@@ -76,7 +68,8 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
 {
     const World&          world = *world_of(context.stage);
     std::vector<WorldRay> listed;
-    for (const OpenRay& ray : rays) listed.push_back(to_world_ray(ray));
+    for (const OpenRay& ray : rays)
+        listed.push_back(to_world_ray(ray, std::max(ray.clear_m, world_start_share * ray.eye_m)));
     const WorldTrace trace = trace_world(context.stage.gpu, world, listed);
     SourceTurn       turn;
     for (size_t k = 0; k < rays.size(); ++k) turn.answers.push_back(to_answer(context, rays[k], trace.hits[k]));
@@ -91,14 +84,13 @@ SourceTurn answer(SourceContext& context, std::span<const OpenRay> rays)
 
 Source world_source()
 {
-    return {.id         = "world",
-            .summary    = "The scene's triangles, in a hierarchy that a shader walks",
-            .cite       = {"I. Wald et al. 2014, Embree: A Kernel Framework for Efficient CPU Ray Tracing",
-                           "T. Ize 2013, Robust BVH Ray Traversal, JCGT 2(2)"},
-            .parameters = {integer_parameter("bounces", 2, 0, 16,
-                                             "reflections that are followed at what the rays meet; their time "
-                                             "counts as shading")},
-            .answer     = answer};
+    return {
+        .id         = "world",
+        .summary    = "The scene's triangles, in a hierarchy that a shader walks",
+        .cite       = {"I. Wald et al. 2014, Embree: A Kernel Framework for Efficient CPU Ray Tracing",
+                       "T. Ize 2013, Robust BVH Ray Traversal, JCGT 2(2)"},
+        .parameters = {integer_parameter("bounces", 2, 0, 16, "reflections that are followed at what the rays meet")},
+        .answer     = answer};
 }
 
 } // namespace ssrlab

@@ -10,11 +10,23 @@ namespace ssrlab {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double slack    = 1e-6; // of a cell: wider than any rounding of a place in the grid
+constexpr double slack    = 1e-3; // of a cell: wider than any rounding of a place in the grid
 
 size_t cell_index(const Occupancy& grid, glm::ivec3 cell)
 {
     return (size_t(cell.z) * size_t(grid.cells.y) + size_t(cell.y)) * size_t(grid.cells.x) + size_t(cell.x);
+}
+
+bool is_occupied(const Occupancy& grid, glm::ivec3 cell)
+{
+    const size_t index = cell_index(grid, cell);
+    return (grid.occupied[index / 32] >> index % 32 & 1U) != 0;
+}
+
+void occupy(Occupancy& grid, glm::ivec3 cell)
+{
+    const size_t index = cell_index(grid, cell);
+    grid.occupied[index / 32] |= 1U << index % 32;
 }
 
 bool all_finite(glm::dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
@@ -72,7 +84,7 @@ void mark(Occupancy& grid, const glm::dvec3 (&corners)[3])
                  ++cell[axis]) {
                 centre[axis] = cell[axis] + 0.5;
                 if (seen[(axis + 1) % 3].may_touch(centre) && seen[(axis + 2) % 3].may_touch(centre))
-                    grid.occupied[cell_index(grid, cell)] = true;
+                    occupy(grid, cell);
             }
         }
 }
@@ -93,11 +105,12 @@ Occupancy make_occupancy(const Scene& scene, int side)
             high = glm::max(high, corner(draw, i));
         }
     if (!(low.x <= high.x)) return grid;
-    const glm::dvec3 extent = glm::max(high - low, glm::dvec3(1e-3 * glm::length(high - low) + 1e-9));
+    // Not so flat that the rounding of a place, a share of the longest side, grows beyond the slack.
+    const glm::dvec3 extent = glm::max(high - low, glm::dvec3(0.1 * glm::length(high - low) + 1e-9));
     grid.cells              = glm::ivec3(side);
     grid.cell_m             = extent * (1 + 1e-3) / double(side);
     grid.low_ws             = (low + high) / 2.0 - grid.cell_m * (double(side) / 2);
-    grid.occupied.assign(size_t(side) * size_t(side) * size_t(side), false);
+    grid.occupied.assign((size_t(side) * size_t(side) * size_t(side) + 31) / 32, 0);
     for (const Draw& draw : scene.draws)
         for (uint32_t i = 0; i + 2 < draw.index_count; i += 3) {
             glm::dvec3 corners[3];
@@ -133,7 +146,7 @@ double first_occupied(const Occupancy& grid, glm::dvec3 origin_ws, glm::dvec3 di
     // the slack.
     glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(origin + t * rate)), glm::ivec3(0), grid.cells - 1);
     while (true) {
-        if (grid.occupied[cell_index(grid, cell)]) return t;
+        if (is_occupied(grid, cell)) return t;
         int    next_axis = 0;
         double next_t    = infinity;
         for (int axis : {0, 1, 2}) {

@@ -9,13 +9,14 @@
 namespace ssrlab {
 
 struct Occupancy {
-    glm::dvec3        low_ws{0}; // of the grid, a little outside of the scene
-    glm::dvec3        cell_m{1};
-    glm::ivec3        cells{0}; // along each axis; 0: the scene has no triangles
-    std::vector<bool> occupied; // x fastest, then y
+    glm::dvec3            low_ws{0}; // of the grid, a little outside of the scene
+    glm::dvec3            cell_m{1};
+    glm::ivec3            cells{0}; // along each axis; 0: the scene has no triangles
+    std::vector<uint32_t> occupied; // a bit a cell, x fastest, then y
 };
 
-/// Returns the grid, with `side` cells along each axis. Conservative: a cell is empty only if no triangle touches it.
+/// Returns the grid, with `side` cells along each axis. Conservative: a cell is empty only if no triangle comes nearer
+/// to it than a thousandth of a cell, which is more than floats round the places of a ray (shaders/world/grid_walk.comp).
 Occupancy make_occupancy(const Scene& scene, int side = 512);
 
 /// Returns how far a point moves along a unit direction from one side of a cell to the opposite one.

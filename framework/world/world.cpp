@@ -1,5 +1,6 @@
 #include "world/world.h"
 
+#include "gpu/timed_run.h"
 #include "shared.h"
 #include "world/materials.h"
 
@@ -108,25 +109,14 @@ WorldTrace trace_world(Gpu& gpu, const World& world, std::span<const WorldRay> r
     WorldTrace trace;
     trace.hits.resize(rays.size());
     if (rays.empty() || world.tree.nodes.empty()) return trace;
-    const WorldRayList list       = make_ray_list(gpu, rays);
-    const Buffer       hits       = make_buffer(gpu, rays.size() * sizeof(WorldHit));
-    const Buffer       visits     = make_buffer(gpu, rays.size() * sizeof(uint32_t));
-    const Timestamps   timestamps = make_timestamps(gpu, 2);
-    const auto         walk       = [&](const Buffer* counted) {
-        const ComputePass pass = make_walk(gpu, world, list, hits, counted);
-        submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-            barrier(commands);
-            write_timestamp(commands, timestamps, 0);
-            dispatch_indirect(commands, pass, list.launch);
-            barrier(commands);
-            write_timestamp(commands, timestamps, 1);
-        });
-    };
-    walk(&visits);
+    const WorldRayList list     = make_ray_list(gpu, rays);
+    const Buffer       hits     = make_buffer(gpu, rays.size() * sizeof(WorldHit));
+    const Buffer       visits   = make_buffer(gpu, rays.size() * sizeof(uint32_t));
+    const ComputePass  counting = make_walk(gpu, world, list, hits, &visits),
+                      walk      = make_walk(gpu, world, list, hits, nullptr);
+    submit(gpu, [&](const vk::raii::CommandBuffer& commands) { dispatch_indirect(commands, counting, list.launch); });
     for (const uint32_t of_ray : download_as<uint32_t>(gpu, visits, rays.size())) trace.node_visits += of_ray;
-    walk(nullptr); // a driver may compile a pipeline when it first runs
-    walk(nullptr);
-    trace.ms   = read_intervals_ms(gpu, timestamps)[0];
+    trace.ms   = time_second_run_ms(gpu, [&](const auto& commands) { dispatch_indirect(commands, walk, list.launch); });
     trace.hits = download_as<WorldHit>(gpu, hits, rays.size());
     return trace;
 }

@@ -1,7 +1,9 @@
-// The grid of occupied cells against Embree: a ray that meets a triangle never passes it by.
-#include "world/occupancy.h"
+// The grid of occupied cells against Embree, on the host and on the device: a ray that meets a triangle never passes it
+// by.
+#include "gpu/device.h"
 #include "truth/scene_bvh.h"
 #include "unit/truth_scenes.h"
+#include "world/grid_walk.h"
 
 namespace ssrlab::test {
 namespace {
@@ -21,22 +23,30 @@ TEST(Occupancy, NeverDeniesWhatARayMeets)
         std::mt19937                           random(3);
         std::uniform_real_distribution<double> unit(-1, 1);
         std::vector<SceneRay>                  rays;
+        std::vector<WorldRay>                  device_rays;
         for (int i = 0; i < 20000; ++i) {
             glm::dvec3 direction(unit(random), unit(random), unit(random));
             if (i % 5 == 0) direction[i / 5 % 3] = 0;
-            rays.push_back({12.0 * glm::dvec3(unit(random), unit(random), unit(random)), direction, 0,
-                            std::numeric_limits<double>::infinity()});
+            const WorldRay ray{glm::vec3(12.0 * glm::dvec3(unit(random), unit(random), unit(random))), 0,
+                               glm::vec3(glm::normalize(direction)), 1e9F, 0};
+            device_rays.push_back(ray);
+            rays.push_back({glm::dvec3(ray.origin_ws), glm::dvec3(ray.direction_ws), 0, ray.t_max});
         }
         std::vector<SceneHit> hits(rays.size());
         embree.intersect(rays, hits);
-        size_t denied = 0, missed = 0;
+        const GridWalk walk   = walk_grid(device(), upload_grid(device(), grid), device_rays);
+        size_t         denied = 0, missed = 0, same = 0;
         for (size_t i = 0; i < rays.size(); ++i) {
-            const bool possible = may_meet(grid, rays[i].origin_ws, rays[i].direction_ws, 0, rays[i].t_max);
-            EXPECT_TRUE(possible || !hits[i].met) << "ray " << i << " with " << side << " cells a side";
+            const double met_m    = first_occupied(grid, rays[i].origin_ws, rays[i].direction_ws, 0, rays[i].t_max);
+            const bool   possible = std::isfinite(met_m);
+            EXPECT_TRUE(!hits[i].met || std::max(met_m, double(walk.met_m[i])) <= hits[i].t + 1e-5)
+                << "ray " << i << " with " << side << " cells a side";
             missed += !hits[i].met;
             denied += !hits[i].met && !possible;
+            same += possible ? std::abs(walk.met_m[i] - met_m) < 1e-4 : !std::isfinite(walk.met_m[i]);
         }
         EXPECT_GT(double(denied), (side == 64 ? 0.8 : 0.1) * double(missed)); // it is of use
+        EXPECT_GT(same, rays.size() * 99 / 100); // others pass a cell within rounding of its border
     }
 }
 
