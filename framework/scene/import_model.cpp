@@ -31,14 +31,25 @@ void warn(Import& import, const std::string& text)
     import.model.warnings.push_back(fmt::format("{}: {}", import.file.filename().string(), text));
 }
 
-/// -1 when the image cannot be used.
-int texture_number(Import& import, std::string name)
+/// The image that a material names. Where there is none at that place, which may be on another machine, it is the one of
+/// the same name beside the model.
+fs::path texture_file(const Import& import, std::string name)
 {
     std::ranges::replace(name, '\\', '/');
+    name.erase(name.find_last_not_of(" \t\r") + 1);
+    const fs::path folder = import.file.parent_path(), file = folder / name,
+                   beside = folder / fs::path(name).filename();
+    std::error_code error;
+    return !fs::exists(file, error) && fs::exists(beside, error) ? beside : file;
+}
+
+/// -1 when the image cannot be used.
+int texture_number(Import& import, const std::string& name)
+{
     const auto [found, added] = import.texture_numbers.try_emplace(name, -1);
     if (!added) return found->second;
     try {
-        const fs::path file    = import.file.parent_path() / name;
+        const fs::path file    = texture_file(import, name);
         Texture        texture = decode_image(read_regular_file(file, 1ULL << 30), file.string());
         texture.srgb           = true;
         found->second          = static_cast<int>(import.model.textures.size());

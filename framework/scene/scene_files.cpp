@@ -37,6 +37,8 @@ void add_obj_names(const fs::path& file, Files& files)
         if (space == std::string::npos || space - key < 4) continue;
         add(file.parent_path() / line.substr(line.find_first_not_of(" \t", space)), files);
         add(file.parent_path() / line.substr(line.find_last_of(" \t") + 1), files);
+        // Named by its place on another machine.
+        add(file.parent_path() / line.substr(line.find_last_of(" \t/") + 1), files);
     }
 }
 

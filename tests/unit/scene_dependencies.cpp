@@ -21,14 +21,16 @@ TEST(SceneFiles, ARecipeHasItsModelsTheirMaterialsAndTheirTextures)
 {
     const TempFolder folder;
     folder.write("models/a.obj", "# a.mtl\nmtllib my materials.mtl\r\nv 0 0 0\nvn 0 0 1\nf 1 1 1\n");
-    folder.write("models/my materials.mtl",
-                 "newmtl x\n\tmap_Kd -s 1 1 1 tex\\wood.png\nmap_Ks gone.png\nbump bump.png\n");
+    folder.write(
+        "models/my materials.mtl",
+        "newmtl x\n\tmap_Kd -s 1 1 1 tex\\wood.png\nmap_Ks gone.png\nbump bump.png\nmap_Kd C:\\my models\\oak.png \n");
     folder.write("models/tex/wood.png", "");
     folder.write("models/bump.png", "");
+    folder.write("models/oak.png", "");
     folder.write("models/other.png", "");
     const std::string recipe = folder.write("r.toml", "[[part]]\nfile = 'models/a.obj'\n[[part]]\nshape = 'box'\n");
     EXPECT_THAT(names(folder, recipe), ElementsAre("r.toml", "models/a.obj", "models/my materials.mtl",
-                                                   "models/tex/wood.png", "models/bump.png"));
+                                                   "models/tex/wood.png", "models/bump.png", "models/oak.png"));
 }
 
 TEST(SceneFiles, AGltfHasItsBuffersImagesAndViews)

@@ -320,6 +320,21 @@ TEST(SceneRecipe, WhatIsLeftOutOfObjIsNamed)
     EXPECT_THAT(placed.warnings, testing::Contains(testing::HasSubstr("m.mtl:3: a texture's scale")));
 }
 
+TEST(SceneRecipe, TexturesOfObjAreFoundBesideIt)
+{
+    const TempFolder folder;
+    const char       png[] =
+        "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\b\0\0\0\0:~\x9bU\0\0\0\nIDATx\x9c\x63h\0\0\0\x82\0\x81"
+        "w\xcdr\xb6\0\0\0\0IEND\xae\x42\x60\x82";
+    folder.write("oak.png", std::string(png, sizeof(png) - 1));
+    for (const char* name : {"oak.png \t", "C:\\my models\\oak.png", "/home/someone/oak.png"}) {
+        const Scene scene = obj_scene(folder, std::string("map_Kd ") + name + "\n");
+        EXPECT_EQ(scene.textures.size(), 1U) << name;
+        EXPECT_TRUE(scene.warnings.empty()) << name << ": " << scene.warnings.front();
+    }
+    EXPECT_THAT(obj_scene(folder, "map_Kd elm.png\n").warnings, testing::Contains(testing::HasSubstr("elm.png")));
+}
+
 TEST(SceneRecipe, VerticesHaveTheirColours)
 {
     const TempFolder folder;
