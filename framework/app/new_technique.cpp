@@ -26,6 +26,7 @@ constexpr const char* trace = R"(// Place after place along the ray, until the r
 TraceResult trace(Ray ray)
 {
     real  dt = real(stride_px) / max(length(ray.delta.xy), real(stride_px)), t = real(0);
+    real  begin = start_pixel_end_t(ray);
     Contact contact = no_contact();
     int     taken   = 0;
     while (!contact.found && t + dt <= real(1) && taken < max_steps)
@@ -33,7 +34,7 @@ TraceResult trace(Ray ray)
         ++taken;
         t           = real(taken) * dt;
         ivec2 pixel = pixel_at(ray, t);
-        if (pixel != ray.start_pixel) contact = test_pixel(ray, pixel, t - dt, t);
+        if (pixel != ray.start_pixel) contact = test_pixel(ray, pixel, max(t - dt, begin), t);
     }
     if (contact.found) return hit_at(ray, contact, t, taken);
     if (taken == max_steps) return out_of_steps(taken);

@@ -40,6 +40,13 @@ Range part_in_pixel(const RayInput& ray, glm::ivec2 pixel, double margin_px)
 // Of a pixel that only rounding puts on the ray's way.
 constexpr Claim entered_anywhere{.may_miss_between_samples = true};
 
+/// A step back from t. The first step begins where the ray leaves its start pixel: before, it lies on its own plane.
+double step_back(const GBufferImage& gbuffer, const RayInput& ray, double t, double step)
+{
+    const Range own = part_in_pixel(ray, start_pixel(gbuffer, ray), 0);
+    return step == 0 || own.empty() ? t : std::min(t, std::max(t - step, own.to));
+}
+
 double screen_length_px(const RayInput& ray) { return glm::length(glm::dvec2(ray.delta_px_depth)); }
 
 /// A thousandth of a pixel.
@@ -81,7 +88,8 @@ std::optional<Visit> Judge::possible_touch(const RayInput& ray, glm::ivec2 pixel
 {
     const Range t = part_in_pixel(ray, pixel, sliver_px);
     if (t.empty()) return std::nullopt;
-    const Visit wide = visit(ray, pixel, layer, std::max(t.from - more_t, 0.0), std::min(t.to + more_t, 1.0));
+    const Visit wide =
+        visit(ray, pixel, layer, step_back(setup_.gbuffer, ray, t.from, more_t), std::min(t.to + more_t, 1.0));
     return wide.contact >= -depth_rounding(ray, wide) ? std::optional(wide) : std::nullopt;
 }
 
@@ -134,7 +142,7 @@ std::string Judge::unsound_hit(const RayInput& ray, const RayOutcome& outcome, c
     const double step = claim.may_hit_within_a_step && outcome.steps > 0 ? outcome.t / outcome.steps : 0;
     if (outcome.hit_layer >= layer_count(setup_.gbuffer, setup_.settings))
         return fmt::format("{} and layer {}, which is not there", name(outcome), outcome.hit_layer);
-    const Visit v = visit(ray, outcome.hit_pixel, outcome.hit_layer, std::max(t.from - step, 0.0),
+    const Visit v = visit(ray, outcome.hit_pixel, outcome.hit_layer, step_back(setup_.gbuffer, ray, t.from, step),
                           std::min(t.to + step, 1.0), claim.may_miss_between_samples);
     if (!(v.contact >= -depth_rounding(ray, v)))
         return fmt::format("{}, where the ray's depth {:.9g} … {:.9g} does not meet the slab {:.9g} … {:.9g}",

@@ -26,6 +26,15 @@ real metres_to_t(Ray ray, real distance_m)
 // Screen t of a stride, in pixels along the longer axis; a shorter ray takes one stride.
 real stride_to_t(Ray ray, real stride_px) { return stride_px / max(stride_px, max(abs(ray.delta.x), abs(ray.delta.y))); }
 
+// Screen t where the ray leaves its start pixel, at most 1. A step begins there: before, the ray lies on its own plane.
+real start_pixel_end_t(Ray ray)
+{
+    real2 ahead_px = real2(ray.start_pixel) + real2(greaterThan(ray.delta.xy, real2(0))) - ray.origin.xy;
+    real  t_x      = ray.delta.x == real(0) ? real(1) : ahead_px.x / ray.delta.x;
+    real  t_y      = ray.delta.y == real(0) ? real(1) : ahead_px.y / ray.delta.y;
+    return clamp(min(t_x, t_y), real(0), real(1));
+}
+
 // Depth of a pixel, BACKGROUND_DEPTH where there is nothing; counted.
 real fetch_depth(ivec2 pixel) { return real(depth_in(fetch_pixel(pixel), pixel)); }
 

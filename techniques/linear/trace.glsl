@@ -11,14 +11,14 @@ real sample_t(Ray ray, int i)
 
 TraceResult trace(Ray ray)
 {
-    real    t_before = real(0), t = real(0);
+    real    t_begin = start_pixel_end_t(ray), t_before = t_begin, t = real(0);
     Contact contact = no_contact();
     bool    ended = false;
     int     taken = 0;
     while (!ended && !contact.found && taken < steps)
     {
         ++taken;
-        t_before    = t;
+        t_before    = max(t, t_begin);
         t           = sample_t(ray, taken);
         ended       = t > real(1);
         ivec2 pixel = pixel_at(ray, t);

@@ -122,14 +122,15 @@ struct Marcher {
     Found run()
     {
         if (!ray.traced) return {TraceStatus::not_traced};
-        double t_before = 0, t = 0;
-        bool   ended = false, found = false;
-        int    taken = 0;
+        const double begin    = std::min(part_in(ray.start_pixel).t_out, 1.0); // where the first step begins
+        double       t_before = 0, t = 0;
+        bool         ended = false, found = false;
+        int          taken = 0;
         while (!ended && !found && taken < march.steps) {
             t_before = t;
             t        = sample_t(++taken);
             ended    = t > 1;
-            found    = !ended && touches(pixel_of(t), march.interval ? t_before : t, t);
+            found    = !ended && touches(pixel_of(t), march.interval ? std::max(t_before, begin) : t, t);
         }
         const bool more = march.space == pixels && !ended && sample_t(taken + 1) <= 1;
         if (!found)
@@ -139,8 +140,8 @@ struct Marcher {
                     {},
                     0,
                     uint32_t(taken)};
-        if (march.interpolate && ray.delta_px_depth.z != 0) return interpolated(t_before, t, taken);
-        if (march.interval) return hit(pixel_of(t), t_before, t, t, taken);
+        if (march.interpolate && ray.delta_px_depth.z != 0) return interpolated(std::max(t_before, begin), t, taken);
+        if (march.interval) return hit(pixel_of(t), std::max(t_before, begin), t, t, taken);
 
         double free = t_before;
         for (int k = 0; k < march.binary_steps; ++k) {

@@ -68,6 +68,30 @@ TEST(DdaStrided, IsThePixelWalkAlongColumnsAtStrideOne)
     EXPECT_EQ(count_differences(result, walk, any_t, first), 0U) << first;
 }
 
+// A ray lies on its own plane where it begins: a step that began there would meet the floor in every next pixel.
+TEST(Strides, OverPlanesAFloorIsNotItsOwnReflection)
+{
+    TraceSettings planes = thin;
+    planes.surface       = "plane";
+    planes.behind        = Behind::stop;
+    const auto tried     = [&](std::string_view id, const ParameterValues& values) {
+        const TraceImage result = trace_with(wall_picture(), id, values, planes);
+        size_t           hits   = 0;
+        for (int y = first_floor_row; y <= last_floor_row; ++y)
+            for (int x = 0; x < 64; ++x) {
+                const size_t i = pixel_index({x, y}, result.size_px);
+                if (!has_place(result.status[i])) continue;
+                EXPECT_LT(result.hit_pixel[i].y, first_floor_row) << id << ", ray of " << x << ", " << y;
+                ++hits;
+            }
+        EXPECT_GT(hits, 600U) << id; // the wall
+    };
+    tried("dda_strided", {{"stride_px", 1}, {"jitter", 0}});
+    tried("dda_strided", {{"stride_px", 3}, {"jitter", 1}});
+    tried("linear", {{"space", 2}, {"interval", 1}});
+    tried("linear", {{"space", 1}, {"interval", 1}});
+}
+
 // A bar one pixel high: stride 8 finds it from every eighth row; shifted, its samples find it from every eighth pixel.
 TEST(DdaStrided, StepsOverABarAsOftenAsItsStrideSays)
 {

@@ -1,5 +1,6 @@
 // The judge, on rays whose verdict is obvious.
 #include "check/judge.h"
+#include "core/plane_gradient.h"
 #include "test.h"
 
 namespace ssrlab::test {
@@ -76,6 +77,25 @@ TEST(Judge, WholeStepsReachNoFartherThanAStep)
     EXPECT_EQ(judge.judge(setup.rays[0], outcome, {}).verdict, Verdict::wrong);
     outcome.steps = 4;
     EXPECT_THAT(judge.judge(setup.rays[0], outcome, whole_steps).reason, HasSubstr("does not meet the slab"));
+}
+
+// A ray lies on its own plane where it begins; no step reaches back to there.
+TEST(Judge, WholeStepsBeginBehindTheStartPixel)
+{
+    auto       setup   = two_poles();
+    const View view    = setup.gbuffer.view;
+    const auto floor_m = [&](double y_px) { return std::max(0.0, view.focal_px.y / (y_px - view.centre_px.y)); };
+    setup.gbuffer      = picture_of(view, [&](glm::ivec2 p) { return floor_m(p.y + 0.5); });
+    for (glm::vec3& normal : setup.gbuffer.normal_vs) normal = {0, 1, 0};
+    complete_gradients(setup.gbuffer);
+    setup.settings.surface = "plane";
+    setup.settings.behind  = Behind::stop;
+    const int    y         = view.size_px.y - 4;
+    const double start_m   = floor_m(y + 0.5);
+    setup.rays             = {ray_between(view, {20.5, y + 0.5, start_m}, {20.5, y - 9.5, 2 * start_m})};
+    RayOutcome outcome     = hit({20, y - 1}, 0.1);
+    outcome.steps          = 1;
+    EXPECT_EQ(Judge(setup).judge(setup.rays[0], outcome, {.may_hit_within_a_step = true}).verdict, Verdict::wrong);
 }
 
 TEST(Judge, GrazingAPixelByLessThanASliverDecidesNothing)
