@@ -5,6 +5,7 @@
 #include "core/names.h"
 #include "gpu/gpu.h"
 #include "harness/experiment.h"
+#include "sources/source.h"
 #include "truth/pixel_surface.h"
 
 #include <nlohmann/json.hpp>
@@ -116,6 +117,49 @@ int print_surface(const Surface& surface)
     return 0;
 }
 
+/// A source, a structure or a reprojection strategy.
+struct Part {
+    std::string_view             kind, use;
+    std::string                  id, summary, folder; // folder: empty for what is compiled in
+    std::span<const std::string> cite;
+    std::span<const Parameter>   parameters;
+};
+
+std::vector<Part> parts_of(const Catalogue& catalogue)
+{
+    std::vector<Part> parts;
+    for (const Source& one : all_sources())
+        parts.push_back({"source",
+                         "a source of answers: --sources LIST, in experiments [sources]; its parameters follow its "
+                         "name, NAME:PARAMETER=VALUE",
+                         one.id, one.summary, "", one.cite, one.parameters});
+    for (const Structure& one : catalogue.structures)
+        parts.push_back({"structure", "a structure: techniques name it in their structures", one.id, one.summary,
+                         one.folder.string(), one.cite, one.parameters});
+    for (const Reprojection& one : catalogue.reprojections)
+        parts.push_back({"reprojection", "a reprojection strategy: -p reprojection=NAME", one.id, one.summary,
+                         one.folder.string(), one.cite, one.parameters});
+    return parts;
+}
+
+nlohmann::json json_of(const Part& part)
+{
+    nlohmann::json json{{"name", part.id},       {"kind", part.kind},    {"summary", part.summary},
+                        {"folder", part.folder}, {"sources", part.cite}, {"parameters", nlohmann::json::array()}};
+    for (const Parameter& parameter : part.parameters) json["parameters"].push_back(json_of(parameter));
+    return json;
+}
+
+int print_part(const Part& part)
+{
+    std::puts(fmt::format("{}\n{}\n\n{}", part.id, part.summary, part.use).c_str());
+    if (!part.folder.empty()) std::puts(fmt::format("folder: {}", part.folder).c_str());
+    for (const std::string& citation : part.cite) std::puts(fmt::format("source: {}", citation).c_str());
+    if (!part.parameters.empty()) std::puts("\nParameters");
+    for (const Parameter& parameter : part.parameters) print_parameter(parameter);
+    return 0;
+}
+
 int print_setting(const Setting& setting)
 {
     std::puts(fmt::format("A setting of [{}] in experiments, and of -p\n", setting.table).c_str());
@@ -125,13 +169,12 @@ int print_setting(const Setting& setting)
 
 nlohmann::json list_as_json(const Catalogue& catalogue)
 {
-    nlohmann::json json{{"techniques", nlohmann::json::array()},
-                        {"surfaces", nlohmann::json::array()},
-                        {"scenes", nlohmann::json::array()},
-                        {"settings", nlohmann::json::array()},
-                        {"devices", nlohmann::json::array()}};
+    nlohmann::json json{{"techniques", nlohmann::json::array()}, {"surfaces", nlohmann::json::array()},
+                        {"parts", nlohmann::json::array()},      {"scenes", nlohmann::json::array()},
+                        {"settings", nlohmann::json::array()},   {"devices", nlohmann::json::array()}};
     for (const Technique& technique : catalogue.techniques) json["techniques"].push_back(json_of(technique));
     for (const Surface& surface : catalogue.surfaces) json["surfaces"].push_back(json_of(surface));
+    for (const Part& part : parts_of(catalogue)) json["parts"].push_back(json_of(part));
     for (const SceneListing& scene : list_scenes())
         json["scenes"].push_back({{"name", scene.name}, {"summary", scene.summary}});
     for (const Setting& setting : all_settings(catalogue)) {
@@ -210,6 +253,13 @@ int list_everything(const CommonOptions& common, bool json)
     std::puts("\nSurface models: what a pixel is taken to hold");
     for (const Surface& surface : catalogue.surfaces)
         std::puts(fmt::format("  {:<16} {}", surface.id, surface.summary).c_str());
+    for (const auto& [kind, title] : {std::pair("source", "Sources: where the answer to a ray may come from"),
+                                      std::pair("structure", "Structures: what techniques read besides the G-buffer"),
+                                      std::pair("reprojection", "Reprojection strategies")}) {
+        std::puts(fmt::format("\n{}", title).c_str());
+        for (const Part& part : parts_of(catalogue))
+            if (part.kind == kind) std::puts(fmt::format("  {:<16} {}", part.id, part.summary).c_str());
+    }
     std::puts("\nScenes (besides any .glb, .gltf, recipe .toml or frame .exr by its path)");
     for (const SceneListing& scene : list_scenes())
         std::puts(fmt::format("  {:<26} {}", scene.name, scene.summary).c_str());
@@ -250,11 +300,15 @@ int show_entry(const CommonOptions& common, const std::string& name, bool json)
         return show(*found, print_surface);
     if (const auto found = std::ranges::find(settings, name, &Setting::name); found != settings.end())
         return show(*found, print_setting);
+    const std::vector<Part> parts = parts_of(catalogue);
+    if (const auto found = std::ranges::find(parts, name, &Part::id); found != parts.end())
+        return show(*found, print_part);
     std::vector<std::string> known;
     for (const Technique& one : techniques) known.push_back(one.id);
     for (const Surface& one : surfaces) known.push_back(one.id);
     for (const Setting& one : settings) known.push_back(one.name);
-    throw_spec_error("{}", unknown_name("technique, surface model or setting", name, known));
+    for (const Part& one : parts) known.push_back(one.id);
+    throw_spec_error("{}", unknown_name("technique, surface model, setting or part", name, known));
 }
 
 } // namespace ssrlab

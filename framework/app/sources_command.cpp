@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -26,31 +27,58 @@ const std::vector<Column>& asked_columns()
     return columns;
 }
 
-void print_line(const Record& source)
+/// A line for each source of a list.
+void print_table(const std::string& list, std::span<const Record> sources)
 {
-    const auto number  = [&](const char* column) { return number_of(source, column).value_or(0); };
-    const auto percent = [&](const char* part, const char* whole) {
-        return number(whole) > 0 ? 100 * number(part) / number(whole) : 0;
+    size_t wide = 0;
+    for (const Record& source : sources) wide = std::max(wide, words_of(source, "source").size());
+    const auto line = [&](const std::string& source, std::span<const std::string> cells) {
+        std::string text = fmt::format("  {:{}}", source, wide);
+        for (const std::string& cell : cells) text += fmt::format("  {:>9}", cell);
+        std::puts(text.c_str());
     };
-    std::puts(fmt::format("  {:8} handed {:6} ({:5.1f} % meet)  points {:6}, {:5.1f} % right  certain {:6}, {:5.1f} % "
-                          "right  nothing {:6}, {:5.1f} % right"
-                          "  all: recall {:5.1f} precision {:5.1f} F1 {:5.2f} %  draw {:.1f} ms, trace {:.1f} ms, "
-                          "{:.1f} MB, {} visits",
-                          words_of(source, "source"), number("handed"), percent("meeting", "handed"), number("points"),
-                          percent("right", "points"), number("certain_points"),
-                          percent("certain_right", "certain_points"), number("certain_nothing"),
-                          percent("certain_nothing_right", "certain_nothing"), 100 * number("all_recall"),
-                          100 * number("all_precision"), 100 * number("all_f1"), number("draw_ms"), number("trace_ms"),
-                          number("megabytes"), number("node_visits"))
-                  .c_str());
+    std::puts(list.c_str());
+    line("", std::array<std::string, 15>{"handed", "meet, %", "points", "right, %", "certain", "right, %", "nothing",
+                                         "right, %", "recall, %", "prec., %", "F1, %", "draw, ms", "trace, ms", "MB",
+                                         "visits"});
+    for (const Record& source : sources) {
+        const auto number  = [&](const char* column) { return number_of(source, column).value_or(0); };
+        const auto percent = [&](const char* part, const char* whole) {
+            return number(whole) > 0 ? fmt::format("{:.1f}", 100 * number(part) / number(whole)) : std::string("-");
+        };
+        const auto count = [&](const char* column) { return fmt::format("{:.0f}", number(column)); };
+        const auto share = [&](const char* column) { return fmt::format("{:.2f}", 100 * number(column)); };
+        const auto tenth = [&](const char* column) { return fmt::format("{:.1f}", number(column)); };
+        line(words_of(source, "source"),
+             std::array{count("handed"), percent("meeting", "handed"), count("points"), percent("right", "points"),
+                        count("certain_points"), percent("certain_right", "certain_points"), count("certain_nothing"),
+                        percent("certain_nothing_right", "certain_nothing"), share("all_recall"),
+                        share("all_precision"), share("all_f1"), tenth("draw_ms"), tenth("trace_ms"),
+                        tenth("megabytes"), count("node_visits")});
+    }
+}
+
+std::vector<Column> all_columns()
+{
+    std::vector<Column> columns = asked_columns();
+    columns.insert(columns.end(), source_columns().begin(), source_columns().end());
+    return columns;
+}
+
+/// Throws SpecError for a file that has other columns than what would be appended to it.
+void require_columns(const std::string& file)
+{
+    std::ifstream stream(file, std::ios::binary);
+    std::string   first;
+    if (std::getline(stream, first) && first + "\n" != csv_line(names_of(all_columns())))
+        throw_spec_error("{}: its columns are not those of this version of ssrlab; name another file", file);
 }
 
 void append(const std::string& file, const Record& asked, std::span<const Record> sources)
 {
-    std::vector<Column> columns = asked_columns();
-    columns.insert(columns.end(), source_columns().begin(), source_columns().end());
-    const bool    fresh = !std::filesystem::exists(file) || std::filesystem::file_size(file) == 0;
-    std::ofstream stream(file, std::ios::app | std::ios::binary);
+    const std::vector<Column> columns = all_columns();
+    const bool                fresh   = !std::filesystem::exists(file) || std::filesystem::file_size(file) == 0;
+    std::ofstream             stream(file, std::ios::app | std::ios::binary);
     if (fresh) stream << csv_line(names_of(columns));
     for (Record row : sources) {
         row.insert(asked.begin(), asked.end());
@@ -71,7 +99,10 @@ HandOn parse_hand_on(const std::string& text)
 int compare_sources(const CommonOptions& common, const SourcesOptions& options)
 {
     const PictureOptions& picture = options.picture;
-    if (!picture.output.empty()) require_output(picture.output, {".csv"});
+    if (!picture.output.empty()) {
+        require_output(picture.output, {".csv"});
+        require_columns(picture.output);
+    }
     std::vector<std::vector<ListedSource>> lists;
     for (const std::string& list : options.lists) lists.push_back(parse_sources(list, "--sources " + list));
     const HandOn      hand_on      = parse_hand_on(options.hand_on);
@@ -92,7 +123,7 @@ int compare_sources(const CommonOptions& common, const SourcesOptions& options)
         const ChosenSources chosen = choose_sources(context, lists[l], hand_on);
         if (!chosen.reason.empty()) std::puts(("  auto, " + chosen.reason).c_str());
         const std::vector<Record> sources = ask_sources(context, chosen, hand_on, truth);
-        for (const Record& source : sources) print_line(source);
+        print_table(options.lists[l], sources);
         const Record asked = {{"scene", picture.scene},
                               {"view", picture.view},
                               {"size", size_text(stage.view.size_px)},

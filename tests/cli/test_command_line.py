@@ -23,7 +23,7 @@ class Test(Case):
         self.ssrlab("show", "gloss", says=["[passes]", "|"])
         self.refused("show", "thicknes_m", code=2, says=["did you mean 'thickness_m'?"])
         self.assertNotIn("known:", self.refused("show", "hzi", code=2, says=["did you mean 'hiz'?"]), "a long list hides the suggestion")
-        self.assertIn("known: dda,", self.refused("show", "nothing_of_this", code=2, says=["unknown technique, surface model or setting"]))
+        self.assertIn("known: dda,", self.refused("show", "nothing_of_this", code=2, says=["unknown technique, surface model, setting or part"]))
 
     def test_json_says_what_list_and_show_say(self):
         everything = json.loads(self.ssrlab("list", "--json"))

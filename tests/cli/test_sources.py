@@ -1,4 +1,5 @@
 """Answers beyond the frame from the command line: the table, the file in long form, the picture, and what is refused."""
+import json
 import os
 import re
 
@@ -45,6 +46,15 @@ class Test(Case):
         # A second command appends.
         self.ssrlab(*SOURCES, "--sources", "frame", "-o", "sources.csv")
         self.assertEqual(len(self.rows("", "sources.csv")), 5)
+
+    def test_appends_to_no_file_of_other_columns(self):
+        self.write("other.csv", "scene,view\na,b\n")
+        self.refused(*SOURCES, "--sources", "frame", "-o", "other.csv", code=2, says=["other.csv: its columns are not those"])
+
+    def test_is_shown_with_its_parameters(self):
+        self.assertIn("probe", self.ssrlab("list"))
+        self.ssrlab("show", "views", says=["--sources", "place", "rays | scene"])
+        self.assertEqual([one["name"] for one in json.loads(self.ssrlab("show", "cube", "--json"))["parameters"]], ["size_px"])
 
     def measured_by_auto(self, *command):
         """The lists that auto measured, the one that it took first: (text, ms, F1 in %)."""
