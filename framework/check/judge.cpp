@@ -47,6 +47,15 @@ double step_back(const GBufferImage& gbuffer, const RayInput& ray, double t, dou
     return step == 0 || own.empty() ? t : std::min(t, std::max(t - step, own.to));
 }
 
+/// The last of so many equal steps up to t: equal on screen, or in space, where 1 / distance is linear on screen.
+double longest_last_step(const RayInput& ray, double t, uint32_t steps)
+{
+    if (steps == 0) return 0;
+    const double before = double(steps - 1) / steps, from = ray.origin_px_depth.z, at = from + t * ray.delta_px_depth.z;
+    const double in_space = at > 0 ? t * before * from / (at + before * (from - at)) : t;
+    return t - std::min(t * before, in_space);
+}
+
 double screen_length_px(const RayInput& ray) { return glm::length(glm::dvec2(ray.delta_px_depth)); }
 
 /// A thousandth of a pixel.
@@ -139,7 +148,7 @@ std::string Judge::unsound_hit(const RayInput& ray, const RayOutcome& outcome, c
     const Range t = part_in_pixel(ray, outcome.hit_pixel, sliver_px);
     if (t.empty() || !on_image(setup_.gbuffer, outcome.hit_pixel))
         return fmt::format("{}, a pixel that the ray does not cross", name(outcome));
-    const double step = claim.may_hit_within_a_step && outcome.steps > 0 ? outcome.t / outcome.steps : 0;
+    const double step = claim.may_hit_within_a_step ? longest_last_step(ray, outcome.t, outcome.steps) : 0;
     if (outcome.hit_layer >= layer_count(setup_.gbuffer, setup_.settings))
         return fmt::format("{} and layer {}, which is not there", name(outcome), outcome.hit_layer);
     const Visit v = visit(ray, outcome.hit_pixel, outcome.hit_layer, step_back(setup_.gbuffer, ray, t.from, step),

@@ -101,6 +101,19 @@ TEST(RunCase, ABudgetThatTheUserChoseIsNoMistake)
     EXPECT_THAT(early.findings.at(0), HasSubstr("out of steps within its budget"));
 }
 
+// Equal steps in space are no equal steps on screen: of a ray toward the camera, the last one is the longest.
+TEST(RunCase, StepsInSpaceMayBeLongerOnScreen)
+{
+    const Technique& linear = technique("linear");
+    ParameterValues  values = default_values(linear);
+    values.at("interval")   = 1;
+    for (const char* name : {"through_the_near_plane", "behind_the_eye", "off_centre"})
+        EXPECT_EQ(
+            run_case(device(), catalogue(), linear, values, "", find_case(name), {.double_precision = false}).breaks,
+            0U)
+            << name;
+}
+
 TEST(RunCase, ProvenIterationsAreABound)
 {
     for (int most : {19, 20}) {
