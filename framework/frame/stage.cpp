@@ -8,12 +8,10 @@
 namespace ssrlab {
 namespace {
 
-/// Whether the pass `missed_rays` may run, which traces the scene's triangles. Their hierarchy is built for every frame
-/// of a moving scene only if the settings insist.
+/// Whether the pass `missed_rays` may run, which traces the scene's triangles.
 bool asks_for_world(Stage& stage, const Lab& lab, const ParameterValues& passes)
 {
-    const bool too_costly = choice<MissLight>(passes) == MissLight::rooms && anything_moves(stage.first);
-    return stage.uploaded && !too_costly && choice<PassSet>(passes) == PassSet::all && asks_triangles(passes) &&
+    return stage.uploaded && choice<PassSet>(passes) == PassSet::all && asks_triangles(passes) &&
            count_gbuffer(stage.gpu, *lab.gbuffer, lab.settings).reflecting_pixels > 0;
 }
 
@@ -29,9 +27,12 @@ WorldPtr world_if_held(Stage& stage)
 
 } // namespace
 
-const WorldPtr& world_of(Stage& stage)
+const std::shared_ptr<World>& world_of(Stage& stage)
 {
-    if (!stage.world) stage.world = upload_world(stage.gpu, stage.scene);
+    if (!stage.world) {
+        stage.world = upload_world(stage.gpu, stage.first);
+        if (stage.frame != 0 && anything_moves(stage.first)) move_world(stage.gpu, *stage.world, stage.scene);
+    }
     return stage.world;
 }
 
@@ -58,7 +59,7 @@ void move_stage(Stage& stage, int frame)
     if (frame != stage.frame && anything_moves(stage.first)) {
         stage.scene = scene_at(stage.first, frame);
         move_scene(stage.gpu, *stage.uploaded, stage.scene);
-        stage.world.reset();
+        if (stage.world) move_world(stage.gpu, *stage.world, stage.scene);
         stage.grid.reset();
     }
     stage.frame = frame;

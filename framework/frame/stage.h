@@ -18,7 +18,7 @@ struct Stage {
     std::optional<FrameMotion>        motion;  // since the frame before
     DrawingPtr                        drawing; // null for a frame file
     GBufferPtr                        gbuffer;
-    std::shared_ptr<const World>      world;     // of `scene`; null until world_of() is asked
+    std::shared_ptr<World>            world;     // of `scene`; null until world_of() is asked
     std::shared_ptr<const DeviceGrid> grid;      // likewise, grid_of()
     int                               frame = 0; // of the sequence
 };
@@ -36,7 +36,7 @@ void show(Stage& stage, const std::string& view, glm::ivec2 size_px, SequenceFra
 void show(Stage& stage, const View& view);
 
 /// Returns the scene's triangles on the device. Throws Failure where they are more than it holds.
-const std::shared_ptr<const World>& world_of(Stage& stage);
+const std::shared_ptr<World>& world_of(Stage& stage);
 /// Returns which cells of the scene's bounds hold geometry.
 const DeviceGrid& grid_of(Stage& stage);
 

@@ -124,6 +124,26 @@ void add_root_of_leaf(const BuiltNode& leaf, const RTCBuildPrimitive& bounds, Fl
                                  0};
 }
 
+/// The bounds of a child: of its triangles, or of both children of the node. The empty child of a root is left alone.
+void fit(const TriangleTree& tree, uint32_t first, uint32_t count, glm::vec3& min_ws, glm::vec3& max_ws)
+{
+    if (count == 0 && first == 0) return;
+    if (count == 0) {
+        const TreeNode& node = tree.nodes[first];
+        min_ws               = glm::min(node.left_min_ws, node.right_min_ws);
+        max_ws               = glm::max(node.left_max_ws, node.right_max_ws);
+        return;
+    }
+    min_ws = max_ws = tree.triangles[first].a_ws;
+    for (uint32_t i = first; i < first + count; ++i) {
+        const TreeTriangle& triangle = tree.triangles[i];
+        for (const glm::vec3& corner : {triangle.a_ws, triangle.b_ws, triangle.c_ws}) {
+            min_ws = glm::min(min_ws, corner);
+            max_ws = glm::max(max_ws, corner);
+        }
+    }
+}
+
 } // namespace
 
 TriangleTree build_triangle_tree(const Scene& scene)
@@ -167,6 +187,23 @@ TriangleTree build_triangle_tree(const Scene& scene)
         throw_failure("scene '{}': its hierarchy of triangles has {} levels, expected at most {}", scene.name,
                       tree.depth, most_tree_depth);
     return tree;
+}
+
+void refit(TriangleTree& tree, const Scene& moved)
+{
+    for (TreeTriangle& triangle : tree.triangles) {
+        const auto corner = [&](uint32_t i) {
+            return moved.vertices[moved.indices[triangle.first_index + i]].position_ws;
+        };
+        triangle.a_ws = corner(0);
+        triangle.b_ws = corner(1);
+        triangle.c_ws = corner(2);
+    }
+    // Nodes lie behind their parents.
+    for (auto node = tree.nodes.rbegin(); node != tree.nodes.rend(); ++node) {
+        fit(tree, node->left_first, node->left_count, node->left_min_ws, node->left_max_ws);
+        fit(tree, node->right_first, node->right_count, node->right_min_ws, node->right_max_ws);
+    }
 }
 
 } // namespace ssrlab

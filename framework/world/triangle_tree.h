@@ -47,5 +47,8 @@ inline constexpr uint32_t most_tree_depth = 48;
 /// The same tree for the same scene. Throws Failure where an index, a draw or a material is out of range, or Embree
 /// fails.
 TriangleTree build_triangle_tree(const Scene& scene);
+/// Puts the triangles where the scene now has its vertices, and fits the bounds to them. The hierarchy stays as it was
+/// built: of a scene that moves, any frame comes to the same tree, whichever frame came before.
+void refit(TriangleTree& tree, const Scene& moved);
 
 } // namespace ssrlab

@@ -64,7 +64,7 @@ Bindings material_bindings(const World& world)
             {"Materials", world.materials}, {"Textures", world.textures}, {"Texels", world.texels}};
 }
 
-WorldPtr upload_world(Gpu& gpu, const Scene& scene)
+std::shared_ptr<World> upload_world(Gpu& gpu, const Scene& scene)
 {
     auto world         = std::make_shared<World>();
     world->tree        = build_triangle_tree(scene);
@@ -79,6 +79,17 @@ WorldPtr upload_world(Gpu& gpu, const Scene& scene)
                    world->materials.bytes;
     upload_textures(gpu, scene, *world);
     return world;
+}
+
+void move_world(Gpu& gpu, World& world, const Scene& moved)
+{
+    const auto replace = [&](Buffer& buffer, const auto& values) {
+        if (!values.empty()) upload(gpu, buffer, values.data(), values.size() * sizeof(values[0]));
+    };
+    refit(world.tree, moved);
+    replace(world.nodes, world.tree.nodes);
+    replace(world.triangles, world.tree.triangles);
+    replace(world.vertices, moved.vertices);
 }
 
 namespace {

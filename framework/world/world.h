@@ -37,7 +37,9 @@ using WorldPtr = std::shared_ptr<const World>;
 
 /// Builds the tree and uploads it with the scene's vertices, materials and textures. Throws Failure as
 /// build_triangle_tree().
-WorldPtr upload_world(Gpu& gpu, const Scene& scene);
+std::shared_ptr<World> upload_world(Gpu& gpu, const Scene& scene);
+/// Moves its triangles and vertices to where the scene, which is the same in another frame, has them.
+void move_world(Gpu& gpu, World& world, const Scene& moved);
 
 /// The dispatch over a list, RAYS_PER_GROUP entries to a workgroup, and the list's length. Shaders that append to a
 /// list keep it up to date on the device (shaders/world/append.glsl).

@@ -80,6 +80,35 @@ TEST(TriangleTree, ManyTrianglesInOnePlaceStayWithinTheStack)
     EXPECT_LE(tree.depth, most_tree_depth);
 }
 
+// Bounds follow what moved, up to the root, and no farther.
+TEST(TriangleTree, HoldsTrianglesWhereTheyMovedTo)
+{
+    Scene          scene;
+    const uint32_t grey = add_material(scene, {0.5, 0.5, 0.5}, 0);
+    add_quad(scene, grey, {-9, 0, -9}, {18, 0, 0}, {0, 0, 18});
+    Scene few = scene;
+    add_sphere(scene, grey, {0, 2, -3}, 1, 40);
+    for (const Scene& still : {scene, few}) {
+        Scene moved = still;
+        for (Vertex& vertex : moved.vertices) {
+            const glm::vec3 at = vertex.position_ws;
+            vertex.position_ws = at.y > 0 ? glm::vec3(at.z + 40, at.x, -at.y) : glm::vec3(at.x, at.y - 2, at.z);
+        }
+        TriangleTree tree = build_triangle_tree(still);
+        refit(tree, moved);
+        EXPECT_EQ(walk(tree).found.size(), still.indices.size() / 3);
+        glm::vec3 low = moved.vertices[0].position_ws, high = low;
+        for (const Vertex& vertex : moved.vertices) {
+            low  = glm::min(low, vertex.position_ws);
+            high = glm::max(high, vertex.position_ws);
+        }
+        const TreeNode& root = tree.nodes[0];
+        const bool      both = std::isfinite(root.right_min_ws.x);
+        EXPECT_EQ(both ? glm::min(root.left_min_ws, root.right_min_ws) : root.left_min_ws, low);
+        EXPECT_EQ(both ? glm::max(root.left_max_ws, root.right_max_ws) : root.left_max_ws, high);
+    }
+}
+
 TEST(TriangleTree, RefusesWhatReachesOutside)
 {
     Scene scene;

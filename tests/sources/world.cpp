@@ -1,7 +1,7 @@
 // The walk through the scene's triangles on the device against Embree's answers.
 #include "world/world.h"
 #include "gpu/device.h"
-#include "scene/scene.h"
+#include "scene/sequence.h"
 #include "sources/answer_rays.h"
 #include "sources/embree.h"
 #include "unit/truth_scenes.h"
@@ -21,6 +21,21 @@ TEST(World, MeetsWhatEmbreeMeets)
         EXPECT_EQ(differences.of(Cause::wrong), 0U) << differences.first_wrong;
         EXPECT_GT(differences.meeting, 15'000U);
         EXPECT_GT(differences.of(Cause::none), 39'000U); // of a third, each is at an edge
+    }
+}
+
+TEST(World, MeetsWhatHasMovedWhereItIs)
+{
+    const Scene scene = load_scene("builtin:moving_boxes");
+    const auto  world = upload_world(device(), scene);
+    for (const int frame : {9, 4}) {
+        SCOPED_TRACE(frame);
+        const Scene moved = scene_at(scene, frame);
+        move_world(device(), *world, moved);
+        Differences differences;
+        compare_with_embree(SceneBvh(moved), *world, random_rays(moved, 30'000, 7), differences);
+        EXPECT_EQ(differences.of(Cause::wrong), 0U) << differences.first_wrong;
+        EXPECT_GT(differences.meeting, 5'000U);
     }
 }
 

@@ -85,10 +85,7 @@ PassDecision decide(const FrameFacts& facts, const FrameStatistics& statistics, 
     const MissLight chosen = choice<MissLight>(values);
     if (chosen == MissLight::environment) return {PassDecision::off, "miss_light = environment"};
     if (values.at("environment_fallback") == 0) return {PassDecision::off, "environment_fallback = false"};
-    if (!facts.world)
-        return {PassDecision::off, chosen == MissLight::rooms
-                                       ? "the scene moves, or its triangles are not on the device"
-                                       : "the scene's triangles are not on the device"};
+    if (!facts.world) return {PassDecision::off, "the scene's triangles are not on the device"};
     if (statistics.gbuffer.reflecting_pixels == 0) return {PassDecision::not_needed, "no pixel reflects"};
     const MissCounts& misses = statistics.misses;
     if (misses.followed == 0) return {PassDecision::not_needed, "no ray missed"};
@@ -252,8 +249,8 @@ Pass missed_rays_pass()
                  MissLight::rooms,
                  "what a ray shows that missed. environment: what is infinitely far away. triangles: what the ray "
                  "meets in the scene, or the environment where it meets nothing; rays that stopped (behind = stop) "
-                 "are followed, too. rooms: as triangles where at least 1 % of these rays meet something and the "
-                 "scene does not move, else as environment"),
+                 "are followed, too. rooms: as triangles where at least 1 % of these rays meet something, else as "
+                 "environment"),
              integer_parameter("missed_block_px", 1, 1, 4,
                                "side of blocks of pixels: one ray of each is followed, and the "
                                "others show what the nearest of these met")},
