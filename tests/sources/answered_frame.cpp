@@ -129,13 +129,14 @@ TEST(AnsweredFrame, EveryMissedRayOfALargePictureShowsIt)
     EXPECT_EQ(shown.picture.values, shown.expected.values);
 }
 
-// The mirror glows, too, and the wall is a mirror: with a further bounce, the light of both comes back.
+// The mirror glows, too, and the wall is a mirror: two further bounces bring back the light of the wall, of the mirror
+// and of the wall again.
 TEST(AnsweredFrame, AMissedRayShowsWhatTheMetWallReflects)
 {
     const Scene   scene = mirror_before_glowing_wall(0, 1, glow);
     FrameSettings settings;
     settings.passes.insert_or_assign("miss_light", choice_value(MissLight::triangles));
-    for (const auto& [bounces, light] : {std::pair(BounceMode::off, glow), {BounceMode::direct, 2.0F * glow}}) {
+    for (const auto& [bounces, light] : {std::pair(BounceMode::off, glow), {BounceMode::direct, 3.0F * glow}}) {
         settings.passes.insert_or_assign("bounce_mode", choice_value(bounces));
         const Shown shown = shown_by(scene, "frame", light, settings);
         expect_near(shown.picture, shown.expected, 8 * double(glow.r) / 1024);

@@ -11,6 +11,8 @@ namespace {
 
 /// Of followed rays, how many meet a triangle: from here on, miss_light = rooms follows them.
 constexpr double room_share = 0.01;
+/// Further reflections that are followed at what these rays met. Beyond, ambient light stands in.
+constexpr size_t further_bounces = 2;
 
 /// The missed rays, and the one of each block that is followed.
 struct FollowedRays {
@@ -116,69 +118,89 @@ LitRays make_lit_rays(Gpu& gpu, const FrameBuffers& buffers, size_t capacity)
     return own;
 }
 
+/// The rays that go on from what others met, to find what that reflects.
+struct OnwardRays {
+    LitRays     lit;
+    Buffer      sources; // of each: its place among the rays before it
+    ComputePass list, walk, sum;
+};
+
 /// What followed rays met, and what that reflects.
 struct FollowedLight {
-    Buffer      places; // of each followed ray, in `met`
-    LitRays     met, onward;
-    Buffer      sources; // of each onward ray: its place in `met`
-    ComputePass list_met, list_onward, walk_onward, sum;
+    Buffer                  places; // of each followed ray, in `met`
+    LitRays                 met;
+    ComputePass             list_met;
+    std::vector<OnwardRays> onward;
 };
+
+OnwardRays make_onward_rays(Gpu& gpu, const PassContext& context, const LitRays& before, size_t capacity)
+{
+    const FrameBuffers& buffers = *context.frame.buffers;
+    OnwardRays          own;
+    own.lit     = make_lit_rays(gpu, buffers, capacity);
+    own.sources = make_buffer(gpu, capacity * sizeof(uint32_t));
+    own.list    = make_pass(gpu, context, "passes/followed_bounces.comp", {},
+                            {{"MetLaunch", before.list.launch},
+                             {"NextRays", before.next},
+                             {"AppendedLaunch", own.lit.list.launch},
+                             {"WorldRays", own.lit.list.rays},
+                             {"OnwardSources", own.sources}});
+    own.walk    = make_walk_pass(gpu, *buffers.world, own.lit.list, own.lit.hits);
+    Defines  defines;
+    Bindings bindings = {{"OnwardLaunch", own.lit.list.launch}, {"NextRays", before.next},
+                         {"OnwardSources", own.sources},        {"WorldHits", own.lit.hits},
+                         {"WorldLight", before.light},          {"OnwardLight", own.lit.light}};
+    add_environment(gpu, context, defines, bindings);
+    own.sum = make_pass(gpu, context, "passes/followed_light.comp", defines, bindings);
+    return own;
+}
 
 FollowedLight make_followed_light(Gpu& gpu, const PassContext& context, const FollowedRays& rays)
 {
     const FrameBuffers& buffers = *context.frame.buffers;
     const size_t        blocks  = count_blocks(context.frame);
     FollowedLight       own;
-    own.places      = make_buffer(gpu, blocks * sizeof(uint32_t));
-    own.sources     = make_buffer(gpu, blocks * sizeof(uint32_t));
-    own.met         = make_lit_rays(gpu, buffers, blocks);
-    own.onward      = make_lit_rays(gpu, buffers, blocks);
-    own.list_met    = make_pass(gpu, context, "passes/followed_hits.comp", {},
-                                {{"FollowedLaunch", rays.list.launch},
-                                 {"WorldRays", rays.list.rays},
-                                 {"WorldHits", rays.hits},
-                                 {"AppendedLaunch", own.met.list.launch},
-                                 {"MetRays", own.met.list.rays},
-                                 {"MetHits", own.met.hits},
-                                 {"MetPlaces", own.places}});
-    own.list_onward = make_pass(gpu, context, "passes/followed_bounces.comp", {},
-                                {{"MetLaunch", own.met.list.launch},
-                                 {"NextRays", own.met.next},
-                                 {"AppendedLaunch", own.onward.list.launch},
-                                 {"WorldRays", own.onward.list.rays},
-                                 {"OnwardSources", own.sources}});
-    own.walk_onward = make_walk_pass(gpu, *buffers.world, own.onward.list, own.onward.hits);
-    Defines  defines;
-    Bindings bindings = {
-        {"OnwardLaunch", own.onward.list.launch}, {"NextRays", own.met.next},    {"OnwardSources", own.sources},
-        {"WorldHits", own.onward.hits},           {"WorldLight", own.met.light}, {"OnwardLight", own.onward.light}};
-    add_environment(gpu, context, defines, bindings);
-    own.sum = make_pass(gpu, context, "passes/followed_light.comp", defines, bindings);
+    own.places   = make_buffer(gpu, blocks * sizeof(uint32_t));
+    own.met      = make_lit_rays(gpu, buffers, blocks);
+    own.list_met = make_pass(gpu, context, "passes/followed_hits.comp", {},
+                             {{"FollowedLaunch", rays.list.launch},
+                              {"WorldRays", rays.list.rays},
+                              {"WorldHits", rays.hits},
+                              {"AppendedLaunch", own.met.list.launch},
+                              {"MetRays", own.met.list.rays},
+                              {"MetHits", own.met.hits},
+                              {"MetPlaces", own.places}});
+    if (choice<BounceMode>(context.frame.plan.values) == BounceMode::off) return own;
+    for (size_t i = 0; i < further_bounces; ++i)
+        own.onward.push_back(make_onward_rays(gpu, context, i == 0 ? own.met : own.onward.back().lit, blocks));
     return own;
 }
 
 void record_followed_light(const vk::raii::CommandBuffer& commands, const FrameInputs& frame, const FollowedRays& rays,
                            const FollowedLight& own)
 {
-    const GpuScene&      scene   = *scene_of(*frame.buffers);
-    const TraceSettings& trace   = frame.lab->settings;
-    const bool           bounces = choice<BounceMode>(frame.plan.values) != BounceMode::off;
-    const auto           over    = [&](const ComputePass& pass, const Buffer& launch) {
+    const auto over = [&](const ComputePass& pass, const Buffer& launch) {
         dispatch_indirect(commands, pass, launch);
         barrier(commands);
     };
+    const auto shade = [&](const LitRays& lit, bool follows) {
+        record_shade(commands, lit.shade, *scene_of(*frame.buffers), frame.lab->settings, follows, lit.list.launch);
+        barrier(commands);
+    };
     record_empty(commands, own.met.list.launch);
-    record_empty(commands, own.onward.list.launch);
+    for (const OnwardRays& onward : own.onward) record_empty(commands, onward.lit.list.launch);
     barrier(commands);
     over(own.list_met, rays.list.launch);
-    record_shade(commands, own.met.shade, scene, trace, bounces, own.met.list.launch);
-    barrier(commands);
-    if (!bounces) return;
-    over(own.list_onward, own.met.list.launch);
-    over(own.walk_onward, own.onward.list.launch);
-    record_shade(commands, own.onward.shade, scene, trace, false, own.onward.list.launch);
-    barrier(commands);
-    over(own.sum, own.onward.list.launch);
+    shade(own.met, !own.onward.empty());
+    const LitRays* before = &own.met;
+    for (const OnwardRays& onward : own.onward) {
+        over(onward.list, before->list.launch);
+        over(onward.walk, onward.lit.list.launch);
+        shade(onward.lit, &onward != &own.onward.back());
+        before = &onward.lit;
+    }
+    for (auto onward = own.onward.rbegin(); onward != own.onward.rend(); ++onward)
+        over(onward->sum, onward->lit.list.launch);
 }
 
 RecordFunction prepare(Gpu& gpu, const PassContext& context)
