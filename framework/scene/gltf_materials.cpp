@@ -250,6 +250,10 @@ Material convert(Import& import, Textures& textures, const tinygltf::Material& s
         material.base_colour[c] = unit_range(pbr.baseColorFactor[static_cast<size_t>(c)], 1);
     if (pbr.roughnessFactor < 0 || pbr.roughnessFactor > 1 || pbr.metallicFactor < 0 || pbr.metallicFactor > 1)
         import.warn(fmt::format("{}: metallic or roughness outside [0, 1] was clamped", where));
+    if (std::ranges::any_of(source.emissiveFactor, [](double factor) { return factor < 0 || factor > 1; }))
+        import.warn(fmt::format("{}: emissive factors outside [0, 1] were clamped: KHR_materials_emissive_strength "
+                                "makes surfaces brighter",
+                                where));
     material.metallic  = unit_range(pbr.metallicFactor, 1);
     material.roughness = unit_range(pbr.roughnessFactor, 1);
     for (int c = 0; c < 3 && source.emissiveFactor.size() == 3; ++c)

@@ -21,6 +21,13 @@ struct Visit {
     bool       visible = true; // KHR_node_visibility, of the nodes above
 };
 
+/// A camera's far plane (glTF 2.0, 3.10.3).
+struct FarPlane {
+    std::string name;
+    glm::dvec3  position_ws, axis_ws;
+    double      distance_m = 0;
+};
+
 Camera camera_at(const tinygltf::Camera& source, const std::string& node_name, const glm::dmat4& to_world)
 {
     Camera camera;
@@ -40,7 +47,8 @@ Camera camera_at(const tinygltf::Camera& source, const std::string& node_name, c
     return camera;
 }
 
-void add_camera(Import& import, int camera_index, const std::string& node_name, const Visit& at)
+void add_camera(Import& import, std::vector<FarPlane>& far_planes, int camera_index, const std::string& node_name,
+                const Visit& at)
 {
     if (static_cast<size_t>(camera_index) >= import.json.cameras.size())
         import.fail("there is no camera {}", camera_index);
@@ -49,6 +57,9 @@ void add_camera(Import& import, int camera_index, const std::string& node_name, 
         const Camera camera = camera_at(source, node_name, at.to_world);
         camera_to_view(camera, camera.size_px);
         import.model.cameras.push_back(camera);
+        if (camera.projection == Projection::perspective && source.perspective.zfar > camera.near_m)
+            far_planes.push_back(
+                {camera.name, camera.position_ws, camera.target_ws - camera.position_ws, source.perspective.zfar});
         if (!at.moving) return;
         CameraPath path{camera.name, {}, 1};
         for (const glm::dmat4& to_world : *at.moving) {
@@ -112,8 +123,27 @@ struct Walk {
     std::vector<Visit>                 pending;
     std::map<Shape, std::vector<Mesh>> meshes; // read once, placed as often as nodes ask
     std::vector<bool>                  material_left_out;
+    std::vector<FarPlane>              far_planes;
     size_t                             visits = 0;
 };
+
+/// Depth buffers here have no far plane (core/view.h): what lies beyond one is drawn.
+void warn_of_far_planes(Import& import, const std::vector<FarPlane>& far_planes)
+{
+    Bounds bounds;
+    for (const Mesh& mesh : import.model.meshes)
+        for (const glm::dvec3& position_ws : mesh.positions_ws) bounds.add(position_ws);
+    if (bounds.empty()) return;
+    for (const FarPlane& plane : far_planes) {
+        const glm::dvec3 farthest_ws =
+            glm::mix(bounds.min_ws, bounds.max_ws, glm::greaterThan(plane.axis_ws, glm::dvec3(0)));
+        const double farthest_m = glm::dot(farthest_ws - plane.position_ws, plane.axis_ws);
+        if (farthest_m > plane.distance_m)
+            import.warn(fmt::format("camera '{}': zfar ({:g} m) is not supported: what lies beyond it, up to {:.3g} m "
+                                    "away, is drawn",
+                                    plane.name, plane.distance_m, farthest_m));
+    }
+}
 
 bool is_rigid(const glm::dmat4& matrix)
 {
@@ -241,7 +271,7 @@ void visit(Import& import, Walk& walk, const Visit& at)
     const glm::dmat4&     to_world = inside.to_world;
     inside.visible                 = at.visible && !is_hidden(node);
     if (node.mesh >= 0 && inside.visible) place_meshes(import, walk, inside);
-    if (node.camera >= 0) add_camera(import, node.camera, node.name, inside); // hidden or not
+    if (node.camera >= 0) add_camera(import, walk.far_planes, node.camera, node.name, inside); // hidden or not
     const tinygltf::Value* light = extension_of(node, "KHR_lights_punctual");
     if (light != nullptr && light->Has("light") && inside.visible)
         add_light(import, light->Get("light").GetNumberAsInt(), to_world, inside.moving != nullptr);
@@ -264,6 +294,7 @@ Model load_gltf(const std::filesystem::path& file)
         walk.pending.pop_back();
         gltf::visit(import, walk, next);
     }
+    gltf::warn_of_far_planes(import, walk.far_planes);
     return std::move(import.model);
 }
 

@@ -165,6 +165,10 @@ TEST(SceneGltf, MaterialsTexturesAndExtensions)
     EXPECT_EQ(material.roughness, 0) << "negative roughness is clamped";
     EXPECT_THAT(scene.warnings, Contains(HasSubstr("clamped")));
     EXPECT_EQ(material.emissive, glm::vec3(4, 2, 0));
+    file.root["materials"][0]["emissiveFactor"] = {2, 0.5, 0};
+    const Scene brighter                        = file.load();
+    EXPECT_EQ(brighter.materials[brighter.draws[0].material].emissive, glm::vec3(4, 2, 0));
+    EXPECT_THAT(brighter.warnings, Contains(HasSubstr("emissive factors outside [0, 1] were clamped")));
     EXPECT_TRUE(material.double_sided);
     EXPECT_TRUE(material.alpha_mask);
     EXPECT_FLOAT_EQ(material.alpha_cutoff, 0.25F);
@@ -277,6 +281,24 @@ TEST(SceneGltf, Cameras)
     EXPECT_EQ(plan.far_m, 50);
     EXPECT_EQ(&find_camera(scene, "default"), &scene.cameras.front()) << "a file's first camera is its default view";
     EXPECT_THROW(find_camera(scene, "nose"), SpecError);
+}
+
+// Along the view axis: the triangle's farthest corner is 5 m away, if 5.1 m from the eye.
+TEST(SceneGltf, GeometryBeyondZfarIsNamed)
+{
+    GltfFile file       = GltfFile::triangle();
+    file.root["nodes"]  = {{{"mesh", 0}}, {{"camera", 0}, {"translation", {0, 0, 5}}}};
+    file.root["scenes"] = {{{"nodes", {0, 1}}}};
+    for (const auto& [zfar, named] : {std::pair(4.5, true), {5.05, false}}) {
+        file.root["cameras"] = {{{"type", "perspective"},
+                                 {"name", "eye"},
+                                 {"perspective", {{"yfov", 1}, {"znear", 0.25}, {"zfar", zfar}}}}};
+        const auto about_it  = Contains(HasSubstr("camera 'eye': zfar (4.5 m) is not supported"));
+        if (named)
+            EXPECT_THAT(file.load().warnings, about_it);
+        else
+            EXPECT_TRUE(file.load().warnings.empty());
+    }
 }
 
 TEST(SceneGltf, ViewsBesideTheSceneComeFirst)
