@@ -24,10 +24,10 @@ Image frame_image(const GBufferImage& source)
     const bool  perspective = view.projection == Projection::perspective;
     Image       image{
         view.size_px,
-        {"depth",         "normal_vs.x",   "normal_vs.y", "normal_vs.z", "roughness", "metallic",   "base_colour.R",
-               "base_colour.G", "base_colour.B", "R",           "G",           "B",         "radiance.R", "radiance.G",
-               "radiance.B",    "highlight.R",   "highlight.G", "highlight.B", "object_id", "gradient.x", "gradient.y",
-               "solid_back",    "dielectric_f0", "emission.R",  "emission.G",  "emission.B"},
+        {"depth",         "normal_vs.x",   "normal_vs.y", "normal_vs.z", "roughness",  "metallic",     "base_colour.R",
+               "base_colour.G", "base_colour.B", "R",           "G",           "B",          "radiance.R",   "radiance.G",
+               "radiance.B",    "highlight.R",   "highlight.G", "highlight.B", "object_id",  "gradient.x",   "gradient.y",
+               "solid_back",    "dielectric_f0", "emission.R",  "emission.G",  "emission.B", "diffuse_share"},
         {},
         {}};
     image.metadata["ssrlab:world_to_view"] = matrix_text(view.world_to_view);
@@ -69,7 +69,8 @@ Image frame_image(const GBufferImage& source)
                                   dielectric_f0_at(source, i),
                                   emission.x,
                                   emission.y,
-                                  emission.z})
+                                  emission.z,
+                                  diffuse_share_at(source, i)})
             image.values.push_back(value);
         if (!moved) continue;
         image.values.push_back(source.motion_px[i].x);

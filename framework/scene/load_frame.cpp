@@ -184,8 +184,12 @@ void read_own(FrameSource& source)
     for (size_t i = 0; x && y && i < gbuffer.depth.size(); ++i)
         gbuffer.gradient.emplace_back(x->values[i], y->values[i]);
     if (const auto back = find_plane(source, "solid_back")) gbuffer.solid_back = back->values;
-    if (const auto f0 = find_plane(source, "dielectric_f0"))
-        for (size_t i = 0; i < gbuffer.depth.size(); ++i) gbuffer.dielectric_f0.push_back(share_at(source, *f0, i));
+    const auto shares = [&](const char* name, std::vector<float>& values) {
+        if (const auto plane = find_plane(source, name))
+            for (size_t i = 0; i < gbuffer.depth.size(); ++i) values.push_back(share_at(source, *plane, i));
+    };
+    shares("dielectric_f0", gbuffer.dielectric_f0);
+    shares("diffuse_share", gbuffer.diffuse_share);
 }
 
 } // namespace

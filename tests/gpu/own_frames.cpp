@@ -31,6 +31,8 @@ void expect_same(const GBufferImage& a, const GBufferImage& b)
     expect_same_bits(a.base_colour, b.base_colour, "base colour");
     expect_same_bits(a.radiance, b.radiance, "radiance");
     expect_same_bits(a.highlight, b.highlight, "highlight");
+    expect_same_bits(a.emission, b.emission, "emission");
+    expect_same_bits(a.diffuse_share, b.diffuse_share, "diffuse share");
     expect_same_bits(a.gradient, b.gradient, "gradient");
     expect_same_bits(a.solid_back, b.solid_back, "solid");
     EXPECT_EQ(a.object_id, b.object_id);

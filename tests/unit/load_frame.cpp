@@ -338,7 +338,8 @@ TEST_F(LoadFrame, UnsignedNormalsOfZeroWereNeverWrittenAndLongOnesAreNamed)
                                        HasSubstr("1 pixels have normals longer than 1.1: scaled to 1")}));
 }
 
-TEST_F(LoadFrame, OwnFramesThatWereResizedAreRefused)
+/// What frame_image() needs, of one value everywhere.
+GBufferImage whole_gbuffer()
 {
     GBufferImage gbuffer;
     gbuffer.view       = camera_to_view(Camera{}, size_px);
@@ -349,7 +350,26 @@ TEST_F(LoadFrame, OwnFramesThatWereResizedAreRefused)
     gbuffer.base_colour = gbuffer.radiance = gbuffer.highlight = std::vector<glm::vec3>(count, glm::vec3(0.5F));
     gbuffer.object_id                                          = std::vector<uint32_t>(count, 1);
     gbuffer.gradient                                           = std::vector<glm::vec2>(count, glm::vec2(0));
-    Image image                                                = frame_image(gbuffer);
+    return gbuffer;
+}
+
+// Of frames from before the channel was written, all of the light is diffuse.
+TEST_F(LoadFrame, BakedLightThatIsNotDiffuseComesBack)
+{
+    GBufferImage gbuffer = whole_gbuffer();
+    for (size_t i = 0; i < pixel_count(size_px); ++i) gbuffer.diffuse_share.push_back(static_cast<float>(i) / 64);
+    Image image = frame_image(gbuffer);
+    write_image(folder_ / "f.exr", image);
+    EXPECT_EQ(load_frame(folder_ / "f.exr").gbuffer.diffuse_share, gbuffer.diffuse_share);
+    std::ranges::replace(image.channels, std::string("diffuse_share"), std::string("other"));
+    write_image(folder_ / "f.exr", image);
+    EXPECT_EQ(diffuse_share_at(load_frame(folder_ / "f.exr").gbuffer, 7), 1);
+}
+
+TEST_F(LoadFrame, OwnFramesThatWereResizedAreRefused)
+{
+    const GBufferImage gbuffer = whole_gbuffer();
+    Image              image   = frame_image(gbuffer);
     write_image(folder_ / "f.exr", image);
     EXPECT_EQ(load_frame(folder_ / "f.exr").gbuffer.view.focal_px, gbuffer.view.focal_px);
     // As another program does it: every other pixel, and all attributes.
