@@ -97,19 +97,25 @@ template <typename Stream, typename Item> void pass_mesh(Stream& stream, Item& m
 
 // ---- The process that reads
 /// assimp 5.2.5 skips lines of OBJ that are indented, and vertices that have a coordinate such as '.5'; faces then name
-/// others. Without indents, and with '0.5'.
+/// others. It refuses comments behind the numbers of a line. Without indents and such comments, and with '0.5'.
 std::vector<unsigned char> as_assimp_reads_it(const std::vector<unsigned char>& obj)
 {
     std::vector<unsigned char> text;
     text.reserve(obj.size() + obj.size() / 8);
     const auto at       = [&](size_t i) { return i < obj.size() ? static_cast<char>(obj[i]) : '\n'; };
     const auto is_space = [](char c) { return c == ' ' || c == '\t'; };
-    bool       start = true, vertex = false; // of a line; in a line of numbers: v, vn or vt
+    bool       start = true, numbers = false, vertex = false; // of a line; in a line of numbers; in v, vn or vt
+    bool       comment = false;
     for (size_t i = 0; i < obj.size(); ++i) {
         if (start && is_space(at(i))) continue;
-        if (start) vertex = at(i) == 'v';
+        if (start) {
+            vertex  = at(i) == 'v';
+            numbers = vertex || ((at(i) == 'f' || at(i) == 'l' || at(i) == 'p') && is_space(at(i + 1)));
+        }
+        comment             = at(i) != '\n' && (comment || (numbers && at(i) == '#')); // not in names
         const size_t before = i - (i > 0 && at(i - 1) == '\r' ? 1 : 0);
         start               = at(i) == '\n' && !(before > 0 && at(before - 1) == '\\'); // a backslash: the line goes on
+        if (comment) continue;
         const bool begins =
             i > 0 && (is_space(at(i - 1)) || (i > 1 && (at(i - 1) == '-' || at(i - 1) == '+') && is_space(at(i - 2))));
         if (vertex && begins && at(i) == '.' && at(i + 1) >= '0' && at(i + 1) <= '9') text.push_back('0');

@@ -57,6 +57,21 @@ TEST(ModelFile, LinesOfObjMayBeIndentedAndNumbersBeginWithTheirPoint)
     EXPECT_NEAR(mesh.vertices[0].normal_ws.x, 0.6, 1e-6);
 }
 
+TEST(ModelFile, CommentsStandBehindNumbersAndNotInNames)
+{
+    TempFolder folder;
+    folder.write("model.mtl", "newmtl red#2\nKd 1 0 0\n");
+    const FileModel model =
+        read_model_file(folder.write("model.obj", "# first\nmtllib model.mtl\nv 0 0 0 # a\nv 1 0 0 #b\r\nv 0 1 .5# c\n"
+                                                  "usemtl red#2\nf 1 2 3 # d\n"));
+    ASSERT_EQ(model.meshes.size(), 1U);
+    const Mesh& mesh = model.meshes[0];
+    ASSERT_EQ(mesh.indices.size(), 3U);
+    EXPECT_EQ(mesh.positions_ws[mesh.indices[1]], glm::dvec3(1, 0, 0));
+    EXPECT_EQ(mesh.positions_ws[mesh.indices[2]], glm::dvec3(0, 1, 0.5));
+    EXPECT_EQ(model.materials.at(mesh.material).name, "red#2");
+}
+
 TEST(ModelFile, ACrashOfAssimpIsAnError)
 {
     TempFolder folder;

@@ -290,6 +290,19 @@ TEST(SceneRecipe, TransparentMaterialsFollowTheStatedRule)
     EXPECT_THAT(scene.warnings, Contains(HasSubstr("'thick' is 70 % opaque: drawn opaque")));
 }
 
+TEST(SceneRecipe, WhyAnObjHasNothingToDrawOrNoMaterialIsSaid)
+{
+    TempFolder        folder;
+    const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl thin\nf 1 2 3\n";
+    const std::string recipe   = folder.write("s.toml", "summary = 'x'\n[[part]]\nfile = 'm.obj'\n");
+    folder.write("m.obj", "mtllib lost.mtl\n" + triangle);
+    EXPECT_THAT(load_scene(recipe).warnings, Contains(HasSubstr("there is no material file 'lost.mtl'")));
+    folder.write("m.obj", "mtllib found.mtl\n" + triangle);
+    folder.write("found.mtl", "newmtl thin\nd 0.3\n");
+    EXPECT_THAT(error_of<Failure>(recipe),
+                HasSubstr("no triangle that can be drawn; m.obj: material 'thin' is 30 % opaque"));
+}
+
 /// The materials and warnings of a triangle in OBJ with these lines in its material file.
 Scene obj_scene(const TempFolder& folder, const std::string& material, const std::string& after_corner = "")
 {
