@@ -5,6 +5,7 @@
 #include "frame/world_light.h"
 
 #include <algorithm>
+#include <ranges>
 
 namespace ssrlab {
 namespace {
@@ -199,8 +200,7 @@ void record_followed_light(const vk::raii::CommandBuffer& commands, const FrameI
         shade(onward.lit, &onward != &own.onward.back());
         before = &onward.lit;
     }
-    for (auto onward = own.onward.rbegin(); onward != own.onward.rend(); ++onward)
-        over(onward->sum, onward->lit.list.launch);
+    for (const OnwardRays& onward : own.onward | std::views::reverse) over(onward.sum, onward.lit.list.launch);
 }
 
 RecordFunction prepare(Gpu& gpu, const PassContext& context)
