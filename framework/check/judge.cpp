@@ -12,8 +12,6 @@
 namespace ssrlab {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 struct Range {
     double from = 0, to = 0;
     bool   empty() const { return !(from <= to); }
@@ -253,7 +251,7 @@ Judgement Judge::judge(const RayInput& ray, const RayOutcome& outcome, const Cla
 std::string Judge::broken_invariant(const RayInput& ray, const RayOutcome& outcome, double most_steps) const
 {
     const Answer answer{outcome.status, outcome.hit_pixel, outcome.t, outcome.steps};
-    if (const std::string what = impossible(answer, setup_.gbuffer.view.size_px, most_steps); !what.empty())
+    if (std::string what = impossible(answer, setup_.gbuffer.view.size_px, most_steps); !what.empty())
         return what;
     if (!std::isfinite(outcome.t)) return fmt::format("t is {}", outcome.t);
     const Behind behind   = setup_.settings.behind;
