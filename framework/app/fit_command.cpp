@@ -96,29 +96,34 @@ void give_value(Experiment& sweep, const Catalogue& catalogue, const std::string
             unknown_name("parameter of the sweep's techniques", name, parameters, names_of(sweep.known_settings)));
 }
 
-/// The views of a scene that are asked for. Throws SpecError for what the scene lacks.
-std::vector<std::string> views_for(const CommonOptions& common, const FitOptions& options, const std::string& name)
+std::vector<std::string> views_of_frame(const FitOptions& options, const std::string& name)
 {
     const Scene scene = load_scene(name);
-    say_warnings(common, scene);
-    if (scene.frame && options.objective == "flip" && scene.frame->reference.empty())
+    if (options.objective == "flip" && scene.frame->reference.empty())
         throw_spec_error("{}: --objective flip: expected a frame with a 'reference', a picture of the true "
                          "reflections (docs/reference/frame_files.md)",
                          name);
-    std::vector<std::string> views = options.views;
-    if (views.empty() && scene.frame) views = {"default"};
-    if (views.empty())
-        for (const Camera& camera : scene.cameras) views.push_back(camera.name);
+    const std::vector<std::string> views = options.views.empty() ? std::vector{Camera{}.name} : options.views;
     for (const std::string& view : views)
         for (const int frame : options.frames) view_at(scene, view, {}, {frame, 0});
     return views;
 }
 
-void set_pictures(const CommonOptions& common, const FitOptions& options, Experiment& sweep)
+/// The views of a scene that are asked for. Throws SpecError for what the scene lacks.
+std::vector<std::string> views_for(const FitOptions& options, const std::string& name)
+{
+    if (is_frame(name)) return views_of_frame(options, name);
+    const ViewNames names = view_names(name);
+    for (const std::string& view : options.views)
+        if (!names.has(view)) throw SpecError(unknown_view(name, view, names));
+    return options.views.empty() ? names.cameras : options.views;
+}
+
+void set_pictures(const FitOptions& options, Experiment& sweep)
 {
     sweep.scenes = options.scenes;
     sweep.scene_views.clear();
-    for (const std::string& scene : options.scenes) sweep.scene_views[scene] = views_for(common, options, scene);
+    for (const std::string& scene : options.scenes) sweep.scene_views[scene] = views_for(options, scene);
     if (!options.size.empty()) sweep.sizes_px = {size_option(options.size)};
     sweep.sizes_px.resize(1);
     sweep.frames.clear();
@@ -146,7 +151,7 @@ Experiment load_sweep(const CommonOptions& common, const FitOptions& options, co
     const fs::path shipped = data_root() / "experiments" / ("fit_" + options.objective + ".toml");
     Experiment     sweep   = load_experiment(options.sweep.empty() ? shipped : fs::path(options.sweep), catalogue);
     narrow_to_techniques(sweep, options.techniques);
-    set_pictures(common, options, sweep);
+    set_pictures(options, sweep);
     keep_trace_settings(common, options, sweep);
     for (const std::string& pair : options.parameters) give_value(sweep, catalogue, pair);
     return sweep;

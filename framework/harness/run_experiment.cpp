@@ -40,12 +40,11 @@ void refuse_unknown_views(const Experiment& experiment)
 {
     for (const std::string& scene : experiment.scenes) {
         const std::vector<std::string>& views = views_of(experiment, scene);
-        // Every scene has the default view, and other names may need the whole file.
+        // Every scene has the default view.
         if (std::ranges::count(views, Camera{}.name) == std::ssize(views)) continue;
-        const std::vector<std::string> names = view_names(scene);
+        const ViewNames names = view_names(scene);
         for (const std::string& view : views)
-            if (view != Camera{}.name && std::ranges::find(names, view) == names.end())
-                throw_spec_error("{}: {}", experiment.views_place, unknown_view(scene, view, names));
+            if (!names.has(view)) throw_spec_error("{}: {}", experiment.views_place, unknown_view(scene, view, names));
     }
 }
 

@@ -120,6 +120,7 @@ std::vector<int> root_nodes(const Import& import)
 
 struct Walk {
     using Shape = std::pair<int, std::vector<float>>; // a mesh with the weights of its morph targets
+    bool                               views_only = false;
     std::vector<Visit>                 pending;
     std::map<Shape, std::vector<Mesh>> meshes; // read once, placed as often as nodes ask
     std::vector<bool>                  material_left_out;
@@ -270,7 +271,7 @@ void visit(Import& import, Walk& walk, const Visit& at)
     Visit                 inside   = entered(import, at);
     const glm::dmat4&     to_world = inside.to_world;
     inside.visible                 = at.visible && !is_hidden(node);
-    if (node.mesh >= 0 && inside.visible) place_meshes(import, walk, inside);
+    if (node.mesh >= 0 && inside.visible && !walk.views_only) place_meshes(import, walk, inside);
     if (node.camera >= 0) add_camera(import, walk.far_planes, node.camera, node.name, inside); // hidden or not
     const tinygltf::Value* light = extension_of(node, "KHR_lights_punctual");
     if (light != nullptr && light->Has("light") && inside.visible)
@@ -278,24 +279,28 @@ void visit(Import& import, Walk& walk, const Visit& at)
     put_first(walk, node.children, {-1, at.depth + 1, to_world, inside.moving, inside.visible});
 }
 
+Model load(const std::filesystem::path& file, bool views_only)
+{
+    Import import;
+    parse_file(import, file);
+    read_animations(import);
+    Walk walk;
+    walk.views_only = views_only;
+    if (!views_only) walk.material_left_out = add_materials(import);
+    put_first(walk, root_nodes(import), {});
+    while (!walk.pending.empty()) {
+        const Visit next = walk.pending.back();
+        walk.pending.pop_back();
+        visit(import, walk, next);
+    }
+    warn_of_far_planes(import, walk.far_planes);
+    return std::move(import.model);
+}
+
 } // namespace
 } // namespace gltf
 
-Model load_gltf(const std::filesystem::path& file)
-{
-    gltf::Import import;
-    gltf::parse_file(import, file);
-    gltf::read_animations(import);
-    gltf::Walk walk;
-    walk.material_left_out = gltf::add_materials(import);
-    gltf::put_first(walk, gltf::root_nodes(import), {});
-    while (!walk.pending.empty()) {
-        const gltf::Visit next = walk.pending.back();
-        walk.pending.pop_back();
-        gltf::visit(import, walk, next);
-    }
-    gltf::warn_of_far_planes(import, walk.far_planes);
-    return std::move(import.model);
-}
+Model load_gltf(const std::filesystem::path& file) { return gltf::load(file, false); }
+Model load_gltf_views(const std::filesystem::path& file) { return gltf::load(file, true); }
 
 } // namespace ssrlab

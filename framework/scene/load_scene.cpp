@@ -19,29 +19,26 @@ namespace {
 
 constexpr std::string_view builtin_prefix = "builtin:";
 
-/// A path of the same name as a camera is its motion.
-std::vector<std::string> names_of(const std::vector<Camera>& cameras, const std::vector<CameraPath>& paths)
+ViewNames names_of(const std::vector<Camera>& cameras, const std::vector<CameraPath>& paths)
 {
-    std::vector<std::string> names;
-    std::ranges::transform(cameras, std::back_inserter(names), &Camera::name);
+    ViewNames names;
+    std::ranges::transform(cameras, std::back_inserter(names.cameras), &Camera::name);
     for (const CameraPath& path : paths)
-        if (std::ranges::find(names, path.name) == names.end()) names.push_back(path.name);
+        if (!names.has(path.name)) names.paths.push_back(path.name);
     return names;
 }
 
-Model load_gltf_with_views(const fs::path& file)
+/// Those beside the glTF file come first: they are what somebody chose.
+Model with_views_beside(Model model, const fs::path& file)
 {
-    Model          model = load_gltf(file);
     const fs::path views = file.string() + ".views.toml";
-    if (fs::exists(views)) {
-        // The views beside the scene come first: they are what somebody chose.
-        std::vector<Camera> cameras = load_views(views);
-        std::erase_if(model.paths, [&](const CameraPath& path) {
-            return std::ranges::find(cameras, path.name, &Camera::name) != cameras.end();
-        });
-        std::ranges::move(model.cameras, std::back_inserter(cameras));
-        model.cameras = std::move(cameras);
-    }
+    if (!fs::exists(views)) return model;
+    std::vector<Camera> cameras = load_views(views);
+    std::erase_if(model.paths, [&](const CameraPath& path) {
+        return std::ranges::find(cameras, path.name, &Camera::name) != cameras.end();
+    });
+    std::ranges::move(model.cameras, std::back_inserter(cameras));
+    model.cameras = std::move(cameras);
     return model;
 }
 
@@ -55,7 +52,7 @@ Model load_model(const std::string& name)
     const fs::path file = find_scene_file(name);
     if (file.empty()) throw SpecError(unknown_scene(name));
     if (!fs::exists(file)) throw_spec_error("scene '{}': no such file", name);
-    return lower_extension(file) == ".toml" ? load_recipe(file) : load_gltf_with_views(file);
+    return lower_extension(file) == ".toml" ? load_recipe(file) : with_views_beside(load_gltf(file), file);
 }
 
 Scene frame_scene(const std::string& name)
@@ -146,21 +143,40 @@ std::string unknown_scene(const std::string& name)
            " A scene may also be the path of a .glb, .gltf, recipe (.toml) or frame (.exr)";
 }
 
-std::vector<std::string> view_names(const std::string& scene)
+bool ViewNames::has(const std::string& view) const
 {
-    if (const fs::path file = find_scene_file(scene); lower_extension(file) == ".toml" && fs::exists(file)) {
-        Recipe recipe = read_recipe(file);
-        if (recipe.views.empty()) recipe.views.emplace_back(); // the fitted one
-        std::vector<std::string> names = names_of(recipe.views, recipe.paths);
-        // Loading numbers views of one name.
-        if (std::set(names.begin(), names.end()).size() == names.size()) return names;
-    }
-    const Scene loaded = load_scene(scene);
-    return names_of(loaded.cameras, loaded.paths);
+    const auto lists = [&](const std::vector<std::string>& names) {
+        return std::ranges::find(names, view) != names.end();
+    };
+    return view == Camera{}.name || lists(cameras) || lists(paths);
 }
 
-std::string unknown_view(const std::string& scene, const std::string& view, const std::vector<std::string>& names)
+ViewNames view_names(const std::string& scene)
 {
+    const fs::path    file      = find_scene_file(scene);
+    const std::string extension = lower_extension(file);
+    const bool in_file = fs::exists(file) && (extension == ".toml" || extension == ".glb" || extension == ".gltf");
+    if (!in_file) {
+        const Scene loaded = load_scene(scene);
+        return names_of(loaded.cameras, loaded.paths);
+    }
+    Model model;
+    if (extension == ".toml") {
+        Recipe recipe = read_recipe(file);
+        model.cameras = std::move(recipe.views);
+        model.paths   = std::move(recipe.paths);
+    } else {
+        model = with_views_beside(load_gltf_views(file), file);
+    }
+    if (model.cameras.empty()) model.cameras.emplace_back(); // the fitted one
+    make_camera_names_unique(model.cameras);
+    return names_of(model.cameras, model.paths);
+}
+
+std::string unknown_view(const std::string& scene, const std::string& view, const ViewNames& known)
+{
+    std::vector<std::string> names = known.cameras;
+    names.insert(names.end(), known.paths.begin(), known.paths.end());
     const std::string near = suggestion(view, names);
     return fmt::format("scene '{}' has no view '{}'{} its views are {}", scene, view, near.empty() ? ":" : near,
                        fmt::join(names, ", "));

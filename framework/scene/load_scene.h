@@ -9,6 +9,8 @@ namespace ssrlab {
 
 /// glTF 2.0, .glb or .gltf. Throws Failure naming file and JSON path for anything damaged or not supported.
 Model load_gltf(const std::filesystem::path& file);
+/// Its cameras and their paths alone: reads no triangle and no picture.
+Model load_gltf_views(const std::filesystem::path& file);
 
 /// Anything that assimp reads (OBJ, 3DS, PLY, ...): triangles and materials; its lights and cameras are left out.
 Model import_model(const std::filesystem::path& file);

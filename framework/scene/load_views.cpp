@@ -2,7 +2,10 @@
 #include "scene/load_scene.h"
 #include "scene/recipe.h"
 
+#include <algorithm>
+
 namespace ssrlab {
+namespace {
 
 Camera read_view(TomlTable& table)
 {
@@ -31,12 +34,25 @@ Camera read_view(TomlTable& table)
     return camera;
 }
 
+} // namespace
+
+std::vector<Camera> read_views(TomlTable& root)
+{
+    std::vector<Camera> views;
+    for (TomlTable& table : root.tables("view")) {
+        Camera view = read_view(table);
+        if (std::ranges::find(views, view.name, &Camera::name) != views.end())
+            table.fail(fmt::format("'name' must differ from the other views', got '{}' again", view.name));
+        views.push_back(std::move(view));
+    }
+    return views;
+}
+
 std::vector<Camera> load_views(const std::filesystem::path& file)
 {
     const TomlFile      parsed = read_toml(file);
     TomlTable           root(parsed, parsed.root, "views");
-    std::vector<Camera> cameras;
-    for (TomlTable& view : root.tables("view")) cameras.push_back(read_view(view));
+    std::vector<Camera> cameras = read_views(root);
     root.refuse_unknown_keys();
     return cameras;
 }

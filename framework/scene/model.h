@@ -55,7 +55,7 @@ struct Bounds {
 /// Bounds of all usable vertices after `matrix`.
 Bounds bounds_of(const Model& model, const glm::dmat4& matrix = glm::dmat4(1));
 
-/// Moves meshes with their poses, lights and cameras; a mirroring matrix also flips the winding, so that fronts stay fronts.
+/// Moves meshes with their poses, lights and cameras; a mirroring matrix flips the winding, so that fronts stay fronts.
 void transform(Model& model, const glm::dmat4& matrix);
 void transform(Mesh& mesh, const glm::dmat4& matrix);
 /// The same motion of a mesh that is moved by `matrix`.
@@ -73,6 +73,9 @@ void merge_duplicates(Model& model);
 
 /// A position that float can hold with room to spare; anything else is dropped with its triangle.
 bool usable(glm::dvec3 position_ws);
+
+/// Numbers cameras of one name.
+void make_camera_names_unique(std::vector<Camera>& cameras);
 
 /// Repairs the meshes, adds a camera or light where none is, and moves the origin near to the geometry.
 Scene model_to_scene(Model model, const std::string& name);

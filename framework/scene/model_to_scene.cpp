@@ -126,6 +126,13 @@ void add_draw(Scene& scene, const Mesh& mesh)
     scene.draws.push_back(std::move(draw));
 }
 
+void refuse_more_than(size_t most, size_t count, const char* what, const std::string& scene)
+{
+    if (count > most) throw_spec_error("{}: {} {}, at most {} are supported", scene, count, what, most);
+}
+
+} // namespace
+
 void make_camera_names_unique(std::vector<Camera>& cameras)
 {
     std::set<std::string>      used;
@@ -137,13 +144,6 @@ void make_camera_names_unique(std::vector<Camera>& cameras)
         while (!used.insert(camera.name).second) camera.name = fmt::format("{}_{}", base, ++last);
     }
 }
-
-void refuse_more_than(size_t most, size_t count, const char* what, const std::string& scene)
-{
-    if (count > most) throw_spec_error("{}: {} {}, at most {} are supported", scene, count, what, most);
-}
-
-} // namespace
 
 Scene model_to_scene(Model model, const std::string& name)
 {

@@ -85,7 +85,7 @@ Part read_part(TomlTable& table)
     return part;
 }
 
-CameraPath read_path(TomlTable& table, const std::vector<Camera>& views)
+CameraPath read_path(TomlTable& table, const Recipe& recipe)
 {
     CameraPath path;
     path.name            = table.text("name").value_or("");
@@ -93,8 +93,11 @@ CameraPath read_path(TomlTable& table, const std::vector<Camera>& views)
     const auto names     = table.texts("views");
     const auto cuts      = table.has("cuts") ? table.texts("cuts") : std::vector<std::string>();
     table.refuse_unknown_keys();
-    const auto named = [&](const std::string& name) { return std::ranges::find(views, name, &Camera::name); };
-    if (path.name.empty() || named(path.name) != views.end()) table.fail("needs a 'name' that no [[view]] has");
+    const auto& views = recipe.views;
+    const auto  named = [&](const std::string& name) { return std::ranges::find(views, name, &Camera::name); };
+    if (path.name.empty() || named(path.name) != views.end() ||
+        std::ranges::find(recipe.paths, path.name, &CameraPath::name) != recipe.paths.end())
+        table.fail("needs a 'name' that no other [[path]] and no [[view]] has");
     if (names.size() < 2) table.fail("views", "must name at least two views");
     for (const std::string& name : names) {
         const auto view = named(name);
@@ -223,8 +226,8 @@ Recipe read_recipe(const std::filesystem::path& file)
     for (TomlTable& table : root.tables("part")) recipe.parts.push_back(read_part(table));
     for (TomlTable& table : root.tables("material")) recipe.changes.push_back(read_change(table));
     for (TomlTable& table : root.tables("light")) recipe.lights.push_back(read_light(table));
-    for (TomlTable& table : root.tables("view")) recipe.views.push_back(read_view(table));
-    for (TomlTable& table : root.tables("path")) recipe.paths.push_back(read_path(table, recipe.views));
+    recipe.views = read_views(root);
+    for (TomlTable& table : root.tables("path")) recipe.paths.push_back(read_path(table, recipe));
     root.refuse_unknown_keys();
     if (recipe.parts.empty()) root.fail("needs at least one [[part]]");
     return recipe;

@@ -60,7 +60,8 @@ struct Recipe {
 };
 
 Recipe read_recipe(const std::filesystem::path& file);
-Camera read_view(TomlTable& table);
+/// Returns the tables [[view]]. Throws SpecError for two of one name.
+std::vector<Camera> read_views(TomlTable& root);
 
 /// * matches any run of characters, ? one; upper and lower case are the same.
 bool matches(const std::string& pattern, const std::string& text);

@@ -71,8 +71,8 @@ struct Material {
 /// From world space in frame 0 to world space in each frame; the last one stays.
 using Poses = std::shared_ptr<const std::vector<glm::dmat4>>;
 
-/// A rigid motion: in frame n an object is turned by n * turn_deg about the pivot, then moved by n * move_m. Or, if there are
-/// poses, those.
+/// A rigid motion: in frame n an object is turned by n * turn_deg about the pivot, then moved by n * move_m. Or,
+/// if there are poses, those.
 struct RigidMotion {
     glm::dvec3 move_m{0};   // per frame
     glm::dvec3 turn_deg{0}; // per frame, about x, then y, then z
@@ -150,8 +150,8 @@ struct Scene {
     std::vector<std::string> warnings;       // one line each: what was dropped or is not supported
 };
 
-/// `name`: a .glb/.gltf path, the name of a recipe (experiments/scenes/NAME.toml, or a path to a .toml), builtin:NAME, or an .exr
-/// (load_frame.h).
+/// `name`: a .glb/.gltf path, the name of a recipe (experiments/scenes/NAME.toml, or a path to a .toml), builtin:NAME,
+/// or an .exr (load_frame.h).
 /// Throws SpecError for unknown names and recipe mistakes, Failure for unreadable or damaged files.
 Scene load_scene(const std::string& name);
 
@@ -165,15 +165,20 @@ std::vector<SceneListing> list_scenes();
 /// What to say of a scene's name that load_scene() does not accept.
 std::string unknown_scene(const std::string& name);
 
-/// The views and camera paths that a scene has; loads triangles only where its file has no list of them.
-std::vector<std::string> view_names(const std::string& scene);
+struct ViewNames {
+    std::vector<std::string> cameras, paths; // a path of a camera's name is its motion, and not listed again
+
+    bool has(const std::string& view) const; // "default" is the first camera
+};
+/// Reads no triangle of a recipe or glTF file.
+ViewNames view_names(const std::string& scene);
 /// What to say of a name that is none of them.
-std::string unknown_view(const std::string& scene, const std::string& view, const std::vector<std::string>& names);
+std::string unknown_view(const std::string& scene, const std::string& view, const ViewNames& names);
 
 /// Returns the radiance from infinitely far away: the environment map, or the background.
 glm::vec3 sky_radiance(const Scene& scene, glm::dvec3 direction_ws);
 
-/// The camera of that name; "default" is the first one where none is called so. Throws SpecError listing the known names.
+/// The camera of that name; "default" is the first one where none is called so. Throws SpecError listing the names.
 const Camera& find_camera(const Scene& scene, const std::string& name);
 
 } // namespace ssrlab

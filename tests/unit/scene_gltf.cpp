@@ -318,6 +318,30 @@ TEST(SceneGltf, ViewsBesideTheSceneComeFirst)
                 HasSubstr("views.toml:5: unknown key of [[view]] 'fov' (known: far_m, fov_y_deg, "));
 }
 
+TEST(SceneGltf, ViewsAreNamedWithoutReadingTriangles)
+{
+    const TempFolder folder;
+    GltfFile         file = GltfFile::triangle();
+    file.root["cameras"]  = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+    file.root["nodes"]    = {{{"mesh", 0}},
+                             {{"camera", 0}, {"name", "eye"}, {"translation", {0, 0, 5}}},
+                             {{"camera", 0}, {"name", "eye"}, {"translation", {0, 1, 5}}}};
+    file.root["scenes"]   = {{{"nodes", {0, 1, 2}}}};
+    EXPECT_THAT(view_names(file.write(folder)).cameras, testing::ElementsAre("eye", "eye_2"));
+    folder.write("scene.gltf.views.toml", "[[view]]\nname = 'mine'\nposition = [0, 0, 3]\ntarget = [0, 0, 0]\n");
+    const std::string        sound = file.write(folder);
+    std::vector<std::string> loaded;
+    for (const Camera& camera : load_scene(sound).cameras) loaded.push_back(camera.name);
+    EXPECT_EQ(view_names(sound).cameras, loaded);
+    file.root["accessors"][0]["count"] = 4; // more than there are
+    const std::string broken           = file.write(folder);
+    EXPECT_THROW(load_scene(broken), Failure);
+    EXPECT_EQ(view_names(broken).cameras, loaded);
+    EXPECT_EQ(view_names("builtin:stairs").cameras.front(), "default");
+    EXPECT_TRUE(view_names(broken).has("default"));
+    EXPECT_FALSE(view_names(broken).has("nose"));
+}
+
 TEST(SceneGltf, AFittedCameraSeesTheBounds)
 {
     GltfFile file      = GltfFile::triangle();

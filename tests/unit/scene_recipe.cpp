@@ -228,6 +228,9 @@ TEST(SceneRecipe, MistakesNameFileLineAndWhatIsAccepted)
                 HasSubstr("recipe.toml:3: view 'default': target"));
     EXPECT_THAT(mistake("[[part]]\nshape = 'box'\n[[view]]\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\nsize = '0x5'\n"),
                 HasSubstr("recipe.toml:6: [[view]]: 'size'"));
+    const std::string view = "[[view]]\nname = 'a'\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\n";
+    EXPECT_THAT(mistake("[[part]]\nshape = 'box'\n" + view + view),
+                HasSubstr("recipe.toml:7: [[view]]: 'name' must differ from the other views', got 'a' again"));
     EXPECT_THAT(mistake("[[part]\nshape = 'box'\n"), HasSubstr("recipe.toml:1: "));
     EXPECT_THAT(mistake(""), HasSubstr("needs at least one [[part]]"));
     EXPECT_THAT(mistake("part = 3\n"), HasSubstr("'part' must be tables, [[part]], got the integer 3"));
