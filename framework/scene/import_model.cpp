@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <numeric>
 
@@ -168,32 +167,6 @@ void warn_of_other_maps(Import& import, const FileModel& source)
                              material.name, material.other_maps));
 }
 
-/// assimp skips where a texture of a material file of OBJ lies, and says nothing where there is no such file.
-void warn_of_material_files(Import& import)
-{
-    if (lower_extension(import.file) != ".obj") return;
-    std::ifstream obj(import.file);
-    for (std::string line; std::getline(obj, line);) {
-        if (!line.starts_with("mtllib ")) continue;
-        const std::string name = line.substr(7, line.find_last_not_of(" \t\r") - 6);
-        if (std::error_code error; !fs::is_regular_file(import.file.parent_path() / name, error)) {
-            if (!fs::is_regular_file(fs::path(import.file).replace_extension(".mtl"), error)) // which assimp tries
-                warn(import, fmt::format("there is no material file '{}': its materials are grey", name));
-            continue;
-        }
-        std::ifstream mtl(import.file.parent_path() / name);
-        int           number = 0;
-        for (std::string text; std::getline(mtl, text);) {
-            ++number;
-            const auto has = [&](const char* option) { return text.find(option) != std::string::npos; };
-            if (has("map_Kd ") && (has(" -s ") || has(" -o ") || has(" -t ")))
-                warn(import, fmt::format("{}:{}: a texture's scale, offset and turbulence (-s, -o, -t) are not "
-                                         "supported and left out",
-                                         name, number));
-        }
-    }
-}
-
 } // namespace
 
 Model import_model(const fs::path& file)
@@ -206,7 +179,7 @@ Model import_model(const fs::path& file)
         import.model.materials.push_back(convert_material(import, material));
     colour_by_vertices(import, source);
     warn_of_other_maps(import, source);
-    warn_of_material_files(import);
+    for (const std::string& warning : source.warnings) warn(import, warning);
     add_meshes(import, std::move(source.meshes));
     remove_transparent(import, source.materials);
     if (import.model.meshes.empty())

@@ -22,6 +22,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <sstream>
 #include <type_traits>
 
 namespace ssrlab {
@@ -124,8 +125,26 @@ std::vector<unsigned char> as_assimp_reads_it(const std::vector<unsigned char>& 
     return text;
 }
 
+/// assimp skips where a texture of a material file of OBJ lies.
+void warn_of_placed_textures(const std::vector<unsigned char>& mtl, const std::string& name,
+                             std::vector<std::string>& warnings)
+{
+    std::istringstream text(std::string(mtl.begin(), mtl.end()));
+    int                number = 0;
+    for (std::string line; std::getline(text, line);) {
+        ++number;
+        const auto has = [&](const char* option) { return line.find(option) != std::string::npos; };
+        if (has("map_Kd ") && (has(" -s ") || has(" -o ") || has(" -t ")))
+            warnings.push_back(fmt::format("{}:{}: a texture's scale, offset and turbulence (-s, -o, -t) are not "
+                                           "supported and left out",
+                                           name, number));
+    }
+}
+
 /// A pipe beside the model would be waited for.
 struct RegularFiles : Assimp::DefaultIOSystem {
+    explicit RegularFiles(fs::path model) : model_(std::move(model)) {}
+
     bool Exists(const char* file) const override // assimp's own opens it
     {
         std::error_code error;
@@ -133,13 +152,38 @@ struct RegularFiles : Assimp::DefaultIOSystem {
     }
     Assimp::IOStream* Open(const char* file, const char* mode) override
     {
+        const bool is_obj = lower_extension(model_) == ".obj";
+        if (is_obj) note_materials(file);
         if (!Exists(file)) return nullptr;
-        if (lower_extension(file) != ".obj") return DefaultIOSystem::Open(file, mode);
-        const std::vector<unsigned char> text   = as_assimp_reads_it(read_regular_file(file, max_file_bytes));
-        auto*                            buffer = new uint8_t[text.size()]; // which the stream deletes
+        if (!is_obj) return DefaultIOSystem::Open(file, mode);
+        std::vector<unsigned char> text     = read_regular_file(file, max_file_bytes);
+        const bool                 is_model = lower_extension(file) == ".obj"; // and no file of materials
+        if (is_model)
+            text = as_assimp_reads_it(text);
+        else
+            warn_of_placed_textures(text, name_of(file), warnings);
+        auto* buffer = new uint8_t[text.size()]; // which the stream deletes
         std::ranges::copy(text, buffer);
         return new Assimp::MemoryIOStream(buffer, text.size(), true);
     }
+
+    std::vector<std::string> warnings;
+
+private:
+    std::string name_of(const fs::path& file) const { return file.lexically_relative(model_.parent_path()).string(); }
+
+    /// Where a file of materials is missing, assimp tries the one that has the model's name, and says nothing.
+    void note_materials(const fs::path& file)
+    {
+        const bool is_second_try = missing_ && file == fs::path(model_).replace_extension(".mtl");
+        if (is_second_try && Exists(file.c_str())) warnings.pop_back();
+        missing_ = !is_second_try && !Exists(file.c_str());
+        if (missing_)
+            warnings.push_back(fmt::format("there is no material file '{}': its materials are grey", name_of(file)));
+    }
+
+    fs::path model_;
+    bool     missing_ = false; // the last file that was asked for
 };
 
 /// Of what the material has pictures besides its diffuse colour, as far as a picture would differ without them.
@@ -240,7 +284,8 @@ std::string read_here(const fs::path& file)
 {
     Writer           writer;
     Assimp::Importer importer;
-    importer.SetIOHandler(new RegularFiles); // which the importer deletes
+    auto*            files = new RegularFiles(file); // which the importer deletes
+    importer.SetIOHandler(files);
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_LIGHTS | aiComponent_CAMERAS);
     // Never aiProcess_JoinIdenticalVertices: version 5.2.5 crashes in it on real files.
     const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_RemoveComponent);
@@ -258,6 +303,8 @@ std::string read_here(const fs::path& file)
     const std::vector<FileMesh> meshes = placed_meshes(*scene);
     writer.value(uint64_t(meshes.size()));
     for (const FileMesh& mesh : meshes) pass_mesh(writer, mesh);
+    writer.value(uint64_t(files->warnings.size()));
+    for (const std::string& warning : files->warnings) writer.list(warning);
     return writer.bytes;
 }
 
@@ -321,6 +368,8 @@ FileModel to_model(Reader reader)
             std::ranges::any_of(mesh.indices, [&](uint32_t index) { return index >= mesh.vertices.size(); }))
             throw_failure("vertex index out of range in mesh '{}'", mesh.name);
     }
+    reader.value(count);
+    for (uint64_t i = 0; i < count; ++i) reader.list(model.warnings.emplace_back());
     return model;
 }
 

@@ -25,6 +25,7 @@ struct FileMesh : Mesh {
 struct FileModel {
     std::vector<FileMaterial> materials;
     std::vector<FileMesh>     meshes; // in the file's order, placed; normals and texture coordinates as they are there
+    std::vector<std::string>  warnings; // of what assimp skips without a word
 };
 
 /// Reads a model in a child process: assimp 5.2.5 crashes or hangs on damaged files. Throws Failure with its name.
