@@ -1,7 +1,6 @@
 """Figures that a specification names in [figures.NAME]: pictures of its runs side by side, with what differs and how right they are."""
 import os
 import textwrap
-import tomllib
 
 import matplotlib.pyplot as plt
 import pandas as pd
@@ -17,26 +16,12 @@ SHOWN = {"off": "no reflections", "truth": "true reflection", "agreement": "agre
 COLOURS_OF = {"agreement": "green: right, yellow: displaced, orange: missed, pink: false, grey: rightly nothing"}
 
 
-def is_value(cell, value):
-    """Whether a field of results.csv holds a value of the specification."""
-    if isinstance(value, bool):
-        return str(cell).lower() == str(value).lower()
-    if isinstance(value, (int, float)):
-        return pd.notna(cell) and not isinstance(cell, str) and (cell == value or abs(cell - value) <= 1e-6 * max(1, abs(value)))
-    return str(cell) == value
-
-
 def row_of(rows, panel, figure):
-    """The one row that holds all values of a panel."""
-    for name, value in panel.items():
-        if name == "show":
-            continue
-        if name not in rows:
-            raise SystemExit(f"plot: [figures.{figure}]: '{name}' is no column of results.csv")
-        rows = rows[[is_value(cell, value) for cell in rows[name]]]
-    if len(rows) != 1:
-        raise SystemExit(f"plot: [figures.{figure}]: a panel must name one run, {panel} names {len(rows)}")
-    return rows.iloc[0]
+    """The row of a panel's run."""
+    found = rows[rows.run_id == panel["run_id"]]
+    if found.empty:
+        raise SystemExit(f"plot: [figures.{figure}]: run {panel['run_id']} has no picture: results.csv says why")
+    return found.iloc[0]
 
 
 def picture_of(panel, row):
@@ -54,25 +39,21 @@ def caption(panel, figure, row):
     shown = panel.get("show", "")
     words = [] if shown in ("off", "truth") else [
         f"{name} {value}" for name, value in panel.items()
-        if name != "show" and any(other.get(name, value) != value for other in figure["panels"])]
+        if name not in ("run_id", "show") and any(other.get(name, value) != value for other in figure["panels"])]
     lines = [", ".join(([SHOWN[shown]] if shown in SHOWN else []) + words)]
     if shown not in ("off", "truth"):
-        lines.append(", ".join(f"{MEASURES.get(name, name)} {row[name]:.3f}" for name in figure.get("measures", []) if pd.notna(row[name])))
+        lines.append(", ".join(f"{MEASURES.get(name, name)} {row[name]:.3f}" for name in figure["measures"] if pd.notna(row[name])))
     return "\n".join(line for line in lines if line)
 
 
 def figures_of(results):
-    """{name: table} of the specification's [figures]."""
-    return tomllib.loads(results.environment.get("specification", "")).get("figures", {})
+    """{name: figure}: the specification's [figures], as `ssrlab run` has checked them, with the run that each panel names."""
+    return results.environment.get("figures", {})
 
 
-def cropped(picture, figure, name):
+def cropped(picture, figure):
     """The figure's `crop = [x, y, width, height]` of the picture, in pixels."""
-    if "crop" not in figure:
-        return picture
-    x, y, width, height = figure["crop"]
-    if x < 0 or y < 0 or width < 1 or height < 1 or x + width > picture.shape[1] or y + height > picture.shape[0]:
-        raise SystemExit(f"plot: [figures.{name}]: crop {figure['crop']} leaves the picture of {picture.shape[1]}×{picture.shape[0]}")
+    x, y, width, height = figure.get("crop", (0, 0, picture.shape[1], picture.shape[0]))
     return picture[y:y + height, x:x + width]
 
 
@@ -90,7 +71,7 @@ def panels_of(results, _):
         for axis in axes.flat:
             axis.axis("off")
         for axis, panel, row, text in zip(axes.flat, panels, rows, captions):
-            axis.imshow(cropped(plt.imread(os.path.join(results.folder, picture_of(panel, row))), figure, name), interpolation="nearest")
+            axis.imshow(cropped(plt.imread(os.path.join(results.folder, picture_of(panel, row))), figure), interpolation="nearest")
             axis.set_title(text, fontsize=6)
         titled(drawn, figure["says"], "; ".join(text for show, text in COLOURS_OF.items() if any(panel.get("show") == show for panel in panels)))
         yield name, drawn

@@ -31,6 +31,7 @@ std::string to_json(const Environment& environment)
     nlohmann::ordered_json json;
     for (const auto& [key, value] : environment.notes) json[key] = value;
     json["identity"] = environment.identity;
+    if (!environment.figures.empty()) json["figures"] = nlohmann::ordered_json::parse(environment.figures);
     // Text that is not UTF-8 (a file name, say) must not stop a sweep.
     return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }

@@ -18,6 +18,7 @@ namespace ssrlab {
 struct Environment {
     std::map<std::string, std::string> identity; // must be equal when a sweep is resumed
     std::map<std::string, std::string> notes;
+    std::string                        figures; // resolve_figures()
 };
 
 /// Returns the names of entries that differ or that only one of the two has.
@@ -57,8 +58,8 @@ public:
     /// Returns a number above every round in samples.csv.
     int next_round() const { return next_round_; }
 
-    /// Writes the run's samples, passes and sources, then its row, each by one checked write with a sync. If that fails,
-    /// it removes the torn bytes and throws a Failure that names the file: a row always has its other lines.
+    /// Writes the run's samples, passes and sources, then its row, each by one checked write with a sync. If that
+    /// fails, it removes the torn bytes and throws a Failure that names the file: a row always has its other lines.
     void append(const Record& row, const RunLines& lines = {});
 
     /// Throws Failure if the folder's files are no longer those that were opened.

@@ -3,11 +3,11 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/stopwatch.h"
-#include "harness/check_figures.h"
 #include "harness/columns.h"
 #include "harness/environment.h"
 #include "harness/measure_sequence.h"
 #include "harness/progress.h"
+#include "harness/resolve_figures.h"
 #include "harness/result_folder.h"
 #include "harness/search.h"
 #include "harness/stop_signal.h"
@@ -104,15 +104,19 @@ std::vector<Run> runs_of_shard(std::span<const Run> runs, const Shard& shard)
     return own;
 }
 
-std::vector<Run> planned_runs(const RunOptions& options, const Experiment& experiment,
-                              std::span<const Technique> techniques)
+struct PlannedRuns {
+    std::vector<Run> runs;
+    std::string      figures; // resolve_figures() of all runs, those of other shards, too
+};
+
+PlannedRuns plan_runs(const RunOptions& options, const Experiment& experiment, std::span<const Technique> techniques)
 {
     refuse_unknown_scenes(experiment);
     refuse_unknown_views(experiment);
-    const Shard      shard = parse_shard(options.shard);
-    std::vector<Run> runs  = expand(experiment, techniques, options.yes);
-    check_figures(experiment, techniques, runs);
-    return runs_of_shard(choose(std::move(runs), techniques, options.only), shard);
+    const Shard      shard   = parse_shard(options.shard);
+    std::vector<Run> runs    = expand(experiment, techniques, options.yes);
+    std::string      figures = resolve_figures(experiment, techniques, runs);
+    return {runs_of_shard(choose(std::move(runs), techniques, options.only), shard), std::move(figures)};
 }
 
 fs::path folder_of(const RunOptions& options, const Experiment& experiment)
@@ -182,14 +186,15 @@ int run_sweep(const RunOptions& options, SweepState& state)
     const Catalogue               catalogue  = load_catalogue(options.techniques);
     const std::vector<Technique>& techniques = catalogue.techniques;
     Experiment                    experiment = load_experiment(options.specification, catalogue);
-    std::vector<Run>              runs       = planned_runs(options, experiment, techniques);
+    const auto [runs, figures]               = plan_runs(options, experiment, techniques);
     if (!options.only.empty()) experiment.targets.clear(); // one run is asked for, no search
     const auto columns = result_columns(experiment, techniques);
 
     const Stopwatch stopwatch;
     Gpu             gpu = open_gpu(options.gpu);
     refuse_large_sizes(experiment, gpu.info);
-    const Environment environment = describe_environment(experiment, techniques, gpu.info, options.command_line);
+    Environment environment = describe_environment(experiment, techniques, gpu.info, options.command_line);
+    environment.figures     = figures;
     ResultFolder results(folder_of(options, experiment), columns, environment, options.resume || continues, !continues);
     std::vector<Run> pending = runs;
     std::erase_if(pending, [&](const Run& run) { return results.finished().contains(run.id); });
@@ -233,7 +238,7 @@ int run_experiment(const RunOptions& options)
     if (options.dry_run) {
         const Catalogue  catalogue  = load_catalogue(options.techniques);
         const Experiment experiment = load_experiment(options.specification, catalogue);
-        return list_runs(experiment, planned_runs(options, experiment, catalogue.techniques), catalogue.techniques);
+        return list_runs(experiment, plan_runs(options, experiment, catalogue.techniques).runs, catalogue.techniques);
     }
     SweepState* state = shared_with_parent();
     if (state == nullptr) return supervise(own_command());

@@ -73,7 +73,8 @@ panels   = [{ scene = "builtin:stairs", steps = 8 }, { scene = "builtin:stairs",
                                  ("64, 36]", '"64", 36]', ["s.toml:17: 'crop' must be an integer"]), ("steps = 8 }", "step = 8 }", ["s.toml:18: unknown column of results.csv 'step': did you mean 'steps'?"]),
                                  ("steps = 8 }", "steps = 9 }", ["s.toml:18: ", "none has 'steps' as the integer 9"]), ("steps = 8 }", 'technique = "linear" }', ["s.toml:18: ", "this names 4, which differ in steps"]),
                                  ('"truth"', '"thruth"', ["did you mean 'truth'?"]), ('"truth"', '"flip"', ["needs image_errors = true"]), ("pictures = true", "pictures = false", ["needs pictures = true"]),
-                                 ("panels ", "panel ", ["did you mean 'panels'?"]), ("[figures.f]", "[figures]", ["must be a table"])):
+                                 ("panels ", "panel ", ["did you mean 'panels'?"]), ("[figures.f]", "[figures]", ["must be a table"]),
+                                 ("[figures.f]", "[targets]\nrecall_1px = 0.9\n[figures.f]", ["s.toml:16: [figures] name runs", "not with [targets]"])):
             with self.subTest(wrong=wrong):
                 self.assertIn(old, good)
                 spec = self.write("s.toml", good.replace(old, wrong, 1).replace("[measure]", "[measure]\nimage_errors = false" if "flip" in wrong else "[measure]"))

@@ -1,4 +1,5 @@
 """[figures] of an experiment: pictures of its runs side by side; and pages of pictures."""
+import json
 import os
 import subprocess
 import tomllib
@@ -39,6 +40,8 @@ class Test(Case):
         self.ssrlab("plot", "out")
         self.assertEqual(sorted(os.listdir(self.path("out/plots"))), ["one.png", "one.svg"])
         many = next(row for row in self.rows() if row["steps"] == "64")
+        figure = json.loads(self.text("out/environment.json"))["figures"]["one"]
+        self.assertEqual(figure["panels"][2], {"run_id": many["run_id"], "steps": 64, "show": "off"})
         traced, truth, off = (pixels(self.path("out/" + name)) for name in (
             many["picture"], many["truth_picture"], many["truth_picture"][:-len(".png")] + "_off.png"))
         self.assertGreater(abs(traced - off).mean(), 0.02)

@@ -1,4 +1,4 @@
-#include "harness/check_figures.h"
+#include "harness/resolve_figures.h"
 
 #include "core/files.h"
 #include "core/toml_reading.h"
@@ -6,9 +6,15 @@
 #include "harness/measured_run.h"
 
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cmath>
 
 namespace ssrlab {
 namespace {
+
+using json = nlohmann::ordered_json;
 
 struct Figures {
     const TomlFile&          file;
@@ -63,8 +69,8 @@ void check_shown(const Figures& figures, const toml::node& node)
         throw_spec_error("{}: show = \"flip\" needs image_errors = true in [measure], got false", place);
 }
 
-/// The run that a panel names; null where the search for [targets] may still add it.
-const Record* run_of(const Figures& figures, const toml::table& panel)
+/// The run that a panel names.
+const Record& run_of(const Figures& figures, const toml::table& panel)
 {
     std::vector<const Record*> left;
     for (const Record& run : figures.runs) left.push_back(&run);
@@ -80,21 +86,19 @@ const Record* run_of(const Figures& figures, const toml::table& panel)
             throw_spec_error("{}: {}", toml_place(figures.file, node),
                              unknown_name("column of results.csv", column, known));
         if (!node.is_value()) toml_refuse(figures.file, node, column, "one value");
-        if (!figures.experiment.targets.empty()) continue;
         std::erase_if(left, [&, &wanted = node](const Record* run) { return !holds(*run, column, wanted); });
         if (left.empty())
             throw_spec_error("{}: a panel must name one run, and none has '{}' as {}, with the panel's other values",
                              toml_place(figures.file, node), column, toml_found(node));
     }
-    if (!figures.experiment.targets.empty()) return nullptr;
     if (left.size() > 1)
         throw_spec_error("{}: a panel must name one run, this names {}, which differ in {}",
                          toml_place(figures.file, panel), left.size(), differences(left, figures.told_apart_by));
-    return left.front();
+    return *left.front();
 }
 
 /// [x, y, width, height] within a picture.
-void check_crop(const TomlFile& file, const toml::node& node, glm::ivec2 size_px)
+std::array<int64_t, 4> read_crop(const TomlFile& file, const toml::node& node, glm::ivec2 size_px)
 {
     const toml::array* list = node.as_array();
     if (list == nullptr || list->size() != 4) toml_refuse(file, node, "crop", "[x, y, width, height] in pixels");
@@ -104,47 +108,79 @@ void check_crop(const TomlFile& file, const toml::node& node, glm::ivec2 size_px
     if (x < 0 || y < 0 || width < 1 || height < 1 || x > size_px.x - width || y > size_px.y - height)
         throw_spec_error("{}: crop [{}] leaves the picture of {}", toml_place(file, node), fmt::join(crop, ", "),
                          size_text(size_px));
+    return crop;
 }
 
-void check_figure(const Figures& figures, const std::string& name, const toml::table& figure)
+json resolve_panel(const toml::table& panel, const Record& run)
+{
+    json resolved = {{"run_id", words_of(run, "run_id")}};
+    for (const auto& [key, node] : panel) {
+        json& value = resolved[std::string(key.str())];
+        if (const auto* flag = node.as_boolean())
+            value = flag->get();
+        else if (const auto* whole = node.as_integer())
+            value = whole->get();
+        else if (const auto* number = node.as_floating_point(); number != nullptr && std::isfinite(number->get()))
+            value = number->get();
+        else
+            value = number != nullptr ? "inf" : node.value_or(std::string());
+    }
+    return resolved;
+}
+
+json resolve_figure(const Figures& figures, const std::string& name, const toml::table& figure)
 {
     static const std::vector<std::string> known = {"says", "measures", "crop", "panels"};
     const TomlFile&                       file  = figures.file;
     toml_known_keys(file, figure, "key of [figures." + name + "]", known);
-    toml_text(file, needed(file, figure, name, "says"), "says");
+    json resolved = {{"says", toml_text(file, needed(file, figure, name, "says"), "says")},
+                     {"measures", json::array()},
+                     {"panels", json::array()}};
     if (const toml::node* node = figure.get("measures"))
         for (const toml::node* value : toml_values(file, *node, "measures")) {
             const std::string measure = toml_text(file, *value, "measures");
             if (std::ranges::find(figures.measures, measure) == figures.measures.end())
                 throw_spec_error("{}: {}", toml_place(file, *value),
                                  unknown_name("measure", measure, figures.measures));
+            resolved["measures"].push_back(measure);
         }
-    const toml::node& panels = needed(file, figure, name, "panels");
-    for (const toml::node* panel : toml_values(file, panels, "panels")) {
-        const Record* run = run_of(figures, toml_table(file, *panel, "panels"));
-        if (const toml::node* crop = figure.get("crop"); crop != nullptr && run != nullptr)
-            check_crop(file, *crop, {number_of(*run, "width").value(), number_of(*run, "height").value()});
+    for (const toml::node* node : toml_values(file, needed(file, figure, name, "panels"), "panels")) {
+        const toml::table& panel = toml_table(file, *node, "panels");
+        const Record&      run   = run_of(figures, panel);
+        if (const toml::node* crop = figure.get("crop"))
+            resolved["crop"] =
+                read_crop(file, *crop, {number_of(run, "width").value(), number_of(run, "height").value()});
+        resolved["panels"].push_back(resolve_panel(panel, run));
     }
+    return resolved;
 }
 
 } // namespace
 
-void check_figures(const Experiment& experiment, std::span<const Technique> techniques, std::span<const Run> runs)
+std::string resolve_figures(const Experiment& experiment, std::span<const Technique> techniques,
+                            std::span<const Run> runs)
 {
     const TomlFile    file = parse_toml(short_path(experiment.file), experiment.text);
     const toml::node* node = file.root.get("figures");
-    if (node == nullptr) return;
+    if (node == nullptr) return "";
     const toml::table& tables = toml_table(file, *node, "figures");
     if (!experiment.measure.pictures)
         throw_spec_error("{}: [figures] show pictures: needs pictures = true in [measure], got false",
+                         toml_place(file, *node));
+    if (!experiment.targets.empty())
+        throw_spec_error("{}: [figures] name runs before they are made: not with [targets], whose search chooses them",
                          toml_place(file, *node));
     Figures figures{file, experiment, names_of(setting_columns(experiment, techniques)), {}, {}};
     for (const Column& column : result_columns(experiment, techniques))
         if (column.type == ColumnType::measure) figures.measures.push_back(column.name);
     for (const Run& run : runs)
         figures.runs.push_back(identity_row(experiment, run, find_technique(techniques, run.technique)));
-    for (const auto& [name, figure] : tables)
-        check_figure(figures, std::string(name.str()), toml_table(file, figure, "figures." + std::string(name.str())));
+    json resolved;
+    for (const auto& [key, figure] : tables) {
+        const std::string name(key.str());
+        resolved[name] = resolve_figure(figures, name, toml_table(file, figure, "figures." + name));
+    }
+    return resolved.dump();
 }
 
 } // namespace ssrlab
