@@ -101,15 +101,17 @@ void Progress::finish_run(const std::string& id, double cost)
 {
     ++done_runs_;
     done_cost_ += prepared_.erase(id) > 0 ? (1 - prepared_share) * cost : cost;
-    tick();
+    if (done_runs_ == total_runs_ && !quiet_)
+        print();
+    else
+        tick();
 }
 
 void Progress::tick()
 {
-    if (quiet_) return;
+    if (quiet_ || done_runs_ == total_runs_) return; // said by finish_run()
     const double interval_s = in_place_ ? 0.2 : 10;
-    const bool   complete   = done_runs_ == total_runs_;
-    if (!since_print_ || complete || since_print_->seconds() >= interval_s) print();
+    if (!since_print_ || since_print_->seconds() >= interval_s) print();
 }
 
 void Progress::print()

@@ -38,6 +38,7 @@ class Test(Case):
         self.assertGreater(timed, 0)
         self.assertGreater(counted, 0)
         self.assertLessEqual(timed + counted + truths, 101)
+        self.assertEqual(len(re.findall("14 of 14 runs", text)), 1, "the end is said once")
         rows = self.rows()
         self.assert_complete(rows, 14)
         for row in rows:
