@@ -40,6 +40,16 @@ void open_closed_streams()
     }
 }
 
+/// Refuses a word that is none of these, and says which is near.
+CLI::Validator one_of(const std::vector<std::string>& names)
+{
+    return {[names](const std::string& word) {
+                const bool known = std::ranges::find(names, word) != names.end();
+                return known ? std::string() : ssrlab::unknown_name("value", word, names);
+            },
+            fmt::format("{{{}}}", fmt::join(names, ","))};
+}
+
 void append_options(std::vector<std::string>& names, const CLI::App& app)
 {
     for (const CLI::Option* option : app.get_options())
@@ -54,8 +64,11 @@ std::string unknown_word(const CLI::App& app, int argc, char** argv)
     const CLI::App* command = nullptr;
     for (int i = 1; command == nullptr && i < argc; ++i) {
         const std::string word = argv[i];
-        if (word == "--device" || word == "--techniques" || word == "--storage") ++i;
-        if (word.starts_with("-")) continue;
+        if (word.starts_with("-")) {
+            const CLI::Option* option = app.get_option_no_throw(word);
+            if (option != nullptr && option->get_items_expected_max() > 0) ++i; // its value
+            continue;
+        }
         if (std::ranges::find(known, word) == known.end()) return ssrlab::unknown_name("command", word, known);
         command = app.get_subcommand(word);
     }
@@ -127,12 +140,12 @@ void add_presentation_options(CLI::App& command, ssrlab::RenderOptions& options)
         .add_option("--display", options.display,
                     "Tone curve of a .png: clip (at 1), or agx, which keeps bright colours")
         ->capture_default_str()
-        ->check(CLI::IsMember({"clip", "agx"}));
+        ->check(one_of({"clip", "agx"}));
     command
         .add_option("--show", options.show,
                     "False colours instead of the picture (docs/how-to/read_the_report.md): agreement (right and wrong "
                     "rays), causes (why rays are wrong), fetches (work per ray), sources (which source answered)")
-        ->check(CLI::IsMember({"agreement", "causes", "fetches", "sources"}));
+        ->check(one_of({"agreement", "causes", "fetches", "sources"}));
     command.add_option("--sources", options.sources,
                        "Sources that answer the rays, in this order: frame,world (ssrlab sources); without: the frame");
     command.add_flag("--errors", options.errors, "Print the errors of the picture against the true reflection");
@@ -159,7 +172,7 @@ void add_judge_options(CLI::App& command, ssrlab::JudgeOptions& options)
     command.add_option("-o,--output", options.output, "Also write a picture in false colours (.png)");
     command.add_option("--show", options.show, "What it shows: agreement, or causes (needs --scene)")
         ->capture_default_str()
-        ->check(CLI::IsMember({"agreement", "causes"}));
+        ->check(one_of({"agreement", "causes"}));
     command.add_option("--min-f1", options.min_f1, "Exit code 1 if F1 is lower; with --scene that of the scene truth")
         ->check(CLI::Range(0.0, 1.0));
     command.add_flag("--json", options.json, "As JSON, with every wrong ray");
@@ -186,7 +199,7 @@ void add_fit_options(CLI::App& command, ssrlab::FitOptions& options)
         .add_option("--objective", options.objective,
                     "f1: of the rays, against the scene truth; flip: of the picture, against the true reflection")
         ->capture_default_str()
-        ->check(CLI::IsMember({"f1", "flip"}));
+        ->check(one_of({"f1", "flip"}));
     command.add_option("--view", options.views, "Views or camera paths; default: all views of each scene")
         ->allow_extra_args(false);
     command.add_option("--frame", options.frames, "Frames of the scenes' motion and of camera paths")
@@ -244,12 +257,14 @@ int main(int argc, char** argv)
            "How shaders read lists and depth: texel-buffers or plain-buffers; default: by the limits of the device")
         ->transform(CLI::Transformer(std::map<std::string, TexelStorage>{
             {"texel-buffers", TexelStorage::texel_buffers}, {"plain-buffers", TexelStorage::plain_buffers}}))
+        ->transform(one_of({"texel-buffers", "plain-buffers"})) // the last one is asked first
         ->option_text("texel-buffers|plain-buffers");
     app.add_option("--passes", common.gpu.passes,
                    "How the passes before the trace share work: serial (an invocation per tile or ray group) or "
                    "parallel (one per pixel, several per ray group); default: serial on a CPU, parallel on a GPU")
         ->transform(CLI::Transformer(
             std::map<std::string, PassStyle>{{"serial", PassStyle::serial}, {"parallel", PassStyle::parallel}}))
+        ->transform(one_of({"serial", "parallel"}))
         ->option_text("serial|parallel");
     app.add_flag("--validation", common.gpu.validation,
                  "Load the Khronos validation layer; any message fails the command");
@@ -417,7 +432,7 @@ int main(int argc, char** argv)
     taken->add_option("TECHNIQUE", exported.picture.technique, "Technique (see ssrlab list)");
     add_parameter_option(*taken, exported.picture);
     taken->add_option("--to", exported.language, "Shading language")
-        ->check(CLI::IsMember({"glsl", "hlsl", "msl", "essl", "wgsl"}));
+        ->check(one_of({"glsl", "hlsl", "msl", "essl", "wgsl"}));
     taken->add_option("-o,--output", exported.picture.output, "Folder to write: new or empty");
     taken
         ->add_option("--scene", exported.picture.scene,

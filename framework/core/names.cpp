@@ -52,7 +52,11 @@ constexpr const char* glsl_types = "[biudhf]?vec[234]|real[234]?|d?mat[234](x[23
 std::string suggestion(const std::string& name, std::span<const std::string> known)
 {
     if (known.empty()) return "";
-    const auto distance = [&](const std::string& candidate) { return edit_distance(name, candidate); };
+    const auto lower = [](std::string text) {
+        std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        return text;
+    };
+    const auto distance = [&](const std::string& candidate) { return edit_distance(lower(name), lower(candidate)); };
     const auto nearest  = std::ranges::min_element(known, {}, distance);
     // Farther than a third of the word, the guess confuses more than it helps.
     const bool near = distance(*nearest) <= std::max<size_t>(1, nearest->size() / 3);

@@ -13,7 +13,7 @@ BUILD = os.path.dirname(os.path.dirname(PROGRAM))
 class Test(Case):
     def test_a_misspelt_command_is_answered(self):
         self.refused("rendr", code=2, says=["unknown command 'rendr': did you mean 'render'?"])
-        self.refused("--quiet", "--device", "0", "chek", code=2, says=["did you mean 'check'?"])
+        self.refused("--quiet", "--device", "0", "--passes", "serial", "chek", code=2, says=["did you mean 'check'?"])
         self.ssrlab(code=2, says=["subcommand is required"])
         self.ssrlab("render", "--sise", "3x3", code=2)
         self.ssrlab("render", "builtin:stairs", code=2)

@@ -84,6 +84,9 @@ class Test(Case):
         for options, says in ((("a.exr", "--display", "agx"), "--exposure and --display need a .png"),
                               (("a.exr", "--exposure", "1"), "--exposure and --display need a .png")):
             self.refused(*common, *options, code=2, says=[says])
+        for options, says in ((("--display", "AGX"), "--display: unknown value 'AGX': did you mean 'agx'?"), (("--show", "caus"), "did you mean 'causes'?"),
+                              (("--storage", "plainbuffers"), "did you mean 'plain-buffers'?"), (("--passes", "Serial"), "did you mean 'serial'?")):
+            self.ssrlab(*common, "a.png", *options, code=2, says=[says])
         for options in (("a.png", "--samples", "0"), ("a.png", "--samples", "257"), ("a.png", "--display", "film"),
                         ("a.png", "--truth", "--side-by-side"), ("a.png", "--exposure", "nan")):
             self.ssrlab(*common, *options, code=2)
