@@ -9,6 +9,7 @@
 #include "core/files.h"
 #include "harness/choose_technique.h"
 #include "harness/measured_run.h"
+#include "harness/no_hits.h"
 
 #include <cstdio>
 
@@ -21,6 +22,16 @@ std::string status_legend()
     for (size_t i = 0; i < trace_status_names.size(); ++i)
         text += fmt::format("{}{}={}", text.empty() ? "" : " ", i, trace_status_names[i]);
     return text;
+}
+
+TraceCounts counts_of(const TraceImage& result)
+{
+    TraceCounts counts;
+    for (const TraceStatus status : result.status) {
+        counts.rays += status != TraceStatus::not_traced ? 1 : 0;
+        counts.hits += status == TraceStatus::hit ? 1 : 0;
+    }
+    return counts;
 }
 
 } // namespace
@@ -45,6 +56,7 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options)
     const LabPtr     lab           = make_lab(stage, *technique, choice.values, choice.settings.trace);
     const TraceImage result        = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));
     write_image(options.output, hits_image(result, technique->id, options.parameters));
+    say(common, no_hits_text(*technique, choice.settings.trace, stage.scene, counts_of(result)));
     std::puts(options.output.c_str());
     require_possible(result, declared_steps(*technique, choice.values));
     return report_messages(stage);

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "harness/choose_technique.h"
+#include "harness/no_hits.h"
 #include "harness/statistics.h"
 
 #include <algorithm>
@@ -98,7 +99,8 @@ int print_plan(const CommonOptions& common, const PlanOptions& options)
     const LabPtr          lab     = make_lab(stage, technique, choice.values, choice.settings.trace);
     const FrameBuffersPtr buffers = make_frame_buffers(stage);
     const FramePlan       plan    = plan_frame(stage, lab, buffers, choice.settings, history);
-    const auto            timed   = [&](const FramePlan& of) {
+    say(common, no_hits_text(technique, choice.settings.trace, stage.scene, plan.statistics.trace));
+    const auto timed = [&](const FramePlan& of) {
         Timed frame{make_frame(stage.gpu, lab, buffers, of, history), {}, {}};
         run_frame(stage.gpu, *frame.frame); // warm-up
         return frame;

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "harness/choose_sources.h"
 #include "harness/choose_technique.h"
+#include "harness/no_hits.h"
 #include "harness/quality.h"
 #include "sources/answered_frame.h"
 #include "truth/glossy_truth.h"
@@ -289,6 +290,8 @@ int render_picture(const CommonOptions& common, const RenderOptions& given)
             const FramePtr         frame =
                 make_frame(stage.gpu, lab, buffers, plan, history, asked.empty() ? Answers::own : Answers::given);
             if (sample == 0) warn_without_reflections(common, plan);
+            if (i == 0 && sample == 0)
+                say(common, no_hits_text(technique, choice.settings.trace, stage.scene, plan.statistics.trace));
             const bool                first = i == 0 && sample == 0 && !options.truth;
             std::optional<TraceImage> counted;
             if (first || !options.show.empty()) counted = trace_gbuffer(stage.gpu, *make_tracer(stage.gpu, lab));

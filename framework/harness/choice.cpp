@@ -37,7 +37,7 @@ glm::ivec2 size_option(const std::string& text)
 
 void say(const CommonOptions& common, const std::string& text)
 {
-    if (!common.quiet) std::fprintf(stderr, "%s\n", printable(text).c_str());
+    if (!common.quiet && !text.empty()) std::fprintf(stderr, "%s\n", printable(text).c_str());
 }
 
 void say_warnings(const CommonOptions& common, const Scene& scene)

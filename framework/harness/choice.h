@@ -21,7 +21,7 @@ struct PictureOptions {
     SequenceFrame            at;
 };
 
-/// Prints a line on stderr, unless --quiet.
+/// Prints a line on stderr, unless it is empty or --quiet.
 void say(const CommonOptions& common, const std::string& text);
 /// Prints the warnings of loading a scene likewise.
 void say_warnings(const CommonOptions& common, const Scene& scene);

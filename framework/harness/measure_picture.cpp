@@ -8,6 +8,7 @@
 #include "core/parallel_rows.h"
 #include "core/stopwatch.h"
 #include "harness/environment.h"
+#include "harness/no_hits.h"
 #include "harness/passes.h"
 #include "harness/picture.h"
 #include "harness/samples.h"
@@ -400,6 +401,9 @@ void open_run(SweepContext& sweep, MeasuredPicture& picture, const Run& run, std
         plan_repeats(sweep, measured);
     };
     if (!try_step(sweep, measured, prepare_all)) return;
+    const std::string no_hits =
+        no_hits_text(technique, run.settings.trace, sweep.scene->stage.scene, measured.plan.statistics.trace);
+    if (!no_hits.empty() && sweep.without_hits.insert(technique.id).second) sweep.progress.say(no_hits);
     sweep.progress.prepared_run(run.id, cost_of(sweep, run));
     open.push_back(std::move(measured));
 }

@@ -50,6 +50,17 @@ class Test(Case):
         self.assertNotIn("warning", self.ssrlab("--quiet", *render))
         self.assertNotIn("warning", self.ssrlab("render", "builtin:stairs", *render[2:]))
 
+    def test_samples_that_meet_nothing_are_a_warning(self):
+        stairs = ("builtin:stairs", "--size", "64x36", "-t", "linear")
+        said = r"warning: linear: 0 of \d+ rays hit\. .* max_distance_m = 1000000000 .*: -p max_distance_m=\d+ is about the scene's size"
+        for command in (("trace", *stairs, "-o", "a.exr"), ("render", *stairs, "-o", "a.png"), ("plan", *stairs, "--repeats", "1")):
+            text = self.ssrlab(*command)
+            self.assertRegex(text, said)
+            self.assertNotIn("warning", self.ssrlab(*command, "-p", re.search(r"max_distance_m=\d+", text)[0]))
+        self.assertNotIn("warning", self.ssrlab("--quiet", "trace", *stairs, "-o", "a.exr"))
+        self.assertNotIn("warning", self.ssrlab("trace", *stairs[:-1], "dda", "-p", "max_distance_m=0.001", "-o", "a.exr"))
+        self.ssrlab("trace", *stairs, "-p", "surface=box", "-p", "thickness_m=0", "-p", "max_distance_m=9", "-o", "a.exr", says=["A sample needs a thickness"])
+
     def test_endings_are_refused_before_the_work(self):
         for command in (("render", "-t", "hiz"), ("trace", "-t", "hiz"), ("gbuffer",)):
             self.refused(command[0], "builtin:stairs", *command[1:], "-o", "a.gif", code=2, says=["-o a.gif: expected a file that ends in"])
