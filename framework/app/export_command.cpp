@@ -167,6 +167,7 @@ std::vector<ExportedSetup> export_hard_cases(Gpu& gpu, const Catalogue& catalogu
                                              const Choice& choice, const ExportOptions& options, const fs::path& root)
 {
     std::vector<ExportedSetup> exported;
+    Translations               translations;
     for (const CaseFamily& family : hard_cases())
         for (const HardCase& hard_case : family.cases) {
             if (!options.only_case.empty() && options.only_case != hard_case.name) continue;
@@ -181,7 +182,7 @@ std::vector<ExportedSetup> export_hard_cases(Gpu& gpu, const Catalogue& catalogu
                 const ExportFrame frame{"case", "", setup.gbuffer, setup.rays};
                 exported.push_back(
                     {hard_case.name, setup.label, setup.settings.surface, root / std::to_string(exported.size())});
-                write_export(gpu, what, std::span(&frame, 1), exported.back().folder);
+                write_export(gpu, what, std::span(&frame, 1), translations, exported.back().folder);
             }
         }
     return exported;
@@ -295,7 +296,8 @@ int export_technique(const CommonOptions& common, const ExportOptions& options, 
                       command_line,
                       chosen_values(catalogue, technique, choice),
                       kept_numbers(technique, options.kept)};
-    write_export(stage.gpu, what, proof_frames(scene, options), options.picture.output);
+    Translations translations;
+    write_export(stage.gpu, what, proof_frames(scene, options), translations, options.picture.output);
     std::puts(fmt::format("wrote {0}; ssrlab export --verify {0} runs it", options.picture.output).c_str());
     return 0;
 }

@@ -70,7 +70,7 @@ std::string with_comment(const std::string& glsl, const std::string& comment)
 }
 
 void write_passes(Gpu& gpu, const Export& what, const View& view, const ComposedLab& composed,
-                  std::vector<ExportedPass>& passes, const fs::path& folder)
+                  std::vector<ExportedPass>& passes, Translations& translations, const fs::path& folder)
 {
     for (ExportedPass& pass : passes) {
         const std::string comment  = comment_of(what, view, pass, &pass == &passes.back());
@@ -84,7 +84,7 @@ void write_passes(Gpu& gpu, const Export& what, const View& view, const Composed
         for (const auto& [name, binding] : shader.bindings) pass.bindings.emplace(binding.binding, resource(name));
         if (what.language == ExportLanguage::glsl) continue;
         write_file_atomically(folder / (pass.name + file_ending(what.language)),
-                              translated(shader, what.language, comment));
+                              translated(shader, what.language, comment, translations));
         fs::remove(glsl);
     }
 }
@@ -103,7 +103,8 @@ const char* file_ending(ExportLanguage language)
     return "";
 }
 
-void write_export(Gpu& gpu, const Export& what, std::span<const ExportFrame> frames, const fs::path& folder)
+void write_export(Gpu& gpu, const Export& what, std::span<const ExportFrame> frames, Translations& translations,
+                  const fs::path& folder)
 {
     make_folders(folder);
     if (what.language == ExportLanguage::wgsl)
@@ -113,7 +114,7 @@ void write_export(Gpu& gpu, const Export& what, std::span<const ExportFrame> fra
         const Traced              traced   = trace(gpu, what, frame);
         const ComposedLab         composed = compose_lab(gpu, *traced.lab, traced.rays.size());
         std::vector<ExportedPass> of_frame = export_passes(gpu, *traced.lab, composed, what.kept);
-        if (passes.empty()) write_passes(gpu, what, frame.gbuffer.view, composed, of_frame, folder);
+        if (passes.empty()) write_passes(gpu, what, frame.gbuffer.view, composed, of_frame, translations, folder);
         for (size_t i = 0; i < of_frame.size() && !passes.empty(); ++i) {
             if (of_frame[i].glsl != passes[i].glsl)
                 throw std::logic_error("write_export: frames need different shaders");

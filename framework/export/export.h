@@ -9,6 +9,7 @@
 #include "trace/lab.h"
 
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -36,12 +37,16 @@ struct ExportFrame {
         {}; // empty: the mirror ray of each pixel that reflects, which the ray set-up makes, too
 };
 
+/// What SPIR-V was translated to. Hard cases share most of their shaders, and a translator takes longer to start than
+/// to translate one.
+using Translations = std::map<std::pair<ExportLanguage, std::vector<uint32_t>>, std::string>;
+
 /// The ending of the language's files.
 const char* file_ending(ExportLanguage language);
 
 /// Writes the folder, which must be missing or empty. Throws SpecError for settings that an export cannot hold and for
 /// shaders that do not compile, Failure for a folder that cannot be written.
-void write_export(Gpu& gpu, const Export& what, std::span<const ExportFrame> frames,
+void write_export(Gpu& gpu, const Export& what, std::span<const ExportFrame> frames, Translations& translations,
                   const std::filesystem::path& folder);
 
 /// A ray that is set up, or that ended, otherwise than in the lab.
@@ -70,8 +75,8 @@ struct WgslVerdicts {
     std::string               device; // as the browser names it
 };
 bool is_wgsl_export(const std::filesystem::path& folder);
-/// The same for exports to WGSL, by WebGPU in Chromium without a window, on its software device. Returns the frames of all
-/// folders, in their order. Throws Failure if the browser or node is missing, or does not run the shaders.
+/// The same for exports to WGSL, by WebGPU in Chromium without a window, on its software device. Returns the frames of
+/// all folders, in their order. Throws Failure if the browser or node is missing, or does not run the shaders.
 WgslVerdicts verify_wgsl_exports(std::span<const std::filesystem::path> folders);
 
 } // namespace ssrlab

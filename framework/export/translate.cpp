@@ -119,11 +119,10 @@ std::string translated_without_comment(const Shader& shader, ExportLanguage lang
 
 } // namespace
 
-std::string translated(const Shader& shader, ExportLanguage language, const std::string& comment)
+std::string translated(const Shader& shader, ExportLanguage language, const std::string& comment,
+                       Translations& translations)
 {
-    // Hard cases share most of their shaders, and a translator takes longer to start than to translate one.
-    static std::map<std::pair<ExportLanguage, std::vector<uint32_t>>, std::string> known;
-    std::string& result = known[{language, shader.spirv}];
+    std::string& result = translations[{language, shader.spirv}];
     if (result.empty()) result = translated_without_comment(shader, language);
     // GLSL's #version stays the first line.
     const size_t first = result.starts_with("#version") ? result.find('\n') + 1 : 0;

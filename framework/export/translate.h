@@ -1,4 +1,4 @@
-// From SPIR-V to other shading languages, by the programs spirv-opt and spirv-cross and, for WGSL, naga. Folder-internal.
+// From SPIR-V to other shading languages, by spirv-opt and spirv-cross and, for WGSL, naga. Folder-internal.
 #pragma once
 
 #include "export/export.h"
@@ -6,8 +6,9 @@
 
 namespace ssrlab {
 
-/// The shader in that language, behind a comment, with its names and binding numbers. Throws Failure where the translator is
-/// missing or cannot translate the shader.
-std::string translated(const Shader& shader, ExportLanguage language, const std::string& comment);
+/// The shader in that language, behind a comment, with its names and binding numbers. Throws Failure where the
+/// translator is missing or cannot translate the shader.
+std::string translated(const Shader& shader, ExportLanguage language, const std::string& comment,
+                       Translations& translations);
 
 } // namespace ssrlab

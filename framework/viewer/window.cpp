@@ -17,19 +17,22 @@ namespace {
 
 constexpr const char* font_file = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"; // Debian's fonts-dejavu-core
 
-std::string last_error; // of GLFW, which tells it to a plain function
+[[noreturn]] void refuse_window()
+{
+    const char* why = nullptr;
+    glfwGetError(&why);
+    const std::string text = why != nullptr ? why : ""; // glfwTerminate() forgets it
+    glfwTerminate();
+    throw_failure("no window: {}", text);
+}
 
 } // namespace
 
 Window::Window(const char* title, glm::ivec2 size_px)
 {
-    glfwSetErrorCallback([](int, const char* text) { last_error = text; });
-    if (glfwInit() == GLFW_FALSE) throw_failure("no window: {}", last_error);
+    if (glfwInit() == GLFW_FALSE) refuse_window();
     window_ = glfwCreateWindow(size_px.x, size_px.y, title, nullptr, nullptr);
-    if (window_ == nullptr) {
-        glfwTerminate();
-        throw_failure("no window: {}", last_error);
-    }
+    if (window_ == nullptr) refuse_window();
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
     ImGui::CreateContext();
