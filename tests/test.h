@@ -1,5 +1,5 @@
-// What every test has: the frameworks and the parts of the standard library that most use. Precompiled, because parsing these is most of
-// what a test's file costs.
+// What every test has: the frameworks and the parts of the standard library that most use. Precompiled, because parsing
+// these is most of what a test's file costs.
 #pragma once
 
 #include <fmt/format.h>

@@ -14,7 +14,7 @@ struct RenderOptions {
     double         exposure_ev = 0;
     std::string    display     = "clip"; // or agx
     std::string    show; // false colours in the picture's place: agreement, causes, fetches, sources; empty: none
-    std::string    sources; // asked about the rays, in this order; empty: the frame alone, with show = sources "frame,world"
+    std::string    sources; // asked about the rays, in this order; empty: the frame alone, or "frame,world" to show
     bool           truth = false, side_by_side = false;
     bool           errors = false; // of the traced picture: printed
 };

@@ -17,7 +17,7 @@ inline constexpr double facing_rounding = 1e-4;
 
 enum class Verdict {
     right,
-    sliver, // a near tie: another answer than the exact one, and rounding could decide every comparison that tells the two apart
+    sliver, // a near tie: not the exact answer, but rounding could decide each comparison that tells them apart
     allowed, // missed, or hit within a step, what the technique's declared limits let it
     wrong,
 };

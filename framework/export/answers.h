@@ -21,8 +21,8 @@ struct Answers {
 /// Returns the words of a file. Throws Failure if it cannot be read.
 Words read_words(const std::filesystem::path& path);
 
-/// Calls visit(file) for each frames/*.json of the folder, by name. Throws SpecError for a folder without any, and for a
-/// file that lacks what `visit` looks for.
+/// Calls visit(file) for each frames/*.json of the folder, by name. Throws SpecError for a folder without any, and for
+/// a file that lacks what `visit` looks for.
 void for_each_frame(const std::filesystem::path&                             folder,
                     const std::function<void(const std::filesystem::path&)>& visit);
 

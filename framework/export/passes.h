@@ -21,8 +21,8 @@ struct ExportedPass {
 std::vector<ExportedPass> export_passes(Gpu& gpu, const Lab& lab, const ComposedLab& composed,
                                         const std::set<std::string>& kept);
 
-/// The host's resource behind a name of a shader: several names may stand for one buffer. Throws SpecError for one that an
-/// export does not have.
+/// The host's resource behind a name of a shader: several names may stand for one buffer. Throws SpecError for one that
+/// an export does not have.
 std::string resource_of(const std::string& name, const ComposedLab& composed, const std::string& file);
 
 /// "frames" and "expected" of the folder.

@@ -33,7 +33,7 @@ struct GpuInfo {
     bool        cheap_doubles = false; // they cost little more than floats
     uint32_t    max_drawn_px  = 0;     // largest side of a picture that it can draw
     bool        int64         = false; // 64-bit integers in shaders
-    bool        compiles_only = false; // it was opened so
+    bool        compiles_only = false; // opened to compile only
     int         lanes = 1; // that share a ray group; above 1: passes before the trace take an invocation a pixel, too
     int         most_lanes = 1;     // that its subgroups allow
     bool plain_buffers     = false; // texel buffers hold fewer elements than a large picture needs, or it was asked for

@@ -15,12 +15,12 @@ struct ChipCode {
     int    wave     = 0; // rays in lockstep
 };
 
-/// Compiles the frame of a run. chip: a device that only compiles (gpu/compiled.h). Throws SpecError for a technique that does
-/// not compile, Failure for one that the chip cannot run.
+/// Compiles the frame of a run. chip: a device that only compiles (gpu/compiled.h). Throws SpecError for a technique
+/// that does not compile, Failure for one that the chip cannot run.
 ChipCode compile_for_chip(Gpu& chip, const Catalogue& catalogue, const Run& run);
 
-/// Returns the instructions per ray of a row of results.csv: each once, and those of the loop once for each iteration of
-/// the longest ray of a wave. Returns nullopt for a row without rays.
+/// Returns the instructions per ray of a row of results.csv: each once, and those of the loop once for each iteration
+/// of the longest ray of a wave. Returns nullopt for a row without rays.
 std::optional<double> instructions_of(const ChipCode& code, const Record& row, glm::ivec2 size_px);
 
 } // namespace ssrlab

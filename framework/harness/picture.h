@@ -25,8 +25,8 @@ struct MeasuredPicture {
 
 /// Returns the stage of a scene; loads and uploads the scene unless it is the current one.
 Stage& stage_of(SweepContext& sweep, const std::string& scene);
-/// Returns the metallic exponent of the true picture, by the experiment's own [passes] (the first value of a list). What
-/// techniques set instead does not count, so all runs of a frame are judged by one picture.
+/// Returns the metallic exponent of the true picture, by the experiment's own [passes] (the first value of a list).
+/// What techniques set instead does not count, so all runs of a frame are judged by one picture.
 std::optional<float> true_exponent(const Experiment& experiment);
 /// Shows the run's frame on that stage.
 MeasuredPicture make_picture(SweepContext& sweep, const Run& run);

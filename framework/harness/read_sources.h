@@ -1,4 +1,4 @@
-// The table [sources] of a specification, and the key `sources` of its techniques. Folder-internal: those who include it link toml++.
+// The table [sources] of a specification, and the key `sources` of its techniques. Folder-internal: needs toml++.
 #pragma once
 
 #include "core/toml_reading.h"

@@ -1,6 +1,6 @@
 // Light from infinitely far away: an equirectangular map around the scene, which misses fall back on.
 //
-// World directions: +x right, +y up, -z forwards. The map's middle is forwards, its right half is +x, its top row is up:
+// World directions: +x right, +y up, -z forwards. The map's middle is forwards, its right half +x, its top row up:
 //   u = 0.5 + atan2(x, -z) / (2 pi)    v = 0.5 - atan2(y, sqrt(x^2 + z^2)) / pi    (u = 0.5 at the poles)
 // Texels are blended bilinearly, around in u, clamped in v. shaders/gbuffer/environment.glsl is the same in GLSL.
 #pragma once

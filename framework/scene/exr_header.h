@@ -6,8 +6,8 @@
 
 namespace ssrlab {
 
-/// OpenEXR 3.1 takes sizes in a header at their word and asks for as much memory: up to 2 GB for one text of a file of 400 bytes. Refuses
-/// what reaches beyond the file, and pictures and tiles that are too large. Throws Failure, SpecError for too many pixels; `shown` is the path as messages show it.
+/// Throws Failure for what reaches beyond the file and for tiles that are too large, SpecError for too many pixels.
+/// OpenEXR 3.1 would ask for the memory that a header names: 2 GB for one of 400 bytes. `shown`: the path in messages.
 void check_exr_header(const std::filesystem::path& file, const std::string& shown);
 
 } // namespace ssrlab

@@ -58,11 +58,11 @@ std::optional<FramePlane> find_plane(const FrameSource& source, const std::strin
     return read_plane(source.file, found[0]);
 }
 
-FramePlane need_plane(const FrameSource& source, const std::string& quantity, const char* otherwise)
+FramePlane need_plane(const FrameSource& source, const std::string& quantity, const char* elsewhere)
 {
     if (auto plane = find_plane(source, quantity)) return std::move(*plane);
     throw_spec_error("{}: no channel is recognised as {}: name it in {}, [channels]{}; the file has {}",
-                     source.file.shown, quantity, source.convention.place, otherwise, channel_names(source.file));
+                     source.file.shown, quantity, source.convention.place, elsewhere, channel_names(source.file));
 }
 
 void clear_outside(FrameSource& source, const FramePlane& plane)

@@ -26,8 +26,8 @@ struct FrameSource {
 /// Finds what holds the quantity (frame_channels.h): the channel that the convention names, a recognised one, or a
 /// constant. Throws SpecError if two channels could be it.
 std::optional<FramePlane> find_plane(const FrameSource& source, const std::string& quantity);
-/// The same; throws SpecError if there is none. `otherwise` says where else it could be stated.
-FramePlane need_plane(const FrameSource& source, const std::string& quantity, const char* otherwise = "");
+/// The same; throws SpecError if there is none. `elsewhere` says where else it could be stated.
+FramePlane need_plane(const FrameSource& source, const std::string& quantity, const char* elsewhere = "");
 
 /// Makes the pixels outside the plane's window background, since a part of their surface is unknown.
 void clear_outside(FrameSource& source, const FramePlane& plane);

@@ -12,9 +12,9 @@ namespace ssrlab::gltf {
 /// Returns the array of that name; empty if there is none. Throws Failure unless it holds objects, and not too many.
 const nlohmann::json& array_of(const Import& import, const nlohmann::json& object, const char* name);
 
-/// Returns a whole number of an object, `otherwise` without the key. Throws Failure for any other value.
+/// Returns a whole number of an object, `fallback` without the key. Throws Failure for any other value.
 uint64_t count_of(const Import& import, const nlohmann::json& object, const char* key, const std::string& where,
-                  uint64_t otherwise);
+                  uint64_t fallback);
 
 /// Stands before the data of every data URI that can be read.
 inline constexpr std::string_view base64 = ";base64,";
@@ -23,8 +23,8 @@ inline constexpr std::string_view base64 = ";base64,";
 /// indices are zeros, some replaced by sparse ones.
 std::vector<size_t> give_indices_a_view(const Import& import, nlohmann::json& root);
 
-/// Replaces the media types of data URIs by one that the parser knows (the format is told by the bytes), and escapes what
-/// it would read wrongly in others. Returns whether any changed.
+/// Replaces the media types of data URIs by one that the parser knows (the format is told by the bytes), and escapes
+/// what it would read wrongly in others. Returns whether any changed.
 bool give_uris_one_form(const Import& import, nlohmann::json& root);
 
 /// Gives buffers the size of their data or file where it is larger than stated. Returns whether any changed. Throws

@@ -82,17 +82,17 @@ int texture_number(Import& import, Textures& textures, int texture_index, bool s
     return found->second;
 }
 
-double number_in(const tinygltf::Value& value, const char* key, double otherwise)
+double number_in(const tinygltf::Value& value, const char* key, double fallback)
 {
     return value.IsObject() && value.Has(key) && value.Get(key).IsNumber() ? value.Get(key).GetNumberAsDouble()
-                                                                           : otherwise;
+                                                                           : fallback;
 }
 
-glm::dvec2 pair_in(const tinygltf::Value& value, const char* key, glm::dvec2 otherwise)
+glm::dvec2 pair_in(const tinygltf::Value& value, const char* key, glm::dvec2 fallback)
 {
-    if (!value.IsObject() || !value.Has(key)) return otherwise;
+    if (!value.IsObject() || !value.Has(key)) return fallback;
     const tinygltf::Value& pair = value.Get(key);
-    if (!pair.IsArray() || pair.ArrayLen() != 2 || !pair.Get(0).IsNumber() || !pair.Get(1).IsNumber()) return otherwise;
+    if (!pair.IsArray() || pair.ArrayLen() != 2 || !pair.Get(0).IsNumber() || !pair.Get(1).IsNumber()) return fallback;
     return {pair.Get(0).GetNumberAsDouble(), pair.Get(1).GetNumberAsDouble()};
 }
 
@@ -125,9 +125,9 @@ TextureUse texture_use(Import& import, Textures& textures, const Info& info, boo
     return use;
 }
 
-float unit_range(double value, float otherwise)
+float unit_range(double value, float fallback)
 {
-    return std::isfinite(value) ? static_cast<float>(std::clamp(value, 0.0, 1.0)) : otherwise;
+    return std::isfinite(value) ? static_cast<float>(std::clamp(value, 0.0, 1.0)) : fallback;
 }
 
 /// KHR_materials_ior and KHR_materials_specular: one number, reflectance at normal incidence.

@@ -240,10 +240,10 @@ std::string percent_decoded(const std::string& text)
 } // namespace
 
 uint64_t count_of(const Import& import, const json& object, const char* key, const std::string& where,
-                  uint64_t otherwise)
+                  uint64_t fallback)
 {
     const auto found = object.find(key);
-    if (found == object.end()) return otherwise;
+    if (found == object.end()) return fallback;
     if (!found->is_number_unsigned()) import.fail("{}/{} must be a whole number >= 0", where, key);
     return found->get<uint64_t>();
 }

@@ -26,15 +26,15 @@ void make_flat_normals(Mesh& mesh);
 /// Compares positions rather than indices, since scanned models repeat or share vertices arbitrarily.
 void make_smooth_normals(Mesh& mesh, double crease_deg);
 
-/// Gives vertices without a tangent one along the u direction of `uv_set` after `uv_transform`, with bitangents against v, as
-/// glTF has them. After Lengyel 2001, "Computing Tangent Space Basis Vectors". Returns how many.
+/// Gives vertices without a tangent one along the u direction of `uv_set` after `uv_transform`, with bitangents against
+/// v, as glTF has them. After Lengyel 2001, "Computing Tangent Space Basis Vectors". Returns how many.
 size_t make_tangents(Mesh& mesh, int uv_set, const glm::mat3& uv_transform);
 
 /// Gives corners whose normal is zero or not finite that of their triangle. Returns how many there were.
 size_t replace_bad_normals(Mesh& mesh);
 
-/// Replaces attribute values that are not finite; makes normals unit vectors, which must have a direction; makes tangents that
-/// have none across the normal zero.
+/// Replaces attribute values that are not finite; makes normals unit vectors, which must have a direction; makes
+/// tangents that have none across the normal zero.
 void clean_attributes(Mesh& mesh);
 
 } // namespace ssrlab

@@ -1,8 +1,8 @@
-// An environment map as rough surfaces reflect it: the first half of the split sum (B. Karis 2013, "Real Shading in Unreal Engine 4").
+// An environment map as rough surfaces reflect it: the first half of the split sum (Karis 2013, Unreal Engine 4).
 //
-// Level k of n holds, for each mirror direction, the mean of the map over the GGX lobe of roughness ((k + 1) / n)^1.5 that is seen
-// along the normal, by its BRDF's own weights. It is summed over all texels of a smaller map, so it has no noise; rougher levels are
-// summed from coarser maps. shaders/passes/environment_lobe.glsl looks it up.
+// Level k of n holds, for each mirror direction, the mean of the map over the GGX lobe of roughness ((k + 1) / n)^1.5
+// seen along the normal, by its BRDF's weights. It sums all texels of a smaller map, so it has no noise; rougher
+// levels sum coarser maps. shaders/passes/environment_lobe.glsl looks it up.
 #pragma once
 
 #include "scene/environment.h"

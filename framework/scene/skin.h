@@ -11,7 +11,7 @@ glm::dmat4 blended(const Influences& influences, const std::vector<glm::dmat4>& 
 /// Moves a vertex with its normal and tangent; a normal that a flattening matrix takes to nothing becomes 0.
 void move_vertex(const glm::dmat4& matrix, glm::dvec3& position_ws, Vertex& vertex);
 
-/// From world space in frame 0 to world space in `frame`; the last frame stays. The identity where frame 0 has flattened the vertex.
+/// From world space in frame 0 to that in `frame`; the last frame stays. Identity where frame 0 flattens the vertex.
 glm::dmat4 pose(const Influences& influences, const JointPoses& joints, int frame);
 
 } // namespace ssrlab

@@ -12,7 +12,7 @@
 
 namespace ssrlab {
 
-/// One table of a file, which must outlive it. Asking for a key declares it; refuse_unknown_keys() then rejects all others.
+/// One table of a file, which must outlive it. Asking for a key declares it; refuse_unknown_keys() rejects the others.
 class TomlTable {
 public:
     TomlTable(const TomlFile& file, const toml::table& table, std::string what);

@@ -28,7 +28,7 @@ void draw_face(SourceContext& context, CubeOfFrames& cube, int face, SourceTurn&
 /// Returns the square view of a face, 90 degrees wide.
 View face_view(const View& centre, int face, int size_px);
 
-/// Draws both sides of all surfaces in the faces that rays enter, and traces; returns one answer per ray. Adds the times of both to the turn.
+/// Draws both sides of all surfaces in the faces that rays enter, and traces: an answer per ray. Adds its times.
 std::vector<RayAnswer> trace_in_cube(SourceContext& context, CubeOfFrames& cube, const TraceSettings& settings,
                                      RayStart start, std::span<const OpenRay> rays, SourceTurn& turn);
 

@@ -30,8 +30,8 @@ RayInput to_input(const View& view, const OpenRay& ray, const SeenPart& part);
 /// Returns a place some pixels before the end of what is known to be clear, or the beginning of what the camera sees.
 double before_clear_end_m(const View& view, const OpenRay& ray);
 
-/// Returns whether a ray may meet anything up to to_m where the camera does not see it: behind this layer. The grid says
-/// what may be there.
+/// Returns whether a ray may meet anything up to to_m where the camera does not see it: behind this layer. The grid
+/// says what may be there.
 bool may_meet_behind(const GBufferImage& layer, const Occupancy& grid, const OpenRay& ray, double to_m);
 
 /// Makes `answer` the point where a ray met `pixel` of `met`: its place in the world, its light toward the camera, and

@@ -1,4 +1,4 @@
-// The shaders of a lab before they are compiled: by files and texts, with their constants and dispatches. Folder-internal.
+// The shaders of a lab before they are compiled: files and texts, with constants and dispatches. Folder-internal.
 #pragma once
 
 #include "trace/lab_passes.h"

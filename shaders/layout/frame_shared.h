@@ -4,10 +4,10 @@
 #define MAX_LAYERS 4
 #define MAX_IMAGE_PX (1 << PIXEL_BITS)
 
-// Invocations of a workgroup of a structure's pass per ray group: GpuInfo::lanes of them (GROUP_LANES in shaders) share a group.
+// Invocations of a workgroup of a structure's pass per ray group: GpuInfo::lanes of them (GROUP_LANES) share a group.
 #define RAY_GROUP_INVOCATIONS 64
 
-// Tiles that a workgroup classifies, side by side (shaders/rays/classification.comp, and classification_by_pixel.comp where passes are parallel).
+// Tiles that a workgroup classifies, side by side (shaders/rays/classification.comp, classification_by_pixel.comp).
 #define CLASSIFIED_TILES 32
 #define CLASSIFIED_TILES_BY_PIXEL 16
 

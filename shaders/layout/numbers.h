@@ -13,7 +13,7 @@
 // A pixel and a small number in one uint: x in bits 0..13, y in 14..27, the number in 28..31.
 #define PIXEL_BITS 14
 
-// How a ray ended, as that number: its status (0 ... 7), but that of a hit or a stop in a layer behind the first tells the layer, too.
+// How a ray ended, as that number: its status (0 ... 7); behind the first layer a hit's or stop's tells the layer, too.
 SHARED_FUNCTION int number_to_layer(int number) { return number < 8 ? 0 : (number >> 1) - 3; }
 SHARED_FUNCTION int number_to_status(int number) { return number < 8 ? number : (number & 1) == 0 ? TRACE_HIT : TRACE_STOPPED; }
 SHARED_FUNCTION int status_to_number(int status, int layer) { return layer == 0 ? status : 6 + 2 * layer + (status == TRACE_HIT ? 0 : 1); }

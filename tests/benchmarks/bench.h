@@ -36,7 +36,7 @@ public:
     void rays(benchmark::State& state, const std::string& scene, glm::ivec2 size_px);
     void trace(benchmark::State& state, const std::string& scene, glm::ivec2 size_px);
     void shade(benchmark::State& state, const std::string& scene, glm::ivec2 size_px);
-    /// The tracer where one pixel of 16 reflects, here and there: the list of these rays, or one invocation for every pixel.
+    /// The tracer where a pixel of 16 reflects, scattered: the list of these rays, or an invocation for each pixel.
     void scattered(benchmark::State& state, const std::string& scene, glm::ivec2 size_px, bool compacted);
     /// The truths on the CPU, made anew each time: pixels and rays a second and core.
     void screen_truth(benchmark::State& state, const std::string& scene, glm::ivec2 size_px);

@@ -129,6 +129,14 @@ class Test(unittest.TestCase):
     def test_lines_are_short(self):
         self.each_page(lambda _, text: long_lines(text))
 
+    def test_headers_are_narrow(self):
+        """120 columns, as .clang-format has it for code; what GLSL reads, too, has functions of one line."""
+        headers = [file for file in code_files() if file.endswith(".h")]
+        self.assertGreater(len(headers), 150)
+        wide = [f"{file}:{number}" for file in headers for number, line in enumerate(read(file).splitlines(), 1)
+                if len(line) > 120 and not line.startswith("SHARED_FUNCTION")]
+        self.assertEqual(wide, [])
+
     def test_the_glossary_is_in_order(self):
         rows = re.findall(r"^\| ([^|]+) \| ([^|]+) \|$", read("docs/reference/glossary.md"), flags=re.M)[1:]
         terms = [term.lower() for term, _ in rows]

@@ -15,7 +15,7 @@ struct Dispute {
     double      allowed_px = 0, allowed_face = 0;
     std::string text;
 
-    /// Through a corner exactly: no rounding of the ray decides it as exact numbers do. Level views send dozens of such rays.
+    /// Through a corner exactly: no rounding of the ray decides it as exact numbers do. Level views send dozens.
     bool tie() const { return std::abs(corner_px) < 1e-9; }
     /// A pixel that the ray passes by more than that is no matter of rounding.
     bool explained() const { return corner_px >= -allowed_px && (corner_px <= allowed_px || face <= allowed_face); }

@@ -1,5 +1,5 @@
-// What is done with the bytes of one file: the functions that the program's commands call, with nothing in between. A target may throw SpecError
-// or Failure, as the program may; whatever else happens is a finding.
+// What is done with the bytes of one file: the functions that the program's commands call, with nothing in between.
+// A target may throw SpecError or Failure, as the program may; whatever else happens is a finding.
 #pragma once
 
 #include <cstddef>

@@ -10,7 +10,7 @@ namespace ssrlab::test {
 Gpu& device();
 /// Layers that a picture may have on this device: passes at the end of a frame need images for each.
 int most_layers();
-/// SwiftShader draws less exactly than by rounding (docs/explanation/devices.md). Tests of the last digits of what is drawn leave it out.
+/// SwiftShader draws less exactly than by rounding (docs/explanation/devices.md): tests of last digits leave it out.
 bool draws_exactly();
 
 /// All of the tree, and what main.cpp names in $SSRLAB_TECHNIQUES.

@@ -11,12 +11,12 @@ struct OracleAnswer {
 };
 
 /// For rays and depths of the random campaign: multiples of 1/256 px and of 2^-20, slab backs at half the depth.
-/// A crossing is the fraction n / d of the ray with integers n and d; crossings are ordered by cross products, depths compared after
-/// multiplication by d. The largest product, 2 * 2^20 * 2^22, is far inside 64 bits; they are formed in 128.
+/// A crossing is the fraction n / d of the ray with integers n and d; cross products order crossings, depths are
+/// compared after multiplication by d. The largest product, 2 * 2^20 * 2^22, is far inside 64 bits; 128 hold them.
 OracleAnswer integer_oracle(const GBufferImage& gbuffer, const RayInput& ray);
 
-/// Does the ray pass exactly through a corner of this pixel? The pixel beside such a corner is touched in one point: the hit contract does not
-/// visit it, arithmetic that rounds may.
+/// Whether the ray passes exactly through a corner of this pixel. The pixel beside such a corner is touched in one
+/// point: the hit contract does not visit it, arithmetic that rounds may.
 bool passes_through_a_corner(const RayInput& ray, glm::ivec2 pixel);
 
 } // namespace ssrlab::test

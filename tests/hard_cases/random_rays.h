@@ -1,4 +1,4 @@
-// The random campaign: pictures and rays in numbers that integers hold exactly, so that an oracle without rounding can judge them.
+// The random campaign: pictures and rays in numbers that integers hold exactly, so that an oracle can judge them.
 #pragma once
 
 #include "check/setup.h"
@@ -14,7 +14,7 @@ inline constexpr int depth_steps = 1 << 20; // depths are multiples of 2^-20
 inline const TraceSettings campaign_settings =
     boxes({.thickness_m = 1, .thickness_relative = true, .max_distance_m = 1e9});
 
-/// Rays of a campaign: what SSRLAB_LONG says, a hundred million where it says no number above 1, `short_run` where it is not set.
+/// Rays of a campaign: what SSRLAB_LONG says, a hundred million if that is no number above 1; `short_run` without it.
 size_t planned_rays(size_t short_run);
 
 enum class Field { poles, sparse_poles, walls, terrain };
@@ -26,8 +26,8 @@ Setup make_field(Field field, glm::ivec2 size_px, uint32_t seed);
 /// What an upload needs besides depth: black mirrors that face the camera.
 void complete_field(GBufferImage& image);
 
-/// Rays of all classes in turn: any direction, axis-aligned with either sign of zero, diagonal, rational slopes, almost axis-aligned,
-/// level in depth, steep in depth, shorter than two pixels, along borders and through corners.
+/// Rays of all classes in turn: any direction, axis-aligned with either sign of zero, diagonal, rational slopes, almost
+/// axis-aligned, level in depth, steep in depth, shorter than two pixels, along borders and through corners.
 std::vector<RayInput> random_rays(glm::ivec2 size_px, size_t count, uint32_t seed);
 
 } // namespace ssrlab::test
