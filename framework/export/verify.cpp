@@ -76,7 +76,7 @@ void run_frame(Gpu& gpu, const json& frame, const Resources& resources, const fs
     };
     std::vector<Step>     steps;
     std::deque<Buffer>    pushed; // a small uniform block for each dispatch
-    const ShaderFilesHeld held;
+    const ShaderFilesHeld held(gpu);
     for (const json& pass : frame.at("passes")) {
         const fs::path file = fs::absolute(folder / pass.at("file").get<std::string>());
         require_known_language(file);
@@ -90,7 +90,7 @@ void run_frame(Gpu& gpu, const json& frame, const Resources& resources, const fs
                              {groups.at(0), groups.at(1), groups.at(2)}});
         }
     }
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    submit(gpu, [&](const Commands& commands) {
         for (const Step& step : steps) {
             barrier(commands);
             if (step.groups.x * step.groups.y > 0) dispatch(commands, step.pass, step.groups);

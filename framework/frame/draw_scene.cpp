@@ -123,7 +123,7 @@ DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipel
     return result;
 }
 
-void draw_scene(const vk::raii::CommandBuffer& commands, const GpuScene& scene, const DrawPipeline& pipeline,
+void draw_scene(const Commands& commands, const GpuScene& scene, const DrawPipeline& pipeline,
                 vk::DescriptorSet frame_set, const glm::dmat4& world_to_clip)
 {
     const vk::Pipeline of_opaque = *pipeline.opaque ? *pipeline.opaque : *pipeline.pipeline;

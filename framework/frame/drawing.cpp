@@ -34,9 +34,9 @@ void fill_frame_uniforms(Gpu& gpu, Drawing& drawing)
 
 } // namespace
 
-vk::RenderingAttachmentInfo cleared_attachment(const GpuImage& image, vk::ClearValue clear)
+vk::RenderingAttachmentInfo cleared_attachment(const Commands& commands, const GpuImage& image, vk::ClearValue clear)
 {
-    note({.uses = {{storage_of(image), false, true}}});
+    note(commands, {.uses = {{storage_of(image), false, true}}});
     return {.imageView   = *image.view,
             .imageLayout = vk::ImageLayout::eGeneral,
             .loadOp      = vk::AttachmentLoadOp::eClear,
@@ -48,20 +48,20 @@ namespace {
 
 vk::ClearValue colour(glm::vec4 c) { return vk::ClearColorValue{std::array<float, 4>{c.x, c.y, c.z, c.w}}; }
 
-void record_rasterisation(const vk::raii::CommandBuffer& commands, const Drawing& drawing)
+void record_rasterisation(const Commands& commands, const Drawing& drawing)
 {
     const GBuffer&                    gbuffer   = *drawing.gbuffer;
     const vk::RenderingAttachmentInfo colours[] = {
-        cleared_attachment(gbuffer.normal, colour(glm::vec4(0))),
-        cleared_attachment(gbuffer.material, colour(glm::vec4(0))),
-        cleared_attachment(gbuffer.radiance, colour(glm::vec4(0))),
-        cleared_attachment(gbuffer.highlight, colour(glm::vec4(0))),
-        cleared_attachment(gbuffer.object, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}}),
-        cleared_attachment(gbuffer.gradient, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}}),
-        cleared_attachment(gbuffer.dielectric, colour(glm::vec4(0))),
-        cleared_attachment(gbuffer.emission, colour(glm::vec4(0)))};
+        cleared_attachment(commands, gbuffer.normal, colour(glm::vec4(0))),
+        cleared_attachment(commands, gbuffer.material, colour(glm::vec4(0))),
+        cleared_attachment(commands, gbuffer.radiance, colour(glm::vec4(0))),
+        cleared_attachment(commands, gbuffer.highlight, colour(glm::vec4(0))),
+        cleared_attachment(commands, gbuffer.object, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}}),
+        cleared_attachment(commands, gbuffer.gradient, vk::ClearColorValue{std::array<uint32_t, 4>{0, 0, 0, 0}}),
+        cleared_attachment(commands, gbuffer.dielectric, colour(glm::vec4(0))),
+        cleared_attachment(commands, gbuffer.emission, colour(glm::vec4(0)))};
     // Reversed depth: background is 0.
-    const auto       depth = cleared_attachment(drawing.depth_buffer, vk::ClearDepthStencilValue{0.0F, 0});
+    const auto       depth = cleared_attachment(commands, drawing.depth_buffer, vk::ClearDepthStencilValue{0.0F, 0});
     const glm::ivec2 size  = gbuffer.view.size_px;
     const vk::Rect2D area{{0, 0}, {static_cast<uint32_t>(size.x), static_cast<uint32_t>(size.y)}};
     commands.beginRendering({.renderArea           = area,
@@ -141,7 +141,7 @@ DrawingPtr make_drawing(Gpu& gpu, const GpuScenePtr& scene, const View& view, Sh
 
 } // namespace
 
-void record_drawing(const vk::raii::CommandBuffer& commands, const Drawing& drawing)
+void record_drawing(const Commands& commands, const Drawing& drawing)
 {
     const View& view = drawing.gbuffer->view;
     barrier(commands);
@@ -195,7 +195,7 @@ DrawnSides draw_sides_behind(Gpu& gpu, const GpuScenePtr& scene, const View& vie
     return {drawing->gbuffer, redraw_gbuffer(gpu, *drawing)};
 }
 
-void record_second_layer(const vk::raii::CommandBuffer& commands, const Drawing& second, double separation_m)
+void record_second_layer(const Commands& commands, const Drawing& second, double separation_m)
 {
     const View&  view = second.gbuffer->view;
     const double unit = view.projection == Projection::perspective ? view.near_m : view.far_m - view.near_m;
@@ -207,7 +207,7 @@ void record_second_layer(const vk::raii::CommandBuffer& commands, const Drawing&
 
 double redraw_gbuffer(Gpu& gpu, Drawing& drawing)
 {
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    submit(gpu, [&](const Commands& commands) {
         write_timestamp(commands, drawing.timestamps, 0);
         record_drawing(commands, drawing);
         write_timestamp(commands, drawing.timestamps, 1);

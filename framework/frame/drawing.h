@@ -27,23 +27,23 @@ struct Drawing {
 /// Returns the second layer of a G-buffer: the nearest surfaces that lie more than the separation behind it. `first`
 /// must outlive it.
 DrawingPtr make_second_layer(Gpu& gpu, const Drawing& first);
-void       record_second_layer(const vk::raii::CommandBuffer& commands, const Drawing& second, double separation_m);
+void       record_second_layer(const Commands& commands, const Drawing& second, double separation_m);
 
 /// Returns the next layer: the nearest surfaces behind `before` that face the camera. `before` must
 /// outlive it.
 DrawingPtr make_next_layer(Gpu& gpu, const Drawing& before);
-void       record_drawing(const vk::raii::CommandBuffer& commands, const Drawing& drawing);
+void       record_drawing(const Commands& commands, const Drawing& drawing);
 
 /// Records drawing the first `layers` - 1 layers behind the G-buffer again.
-void record_layers(const vk::raii::CommandBuffer& commands, const Drawing& drawing, int layers);
+void record_layers(const Commands& commands, const Drawing& drawing, int layers);
 
 /// Prepares record_solid_backs() and draws once; a second call does nothing.
 void make_solid_backs(Gpu& gpu, Drawing& drawing);
 /// Records drawing GBuffer::solid, where the solids end whose fronts the G-buffer shows: the scene once more, with back
 /// faces, behind the G-buffer (docs/reference/hit_contract.md, plane_solid).
-void record_solid_backs(const vk::raii::CommandBuffer& commands, const Drawing& drawing);
+void record_solid_backs(const Commands& commands, const Drawing& drawing);
 
 /// Returns an attachment for drawing into an image that is cleared first.
-vk::RenderingAttachmentInfo cleared_attachment(const GpuImage& image, vk::ClearValue clear);
+vk::RenderingAttachmentInfo cleared_attachment(const Commands& commands, const GpuImage& image, vk::ClearValue clear);
 
 } // namespace ssrlab

@@ -10,13 +10,13 @@ void draw_layers(Gpu& gpu, Drawing& drawing, int layers)
     while (static_cast<int>(drawing.layers.size()) + 1 < layers) {
         const Drawing&    before = drawing.layers.empty() ? drawing : *drawing.layers.back();
         const DrawingPtr& layer  = drawing.layers.emplace_back(make_next_layer(gpu, before));
-        submit(gpu, [&](const vk::raii::CommandBuffer& commands) { record_drawing(commands, *layer); });
+        submit(gpu, [&](const Commands& commands) { record_drawing(commands, *layer); });
         make_solid_backs(gpu, *layer);
         drawing.gbuffer->layers.push_back(layer->gbuffer);
     }
 }
 
-void record_layers(const vk::raii::CommandBuffer& commands, const Drawing& drawing, int layers)
+void record_layers(const Commands& commands, const Drawing& drawing, int layers)
 {
     for (int i = 0; i + 1 < layers; ++i) record_drawing(commands, *drawing.layers[static_cast<size_t>(i)]);
 }
@@ -37,15 +37,16 @@ void make_solid_backs(Gpu& gpu, Drawing& drawing)
                                            .size_px = gbuffer.view.size_px,
                                            .usage   = vk::ImageUsageFlagBits::eDepthStencilAttachment});
     drawing.solid_set   = make_frame_set(gpu, scene, drawing.frame_uniforms, &gbuffer.depth);
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) { record_solid_backs(commands, drawing); });
+    submit(gpu, [&](const Commands& commands) { record_solid_backs(commands, drawing); });
 }
 
-void record_solid_backs(const vk::raii::CommandBuffer& commands, const Drawing& drawing)
+void record_solid_backs(const Commands& commands, const Drawing& drawing)
 {
-    const GBuffer&   gbuffer = *drawing.gbuffer;
-    const auto       colour  = cleared_attachment(gbuffer.solid, vk::ClearColorValue{std::array<float, 4>{0, 0, 0, 0}});
-    const auto       depth   = cleared_attachment(drawing.solid_depth, vk::ClearDepthStencilValue{0.0F, 0});
-    const glm::ivec2 size    = gbuffer.view.size_px;
+    const GBuffer& gbuffer = *drawing.gbuffer;
+    const auto     colour =
+        cleared_attachment(commands, gbuffer.solid, vk::ClearColorValue{std::array<float, 4>{0, 0, 0, 0}});
+    const auto       depth = cleared_attachment(commands, drawing.solid_depth, vk::ClearDepthStencilValue{0.0F, 0});
+    const glm::ivec2 size  = gbuffer.view.size_px;
     const vk::Rect2D area{{0, 0}, {static_cast<uint32_t>(size.x), static_cast<uint32_t>(size.y)}};
     barrier(commands);
     commands.beginRendering({.renderArea           = area,

@@ -92,7 +92,7 @@ FrameBuffersPtr make_frame_buffers(Gpu& gpu, const GBufferPtr& gbuffer, const Dr
 FramePtr make_frame(Gpu& gpu, const LabPtr& lab, const FrameBuffersPtr& buffers, const FramePlan& plan,
                     const FrameHistoryPtr& history, Answers answers)
 {
-    const ShaderFilesHeld held;
+    const ShaderFilesHeld held(gpu);
     auto                  frame  = std::make_shared<ReadyFrame>();
     FrameInputs&          inputs = frame->inputs;
     inputs.lab                   = lab;
@@ -137,7 +137,7 @@ FrameTimes run_passes(Gpu& gpu, const ReadyFrame& frame, const Timestamps& times
                       int frames)
 {
     const auto records = std::span(frame.record_functions).subspan(first, last - first);
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    submit(gpu, [&](const Commands& commands) {
         for (int untimed = 1; untimed < frames; ++untimed)
             for (const RecordFunction& record : records) {
                 record(commands);

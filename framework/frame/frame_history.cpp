@@ -72,7 +72,7 @@ void keep_history(Gpu& gpu, const ReadyFrame& frame, int number)
     if (!kept) source.defines.emplace("KEEP_REFLECTION", "1");
     if (picture && !kept_picture) source.defines.emplace("KEEP_PICTURE", "1");
     const ComputePass keep = make_compute_pass(gpu, compile_shader(gpu, source), all);
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    submit(gpu, [&](const Commands& commands) {
         barrier(commands);
         dispatch(commands, keep, groups_of_8(history.size_px));
         if (kept) {

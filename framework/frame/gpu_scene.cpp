@@ -36,7 +36,7 @@ vk::raii::Sampler make_sampler(Gpu& gpu, const Texture& texture)
 /// Each level is the filtered half of the one before.
 void make_mipmaps(Gpu& gpu, GpuImage& image)
 {
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    submit(gpu, [&](const Commands& commands) {
         glm::ivec2 size = image.size_px;
         for (uint32_t level = 1; level < image.levels; ++level) {
             const glm::ivec2    half = glm::max(size / 2, glm::ivec2(1));

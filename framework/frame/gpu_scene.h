@@ -63,7 +63,7 @@ struct DrawPipelineOptions {
 DrawPipeline make_draw_pipeline(Gpu& gpu, const GpuScene& scene, const DrawPipelineOptions& options);
 
 /// Draws everything whose bounds are not entirely outside the clip volume.
-void draw_scene(const vk::raii::CommandBuffer& commands, const GpuScene& scene, const DrawPipeline& pipeline,
+void draw_scene(const Commands& commands, const GpuScene& scene, const DrawPipeline& pipeline,
                 vk::DescriptorSet frame_set, const glm::dmat4& world_to_clip);
 
 /// Descriptor set 0: frame uniforms and, for the second layer, the depth of the first. Kept by the caller.

@@ -55,8 +55,7 @@ MotionVectors make_motion_vectors(Gpu& gpu, GBuffer& gbuffer, const FrameMotion&
     return vectors;
 }
 
-void record_motion_vectors(const vk::raii::CommandBuffer& commands, const MotionVectors& vectors,
-                           const GBuffer& gbuffer)
+void record_motion_vectors(const Commands& commands, const MotionVectors& vectors, const GBuffer& gbuffer)
 {
     dispatch(commands, vectors.pass, groups_of_8(gbuffer.view.size_px));
 }

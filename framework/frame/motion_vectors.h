@@ -24,7 +24,6 @@ MotionBuffers make_motion_buffers(Gpu& gpu, const View& view, const FrameMotion&
                                   glm::dvec2 previous_jitter_px = {}, bool repeats = false);
 /// Makes GBuffer::motion_px, with undefined content, and the pass that fills it.
 MotionVectors make_motion_vectors(Gpu& gpu, GBuffer& gbuffer, const FrameMotion& motion);
-void          record_motion_vectors(const vk::raii::CommandBuffer& commands, const MotionVectors& vectors,
-                                    const GBuffer& gbuffer);
+void          record_motion_vectors(const Commands& commands, const MotionVectors& vectors, const GBuffer& gbuffer);
 
 } // namespace ssrlab

@@ -98,7 +98,7 @@ FramePlan plan_with(const Catalogue& catalogue, const Lab& lab, const FrameBuffe
 FramePlan plan_frame(Gpu& gpu, const Catalogue& catalogue, const LabPtr& lab, const FrameBuffersPtr& buffers,
                      const FrameSettings& settings, const FrameHistoryPtr& history)
 {
-    const ShaderFilesHeld held;
+    const ShaderFilesHeld held(gpu);
     const GBufferCounts   counts = count_gbuffer(gpu, *lab->gbuffer, lab->settings);
     FramePlan             plan   = plan_inputs(catalogue, *lab, *buffers, settings, history.get(), counts);
     if (choice<PassSet>(plan.values) != PassSet::shading && counts.reflecting_pixels > 0) {

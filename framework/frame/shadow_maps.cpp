@@ -92,7 +92,7 @@ void draw_layer(Gpu& gpu, const GpuScene& scene, const DrawPipeline& pipeline, v
                                 .subresourceRange = {vk::ImageAspectFlagBits::eDepth, 0, 1, layer, 1}});
     const vk::Extent2D extent{static_cast<uint32_t>(scene.shadow_map.size_px.x),
                               static_cast<uint32_t>(scene.shadow_map.size_px.y)};
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    submit(gpu, [&](const Commands& commands) {
         const vk::RenderingAttachmentInfo depth{.imageView   = *view,
                                                 .imageLayout = vk::ImageLayout::eGeneral,
                                                 .loadOp      = vk::AttachmentLoadOp::eClear,

@@ -31,8 +31,8 @@ ComputePass make_shade_pass(Gpu& gpu, const World& world, const GpuScene& scene,
     return make_compute_pass(gpu, compile_shader(gpu, {.file = "world/shade.comp"}), bindings, {}, sizeof(ShadePush));
 }
 
-void record_shade(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const GpuScene& scene,
-                  const TraceSettings& trace, bool follows, const Buffer& launch)
+void record_shade(const Commands& commands, const ComputePass& pass, const GpuScene& scene, const TraceSettings& trace,
+                  bool follows, const Buffer& launch)
 {
     push(commands, pass,
          ShadePush{scene.ambient, static_cast<float>(trace.dielectric_min_f0),
@@ -55,11 +55,10 @@ WorldLight shade_world(Gpu& gpu, const World& world, const GpuScene& scene, cons
     const Buffer       light = make_buffer(gpu, rays.size() * sizeof(glm::vec3));
     const Buffer       next  = make_buffer(gpu, rays.size() * sizeof(NextRay));
     const ComputePass  pass  = make_shade_pass(gpu, world, scene, dfg_table, list, found, light, next);
-    result.ms                = time_second_run_ms(gpu, [&](const vk::raii::CommandBuffer& commands) {
-        record_shade(commands, pass, scene, trace, follows, list.launch);
-    });
-    result.light             = download_as<glm::vec3>(gpu, light, rays.size());
-    result.next              = download_as<NextRay>(gpu, next, rays.size());
+    result.ms                = time_second_run_ms(
+                       gpu, [&](const Commands& commands) { record_shade(commands, pass, scene, trace, follows, list.launch); });
+    result.light = download_as<glm::vec3>(gpu, light, rays.size());
+    result.next  = download_as<NextRay>(gpu, next, rays.size());
     return result;
 }
 

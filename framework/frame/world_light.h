@@ -23,8 +23,8 @@ struct WorldLight {
 ComputePass make_shade_pass(Gpu& gpu, const World& world, const GpuScene& scene, const SampledTable& dfg_table,
                             const WorldRayList& list, const Buffer& hits, const Buffer& light, const Buffer& next);
 /// Records that pass. `launch`: that of the list. `trace` and `follows`: see shade_world().
-void record_shade(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const GpuScene& scene,
-                  const TraceSettings& trace, bool follows, const Buffer& launch);
+void record_shade(const Commands& commands, const ComputePass& pass, const GpuScene& scene, const TraceSettings& trace,
+                  bool follows, const Buffer& launch);
 
 /// Runs the pass twice and returns its output with the milliseconds of the second run. `trace` says which surfaces
 /// reflect; with `follows` = false none does, and ambient light stands in for what metals reflect.

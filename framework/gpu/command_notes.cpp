@@ -1,44 +1,26 @@
 #include "gpu/command_notes.h"
 
-#include <atomic>
-
 namespace ssrlab {
-namespace {
-thread_local std::vector<NotedCommand>* noted = nullptr;
-} // namespace
 
-uint64_t new_storage_id()
-{
-    static std::atomic<uint64_t> last = 0;
-    return ++last;
-}
+uint64_t new_storage_id(Gpu& gpu) { return ++gpu.impl->storages; }
 
-std::vector<NotedCommand> note_commands(Gpu& gpu, const std::function<void(const vk::raii::CommandBuffer&)>& record)
+std::vector<NotedCommand> note_commands(Gpu& gpu, const std::function<void(const Commands&)>& record)
 {
-    std::vector<NotedCommand> commands;
-    vk::raii::CommandBuffers  unused(nullptr);
+    std::vector<NotedCommand> noted;
+    Commands                  unused(vk::raii::CommandBuffer(nullptr));
     if (!gpu.info.compiles_only) { // which draws nothing
-        unused = {gpu.impl->device, {.commandPool = *gpu.impl->command_pool, .commandBufferCount = 1}};
-        unused[0].begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+        unused = make_commands(gpu);
+        unused.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     }
-    const vk::raii::CommandBuffer none = nullptr;
-    noted                              = &commands;
-    try {
-        record(unused.empty() ? none : unused[0]);
-    } catch (...) {
-        noted = nullptr;
-        throw;
-    }
-    noted = nullptr;
-    return commands;
+    unused.noted = &noted;
+    record(unused);
+    return noted;
 }
 
-bool are_noted() { return noted != nullptr; }
-
-bool note(const NotedCommand& command)
+bool note(const Commands& commands, const NotedCommand& command)
 {
-    if (noted != nullptr) noted->push_back(command);
-    return noted != nullptr;
+    if (commands.noted != nullptr) commands.noted->push_back(command);
+    return commands.noted != nullptr;
 }
 
 } // namespace ssrlab

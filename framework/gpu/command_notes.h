@@ -13,8 +13,8 @@ struct Storage {
     uint64_t bytes      = 0;
     uint64_t item_bytes = 0; // of a texel or list entry
 };
-/// Returns an id that nothing else has.
-uint64_t new_storage_id();
+/// Returns an id that nothing else on this device has.
+uint64_t new_storage_id(Gpu& gpu);
 
 struct StorageUse {
     Storage     of;
@@ -30,10 +30,8 @@ struct NotedCommand {
 };
 
 /// Records on no device: returns the commands that `record` would record. Draws are noted by their targets alone.
-std::vector<NotedCommand> note_commands(Gpu& gpu, const std::function<void(const vk::raii::CommandBuffer&)>& record);
-/// Returns whether this thread's commands are noted. Whoever records a command asks first.
-bool are_noted();
-/// Notes a command if commands are noted; returns are_noted().
-bool note(const NotedCommand& command);
+std::vector<NotedCommand> note_commands(Gpu& gpu, const std::function<void(const Commands&)>& record);
+/// Notes a command if these are noted; returns whether they are.
+bool note(const Commands& commands, const NotedCommand& command);
 
 } // namespace ssrlab

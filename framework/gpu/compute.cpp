@@ -210,23 +210,27 @@ ComputePass make_compute_pass(Gpu& gpu, const Shader& shader, const Bindings& bi
 }
 
 namespace {
-void bind(const vk::raii::CommandBuffer& commands, const ComputePass& pass)
+void bind(const Commands& commands, const ComputePass& pass)
 {
     commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pass.compute->pipeline.get());
     commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *pass.compute->layout, 0, *pass.set, nullptr);
 }
 } // namespace
 
-void dispatch(const vk::raii::CommandBuffer& commands, const ComputePass& pass, glm::uvec3 groups)
+void dispatch(const Commands& commands, const ComputePass& pass, glm::uvec3 groups)
 {
-    if (are_noted() && note({.uses = pass.uses, .pipeline = pass.compute.get(), .groups = groups})) return;
+    if (commands.noted != nullptr &&
+        note(commands, {.uses = pass.uses, .pipeline = pass.compute.get(), .groups = groups}))
+        return;
     bind(commands, pass);
     commands.dispatch(groups.x, groups.y, groups.z);
 }
 
-void dispatch_indirect(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const Buffer& arguments)
+void dispatch_indirect(const Commands& commands, const ComputePass& pass, const Buffer& arguments)
 {
-    if (are_noted() && note({.uses = pass.uses, .pipeline = pass.compute.get(), .launch = &arguments})) return;
+    if (commands.noted != nullptr &&
+        note(commands, {.uses = pass.uses, .pipeline = pass.compute.get(), .launch = &arguments}))
+        return;
     bind(commands, pass);
     commands.dispatchIndirect(*arguments.buffer, 0);
 }
@@ -238,7 +242,7 @@ Timestamps make_timestamps(Gpu& gpu, uint32_t count)
             count};
 }
 
-void write_timestamp(const vk::raii::CommandBuffer& commands, const Timestamps& timestamps, uint32_t index)
+void write_timestamp(const Commands& commands, const Timestamps& timestamps, uint32_t index)
 {
     if (index == 0) commands.resetQueryPool(*timestamps.pool, 0, timestamps.count);
     commands.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *timestamps.pool, index);

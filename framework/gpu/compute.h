@@ -73,11 +73,11 @@ inline glm::uvec3 groups_in_rows(size_t items, size_t items_per_group, uint32_t 
     return {std::min(groups, row_groups), (groups + row_groups - 1) / row_groups, 1};
 }
 
-void dispatch(const vk::raii::CommandBuffer& commands, const ComputePass& pass, glm::uvec3 groups);
-void dispatch_indirect(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const Buffer& arguments);
-template <typename T> void push(const vk::raii::CommandBuffer& commands, const ComputePass& pass, const T& value)
+void dispatch(const Commands& commands, const ComputePass& pass, glm::uvec3 groups);
+void dispatch_indirect(const Commands& commands, const ComputePass& pass, const Buffer& arguments);
+template <typename T> void push(const Commands& commands, const ComputePass& pass, const T& value)
 {
-    if (are_noted()) return;
+    if (commands.noted != nullptr) return;
     commands.pushConstants<T>(*pass.compute->layout, vk::ShaderStageFlagBits::eCompute, 0, value);
 }
 
@@ -87,7 +87,7 @@ struct Timestamps {
     uint32_t            count = 0;
 };
 Timestamps make_timestamps(Gpu& gpu, uint32_t count);
-void       write_timestamp(const vk::raii::CommandBuffer& commands, const Timestamps& timestamps, uint32_t index);
+void       write_timestamp(const Commands& commands, const Timestamps& timestamps, uint32_t index);
 /// Returns the milliseconds between neighbouring timestamps. Throws Failure if a value is missing.
 std::vector<double> read_intervals_ms(Gpu& gpu, const Timestamps& timestamps);
 

@@ -301,18 +301,25 @@ std::vector<std::string> validation_messages(const Gpu& gpu)
     return gpu.impl->messages;
 }
 
-void submit(Gpu& gpu, const std::function<void(const vk::raii::CommandBuffer&)>& record)
+Commands make_commands(Gpu& gpu)
+{
+    vk::raii::CommandBuffers buffers(gpu.impl->device,
+                                     {.commandPool = *gpu.impl->command_pool, .commandBufferCount = 1});
+    return Commands(std::move(buffers[0]));
+}
+
+void submit(Gpu& gpu, const std::function<void(const Commands&)>& record)
 {
     if (gpu.info.compiles_only) return;
     constexpr uint64_t five_minutes_ns = 300ULL * 1000 * 1000 * 1000;
     GpuImpl&           impl            = *gpu.impl;
     try {
-        vk::raii::CommandBuffers buffers(impl.device, {.commandPool = *impl.command_pool, .commandBufferCount = 1});
-        buffers[0].begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-        record(buffers[0]);
-        buffers[0].end();
+        const Commands commands = make_commands(gpu);
+        commands.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+        record(commands);
+        commands.end();
         const vk::raii::Fence fence(impl.device, vk::FenceCreateInfo{});
-        impl.queue.submit(vk::SubmitInfo{.commandBufferCount = 1, .pCommandBuffers = &*buffers[0]}, *fence);
+        impl.queue.submit(vk::SubmitInfo{.commandBufferCount = 1, .pCommandBuffers = &*commands}, *fence);
         if (impl.device.waitForFences(*fence, true, five_minutes_ns) != vk::Result::eSuccess)
             throw_failure("the device did not finish within five minutes");
     } catch (const vk::SystemError& error) {
@@ -320,7 +327,7 @@ void submit(Gpu& gpu, const std::function<void(const vk::raii::CommandBuffer&)>&
     }
 }
 
-void barrier(const vk::raii::CommandBuffer& commands)
+void barrier(const Commands& commands)
 {
     if (!static_cast<bool>(*commands)) return; // they are only noted
     const vk::MemoryBarrier2 everything{.srcStageMask  = vk::PipelineStageFlagBits2::eAllCommands,

@@ -27,7 +27,7 @@ Buffer make(Gpu& gpu, uint64_t bytes, vk::BufferUsageFlags usage, vk::MemoryProp
 {
     Buffer result;
     result.bytes = bytes;
-    result.id    = new_storage_id();
+    result.id    = new_storage_id(gpu);
     if (gpu.info.compiles_only) return result;
     result.buffer = {gpu.impl->device, vk::BufferCreateInfo{.size = bytes, .usage = usage}};
     result.memory = allocate(*gpu.impl, result.buffer.getMemoryRequirements(), wanted, preferred);
@@ -83,7 +83,7 @@ template <typename Use> void with_staging(Gpu& gpu, Buffer& kept, auto make_stag
 
 template <typename Record> void submit_copy(Gpu& gpu, const Buffer& staging, const Record& record)
 {
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    submit(gpu, [&](const Commands& commands) {
         barrier(commands);
         record(commands, *staging.buffer);
         barrier(commands);
@@ -160,7 +160,7 @@ vk::DescriptorType texel_descriptor(const Gpu& gpu)
 void upload(Gpu& gpu, Buffer& target, const void* data, uint64_t bytes)
 {
     if (bytes == 0 || gpu.info.compiles_only) return;
-    submit_upload(gpu, data, bytes, [&](const vk::raii::CommandBuffer& commands, vk::Buffer staging) {
+    submit_upload(gpu, data, bytes, [&](const Commands& commands, vk::Buffer staging) {
         commands.copyBuffer(staging, *target.buffer, vk::BufferCopy{.size = bytes});
     });
 }
@@ -168,7 +168,7 @@ void upload(Gpu& gpu, Buffer& target, const void* data, uint64_t bytes)
 void download(Gpu& gpu, const Buffer& source, void* data, uint64_t bytes)
 {
     if (bytes == 0) return;
-    submit_download(gpu, data, bytes, [&](const vk::raii::CommandBuffer& commands, vk::Buffer staging) {
+    submit_download(gpu, data, bytes, [&](const Commands& commands, vk::Buffer staging) {
         commands.copyBuffer(*source.buffer, staging, vk::BufferCopy{.size = bytes});
     });
 }
@@ -186,9 +186,9 @@ Storage storage_of(const GpuImage& image)
     return {image.id, count * image.layers * texel, texel};
 }
 
-void record_fill(const vk::raii::CommandBuffer& commands, const Buffer& buffer, uint32_t word)
+void record_fill(const Commands& commands, const Buffer& buffer, uint32_t word)
 {
-    if (note({.uses = {{storage_of(buffer), false, true}}})) return;
+    if (note(commands, {.uses = {{storage_of(buffer), false, true}}})) return;
     commands.fillBuffer(*buffer.buffer, 0, VK_WHOLE_SIZE, word);
 }
 
@@ -206,7 +206,7 @@ GpuImage make_image(Gpu& gpu, const ImageOptions& options)
     result.size_px = options.size_px;
     result.levels  = options.levels;
     result.layers  = options.layers;
-    result.id      = new_storage_id();
+    result.id      = new_storage_id(gpu);
     if (gpu.info.compiles_only) return result;
     const vk::ImageCreateInfo info{
         .imageType   = vk::ImageType::e2D,
@@ -226,7 +226,7 @@ GpuImage make_image(Gpu& gpu, const ImageOptions& options)
                                 .viewType = options.array_view ? vk::ImageViewType::e2DArray : vk::ImageViewType::e2D,
                                 .format   = options.format,
                                 .subresourceRange = all}};
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    submit(gpu, [&](const Commands& commands) {
         const vk::ImageMemoryBarrier2 to_general{.srcStageMask  = vk::PipelineStageFlagBits2::eNone,
                                                  .dstStageMask  = vk::PipelineStageFlagBits2::eAllCommands,
                                                  .dstAccessMask = vk::AccessFlagBits2::eMemoryRead |
@@ -249,7 +249,7 @@ GpuImage make_storage_image(Gpu& gpu, vk::Format format, glm::ivec2 size_px)
 void upload(Gpu& gpu, GpuImage& target, const void* data, uint64_t bytes)
 {
     if (gpu.info.compiles_only) return;
-    submit_upload(gpu, data, bytes, [&](const vk::raii::CommandBuffer& commands, vk::Buffer staging) {
+    submit_upload(gpu, data, bytes, [&](const Commands& commands, vk::Buffer staging) {
         commands.copyBufferToImage(staging, *target.image, vk::ImageLayout::eGeneral, whole_image(target));
     });
 }
@@ -257,10 +257,9 @@ void upload(Gpu& gpu, GpuImage& target, const void* data, uint64_t bytes)
 std::vector<char> download(Gpu& gpu, const GpuImage& source, uint32_t bytes_per_texel)
 {
     std::vector<char> texels(pixel_count(source.size_px) * bytes_per_texel);
-    submit_download(
-        gpu, texels.data(), texels.size(), [&](const vk::raii::CommandBuffer& commands, vk::Buffer staging) {
-            commands.copyImageToBuffer(*source.image, vk::ImageLayout::eGeneral, staging, whole_image(source));
-        });
+    submit_download(gpu, texels.data(), texels.size(), [&](const Commands& commands, vk::Buffer staging) {
+        commands.copyImageToBuffer(*source.image, vk::ImageLayout::eGeneral, staging, whole_image(source));
+    });
     return texels;
 }
 

@@ -69,7 +69,7 @@ Storage storage_of(const Buffer& buffer);
 Storage storage_of(const GpuImage& image);
 
 /// Records setting every word of a buffer.
-void record_fill(const vk::raii::CommandBuffer& commands, const Buffer& buffer, uint32_t word);
+void record_fill(const Commands& commands, const Buffer& buffer, uint32_t word);
 
 /// Copies tightly packed texels of level 0, layer 0.
 void              upload(Gpu& gpu, GpuImage& target, const void* data, uint64_t bytes);

@@ -7,6 +7,7 @@
 #include "gpu/shader_errors.h"
 #include "gpu/shader_includes.h"
 #include "gpu/spirv.h"
+#include "gpu/vulkan.h"
 
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
@@ -18,7 +19,6 @@
 #include <cstring>
 #include <functional>
 #include <iterator>
-#include <mutex>
 #include <span>
 #include <sstream>
 
@@ -60,29 +60,17 @@ void collect_bindings(const glslang::TProgram& program, Shader& shader)
     }
 }
 
-/// What was seen of the files since the last look.
-struct SeenFiles {
-    std::mutex                                   mutex; // of the compiled shaders, too
-    int                                          holders = 0;
-    std::map<std::string, std::vector<fs::path>> below; // a folder
-    std::map<std::string, std::string>           states;
-};
+using KnownShaders = GpuImpl::KnownShaders;
 
-SeenFiles& seen_files()
+void look_again(KnownShaders& known)
 {
-    static SeenFiles seen;
-    return seen;
+    known.below.clear();
+    known.states.clear();
 }
 
-void look_again(SeenFiles& seen)
+const std::vector<fs::path>& files_below(KnownShaders& shaders, const fs::path& folder)
 {
-    seen.below.clear();
-    seen.states.clear();
-}
-
-const std::vector<fs::path>& files_below(const fs::path& folder)
-{
-    auto& below = seen_files().below;
+    auto& below = shaders.below;
     if (const auto known = below.find(folder.native()); known != below.end()) return known->second;
     std::vector<fs::path> files;
     for (const auto& entry : fs::recursive_directory_iterator(folder))
@@ -91,7 +79,7 @@ const std::vector<fs::path>& files_below(const fs::path& folder)
 }
 
 /// All files that the compiler may read for this source.
-std::vector<std::filesystem::path> files_read(const ShaderSource& source)
+std::vector<std::filesystem::path> files_read(KnownShaders& shaders, const ShaderSource& source)
 {
     std::vector<std::filesystem::path> files = {shader_folder() / source.file}; // a technique's own lies elsewhere
     for (const auto& [name, path] : source.include_files) files.push_back(path);
@@ -99,7 +87,7 @@ std::vector<std::filesystem::path> files_read(const ShaderSource& source)
     if (!source.include_folders.empty()) folders.push_back(technique_folder());
     const auto is_listed = [&](const fs::path& folder) { return lies_in(folder, technique_folder()); };
     std::ranges::copy_if(source.include_folders, std::back_inserter(folders), std::not_fn(is_listed));
-    for (const fs::path& folder : folders) std::ranges::copy(files_below(folder), std::back_inserter(files));
+    for (const fs::path& folder : folders) std::ranges::copy(files_below(shaders, folder), std::back_inserter(files));
     return files;
 }
 
@@ -118,9 +106,9 @@ std::string key_of(const ShaderSource& source, std::span<const std::filesystem::
 }
 
 /// When a file was written, and its bytes: asked for each pass of each frame, without opening it.
-const std::string& state_of(const std::filesystem::path& path)
+const std::string& state_of(KnownShaders& shaders, const std::filesystem::path& path)
 {
-    auto& states = seen_files().states;
+    auto& states = shaders.states;
     if (const auto known = states.find(path.native()); known != states.end()) return known->second;
     struct stat state = {};
     if (stat(path.c_str(), &state) != 0) throw_spec_error("{}: cannot be read", path.string());
@@ -322,17 +310,17 @@ uint32_t group_size(const Shader& shader)
     return ids.empty() ? size : constants[ids[0]] * constants[ids[1]] * constants[ids[2]];
 }
 
-ShaderFilesHeld::ShaderFilesHeld()
+ShaderFilesHeld::ShaderFilesHeld(const Gpu& gpu) : gpu_(gpu)
 {
-    SeenFiles&            seen = seen_files();
-    const std::lock_guard lock(seen.mutex);
-    if (++seen.holders == 1) look_again(seen);
+    KnownShaders&         known = gpu.impl->shaders;
+    const std::lock_guard lock(known.mutex);
+    if (++known.holders == 1) look_again(known);
 }
 
 ShaderFilesHeld::~ShaderFilesHeld()
 {
-    const std::lock_guard lock(seen_files().mutex);
-    --seen_files().holders;
+    const std::lock_guard lock(gpu_.impl->shaders.mutex);
+    --gpu_.impl->shaders.holders;
 }
 
 std::vector<ShaderFile> shader_files(const Gpu& gpu, ShaderSource source)
@@ -347,15 +335,15 @@ Shader compile_shader(const Gpu& gpu, ShaderSource source)
 {
     add_device_defines(gpu, source);
     // A sweep and the checks ask for the same shader hundreds of times, with other constants.
-    static std::map<std::string, Shader> compiled;
-    SeenFiles&                           seen = seen_files();
-    const std::lock_guard                lock(seen.mutex);
-    if (seen.holders == 0) look_again(seen);
-    const auto        files = files_read(source);
-    const std::string key   = key_of(source, files, state_of);
-    const auto        known = compiled.find(key);
-    return known != compiled.end() ? known->second
-                                   : compiled.emplace(key, compile_or_read(source, files)).first->second;
+    KnownShaders&         shaders = gpu.impl->shaders;
+    const std::lock_guard lock(shaders.mutex);
+    if (shaders.holders == 0) look_again(shaders);
+    const auto        files = files_read(shaders, source);
+    const std::string key   = key_of(source, files, [&](const auto& path) { return state_of(shaders, path); });
+    const auto        known = shaders.compiled.find(key);
+    return known != shaders.compiled.end()
+               ? known->second
+               : shaders.compiled.emplace(key, compile_or_read(source, files)).first->second;
 }
 
 } // namespace ssrlab

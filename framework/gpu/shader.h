@@ -51,10 +51,13 @@ std::filesystem::path technique_folder();
 /// While one of these lives, each file is read at most once, even if it changes: a frame has dozens of shaders.
 class ShaderFilesHeld {
 public:
-    ShaderFilesHeld();
+    explicit ShaderFilesHeld(const Gpu& gpu);
     ~ShaderFilesHeld();
     ShaderFilesHeld(const ShaderFilesHeld&)            = delete;
     ShaderFilesHeld& operator=(const ShaderFilesHeld&) = delete;
+
+private:
+    const Gpu& gpu_;
 };
 
 /// Compiles a shader for the storage and passes of this device (GpuInfo::plain_buffers, lanes). Includes come from the

@@ -4,11 +4,11 @@
 
 namespace ssrlab {
 
-double time_second_run_ms(Gpu& gpu, const std::function<void(const vk::raii::CommandBuffer&)>& record)
+double time_second_run_ms(Gpu& gpu, const std::function<void(const Commands&)>& record)
 {
     const Timestamps timestamps = make_timestamps(gpu, 2);
     for (int run = 0; run < 2; ++run)
-        submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+        submit(gpu, [&](const Commands& commands) {
             barrier(commands);
             write_timestamp(commands, timestamps, 0);
             record(commands);

@@ -9,6 +9,6 @@ namespace ssrlab {
 
 /// Runs what `record` records twice, since a driver may compile a pipeline when it first runs. Returns the milliseconds
 /// of the second run. Throws Failure if the device has no timestamps.
-double time_second_run_ms(Gpu& gpu, const std::function<void(const vk::raii::CommandBuffer&)>& record);
+double time_second_run_ms(Gpu& gpu, const std::function<void(const Commands&)>& record);
 
 } // namespace ssrlab

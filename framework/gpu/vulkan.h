@@ -2,9 +2,11 @@
 #pragma once
 
 #include "gpu/compiled.h"
+#include "gpu/shader.h"
 
 #include <vulkan/vulkan_raii.hpp>
 
+#include <atomic>
 #include <functional>
 #include <future>
 #include <map>
@@ -28,6 +30,13 @@ struct Buffer {
     void*                  mapped     = nullptr;          // host-visible buffers only
     uint64_t               id         = 0;                // new_storage_id()
     uint64_t               item_bytes = sizeof(uint32_t); // what an invocation reads or writes of it at least
+};
+
+struct NotedCommand;
+/// Commands that are being recorded. Where `noted` is set they are listed there instead (gpu/command_notes.h).
+struct Commands : vk::raii::CommandBuffer {
+    explicit Commands(vk::raii::CommandBuffer buffer) : vk::raii::CommandBuffer(std::move(buffer)) {}
+    std::vector<NotedCommand>* noted = nullptr;
 };
 
 struct GpuImpl {
@@ -62,15 +71,28 @@ struct GpuImpl {
     std::map<std::string, KnownPipeline>                known_pipelines;
     uint64_t                                            pipeline_uses  = 0;
     size_t                                              pipelines_made = 0;
-    std::vector<std::shared_ptr<const ComputePipeline>> asked_for; // by passes, of a device that only compiles
+    std::vector<std::shared_ptr<const ComputePipeline>> asked_for;    // by passes, of a device that only compiles
+    std::atomic<uint64_t>                               storages = 0; // made so far
+
+    /// Compiled shaders by their source, and what was seen of the files since the last look.
+    struct KnownShaders {
+        std::mutex                                                mutex;
+        std::map<std::string, Shader>                             compiled;
+        int                                                       holders = 0; // ShaderFilesHeld
+        std::map<std::string, std::vector<std::filesystem::path>> below;       // a folder
+        std::map<std::string, std::string>                        states;      // of a file
+    };
+    KnownShaders shaders;
 };
 
 CompiledPipeline read_compiled(const Gpu& gpu, const std::string& shader, const vk::raii::Pipeline& pipeline);
 
+Commands make_commands(Gpu& gpu);
+
 /// Records commands, submits them and waits. Throws Failure if the device is lost or the wait exceeds five minutes.
-void submit(Gpu& gpu, const std::function<void(const vk::raii::CommandBuffer&)>& record);
+void submit(Gpu& gpu, const std::function<void(const Commands&)>& record);
 
 /// A full barrier between two passes: all earlier writes become visible to all later reads.
-void barrier(const vk::raii::CommandBuffer& commands);
+void barrier(const Commands& commands);
 
 } // namespace ssrlab

@@ -20,7 +20,7 @@ double draw_solids_ms(Gpu& gpu, Drawing& layer)
 {
     make_solid_backs(gpu, layer); // a driver may compile a pipeline when it first draws
     const Timestamps timestamps = make_timestamps(gpu, 2);
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    submit(gpu, [&](const Commands& commands) {
         write_timestamp(commands, timestamps, 0);
         record_solid_backs(commands, layer);
         write_timestamp(commands, timestamps, 1);

@@ -66,8 +66,8 @@ DepthBuffer make_depth_buffer(Gpu& gpu, glm::ivec2 size_px)
     depth.cells    = make_texel_buffer(gpu, texels * sizeof(glm::uvec2), vk::Format::eR32G32Uint);
     depth.words    = make_texel_view(gpu, depth.cells, vk::Format::eR32Sfloat);
     depth.pairs    = make_texel_view(gpu, depth.cells, vk::Format::eR32G32B32A32Uint);
-    depth.cells_id = new_storage_id();
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    depth.cells_id = new_storage_id(gpu);
+    submit(gpu, [&](const Commands& commands) {
         commands.fillBuffer(*depth.cells.buffer, 0, VK_WHOLE_SIZE, std::bit_cast<uint32_t>(background));
     });
     return depth;

@@ -25,7 +25,7 @@ LabPtr with_structures(Gpu& gpu, Lab lab)
 {
     while (static_cast<int>(lab.gbuffer->layers.size()) + 1 < lab.settings.layers)
         lab.gbuffer->layers.push_back(make_gbuffer(gpu, lab.gbuffer->view, Filled::uploaded));
-    const ShaderFilesHeld held;
+    const ShaderFilesHeld held(gpu);
     lab.structures = make_depth_structures(gpu, lab);
     return std::make_shared<const Lab>(std::move(lab));
 }
@@ -55,7 +55,7 @@ TracerPtr make_any_tracer(Gpu& gpu, const LabPtr& lab, size_t capacity, NumberFo
 {
     if (number_format == NumberFormat::float64 && !gpu.info.float64)
         throw_failure("the device '{}' has no double precision", gpu.info.name);
-    const ShaderFilesHeld held;
+    const ShaderFilesHeld held(gpu);
     auto                  tracer = std::make_shared<Tracer>();
     tracer->lab                  = lab;
     tracer->rays                 = make_ray_buffers(gpu, capacity, number_format);
@@ -146,7 +146,7 @@ TracerPtr make_timed_tracer(Gpu& gpu, const LabPtr& lab)
 
 TraceImage trace_gbuffer(Gpu& gpu, Tracer& tracer)
 {
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    submit(gpu, [&](const Commands& commands) {
         record_rays(commands, tracer.passes, *tracer.lab->gbuffer);
         record_depth_structures(commands, *tracer.lab);
         record_technique(commands, tracer.passes.technique, tracer.rays);
@@ -160,7 +160,7 @@ TraceImage trace_gbuffer(Gpu& gpu, Tracer& tracer)
 double time_trace(Gpu& gpu, Tracer& tracer, int times)
 {
     const Timestamps timestamps = make_timestamps(gpu, 2);
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    submit(gpu, [&](const Commands& commands) {
         barrier(commands);
         for (int time = 1; time <= times; ++time) {
             if (time == times) write_timestamp(commands, timestamps, 0);
@@ -191,9 +191,7 @@ RecordedRay record_ray(Gpu& gpu, const LabPtr& lab, const RayInput& ray)
 
 std::vector<RayInput> set_up_rays(Gpu& gpu, Tracer& tracer)
 {
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
-        record_rays(commands, tracer.passes, *tracer.lab->gbuffer);
-    });
+    submit(gpu, [&](const Commands& commands) { record_rays(commands, tracer.passes, *tracer.lab->gbuffer); });
     return in_double(tracer) ? read_rays<double>(gpu, tracer.rays) : read_rays<float>(gpu, tracer.rays);
 }
 
@@ -206,7 +204,7 @@ std::vector<RayOutcome> trace_rays(Gpu& gpu, Tracer& tracer, std::span<const Ray
         upload_rays<double>(gpu, tracer.rays, rays);
     else
         upload_rays<float>(gpu, tracer.rays, rays);
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    submit(gpu, [&](const Commands& commands) {
         barrier(commands);
         record_depth_structures(commands, *tracer.lab);
         record_technique(commands, tracer.passes.technique, tracer.rays);

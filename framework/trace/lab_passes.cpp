@@ -104,7 +104,7 @@ ComputePass make_launch_pass(Gpu& gpu, const RayBuffers& rays)
 
 void set_ray_count(Gpu& gpu, const RayBuffers& rays, size_t count)
 {
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    submit(gpu, [&](const Commands& commands) {
         const auto launch_of = [&](int items_per_group) {
             return groups_in_rows(count, static_cast<size_t>(items_per_group), LAUNCH_ROW_GROUPS);
         };
@@ -182,12 +182,12 @@ TechniquePasses make_technique_passes(Gpu& gpu, const Lab& lab, const RayBuffers
     return passes;
 }
 
-void record_depth_structures(const vk::raii::CommandBuffer& commands, const Lab& lab)
+void record_depth_structures(const Commands& commands, const Lab& lab)
 {
     for (const StructurePasses& structure : lab.structures) record_structure(commands, structure, nullptr);
 }
 
-void record_technique(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes, const RayBuffers& rays)
+void record_technique(const Commands& commands, const TechniquePasses& passes, const RayBuffers& rays)
 {
     for (const StructurePasses& structure : passes.structures)
         record_structure(commands, structure, &rays.group_launch);
@@ -230,8 +230,7 @@ TracePasses make_trace_passes(Gpu& gpu, const Lab& lab, const RayBuffers& rays, 
 
 namespace {
 
-void record_marking(const vk::raii::CommandBuffer& commands, const Classification& classification,
-                    const GBuffer& gbuffer)
+void record_marking(const Commands& commands, const Classification& classification, const GBuffer& gbuffer)
 {
     const glm::uvec3 tiles = groups_of_8(gbuffer.view.size_px);
     const uint32_t   each  = classification.tiles_per_group;
@@ -241,7 +240,7 @@ void record_marking(const vk::raii::CommandBuffer& commands, const Classificatio
 
 } // namespace
 
-void record_classification(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const GBuffer& gbuffer)
+void record_classification(const Commands& commands, const TracePasses& passes, const GBuffer& gbuffer)
 {
     barrier(commands);
     record_marking(commands, passes.classification, gbuffer);
@@ -250,13 +249,13 @@ void record_classification(const vk::raii::CommandBuffer& commands, const TraceP
     barrier(commands);
 }
 
-void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const GBuffer& gbuffer)
+void record_ray_setup(const Commands& commands, const TracePasses& passes, const GBuffer& gbuffer)
 {
     dispatch_indirect(commands, passes.rays, gbuffer.tiles.launch);
     barrier(commands);
 }
 
-void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const GBuffer& gbuffer)
+void record_rays(const Commands& commands, const TracePasses& passes, const GBuffer& gbuffer)
 {
     record_classification(commands, passes, gbuffer);
     record_ray_setup(commands, passes, gbuffer);
@@ -275,7 +274,7 @@ const GBufferCounts& count_gbuffer(Gpu& gpu, GBuffer& gbuffer, const TraceSettin
     add_reflecting(constants, settings);
     constants.add(CONSTANT_COUNTS_PIXELS, 1);
     const Classification classification = make_classification(gpu, bindings, constants);
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    submit(gpu, [&](const Commands& commands) {
         commands.fillBuffer(*gbuffer.tiles.statistics.buffer, 0, VK_WHOLE_SIZE, 0);
         barrier(commands);
         record_marking(commands, classification, gbuffer);

@@ -89,14 +89,14 @@ TracePasses make_trace_passes(Gpu& gpu, const Lab& lab, const RayBuffers& rays, 
 /// Returns the passes of the technique on a list. `bindings`: list, G-buffer and view; "Work" and "Visits" count.
 TechniquePasses make_technique_passes(Gpu& gpu, const Lab& lab, const RayBuffers& rays, const Bindings& bindings);
 /// Records building the structures that depend on depth alone.
-void record_depth_structures(const vk::raii::CommandBuffer& commands, const Lab& lab);
+void record_depth_structures(const Commands& commands, const Lab& lab);
 /// Records building all structures that depend on the list, then the trace.
-void record_technique(const vk::raii::CommandBuffer& commands, const TechniquePasses& passes, const RayBuffers& rays);
+void record_technique(const Commands& commands, const TechniquePasses& passes, const RayBuffers& rays);
 
 /// Records classification and ray set-up.
-void record_rays(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const GBuffer& gbuffer);
-void record_classification(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const GBuffer& gbuffer);
-void record_ray_setup(const vk::raii::CommandBuffer& commands, const TracePasses& passes, const GBuffer& gbuffer);
+void record_rays(const Commands& commands, const TracePasses& passes, const GBuffer& gbuffer);
+void record_classification(const Commands& commands, const TracePasses& passes, const GBuffer& gbuffer);
+void record_ray_setup(const Commands& commands, const TracePasses& passes, const GBuffer& gbuffer);
 
 /// Returns the counts of the G-buffer by the settings' rule of what reflects; counted once for each rule.
 const GBufferCounts& count_gbuffer(Gpu& gpu, GBuffer& gbuffer, const TraceSettings& settings);

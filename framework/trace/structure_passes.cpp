@@ -269,8 +269,7 @@ std::vector<ShaderSource> structure_sources(Gpu& gpu, const Lab& lab, const RayB
     return sources;
 }
 
-void record_structure(const vk::raii::CommandBuffer& commands, const StructurePasses& structure,
-                      const Buffer* group_launch)
+void record_structure(const Commands& commands, const StructurePasses& structure, const Buffer* group_launch)
 {
     for (const StructureDispatch& dispatched : structure.dispatches) {
         if (dispatched.per_ray) dispatch_indirect(commands, dispatched.pass, *group_launch);

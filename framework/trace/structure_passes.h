@@ -29,8 +29,7 @@ std::vector<StructurePasses> make_ray_structures(Gpu& gpu, const Lab& lab, const
 /// Returns the shaders of both, timed, not counted.
 std::vector<ShaderSource> structure_sources(Gpu& gpu, const Lab& lab, const RayBuffers& rays);
 /// Records building a structure. `group_launch`: dispatch arguments for the list of rays; null without such a pass.
-void record_structure(const vk::raii::CommandBuffer& commands, const StructurePasses& structure,
-                      const Buffer* group_launch);
+void record_structure(const Commands& commands, const StructurePasses& structure, const Buffer* group_launch);
 
 /// Returns the buffers of a technique's structures, by the names of structure_declarations().
 Bindings structure_bindings(Gpu& gpu, const Technique& technique, const GBuffer& gbuffer, const RayBuffers& rays);

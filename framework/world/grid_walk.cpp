@@ -65,7 +65,7 @@ GridWalk walk_grid(Gpu& gpu, const DeviceGrid& device, std::span<const WorldRay>
          {}, sizeof(GridPush));
     GridPush values{glm::vec3(grid.low_ws), glm::vec3(1.0 / grid.cell_m), grid.cells, {}};
     std::ranges::copy(device.first_words, values.first_words.begin());
-    walk.ms    = time_second_run_ms(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    walk.ms    = time_second_run_ms(gpu, [&](const Commands& commands) {
         push(commands, pass, values);
         dispatch_indirect(commands, pass, list.launch);
     });

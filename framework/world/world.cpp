@@ -53,7 +53,7 @@ WorldRayList make_ray_list(Gpu& gpu, size_t capacity)
     return {make_buffer(gpu, capacity * sizeof(WorldRay)), make_buffer(gpu, sizeof(ListLaunch))};
 }
 
-void record_empty(const vk::raii::CommandBuffer& commands, const Buffer& launch)
+void record_empty(const Commands& commands, const Buffer& launch)
 {
     commands.updateBuffer<ListLaunch>(*launch.buffer, 0, ListLaunch{});
 }
@@ -125,7 +125,7 @@ WorldTrace trace_world(Gpu& gpu, const World& world, std::span<const WorldRay> r
     const Buffer       visits   = make_buffer(gpu, rays.size() * sizeof(uint32_t));
     const ComputePass  counting = make_walk(gpu, world, list, hits, &visits),
                       walk      = make_walk(gpu, world, list, hits, nullptr);
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) { dispatch_indirect(commands, counting, list.launch); });
+    submit(gpu, [&](const Commands& commands) { dispatch_indirect(commands, counting, list.launch); });
     for (const uint32_t of_ray : download_as<uint32_t>(gpu, visits, rays.size())) trace.node_visits += of_ray;
     trace.ms   = time_second_run_ms(gpu, [&](const auto& commands) { dispatch_indirect(commands, walk, list.launch); });
     trace.hits = download_as<WorldHit>(gpu, hits, rays.size());

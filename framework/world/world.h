@@ -56,7 +56,7 @@ WorldRayList make_ray_list(Gpu& gpu, std::span<const WorldRay> rays);
 /// Makes an empty list with room for `capacity` rays.
 WorldRayList make_ray_list(Gpu& gpu, size_t capacity);
 /// Records that a list becomes empty.
-void record_empty(const vk::raii::CommandBuffer& commands, const Buffer& launch);
+void record_empty(const Commands& commands, const Buffer& launch);
 
 /// Share of the distance from the eye to a ray's origin. What a ray meets nearer than this is the surface that it
 /// leaves, because the origin's depth is a rounded float.

@@ -60,7 +60,7 @@ template <typename Make> void measure_truth(benchmark::State& state, const std::
 template <typename Record> double Bench::measure(benchmark::State& state, Workload& w, const Record& record)
 {
     return measure_calls(state, [&] {
-        submit(gpu_, [&](const vk::raii::CommandBuffer& commands) {
+        submit(gpu_, [&](const Commands& commands) {
             write_timestamp(commands, w.timestamps, 0);
             barrier(commands);
             record(commands);

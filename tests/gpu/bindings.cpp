@@ -30,7 +30,7 @@ TEST(Bindings, TexelBuffersGiveTheirValuesUnchanged)
     upload(device(), buffers.floats, floats.data(), count * 4);
     upload(device(), buffers.words, words.data(), count * 4);
     const ComputePass pass = buffers.pass(buffers.floats);
-    submit(device(), [&](const vk::raii::CommandBuffer& commands) {
+    submit(device(), [&](const Commands& commands) {
         dispatch(commands, pass, {1, 1, 1});
         barrier(commands);
     });

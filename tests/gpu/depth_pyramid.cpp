@@ -34,8 +34,7 @@ Pyramid build(const Picture& picture, const TraceSettings& settings, double kind
     const auto       frame =
         prepared_frame(picture.buffers, hiz,
                        values_of(hiz, {{"depth_pyramid.kind", kind}, {"depth_pyramid.top_level", 14}}), {settings});
-    submit(device(),
-           [&](const vk::raii::CommandBuffer& commands) { record_depth_structures(commands, *frame->inputs.lab); });
+    submit(device(), [&](const Commands& commands) { record_depth_structures(commands, *frame->inputs.lab); });
     const Buffer& cells = picture.buffers->gbuffer->depth.cells;
     return {picture.view.size_px, download_as<glm::uvec2>(device(), cells, cells.bytes / sizeof(glm::uvec2))};
 }

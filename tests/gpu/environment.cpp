@@ -39,7 +39,7 @@ std::vector<glm::vec3> look_up_on_device(const Scene& scene, const std::vector<g
     const ComputePass pass     = make_compute_pass(
             device(), compile_shader(device(), {.file = data_root() / "tests/gpu/environment.comp"}),
             {{"environment_map", uploaded->environment_map}, {"Directions", asked}, {"Radiances", answers}});
-    submit(device(), [&](const vk::raii::CommandBuffer& commands) {
+    submit(device(), [&](const Commands& commands) {
         dispatch(commands, pass, {static_cast<uint32_t>(directions.size() + 63) / 64, 1, 1});
         barrier(commands);
     });

@@ -92,7 +92,7 @@ TEST(LobeRays, ValueAndDensityAreThoseOfTheMicrofacetModel)
     const ComputePass            pass =
         make_compute_pass(device(), compile_shader(device(), {.file = data_root() / "tests/gpu/lobe.comp"}),
                           {{"AskedLobes", given}, {"FoundLobes", answers}});
-    submit(device(), [&](const vk::raii::CommandBuffer& commands) {
+    submit(device(), [&](const Commands& commands) {
         dispatch(commands, pass, {static_cast<uint32_t>(asked.size()) / 64, 1, 1});
         barrier(commands);
     });

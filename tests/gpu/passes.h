@@ -56,7 +56,7 @@ inline void run_passes(ReadyFrame& frame, const std::vector<Pass>& passes)
 {
     std::vector<RecordFunction> record_functions;
     for (const Pass& pass : passes) record_functions.push_back(pass.prepare(device(), {frame.inputs, pass, pass.id}));
-    submit(device(), [&](const vk::raii::CommandBuffer& commands) {
+    submit(device(), [&](const Commands& commands) {
         barrier(commands);
         for (const RecordFunction& record : record_functions) {
             record(commands);

@@ -16,8 +16,7 @@ std::vector<glm::vec4> planes_of(const Picture& picture, const TraceSettings& se
                                  const Technique& reads = technique("hiz_packets"))
 {
     const auto frame = prepared_frame(picture.buffers, reads, values_of(reads), {settings});
-    submit(device(),
-           [&](const vk::raii::CommandBuffer& commands) { record_depth_structures(commands, *frame->inputs.lab); });
+    submit(device(), [&](const Commands& commands) { record_depth_structures(commands, *frame->inputs.lab); });
     const glm::ivec2 patches = (picture.view.size_px - 1) / patch_px + 1;
     for (const auto& [name, buffer] : *picture.buffers->gbuffer->structures)
         if (name.ends_with(".planes")) return download_as<glm::vec4>(device(), buffer, pixel_count(patches));

@@ -24,7 +24,7 @@ struct Launch {
     /// Workgroups that the pass computes.
     uint32_t run(const ComputePass& pass)
     {
-        submit(device(), [&](const vk::raii::CommandBuffer& commands) {
+        submit(device(), [&](const Commands& commands) {
             dispatch(commands, pass, {1, 1, 1});
             barrier(commands);
         });
@@ -93,7 +93,7 @@ TEST(Pipelines, SeeAFileThatWasEditedUnlessFilesAreHeld)
     write(16);
     EXPECT_EQ(size(), 16U);
     {
-        const ShaderFilesHeld held, twice;
+        const ShaderFilesHeld held(device()), twice(device());
         EXPECT_EQ(size(), 16U);
         write(128);
         EXPECT_EQ(size(), 16U);

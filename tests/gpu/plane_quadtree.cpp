@@ -40,8 +40,7 @@ Quadtree build(const Picture& picture, const TraceSettings& settings, const Para
     ParameterValues  values               = values_of(reads, changed);
     values.at("plane_quadtree.top_level") = 14;
     const auto frame                      = prepared_frame(picture.buffers, reads, values, {settings});
-    submit(device(),
-           [&](const vk::raii::CommandBuffer& commands) { record_depth_structures(commands, *frame->inputs.lab); });
+    submit(device(), [&](const Commands& commands) { record_depth_structures(commands, *frame->inputs.lab); });
     const Buffer& nodes = picture.buffers->gbuffer->structures->at("plane_quadtree.nodes");
     return {picture.view.size_px, download_as<glm::uvec4>(device(), nodes, nodes.bytes / sizeof(glm::uvec4))};
 }

@@ -13,9 +13,8 @@ struct Ray {
 /// The list that the frame's own passes write.
 std::vector<Ray> rays_of(ReadyFrame& frame)
 {
-    submit(device(), [&](const vk::raii::CommandBuffer& commands) {
-        record_rays(commands, frame.inputs.trace, *frame.inputs.lab->gbuffer);
-    });
+    submit(device(),
+           [&](const Commands& commands) { record_rays(commands, frame.inputs.trace, *frame.inputs.lab->gbuffer); });
     std::vector<Ray> rays;
     for (const PackedRay<float>& ray : read_list<float>(device(), *frame.inputs.rays))
         rays.push_back({unpack_pixel(ray.pixel), glm::dvec3(ray.origin), glm::dvec3(ray.delta)});

@@ -19,7 +19,7 @@ Rays make_rays(const Picture& picture, const TraceSettings& settings, NumberForm
     const RayBuffers  buffers = make_ray_buffers(device(), picture.image.depth.size(), number_format);
     const Buffer      view    = upload_view(device(), picture.view, number_format);
     const TracePasses passes  = make_trace_passes(device(), *lab, buffers, view);
-    submit(device(), [&](const vk::raii::CommandBuffer& commands) { record_rays(commands, passes, *picture.gbuffer); });
+    submit(device(), [&](const Commands& commands) { record_rays(commands, passes, *picture.gbuffer); });
     Rays rays;
     for (const PackedRay<Real>& ray : read_list<Real>(device(), buffers))
         rays.push_back({ray.origin, static_cast<double>(ray.length_m), ray.delta, ray.pixel});

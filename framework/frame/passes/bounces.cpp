@@ -43,7 +43,7 @@ Bounce make_bounce(Gpu& gpu, const PassContext& context, const DerivedRays* from
     return bounce;
 }
 
-void record_bounce(const vk::raii::CommandBuffer& commands, const Bounce& bounce, const Buffer& arriving_launch)
+void record_bounce(const Commands& commands, const Bounce& bounce, const Buffer& arriving_launch)
 {
     const RayBuffers& rays = bounce.rays->rays;
     barrier(commands);

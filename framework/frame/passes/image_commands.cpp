@@ -3,9 +3,9 @@
 
 namespace ssrlab {
 
-void record_copy(const vk::raii::CommandBuffer& commands, const GpuImage& source, const GpuImage& target)
+void record_copy(const Commands& commands, const GpuImage& source, const GpuImage& target)
 {
-    if (note({.uses = {{storage_of(source), true, false}, {storage_of(target), false, true}}})) return;
+    if (note(commands, {.uses = {{storage_of(source), true, false}, {storage_of(target), false, true}}})) return;
     const vk::ImageSubresourceLayers colour{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
     const vk::ImageCopy              whole{
                      .srcSubresource = colour,

@@ -69,7 +69,7 @@ FollowedRays make_followed_rays(Gpu& gpu, const PassContext& context)
     return own;
 }
 
-void record_followed_rays(const vk::raii::CommandBuffer& commands, const FrameInputs& frame, const FollowedRays& own)
+void record_followed_rays(const Commands& commands, const FrameInputs& frame, const FollowedRays& own)
 {
     record_fill(commands, own.ranks, ~0U);
     record_empty(commands, own.missed_launch);
@@ -177,7 +177,7 @@ FollowedLight make_followed_light(Gpu& gpu, const PassContext& context, const Fo
     return own;
 }
 
-void record_followed_light(const vk::raii::CommandBuffer& commands, const FrameInputs& frame, const FollowedRays& rays,
+void record_followed_light(const Commands& commands, const FrameInputs& frame, const FollowedRays& rays,
                            const FollowedLight& own)
 {
     const auto over = [&](const ComputePass& pass, const Buffer& launch) {
@@ -246,7 +246,7 @@ MissCounts count_followed_rays(Gpu& gpu, FrameInputs& frame)
     const Pass pass             = missed_rays_pass();
     frame.answers               = make_answers(gpu, *frame.rays);
     const FollowedRays followed = make_followed_rays(gpu, {frame, pass, pass.id});
-    submit(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    submit(gpu, [&](const Commands& commands) {
         barrier(commands);
         record_followed_rays(commands, frame, followed);
     });

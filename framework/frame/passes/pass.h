@@ -9,12 +9,9 @@
 #include <string>
 #include <vector>
 
-namespace vk::raii {
-class CommandBuffer;
-}
-
 namespace ssrlab {
 
+struct Commands;
 struct FrameFacts;
 struct FrameStatistics;
 struct FrameInputs;
@@ -29,7 +26,7 @@ struct PassDecision {
 };
 
 /// Records a pass's commands.
-using RecordFunction = std::function<void(const vk::raii::CommandBuffer&)>;
+using RecordFunction = std::function<void(const Commands&)>;
 
 /// The inputs of passes, and what passes hand to each other.
 enum class Resource : uint8_t {

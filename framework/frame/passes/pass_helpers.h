@@ -69,7 +69,7 @@ ComputePass make_colour_pass(Gpu& gpu, const PassContext& context, const std::st
 void add_environment(Gpu& gpu, const PassContext& context, Defines& defines, Bindings& bindings);
 
 // Commands.
-void record_copy(const vk::raii::CommandBuffer& commands, const GpuImage& source, const GpuImage& target);
+void record_copy(const Commands& commands, const GpuImage& source, const GpuImage& target);
 /// Returns a function that writes one value, given as bits, to every pixel of an RGBA16F, RGBA32F or R32UI image, and
 /// waits. It is a compute pass, because clear commands may run on graphics units, of which compute devices have few.
 RecordFunction make_fill(Gpu& gpu, const GpuImage& image, glm::uvec4 bits);
