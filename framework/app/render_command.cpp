@@ -290,7 +290,7 @@ int render_picture(const CommonOptions& common, const RenderOptions& given)
             const FramePtr         frame =
                 make_frame(stage.gpu, lab, buffers, plan, history, asked.empty() ? Answers::own : Answers::given);
             if (sample == 0) warn_without_reflections(common, plan);
-            if (i == 0 && sample == 0)
+            if (i == 0 && sample == 0 && !options.truth)
                 say(common, no_hits_text(technique, choice.settings.trace, stage.scene, plan.statistics.trace));
             const bool                first = i == 0 && sample == 0 && !options.truth;
             std::optional<TraceImage> counted;

@@ -23,7 +23,7 @@ using testing::HasSubstr;
 using enum ColumnType;
 
 const std::vector<Column> columns = {{"run_id", "", words}, {"value", "", words}, {"message", "", words}};
-const Environment         here    = {{{"specification", "a"}, {"shaders", "b"}}, {{"commit", "\xff not UTF-8"}}};
+const Environment         here    = {{{"specification", "a"}, {"shaders", "b"}}, {{"commit", "\xff not UTF-8"}}, ""};
 
 struct RecordFiles : testing::Test {
     TempFolder temp;
