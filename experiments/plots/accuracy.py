@@ -2,7 +2,7 @@
 import numpy as np
 import pandas as pd
 
-from .data import describe, errors, known
+from .data import ALIKE, OVERLAPPING, UNKNOWN, describe, errors, known, listed, order_of
 from .pairs import Ratio, paired_ratio
 from .paper import height_beside, log_axis, name_lines, sheet, short_names, titled
 from .surfaces import place_of
@@ -74,10 +74,15 @@ def soonest(rows, column, what):
     level = 0.99 if best >= 0.99 else np.floor(20 * best) / 20
     reached = rows[rows[column] >= level].sort_values("cost_ms_median").drop_duplicates(by)
     short = short_names(rows[by].unique())
-    text = f"{short[reached[by].iloc[0]]} is the first to reach {100 * level:.0f} % {what}, in {reached.cost_ms_median.iloc[0]:.3g} ms"
-    if len(reached) == 1:
+    first, orders = reached.iloc[0], [order_of(reached.iloc[0], row) for _, row in reached.iloc[1:].iterrows()]
+    alike = [name for name, order in zip(reached[by].iloc[1:], orders) if order == OVERLAPPING]
+    if alike:
+        return f"{listed([short[name] for name in (first[by], *alike)])} reach {100 * level:.0f} % {what} in times that {ALIKE}"
+    text = f"{short[first[by]]} is the first to reach {100 * level:.0f} % {what}, in {first.cost_ms_median:.3g} ms"
+    if not orders:
         return text + ("; no other does" if rows[by].nunique() > 1 else "")
-    return text + f"; {short[reached[by].iloc[1]]} takes {reached.cost_ms_median.iloc[1] / reached.cost_ms_median.iloc[0]:.3g} times as long"
+    text += f"; {short[reached[by].iloc[1]]} takes {reached.cost_ms_median.iloc[1] / first.cost_ms_median:.3g} times as long"
+    return text + ("; not all intervals are known" if UNKNOWN in orders else "")
 
 
 def accuracy_curves(results, _):

@@ -86,6 +86,24 @@ def to_ends(rows, name):
     return [(rows[f"{name}_median"] - low).clip(lower=0).to_numpy(), (high - rows[f"{name}_median"]).clip(lower=0).to_numpy()]
 
 
+ALIKE = "do not differ by more than their intervals"
+APART, OVERLAPPING, UNKNOWN = "apart", "overlapping", "unknown"
+
+
+def order_of(quick, slow, name="cost_ms"):
+    """Whether the drawn intervals of two rows are apart, so that one may be called faster than the other."""
+    high, low = quick.get(f"{name}_ci_high", np.nan), slow.get(f"{name}_ci_low", np.nan)
+    if pd.isna(high) or pd.isna(low):
+        return UNKNOWN
+    return APART if low > high else OVERLAPPING
+
+
+def listed(names):
+    """"a", "a and b", "a, b and c"."""
+    *rest, last = names
+    return f"{', '.join(rest)} and {last}" if rest else last
+
+
 def errors(rows, name):
     """The same for matplotlib, which warns of bars that are NaN alone: None where no interval is known."""
     ends = to_ends(rows, name)

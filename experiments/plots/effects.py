@@ -4,7 +4,7 @@ import textwrap
 import numpy as np
 import pandas as pd
 
-from .data import errors, known
+from .data import OVERLAPPING, errors, known, order_of
 from .paper import sheet, titled
 
 ERRORS = [("picture_rmse", "all that reflects"), ("picture_visible_border_rmse", "at borders of materials")]
@@ -65,8 +65,10 @@ def trades(results, tables):
         added.set_xlim(min(more.min(), 0) - margin, max(more.max(), 0) + margin)
         added.set_xlabel("ms added")
         error, label, row = shown[0][0], *points[0]
-        helps = row[error] < first[error]
-        titled(figure, f"{label} takes {error} from {first[error]:.4f} to {row[error]:.4f} for {row.frame_ms_median - first.frame_ms_median:.2f} ms"
+        helps, added_ms = row[error] < first[error], row.frame_ms_median - first.frame_ms_median
+        quick, slow = (first, row) if added_ms >= 0 else (row, first)
+        price = f"for {added_ms:.2f} ms" if order_of(quick, slow, "frame_ms") != OVERLAPPING else "in a time that does not differ by more than the intervals"
+        titled(figure, f"{label} takes {error} from {first[error]:.4f} to {row[error]:.4f} {price}"
                if helps else f"No change lowers {error} below the first run's {first[error]:.3f}", f"{title}; against the first run")
         for label, row in points:
             tables.setdefault("Passes: milliseconds added and error removed, relative to the first run", []).append(

@@ -2,7 +2,7 @@
 import numpy as np
 from matplotlib.ticker import NullLocator
 
-from .data import errors, known
+from .data import ALIKE, APART, OVERLAPPING, UNKNOWN, errors, known, listed, order_of
 from .paper import key_below, log_axis, name_lines, plain_ticks, sheet, short_names, titled
 from .results import is_number
 
@@ -59,6 +59,20 @@ def law_line(axis, series, line, style):
     return slope, intercept, r2
 
 
+def message_of_steps(series, line, fit):
+    """What the times of a line say: the fitted law, where its two ends are apart."""
+    high = line[line.steps >= LAW_FROM_STEPS] if fit else line
+    few, many = high.iloc[0], high.iloc[-1]
+    rising = many.frame_ms_median > few.frame_ms_median
+    quick, slow = (few, many) if rising else (many, few)
+    order = order_of(quick, slow, "frame_ms")
+    if order == OVERLAPPING:
+        return f"From {few.steps:g} to {many.steps:g} steps the times of {series} {ALIKE}"
+    ends = f"From {few.steps:g} to {many.steps:g} steps {series} goes from {few.frame_ms_median:.3g} to {many.frame_ms_median:.3g} ms"
+    said = f"From {LAW_FROM_STEPS} steps on, each step of {series} adds {fit[0]:.3g} ms (R² {fit[2]:.4f})" if fit and fit[0] > 0 and rising else ends
+    return said + ("; intervals not known" if order == UNKNOWN else "")
+
+
 def law_of_steps(results, tables):
     """FPS and 1/FPS against steps, with the fitted line from 50 steps up: figures 11 and 12 of the OpenGL report."""
     if not results.has("steps", "fps"):
@@ -68,17 +82,16 @@ def law_of_steps(results, tables):
         if not lines:
             continue
         figure, ((top,), (bottom,)) = sheet(1.7, 1.9)
-        message, ends = "More steps cost time", ([], [])
+        message, ends = "", ([], [])
         for series, line in lines:
             style = results.styles[series]
             top.plot(line.steps, line.fps, label=series, **style)
             fit = law_line(bottom, series, line, style)
             for axis_ends, y in zip(ends, (line.fps, line.inverse_fps_s * 1000)):
                 axis_ends.append((series, line.steps.iloc[-1], y.iloc[-1], style["color"]))
+            message = message or message_of_steps(series, line, fit)
             if fit is None:
                 continue
-            if series == lines[0][0]:
-                message = f"From {LAW_FROM_STEPS} steps on, each step of {series} adds {fit[0]:.3g} ms (R² {fit[2]:.4f})"
             tables.setdefault("Law of steps: frame time = slope · steps + intercept, from 50 steps up", []).append(
                 {"frame": title, "series": series, "slope, ms per step": f"{fit[0]:.4g}", "intercept, ms": f"{fit[1]:.4g}", "R²": f"{fit[2]:.4f}"})
         flat = rows[rows.steps.isna()].drop_duplicates("series")
@@ -100,7 +113,7 @@ def law_of_steps(results, tables):
         for axis, axis_ends in zip((top, bottom), ends):
             name_lines(axis, axis_ends)
         if len(flat):
-            message += f", {flat.series.iloc[0]} takes no steps"
+            message += f"; {listed(flat.series)} {'have' if len(flat) > 1 else 'has'} no such setting"
         titled(figure, message, title)
         yield ("s0_fig11_fig12_" if table is not None else "") + f"fps_steps_{name}", figure
 
@@ -195,13 +208,31 @@ def dots(axis, places, rows, results, value, spread, xlabel):
 
 
 def fastest_of(rows):
-    """The message of a comparison: who is fastest, where, and how much faster than the next."""
-    best = rows.loc[rows.groupby("scene", sort=False).cost_ms_median.idxmin()]
-    winner, scenes = best.series.value_counts().index[0], rows.scene.nunique()
-    means = np.exp(np.log(rows.set_index("scene").cost_ms_median).groupby(rows.series.to_numpy()).mean()).sort_values()
-    others, short = means.drop(winner), short_names(means.index)
-    where = f" in {(best.series == winner).sum()} of {scenes} scenes" if scenes > 1 else ""
-    return f"{short[winner]} is the fastest{where}; {short[others.index[0]]} takes {others.iloc[0] / means[winner]:.3g} times as long"
+    """The message of a comparison: who is fastest, where, and how much faster than the next. Whose intervals overlap are not ranked."""
+    short, scenes = short_names(rows.series.unique()), rows.scene.nunique()
+    if scenes > 1:
+        wins = [best.series for best, orders in map(orders_of, dict(list(rows.groupby("scene", sort=False))).values()) if set(orders) == {APART}]
+        if not wins:
+            return f"In none of {scenes} scenes is one faster than all others by more than the intervals"
+        winner = max(wins, key=wins.count)
+        return f"{short[winner]} is the fastest in {wins.count(winner)} of {scenes} scenes by more than the intervals"
+    best, orders = orders_of(rows)
+    rows = rows.sort_values("cost_ms_median").iloc[1:].assign(order=orders)
+    alike, later = rows[rows.order == OVERLAPPING], rows[rows.order != OVERLAPPING]
+    if later.empty:
+        return f"The times {ALIKE}"
+    text = f"{short[best.series]} is the fastest"
+    if len(alike):
+        text = f"The times of {listed([short[name] for name in (best.series, *alike.series)])} {ALIKE}"
+    text += f"; {short[later.series.iloc[0]]} takes {later.cost_ms_median.iloc[0] / best.cost_ms_median:.3g} times as long" + (
+        f" as {short[best.series]}" if len(alike) else "")
+    return text + ("; not all intervals are known" if UNKNOWN in orders else "")
+
+
+def orders_of(rows):
+    """(the fastest of one scene, how its interval and that of each other one lie: in the order of their times)."""
+    rows = rows.sort_values("cost_ms_median")
+    return rows.iloc[0], [order_of(rows.iloc[0], row) for _, row in rows.iloc[1:].iterrows()]
 
 
 def comparison(results, _):

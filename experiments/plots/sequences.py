@@ -4,6 +4,7 @@ import os
 import numpy as np
 import pandas as pd
 
+from .data import listed
 from .paper import COLOURS, key_below, name_lines, plain_ticks, sheet, titled
 
 
@@ -38,7 +39,8 @@ def flips_under_jitter(results, tables):
     axes[-1][0].set_xlabel("steps")
     plain_ticks(axes[-1][0].xaxis, set(summary.steps.dropna()))
     means = 100 * summary.groupby("technique").flip_rate.mean()
-    titled(figure, f"Under sub-pixel jitter rays of {means.idxmin()} flip least: {means.min():.2g} %; most of {means.idxmax()}: {means.max():.2g} %",
+    titled(figure, f"Under sub-pixel jitter rays of {means.idxmin()} flip least: {means.min():.2g} %; most of {means.idxmax()}: {means.max():.2g} %"
+           if means.max() > means.min() else f"Under sub-pixel jitter {means.max():.2g} % of the rays of {listed(means.index)} flip",
            "flip_rate from one phase to the next; means over scenes and steps")
     yield "jitter_flips", figure
 

@@ -172,8 +172,8 @@ def ladder_of_layers(results, tables):
     name_lines(cost, middles)
     means = [100 * rows.hidden_too_f1_1px.mean() for _, rows in rungs]
     best = int(np.argmax(means))
-    titled(figure, f"From {rungs[0][0]} to {rungs[best][0]} F1 rises from {means[0]:.0f} to {means[best]:.0f} %, "
-           f"and the time from {below[0]:.3g} to {below[best]:.3g} ms", over_scenes(results.rows))
+    titled(figure, f"From {rungs[0][0]} to {rungs[best][0]} F1 rises from {means[0]:.0f} to {means[best]:.0f} %, in {below[0]:.3g} and {below[best]:.3g} ms"
+           if means[best] > means[0] else f"No rung has a better F1 than {rungs[0][0]}: {means[0]:.0f} %, in {below[0]:.3g} ms", over_scenes(results.rows))
     yield "surfaces_ladder", figure
 
 

@@ -141,6 +141,11 @@ def left_wrong(row):
     return " ".join(sentences)
 
 
+def with_causes(text, best):
+    intervals = "In brackets: 95 % intervals. " if "[" in text else ""
+    return f"{text}. {intervals}{left_wrong(best)}".rstrip()
+
+
 def verdict(results, chosen):
     """The sentences for one frame; chosen: its picks, the best first."""
     measure, target = goal(results)
@@ -148,23 +153,23 @@ def verdict(results, chosen):
         return ""
     best = chosen.iloc[0]
     if not best.reached:
-        return (f"No tracer finds {goal_text(measure, target)}. The nearest is {named(best)}: {percent(best[measure])} in "
-                f"{milliseconds(best)}. " + left_wrong(best)).rstrip()
-    text = f"{named(best)} is the cheapest tracer that finds {goal_text(measure, target)}: {milliseconds(best)}"
+        return with_causes(f"No tracer finds {goal_text(measure, target)}. The nearest is {named(best)}: {percent(best[measure])} in "
+                           f"{milliseconds(best)}", best)
     quicker = chosen.worse_surface & (chosen.cost_ms_median < best.cost_ms_median)
     rivals = chosen[chosen.reached & ~quicker & (chosen.technique != best.technique)].drop_duplicates("technique").head(2)
-    faster = []
+    alone, faster = True, []
     for _, rival in rivals.iterrows():
         ratio = ratio_of_rows(results, rival, best)
-        interval = f" [{ratio.low:.3g}, {ratio.high:.3g}]" if pd.notna(ratio.low) else ""
+        times = f"{ratio.median:.3g}" + (f" [{ratio.low:.3g}, {ratio.high:.3g}]" if pd.notna(ratio.low) else "")
         within_noise = pd.notna(ratio.low) and ratio.low <= 1 <= ratio.high
-        faster.append(f"as fast as {named(rival)} within the noise{interval}" if within_noise
-                      else f"{ratio.median:.3g}{interval} times as fast as {named(rival)}")
+        alone &= not within_noise
+        faster.append(f"as fast as {named(rival)} within the noise: {times} times" if within_noise else f"{times} times as fast as {named(rival)}")
+    text = f"{named(best)} is {'the cheapest tracer that finds' if alone else 'one of the cheapest tracers that find'} {goal_text(measure, target)}: {milliseconds(best)}"
     if faster:
         text += ", " + " and ".join(faster)
     for _, row in chosen[quicker & (chosen.f1 < best.f1 - F1_SLACK)].head(1).iterrows():
         text += f". {named(row)} takes {milliseconds(row)}, but has an F1 of {percent(row.f1)} instead of {percent(best.f1)}"
-    return f"{text}. {left_wrong(best)}".rstrip()
+    return with_causes(text, best)
 
 
 def verdicts(results, chosen):

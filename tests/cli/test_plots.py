@@ -120,7 +120,7 @@ class Test(Case):
         steps, fps = line_of(left, "OpenGL report")
         self.near([steps, fps], [[25, 50, 100, 250, 500, 1000, 2500], np.array([120, 118, 91, 53, 31, 18, 9]) * 1000 / 7 / 31])
         self.near(line_of(right, "OpenGL report")[1][0], 31 * 7 / 120)
-        self.assertEqual(figure.finding, "From 50 steps on, each step of linear adds 0.01 ms (R² 1.0000), dda takes no steps "
+        self.assertEqual(figure.finding, "From 50 steps on, each step of linear adds 0.01 ms (R² 1.0000); dda has no such setting "
                          "(animal_on_metal, view default, 80×60)")
         self.assertEqual({text.get_text().split(",")[0] for text in left.texts}, {"linear", "dda", "OpenGL report"})
 
@@ -176,7 +176,34 @@ class Test(Case):
         self.assertEqual(ends, {"dda": [[1.5, 3], [3.5, 5]], "hiz": [[2.5, 4]]}, "none where the interval is not known")
         hollow = next(line for line in time.get_lines() if line.get_markerfacecolor() == "white" and len(line.get_xdata()))
         self.near(hollow.get_xydata(), [[3.5, 1]])
-        self.assertEqual(figure.finding.split(" (")[0], "dda is the fastest in 1 of 2 scenes; hiz takes 1.15 times as long")
+        self.assertEqual(figure.finding.split(" (")[0], "In none of 2 scenes is one faster than all others by more than the intervals")
+
+    def test_a_title_ranks_only_what_its_intervals_tell_apart(self):
+        def titles(make, swept=(), **more):
+            (_, figure), *_ = self.drawn(make, made_results(self, [dict(row, **more) for row in rows], swept))[0].items()
+            return figure.finding.split(" (")[0]
+        def times(**ends):
+            return [dict(technique=name, trace_ms_median=ms, trace_ms_ci_low=low, trace_ms_ci_high=high) for name, (low, ms, high) in ends.items()]
+        for rows, title in ((times(box=(8, 9, 10), plane=(9.5, 12, 65)), "The times do not differ by more than their intervals"),
+                            (times(box=(8, 9, 10), plane=(9.5, 12, 65), dda=(17, 18, 19)),
+                             "The times of box and plane do not differ by more than their intervals; dda takes 2 times as long as box"),
+                            (times(box=(8, 9, 10), dda=(17, 18, 19)), "box is the fastest; dda takes 2 times as long"),
+                            (times(box=("", 9, ""), dda=("", 18, "")), "box is the fastest; dda takes 2 times as long; not all intervals are known")):
+            self.assertEqual(titles(plots.figures.comparison), title)
+        rows = [dict(row, scene=scene) for scene in "ab" for row in times(box=(8, 9, 10), dda=(17, 18, 19))]
+        self.assertEqual(titles(plots.figures.comparison), "box is the fastest in 2 of 2 scenes by more than the intervals")
+        rows = [dict(row, steps=steps, recall_1px=recall) for steps, recall in ((1, 0.5), (2, 0.6), (3, 0.99))
+                for row in times(linear=(8 + steps, 9 + steps, 10 + steps), march=(8 + steps, 9.1 + steps, 13 + steps))]
+        self.assertEqual(titles(plots.accuracy.accuracy_curves, ["steps"]), "linear and march reach 99 % recall in times that do not differ by more than their intervals")
+        rows = [dict(technique="linear", steps=steps, frame_ms_median=ms, frame_ms_ci_low=5, frame_ms_ci_high=12, fps=1000 / ms, inverse_fps_s=ms / 1000)
+                for steps, ms in ((8, 9), (16, 8), (32, 7), (64, 6))]
+        self.assertEqual(titles(plots.figures.law_of_steps, ["steps"]), "From 8 to 64 steps the times of linear do not differ by more than their intervals")
+        rows = [dict(row, frame_ms_ci_low=row["frame_ms_median"], frame_ms_ci_high=row["frame_ms_median"]) for row in rows]
+        self.assertEqual(titles(plots.figures.law_of_steps, ["steps"]), "From 8 to 64 steps linear goes from 9 to 6 ms")
+        rows = [dict(technique="dda", gloss=gloss, run_number=number, picture_rmse=error, frame_ms_median=ms, frame_ms_ci_low=ms - 1, frame_ms_ci_high=ms + 1)
+                for number, (gloss, error, ms) in enumerate((("stochastic", 0.2, 9), ("cone", 0.1, 13)))]
+        figure, = self.drawn(plots.effects.trades, made_results(self, rows, ["gloss"], pass_parameters="gloss"))[0].values()
+        self.assertIn("gloss cone takes picture_rmse from 0.2000 to 0.1000 for 4.00 ms", figure.finding)
 
     def growing(self):
         """Cost as the square root of the pixels, fetches as their fourth root; half of the pixels are rays."""
@@ -208,7 +235,7 @@ class Test(Case):
         (name, figure), = figures.items()
         lines, = tables.values()
         self.assertEqual([tuple(line.values())[1:] for line in lines], [("gloss cone", "2.50", "+0.0500", "+0.2000"), ("no filter_3x3", "-1.00", "-0.0500", "-0.1000")])
-        self.assertIn("gloss cone takes picture_rmse from 0.2000 to 0.1500 for 2.50 ms", figure.finding)
+        self.assertIn("gloss cone takes picture_rmse from 0.2000 to 0.1500 in a time that does not differ by more than the intervals", figure.finding)
         removed, added = figure.axes
         self.assertEqual([label.get_text() for label in removed.get_yticklabels()], ["gloss cone", "no filter_3x3"])
         self.near(line_of(removed, "all that reflects")[0], [0.05, -0.05])

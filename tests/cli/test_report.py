@@ -58,7 +58,7 @@ class Test(Case):
     def report(self):
         """Made by a run, and moved away from everything beside it."""
         self.ssrlab("run", self.write("small.toml", SMALL), "-o", self.path("out"))
-        self.ssrlab("plot", self.path("out"), says=["is the cheapest tracer that finds 99 % of what the depth buffer holds"])
+        self.assertRegex(self.ssrlab("plot", self.path("out")), r"is (the|one of the) cheapest tracers? that finds? 99 % of what the depth buffer holds")
         os.makedirs(self.path("alone"))
         return shutil.move(self.path("out/report.html"), self.path("alone/report.html"))
 

@@ -98,8 +98,8 @@ class Test(Case):
         self.assertEqual(list(chosen.setting), ["linear, steps 40", "dda", "march, steps 40"])
         self.assertEqual(list(chosen.reached), [True, True, False])
         (_, text), = plots.verdict.verdicts(results, chosen)
-        self.assertEqual(text, "linear (steps 40) is the cheapest tracer that finds 99 % of what the depth buffer holds: 2 ms, "
-                               "as fast as dda within the noise [0.9, 1.3]. "
+        self.assertEqual(text, "linear (steps 40) is one of the cheapest tracers that find 99 % of what the depth buffer holds: 2 ms, "
+                               "as fast as dda within the noise: 1.05 [0.9, 1.3] times. In brackets: 95 % intervals. "
                                "It misses 10 % of what the frame shows: 7 % are not in the depth buffer, 2 % hit another point. "
                                "5 % of its rays end in a false hit: 3 % behind a surface that is taken too thick, 1.5 % on the reflector itself.")
         (_, text), = plots.verdict.verdicts(results, chosen[~chosen.reached])
