@@ -35,6 +35,8 @@ def draw(results, folder):
 
 
 def main(folder, bandwidth_gbps=None):
+    if os.path.basename(folder) == "results.csv":
+        folder = os.path.dirname(folder) or "."
     if not os.path.exists(os.path.join(folder, "results.csv")):
         sys.exit(f"plot: {folder}: holds no results.csv; make one with ssrlab run")
     results = Results(folder, bandwidth_gbps)

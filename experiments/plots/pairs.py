@@ -13,6 +13,8 @@ import numpy as np
 import pandas as pd
 from scipy.stats import binom
 
+from .results import read_samples
+
 
 class Ratio(NamedTuple):
     """low and high are NaN where the interval is not known: below six pairs."""
@@ -55,6 +57,6 @@ def cost_samples(folder):
     path = os.path.join(folder, "samples.csv")
     if not os.path.exists(path):
         return {}
-    samples = pd.read_csv(path, dtype={"run_id": str, "pass": str})
+    samples = read_samples(folder)
     cost = samples[samples["pass"].isin(cost_passes(folder))].groupby(["run_id", "round"], sort=False).ms.sum()
     return {run: part.droplevel("run_id") for run, part in cost.groupby("run_id", sort=False)}

@@ -9,6 +9,7 @@
 Added columns: cost_ms_median, cost_ms_ci_low and cost_ms_ci_high are the time of the trace and of the structures that only it needs, with the
 95 % interval of the trace; frame_name is "scene, view, WIDTH×HEIGHT"; series is the technique with the choices that vary, a line of a plot.
 """
+import csv
 import json
 import os
 import re
@@ -32,12 +33,43 @@ class Unreadable(Exception):
     """Results that are damaged, or in the form of an older version."""
 
 
-def read_csv(path, words, **how):
-    """words: columns that are never numbers."""
+def check_form(path):
+    """Every row has as many fields as the first, and the last row ends."""
+    with open(path, encoding="utf-8", newline="") as file:
+        rows = csv.reader(file)
+        head = next(rows, [])
+        for number, row in enumerate(rows, 1):
+            if row and len(row) != len(head):
+                at = f"column '{head[len(row)]}' is not there" if len(row) < len(head) else f"one too many behind column '{head[-1]}'"
+                raise Unreadable(f"{path}: damaged: row {number} (line {rows.line_num}): expected {len(head)} fields, got {len(row)}: {at}")
+    with open(path, "rb") as file:
+        file.seek(-1 if head else 0, os.SEEK_END)
+        if head and file.read() != b"\n":
+            raise Unreadable(f"{path}: damaged: expected an end of line behind the last row, got the end of the file: it is cut")
+
+
+def read_csv(path, words, numbers=lambda table: (), **how):
+    """words: columns that are never numbers; numbers: of a table the columns that always are."""
     try:
-        return pd.read_csv(path, dtype={name: str for name in words}, **how)
-    except (pd.errors.EmptyDataError, pd.errors.ParserError, UnicodeDecodeError) as error:
+        check_form(path)
+        table = pd.read_csv(path, dtype={name: str for name in words}, index_col=False, **how)
+    except (pd.errors.EmptyDataError, pd.errors.ParserError, UnicodeDecodeError, csv.Error) as error:
         raise Unreadable(f"{path}: damaged: {error}") from error
+    for name in numbers(table):
+        if is_number(table[name]):
+            continue
+        values = pd.to_numeric(table[name], errors="coerce")
+        for row in table.index[values.isna() & table[name].notna()][:1]:
+            raise Unreadable(f"{path}: damaged: row {row + 1} (run {table.run_id[row]}), column '{name}': expected a number, got '{table[name][row]}'")
+        table[name] = values
+    return table
+
+
+def measures_of(rows):
+    """Columns of results.csv that are numbers in every row, or empty."""
+    columns = list(rows.columns)
+    behind = columns[columns.index("trace_ms_median"):] if "trace_ms_median" in columns else []
+    return [name for name in ("run_number", "width", "height", "frame", *behind) if name in columns and name not in TEXT]
 
 
 def read_rows(folder):
@@ -45,12 +77,14 @@ def read_rows(folder):
     path = os.path.join(folder, "results.csv")
     if not os.path.exists(path):
         raise FileNotFoundError(f"{folder}: holds no results.csv; make one with ssrlab run")
-    rows = read_csv(path, TEXT, keep_default_na=False, na_values=[""])
+    rows = read_csv(path, TEXT, measures_of, keep_default_na=False, na_values=[""])
     lacking = [name for name in (*FRAME[:-1], "run_id", "technique", "trace_ms_median", "outcome") if name not in rows]
     if lacking:
         raise Unreadable(f"{path}: damaged: its first line has no column '{lacking[0]}'")
     if "passes" in rows or "passes_why" in rows:
         raise Unreadable(f"{path}: an older ssrlab wrote it, without passes.csv; measure it anew: ssrlab run SPECIFICATION.toml -o ANOTHER_FOLDER")
+    if rows.empty:
+        raise Unreadable(f"{path}: holds no row, only the names of its columns; ssrlab run --resume measures what is missing")
     return rows
 
 
@@ -68,7 +102,7 @@ def read_environment(folder):
 
 def read_samples(folder):
     """Every timed frame: run_id, round, pass, ms, cpu_ms."""
-    return read_csv(os.path.join(folder, "samples.csv"), ["run_id", "pass"])
+    return read_csv(os.path.join(folder, "samples.csv"), ["run_id", "pass"], lambda table: [name for name in ("round", "ms", "cpu_ms") if name in table])
 
 
 def read_passes(folder):
@@ -76,7 +110,8 @@ def read_passes(folder):
     path = os.path.join(folder, "passes.csv")
     if not os.path.exists(path):
         return pd.DataFrame(columns=["run_id", "pass", "ran", "ms_median", "ms_ci_low", "ms_ci_high", "reason"])
-    return read_csv(path, ["run_id", "pass", "reason"], keep_default_na=False, na_values=[""])
+    return read_csv(path, ["run_id", "pass", "reason"], lambda table: [name for name in table if name.startswith("ms_")],
+                    keep_default_na=False, na_values=[""])
 
 
 def read_sources(folder):
@@ -84,7 +119,7 @@ def read_sources(folder):
     path = os.path.join(folder, "sources.csv")
     if not os.path.exists(path):
         return pd.DataFrame(columns=["run_id", "place", "source"])
-    return read_csv(path, ["run_id", "source"])
+    return read_csv(path, ["run_id", "source"], lambda table: [name for name in table if name not in ("run_id", "source")])
 
 
 def specification(folder):

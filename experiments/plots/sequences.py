@@ -6,12 +6,13 @@ import pandas as pd
 
 from .data import listed
 from .paper import COLOURS, key_below, name_lines, plain_ticks, sheet, titled
+from .results import read_csv
 
 
 def read_summary(results, column):
     """sequence_summary.csv, or nothing where no row has this column's value."""
     path = os.path.join(results.folder, "sequence_summary.csv")
-    summary = pd.read_csv(path, keep_default_na=False, na_values=[""]) if os.path.exists(path) else pd.DataFrame()
+    summary = read_csv(path, ["scene", "view", "technique"], keep_default_na=False, na_values=[""]) if os.path.exists(path) else pd.DataFrame()
     return summary if column in summary and summary[column].notna().any() else pd.DataFrame()
 
 

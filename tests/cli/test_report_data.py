@@ -77,6 +77,24 @@ class Test(Case):
                 with self.assertRaisesRegex(plots.results.Unreadable, f"out/{name}: damaged: "):
                     plots.results.load(self.path("out"))
 
+    def test_damage_names_row_and_column(self):
+        for damage, message in ((lambda text: text.replace(",2,", ",fast,"), r"row 2 \(run r1\), column 'trace_ms_median': expected a number, got 'fast'"),
+                                (lambda text: text.replace("r1,", "r1,,"), r"row 2 \(line 3\): expected \d+ fields, got \d+: one too many behind column "),
+                                (lambda text: text.replace("r0,", "r0,,").replace("r1,", "r1,,"), r"row 1 \(line 2\): expected \d+ fields, got \d+"),
+                                (lambda text: text[:text.index("r1,") + 9], r"row 2 \(line 3\): expected \d+ fields, got \d: column "),
+                                (lambda text: text[:-1], "expected an end of line behind the last row"),
+                                (lambda text: text[:text.index("r0,")], "holds no row")):
+            made_results(self, [dict(technique="hiz", trace_ms_median=ms) for ms in (3, 2)])
+            whole = self.text("out/results.csv")
+            self.write("out/results.csv", damage(whole))
+            self.assertNotEqual(self.text("out/results.csv"), whole)
+            with self.subTest(message=message), self.assertRaisesRegex(plots.results.Unreadable, "out/results.csv: .*" + message):
+                plots.results.load(self.path("out"))
+        made_results(self, [dict(technique="hiz")])
+        self.samples({"r0": [1, "fast"]})
+        with self.assertRaisesRegex(plots.results.Unreadable, r"samples.csv: damaged: row 2 \(run r0\), column 'ms': expected a number, got 'fast'"):
+            Results(self.path("out"))
+
     def verdict_rows(self):
         """linear reaches 0.99 with 20, 40 and 80 steps, at 80 with the best F1, at 40 within a point of it. march never does."""
         rows = [dict(technique="linear", steps=steps, trace_ms_median=ms, screen_recall_1px=found, f1_1px=f1)
