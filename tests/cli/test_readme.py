@@ -23,6 +23,16 @@ class Test(Case):
         near = (abs(made.astype(int) - shown.astype(int)) <= 2).mean()
         self.assertGreater(near, 0.99, "make it again with README's command")
 
+    def test_the_f1_of_engines_is_that_of_the_table(self):
+        words = " ".join(read("README.md").split())
+        said = re.findall(r"an F1 of (\d+) to (\d+) % at 360p and (\d+) to (\d+) % at 1080p, where `hiz_packets` over planes reaches (\d+) and (\d+) %", words)
+        of_size = [part for part in read("results/reference/engines.md").split("\n## ") if part.startswith("By default")]
+        self.assertEqual([part.splitlines()[0].split()[-3:] for part in of_size], [["640", "×", "360"], ["1920", "×", "1080"]])
+        f1 = [[int(cells[6].strip("% ")) for cells in (line.split("|") for line in part.splitlines()) if len(cells) > 6 and cells[2].strip() == "default"]
+              for part in of_size]
+        ours = [re.search(r"`hiz_packets`, `plane` \|[^|]*\|[^|]*\| (\d+)%", part)[1] for part in of_size]
+        self.assertEqual(said, [(*(str(pick(one)) for one in f1 for pick in (min, max)), *ours)])
+
     def test_its_commands_exist(self):
         named = set(re.findall(r"^build/bin/ssrlab ([a-z-]+)", read("README.md"), re.M))
         self.assertGreater(len(named), 5)
