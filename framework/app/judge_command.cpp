@@ -135,26 +135,52 @@ bool passes(const Judged& judged, const JudgeOptions& options, bool any_wrong_fa
     return !any_wrong_fails || judged.judgement.wrong() == 0;
 }
 
-/// The options of each case that has hits, of a folder that export-cases wrote.
-std::vector<JudgeOptions> cases_of(const CommonOptions& common, const JudgeOptions& options)
+/// A misspelt name would otherwise look like a case that was not traced.
+void refuse_unknown_hits(const JudgeOptions& options, const std::vector<ExportedCase>& cases)
+{
+    std::vector<std::string> names, unknown;
+    std::ranges::transform(cases, std::back_inserter(names), &ExportedCase::name);
+    for (const auto& entry : fs::directory_iterator(options.hits))
+        if (entry.path().extension() == ".exr" && std::ranges::find(names, entry.path().stem().string()) == names.end())
+            unknown.push_back(entry.path().stem().string());
+    std::ranges::sort(unknown);
+    if (!unknown.empty())
+        throw_spec_error("{}: expected NAME.exr for the names in {}/manifest.json, got {}.exr{}{}", options.hits,
+                         options.frame, unknown.front(), suggestion(unknown.front(), names),
+                         unknown.size() > 1 ? fmt::format(" and {} more that it does not name", unknown.size() - 1)
+                                            : "");
+}
+
+/// Of a folder that export-cases wrote: the options of each case that has hits, and the names of the others.
+struct FolderCases {
+    std::vector<JudgeOptions> with_hits;
+    std::vector<std::string>  without;
+};
+
+FolderCases cases_of(const JudgeOptions& options)
 {
     if (!options.scene.empty() || !options.output.empty() || !options.parameters.empty())
         throw_spec_error("{}: the cases have their own settings and no scene: give no --scene, -p and -o",
                          options.frame);
     const std::vector<ExportedCase> all = read_cases(options.frame);
-    std::vector<JudgeOptions>       cases;
+    if (!fs::is_directory(options.hits))
+        throw_spec_error("{}: expected a folder with NAME.exr for the names in {}/manifest.json", options.hits,
+                         options.frame);
+    refuse_unknown_hits(options, all);
+    FolderCases cases;
     for (const ExportedCase& one : all) {
         JudgeOptions own = options;
         own.frame        = one.frame.string();
         own.hits         = (fs::path(options.hits) / (one.name + ".exr")).string();
         own.parameters   = one.settings;
-        if (fs::exists(own.hits)) cases.push_back(own);
+        if (fs::exists(own.hits))
+            cases.with_hits.push_back(own);
+        else
+            cases.without.push_back(one.name);
     }
-    if (cases.empty())
+    if (cases.with_hits.empty())
         throw_spec_error("{}: no hits: expected NAME.exr for the names in {}/manifest.json", options.hits,
                          options.frame);
-    if (cases.size() < all.size() && !common.quiet)
-        std::fprintf(stderr, "warning: %zu of %zu cases have no hits\n", all.size() - cases.size(), all.size());
     return cases;
 }
 
@@ -162,9 +188,10 @@ int judge_folder(const CommonOptions& common, const Catalogue& catalogue, const 
 {
     Json          all    = Json::array();
     size_t        failed = 0, count = 0;
-    CommonOptions quiet = common;
-    quiet.quiet         = true; // the frames are ours
-    for (const JudgeOptions& one : cases_of(common, options)) {
+    CommonOptions quiet     = common;
+    quiet.quiet             = true; // the frames are ours
+    const FolderCases cases = cases_of(options);
+    for (const JudgeOptions& one : cases.with_hits) {
         const Judged judged = judge_file(quiet, catalogue, one);
         const bool   passed = passes(judged, one, true);
         failed += !passed;
@@ -180,10 +207,23 @@ int judge_folder(const CommonOptions& common, const Catalogue& catalogue, const 
                       .c_str());
         if (!passed) print_findings(judged.judgement.findings);
     }
+    for (const std::string& name : options.partial ? std::vector<std::string>() : cases.without) {
+        ++failed, ++count;
+        if (options.json)
+            all.push_back({{"frame", (fs::path(options.frame) / "frames" / (name + ".exr")).string()},
+                           {"hits", nullptr},
+                           {"passed", false}});
+        else
+            std::puts(fmt::format("FAIL {}: no hits", name).c_str());
+    }
     if (options.json)
         std::puts(all.dump(1).c_str());
     else
-        std::puts(fmt::format("{} of {} cases pass", count - failed, count).c_str());
+        std::puts(fmt::format("{} of {} cases pass{}", count - failed, count,
+                              options.partial && !cases.without.empty()
+                                  ? fmt::format("; --partial: {} without hits do not count", cases.without.size())
+                                  : "")
+                      .c_str());
     return failed == 0 ? 0 : 1;
 }
 

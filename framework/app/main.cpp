@@ -175,6 +175,8 @@ void add_judge_options(CLI::App& command, ssrlab::JudgeOptions& options)
         ->check(one_of({"agreement", "causes"}));
     command.add_option("--min-f1", options.min_f1, "Exit code 1 if F1 is lower; with --scene that of the scene truth")
         ->check(CLI::Range(0.0, 1.0));
+    command.add_flag("--partial", options.partial,
+                     "Of a folder: judge the cases that have hits, and pass without the others");
     command.add_flag("--json", options.json, "As JSON, with every wrong ray");
 }
 

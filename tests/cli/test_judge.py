@@ -111,9 +111,16 @@ class Test(Case):
         os.mkdir(self.path("stale"))
         for name, before in stale:
             shutil.copy(self.path(f"hits/{before}.exr"), self.path(f"stale/{name}.exr"))
-        self.ssrlab("judge", "cases", "stale", code=1, says=["0 of 3 cases pass", "FAIL previous_frame_1: 64 rays, 64 wrong"])
-        verdict = json.loads(self.ssrlab("judge", "cases", "stale", "--json", "--min-f1", "0", "--quiet"))
+        self.ssrlab("judge", "cases", "stale", "--partial", code=1, says=["0 of 3 cases pass; --partial: ", "FAIL previous_frame_1: 64 rays, 64 wrong"])
+        verdict = json.loads(self.ssrlab("judge", "cases", "stale", "--json", "--min-f1", "0", "--partial"))
         self.assertEqual([one["passed"] for one in verdict], [True] * 3)
+        # Without hits nothing passes, and no misspelt name is passed over.
+        self.ssrlab("judge", "cases", "stale", "--min-f1", "0", code=1, says=[f"3 of {len(names)} cases pass", f"FAIL {names[-1]}: no hits"])
+        verdict = json.loads(self.ssrlab("judge", "cases", "stale", "--json", "--min-f1", "0", code=1))
+        self.assertEqual([sum(one["passed"] for one in verdict), len(verdict)], [3, len(names)])
+        self.assertTrue(all(os.path.exists(self.path(one["frame"])) for one in verdict))
+        shutil.copy(self.path(f"hits/{names[0]}.exr"), self.path(f"stale/{names[0]}x.exr"))
+        self.refused("judge", "cases", "stale", "--partial", code=2, says=[f"got {names[0]}x.exr", f"did you mean '{names[0]}'"])
         self.refused("export-cases", "cases", code=2, says=["cases: expected a new or empty folder"])
         self.refused("judge", "cases", "cases/frames/..", code=2, says=["no hits: expected NAME.exr"])
         self.refused("judge", "cases", "hits", "-p", "thickness_m=1", code=2, says=["the cases have their own settings"])
