@@ -89,6 +89,10 @@ void show(Stage& stage, const View& view)
 
 LabPtr make_lab(Stage& stage, const Technique& technique, const ParameterValues& values, const TraceSettings& settings)
 {
+    if (stage.scene.frame && settings.layers > 1)
+        throw_spec_error("layers = {}: '{}' is a frame of another renderer, which holds nothing behind its surfaces: "
+                         "expected 1",
+                         settings.layers, stage.scene.name);
     if (stage.drawing) draw_layers(stage.gpu, *stage.drawing, settings.layers);
     return make_lab(stage.gpu, stage.catalogue, stage.gbuffer, technique, values, settings);
 }

@@ -335,15 +335,21 @@ Experiment load_experiment(const std::filesystem::path& path, const Catalogue& c
         throw_spec_error("{}:1: names no scene: add scenes = [\"builtin:stairs\"]", file.path);
     experiment.scenes_place = toml_place(file, *file.root.get("scenes"));
     read_views(file, experiment);
-    experiment.sizes_px       = read_sizes(file);
-    experiment.frames         = read_frames(file);
+    experiment.sizes_px = read_sizes(file);
+    experiment.frames   = read_frames(file);
+    for (const char* name : {"sizes", "frames", "jitter_phases"})
+        if (const toml::node* node = file.root.get(name)) experiment.places[name] = toml_place(file, *node);
     experiment.known_settings = all_settings(catalogue);
     experiment.known_surfaces = catalogue.surfaces;
     experiment.settings       = read_settings(file, experiment.known_settings);
-    experiment.measure        = read_measure(file);
-    experiment.techniques     = read_sweeps(file, catalogue.techniques, experiment.known_settings, experiment.measure);
-    experiment.targets        = read_targets(file, experiment.measure);
-    experiment.sources        = read_sources(file, experiment.measure);
+    for (const Setting& setting : experiment.known_settings)
+        if (const toml::table* table = optional_table(file, setting.table))
+            if (const toml::node* node = find_setting(file, *table, setting.name))
+                experiment.places[setting.name] = toml_place(file, *node);
+    experiment.measure    = read_measure(file);
+    experiment.techniques = read_sweeps(file, catalogue.techniques, experiment.known_settings, experiment.measure);
+    experiment.targets    = read_targets(file, experiment.measure);
+    experiment.sources    = read_sources(file, experiment.measure);
     return experiment;
 }
 

@@ -84,6 +84,8 @@ struct Experiment {
     std::vector<Target>         targets        = {};
     std::vector<Setting>        known_settings = {};
     std::vector<Surface>        known_surfaces = {};
+    /// file:line of `sizes`, `frames`, `jitter_phases` and the settings that the specification names.
+    std::map<std::string, std::string> places = {};
 };
 
 /// One technique with one set of values on one frame.

@@ -36,6 +36,36 @@ void refuse_unknown_scenes(const Experiment& experiment)
     }
 }
 
+/// A frame of another renderer is one picture of one size, and holds nothing behind its surfaces: rows that say otherwise would be false.
+void refuse_what_frames_lack(const Experiment& experiment)
+{
+    const auto place = [&](const std::string& name) { return experiment.places.at(name); };
+    for (const std::string& scene : experiment.scenes) {
+        if (!is_frame(scene)) continue;
+        const glm::ivec2 own_px = frame_size_px(scene);
+        if (experiment.places.contains("sizes") && std::ranges::count(experiment.sizes_px, own_px) == 0)
+            throw_spec_error("{}: '{}' is a frame of {} pixels: expected 'sizes' with that size, or none, got {}",
+                             place("sizes"), scene, size_text(own_px), size_text(experiment.sizes_px.front()));
+        if (std::ranges::count(experiment.frames, SequenceFrame{}) == 0)
+            throw_spec_error("{}: '{}' is one frame of another renderer: it has no further frames and no jitter",
+                             place(experiment.places.contains("jitter_phases") ? "jitter_phases" : "frames"), scene);
+        for (const Setting& setting : experiment.known_settings) {
+            if (setting.name != "layers" && setting.name != "hidden_layer") continue;
+            for (const TechniqueSweep& sweep : experiment.techniques) {
+                const bool  own    = sweep.settings.contains(setting.name);
+                const auto& values = own ? sweep.settings.at(setting.name) : experiment.settings.at(setting.name);
+                for (const double value : values)
+                    if (value != setting.default_value)
+                        throw_spec_error(
+                            "{}: {} = {}: '{}' is a frame of another renderer, which holds nothing behind its "
+                            "surfaces: expected {}",
+                            own ? sweep.place : place(setting.name), setting.name, format_parameter(setting, value),
+                            scene, format_parameter(setting, setting.default_value));
+            }
+        }
+    }
+}
+
 void refuse_unknown_views(const Experiment& experiment)
 {
     for (const std::string& scene : experiment.scenes) {
@@ -113,6 +143,7 @@ PlannedRuns plan_runs(const RunOptions& options, const Experiment& experiment, s
 {
     refuse_unknown_scenes(experiment);
     refuse_unknown_views(experiment);
+    refuse_what_frames_lack(experiment);
     const Shard      shard   = parse_shard(options.shard);
     std::vector<Run> runs    = expand(experiment, techniques, options.yes);
     std::string      figures = resolve_figures(experiment, techniques, runs);

@@ -1,4 +1,6 @@
 """A frame of another renderer as SCENE: exported, described, rendered, swept."""
+import os
+
 from support import Case, main
 
 SPEC = """scenes = ["frame.exr"]
@@ -20,8 +22,7 @@ class Test(Case):
         self.ssrlab("gbuffer", "builtin:stairs", "--size", "96x54", "-o", "frame.exr")
 
     def test_is_swept_without_scene_truth(self):
-        spec = SPEC.replace("96x54", "640x360")  # a frame has its own size
-        self.ssrlab("run", self.write("s.toml", spec), "-o", "out")
+        self.ssrlab("run", self.write("s.toml", SPEC.replace('sizes  = ["96x54"]\n', "")), "-o", "out")  # a frame has its own size
         for row in self.rows():
             self.assertEqual((row["outcome"], row["width"], row["height"]), ("ok", "96", "54"))
             self.assertEqual(row["no_scene_truth"], "a frame of another renderer has no triangles")
@@ -40,7 +41,23 @@ class Test(Case):
         self.assertEqual(error["hiz"], 0)
         self.assertGreater(error["linear"], 0)
 
+    def test_what_no_frame_has_is_refused_before_the_runs(self):
+        for old, new, line, says in (("96x54", "100x100", 2, ["'frame.exr' is a frame of 96x54 pixels", "got 100x100"]),
+                                     ("[trace]", "frames = [3]\n[trace]", 3, ["one frame of another renderer"]),
+                                     ("[trace]", "jitter_phases = 4\n[trace]", 3, ["no further frames and no jitter"]),
+                                     ("[trace]", "[trace]\nlayers = [1, 2]", 4, ["layers = 2: 'frame.exr'", "expected 1"]),
+                                     ("[trace]", "[passes]\nhidden_layer = [false, true]\n[trace]", 4, ["hidden_layer = true: 'frame.exr'", "expected false"]),
+                                     ("steps = 16", "steps = 16\nlayers = [1, 2]", 6, ["layers = 2"])):
+            for options in (["--dry-run"], ["-o", "out"]):
+                with self.subTest(new=new):
+                    self.refused("run", self.write("s.toml", SPEC.replace(old, new)), *options, code=2, says=[f"s.toml:{line}: ", *says])
+        self.refused("render", "frame.exr", "-t", "hiz", "-p", "layers=2", "-o", "a.png", code=2, says=["layers = 2: 'frame.exr'", "expected 1"])
+
     def test_what_is_missing_is_said(self):
+        self.write("frame.exr.toml", '# of elsewhere\nreference = "missing.exr"\n')
+        for command in (["render", "frame.exr", "-t", "hiz", "-o", "again.png"], ["run", self.write("s.toml", SPEC), "-o", "out"]):
+            self.refused(*command, code=2, says=["frame.exr.toml:2: frame: 'reference' must be a picture that is there, not missing.exr"])
+        os.remove(self.path("frame.exr.toml"))
         self.ssrlab("render", "frame.exr", "-t", "hiz", "-o", "picture.exr")
         self.refused("render", "picture.exr", "-t", "hiz", "-o", "again.png", code=2,
                      says=["picture.exr: nothing says how the camera looks", "picture.exr.toml", "docs/reference/frame_files.md"])
