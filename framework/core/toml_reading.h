@@ -53,9 +53,10 @@ inline std::string toml_found(const toml::node& node)
 {
     if (const auto* value = node.as_string()) return fmt::format("the string \"{}\"", value->get());
     if (const auto* value = node.as_integer()) return fmt::format("the integer {}", value->get());
-    if (const auto* value = node.as_floating_point()) return fmt::format("the number {}", value->get());
+    if (const auto* value = node.as_floating_point())
+        return std::isnan(value->get()) ? "nan, which is not a number" : fmt::format("the number {}", value->get());
     if (const auto* value = node.as_boolean()) return fmt::format("{}", value->get());
-    if (node.is_array()) return "a list";
+    if (const auto* list = node.as_array()) return fmt::format("a list of {}", list->size());
     if (node.is_table()) return "a table";
     return "a date or time";
 }

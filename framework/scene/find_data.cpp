@@ -15,7 +15,10 @@ constexpr std::string_view sweethome3d_prefix = "sweethome3d:";
 std::vector<fs::path> data_folders()
 {
     std::vector<fs::path> folders;
-    if (const char* folder = std::getenv("SSRLAB_DATA")) folders.emplace_back(folder);
+    if (const char* folder = std::getenv("SSRLAB_DATA")) {
+        if (!fs::is_directory(folder)) throw_spec_error("SSRLAB_DATA = {}: no such folder", folder);
+        folders.emplace_back(folder);
+    }
     folders.emplace_back(data_root() / "scene_data");
     return folders;
 }

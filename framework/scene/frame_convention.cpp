@@ -175,6 +175,9 @@ FrameConvention read_convention(const ExrFile& file)
         if (auto table = root.table("normals")) read_normals_table(*table, convention);
         read_quantities(root, convention);
         if (const auto picture = root.text("reference")) convention.reference = path.parent_path() / *picture;
+        if (!convention.reference.empty() && !std::filesystem::exists(convention.reference))
+            root.fail("reference",
+                      fmt::format("must be a picture that is there, not {}", convention.reference.string()));
         root.refuse_unknown_keys();
     }
     if (!has_camera && convention.depth) check_size(file, convention);

@@ -75,9 +75,19 @@ Model shape_to_model(const Part& part)
     return model;
 }
 
-Model file_to_model(const std::string& name, const std::filesystem::path& folder)
+/// The data that a recipe names at `place`.
+std::filesystem::path find_named(const std::string& name, const std::filesystem::path& folder, const std::string& place)
 {
-    const std::filesystem::path file      = find_data(name, folder);
+    try {
+        return find_data(name, folder);
+    } catch (const SpecError& error) {
+        throw_spec_error("{}: {}", place, error.what());
+    }
+}
+
+Model file_to_model(const Part& part, const std::filesystem::path& folder)
+{
+    const std::filesystem::path file      = find_named(part.file, folder, part.place);
     const std::string           extension = lower_extension(file);
     Model model = extension == ".glb" || extension == ".gltf" ? load_gltf(file) : import_model(file);
     model.lights.clear(); // a recipe names its own
@@ -90,12 +100,13 @@ Model file_to_model(const std::string& name, const std::filesystem::path& folder
 std::map<std::string, Model> read_files(const Recipe& recipe, const std::filesystem::path& folder)
 {
     std::map<std::string, Model> models;
+    std::vector<const Part*>     first; // that names the file
     for (const Part& part : recipe.parts)
-        if (!part.shape) models[part.file] = {};
-    std::vector<std::map<std::string, Model>::iterator> places;
-    for (auto place = models.begin(); place != models.end(); ++place) places.push_back(place);
-    parallel_rows(int(places.size()), 0,
-                  [&](int i) { places[size_t(i)]->second = file_to_model(places[size_t(i)]->first, folder); });
+        if (!part.shape && models.try_emplace(part.file).second) first.push_back(&part);
+    parallel_rows(int(first.size()), 0, [&](int i) {
+        const Part& part     = *first[size_t(i)];
+        models.at(part.file) = file_to_model(part, folder);
+    });
     return models;
 }
 
@@ -200,8 +211,9 @@ Model load_recipe(const std::filesystem::path& file)
     scene.background = recipe.background;
     scene.bake       = recipe.bake;
     if (!recipe.environment.empty())
-        scene.environment = load_environment(find_data(recipe.environment, file.parent_path()),
-                                             recipe.environment_scale, scene.warnings);
+        scene.environment =
+            load_environment(find_named(recipe.environment, file.parent_path(), recipe.environment_place),
+                             recipe.environment_scale, scene.warnings);
     if (recipe.sky) scene.environment = make_sky(*recipe.sky);
     return scene;
 }

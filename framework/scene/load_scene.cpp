@@ -52,7 +52,11 @@ Model load_model(const std::string& name)
     const fs::path file = find_scene_file(name);
     if (file.empty()) throw SpecError(unknown_scene(name));
     if (!fs::exists(file)) throw_spec_error("scene '{}': no such file", name);
-    return lower_extension(file) == ".toml" ? load_recipe(file) : with_views_beside(load_gltf(file), file);
+    if (lower_extension(file) == ".toml") return load_recipe(file);
+    Model model = with_views_beside(load_gltf(file), file);
+    if (std::ranges::all_of(model.meshes, [](const Mesh& mesh) { return mesh.indices.empty(); }))
+        throw_failure("{}: no triangle that can be drawn", file.string());
+    return model;
 }
 
 Scene frame_scene(const std::string& name)
@@ -137,6 +141,10 @@ Scene load_scene(const std::string& name)
 
 std::string unknown_scene(const std::string& name)
 {
+    if (std::error_code error; fs::is_regular_file(name, error))
+        return fmt::format("scene '{}': expected a .glb, .gltf, recipe (.toml) or frame (.exr). A recipe with [[part]] "
+                           "and file = \"{}\" shows a model of another format (experiments/scenes/README.md)",
+                           name, name);
     std::vector<std::string> known;
     std::ranges::transform(list_scenes(), std::back_inserter(known), &SceneListing::name);
     return unknown_name("scene", name, known) +

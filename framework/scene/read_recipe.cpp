@@ -64,7 +64,8 @@ Part read_part(TomlTable& table)
     part.file  = table.text("file").value_or("");
     if (const auto shape = table.choice("shape", {"box", "plane", "checker_floor", "sphere", "cylinder", "teapot"}))
         part.shape = static_cast<Shape>(*shape);
-    if (part.file.empty() == !part.shape.has_value()) table.fail("needs either 'file' or 'shape'");
+    if (part.file.empty() == !part.shape.has_value())
+        table.fail(part.shape ? "needs either 'file' or 'shape', got both" : "needs either 'file' or 'shape'");
     part.name = table.text("name").value_or(
         part.shape ? *table.text("shape")
                    : std::filesystem::path(part.file.substr(part.file.find(':') + 1)).stem().string());
@@ -156,7 +157,8 @@ void read_environment(TomlTable& root, Recipe& recipe)
     if (!reference->starts_with("package:") && !std::filesystem::exists(folder / *reference))
         root.fail("environment",
                   fmt::format("must be a picture that is there, not {}", (folder / *reference).string()));
-    recipe.environment = *reference;
+    recipe.environment       = *reference;
+    recipe.environment_place = root.place("environment");
 }
 
 void read_sky(TomlTable& root, Recipe& recipe)

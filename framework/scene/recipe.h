@@ -53,8 +53,9 @@ struct Recipe {
     std::vector<Camera>         views;
     std::vector<CameraPath>     paths;
     std::optional<glm::vec3>    ambient, background;
-    std::string                 environment; // where its picture lies, as find_data() takes it; empty: none
-    std::optional<SkyColours>   sky;         // or this
+    std::string                 environment;       // where its picture lies, as find_data() takes it; empty: none
+    std::string                 environment_place; // file:line
+    std::optional<SkyColours>   sky;               // or this
     std::optional<Bake>         bake;
     double                      environment_scale = 1;
 };

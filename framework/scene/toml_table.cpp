@@ -43,12 +43,17 @@ bool TomlTable::has(const char* key) const { return table_->contains(key); }
 
 std::string TomlTable::place() const { return toml_place(*file_, *table_); }
 
+std::string TomlTable::place(const char* key) const
+{
+    const toml::node* node = table_->get(key);
+    return node != nullptr ? toml_place(*file_, *node) : place();
+}
+
 void TomlTable::fail(const std::string& message) const { throw_spec_error("{}: {}: {}", place(), what_, message); }
 
 void TomlTable::fail(const char* key, const std::string& message) const
 {
-    const toml::node* node = table_->get(key);
-    throw_spec_error("{}: {}: '{}' {}", node != nullptr ? toml_place(*file_, *node) : place(), what_, key, message);
+    throw_spec_error("{}: {}: '{}' {}", place(key), what_, key, message);
 }
 
 void TomlTable::refuse(const char* key, const std::string& expected) const

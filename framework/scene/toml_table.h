@@ -35,6 +35,7 @@ public:
     [[noreturn]] void fail(const std::string& message) const;                  // at the table
     [[noreturn]] void fail(const char* key, const std::string& message) const; // at the key
     std::string       place() const;                                           // file:line
+    std::string       place(const char* key) const;                            // of the key, or of the table without it
 
 private:
     const toml::node* find(const char* key);

@@ -29,6 +29,16 @@ class Test(Case):
             with self.subTest(options=options, **more):
                 self.render_refused(*options, says=says, **more)
 
+    def test_what_a_recipe_says(self):
+        part = '[[part]]\nshape = "box"\n'
+        for text, says in ((part + '[[part]]\nfile = "nosuch.obj"\n', ["recipe.toml:3: ", "nosuch.obj: no such file"]), ('[[part]]\nshape = "box"\nfile = "a.obj"\n', ["recipe.toml:1: ", "got both"]),
+                           (part + "size_m = [8, 8]\n", ["recipe.toml:3: ", "three finite numbers", "got a list of 2"]),
+                           (part + '[[part]]\nfile = "sweethome3d:chair"\n', ["recipe.toml:3: SSRLAB_DATA = /nonexistent: no such folder"])):
+            with self.subTest(text=text):
+                self.render_refused(scene=self.write("recipe.toml", text), says=says, SSRLAB_DATA="/nonexistent")
+        self.render_refused(scene=self.write("box.obj", "v 0 0 0\n"), says=["expected a .glb, .gltf, recipe", 'A recipe with [[part]] and file = "'])
+        self.render_refused(scene=self.write("empty.gltf", '{"asset": {"version": "2.0"}, "scenes": [{"nodes": []}], "scene": 0}'), code=1, says=["empty.gltf: no triangle that can be drawn"])
+
     def test_no_vulkan_driver(self):
         none = {"VK_ICD_FILENAMES": "/nonexistent", "VK_DRIVER_FILES": "/nonexistent"}
         self.render_refused(code=1, says=["Vulkan"], **none)
@@ -52,7 +62,7 @@ class Test(Case):
         for old, wrong, says in (("steps = [", "stepz = [", ["s.toml:7", "stepz"]), ("[techniques.dda]", "[techniques.ddda]", ["s.toml:8", "ddda", "dda"]),
                                  ("builtin:stairs", "builtin:stars", ["s.toml:2", "builtin:stars"]), ("budget_s", "budget_h", ["s.toml:12", "budget_h"]),
                                  ("8, 16", "8, 0", ["s.toml:7", "steps"]), ("8, 16", '8, "16"', ["s.toml:7", "steps"]),
-                                 ("max_distance_m = 9", "thickness_m = nan", ["s.toml:5", "thickness_m"]), ("64x36", "0x36", ["s.toml:3", "0x36"]),
+                                 ("max_distance_m = 9", "thickness_m = nan", ["s.toml:5", "thickness_m", "must be a number, got nan, which is not a number"]), ("64x36", "0x36", ["s.toml:3", "0x36"]),
                                  ("64x36", "100000x36", ["s.toml", "100000"]), ('sizes  =', 'views = ["default", "nope"]\nsizes =', ["s.toml:3: scene 'builtin:stairs' has no view 'nope': its views are default"]), ("[8, 16, 32, 64]", "[]", ["s.toml:7", "steps"])):
             with self.subTest(wrong=wrong):
                 self.assertIn(old, SWEEP)
@@ -89,6 +99,9 @@ panels   = [{ scene = "builtin:stairs", steps = 8 }, { scene = "builtin:stairs",
 
     def test_plot_without_results(self):
         self.ssrlab("plot", self.path("none"), code=2, says=["none"])
+        self.write("out/results.csv", "run_id,scene,view,width,height,technique,trace_ms_median,outcome\nr0,s,default,80,60,hiz,fast,ok\n")
+        for given in ("out", "out/results.csv"):
+            self.refused("plot", given, code=1, says=["results.csv: damaged: row 1 (run r0), column 'trace_ms_median': expected a number, got 'fast'"])
 
 
 if __name__ == "__main__":
