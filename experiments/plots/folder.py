@@ -6,6 +6,7 @@ from matplotlib import pyplot as plt
 
 from . import accuracy, effects, figures, gpu, panels, report, sequences, sources, surfaces
 from .data import Results
+from .results import counted
 
 INTERACTIVE = accuracy.ALL  # the report shows these as one chart to choose from
 
@@ -46,4 +47,4 @@ def main(folder, bandwidth_gbps=None):
             table.to_csv(os.path.join(folder, name), index=False, float_format=digits)
     for frame, text in report.write(results, plots, tables):
         print(f"{frame}: {text}")
-    print(f"{os.path.join(folder, 'report.html')}: {len(plots)} plots, {len(results.rows)} of {len(results.all_rows)} rows ok")
+    print(f"{os.path.join(folder, 'report.html')}: {counted(len(plots), 'plot')}, {len(results.rows)} of {counted(len(results.all_rows), 'row')} ok")

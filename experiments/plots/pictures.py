@@ -58,8 +58,8 @@ def shot(name, images, run="", series=""):
     return {"name": name, "run": run, "series": series, "images": images}
 
 
-def image(path, kind, name, alt):
-    return {"src": data_uri(path, flat=kind in ("agreement", "causes")), "kind": kind, "name": name, "alt": alt}
+def image(path, kind, name, alt, caption=None):
+    return {"src": data_uri(path, flat=kind in ("agreement", "causes")), "kind": kind, "name": name, "alt": alt, "caption": caption or kind}
 
 
 def interesting(chosen):
@@ -99,8 +99,8 @@ def shots(results, chosen, all_rows):
     if truth and path_of(results, truth, "") and path_of(results, truth, "_off"):
         title = found[0].frame_name
         made.append(shot("Without reflections, and the truth" + ("" if shows_environment(found[0]) else ", which shows the environment where these runs do not"),
-                         [image(path_of(results, truth, "_off"), "picture", "off", f"{title} without reflections"),
-                          image(path_of(results, truth, ""), "picture", "truth", f"{title} with the reflections of the scene's triangles")]))
+                         [image(path_of(results, truth, "_off"), "picture", "off", f"{title} without reflections", "without reflections"),
+                          image(path_of(results, truth, ""), "picture", "truth", f"{title} with the reflections of the scene's triangles", "truth")]))
         pairs = [("best and truth", best, "truth")] if shows_environment(found[0]) else [("off and best", "off", best)]
     if coarse is not None and coarse.run_id != found[0].run_id:
         pairs.insert(len(pairs) if shows_environment(found[0]) else 0, ("coarse and best", coarse.setting, best))

@@ -9,7 +9,7 @@ import pandas as pd
 
 from .data import describe
 from .pictures import data_uri, shots
-from .results import inputs_of, unit_of
+from .results import counted, inputs_of, unit_of
 from .tables import error_table, failed_table, plan_of, plain_table, ranking_table, row_table, split_of, SPLIT
 from .verdict import goal, goal_text, has_value, milliseconds, picks, ranking, verdicts
 
@@ -138,10 +138,13 @@ def ranking_text(results, chosen):
     measure, target = goal(results)
     if measure is None:
         return "No truth was computed, so the table compares only times and work: every setting, the fastest first."
-    return (f"Each tracer at its cheapest setting that finds {goal_text(measure, target)}, with an F1 within one point of its best such "
-            f"setting. Those with a surface model that gives some technique a worse F1 than another model does come last among those that find so many. "
-            f"A tracer that never does is shown at its nearest setting. Shares are means over {chosen.frame_title.nunique()} "
-            "frames. Times and the ends of their confidence intervals are geometric means.")
+    frames = chosen.frame_title.nunique()
+    text = (f"Each tracer at its cheapest setting that finds {goal_text(measure, target)}, with an F1 within one point of its best such setting; "
+            "one that never does, at its nearest setting, behind the others. ")
+    if chosen.worse_surface.any():
+        text += ("A worse surface model makes a tracer cheaper and its answers worse. So those over a surface model stand behind the others "
+                 "where the same technique has a better F1 over another model. ")
+    return text + (f"Shares are means over {frames} frames, times and the ends of their intervals geometric means." if frames > 1 else "")
 
 
 def context(results, plots, tables):
@@ -150,7 +153,7 @@ def context(results, plots, tables):
     device = environment.get("identity", {}).get("device")
     ranked = ranking(results, chosen)
     return {"title": environment.get("title") or os.path.basename(os.path.abspath(results.folder)),
-            "counts": f"{len(results.all_rows)} runs: " + ", ".join(f"{n} {outcome}" for outcome, n in counts.items()) + ".",
+            "counts": f"{counted(len(results.all_rows), 'run')}: " + ", ".join(f"{n} {outcome}" for outcome, n in counts.items()) + ".",
             "device": f"Device: {device}." if device else "", "on_cpu": environment.get("device_type", "").lower() == "cpu",
             "verdicts": verdicts(results, chosen), "ranking": ranking_table(ranked), "ranking_text": ranking_text(results, chosen),
             "has_curve": results.sources.empty and any(results.has(name) for name in ERRORS), "frames": list(frame_sections(results, chosen)),

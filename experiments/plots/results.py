@@ -122,6 +122,11 @@ def read_sources(folder):
     return read_csv(path, ["run_id", "source"], lambda table: [name for name in table if name not in ("run_id", "source")])
 
 
+def counted(count, singular):
+    """"1 row", "2 rows"."""
+    return f"{count} {singular}{'' if count == 1 else 's'}"
+
+
 def specification(folder):
     """The experiment's TOML file as a dictionary."""
     return tomllib.loads(read_environment(folder).get("specification", ""))

@@ -295,7 +295,8 @@ def tables_of(results):
     """{title: rows} of all that the sources answered."""
     rows, tables = asked_rows(results), {}
     for tracer, part, steps in ladders(rows):
-        tables[f"Ladder of {tracer}: means over {part.frame_name.nunique()} frames, geometric for times"] = [
+        frames = part.frame_name.nunique()
+        tables[f"Ladder of {tracer}" + (f": means over {frames} frames, geometric for times" if frames > 1 else "")] = [
             {"": i + 1, "sources": step.name, "ms": f"{step.ms:.3g}", "recall, %": f"{100 * step.recall:.1f}",
              "precision, %": f"{100 * step.precision:.1f}", "F1, %": f"{100 * step.f1:.1f}", "MB": f"{step.megabytes:.1f}",
              "node visits": f"{step.visits:.0f}"} for i, step in enumerate(steps.itertuples())]

@@ -4,6 +4,7 @@ import zlib
 import numpy as np
 
 from .paper import log_axis, name_lines, sheet, titled
+from .results import counted
 
 # One colour and marker a surface model, in the order of the ladder; a line's dash says what becomes of rays from behind.
 STYLES = {"box": ("#0072B2", "o"), "box_two_sided": ("#56B4E9", "s"), "box_infinite": ("#999999", "X"), "plane": ("#E69F00", "^"),
@@ -79,7 +80,7 @@ def precision_against_recall(results, tables):
 
 
 def over_scenes(rows):
-    return f"means over {rows.scene.nunique()} scenes" if rows.scene.nunique() > 1 else rows.scene.iloc[0]
+    return f"means over {counted(rows.scene.nunique(), 'scene')}" if rows.scene.nunique() > 1 else rows.scene.iloc[0]
 
 
 def means_of(rows, by):

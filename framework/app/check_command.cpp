@@ -6,6 +6,7 @@
 #include "check/stability.h"
 #include "core/error.h"
 #include "core/files.h"
+#include "core/printable.h"
 #include "core/version.h"
 
 #include <algorithm>
@@ -128,7 +129,7 @@ int check_techniques(const CommonOptions& common, const HardCaseOptions& options
                                           options.command_line, built_commit(), gpu.info.name, verdict,
                                           markdown_table(rows), stability));
     std::puts(verdict.c_str());
-    if (broken > 0) std::printf("the check fails: %zu findings, each above\n", broken);
+    if (broken > 0) std::printf("the check fails: %s, each above\n", counted(broken, "finding").c_str());
     return broken == 0 ? 0 : 1;
 }
 

@@ -310,9 +310,13 @@ int fit_to_budget(const CommonOptions& common, const FitOptions& options)
     }
     const Fit fit = require_fit(measured.tried, every_picture(report), budget.most, goal);
     print_fit(report, fit);
+    std::vector<Run> pictures = measured.pictures;
+    for (Run& picture : pictures) // so that choice.toml runs from any folder
+        if (find_scene_file(picture.scene) == picture.scene && !picture.scene.empty())
+            picture.scene = fs::absolute(picture.scene).lexically_normal().string();
     const fs::path choice = fs::path(options.output) / "choice.toml";
     write_file_atomically(choice, "# " + printable(options.command_line) + "\n" +
-                                      experiment_text("fit_choice", measured.pictures, std::span(&fit.best->run, 1),
+                                      experiment_text("fit_choice", pictures, std::span(&fit.best->run, 1),
                                                       sweep.known_settings, catalogue.techniques, ""));
     std::puts(choice.string().c_str());
     return measured.code;

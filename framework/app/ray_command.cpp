@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/pixel_index.h"
+#include "core/printable.h"
 #include "harness/choose_technique.h"
 #include "harness/experiment.h"
 #include "truth/reflected_rays.h"
@@ -90,10 +91,12 @@ RayInput ray_of_pixel(Stage& stage, const Setup& setup, const RayQuestion& quest
 
 void print_report(const RayOptions& options, const RayReport& report)
 {
-    const RayInput& ray = report.ray;
-    std::puts(fmt::format("Ray of pixel ({}, {}) of {}: {:.4g} m, {:.1f} px on screen, crosses {} pixels", ray.pixel.x,
-                          ray.pixel.y, options.picture.scene, ray.length_m, glm::length(glm::dvec2(ray.delta_px_depth)),
-                          report.walk.size())
+    const RayInput&   ray       = report.ray;
+    const bool        unlimited = !(ray.length_m < TraceSettings{}.max_distance_m);
+    const std::string length    = unlimited ? "no limit of length" : fmt::format("{:.4g} m", ray.length_m);
+    std::puts(fmt::format("Ray of pixel ({}, {}) of {}: {}, {:.1f} px on screen, crosses {}", ray.pixel.x, ray.pixel.y,
+                          options.picture.scene, length, glm::length(glm::dvec2(ray.delta_px_depth)),
+                          counted(report.walk.size(), "pixel"))
                   .c_str());
     std::puts(("screen truth: " + report.exact_ending).c_str());
     if (!report.true_end)

@@ -131,8 +131,10 @@ std::string Judge::unsound_side(const RayInput& ray, const RayOutcome& outcome, 
                                ? sides(ray, wide, entered_anywhere)
                                : sides(ray, *own, claim);
     if (outcome.status == TraceStatus::hit && !possible.front)
-        return fmt::format("{}, which faces away or is met from behind (cosine {:.6g}, {:.6g} over its back)",
-                           name(outcome), wide.facing, wide.over_back_in);
+        return wide.surface.sides_by_height
+                   ? fmt::format("{}, which is met from behind ({:.6g} over its back)", name(outcome),
+                                 wide.over_back_in)
+                   : fmt::format("{}, which faces away (cosine {:.6g})", name(outcome), wide.facing);
     if (outcome.status == TraceStatus::stopped && !possible.behind)
         return fmt::format("{}, which is met from the front (cosine {:.6g}, {:.6g} over its back)", name(outcome),
                            wide.facing, wide.over_back_in);

@@ -30,4 +30,9 @@ std::string printable(std::string_view text)
     return result;
 }
 
+std::string counted(size_t count, std::string_view singular)
+{
+    return fmt::format("{} {}{}", count, singular, count == 1 ? "" : "s");
+}
+
 } // namespace ssrlab

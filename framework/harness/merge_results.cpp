@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/printable.h"
 #include "harness/passes.h"
 #include "harness/result_folder.h"
 #include "harness/samples.h"
@@ -148,7 +149,8 @@ int merge_results(const fs::path& merged, const std::vector<fs::path>& folders)
     if (!summaries.header.empty()) write_file_atomically(merged / summary_file, text_of(summaries));
     // Last, because a results.csv promises that everything else is there.
     write_file_atomically(merged / results_file, text_of(results));
-    fmt::print("{}: {} rows of {} folders\n", short_path(merged / results_file), results.rows.size(), folders.size());
+    fmt::print("{}: {} of {}\n", short_path(merged / results_file), counted(results.rows.size(), "row"),
+               counted(folders.size(), "folder"));
     return 0;
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/printable.h"
 #include "core/stopwatch.h"
 #include "harness/columns.h"
 #include "harness/environment.h"
@@ -184,7 +185,7 @@ int list_runs(const Experiment& experiment, std::span<const Run> runs, std::span
         fmt::print("{}  {} {} {} {}  {}{}\n", run.id, run.scene, run.view, size_text(run.size_px), settings,
                    run.technique, values);
     }
-    fmt::print("{} runs, about {} on two CPU cores without a GPU{}\n", runs.size(),
+    fmt::print("{}, about {} on two CPU cores without a GPU{}\n", counted(runs.size(), "run"),
                duration_text(total_cost(runs, techniques, experiment.measure)),
                experiment.targets.empty() ? "" : "; the search for [targets] adds runs");
     return 0;
@@ -248,17 +249,17 @@ int run_sweep(const RunOptions& options, SweepState& state)
     results.require_unmoved();
     const double      took_s  = stopwatch.seconds();
     const std::string summary = fmt::format(
-        "{}: {} rows, {} written now, {} of them failed; of {}, {:.0f} % went to frames that were timed, {:.0f} % "
+        "{}: {}, {} written now, {} of them failed; of {}, {:.0f} % went to frames that were timed, {:.0f} % "
         "to frames that were counted, {:.0f} % to truths\n",
-        short_path(results.path() / "results.csv"), results.finished().size(), state.written, state.failed,
-        duration_text(took_s), 100 * sweep.timed_s / took_s, 100 * sweep.counted_s / took_s,
+        short_path(results.path() / "results.csv"), counted(results.finished().size(), "row"), state.written,
+        state.failed, duration_text(took_s), 100 * sweep.timed_s / took_s, 100 * sweep.counted_s / took_s,
         100 * sweep.truths_s / took_s);
     std::fputs(summary.c_str(), stdout);
     if (stop_requested() != 0) {
         progress.say("stopped; the same command with --resume does the other runs");
         return 128 + stop_requested();
     }
-    if (state.messages > 0) progress.say(fmt::format("{} messages of the validation layer", state.messages));
+    if (state.messages > 0) progress.say(counted(state.messages, "message") + " of the validation layer");
     return state.failed > 0 || state.messages > 0 ? 1 : 0;
 }
 

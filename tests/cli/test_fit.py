@@ -2,6 +2,7 @@
 import json
 import os
 import re
+import tomllib
 
 from support import Case, main, read
 
@@ -120,6 +121,15 @@ class Test(Case):
         self.assertEqual([row[0] for row in rows], ["default", "down", "steep"])
         for _, fitted, best, lost in rows:
             self.assertAlmostEqual(float(best) - float(fitted), float(lost), delta=0.011)
+
+    def test_the_choice_names_a_frame_by_its_absolute_path(self):
+        self.ssrlab("gbuffer", "builtin:stairs", "--size", "48x27", "-o", "frame.exr")
+        self.fit("frame.exr", "--budget-fetches", "50", "-t", "dda")
+        choice = tomllib.loads(self.text("fit/choice.toml"))
+        scene, = choice["scenes"]
+        self.assertTrue(os.path.isabs(scene) and os.path.samefile(scene, self.path("frame.exr")), scene)
+        self.assertEqual(list(choice["views"]), [scene])
+        self.ssrlab("run", "fit/choice.toml", "-o", "again", "--quiet")
 
     def test_wrong_input_is_refused(self):
         self.ssrlab("gbuffer", "builtin:stairs", "--size", "32x18", "-o", "frame.exr")

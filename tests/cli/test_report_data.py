@@ -365,6 +365,7 @@ class Test(Case):
         self.assertEqual([shot["name"] for shot in shots], ["Without reflections, and the truth", "linear, b", "dda", "linear, a"])
         self.assertEqual([[(image["name"], image["kind"]) for image in shot["images"]] for shot in shots[:2]],
                          [[("off", "picture"), ("truth", "picture")], [("linear, b", "picture"), ("linear, b", "FLIP")]])
+        self.assertEqual([[one["caption"] for one in shot["images"]] for shot in shots[:2]], [["without reflections", "truth"], ["picture", "FLIP"]])
         self.assertEqual((left, shape, pairs), (1, "1280 / 720", [("best and truth", "linear, b", "truth")]))
         best = chosen.iloc[0]
         self.assertEqual([plots.pictures.finding(best, kind) for kind in plots.pictures.KINDS],
