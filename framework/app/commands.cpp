@@ -75,7 +75,8 @@ int write_gbuffer(const CommonOptions& common, const PictureOptions& options)
 int plot_results(const std::string& given, double bandwidth_gbps)
 {
     const std::filesystem::path path(given);
-    const std::string folder = path.filename() == "results.csv" ? (path.has_parent_path() ? path.parent_path().string() : ".") : given;
+    const std::string           folder =
+        path.filename() == "results.csv" ? (path.has_parent_path() ? path.parent_path().string() : ".") : given;
     const std::filesystem::path table = std::filesystem::path(folder) / "results.csv";
     if (!std::filesystem::exists(table)) throw_spec_error("{}: no such file; ssrlab run writes it", table.string());
     std::vector<std::string> arguments = {folder};
