@@ -100,7 +100,7 @@ def chart_data(results, chosen):
         for series, line in rows.groupby("series"):
             # Several numbers vary: a cloud of points, not a line.
             cloud[series] = cloud.get(series, False) or sum(line[name].nunique() > 1 for name in results.swept(rows)) > 1
-    return {"runs": runs, "columns": columns, "units": [unit_of(name) for name in columns], "errors": ERRORS, "costs": COSTS,
+    return {"runs": runs, "columns": columns, "units": [unit_of(name, results.environment) for name in columns], "errors": ERRORS, "costs": COSTS,
             "styles": results.chart_styles, "cloud": cloud, "findings": dict(verdicts(results, chosen))}
 
 

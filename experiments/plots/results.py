@@ -22,7 +22,7 @@ TEXT = ["run_id", "experiment", "scene", "view", "technique", "outcome", "messag
 FRAME = ["scene", "view", "width", "height", "frame"]
 # What a clock decides, and differs from one run to the next.
 OF_TIME = re.compile(r"(^|[_.])ms(_|$)|^(fps|inverse_fps_s|trace_drift|frames_per_submit)$")
-# By the end of a column's name, longest first; "" is a count, a share of 1 or a setting's own value.
+# Of columns that are no measures, by the end of their name, longest first; "" is a count or a setting's own value.
 UNITS = {"per_million": "rays per million", "_ms_median": "ms", "_ms_mad": "ms", "_ms_ci_low": "ms", "_ms_ci_high": "ms", "_ms": "ms",
          "_px": "px", "_m": "m", "_db": "dB", "_s": "s", "_share": "share", "recall_1px": "share",
          "precision_1px": "share", "f1_1px": "share", "recall_4px": "share", "all_recall": "share", "all_precision": "share", "all_f1": "share", "fetches_mean": "fetches", "steps_mean": "steps",
@@ -132,8 +132,11 @@ def specification(folder):
     return tomllib.loads(read_environment(folder).get("specification", ""))
 
 
-def unit_of(column):
-    """The unit that a column's name says: "trace_ms_median" is in ms."""
+def unit_of(column, environment):
+    """What the environment says of a measure, else what the name does: "trace_ms_median" is in ms."""
+    measures = dict(entry.split("=", 1) for entry in environment.get("units", "").split("; ") if "=" in entry)
+    if column in measures:
+        return measures[column]
     ends = [end for end in sorted(UNITS, key=len, reverse=True) if column.endswith(end)]
     return UNITS[ends[0]] if ends else ""
 
@@ -203,6 +206,7 @@ def load(folder, keep_constants=False, failed=False):
         constants = {name: rows[name].iloc[0] for name in same if pd.notna(rows[name].iloc[0])}
         rows = rows.drop(columns=same)
     rows = rows.reset_index(drop=True)
-    rows.attrs = {"units": {name: unit_of(name) for name in rows}, "constants": constants, "environment": read_environment(folder),
+    environment = read_environment(folder)
+    rows.attrs = {"units": {name: unit_of(name, environment) for name in rows}, "constants": constants, "environment": environment,
                   "inputs": [name for name in inputs if name in rows]}
     return rows

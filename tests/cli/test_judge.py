@@ -2,6 +2,7 @@
 import json
 import os
 import re
+import shlex
 import shutil
 
 from support import SOURCE, Case, main, read
@@ -93,7 +94,7 @@ class Test(Case):
         self.assertEqual(len(commands), 10)
         said = ""
         for command in commands:
-            words = command.replace("techniques/rivals", os.path.join(SOURCE, "techniques/rivals")).split()
+            words = shlex.split(command.replace("$SSRLAB_SOURCE", SOURCE))
             self.assertEqual(words[0], "ssrlab")
             said = self.ssrlab(*words[1:], code=1 if command == "ssrlab judge cases rival" else 0)
             if command == "ssrlab judge cases hits":

@@ -66,6 +66,10 @@ class Test(Case):
                  "stopped_share": "share", "fps": "", "inverse_fps_s": "s", "error_median_px": "px", "cost_ms_median": "ms", "trace_ms_ci_low": "ms", "trace_ms_ci_high": "ms",
                  "fetches_mean": "fetches", "rays": ""}
         self.assertEqual({name: whole.attrs["units"][name] for name in units}, units)
+        made_results(self, [dict(row, screen_missed=0.1, steps_max=7) for row in rows], ["space", "jitter", "kind", "steps", "thickness_m"],
+                     units="screen_missed=share; steps_max=steps; psnr_visible_db=dB")
+        stated = plots.results.load(self.path("out"), keep_constants=True).attrs["units"]
+        self.assertEqual([stated[name] for name in ("screen_missed", "steps_max", "psnr_visible_db", "thickness_m")], ["share", "steps", "dB", "m"])
 
     def test_damaged_results_are_named(self):
         made_results(self, [dict(technique="hiz")])
