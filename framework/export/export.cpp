@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "export/blocks.h"
 #include "export/passes.h"
 #include "export/translate.h"
 #include "export/wgsl.h"
@@ -69,6 +70,15 @@ std::string with_comment(const std::string& glsl, const std::string& comment)
     return glsl.substr(0, line) + comment + glsl.substr(line);
 }
 
+/// The pass as it is written, or as its translator gets it.
+std::string glsl_for(ExportLanguage language, const ExportedPass& pass, const ResourceOf& resource_of,
+                     const std::string& comment)
+{
+    if (language == ExportLanguage::hlsl) return with_one_block_where_written(pass.glsl, resource_of);
+    if (language == ExportLanguage::wgsl) return glsl_for_wgsl(with_one_block_where_written(pass.glsl, resource_of));
+    return with_comment(pass.glsl, comment);
+}
+
 void write_passes(Gpu& gpu, const Export& what, const View& view, const ComposedLab& composed,
                   std::vector<ExportedPass>& passes, Translations& translations, const fs::path& folder)
 {
@@ -78,13 +88,13 @@ void write_passes(Gpu& gpu, const Export& what, const View& view, const Composed
         const auto        resource = [&](const std::string& name) {
             return resource_of(name, composed, short_path(pass.pass.source.file));
         };
-        const bool is_wgsl = what.language == ExportLanguage::wgsl;
-        write_file_atomically(glsl, is_wgsl ? glsl_for_wgsl(pass.glsl, resource) : with_comment(pass.glsl, comment));
+        write_file_atomically(glsl, glsl_for(what.language, pass, resource, comment));
         const Shader shader = compile_shader(gpu, {.file = glsl});
         for (const auto& [name, binding] : shader.bindings) pass.bindings.emplace(binding.binding, resource(name));
         if (what.language == ExportLanguage::glsl) continue;
-        write_file_atomically(folder / (pass.name + file_ending(what.language)),
-                              translated(shader, what.language, comment, translations));
+        const std::string text = translated(shader, what.language, comment, translations);
+        if (what.language == ExportLanguage::hlsl) pass.registers = hlsl_registers(text);
+        write_file_atomically(folder / (pass.name + file_ending(what.language)), text);
         fs::remove(glsl);
     }
 }
@@ -118,7 +128,8 @@ void write_export(Gpu& gpu, const Export& what, std::span<const ExportFrame> fra
         for (size_t i = 0; i < of_frame.size() && !passes.empty(); ++i) {
             if (of_frame[i].glsl != passes[i].glsl)
                 throw std::logic_error("write_export: frames need different shaders");
-            of_frame[i].bindings = passes[i].bindings;
+            of_frame[i].bindings  = passes[i].bindings;
+            of_frame[i].registers = passes[i].registers;
         }
         passes = std::move(of_frame);
         write_frame(gpu, *traced.lab, composed, passes, frame, traced.rays, traced.outcomes, what.language, folder);

@@ -15,6 +15,7 @@ struct ExportedPass {
     ComposedPass                    pass;
     bool                            sets_up_rays = false;
     std::map<uint32_t, std::string> bindings     = {}; // resource of each binding, by the names of resource_of()
+    std::map<uint32_t, std::string> registers    = {}; // of HLSL, by its binding: "t10"
 };
 
 /// Throws SpecError for what an export cannot hold.

@@ -58,16 +58,40 @@ std::string dispatch_text(const ExportedPass& pass)
                        pass.pass.rays_per_workgroup * LAUNCH_ROW_GROUPS);
 }
 
+/// "10", or the register "t10".
+std::string place_of(const ExportedPass& pass, uint32_t binding)
+{
+    const auto found = pass.registers.find(binding);
+    return found == pass.registers.end() ? std::to_string(binding) : found->second;
+}
+
 std::string passes_table(std::span<const ExportedPass> passes, ExportLanguage language)
 {
     std::string text = "| file | workgroups, rounded up | bindings |\n|---|---|---|\n";
     for (const ExportedPass& pass : passes) {
         std::string bindings;
         for (const auto& [binding, resource] : pass.bindings)
-            bindings += fmt::format("{}{} `{}`", bindings.empty() ? "" : ", ", binding, resource);
+            bindings += fmt::format("{}{} `{}`", bindings.empty() ? "" : ", ", place_of(pass, binding), resource);
         text += fmt::format("| `{}{}` | {} | {} |\n", pass.name, file_ending(language), dispatch_text(pass), bindings);
     }
     return text;
+}
+
+/// What the numbers of the bindings are.
+const char* bindings_text(ExportLanguage language)
+{
+    switch (language) {
+    case ExportLanguage::glsl: return "Bindings are those of set 0.";
+    case ExportLanguage::hlsl:
+        return "Bindings are registers of space0: t for a shader resource view, u for an unordered access view, b for "
+               "a "
+               "constant buffer. Buffers are raw (`ByteAddressBuffer`), images textures. No dispatch binds a resource "
+               "twice where it writes it. One that is u in a pass and t in the next changes its state between them.";
+    case ExportLanguage::msl: return "Bindings are those of `[[buffer(N)]]` and `[[texture(N)]]`.";
+    case ExportLanguage::essl: return "Bindings are those of `layout(binding = N)`.";
+    case ExportLanguage::wgsl: return "Bindings are those of group 0.";
+    }
+    return "";
 }
 
 constexpr const char* view_text =
@@ -163,11 +187,8 @@ std::string readme(const Export& what, const View& view, std::span<const Exporte
         "your materials, or fill the list of rays yourself instead.\n\n",
         passes_table(passes, what.language));
     text += depth_text(view);
-    text +=
-        fmt::format("## Resources\n{}\nBindings are those of set 0 (HLSL: register numbers; WGSL: group 0). Names that "
-                    "a shader gives "
-                    "to one resource may differ.\n\n",
-                    resources_table(passes, composed));
+    text += fmt::format("## Resources\n{}\n{} Names that a shader gives to one resource may differ.\n\n",
+                        resources_table(passes, composed), bindings_text(what.language));
     text +=
         fmt::format("## What comes back\n{} The hit point is `origin + t * delta`, in pixels and depth.\n\n", statuses);
     text += fmt::format("## Settings\n{}\n", settings_text(what, "- {} = {}\n"));
@@ -187,7 +208,11 @@ std::string readme(const Export& what, const View& view, std::span<const Exporte
         "runs these files and compares. A host of your own reads `frames/NAME.json`: it lists each resource (its "
         "bytes, its file, or the word that fills it), and each pass with its bindings and dispatches as numbers. "
         "Status "
-        "and pixel must be equal, and t to the bit.\n\n";
+        "and pixel must be equal, and t to the bit.";
+    if (what.language == ExportLanguage::hlsl)
+        text += " `--verify` compiles HLSL with glslang and runs it by Vulkan. Neither DXC nor D3D12 has seen these "
+                "files.";
+    text += "\n\n";
     return text + "## Licence\nMIT, copyright 2026 the ssrlab authors. A technique from another folder is under its "
                   "author's licence.\n";
 }

@@ -9,7 +9,7 @@
 
 #include <cctype>
 #include <cstring>
-#include <map>
+#include <regex>
 #include <span>
 
 namespace ssrlab {
@@ -57,7 +57,8 @@ std::vector<std::string> options_of(ExportLanguage language)
     switch (language) {
     case ExportLanguage::glsl:
     case ExportLanguage::wgsl: return {};
-    case ExportLanguage::hlsl: return {"--hlsl", "--shader-model", "60"};
+    // Not every device of D3D12 loads four floats from an unordered access view.
+    case ExportLanguage::hlsl: return {"--hlsl", "--shader-model", "60", "--hlsl-nonwritable-uav-texture-as-srv"};
     case ExportLanguage::msl: return {"--msl", "--msl-version", "20200", "--msl-decoration-binding"};
     case ExportLanguage::essl: return {"--es", "--version", "310"};
     }
@@ -127,6 +128,15 @@ std::string translated(const Shader& shader, ExportLanguage language, const std:
     // GLSL's #version stays the first line.
     const size_t first = result.starts_with("#version") ? result.find('\n') + 1 : 0;
     return result.substr(0, first) + comment + result.substr(first);
+}
+
+std::map<uint32_t, std::string> hlsl_registers(const std::string& hlsl)
+{
+    static const std::regex         pattern(R"(: register\(([tub])(\d+))");
+    std::map<uint32_t, std::string> registers;
+    for (std::sregex_iterator match(hlsl.begin(), hlsl.end(), pattern), end; match != end; ++match)
+        registers.emplace(static_cast<uint32_t>(std::stoul(match->str(2))), match->str(1) + match->str(2));
+    return registers;
 }
 
 } // namespace ssrlab

@@ -24,16 +24,17 @@ void require_known_language(const fs::path& file)
 struct Resources {
     std::map<std::string, Buffer>   buffers;
     std::map<std::string, GpuImage> images;
+    vk::raii::Sampler               sampler = nullptr; // of images that HLSL reads as textures
 };
 
 Resources make_resources(Gpu& gpu, const json& frame, const fs::path& frames)
 {
-    Resources        made;
+    Resources        made{.buffers = {}, .images = {}, .sampler = {gpu.impl->device, vk::SamplerCreateInfo{}}};
     const glm::ivec2 size_px(frame.at("size_px").at(0), frame.at("size_px").at(1));
     for (const auto& [name, resource] : frame.at("resources").items()) {
-        const size_t bytes = resource.at("bytes");
-        const Words  words = resource.contains("file") ? read_words(frames / resource.at("file").get<std::string>())
-                                                       : Words(bytes / sizeof(uint32_t), resource.at("fill"));
+        const size_t bytes     = resource.at("bytes");
+        const Words  words     = resource.contains("file") ? read_words(frames / resource.at("file").get<std::string>())
+                                                           : Words(bytes / sizeof(uint32_t), resource.at("fill"));
         if (words.size() * sizeof(uint32_t) > bytes) throw_failure("{}: larger than its {} bytes", name, bytes);
         const std::string kind = resource.at("kind");
         if (kind == "buffer" || kind == "uniform") {
@@ -41,7 +42,10 @@ Resources make_resources(Gpu& gpu, const json& frame, const fs::path& frames)
             if (!words.empty()) upload(gpu, buffer->second, words.data(), words.size() * sizeof(uint32_t));
         } else {
             const auto format = kind == "r32f" ? vk::Format::eR32Sfloat : vk::Format::eR32G32B32A32Sfloat;
-            GpuImage   image  = make_storage_image(gpu, format, size_px);
+            GpuImage   image =
+                make_image(gpu, {.format  = format,
+                                 .size_px = size_px,
+                                 .usage   = vk::ImageUsageFlagBits::eStorage | vk::ImageUsageFlagBits::eSampled});
             upload(gpu, image, words.data(), words.size() * sizeof(uint32_t));
             made.images.emplace(name, std::move(image));
         }
@@ -61,7 +65,7 @@ Bindings bindings_of(const Shader& shader, const json& pass, const Resources& re
         }
         const std::string resource = pass.at("bindings").at(std::to_string(binding.binding));
         if (const auto image = resources.images.find(resource); image != resources.images.end())
-            bindings.insert({name, image->second});
+            bindings.insert({name, {image->second, resources.sampler}});
         else
             bindings.insert({name, resources.buffers.at(resource)});
     }

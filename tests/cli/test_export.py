@@ -89,6 +89,22 @@ class Test(Case):
     def test_hlsl_answers_as_the_lab_does(self):
         self.check_language("hlsl")
 
+    def test_hlsl_binds_as_d3d12_allows(self):
+        for technique in ("hiz", "hiz_waves"):
+            folder = self.export(technique, "hlsl")
+            said = read(folder, "README.md")
+            self.assertIn("Neither DXC nor D3D12", said)
+            for step in json.loads(read(folder, "frames", "scene.json"))["passes"]:
+                text = read(folder, step["file"])
+                self.assertNotIn("RWTexture2D", text) # images are only read
+                registers = {number: kind + number for kind, number in re.findall(r": register\(([tub])(\d+), space0\)", text)}
+                places = {}
+                for number, resource in step["bindings"].items():
+                    places.setdefault(resource, []).append(registers[number])
+                    self.assertIn(f"{registers[number]} `{resource.replace('made_count', 'ray_count').replace('made_rays', 'rays')}`", said)
+                for resource, at in places.items():
+                    self.assertTrue(len(at) == 1 or all(one[0] == "t" for one in at), f"{step['file']}: {resource} is {at}")
+
     def test_ray_packets_and_a_second_driver(self):
         for language in ("glsl", "hlsl"):
             folder = self.export("hiz_waves", language)
