@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/pixel_index.h"
 #include "shared.h"
 
 #include <nlohmann/json.hpp>
@@ -12,6 +13,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
+#include <optional>
 
 namespace ssrlab {
 namespace {
@@ -158,7 +161,64 @@ void compare_set_up(FrameVerdict& verdict, const Words& rays, const Words& made,
     }
 }
 
+/// README.md of an export has the formula.
+size_t bytes_of_cells(glm::ivec2 size_px)
+{
+    const auto odd    = [](int n) { return static_cast<size_t>(n | 1); };
+    const auto strips = [&](int columns) { return static_cast<size_t>((size_px.x - 1) / columns + 1); };
+    const int  root   = 1 << std::bit_width(static_cast<unsigned>(size_px.y - 1));
+    return 64 * (strips(16) * odd(root + size_px.y + 1) + strips(8) * odd(size_px.y + 1));
+}
+
+/// What README.md of an export says of a resource; nullopt for one of a structure.
+std::optional<size_t> bytes_needed(const std::string& name, glm::ivec2 size_px, size_t rays)
+{
+    const size_t                        pixels = pixel_count(size_px);
+    const std::map<std::string, size_t> needed{{"view", 48},
+                                               {"host_depth", 4 * pixels},
+                                               {"host_gradients", 4 * pixels},
+                                               {"cells", bytes_of_cells(size_px)},
+                                               {"normals", 16 * pixels},
+                                               {"solids", 4 * pixels},
+                                               {"ray_count", 4},
+                                               {"rays", ray_words * 4 * rays},
+                                               {"hits", hit_words * 4 * std::max<size_t>(rays, 1)},
+                                               {"made_count", 4},
+                                               {"made_rays", ray_words * 4 * pixels}};
+    const auto                          found = needed.find(name);
+    return found == needed.end() ? std::nullopt : std::optional(found->second);
+}
+
+void require_bytes(const fs::path& file, size_t expected)
+{
+    std::error_code error;
+    const auto      bytes = fs::file_size(file, error);
+    if (error) throw_spec_error("{}: {}", short_path(file), error.message());
+    if (bytes != expected) throw_spec_error("{}: {} bytes, expected {}", short_path(file), bytes, expected);
+}
+
 } // namespace
+
+void require_sizes(const json& frame, const fs::path& file)
+{
+    const fs::path   frames = file.parent_path(), folder = frames.parent_path();
+    const glm::ivec2 size_px(frame.at("size_px").at(0), frame.at("size_px").at(1));
+    const auto       rays = frame.at("rays").get<size_t>();
+    if (std::min(size_px.x, size_px.y) < 1 || std::max(size_px.x, size_px.y) > MAX_IMAGE_PX)
+        throw_spec_error("{}: an image of {} x {} pixels, expected 1 to {}", short_path(file), size_px.x, size_px.y,
+                         MAX_IMAGE_PX);
+    for (const auto& [name, resource] : frame.at("resources").items()) {
+        const auto bytes  = resource.at("bytes").get<size_t>(),
+                   needed = bytes_needed(name, size_px, rays).value_or(bytes);
+        if (bytes != needed)
+            throw_spec_error("{}: {} bytes of '{}', expected {}", short_path(file), bytes, name, needed);
+        if (resource.contains("file")) require_bytes(frames / resource.at("file").get<std::string>(), bytes);
+    }
+    const json& expected = frame.at("expected");
+    require_bytes(folder / "expected" / expected.at("hits").get<std::string>(), hit_words * 4 * rays);
+    if (expected.contains("made_rays"))
+        require_bytes(frames / expected.at("made_rays").get<std::string>(), ray_words * 4 * rays);
+}
 
 Words read_words(const fs::path& path)
 {

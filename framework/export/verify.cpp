@@ -35,7 +35,6 @@ Resources make_resources(Gpu& gpu, const json& frame, const fs::path& frames)
         const size_t bytes     = resource.at("bytes");
         const Words  words     = resource.contains("file") ? read_words(frames / resource.at("file").get<std::string>())
                                                            : Words(bytes / sizeof(uint32_t), resource.at("fill"));
-        if (words.size() * sizeof(uint32_t) > bytes) throw_failure("{}: larger than its {} bytes", name, bytes);
         const std::string kind = resource.at("kind");
         if (kind == "buffer" || kind == "uniform") {
             const auto buffer = made.buffers.emplace(name, make_buffer(gpu, std::max<size_t>(bytes, 16))).first;
@@ -105,7 +104,8 @@ void run_frame(Gpu& gpu, const json& frame, const Resources& resources, const fs
 
 FrameVerdict verify_frame(Gpu& gpu, const fs::path& folder, const fs::path& file)
 {
-    const json      frame     = json::parse(read_file(file));
+    const json frame = json::parse(read_file(file));
+    require_sizes(frame, file);
     const Resources resources = make_resources(gpu, frame, folder / "frames");
     run_frame(gpu, frame, resources, folder);
     const auto read = [&](const std::string& name) {

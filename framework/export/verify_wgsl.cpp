@@ -26,7 +26,7 @@ WgslVerdicts verify_wgsl_exports(std::span<const fs::path> folders)
     const TemporaryFolder    answers("ssrlab_answers");
     std::vector<std::string> words{"node", (web_folder() / "verify.mjs").string(), answers.path.string()};
     for (const fs::path& folder : folders) {
-        for_each_frame(folder, [](const fs::path& file) { json::parse(read_file(file)).at("resources").at("rays"); });
+        for_each_frame(folder, [](const fs::path& file) { require_sizes(json::parse(read_file(file)), file); });
         words.push_back(fs::absolute(folder).string());
     }
     const ProgramEnd done = run_program(words, ProgramOutput::kept);

@@ -33,7 +33,7 @@ Json resources(Gpu& gpu, const Lab& lab, const ComposedLab& composed, std::span<
         if (!used.contains(resource)) return;
         const std::string path = name + "." + resource + ".bin";
         write_words(frames / path, content);
-        all[resource] = {{"kind", kind}, {"bytes", std::max<size_t>(content.size(), 1) * 4}, {"file", path}};
+        all[resource] = {{"kind", kind}, {"bytes", content.size() * 4}, {"file", path}};
     };
     const auto room = [&](const std::string& resource, size_t bytes, uint32_t fill) {
         if (used.contains(resource)) all[resource] = {{"kind", "buffer"}, {"bytes", bytes}, {"fill", fill}};

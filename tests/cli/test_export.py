@@ -231,6 +231,32 @@ class Test(Case):
         self.assertGreater(sum(differing.values()), 0)
         self.assertRegex(said, r"ray \d+ of pixel \(\d+, \d+\): .*, expected ")
 
+    def test_inputs_of_another_size_are_refused(self):
+        folder = self.export("hiz", "glsl")
+        path = os.path.join(folder, "frames", "scene.json")
+        text = read(path)
+        frame = json.loads(text)
+        bytes_of = {name: resource["bytes"] for name, resource in frame["resources"].items()}
+        for file, expected in ((f"{folder}/frames/scene.rays.bin", bytes_of["rays"]), (f"{folder}/frames/scene.normals.bin", bytes_of["normals"]),
+                               (f"{folder}/expected/scene.bin", 8 * frame["rays"])):
+            right = self.bytes(file)
+            self.assertEqual(len(right), expected)
+            for wrong in (right[:100], right[:-1], right + b"0000"):
+                with open(file, "wb") as changed:
+                    changed.write(wrong)
+                self.refused("export", "--verify", folder, code=2,
+                             says=[f"{os.path.relpath(file, folder)}: {len(wrong)} bytes, expected {expected}"])
+            with open(file, "wb") as changed:
+                changed.write(right)
+        for name, expected in bytes_of.items():
+            self.write(path, re.sub(rf'("{name}": {{[^}}]*"bytes": )\d+', r"\g<1>96", text))
+            self.refused("export", "--verify", folder, code=2, says=[f"scene.json: 96 bytes of '{name}', expected {expected}"])
+        for change in ({"rays": frame["rays"] - 1}, {"size_px": [64, 35]}, {"size_px": [64, 0]}):
+            self.write(path, json.dumps(frame | change))
+            self.refused("export", "--verify", folder, code=2, says=["expected"])
+        self.write(path, text)
+        self.verified(folder)
+
     def test_a_technique_of_ones_own(self):
         for name, text in OWN.items():
             self.write(f"own/{name}" if not name.startswith("own_rows") else f"own_structures/{name}", text)
