@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <regex>
+
 namespace ssrlab {
 namespace {
 
@@ -45,8 +47,63 @@ std::string depth_text(const View& view)
 std::string settings_text(const Export& what, const char* line)
 {
     std::string text;
-    for (const auto& [name, value] : what.chosen) text += fmt::format(fmt::runtime(line), name, value);
+    for (const auto& [name, value] : what.chosen)
+        text += fmt::format(fmt::runtime(line), name,
+                            what.kept.contains(name) ? value + ", unless the host sets it" : value);
     return text;
+}
+
+/// A constant that stays one of the pipeline: "layout(constant_id = 32) const int steps = 500;".
+struct KeptConstant {
+    std::string id, type, value;
+};
+
+/// By its name. A number that no pass uses is in none.
+std::map<std::string, KeptConstant> kept_constants(std::span<const ExportedPass> passes)
+{
+    static const std::regex             pattern(R"(layout\(constant_id = (\d+)\) const (\w+) (\w+) = ([^;]+);)");
+    std::map<std::string, KeptConstant> found;
+    for (const ExportedPass& pass : passes)
+        for (std::sregex_iterator match(pass.glsl.begin(), pass.glsl.end(), pattern), end; match != end; ++match)
+            found[match->str(3)] = {match->str(1), match->str(2), match->str(4)};
+    return found;
+}
+
+/// How the host sets the constant of this id.
+std::string setting_of_constant(ExportLanguage language, const std::string& id)
+{
+    switch (language) {
+    case ExportLanguage::glsl: return fmt::format("`constantID = {}` of a `VkSpecializationMapEntry`", id);
+    case ExportLanguage::hlsl: return fmt::format("`-D SPIRV_CROSS_CONSTANT_ID_{}=VALUE` for the compiler", id);
+    case ExportLanguage::msl:
+        return fmt::format("`setConstantValue:type:atIndex:{}` of `MTLFunctionConstantValues`", id);
+    case ExportLanguage::essl:
+        return fmt::format("`#define SPIRV_CROSS_CONSTANT_ID_{} VALUE` behind the line `#version`", id);
+    case ExportLanguage::wgsl: return fmt::format("`constants: {{ {}: VALUE }}` of `createComputePipeline()`", id);
+    }
+    return "";
+}
+
+std::string constants_text(const Export& what, std::span<const ExportedPass> passes)
+{
+    if (what.kept.empty()) return "";
+    const auto  constants = kept_constants(passes);
+    std::string text = "## Constants that the host sets\nEach has one value in all passes that declare it. Nothing "
+                       "checks the range. `expected/` holds for the defaults.\n\n"
+                       "| name | id | type | default | range | set by |\n|---|---|---|---|---|---|\n";
+    for (const Parameter& parameter : what.technique.parameters) {
+        if (!what.kept.contains(parameter.name)) continue;
+        const auto        found = constants.find(parameter.name);
+        const std::string range = fmt::format("{} to {}", format_parameter(parameter, parameter.min),
+                                              format_parameter(parameter, parameter.max));
+        if (found == constants.end())
+            text += fmt::format("| `{}` | none: no pass uses it | | | {} | |\n", parameter.name, range);
+        else
+            text +=
+                fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", parameter.name, found->second.id, found->second.type,
+                            found->second.value, range, setting_of_constant(what.language, found->second.id));
+    }
+    return text + "\n";
 }
 
 std::string dispatch_text(const ExportedPass& pass)
@@ -179,8 +236,8 @@ std::string readme(const Export& what, const View& view, std::span<const Exporte
     for (const std::string& cite : what.technique.cite) text += fmt::format("- {}\n", cite);
     text +=
         fmt::format("\nMade for {}. Another near plane, thickness or setting needs another export: the shaders hold "
-                    "their values as constants. Written by\n\n    {}\n\n",
-                    projection_text(view), what.command);
+                    "their values as constants{}. Written by\n\n    {}\n\n",
+                    projection_text(view), what.kept.empty() ? "" : ", but for those that the host sets", what.command);
     text += fmt::format(
         "## Passes, in their order\n{}\nA barrier belongs between each two dispatches. `has_ray()` in "
         "the ray set-up says which pixels reflect: as it is, all with a surface and a normal. Let it ask for "
@@ -192,6 +249,7 @@ std::string readme(const Export& what, const View& view, std::span<const Exporte
     text +=
         fmt::format("## What comes back\n{} The hit point is `origin + t * delta`, in pixels and depth.\n\n", statuses);
     text += fmt::format("## Settings\n{}\n", settings_text(what, "- {} = {}\n"));
+    text += constants_text(what, passes);
     text +=
         fmt::format("## Cost\nOn the frame `{}` a ray takes {:.1f} steps, {:.1f} depth fetches and {:.1f} structure "
                     "fetches. `ssrlab shaders {} --chip navi21` shows instructions and registers.\n\n",

@@ -216,6 +216,20 @@ class Test(Case):
         folder = self.export("dda", "glsl", "--keep", "max_steps")
         self.assertRegex(read(folder, "3_trace.comp"), r"layout\(constant_id = \d+\) const int max_steps = 60000;")
         self.assert_equal_on_every_ray(folder)
+        ways = {"glsl": (r"layout\(constant_id = {}\) const int steps = 40;", "`constantID = {}` of"),
+                "hlsl": (r"#define SPIRV_CROSS_CONSTANT_ID_{} 40", "`-D SPIRV_CROSS_CONSTANT_ID_{}=VALUE`"),
+                "msl": (r"constant int steps_tmp \[\[function_constant\({}\)\]\];", "atIndex:{}`"),
+                "essl": (r"#define SPIRV_CROSS_CONSTANT_ID_{} 40", "`#define SPIRV_CROSS_CONSTANT_ID_{} VALUE`"),
+                "wgsl": (r"@id\({}\) override steps\w*: i32 = 40i;", "`constants: {{ {}: VALUE }}`")}
+        for language, (declared, told) in ways.items():
+            folder = self.export("linear", language, "-p", "steps=40", "--keep", "steps", folder=self.path(f"kept_{language}"))
+            said = read(folder, "README.md")
+            constant, = re.findall(r"^\| `steps` \| (\d+) \| int \| 40 \| 1 to 60000 \| `", said, re.M)
+            self.assertIn(told.format(constant), said)
+            self.assertIn("constants, but for those that the host sets", said)
+            self.assertIn("- steps = 40, unless the host sets it", said)
+            trace, = glob.glob(f"{folder}/3_trace.*")
+            self.assertRegex(read(trace), declared.format(constant))
         folder = self.export("dda", "wgsl", "--keep", "max_steps")
         self.assertRegex(read(folder, "3_trace.wgsl"), r"@id\(\d+\) override max_steps\w*: i32 = 60000i;")
         self.refused("export", "dda", "--to", "glsl", "-o", self.path("out"), "--keep", "arithmetic", code=2,
