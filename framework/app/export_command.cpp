@@ -3,6 +3,7 @@
 #include "check/run_check.h"
 #include "core/error.h"
 #include "core/files.h"
+#include "core/pixel_index.h"
 #include "core/temporary_folder.h"
 #include "export/export.h"
 #include "harness/csv.h"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <limits>
 #include <span>
 
 namespace ssrlab {
@@ -80,6 +82,32 @@ ExportFrame on_view(ExportFrame frame, const View& view)
     return frame;
 }
 
+/// Depths that host_depth() must tell apart: in each row a pixel of its own depth in the sky, and rays that meet it if it is
+/// taken for a surface. NaN is left to the hard cases: not every compiler keeps it.
+ExportFrame depths_of_the_host(const View& view)
+{
+    constexpr float infinity    = std::numeric_limits<float>::infinity(),
+                    before_near = 1 + std::numeric_limits<float>::epsilon();
+    constexpr std::array depths{0.0F, -0.25F, -infinity, before_near, 1.25F, 5.0F, infinity, 1.0F, 0.75F};
+    const glm::ivec2     size_px(41, static_cast<int>(depths.size()));
+    const bool           flat = view.projection == Projection::orthographic;
+    const auto           sky  = [](glm::ivec2) { return 0.0; };
+    ExportFrame          frame{
+        "host_depth", "depths without a surface, and surfaces at the near plane",
+        picture_of(flat ? orthographic_view(size_px, 2, view.near_m, view.far_m) : bench_view(size_px, view.near_m),
+                   sky)};
+    for (int y = 0; y < size_px.y; ++y) {
+        const glm::ivec2 pixel(20, y), start(0, y);
+        const glm::dvec2 from(0.5, y + 0.5);
+        frame.gbuffer.depth[pixel_index(pixel, size_px)] = depths[static_cast<size_t>(y)];
+        frame.rays.push_back({{from, 1}, {40, 0, 0}, 1, TraceStatus::left_screen, start});
+        frame.rays.push_back({{from, 1}, {40, 0, -0.5}, 1, TraceStatus::left_screen, start}); // at 0.75 in the pixel
+        frame.rays.push_back(
+            {{from, 0.5}, {20, 0, -0.5}, INFINITY, TraceStatus::past_max_distance, start}); // ends at 0
+    }
+    return frame;
+}
+
 /// A few hard cases with the projection of the view, and the scene.
 std::vector<ExportFrame> proof_frames(const GBufferImage& scene, const ExportOptions& options)
 {
@@ -94,6 +122,7 @@ std::vector<ExportFrame> proof_frames(const GBufferImage& scene, const ExportOpt
             break;
         }
     }
+    frames.push_back(depths_of_the_host(scene.view));
     frames.push_back({"scene", options.picture.scene, scene});
     return frames;
 }

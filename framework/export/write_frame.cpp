@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <set>
 
@@ -23,15 +24,15 @@ void write_words(const std::filesystem::path& path, const Words& words)
 }
 
 /// The resources that the passes name, each with its content: a file, or one word that fills it.
-Json resources(Gpu& gpu, const Lab& lab, const ComposedLab& composed, std::span<const RayInput> rays,
-               const std::set<std::string>& used, const std::string& name, const std::filesystem::path& frames)
+Json resources(Gpu& gpu, const Lab& lab, const ComposedLab& composed, const ExportFrame& frame,
+               std::span<const RayInput> rays, const std::set<std::string>& used, const std::filesystem::path& frames)
 {
     const FrameWords words    = read_frame_words(gpu, lab);
     const auto       capacity = std::max<size_t>(rays.size(), 1);
     Json             all      = Json::object();
     const auto       file     = [&](const std::string& resource, const char* kind, const Words& content) {
         if (!used.contains(resource)) return;
-        const std::string path = name + "." + resource + ".bin";
+        const std::string path = frame.name + "." + resource + ".bin";
         write_words(frames / path, content);
         all[resource] = {{"kind", kind}, {"bytes", content.size() * 4}, {"file", path}};
     };
@@ -39,7 +40,11 @@ Json resources(Gpu& gpu, const Lab& lab, const ComposedLab& composed, std::span<
         if (used.contains(resource)) all[resource] = {{"kind", "buffer"}, {"bytes", bytes}, {"fill", fill}};
     };
     file("view", "uniform", words.view);
-    file("host_depth", "buffer", words.depth);
+    // As the frame has it: the lab's own says 0 of every depth that is no surface.
+    const std::vector<float>& depth = frame.gbuffer.depth;
+    Words                     depth_words(depth.size());
+    std::ranges::transform(depth, depth_words.begin(), [](float value) { return std::bit_cast<uint32_t>(value); });
+    file("host_depth", "buffer", depth_words);
     file("host_gradients", "buffer", words.gradients);
     room("cells", composed.depth_bytes, std::bit_cast<uint32_t>(static_cast<float>(BACKGROUND_DEPTH)));
     file("normals", "rgba32f", words.normals);
@@ -95,7 +100,7 @@ void write_frame(Gpu& gpu, const Lab& lab, const ComposedLab& composed, std::spa
     Json             json{{"what", frame.what},
               {"size_px", {size_px.x, size_px.y}},
               {"rays", rays.size()},
-              {"resources", resources(gpu, lab, composed, rays, used, frame.name, folder / "frames")},
+              {"resources", resources(gpu, lab, composed, frame, rays, used, folder / "frames")},
               {"push_binding", push_binding},
               {"passes", steps},
               {"expected", {{"hits", frame.name + ".bin"}}}};

@@ -103,8 +103,7 @@ FrameWords read_frame_words(Gpu& gpu, const Lab& lab)
 {
     const GBufferImage image = read_gbuffer(gpu, *lab.gbuffer);
     FrameWords         words;
-    words.view  = download_as<uint32_t>(gpu, lab.gbuffer->view_uniforms, view_words);
-    words.depth = words_of(std::span(image.depth));
+    words.view = download_as<uint32_t>(gpu, lab.gbuffer->view_uniforms, view_words);
     for (const glm::vec2& gradient : image.gradient) words.gradients.push_back(pack_gradient(gradient));
     for (size_t i = 0; i < image.depth.size(); ++i) {
         const glm::vec4 texel(image.normal_vs[i], image.roughness[i]);

@@ -36,10 +36,9 @@ ComposedLab compose_lab(Gpu& gpu, const Lab& lab, size_t rays);
 ShaderSource compose_shader(const Lab& lab, const std::filesystem::path& file);
 Constants    compose_constants(const Lab& lab);
 
-/// The words that the host gives to the passes, and those that it gets back.
+/// The words that the host gives to the passes beside its depth, and those that it gets back.
 struct FrameWords {
     std::vector<uint32_t> view;      // the uniform block of shaders/api/view.glsl
-    std::vector<uint32_t> depth;     // row by row: floats, 0 where there is nothing
     std::vector<uint32_t> gradients; // row by row, as core/plane_gradient.h packs them
     std::vector<uint32_t> normals;   // row by row: four floats, the normal in view space and the roughness
     std::vector<uint32_t> solids; // row by row: floats, the depth where the solid behind the pixel ends, 0: it is thin

@@ -271,6 +271,24 @@ class Test(Case):
         self.write(path, text)
         self.verified(folder)
 
+    def test_the_proof_holds_the_depth_of_the_host(self):
+        near = (" && depth <= 1.0", ""), ("depth <= 1.0", "depth <= 0.5")
+        # A traversal of the pyramid never tests cells of depth 0 or less, so these change none of its answers.
+        sky = ("depth > 0.0 && ", ""), ("BACKGROUND_DEPTH -1", "BACKGROUND_DEPTH 0")
+        for technique, surface, changes in (("hiz", "box", near), ("hiz", "plane_solid", near), ("linear", "box", near),
+                                            ("dda", "box", near + sky), ("dda", "plane", near + sky)):
+            folder = self.export(technique, "glsl", "-p", f"surface={surface}", "-p", "thickness_m=0.3", "-p", "max_distance_m=5",
+                                 "--near", "0.1", folder=self.path(f"{technique}_{surface}"))
+            self.assert_equal_on_every_ray(folder)
+            path = os.path.join(folder, "1_depth.comp")
+            text = read(path)
+            for right, wrong in changes:
+                with self.subTest(technique=technique, surface=surface, wrong=f"{right} -> {wrong}"):
+                    self.assertEqual(text.count(right), 1)
+                    self.write(path, text.replace(right, wrong))
+                    differing, said = self.verified(folder, code=1)
+                    self.assertGreater(differing["host_depth"], 0, said)
+
     def test_a_technique_of_ones_own(self):
         for name, text in OWN.items():
             self.write(f"own/{name}" if not name.startswith("own_rows") else f"own_structures/{name}", text)
