@@ -47,8 +47,6 @@ Cost cost_of(const std::string& frame, std::span<const RayOutcome> outcomes)
 void make_folders(const fs::path& folder)
 {
     std::error_code error;
-    if (fs::exists(folder, error) && !fs::is_empty(folder, error))
-        throw_spec_error("-o {}: expected a new or empty folder", folder.string());
     for (const char* name : {"frames", "expected"})
         if (!fs::create_directories(folder / name, error) && error)
             throw_failure("{}: cannot be created: {}", (folder / name).string(), error.message());
@@ -113,8 +111,10 @@ const char* file_ending(ExportLanguage language)
     return "";
 }
 
-void write_export(Gpu& gpu, const Export& what, std::span<const ExportFrame> frames, Translations& translations,
-                  const fs::path& folder)
+namespace {
+
+void write_into(Gpu& gpu, const Export& what, std::span<const ExportFrame> frames, Translations& translations,
+                const fs::path& folder)
 {
     make_folders(folder);
     if (what.language == ExportLanguage::wgsl)
@@ -136,6 +136,26 @@ void write_export(Gpu& gpu, const Export& what, std::span<const ExportFrame> fra
         if (&frame == &frames.back())
             write_file_atomically(folder / "README.md", readme(what, frame.gbuffer.view, passes, composed,
                                                                cost_of(frame.name, traced.outcomes)));
+    }
+}
+
+} // namespace
+
+void write_export(Gpu& gpu, const Export& what, std::span<const ExportFrame> frames, Translations& translations,
+                  const fs::path& folder)
+{
+    const bool is_there = fs::exists(folder);
+    if (is_there && (!fs::is_directory(folder) || !fs::is_empty(folder)))
+        throw_spec_error("-o {}: expected a new or empty folder", folder.string());
+    try {
+        write_into(gpu, what, frames, translations, folder);
+    } catch (...) { // the corrected command must not find a part of this one
+        std::error_code error;
+        if (is_there)
+            for (const auto& entry : fs::directory_iterator(folder, error)) fs::remove_all(entry.path(), error);
+        else
+            fs::remove_all(folder, error);
+        throw;
     }
 }
 

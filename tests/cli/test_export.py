@@ -319,6 +319,14 @@ class Test(Case):
         self.refused("export", "dda", "--to", "wgsl", "--hard-cases", "--case", "axis_alined", code=2, says=["axis_aligned"])
         self.refused("export", "dda", "--to", "wgsl", "-o", self.path("out"), "-p", "arithmetic=exact", code=2, says=["64-bit"])
         self.ssrlab("export", "dda", "--to", "spirv", "-o", self.path("out"), code=2, says=["spirv"])
+        self.assertFalse(os.path.exists(self.path("out")), "what was refused")
+        os.makedirs(self.path("bin"))
+        os.makedirs(self.path("empty"))
+        for folder in ("out", "empty"): # spirv-opt is missing: the first passes were already written
+            self.refused("export", "dda", "--to", "hlsl", "-o", self.path(folder), "--size", "64x36", code=1, says=["spirv-opt"],
+                         PATH=self.path("bin"))
+        self.assertFalse(os.path.exists(self.path("out")))
+        self.assertEqual(os.listdir(self.path("empty")), [])
         self.write("full/file", "")
         self.refused("export", "dda", "--to", "glsl", "-o", self.path("full"), code=2, says=["new or empty folder"])
         folder = self.export("dda", "glsl")
