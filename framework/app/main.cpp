@@ -110,8 +110,10 @@ void add_scene_options(CLI::App& command, ssrlab::PictureOptions& options)
 
 void add_parameter_option(CLI::App& command, ssrlab::PictureOptions& options)
 {
-    command.add_option("-p,--parameter", options.parameters,
-                       "name=value: a parameter of the technique (see ssrlab show), or a setting such as thickness_m");
+    command
+        .add_option("-p,--parameter", options.parameters,
+                    "name=value: a parameter of the technique (see ssrlab show), or a setting such as thickness_m")
+        ->allow_extra_args(false);
 }
 
 CLI::Option* add_technique_option(CLI::App& command, ssrlab::PictureOptions& options)
@@ -167,8 +169,10 @@ void add_judge_options(CLI::App& command, ssrlab::JudgeOptions& options)
     command.add_option("--frame", options.at_frame, "Frame of that scene's motion")
         ->capture_default_str()
         ->check(CLI::Range(0, ssrlab::max_frames));
-    command.add_option("-p,--parameter", options.parameters,
-                       "name=value: a setting of [trace] under which the renderer traced, such as thickness_m");
+    command
+        .add_option("-p,--parameter", options.parameters,
+                    "name=value: a setting of [trace] under which the renderer traced, such as thickness_m")
+        ->allow_extra_args(false);
     command.add_option("-o,--output", options.output, "Also write a picture in false colours (.png)");
     command.add_option("--show", options.show, "What it shows: agreement, or causes (needs --scene)")
         ->capture_default_str()
@@ -252,8 +256,9 @@ int main(int argc, char** argv)
     app.add_option("--device", common.gpu.device,
                    "Vulkan device by index or part of its name; default: a discrete GPU if present, else the first");
     app.add_option("--techniques", common.technique_dirs,
-                   "Further folders of techniques, structures, reprojections and surface models, or folders of them "
-                   "(also $SSRLAB_TECHNIQUES)");
+                   "A further folder of techniques, structures, reprojections and surface models, or of such folders; "
+                   "may be repeated (also $SSRLAB_TECHNIQUES)")
+        ->allow_extra_args(false);
     app.add_option(
            "--storage", common.gpu.storage,
            "How shaders read lists and depth: texel-buffers or plain-buffers; default: by the limits of the device")
@@ -310,9 +315,12 @@ int main(int argc, char** argv)
     explained->add_option("--pixel", ray.pixel, "X,Y of the pixel that reflects, from the top left")->required();
     explained
         ->add_option("-t,--technique", ray.techniques, "Technique, or exact, as for render; several may be compared")
-        ->required();
-    explained->add_option("-p,--parameter", ray.picture.parameters,
-                          "name=value, as for render; for every technique that has it");
+        ->required()
+        ->allow_extra_args(false);
+    explained
+        ->add_option("-p,--parameter", ray.picture.parameters,
+                     "name=value, as for render; for every technique that has it")
+        ->allow_extra_args(false);
     explained->add_option(
         "--sources", ray.sources,
         "Also say which source of this list answers the ray, as frame,world (docs/explanation/beyond.md)");
@@ -418,8 +426,9 @@ int main(int argc, char** argv)
     compiled->add_option("TECHNIQUE", shaders.techniques, "Techniques; default: all");
     add_chip_option(*compiled, shaders.chip,
                     "Compile for this AMD GPU without having it; default: for the present device");
-    compiled->add_option("-p,--parameter", shaders.parameters,
-                         "name=value, as for render; for every technique that has it");
+    compiled
+        ->add_option("-p,--parameter", shaders.parameters, "name=value, as for render; for every technique that has it")
+        ->allow_extra_args(false);
     compiled->add_option("--assembly", shaders.assembly, "Also write the assembly of each pass into this folder");
     compiled->add_flag("--files", shaders.files,
                        "Instead: the files that the compiler reads of each technique, and their lines of code");
@@ -445,8 +454,11 @@ int main(int argc, char** argv)
     taken->add_option("--size", exported.picture.size, "Size of its image; default: 160x90, or that of a frame file");
     taken->add_option("--near", exported.near_m, "Near plane in metres; default: that of the view")
         ->check(CLI::PositiveNumber);
-    taken->add_option("--keep", exported.kept,
-                      "Parameters that stay specialization constants (WGSL: override), instead of their values");
+    taken
+        ->add_option("--keep", exported.kept,
+                     "A parameter that stays a specialization constant (WGSL: override), instead of its value; may be "
+                     "repeated")
+        ->allow_extra_args(false);
     taken->add_option("--verify", exported.verified,
                       "Run the shaders of a folder that was exported, and compare every ray");
     auto* hard =
@@ -468,8 +480,10 @@ int main(int argc, char** argv)
                   "check",
                   "Run techniques against the hard cases (docs/explanation/hard_cases.md); fails if one breaks what it claims");
     check->add_option("TECHNIQUE|DIR", hard_cases.subject, "A technique, or a folder of techniques; default: all");
-    check->add_option("-p,--parameter", hard_cases.parameters,
-                      "name=value of the techniques, instead of the default (see ssrlab show)");
+    check
+        ->add_option("-p,--parameter", hard_cases.parameters,
+                     "name=value of the techniques, instead of the default (see ssrlab show)")
+        ->allow_extra_args(false);
     check->add_option("--case", hard_cases.only_case, "Only this case");
     check->add_option("--ray", hard_cases.ray, "SETUP:RAY of the case: show its path, pixel by pixel");
     check->add_option("--markdown", hard_cases.markdown, "Write the table to this file");

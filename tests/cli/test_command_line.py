@@ -80,6 +80,15 @@ class Test(Case):
         command = [program, "render", "builtin:stairs", "-t", "hiz", "--size", "64x36", "-o", self.path("a.png")]
         subprocess.run(command, check=True, capture_output=True, cwd="/")
 
+    def test_an_option_takes_one_word(self):
+        self.ssrlab("new-technique", "mine/first")
+        self.ssrlab("new-technique", "other/second")
+        self.ssrlab("show", "--techniques", "mine", "first", says=["Looks at places"])
+        self.ssrlab("list", "--techniques", "mine", "--techniques", "other", says=["first", "second"])
+        self.ssrlab("trace", "-p", "stride_px=4", "builtin:stairs", "-t", "first", "--techniques", "mine", "-p", "max_steps=9", "--size", "16x9", "-o", "a.exr")
+        self.ssrlab("--quiet", "export", "--techniques", "mine", "--keep", "max_steps", "first", "--to", "glsl", "--size", "64x36", "-o", "out")
+        self.ssrlab("ray", "--pixel", "32,30", "-t", "dda", "builtin:stairs", "--size", "64x36")
+
     def test_a_new_technique_passes_the_check(self):
         self.ssrlab("new-technique", "mine/first", says=["ssrlab --techniques mine/first check first"])
         self.ssrlab("--techniques", "mine/first", "check", "first", "--quick", says=["rows hold what the technique claims"])
