@@ -40,7 +40,6 @@ Budget budget_of(const FitOptions& options)
     const Budget budget = given.front();
     if ((budget.unit == FitUnit::instructions) == options.chip.empty())
         throw_spec_error("fit: expected --budget-instructions and --chip together");
-    if (!(budget.most > 0)) throw_spec_error("fit: expected a budget above 0, got {}", budget.most);
     return budget;
 }
 

@@ -23,9 +23,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <fcntl.h>
 #include <functional>
+#include <limits>
 #include <unistd.h>
 
 namespace {
@@ -83,16 +85,48 @@ std::string unknown_word(const CLI::App& app, int argc, char** argv)
     return "";
 }
 
+/// What an option's number has to be, said as -p says it: "expected a number above 0, got '0.1m'".
+template <typename Number> CLI::Validator within(const std::string& expected, Number min, Number max)
+{
+    return {[=](const std::string& text) {
+                Number      value = 0;
+                const char *begin = text.data() + (text.starts_with('+') ? 1 : 0), *end = text.data() + text.size();
+                const auto  parsed = std::from_chars(begin, end, value);
+                const bool  right  = parsed.ec == std::errc() && parsed.ptr == end && value >= min && value <= max;
+                return right ? "" : fmt::format("expected {}, got '{}'", expected, text);
+            },
+            ""};
+}
+
+constexpr double largest = std::numeric_limits<double>::max();
+
+CLI::Validator any_number() { return within("a number", -largest, largest); }
+
+CLI::Validator number_above_0()
+{
+    return within("a number above 0", std::numeric_limits<double>::denorm_min(), largest);
+}
+
+CLI::Validator number_in(double min, double max)
+{
+    return within(fmt::format("a number in [{}, {}]", min, max), min, max);
+}
+
+CLI::Validator integer_in(int min, int max)
+{
+    return within(fmt::format("an integer in [{}, {}]", min, max), min, max);
+}
+
 void add_frame_options(CLI::App& command, ssrlab::PictureOptions& options)
 {
     command.add_option("--frame", options.at.frame, "Frame of the scene's motion and of a camera path")
         ->capture_default_str()
-        ->check(CLI::Range(0, ssrlab::max_frames));
+        ->check(integer_in(0, ssrlab::max_frames));
     command
         .add_option("--jitter", options.at.jitter_phases,
                     "Sub-pixel offsets of the camera that repeat after this many frames; 0: none")
         ->capture_default_str()
-        ->check(CLI::Range(0, ssrlab::max_jitter_phases));
+        ->check(integer_in(0, ssrlab::max_jitter_phases));
 }
 
 /// Which picture of which scene.
@@ -131,13 +165,15 @@ void add_output_option(CLI::App& command, ssrlab::PictureOptions& options)
 void add_presentation_options(CLI::App& command, ssrlab::RenderOptions& options)
 {
     command.add_option("--frames", options.frames, "Write this many numbered pictures, beginning with this frame")
-        ->check(CLI::Range(1, ssrlab::max_frames));
+        ->check(integer_in(1, ssrlab::max_frames));
     command
         .add_option("--samples", options.samples,
                     "Anti-aliasing: the mean of this many camera positions within a pixel")
         ->capture_default_str()
-        ->check(CLI::Range(1, ssrlab::max_samples));
-    command.add_option("--exposure", options.exposure_ev, "Exposure of a .png, in stops")->capture_default_str();
+        ->check(integer_in(1, ssrlab::max_samples));
+    command.add_option("--exposure", options.exposure_ev, "Exposure of a .png, in stops")
+        ->capture_default_str()
+        ->check(any_number());
     command
         .add_option("--display", options.display,
                     "Tone curve of a .png: clip (at 1), or agx, which keeps bright colours")
@@ -168,7 +204,7 @@ void add_judge_options(CLI::App& command, ssrlab::JudgeOptions& options)
     command.add_option("--scene", options.scene, "Scene of the frame: also judge by its triangles");
     command.add_option("--frame", options.at_frame, "Frame of that scene's motion")
         ->capture_default_str()
-        ->check(CLI::Range(0, ssrlab::max_frames));
+        ->check(integer_in(0, ssrlab::max_frames));
     command
         .add_option("-p,--parameter", options.parameters,
                     "name=value: a setting of [trace] under which the renderer traced, such as thickness_m")
@@ -178,7 +214,7 @@ void add_judge_options(CLI::App& command, ssrlab::JudgeOptions& options)
         ->capture_default_str()
         ->check(one_of({"agreement", "causes"}));
     command.add_option("--min-f1", options.min_f1, "Exit code 1 if F1 is lower; with --scene that of the scene truth")
-        ->check(CLI::Range(0.0, 1.0));
+        ->check(number_in(0, 1));
     command.add_flag("--partial", options.partial,
                      "Of a folder: judge the cases that have hits, and pass without the others");
     command.add_flag("--json", options.json, "As JSON, with every wrong ray");
@@ -193,13 +229,19 @@ void add_fit_options(CLI::App& command, ssrlab::FitOptions& options)
 {
     command.add_option("SCENE", options.scenes, "Scenes as for render, and frames of other renderers (.exr)")
         ->required();
-    command.add_option("--budget-ms", options.budget_ms,
-                       "Milliseconds of this device: structures and trace; with --objective flip all passes after the "
-                       "G-buffer");
-    command.add_option("--budget-fetches", options.budget_fetches,
-                       "Reads of depth and structures per ray: exact, and the same on every device");
-    command.add_option("--budget-instructions", options.budget_instructions,
-                       "Instructions of a chip per ray: structures and trace, as its compiler makes them");
+    command
+        .add_option("--budget-ms", options.budget_ms,
+                    "Milliseconds of this device: structures and trace; with --objective flip all passes after the "
+                    "G-buffer")
+        ->check(number_above_0());
+    command
+        .add_option("--budget-fetches", options.budget_fetches,
+                    "Reads of depth and structures per ray: exact, and the same on every device")
+        ->check(number_above_0());
+    command
+        .add_option("--budget-instructions", options.budget_instructions,
+                    "Instructions of a chip per ray: structures and trace, as its compiler makes them")
+        ->check(number_above_0());
     add_chip_option(command, options.chip, "The AMD GPU of --budget-instructions, which need not be there");
     command
         .add_option("--objective", options.objective,
@@ -211,7 +253,7 @@ void add_fit_options(CLI::App& command, ssrlab::FitOptions& options)
     command.add_option("--frame", options.frames, "Frames of the scenes' motion and of camera paths")
         ->capture_default_str()
         ->allow_extra_args(false)
-        ->check(CLI::Range(0, ssrlab::max_frames));
+        ->check(integer_in(0, ssrlab::max_frames));
     command.add_option("--size", options.size, "WIDTHxHEIGHT in pixels; default: that of the sweep");
     command.add_option("-t,--technique", options.techniques, "Only these techniques of the sweep")
         ->allow_extra_args(false);
@@ -231,7 +273,7 @@ void add_bandwidth_option(CLI::App& command, double& bandwidth_gbps)
     command
         .add_option("--bandwidth-gbps", bandwidth_gbps,
                     "Memory bandwidth of a card: also print the time that the bytes of each pass need at the least")
-        ->check(CLI::PositiveNumber);
+        ->check(number_above_0());
 }
 
 /// One line in a terminal, whatever a file holds.
@@ -362,7 +404,9 @@ int main(int argc, char** argv)
     auto* planned = app.add_subcommand("plan", "Show which passes a frame needs, why, and what they cost or save");
     add_scene_options(*planned, plan.picture);
     add_technique_option(*planned, plan.picture)->default_val("hiz")->capture_default_str();
-    planned->add_option("--repeats", plan.repeats, "Timed frames")->capture_default_str()->check(CLI::PositiveNumber);
+    planned->add_option("--repeats", plan.repeats, "Timed frames")
+        ->capture_default_str()
+        ->check(integer_in(1, std::numeric_limits<int>::max()));
     add_bandwidth_option(*planned, plan.bandwidth_gbps);
     planned->callback([&] { command = [&] { return print_plan(common, plan); }; });
 
@@ -453,7 +497,7 @@ int main(int argc, char** argv)
     taken->add_option("--view", exported.picture.view, "View of that scene")->capture_default_str();
     taken->add_option("--size", exported.picture.size, "Size of its image; default: 160x90, or that of a frame file");
     taken->add_option("--near", exported.near_m, "Near plane in metres; default: that of the view")
-        ->check(CLI::PositiveNumber);
+        ->check(number_above_0());
     taken
         ->add_option("--keep", exported.kept,
                      "A parameter that stays a specialization constant (WGSL: override), instead of its value; may be "

@@ -89,6 +89,27 @@ class Test(Case):
         self.ssrlab("--quiet", "export", "--techniques", "mine", "--keep", "max_steps", "first", "--to", "glsl", "--size", "64x36", "-o", "out")
         self.ssrlab("ray", "--pixel", "32,30", "-t", "dda", "builtin:stairs", "--size", "64x36")
 
+    def test_numbers_are_refused_as_those_of_parameters(self):
+        stairs = ("builtin:stairs", "-o", "a.png")
+        for words, fault in ((("export", "dda", "--near", "-1"), "--near: expected a number above 0, got '-1'"),
+                             (("export", "dda", "--near", "0.1m"), "--near: expected a number above 0, got '0.1m'"),
+                             (("export", "dda", "--near", "inf"), "--near: expected a number above 0, got 'inf'"),
+                             (("fit", "builtin:stairs", "--budget-ms", "0.5ms"), "--budget-ms: expected a number above 0, got '0.5ms'"),
+                             (("fit", "builtin:stairs", "--budget-fetches", "0"), "--budget-fetches: expected a number above 0, got '0'"),
+                             (("fit", "builtin:stairs", "--budget-instructions", "many"), "--budget-instructions: expected a number above 0, got 'many'"),
+                             (("fit", "builtin:stairs", "--frame", "1.5"), "--frame: expected an integer in [0, 1000000], got '1.5'"),
+                             (("render", *stairs, "--frame", "-1"), "--frame: expected an integer in [0, 1000000], got '-1'"),
+                             (("render", *stairs, "--frames", "0"), "--frames: expected an integer in [1, 1000000], got '0'"),
+                             (("render", *stairs, "--jitter", "x"), "--jitter: expected an integer in [0, "),
+                             (("render", *stairs, "--samples", "99999999999"), "--samples: expected an integer in [1, "),
+                             (("render", *stairs, "--exposure", "2ev"), "--exposure: expected a number, got '2ev'"),
+                             (("judge", "f.exr", "h.exr", "--min-f1", "90%"), "--min-f1: expected a number in [0, 1], got '90%'"),
+                             (("judge", "f.exr", "h.exr", "--frame", "x"), "--frame: expected an integer in [0, "),
+                             (("plan", "builtin:stairs", "--repeats", "0"), "--repeats: expected an integer in [1, 2147483647], got '0'"),
+                             (("plot", "out", "--bandwidth-gbps", "fast"), "--bandwidth-gbps: expected a number above 0, got 'fast'")):
+            with self.subTest(words=words):
+                self.ssrlab(*words, code=2, says=[fault])
+
     def test_a_new_technique_passes_the_check(self):
         self.ssrlab("new-technique", "mine/first", says=["ssrlab --techniques mine/first check first"])
         self.ssrlab("--techniques", "mine/first", "check", "first", "--quick", says=["rows hold what the technique claims"])
