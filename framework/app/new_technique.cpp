@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
-#include "core/names.h"
+#include "core/glsl_name.h"
 #include "trace/catalogue.h"
 
 #include <cstdio>
@@ -47,8 +47,8 @@ TraceResult trace(Ray ray)
 int write_new_technique(const std::filesystem::path& folder)
 {
     const std::string id = folder.filename().string();
-    if (!is_glsl_name(id))
-        throw_spec_error("'{}' cannot be a technique's name: expected letters, digits and underscores", id);
+    if (const std::string fault = glsl_name_fault(id); !fault.empty())
+        throw_spec_error("'{}' cannot be a technique's name: {}", id, fault);
     if (id == fastest_exact)
         throw_spec_error("'{}' cannot be a technique's name: it stands for the fastest exact technique", id);
     if (std::filesystem::exists(folder)) throw_spec_error("{}: already there", folder.string());

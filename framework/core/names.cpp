@@ -1,5 +1,7 @@
 #include "core/names.h"
 
+#include "core/glsl_name.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -34,15 +36,15 @@ size_t edit_distance(std::string_view a, std::string_view b)
 // A longer list beside a suggestion hides it.
 constexpr size_t most_names_beside_suggestion = 24;
 
-// GLSL 4.60, section 3.6: keywords and what is reserved; and the project's own entry points and their argument.
+// GLSL 4.60, section 3.6: keywords and what is reserved.
 constexpr std::string_view glsl_keywords =
     " "
     "active asm atomic_uint attribute bool break buffer case cast centroid class coherent common "
     "const continue default discard do double else enum extern external false filter fixed flat float "
     "for goto half highp if in inline inout input int interface invariant layout long lowp main "
-    "mediump namespace noinline noperspective out output partition patch precise precision public ray "
+    "mediump namespace noinline noperspective out output partition patch precise precision public "
     "readonly resource restrict return sample shared short sizeof smooth static struct subroutine "
-    "superp switch template this trace true typedef uint uniform union unsigned using varying void "
+    "superp switch template this true typedef uint uniform union unsigned using varying void "
     "volatile while writeonly ";
 constexpr const char* glsl_types = "[biudhf]?vec[234]|real[234]?|d?mat[234](x[234])?|[iu]?subpassInput(MS)?|"
                                    "[iu]?sampler([1-9CS]\\w*|Buffer)?|[iu]?(image|texture)([1-9C]\\w*|Buffer)";
@@ -75,14 +77,20 @@ std::string unknown_name(const std::string& kind, const std::string& name, std::
     return message + fmt::format(" (known: {})", fmt::join(known, ", "));
 }
 
-bool is_glsl_name(const std::string& name)
+std::string glsl_name_fault(const std::string& name)
 {
     const auto letter  = [](unsigned char c) { return c < 128 && (std::isalpha(c) != 0 || c == '_'); };
     const auto allowed = [&](unsigned char c) { return letter(c) || (c < 128 && std::isdigit(c) != 0); };
-    return !name.empty() && letter(static_cast<unsigned char>(name.front())) && std::ranges::all_of(name, allowed) &&
-           !name.starts_with("gl_") && name.find("__") == std::string::npos &&
-           glsl_keywords.find(" " + name + " ") == std::string_view::npos &&
-           !std::regex_match(name, std::regex(glsl_types));
+    if (name.empty() || !std::ranges::all_of(name, allowed)) return "expected letters, digits and underscores";
+    if (!letter(static_cast<unsigned char>(name.front()))) return "expected a letter first";
+    if (name.starts_with("gl_") || name.find("__") != std::string::npos) return "GLSL reserves 'gl_' and '__'";
+    if (name == "trace" || name == "ray") return "it is a name of the shader functions";
+    if (glsl_keywords.find(" " + name + " ") != std::string_view::npos ||
+        std::regex_match(name, std::regex(glsl_types)))
+        return "it is a word of GLSL";
+    return "";
 }
+
+bool is_glsl_name(const std::string& name) { return glsl_name_fault(name).empty(); }
 
 } // namespace ssrlab

@@ -1,3 +1,4 @@
+#include "core/glsl_name.h"
 #include "core/names.h"
 #include "trace/manifest.h"
 
@@ -71,10 +72,9 @@ void read_choices(const TomlFile& file, const toml::table& table, const toml::no
     }
     for (const std::string& choice : parameter.choices) {
         // The shader gets each choice as a constant.
-        if (!is_glsl_name(parameter.name + "_" + choice)) {
-            throw_spec_error("{}: choice '{}' of '{}' must be letters, digits and underscores", toml_place(file, list),
-                             choice, parameter.name);
-        }
+        if (const std::string fault = glsl_name_fault(parameter.name + "_" + choice); !fault.empty())
+            throw_spec_error("{}: choice '{}' of '{}' cannot be part of a name: {}", toml_place(file, list), choice,
+                             parameter.name, fault);
     }
     parameter.max = static_cast<double>(parameter.choices.size()) - 1;
     parameter.default_value =
@@ -114,11 +114,9 @@ Parameter read_parameter(const TomlFile& file, const toml::key& key, const toml:
 {
     Parameter parameter;
     parameter.name = key.str();
-    if (!is_glsl_name(parameter.name)) {
-        throw_spec_error("{}:{}: parameter '{}' is not a name that GLSL accepts (letters, digits, underscores; no "
-                         "keyword)",
-                         file.path, key.source().begin.line, parameter.name);
-    }
+    if (const std::string fault = glsl_name_fault(parameter.name); !fault.empty())
+        throw_spec_error("{}:{}: parameter '{}' is not a name that GLSL accepts: {}", file.path,
+                         key.source().begin.line, parameter.name, fault);
     const toml::table& table = toml_table(file, node, parameter.name);
     toml_known_keys(file, table, "field of parameter '" + parameter.name + "'", parameter_keys());
     const std::string owner = "parameter '" + parameter.name + "'";
@@ -210,9 +208,8 @@ std::vector<std::string> read_known(const TomlFile& file, const toml::node& node
 std::string read_folder_id(const TomlFile& file, const std::filesystem::path& folder, const std::string& kind)
 {
     std::string id = std::filesystem::weakly_canonical(folder).filename().string();
-    if (!is_glsl_name(id))
-        throw_spec_error("{}:1: the folder's name '{}' is the {}'s id and must be letters, digits and underscores",
-                         file.path, id, kind);
+    if (const std::string fault = glsl_name_fault(id); !fault.empty())
+        throw_spec_error("{}:1: the folder's name '{}' cannot be the {}'s id: {}", file.path, id, kind, fault);
     return id;
 }
 

@@ -1,5 +1,6 @@
 #include "trace/structure.h"
 
+#include "core/glsl_name.h"
 #include "core/names.h"
 #include "trace/manifest.h"
 
@@ -83,10 +84,9 @@ StructureBuffer read_buffer(const TomlFile& file, const toml::key& key, const to
     const toml::table& table         = toml_table(file, node, owner);
     StructureBuffer    buffer;
     buffer.name = key.str();
-    if (!is_glsl_name(buffer.name))
-        throw_spec_error(
-            "{}:{}: buffer '{}' is not a name that GLSL accepts (letters, digits, underscores; no keyword)", file.path,
-            key.source().begin.line, buffer.name);
+    if (const std::string fault = glsl_name_fault(buffer.name); !fault.empty())
+        throw_spec_error("{}:{}: buffer '{}' is not a name that GLSL accepts: {}", file.path, key.source().begin.line,
+                         buffer.name, fault);
     toml_known_keys(file, table, "field of " + owner, buffer_keys);
     buffer.per     = read_rule(file, table, owner, buffer_rules);
     buffer.tile_px = read_tile_px(file, table, owner, buffer.per);

@@ -117,7 +117,10 @@ class Test(Case):
         self.assertNotEqual(re.search(r"first .*", self.ssrlab(*case))[0], re.search(r"first .*", self.ssrlab(*case, "-p", "stride_px=40"))[0])
         self.refused(*case, "-p", "stride=40", code=2, says=["stride"])
         self.refused("new-technique", "mine/first", code=2, says=["mine/first: already there"])
-        self.refused("new-technique", "mine/a-b", code=2, says=["'a-b' cannot be a technique's name"])
+        for name, fault in (("a-b", "expected letters, digits and underscores"), ("2nd", "expected a letter first"),
+                            ("flat", "it is a word of GLSL"), ("vec3", "it is a word of GLSL"), ("trace", "it is a name of the shader functions"),
+                            ("gl_x", "GLSL reserves 'gl_' and '__'")):
+            self.refused("new-technique", f"mine/{name}", code=2, says=[f"'{name}' cannot be a technique's name: {fault}"])
 
     def test_completion_knows_commands_techniques_and_scenes(self):
         def completed(*words):

@@ -98,7 +98,7 @@ TEST(StructureManifest, MistakesAreNamedWithFileAndLine)
         {head + "[buffers]\nfronts = { per = \"depth_cell\", type = \"uint\" }\n" + pass,
          ":4: 'type' is fixed for per = \"depth_cell\""},
         {head + "[buffers]\nfloat = { per = \"pixel\", type = \"uint\" }\n" + pass,
-         ":4: buffer 'float' is not a name that GLSL accepts"},
+         ":4: buffer 'float' is not a name that GLSL accepts: it is a word of GLSL"},
         {head + buffer + "[[passes]]\nshader = \"gone.comp\"\nper = \"pixel\"\n", "gone.comp' is not there"},
         {head + buffer + "[[passes]]\nshader = \"build.comp\"\nper = \"pixel\"\nlast_level = 3\n",
          ":8: 'last_level' belongs to per = \"level\""},

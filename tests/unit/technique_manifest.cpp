@@ -176,9 +176,9 @@ TEST(TechniqueManifest, MistakesAreNamedWithFileAndLine)
          ":4: unknown choice of 'mode' 'c'"},
         {"mode = { default = true, defines = { a = \"A\" }, doc = \"d\" }", ":4: 'defines' belongs to choices"},
         {"\"two words\" = { default = true, doc = \"d\" }",
-         ":4: parameter 'two words' is not a name that GLSL accepts"},
+         ":4: parameter 'two words' is not a name that GLSL accepts: expected letters, digits"},
         {"float = { default = true, doc = \"d\" }", ":4: parameter 'float' is not a name that GLSL accepts"},
-        {"ray = { default = true, doc = \"d\" }", ":4: parameter 'ray' is not a name that GLSL accepts"},
+        {"ray = { default = true, doc = \"d\" }", ":4: parameter 'ray' is not a name that GLSL accepts: it is a name of the shader functions"},
         {"steps = { default = 1, min = 1, max = 2, doc = \"d\" ", ":4: "},
     };
     const TechniqueDir dir;
