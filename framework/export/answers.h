@@ -27,7 +27,8 @@ void for_each_frame(const std::filesystem::path&                             fol
                     const std::function<void(const std::filesystem::path&)>& visit);
 
 /// Throws SpecError where a resource of the frame, or a file with its content or its answers, has another size than the
-/// frame's image and rays need. Buffers of structures have the size that the frame says. file: the JSON file of the frame.
+/// frame's image and rays need. Buffers of structures have the size that the frame says.
+/// file: the JSON file of the frame.
 void require_sizes(const nlohmann::json& frame, const std::filesystem::path& file);
 
 /// file: the JSON file of the frame.

@@ -44,6 +44,7 @@ void refuse_what_frames_lack(const Experiment& experiment)
     for (const std::string& scene : experiment.scenes) {
         if (!is_frame(scene)) continue;
         const glm::ivec2 own_px = frame_size_px(scene);
+        static_cast<void>(frame_files(scene)); // throws for mistakes in the file beside it
         if (experiment.places.contains("sizes") && std::ranges::count(experiment.sizes_px, own_px) == 0)
             throw_spec_error("{}: '{}' is a frame of {} pixels: expected 'sizes' with that size, or none, got {}",
                              place("sizes"), scene, size_text(own_px), size_text(experiment.sizes_px.front()));

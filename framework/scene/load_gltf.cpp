@@ -283,6 +283,7 @@ Model load(const std::filesystem::path& file, bool views_only)
 {
     Import import;
     parse_file(import, file);
+    if (!views_only && import.json.meshes.empty()) import.fail("no triangle that can be drawn");
     read_animations(import);
     Walk walk;
     walk.views_only = views_only;

@@ -52,11 +52,7 @@ Model load_model(const std::string& name)
     const fs::path file = find_scene_file(name);
     if (file.empty()) throw SpecError(unknown_scene(name));
     if (!fs::exists(file)) throw_spec_error("scene '{}': no such file", name);
-    if (lower_extension(file) == ".toml") return load_recipe(file);
-    Model model = with_views_beside(load_gltf(file), file);
-    if (std::ranges::all_of(model.meshes, [](const Mesh& mesh) { return mesh.indices.empty(); }))
-        throw_failure("{}: no triangle that can be drawn", file.string());
-    return model;
+    return lower_extension(file) == ".toml" ? load_recipe(file) : with_views_beside(load_gltf(file), file);
 }
 
 Scene frame_scene(const std::string& name)

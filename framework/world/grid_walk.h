@@ -6,8 +6,8 @@
 
 namespace ssrlab {
 
-/// A grid, and on the device which of its cells and blocks of cells are occupied: a bit each, x fastest, then y. A block
-/// of a level is 4 blocks of the level below wide; level 0 are the cells.
+/// A grid, and on the device which of its cells and blocks of cells are occupied: a bit each, x fastest, then y.
+/// A block of a level is 4 blocks of the level below wide; level 0 are the cells.
 struct DeviceGrid {
     Occupancy             grid;
     Buffer                occupied;

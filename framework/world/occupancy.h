@@ -16,7 +16,7 @@ struct Occupancy {
 };
 
 /// Returns the grid, with `side` cells along each axis. Conservative: a cell is empty only if no triangle comes nearer
-/// to it than a thousandth of a cell, which is more than floats round the places of a ray (shaders/world/grid_walk.comp).
+/// to it than a thousandth of a cell. Floats round the places of a ray by less (shaders/world/grid_walk.comp).
 Occupancy make_occupancy(const Scene& scene, int side = 512);
 
 /// Returns how far a point moves along a unit direction from one side of a cell to the opposite one.

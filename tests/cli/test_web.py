@@ -24,7 +24,8 @@ class Test(Case):
     def traced(self, technique, *parameters):
         """Of each pixel with a ray: (status, hit x, hit y, t)."""
         path = self.path(f"{technique}.exr")
-        self.ssrlab("trace", "builtin:corridor", "--size", "64x36", "-t", technique, "-p", "surface=plane_solid", *parameters, "-o", path)
+        self.ssrlab("trace", "builtin:corridor", "--size", "64x36", "-t", technique, "-o", path,
+                    *(word for pair in ("surface=plane_solid", *parameters) for word in ("-p", pair)))
         image = OpenImageIO.ImageBuf(path)
         names = list(image.spec().channelnames)
         return {name: image.get_pixels(OpenImageIO.FLOAT)[:, :, names.index(name)] for name in names}

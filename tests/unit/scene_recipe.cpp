@@ -215,7 +215,7 @@ TEST(SceneRecipe, MistakesNameFileLineAndWhatIsAccepted)
         mistake("[[part]]\nshape = 'box'\nheight_m = -1\n"),
         AllOf(HasSubstr("recipe.toml:3: [[part]]: 'height_m' must be a number in"), EndsWith("got the integer -1")));
     EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nheight_m = nan\n"),
-                AllOf(HasSubstr("recipe.toml:3"), EndsWith("got the number nan")));
+                AllOf(HasSubstr("recipe.toml:3"), EndsWith("got nan, which is not a number")));
     EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nmaterial = { metallic = 2 }\n"),
                 HasSubstr("recipe.toml:3: material: 'metallic' must be a number in [0, 1]"));
     EXPECT_THAT(mistake("[[part]]\nshape = 'box'\nmaterial = { colour = 2 }\n"),

@@ -130,13 +130,13 @@ TEST(Spec, EveryParameterAgainstEveryMistake)
     EXPECT_THAT(mistake("steps = [25, 0]"), HasSubstr(".toml:3: 'steps' must be an integer in [1, 60000], got 0"));
     EXPECT_THAT(mistake("steps = 60001"), HasSubstr("got 60001"));
     EXPECT_THAT(mistake("steps = 25.0"), HasSubstr(".toml:3: 'steps' must be an integer, got the number 25"));
-    EXPECT_THAT(mistake("steps = nan"), HasSubstr(".toml:3: 'steps' must be an integer, got the number nan"));
+    EXPECT_THAT(mistake("steps = nan"), HasSubstr(".toml:3: 'steps' must be an integer, got nan, which is not a number"));
     EXPECT_THAT(mistake("steps = [\n25,\n\"x\"]"),
                 HasSubstr(".toml:5: 'steps' must be an integer, got the string \"x\""));
     EXPECT_THAT(mistake("steps = []"), HasSubstr(".toml:3: 'steps' is an empty list"));
     EXPECT_THAT(mistake("steps = 9223372036854775807"), HasSubstr(".toml:3: 'steps' must be"));
     EXPECT_THAT(mistake("stride = 0.1"), HasSubstr(".toml:3: 'stride' must be a number in [0.5, 8], got 0.1"));
-    EXPECT_THAT(mistake("stride = nan"), HasSubstr(".toml:3: 'stride' must be a number, got the number nan"));
+    EXPECT_THAT(mistake("stride = nan"), HasSubstr(".toml:3: 'stride' must be a number, got nan, which is not a number"));
     EXPECT_THAT(mistake("stride = 1e308"), HasSubstr(".toml:3: 'stride' must be a number in [0.5, 8]"));
     EXPECT_THAT(mistake("space = \"veiw\""), HasSubstr(".toml:3: 'space' must be one of view, screen, got 'veiw'"));
     EXPECT_THAT(mistake("space = 1"), HasSubstr(".toml:3: 'space' must be a non-empty string"));

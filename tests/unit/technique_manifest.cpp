@@ -160,7 +160,7 @@ TEST(TechniqueManifest, MistakesAreNamedWithFileAndLine)
         {"steps = { default = 1, min = 0.5, max = 2, doc = \"d\" }",
          ":4: 'min of steps' must be an integer, got the number 0.5"},
         {"steps = { default = nan, min = 0, max = 2, doc = \"d\" }",
-         ":4: 'default of steps' must be a number, got the number nan"},
+         ":4: 'default of steps' must be a number, got nan, which is not a number"},
         {"steps = { default = 1.0, min = nan, max = 2, doc = \"d\" }", ":4: 'min of steps' must be a number"},
         {"steps = { default = [1], min = 1, max = 2, doc = \"d\" }", ":4: 'default of steps' must be"},
         {"steps = { defualt = 1, min = 1, max = 2, doc = \"d\" }",
