@@ -82,7 +82,7 @@ def picks(results):
             chosen = chosen.assign(worse_surface=over_worse_surface(chosen, chosen.get("f1_1px"), chosen.reached))
             chosen = chosen.sort_values(["missing", "worse_surface", "cost_ms_median"])
         parts.append(chosen)
-    return pd.concat(parts) if parts else results.rows.iloc[:0].assign(label="", frame_title="", reached=False, setting="")
+    return pd.concat(parts) if parts else results.rows.iloc[:0].assign(label="", frame_title="", reached=False, worse_surface=False, setting="")
 
 
 def mean_of(part, name):

@@ -96,6 +96,8 @@ class Test(Case):
             self.assertEqual(int(row["sources_asked"]), len(own))
             spent = sum(float(one[name]) for one in own for name in ("draw_ms", "trace_ms", "shade_ms"))
             self.assertAlmostEqual(float(row["sources_ms"]) / spent, 1, 4)
+        self.ssrlab("plot", "out")
+        self.assertTrue(os.path.exists(self.path("out/report.html")))
         self.ssrlab("merge", "out", "-o", "merged")
         self.assertEqual(self.rows("merged", "sources.csv"), asked)
         os.truncate(self.path("out/sources.csv"), os.path.getsize(self.path("out/sources.csv")) - 40)
