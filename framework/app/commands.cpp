@@ -72,12 +72,10 @@ int write_gbuffer(const CommonOptions& common, const PictureOptions& options)
     return report_messages(stage);
 }
 
-int plot_results(const std::string& given, double bandwidth_gbps)
+int plot_results(const std::string& folder, double bandwidth_gbps)
 {
-    const std::filesystem::path path(given);
-    const std::string           folder =
-        path.filename() == "results.csv" ? (path.has_parent_path() ? path.parent_path().string() : ".") : given;
-    const std::filesystem::path table = std::filesystem::path(folder) / "results.csv";
+    const std::filesystem::path given(folder),
+        table = given.filename() == "results.csv" ? given : given / "results.csv";
     if (!std::filesystem::exists(table)) throw_spec_error("{}: no such file; ssrlab run writes it", table.string());
     std::vector<std::string> arguments = {folder};
     if (bandwidth_gbps > 0) arguments.push_back(fmt::format("--bandwidth-gbps={}", bandwidth_gbps));

@@ -22,7 +22,7 @@ int trace_hits(const CommonOptions& common, const PictureOptions& options);
 int write_gbuffer(const CommonOptions& common, const PictureOptions& options);
 /// Runs the plot script, which writes the plots, derived rows and report of a results folder. `bandwidth_gbps`: of the
 /// device's memory; 0: not given.
-int plot_results(const std::string& given, double bandwidth_gbps);
+int plot_results(const std::string& folder, double bandwidth_gbps);
 /// Prints every column of a results folder with its unit and definition, as Markdown tables.
 int print_measures(const CommonOptions& common);
 

@@ -253,11 +253,12 @@ int list_everything(const CommonOptions& common, bool json)
     std::puts("\nSurface models: what a pixel is taken to hold");
     for (const Surface& surface : catalogue.surfaces)
         std::puts(fmt::format("  {:<16} {}", surface.id, surface.summary).c_str());
+    const std::vector<Part> parts = parts_of(catalogue);
     for (const auto& [kind, title] : {std::pair("source", "Sources: where the answer to a ray may come from"),
                                       std::pair("structure", "Structures: what techniques read besides the G-buffer"),
                                       std::pair("reprojection", "Reprojection strategies")}) {
         std::puts(fmt::format("\n{}", title).c_str());
-        for (const Part& part : parts_of(catalogue))
+        for (const Part& part : parts)
             if (part.kind == kind) std::puts(fmt::format("  {:<16} {}", part.id, part.summary).c_str());
     }
     std::puts("\nScenes (besides any .glb, .gltf, recipe .toml or frame .exr by its path)");

@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
-#include "core/glsl_name.h"
+#include "core/names.h"
 #include "trace/catalogue.h"
 
 #include <cstdio>

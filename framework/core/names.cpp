@@ -1,7 +1,5 @@
 #include "core/names.h"
 
-#include "core/glsl_name.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -90,7 +88,5 @@ std::string glsl_name_fault(const std::string& name)
         return "it is a word of GLSL";
     return "";
 }
-
-bool is_glsl_name(const std::string& name) { return glsl_name_fault(name).empty(); }
 
 } // namespace ssrlab

@@ -13,7 +13,8 @@ std::string suggestion(const std::string& name, std::span<const std::string> kno
 std::string unknown_name(const std::string& kind, const std::string& name, std::span<const std::string> known,
                          std::span<const std::string> also = {});
 
-/// Whether GLSL accepts the name: letters, digits, underscores; no keyword, gl_ prefix or "__".
-bool is_glsl_name(const std::string& name);
+/// Why shaders cannot have the name: "expected letters, digits and underscores", "it is a word of GLSL". Empty if they
+/// can.
+std::string glsl_name_fault(const std::string& name);
 
 } // namespace ssrlab

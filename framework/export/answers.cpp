@@ -4,6 +4,7 @@
 #include "core/files.h"
 #include "core/pixel_index.h"
 #include "shared.h"
+#include "trace/depth_buffer.h"
 
 #include <nlohmann/json.hpp>
 
@@ -161,15 +162,6 @@ void compare_set_up(FrameVerdict& verdict, const Words& rays, const Words& made,
     }
 }
 
-/// README.md of an export has the formula.
-size_t bytes_of_cells(glm::ivec2 size_px)
-{
-    const auto odd    = [](int n) { return static_cast<size_t>(n | 1); };
-    const auto strips = [&](int columns) { return static_cast<size_t>((size_px.x - 1) / columns + 1); };
-    const int  root   = 1 << std::bit_width(static_cast<unsigned>(size_px.y - 1));
-    return 64 * (strips(16) * odd(root + size_px.y + 1) + strips(8) * odd(size_px.y + 1));
-}
-
 /// What README.md of an export says of a resource; nullopt for one of a structure.
 std::optional<size_t> bytes_needed(const std::string& name, glm::ivec2 size_px, size_t rays)
 {
@@ -177,7 +169,7 @@ std::optional<size_t> bytes_needed(const std::string& name, glm::ivec2 size_px, 
     const std::map<std::string, size_t> needed{{"view", 48},
                                                {"host_depth", 4 * pixels},
                                                {"host_gradients", 4 * pixels},
-                                               {"cells", bytes_of_cells(size_px)},
+                                               {"cells", depth_buffer_bytes(size_px)},
                                                {"normals", 16 * pixels},
                                                {"solids", 4 * pixels},
                                                {"ray_count", 4},

@@ -265,12 +265,10 @@ std::string readme(const Export& what, const View& view, std::span<const Exporte
         "## Proof\n`frames/` has inputs and `expected/` has the answer of every ray. `ssrlab export --verify FOLDER` "
         "runs these files and compares. A host of your own reads `frames/NAME.json`: it lists each resource (its "
         "bytes, its file, or the word that fills it), and each pass with its bindings and dispatches as numbers. "
-        "Status "
-        "and pixel must be equal, and t to the bit.\n\nThe frames give `host_depth` in the convention that the first "
-        "lines name, not in your "
-        "engine's convention. Run the proof before you change `host_depth()`: once it converts, rays must differ here. "
-        "To check the conversion, export with `--scene FRAME.exr`, a frame of your engine: "
-        "`frames/scene.host_depth.bin` "
+        "Status and pixel must be equal, and t to the bit.\n\n"
+        "The frames give `host_depth` in the convention that the first lines name, not in your engine's convention. "
+        "Run the proof before you change `host_depth()`: once it converts, rays must differ here. To check the "
+        "conversion, export with `--scene FRAME.exr`, a frame of your engine: `frames/scene.host_depth.bin` "
         "holds what your `host_depth()` has to return at each of its pixels.";
     if (what.language == ExportLanguage::hlsl)
         text += " `--verify` compiles HLSL with glslang and runs it by Vulkan. Neither DXC nor D3D12 has seen these "

@@ -55,15 +55,19 @@ Bindings depth_bindings(const DepthBuffer& depth)
             {"StoredCell", {all, all.texels, {depth.cells_id, cells_bytes, cell}}}};
 }
 
+size_t depth_buffer_bytes(glm::ivec2 size_px)
+{
+    const int first  = planes_first(size_px.x, pyramid_rows(pyramid_root(size_px), size_px.y));
+    const int rows   = planes_rows(size_px.y);
+    const int texels = first + strip_index(((size_px.x - 1) >> STRIP_BITS) << STRIP_BITS, rows, rows);
+    return static_cast<size_t>(texels) * sizeof(glm::uvec2);
+}
+
 DepthBuffer make_depth_buffer(Gpu& gpu, glm::ivec2 size_px)
 {
-    const int  first = planes_first(size_px.x, pyramid_rows(pyramid_root(size_px), size_px.y));
-    const int  rows  = planes_rows(size_px.y);
-    const auto texels =
-        static_cast<size_t>(first + strip_index(((size_px.x - 1) >> STRIP_BITS) << STRIP_BITS, rows, rows));
     DepthBuffer depth;
     depth.size_px  = size_px;
-    depth.cells    = make_texel_buffer(gpu, texels * sizeof(glm::uvec2), vk::Format::eR32G32Uint);
+    depth.cells    = make_texel_buffer(gpu, depth_buffer_bytes(size_px), vk::Format::eR32G32Uint);
     depth.words    = make_texel_view(gpu, depth.cells, vk::Format::eR32Sfloat);
     depth.pairs    = make_texel_view(gpu, depth.cells, vk::Format::eR32G32B32A32Uint);
     depth.cells_id = new_storage_id(gpu);

@@ -32,6 +32,8 @@ struct DepthBuffer {
 /// Returns it by the names under which shaders read depths and cells and store cells.
 Bindings depth_bindings(const DepthBuffer& depth);
 
+/// Returns the bytes of `cells`.
+size_t depth_buffer_bytes(glm::ivec2 size_px);
 /// Returns a buffer with undefined content.
 DepthBuffer make_depth_buffer(Gpu& gpu, glm::ivec2 size_px);
 /// Writes depths, row-major. `gradients`: one per pixel, packed (core/plane_gradient.h); empty: level planes.

@@ -1,4 +1,3 @@
-#include "core/glsl_name.h"
 #include "core/names.h"
 #include "trace/manifest.h"
 

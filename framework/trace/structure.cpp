@@ -1,6 +1,5 @@
 #include "trace/structure.h"
 
-#include "core/glsl_name.h"
 #include "core/names.h"
 #include "trace/manifest.h"
 

@@ -18,7 +18,7 @@ std::vector<std::string> read_defines(const TomlFile& file, const toml::node& no
 {
     std::vector<std::string> macros = toml_texts(file, node, "defines");
     for (const std::string& macro : macros)
-        if (!is_glsl_name(macro)) toml_refuse(file, node, "defines", "names that GLSL accepts for macros");
+        if (!glsl_name_fault(macro).empty()) toml_refuse(file, node, "defines", "names that GLSL accepts for macros");
     return macros;
 }
 

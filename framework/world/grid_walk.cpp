@@ -2,28 +2,26 @@
 
 #include "gpu/timed_run.h"
 
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <limits>
 
 namespace ssrlab {
 namespace {
 
-constexpr int levels = 4, level_bits = 2; // GRID_LEVELS and LEVEL_BITS of the shader
+constexpr size_t level_bits = 2; // LEVEL_BITS of the shader
 
 /// shaders/world/grid_walk.comp, scalar layout.
 struct GridPush {
-    glm::vec3                    low_ws;
-    glm::vec3                    cells_per_m;
-    glm::ivec3                   cells;
-    std::array<uint32_t, levels> first_words;
+    glm::vec3                         low_ws;
+    glm::vec3                         cells_per_m;
+    glm::ivec3                        cells;
+    std::array<uint32_t, grid_levels> first_words;
 };
 
 /// The blocks of a level that hold an occupied cell.
-std::vector<uint32_t> occupied_blocks(const Occupancy& grid, int level)
+std::vector<uint32_t> occupied_blocks(const Occupancy& grid, size_t level)
 {
-    const int             shift  = level_bits * level;
+    const int             shift  = static_cast<int>(level_bits * level);
     const glm::ivec3      blocks = ((grid.cells - 1) >> shift) + 1;
     std::vector<uint32_t> bits((size_t(blocks.x) * size_t(blocks.y) * size_t(blocks.z) + 31) / 32);
     for (size_t word = 0; word < grid.occupied.size(); ++word)
@@ -41,14 +39,16 @@ std::vector<uint32_t> occupied_blocks(const Occupancy& grid, int level)
 
 DeviceGrid upload_grid(Gpu& gpu, Occupancy grid)
 {
-    std::vector<uint32_t> words, first_words;
-    for (int level = 0; level < levels; ++level) {
+    DeviceGrid            device;
+    std::vector<uint32_t> words;
+    for (size_t level = 0; level < grid_levels; ++level) {
         const std::vector<uint32_t> bits = occupied_blocks(grid, level);
-        first_words.push_back(static_cast<uint32_t>(words.size()));
+        device.first_words[level]        = static_cast<uint32_t>(words.size());
         words.insert(words.end(), bits.begin(), bits.end());
     }
-    Buffer occupied = make_buffer_with<uint32_t>(gpu, words);
-    return {std::move(grid), std::move(occupied), std::move(first_words)};
+    device.occupied = make_buffer_with<uint32_t>(gpu, words);
+    device.grid     = std::move(grid);
+    return device;
 }
 
 GridWalk walk_grid(Gpu& gpu, const DeviceGrid& device, std::span<const WorldRay> rays)
@@ -63,8 +63,7 @@ GridWalk walk_grid(Gpu& gpu, const DeviceGrid& device, std::span<const WorldRay>
          gpu, compile_shader(gpu, {.file = "world/grid_walk.comp"}),
          {{"Occupied", device.occupied}, {"WorldRays", list.rays}, {"WorldLaunch", list.launch}, {"MetDistances", met}},
          {}, sizeof(GridPush));
-    GridPush values{glm::vec3(grid.low_ws), glm::vec3(1.0 / grid.cell_m), grid.cells, {}};
-    std::ranges::copy(device.first_words, values.first_words.begin());
+    const GridPush values{glm::vec3(grid.low_ws), glm::vec3(1.0 / grid.cell_m), grid.cells, device.first_words};
     walk.ms    = time_second_run_ms(gpu, [&](const Commands& commands) {
         push(commands, pass, values);
         dispatch_indirect(commands, pass, list.launch);

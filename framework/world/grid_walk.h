@@ -4,14 +4,17 @@
 #include "world/occupancy.h"
 #include "world/world.h"
 
+#include <array>
+
 namespace ssrlab {
 
 /// A grid, and on the device which of its cells and blocks of cells are occupied: a bit each, x fastest, then y.
 /// A block of a level is 4 blocks of the level below wide; level 0 are the cells.
+inline constexpr size_t grid_levels = 4; // GRID_LEVELS of shaders/world/grid_walk.comp
 struct DeviceGrid {
-    Occupancy             grid;
-    Buffer                occupied;
-    std::vector<uint32_t> first_words; // of each level
+    Occupancy                         grid;
+    Buffer                            occupied;
+    std::array<uint32_t, grid_levels> first_words{}; // of each level
 };
 DeviceGrid upload_grid(Gpu& gpu, Occupancy grid);
 
