@@ -1,6 +1,8 @@
 // What every test has: the frameworks and the parts of the standard library that most use. Precompiled, because parsing
 // these is most of what a test's file costs.
-#pragma once
+// Guarded by a macro: a build has failed because g++ 12 took the #pragma once of a precompiled header for no guard.
+#ifndef SSRLAB_TESTS_TEST_H
+#define SSRLAB_TESTS_TEST_H
 
 #include <fmt/format.h>
 #include <glm/glm.hpp>
@@ -55,3 +57,5 @@ void expect_each(const Found& found, const char* name, const Value& value, const
 }
 
 } // namespace ssrlab::test
+
+#endif
