@@ -188,7 +188,7 @@ TEST(MissedRays, RoomsLeaveOpenScenesAsTheyAre)
     const Scene          scene = load_scene("builtin:sphere_over_mirror");
     const PlannedPicture open  = planned_picture(scene, MissLight::rooms, Gloss::stochastic);
     EXPECT_FALSE(open.missed_rays.runs);
-    EXPECT_NE(open.missed_rays.reason.find("below 1 %"), std::string::npos) << open.missed_rays.reason;
+    EXPECT_NE(open.missed_rays.reason.find("below 0.1 %"), std::string::npos) << open.missed_rays.reason;
     EXPECT_EQ(open.planned.values, open.unculled.values);
     EXPECT_EQ(open.planned.values, planned_picture(scene, MissLight::environment, Gloss::stochastic).planned.values);
 }

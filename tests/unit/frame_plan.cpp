@@ -118,7 +118,7 @@ TEST(Plan, MissedRaysAreFollowedWhereTheyMeetATriangle)
     EXPECT_FALSE(running(plan_passes(facts, closed, environment)).contains("missed_rays"));
 }
 
-TEST(Plan, RoomsAreFollowedWhereOnePercentOfTheirRaysMeetsATriangle)
+TEST(Plan, RoomsAreFollowedWhereOneOfAThousandRaysMeetsATriangle)
 {
     ParameterValues values  = values_with({chosen(MissLight::rooms)});
     FrameFacts      facts   = facts_with_pyramid(true);
@@ -129,9 +129,10 @@ TEST(Plan, RoomsAreFollowedWhereOnePercentOfTheirRaysMeetsATriangle)
     // To follow rays of which few meet something changes the picture: the unculled frame leaves them alone, too.
     for (const double skips : {1.0, 0.0}) {
         values.at("skip_unneeded_passes") = skips;
-        counts.misses                     = {.followed = 400, .met = 3};
+        counts.misses                     = {.followed = 4000, .met = 3};
         EXPECT_FALSE(running(verdict()).contains("missed_rays"));
-        EXPECT_THAT(reason(verdict(), "missed_rays"), HasSubstr("3 of 400 followed rays meet a triangle, below 1 %"));
+        EXPECT_THAT(reason(verdict(), "missed_rays"),
+                    HasSubstr("3 of 4000 followed rays meet a triangle, below 0.1 %"));
         counts.misses.met = 4;
         EXPECT_TRUE(running(verdict()).contains("missed_rays"));
     }
