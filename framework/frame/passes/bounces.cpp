@@ -136,7 +136,7 @@ Pass bounces_pass()
                                             "further bounces. off: none; history: from the previous frame's "
                                                 "reflection as the camera saw it, reprojected; direct: traced in the mirror "
                                                 "direction of the arriving ray"),
-                           integer_parameter("bounces", 1, 1, 16,
+                           integer_parameter("bounces", 2, 1, 16,
                                              "further bounces; with history and no frame before this one, earlier frames "
                                                  "of a still image; each adds one level of reflection")},
         .decide         = decide,
