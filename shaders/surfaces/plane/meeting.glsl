@@ -41,7 +41,8 @@ bool meets(Ray ray, PixelSurface surface, real t_in, real t_out)
 {
     real a = height_at(surface, t_in), b = height_at(surface, t_out), z_a = depth_at(ray, t_in), z_b = depth_at(ray, t_out);
     real low = a < b ? a : b, high = a < b ? b : a;
-    return low <= real(0) && high >= surface.back || (high < surface.back && (z_a > z_b ? z_a : z_b) >= surface.solid);
+    bool in_solid = has_solids && high < surface.back && (z_a > z_b ? z_a : z_b) >= surface.solid;
+    return low <= real(0) && high >= surface.back || in_solid;
 }
 
 // It comes from below.

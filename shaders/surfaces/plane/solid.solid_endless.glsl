@@ -1,2 +1,4 @@
 // Everything behind the surface is solid.
+const bool has_solids = true;
+
 float load_solid(ivec2 pixel, int layer) { return -1e30; }

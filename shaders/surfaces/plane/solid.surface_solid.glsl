@@ -1,5 +1,7 @@
-// The depth where the solid behind the pixel's surface in a layer ends; nearer than everything where there is none.
+// The solid ends where the next surface shows its back.
 #include "layout/solid_image.glsl"
+
+const bool has_solids = true;
 
 float load_solid(ivec2 pixel, int layer)
 {
