@@ -102,7 +102,7 @@ std::vector<std::string> views_of_frame(const FitOptions& options, const std::st
         throw_spec_error("{}: --objective flip: expected a frame with a 'reference', a picture of the true "
                          "reflections (docs/reference/frame_files.md)",
                          name);
-    const std::vector<std::string> views = options.views.empty() ? std::vector{Camera{}.name} : options.views;
+    std::vector<std::string> views = options.views.empty() ? std::vector{Camera{}.name} : options.views;
     for (const std::string& view : views)
         for (const int frame : options.frames) view_at(scene, view, {}, {frame, 0});
     return views;

@@ -72,7 +72,7 @@ FrameHistoryPtr history_before(Stage& stage, const PictureOptions& options, cons
 {
     if (options.at.frame == 0) return nullptr;
     show(stage, options.view, stage.view.size_px, {options.at.frame - 1, options.at.jitter_phases});
-    const FrameHistoryPtr history = make_history(stage.gpu, stage.view.size_px);
+    FrameHistoryPtr       history = make_history(stage.gpu, stage.view.size_px);
     const LabPtr          lab     = make_lab(stage, technique, choice.values, choice.settings.trace);
     const FrameBuffersPtr buffers = make_frame_buffers(stage);
     const FramePlan       plan    = plan_frame(stage, lab, buffers, choice.settings, history);
