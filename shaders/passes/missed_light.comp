@@ -26,7 +26,8 @@ GivenLight light_about(ivec2 pixel, WorldRay own)
     vec2  place = (vec2(pixel) + 0.5) / float(MISS_BLOCK_PX) - 0.5, part = fract(place);
     vec4  sum   = vec4(0); // light and distance
     float open = 0.0, closed = 0.0;
-    for (int i = 0; i < 4; ++i)
+    const int corners = MISS_BLOCK_PX == 1 ? 1 : 4; // of one pixel, the other blocks have no share
+    for (int i = 0; i < corners; ++i)
     {
         ivec2 corner = ivec2(i & 1, i >> 1);
         ivec2 block  = ivec2(floor(place)) + corner;
