@@ -74,6 +74,8 @@ std::string error_text(const std::string& error, const ShaderSource& source)
         // It follows from the missing trace().
         if (error.find("'store_result' : no matching overloaded function found") != std::string::npos) return "";
     }
+    for (const auto& [name, file] : source.include_files)
+        if (error.starts_with(file.string() + ":")) return error; // a surface model of the project's files
     const fs::path& file = source.include_files.rbegin()->second;
     return fmt::format("{}:{}: {} (found where the file is used: {})", file.string(), last_line(file),
                        std::regex_replace(error, std::regex("^[^:]*:[0-9]+: "), ""), error.substr(0, error.find(": ")));
@@ -86,13 +88,13 @@ std::string cure_of(const std::string& error, const ShaderSource& source, const 
     const std::regex unknown("'(\\w+)' : (no matching overloaded function found|undeclared identifier)");
     if (!std::regex_search(error, found, unknown)) return "";
     for (const auto& [line, file] : source.offered)
-        if (line_defining(read_file(file), found[1]) > 0) return fmt::format(" (needs {})", line);
+        if (line_defining(read_file(file), found[1]) > 0) return fmt::format(" (write {})", line);
     for (const fs::directory_entry& entry : fs::directory_iterator(shader_folder() / "api")) {
         const fs::path& file = entry.path();
         const auto      same = [&](const ShaderFile& other) { return other.name == file.string(); };
         if (file.stem().has_extension() || std::ranges::any_of(read, same)) continue; // a variant of another file
         if (line_defining(read_file(file), found[1]) > 0)
-            return fmt::format(" (needs #include \"api/{}\")", file.filename().string());
+            return fmt::format(" (write #include \"api/{}\")", file.filename().string());
     }
     return "";
 }

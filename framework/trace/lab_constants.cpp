@@ -1,4 +1,5 @@
 // What the lab's shaders are composed with: settings, parameters and surface models as constants and macros.
+#include "core/files.h"
 #include "trace/lab_passes.h"
 
 #include "shared.h"
@@ -81,6 +82,17 @@ Defines ray_list_defines(const Gpu& gpu, const RayBuffers& rays)
     return defines;
 }
 
+namespace {
+
+/// What surface.toml would have to say so that shaders may read this of the G-buffer, too.
+std::string needs_line(const Surface& surface, const std::string& more)
+{
+    const std::string already = surface.needs_gradient ? "\"gradient\", " : surface.needs_solid ? "\"solid\", " : "";
+    return fmt::format("needs = [{}\"{}\"] in {}", already, more, short_path(surface.folder / "surface.toml"));
+}
+
+} // namespace
+
 void add_surface(ShaderSource& source, const Surface& surface, int layers)
 {
     for (const char* part : {"meeting.glsl", "meeting_exact.glsl", "held.glsl", "order.glsl"})
@@ -89,8 +101,14 @@ void add_surface(ShaderSource& source, const Surface& surface, int layers)
     if (!source.include_files.contains("surface/order.glsl")) // held.glsl has it
         source.include_texts.emplace("surface/order.glsl", "");
     source.include_folders.push_back(surface.shaders);
-    if (surface.needs_gradient) source.defines.emplace("PIXEL_PLANES", "1");
-    if (surface.needs_solid) source.defines.emplace("SURFACE_SOLID", "1");
+    const auto add_need = [&](bool needed, const char* need, const char* macro, const char* file) {
+        if (needed)
+            source.defines.emplace(macro, "1");
+        else
+            source.offered.emplace(needs_line(surface, need), shader_folder() / "surfaces" / "plane" / file);
+    };
+    add_need(surface.needs_gradient, "gradient", "PIXEL_PLANES", "stored.pixel_planes.glsl");
+    add_need(surface.needs_solid, "solid", "SURFACE_SOLID", "solid.surface_solid.glsl");
     for (const std::string& macro : surface.defines) source.defines.emplace(macro, "1");
     source.defines.emplace("LAYERS", std::to_string(layers));
     if (layers > 1) source.defines.emplace("LAYERED", "1");

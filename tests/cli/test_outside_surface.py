@@ -4,7 +4,7 @@ import os
 
 import numpy
 import OpenImageIO as oiio
-from support import Case, main, read
+from support import SOURCE, Case, main, read
 
 FILES = ("surface.toml", "meeting.glsl", "held.glsl")
 SWEEP = """scenes = ["builtin:sphere_over_mirror"]
@@ -108,6 +108,7 @@ class Test(Case):
                      says=["arithmetic = exact", "sloped_slab", "meeting_exact.glsl"])
         self.write("mine/sloped_slab/meeting.glsl", self.blocks["meeting.glsl"].replace("surface.back;\n}", "surface.bakc;\n}", 1))
         self.refused(*render, "surface=sloped_slab", code=2, says=["mine/sloped_slab/meeting.glsl:31", "bakc"])
+        self.write("mine/sloped_slab/meeting.glsl", self.blocks["meeting.glsl"])
         self.write("mine/sloped_slab/surface.toml", self.blocks["surface.toml"].replace('"gradient"', '"gradeint"'))
         self.refused("--techniques", "mine", "list", code=2, says=["surface.toml:3", "gradeint", "gradient"])
         self.write("mine/sloped_slab/surface.toml", self.blocks["surface.toml"].replace("needs", "neads"))
@@ -115,6 +116,26 @@ class Test(Case):
         self.write("mine/sloped_slab/surface.toml", self.blocks["surface.toml"])
         os.remove(self.path("mine/sloped_slab/held.glsl"))
         self.refused("--techniques", "mine", "list", code=2, says=["sloped_slab/held.glsl: missing"])
+
+    def test_what_it_reads_without_declaring_it_is_said(self):
+        """Else it would read what is not there: the pixel beside it for a gradient, nothing for a solid."""
+        def refused(technique, *says):
+            self.refused("--techniques", "mine", "render", "builtin:stairs", "-t", technique, "--size", "64x36", "-o", "a.png", "-p",
+                         "surface=sloped_slab", code=2, says=says)
+        self.write("mine/sloped_slab/surface.toml", self.blocks["surface.toml"].replace('needs   = ["gradient"]\n', ""))
+        refused("dda", "mine/sloped_slab/meeting.glsl:12: 'unpack_gradient'", '(write needs = ["gradient"] in mine/sloped_slab/surface.toml)')
+        level = self.blocks["meeting.glsl"].replace("unpack_gradient(words.y)", "vec2(0)").replace("has_plane(stored)", "true")
+        self.write("mine/sloped_slab/meeting.glsl", level)
+        refused("hiz", "mine/sloped_slab/held.glsl:6: 'unpack_gradient'", '(write needs = ["gradient"] in mine/sloped_slab/surface.toml)')
+        self.write("mine/sloped_slab/surface.toml", self.blocks["surface.toml"])
+        solid = self.blocks["meeting.glsl"].replace("slab_back(depth) - depth", "real(load_solid(pixel, layer)) - depth", 1)
+        self.write("mine/sloped_slab/meeting.glsl", '#include "surfaces/plane/solid.glsl"\n' + solid)
+        refused("dda", "mine/sloped_slab/meeting.glsl:18: 'load_solid'", '(write needs = ["gradient", "solid"] in mine/sloped_slab/surface.toml)')
+        # The same for the project's files, compiled for a model that declares nothing.
+        self.write("mine/borrowed/surface.toml", 'name = "Borrowed"\nsummary = "Planes without their gradient."\ndefines = ["SOLID_NONE"]\nshaders = "PLANE"\n'
+                   .replace("PLANE", os.path.relpath(os.path.join(SOURCE, "shaders/surfaces/plane"), self.path("mine/borrowed"))))
+        self.refused("--techniques", "mine", "render", "builtin:stairs", "-t", "dda", "--size", "64x36", "-o", "a.png", "-p", "surface=borrowed", code=2,
+                     says=["surfaces/plane/meeting.glsl:", "'unpack_gradient'", '(write needs = ["gradient"] in mine/borrowed/surface.toml)'])
 
     def test_two_of_one_name_are_refused(self):
         for name, text in self.blocks.items():

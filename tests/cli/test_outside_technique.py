@@ -85,8 +85,8 @@ class Test(Case):
                  ["mine/coin/trace.glsl:4: 'pixle_at'", "mine/coin/trace.glsl:7: 'mis'"]),
                 (TRACE.replace("trace(Ray", "trace_it(Ray"), ["ssrlab: mine/coin/trace.glsl:8: trace.glsl defines no TraceResult trace(Ray)"]),
                 (TRACE.replace("    return miss", "    fetch_cell(pixel, 3);\n    return miss", 1),
-                 ["'fetch_cell' : no matching overloaded function found", "(needs structures = [\"depth_pyramid\"] in technique.toml)"]),
-                (TRACE.split("\n", 1)[1], ["mine/coin/trace.glsl:3: 'pixel_at'", '(needs #include "api/sampling.glsl")']),
+                 ["'fetch_cell' : no matching overloaded function found", "(write structures = [\"depth_pyramid\"] in technique.toml)"]),
+                (TRACE.split("\n", 1)[1], ["mine/coin/trace.glsl:3: 'pixel_at'", '(write #include "api/sampling.glsl")']),
                 ("// main()\nvoid main() {}\n" + TRACE, ["mine/coin/trace.glsl:2: 'main' is reserved"]),
                 (TRACE.rstrip().removesuffix("}"), ["mine/coin/trace.glsl:3: this '{' is never closed"]),
                 ("// { in a comment\n" + TRACE + "}\n", ["mine/coin/trace.glsl:10: "])):
