@@ -1,4 +1,5 @@
-"""A stranger's hour: every file and every command of the tutorials, in their order, as they stand there."""
+"""A stranger's hour: every file and every command of a page, in their order, as they stand there."""
+import glob
 import os
 import re
 import subprocess
@@ -19,8 +20,8 @@ class Test(Case):
                 done = subprocess.run(["/bin/bash", "-euo", "pipefail", "-c", text], cwd=self.folder, env=environment, capture_output=True,
                                       text=True, timeout=HANGS_S)
                 self.assertEqual(done.returncode, 0, f"{page}: {text}{done.stdout}{done.stderr}")
-                for written in re.findall(r"-o (\S+\.\w+)", text):
-                    self.assertTrue(os.path.exists(self.path(written)), f"{page}: {text}")
+                for stem, ending in re.findall(r"-o (\S+)(\.\w+)", text):  # a sequence is numbered
+                    self.assertTrue(glob.glob(self.path(stem + "*" + ending)), f"{page}: {text}")
                 printed += done.stdout
                 continue
             first, rest = text.split("\n", 1)
@@ -67,6 +68,18 @@ class Test(Case):
         trace, = re.findall(r"// mine/strides/trace.glsl\n(.*?)```", read("docs/tutorials/own_technique.md"), re.S)
         self.ssrlab("new-technique", "mine/strides")
         self.assertEqual(self.text("mine/strides/trace.glsl").split("\n", 1)[1], trace)
+
+    def test_write_a_reprojection(self):
+        printed = self.follow("how-to/write_a_reprojection.md")
+        self.assertIn("to the right, px", printed)
+        self.assertEqual(len(glob.glob(self.path("orbit_*.png"))), 8)
+        self.rows_of("check", 12)
+        errors = {row["reprojection"]: (row["reprojection_error_median_px"], row["reprojection_error_p95_px"])
+                  for row in self.rows("results/check", "sequence_summary.csv")}
+        self.assertEqual(set(errors), {"shifted", "surface", "plane"})
+        self.assertEqual(errors["shifted"], errors["surface"])
+        self.assertNotEqual(errors["shifted"], errors["plane"])
+        self.assertIn("reprojection_error", self.text("results/check/report.html"))
 
     def test_paper_figure(self):
         self.follow("tutorials/paper_figure.md")
