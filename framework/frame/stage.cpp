@@ -25,6 +25,12 @@ WorldPtr world_if_held(Stage& stage)
     }
 }
 
+void refuse_what_frame_lacks(const Scene& scene, const FrameSettings& settings)
+{
+    if (!scene.frame) return;
+    if (const std::string lacks = frame_lacks(scene.name, settings); !lacks.empty()) throw SpecError(lacks);
+}
+
 } // namespace
 
 const std::shared_ptr<World>& world_of(Stage& stage)
@@ -87,12 +93,20 @@ void show(Stage& stage, const View& view)
     stage.gbuffer = gbuffer_of(*stage.drawing);
 }
 
+std::string frame_lacks(const std::string& file, const FrameSettings& settings)
+{
+    const auto lacks = [&](const std::string& asked, const char* expected) {
+        return fmt::format(
+            "{}: '{}' is a frame of another renderer, which holds nothing behind its surfaces: expected {}", asked,
+            file, expected);
+    };
+    if (settings.trace.layers > 1) return lacks(fmt::format("layers = {}", settings.trace.layers), "1");
+    return settings.passes.at("hidden_layer") != 0 ? lacks("hidden_layer = true", "false") : "";
+}
+
 LabPtr make_lab(Stage& stage, const Technique& technique, const ParameterValues& values, const TraceSettings& settings)
 {
-    if (stage.scene.frame && settings.layers > 1)
-        throw_spec_error("layers = {}: '{}' is a frame of another renderer, which holds nothing behind its surfaces: "
-                         "expected 1",
-                         settings.layers, stage.scene.name);
+    refuse_what_frame_lacks(stage.scene, {.trace = settings});
     if (stage.drawing) draw_layers(stage.gpu, *stage.drawing, settings.layers);
     return make_lab(stage.gpu, stage.catalogue, stage.gbuffer, technique, values, settings);
 }
@@ -102,6 +116,7 @@ FrameBuffersPtr make_frame_buffers(Stage& stage) { return make_frame_buffers(sta
 FramePlan plan_frame(Stage& stage, const LabPtr& lab, const FrameBuffersPtr& buffers, const FrameSettings& settings,
                      const FrameHistoryPtr& history)
 {
+    refuse_what_frame_lacks(stage.scene, settings);
     buffers->world = asks_for_world(stage, *lab, settings.passes) ? world_if_held(stage) : nullptr;
     return plan_frame(stage.gpu, stage.catalogue, lab, buffers, settings, history);
 }

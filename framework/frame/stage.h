@@ -40,11 +40,15 @@ const std::shared_ptr<World>& world_of(Stage& stage);
 /// Returns which cells of the scene's bounds hold geometry.
 const DeviceGrid& grid_of(Stage& stage);
 
-/// Returns the technique on the shown G-buffer, with as many layers as the settings ask for. Throws as make_lab() does.
+/// Returns what settings ask for that a frame file does not have, as nothing lies behind its surfaces; or "".
+std::string frame_lacks(const std::string& file, const FrameSettings& settings);
+
+/// Returns the technique on the shown G-buffer, with as many layers as the settings ask for. Throws as make_lab() does,
+/// and SpecError for what a frame file lacks.
 LabPtr make_lab(Stage& stage, const Technique& technique, const ParameterValues& values, const TraceSettings& settings);
 FrameBuffersPtr make_frame_buffers(Stage& stage);
 
-/// Returns the plan of a frame: plan_frame() with what the stage knows.
+/// Returns the plan of a frame: plan_frame() with what the stage knows. Throws SpecError for what a frame file lacks.
 FramePlan plan_frame(Stage& stage, const LabPtr& lab, const FrameBuffersPtr& buffers, const FrameSettings& settings,
                      const FrameHistoryPtr& history = nullptr);
 

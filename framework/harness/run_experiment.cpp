@@ -52,17 +52,15 @@ void refuse_what_frames_lack(const Experiment& experiment)
             throw_spec_error("{}: '{}' is one frame of another renderer: it has no further frames and no jitter",
                              place(experiment.places.contains("jitter_phases") ? "jitter_phases" : "frames"), scene);
         for (const Setting& setting : experiment.known_settings) {
-            if (setting.name != "layers" && setting.name != "hidden_layer") continue;
             for (const TechniqueSweep& sweep : experiment.techniques) {
                 const bool  own    = sweep.settings.contains(setting.name);
                 const auto& values = own ? sweep.settings.at(setting.name) : experiment.settings.at(setting.name);
-                for (const double value : values)
-                    if (value != setting.default_value)
-                        throw_spec_error(
-                            "{}: {} = {}: '{}' is a frame of another renderer, which holds nothing behind its "
-                            "surfaces: expected {}",
-                            own ? sweep.place : place(setting.name), setting.name, format_parameter(setting, value),
-                            scene, format_parameter(setting, setting.default_value));
+                for (const double value : values) {
+                    FrameSettings settings;
+                    setting.set(settings, value);
+                    if (const std::string lacks = frame_lacks(scene, settings); !lacks.empty())
+                        throw_spec_error("{}: {}", own ? sweep.place : place(setting.name), lacks);
+                }
             }
         }
     }

@@ -51,7 +51,10 @@ class Test(Case):
             for options in (["--dry-run"], ["-o", "out"]):
                 with self.subTest(new=new):
                     self.refused("run", self.write("s.toml", SPEC.replace(old, new)), *options, code=2, says=[f"s.toml:{line}: ", *says])
-        self.refused("render", "frame.exr", "-t", "hiz", "-p", "layers=2", "-o", "a.png", code=2, says=["layers = 2: 'frame.exr'", "expected 1"])
+        for command in (["render", "-o", "a.png"], ["plan"]):
+            for asked, says in (("layers=2", ["layers = 2: 'frame.exr'", "expected 1"]), ("hidden_layer=true", ["hidden_layer = true: 'frame.exr'", "expected false"])):
+                with self.subTest(command=command, asked=asked):
+                    self.refused(command[0], "frame.exr", "-t", "hiz", "-p", asked, *command[1:], code=2, says=says)
 
     def test_what_is_missing_is_said(self):
         self.write("frame.exr.toml", '# of elsewhere\nreference = "missing.exr"\n')
