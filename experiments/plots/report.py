@@ -147,6 +147,15 @@ def ranking_text(results, chosen):
     return text + (f"Shares are means over {frames} frames, times and the ends of their intervals geometric means." if frames > 1 else "")
 
 
+def lacking(results):
+    """What a frame file does not say of what the surface model asks."""
+    if "frame_lacks" not in results.all_rows:
+        return []
+    rows = results.all_rows[results.all_rows.frame_lacks.notna()].drop_duplicates(["scene", "surface", "frame_lacks"])
+    return [f"{row.scene} has no channel {row.frame_lacks}: surface = {row.surface} takes every surface of this frame as thin."
+            for row in rows.itertuples()]
+
+
 def context(results, plots, tables):
     environment, chosen = results.environment, picks(results)
     counts = results.all_rows.outcome.value_counts()
@@ -157,7 +166,7 @@ def context(results, plots, tables):
             "device": f"Device: {device}." if device else "", "on_cpu": environment.get("device_type", "").lower() == "cpu",
             "verdicts": verdicts(results, chosen), "ranking": ranking_table(ranked), "ranking_text": ranking_text(results, chosen),
             "has_curve": results.sources.empty and any(results.has(name) for name in ERRORS), "frames": list(frame_sections(results, chosen)),
-            "failed": failed_table(results, again), "plots": plots, "tables": [(name, plain_table(rows)) for name, rows in tables.items()],
+            "lacking": lacking(results), "failed": failed_table(results, again), "plots": plots, "tables": [(name, plain_table(rows)) for name, rows in tables.items()],
             "about": about(environment), "again": again(results, "RUN_ID"), "specification": environment.get("specification", ""),
             "agreement_legend": AGREEMENT, "causes_legend": CAUSES, "ramp": RAMP, "split_legend": [{"kind": kind, "said": said} for _, kind, said in SPLIT],
             "data": chart_data(results, chosen)}

@@ -18,7 +18,7 @@ import tomllib
 import pandas as pd
 
 TEXT = ["run_id", "experiment", "scene", "view", "technique", "outcome", "message", "picture", "truth_picture", "no_scene_truth", "no_screen_truth",
-        "technique_ignores", "sources", "hand_on"]
+        "technique_ignores", "frame_lacks", "sources", "hand_on"]
 FRAME = ["scene", "view", "width", "height", "frame"]
 # What a clock decides, and differs from one run to the next.
 OF_TIME = re.compile(r"(^|[_.])ms(_|$)|^(fps|inverse_fps_s|trace_drift|frames_per_submit)$")

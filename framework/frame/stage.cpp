@@ -93,6 +93,11 @@ void show(Stage& stage, const View& view)
     stage.gbuffer = gbuffer_of(*stage.drawing);
 }
 
+std::string lacked_channel(const Scene& scene, const Surface& surface)
+{
+    return scene.frame && scene.frame->gbuffer.solid_back.empty() && surface.needs_solid ? "solid_back" : "";
+}
+
 std::string frame_lacks(const std::string& file, const FrameSettings& settings)
 {
     const auto lacks = [&](const std::string& asked, const char* expected) {

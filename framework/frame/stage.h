@@ -40,6 +40,8 @@ const std::shared_ptr<World>& world_of(Stage& stage);
 /// Returns which cells of the scene's bounds hold geometry.
 const DeviceGrid& grid_of(Stage& stage);
 
+/// Returns the channel that the surface model reads and the scene, a frame file, does not have; or "".
+std::string lacked_channel(const Scene& scene, const Surface& surface);
 /// Returns what settings ask for that a frame file does not have, as nothing lies behind its surfaces; or "".
 std::string frame_lacks(const std::string& file, const FrameSettings& settings);
 

@@ -45,6 +45,14 @@ void say_warnings(const CommonOptions& common, const Scene& scene)
     for (const std::string& warning : scene.warnings) say(common, "warning: " + warning);
 }
 
+std::string lacked_channel_text(const Scene& scene, const Surface& surface)
+{
+    const std::string channel = lacked_channel(scene, surface);
+    if (channel.empty()) return "";
+    return fmt::format("warning: {}: no channel {}: surface = {} takes every surface of this frame as thin", scene.name,
+                       channel, surface.id);
+}
+
 Stage open_stage(const CommonOptions& common, const Catalogue& catalogue, const PictureOptions& options)
 {
     Scene            scene   = load_scene(options.scene);

@@ -26,6 +26,9 @@ void say(const CommonOptions& common, const std::string& text);
 /// Prints the warnings of loading a scene likewise.
 void say_warnings(const CommonOptions& common, const Scene& scene);
 
+/// Returns what follows where a frame file lacks a channel that the surface model reads; else "".
+std::string lacked_channel_text(const Scene& scene, const Surface& surface);
+
 /// Opens the stage for the frame and device that the options name. Throws SpecError for wrong options.
 Stage open_stage(const CommonOptions& common, const Catalogue& catalogue, const PictureOptions& options);
 /// Prints the validation layer's messages; returns 1 if there are any, else 0.

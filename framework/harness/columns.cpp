@@ -86,6 +86,10 @@ const std::vector<Column> ending = {
      "of behind, surface and thickness: what the technique's own hit test does not ask, by its "
      "manifest; empty: it asks all of them; unknown: the manifest does not say",
      words},
+    {"frame_lacks",
+     "solid_back: the surface model asks where solids end, and the frame file does not say, so every surface counts as "
+     "thin; empty: nothing lacks",
+     words},
     {"no_screen_truth", "why the measures that need the screen truth are empty; empty: they have a value", words},
     {"no_scene_truth", "why the measures that need the scene's triangles are empty; empty: they have a value", words},
     {"outcome",

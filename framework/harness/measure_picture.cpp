@@ -7,6 +7,7 @@
 #include "core/files.h"
 #include "core/parallel_rows.h"
 #include "core/stopwatch.h"
+#include "harness/choice.h"
 #include "harness/environment.h"
 #include "harness/no_hits.h"
 #include "harness/passes.h"
@@ -395,15 +396,19 @@ void open_run(SweepContext& sweep, MeasuredPicture& picture, const Run& run, std
     const Technique& technique = find_technique(sweep.techniques, run.technique);
     measured.row               = identity_row(sweep.experiment, run, technique);
     for (const Structure& structure : technique.structures) measured.structures.push_back(structure.id);
+    const Scene&   scene        = sweep.scene->stage.scene;
+    const Surface& surface      = find_surface(sweep.catalogue.surfaces, run.settings.trace.surface);
+    measured.row["frame_lacks"] = lacked_channel(scene, surface);
+    const std::string lacked    = lacked_channel_text(scene, surface);
+    if (!lacked.empty() && sweep.said.insert(lacked).second) sweep.progress.say(lacked);
     const auto prepare_all = [&] {
         prepare(sweep, picture, measured);
         prepare_comparison(sweep, picture, measured);
         plan_repeats(sweep, measured);
     };
     if (!try_step(sweep, measured, prepare_all)) return;
-    const std::string no_hits =
-        no_hits_text(technique, run.settings.trace, sweep.scene->stage.scene, measured.plan.statistics.trace);
-    if (!no_hits.empty() && sweep.without_hits.insert(technique.id).second) sweep.progress.say(no_hits);
+    const std::string no_hits = no_hits_text(technique, run.settings.trace, scene, measured.plan.statistics.trace);
+    if (!no_hits.empty() && sweep.said.insert(technique.id).second) sweep.progress.say(no_hits);
     sweep.progress.prepared_run(run.id, cost_of(sweep, run));
     open.push_back(std::move(measured));
 }

@@ -1,6 +1,8 @@
 """A frame of another renderer as SCENE: exported, described, rendered, swept."""
 import os
 
+import numpy
+import OpenImageIO as oiio
 from support import Case, main
 
 SPEC = """scenes = ["frame.exr"]
@@ -55,6 +57,40 @@ class Test(Case):
             for asked, says in (("layers=2", ["layers = 2: 'frame.exr'", "expected 1"]), ("hidden_layer=true", ["hidden_layer = true: 'frame.exr'", "expected false"])):
                 with self.subTest(command=command, asked=asked):
                     self.refused(command[0], "frame.exr", "-t", "hiz", "-p", asked, *command[1:], code=2, says=says)
+
+    def drop(self, channel, name):
+        """The frame without a channel, as another renderer writes it."""
+        frame = oiio.ImageBuf(self.path("frame.exr"))
+        kept  = tuple(one for one in frame.spec().channelnames if one != channel)
+        self.assertEqual(len(kept), frame.nchannels - 1)
+        self.assertTrue(oiio.ImageBufAlgo.channels(frame, kept).write(self.path(name)))
+
+    def pixels(self, scene, surface, says=()):
+        printed = self.ssrlab("render", scene, "-t", "hiz", "-p", "max_distance_m=20", "-p", f"surface={surface}", "-o", "p.exr", says=says)
+        return oiio.ImageBuf(self.path("p.exr")).get_pixels(oiio.FLOAT), printed
+
+    def test_what_the_surface_model_asks_in_vain_is_said(self):
+        self.ssrlab("gbuffer", "builtin:sphere_over_mirror", "--size", "96x54", "-o", "frame.exr")
+        self.drop("solid_back", "thin.exr")
+        lacks   = "no channel solid_back: surface = plane_solid takes every surface of this frame as thin"
+        warning = "warning: thin.exr: " + lacks
+        thin, _ = self.pixels("thin.exr", "plane_solid", [warning])
+        for scene, surface in (("thin.exr", "plane"), ("frame.exr", "plane_solid")):
+            same, printed = self.pixels(scene, surface)
+            self.assertNotIn("solid_back", printed)
+            self.assertEqual(numpy.array_equal(thin, same), surface == "plane")
+        self.ssrlab("trace", "thin.exr", "-t", "hiz", "-o", "h.exr", says=[warning])
+        self.ssrlab("ray", "thin.exr", "-t", "hiz", "--pixel", "48,48", says=[warning])
+        self.ssrlab("judge", "thin.exr", "h.exr", says=[warning])
+        swept = SPEC.replace("frame.exr", "thin.exr").replace("[trace]", '[trace]\nsurface = ["plane", "plane_solid"]')
+        printed = self.ssrlab("run", self.write("s.toml", swept), "-o", "out")
+        self.assertEqual(printed.count(warning), 1)
+        self.assertEqual({(row["surface"], row["frame_lacks"]) for row in self.rows()}, {("plane", ""), ("plane_solid", "solid_back")})
+        self.ssrlab("plot", "out")
+        for report in ("out/report.html", "out/report.md"):
+            self.assertEqual(self.text(report).count("thin.exr has " + lacks), 1)
+        self.ssrlab("run", self.write("f.toml", SPEC), "-o", "whole")
+        self.assertEqual({row["frame_lacks"] for row in self.rows("whole")}, {""})
 
     def test_what_is_missing_is_said(self):
         self.write("frame.exr.toml", '# of elsewhere\nreference = "missing.exr"\n')
